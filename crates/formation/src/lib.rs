@@ -1,0 +1,1 @@
+//! The control core: graph, relative geometry, laws, observer.

@@ -1,0 +1,1 @@
+//! What each robot knows of its leader.

@@ -1,0 +1,1 @@
+//! Snapshots to pictures and films.

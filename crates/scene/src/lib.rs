@@ -1,0 +1,1 @@
+//! Scene files: text to a checked experiment.

@@ -1,0 +1,26 @@
+//! The words all other crates share: poses, edges, commands, observations, snapshots.
+//!
+//! Everything is f64 and SI. Frames follow REP-103: x forward, y left, z up, angles counter-clockwise in
+//! (−π, π]. Nothing here does input or output, and nothing here knows how a robot moves or is drawn.
+
+mod angle;
+mod cast;
+mod command;
+mod edge;
+mod moment;
+mod observation;
+mod picture;
+mod pose;
+mod profile;
+mod snapshot;
+
+pub use angle::{nearest_turn, wrap};
+pub use cast::{Body, Cast, Member};
+pub use command::Command;
+pub use edge::{Edge, Relative, SetPoint};
+pub use moment::{EdgeState, Moment};
+pub use observation::{EdgeSample, Observation, TRACK_NODES, Track};
+pub use picture::Picture;
+pub use pose::Pose;
+pub use profile::{Drive, Profile};
+pub use snapshot::{Attitude, Motion, RobotState, Snapshot, Wheel};

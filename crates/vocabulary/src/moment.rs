@@ -1,0 +1,85 @@
+//! One row of a run: the truth, and what every edge wanted, knew and did. Pictures and records are made of it.
+
+use crate::{Command, Pose, Relative, Snapshot, nearest_turn, wrap};
+
+/// One edge at an instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EdgeState {
+    /// True relative position.
+    pub relative: Relative,
+    /// Wanted [distance in m, bearing in rad].
+    pub set_point: [f64; 2],
+    /// Tracking error [m, rad], set point minus truth, bearing wrapped (eq 14).
+    pub error: [f64; 2],
+    /// What the law asked for, before limits.
+    pub asked: Command,
+    /// What was applied.
+    pub applied: Command,
+    /// Estimate of the rates of [distance, bearing] in [m/s, rad/s]; the observer's where one runs, else the truth.
+    pub rates: [f64; 2],
+    /// Whether a limit (turn rate, speed, acceleration) cut the command.
+    pub limited: bool,
+    /// Whether the distance was below its minimum.
+    pub too_close: bool,
+}
+
+/// Snapshot and edges of one instant.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Moment {
+    /// The truth about the robots.
+    pub snapshot: Snapshot,
+    /// One entry per edge, in the order of [`crate::Cast::edges`].
+    pub edges: Vec<EdgeState>,
+}
+
+impl Moment {
+    /// The moment at `share` (0 to 1) of the way from `a` to `b`, for pictures between two control samples.
+    ///
+    /// Positions, angles and errors are interpolated linearly; commands and flags are those of `a`.
+    pub fn between(a: &Self, b: &Self, share: f64) -> Self {
+        let mix = |p: f64, q: f64| p + (q - p) * share;
+        let turn = |p: f64, q: f64| wrap(mix(p, nearest_turn(q, p)));
+        let mut out = a.clone();
+        out.snapshot.time = mix(a.snapshot.time, b.snapshot.time);
+        for (o, n) in out.snapshot.robots.iter_mut().zip(&b.snapshot.robots) {
+            let (p, q) = (o.motion.pose, n.motion.pose);
+            o.motion.pose = Pose::new(mix(p.x, q.x), mix(p.y, q.y), turn(p.heading, q.heading));
+            o.motion.speed = mix(o.motion.speed, n.motion.speed);
+            o.attitude.height = mix(o.attitude.height, n.attitude.height);
+            o.attitude.roll = turn(o.attitude.roll, n.attitude.roll);
+            o.attitude.pitch = turn(o.attitude.pitch, n.attitude.pitch);
+            o.camera_pan = turn(o.camera_pan, n.camera_pan);
+            for (w, m) in o.wheels.iter_mut().zip(&n.wheels) {
+                w.rotation = mix(w.rotation, m.rotation);
+                w.steering = mix(w.steering, m.steering);
+                w.compression = mix(w.compression, m.compression);
+            }
+        }
+        for (o, n) in out.edges.iter_mut().zip(&b.edges) {
+            o.relative.distance = mix(o.relative.distance, n.relative.distance);
+            o.relative.bearing = turn(o.relative.bearing, n.relative.bearing);
+            o.relative.view_angle = turn(o.relative.view_angle, n.relative.view_angle);
+            o.set_point = [mix(o.set_point[0], n.set_point[0]), turn(o.set_point[1], n.set_point[1])];
+            o.error = [mix(o.error[0], n.error[0]), turn(o.error[1], n.error[1])];
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::RobotState;
+
+    #[test]
+    fn headings_take_the_short_way_round() {
+        let at = |time, heading| {
+            let mut robot = RobotState::default();
+            robot.motion.pose = Pose::new(time, 0.0, heading);
+            Moment { snapshot: Snapshot { time, robots: vec![robot] }, edges: vec![] }
+        };
+        let middle = Moment::between(&at(0.0, 3.0), &at(1.0, -3.0), 0.5);
+        let pose = middle.snapshot.robots[0].motion.pose;
+        assert!((pose.x - 0.5).abs() < 1e-15 && (pose.heading.abs() - std::f64::consts::PI).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,60 @@
+//! The truth about all robots at one instant: the only way out of a world.
+
+use crate::Pose;
+
+/// How a robot moves at an instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Motion {
+    /// Where it is.
+    pub pose: Pose,
+    /// Forward speed, m/s.
+    pub speed: f64,
+    /// Rate of change of the speed that was applied, m/s².
+    pub acceleration: f64,
+    /// Turn rate that was applied, rad/s.
+    pub turn_rate: f64,
+}
+
+/// How the body stands off the plane: zero for a unicycle on flat ground.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Attitude {
+    /// Height of the body's ground point over z = 0, m.
+    pub height: f64,
+    /// rad about the body's x axis, right side down positive.
+    pub roll: f64,
+    /// rad about the body's y axis, nose down positive.
+    pub pitch: f64,
+}
+
+/// One wheel, for drawing and for the log.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Wheel {
+    /// Angle rolled since the start, rad, forward positive.
+    pub rotation: f64,
+    /// Steering angle, rad, left positive.
+    pub steering: f64,
+    /// Spring compression from rest, m.
+    pub compression: f64,
+}
+
+/// One robot at an instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RobotState {
+    /// Planar motion.
+    pub motion: Motion,
+    /// Height, roll, pitch.
+    pub attitude: Attitude,
+    /// Front left, front right, rear left, rear right.
+    pub wheels: [Wheel; 4],
+    /// Direction of the camera from the heading, rad.
+    pub camera_pan: f64,
+}
+
+/// All robots at one instant, in the order of the scene.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Snapshot {
+    /// s from the start of the run.
+    pub time: f64,
+    /// One entry per robot.
+    pub robots: Vec<RobotState>,
+}
