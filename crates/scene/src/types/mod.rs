@@ -1,0 +1,54 @@
+//! The checked scene: what every other crate may trust once a file has been loaded.
+//!
+//! Nothing here is partial: groups are robots, defaults are filled in, angles are radians in (−π, π], tables
+//! are read. No number is NaN and every one lies in the range its description names.
+
+mod law;
+mod path;
+mod robot;
+mod run;
+mod set_point;
+mod stage;
+mod vehicle;
+
+pub use law::{Law, LawKind, Observer, ObserverStart, Switching};
+pub use path::{Path, SpeedProfile};
+pub use robot::{Follow, Robot, Role};
+pub use run::{Expect, Mode, Sensing, SensingKind, Time};
+pub use set_point::{Channel, Ramp};
+pub use stage::{Environment, Film, Views};
+pub use vehicle::{Vehicle, VehicleKind};
+
+use serde::Serialize;
+
+/// One experiment, checked and complete.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Scene {
+    /// Title shown in pictures and reports.
+    pub title: String,
+    /// What the experiment is about; may be empty.
+    pub description: String,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Length, control period and mode of the run.
+    pub time: Time,
+    /// What a robot knows of its leader.
+    pub sensing: Sensing,
+    /// All robots in the order of the file, groups in place of their members, at least one. Names are unique.
+    pub robots: Vec<Robot>,
+    /// Ground, light and air.
+    pub environment: Environment,
+    /// How pictures look at the run.
+    pub views: Views,
+    /// How a film is made when the command line does not say.
+    pub film: Film,
+    /// What the run has to show.
+    pub expect: Expect,
+}
+
+impl Scene {
+    /// Index of the robot called `name`.
+    pub fn index_of(&self, name: &str) -> Option<usize> {
+        self.robots.iter().position(|robot| robot.name == name)
+    }
+}

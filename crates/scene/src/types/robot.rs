@@ -1,0 +1,54 @@
+//! Robots and their roles.
+
+use super::{Channel, Law, Observer, Path, Vehicle};
+use serde::{Serialize, Serializer};
+use vocabulary::Pose;
+
+/// One robot.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Robot {
+    /// Unique name.
+    pub name: String,
+    /// Where it starts, [m, m, rad].
+    #[serde(serialize_with = "pose_as_list")]
+    pub pose: Pose,
+    /// What it is and what it can do.
+    pub vehicle: Vehicle,
+    /// Whether it leads or follows.
+    #[serde(flatten)]
+    pub role: Role,
+}
+
+/// Whether a robot leads or follows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Role {
+    /// Goes its own way.
+    Lead {
+        /// Its way.
+        path: Path,
+    },
+    /// Keeps a place relative to another robot.
+    Follow(Follow),
+}
+
+/// An edge of the formation, seen from its follower.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Follow {
+    /// Name of the robot that is followed; it exists, and following never comes round in a circle.
+    pub leader: String,
+    /// Speed at the start, m/s, within the vehicle's limits.
+    pub speed: f64,
+    /// Wanted distance, m.
+    pub distance: Channel,
+    /// Wanted bearing, rad: direction to the follower seen from the leader's heading, left positive.
+    pub bearing: Channel,
+    /// Control law.
+    pub law: Law,
+    /// Observer; used by the output-feedback law only.
+    pub observer: Observer,
+}
+
+fn pose_as_list<S: Serializer>(pose: &Pose, serializer: S) -> Result<S::Ok, S::Error> {
+    [pose.x, pose.y, pose.heading].serialize(serializer)
+}
