@@ -1,1 +1,22 @@
-//! The control core: graph, relative geometry, laws, observer.
+//! The control core: who follows whom, where they are, and what the laws ask of them.
+//!
+//! Numeric code here is infallible: it is given checked parameters and returns finite numbers for every input.
+//! Only building a [`Graph`] or a curve can fail. Equation numbers are those of Orqueda, Zhang, Fierro:
+//! *An output feedback nonlinear decentralized controller for unmanned vehicle co-ordination* (2007).
+//!
+//! Read in the order of the data: [`graph`], [`relative`], [`set_point`], [`lead`], [`law`], [`observer`], and
+//! [`formation`], which puts them together.
+
+pub mod formation;
+pub mod graph;
+pub mod law;
+pub mod lead;
+pub mod observer;
+pub mod relative;
+pub mod set_point;
+
+pub use formation::{EdgeLaw, Formation, FormationState};
+pub use graph::{Graph, GraphError};
+pub use law::{Law, LawInput, LawKind, Switching};
+pub use observer::{Estimate, Observer};
+pub use set_point::{Course, Ramp, SetPointCourse};

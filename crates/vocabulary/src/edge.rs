@@ -1,5 +1,7 @@
 //! Who follows whom, where a follower is, and where it should be.
 
+use crate::{Pose, wrap};
+
 /// A leader-follower pair; both are indices of robots in a snapshot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Edge {
@@ -20,6 +22,21 @@ pub struct Relative {
     pub view_angle: f64,
 }
 
+impl Relative {
+    /// Distance, bearing and view angle of a follower (eqs 2-4).
+    ///
+    /// Two robots on the same spot have distance 0 and, by choice, the line between them along the x axis.
+    pub fn between(leader: Pose, follower: Pose) -> Self {
+        let (dx, dy) = (leader.x - follower.x, leader.y - follower.y);
+        let from_follower = dy.atan2(dx);
+        Self {
+            distance: (dx * dx + dy * dy).sqrt(),
+            bearing: wrap(std::f64::consts::PI + from_follower - leader.heading),
+            view_angle: wrap(std::f64::consts::PI + from_follower - follower.heading),
+        }
+    }
+}
+
 /// Wanted [distance in m, bearing in rad] of an edge at an instant, with first and second time derivative.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SetPoint {
@@ -29,4 +46,33 @@ pub struct SetPoint {
     pub rate: [f64; 2],
     /// [m/s², rad/s²].
     pub acceleration: [f64; 2],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn the_papers_set_point_is_behind_and_to_the_right() {
+        let root = 2.0_f64.sqrt();
+        let r = Relative::between(Pose::default(), Pose::new(-root, -root, 0.0));
+        assert!((r.distance - 2.0).abs() < 1e-15 && (r.bearing + 0.75 * PI).abs() < 1e-15);
+    }
+
+    #[test]
+    fn two_robots_on_one_spot_are_defined() {
+        let r = Relative::between(Pose::new(1.0, 1.0, 0.3), Pose::new(1.0, 1.0, -0.3));
+        assert_eq!(r.distance, 0.0);
+        assert!(r.bearing.is_finite() && r.view_angle.is_finite());
+    }
+
+    /// From the follower's heading the leader stands at γ − π.
+    #[test]
+    fn the_view_angle_points_back_at_the_leader() {
+        let (leader, follower) = (Pose::new(3.0, 1.0, 0.4), Pose::new(1.0, 0.0, -0.7));
+        let r = Relative::between(leader, follower);
+        let direction = (1.0_f64).atan2(2.0) - follower.heading;
+        assert!((wrap(r.view_angle - PI) - wrap(direction)).abs() < 1e-14);
+    }
 }

@@ -1,0 +1,268 @@
+//! All edges of a formation together: from what every follower sees to what every robot shall do.
+
+use crate::graph::Graph;
+use crate::law::{Law, LawInput, LawKind};
+use crate::observer::{Estimate, Observer};
+use crate::relative::Geometry;
+use crate::set_point::SetPointCourse;
+use std::sync::Arc;
+use vocabulary::{Command, Drive, Edge, Limits, Observation, Profile, SetPoint, wrap};
+
+/// Parameters of one edge.
+#[derive(Debug, Clone)]
+pub struct EdgeLaw {
+    /// The law of the follower.
+    pub law: Law,
+    /// Its observer; used by output feedback.
+    pub observer: Observer,
+    /// Where it shall be.
+    pub set_point: SetPointCourse,
+}
+
+/// Parameters of a formation: they do not change as it runs.
+#[derive(Debug, Clone)]
+pub struct Formation {
+    graph: Graph,
+    edges: Vec<EdgeLaw>,
+    limits: Vec<Limits>,
+    leads: Vec<(usize, Arc<dyn Profile>)>,
+    period: f64,
+}
+
+/// What a law decided on one edge.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Decision {
+    /// s^d at this instant, [m, rad].
+    pub set_point: [f64; 2],
+    /// Asked for, before limits.
+    pub asked: Command,
+    /// Within limits: what the robot is told.
+    pub commanded: Command,
+    /// What takes effect at once: no acceleration outward at a bound of the speed.
+    pub applied: Command,
+    /// ds/dt as the law took it, [m/s, rad/s].
+    pub rates: [f64; 2],
+    /// Whether a limit cut the command.
+    pub limited: bool,
+    /// Whether the distance was below ℓ_min.
+    pub too_close: bool,
+}
+
+/// State of a formation: observers, the last decisions, and the memory full state feedback needs.
+#[derive(Debug, Clone)]
+pub struct FormationState {
+    /// Per edge.
+    pub estimates: Vec<Estimate>,
+    /// Per edge.
+    pub decisions: Vec<Decision>,
+    /// Per robot: what it is told; for a lead robot its prescribed motion.
+    pub commands: Vec<Command>,
+    drives: Vec<Drive>,
+    /// ω of the last sample and of the one before, per robot; `None` before there was one.
+    turn_rates: [Option<Vec<f64>>; 2],
+}
+
+impl Formation {
+    /// Puts checked parts together: `edges` in the order of the graph's edges, `limits` per robot, `leads` with the
+    /// motion of every robot that follows nobody, `period` in s.
+    pub fn new(
+        graph: Graph,
+        edges: Vec<EdgeLaw>,
+        limits: Vec<Limits>,
+        leads: Vec<(usize, Arc<dyn Profile>)>,
+        period: f64,
+    ) -> Self {
+        debug_assert_eq!((edges.len(), limits.len()), (graph.edges().len(), graph.robots()));
+        Self { graph, edges, limits, leads, period }
+    }
+
+    /// The graph.
+    pub fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    /// Who follows whom.
+    pub fn edges(&self) -> &[Edge] {
+        self.graph.edges()
+    }
+
+    /// Parameters of every edge, in the order of [`Formation::edges`].
+    pub fn laws(&self) -> &[EdgeLaw] {
+        &self.edges
+    }
+
+    /// Limits of a robot.
+    pub fn limits(&self, robot: usize) -> &Limits {
+        &self.limits[robot]
+    }
+
+    /// Robots that follow nobody, with their motion.
+    pub fn leads(&self) -> &[(usize, Arc<dyn Profile>)] {
+        &self.leads
+    }
+
+    /// Whether any edge runs an observer.
+    pub fn observes(&self) -> bool {
+        self.edges.iter().any(|e| e.law.kind == LawKind::OutputFeedback)
+    }
+
+    /// The state before the first sample; observers start where `estimates` says, one per edge.
+    pub fn start(&self, estimates: Vec<Estimate>) -> FormationState {
+        let robots = self.graph.robots();
+        FormationState {
+            estimates,
+            decisions: vec![Decision::default(); self.edges.len()],
+            commands: vec![Command::default(); robots],
+            drives: vec![Drive::default(); robots],
+            turn_rates: [None, None],
+        }
+    }
+
+    /// Decides the commands of one control sample at `time` s from one observation per edge.
+    pub fn decide(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
+        state.differentiate_turn_rates(self.period);
+        self.evaluate(time, observations, state);
+        state.remember_turn_rates();
+    }
+
+    /// Evaluates all laws at an instant, leaders before followers, without memory: for continuous time.
+    pub fn evaluate(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
+        for (robot, profile) in &self.leads {
+            let drive = profile.at(time);
+            state.drives[*robot] = drive;
+            state.commands[*robot] = Command { acceleration: drive.acceleration, turn_rate: drive.turn_rate };
+        }
+        for &index in self.graph.evaluation_order() {
+            let follower = self.edges()[index].follower;
+            let decision = self.decide_edge(index, time, &observations[index], state);
+            let drive = &mut state.drives[follower];
+            drive.speed = observations[index].own_speed;
+            drive.acceleration = decision.applied.acceleration;
+            drive.turn_rate = decision.applied.turn_rate;
+            state.commands[follower] = decision.commanded;
+            state.decisions[index] = decision;
+        }
+    }
+
+    fn decide_edge(&self, index: usize, time: f64, seen: &Observation, state: &FormationState) -> Decision {
+        let (edge, parameters) = (self.edges()[index], &self.edges[index]);
+        let limits = &self.limits[edge.follower];
+        // What the leader does within this sample it tells its follower; its speed the follower has to observe.
+        let leader = Drive { speed: seen.leader_speed.unwrap_or(0.0), ..state.drives[edge.leader] };
+        let geometry = Geometry::new(&seen.relative, parameters.law.distance_min);
+        let set_point = parameters.set_point.at(time);
+        let own_speed = seen.own_speed.max(limits.speed_min);
+        let rates = match parameters.law.kind {
+            LawKind::OutputFeedback => state.estimates[index].rates,
+            LawKind::FullState | LawKind::RobustState => {
+                geometry.rates(own_speed, leader.speed, leader.turn_rate).into()
+            }
+        };
+        let asked = parameters.law.command(&LawInput {
+            geometry: &geometry,
+            error: tracking_error(&set_point, seen),
+            set_point: &set_point,
+            rates,
+            own_speed,
+            leader: &leader,
+        });
+        let commanded = limits.saturate(asked);
+        let acceleration = limits.admissible(commanded.acceleration, seen.own_speed);
+        let applied = Command { acceleration, ..commanded };
+        Decision {
+            set_point: [set_point.value[0], wrap(set_point.value[1])],
+            asked,
+            commanded,
+            applied,
+            rates,
+            limited: applied != asked,
+            too_close: seen.relative.distance < parameters.law.distance_min,
+        }
+    }
+}
+
+/// e = s^d − s, [m, rad], bearing wrapped (eq 14).
+fn tracking_error(set_point: &SetPoint, seen: &Observation) -> [f64; 2] {
+    [set_point.value[0] - seen.relative.distance, wrap(set_point.value[1] - seen.relative.bearing)]
+}
+
+impl FormationState {
+    /// dω/dt of a robot that is itself commanded: the difference of its last two commands, zero before there are two.
+    fn differentiate_turn_rates(&mut self, period: f64) {
+        let [Some(last), Some(before)] = &self.turn_rates else { return };
+        for ((drive, last), before) in self.drives.iter_mut().zip(last).zip(before) {
+            drive.turn_acceleration = (last - before) / period;
+        }
+    }
+
+    fn remember_turn_rates(&mut self) {
+        self.turn_rates.swap(0, 1);
+        let last = self.turn_rates[0].get_or_insert_with(Vec::new);
+        last.clear();
+        last.extend(self.drives.iter().map(|d| d.turn_rate));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Switching;
+    use crate::lead::Courses;
+    use vocabulary::Relative;
+
+    fn chain(kind: LawKind) -> Formation {
+        let graph = Graph::new(&["a", "b", "c"], &[("a", "b"), ("b", "c")]).expect("a chain");
+        let law = Law {
+            kind,
+            gain: [5.0; 2],
+            robust_gain: [5.0; 2],
+            switching: Switching::Tanh([24.53; 2]),
+            distance_min: 0.1,
+        };
+        let observer = Observer { epsilon: [1e-3; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 };
+        let edge = EdgeLaw { law, observer, set_point: SetPointCourse::constant(2.0, -2.3) };
+        let limits =
+            Limits { speed_min: 0.01, speed_max: 1.6, turn_rate_max: 11.5, acceleration_max: f64::INFINITY };
+        let lead: Arc<dyn Profile> = Arc::new(Courses::constant(1.0, 0.3));
+        Formation::new(graph, vec![edge.clone(), edge], vec![limits; 3], vec![(0, lead)], 0.01)
+    }
+
+    fn observation(distance: f64) -> Observation {
+        let relative = Relative { distance, bearing: -2.29, view_angle: -2.29 };
+        Observation { relative, own_speed: 1.0, leader_speed: Some(1.0) }
+    }
+
+    #[test]
+    fn full_state_feedback_differentiates_its_leaders_command_from_the_third_sample_on() {
+        let formation = chain(LawKind::FullState);
+        let mut state = formation.start(vec![Estimate::default(); 2]);
+        let mut turn_rates = vec![];
+        for (k, distance) in [1.97, 1.98, 2.0].into_iter().enumerate() {
+            let expected = if k < 2 { 0.0 } else { (turn_rates[1] - turn_rates[0]) / 0.01 };
+            formation.decide(k as f64 * 0.01, &[observation(distance), observation(2.0)], &mut state);
+            assert_eq!(state.drives[1].turn_acceleration, expected, "sample {k}");
+            turn_rates.push(state.commands[1].turn_rate);
+        }
+        assert_ne!(turn_rates[0], turn_rates[1]);
+    }
+
+    #[test]
+    fn a_lead_robot_is_told_its_prescribed_motion() {
+        let formation = chain(LawKind::RobustState);
+        let mut state = formation.start(vec![Estimate::default(); 2]);
+        formation.decide(0.0, &[observation(2.0); 2], &mut state);
+        assert_eq!(state.commands[0], Command { acceleration: 0.0, turn_rate: 0.3 });
+    }
+
+    #[test]
+    fn output_feedback_takes_its_rates_from_the_observer_and_reports_limits() {
+        let formation = chain(LawKind::OutputFeedback);
+        let estimate = Estimate { output: [2.0, -2.0], rates: [100.0, -50.0] };
+        let mut state = formation.start(vec![estimate; 2]);
+        let near = observation(0.05);
+        formation.decide(0.0, &[near, near], &mut state);
+        assert_eq!(state.decisions[0].rates, [100.0, -50.0]);
+        assert!(state.decisions[0].limited && state.decisions[0].too_close);
+        assert!(state.commands[1].turn_rate.abs() <= 11.5);
+    }
+}

@@ -1,0 +1,303 @@
+//! The formation control graph (definition 2.2): named robots and directed edges from leader to follower.
+
+use petgraph::Direction;
+use petgraph::algo::{connected_components, toposort};
+use petgraph::graph::{DiGraph, NodeIndex};
+use std::collections::HashMap;
+use thiserror::Error;
+use vocabulary::Edge;
+
+/// Why robots and edges do not make a formation. Every message names the robots.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum GraphError {
+    /// No robots at all.
+    #[error("a formation needs at least one robot")]
+    Empty,
+    /// Two robots of one name.
+    #[error("two robots are named `{0}`: names must differ")]
+    DuplicateName(String),
+    /// An edge names a robot that is not there.
+    #[error("`{follower}` follows `{leader}`, but there is no robot of that name")]
+    UnknownLeader {
+        /// The robot that follows.
+        follower: String,
+        /// The name that was not found.
+        leader: String,
+    },
+    /// An edge from or to nowhere, by follower.
+    #[error("an edge leads to `{0}`, but there is no robot of that name")]
+    UnknownFollower(String),
+    /// A robot follows itself.
+    #[error("`{0}` follows itself")]
+    SelfEdge(String),
+    /// A robot has two leaders.
+    #[error("`{follower}` follows both `{first}` and `{second}`: a follower has one leader")]
+    TwoLeaders {
+        /// The robot that follows.
+        follower: String,
+        /// Its first leader.
+        first: String,
+        /// Its second leader.
+        second: String,
+    },
+    /// Followers lead one another in a ring.
+    #[error("these robots follow each other in a ring: {}", .0.join(" → "))]
+    Cycle(Vec<String>),
+    /// Some robots have no path of edges to the first.
+    #[error("not connected to `{first}` by any edge: {}", .apart.join(", "))]
+    NotConnected {
+        /// The first robot of the formation.
+        first: String,
+        /// Robots that no edge joins to it.
+        apart: Vec<String>,
+    },
+}
+
+/// A checked formation graph: acyclic, every follower with one leader.
+#[derive(Debug, Clone)]
+pub struct Graph {
+    graph: DiGraph<String, usize>,
+    edges: Vec<Edge>,
+    evaluation_order: Vec<usize>,
+}
+
+impl Graph {
+    /// Builds the graph of `names` and (leader, follower) pairs of names.
+    ///
+    /// # Errors
+    /// The first [`GraphError`] found; connection is checked apart, by [`Graph::require_connected`].
+    pub fn new<S: AsRef<str>>(names: &[S], pairs: &[(S, S)]) -> Result<Self, GraphError> {
+        if names.is_empty() {
+            return Err(GraphError::Empty);
+        }
+        let (mut graph, index) = nodes(names)?;
+        let mut edges = Vec::with_capacity(pairs.len());
+        for (leader, follower) in pairs {
+            let edge = resolve(&graph, &index, leader.as_ref(), follower.as_ref())?;
+            graph.add_edge(NodeIndex::new(edge.leader), NodeIndex::new(edge.follower), edges.len());
+            edges.push(edge);
+        }
+        let order =
+            toposort(&graph, None).map_err(|cycle| GraphError::Cycle(ring(&graph, cycle.node_id())))?;
+        let evaluation_order = order.into_iter().filter_map(|node| incoming(&graph, node)).collect();
+        Ok(Self { graph, edges, evaluation_order })
+    }
+
+    /// Robots.
+    pub fn robots(&self) -> usize {
+        self.graph.node_count()
+    }
+
+    /// Name of a robot; empty for an index out of range.
+    pub fn name(&self, robot: usize) -> &str {
+        self.graph.node_weight(NodeIndex::new(robot)).map_or("", String::as_str)
+    }
+
+    /// Edges in the order they were given.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// Indices of edges such that every leader's own edge comes before those of its followers.
+    pub fn evaluation_order(&self) -> &[usize] {
+        &self.evaluation_order
+    }
+
+    /// The edge that leads to `robot`, if it follows.
+    pub fn edge_to(&self, robot: usize) -> Option<usize> {
+        incoming(&self.graph, NodeIndex::new(robot))
+    }
+
+    /// Edges that lead to `robot`: 0 for a lead robot, 1 for a follower.
+    pub fn in_degree(&self, robot: usize) -> usize {
+        self.graph.edges_directed(NodeIndex::new(robot), Direction::Incoming).count()
+    }
+
+    /// Robots joined to `robot` by an edge in either direction, in ascending order (section 2.1).
+    pub fn neighbours(&self, robot: usize) -> Vec<usize> {
+        let mut all: Vec<usize> =
+            self.graph.neighbors_undirected(NodeIndex::new(robot)).map(NodeIndex::index).collect();
+        all.sort_unstable();
+        all
+    }
+
+    /// N×N matrix whose entry (i, j) says whether j follows i.
+    pub fn adjacency(&self) -> nalgebra::DMatrix<u8> {
+        let mut matrix = nalgebra::DMatrix::zeros(self.robots(), self.robots());
+        for edge in &self.edges {
+            matrix[(edge.leader, edge.follower)] = 1;
+        }
+        matrix
+    }
+
+    /// Whether any two robots are joined by a weak path (section 2.1).
+    pub fn weakly_connected(&self) -> bool {
+        connected_components(&self.graph) == 1
+    }
+
+    /// Edges between `robot` and its lead robot.
+    pub fn depth(&self, robot: usize) -> usize {
+        let mut depth = 0;
+        let mut at = robot;
+        while let Some(edge) = self.edge_to(at) {
+            at = self.edges[edge].leader;
+            depth += 1;
+        }
+        depth
+    }
+
+    /// Checks weak connection.
+    ///
+    /// # Errors
+    /// [`GraphError::NotConnected`] with the robots that stand apart from the first one.
+    pub fn require_connected(&self) -> Result<(), GraphError> {
+        let mut seen = vec![false; self.robots()];
+        let mut open = vec![0];
+        while let Some(robot) = open.pop() {
+            if !std::mem::replace(&mut seen[robot], true) {
+                open.extend(self.neighbours(robot));
+            }
+        }
+        let apart: Vec<String> =
+            (0..self.robots()).filter(|&i| !seen[i]).map(|i| self.name(i).to_owned()).collect();
+        if apart.is_empty() {
+            return Ok(());
+        }
+        Err(GraphError::NotConnected { first: self.name(0).to_owned(), apart })
+    }
+}
+
+type Nodes = (DiGraph<String, usize>, HashMap<String, usize>);
+
+fn nodes<S: AsRef<str>>(names: &[S]) -> Result<Nodes, GraphError> {
+    let mut graph = DiGraph::new();
+    let mut index = HashMap::new();
+    for name in names.iter().map(|n| n.as_ref().to_owned()) {
+        let node = graph.add_node(name.clone());
+        if index.insert(name.clone(), node.index()).is_some() {
+            return Err(GraphError::DuplicateName(name));
+        }
+    }
+    Ok((graph, index))
+}
+
+fn resolve(
+    graph: &DiGraph<String, usize>,
+    index: &HashMap<String, usize>,
+    leader: &str,
+    follower: &str,
+) -> Result<Edge, GraphError> {
+    let &f = index.get(follower).ok_or_else(|| GraphError::UnknownFollower(follower.to_owned()))?;
+    let &l = index.get(leader).ok_or_else(|| GraphError::UnknownLeader {
+        follower: follower.to_owned(),
+        leader: leader.to_owned(),
+    })?;
+    if l == f {
+        return Err(GraphError::SelfEdge(follower.to_owned()));
+    }
+    if let Some(first) = graph.neighbors_directed(NodeIndex::new(f), Direction::Incoming).next() {
+        return Err(GraphError::TwoLeaders {
+            follower: follower.to_owned(),
+            first: graph[first].clone(),
+            second: leader.to_owned(),
+        });
+    }
+    Ok(Edge { leader: l, follower: f })
+}
+
+fn incoming(graph: &DiGraph<String, usize>, node: NodeIndex) -> Option<usize> {
+    graph.edges_directed(node, Direction::Incoming).next().map(|edge| *edge.weight())
+}
+
+/// Names along the ring that `node` lies on, each followed by the robot it leads, back to the start.
+fn ring(graph: &DiGraph<String, usize>, node: NodeIndex) -> Vec<String> {
+    // With one leader each, walking from follower to leader must run into the ring and around it.
+    let leader = |n: NodeIndex| graph.neighbors_directed(n, Direction::Incoming).next();
+    let mut on_ring = node;
+    for _ in 0..graph.node_count() {
+        on_ring = leader(on_ring).unwrap_or(on_ring);
+    }
+    let mut names = vec![graph[on_ring].clone()];
+    let mut at = leader(on_ring);
+    while let Some(next) = at.filter(|&n| n != on_ring) {
+        names.push(graph[next].clone());
+        at = leader(next);
+    }
+    names.push(graph[on_ring].clone());
+    names.reverse();
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn build(names: &[&str], pairs: &[(&str, &str)]) -> Result<Graph, GraphError> {
+        Graph::new(names, pairs)
+    }
+
+    fn seven() -> Graph {
+        let pairs = [("0", "1"), ("0", "2"), ("1", "3"), ("2", "4"), ("3", "5"), ("4", "6")];
+        build(&["0", "1", "2", "3", "4", "5", "6"], &pairs).expect("a V of seven is a formation")
+    }
+
+    #[test]
+    fn a_v_of_seven_answers_every_question() {
+        let graph = seven();
+        assert_eq!(graph.robots(), 7);
+        assert_eq!(graph.neighbours(1), [0, 3]);
+        assert_eq!((graph.in_degree(0), graph.in_degree(6)), (0, 1));
+        assert_eq!(graph.edge_to(4), Some(3));
+        assert_eq!(graph.depth(6), 3);
+        assert!(graph.weakly_connected() && graph.require_connected().is_ok());
+        let adjacency = graph.adjacency();
+        assert_eq!(adjacency[(1, 3)], 1);
+        assert_eq!(adjacency[(3, 1)], 0);
+        assert_eq!(adjacency.iter().map(|&a| u32::from(a)).sum::<u32>(), 6);
+    }
+
+    #[test]
+    fn leaders_are_evaluated_before_their_followers() {
+        let graph = build(&["c", "b", "a"], &[("b", "c"), ("a", "b")]).expect("a chain is a formation");
+        assert_eq!(graph.evaluation_order(), [1, 0]);
+    }
+
+    #[test]
+    fn every_error_names_its_robots() {
+        let cases: [(Result<Graph, GraphError>, &[&str]); 7] = [
+            (build(&[], &[]), &["at least one robot"]),
+            (build(&["ann", "ann"], &[]), &["ann"]),
+            (build(&["ann", "bob"], &[("eve", "bob")]), &["bob", "eve"]),
+            (build(&["ann"], &[("ann", "eve")]), &["eve"]),
+            (build(&["ann"], &[("ann", "ann")]), &["ann", "itself"]),
+            (build(&["ann", "bob", "cy"], &[("ann", "cy"), ("bob", "cy")]), &["cy", "ann", "bob"]),
+            (
+                build(&["ann", "bob", "cy", "dan"], &[("bob", "cy"), ("cy", "dan"), ("dan", "bob")]),
+                &["bob", "cy", "dan", "ring"],
+            ),
+        ];
+        for (result, words) in cases {
+            let message = result.expect_err("must be refused").to_string();
+            for word in words {
+                assert!(message.contains(word), "`{message}` does not say `{word}`");
+            }
+        }
+    }
+
+    #[test]
+    fn the_ring_is_told_in_the_order_of_leading() {
+        let error = build(&["a", "b", "tail"], &[("b", "a"), ("a", "b"), ("a", "tail")]).expect_err("a ring");
+        let GraphError::Cycle(names) = error else { panic!("{error}") };
+        assert_eq!(names.len(), 3);
+        assert_eq!(names.first(), names.last());
+        assert!(!names.contains(&"tail".to_owned()));
+    }
+
+    #[test]
+    fn robots_apart_are_named() {
+        let graph = build(&["ann", "bob", "cy", "dan"], &[("ann", "bob")]).expect("a graph");
+        assert!(!graph.weakly_connected());
+        let message = graph.require_connected().expect_err("two stand apart").to_string();
+        assert!(message.contains("cy") && message.contains("dan") && !message.contains("bob"), "{message}");
+    }
+}

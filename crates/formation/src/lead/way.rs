@@ -1,0 +1,225 @@
+//! A smooth curve through way-points, driven at a speed profile.
+//!
+//! The curve is the interpolating cubic spline over chord length: its curvature is continuous, so the turn rate is.
+
+use super::Hermite;
+use kurbo::{CubicBez, ParamCurve, ParamCurveArclen, ParamCurveDeriv, Point, Vec2};
+use nalgebra::{DMatrix, DVector};
+use thiserror::Error;
+use vocabulary::{Drive, Pose, Profile};
+
+/// Why points make no curve.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum WayError {
+    /// Fewer points than a curve needs.
+    #[error("a way needs at least {needed} different points, this one has {given}")]
+    TooFew {
+        /// 2, or 3 for a closed way.
+        needed: usize,
+        /// How many there were.
+        given: usize,
+    },
+    /// Two points in a row on one spot, counted from 1.
+    #[error("way-points {0} and {next} are the same", next = .0 + 1)]
+    Repeated(usize),
+    /// The speed profile is empty.
+    #[error("the speed profile is empty")]
+    NoSpeed,
+}
+
+/// A curve and how fast it is driven.
+#[derive(Debug, Clone)]
+pub struct Way {
+    pieces: Vec<CubicBez>,
+    /// Arc length from the start to the start of each piece, and the whole length at the end, m.
+    lengths: Vec<f64>,
+    closed: bool,
+    speed: Hermite,
+}
+
+/// Accuracy of arc lengths, m.
+const ACCURACY: f64 = 1e-10;
+
+impl Way {
+    /// Through `points` in m (back to the first if `closed`), at speeds given as [time s, m/s].
+    ///
+    /// # Errors
+    /// [`WayError`] for too few or repeated points or an empty speed profile.
+    pub fn new(points: &[[f64; 2]], closed: bool, speeds: Vec<[f64; 2]>) -> Result<Self, WayError> {
+        let needed = if closed { 3 } else { 2 };
+        if points.len() < needed {
+            return Err(WayError::TooFew { needed, given: points.len() });
+        }
+        let speed = Hermite::new(speeds).ok_or(WayError::NoSpeed)?;
+        let pieces = spline(points, closed)?;
+        let mut lengths = vec![0.0];
+        for piece in &pieces {
+            lengths.push(lengths[lengths.len() - 1] + piece.arclen(ACCURACY));
+        }
+        Ok(Self { pieces, lengths, closed, speed })
+    }
+
+    /// Length of the curve, m.
+    pub fn length(&self) -> f64 {
+        self.lengths[self.pieces.len()]
+    }
+
+    /// Where the curve begins and how it points there: the robot should start here.
+    pub fn start(&self) -> Pose {
+        let (point, tangent) = (self.pieces[0].p0, self.pieces[0].p1 - self.pieces[0].p0);
+        Pose::new(point.x, point.y, tangent.atan2())
+    }
+
+    /// Curvature in 1/m and its change along the curve in 1/m² after `travelled` m; straight on beyond an open end.
+    fn curvature(&self, travelled: f64) -> [f64; 2] {
+        let length = self.length();
+        if !self.closed && !(0.0..length).contains(&travelled) {
+            return [0.0, 0.0];
+        }
+        let along = travelled.rem_euclid(length);
+        let k = self.lengths.partition_point(|l| *l <= along).clamp(1, self.pieces.len()) - 1;
+        let piece = &self.pieces[k];
+        let u = piece.inv_arclen(along - self.lengths[k], ACCURACY);
+        let first = piece.deriv();
+        let second = first.deriv();
+        let third = second.deriv().eval(u).to_vec2();
+        let (d1, d2) = (first.eval(u).to_vec2(), second.eval(u).to_vec2());
+        let speed = d1.hypot();
+        let turn = d1.cross(d2);
+        let curvature = turn / speed.powi(3);
+        let change = d1.cross(third) / speed.powi(3) - 3.0 * turn * d1.dot(d2) / speed.powi(5);
+        [curvature, change / speed]
+    }
+}
+
+impl Profile for Way {
+    fn at(&self, time: f64) -> Drive {
+        let [speed, acceleration] = self.speed.at(time);
+        let [curvature, change] = self.curvature(self.speed.integral(time));
+        Drive {
+            speed,
+            acceleration,
+            turn_rate: speed * curvature,
+            turn_acceleration: acceleration * curvature + speed * speed * change,
+        }
+    }
+}
+
+/// The interpolating C² cubic spline as Bézier pieces: periodic if closed, natural if open.
+fn spline(points: &[[f64; 2]], closed: bool) -> Result<Vec<CubicBez>, WayError> {
+    let mut knots: Vec<Point> = points.iter().map(|p| Point::new(p[0], p[1])).collect();
+    if closed {
+        knots.push(knots[0]);
+    }
+    let chords: Vec<f64> = knots.windows(2).map(|w| w[0].distance(w[1])).collect();
+    if let Some(k) = chords.iter().position(|c| *c < 1e-9) {
+        return Err(WayError::Repeated(k + 1));
+    }
+    let tangents = tangents(&knots, &chords, closed);
+    let piece = |k: usize| {
+        let (a, b, third) = (knots[k], knots[k + 1], chords[k] / 3.0);
+        CubicBez::new(a, a + third * tangents[k], b - third * tangents[k + 1], b)
+    };
+    Ok((0..chords.len()).map(piece).collect())
+}
+
+/// Derivatives at the knots with respect to chord length, from continuity of the second derivative.
+fn tangents(knots: &[Point], chords: &[f64], closed: bool) -> Vec<Vec2> {
+    let n = if closed { knots.len() - 1 } else { knots.len() };
+    let secant = |k: usize| (knots[k + 1] - knots[k]) / chords[k];
+    let mut matrix = DMatrix::<f64>::zeros(n, n);
+    let mut rhs = [DVector::<f64>::zeros(n), DVector::<f64>::zeros(n)];
+    for k in 0..n {
+        let row = if closed || (k > 0 && k < n - 1) {
+            let before = (k + chords.len() - 1) % chords.len();
+            let (h0, h1) = (chords[before], chords[k]);
+            matrix[(k, before)] += h1;
+            matrix[(k, k)] += 2.0 * (h0 + h1);
+            matrix[(k, (k + 1) % n)] += h0;
+            3.0 * (h1 * secant(before) + h0 * secant(k))
+        } else {
+            let (other, piece) = if k == 0 { (1, 0) } else { (n - 2, n - 2) };
+            matrix[(k, k)] = 2.0;
+            matrix[(k, other)] = 1.0;
+            3.0 * secant(piece)
+        };
+        (rhs[0][k], rhs[1][k]) = (row.x, row.y);
+    }
+    // The matrix is strictly diagonally dominant, so the solution exists.
+    let lu = matrix.lu();
+    let [x, y] = rhs.map(|r| lu.solve(&r).unwrap_or_else(|| DVector::zeros(n)));
+    (0..knots.len()).map(|k| Vec2::new(x[k % n], y[k % n])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn oval() -> Way {
+        let points = [[0.0, 0.0], [4.0, -1.0], [8.0, 0.0], [8.0, 4.0], [4.0, 5.0], [0.0, 4.0]];
+        Way::new(&points, true, vec![[0.0, 0.5], [5.0, 1.2]]).expect("an oval")
+    }
+
+    /// Driving the profile from the start of the curve must stay on the curve.
+    #[test]
+    fn the_profile_drives_the_curve() {
+        let way = oval();
+        let start = way.start();
+        let (mut x, mut y, mut heading) = (start.x, start.y, start.heading);
+        let h = 1e-4;
+        let mut travelled = 0.0;
+        while travelled < way.length() {
+            let d = way.at((travelled_time(&way, travelled)) + h / 2.0);
+            let middle = heading + d.turn_rate * h / 2.0;
+            x += d.speed * middle.cos() * h;
+            y += d.speed * middle.sin() * h;
+            heading += d.turn_rate * h;
+            travelled += d.speed * h;
+        }
+        assert!((x - start.x).hypot(y - start.y) < 1e-3, "{x} {y}");
+    }
+
+    fn travelled_time(way: &Way, travelled: f64) -> f64 {
+        let (mut low, mut high) = (0.0, 100.0);
+        for _ in 0..60 {
+            let middle = (low + high) / 2.0;
+            if way.speed.integral(middle) < travelled { low = middle } else { high = middle }
+        }
+        low
+    }
+
+    #[test]
+    fn derivatives_match_differences_away_from_knots() {
+        let way = oval();
+        let h = 1e-5;
+        for t in [0.7, 2.3, 6.1, 11.0, 14.2] {
+            let d = way.at(t);
+            let slope = (way.at(t + h).turn_rate - way.at(t - h).turn_rate) / (2.0 * h);
+            assert!((slope - d.turn_acceleration).abs() < 1e-4, "at {t}: {slope} {}", d.turn_acceleration);
+        }
+    }
+
+    #[test]
+    fn the_turn_rate_is_continuous_over_knots_and_zero_beyond_an_open_end() {
+        let way = Way::new(&[[0.0, 0.0], [2.0, 1.0], [4.0, -1.0], [6.0, 0.0]], false, vec![[0.0, 1.0]])
+            .expect("a way");
+        for length in &way.lengths {
+            let (a, b) = (way.at(length - 1e-7).turn_rate, way.at(length + 1e-7).turn_rate);
+            assert!((a - b).abs() < 1e-5, "{a} {b} at {length}");
+        }
+        assert_eq!(way.at(way.length() + 1.0).turn_rate, 0.0);
+    }
+
+    #[test]
+    fn bad_points_are_named() {
+        let too_few = Way::new(&[[0.0, 0.0]], false, vec![[0.0, 1.0]]).expect_err("one point");
+        assert_eq!(too_few, WayError::TooFew { needed: 2, given: 1 });
+        let repeated = Way::new(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]], false, vec![[0.0, 1.0]]);
+        assert_eq!(repeated.expect_err("a repeated point").to_string(), "way-points 2 and 3 are the same");
+        assert_eq!(oval_without_speed(), WayError::NoSpeed);
+    }
+
+    fn oval_without_speed() -> WayError {
+        Way::new(&[[0.0, 0.0], [1.0, 0.0]], false, vec![]).expect_err("no speed")
+    }
+}

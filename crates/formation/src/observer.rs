@@ -1,0 +1,492 @@
+//! The high-gain observer (eqs 31-32), solved so that it is right at every ε.
+//!
+//! The observer is linear in its own state, with poles near −1/ε: at ε = 0.001 s a step of 10 ms is ten of its time
+//! constants, so explicit steps diverge, and an exact solution for a measurement *held* over the period is stable
+//! and reports rates of zero. Here the measurement between two instants is a polynomial p(t), and the observer is
+//! solved in its deviation from it, d1 = ŝ1 − p and d2 = ŝ2 − dp/dt:
+//!
+//! ```text
+//! dd1/dt = d2 − α1/ε d1
+//! dd2/dt = −α2/ε² d1 − g_s d2 + w(t),   w = −g ϖ − g0 − g_s dp/dt − d²p/dt²
+//! ```
+//!
+//! Nothing on the right is of size 1/ε any more but the decay itself. Short stretches are solved by the power series
+//! of the solution (g_s varies in it), stiff ones by their polynomial solution plus an exponential that dies out.
+
+use crate::relative::Geometry;
+use nalgebra::{Matrix4, SMatrix, Vector2, Vector4};
+use std::sync::LazyLock;
+use vocabulary::{EdgeSample, Relative, TRACK_NODES, Track, nearest_turn, wrap};
+
+/// Parameters of the observer; every pair is [distance, bearing].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Observer {
+    /// ε, s; positive.
+    pub epsilon: [f64; 2],
+    /// α1, positive.
+    pub alpha1: [f64; 2],
+    /// α2, positive: then the roots of s² + α1 s + α2 are stable.
+    pub alpha2: [f64; 2],
+    /// ℓ_min, m: the equations divide by no less.
+    pub distance_min: f64,
+}
+
+/// State of the observer.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Estimate {
+    /// ŝ1, [m, rad]; the bearing may run beyond (−π, π].
+    pub output: [f64; 2],
+    /// ŝ2, the estimate of ds/dt, [m/s, rad/s].
+    pub rates: [f64; 2],
+}
+
+impl Estimate {
+    /// The start that equations.md chooses: ŝ1 = s(0), ŝ2 = 0.
+    pub fn at(relative: &Relative) -> Self {
+        Self { output: [relative.distance, relative.bearing], rates: [0.0; 2] }
+    }
+
+    fn or_restart_at(self, relative: &Relative) -> Self {
+        let finite = self.output.iter().chain(&self.rates).all(|x| x.is_finite());
+        if finite { self } else { Self::at(relative) }
+    }
+}
+
+impl Observer {
+    /// Right-hand side of eqs 31-32 at an instant: d[ŝ1, ŝ2]/dt. For continuous time.
+    pub fn derivative(&self, estimate: &Estimate, sample: &EdgeSample) -> Estimate {
+        let geometry = Geometry::new(&sample.relative, self.distance_min);
+        let innovation = [
+            sample.relative.distance - estimate.output[0],
+            wrap(sample.relative.bearing - estimate.output[1]),
+        ];
+        let input =
+            input_effect(&geometry, sample) - geometry.rate_column(sample.own_speed) * estimate.rates[0];
+        let mut out = Estimate::default();
+        for i in 0..2 {
+            out.output[i] = estimate.rates[i] + self.alpha1[i] / self.epsilon[i] * innovation[i];
+            out.rates[i] = input[i] + self.alpha2[i] / (self.epsilon[i] * self.epsilon[i]) * innovation[i];
+        }
+        out
+    }
+
+    /// The estimate at the end of a stretch over which the measurement was seen continuously (`sampled` mode).
+    pub fn follow(&self, estimate: &Estimate, track: &Track) -> Estimate {
+        if track.duration <= 0.0 {
+            return *estimate;
+        }
+        let stretch = Stretch::of_track(track, self.distance_min);
+        self.solve(estimate, &stretch, &track.samples[TRACK_NODES - 1].relative)
+    }
+
+    /// The estimate after `duration` s between two samples (`measured` mode): the measurement is the straight line
+    /// between them, and g, g0, g_s are those of the sample `before`, whose acceleration is the period's mean.
+    pub fn follow_samples(
+        &self,
+        estimate: &Estimate,
+        before: &EdgeSample,
+        after: &Relative,
+        duration: f64,
+    ) -> Estimate {
+        if duration <= 0.0 {
+            return *estimate;
+        }
+        self.solve(estimate, &Stretch::of_samples(before, after, duration, self.distance_min), after)
+    }
+
+    fn solve(&self, estimate: &Estimate, stretch: &Stretch, end: &Relative) -> Estimate {
+        let start = self.deviation(estimate, stretch);
+        let terminal = if self.stiffness() * stretch.duration > STIFF {
+            self.exponential(start, stretch)
+        } else {
+            self.series(start, stretch)
+        };
+        let (value, slope) = stretch.measurement_at_end();
+        let out = Estimate {
+            output: [value[0] + terminal[0] * self.epsilon[0], value[1] + terminal[1] * self.epsilon[1]],
+            rates: [slope[0] + terminal[2], slope[1] + terminal[3]],
+        };
+        out.or_restart_at(end)
+    }
+
+    /// [d1/ε, d2] at the start, the bearing's innovation wrapped.
+    fn deviation(&self, estimate: &Estimate, stretch: &Stretch) -> Vector4<f64> {
+        let slope = stretch.measurement.map(|p| p[1] / stretch.duration);
+        Vector4::new(
+            (estimate.output[0] - stretch.measurement[0][0]) / self.epsilon[0],
+            wrap(estimate.output[1] - stretch.measurement[1][0]) / self.epsilon[1],
+            estimate.rates[0] - slope[0],
+            estimate.rates[1] - slope[1],
+        )
+    }
+
+    /// A bound on the observer's fastest rate, 1/s.
+    fn stiffness(&self) -> f64 {
+        let channel = |i: usize| (self.alpha1[i] + self.alpha2[i] + 1.0) / self.epsilon[i];
+        channel(0).max(channel(1))
+    }
+
+    /// The deviation at the end by its power series in time, in as many equal steps as keep it convergent.
+    fn series(&self, start: Vector4<f64>, stretch: &Stretch) -> Vector4<f64> {
+        let steps = (self.stiffness() * stretch.duration / SERIES_REACH).ceil().max(1.0);
+        let share = 1.0 / steps;
+        let mut x = start;
+        for k in 0..steps as usize {
+            let from = k as f64 * share;
+            let column = stretch.rate_column.map(|p| shifted(&p, from, share));
+            let forcing = stretch.forcing.map(|p| shifted(&p, from, share));
+            x = self.series_step(x, stretch.duration * share, &column, &forcing);
+        }
+        x
+    }
+
+    /// One step of `h` s; polynomials in t/h.
+    fn series_step(&self, x: Vector4<f64>, h: f64, column: &[Poly; 2], forcing: &[Poly; 2]) -> Vector4<f64> {
+        let mut terms = [Vector4::zeros(); SERIES_TERMS];
+        terms[0] = x;
+        let mut sum = x;
+        for k in 0..SERIES_TERMS - 1 {
+            let mut next = Vector4::zeros();
+            for i in 0..2 {
+                let (d1, d2) = (terms[k][i], terms[k][2 + i]);
+                let coupling: f64 = (0..=k.min(DEGREE)).map(|j| column[i][j] * terms[k - j][2]).sum();
+                let push = if k <= DEGREE { forcing[i][k] } else { 0.0 };
+                next[i] = (d2 - self.alpha1[i] * d1) / self.epsilon[i];
+                next[2 + i] = push - coupling - self.alpha2[i] / self.epsilon[i] * d1;
+            }
+            terms[k + 1] = next * (h / (k + 1) as f64);
+            sum += terms[k + 1];
+            if k > DEGREE && terms[k + 1].amax() <= 1e-17 * sum.amax() {
+                break;
+            }
+        }
+        sum
+    }
+
+    /// The deviation at the end where the observer is much faster than the stretch: its polynomial solution, plus
+    /// what is left of the transient with g_s frozen at its mean.
+    fn exponential(&self, start: Vector4<f64>, stretch: &Stretch) -> Vector4<f64> {
+        let column = stretch.rate_column.map(|p| mean(&p));
+        let particular = self.polynomial_solution(stretch, &column);
+        let at_end: Vector4<f64> = particular.iter().sum();
+        let matrix = self.matrix(&column) * stretch.duration;
+        at_end + matrix.exp() * (start - particular[0])
+    }
+
+    /// The system matrix of [d1/ε, d2] with a constant first column of g_s, 1/s.
+    fn matrix(&self, column: &[f64; 2]) -> Matrix4<f64> {
+        let mut m = Matrix4::zeros();
+        for i in 0..2 {
+            m[(i, i)] = -self.alpha1[i] / self.epsilon[i];
+            m[(i, 2 + i)] = 1.0 / self.epsilon[i];
+            m[(2 + i, i)] = -self.alpha2[i] / self.epsilon[i];
+            m[(2 + i, 2)] = -column[i];
+        }
+        m
+    }
+
+    /// Coefficients q_k of the polynomial that solves the system: (k + 1) q_(k+1)/h = M q_k + b_k, from the top down.
+    fn polynomial_solution(&self, stretch: &Stretch, column: &[f64; 2]) -> [Vector4<f64>; DEGREE + 1] {
+        let mut q = [Vector4::zeros(); DEGREE + 1];
+        let mut above = Vector4::zeros();
+        for k in (0..=DEGREE).rev() {
+            let mut rhs = above;
+            rhs[2] -= stretch.forcing[0][k];
+            rhs[3] -= stretch.forcing[1][k];
+            q[k] = self.solve_matrix(column, &rhs);
+            above = q[k] * (k as f64 / stretch.duration);
+        }
+        q
+    }
+
+    /// M⁻¹ rhs in closed form.
+    fn solve_matrix(&self, column: &[f64; 2], rhs: &Vector4<f64>) -> Vector4<f64> {
+        let (e, a1, a2) = (&self.epsilon, &self.alpha1, &self.alpha2);
+        let d1 = -(rhs[2] + column[0] * e[0] * rhs[0]) / (a2[0] / e[0] + column[0] * a1[0]);
+        let d2 = e[0] * rhs[0] + a1[0] * d1;
+        let p1 = -(rhs[3] + column[1] * d2) * e[1] / a2[1];
+        Vector4::new(d1, p1, d2, e[1] * rhs[1] + a1[1] * p1)
+    }
+}
+
+/// Polynomials of the stretch have this degree, one less than the nodes of a track.
+const DEGREE: usize = TRACK_NODES - 1;
+/// Above this many time constants (stiffness × duration) the exponential form takes over.
+const STIFF: f64 = 30.0;
+/// Time constants one power series may span: its largest term stays near 10, so 15 digits survive.
+const SERIES_REACH: f64 = 4.0;
+/// At reach 4 the last of these is below 1e-19 of the first.
+const SERIES_TERMS: usize = 40;
+
+/// Coefficients of 1, τ, τ², … with τ from 0 to 1 over the stretch.
+type Poly = [f64; DEGREE + 1];
+
+/// What the observer meets over a stretch of time, as polynomials.
+struct Stretch {
+    duration: f64,
+    /// p, [m, rad].
+    measurement: [Poly; 2],
+    /// First column of g_s.
+    rate_column: [Poly; 2],
+    /// w.
+    forcing: [Poly; 2],
+}
+
+impl Stretch {
+    fn of_track(track: &Track, distance_min: f64) -> Self {
+        let h = track.duration;
+        let origin = track.samples[0].relative;
+        let mut values = [[0.0; TRACK_NODES]; 6];
+        for (k, sample) in track.samples.iter().enumerate() {
+            let geometry = Geometry::new(&sample.relative, distance_min);
+            let (column, input) = (geometry.rate_column(sample.own_speed), input_effect(&geometry, sample));
+            values[0][k] = sample.relative.distance - origin.distance;
+            values[1][k] = sample.relative.bearing - origin.bearing;
+            (values[2][k], values[3][k]) = (column.x, column.y);
+            (values[4][k], values[5][k]) = (input.x, input.y);
+        }
+        let [mut distance, mut bearing, column_d, column_b, input_d, input_b] = values.map(|v| fit(&v));
+        // Values were taken relative to the first to keep digits in the derivatives.
+        distance[0] += origin.distance;
+        bearing[0] += origin.bearing;
+        let (rate_column, measurement) = ([column_d, column_b], [distance, bearing]);
+        let forcing = [0, 1].map(|i| {
+            let input = if i == 0 { &input_d } else { &input_b };
+            residue(input, &rate_column[i], &distance, &measurement[i], h)
+        });
+        Self { duration: h, measurement, rate_column, forcing }
+    }
+
+    fn of_samples(before: &EdgeSample, after: &Relative, duration: f64, distance_min: f64) -> Self {
+        let geometry = Geometry::new(&before.relative, distance_min);
+        let (column, input) = (geometry.rate_column(before.own_speed), input_effect(&geometry, before));
+        let start = [before.relative.distance, before.relative.bearing];
+        let end = [after.distance, nearest_turn(after.bearing, start[1])];
+        let line = [0, 1].map(|i| polynomial(&[start[i], end[i] - start[i]]));
+        let slope = line[0][1] / duration;
+        Self {
+            duration,
+            measurement: line,
+            rate_column: [polynomial(&[column.x]), polynomial(&[column.y])],
+            forcing: [polynomial(&[input.x - column.x * slope]), polynomial(&[input.y - column.y * slope])],
+        }
+    }
+
+    /// Value and slope of the measurement at the end, [m, rad] and [m/s, rad/s].
+    fn measurement_at_end(&self) -> ([f64; 2], [f64; 2]) {
+        let value = self.measurement.map(|p| p.iter().sum());
+        let slope =
+            self.measurement.map(|p| (1..=DEGREE).map(|k| k as f64 * p[k]).sum::<f64>() / self.duration);
+        (value, slope)
+    }
+}
+
+/// −g ϖ − g0, [m/s², rad/s²]: what the follower's own input does to d²s/dt².
+fn input_effect(geometry: &Geometry, sample: &EdgeSample) -> Vector2<f64> {
+    let command = Vector2::new(sample.acceleration, sample.turn_rate);
+    -(geometry.input_matrix(sample.own_speed) * command + geometry.drift(sample.own_speed))
+}
+
+/// w = input − column · dℓ/dt − d²p/dt², as a polynomial cut at the common degree.
+fn residue(input: &Poly, column: &Poly, distance: &Poly, measurement: &Poly, h: f64) -> Poly {
+    let mut out = *input;
+    for k in 0..DEGREE {
+        let slope = (k + 1) as f64 * distance[k + 1] / h;
+        for j in 0..=DEGREE - k {
+            out[k + j] -= column[j] * slope;
+        }
+    }
+    for k in 0..=DEGREE - 2 {
+        out[k] -= ((k + 1) * (k + 2)) as f64 * measurement[k + 2] / (h * h);
+    }
+    out
+}
+
+fn polynomial(low: &[f64]) -> Poly {
+    let mut out = [0.0; DEGREE + 1];
+    out[..low.len()].copy_from_slice(low);
+    out
+}
+
+/// Mean over the stretch.
+fn mean(p: &Poly) -> f64 {
+    p.iter().enumerate().map(|(k, c)| c / (k + 1) as f64).sum()
+}
+
+/// p(from + share · τ) as a polynomial in τ: Horner's scheme, repeated.
+fn shifted(p: &Poly, from: f64, share: f64) -> Poly {
+    let mut out = *p;
+    for k in 0..DEGREE {
+        for j in (k..DEGREE).rev() {
+            out[j] += from * out[j + 1];
+        }
+    }
+    let mut scale = 1.0;
+    for c in &mut out {
+        *c *= scale;
+        scale *= share;
+    }
+    out
+}
+
+/// The polynomial through values at the nodes of a track.
+fn fit(values: &[f64; TRACK_NODES]) -> Poly {
+    let v = *COEFFICIENTS_FROM_NODES * SMatrix::<f64, TRACK_NODES, 1>::from(*values);
+    v.into()
+}
+
+static COEFFICIENTS_FROM_NODES: LazyLock<SMatrix<f64, TRACK_NODES, TRACK_NODES>> = LazyLock::new(|| {
+    let vandermonde = SMatrix::<f64, TRACK_NODES, TRACK_NODES>::from_fn(|row, column| {
+        Track::NODES[row].powi(column as i32)
+    });
+    vandermonde.try_inverse().unwrap_or_else(SMatrix::identity)
+});
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vocabulary::Pose;
+
+    /// A leader on a gentle curve and a follower that holds `acceleration` and `turn_rate`, at time t.
+    fn sample(t: f64, acceleration: f64, turn_rate: f64) -> EdgeSample {
+        let arc = |v: f64, a: f64, w: f64, h0: f64| {
+            // Fine Simpson sums stand in for a closed form.
+            let n = 64;
+            let (mut x, mut y) = (0.0, 0.0);
+            for k in 0..=n {
+                let s = t * f64::from(k) / f64::from(n);
+                let weight = if k == 0 || k == n { 1.0 } else { f64::from(2 + 2 * (k % 2)) };
+                let (sin, cos) = (h0 + w * s).sin_cos();
+                x += weight * (v + a * s) * cos;
+                y += weight * (v + a * s) * sin;
+            }
+            let scale = t / f64::from(n) / 3.0;
+            (x * scale, y * scale, h0 + w * t)
+        };
+        let (lx, ly, lh) = arc(1.0, 0.0, 0.3, 0.2);
+        let (fx, fy, fh) = arc(0.8, acceleration, turn_rate, -0.1);
+        let mut r = Relative::between(Pose::new(lx, ly, lh), Pose::new(fx - 1.6, fy - 1.2, fh));
+        r.bearing = nearest_turn(r.bearing, -2.4);
+        EdgeSample { relative: r, own_speed: 0.8 + acceleration * t, acceleration, turn_rate }
+    }
+
+    fn track(h: f64) -> Track {
+        Track { duration: h, samples: Track::NODES.map(|n| sample(n * h, 3.0, -2.0)) }
+    }
+
+    fn observer(epsilon: f64) -> Observer {
+        Observer { epsilon: [epsilon; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 }
+    }
+
+    /// Eqs 31-32 by RK4 with steps far below ε: the independent answer.
+    fn brute(observer: &Observer, start: Estimate, h: f64) -> Estimate {
+        let epsilon = observer.epsilon[0].min(observer.epsilon[1]);
+        let steps = (h / epsilon * 200.0).ceil().max(400.0) as usize;
+        let dt = h / steps as f64;
+        let add = |x: &Estimate, d: &Estimate, s: f64| Estimate {
+            output: [x.output[0] + s * d.output[0], x.output[1] + s * d.output[1]],
+            rates: [x.rates[0] + s * d.rates[0], x.rates[1] + s * d.rates[1]],
+        };
+        let mut x = start;
+        for k in 0..steps {
+            let t = k as f64 * dt;
+            let [a, b, c] = [t, t + dt / 2.0, t + dt].map(|t| sample(t, 3.0, -2.0));
+            let k1 = observer.derivative(&x, &a);
+            let k2 = observer.derivative(&add(&x, &k1, dt / 2.0), &b);
+            let k3 = observer.derivative(&add(&x, &k2, dt / 2.0), &b);
+            let k4 = observer.derivative(&add(&x, &k3, dt), &c);
+            for (k, weight) in [(k1, 1.0), (k2, 2.0), (k3, 2.0), (k4, 1.0)] {
+                x = add(&x, &k, dt / 6.0 * weight);
+            }
+        }
+        x
+    }
+
+    #[test]
+    fn follows_a_continuous_measurement_at_every_epsilon() {
+        let h = 0.01;
+        for ratio in [0.001, 0.01, 0.05, 0.1, 0.2, 0.5, 1.0, 3.0, 10.0, 100.0] {
+            let observer = observer(ratio * h);
+            let first = sample(0.0, 3.0, -2.0).relative;
+            let start = Estimate { output: [first.distance + 0.02, first.bearing - 0.03], rates: [0.0, 0.5] };
+            let (ours, truth) = (observer.follow(&start, &track(h)), brute(&observer, start, h));
+            for i in 0..2 {
+                assert!((ours.output[i] - truth.output[i]).abs() < 1e-8, "ε/T {ratio}: {ours:?} {truth:?}");
+                let scale = 1.0 + truth.rates[i].abs();
+                assert!(
+                    (ours.rates[i] - truth.rates[i]).abs() < 1e-6 * scale,
+                    "ε/T {ratio}: {ours:?} {truth:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn unequal_channels_and_oscillating_gains_are_solved_too() {
+        let h = 0.01;
+        let first = sample(0.0, 3.0, -2.0).relative;
+        for (epsilon, alpha1, alpha2) in
+            [([0.001, 0.02], [2.0, 3.0], [1.0, 2.0]), ([0.004, 0.0005], [0.4, 2.0], [1.0, 5.0])]
+        {
+            let observer = Observer { epsilon, alpha1, alpha2, distance_min: 0.1 };
+            let start = Estimate { output: [first.distance, first.bearing], rates: [0.3, -0.3] };
+            let (ours, truth) = (observer.follow(&start, &track(h)), brute(&observer, start, h));
+            for i in 0..2 {
+                let scale = 1.0 + truth.rates[i].abs();
+                assert!((ours.rates[i] - truth.rates[i]).abs() < 1e-6 * scale, "{ours:?} {truth:?}");
+            }
+        }
+    }
+
+    /// The two forms meet: a stretch just stiff enough for one is solved alike by the other.
+    #[test]
+    fn series_and_exponential_agree() {
+        let h = 0.01;
+        let observer = observer(4.0 * h / 35.0);
+        let first = sample(0.0, 3.0, -2.0).relative;
+        let start = Estimate { output: [first.distance, first.bearing], rates: [0.1, 0.2] };
+        let stretch = Stretch::of_track(&track(h), 0.1);
+        let x = observer.deviation(&start, &stretch);
+        let apart = observer.series(x, &stretch) - observer.exponential(x, &stretch);
+        assert!(apart.amax() < 1e-6, "{apart}");
+    }
+
+    /// A held measurement would report a rate of zero; the line through the samples reports the ramp's slope.
+    #[test]
+    fn a_ramp_seen_in_samples_is_reported_with_its_slope() {
+        for ratio in [0.001, 0.1, 1.0] {
+            let (h, slope) = (0.01, 0.4);
+            // A follower at rest far away: g, g0 and g_s vanish and only the measurement is left.
+            let at = |k: f64| Relative { distance: 50.0 + slope * h * k, bearing: 0.5, view_angle: 0.0 };
+            let observer = observer(ratio * h);
+            let mut estimate = Estimate::at(&at(0.0));
+            for k in 0..4000 {
+                let before = EdgeSample { relative: at(f64::from(k)), ..EdgeSample::default() };
+                estimate = observer.follow_samples(&estimate, &before, &at(f64::from(k + 1)), h);
+            }
+            assert!((estimate.rates[0] - slope).abs() < 1e-9, "ε/T {ratio}: {estimate:?}");
+        }
+    }
+
+    #[test]
+    fn the_innovation_takes_the_short_way_round() {
+        let relative = Relative { distance: 2.0, bearing: 3.1, view_angle: 0.0 };
+        let before = EdgeSample { relative, ..EdgeSample::default() };
+        let after = Relative { bearing: -3.1, ..relative };
+        let start = Estimate { output: [2.0, -3.1], rates: [0.0; 2] };
+        let estimate = observer(0.01).follow_samples(&start, &before, &after, 0.01);
+        // 0.083 rad in 10 ms is 8.3 rad/s; the long way round would be hundreds.
+        assert!(estimate.rates[1].abs() < 20.0, "{estimate:?}");
+        assert!(wrap(estimate.output[1] - after.bearing).abs() < 0.2);
+    }
+
+    #[test]
+    fn an_estimate_that_breaks_starts_again_from_the_measurement() {
+        let bad = Estimate { output: [f64::NAN, 0.0], rates: [f64::INFINITY, 0.0] };
+        for epsilon in [1e-5, 1e-3, 1.0] {
+            let track = track(0.01);
+            let end = track.samples[TRACK_NODES - 1].relative;
+            assert_eq!(observer(epsilon).follow(&bad, &track), Estimate::at(&end));
+        }
+    }
+}

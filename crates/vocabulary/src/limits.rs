@@ -1,0 +1,69 @@
+//! What a robot's actuators can do.
+
+use crate::Command;
+
+/// Bounds on speed, turn rate and acceleration. `0 < speed_min < speed_max`, the others positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// m/s; above zero, since the laws are singular at rest (det g = v/ℓ).
+    pub speed_min: f64,
+    /// m/s.
+    pub speed_max: f64,
+    /// rad/s, either direction.
+    pub turn_rate_max: f64,
+    /// m/s², either direction; infinite where unbounded.
+    pub acceleration_max: f64,
+}
+
+impl Limits {
+    /// `command` within the bounds on acceleration and turn rate (the sat{} of eq 42); zero where not a number.
+    pub fn saturate(&self, command: Command) -> Command {
+        Command {
+            acceleration: clamp(command.acceleration, self.acceleration_max),
+            turn_rate: clamp(command.turn_rate, self.turn_rate_max),
+        }
+    }
+
+    /// The acceleration that takes effect at `speed`: none outward where the speed stands at a bound.
+    pub fn admissible(&self, acceleration: f64, speed: f64) -> f64 {
+        let outward = (speed >= self.speed_max && acceleration > 0.0)
+            || (speed <= self.speed_min && acceleration < 0.0);
+        if outward { 0.0 } else { acceleration }
+    }
+
+    /// `speed` within its bounds, m/s.
+    pub fn clamp_speed(&self, speed: f64) -> f64 {
+        speed.max(self.speed_min).min(self.speed_max)
+    }
+}
+
+/// Largest acceleration that is ever passed on, m/s²: keeps an unbounded law finite next to its singularities.
+const ACCELERATION_CEILING: f64 = 1e6;
+
+fn clamp(value: f64, bound: f64) -> f64 {
+    let bound = bound.min(ACCELERATION_CEILING);
+    if value.is_nan() { 0.0 } else { value.clamp(-bound, bound) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: Limits =
+        Limits { speed_min: 0.01, speed_max: 1.6, turn_rate_max: 11.5, acceleration_max: f64::INFINITY };
+
+    #[test]
+    fn saturation_is_finite_for_any_command() {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -3.0] {
+            let cut = LIMITS.saturate(Command { acceleration: value, turn_rate: value });
+            assert!(cut.acceleration.is_finite() && cut.turn_rate.abs() <= 11.5, "{value} gave {cut:?}");
+        }
+    }
+
+    #[test]
+    fn a_speed_at_its_bound_moves_inward_only() {
+        assert_eq!(LIMITS.admissible(2.0, 1.6), 0.0);
+        assert_eq!(LIMITS.admissible(-2.0, 1.6), -2.0);
+        assert_eq!(LIMITS.admissible(-2.0, 0.01), 0.0);
+    }
+}
