@@ -1,9 +1,11 @@
 //! What lead robots do: every kind gives v, dv/dt, ω and dω/dt at any time.
 
 mod hermite;
+mod pace;
 mod way;
 
 pub use hermite::Hermite;
+pub use pace::Pace;
 pub use way::{Way, WayError};
 
 use crate::set_point::Course;

@@ -37,6 +37,11 @@ impl Hermite {
         }
     }
 
+    /// Times of the points.
+    pub(super) fn times(&self) -> impl Iterator<Item = f64> + '_ {
+        self.points.iter().map(|p| p[0])
+    }
+
     /// Integral from time 0 to `t`.
     pub fn integral(&self, t: f64) -> f64 {
         self.integral_from_first(t) - self.integral_from_first(0.0)

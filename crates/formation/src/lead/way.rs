@@ -1,8 +1,8 @@
-//! A smooth curve through way-points, driven at a speed profile.
+//! A smooth curve through way-points, driven at a speed given over time or over the distance travelled.
 //!
 //! The curve is the interpolating cubic spline over chord length: its curvature is continuous, so the turn rate is.
 
-use super::Hermite;
+use super::{Hermite, Pace};
 use kurbo::{CubicBez, ParamCurve, ParamCurveArclen, ParamCurveDeriv, Point, Vec2};
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
@@ -22,9 +22,6 @@ pub enum WayError {
     /// Two points in a row on one spot, counted from 1.
     #[error("way-points {0} and {next} are the same", next = .0 + 1)]
     Repeated(usize),
-    /// The speed profile is empty.
-    #[error("the speed profile is empty")]
-    NoSpeed,
 }
 
 /// A curve and how fast it is driven.
@@ -34,29 +31,28 @@ pub struct Way {
     /// Arc length from the start to the start of each piece, and the whole length at the end, m.
     lengths: Vec<f64>,
     closed: bool,
-    speed: Hermite,
+    pace: Pace,
 }
 
 /// Accuracy of arc lengths, m.
 const ACCURACY: f64 = 1e-10;
 
 impl Way {
-    /// Through `points` in m (back to the first if `closed`), at speeds given as [time s, m/s].
+    /// Through `points` in m (back to the first if `closed`).
     ///
     /// # Errors
-    /// [`WayError`] for too few or repeated points or an empty speed profile.
-    pub fn new(points: &[[f64; 2]], closed: bool, speeds: Vec<[f64; 2]>) -> Result<Self, WayError> {
+    /// [`WayError`] for too few or repeated points.
+    pub fn new(points: &[[f64; 2]], closed: bool, pace: Pace) -> Result<Self, WayError> {
         let needed = if closed { 3 } else { 2 };
         if points.len() < needed {
             return Err(WayError::TooFew { needed, given: points.len() });
         }
-        let speed = Hermite::new(speeds).ok_or(WayError::NoSpeed)?;
         let pieces = spline(points, closed)?;
         let mut lengths = vec![0.0];
         for piece in &pieces {
             lengths.push(lengths[lengths.len() - 1] + piece.arclen(ACCURACY));
         }
-        Ok(Self { pieces, lengths, closed, speed })
+        Ok(Self { pieces, lengths, closed, pace })
     }
 
     /// Length of the curve, m.
@@ -94,8 +90,8 @@ impl Way {
 
 impl Profile for Way {
     fn at(&self, time: f64) -> Drive {
-        let [speed, acceleration] = self.speed.at(time);
-        let [curvature, change] = self.curvature(self.speed.integral(time));
+        let [travelled, speed, acceleration] = self.pace.at(time);
+        let [curvature, change] = self.curvature(travelled);
         Drive {
             speed,
             acceleration,
@@ -155,9 +151,13 @@ fn tangents(knots: &[Point], chords: &[f64], closed: bool) -> Vec<Vec2> {
 mod tests {
     use super::*;
 
+    fn pace(rows: Vec<[f64; 2]>) -> Pace {
+        Pace::over_time(Hermite::new(rows).expect("rows"))
+    }
+
     fn oval() -> Way {
         let points = [[0.0, 0.0], [4.0, -1.0], [8.0, 0.0], [8.0, 4.0], [4.0, 5.0], [0.0, 4.0]];
-        Way::new(&points, true, vec![[0.0, 0.5], [5.0, 1.2]]).expect("an oval")
+        Way::new(&points, true, pace(vec![[0.0, 0.5], [5.0, 1.2]])).expect("an oval")
     }
 
     /// Driving the profile from the start of the curve must stay on the curve.
@@ -183,7 +183,7 @@ mod tests {
         let (mut low, mut high) = (0.0, 100.0);
         for _ in 0..60 {
             let middle = (low + high) / 2.0;
-            if way.speed.integral(middle) < travelled { low = middle } else { high = middle }
+            if way.pace.at(middle)[0] < travelled { low = middle } else { high = middle }
         }
         low
     }
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn the_turn_rate_is_continuous_over_knots_and_zero_beyond_an_open_end() {
-        let way = Way::new(&[[0.0, 0.0], [2.0, 1.0], [4.0, -1.0], [6.0, 0.0]], false, vec![[0.0, 1.0]])
+        let way = Way::new(&[[0.0, 0.0], [2.0, 1.0], [4.0, -1.0], [6.0, 0.0]], false, pace(vec![[0.0, 1.0]]))
             .expect("a way");
         for length in &way.lengths {
             let (a, b) = (way.at(length - 1e-7).turn_rate, way.at(length + 1e-7).turn_rate);
@@ -212,14 +212,9 @@ mod tests {
 
     #[test]
     fn bad_points_are_named() {
-        let too_few = Way::new(&[[0.0, 0.0]], false, vec![[0.0, 1.0]]).expect_err("one point");
+        let too_few = Way::new(&[[0.0, 0.0]], false, pace(vec![[0.0, 1.0]])).expect_err("one point");
         assert_eq!(too_few, WayError::TooFew { needed: 2, given: 1 });
-        let repeated = Way::new(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]], false, vec![[0.0, 1.0]]);
+        let repeated = Way::new(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]], false, pace(vec![[0.0, 1.0]]));
         assert_eq!(repeated.expect_err("a repeated point").to_string(), "way-points 2 and 3 are the same");
-        assert_eq!(oval_without_speed(), WayError::NoSpeed);
-    }
-
-    fn oval_without_speed() -> WayError {
-        Way::new(&[[0.0, 0.0], [1.0, 0.0]], false, vec![]).expect_err("no speed")
     }
 }
