@@ -1,1 +1,28 @@
-//! Run folders: tables, metrics, digest.
+//! Run folders: what a run leaves behind.
+//!
+//! ```text
+//! manifest.json     what ran, how it ended, the digest of its trajectory
+//! scene.toml        the scene with every default written out
+//! metrics.json      errors, effort, clearance
+//! tables/           robots.parquet, edges.parquet; also .csv where asked for
+//! ```
+//!
+//! Rows reach the disk as the run goes, in parts that are each complete, so a run that is cut short leaves what it
+//! had; its manifest then says `running` or `interrupted`, never `complete`.
+
+pub mod clearance;
+mod digest;
+mod error;
+mod file;
+mod manifest;
+mod metrics;
+mod run;
+mod table;
+
+pub use digest::Digest;
+pub use error::Error;
+pub use file::write_whole;
+pub use manifest::{Manifest, Status};
+pub use metrics::{EdgeMetrics, Metrics, MetricsBuilder};
+pub use run::{Recorder, RunOptions};
+pub use table::{Column, TableKind, read_table};

@@ -1,0 +1,47 @@
+//! What ran and how it ended.
+
+use serde::{Deserialize, Serialize};
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// Still going, or killed: the rows are there up to the last part.
+    Running,
+    /// Stopped early, by Ctrl-C or an error; all rows up to then are there.
+    Interrupted,
+    /// To its end.
+    Complete,
+}
+
+/// `manifest.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of this layout.
+    pub format: u32,
+    /// Name and version of the program.
+    pub program: String,
+    /// Commit it was built from, where known.
+    pub commit: Option<String>,
+    /// Title of the scene.
+    pub title: String,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Control period, s.
+    pub period: f64,
+    /// Length asked for, s.
+    pub duration: f64,
+    /// Names of the robots.
+    pub robots: Vec<String>,
+    /// [leader, follower] by name.
+    pub edges: Vec<[String; 2]>,
+    /// How it ended.
+    pub status: Status,
+    /// Control samples recorded.
+    pub samples: u64,
+    /// Digest of the whole trajectory (XXH3, 128 bits); only a complete run's is comparable.
+    pub digest: Option<String>,
+}
+
+/// The layout this program writes.
+pub(crate) const FORMAT: u32 = 1;

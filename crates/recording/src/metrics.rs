@@ -1,0 +1,255 @@
+//! Errors, effort and clearance of a run, gathered as it goes.
+
+use crate::clearance::{Closest, closest};
+use serde::Serialize;
+use vocabulary::{Cast, EdgeState, Moment};
+
+/// `metrics.json`. Every pair is [distance, bearing] or [acceleration, turn rate].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Metrics {
+    /// Time of the last sample, s.
+    pub duration: f64,
+    /// Per edge.
+    pub edges: Vec<EdgeMetrics>,
+    /// Least room between any two bodies, m; `None` with one robot.
+    pub clearance_min: Option<f64>,
+    /// When that was, s.
+    pub clearance_min_time: Option<f64>,
+    /// Between whom.
+    pub clearance_min_robots: Option<[String; 2]>,
+    /// |error| under which an edge counts as settled, [m, rad].
+    pub settling_band: [f64; 2],
+}
+
+/// One edge over a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Default)]
+pub struct EdgeMetrics {
+    /// Who is followed.
+    pub leader: String,
+    /// Who follows.
+    pub follower: String,
+    /// Error at the end, [m, rad].
+    pub final_error: [f64; 2],
+    /// Root mean square over the run, [m, rad].
+    pub rms_error: [f64; 2],
+    /// Root mean square since the edge settled, [m, rad]; `None` if it did not.
+    pub settled_rms_error: Option<[f64; 2]>,
+    /// ∫ |e| dt, [m s, rad s].
+    pub iae: [f64; 2],
+    /// ∫ e² dt, [m² s, rad² s].
+    pub ise: [f64; 2],
+    /// Largest |error|, [m, rad].
+    pub peak_error: [f64; 2],
+    /// Time from which both errors stay within the band, s; `None` if they do not.
+    pub settling_time: Option<f64>,
+    /// ∫ |command applied| dt, [m/s, rad].
+    pub effort: [f64; 2],
+    /// Largest |estimated rate|, [m/s, rad/s]: shows peaking.
+    pub peak_rates: [f64; 2],
+    /// Share of the samples at which a limit cut the command.
+    pub limited: f64,
+    /// Samples at which the distance was below its minimum.
+    pub too_close: u64,
+    /// [slowest, fastest] speed of the follower, m/s.
+    pub speeds: [f64; 2],
+    /// [slowest, fastest] speed of the follower since it settled, m/s; `None` if it did not.
+    pub settled_speeds: Option<[f64; 2]>,
+}
+
+/// Gathers [`Metrics`].
+#[derive(Debug, Clone)]
+pub struct MetricsBuilder {
+    cast: Cast,
+    band: [f64; 2],
+    edges: Vec<EdgeSums>,
+    samples: u64,
+    time: f64,
+    closest: Option<(Closest, f64)>,
+    order: Vec<usize>,
+}
+
+/// Running sums of one edge.
+#[derive(Debug, Clone, Default)]
+struct EdgeSums {
+    last: EdgeState,
+    squares: [f64; 2],
+    absolute_integral: [f64; 2],
+    square_integral: [f64; 2],
+    effort: [f64; 2],
+    peak_error: [f64; 2],
+    peak_rates: [f64; 2],
+    limited: u64,
+    too_close: u64,
+    speeds: [f64; 2],
+    /// Since the edge was last outside its band; `None` while it is.
+    settled: Option<Settled>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Settled {
+    since: f64,
+    squares: [f64; 2],
+    samples: u64,
+    speeds: [f64; 2],
+}
+
+impl MetricsBuilder {
+    /// For a run of `cast`; an edge is settled while its errors are within `band` [m, rad].
+    pub fn new(cast: &Cast, band: [f64; 2]) -> Self {
+        let edges = vec![EdgeSums { speeds: [f64::INFINITY, 0.0], ..EdgeSums::default() }; cast.edges.len()];
+        Self { cast: cast.clone(), band, edges, samples: 0, time: 0.0, closest: None, order: Vec::new() }
+    }
+
+    /// Takes in a moment.
+    pub fn push(&mut self, moment: &Moment) {
+        let time = moment.snapshot.time;
+        let step = if self.samples == 0 { 0.0 } else { time - self.time };
+        for (index, edge) in moment.edges.iter().enumerate() {
+            let speed = moment.snapshot.robots[self.cast.edges[index].follower].motion.speed;
+            self.edges[index].push(edge, speed, time, step, self.band);
+        }
+        let below = self.closest.map_or(f64::INFINITY, |(c, _)| c.clearance);
+        if below > 0.0
+            && let Some(found) = closest(&self.cast, &moment.snapshot, below, &mut self.order)
+        {
+            self.closest = Some((found, time));
+        }
+        self.samples += 1;
+        self.time = time;
+    }
+
+    /// The metrics of all moments so far.
+    pub fn finish(&self) -> Metrics {
+        let name = |robot: usize| self.cast.members[robot].name.clone();
+        let pairs = self.edges.iter().zip(&self.cast.edges);
+        Metrics {
+            duration: self.time,
+            edges: pairs.map(|(s, e)| s.finish(name(e.leader), name(e.follower), self.samples)).collect(),
+            clearance_min: self.closest.map(|(c, _)| c.clearance),
+            clearance_min_time: self.closest.map(|(_, time)| time),
+            clearance_min_robots: self.closest.map(|(c, _)| c.robots.map(name)),
+            settling_band: self.band,
+        }
+    }
+}
+
+impl EdgeSums {
+    fn push(&mut self, edge: &EdgeState, speed: f64, time: f64, step: f64, band: [f64; 2]) {
+        let commands = |e: &EdgeState| [e.applied.acceleration, e.applied.turn_rate];
+        let (now, before) = (commands(edge), commands(&self.last));
+        for i in 0..2 {
+            let (e, last) = (edge.error[i], self.last.error[i]);
+            self.squares[i] += e * e;
+            // Trapezoids; the first sample has no width.
+            self.absolute_integral[i] += step * (e.abs() + last.abs()) / 2.0;
+            self.square_integral[i] += step * (e * e + last * last) / 2.0;
+            self.effort[i] += step * (now[i].abs() + before[i].abs()) / 2.0;
+            self.peak_error[i] = self.peak_error[i].max(e.abs());
+            self.peak_rates[i] = self.peak_rates[i].max(edge.rates[i].abs());
+        }
+        self.limited += u64::from(edge.limited);
+        self.too_close += u64::from(edge.too_close);
+        self.speeds = [self.speeds[0].min(speed), self.speeds[1].max(speed)];
+        self.settle(edge, speed, time, band);
+        self.last = *edge;
+    }
+
+    fn settle(&mut self, edge: &EdgeState, speed: f64, time: f64, band: [f64; 2]) {
+        if edge.error[0].abs() > band[0] || edge.error[1].abs() > band[1] {
+            self.settled = None;
+            return;
+        }
+        let fresh = Settled { since: time, squares: [0.0; 2], samples: 0, speeds: [f64::INFINITY, 0.0] };
+        let settled = self.settled.get_or_insert(fresh);
+        for i in 0..2 {
+            settled.squares[i] += edge.error[i] * edge.error[i];
+        }
+        settled.samples += 1;
+        settled.speeds = [settled.speeds[0].min(speed), settled.speeds[1].max(speed)];
+    }
+
+    fn finish(&self, leader: String, follower: String, samples: u64) -> EdgeMetrics {
+        let count = samples.max(1) as f64;
+        let rms = |squares: [f64; 2], n: f64| squares.map(|s| (s / n).sqrt());
+        EdgeMetrics {
+            leader,
+            follower,
+            final_error: self.last.error,
+            rms_error: rms(self.squares, count),
+            settled_rms_error: self.settled.map(|s| rms(s.squares, s.samples as f64)),
+            iae: self.absolute_integral,
+            ise: self.square_integral,
+            peak_error: self.peak_error,
+            settling_time: self.settled.map(|s| s.since),
+            effort: self.effort,
+            peak_rates: self.peak_rates,
+            limited: self.limited as f64 / count,
+            too_close: self.too_close,
+            speeds: self.speeds,
+            settled_speeds: self.settled.map(|s| s.speeds),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vocabulary::{Edge, Member, Pose, RobotState, Snapshot};
+
+    /// An error that falls by e^(−t) on an edge of two robots 1 m apart at the start.
+    fn run() -> Metrics {
+        let member =
+            |name: &str| Member { name: name.into(), leads: name == "a", body: vocabulary::Body::default() };
+        let edges = vec![Edge { leader: 0, follower: 1 }];
+        let cast = Cast { members: vec![member("a"), member("b")], edges, ..Cast::default() };
+        let mut builder = MetricsBuilder::new(&cast, [0.1, 0.1]);
+        for k in 0..=1000 {
+            let time = f64::from(k) * 0.01;
+            let mut robots = vec![RobotState::default(); 2];
+            robots[1].motion.pose = Pose::new(-1.0 - (time - 5.0).abs(), 0.0, 0.0);
+            robots[1].motion.speed = 1.0;
+            let edge = EdgeState { error: [(-time).exp(), 0.0], ..EdgeState::default() };
+            builder.push(&Moment { snapshot: Snapshot { time, robots }, edges: vec![edge] });
+        }
+        builder.finish()
+    }
+
+    #[test]
+    fn integrals_and_settling_of_an_exponential() {
+        let metrics = run();
+        let edge = &metrics.edges[0];
+        assert!((edge.iae[0] - 1.0).abs() < 1e-4 && (edge.ise[0] - 0.5).abs() < 1e-4);
+        assert!((edge.final_error[0] - (-10.0_f64).exp()).abs() < 1e-12);
+        assert_eq!(edge.peak_error[0], 1.0);
+        let settling = edge.settling_time.expect("it settles");
+        assert!((settling - 10.0_f64.ln()).abs() < 0.011, "{settling}");
+        assert_eq!(edge.settled_speeds, Some([1.0, 1.0]));
+    }
+
+    #[test]
+    fn clearance_is_least_when_they_are_closest() {
+        let metrics = run();
+        let length = vocabulary::Body::default().length;
+        assert!((metrics.clearance_min.expect("two robots") - (1.0 - length)).abs() < 1e-12);
+        assert!((metrics.clearance_min_time.expect("a time") - 5.0).abs() < 1e-12);
+        assert_eq!(metrics.clearance_min_robots, Some(["a".to_owned(), "b".to_owned()]));
+    }
+
+    #[test]
+    fn an_edge_that_leaves_its_band_has_not_settled() {
+        let cast = Cast {
+            members: vec![Member { name: "a".into(), leads: true, body: vocabulary::Body::default() }; 2],
+            edges: vec![Edge { leader: 0, follower: 1 }],
+            ..Cast::default()
+        };
+        let mut builder = MetricsBuilder::new(&cast, [0.1, 0.1]);
+        for error in [0.0, 0.05, 0.2] {
+            let edge = EdgeState { error: [0.0, error], ..EdgeState::default() };
+            let snapshot = Snapshot { time: error, robots: vec![RobotState::default(); 2] };
+            builder.push(&Moment { snapshot, edges: vec![edge] });
+        }
+        let metrics = builder.finish();
+        assert_eq!((metrics.edges[0].settling_time, metrics.edges[0].settled_rms_error), (None, None));
+        assert_eq!(metrics.clearance_min, Some(0.0));
+    }
+}

@@ -1,0 +1,248 @@
+//! Writing a run folder while the run goes.
+
+use crate::manifest::FORMAT;
+use crate::table::{TableKind, TableWriter};
+use crate::{Digest, Error, Manifest, Metrics, MetricsBuilder, Status, write_whole};
+use std::fs;
+use std::path::{Path, PathBuf};
+use vocabulary::{Cast, Moment};
+
+/// What a recorder has to know before the first moment.
+#[derive(Debug, Clone)]
+pub struct RunOptions {
+    /// Also write tables as CSV.
+    pub csv: bool,
+    /// Replace a run that is there already.
+    pub force: bool,
+    /// The resolved scene, as text.
+    pub scene: String,
+    /// Name and version of the program.
+    pub program: String,
+    /// Commit it was built from, where known.
+    pub commit: Option<String>,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Control period, s.
+    pub period: f64,
+    /// |error| under which an edge counts as settled, [m, rad].
+    pub settling_band: [f64; 2],
+}
+
+/// Writes a run folder; dropped without [`Recorder::finish`], it leaves what it had, marked `running`.
+pub struct Recorder {
+    folder: PathBuf,
+    cast: Cast,
+    manifest: Manifest,
+    tables: [TableWriter; 2],
+    metrics: MetricsBuilder,
+    digest: Digest,
+}
+
+/// What a run folder may contain that we wrote ourselves and may replace.
+const OURS: [&str; 5] = ["manifest.json", "scene.toml", "metrics.json", "tables", "frames"];
+
+impl Recorder {
+    /// Makes `folder` and writes what is known before the run.
+    ///
+    /// # Errors
+    /// [`Error::Occupied`] when the folder holds a run (unless `force`) or anything else; [`Error::Io`] when it
+    /// cannot be written.
+    pub fn create(folder: &Path, cast: &Cast, options: RunOptions) -> Result<Self, Error> {
+        clear(folder, options.force)?;
+        let tables = folder.join("tables");
+        fs::create_dir_all(&tables).map_err(Error::io("create", &tables))?;
+        write_whole(&folder.join("scene.toml"), options.scene.as_bytes())?;
+        let writer = |kind| TableWriter::create(&tables, kind, options.csv);
+        let recorder = Self {
+            folder: folder.to_owned(),
+            cast: cast.clone(),
+            tables: [writer(TableKind::Robots)?, writer(TableKind::Edges)?],
+            metrics: MetricsBuilder::new(cast, options.settling_band),
+            digest: Digest::default(),
+            manifest: first_manifest(cast, options),
+        };
+        recorder.write_manifest()?;
+        Ok(recorder)
+    }
+
+    /// Records a moment.
+    ///
+    /// # Errors
+    /// [`Error`] when the disk does not take it.
+    pub fn push(&mut self, moment: &Moment) -> Result<(), Error> {
+        self.digest.push(moment);
+        self.metrics.push(moment);
+        for table in &mut self.tables {
+            table.push(&self.cast, moment)?;
+        }
+        self.manifest.samples += 1;
+        Ok(())
+    }
+
+    /// Closes the tables and writes metrics and manifest.
+    ///
+    /// # Errors
+    /// [`Error`] when the disk does not take it.
+    pub fn finish(mut self, status: Status) -> Result<(Manifest, Metrics), Error> {
+        for table in &mut self.tables {
+            table.finish()?;
+        }
+        let metrics = self.metrics.finish();
+        write_json(&self.folder.join("metrics.json"), &metrics)?;
+        self.manifest.status = status;
+        self.manifest.digest = Some(self.digest.text());
+        self.write_manifest()?;
+        Ok((self.manifest, metrics))
+    }
+
+    fn write_manifest(&self) -> Result<(), Error> {
+        write_json(&self.folder.join("manifest.json"), &self.manifest)
+    }
+}
+
+fn first_manifest(cast: &Cast, options: RunOptions) -> Manifest {
+    let name = |robot: usize| cast.members[robot].name.clone();
+    Manifest {
+        format: FORMAT,
+        program: options.program,
+        commit: options.commit,
+        title: cast.title.clone(),
+        seed: options.seed,
+        period: options.period,
+        duration: cast.duration,
+        robots: cast.members.iter().map(|m| m.name.clone()).collect(),
+        edges: cast.edges.iter().map(|e| [name(e.leader), name(e.follower)]).collect(),
+        status: Status::Running,
+        samples: 0,
+        digest: None,
+    }
+}
+
+fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), Error> {
+    let mut text = serde_json::to_string_pretty(value).map_err(Error::table(path))?;
+    text.push('\n');
+    write_whole(path, text.as_bytes())
+}
+
+/// Refuses a folder that holds anything; with `force`, removes an earlier run from it, and nothing else.
+fn clear(folder: &Path, force: bool) -> Result<(), Error> {
+    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
+    let names: Vec<_> = entries.filter_map(|e| e.ok().map(|e| e.file_name())).collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    let occupied = |what| Err(Error::Occupied { path: folder.to_owned(), what });
+    if !names.iter().any(|n| n == "manifest.json") {
+        return occupied("holds other files");
+    }
+    if !force {
+        return occupied("already holds a run");
+    }
+    for name in names.iter().filter(|n| OURS.iter().any(|ours| *n == ours)) {
+        let path = folder.join(name);
+        let removed = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+        removed.map_err(Error::io("remove", &path))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::{Column, read_table};
+    use vocabulary::{Body, Edge, EdgeState, Member, RobotState, Snapshot};
+
+    fn cast() -> Cast {
+        let member = |name: &str| Member { name: name.into(), leads: name == "ann", body: Body::default() };
+        Cast {
+            title: "two".into(),
+            duration: 20.0,
+            members: vec![member("ann"), member("bob")],
+            edges: vec![Edge { leader: 0, follower: 1 }],
+            ..Cast::default()
+        }
+    }
+
+    fn moment(k: u32) -> Moment {
+        let time = f64::from(k) * 0.01;
+        let mut robots = vec![RobotState::default(); 2];
+        robots[1].motion.pose.x = time / 3.0;
+        let edge = EdgeState { error: [time, -time], limited: k % 2 == 0, ..EdgeState::default() };
+        Moment { snapshot: Snapshot { time, robots }, edges: vec![edge] }
+    }
+
+    fn options(force: bool) -> RunOptions {
+        RunOptions {
+            csv: true,
+            force,
+            scene: "schema = 1\n".into(),
+            program: "test".into(),
+            commit: None,
+            seed: 7,
+            period: 0.01,
+            settling_band: [0.02; 2],
+        }
+    }
+
+    fn record(folder: &Path, samples: u32) -> Recorder {
+        let mut recorder = Recorder::create(folder, &cast(), options(false)).expect("a recorder");
+        for k in 0..samples {
+            recorder.push(&moment(k)).expect("recorded");
+        }
+        recorder
+    }
+
+    fn manifest(folder: &Path) -> Manifest {
+        let text = fs::read_to_string(folder.join("manifest.json")).expect("a manifest");
+        serde_json::from_str(&text).expect("valid")
+    }
+
+    #[test]
+    fn a_whole_run_reads_back_bit_for_bit() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (written, metrics) = record(folder.path(), 2001).finish(Status::Complete).expect("finished");
+        assert_eq!(manifest(folder.path()), written);
+        assert_eq!((written.status, written.samples), (Status::Complete, 2001));
+        assert!((metrics.edges[0].final_error[0] - 20.0).abs() < 1e-12);
+        let robots = read_table(folder.path(), TableKind::Robots).expect("a table");
+        let (Column::Text(names), Column::Number(x)) = (&robots[1], &robots[2]) else { panic!("{robots:?}") };
+        assert_eq!((names.len(), &*names[1]), (4002, "bob"));
+        assert_eq!(x[4001], 2000.0 * 0.01 / 3.0);
+        assert!(!folder.path().join("tables/robots.parts").exists());
+        let csv = fs::read_to_string(folder.path().join("tables/edges.csv")).expect("csv");
+        assert_eq!(csv.lines().count(), 2002);
+        assert!(csv.lines().nth(2).expect("a row").contains("ann,bob"));
+    }
+
+    #[test]
+    fn a_run_that_is_dropped_leaves_its_closed_parts_and_says_running() {
+        let folder = tempfile::tempdir().expect("a folder");
+        drop(record(folder.path(), 1600));
+        assert_eq!(manifest(folder.path()).status, Status::Running);
+        let edges = read_table(folder.path(), TableKind::Edges).expect("parts");
+        let Column::Number(time) = &edges[0] else { panic!("{edges:?}") };
+        assert_eq!(time.len(), 1500);
+    }
+
+    #[test]
+    fn a_folder_in_use_is_never_overwritten_without_force() {
+        let folder = tempfile::tempdir().expect("a folder");
+        record(folder.path(), 3).finish(Status::Interrupted).expect("finished");
+        let refused = Recorder::create(folder.path(), &cast(), options(false)).err().expect("refused");
+        assert!(refused.to_string().contains("--force"), "{refused}");
+        fs::write(folder.path().join("notes.txt"), "mine").expect("written");
+        Recorder::create(folder.path(), &cast(), options(true)).expect("replaced");
+        assert_eq!(fs::read_to_string(folder.path().join("notes.txt")).expect("kept"), "mine");
+        let other = tempfile::tempdir().expect("a folder");
+        fs::write(other.path().join("thesis.tex"), "years").expect("written");
+        let refused = Recorder::create(other.path(), &cast(), options(true)).err().expect("refused");
+        assert!(refused.to_string().contains("other files"), "{refused}");
+    }
+
+    #[test]
+    fn an_unwritable_place_is_one_clear_error() {
+        let error =
+            Recorder::create(Path::new("/proc/nowhere/run"), &cast(), options(false)).err().expect("refused");
+        assert!(error.to_string().contains("/proc/nowhere/run"), "{error}");
+    }
+}

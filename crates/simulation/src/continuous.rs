@@ -1,0 +1,146 @@
+//! Law, observer and plant as one differential equation: the time of the theorems.
+//!
+//! Classical Runge-Kutta with a step well below the observers' time constants; speeds stop at their bounds after
+//! every step. It costs about 1/ε evaluations per simulated second, which is the price of continuous time.
+
+use crate::step::motions;
+use formation::{Estimate, Formation, FormationState, LawKind};
+use vocabulary::{EdgeSample, Motion, Observation, Pose, Relative, wrap};
+use world::{Unicycles, World};
+
+/// Longest step, s.
+const STEP_MAX: f64 = 2.5e-4;
+/// Steps per smallest ε: leaves 1e-6 of a transient's size.
+const STEPS_PER_EPSILON: f64 = 8.0;
+
+/// All that moves in continuous time.
+pub(crate) struct Continuous {
+    world: Unicycles,
+    step: f64,
+    observations: Vec<Observation>,
+}
+
+/// State of the whole system, or its rate of change.
+#[derive(Debug, Clone)]
+struct State {
+    /// x, y, θ, v per robot.
+    robots: Vec<[f64; 4]>,
+    /// Per edge.
+    estimates: Vec<Estimate>,
+}
+
+impl Continuous {
+    pub(crate) fn new(world: Unicycles, formation: &Formation) -> Self {
+        let observing = formation.laws().iter().filter(|e| e.law.kind == LawKind::OutputFeedback);
+        let fastest = observing.flat_map(|e| e.observer.epsilon).fold(f64::INFINITY, f64::min);
+        let step = STEP_MAX.min(fastest / STEPS_PER_EPSILON);
+        Self { world, step, observations: Vec::new() }
+    }
+
+    pub(crate) fn world(&self) -> &dyn World {
+        &self.world
+    }
+
+    pub(crate) fn world_mut(&mut self) -> &mut dyn World {
+        &mut self.world
+    }
+
+    /// One control period from `time`.
+    pub(crate) fn advance(&mut self, formation: &Formation, state: &mut FormationState, time: f64, period: f64) {
+        let mut scratch = state.clone();
+        let robots = motions(&self.world).map(|m| [m.pose.x, m.pose.y, m.pose.heading, m.speed]).collect();
+        let mut y = State { robots, estimates: state.estimates.clone() };
+        let steps = (period / self.step).ceil();
+        let h = period / steps;
+        for k in 0..steps as usize {
+            let t = time + k as f64 * h;
+            let k1 = self.rate(formation, &mut scratch, t, &y);
+            let k2 = self.rate(formation, &mut scratch, t + h / 2.0, &y.plus(&k1, h / 2.0));
+            let k3 = self.rate(formation, &mut scratch, t + h / 2.0, &y.plus(&k2, h / 2.0));
+            let k4 = self.rate(formation, &mut scratch, t + h, &y.plus(&k3, h));
+            for (rate, weight) in [(&k1, 1.0), (&k2, 2.0), (&k3, 2.0), (&k4, 1.0)] {
+                y = y.plus(rate, h * weight / 6.0);
+            }
+            bound_speeds(formation, t + h, &mut y);
+        }
+        state.estimates.clone_from(&y.estimates);
+        let motions: Vec<Motion> = y.robots.iter().map(motion).collect();
+        self.world.place(time + period, &motions);
+    }
+
+    fn rate(&mut self, formation: &Formation, scratch: &mut FormationState, t: f64, y: &State) -> State {
+        self.observations.clear();
+        let observe = |edge: &vocabulary::Edge| {
+            let (leader, follower) = (motion(&y.robots[edge.leader]), motion(&y.robots[edge.follower]));
+            Observation {
+                relative: Relative::between(leader.pose, follower.pose),
+                own_speed: follower.speed,
+                leader_speed: Some(leader.speed),
+            }
+        };
+        self.observations.extend(formation.edges().iter().map(observe));
+        scratch.estimates.clone_from(&y.estimates);
+        formation.evaluate(t, &self.observations, scratch);
+        let mut out = State { robots: vec![[0.0; 4]; y.robots.len()], estimates: y.estimates.clone() };
+        for (robot, lead) in formation.leads() {
+            let drive = lead.at(t);
+            out.robots[*robot] = unicycle(y.robots[*robot][2], drive.speed, drive.acceleration, drive.turn_rate);
+        }
+        for (index, edge) in formation.edges().iter().enumerate() {
+            let (seen, applied) = (&self.observations[index], scratch.decisions[index].applied);
+            let speed = formation.limits(edge.follower).clamp_speed(seen.own_speed);
+            let heading = y.robots[edge.follower][2];
+            out.robots[edge.follower] = unicycle(heading, speed, applied.acceleration, applied.turn_rate);
+            let sample = EdgeSample {
+                relative: seen.relative,
+                own_speed: speed,
+                acceleration: applied.acceleration,
+                turn_rate: applied.turn_rate,
+            };
+            let law = &formation.laws()[index];
+            out.estimates[index] = match law.law.kind {
+                LawKind::OutputFeedback => law.observer.derivative(&y.estimates[index], &sample),
+                LawKind::FullState | LawKind::RobustState => Estimate::default(),
+            };
+        }
+        out
+    }
+}
+
+/// d[x, y, θ, v]/dt (eq 1).
+fn unicycle(heading: f64, speed: f64, acceleration: f64, turn_rate: f64) -> [f64; 4] {
+    let (sin, cos) = heading.sin_cos();
+    [speed * cos, speed * sin, turn_rate, acceleration]
+}
+
+fn motion(y: &[f64; 4]) -> Motion {
+    Motion { pose: Pose::new(y[0], y[1], wrap(y[2])), speed: y[3], ..Motion::default() }
+}
+
+fn bound_speeds(formation: &Formation, t: f64, y: &mut State) {
+    for edge in formation.edges() {
+        let speed = &mut y.robots[edge.follower][3];
+        *speed = formation.limits(edge.follower).clamp_speed(*speed);
+    }
+    for (robot, lead) in formation.leads() {
+        y.robots[*robot][3] = lead.at(t).speed;
+    }
+}
+
+impl State {
+    fn plus(&self, rate: &Self, h: f64) -> Self {
+        let mut out = self.clone();
+        for (y, d) in out.robots.iter_mut().zip(&rate.robots) {
+            for (y, d) in y.iter_mut().zip(d) {
+                *y += h * d;
+            }
+        }
+        for (y, d) in out.estimates.iter_mut().zip(&rate.estimates) {
+            for i in 0..2 {
+                y.output[i] += h * d.output[i];
+                y.rates[i] += h * d.rates[i];
+            }
+        }
+        out
+    }
+}

@@ -1,0 +1,241 @@
+//! One step of a simulation. New here? This is the page to read first.
+
+use crate::continuous::Continuous;
+use formation::{Estimate, Formation, FormationState, LawKind};
+use std::f64::consts::PI;
+use vocabulary::{Cast, EdgeState, Moment, Motion, Observation, Relative, wrap};
+use world::{Unicycle, Unicycles, World};
+
+/// How law and observer act in time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Timing {
+    /// Law and observer act in continuous time.
+    Continuous,
+    /// The law is held over a period; the observer sees the plant in between.
+    Sampled,
+    /// As sampled, but the observer sees samples only.
+    Measured,
+}
+
+/// A run put together, before its first step.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    /// Names, bodies and edges.
+    pub cast: Cast,
+    /// Graph, laws, set points, lead motions.
+    pub formation: Formation,
+    /// Robots at their starts.
+    pub robots: Vec<Unicycle>,
+    /// Where observers start: added to the first measurement [m, rad], or in its place.
+    pub observer_starts: Vec<ObserverStart>,
+    /// How law and observer act in time.
+    pub timing: Timing,
+    /// Control period, s.
+    pub period: f64,
+    /// Length of the run, s.
+    pub duration: f64,
+}
+
+/// Where the observer of one edge starts, [m, rad].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ObserverStart {
+    /// The first measurement plus this.
+    Offset([f64; 2]),
+    /// Here.
+    At([f64; 2]),
+}
+
+/// A run under way. The same setup gives the same moments, bit for bit.
+pub struct Simulation {
+    cast: Cast,
+    formation: Formation,
+    state: FormationState,
+    plant: Plant,
+    timing: Timing,
+    period: f64,
+    observations: Vec<Observation>,
+    moment: Moment,
+    sample: u64,
+    last_sample: u64,
+}
+
+/// What moves the robots: a world that is told commands to hold, or plant, law and observers as one system.
+enum Plant {
+    Held(Box<dyn World>),
+    Continuous(Box<Continuous>),
+}
+
+impl Simulation {
+    /// A run at time 0, nothing evaluated yet.
+    pub fn new(setup: Setup) -> Self {
+        let edges = setup.formation.edges().len();
+        let world = Unicycles::new(setup.robots);
+        let mut observations = Vec::with_capacity(edges);
+        perception::observe(world.snapshot(), setup.formation.edges(), &mut observations);
+        let start = |(o, s): (&Observation, &ObserverStart)| first_estimate(&o.relative, *s);
+        let state = setup.formation.start(observations.iter().zip(&setup.observer_starts).map(start).collect());
+        let moment = Moment { snapshot: world.snapshot().clone(), edges: vec![EdgeState::default(); edges] };
+        let plant = match setup.timing {
+            Timing::Continuous => Plant::Continuous(Box::new(Continuous::new(world, &setup.formation))),
+            Timing::Sampled | Timing::Measured => Plant::Held(Box::new(world)),
+        };
+        Self {
+            cast: setup.cast,
+            formation: setup.formation,
+            state,
+            plant,
+            timing: setup.timing,
+            period: setup.period,
+            observations,
+            moment,
+            sample: 0,
+            last_sample: samples(setup.duration, setup.period),
+        }
+    }
+
+    /// The next control sample: what is seen, what is decided, what is applied. `None` when the run is over.
+    pub fn next_moment(&mut self) -> Option<&Moment> {
+        if self.sample > self.last_sample {
+            return None;
+        }
+        if self.sample > 0 {
+            self.advance();
+        }
+        let time = self.sample as f64 * self.period;
+        let snapshot = self.plant.world().snapshot();
+        perception::observe(snapshot, self.formation.edges(), &mut self.observations);
+        self.formation.decide(time, &self.observations, &mut self.state);
+        self.plant.world_mut().apply(&self.state.commands);
+        self.write_moment(time);
+        self.sample += 1;
+        Some(&self.moment)
+    }
+
+    /// Robots drive one period on, and observers with them.
+    fn advance(&mut self) {
+        match &mut self.plant {
+            Plant::Held(world) => {
+                world.advance(self.period);
+                let world: &dyn World = world.as_ref();
+                match self.timing {
+                    Timing::Measured => self.follow_samples(),
+                    _ => follow(&self.formation, &mut self.state, world),
+                }
+            }
+            Plant::Continuous(system) => {
+                let time = (self.sample - 1) as f64 * self.period;
+                system.advance(&self.formation, &mut self.state, time, self.period);
+            }
+        }
+    }
+
+    /// Observers that have seen samples only catch up with the period that has passed.
+    fn follow_samples(&mut self) {
+        let world = self.plant.world();
+        for (index, edge) in self.formation.edges().iter().enumerate() {
+            let law = &self.formation.laws()[index];
+            if law.law.kind != LawKind::OutputFeedback {
+                continue;
+            }
+            let mut before = perception::sample(world, *edge, 0.0, None);
+            let after = perception::sample(world, *edge, self.period, None);
+            before.acceleration = (after.own_speed - before.own_speed) / self.period;
+            let estimate = &mut self.state.estimates[index];
+            *estimate = law.observer.follow_samples(estimate, &before, &after.relative, self.period);
+        }
+    }
+
+    /// Truth beside what was decided on it.
+    fn write_moment(&mut self, time: f64) {
+        self.moment.snapshot.clone_from(self.plant.world().snapshot());
+        self.moment.snapshot.time = time;
+        for (index, (edge, out)) in self.formation.edges().iter().zip(&mut self.moment.edges).enumerate() {
+            let robots = &mut self.moment.snapshot.robots;
+            let relative = Relative::between(robots[edge.leader].motion.pose, robots[edge.follower].motion.pose);
+            let decision = &self.state.decisions[index];
+            let wanted = decision.set_point;
+            robots[edge.follower].camera_pan = wrap(relative.view_angle - PI);
+            *out = EdgeState {
+                relative,
+                set_point: wanted,
+                error: [wanted[0] - relative.distance, wrap(wanted[1] - relative.bearing)],
+                asked: decision.asked,
+                applied: decision.applied,
+                rates: decision.rates,
+                limited: decision.limited,
+                too_close: decision.too_close,
+            };
+        }
+    }
+
+    /// Names, bodies and edges of the run.
+    pub fn cast(&self) -> &Cast {
+        &self.cast
+    }
+
+    /// Graph, laws and set points of the run.
+    pub fn formation(&self) -> &Formation {
+        &self.formation
+    }
+
+    /// Control samples in the whole run, the one at time 0 included.
+    pub fn len(&self) -> u64 {
+        self.last_sample + 1
+    }
+
+    /// Never: a run has at least its first sample.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Control period, s.
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+}
+
+impl Plant {
+    fn world(&self) -> &dyn World {
+        match self {
+            Self::Held(world) => world.as_ref(),
+            Self::Continuous(system) => system.world(),
+        }
+    }
+
+    fn world_mut(&mut self) -> &mut dyn World {
+        match self {
+            Self::Held(world) => world.as_mut(),
+            Self::Continuous(system) => system.world_mut(),
+        }
+    }
+}
+
+/// Observers that see the plant without interruption follow it through the period.
+fn follow(formation: &Formation, state: &mut FormationState, world: &dyn World) {
+    for (index, edge) in formation.edges().iter().enumerate() {
+        let law = &formation.laws()[index];
+        if law.law.kind == LawKind::OutputFeedback {
+            let estimate = &mut state.estimates[index];
+            perception::tracks(world, *edge, |track| *estimate = law.observer.follow(estimate, track));
+        }
+    }
+}
+
+fn first_estimate(seen: &Relative, start: ObserverStart) -> Estimate {
+    let output = match start {
+        ObserverStart::Offset([distance, bearing]) => [seen.distance + distance, seen.bearing + bearing],
+        ObserverStart::At(at) => at,
+    };
+    Estimate { output, rates: [0.0; 2] }
+}
+
+/// Whole periods in the run; a period that misses the end by rounding only counts.
+fn samples(duration: f64, period: f64) -> u64 {
+    (duration / period * (1.0 + 1e-12) + 1e-9).floor() as u64
+}
+
+/// Motions of all robots in a snapshot.
+pub(crate) fn motions(world: &dyn World) -> impl Iterator<Item = Motion> + '_ {
+    world.snapshot().robots.iter().map(|r| r.motion)
+}
+
