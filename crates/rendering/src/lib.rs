@@ -1,1 +1,48 @@
-//! Snapshots to pictures and films.
+//! Moments to pictures and films.
+//!
+//! ```no_run
+//! use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, View, png};
+//! # fn shown(cast: &vocabulary::Cast, moments: &[vocabulary::Moment]) -> Result<(), rendering::Error> {
+//! let gpu = Gpu::open(&AdapterChoice::Auto)?;
+//! let mut renderer = Renderer::new(&gpu, cast, 1280, 720, 4)?;
+//! let mut trail = Trail::new(cast);
+//! for moment in moments {
+//!     trail.push(moment);
+//! }
+//! if let Some(last) = moments.last() {
+//!     let picture = renderer.draw(&trail, last, &Layout::single(View::Snake), &Style::default())?;
+//!     png::write("last.png".as_ref(), &picture, &[("Adapter", &gpu.description())])?;
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! A [`Trail`] remembers the past, a [`Renderer`] draws a moment on top of it from the views of a [`Layout`].
+//! The world is f64; positions are narrowed to f32 relative to an origin near the robots. Pictures are sRGB.
+//! The same moments give the same picture, byte for byte, on the same adapter.
+
+mod camera;
+mod crowd;
+mod error;
+mod gpu;
+mod inset;
+mod labels;
+mod model;
+mod paint;
+mod palette;
+mod passes;
+pub mod png;
+mod renderer;
+mod steady;
+mod style;
+mod target;
+mod trail;
+mod view;
+
+pub use error::Error;
+pub use gpu::{AdapterChoice, AdapterInfo, Gpu, adapters};
+pub use palette::robot_colours;
+pub use renderer::Renderer;
+pub use style::Style;
+pub use trail::Trail;
+pub use view::{Layout, Tile, View};

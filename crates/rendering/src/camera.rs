@@ -1,0 +1,234 @@
+//! Cameras: where each view stands, solved from what it has to show.
+
+use crate::View;
+use crate::steady::{Extent, Steady};
+use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
+use vocabulary::Snapshot;
+
+/// A camera without roll: its horizon is level.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Camera {
+    pub(crate) eye: DVec3,
+    pub(crate) forward: DVec3,
+    pub(crate) right: DVec3,
+    pub(crate) up: DVec3,
+    /// Tangents of half the fields of view across and down; for a parallel projection half the sides in m.
+    pub(crate) half: DVec2,
+    pub(crate) perspective: bool,
+}
+
+const NEAR: f64 = 0.05;
+const FAR: f64 = 600.0;
+
+/// How a view is composed: the numbers of the snake view, from looking at pictures.
+struct Composition {
+    field_of_view: f64,
+    /// Where the horizon stands, as a share of the height from the top.
+    horizon: f64,
+    /// Share of the width the formation may take.
+    width: f64,
+    /// Normalised heights (−1 bottom, 1 top) between which the formation stays.
+    rows: [f64; 2],
+    nearest: f64,
+}
+
+const SNAKE: Composition =
+    Composition { field_of_view: 0.6632, horizon: 0.08, width: 0.70, rows: [-0.66, 0.34], nearest: 3.0 };
+
+impl Camera {
+    /// The camera of `view` on a picture `aspect` times as wide as high.
+    pub(crate) fn of(view: &View, steady: &Steady, snapshot: &Snapshot, aspect: f64) -> Self {
+        match view {
+            View::Snake => snake(steady, aspect),
+            View::SnakeEye => snake_eye(steady, aspect),
+            View::Top => top(steady, aspect),
+            View::Orbit => orbit(steady, snapshot.time, aspect),
+            View::Follow(robot) => follow(steady, snapshot, *robot, aspect),
+            View::Fixed { eye, target, field_of_view } => {
+                Self::looking(DVec3::from_array(*eye), DVec3::from_array(*target), *field_of_view, aspect)
+            }
+        }
+    }
+
+    /// A camera at `eye` that looks at `target`.
+    pub(crate) fn looking(eye: DVec3, target: DVec3, field_of_view: f64, aspect: f64) -> Self {
+        let forward = (target - eye).normalize_or(DVec3::NEG_Z);
+        let flat = forward.truncate();
+        // Looking straight down, the picture's upper edge is where +x would be.
+        let heading = if flat.length() < 1e-9 { DVec2::X } else { flat.normalize() };
+        let right = DVec3::new(heading.y, -heading.x, 0.0);
+        let tangent = (0.5 * field_of_view).tan();
+        let half = DVec2::new(tangent * aspect, tangent);
+        Self { eye, forward, right, up: right.cross(forward), half, perspective: true }
+    }
+
+    fn pitched(heading: f64, pitch: f64, tangent: f64, aspect: f64) -> Self {
+        let forward = DVec3::new(heading.cos() * pitch.cos(), heading.sin() * pitch.cos(), -pitch.sin());
+        let right = DVec3::new(heading.sin(), -heading.cos(), 0.0);
+        let half = DVec2::new(tangent * aspect, tangent);
+        Self { eye: DVec3::ZERO, forward, right, up: right.cross(forward), half, perspective: true }
+    }
+
+    /// Coordinates of a world point along right, up and forward, from the eye, m.
+    pub(crate) fn view_from_world(&self, point: DVec3) -> DVec3 {
+        let from_eye = point - self.eye;
+        DVec3::new(from_eye.dot(self.right), from_eye.dot(self.up), from_eye.dot(self.forward))
+    }
+
+    /// Where a world point appears, −1 to 1 across and up; `None` behind the eye.
+    pub(crate) fn project(&self, point: DVec3) -> Option<DVec2> {
+        let p = self.view_from_world(point);
+        if self.perspective {
+            (p.z > NEAR).then(|| DVec2::new(p.x, p.y) / (self.half * p.z))
+        } else {
+            Some(DVec2::new(p.x, p.y) / self.half)
+        }
+    }
+
+    /// Metres per pixel at a world point, on a tile `height` pixels high.
+    pub(crate) fn metres_per_pixel(&self, point: DVec3, height: f64) -> f64 {
+        let depth = if self.perspective { self.view_from_world(point).z.max(NEAR) } else { 1.0 };
+        2.0 * self.half.y * depth / height
+    }
+
+    /// Clip coordinates (depth 0 near to 1 far) from coordinates relative to `origin`.
+    pub(crate) fn clip_from_local(&self, origin: DVec3) -> Mat4 {
+        let eye = self.eye - origin;
+        let row = |axis: DVec3, scale: f64| (axis * scale).extend(-axis.dot(eye) * scale);
+        let x = row(self.right, 1.0 / self.half.x);
+        let y = row(self.up, 1.0 / self.half.y);
+        let along = row(self.forward, 1.0);
+        let rows = if self.perspective {
+            let slope = FAR / (FAR - NEAR);
+            DMat4::from_cols(x, y, along * slope - DVec4::W * (NEAR * slope), along)
+        } else {
+            DMat4::from_cols(x, y, along / FAR, DVec4::W)
+        };
+        rows.transpose().as_mat4()
+    }
+
+    /// Normalised height of the horizon; above 1 it is out of the picture.
+    pub(crate) fn horizon(&self) -> f64 {
+        if !self.perspective || self.up.z < 1e-6 {
+            return 4.0;
+        }
+        -self.forward.z / (self.up.z * self.half.y)
+    }
+
+    /// Moves the eye so that `points` fill the picture between the composition's bounds, turning nothing.
+    fn fit(&mut self, points: &[DVec3], composition: &Composition) {
+        self.eye = DVec3::ZERO;
+        let seen: Vec<_> = points.iter().map(|p| self.view_from_world(*p)).collect();
+        let most = |f: &dyn Fn(&DVec3) -> f64| seen.iter().map(f).fold(f64::NEG_INFINITY, f64::max);
+        // Each bound of the picture is a plane through the eye; a point inside all of them bounds the eye linearly.
+        let side = composition.width * self.half.x;
+        let [bottom, top] = composition.rows.map(|row| row * self.half.y);
+        let left = most(&|p| -p.x - side * p.z);
+        let right = most(&|p| p.x - side * p.z);
+        let over = most(&|p| p.y - top * p.z);
+        let under = most(&|p| bottom * p.z - p.y);
+        let near = seen.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+        let across = -(left + right) / (2.0 * side);
+        let down = -(over + under) / (top - bottom);
+        let z = across.min(down).min(near - composition.nearest);
+        let (lowest, highest) = (over + top * z, bottom * z - under);
+        let x = 0.5 * (right - left);
+        self.eye = self.right * x + self.up * (0.5 * (lowest + highest)) + self.forward * z;
+    }
+}
+
+fn corners(extent: &Extent, margin: f64) -> Vec<DVec3> {
+    let grown = extent.grown(margin);
+    let mut all = Vec::with_capacity(8);
+    for height in [0.0, 0.3] {
+        for forward in grown.forward {
+            for left in grown.left {
+                let [x, y] = extent.frame.world_from_body(forward, left);
+                all.push(DVec3::new(x, y, height));
+            }
+        }
+    }
+    all
+}
+
+fn snake(steady: &Steady, aspect: f64) -> Camera {
+    let tangent = (0.5 * SNAKE.field_of_view).tan();
+    let pitch = ((1.0 - 2.0 * SNAKE.horizon) * tangent).atan();
+    let extent = steady.formation();
+    let mut camera = Camera::pitched(extent.frame.heading, pitch, tangent, aspect);
+    camera.fit(&corners(&extent, 0.3), &SNAKE);
+    camera
+}
+
+fn snake_eye(steady: &Steady, aspect: f64) -> Camera {
+    let extent = steady.formation();
+    let heading = extent.frame.heading;
+    let mut camera = Camera::pitched(heading, 0.02, (27.5_f64).to_radians().tan(), aspect);
+    let [x, y] = extent.frame.world_from_body(extent.forward[0] - 1.2, extent.rear);
+    camera.eye = DVec3::new(x, y, 0.35);
+    camera
+}
+
+fn top(steady: &Steady, aspect: f64) -> Camera {
+    let extent = steady.formation();
+    let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
+    // A circle around the formation, so that turning does not zoom.
+    let grown = extent.grown(0.45);
+    let across = 0.5 * (grown.forward[1] - grown.forward[0]).hypot(grown.left[1] - grown.left[0]);
+    let half = (across * 1.12 / aspect.min(1.0)).max(1.2);
+    Camera {
+        eye: DVec3::new(x, y, 100.0),
+        forward: DVec3::NEG_Z,
+        right: DVec3::X,
+        up: DVec3::Y,
+        half: DVec2::new(half * aspect, half),
+        perspective: false,
+    }
+}
+
+fn orbit(steady: &Steady, time: f64, aspect: f64) -> Camera {
+    let extent = steady.formation();
+    let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
+    let grown = extent.grown(0.4);
+    let radius = 0.5 * (grown.forward[1] - grown.forward[0]).hypot(grown.left[1] - grown.left[0]);
+    let tangent = (19.0_f64).to_radians().tan();
+    let distance = radius / (0.8 * tangent * aspect.min(1.6)) + 0.6 * radius;
+    // A full turn in 40 s, from behind on the left, so that no side stays hidden.
+    let (turn, rise) = (2.6 + time * 0.157, 0.42_f64);
+    let eye = DVec3::new(turn.cos() * rise.cos(), turn.sin() * rise.cos(), rise.sin()) * distance.max(3.0);
+    let target = DVec3::new(x, y, 0.1);
+    Camera::looking(target + eye, target, (38.0_f64).to_radians(), aspect)
+}
+
+fn follow(steady: &Steady, snapshot: &Snapshot, robot: usize, aspect: f64) -> Camera {
+    let pose = snapshot.robots.get(robot).map(|r| r.motion.pose).unwrap_or_default();
+    let heading = steady.heading(robot).unwrap_or(pose.heading);
+    let ahead = DVec3::new(heading.cos(), heading.sin(), 0.0);
+    let at = DVec3::new(pose.x, pose.y, 0.0);
+    let target = at + ahead * 0.9 + DVec3::Z * 0.12;
+    Camera::looking(at - ahead * 1.5 + DVec3::Z * 0.95, target, (42.0_f64).to_radians(), aspect)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn projection_agrees_with_the_matrix() {
+        let camera = Camera::looking(DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 0.5), 0.7, 1.6);
+        let point = DVec3::new(3.5, 4.0, 0.2);
+        let origin = DVec3::new(1.0, 1.0, 0.0);
+        let clip = camera.clip_from_local(origin) * (point - origin).as_vec3().extend(1.0);
+        let seen = camera.project(point).unwrap();
+        assert!((f64::from(clip.x / clip.w) - seen.x).abs() < 1e-5);
+        assert!((f64::from(clip.y / clip.w) - seen.y).abs() < 1e-5);
+        assert!(clip.z > 0.0 && clip.z < clip.w);
+    }
+
+    #[test]
+    fn the_horizon_is_where_far_points_go() {
+        let camera = Camera::looking(DVec3::new(0.0, 0.0, 3.0), DVec3::new(8.0, 0.0, 0.0), 0.9, 1.6);
+        let far = camera.project(DVec3::new(1e9, 0.0, 0.0)).unwrap();
+        assert!((far.y - camera.horizon()).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,129 @@
+//! Copies of the models for a moment: where bodies, wheels, cameras and ghosts stand.
+
+use crate::model::{CAMERA, WHEEL_RADIUS};
+use crate::paint::Stage;
+use crate::palette::{Rgb, linear};
+use crate::passes::robot::{Crowd, Instance};
+use glam::{DVec3, Mat3, Mat4, Vec3};
+use vocabulary::{Attitude, Body, Member, Pose, RobotState};
+
+/// Opacity of a ghost.
+const GHOST: f32 = 0.18;
+
+/// All copies of the models in a picture.
+pub(crate) fn crowd(stage: &Stage<'_>) -> Crowd {
+    let mut crowd = Crowd::default();
+    for (index, (robot, member)) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members).enumerate() {
+        let look = Look::new(member, index, stage.colours[index]);
+        stand(&mut crowd, robot, &member.body, &look, stage.origin);
+    }
+    if stage.style.ghosts && stage.detail > 0.0 {
+        ghosts(&mut crowd, stage);
+    }
+    crowd
+}
+
+/// Colour and number of a robot.
+struct Look {
+    colour: Rgb,
+    marks: [f32; 4],
+}
+
+impl Look {
+    fn new(member: &Member, index: usize, colour: Rgb) -> Self {
+        Self { colour, marks: [roof_number(member, index), f32::from(u8::from(member.leads)), 0.0, 0.0] }
+    }
+
+    fn instance(&self, local_from_model: Mat4, alpha: f32) -> Instance {
+        let rows = local_from_model.transpose();
+        let [r, g, b] = linear(self.colour);
+        Instance {
+            rows: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.to_array()),
+            colour: [r, g, b, alpha],
+            marks: self.marks,
+        }
+    }
+}
+
+/// The number that ends a robot's name, else its place on stage.
+fn roof_number(member: &Member, index: usize) -> f32 {
+    let digits = member.name.chars().rev().take_while(char::is_ascii_digit).count();
+    let tail = &member.name[member.name.len() - digits..];
+    tail.parse::<u16>().ok().filter(|n| *n < 1000).map_or(index as f32, f32::from)
+}
+
+fn local_from_body(pose: &Pose, attitude: &Attitude, origin: DVec3) -> Mat4 {
+    let place = DVec3::new(pose.x, pose.y, attitude.height) - origin;
+    let turn = Mat3::from_rotation_z(pose.heading as f32)
+        * Mat3::from_rotation_y(attitude.pitch as f32)
+        * Mat3::from_rotation_x(attitude.roll as f32);
+    Mat4::from_translation(place.as_vec3()) * Mat4::from_mat3(turn)
+}
+
+/// The model's measures are those of the default body; others are stretched from it.
+fn stretch(body: &Body) -> Vec3 {
+    let model = Body::default();
+    let scale = |wanted: f64, modelled: f64| (wanted / modelled).clamp(0.2, 20.0) as f32;
+    let (x, y) = (scale(body.length, model.length), scale(body.width, model.width));
+    Vec3::new(x, y, (x * y).sqrt())
+}
+
+fn stand(crowd: &mut Crowd, robot: &RobotState, body: &Body, look: &Look, origin: DVec3) {
+    let base = local_from_body(&robot.motion.pose, &robot.attitude, origin);
+    let scale = stretch(body);
+    crowd.bodies.push(look.instance(base * Mat4::from_scale(scale), 1.0));
+    let camera = base
+        * Mat4::from_translation(Vec3::from_array(CAMERA) * scale)
+        * Mat4::from_rotation_z(robot.camera_pan as f32)
+        * Mat4::from_scale(Vec3::splat(scale.z));
+    crowd.cameras.push(look.instance(camera, 1.0));
+    let radius = body.wheel_radius as f32;
+    let places = [(1.0, 0.5), (1.0, -0.5), (0.0, 0.5), (0.0, -0.5)];
+    for (wheel, (forward, left)) in robot.wheels.iter().zip(places) {
+        let hub = Vec3::new((forward * body.wheelbase) as f32, (left * body.track) as f32, radius);
+        let raised = hub + Vec3::Z * wheel.compression as f32;
+        // The model's outer face looks left; on the right it is turned about, and then rolls the other way.
+        let (about, roll) = if left > 0.0 { (0.0, 1.0) } else { (std::f32::consts::PI, -1.0) };
+        let model = base
+            * Mat4::from_translation(raised)
+            * Mat4::from_rotation_z(wheel.steering as f32 + about)
+            * Mat4::from_rotation_y(roll * wheel.rotation as f32)
+            * Mat4::from_scale(Vec3::splat(radius / WHEEL_RADIUS));
+        crowd.wheels.push(look.instance(model, 1.0));
+    }
+}
+
+fn ghosts(crowd: &mut Crowd, stage: &Stage<'_>) {
+    let now = stage.moment.snapshot.time;
+    for row in &stage.trail.ghosts {
+        let age = now - row.time;
+        if !(0.0..=crate::trail::RIBBON).contains(&age) {
+            continue;
+        }
+        for (index, (pose, member)) in row.poses.iter().zip(&stage.cast.members).enumerate() {
+            let here = stage.moment.snapshot.robots.get(index).map(|r| r.motion.pose).unwrap_or_default();
+            // A ghost steps out of its robot gradually and fades before it goes.
+            let away = ((here.x - pose.x).hypot(here.y - pose.y) / member.body.length - 0.8).clamp(0.0, 1.0);
+            let late = ((crate::trail::RIBBON - age) / 1.5).clamp(0.0, 1.0);
+            let alpha = GHOST * stage.detail * (away * late) as f32;
+            if alpha > 0.01 {
+                let look = Look::new(member, index, stage.colours[index]);
+                let base = local_from_body(pose, &Attitude::default(), stage.origin);
+                crowd.ghosts.push(look.instance(base * Mat4::from_scale(stretch(&member.body)), alpha));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roofs_show_the_number_of_the_name() {
+        let member = |name: &str| Member { name: name.into(), leads: false, body: Body::default() };
+        assert_eq!(roof_number(&member("follower-12"), 3), 12.0);
+        assert_eq!(roof_number(&member("leader"), 0), 0.0);
+        assert_eq!(roof_number(&member("x99999999"), 4), 4.0);
+    }
+}

@@ -1,0 +1,130 @@
+//! What can go wrong while drawing, told apart by who can mend it: the user's words or the machine.
+
+use std::path::{Path, PathBuf};
+
+/// Everything this crate can fail with.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// No graphics adapter fits.
+    #[error(
+        "no graphics adapter{}; {found}. A software one comes with `apt-get install mesa-vulkan-drivers` (Debian, Ubuntu)",
+        .wanted.as_ref().map_or(String::new(), |w| format!(" matches {w:?}"))
+    )]
+    NoAdapter {
+        /// What was asked for by name, if anything.
+        wanted: Option<String>,
+        /// What the machine has.
+        found: String,
+    },
+    /// The graphics device refused or was lost.
+    #[error("the graphics device failed: {0}")]
+    Device(String),
+    /// A file could not be written.
+    #[error("cannot write {}: {source}", .path.display())]
+    Write {
+        /// Where.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// An encoder refused a picture.
+    #[error("encoding failed: {0}")]
+    Encode(String),
+    /// ffmpeg was asked for and is not there.
+    #[error("ffmpeg was not found on PATH; install it (`apt-get install ffmpeg`) or write an .mp4 with the built-in encoder")]
+    NoFfmpeg,
+    /// A view that does not exist.
+    #[error("unknown view {given:?}{}; views are {valid}, and several joined by '+'", .nearest.as_ref().map_or(String::new(), |n| format!(" (did you mean {n:?}?)")))]
+    View {
+        /// What was asked for.
+        given: String,
+        /// The valid name nearest to it.
+        nearest: Option<String>,
+        /// All valid forms.
+        valid: String,
+    },
+    /// An element of the picture that does not exist.
+    #[error("unknown element {given:?}{}; elements are {valid}", .nearest.as_ref().map_or(String::new(), |n| format!(" (did you mean {n:?}?)")))]
+    Element {
+        /// What was asked for.
+        given: String,
+        /// The valid name nearest to it.
+        nearest: Option<String>,
+        /// All valid names.
+        valid: String,
+    },
+    /// A picture size that cannot be drawn.
+    #[error("a picture of {width}×{height} cannot be drawn: width and height must be 16 to {most} pixels")]
+    Size {
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+        /// Largest side this adapter draws.
+        most: u32,
+    },
+    /// Samples per pixel that adapters do not offer.
+    #[error("{0} samples a pixel are not offered: use 4, or 1 for speed")]
+    Samples(u32),
+    /// H.264 halves the colour planes, so both sides must be even.
+    #[error("an H.264 film needs even width and height, not {width}×{height}: use {}×{}", .width & !1, .height & !1)]
+    OddSize {
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+    },
+    /// A frame rate outside what films can hold.
+    #[error("{0} frames a second is out of range: use 1 to 240")]
+    FrameRate(f64),
+    /// A picture that does not fit its film or file.
+    #[error("a picture of {got:?} pixels does not fit {want:?}")]
+    Mismatch {
+        /// Width and height expected.
+        want: (u32, u32),
+        /// Width and height given.
+        got: (u32, u32),
+    },
+    /// A moment whose robots or edges are not those of the cast.
+    #[error("the moment has {got} {what}, the cast {want}")]
+    Cast {
+        /// Robots or edges.
+        what: &'static str,
+        /// In the moment.
+        got: usize,
+        /// In the cast.
+        want: usize,
+    },
+}
+
+impl Error {
+    /// Whether other words on the command line would mend it; otherwise the machine is to blame.
+    pub fn is_usage(&self) -> bool {
+        matches!(
+            self,
+            Self::View { .. }
+                | Self::Element { .. }
+                | Self::Size { .. }
+                | Self::Samples(_)
+                | Self::OddSize { .. }
+                | Self::FrameRate(_)
+                | Self::Mismatch { .. }
+                | Self::Cast { .. }
+        )
+    }
+
+    pub(crate) fn write(path: &Path, source: std::io::Error) -> Self {
+        Self::Write { path: path.to_owned(), source }
+    }
+}
+
+/// The name among `valid` nearest to `given`, if one is near enough to be meant.
+pub(crate) fn nearest<'a>(given: &str, valid: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    valid
+        .into_iter()
+        .map(|name| (strsim::jaro_winkler(given, name), name))
+        .filter(|(score, _)| *score > 0.7)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, name)| name.to_owned())
+}

@@ -1,0 +1,278 @@
+//! Words in the picture: caption, time, names, edges and coordinates, placed so that none covers another.
+
+use crate::camera::Camera;
+use crate::paint::Stage;
+use crate::palette::{self, Rgb};
+use crate::passes::overlay::Shapes;
+use crate::passes::text::{Line, TextPass, line_height};
+use crate::{View, view::Tile};
+use glam::{DVec2, DVec3, Vec2};
+
+/// Distance of words from the picture's edge at scale 1, pixels.
+const MARGIN: f32 = 24.0;
+
+/// A rectangle of the picture: left, top, width, height.
+type Box4 = [f32; 4];
+
+/// Collects lines of text and refuses what would overlap.
+pub(crate) struct Words<'a> {
+    pub(crate) lines: Vec<Line>,
+    pub(crate) shapes: Shapes,
+    taken: Vec<Box4>,
+    text: &'a mut TextPass,
+    scale: f32,
+}
+
+/// Where one view is in the picture.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Window<'a> {
+    pub(crate) camera: &'a Camera,
+    pub(crate) tile: Tile,
+}
+
+impl Window<'_> {
+    /// Where a world point appears in pixels of the whole picture; `None` outside the tile.
+    pub(crate) fn pixel(&self, point: DVec3) -> Option<Vec2> {
+        let seen = self.camera.project(point)?;
+        let inside = seen.x.abs() < 1.0 && seen.y.abs() < 1.0;
+        inside.then(|| {
+            let x = f64::from(self.tile.x) + (seen.x + 1.0) * 0.5 * f64::from(self.tile.width);
+            let y = f64::from(self.tile.y) + (1.0 - seen.y) * 0.5 * f64::from(self.tile.height);
+            DVec2::new(x, y).as_vec2()
+        })
+    }
+}
+
+impl<'a> Words<'a> {
+    pub(crate) fn new(text: &'a mut TextPass, scale: f64) -> Self {
+        Self { lines: Vec::new(), shapes: Shapes::default(), taken: Vec::new(), text, scale: scale as f32 }
+    }
+
+    /// Keeps words away from a rectangle.
+    pub(crate) fn reserve(&mut self, area: Box4) {
+        self.taken.push(area);
+    }
+
+    pub(crate) fn scaled(&self, size: f32) -> f32 {
+        size * self.scale
+    }
+
+    pub(crate) fn width(&mut self, text: &str, size: f32, bold: bool) -> f32 {
+        let size = self.scaled(size);
+        self.text.measure(text, size, bold)
+    }
+
+    /// Writes a line whose left end and middle are at `at`, whatever is there.
+    pub(crate) fn write(&mut self, text: String, at: [f32; 2], size: f32, bold: bool, ink: Ink) {
+        let size = self.scaled(size);
+        self.lines.push(Line { text, at, size, bold, colour: ink.colour, alpha: ink.alpha, halo: ink.halo });
+    }
+
+    /// Writes a centred line at the first of `places` that is free and inside `within`.
+    fn try_write(&mut self, text: &str, places: &[Vec2], size: f32, within: &Tile, bold: bool, ink: Ink) -> bool {
+        let width = self.width(text, size, bold);
+        let height = line_height(self.scaled(size));
+        for place in places {
+            let area = [place.x - 0.5 * width - 4.0, place.y - 0.5 * height, width + 8.0, height];
+            if inside(&area, within) && !self.taken.iter().any(|other| overlap(&area, other)) {
+                self.taken.push(area);
+                self.write(text.to_owned(), [place.x - 0.5 * width, place.y], size, bold, ink);
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// Colour, opacity and halo of text.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ink {
+    pub(crate) colour: Rgb,
+    pub(crate) alpha: f32,
+    pub(crate) halo: (f32, Rgb),
+}
+
+impl Ink {
+    pub(crate) const ON_PICTURE: Self = Self { colour: palette::INK, alpha: 1.0, halo: (0.55, palette::PAPER) };
+    pub(crate) const ON_PANEL: Self = Self { colour: palette::INK, alpha: 0.9, halo: (0.0, palette::PAPER) };
+    pub(crate) const LIGHT: Self = Self { colour: palette::PAPER, alpha: 1.0, halo: (0.45, palette::INK) };
+
+    pub(crate) fn faded(self, alpha: f32) -> Self {
+        Self { alpha: self.alpha * alpha, ..self }
+    }
+}
+
+fn inside(area: &Box4, tile: &Tile) -> bool {
+    let [left, top] = [tile.x as f32, tile.y as f32];
+    area[0] > left + 2.0
+        && area[1] > top + 2.0
+        && area[0] + area[2] < left + tile.width as f32 - 2.0
+        && area[1] + area[3] < top + tile.height as f32 - 2.0
+}
+
+fn overlap(a: &Box4, b: &Box4) -> bool {
+    a[0] < b[0] + b[2] && b[0] < a[0] + a[2] && a[1] < b[1] + b[3] && b[1] < a[1] + a[3]
+}
+
+/// Title, law and time, at the corners of the whole picture.
+pub(crate) fn caption(words: &mut Words<'_>, stage: &Stage<'_>, height: u32) {
+    let margin = words.scaled(MARGIN);
+    let cast = stage.cast;
+    if stage.style.caption {
+        let rows = [(&cast.title, 20.0, true, 10.0), (&cast.caption, 13.0, false, 33.0)];
+        for (text, size, bold, down) in rows {
+            if !text.is_empty() {
+                let middle = margin + words.scaled(down);
+                let width = words.width(text, size, bold);
+                let half = words.scaled(0.7 * size);
+                words.reserve([margin - 6.0, middle - half, width + 12.0, 2.0 * half]);
+                words.write(text.clone(), [margin, middle], size, bold, Ink::ON_PICTURE);
+            }
+        }
+    }
+    if stage.style.clock {
+        let text = format!("t = {:.2} s", stage.moment.snapshot.time);
+        let middle = height as f32 - margin - words.scaled(8.0);
+        let (width, half) = (words.width(&text, 18.0, true), words.scaled(14.0));
+        words.reserve([margin - 6.0, middle - half, width + 12.0, 2.0 * half]);
+        words.write(text, [margin, middle], 18.0, true, Ink::LIGHT);
+    }
+}
+
+/// Names, edges, scale bar and coordinates of one view.
+pub(crate) fn view_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, view: &View) {
+    reserve_robots(words, stage, window);
+    if matches!(view, View::Top) && stage.style.grid {
+        scale_bar(words, window);
+    }
+    if stage.style.names {
+        names(words, stage, window);
+    }
+    if stage.style.labels && stage.detail > 0.0 && !matches!(view, View::SnakeEye) {
+        edges(words, stage, window);
+    }
+    if stage.style.grid {
+        coordinates(words, window);
+    }
+}
+
+fn reserve_robots(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
+    for robot in &stage.moment.snapshot.robots {
+        let pose = robot.motion.pose;
+        let [x, y] = pose.world_from_body(0.12, 0.0);
+        let middle = DVec3::new(x, y, 0.15);
+        if let Some(at) = window.pixel(middle) {
+            let metre = 1.0 / window.camera.metres_per_pixel(middle, f64::from(window.tile.height)) as f32;
+            words.reserve([at.x - 0.20 * metre, at.y - 0.20 * metre, 0.40 * metre, 0.40 * metre]);
+        }
+    }
+}
+
+fn names(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
+    if stage.cast.members.len() > 24 {
+        return;
+    }
+    for (robot, member) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members) {
+        let pose = robot.motion.pose;
+        let [x, y] = pose.world_from_body(0.12, 0.0);
+        let middle = DVec3::new(x, y, 0.15);
+        let Some(at) = window.pixel(middle) else { continue };
+        let metre = 1.0 / window.camera.metres_per_pixel(middle, f64::from(window.tile.height)) as f32;
+        let away = 0.20 * metre + words.scaled(11.0);
+        let side = 0.20 * metre + 0.5 * words.width(&member.name, 13.0, true) + words.scaled(8.0);
+        let places = [Vec2::new(0.0, -away), Vec2::new(0.0, away), Vec2::new(side, 0.0), Vec2::new(-side, 0.0)];
+        let ink = Ink::ON_PICTURE.faded(stage.detail.max(0.6));
+        words.try_write(&member.name, &places.map(|p| at + p), 13.0, &window.tile, true, ink);
+    }
+}
+
+fn edges(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
+    let place = |k: usize| {
+        let pose = stage.moment.snapshot.robots.get(k)?.motion.pose;
+        window.pixel(DVec3::new(pose.x, pose.y, 0.0))
+    };
+    for (edge, state) in stage.cast.edges.iter().zip(&stage.moment.edges) {
+        let (Some(a), Some(b)) = (place(edge.leader), place(edge.follower)) else { continue };
+        let degrees = state.relative.bearing.to_degrees().round();
+        let sign = if degrees < 0.0 { "\u{2212}" } else { "" };
+        let text = format!("{:.2} m  {sign}{:.0}°", state.relative.distance, degrees.abs());
+        // Beside the middle, on the side away from the formation first.
+        let across = (b - a).perp().normalize_or(Vec2::Y);
+        let outward = if across.y < 0.0 { across } else { -across };
+        let reach = 0.5 * words.width(&text, 13.0, false) * outward.x.abs() + words.scaled(13.0);
+        let middle = (a + b) * 0.5;
+        let near = (b - a) * 0.14;
+        let places = [
+            middle + outward * reach,
+            middle - outward * reach,
+            middle + near + outward * reach,
+            middle - near + outward * reach,
+            middle + near - outward * reach,
+        ];
+        let ink = Ink::ON_PICTURE.faded(stage.detail);
+        words.try_write(&text, &places, 13.0, &window.tile, false, ink);
+    }
+}
+
+/// A length that reads well, near to `wanted`.
+fn round_length(wanted: f64) -> f64 {
+    let power = 10.0_f64.powf(wanted.log10().floor());
+    [5.0, 2.0, 1.0].into_iter().map(|n| n * power).find(|n| *n <= wanted).unwrap_or(power)
+}
+
+fn scale_bar(words: &mut Words<'_>, window: Window<'_>) {
+    let tile = window.tile;
+    let metre = 1.0 / window.camera.metres_per_pixel(DVec3::ZERO, f64::from(tile.height)) as f32;
+    let length = round_length(0.22 * f64::from(tile.width) / f64::from(metre));
+    let pixels = length as f32 * metre;
+    let margin = words.scaled(MARGIN);
+    let right = tile.x as f32 + tile.width as f32 - margin;
+    let y = tile.y as f32 + margin + words.scaled(22.0);
+    let (thick, tick) = (words.scaled(2.0), words.scaled(5.0));
+    let colour = [1.0, 1.0, 1.0, 0.9];
+    words.shapes.line(Vec2::new(right - pixels, y), Vec2::new(right, y), thick, colour);
+    for x in [right - pixels, right] {
+        words.shapes.line(Vec2::new(x, y - tick), Vec2::new(x, y + tick), thick, colour);
+    }
+    let text = if length < 1.0 { format!("{:.0} cm", length * 100.0) } else { format!("{length} m") };
+    let half = words.scaled(11.0);
+    words.reserve([right - pixels, y - 2.0 * half, pixels, 3.0 * half]);
+    let width = words.width(&text, 13.0, false);
+    words.write(text, [right - 0.5 * (pixels + width), y - half], 13.0, false, Ink::LIGHT);
+}
+
+/// Coordinates where the strong lines of the ground cross.
+fn coordinates(words: &mut Words<'_>, window: Window<'_>) {
+    let Some(centre) = ground_ahead(window.camera) else { return };
+    let nearest = |x: f64| (x / 5.0).round() * 5.0;
+    for i in -4_i32..=4 {
+        for j in -4_i32..=4 {
+            let (x, y) = (nearest(centre.x) + f64::from(i) * 5.0, nearest(centre.y) + f64::from(j) * 5.0);
+            let point = DVec3::new(x, y, 0.0);
+            let pixel = window.camera.metres_per_pixel(point, f64::from(window.tile.height));
+            // Fades before the crossings crowd together.
+            let alpha = ((0.035 - pixel) / 0.015).clamp(0.0, 1.0) as f32;
+            if let (true, Some(at)) = (alpha > 0.02, window.pixel(point)) {
+                let text = format!("{x:.0}, {y:.0}").replace('-', "\u{2212}");
+                let half = 0.5 * words.width(&text, 11.0, false);
+                let place = at + Vec2::new(half + words.scaled(7.0), -words.scaled(9.0));
+                words.try_write(&text, &[place], 11.0, &window.tile, false, Ink::LIGHT.faded(0.8 * alpha));
+            }
+        }
+    }
+}
+
+/// Where the lower middle of the picture meets the ground.
+fn ground_ahead(camera: &Camera) -> Option<DVec3> {
+    if !camera.perspective {
+        return Some(camera.eye);
+    }
+    let ray = camera.forward - camera.up * (0.3 * camera.half.y);
+    (ray.z < -1e-3).then(|| camera.eye + ray * (camera.eye.z / -ray.z))
+}
+
+/// The detail of a formation of so many robots: all of it up to twelve, none from forty.
+pub(crate) fn detail(robots: usize) -> f32 {
+    ((40.0 - robots as f32) / 28.0).clamp(0.0, 1.0)
+}
+

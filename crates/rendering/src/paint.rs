@@ -1,0 +1,218 @@
+//! What lies on the ground in one view: contact patches, marks, ribbons, rings, arrows and edges.
+
+use crate::camera::Camera;
+use crate::palette::{self, Rgb};
+use crate::passes::decal::{Corner, Form};
+use crate::trail::{RIBBON, Trail, set_points};
+use crate::{Style, View};
+use glam::{DVec2, DVec3};
+use vocabulary::{Cast, Moment, Pose};
+
+/// Half the width of a ribbon, m.
+const RIBBON_HALF: f64 = 0.03;
+/// Radius of the ring at a set point, m.
+pub(crate) const RING: f64 = 0.25;
+/// Position errors above this are shown by an arrow, m.
+const ARROW_ABOVE: f64 = 0.05;
+
+/// What the painters look at.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stage<'a> {
+    pub(crate) cast: &'a Cast,
+    pub(crate) colours: &'a [Rgb],
+    pub(crate) trail: &'a Trail,
+    pub(crate) moment: &'a Moment,
+    pub(crate) style: &'a Style,
+    pub(crate) origin: DVec3,
+    /// How clearly edges, labels, rings and ghosts show: 1 for small formations, 0 for large ones.
+    pub(crate) detail: f32,
+}
+
+/// Collects corners; points are world coordinates on the ground.
+struct Painter<'a> {
+    corners: Vec<Corner>,
+    camera: &'a Camera,
+    height: f64,
+    origin: DVec3,
+}
+
+/// All decals of one view on a tile `height` pixels high.
+pub(crate) fn paint(stage: &Stage<'_>, view: &View, camera: &Camera, height: f64) -> Vec<Corner> {
+    let mut painter = Painter { corners: Vec::new(), camera, height, origin: stage.origin };
+    let style = stage.style;
+    if style.marks {
+        painter.marks(stage);
+    }
+    painter.contacts(stage);
+    if style.ribbons {
+        painter.ribbons(stage);
+    }
+    if style.set_points {
+        painter.set_points(stage);
+    }
+    // From close behind a robot the lines would cover the road.
+    if style.edges && !matches!(view, View::SnakeEye) {
+        painter.edges(stage);
+    }
+    painter.corners
+}
+
+impl Painter<'_> {
+    fn corner(&self, at: DVec2, form: Form, shape: [f32; 2], colour: Rgb, alpha: f32) -> Corner {
+        let local = at.extend(0.0) - self.origin;
+        let [r, g, b] = colour;
+        Corner { position: local.as_vec3().to_array(), kind: form.code(), shape, colour: [r, g, b, alpha] }
+    }
+
+    /// A parallelogram around `middle`.
+    fn patch(&mut self, middle: DVec2, along: DVec2, across: DVec2, form: Form, colour: Rgb, alpha: f32) {
+        let at = |u: f32, v: f32| {
+            let place = middle + along * f64::from(v) + across * f64::from(u);
+            self.corner(place, form, [u, v], colour, alpha)
+        };
+        let quad = [at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)];
+        self.corners.extend([0, 1, 2, 0, 2, 3].map(|k| quad[k]));
+    }
+
+    fn line(&mut self, from: DVec2, to: DVec2, width: f64, colour: Rgb, alpha: f32) {
+        let along = 0.5 * (to - from);
+        if along.length() < 1e-6 {
+            return;
+        }
+        // At least a pixel and a half, or far lines would crumble.
+        let middle = (0.5 * (from + to)).extend(0.0);
+        let half = 0.5 * width.max(1.6 * self.camera.metres_per_pixel(middle, self.height));
+        let across = along.perp().normalize() * half;
+        self.patch(0.5 * (from + to), along, across, Form::Solid, colour, alpha);
+    }
+
+    /// A band through `points`, each with its opacity.
+    fn band(&mut self, points: &[(DVec2, f32)], half: f64, shift: f64, colour: Rgb) {
+        let side = |k: usize| {
+            let (before, after) = (points[k.saturating_sub(1)].0, points[(k + 1).min(points.len() - 1)].0);
+            (after - before).normalize_or(DVec2::X).perp()
+        };
+        let edge = |k: usize, u: f32| {
+            let place = points[k].0 + side(k) * (shift + half * f64::from(u));
+            self.corner(place, Form::Solid, [u, 0.0], colour, points[k].1)
+        };
+        let mut added = Vec::with_capacity(6 * points.len());
+        for k in 1..points.len() {
+            let quad = [edge(k - 1, -1.0), edge(k - 1, 1.0), edge(k, 1.0), edge(k, -1.0)];
+            added.extend([0, 1, 2, 0, 2, 3].map(|c| quad[c]));
+        }
+        self.corners.extend(added);
+    }
+
+    fn marks(&mut self, stage: &Stage<'_>) {
+        let entries = &stage.trail.marks.entries;
+        for (robot, member) in stage.cast.members.iter().enumerate() {
+            let points: Vec<_> = entries
+                .iter()
+                .filter_map(|(_, poses)| poses.get(robot))
+                .chain(stage.moment.snapshot.robots.get(robot).map(|r| &r.motion.pose))
+                .map(|pose| (flat(pose), 0.20))
+                .collect();
+            if points.len() > 1 {
+                for side in [-0.5, 0.5] {
+                    self.band(&points, 0.013, side * member.body.track, [0.05, 0.05, 0.055]);
+                }
+            }
+        }
+    }
+
+    fn contacts(&mut self, stage: &Stage<'_>) {
+        for (robot, member) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members) {
+            let (pose, body) = (robot.motion.pose, member.body);
+            let ahead = DVec2::from_angle(pose.heading);
+            let place = |forward, left| DVec2::from_array(pose.world_from_body(forward, left));
+            let middle = place(0.46 * body.wheelbase, 0.0);
+            let sides = (ahead * (0.62 * body.length), ahead.perp() * (0.78 * body.width));
+            self.patch(middle, sides.0, sides.1, Form::SoftBox(0.35), [0.0; 3], 0.50);
+            for (x, y) in [(0.0, -0.5), (0.0, 0.5), (1.0, -0.5), (1.0, 0.5)] {
+                let at = place(x * body.wheelbase, y * body.track);
+                let size = body.wheel_radius;
+                self.patch(at, ahead * (1.25 * size), ahead.perp() * (0.85 * size), Form::Blob, [0.0; 3], 0.85);
+            }
+        }
+    }
+
+    fn ribbons(&mut self, stage: &Stage<'_>) {
+        let now = stage.moment.snapshot.time;
+        for (robot, state) in stage.moment.snapshot.robots.iter().enumerate() {
+            let colour = stage.colours[robot];
+            let leads = stage.cast.members[robot].leads;
+            let mut points = ribbon(stage.trail, robot, now);
+            points.push((flat(&state.motion.pose), 0.9));
+            self.band(&points, RIBBON_HALF, 0.0, colour);
+            if leads {
+                // Near-black alone would be lost on asphalt.
+                self.band(&points, 0.009, 0.0, palette::GOLD);
+            }
+        }
+    }
+
+    fn set_points(&mut self, stage: &Stage<'_>) {
+        let goals = set_points(stage.cast, stage.moment);
+        for (edge, goal) in stage.cast.edges.iter().zip(goals) {
+            let (Some(goal), Some(robot)) = (goal, stage.moment.snapshot.robots.get(edge.follower)) else { continue };
+            let goal = DVec2::from_array(goal);
+            let colour = stage.colours[edge.follower];
+            let thin = (3.0 * self.camera.metres_per_pixel(goal.extend(0.0), self.height)).max(0.022);
+            let hole = (1.0 - thin / RING).clamp(0.0, 1.0) as f32;
+            let alpha = 0.35 + 0.6 * stage.detail;
+            self.patch(goal, DVec2::X * RING, DVec2::Y * RING, Form::Ring(hole), colour, alpha);
+            self.arrow(flat(&robot.motion.pose), goal, colour, 0.95 * stage.detail.max(0.3));
+        }
+    }
+
+    fn arrow(&mut self, from: DVec2, to: DVec2, colour: Rgb, alpha: f32) {
+        let along = to - from;
+        let length = along.length();
+        if length < ARROW_ABOVE {
+            return;
+        }
+        let ahead = along / length;
+        let head = 0.14_f64.min(0.6 * length);
+        self.line(from, to - ahead * head, 0.03, colour, alpha);
+        let foot = to - ahead * head;
+        let tip = [to, foot + ahead.perp() * (0.5 * head), foot - ahead.perp() * (0.5 * head)];
+        let corners = tip.map(|place| self.corner(place, Form::Solid, [0.0; 2], colour, alpha));
+        self.corners.extend(corners);
+    }
+
+    fn edges(&mut self, stage: &Stage<'_>) {
+        if stage.detail <= 0.0 {
+            return;
+        }
+        let at = |k: usize| stage.moment.snapshot.robots.get(k).map(|r| flat(&r.motion.pose));
+        for edge in &stage.cast.edges {
+            if let (Some(leader), Some(follower)) = (at(edge.leader), at(edge.follower)) {
+                self.line(leader, follower, 0.016, palette::PAPER, 0.80 * stage.detail);
+            }
+        }
+    }
+}
+
+fn flat(pose: &Pose) -> DVec2 {
+    DVec2::new(pose.x, pose.y)
+}
+
+/// Points of a ribbon with their opacity, from old to new, without the robot's own place.
+fn ribbon(trail: &Trail, robot: usize, now: f64) -> Vec<(DVec2, f32)> {
+    let alpha = |time: f64| {
+        let age = ((now - time) / RIBBON).clamp(0.0, 1.0) as f32;
+        // The last tenth fades away, so that the end is not a cut.
+        (0.9 - 0.75 * age) * ((1.0 - age) / 0.1).min(1.0)
+    };
+    let row = |k: usize| trail.ribbons.get(k).and_then(|row| row.poses.get(robot).map(|pose| (row.time, flat(pose))));
+    let mut points = Vec::with_capacity(trail.ribbons.len() + 1);
+    for k in 0..trail.ribbons.len() {
+        let Some((time, place)) = row(k) else { continue };
+        if time > now {
+            break;
+        }
+        points.push((place, alpha(time)));
+    }
+    points
+}

@@ -1,0 +1,85 @@
+//! Paint on the ground, in the order in which it lies there.
+
+use super::frame::FrameGroups;
+use super::{Canvas, Recipe, Stream, shader};
+use bytemuck::{Pod, Zeroable};
+use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
+
+pub(crate) const SHADER: &str = shader!("common/frame", "common/light", "decal");
+
+/// Mirrors `Corner` of the shader.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Corner {
+    pub(crate) position: [f32; 3],
+    pub(crate) kind: [f32; 2],
+    pub(crate) shape: [f32; 2],
+    pub(crate) colour: [f32; 4],
+}
+
+/// How a decal's edge is formed; see `coverage` in the shader.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Form {
+    /// Full between its long sides.
+    Solid,
+    /// A ring whose hole has this share of the radius.
+    Ring(f32),
+    /// Fading from the middle.
+    Blob,
+    /// A box that is full up to this share of its sides.
+    SoftBox(f32),
+}
+
+impl Form {
+    pub(crate) fn code(self) -> [f32; 2] {
+        match self {
+            Self::Solid => [0.0, 0.0],
+            Self::Ring(hole) => [1.0, hole],
+            Self::Blob => [2.0, 0.0],
+            Self::SoftBox(full) => [3.0, full],
+        }
+    }
+}
+
+/// Pipeline and the corners of this picture.
+#[derive(Debug)]
+pub(crate) struct DecalPass {
+    pipeline: wgpu::RenderPipeline,
+    corners: Stream,
+}
+
+impl DecalPass {
+    pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
+        vertex_attr_array![0 => Float32x3, 1 => Float32x2, 2 => Float32x2, 3 => Float32x4];
+
+    pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups) -> Self {
+        let pipeline = Recipe {
+            label: "decal",
+            source: SHADER,
+            groups: &[&groups.view_layout, &groups.light_layout],
+            buffers: &[VertexBufferLayout {
+                array_stride: size_of::<Corner>() as u64,
+                step_mode: VertexStepMode::Vertex,
+                attributes: &Self::ATTRIBUTES,
+            }],
+            colour: Some((canvas, Some(wgpu::BlendState::ALPHA_BLENDING))),
+            depth: Some((wgpu::CompareFunction::LessEqual, false)),
+            ..Default::default()
+        }
+        .build(device);
+        Self { pipeline, corners: Stream::new(device, "decals", wgpu::BufferUsages::VERTEX) }
+    }
+
+    pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, corners: &[Corner]) {
+        self.corners.fill(device, queue, bytemuck::cast_slice(corners));
+    }
+
+    /// Draws the corners of one view.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, corners: std::ops::Range<u32>) {
+        if !corners.is_empty() {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_vertex_buffer(0, self.corners.slice());
+            pass.draw(corners, 0..1);
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! What every pass knows of a view, and the light they share.
+
+use super::DEPTH;
+use crate::camera::Camera;
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Mat4};
+use wgpu::{BindGroup, BindGroupLayout, Device, ShaderStages};
+
+
+/// Most views in one picture.
+pub(crate) const MOST_VIEWS: u64 = 4;
+
+/// Mirrors `Frame` of the shaders.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Frame {
+    pub(crate) clip_from_local: [[f32; 4]; 4],
+    pub(crate) shadow_from_local: [[f32; 4]; 4],
+    pub(crate) eye: [f32; 4],
+    pub(crate) right: [f32; 4],
+    pub(crate) up: [f32; 4],
+    pub(crate) forward: [f32; 4],
+    pub(crate) sun: [f32; 4],
+    pub(crate) ground: [f32; 4],
+    pub(crate) spare: [[f32; 4]; 2],
+}
+
+impl Frame {
+    /// The frame of `camera` with positions relative to `origin`.
+    pub(crate) fn new(camera: &Camera, origin: DVec3, shadow_from_local: Mat4) -> Self {
+        let [eye, right, up, forward] = [
+            camera.eye - origin,
+            camera.right * camera.half.x,
+            camera.up * camera.half.y,
+            camera.forward,
+        ]
+        .map(|v| v.as_vec3());
+        Self {
+            clip_from_local: camera.clip_from_local(origin).to_cols_array_2d(),
+            shadow_from_local: shadow_from_local.to_cols_array_2d(),
+            eye: eye.extend(f32::from(u8::from(camera.perspective))).to_array(),
+            right: right.extend(0.0).to_array(),
+            up: up.extend(camera.horizon().clamp(-4.0, 4.0) as f32).to_array(),
+            forward: forward.extend(0.0).to_array(),
+            sun: [0.0; 4],
+            ground: [0.0; 4],
+            spare: [[0.0; 4]; 2],
+        }
+    }
+}
+
+/// Bind groups of the view and of its light.
+#[derive(Debug)]
+pub(crate) struct FrameGroups {
+    pub(crate) view_layout: BindGroupLayout,
+    pub(crate) light_layout: BindGroupLayout,
+    pub(crate) view: BindGroup,
+    pub(crate) light: BindGroup,
+    uniform: wgpu::Buffer,
+}
+
+impl FrameGroups {
+    pub(crate) fn new(device: &Device, shadow: &wgpu::TextureView) -> Self {
+        let view_layout = view_layout(device);
+        let light_layout = light_layout(device);
+        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("frame"),
+            size: MOST_VIEWS * size_of::<Frame>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let one = wgpu::BufferBinding {
+            buffer: &uniform,
+            offset: 0,
+            size: std::num::NonZeroU64::new(size_of::<Frame>() as u64),
+        };
+        let view = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: &view_layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(one) }],
+        });
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("shadow"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            compare: Some(wgpu::CompareFunction::LessEqual),
+            ..Default::default()
+        });
+        let light = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("light"),
+            layout: &light_layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(shadow) },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&sampler) },
+            ],
+        });
+        Self { view_layout, light_layout, view, light, uniform }
+    }
+
+    pub(crate) fn fill(&self, queue: &wgpu::Queue, frames: &[Frame]) {
+        queue.write_buffer(&self.uniform, 0, bytemuck::cast_slice(frames));
+    }
+
+    /// Where view `index` starts in the uniform.
+    pub(crate) fn offset(index: usize) -> u32 {
+        (index * size_of::<Frame>()) as u32
+    }
+}
+
+fn view_layout(device: &Device) -> BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("frame"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: ShaderStages::VERTEX_FRAGMENT,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: true,
+                min_binding_size: std::num::NonZeroU64::new(size_of::<Frame>() as u64),
+            },
+            count: None,
+        }],
+    })
+}
+
+fn light_layout(device: &Device) -> BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("light"),
+        entries: &[
+            wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Depth,
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+                count: None,
+            },
+            wgpu::BindGroupLayoutEntry {
+                binding: 1,
+                visibility: ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
+                count: None,
+            },
+        ],
+    })
+}
+
+/// A depth texture to draw into, and to read where it is a shadow map.
+pub(crate) fn depth_texture(device: &Device, size: (u32, u32), samples: u32, read: bool) -> wgpu::TextureView {
+    let binding = if read { wgpu::TextureUsages::TEXTURE_BINDING } else { wgpu::TextureUsages::empty() };
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("depth"),
+        size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: samples,
+        dimension: wgpu::TextureDimension::D2,
+        format: DEPTH,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | binding,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}

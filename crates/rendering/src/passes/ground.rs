@@ -1,0 +1,94 @@
+//! The ground: asphalt from a tiling texture made at the start, and metre lines computed per pixel.
+
+use super::frame::FrameGroups;
+use super::{Canvas, Recipe, mipped, shader, shrink, textured};
+use wgpu::{Device, Queue};
+
+pub(crate) const SHADER: &str =
+    shader!("common/frame", "common/light", "common/screen", "ground");
+
+/// The local origin is a multiple of this, m: a common multiple of the lines and of both scales of the texture.
+pub(crate) const TILE: f64 = 20.0;
+
+const SIZE: u32 = 512;
+
+/// Its texture and pipeline.
+#[derive(Debug)]
+pub(crate) struct GroundPass {
+    pipeline: wgpu::RenderPipeline,
+    asphalt: wgpu::BindGroup,
+}
+
+impl GroundPass {
+    pub(crate) fn new(device: &Device, queue: &Queue, canvas: Canvas, groups: &FrameGroups) -> Self {
+        let levels = shrink(asphalt(), SIZE, SIZE, 2);
+        let texture = mipped(device, queue, "asphalt", (SIZE, SIZE), 2, &levels);
+        let repeat = wgpu::AddressMode::Repeat;
+        let sampler = wgpu::SamplerDescriptor {
+            address_mode_u: repeat,
+            address_mode_v: repeat,
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            ..Default::default()
+        };
+        let (layout, asphalt) = textured(device, "asphalt", &texture, &sampler);
+        let pipeline = Recipe {
+            label: "ground",
+            source: SHADER,
+            groups: &[&groups.view_layout, &groups.light_layout, &layout],
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            colour: Some((canvas, None)),
+            // No depth: what lies on the ground is drawn over it in order, so nothing can flicker.
+            depth: Some((wgpu::CompareFunction::LessEqual, false)),
+            ..Default::default()
+        }
+        .build(device);
+        Self { pipeline, asphalt }
+    }
+
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(2, &self.asphalt, &[]);
+        pass.draw(0..4, 0..1);
+    }
+}
+
+/// Two channels: grain of the stones, and broad patches.
+fn asphalt() -> Vec<u8> {
+    let mut texels = Vec::with_capacity((SIZE * SIZE * 2) as usize);
+    for y in 0..SIZE {
+        for x in 0..SIZE {
+            let grain = 0.30 * noise(x, y, 2, 1) + 0.30 * noise(x, y, 4, 2) + 0.22 * noise(x, y, 16, 3);
+            let speck = chance(x / 2, y / 2, 4);
+            // A few stones are bright, a few holes are dark.
+            let stone = if speck > 0.985 { 0.42 } else if speck < 0.02 { -0.24 } else { 0.0 };
+            let fine = grain + 0.18 * chance(x, y, 5) + stone;
+            let broad = 0.5 * noise(x, y, 128, 6) + 0.32 * noise(x, y, 32, 7) + 0.18 * noise(x, y, 8, 8);
+            texels.push((fine.clamp(0.0, 1.0) * 255.0) as u8);
+            texels.push((broad * 255.0) as u8);
+        }
+    }
+    texels
+}
+
+/// A number from 0 to 1 that depends on a place alone; it repeats with the tile.
+fn chance(x: u32, y: u32, salt: u32) -> f32 {
+    let mut h = x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ salt.wrapping_mul(0xc2b2_ae3d);
+    h = (h ^ (h >> 15)).wrapping_mul(0x2c1b_3c6d);
+    h = (h ^ (h >> 12)).wrapping_mul(0x297a_2d39);
+    ((h ^ (h >> 15)) & 0xffff) as f32 / 65_535.0
+}
+
+/// Value noise with cells of `cell` texels.
+fn noise(x: u32, y: u32, cell: u32, salt: u32) -> f32 {
+    let cells = SIZE / cell;
+    let (i, j) = (x / cell, y / cell);
+    let ease = |t: f32| t * t * (3.0 - 2.0 * t);
+    let u = ease((x % cell) as f32 / cell as f32);
+    let v = ease((y % cell) as f32 / cell as f32);
+    let at = |di: u32, dj: u32| chance((i + di) % cells, (j + dj) % cells, salt);
+    let low = at(0, 0) + (at(1, 0) - at(0, 0)) * u;
+    let high = at(0, 1) + (at(1, 1) - at(0, 1)) * u;
+    low + (high - low) * v
+}

@@ -1,0 +1,172 @@
+//! Robots and their ghosts: three models, drawn as often as there are copies.
+
+use super::frame::FrameGroups;
+use super::{Canvas, Recipe, Stream, constant, mipped, shader, shrink, textured};
+use crate::model::{self, Vertex};
+use bytemuck::{Pod, Zeroable};
+use std::ops::Range;
+use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
+
+pub(crate) const SHADER: &str =
+    shader!("common/frame", "common/light", "common/robot", "robot");
+
+/// Mirrors `Instance` of the shaders.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Instance {
+    pub(crate) rows: [[f32; 4]; 3],
+    pub(crate) colour: [f32; 4],
+    pub(crate) marks: [f32; 4],
+}
+
+/// All copies of a picture.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Crowd {
+    pub(crate) bodies: Vec<Instance>,
+    pub(crate) wheels: Vec<Instance>,
+    pub(crate) cameras: Vec<Instance>,
+    pub(crate) ghosts: Vec<Instance>,
+}
+
+/// Models on the device, and the copies of this picture.
+#[derive(Debug)]
+pub(crate) struct Models {
+    vertices: Stream,
+    body: Range<u32>,
+    wheel: Range<u32>,
+    camera: Range<u32>,
+    instances: Stream,
+}
+
+impl Models {
+    const CORNER: [wgpu::VertexAttribute; 4] =
+        vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Uint32];
+    const INSTANCE: [wgpu::VertexAttribute; 5] =
+        vertex_attr_array![4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Float32x4];
+
+    /// Layouts of the two vertex buffers.
+    pub(crate) const LAYOUTS: [VertexBufferLayout<'static>; 2] = [
+        VertexBufferLayout {
+            array_stride: size_of::<Vertex>() as u64,
+            step_mode: VertexStepMode::Vertex,
+            attributes: &Self::CORNER,
+        },
+        VertexBufferLayout {
+            array_stride: size_of::<Instance>() as u64,
+            step_mode: VertexStepMode::Instance,
+            attributes: &Self::INSTANCE,
+        },
+    ];
+
+    pub(crate) fn new(device: &Device, queue: &Queue) -> Self {
+        let mut vertices = Vec::new();
+        let mut add = |mesh: model::Mesh| {
+            let first = vertices.len() as u32;
+            vertices.extend(mesh.vertices);
+            first..vertices.len() as u32
+        };
+        let (body, wheel, camera) = (add(model::body()), add(model::wheel()), add(model::camera()));
+        Self {
+            vertices: constant(device, queue, "models", bytemuck::cast_slice(&vertices)),
+            body,
+            wheel,
+            camera,
+            instances: Stream::new(device, "instances", wgpu::BufferUsages::VERTEX),
+        }
+    }
+
+    pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, crowd: &Crowd) {
+        let all = [&crowd.bodies, &crowd.wheels, &crowd.cameras, &crowd.ghosts];
+        let all: Vec<Instance> = all.into_iter().flatten().copied().collect();
+        self.instances.fill(device, queue, bytemuck::cast_slice(&all));
+    }
+
+    /// Bodies, wheels and cameras.
+    pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
+        self.bind(pass);
+        let mut first = 0;
+        for (mesh, copies) in [(&self.body, &crowd.bodies), (&self.wheel, &crowd.wheels), (&self.camera, &crowd.cameras)]
+        {
+            let last = first + copies.len() as u32;
+            pass.draw(mesh.clone(), first..last);
+            first = last;
+        }
+    }
+
+    fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
+        self.bind(pass);
+        let first = (crowd.bodies.len() + crowd.wheels.len() + crowd.cameras.len()) as u32;
+        pass.draw(self.body.clone(), first..first + crowd.ghosts.len() as u32);
+    }
+
+    fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_vertex_buffer(0, self.vertices.slice());
+        pass.set_vertex_buffer(1, self.instances.slice());
+    }
+}
+
+/// Pipelines for what is solid and what is not.
+#[derive(Debug)]
+pub(crate) struct RobotPass {
+    solid: wgpu::RenderPipeline,
+    ghost_depth: wgpu::RenderPipeline,
+    ghost: wgpu::RenderPipeline,
+    digits: wgpu::BindGroup,
+}
+
+impl RobotPass {
+    /// `digits` are ten glyphs side by side, one byte a texel.
+    pub(crate) fn new(
+        device: &Device,
+        queue: &Queue,
+        canvas: Canvas,
+        groups: &FrameGroups,
+        digits: (Vec<u8>, u32, u32),
+    ) -> Self {
+        let (texels, width, height) = digits;
+        let texture = mipped(device, queue, "digits", (width, height), 1, &shrink(texels, width, height, 1)[..4]);
+        let sampler = wgpu::SamplerDescriptor {
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            ..Default::default()
+        };
+        let (layout, digits) = textured(device, "digits", &texture, &sampler);
+        let recipe = Recipe {
+            label: "robot",
+            source: SHADER,
+            groups: &[&groups.view_layout, &groups.light_layout, &layout],
+            buffers: &Models::LAYOUTS,
+            cull: true,
+            colour: Some((canvas, None)),
+            depth: Some((wgpu::CompareFunction::Less, true)),
+            ..Default::default()
+        };
+        let blended = Some((canvas, Some(wgpu::BlendState::ALPHA_BLENDING)));
+        let equal = Some((wgpu::CompareFunction::LessEqual, false));
+        Self {
+            solid: recipe.build(device),
+            ghost_depth: Recipe { label: "ghost depth", visible: false, ..recipe }.build(device),
+            ghost: Recipe { label: "ghost", colour: blended, depth: equal, ..recipe }.build(device),
+            digits,
+        }
+    }
+
+    pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, models: &Models, crowd: &Crowd) {
+        pass.set_pipeline(&self.solid);
+        pass.set_bind_group(2, &self.digits, &[]);
+        models.draw_solid(pass, crowd);
+    }
+
+    /// Depth first, so that only the faces in front shine through.
+    pub(crate) fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, models: &Models, crowd: &Crowd) {
+        if crowd.ghosts.is_empty() {
+            return;
+        }
+        pass.set_bind_group(2, &self.digits, &[]);
+        for pipeline in [&self.ghost_depth, &self.ghost] {
+            pass.set_pipeline(pipeline);
+            models.draw_ghosts(pass, crowd);
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The shadow map: depth of the robots as the sun sees them, fitted to the formation and shared by all views.
+
+use super::frame::{FrameGroups, depth_texture};
+use super::robot::{Crowd, Models};
+use super::{Recipe, shader};
+use glam::{DMat4, DVec3, Mat4};
+use wgpu::Device;
+
+pub(crate) const SHADER: &str = shader!("common/frame", "common/robot", "shadow");
+
+/// Direction to the sun: 38° high, from the left behind a robot that drives along x.
+pub(crate) const SUN: DVec3 = DVec3::new(-0.3716, 0.6953, 0.6157);
+
+/// Half the width of a soft edge, m.
+const PENUMBRA: f64 = 0.02;
+
+/// Map and pipeline.
+#[derive(Debug)]
+pub(crate) struct ShadowPass {
+    pub(crate) map: wgpu::TextureView,
+    size: u32,
+    pipeline: wgpu::RenderPipeline,
+}
+
+/// How the sun's view is laid over the ground.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SunView {
+    pub(crate) shadow_from_local: Mat4,
+    /// Half the side of the map, m.
+    half: f64,
+}
+
+impl ShadowPass {
+    /// The map comes before the bind groups that read it, the pipeline after.
+    pub(crate) fn map(device: &Device, robots: usize) -> (wgpu::TextureView, u32) {
+        let size = if robots > 12 { 2048 } else { 1024 };
+        (depth_texture(device, (size, size), 1, true), size)
+    }
+
+    pub(crate) fn new(device: &Device, groups: &FrameGroups, (map, size): (wgpu::TextureView, u32)) -> Self {
+        let pipeline = Recipe {
+            label: "shadow",
+            source: SHADER,
+            groups: &[&groups.view_layout],
+            buffers: &Models::LAYOUTS,
+            depth: Some((wgpu::CompareFunction::Less, true)),
+            bias: wgpu::DepthBiasState { constant: 2, slope_scale: 1.5, clamp: 0.0 },
+            ..Default::default()
+        }
+        .build(device);
+        Self { map, size, pipeline }
+    }
+
+    /// Softness of the edges in texture coordinates.
+    pub(crate) fn penumbra(&self, sun: &SunView) -> f32 {
+        // Never less than a texel, or the filter would show its grid.
+        (PENUMBRA / (2.0 * sun.half)).max(0.9 / f64::from(self.size)) as f32
+    }
+
+    pub(crate) fn draw(&self, encoder: &mut wgpu::CommandEncoder, groups: &FrameGroups, models: &Models, crowd: &Crowd) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("shadow"),
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.map,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &groups.view, &[0]);
+        models.draw_solid(&mut pass, crowd);
+    }
+}
+
+/// The sun's view of everything within `radius` of `centre` (relative to the local origin).
+pub(crate) fn sun_view(centre: DVec3, radius: f64) -> SunView {
+    let half = radius.max(0.8);
+    let right = DVec3::Z.cross(SUN).normalize();
+    let up = SUN.cross(right);
+    let depth = 2.0 * half + 2.0;
+    let row = |axis: DVec3, scale: f64, shift: f64| (axis * scale).extend(shift - axis.dot(centre) * scale);
+    let rows = DMat4::from_cols(
+        row(right, 1.0 / half, 0.0),
+        row(up, 1.0 / half, 0.0),
+        row(-SUN, 0.5 / depth, 0.5),
+        glam::DVec4::W,
+    );
+    SunView { shadow_from_local: rows.transpose().as_mat4(), half }
+}

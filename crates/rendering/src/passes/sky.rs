@@ -1,0 +1,35 @@
+//! The sky above the horizon, drawn last so that hidden parts cost nothing.
+
+use super::frame::FrameGroups;
+use super::{Canvas, Recipe, shader};
+use wgpu::Device;
+
+pub(crate) const SHADER: &str =
+    shader!("common/frame", "common/light", "common/screen", "sky");
+
+/// Its pipeline.
+#[derive(Debug)]
+pub(crate) struct SkyPass {
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl SkyPass {
+    pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups) -> Self {
+        let pipeline = Recipe {
+            label: "sky",
+            source: SHADER,
+            groups: &[&groups.view_layout, &groups.light_layout],
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            colour: Some((canvas, None)),
+            depth: Some((wgpu::CompareFunction::LessEqual, false)),
+            ..Default::default()
+        }
+        .build(device);
+        Self { pipeline }
+    }
+
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.draw(0..4, 0..1);
+    }
+}

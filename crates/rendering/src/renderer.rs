@@ -1,0 +1,414 @@
+//! Moments to pictures. The passes stand in `encode` in the order in which they run.
+
+use crate::camera::Camera;
+use crate::crowd::crowd;
+use crate::inset::inset;
+use crate::labels::{Window, Words, caption, detail, view_words};
+use crate::paint::{Stage, paint};
+use crate::palette::{Rgb, robot_colours};
+use crate::passes::decal::DecalPass;
+use crate::passes::frame::{Frame, FrameGroups};
+use crate::passes::ground::{GroundPass, TILE};
+use crate::passes::overlay::{OverlayPass, Shapes};
+use crate::passes::robot::{Crowd, Models, RobotPass};
+use crate::passes::shadow::{SUN, ShadowPass, SunView, sun_view};
+use crate::passes::sky::SkyPass;
+use crate::passes::text::{Line, TextPass};
+use crate::passes::Canvas;
+use crate::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
+use crate::{Error, Gpu, Layout, Style, Trail, view::Tile};
+use glam::DVec3;
+use std::ops::Range;
+use vocabulary::{Cast, Moment, Picture};
+use wgpu::TextureFormat;
+
+/// Draws moments of one cast at one size.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: Gpu,
+    cast: Cast,
+    colours: Vec<Rgb>,
+    size: (u32, u32),
+    canvas: Canvas,
+    attachments: Attachments,
+    passes: Passes,
+    /// Two, so that one picture can be drawn while the one before is read.
+    offscreen: Vec<Offscreen>,
+    waiting: Option<(usize, wgpu::SubmissionIndex)>,
+}
+
+#[derive(Debug)]
+struct Passes {
+    groups: FrameGroups,
+    models: Models,
+    shadow: ShadowPass,
+    robot: RobotPass,
+    ground: GroundPass,
+    decal: DecalPass,
+    sky: SkyPass,
+    overlay: OverlayPass,
+    text: TextPass,
+}
+
+impl Passes {
+    fn new(gpu: &Gpu, canvas: Canvas, robots: usize) -> Self {
+        let (device, queue) = (&gpu.device, &gpu.queue);
+        let flat = Canvas { samples: 1, ..canvas };
+        let mut text = TextPass::new(device, queue, flat);
+        let map = ShadowPass::map(device, robots);
+        let groups = FrameGroups::new(device, &map.0);
+        let digits = text.digits();
+        Self {
+            models: Models::new(device, queue),
+            shadow: ShadowPass::new(device, &groups, map),
+            robot: RobotPass::new(device, queue, canvas, &groups, digits),
+            ground: GroundPass::new(device, queue, canvas, &groups),
+            decal: DecalPass::new(device, canvas, &groups),
+            sky: SkyPass::new(device, canvas, &groups),
+            overlay: OverlayPass::new(device, flat),
+            text,
+            groups,
+        }
+    }
+}
+
+/// What a picture consists of, once its data is on the device.
+struct Prepared {
+    crowd: Crowd,
+    tiles: Vec<Tile>,
+    decals: Vec<Range<u32>>,
+    shapes: Shapes,
+}
+
+impl Renderer {
+    /// A renderer of pictures in memory; `samples` per pixel are 4, or 1 for speed.
+    ///
+    /// # Errors
+    /// [`Error::Size`] or [`Error::Samples`] for what cannot be drawn, [`Error::Device`] where the device fails.
+    pub fn new(gpu: &Gpu, cast: &Cast, width: u32, height: u32, samples: u32) -> Result<Self, Error> {
+        Self::with_format(gpu, cast, width, height, samples, PICTURE_FORMAT)
+    }
+
+    /// A renderer into textures of `format`, for a window's surface. The shaders write sRGB-encoded values, so
+    /// the format must not encode again (`Bgra8Unorm`, not `Bgra8UnormSrgb`).
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn with_format(
+        gpu: &Gpu,
+        cast: &Cast,
+        width: u32,
+        height: u32,
+        samples: u32,
+        format: TextureFormat,
+    ) -> Result<Self, Error> {
+        check_size(gpu, width, height)?;
+        if !matches!(samples, 1 | 4) {
+            return Err(Error::Samples(samples));
+        }
+        let canvas = Canvas { format, samples };
+        let renderer = Self {
+            gpu: gpu.clone(),
+            cast: cast.clone(),
+            colours: robot_colours(cast),
+            size: (width, height),
+            canvas,
+            attachments: Attachments::new(&gpu.device, (width, height), format, samples),
+            passes: Passes::new(gpu, canvas, cast.members.len()),
+            offscreen: Vec::new(),
+            waiting: None,
+        };
+        gpu.check()?;
+        Ok(renderer)
+    }
+
+    /// Width and height of the pictures, pixels.
+    pub fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// Changes the size of the pictures.
+    ///
+    /// # Errors
+    /// [`Error::Size`] for sizes that cannot be drawn.
+    pub fn resize(&mut self, width: u32, height: u32) -> Result<(), Error> {
+        check_size(&self.gpu, width, height)?;
+        if self.size != (width, height) {
+            self.size = (width, height);
+            self.attachments =
+                Attachments::new(&self.gpu.device, self.size, self.canvas.format, self.canvas.samples);
+            self.offscreen.clear();
+            self.waiting = None;
+        }
+        Ok(())
+    }
+
+    /// The picture of a moment.
+    ///
+    /// # Errors
+    /// [`Error::Cast`] for a moment of other robots, [`Error::Device`] where the device fails.
+    pub fn draw(&mut self, trail: &Trail, moment: &Moment, layout: &Layout, style: &Style) -> Result<Picture, Error> {
+        let (slot, submission) = self.submit(trail, moment, layout, style)?;
+        self.offscreen[slot].read(&self.gpu, submission)
+    }
+
+    /// Starts the picture of a moment and returns the one started before, if any: for films, where the device
+    /// draws while the picture before is read and encoded. [`Renderer::finish`] returns the last.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw`].
+    pub fn draw_next(
+        &mut self,
+        trail: &Trail,
+        moment: &Moment,
+        layout: &Layout,
+        style: &Style,
+    ) -> Result<Option<Picture>, Error> {
+        let next = self.submit(trail, moment, layout, style)?;
+        let before = self.waiting.replace(next);
+        before.map(|(slot, submission)| self.offscreen[slot].read(&self.gpu, submission)).transpose()
+    }
+
+    /// The picture that [`Renderer::draw_next`] started last, if any.
+    ///
+    /// # Errors
+    /// [`Error::Device`] where the device fails.
+    pub fn finish(&mut self) -> Result<Option<Picture>, Error> {
+        let last = self.waiting.take();
+        last.map(|(slot, submission)| self.offscreen[slot].read(&self.gpu, submission)).transpose()
+    }
+
+    /// Draws a moment into a texture of the renderer's format and size, such as a window's.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw`].
+    pub fn draw_into(
+        &mut self,
+        target: &wgpu::TextureView,
+        trail: &Trail,
+        moment: &Moment,
+        layout: &Layout,
+        style: &Style,
+    ) -> Result<wgpu::SubmissionIndex, Error> {
+        let prepared = self.prepare(trail, moment, layout, style)?;
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.encode(&mut encoder, target, &prepared)?;
+        let submission = self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.check()?;
+        Ok(submission)
+    }
+
+    fn submit(
+        &mut self,
+        trail: &Trail,
+        moment: &Moment,
+        layout: &Layout,
+        style: &Style,
+    ) -> Result<(usize, wgpu::SubmissionIndex), Error> {
+        let slot = self.waiting.as_ref().map_or(0, |(busy, _)| 1 - busy);
+        let prepared = self.prepare(trail, moment, layout, style)?;
+        while self.offscreen.len() <= slot {
+            self.offscreen.push(Offscreen::new(&self.gpu.device, self.size));
+        }
+        let offscreen = &self.offscreen[slot];
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.encode(&mut encoder, &offscreen.view, &prepared)?;
+        offscreen.copy(&mut encoder);
+        let submission = self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.check()?;
+        Ok((slot, submission))
+    }
+
+    /// Computes what the picture consists of and brings it to the device.
+    fn prepare(
+        &mut self,
+        trail: &Trail,
+        moment: &Moment,
+        layout: &Layout,
+        style: &Style,
+    ) -> Result<Prepared, Error> {
+        self.check(moment)?;
+        let (width, height) = self.size;
+        let tiles = layout.tiles(width, height);
+        let aspect = |tile: &Tile| f64::from(tile.width) / f64::from(tile.height);
+        let cameras: Vec<_> = layout
+            .views
+            .iter()
+            .zip(&tiles)
+            .map(|(view, tile)| Camera::of(view, &trail.steady, &moment.snapshot, aspect(tile)))
+            .collect();
+        let stage = Stage {
+            cast: &self.cast,
+            colours: &self.colours,
+            trail,
+            moment,
+            style,
+            origin: local_origin(moment),
+            detail: detail(self.cast.members.len()),
+        };
+        let crowd = crowd(&stage);
+        let sun = sun_over(moment, stage.origin);
+        let frames: Vec<_> =
+            cameras.iter().map(|camera| frame(camera, &stage, &sun, self.passes.shadow.penumbra(&sun))).collect();
+        let mut corners = Vec::new();
+        let mut decals = Vec::new();
+        for ((view, camera), tile) in layout.views.iter().zip(&cameras).zip(&tiles) {
+            let first = corners.len() as u32;
+            corners.extend(paint(&stage, view, camera, f64::from(tile.height)));
+            decals.push(first..corners.len() as u32);
+        }
+        let windows: Vec<_> =
+            cameras.iter().zip(&tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
+        let (lines, shapes) = words(&mut self.passes.text, &stage, layout, &windows, [width, height]);
+        self.upload(&frames, &crowd, &corners, &shapes, &lines)?;
+        Ok(Prepared { crowd, tiles, decals, shapes })
+    }
+
+    fn check(&self, moment: &Moment) -> Result<(), Error> {
+        let robots = (moment.snapshot.robots.len(), self.cast.members.len());
+        let edges = (moment.edges.len(), self.cast.edges.len());
+        for (what, (got, want)) in [("robots", robots), ("edges", edges)] {
+            if got != want {
+                return Err(Error::Cast { what, got, want });
+            }
+        }
+        Ok(())
+    }
+
+    fn upload(
+        &mut self,
+        frames: &[Frame],
+        crowd: &Crowd,
+        corners: &[crate::passes::decal::Corner],
+        shapes: &Shapes,
+        lines: &[Line],
+    ) -> Result<(), Error> {
+        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
+        let (width, height) = self.size;
+        let passes = &mut self.passes;
+        passes.groups.fill(queue, frames);
+        passes.models.fill(device, queue, crowd);
+        passes.decal.fill(device, queue, corners);
+        passes.overlay.fill(device, queue, [width as f32, height as f32], shapes);
+        passes.text.fill(device, queue, [width, height], lines).map_err(|e| Error::Device(e.to_string()))
+    }
+
+    fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        prepared: &Prepared,
+    ) -> Result<(), Error> {
+        let passes = &self.passes;
+        passes.shadow.draw(encoder, &passes.groups, &passes.models, &prepared.crowd);
+        self.encode_world(encoder, target, prepared);
+        self.encode_overlay(encoder, target, prepared)
+    }
+
+    /// Robots first, then what they hide, the sky last: each pixel is shaded about once.
+    fn encode_world(&self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView, prepared: &Prepared) {
+        let passes = &self.passes;
+        let sampled = self.attachments.sampled.as_ref();
+        let store = if sampled.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("world"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: sampled.unwrap_or(target),
+                depth_slice: None,
+                resolve_target: sampled.map(|_| target),
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.attachments.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Discard,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        for (index, (tile, decals)) in prepared.tiles.iter().zip(&prepared.decals).enumerate() {
+            let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
+            pass.set_viewport(x, y, width, height, 0.0, 1.0);
+            pass.set_scissor_rect(tile.x, tile.y, tile.width, tile.height);
+            pass.set_bind_group(0, &passes.groups.view, &[FrameGroups::offset(index)]);
+            pass.set_bind_group(1, &passes.groups.light, &[]);
+            passes.robot.draw_solid(&mut pass, &passes.models, &prepared.crowd);
+            passes.ground.draw(&mut pass);
+            passes.decal.draw(&mut pass, decals.clone());
+            passes.sky.draw(&mut pass);
+            passes.robot.draw_ghosts(&mut pass, &passes.models, &prepared.crowd);
+        }
+    }
+
+    fn encode_overlay(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        prepared: &Prepared,
+    ) -> Result<(), Error> {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("overlay"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        self.passes.overlay.draw(&mut pass, &prepared.shapes);
+        self.passes.text.draw(&mut pass).map_err(|e| Error::Device(e.to_string()))
+    }
+}
+
+/// A multiple of the ground's tile near the robots, so that single precision is enough around it.
+fn local_origin(moment: &Moment) -> DVec3 {
+    let places = moment.snapshot.robots.iter().map(|r| r.motion.pose);
+    let first = places.clone().find(|p| p.x.is_finite() && p.y.is_finite()).unwrap_or_default();
+    let snap = |x: f64| (x / TILE).round() * TILE;
+    DVec3::new(snap(first.x), snap(first.y), 0.0)
+}
+
+/// The sun's view of all robots.
+fn sun_over(moment: &Moment, origin: DVec3) -> SunView {
+    let places = || {
+        let poses = moment.snapshot.robots.iter().map(|r| r.motion.pose);
+        poses.filter(|p| p.x.is_finite() && p.y.is_finite()).map(|p| DVec3::new(p.x, p.y, 0.1))
+    };
+    let low = places().fold(DVec3::INFINITY, DVec3::min);
+    let high = places().fold(DVec3::NEG_INFINITY, DVec3::max);
+    if !low.is_finite() {
+        return sun_view(DVec3::ZERO, 1.0);
+    }
+    // Beyond 40 m a shadow is below a texel, wherever the robots are.
+    sun_view((low + high) * 0.5 - origin, (0.5 * low.distance(high) + 0.8).min(40.0))
+}
+
+fn frame(camera: &Camera, stage: &Stage<'_>, sun: &SunView, penumbra: f32) -> Frame {
+    let mut frame = Frame::new(camera, stage.origin, sun.shadow_from_local);
+    let [x, y, z] = SUN.as_vec3().to_array();
+    frame.sun = [x, y, z, if stage.style.shadows { penumbra } else { 0.0 }];
+    frame.ground = [0.0, 0.0, f32::from(u8::from(stage.style.grid)), 30.0];
+    frame
+}
+
+/// Text and flat shapes of the whole picture.
+fn words(
+    text: &mut TextPass,
+    stage: &Stage<'_>,
+    layout: &Layout,
+    windows: &[Window<'_>],
+    [width, height]: [u32; 2],
+) -> (Vec<Line>, Shapes) {
+    let mut words = Words::new(text, stage.style.scale);
+    caption(&mut words, stage, height);
+    if stage.style.inset {
+        inset(&mut words, stage, [width, height]);
+    }
+    for (view, window) in layout.views.iter().zip(windows) {
+        view_words(&mut words, stage, *window, view);
+    }
+    (words.lines, words.shapes)
+}

@@ -1,0 +1,118 @@
+//! What is drawn besides ground, sky and robots, each element by a name that can be switched off.
+
+use crate::Error;
+use crate::error::nearest;
+
+macro_rules! elements {
+    ($($(#[$doc:meta])* $field:ident = $name:literal,)*) => {
+        /// Which elements a picture has, and how large its text is.
+        #[derive(Debug, Clone, PartialEq)]
+        #[expect(clippy::struct_excessive_bools, reason = "independent switches, set by name")]
+        pub struct Style {
+            $($(#[$doc])* pub $field: bool,)*
+            /// Size of text and lines relative to a picture of 720 lines at arm's length; 2 for dense screens.
+            pub scale: f64,
+        }
+
+        impl Default for Style {
+            fn default() -> Self {
+                Self { $($field: true,)* scale: 1.0 }
+            }
+        }
+
+        impl Style {
+            /// The names of all elements.
+            pub const ELEMENTS: &[&str] = &[$($name),*];
+
+            fn switch(&mut self, name: &str) -> Option<&mut bool> {
+                match name {
+                    $($name => Some(&mut self.$field),)*
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+elements! {
+    /// Coloured bands on the ground where the robots drove.
+    ribbons = "ribbons",
+    /// Faint bodies where the robots were.
+    ghosts = "ghosts",
+    /// Rings where the followers should be, and arrows to them.
+    set_points = "set-points",
+    /// Lines from leader to follower.
+    edges = "edges",
+    /// Distance and bearing beside the edges.
+    labels = "labels",
+    /// The robots' names.
+    names = "names",
+    /// Metre lines on the ground and their coordinates.
+    grid = "grid",
+    /// The chart of errors over time.
+    inset = "inset",
+    /// Title, law and gains.
+    caption = "caption",
+    /// The time.
+    clock = "time",
+    /// Cast shadows.
+    shadows = "shadows",
+    /// Tyre marks that stay.
+    marks = "marks",
+}
+
+impl Style {
+    /// Everything except the elements named.
+    ///
+    /// # Errors
+    /// [`Error::Element`] for the first name that is none.
+    pub fn without<S: AsRef<str>>(names: &[S]) -> Result<Self, Error> {
+        let mut style = Self::default();
+        for name in names {
+            style.set(name.as_ref(), false)?;
+        }
+        Ok(style)
+    }
+
+    /// Nothing but ground, sky and robots with their shadows: what a camera would see.
+    pub fn bare() -> Self {
+        let mut style = Self::default();
+        for name in Self::ELEMENTS {
+            if let Some(switch) = style.switch(name) {
+                *switch = *name == "shadows";
+            }
+        }
+        style
+    }
+
+    /// Switches one element.
+    ///
+    /// # Errors
+    /// [`Error::Element`] where there is none of that name.
+    pub fn set(&mut self, name: &str, on: bool) -> Result<(), Error> {
+        match self.switch(name) {
+            Some(switch) => {
+                *switch = on;
+                Ok(())
+            }
+            None => Err(Error::Element {
+                given: name.to_owned(),
+                nearest: nearest(name, Self::ELEMENTS.iter().copied()),
+                valid: Self::ELEMENTS.join(", "),
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elements_are_switched_by_name() {
+        let style = Style::without(&["grid", "set-points"]).unwrap();
+        assert!(!style.grid && !style.set_points && style.ribbons);
+        let error = Style::without(&["ribons"]).unwrap_err().to_string();
+        assert!(error.contains("did you mean \"ribbons\""), "{error}");
+    }
+}

@@ -1,0 +1,165 @@
+//! From where a picture is taken, and how several such views share it.
+
+use crate::Error;
+use crate::error::nearest;
+
+/// A place to look from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum View {
+    /// Behind and above the formation, along the lead robot's smoothed heading.
+    Snake,
+    /// A hand's breadth above the ground behind the last robot.
+    SnakeEye,
+    /// Straight down, x to the right, without perspective.
+    Top,
+    /// Slowly around the formation.
+    Orbit,
+    /// Close behind one robot, by its index.
+    Follow(usize),
+    /// From a fixed place.
+    Fixed {
+        /// Where the eye is, m, world frame.
+        eye: [f64; 3],
+        /// What it looks at, m, world frame.
+        target: [f64; 3],
+        /// Vertical field of view, rad.
+        field_of_view: f64,
+    },
+}
+
+const PLAIN: [&str; 5] = ["snake", "snake-eye", "top", "orbit", "fixed"];
+
+impl View {
+    /// The view called `text` of a scene whose robots are called `names`: `snake`, `snake-eye`, `top`, `orbit`,
+    /// `follow:NAME`, `fixed` or `fixed:ex,ey,ez,tx,ty,tz[,degrees]`.
+    ///
+    /// # Errors
+    /// [`Error::View`] with the valid forms and the nearest of them.
+    pub fn parse(text: &str, names: &[String]) -> Result<Self, Error> {
+        let text = text.trim();
+        let view = match text {
+            "snake" => Some(Self::Snake),
+            "snake-eye" => Some(Self::SnakeEye),
+            "top" => Some(Self::Top),
+            "orbit" => Some(Self::Orbit),
+            "fixed" => Some(Self::Fixed { eye: [-8.0, -8.0, 6.0], target: [0.0; 3], field_of_view: 0.7 }),
+            _ => text
+                .strip_prefix("follow:")
+                .and_then(|name| names.iter().position(|n| n == name.trim()))
+                .map(Self::Follow)
+                .or_else(|| text.strip_prefix("fixed:").and_then(fixed)),
+        };
+        view.ok_or_else(|| unknown(text, names))
+    }
+}
+
+fn fixed(numbers: &str) -> Option<View> {
+    let n: Vec<f64> = numbers.split(',').map(|s| s.trim().parse().ok()).collect::<Option<_>>()?;
+    let degrees = n.get(6).copied().unwrap_or(40.0);
+    let sound = n.iter().all(|x| x.is_finite()) && (5.0..=120.0).contains(&degrees);
+    let apart = n.len() >= 6 && (0..3).any(|k| (n[k] - n[k + 3]).abs() > 1e-6);
+    (sound && apart && n.len() <= 7).then(|| View::Fixed {
+        eye: [n[0], n[1], n[2]],
+        target: [n[3], n[4], n[5]],
+        field_of_view: degrees.to_radians(),
+    })
+}
+
+fn unknown(given: &str, names: &[String]) -> Error {
+    let follow: Vec<_> = names.iter().map(|n| format!("follow:{n}")).collect();
+    let valid = PLAIN.iter().copied().chain(follow.iter().map(String::as_str));
+    let listed: Vec<_> = follow.iter().take(8).map(String::as_str).collect();
+    let more = if follow.len() > 8 { ", …" } else { "" };
+    Error::View {
+        given: given.to_owned(),
+        nearest: nearest(given, valid),
+        valid: format!("{}:ex,ey,ez,tx,ty,tz[,degrees], {}{more}", PLAIN.join(", "), listed.join(", ")),
+    }
+}
+
+/// One to four views in one picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// From left to right, then down.
+    pub views: Vec<View>,
+}
+
+/// A rectangle of pixels of the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tile {
+    /// Left edge.
+    pub x: u32,
+    /// Top edge.
+    pub y: u32,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+}
+
+impl Layout {
+    /// A single view.
+    pub fn single(view: View) -> Self {
+        Self { views: vec![view] }
+    }
+
+    /// Views joined by '+', at most four.
+    ///
+    /// # Errors
+    /// [`Error::View`] for the first that is unknown, or for more than four.
+    pub fn parse(text: &str, names: &[String]) -> Result<Self, Error> {
+        let views = text.split('+').map(|part| View::parse(part, names)).collect::<Result<Vec<_>, _>>()?;
+        if views.len() > 4 {
+            return Err(unknown(text, names));
+        }
+        Ok(Self { views })
+    }
+
+    /// The tile of each view in a picture of `width` by `height`: side by side for two, else two by two.
+    pub fn tiles(&self, width: u32, height: u32) -> Vec<Tile> {
+        let columns = if self.views.len() > 1 { 2 } else { 1 };
+        let rows = if self.views.len() > 2 { 2 } else { 1 };
+        let cut = |k: u32, parts: u32, whole: u32| k * whole / parts;
+        let tile = |k: u32| {
+            // The third of three takes the whole lower row.
+            let wide = self.views.len() == 3 && k == 2;
+            let (column, row) = (k % columns, k / columns);
+            let x = cut(column, columns, width);
+            let right = if wide { width } else { cut(column + 1, columns, width) };
+            let y = cut(row, rows, height);
+            Tile { x, y, width: right - x, height: cut(row + 1, rows, height) - y }
+        };
+        (0..self.views.len() as u32).map(tile).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn views_are_found_by_name() {
+        let names = ["leader".to_owned(), "follower-1".to_owned()];
+        assert_eq!(View::parse("follow:follower-1", &names).ok(), Some(View::Follow(1)));
+        assert_eq!(Layout::parse("snake+top", &names).ok().map(|l| l.views), Some(vec![View::Snake, View::Top]));
+        assert!(matches!(View::parse("fixed:0,-5,3,0,0,0", &names), Ok(View::Fixed { .. })));
+        assert!(View::parse("fixed:0,0,0,0,0,0", &names).is_err());
+    }
+
+    #[test]
+    fn an_unknown_view_names_the_nearest() {
+        let error = View::parse("snaek", &["leader".to_owned()]).unwrap_err();
+        assert!(error.is_usage());
+        let text = error.to_string();
+        assert!(text.contains("did you mean \"snake\"") && text.contains("follow:leader"), "{text}");
+    }
+
+    #[test]
+    fn tiles_cover_the_picture() {
+        for count in 1..=4 {
+            let layout = Layout { views: vec![View::Top; count] };
+            let area: u32 = layout.tiles(1281, 721).iter().map(|t| t.width * t.height).sum();
+            assert_eq!(area, 1281 * 721);
+        }
+    }
+}

@@ -1,0 +1,20 @@
+// What every pass knows of a view. Positions are relative to a local origin near the formation, so that
+// single precision is enough wherever in the world the robots are.
+struct Frame {
+    clip_from_local: mat4x4<f32>,
+    shadow_from_local: mat4x4<f32>,
+    // Eye; w is 1 for perspective, 0 for a parallel projection.
+    eye: vec4<f32>,
+    // Axes of the view, the first two scaled to half the picture; up.w is the horizon's normalised height.
+    right: vec4<f32>,
+    up: vec4<f32>,
+    forward: vec4<f32>,
+    // Towards the sun; w is the penumbra in texels of the shadow map, 0 without shadows.
+    sun: vec4<f32>,
+    // x, y: the local origin within the asphalt's tile, m; z: strength of the grid; w: where haze begins, m.
+    ground: vec4<f32>,
+    spare: vec4<f32>,
+    spare_too: vec4<f32>,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;

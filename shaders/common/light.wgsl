@@ -1,0 +1,58 @@
+// Light shared by all surfaces: sun, sky, haze, shadow and the tone curve.
+
+const SUN_LIGHT = vec3<f32>(2.05, 1.86, 1.58);
+const ZENITH = vec3<f32>(0.13, 0.30, 0.66);
+const HORIZON = vec3<f32>(0.68, 0.76, 0.84);
+const BOUNCE = vec3<f32>(0.17, 0.165, 0.155);
+
+@group(1) @binding(0) var shadow_map: texture_depth_2d;
+@group(1) @binding(1) var shadow_sampler: sampler_comparison;
+
+// Colour of the sky towards `direction` (unit length).
+fn sky_light(direction: vec3<f32>) -> vec3<f32> {
+    let height = max(direction.z, 0.0);
+    let climb = 1.0 - (1.0 - height) * (1.0 - height);
+    let towards = max(dot(direction, frame.sun.xyz), 0.0);
+    let glow = towards * towards * towards * towards;
+    return mix(HORIZON, ZENITH, sqrt(climb)) + vec3<f32>(0.22, 0.16, 0.08) * glow * glow;
+}
+
+// Light from sky and ground on a surface facing `normal`.
+fn ambient(normal: vec3<f32>) -> vec3<f32> {
+    let sky = mix(HORIZON, ZENITH, 0.5) * 0.62;
+    return mix(BOUNCE, sky, 0.5 + 0.5 * normal.z);
+}
+
+// Filmic curve after Hejl and Burgess-Dawson; its result is display-encoded.
+fn tone(light: vec3<f32>) -> vec3<f32> {
+    let x = max(light * 0.62 - 0.004, vec3<f32>(0.0));
+    return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);
+}
+
+// Share of haze in front of something `distance` m away.
+fn haze(distance: f32) -> f32 {
+    return 1.0 - exp(-max(distance - frame.ground.w, 0.0) * 0.011);
+}
+
+fn lit(at: vec3<f32>, x: f32, y: f32) -> f32 {
+    return textureSampleCompareLevel(shadow_map, shadow_sampler, at.xy + vec2<f32>(x, y), at.z);
+}
+
+// Share of the sun that reaches a point: 1 in the open.
+fn sunlight(local: vec3<f32>) -> f32 {
+    let clip = frame.shadow_from_local * vec4<f32>(local, 1.0);
+    let at = vec3<f32>(clip.x * 0.5 + 0.5, 0.5 - clip.y * 0.5, clip.z);
+    if frame.sun.w == 0.0 || any(abs(clip.xy) > vec2<f32>(0.99)) {
+        return 1.0;
+    }
+    // Four corners first: most points are wholly in light or wholly in shadow.
+    let r = frame.sun.w;
+    let corners = lit(at, -r, -r) + lit(at, r, -r) + lit(at, -r, r) + lit(at, r, r);
+    if corners < 0.001 || corners > 3.999 {
+        return corners * 0.25;
+    }
+    let h = r * 0.5;
+    let sides = lit(at, -r, 0.0) + lit(at, r, 0.0) + lit(at, 0.0, -r) + lit(at, 0.0, r);
+    let inner = lit(at, -h, -h) + lit(at, h, -h) + lit(at, -h, h) + lit(at, h, h);
+    return (corners * 0.5 + sides * 0.75 + inner * 1.25 + lit(at, 0.0, 0.0) * 1.5) / 11.5;
+}

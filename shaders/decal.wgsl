@@ -1,0 +1,52 @@
+// Paint on the ground: contact patches, tyre marks, ribbons, rings, arrows and edges.
+
+struct Corner {
+    // Relative to the local origin, m.
+    @location(0) position: vec3<f32>,
+    // x: kind; y: inner radius of a ring or softness of a blob.
+    @location(1) kind: vec2<f32>,
+    // Across and along the shape, −1 to 1.
+    @location(2) shape: vec2<f32>,
+    // Display-encoded colour and opacity.
+    @location(3) colour: vec4<f32>,
+}
+
+struct Varying {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) local: vec3<f32>,
+    @location(1) kind: vec2<f32>,
+    @location(2) shape: vec2<f32>,
+    @location(3) colour: vec4<f32>,
+}
+
+@vertex
+fn vertex(in: Corner) -> Varying {
+    return Varying(frame.clip_from_local * vec4<f32>(in.position, 1.0), in.position, in.kind, in.shape, in.colour);
+}
+
+fn coverage(kind: vec2<f32>, shape: vec2<f32>, pixel: vec2<f32>) -> f32 {
+    // 0: solid between the long sides, 1: ring, 2: soft blob, 3: soft box.
+    if kind.x < 0.5 {
+        return clamp((1.0 - abs(shape.x)) / max(pixel.x, 1e-4), 0.0, 1.0);
+    }
+    let radius = length(shape);
+    if kind.x < 1.5 {
+        let soft = max(max(pixel.x, pixel.y), 1e-4);
+        return clamp((1.0 - radius) / soft, 0.0, 1.0) * clamp((radius - kind.y) / soft, 0.0, 1.0);
+    }
+    if kind.x < 2.5 {
+        let inside = max(1.0 - radius, 0.0);
+        return inside * inside * (3.0 - 2.0 * inside);
+    }
+    let edge = smoothstep(vec2<f32>(1.0), vec2<f32>(kind.y), abs(shape));
+    return edge.x * edge.y;
+}
+
+@fragment
+fn fragment(in: Varying) -> @location(0) vec4<f32> {
+    let pixel = abs(dpdx(in.shape)) + abs(dpdy(in.shape));
+    let cover = coverage(in.kind, in.shape, pixel) * in.colour.a;
+    let distance = length(frame.eye.xyz - in.local) * frame.eye.w;
+    let shade = 0.52 + 0.48 * sunlight(in.local);
+    return vec4<f32>(in.colour.rgb * shade, cover * (1.0 - haze(distance)));
+}
