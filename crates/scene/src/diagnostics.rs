@@ -1,6 +1,6 @@
 //! What is wrong with a scene, and where.
 
-use std::{fmt, path::PathBuf};
+use std::{fmt, path::Path};
 
 /// One thing that is wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,19 +29,55 @@ impl Diagnostics {
         &self.0
     }
 
-    pub(crate) fn whole_file(path: &std::path::Path, message: String) -> Self {
-        let origin = PathBuf::from(path).display().to_string();
+    pub(crate) fn whole_file(path: &Path, message: String) -> Self {
+        let origin = path.display().to_string();
         Self(vec![Diagnostic { origin, line: 0, column: 0, excerpt: String::new(), width: 1, message }])
     }
 }
 
+impl std::error::Error for Diagnostics {}
+
+/// More than this at once are not read.
+const MOST_SHOWN: usize = 20;
+
 impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for diagnostic in &self.0 {
-            writeln!(f, "{}: {}", diagnostic.origin, diagnostic.message)?;
+        for (index, diagnostic) in self.0.iter().take(MOST_SHOWN).enumerate() {
+            if index > 0 {
+                writeln!(f)?;
+            }
+            write!(f, "{diagnostic}")?;
+        }
+        if self.0.len() > MOST_SHOWN {
+            write!(f, "\n… and {} more", self.0.len() - MOST_SHOWN)?;
         }
         Ok(())
     }
 }
 
-impl std::error::Error for Diagnostics {}
+/// Longest part of a line that is shown, characters.
+const MOST_SHOWN_OF_LINE: usize = 100;
+
+impl fmt::Display for Diagnostic {
+    /// `file:line:column: message`, then the line with carets under what is meant.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { origin, line, column, message, .. } = self;
+        if *line == 0 {
+            return write!(f, "{}: {}", plain(origin), plain(message));
+        }
+        writeln!(f, "{}:{line}:{column}: {}", plain(origin), plain(message))?;
+        // A long line is shown from a little before the place that is meant.
+        let skip = if *column > MOST_SHOWN_OF_LINE { column - MOST_SHOWN_OF_LINE / 2 } else { 0 };
+        let shown: String = self.excerpt.chars().skip(skip).take(MOST_SHOWN_OF_LINE).collect();
+        let indent = column.saturating_sub(1 + skip);
+        let carets = "^".repeat(self.width.min(MOST_SHOWN_OF_LINE - indent.min(MOST_SHOWN_OF_LINE - 1)));
+        let number = line.to_string();
+        let margin = " ".repeat(number.len());
+        write!(f, "  {number} | {}\n  {margin} | {:indent$}{carets}", plain(&shown).trim_end(), "")
+    }
+}
+
+/// Text from a file with nothing in it that could move a terminal's cursor.
+fn plain(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}

@@ -2,13 +2,27 @@
 //!
 //! [`Scene::load`] reads a TOML file, applies overrides, reports everything that is wrong with it at once, and hands
 //! out a [`Scene`] in which every default is filled in. Nothing behind that door checks a scene again.
+//!
+//! text → tree with places (`text::node`) → overrides → keys (`document`) → robots (`resolve`, `groups`) → [`Scene`].
 
 mod diagnostics;
+mod document;
+mod files;
+mod graph;
+mod groups;
 mod load;
 mod overrides;
+mod path_form;
+mod resolve;
+mod shape;
+mod table_file;
+mod text;
 mod types;
 
 pub use diagnostics::{Diagnostic, Diagnostics};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
-pub use types::*;
+pub use types::{
+    Channel, Environment, Expect, Film, Follow, Law, LawKind, Mode, Observer, ObserverStart, Path, Ramp,
+    Robot, Role, Scene, Sensing, SensingKind, SpeedProfile, Switching, Time, Vehicle, VehicleKind, Views,
+};

@@ -1,6 +1,14 @@
-//! From a path to a checked scene.
+//! From a path to a checked scene, and back to text.
 
-use crate::{Diagnostics, Override, Scene};
+use crate::{
+    Diagnostics, Override, Scene,
+    document::{Document, SCHEMA_VERSION},
+    files::read_text,
+    resolve::resolve,
+    text::{Form, Node, Reading, table},
+};
+use serde::Serialize;
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// A scene and what it was made of.
@@ -18,8 +26,9 @@ impl Scene {
     /// # Errors
     /// Everything that is wrong with the file, the overrides and the tables the file names.
     pub fn load(path: impl AsRef<Path>, overrides: &[Override]) -> Result<Loaded, Diagnostics> {
-        let _ = overrides;
-        Err(Diagnostics::whole_file(path.as_ref(), "reading scenes is not written yet".to_owned()))
+        let path = path.as_ref();
+        let text = read_text(path).map_err(|fault| Diagnostics::whole_file(path, fault))?;
+        Self::parse(&text, path, overrides)
     }
 
     /// Checks scene `text`; `path` names it in messages, and tables are looked for beside it.
@@ -27,17 +36,50 @@ impl Scene {
     /// # Errors
     /// Everything that is wrong with the text, the overrides and the tables the text names.
     pub fn parse(text: &str, path: impl AsRef<Path>, overrides: &[Override]) -> Result<Loaded, Diagnostics> {
-        let _ = (text, overrides);
-        Err(Diagnostics::whole_file(path.as_ref(), "reading scenes is not written yet".to_owned()))
+        let path = path.as_ref();
+        if text.trim().is_empty() {
+            let fault = "is empty: a scene needs at least `schema = 1`, a title and a robot";
+            return Err(Diagnostics::whole_file(path, fault.to_owned()));
+        }
+        let mut reading = Reading::new(path.parent().unwrap_or(Path::new("")));
+        let scene = check(text, path, overrides, &mut reading);
+        match scene {
+            Some(scene) if reading.is_clean() => {
+                let files = [path.to_owned()].into_iter().chain(reading.files).collect();
+                Ok(Loaded { scene, files })
+            }
+            _ => Err(reading.into_diagnostics()),
+        }
     }
 
     /// The scene as TOML with every default written out; it loads again to an equal scene.
     pub fn to_toml(&self) -> String {
-        String::new()
+        /// A scene as a file has it.
+        #[derive(Serialize)]
+        struct File<'a> {
+            schema: u64,
+            #[serde(flatten)]
+            scene: &'a Scene,
+        }
+        // A checked scene holds nothing that TOML cannot write, as the round trips of the tests show.
+        toml::to_string(&File { schema: SCHEMA_VERSION, scene: self }).unwrap_or_default()
     }
 }
 
-/// JSON Schema of scene files.
+fn check(text: &str, path: &Path, overrides: &[Override], reading: &mut Reading) -> Option<Scene> {
+    let source = reading.add_source(path.display().to_string(), text);
+    let mut root = Node::parse_document(text, source, reading)?;
+    for change in overrides {
+        change.apply(&mut root, reading);
+    }
+    let document = table::<Document>().read(&root, reading)?;
+    resolve(document, &root, reading)
+}
+
+/// JSON Schema (2020-12) of scene files.
 pub fn schema() -> serde_json::Value {
-    serde_json::Value::Null
+    let mut schema = table::<Document>().schema();
+    schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+    schema["title"] = json!("Echelon scene");
+    schema
 }

@@ -1,59 +1,65 @@
-//! Parameters of the law and of the observer of one edge.
+//! Parameters of the law and of the observer of one edge. The defaults are the paper's.
 
+use crate::text::{
+    Form, Node, Reading, Value, angle, couple, keys, number, pair, settings, table, words, words::Words,
+};
 use serde::Serialize;
+use serde_json::{Value as Json, json};
 
-/// Parameters of a control law.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Law {
-    /// Which law.
-    pub kind: LawKind,
-    /// Gains of [distance, bearing] (K = diag(k1, k2)), 1/s, above 0.
-    pub k: [f64; 2],
-    /// Gains of the switching term for [distance, bearing] (β), [m/s², rad/s²], not below 0.
-    pub beta: [f64; 2],
+settings! {
+    /// Parameters of a control law. A pair is for [distance, bearing]; one value stands for both.
+    #[derive(Copy)]
+    pub struct Law from LawPart {
+        /// Which law.
+        pub kind: LawKind = LawKind::OutputFeedback, LawKind::form();
+        /// Gains K = diag(k1, k2), 1/s.
+        pub k: [f64; 2] = [5.0; 2], pair(number("1/s").above(0.0));
+        /// Gains of the switching term (β), [m/s², rad/s²].
+        pub beta: [f64; 2] = [5.0; 2], pair(number("m/s² or rad/s²").from(0.0));
+        /// Form of the switching term.
+        pub switching: Switching = Switching::Tanh, Switching::form();
+        /// Slope of tanh, [1/m, 1/rad].
+        pub slope: [f64; 2] = [24.53; 2], pair(number("1/m or 1/rad").above(0.0));
+        /// Least distance used in divisions (ℓ_min), m.
+        pub distance_min: f64 = 0.1, number("m").above(0.0);
+    }
+}
+
+words! {
+    /// Which law a follower uses.
+    pub enum LawKind {
+        /// Knows its leader's motion (eq 20).
+        FullState = "full-state",
+        /// Knows the rates of distance and bearing, not its leader's motion (eq 22).
+        RobustState = "robust-state",
+        /// Knows distance and bearing only (eq 42).
+        OutputFeedback = "output-feedback",
+    }
+}
+
+words! {
     /// Form of the switching term.
-    pub switching: Switching,
-    /// Slope of tanh for [distance, bearing], [1/m, 1/rad], above 0.
-    pub slope: [f64; 2],
-    /// Least distance used in divisions (ℓ_min), m, above 0.
-    pub distance_min: f64,
+    pub enum Switching {
+        /// β tanh(slope · e), as in the paper's simulations.
+        Tanh = "tanh",
+        /// β sign(e), as in the paper's theorems.
+        Sign = "sign",
+    }
 }
 
-/// Which law a follower uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum LawKind {
-    /// Knows its leader's motion (eq 20).
-    FullState,
-    /// Knows the rates of distance and bearing, not its leader's motion (eq 22).
-    RobustState,
-    /// Knows distance and bearing only (eq 42).
-    #[default]
-    OutputFeedback,
-}
-
-/// Form of the switching term.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Switching {
-    /// β tanh(slope · e), as in the paper's simulations.
-    #[default]
-    Tanh,
-    /// β sign(e), as in the paper's theorems.
-    Sign,
-}
-
-/// Parameters of the high-gain observer (eqs 31-32).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Observer {
-    /// Time constant for [distance, bearing] (ε), s, above 0.
-    pub epsilon: [f64; 2],
-    /// α1 of s² + α1 s + α2 for [distance, bearing], above 0.
-    pub alpha1: [f64; 2],
-    /// α2 of s² + α1 s + α2 for [distance, bearing], above 0.
-    pub alpha2: [f64; 2],
-    /// Where the estimate of [distance, bearing] starts; that of their rates starts at 0.
-    pub start: ObserverStart,
+settings! {
+    /// Parameters of the high-gain observer (eqs 31-32). A pair is for [distance, bearing]; one value stands for both.
+    #[derive(Copy)]
+    pub struct Observer from ObserverPart {
+        /// Time constant (ε), s.
+        pub epsilon: [f64; 2] = [0.001; 2], pair(number("s").above(0.0).up_to(100.0));
+        /// α1 of s² + α1 s + α2; above 0 for stability.
+        pub alpha1: [f64; 2] = [2.0; 2], pair(number("").above(0.0));
+        /// α2 of s² + α1 s + α2; above 0 for stability.
+        pub alpha2: [f64; 2] = [1.0; 2], pair(number("").above(0.0));
+        /// Where the estimate of [distance, bearing] starts; that of their rates starts at 0.
+        pub start: ObserverStart = ObserverStart::Measured, StartForm;
+    }
 }
 
 /// Where the estimate of [distance in m, bearing in rad] starts.
@@ -67,4 +73,44 @@ pub enum ObserverStart {
     At([f64; 2]),
     /// At the first measurement plus these.
     Offset([f64; 2]),
+}
+
+/// "measured", { at = […] } or { offset = […] }.
+struct StartForm;
+
+/// The start without numbers.
+const MEASURED: Words<ObserverStart> =
+    Words(&[("measured", ObserverStart::Measured, "At the first measurement, s(0).")]);
+
+keys! {
+    /// A start away from the first measurement, which shows the observer's peaking.
+    struct StartKeys {
+        /// [distance, bearing] at which the estimate starts, [m, rad].
+        at: [f64; 2] = couple(number("m").above(0.0), angle()), optional;
+        /// What is added to the first measurement, [m, rad].
+        offset: [f64; 2] = couple(number("m"), angle()), optional;
+    }
+}
+
+impl Form for StartForm {
+    type Out = ObserverStart;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<ObserverStart> {
+        if !matches!(node.value, Value::Table(_)) {
+            return MEASURED.read(node, reading);
+        }
+        let keys = table::<StartKeys>().read(node, reading)?;
+        match (keys.at, keys.offset) {
+            (Some(at), None) => Some(ObserverStart::At(at.value)),
+            (None, Some(offset)) => Some(ObserverStart::Offset(offset.value)),
+            _ => {
+                reading.note(node.place, "`start` takes either `at` or `offset`, as [distance, bearing]");
+                None
+            }
+        }
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "anyOf": [MEASURED.schema(), table::<StartKeys>().schema()] })
+    }
 }

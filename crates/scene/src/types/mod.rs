@@ -3,6 +3,7 @@
 //! Nothing here is partial: groups are robots, defaults are filled in, angles are radians in (−π, π], tables
 //! are read. No number is NaN and every one lies in the range its description names.
 
+mod expect;
 mod law;
 mod path;
 mod robot;
@@ -11,13 +12,21 @@ mod set_point;
 mod stage;
 mod vehicle;
 
+pub use expect::Expect;
 pub use law::{Law, LawKind, Observer, ObserverStart, Switching};
 pub use path::{Path, SpeedProfile};
 pub use robot::{Follow, Robot, Role};
-pub use run::{Expect, Mode, Sensing, SensingKind, Time};
+pub use run::{Mode, Sensing, SensingKind, Time};
 pub use set_point::{Channel, Ramp};
 pub use stage::{Environment, Film, Views};
 pub use vehicle::{Vehicle, VehicleKind};
+
+pub(crate) use expect::ExpectPart;
+pub(crate) use law::{LawPart, ObserverPart};
+pub(crate) use run::{SensingPart, TimePart};
+pub(crate) use set_point::{BearingForm, DistanceForm};
+pub(crate) use stage::{EnvironmentPart, FOLLOW, FilmPart, ViewsPart};
+pub(crate) use vehicle::VehiclePart;
 
 use serde::Serialize;
 

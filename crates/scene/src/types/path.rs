@@ -44,9 +44,10 @@ pub enum Path {
     },
     /// A smooth curve through points.
     Waypoints {
-        /// World coordinates [x, y], m; at least two, neighbours distinct. The robot starts at its first.
+        /// World coordinates [x, y], m; at least two, neighbours distinct. The first is the robot's position.
         points: Vec<[f64; 2]>,
-        /// Whether the curve returns to its first point and goes on.
+        /// Whether the curve returns to its first point and goes on; then at least three points, the last not the
+        /// first again.
         closed: bool,
         /// Speed along the curve.
         speed: SpeedProfile,
@@ -62,11 +63,35 @@ pub enum Path {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpeedProfile {
-    /// Rows of [distance travelled in m, speed in m/s], rising from 0, smooth in between.
+    /// Rows of [distance travelled in m, speed in m/s], rising from 0, smooth in between, held after the last.
     Distance(Vec<[f64; 2]>),
-    /// Rows of [time in s, speed in m/s], rising from 0, smooth in between.
+    /// Rows of [time in s, speed in m/s], rising from 0, smooth in between, held after the last.
     Time(Vec<[f64; 2]>),
     /// Always this, m/s.
     #[serde(untagged)]
     Constant(f64),
+}
+
+impl Path {
+    /// Bounds on |speed| in m/s and |turn rate| in rad/s over all times, where they can be told beforehand.
+    pub(crate) fn peaks(&self) -> (f64, Option<f64>) {
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
+        match self {
+            Self::Constant { speed, turn_rate } | Self::Circle { speed, turn_rate } => {
+                (*speed, Some(turn_rate.abs()))
+            }
+            Self::Sinusoid { speed, speed_amplitude, turn_rate, turn_rate_amplitude, .. } => {
+                (speed + speed_amplitude.abs(), Some(turn_rate.abs() + turn_rate_amplitude.abs()))
+            }
+            Self::FigureEight { speed, .. } => (*speed, None),
+            Self::Waypoints { speed: SpeedProfile::Constant(speed), .. } => (*speed, None),
+            Self::Waypoints { speed: SpeedProfile::Distance(rows) | SpeedProfile::Time(rows), .. } => {
+                (largest(&mut rows.iter().map(|row| row[1])), None)
+            }
+            Self::Table { rows } => (
+                largest(&mut rows.iter().map(|row| row[1])),
+                Some(largest(&mut rows.iter().map(|row| row[2]))),
+            ),
+        }
+    }
 }

@@ -1,10 +1,13 @@
 //! What one channel of a set point does in time.
 
+use crate::text::{Form, Found, Node, Reading, Value, angle, form::Number, keys, list, number, table};
 use serde::Serialize;
+use serde_json::{Value as Json, json};
+use std::f64::consts::{PI, TAU};
 
 /// Wanted distance in m, or wanted bearing in rad, as a function of time.
 ///
-/// A wanted distance is above 0 at every instant.
+/// A wanted distance is never below the law's `distance_min`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Channel {
@@ -27,7 +30,7 @@ pub enum Channel {
 /// A smooth passage between two values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Ramp {
-    /// Value before the passage, m or rad.
+    /// Value before the passage, m or rad; a bearing may lie up to a whole turn from 0, to go round behind.
     pub from: f64,
     /// Value after it, m or rad.
     pub to: f64,
@@ -35,4 +38,114 @@ pub struct Ramp {
     pub start: f64,
     /// How long it takes, s, above 0.
     pub over: f64,
+}
+
+impl Channel {
+    /// The least value at any time, m or rad.
+    pub fn least(&self) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Sinusoid { mean, amplitude, .. } => mean - amplitude.abs(),
+            Self::Ramps(ramps) => ramps.iter().map(|r| r.from.min(r.to)).fold(f64::INFINITY, f64::min),
+        }
+    }
+}
+
+/// Defines the form `$form` of a channel out of the forms of a value that holds, of a value that is passed through,
+/// and of an amplitude.
+macro_rules! channel {
+    ($(#[doc = $doc:literal])* $form:ident, $wave:ident, $passage:ident, $held:expr, $passed:expr, $amplitude:expr) => {
+        keys! {
+            /// A sinusoid: mean + amplitude · sin(rate · t).
+            struct $wave {
+                /// In the middle, m or rad.
+                mean: f64 = $held, required;
+                /// m or rad.
+                amplitude: f64 = $amplitude, required;
+                /// rad/s.
+                rate: f64 = number("rad/s").up_to(1000.0), required;
+            }
+        }
+
+        keys! {
+            /// A smooth passage from one value to another.
+            struct $passage {
+                /// Value before, m or rad; in a list the one where the last passage ended, if left out.
+                from: f64 = $passed, optional;
+                /// Value after, m or rad.
+                to: f64 = $passed, required;
+                /// When it starts, s.
+                start: f64 = number("s").from(0.0), required;
+                /// How long it takes, s.
+                over: f64 = number("s").above(0.0), required;
+            }
+        }
+
+        $(#[doc = $doc])*
+        pub(crate) struct $form;
+
+        impl Form for $form {
+            type Out = Channel;
+
+            fn read(&self, node: &Node, reading: &mut Reading) -> Option<Channel> {
+                let passages = match &node.value {
+                    Value::Table(_) if node.get("mean").is_some() || node.get("to").is_none() => {
+                        let keys = table::<$wave>().read(node, reading)?;
+                        let (mean, amplitude, rate) = (keys.mean?.value, keys.amplitude?.value, keys.rate?.value);
+                        return Some(Channel::Sinusoid { mean, amplitude, rate });
+                    }
+                    Value::Table(_) => vec![table::<$passage>().read(node, reading)?],
+                    Value::List(_) => list(table::<$passage>(), 1, 1000).read(node, reading)?,
+                    _ => return $held.read(node, reading).map(Channel::Constant),
+                };
+                let passages = passages.into_iter().map(|p| Some((p.from, p.to?.value, p.start?, p.over?.value)));
+                chain(node, passages.collect::<Option<Vec<_>>>()?, reading)
+            }
+
+            fn schema(&self) -> Json {
+                let passage = table::<$passage>();
+                json!({ "anyOf": [
+                    $held.schema(), table::<$wave>().schema(), passage.schema(), list(passage, 1, 1000).schema(),
+                ] })
+            }
+        }
+    };
+}
+
+channel!(
+    /// A wanted distance.
+    DistanceForm, DistanceWave, DistancePassage, DISTANCE, DISTANCE, number("m")
+);
+channel!(
+    /// A wanted bearing.
+    BearingForm, BearingWave, BearingPassage, angle(), angle().within(-TAU, TAU), angle().within(-PI, PI)
+);
+
+/// A distance between two robots.
+const DISTANCE: Number = number("m").above(0.0).up_to(1000.0);
+
+/// One passage as it was read: from, to, start, over.
+type Passage = (Option<Found<f64>>, f64, Found<f64>, f64);
+
+/// Passages in the order of time, each from where the last one ended.
+fn chain(node: &Node, passages: Vec<Passage>, reading: &mut Reading) -> Option<Channel> {
+    let mut ramps: Vec<Ramp> = Vec::with_capacity(passages.len());
+    for (from, to, start, over) in passages {
+        let last = ramps.last();
+        let Some(value) = from.as_ref().map(|from| from.value).or(last.map(|last| last.to)) else {
+            reading.note(node.place, "`from` is missing: the first passage has to say where it starts");
+            return None;
+        };
+        if let Some(last) = last {
+            if start.value < last.start + last.over {
+                let free = last.start + last.over;
+                reading.note(start.place, format!("this starts before the last passage ends at {free} s"));
+            }
+            if let Some(from) = from.filter(|from| from.value != last.to) {
+                reading.note(from.place, format!("`from` must be {}, where the last passage ended", last.to));
+            }
+        }
+        ramps.push(Ramp { from: value, to, start: start.value, over });
+    }
+    Some(Channel::Ramps(ramps))
 }

@@ -1,33 +1,65 @@
 //! What pictures need beyond the robots.
 
-use serde::Serialize;
+use crate::text::{
+    Form, Node, Reading, angle, couple, integer, number, optional, settings, words::not_a_word,
+};
+use serde_json::{Value as Json, json};
+use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Light and air.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Environment {
-    /// Height of the sun over the horizon, rad in (0, π/2].
-    pub sun_elevation: f64,
-    /// Direction to the sun, rad from the world's x axis, counter-clockwise.
-    pub sun_azimuth: f64,
-    /// Distance at which haze sets in, m, above 0.
-    pub haze_from: f64,
+settings! {
+    /// Light and air.
+    #[derive(Copy)]
+    pub struct Environment from EnvironmentPart {
+        /// Height of the sun over the horizon, rad or "38 deg".
+        pub sun_elevation: f64 = 38f64.to_radians(), angle().within(PI / 180.0, FRAC_PI_2);
+        /// Direction to the sun, rad or "60 deg", counter-clockwise from the world's x axis.
+        pub sun_azimuth: f64 = 60f64.to_radians(), angle();
+        /// Distance at which haze sets in, m.
+        pub haze_from: f64 = 30.0, number("m").above(0.0);
+    }
 }
 
-/// How pictures look at the run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Views {
-    /// View used where the command line names none: `snake`, `snake-eye`, `top`, `orbit`, `follow:<robot>`, `fixed`.
-    pub default: String,
+settings! {
+    /// How pictures look at the run.
+    pub struct Views from ViewsPart {
+        /// View used where the command line names none: `snake`, `snake-eye`, `top`, `orbit`, `fixed` or
+        /// `follow:<robot>`.
+        pub default: String = "snake".to_owned(), ViewForm;
+    }
 }
 
-/// How a film is made when the command line does not say.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Film {
-    /// View, as in [`Views::default`]; that one if `None`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub view: Option<String>,
-    /// Frames a second of simulation time, 1 to 240.
-    pub fps: u32,
-    /// [width, height] in pixels, each even, 16 to 8192.
-    pub size: [u32; 2],
+settings! {
+    /// How a film is made when the command line does not say.
+    pub struct Film from FilmPart {
+        /// View; the scene's default view if left out.
+        pub view: Option<String> = None, optional(ViewForm);
+        /// Frames a second of simulation time.
+        pub fps: u32 = 30, integer::<u32>(1, 240);
+        /// [width, height] in pixels, both even.
+        pub size: [u32; 2] = [1280, 720], couple(integer::<u32>(16, 8192), integer::<u32>(16, 8192));
+    }
+}
+
+/// Views that need no robot's name.
+const VIEWS: [&str; 5] = ["snake", "snake-eye", "top", "orbit", "fixed"];
+/// What stands before the name of the robot that is followed.
+pub(crate) const FOLLOW: &str = "follow:";
+
+/// The name of a view.
+struct ViewForm;
+
+impl Form for ViewForm {
+    type Out = String;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
+        let name = node.as_text().filter(|name| VIEWS.contains(name) || name.starts_with(FOLLOW));
+        if name.is_none() {
+            not_a_word(node, VIEWS.into_iter().chain(["follow:<robot>"]), reading);
+        }
+        name.map(str::to_owned)
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "anyOf": [{ "enum": VIEWS }, { "type": "string", "pattern": format!("^{FOLLOW}.+$") }] })
+    }
 }

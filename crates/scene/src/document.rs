@@ -1,0 +1,165 @@
+//! The keys of a scene file, as they are written.
+
+use crate::{
+    Channel, Path,
+    path_form::PathForm,
+    text::{
+        Form, Node, Reading, angle,
+        form::{Angle, Number},
+        integer, keys, list,
+        lists::Triple,
+        number, table, text, triple, words,
+    },
+    types::{
+        BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, LawPart, ObserverPart, SensingPart,
+        TimePart, VehiclePart, ViewsPart,
+    },
+};
+use serde_json::{Value as Json, json};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Version of the format of scene files.
+pub(crate) const SCHEMA_VERSION: u64 = 1;
+/// Most robots of a scene.
+pub(crate) const MOST_ROBOTS: usize = 10_000;
+/// Start pose [m, m, rad].
+const POSE: Triple<Number, Number, Angle> = triple(number("m"), number("m"), angle().of_turns(10.0));
+/// Speed at the start.
+const SPEED: Number = number("m/s").from(0.0).up_to(100.0);
+
+keys! {
+    /// A scene of Echelon: one experiment with a formation of vehicles. SI units; angles in rad, or as text such as
+    /// "135 deg".
+    struct Document {
+        /// Version of this format.
+        schema: u64 = integer::<u64>(SCHEMA_VERSION, SCHEMA_VERSION), required;
+        /// Title shown in pictures and reports.
+        title: String = text(200), required;
+        /// What the experiment is about.
+        description: String = text(10_000), or(String::new());
+        /// Seed of everything random.
+        seed: u64 = integer::<u64>(0, i64::MAX as u64), or(1);
+        /// Length, control period and mode of the run.
+        time: TimePart = table::<TimePart>(), part;
+        /// Kind, limits and measures of every robot that says nothing else.
+        vehicle: VehiclePart = table::<VehiclePart>(), part;
+        /// Control law of every follower that says nothing else.
+        law: LawPart = table::<LawPart>(), part;
+        /// Observer of every follower that says nothing else.
+        observer: ObserverPart = table::<ObserverPart>(), part;
+        /// What a robot knows of its leader.
+        sensing: SensingPart = table::<SensingPart>(), part;
+        /// Robots one by one.
+        robots: Vec<RobotKeys> = list(table::<RobotKeys>(), 0, MOST_ROBOTS), part;
+        /// Robots in well-known shapes.
+        groups: Vec<GroupKeys> = list(table::<GroupKeys>(), 0, 1000), part;
+        /// Light and air.
+        environment: EnvironmentPart = table::<EnvironmentPart>(), part;
+        /// How pictures look at the run.
+        views: ViewsPart = table::<ViewsPart>(), part;
+        /// How a film is made when the command line does not say.
+        film: FilmPart = table::<FilmPart>(), part;
+        /// What the run has to show.
+        expect: ExpectPart = table::<ExpectPart>(), part;
+    }
+}
+
+keys! {
+    /// A robot: one that leads has a `path`, one that follows has a `leader`, a `distance` and a `bearing`.
+    struct RobotKeys {
+        /// Unique name.
+        name: String = NameForm, required;
+        /// Where it starts: [x in m, y in m, heading].
+        pose: [f64; 3] = POSE, required;
+        /// Motion of a robot that leads.
+        path: Path = PathForm, optional;
+        /// Name of the robot that is followed.
+        leader: String = NameForm, optional;
+        /// Wanted distance from the leader, m: a number, a sinusoid, or smooth passages.
+        distance: Channel = DistanceForm, optional;
+        /// Wanted bearing, seen from the leader's heading, left positive: an angle, a sinusoid, or smooth passages.
+        bearing: Channel = BearingForm, optional;
+        /// Speed of a follower at the start, m/s; its `speed_min` if left out.
+        speed: f64 = SPEED, optional;
+        /// What differs from the scene's `vehicle`.
+        vehicle: VehiclePart = table::<VehiclePart>(), optional;
+        /// What differs from the scene's `law`.
+        law: LawPart = table::<LawPart>(), optional;
+        /// What differs from the scene's `observer`.
+        observer: ObserverPart = table::<ObserverPart>(), optional;
+    }
+}
+
+keys! {
+    /// A group of robots in a well-known shape. Place 1 is its leader's: a robot of the group with a `path`, or the
+    /// robot named by `leader`. The robot in place n is called `name-n`; odd and even places take turns between the
+    /// wings, right first.
+    struct GroupKeys {
+        /// Shape of the group.
+        shape: Shape = Shape::form(), required;
+        /// Number of places, the leader's included.
+        count: usize = integer::<usize>(2, MOST_ROBOTS as u64), required;
+        /// Start of the robots' names.
+        name: String = NameForm, or("robot".to_owned());
+        /// Motion of the group's leader; or give `leader`.
+        path: Path = PathForm, optional;
+        /// Name of a robot outside the group that leads it; or give `path`.
+        leader: String = NameForm, optional;
+        /// Where the group's leader starts, with a `path`: [x in m, y in m, heading].
+        pose: [f64; 3] = POSE, or([0.0; 3]);
+        /// Distance between neighbours, m.
+        distance: f64 = number("m").above(0.0).up_to(1000.0), or(2.0);
+        /// Bearing of a neighbour in shapes `v` and `diamond`.
+        angle: f64 = angle().within(FRAC_PI_2, PI), or(0.75 * PI);
+        /// Followers start at most this far from their places along each axis, m, by the scene's seed; 0 starts in
+        /// formation.
+        scatter: f64 = number("m").from(0.0).up_to(1000.0), or(0.3);
+        /// Headings start at most this far from the leader's.
+        scatter_heading: f64 = angle().within(0.0, PI), or(10f64.to_radians());
+        /// Speed of the followers at the start, m/s; their `speed_min` if left out.
+        speed: f64 = SPEED, optional;
+        /// What differs from the scene's `vehicle`.
+        vehicle: VehiclePart = table::<VehiclePart>(), part;
+        /// What differs from the scene's `law`.
+        law: LawPart = table::<LawPart>(), part;
+        /// What differs from the scene's `observer`.
+        observer: ObserverPart = table::<ObserverPart>(), part;
+    }
+}
+
+words! {
+    /// Shape of a group.
+    pub(crate) enum Shape {
+        /// Two wings behind the leader, each robot following the one before it on its wing.
+        V = "v",
+        /// One behind the other.
+        Column = "column",
+        /// Side by side, two wings beside the leader.
+        Abreast = "abreast",
+        /// The sides of a square on its corner, the leader in front; a multiple of four places.
+        Diamond = "diamond",
+        /// A circle with equal distances between neighbours, the leader in front.
+        Circle = "circle",
+    }
+}
+
+/// A robot's name: fit for paths of overrides, columns of tables and file names.
+struct NameForm;
+
+impl Form for NameForm {
+    type Out = String;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
+        let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+        let name =
+            node.as_text().filter(|name| name.chars().all(fits) && (1..=40).contains(&name.chars().count()));
+        if name.is_none() {
+            reading.wrong(node, "a name of 1 to 40 letters, digits, `-` and `_`");
+        }
+        name.map(str::to_owned)
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "string", "pattern": r"^[\p{L}\p{N}\p{M}_-]{1,40}$" })
+    }
+}

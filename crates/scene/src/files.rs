@@ -1,0 +1,36 @@
+//! Reading text files that somebody named: one clear message for each way this can fail.
+
+use std::{
+    fs::File,
+    io::{ErrorKind, Read},
+    path::Path,
+};
+
+/// Nobody writes scenes this large; refusing them keeps memory and time small.
+const MOST_BYTES: u64 = 10_000_000;
+
+/// The text of the file at `path`, or what is wrong with it.
+pub(crate) fn read_text(path: &Path) -> Result<String, String> {
+    let file = File::open(path).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => "no such file".to_owned(),
+        _ => format!("cannot be opened: {error}"),
+    })?;
+    let about = file.metadata().map_err(|error| format!("cannot be read: {error}"))?;
+    if about.is_dir() {
+        return Err("is a directory, not a file".to_owned());
+    }
+    let too_large = || format!("is larger than {} MB, the most that is read", MOST_BYTES / 1_000_000);
+    if about.len() > MOST_BYTES {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::new();
+    // A pipe has no length beforehand.
+    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| format!("cannot be read: {error}"))?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(too_large());
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let line = error.as_bytes()[..error.utf8_error().valid_up_to()].split(|byte| *byte == b'\n').count();
+        format!("is not UTF-8 text: line {line} holds bytes that are no character")
+    })
+}

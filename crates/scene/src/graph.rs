@@ -1,0 +1,92 @@
+//! Who follows whom, as far as a file can be wrong about it.
+//!
+//! The formation checks its graph too; here the faults can be shown where they are written.
+
+use crate::text::{
+    Found, Place, Reading,
+    words::{did_you_mean, nearest},
+};
+use std::collections::HashMap;
+
+/// A robot's name and its leader's, where they could be read.
+#[derive(Debug, Clone)]
+pub(crate) struct Named {
+    pub(crate) name: Option<Found<String>>,
+    pub(crate) leader: Option<Found<String>>,
+}
+
+/// Notes duplicate names, unknown leaders, robots that follow themselves, and cycles.
+pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, reading: &mut Reading) {
+    let mut leader_of: HashMap<&str, Option<&Found<String>>> = HashMap::new();
+    for robot in robots.clone() {
+        let Some(name) = &robot.name else { continue };
+        if leader_of.insert(&name.value, robot.leader.as_ref()).is_some() {
+            reading.note(name.place, format!("there are two robots called `{}`", name.value));
+        }
+    }
+    for robot in robots.clone() {
+        let Some(leader) = &robot.leader else { continue };
+        if robot.name.as_ref().is_some_and(|name| name.value == leader.value) {
+            reading.note(leader.place, format!("`{}` cannot follow itself", leader.value));
+        } else if !leader_of.contains_key(leader.value.as_str()) {
+            check_known(&leader.value, leader.place, robots.clone(), reading);
+        }
+    }
+    check_cycles(robots, &leader_of, reading);
+}
+
+/// Notes that no robot is called `name`, if so, with the nearest name there is.
+pub(crate) fn check_known<'a>(
+    name: &str,
+    place: Place,
+    robots: impl Iterator<Item = &'a Named> + Clone,
+    reading: &mut Reading,
+) {
+    let mut names = robots.filter_map(|robot| Some(robot.name.as_ref()?.value.as_str()));
+    if names.clone().any(|known| known == name) {
+        return;
+    }
+    // With very many robots the nearest of the first ones has to do.
+    let hint = nearest(name, names.by_ref().take(1000)).map_or_else(String::new, did_you_mean);
+    reading.note(place, format!("there is no robot called `{name}`{hint}"));
+}
+
+fn check_cycles<'a>(
+    robots: impl Iterator<Item = &'a Named>,
+    leader_of: &HashMap<&'a str, Option<&'a Found<String>>>,
+    reading: &mut Reading,
+) {
+    // Each name is walked from once; a walk that meets its own trail has found a cycle.
+    let mut walk_of: HashMap<&str, usize> = HashMap::new();
+    for (walk, robot) in robots.enumerate() {
+        let mut trail = vec![];
+        let mut at = robot.name.as_ref().map(|name| name.value.as_str());
+        while let Some(name) = at {
+            match walk_of.insert(name, walk) {
+                None => trail.push(name),
+                Some(earlier) => {
+                    if earlier == walk {
+                        note_cycle(&trail, name, leader_of, reading);
+                    }
+                    break;
+                }
+            }
+            at = leader_of.get(name).copied().flatten().map(|leader| leader.value.as_str());
+        }
+    }
+}
+
+fn note_cycle(
+    trail: &[&str],
+    name: &str,
+    leader_of: &HashMap<&str, Option<&Found<String>>>,
+    reading: &mut Reading,
+) {
+    let cycle: Vec<_> = trail.iter().copied().skip_while(|robot| *robot != name).collect();
+    let Some(Some(leader)) = leader_of.get(name) else { return };
+    // A robot that follows itself has its own message.
+    if cycle.len() > 1 {
+        let chain: Vec<_> = cycle.iter().chain([&name]).map(|robot| format!("`{robot}`")).collect();
+        reading.note(leader.place, format!("following comes round in a circle: {}", chain.join(" follows ")));
+    }
+}

@@ -1,0 +1,157 @@
+//! Groups become robots.
+
+use crate::{
+    Channel, Follow, Robot, Role, Vehicle,
+    document::{GroupKeys, MOST_ROBOTS},
+    graph::{Named, check_known},
+    resolve::{Defaults, Draft, check_distance, check_path, check_start, start_speed, vehicle},
+    text::{Found, Node, Reading},
+};
+use rand_chacha::{
+    ChaCha8Rng,
+    rand_core::{Rng, SeedableRng},
+};
+use vocabulary::{Pose, wrap};
+
+/// Appends the robots of `group`, the `index`-th of the scene.
+pub(crate) fn expand(
+    group: &Group<'_>,
+    seed: u64,
+    defaults: &Defaults,
+    drafts: &mut Vec<Draft>,
+    reading: &mut Reading,
+) -> Option<()> {
+    let keys = group.keys;
+    let (shape, count) = (keys.shape.as_ref()?.value, keys.count.as_ref()?);
+    if let Some(fault) = shape.refuses(count.value) {
+        reading.note(count.place, fault);
+        return None;
+    }
+    if drafts.len() + count.value > MOST_ROBOTS {
+        reading.note(count.place, format!("this makes more than {MOST_ROBOTS} robots"));
+        return None;
+    }
+    let vehicle = vehicle(keys.vehicle.as_ref(), defaults, reading);
+    let speed = start_speed(keys.speed.as_ref(), &vehicle, reading);
+    let law = keys.law.as_ref()?.value.complete(&defaults.law);
+    let observer = keys.observer.as_ref()?.value.complete(&defaults.observer);
+    let (distance, angle) = (keys.distance.as_ref()?, keys.angle.as_ref()?.value);
+    check_distance(distance.value, law.distance_min, distance.place, reading);
+
+    let (leader, origin) = group.leader(&vehicle, drafts, reading)?;
+    let name_of = |place: usize| if place == 0 { leader.clone() } else { group.name(place) };
+    let mut scatter = Scatter::new(keys, group.index, seed)?;
+    let mut places = vec![[0.0, 0.0]];
+    for place in 1..count.value {
+        let step = shape.step(place, count.value, angle);
+        let [x, y] = *places.get(step.leader)?;
+        let (sin, cos) = step.bearing.sin_cos();
+        places.push([x + distance.value * cos, y + distance.value * sin]);
+        let role = Role::Follow(Follow {
+            leader: name_of(step.leader),
+            speed,
+            distance: Channel::Constant(distance.value),
+            bearing: Channel::Constant(step.bearing),
+            law,
+            observer,
+        });
+        let pose = scatter.around(origin, *places.last()?);
+        group.push(Robot { name: name_of(place), pose, vehicle, role }, drafts);
+    }
+    Some(())
+}
+
+/// A group as it is written, and where.
+pub(crate) struct Group<'a> {
+    pub(crate) keys: &'a GroupKeys,
+    pub(crate) node: &'a Node,
+    pub(crate) index: u64,
+}
+
+impl Group<'_> {
+    /// Name of the robot in `place`, counted from 0.
+    fn name(&self, place: usize) -> String {
+        format!("{}-{}", self.keys.name.as_ref().map_or("robot", |name| &name.value), place + 1)
+    }
+
+    fn push(&self, robot: Robot, drafts: &mut Vec<Draft>) {
+        let place = self.keys.name.as_ref().map_or(self.node.place, |name| name.place);
+        let name = Some(Found { place, value: robot.name.clone() });
+        // Leaders inside the group exist, and the one outside has been looked up.
+        drafts.push(Draft { named: Named { name, leader: None }, robot: Some(robot) });
+    }
+
+    /// Name and start pose of the robot in place 1, which is made if it is the group's own.
+    fn leader(
+        &self,
+        vehicle: &Vehicle,
+        drafts: &mut Vec<Draft>,
+        reading: &mut Reading,
+    ) -> Option<(String, Pose)> {
+        let keys = self.keys;
+        match (self.node.get("path"), self.node.get("leader")) {
+            (Some(_), None) => {
+                let (path, [x, y, heading]) = (keys.path.as_ref()?, keys.pose.as_ref()?.value);
+                check_path(path, vehicle, reading);
+                check_start(path, keys.pose.as_ref()?, reading);
+                let (name, pose) = (self.name(0), Pose::new(x, y, heading));
+                let role = Role::Lead { path: path.value.clone() };
+                self.push(Robot { name: name.clone(), pose, vehicle: *vehicle, role }, drafts);
+                Some((name, pose))
+            }
+            (None, Some(_)) => {
+                if let Some(pose) = self.node.entry("pose") {
+                    reading.note(
+                        pose.place,
+                        "`pose` is for groups with a `path`; this one starts at its leader",
+                    );
+                }
+                let leader = keys.leader.as_ref()?;
+                check_known(&leader.value, leader.place, drafts.iter().map(|draft| &draft.named), reading);
+                let is_leader = |robot: &&Robot| robot.name == leader.value;
+                let robot = drafts.iter().filter_map(|draft| draft.robot.as_ref()).find(is_leader)?;
+                Some((leader.value.clone(), robot.pose))
+            }
+            _ => {
+                reading
+                    .note(self.node.place, "a group needs either a `path` for its own leader, or a `leader`");
+                None
+            }
+        }
+    }
+}
+
+/// Seeded disorder of start poses.
+struct Scatter {
+    random: ChaCha8Rng,
+    /// m along each axis.
+    distance: f64,
+    /// rad.
+    heading: f64,
+}
+
+impl Scatter {
+    fn new(keys: &GroupKeys, index: u64, seed: u64) -> Option<Self> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        random.set_stream(index);
+        Some(Self {
+            random,
+            distance: keys.scatter.as_ref()?.value,
+            heading: keys.scatter_heading.as_ref()?.value,
+        })
+    }
+
+    /// A pose near [forward, left] in m as seen from `origin`.
+    fn around(&mut self, origin: Pose, [forward, left]: [f64; 2]) -> Pose {
+        let forward = forward + self.distance * self.next();
+        let left = left + self.distance * self.next();
+        let [x, y] = origin.world_from_body(forward, left);
+        Pose::new(x, y, wrap(origin.heading + self.heading * self.next()))
+    }
+
+    /// Evenly distributed in [−1, 1).
+    fn next(&mut self) -> f64 {
+        let bits = self.random.next_u64() >> 11;
+        bits as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}

@@ -1,0 +1,330 @@
+//! How a lead robot's path is written.
+
+use crate::{
+    Path, SpeedProfile,
+    table_file::{CsvForm, check_rising},
+    text::{
+        Form, Found, Node, Reading, couple, flag,
+        form::Number,
+        keys,
+        keys::{Field, Keys, TableReader, object},
+        list, number, table, triple,
+        words::{Words, not_a_word},
+    },
+};
+use serde_json::{Value as Json, json};
+
+/// Time of a row.
+pub(crate) const TIME: Number = number("s").from(0.0);
+/// Speed of a lead robot.
+pub(crate) const SPEED: Number = number("m/s").from(0.0).up_to(100.0);
+/// Change of a speed.
+const SPEED_CHANGE: Number = number("m/s").from(-100.0).up_to(100.0);
+/// Turn rate of a lead robot.
+pub(crate) const TURN_RATE: Number = number("rad/s").from(-1000.0).up_to(1000.0);
+/// Rate inside a sine.
+const RATE: Number = number("rad/s").from(-1000.0).up_to(1000.0);
+/// Most rows of a table or points of a curve.
+pub(crate) const MOST_ROWS: usize = 100_000;
+
+keys! {
+    /// Straight on, or round and round.
+    struct ConstantKeys {
+        /// m/s.
+        speed: f64 = SPEED, or(1.0);
+        /// rad/s, left positive.
+        turn_rate: f64 = TURN_RATE, or(0.0);
+    }
+}
+
+keys! {
+    /// mean + amplitude · sin(rate · t) for speed and turn rate.
+    struct SinusoidKeys {
+        /// Mean speed, m/s.
+        speed: f64 = SPEED, or(1.0);
+        /// Amplitude of the speed, m/s; at most the mean.
+        speed_amplitude: f64 = SPEED_CHANGE, or(0.0);
+        /// Rate of the speed, rad/s.
+        speed_rate: f64 = RATE, or(0.0);
+        /// Mean turn rate, rad/s, left positive.
+        turn_rate: f64 = TURN_RATE, or(0.0);
+        /// Amplitude of the turn rate, rad/s.
+        turn_rate_amplitude: f64 = TURN_RATE, or(0.0);
+        /// Rate of the turn rate, rad/s.
+        turn_rate_rate: f64 = RATE, or(0.0);
+    }
+}
+
+keys! {
+    /// A circle, by its radius or by the turn rate.
+    struct CircleKeys {
+        /// m/s.
+        speed: f64 = number("m/s").above(0.0).up_to(100.0), or(1.0);
+        /// m; or give `turn_rate`.
+        radius: f64 = number("m").above(0.0), optional;
+        /// rad/s, left positive; or give `radius`.
+        turn_rate: f64 = TURN_RATE, optional;
+        /// Which way round, with a radius; left where it is not said.
+        direction: f64 = DIRECTION, optional;
+    }
+}
+
+/// Sign of the turn rate.
+const DIRECTION: Words<f64> = Words(&[("left", 1.0, "Counter-clockwise."), ("right", -1.0, "Clockwise.")]);
+
+keys! {
+    /// Figure eights, over and over, by the length of a whole one or by the time it takes.
+    struct FigureEightKeys {
+        /// m/s.
+        speed: f64 = number("m/s").above(0.0).up_to(100.0), or(1.0);
+        /// Length of one whole eight, m; or give `period`.
+        length: f64 = number("m").above(0.0), optional;
+        /// Time for one whole eight, s; or give `length`.
+        period: f64 = number("s").above(0.0), optional;
+    }
+}
+
+keys! {
+    /// A smooth curve through points.
+    struct WaypointsKeys {
+        /// World coordinates [x, y], m; the robot starts at the first.
+        points: Vec<[f64; 2]> = list(couple(number("m"), number("m")), 2, MOST_ROWS), required;
+        /// Whether the curve returns to its first point and goes on.
+        closed: bool = flag(), or(false);
+        /// Speed along the curve.
+        speed: SpeedProfile = SpeedForm, or(SpeedProfile::Constant(1.0));
+    }
+}
+
+keys! {
+    /// Speed and turn rate from a table, linear in between, held after its last row.
+    struct TableKeys {
+        /// CSV file with columns t (s), v (m/s), omega (rad/s), beside the scene; or give `rows`.
+        file: Vec<[f64; 3]> = CsvForm, optional;
+        /// Rows of [time in s, speed in m/s, turn rate in rad/s], time rising from 0; or give `file`.
+        rows: Vec<[f64; 3]> = list(triple(TIME, SPEED, TURN_RATE), 1, MOST_ROWS), optional;
+    }
+}
+
+/// A constant speed, { distance = [[m, m/s], …] } or { time = [[s, m/s], …] }.
+struct SpeedForm;
+
+keys! {
+    /// A speed that changes along the way, smooth between its rows.
+    struct SpeedKeys {
+        /// Rows of [distance travelled in m, speed in m/s], rising from 0; or give `time`.
+        distance: Vec<[f64; 2]> = list(couple(number("m").from(0.0), SPEED), 1, MOST_ROWS), optional;
+        /// Rows of [time in s, speed in m/s], rising from 0; or give `distance`.
+        time: Vec<[f64; 2]> = list(couple(TIME, SPEED), 1, MOST_ROWS), optional;
+    }
+}
+
+impl Form for SpeedForm {
+    type Out = SpeedProfile;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<SpeedProfile> {
+        if node.as_number().is_some() {
+            return SPEED.read(node, reading).map(SpeedProfile::Constant);
+        }
+        let keys = table::<SpeedKeys>().read(node, reading)?;
+        let (rows, along_time) = one_of(node, ("distance", keys.distance), ("time", keys.time), reading)?;
+        check_rising(rows.value.iter().map(|row| row[0]), rows.place, reading);
+        // Travel stops for good where a profile over distance stands at 0.
+        if !along_time && rows.value.iter().any(|row| row[1] == 0.0) {
+            reading.note(
+                rows.place,
+                "a speed over distance must stay above 0: the robot would never leave that point",
+            );
+        }
+        Some(if along_time { SpeedProfile::Time(rows.value) } else { SpeedProfile::Distance(rows.value) })
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "anyOf": [SPEED.schema(), table::<SpeedKeys>().schema()] })
+    }
+}
+
+/// Whichever of two keys is given, and whether it was the second; a note if none or both are.
+fn one_of<T>(
+    node: &Node,
+    first: (&str, Option<Found<T>>),
+    second: (&str, Option<Found<T>>),
+    reading: &mut Reading,
+) -> Option<(Found<T>, bool)> {
+    match (first.1, second.1) {
+        (Some(found), None) => Some((found, false)),
+        (None, Some(found)) => Some((found, true)),
+        _ => {
+            // A key that is there but was wrong has its own note already.
+            let given = [first.0, second.0].iter().filter(|key| node.get(key).is_some()).count();
+            if given != 1 {
+                reading.note(node.place, format!("give either `{}` or `{}` here", first.0, second.0));
+            }
+            None
+        }
+    }
+}
+
+/// A kind of path: the keys of its table and what they make.
+trait PathKind: Keys {
+    /// The path, or `None` after a note.
+    fn path(self, node: &Node, reading: &mut Reading) -> Option<Path>;
+}
+
+impl PathKind for ConstantKeys {
+    fn path(self, _: &Node, _: &mut Reading) -> Option<Path> {
+        Some(Path::Constant { speed: self.speed?.value, turn_rate: self.turn_rate?.value })
+    }
+}
+
+impl PathKind for SinusoidKeys {
+    fn path(self, _: &Node, reading: &mut Reading) -> Option<Path> {
+        let (speed, amplitude) = (self.speed?.value, self.speed_amplitude?);
+        if amplitude.value.abs() > speed {
+            let message =
+                format!("`speed_amplitude` must be at most `speed`, {speed} m/s: nothing drives backwards");
+            reading.note(amplitude.place, message);
+        }
+        Some(Path::Sinusoid {
+            speed,
+            speed_amplitude: amplitude.value,
+            speed_rate: self.speed_rate?.value,
+            turn_rate: self.turn_rate?.value,
+            turn_rate_amplitude: self.turn_rate_amplitude?.value,
+            turn_rate_rate: self.turn_rate_rate?.value,
+        })
+    }
+}
+
+impl PathKind for CircleKeys {
+    fn path(self, node: &Node, reading: &mut Reading) -> Option<Path> {
+        let speed = self.speed?.value;
+        let (size, by_turn_rate) =
+            one_of(node, ("radius", self.radius), ("turn_rate", self.turn_rate), reading)?;
+        if by_turn_rate && let Some(direction) = self.direction {
+            reading.note(
+                direction.place,
+                "the sign of `turn_rate` says the direction already; left is positive",
+            );
+            return None;
+        }
+        if size.value == 0.0 {
+            reading.note(
+                size.place,
+                "a circle needs a `turn_rate` other than 0; a straight line is kind `constant`",
+            );
+            return None;
+        }
+        let sign = self.direction.map_or(1.0, |direction| direction.value);
+        let turn_rate = if by_turn_rate { size.value } else { sign * speed / size.value };
+        Some(Path::Circle { speed, turn_rate })
+    }
+}
+
+impl PathKind for FigureEightKeys {
+    fn path(self, node: &Node, reading: &mut Reading) -> Option<Path> {
+        let speed = self.speed?.value;
+        let (size, by_period) = one_of(node, ("length", self.length), ("period", self.period), reading)?;
+        Some(Path::FigureEight { speed, length: if by_period { speed * size.value } else { size.value } })
+    }
+}
+
+impl PathKind for WaypointsKeys {
+    fn path(self, _: &Node, reading: &mut Reading) -> Option<Path> {
+        let (points, closed) = (self.points?, self.closed?.value);
+        let (place, points) = (points.place, points.value);
+        if closed && points.len() < 3 {
+            reading.note(place, "a closed curve needs at least three points");
+        }
+        let back = if closed { points.first() } else { None };
+        let next = points.iter().skip(1).chain(back);
+        // Closer than this there is no telling in which direction the curve goes.
+        if points.iter().zip(next).any(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-3) {
+            reading.note(place, "neighbouring points of a curve must be at least 0.001 m apart");
+        }
+        Some(Path::Waypoints { points, closed, speed: self.speed?.value })
+    }
+}
+
+impl PathKind for TableKeys {
+    fn path(self, node: &Node, reading: &mut Reading) -> Option<Path> {
+        let (rows, from_file) = one_of(node, ("rows", self.rows), ("file", self.file), reading)?;
+        if !from_file {
+            check_rising(rows.value.iter().map(|row| row[0]), rows.place, reading);
+        }
+        Some(Path::Table { rows: rows.value })
+    }
+}
+
+/// One kind as [`PathForm`] needs it.
+struct Kind {
+    word: &'static str,
+    about: &'static str,
+    read: fn(&Node, &mut TableReader<'_>, &mut Reading) -> Option<Path>,
+    fields: fn() -> Vec<Field>,
+}
+
+const fn kind<K: PathKind>(word: &'static str) -> Kind {
+    Kind {
+        word,
+        about: K::ABOUT,
+        read: |node, table, reading| K::read(table, reading).path(node, reading),
+        fields: K::fields,
+    }
+}
+
+const KINDS: &[Kind] = &[
+    kind::<ConstantKeys>("constant"),
+    kind::<SinusoidKeys>("sinusoid"),
+    kind::<CircleKeys>("circle"),
+    kind::<FigureEightKeys>("figure-eight"),
+    kind::<WaypointsKeys>("waypoints"),
+    kind::<TableKeys>("table"),
+];
+
+/// A table whose `kind` says which other keys it has.
+pub(crate) struct PathForm;
+
+/// The word that `kind` is.
+struct KindForm;
+
+impl Form for KindForm {
+    type Out = &'static Kind;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<&'static Kind> {
+        let words = || KINDS.iter().map(|kind| kind.word);
+        let found = KINDS.iter().find(|kind| node.as_text() == Some(kind.word));
+        if found.is_none() {
+            not_a_word(node, words(), reading);
+        }
+        found
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "enum": KINDS.iter().map(|kind| kind.word).collect::<Vec<_>>() })
+    }
+}
+
+impl Form for PathForm {
+    type Out = Path;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Path> {
+        let mut table = TableReader::of(node, reading)?;
+        let kind = table.take("kind", &KindForm, true, reading)?.value;
+        let path = (kind.read)(node, &mut table, reading);
+        table.finish(reading);
+        path
+    }
+
+    fn schema(&self) -> Json {
+        let one = |kind: &Kind| {
+            let mut schema = object(kind.about, (kind.fields)());
+            schema["properties"]["kind"] = json!({ "const": kind.word });
+            if let Some(required) = schema["required"].as_array_mut() {
+                required.push(json!("kind"));
+            }
+            schema
+        };
+        json!({ "oneOf": KINDS.iter().map(one).collect::<Vec<_>>() })
+    }
+}

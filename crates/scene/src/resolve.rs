@@ -1,0 +1,266 @@
+//! From the keys of a file to the checked scene: defaults filled in, groups expanded, everything held against
+//! everything else.
+
+use crate::{
+    Film, Follow, Path, Robot, Role, Scene, Time, Vehicle, Views,
+    document::{Document, RobotKeys},
+    graph::{Named, check_graph, check_known},
+    groups::{Group, expand},
+    text::{Found, Node, Place, Reading},
+    types::{FOLLOW, FilmPart, LawPart, ObserverPart, TimePart, VehiclePart, ViewsPart},
+};
+use vocabulary::Pose;
+
+/// What holds for every robot that says nothing else.
+pub(crate) struct Defaults {
+    pub(crate) vehicle: VehiclePart,
+    pub(crate) law: LawPart,
+    pub(crate) observer: ObserverPart,
+}
+
+/// A robot as far as it could be made out, and where it came from.
+pub(crate) struct Draft {
+    pub(crate) named: Named,
+    /// `None` after a note.
+    pub(crate) robot: Option<Robot>,
+}
+
+/// The checked scene, or `None` after notes.
+pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) -> Option<Scene> {
+    document.schema?;
+    let seed = document.seed?.value;
+    let defaults = Defaults {
+        vehicle: document.vehicle?.value,
+        law: document.law?.value,
+        observer: document.observer?.value,
+    };
+    let time = time(&document.time?.value, reading);
+    let (robots, groups) = (document.robots, document.groups);
+    let (robots, groups) = (robots?.value, groups?.value);
+    let nodes = root.items("robots");
+    let mut drafts: Vec<_> =
+        robots.iter().zip(nodes).map(|(keys, node)| draft(keys, node, &defaults, reading)).collect();
+    for (index, (group, node)) in groups.iter().zip(root.items("groups")).enumerate() {
+        let group = Group { keys: group, node, index: index as u64 };
+        // A group that cannot be read has its notes already.
+        let _ = expand(&group, seed, &defaults, &mut drafts, reading);
+    }
+    if ["robots", "groups"].iter().all(|key| root.items(key).is_empty()) {
+        reading.note(root.place.first(), "a scene needs at least one robot: write [[robots]] or [[groups]]");
+    }
+    check_graph(drafts.iter().map(|draft| &draft.named), reading);
+    let views = views(&document.views?.value, &drafts, reading);
+    let film = film(&document.film?.value, &drafts, reading);
+    Some(Scene {
+        title: document.title?.value,
+        description: document.description?.value,
+        seed,
+        time,
+        sensing: document.sensing?.value.complete(&Default::default()),
+        robots: drafts.into_iter().map(|draft| draft.robot).collect::<Option<_>>()?,
+        environment: document.environment?.value.complete(&Default::default()),
+        views,
+        film,
+        expect: document.expect?.value.complete(&Default::default()),
+    })
+}
+
+/// More control steps than this are a slip of the pen.
+const MOST_STEPS: f64 = 1e8;
+
+fn time(part: &TimePart, reading: &mut Reading) -> Time {
+    let time = part.complete(&TimePart::default());
+    // The key that was written is the one to point at; the defaults fit each other.
+    let Some(place) = part.period.as_ref().map(|f| f.place).or(part.duration.as_ref().map(|f| f.place))
+    else {
+        return time;
+    };
+    if time.period > time.duration {
+        let Time { period, duration, .. } = time;
+        reading.note(place, format!("`period` of {period} s is larger than `duration` of {duration} s"));
+    } else if time.duration / time.period > MOST_STEPS {
+        let steps = time.duration / time.period;
+        reading.note(place, format!("{steps:.0} control periods in the run; the most are {MOST_STEPS:.0}"));
+    }
+    time
+}
+
+fn draft(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Reading) -> Draft {
+    let named = Named { name: keys.name.clone(), leader: keys.leader.clone() };
+    Draft { named, robot: robot(keys, node, defaults, reading) }
+}
+
+fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Reading) -> Option<Robot> {
+    let vehicle = vehicle(keys.vehicle.as_ref(), defaults, reading);
+    let role = role(keys, node, &vehicle, defaults, reading)?;
+    let [x, y, heading] = keys.pose.as_ref()?.value;
+    Some(Robot { name: keys.name.as_ref()?.value.clone(), pose: Pose::new(x, y, heading), vehicle, role })
+}
+
+/// The robot's vehicle, with a note where its limits contradict each other.
+pub(crate) fn vehicle(
+    part: Option<&Found<VehiclePart>>,
+    defaults: &Defaults,
+    reading: &mut Reading,
+) -> Vehicle {
+    let none = VehiclePart::default();
+    let part = part.map_or(&none, |found| &found.value);
+    let vehicle = part.complete(&defaults.vehicle);
+    let written =
+        [&part.speed_max, &part.speed_min, &defaults.vehicle.speed_max, &defaults.vehicle.speed_min];
+    if vehicle.speed_min >= vehicle.speed_max
+        && let Some(found) = written.into_iter().flatten().next()
+    {
+        let Vehicle { speed_min, speed_max, .. } = vehicle;
+        let message = format!("`speed_min` of {speed_min} m/s must be below `speed_max` of {speed_max} m/s");
+        reading.note(found.place, message);
+    }
+    vehicle
+}
+
+fn role(
+    keys: &RobotKeys,
+    node: &Node,
+    vehicle: &Vehicle,
+    defaults: &Defaults,
+    reading: &mut Reading,
+) -> Option<Role> {
+    let name = keys.name.as_ref()?;
+    match (node.get("path"), node.get("leader")) {
+        (Some(_), None) => {
+            for entry in
+                ["leader", "distance", "bearing", "speed", "law", "observer"].map(|key| node.entry(key))
+            {
+                if let Some(entry) = entry {
+                    let message =
+                        format!("`{}` is for robots that follow, but `{}` leads", entry.key, name.value);
+                    reading.note(entry.place, message);
+                }
+            }
+            let path = keys.path.as_ref()?;
+            check_path(path, vehicle, reading);
+            check_start(path, keys.pose.as_ref()?, reading);
+            Some(Role::Lead { path: path.value.clone() })
+        }
+        (None, Some(_)) => follow(keys, node, vehicle, defaults, reading).map(Role::Follow),
+        (Some(_), Some(leader)) => {
+            let message = format!("`{}` has a `path` and a `leader`; a robot leads or follows", name.value);
+            reading.note(leader.place, message);
+            None
+        }
+        (None, None) => {
+            let message = format!(
+                "robot `{}` is not connected: it needs a `path` to lead, or a `leader` to follow",
+                name.value
+            );
+            reading.note(name.place, message);
+            None
+        }
+    }
+}
+
+fn follow(
+    keys: &RobotKeys,
+    node: &Node,
+    vehicle: &Vehicle,
+    defaults: &Defaults,
+    reading: &mut Reading,
+) -> Option<Follow> {
+    for key in ["distance", "bearing"] {
+        if node.get(key).is_none() {
+            reading.note(
+                keys.leader.as_ref()?.place,
+                format!("`{key}` is missing: a robot that follows needs it"),
+            );
+        }
+    }
+    let law =
+        keys.law.as_ref().map_or_else(LawPart::default, |found| found.value.clone()).complete(&defaults.law);
+    let observer = keys.observer.as_ref().map_or_else(ObserverPart::default, |found| found.value.clone());
+    let speed = start_speed(keys.speed.as_ref(), vehicle, reading);
+    let (distance, bearing) = (keys.distance.as_ref()?, keys.bearing.as_ref()?);
+    check_distance(distance.value.least(), law.distance_min, distance.place, reading);
+    Some(Follow {
+        leader: keys.leader.as_ref()?.value.clone(),
+        speed,
+        distance: distance.value.clone(),
+        bearing: bearing.value.clone(),
+        law,
+        observer: observer.complete(&defaults.observer),
+    })
+}
+
+/// A follower's speed at the start, m/s.
+pub(crate) fn start_speed(speed: Option<&Found<f64>>, vehicle: &Vehicle, reading: &mut Reading) -> f64 {
+    let Some(speed) = speed else { return vehicle.speed_min };
+    let Vehicle { speed_min, speed_max, .. } = *vehicle;
+    if !(speed_min..=speed_max).contains(&speed.value) {
+        let message = format!(
+            "`speed` of {} m/s is outside the vehicle's limits, {speed_min} to {speed_max} m/s",
+            speed.value
+        );
+        reading.note(speed.place, message);
+    }
+    speed.value
+}
+
+/// Notes a wanted distance (m) that falls below the least one the law divides by.
+pub(crate) fn check_distance(least: f64, distance_min: f64, place: Place, reading: &mut Reading) {
+    if least < distance_min {
+        let message =
+            format!("`distance` falls to {least} m, below the law's `distance_min` of {distance_min} m");
+        reading.note(place, message);
+    }
+}
+
+/// Notes a path that its robot cannot drive.
+pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reading: &mut Reading) {
+    let (speed, turn_rate) = path.value.peaks();
+    if speed > vehicle.speed_max {
+        let message = format!(
+            "`path` reaches {speed} m/s, above the vehicle's `speed_max` of {} m/s",
+            vehicle.speed_max
+        );
+        reading.note(path.place, message);
+    }
+    if let Some(turn_rate) = turn_rate.filter(|rate| *rate > vehicle.turn_rate_max) {
+        let most = vehicle.turn_rate_max;
+        reading.note(
+            path.place,
+            format!("`path` turns at {turn_rate} rad/s, above `turn_rate_max` of {most} rad/s"),
+        );
+    }
+}
+
+/// Notes a robot that does not stand where its curve starts.
+pub(crate) fn check_start(path: &Found<Path>, pose: &Found<[f64; 3]>, reading: &mut Reading) {
+    if let Path::Waypoints { points, .. } = &path.value
+        && let Some([x, y]) = points.first()
+        && (x - pose.value[0]).hypot(y - pose.value[1]) > 1e-6
+    {
+        reading.note(pose.place, format!("`pose` must start at the first of the path's points, [{x}, {y}]"));
+    }
+}
+
+fn views(part: &ViewsPart, drafts: &[Draft], reading: &mut Reading) -> Views {
+    check_view(part.default.as_ref().map(|found| (found.place, found.value.as_str())), drafts, reading);
+    part.complete(&ViewsPart::default())
+}
+
+fn film(part: &FilmPart, drafts: &[Draft], reading: &mut Reading) -> Film {
+    let view = part.view.as_ref().and_then(|found| Some((found.place, found.value.as_deref()?)));
+    check_view(view, drafts, reading);
+    if let Some(size) = part.size.as_ref().filter(|size| size.value.iter().any(|side| side % 2 == 1)) {
+        reading.note(size.place, "`size` must be even both ways, as video needs it");
+    }
+    part.complete(&FilmPart::default())
+}
+
+/// Notes a view that follows a robot which is not there.
+fn check_view(view: Option<(Place, &str)>, drafts: &[Draft], reading: &mut Reading) {
+    if let Some((place, view)) = view
+        && let Some(name) = view.strip_prefix(FOLLOW)
+    {
+        check_known(name, place, drafts.iter().map(|draft| &draft.named), reading);
+    }
+}

@@ -1,0 +1,126 @@
+//! Tables of a lead robot's motion, in files beside the scene.
+
+use crate::{
+    files::read_text,
+    path_form::{MOST_ROWS, SPEED, TIME, TURN_RATE},
+    text::{Form, Node, Place, Reading, form::Number},
+};
+use serde_json::{Value as Json, json};
+
+/// Columns and the forms of their values.
+const COLUMNS: [(&str, Number); 3] = [("t", TIME), ("v", SPEED), ("omega", TURN_RATE)];
+
+/// The name of a CSV file with columns t, v, omega.
+pub(crate) struct CsvForm;
+
+impl Form for CsvForm {
+    type Out = Vec<[f64; 3]>;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Vec<[f64; 3]>> {
+        let Some(name) = node.as_text() else {
+            reading.wrong(node, "the name of a CSV file");
+            return None;
+        };
+        let path = reading.beside_scene(name);
+        let text = match read_text(&path) {
+            Ok(text) => text,
+            Err(fault) => {
+                reading.note(node.place, format!("{}: {fault}", path.display()));
+                return None;
+            }
+        };
+        let source = reading.add_source(path.display().to_string(), &text);
+        reading.files.push(path);
+        read_rows(&text, source, reading)
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "string" })
+    }
+}
+
+/// What is wrong with `value` as the next of numbers that rise from 0.
+fn out_of_order(last: Option<f64>, value: f64) -> Option<String> {
+    match last {
+        None if value != 0.0 => Some(format!("the first row must be at 0, not at {value}")),
+        Some(last) if value <= last => Some(format!("rows must rise: {value} follows {last}")),
+        _ => None,
+    }
+}
+
+/// Notes where numbers do not rise from 0.
+pub(crate) fn check_rising(values: impl Iterator<Item = f64>, place: Place, reading: &mut Reading) {
+    let mut last = None;
+    for value in values {
+        if let Some(fault) = out_of_order(last, value) {
+            reading.note(place, fault);
+            return;
+        }
+        last = Some(value);
+    }
+}
+
+fn read_rows(text: &str, source: usize, reading: &mut Reading) -> Option<Vec<[f64; 3]>> {
+    let mut table =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
+    let columns = find_columns(table.headers().ok()?, source, reading)?;
+    let mut rows = Vec::new();
+    let mut good = true;
+    for record in table.records() {
+        let (line, row) = match record {
+            Ok(record) => (line_at(&record, text, source), read_row(&record, columns)),
+            Err(error) => {
+                let start = error.position().map_or(0, |position| position.byte() as usize);
+                (Place { source, start, end: start }, Err(format!("not a row of the table: {error}")))
+            }
+        };
+        match row {
+            Ok(row) => {
+                if let Some(fault) = out_of_order(rows.last().map(|last: &[f64; 3]| last[0]), row[0]) {
+                    reading.note(line, fault);
+                }
+                rows.push(row);
+            }
+            Err(fault) => {
+                reading.note(line, fault);
+                good = false;
+            }
+        }
+        if rows.len() > MOST_ROWS {
+            reading.note(line, format!("more than {MOST_ROWS} rows"));
+            return None;
+        }
+    }
+    if good && rows.is_empty() {
+        reading.note(Place { source, start: 0, end: 0 }, "a table needs at least one row under its header");
+        return None;
+    }
+    good.then_some(rows)
+}
+
+fn find_columns(header: &csv::StringRecord, source: usize, reading: &mut Reading) -> Option<[usize; 3]> {
+    let find = |(name, _): (&str, Number)| header.iter().position(|column| column == name);
+    let [Some(t), Some(v), Some(omega)] = COLUMNS.map(find) else {
+        let names = COLUMNS.map(|(name, _)| name).join(", ");
+        let found = header.iter().take(10).collect::<Vec<_>>().join(", ");
+        reading.note(Place { source, start: 0, end: 0 }, format!("the columns must be {names}, not {found}"));
+        return None;
+    };
+    Some([t, v, omega])
+}
+
+fn read_row(record: &csv::StringRecord, columns: [usize; 3]) -> Result<[f64; 3], String> {
+    let mut row = [0.0; 3];
+    for ((value, column), (name, form)) in row.iter_mut().zip(columns).zip(COLUMNS) {
+        let text = record.get(column).unwrap_or("");
+        let number = text.parse().ok().filter(|number| form.holds(*number));
+        *value = number.ok_or_else(|| format!("`{name}` must be {}, not {text:?}", form.expected()))?;
+    }
+    Ok(row)
+}
+
+fn line_at(record: &csv::StringRecord, text: &str, source: usize) -> Place {
+    let start = record.position().map_or(0, |position| position.byte() as usize);
+    let length = text.get(start..).and_then(|rest| rest.lines().next()).map_or(0, str::len);
+    Place { source, start, end: start + length }
+}

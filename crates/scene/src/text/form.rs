@@ -1,0 +1,254 @@
+//! Forms: what a value may look like. Each reads its value, says what is wrong with it, and describes itself to
+//! the JSON Schema, so that the reader and the schema cannot disagree.
+
+use crate::text::{Node, Reading, Value};
+use serde_json::{Value as Json, json};
+use std::{f64::consts::PI, marker::PhantomData};
+use vocabulary::wrap;
+
+/// What a value may look like.
+pub(crate) trait Form {
+    /// What it is read into.
+    type Out;
+
+    /// The value, or `None` after a note on what is wrong with it.
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Self::Out>;
+
+    /// Its JSON Schema.
+    fn schema(&self) -> Json;
+}
+
+/// Numbers that differ from their bounds by rounding only still count as inside, angles of 180 deg above all.
+const ROUNDING: f64 = 1e-12;
+
+/// A number in a range.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Number {
+    unit: &'static str,
+    low: f64,
+    open: bool,
+    high: f64,
+    infinite: bool,
+}
+
+/// A finite number of any sensible size; `unit` is for messages.
+pub(crate) const fn number(unit: &'static str) -> Number {
+    Number { unit, low: -1e6, open: false, high: 1e6, infinite: false }
+}
+
+impl Number {
+    /// Larger than `low`.
+    pub(crate) const fn above(self, low: f64) -> Self {
+        Self { low, open: true, ..self }
+    }
+
+    /// At least `low`.
+    pub(crate) const fn from(self, low: f64) -> Self {
+        Self { low, open: false, ..self }
+    }
+
+    /// At most `high`.
+    pub(crate) const fn up_to(self, high: f64) -> Self {
+        Self { high, ..self }
+    }
+
+    /// `inf` is fine too.
+    pub(crate) const fn or_infinite(self) -> Self {
+        Self { infinite: true, ..self }
+    }
+
+    /// What it has to be, in words.
+    pub(crate) fn expected(&self) -> String {
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" in {}", self.unit) };
+        let infinite = if self.infinite { ", or inf" } else { "" };
+        let low = if self.open { "above" } else { "of at least" };
+        format!("a number{unit} {low} {} and at most {}{infinite}", self.low, self.high)
+    }
+
+    /// Whether `value` is in range.
+    pub(crate) fn holds(&self, value: f64) -> bool {
+        let low = if self.open { value > self.low } else { value >= self.low };
+        low && (value <= self.high || (self.infinite && value == f64::INFINITY))
+    }
+}
+
+impl Form for Number {
+    type Out = f64;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<f64> {
+        let value = node.as_number().filter(|value| self.holds(*value));
+        if value.is_none() {
+            reading.wrong(node, &self.expected());
+        }
+        value
+    }
+
+    fn schema(&self) -> Json {
+        let low = if self.open { "exclusiveMinimum" } else { "minimum" };
+        let high = if self.infinite { json!(null) } else { json!(self.high) };
+        let mut schema = json!({ "type": "number", low: self.low });
+        if !high.is_null() {
+            schema["maximum"] = high;
+        }
+        schema
+    }
+}
+
+/// An angle: a number in rad, or text with a unit such as "135 deg".
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Angle {
+    low: f64,
+    high: f64,
+    wrapped: bool,
+}
+
+/// An angle of at most half a turn either way, read into (−π, π].
+pub(crate) const fn angle() -> Angle {
+    Angle { low: -PI, high: PI, wrapped: true }
+}
+
+impl Angle {
+    /// From `low` to `high` in rad; stays as it is written.
+    pub(crate) const fn within(self, low: f64, high: f64) -> Self {
+        Self { low, high, wrapped: false }
+    }
+
+    /// Up to `turns` either way, still read into (−π, π].
+    pub(crate) const fn of_turns(self, turns: f64) -> Self {
+        Self { low: -turns * 2.0 * PI, high: turns * 2.0 * PI, ..self }
+    }
+}
+
+impl Form for Angle {
+    type Out = f64;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<f64> {
+        let value = node.as_number().or_else(|| node.as_text().and_then(angle_of_text));
+        let value = value.filter(|v| *v >= self.low - ROUNDING && *v <= self.high + ROUNDING);
+        if value.is_none() {
+            let [low, high] = [self.low, self.high].map(|bound| (bound.to_degrees() * 1e6).round() / 1e6);
+            reading.wrong(node, &format!("an angle, in rad or as \"135 deg\", from {low} deg to {high} deg"));
+        }
+        let value = value?.clamp(self.low, self.high);
+        Some(if self.wrapped { wrap(value) } else { value })
+    }
+
+    fn schema(&self) -> Json {
+        let [low, high] = [self.low - ROUNDING, self.high + ROUNDING];
+        json!({ "anyOf": [
+            { "type": "number", "minimum": low, "maximum": high },
+            { "type": "string", "pattern": r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\s*(deg|°|rad)\s*$" },
+        ] })
+    }
+}
+
+fn angle_of_text(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let degrees = text.strip_suffix("deg").or_else(|| text.strip_suffix('°'));
+    let (number, in_degrees) = match degrees {
+        Some(number) => (number, true),
+        None => (text.strip_suffix("rad")?, false),
+    };
+    let value: f64 = number.trim_end().parse().ok()?;
+    Some(if in_degrees { value.to_radians() } else { value })
+}
+
+/// A whole number in a range.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Integer<T>(u64, u64, PhantomData<T>);
+
+/// A whole number from `low` to `high`.
+pub(crate) const fn integer<T: TryFrom<u64>>(low: u64, high: u64) -> Integer<T> {
+    Integer(low, high, PhantomData)
+}
+
+impl<T: TryFrom<u64>> Form for Integer<T> {
+    type Out = T;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<T> {
+        let Self(low, high, _) = *self;
+        let value = match node.value {
+            Value::Integer(value) => u64::try_from(value).ok().filter(|value| (low..=high).contains(value)),
+            _ => None,
+        };
+        let value = value.and_then(|value| T::try_from(value).ok());
+        if value.is_none() {
+            let expected =
+                if low == high { low.to_string() } else { format!("a whole number from {low} to {high}") };
+            reading.wrong(node, &expected);
+        }
+        value
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "integer", "minimum": self.0, "maximum": self.1 })
+    }
+}
+
+/// `true` or `false`.
+pub(crate) struct Flag;
+
+/// `true` or `false`.
+pub(crate) const fn flag() -> Flag {
+    Flag
+}
+
+impl Form for Flag {
+    type Out = bool;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<bool> {
+        if let Value::Flag(flag) = node.value {
+            return Some(flag);
+        }
+        reading.wrong(node, "true or false");
+        None
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "boolean" })
+    }
+}
+
+/// Any text up to a length.
+pub(crate) struct Text(usize);
+
+/// Any text of up to `most` characters.
+pub(crate) const fn text(most: usize) -> Text {
+    Text(most)
+}
+
+impl Form for Text {
+    type Out = String;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
+        let value = node.as_text().filter(|text| text.chars().count() <= self.0);
+        if value.is_none() {
+            reading.wrong(node, &format!("text of at most {} characters", self.0));
+        }
+        value.map(str::to_owned)
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "string", "maxLength": self.0 })
+    }
+}
+
+/// Something that may be left out altogether.
+pub(crate) struct Optional<F>(F);
+
+/// A value without a default.
+pub(crate) const fn optional<F: Form>(form: F) -> Optional<F> {
+    Optional(form)
+}
+
+impl<F: Form> Form for Optional<F> {
+    type Out = Option<F::Out>;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Self::Out> {
+        self.0.read(node, reading).map(Some)
+    }
+
+    fn schema(&self) -> Json {
+        self.0.schema()
+    }
+}

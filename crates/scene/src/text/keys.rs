@@ -1,0 +1,239 @@
+//! Tables: which keys there are, what each means, its form and its default, all said once.
+
+use crate::text::{
+    Form, Node, Place, Reading, Value,
+    node::Entry,
+    words::{did_you_mean, nearest, quoted},
+};
+use serde_json::{Map, Value as Json, json};
+use std::marker::PhantomData;
+
+/// A value and where it was found.
+#[derive(Debug, Clone)]
+pub(crate) struct Found<T> {
+    pub(crate) place: Place,
+    pub(crate) value: T,
+}
+
+/// What was found, or else a default, as if it stood at `place`.
+pub(crate) fn found_or<T>(
+    found: Option<Found<T>>,
+    place: Place,
+    default: impl FnOnce() -> T,
+) -> Option<Found<T>> {
+    found.or_else(|| Some(Found { place, value: default() }))
+}
+
+/// A table with known keys; made by [`keys!`] or [`settings!`].
+pub(crate) trait Keys: Sized {
+    /// What the table is about.
+    const ABOUT: &'static str;
+
+    /// Reads every known key.
+    fn read(table: &mut TableReader<'_>, reading: &mut Reading) -> Self;
+
+    /// The JSON Schema of every known key.
+    fn fields() -> Vec<Field>;
+}
+
+/// A key as the JSON Schema sees it.
+pub(crate) struct Field {
+    pub(crate) key: &'static str,
+    pub(crate) about: &'static str,
+    pub(crate) required: bool,
+    pub(crate) default: Json,
+    pub(crate) schema: Json,
+}
+
+/// Reads the keys of one table and remembers which, so as to find those that nobody knows.
+pub(crate) struct TableReader<'n> {
+    place: Place,
+    entries: &'n [Entry],
+    known: Vec<&'static str>,
+}
+
+impl<'n> TableReader<'n> {
+    /// A reader of `node`, or `None` after a note that it is no table.
+    pub(crate) fn of(node: &'n Node, reading: &mut Reading) -> Option<Self> {
+        if let Value::Table(entries) = &node.value {
+            return Some(Self { place: node.place, entries, known: vec![] });
+        }
+        reading.wrong(node, "a table");
+        None
+    }
+
+    /// Where the table stands.
+    pub(crate) fn place(&self) -> Place {
+        self.place
+    }
+
+    /// Reads the value of `key`.
+    pub(crate) fn take<F: Form>(
+        &mut self,
+        key: &'static str,
+        form: &F,
+        required: bool,
+        reading: &mut Reading,
+    ) -> Option<Found<F::Out>> {
+        self.known.push(key);
+        let Some(entry) = self.entries.iter().find(|entry| entry.key == key) else {
+            if required {
+                reading.note(self.place, format!("`{key}` is missing"));
+            }
+            return None;
+        };
+        let value = reading.inside(key, |reading| form.read(&entry.node, reading))?;
+        Some(Found { place: entry.node.place, value })
+    }
+
+    /// Notes the keys that were not asked for.
+    pub(crate) fn finish(self, reading: &mut Reading) {
+        for entry in self.entries.iter().filter(|entry| !self.known.contains(&entry.key.as_str())) {
+            let known = self.known.iter().copied();
+            let hint = nearest(&entry.key, known.clone()).map_or_else(String::new, did_you_mean);
+            let message = format!("unknown key `{}`{hint} (known here: {})", entry.key, quoted(known));
+            reading.note(entry.place, message);
+        }
+    }
+}
+
+/// The form of a table with the keys of `K`.
+pub(crate) struct Table<K>(PhantomData<K>);
+
+/// The form of a table with the keys of `K`.
+pub(crate) const fn table<K: Keys>() -> Table<K> {
+    Table(PhantomData)
+}
+
+impl<K: Keys> Form for Table<K> {
+    type Out = K;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<K> {
+        let mut table = TableReader::of(node, reading)?;
+        let keys = K::read(&mut table, reading);
+        table.finish(reading);
+        Some(keys)
+    }
+
+    fn schema(&self) -> Json {
+        object(K::ABOUT, K::fields())
+    }
+}
+
+/// The JSON Schema of a table with these fields and no others.
+pub(crate) fn object(about: &str, fields: Vec<Field>) -> Json {
+    let required: Vec<_> = fields.iter().filter(|field| field.required).map(|field| field.key).collect();
+    let properties: Map<_, _> =
+        fields.into_iter().map(|field| (field.key.to_owned(), property(field))).collect();
+    json!({
+        "type": "object", "description": plain(about), "properties": properties, "required": required,
+        "additionalProperties": false,
+    })
+}
+
+fn property(field: Field) -> Json {
+    let mut schema = field.schema;
+    schema["description"] = json!(plain(field.about));
+    if !field.default.is_null() {
+        schema["default"] = field.default;
+    }
+    schema
+}
+
+/// A doc comment as running text.
+fn plain(about: &str) -> String {
+    about.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Defines what is read from a table: for each key its meaning, type and form, and whether it is `required`,
+/// `optional`, replaced by `or(…)` where it is missing, or a `part` that is empty where it is missing; a `default(…)`
+/// is filled in later.
+macro_rules! keys {
+    (
+        $(#[doc = $about:literal])*
+        struct $name:ident {
+            $( $(#[doc = $doc:literal])* $key:ident : $type:ty = $form:expr, $need:ident $(($default:expr))?; )+
+        }
+    ) => {
+        $(#[doc = $about])*
+        #[derive(Debug, Clone, Default)]
+        pub(crate) struct $name { $( pub(crate) $key: Option<$crate::text::Found<$type>>, )+ }
+
+        impl $crate::text::Keys for $name {
+            const ABOUT: &'static str = concat!($($about, " "),*);
+
+            fn read(table: &mut $crate::text::keys::TableReader<'_>, reading: &mut $crate::text::Reading) -> Self {
+                Self { $( $key: {
+                    let required = $crate::text::keys::keys!(@required $need);
+                    let found = table.take(stringify!($key), &$form, required, reading);
+                    $crate::text::keys::keys!(@found $need found, table $(, $default)?)
+                }, )+ }
+            }
+
+            fn fields() -> Vec<$crate::text::keys::Field> {
+                vec![ $( $crate::text::keys::Field {
+                    key: stringify!($key),
+                    about: concat!($($doc, " "),*),
+                    required: $crate::text::keys::keys!(@required $need),
+                    default: $crate::text::keys::keys!(@default $type $(, $default)?),
+                    schema: $crate::text::Form::schema(&$form),
+                }, )+ ]
+            }
+        }
+    };
+    (@required required) => { true };
+    (@required optional) => { false };
+    (@required or) => { false };
+    (@required default) => { false };
+    (@required part) => { false };
+    (@found or $found:ident, $table:ident, $default:expr) => {
+        $crate::text::keys::found_or($found, $table.place(), || $default)
+    };
+    (@found part $found:ident, $table:ident) => { $crate::text::keys::found_or($found, $table.place(), Default::default) };
+    (@found $need:ident $found:ident, $table:ident $(, $default:expr)?) => { $found };
+    (@default $type:ty) => { serde_json::Value::Null };
+    (@default $type:ty, $default:expr) => { serde_json::to_value::<$type>($default).unwrap_or_default() };
+}
+pub(crate) use keys;
+
+/// Defines a table in which every key has a default: its checked type `$name`, and `$part`, what one table of a file
+/// says of it.
+macro_rules! settings {
+    (
+        $(#[doc = $about:literal])*
+        $(#[derive($($derive:ident),*)])?
+        pub struct $name:ident from $part:ident {
+            $( $(#[doc = $doc:literal])* pub $key:ident : $type:ty = $default:expr, $form:expr; )+
+        }
+    ) => {
+        $(#[doc = $about])*
+        #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+        $(#[derive($($derive),*)])?
+        pub struct $name { $( $(#[doc = $doc])* pub $key: $type, )+ }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $( $key: $default, )+ }
+            }
+        }
+
+        $crate::text::keys::keys! {
+            $(#[doc = $about])*
+            struct $part { $( $(#[doc = $doc])* $key: $type = $form, default($default); )+ }
+        }
+
+        impl $part {
+            /// What is said here, else what `base` says, else the default.
+            pub(crate) fn complete(&self, base: &Self) -> $name {
+                let default = $name::default();
+                $name { $(
+                    $key: match self.$key.as_ref().or(base.$key.as_ref()) {
+                        Some(found) => found.value.clone(),
+                        None => default.$key,
+                    },
+                )+ }
+            }
+        }
+    };
+}
+pub(crate) use settings;

@@ -1,0 +1,133 @@
+//! Forms made of other forms: pairs and lists.
+
+use crate::text::{Form, Node, Reading, Value};
+use serde_json::{Value as Json, json};
+
+/// [distance, bearing], or one value for both.
+pub(crate) struct Pair<F>(F);
+
+/// Two values of the same form, or one for both.
+pub(crate) const fn pair<F: Form<Out = f64>>(form: F) -> Pair<F> {
+    Pair(form)
+}
+
+impl<F: Form<Out = f64>> Form for Pair<F> {
+    type Out = [f64; 2];
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<[f64; 2]> {
+        match &node.value {
+            Value::List(_) => couple(&self.0, &self.0).read(node, reading),
+            _ => self.0.read(node, reading).map(|both| [both, both]),
+        }
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "anyOf": [self.0.schema(), couple(&self.0, &self.0).schema()] })
+    }
+}
+
+/// Exactly two values.
+pub(crate) struct Couple<F, G>(F, G);
+
+/// Exactly two values, such as [distance, bearing].
+pub(crate) const fn couple<F: Form, G: Form<Out = F::Out>>(first: F, second: G) -> Couple<F, G> {
+    Couple(first, second)
+}
+
+impl<F: Form, G: Form<Out = F::Out>> Form for Couple<F, G> {
+    type Out = [F::Out; 2];
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Self::Out> {
+        if let Value::List(items) = &node.value
+            && let [first, second] = items.as_slice()
+        {
+            let (first, second) = (self.0.read(first, reading), self.1.read(second, reading));
+            return Some([first?, second?]);
+        }
+        reading.wrong(node, "a list of two values");
+        None
+    }
+
+    fn schema(&self) -> Json {
+        json!({
+            "type": "array", "minItems": 2, "maxItems": 2, "prefixItems": [self.0.schema(), self.1.schema()],
+        })
+    }
+}
+
+/// Exactly three values.
+pub(crate) struct Triple<F, G, H>(F, G, H);
+
+/// Exactly three values, such as [x, y, heading].
+pub(crate) const fn triple<F, G, H>(first: F, second: G, third: H) -> Triple<F, G, H> {
+    Triple(first, second, third)
+}
+
+impl<F: Form<Out = f64>, G: Form<Out = f64>, H: Form<Out = f64>> Form for Triple<F, G, H> {
+    type Out = [f64; 3];
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<[f64; 3]> {
+        if let Value::List(items) = &node.value
+            && let [first, second, third] = items.as_slice()
+        {
+            let (first, second) = (self.0.read(first, reading), self.1.read(second, reading));
+            let third = self.2.read(third, reading);
+            return Some([first?, second?, third?]);
+        }
+        reading.wrong(node, "a list of three values");
+        None
+    }
+
+    fn schema(&self) -> Json {
+        let items = [self.0.schema(), self.1.schema(), self.2.schema()];
+        json!({ "type": "array", "minItems": 3, "maxItems": 3, "prefixItems": items })
+    }
+}
+
+/// Any number of values between two counts.
+pub(crate) struct List<F> {
+    form: F,
+    least: usize,
+    most: usize,
+}
+
+/// A list of `least` to `most` values.
+pub(crate) const fn list<F: Form>(form: F, least: usize, most: usize) -> List<F> {
+    List { form, least, most }
+}
+
+impl<F: Form> Form for List<F> {
+    type Out = Vec<F::Out>;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Self::Out> {
+        match &node.value {
+            Value::List(items) if (self.least..=self.most).contains(&items.len()) => {
+                // All are read before giving up, so that every fault is told.
+                let read: Vec<_> = items.iter().map(|item| self.form.read(item, reading)).collect();
+                read.into_iter().collect()
+            }
+            _ => {
+                reading.wrong(node, &format!("a list of {} to {} values", self.least, self.most));
+                None
+            }
+        }
+    }
+
+    fn schema(&self) -> Json {
+        json!({
+            "type": "array", "minItems": self.least, "maxItems": self.most, "items": self.form.schema(),
+        })
+    }
+}
+
+impl<F: Form> Form for &F {
+    type Out = F::Out;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<F::Out> {
+        (*self).read(node, reading)
+    }
+
+    fn schema(&self) -> Json {
+        (*self).schema()
+    }
+}

@@ -1,0 +1,15 @@
+//! From characters to a tree that knows where each value stands, and from that tree to typed values.
+
+pub(crate) mod form;
+pub(crate) mod keys;
+pub(crate) mod lists;
+pub(crate) mod node;
+pub(crate) mod reading;
+pub(crate) mod words;
+
+pub(crate) use form::{Form, angle, flag, integer, number, optional, text};
+pub(crate) use keys::{Found, Keys, keys, settings, table};
+pub(crate) use lists::{couple, list, pair, triple};
+pub(crate) use node::{Node, Value};
+pub(crate) use reading::{Place, Reading};
+pub(crate) use words::words;

@@ -1,0 +1,128 @@
+//! What has been read so far: the texts, and what was found wrong with them.
+
+use crate::{Diagnostic, Diagnostics, text::Node};
+use std::path::{Path, PathBuf};
+
+/// More notes than this help nobody.
+const MOST_NOTES: usize = 200;
+
+/// Where something stands: bytes `start..end` of one of the texts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub(crate) struct Place {
+    pub(crate) source: usize,
+    pub(crate) start: usize,
+    pub(crate) end: usize,
+}
+
+impl Place {
+    /// Its first character.
+    pub(crate) fn first(self) -> Self {
+        Self { end: self.start, ..self }
+    }
+}
+
+struct Source {
+    origin: String,
+    text: String,
+}
+
+/// Texts read and faults found while a scene is loaded.
+pub(crate) struct Reading {
+    sources: Vec<Source>,
+    notes: Vec<(Place, String)>,
+    /// Key whose value is being read.
+    key: String,
+    /// Folder in which the tables of a scene are looked for.
+    folder: PathBuf,
+    /// Files read besides the scene.
+    pub(crate) files: Vec<PathBuf>,
+}
+
+impl Reading {
+    pub(crate) fn new(folder: &Path) -> Self {
+        Self { sources: vec![], notes: vec![], key: String::new(), folder: folder.to_owned(), files: vec![] }
+    }
+
+    /// Keeps a text, so that places in it can be shown; returns its number.
+    pub(crate) fn add_source(&mut self, origin: String, text: &str) -> usize {
+        self.sources.push(Source { origin, text: text.to_owned() });
+        self.sources.len() - 1
+    }
+
+    /// Path of a file named in the scene.
+    pub(crate) fn beside_scene(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    pub(crate) fn note(&mut self, place: Place, message: impl Into<String>) {
+        if self.notes.len() < MOST_NOTES {
+            self.notes.push((place, message.into()));
+        }
+    }
+
+    /// Notes that the value being read is not what it has to be.
+    pub(crate) fn wrong(&mut self, node: &Node, expected: &str) {
+        let subject = if self.key.is_empty() { "this".to_owned() } else { format!("`{}`", self.key) };
+        let found = node.describe(self.shown(node.place));
+        self.note(node.place, format!("{subject} must be {expected}, not {found}"));
+    }
+
+    /// Does `work` as part of reading the value of `key`.
+    pub(crate) fn inside<T>(&mut self, key: &str, work: impl FnOnce(&mut Self) -> T) -> T {
+        let outer = std::mem::replace(&mut self.key, key.to_owned());
+        let result = work(self);
+        self.key = outer;
+        result
+    }
+
+    /// Adds to the last note.
+    pub(crate) fn append_to_last(&mut self, more: &str) {
+        if let Some((_, message)) = self.notes.last_mut() {
+            message.push_str(more);
+        }
+    }
+
+    pub(crate) fn is_clean(&self) -> bool {
+        self.notes.is_empty()
+    }
+
+    pub(crate) fn into_diagnostics(mut self) -> Diagnostics {
+        self.notes.sort();
+        self.notes.dedup();
+        Diagnostics(self.notes.iter().map(|(place, message)| self.diagnostic(*place, message)).collect())
+    }
+
+    fn shown(&self, place: Place) -> &str {
+        self.sources.get(place.source).and_then(|s| s.text.get(place.start..place.end)).unwrap_or("")
+    }
+
+    fn diagnostic(&self, place: Place, message: &str) -> Diagnostic {
+        let message = message.to_owned();
+        let Some(source) = self.sources.get(place.source) else {
+            return Diagnostic {
+                origin: String::new(),
+                line: 0,
+                column: 0,
+                excerpt: String::new(),
+                width: 1,
+                message,
+            };
+        };
+        let (before, after) = source.text.split_at(floor_boundary(&source.text, place.start));
+        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
+        let rest = after.split(['\n', '\r']).next().unwrap_or("");
+        let meant = self.shown(place).split(['\n', '\r']).next().unwrap_or("");
+        Diagnostic {
+            origin: source.origin.clone(),
+            line: before.bytes().filter(|byte| *byte == b'\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+            excerpt: format!("{}{rest}", &before[line_start..]),
+            width: meant.trim_end().chars().count().max(1),
+            message,
+        }
+    }
+}
+
+fn floor_boundary(text: &str, at: usize) -> usize {
+    (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0)
+}

@@ -1,0 +1,79 @@
+//! Keys and values that are one of a few words, and the nearest of them to a misspelt one.
+
+use crate::text::{Form, Node, Reading};
+use serde_json::{Value as Json, json};
+
+/// A form that takes one of a few words.
+pub(crate) struct Words<T: 'static>(pub(crate) &'static [(&'static str, T, &'static str)]);
+
+impl<T: Copy + 'static> Form for Words<T> {
+    type Out = T;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<T> {
+        let found = self.0.iter().find(|(word, ..)| node.as_text() == Some(*word));
+        if found.is_none() {
+            not_a_word(node, self.0.iter().map(|(word, ..)| *word), reading);
+        }
+        found.map(|(_, value, _)| *value)
+    }
+
+    fn schema(&self) -> Json {
+        let options =
+            self.0.iter().map(|(word, _, about)| json!({ "const": word, "description": about.trim() }));
+        json!({ "oneOf": options.collect::<Vec<_>>() })
+    }
+}
+
+/// Notes that `node` is none of `words`, with the nearest.
+pub(crate) fn not_a_word<'a>(
+    node: &Node,
+    words: impl Iterator<Item = &'a str> + Clone,
+    reading: &mut Reading,
+) {
+    let near = node.as_text().and_then(|text| nearest(text, words.clone()));
+    reading.wrong(node, &format!("one of {}", quoted(words)));
+    reading.append_to_last(&near.map_or_else(String::new, did_you_mean));
+}
+
+/// The words in backquotes, separated by commas.
+pub(crate) fn quoted<'a>(words: impl Iterator<Item = &'a str>) -> String {
+    words.map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// The word a writer most likely meant.
+pub(crate) fn nearest<'a>(text: &str, words: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    // Longer texts are no slips of the pen, and comparing them takes time.
+    let text = text.get(..text.len().min(60))?.to_lowercase();
+    let close = words.map(|word| (strsim::damerau_levenshtein(&text, &word.to_lowercase()), word));
+    let (distance, word) = close.min_by_key(|(distance, _)| *distance)?;
+    (distance <= 1 + word.chars().count() / 3).then_some(word)
+}
+
+/// The end of a message that names the nearest valid word.
+pub(crate) fn did_you_mean(word: &str) -> String {
+    format!(", did you mean `{word}`?")
+}
+
+/// Defines a public enum whose variants are words of a scene file: its type, its form and how it is written.
+macro_rules! words {
+    (
+        $(#[doc = $about:literal])*
+        $vis:vis enum $name:ident { $( $(#[doc = $doc:literal])* $variant:ident = $word:literal, )+ }
+    ) => {
+        $(#[doc = $about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+        $vis enum $name { $( $(#[doc = $doc])* #[serde(rename = $word)] $variant, )+ }
+
+        impl $name {
+            pub(crate) const fn form() -> $crate::text::words::Words<Self> {
+                $crate::text::words::Words(&[$( ($word, Self::$variant, concat!($($doc),*)), )+])
+            }
+
+            /// The word for it in a scene file.
+            $vis const fn word(self) -> &'static str {
+                match self { $( Self::$variant => $word, )+ }
+            }
+        }
+    };
+}
+pub(crate) use words;

@@ -1,0 +1,44 @@
+//! What a run has to show.
+
+use crate::text::{
+    angle, couple, flag, form::Angle, form::Number, lists::Couple, number, optional, settings,
+};
+use std::f64::consts::PI;
+
+/// Size of a distance error.
+const LENGTH: Number = number("m").from(0.0);
+/// Size of a bearing error.
+const TURN: Angle = angle().within(0.0, PI);
+/// Sizes of both.
+const ERROR: Couple<Number, Angle> = couple(LENGTH, TURN);
+/// Sizes of the rates of both.
+const RATES: Couple<Number, Number> = couple(number("m/s").from(0.0), number("rad/s").from(0.0));
+
+settings! {
+    /// What a run has to show, so that a scene is a test. What is left out is not asked for.
+    #[derive(Copy)]
+    pub struct Expect from ExpectPart {
+        /// Whether the run has to reach its duration.
+        pub completed: bool = true, flag();
+        /// Whether no two bodies may ever touch.
+        pub no_contact: bool = false, flag();
+        /// Largest |distance error| of any edge at the end, m.
+        pub final_distance_error: Option<f64> = None, optional(LENGTH);
+        /// Largest |bearing error| of any edge at the end, rad.
+        pub final_bearing_error: Option<f64> = None, optional(TURN);
+        /// Time after which the errors of every edge stay inside `settling_band`, s.
+        pub settling_time: Option<f64> = None, optional(number("s").from(0.0));
+        /// |error| [m, rad] under which an edge counts as settled.
+        pub settling_band: [f64; 2] = [0.02, 0.02], ERROR;
+        /// Smallest distance between the outlines of any two bodies over the run, m.
+        pub clearance_min: Option<f64> = None, optional(LENGTH);
+        /// [slowest, fastest] speed any follower may have after `settling_time` (the whole run without one), m/s.
+        pub speed_within: Option<[f64; 2]> = None, optional(couple(number("m/s"), number("m/s")));
+        /// What the largest |estimated rate| of [distance, bearing] of some edge has to reach, [m/s, rad/s]: peaking.
+        pub rate_peak_at_least: Option<[f64; 2]> = None, optional(RATES);
+        /// What no |estimated rate| of [distance, bearing] of any edge may exceed, [m/s, rad/s].
+        pub rate_peak_at_most: Option<[f64; 2]> = None, optional(RATES);
+        /// What no |error| of any edge may exceed over the whole run, [m, rad].
+        pub error_peak_at_most: Option<[f64; 2]> = None, optional(ERROR);
+    }
+}
