@@ -4,7 +4,7 @@ use crate::{
     Channel, Path,
     path_form::PathForm,
     text::{
-        Form, Node, Reading, angle,
+        Form, Node, Reading, angle_of_turns, angle_within,
         form::{Angle, Number},
         integer, keys, list,
         lists::Triple,
@@ -23,7 +23,7 @@ pub(crate) const SCHEMA_VERSION: u64 = 1;
 /// Most robots of a scene.
 pub(crate) const MOST_ROBOTS: usize = 10_000;
 /// Start pose [m, m, rad].
-const POSE: Triple<Number, Number, Angle> = triple(number("m"), number("m"), angle().of_turns(10.0));
+const POSE: Triple<Number, Number, Angle> = triple(number("m"), number("m"), angle_of_turns(10.0));
 /// Speed at the start.
 const SPEED: Number = number("m/s").from(0.0).up_to(100.0);
 
@@ -69,8 +69,8 @@ keys! {
     struct RobotKeys {
         /// Unique name.
         name: String = NameForm, required;
-        /// Where it starts: [x in m, y in m, heading].
-        pose: [f64; 3] = POSE, required;
+        /// Where it starts: [x in m, y in m, heading]; may be left out with way-points, which say it.
+        pose: [f64; 3] = POSE, optional;
         /// Motion of a robot that leads.
         path: Path = PathForm, optional;
         /// Name of the robot that is followed.
@@ -105,17 +105,18 @@ keys! {
         path: Path = PathForm, optional;
         /// Name of a robot outside the group that leads it; or give `path`.
         leader: String = NameForm, optional;
-        /// Where the group's leader starts, with a `path`: [x in m, y in m, heading].
-        pose: [f64; 3] = POSE, or([0.0; 3]);
+        /// Where the group's leader starts, with a `path`: [x in m, y in m, heading]; the origin, or the path's
+        /// first way-point, if left out.
+        pose: [f64; 3] = POSE, optional;
         /// Distance between neighbours, m.
         distance: f64 = number("m").above(0.0).up_to(1000.0), or(2.0);
         /// Bearing of a neighbour in shapes `v` and `diamond`.
-        angle: f64 = angle().within(FRAC_PI_2, PI), or(0.75 * PI);
+        angle: f64 = angle_within(FRAC_PI_2, PI), or(0.75 * PI);
         /// Followers start at most this far from their places along each axis, m, by the scene's seed; 0 starts in
         /// formation.
         scatter: f64 = number("m").from(0.0).up_to(1000.0), or(0.3);
         /// Headings start at most this far from the leader's.
-        scatter_heading: f64 = angle().within(0.0, PI), or(10f64.to_radians());
+        scatter_heading: f64 = angle_within(0.0, PI), or(10f64.to_radians());
         /// Speed of the followers at the start, m/s; their `speed_min` if left out.
         speed: f64 = SPEED, optional;
         /// What differs from the scene's `vehicle`.

@@ -13,9 +13,11 @@ use std::collections::HashMap;
 pub(crate) struct Named {
     pub(crate) name: Option<Found<String>>,
     pub(crate) leader: Option<Found<String>>,
+    /// Whether it goes its own way.
+    pub(crate) leads: bool,
 }
 
-/// Notes duplicate names, unknown leaders, robots that follow themselves, and cycles.
+/// Notes duplicate names, unknown leaders, robots that follow themselves, second formations, and cycles.
 pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, reading: &mut Reading) {
     let mut leader_of: HashMap<&str, Option<&Found<String>>> = HashMap::new();
     for robot in robots.clone() {
@@ -32,6 +34,17 @@ pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, r
             check_known(&leader.value, leader.place, robots.clone(), reading);
         }
     }
+    // Whoever follows has one leader, so there are as many formations as robots that lead.
+    let mut heads = robots.clone().filter(|robot| robot.leads).filter_map(|robot| robot.name.as_ref());
+    if let Some(first) = heads.next() {
+        for other in heads {
+            let (name, head) = (&other.value, &first.value);
+            reading.note(
+                other.place,
+                format!("`{name}` is not connected: `{head}` leads already, and one robot leads"),
+            );
+        }
+    }
     check_cycles(robots, &leader_of, reading);
 }
 
@@ -42,10 +55,11 @@ pub(crate) fn check_known<'a>(
     robots: impl Iterator<Item = &'a Named> + Clone,
     reading: &mut Reading,
 ) {
-    let mut names = robots.filter_map(|robot| Some(robot.name.as_ref()?.value.as_str()));
-    if names.clone().any(|known| known == name) {
+    // A robot whose name cannot be read may be the one that is meant.
+    if robots.clone().any(|robot| robot.name.as_ref().is_none_or(|known| known.value == name)) {
         return;
     }
+    let mut names = robots.filter_map(|robot| Some(robot.name.as_ref()?.value.as_str()));
     // With very many robots the nearest of the first ones has to do.
     let hint = nearest(name, names.by_ref().take(1000)).map_or_else(String::new, did_you_mean);
     reading.note(place, format!("there is no robot called `{name}`{hint}"));

@@ -4,7 +4,7 @@ use crate::{
     Channel, Follow, Robot, Role, Vehicle,
     document::{GroupKeys, MOST_ROBOTS},
     graph::{Named, check_known},
-    resolve::{Defaults, Draft, check_distance, check_path, check_start, start_speed, vehicle},
+    resolve::{Defaults, Draft, check_distance, check_path, start_pose, start_speed, vehicle},
     text::{Found, Node, Reading},
 };
 use rand_chacha::{
@@ -77,8 +77,9 @@ impl Group<'_> {
     fn push(&self, robot: Robot, drafts: &mut Vec<Draft>) {
         let place = self.keys.name.as_ref().map_or(self.node.place, |name| name.place);
         let name = Some(Found { place, value: robot.name.clone() });
+        let leads = matches!(robot.role, Role::Lead { .. });
         // Leaders inside the group exist, and the one outside has been looked up.
-        drafts.push(Draft { named: Named { name, leader: None }, robot: Some(robot) });
+        drafts.push(Draft { named: Named { name, leader: None, leads }, robot: Some(robot) });
     }
 
     /// Name and start pose of the robot in place 1, which is made if it is the group's own.
@@ -91,10 +92,12 @@ impl Group<'_> {
         let keys = self.keys;
         match (self.node.get("path"), self.node.get("leader")) {
             (Some(_), None) => {
-                let (path, [x, y, heading]) = (keys.path.as_ref()?, keys.pose.as_ref()?.value);
+                let path = keys.path.as_ref()?;
                 check_path(path, vehicle, reading);
-                check_start(path, keys.pose.as_ref()?, reading);
-                let (name, pose) = (self.name(0), Pose::new(x, y, heading));
+                let origin = Found { place: self.node.place, value: [0.0; 3] };
+                let given = keys.pose.as_ref().or(path.value.start().is_none().then_some(&origin));
+                let pose = start_pose(given, Some(&path.value), self.node.place, reading)?;
+                let name = self.name(0);
                 let role = Role::Lead { path: path.value.clone() };
                 self.push(Robot { name: name.clone(), pose, vehicle: *vehicle, role }, drafts);
                 Some((name, pose))

@@ -49,7 +49,8 @@ impl Override {
     pub(crate) fn apply(&self, root: &mut Node, reading: &mut Reading) {
         let source = reading.add_source("--set".to_owned(), &self.0);
         let (path, value) = self.0.split_once('=').unwrap_or((&self.0, ""));
-        let value = Node::parse_value(value, source, path.len() + 1);
+        let indent = value.len() - value.trim_start().len();
+        let value = Node::parse_value(value.trim(), source, path.len() + 1 + indent);
         let mut start = 0;
         let parts = path.split('.').map(|text| {
             let place = Place { source, start, end: start + text.len() };

@@ -30,9 +30,9 @@ pub(crate) const MOST_ROWS: usize = 100_000;
 keys! {
     /// Straight on, or round and round.
     struct ConstantKeys {
-        /// m/s.
+        /// Speed, m/s.
         speed: f64 = SPEED, or(1.0);
-        /// rad/s, left positive.
+        /// Turn rate, rad/s, left positive.
         turn_rate: f64 = TURN_RATE, or(0.0);
     }
 }
@@ -58,11 +58,11 @@ keys! {
 keys! {
     /// A circle, by its radius or by the turn rate.
     struct CircleKeys {
-        /// m/s.
+        /// Speed, m/s.
         speed: f64 = number("m/s").above(0.0).up_to(100.0), or(1.0);
-        /// m; or give `turn_rate`.
+        /// Radius, m; or give `turn_rate`.
         radius: f64 = number("m").above(0.0), optional;
-        /// rad/s, left positive; or give `radius`.
+        /// Turn rate, rad/s, left positive; or give `radius`.
         turn_rate: f64 = TURN_RATE, optional;
         /// Which way round, with a radius; left where it is not said.
         direction: f64 = DIRECTION, optional;
@@ -75,7 +75,7 @@ const DIRECTION: Words<f64> = Words(&[("left", 1.0, "Counter-clockwise."), ("rig
 keys! {
     /// Figure eights, over and over, by the length of a whole one or by the time it takes.
     struct FigureEightKeys {
-        /// m/s.
+        /// Speed, m/s.
         speed: f64 = number("m/s").above(0.0).up_to(100.0), or(1.0);
         /// Length of one whole eight, m; or give `period`.
         length: f64 = number("m").above(0.0), optional;

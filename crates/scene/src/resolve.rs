@@ -7,7 +7,10 @@ use crate::{
     graph::{Named, check_graph, check_known},
     groups::{Group, expand},
     text::{Found, Node, Place, Reading},
-    types::{FOLLOW, FilmPart, LawPart, ObserverPart, TimePart, VehiclePart, ViewsPart},
+    types::{
+        EnvironmentPart, ExpectPart, FOLLOW, FilmPart, LawPart, ObserverPart, SensingPart, TimePart,
+        VehiclePart, ViewsPart,
+    },
 };
 use vocabulary::Pose;
 
@@ -56,12 +59,12 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         description: document.description?.value,
         seed,
         time,
-        sensing: document.sensing?.value.complete(&Default::default()),
+        sensing: document.sensing?.value.complete(&SensingPart::default()),
         robots: drafts.into_iter().map(|draft| draft.robot).collect::<Option<_>>()?,
-        environment: document.environment?.value.complete(&Default::default()),
+        environment: document.environment?.value.complete(&EnvironmentPart::default()),
         views,
         film,
-        expect: document.expect?.value.complete(&Default::default()),
+        expect: document.expect?.value.complete(&ExpectPart::default()),
     })
 }
 
@@ -86,15 +89,24 @@ fn time(part: &TimePart, reading: &mut Reading) -> Time {
 }
 
 fn draft(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Reading) -> Draft {
-    let named = Named { name: keys.name.clone(), leader: keys.leader.clone() };
+    let named = Named {
+        name: keys.name.clone(),
+        leader: keys.leader.clone(),
+        leads: node.get("path").is_some() && node.get("leader").is_none(),
+    };
     Draft { named, robot: robot(keys, node, defaults, reading) }
 }
 
 fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Reading) -> Option<Robot> {
     let vehicle = vehicle(keys.vehicle.as_ref(), defaults, reading);
-    let role = role(keys, node, &vehicle, defaults, reading)?;
-    let [x, y, heading] = keys.pose.as_ref()?.value;
-    Some(Robot { name: keys.name.as_ref()?.value.clone(), pose: Pose::new(x, y, heading), vehicle, role })
+    let role = role(keys, node, &vehicle, defaults, reading);
+    let path = keys.path.as_ref().map(|path| &path.value);
+    let pose = match (node.get("pose"), &keys.pose) {
+        // It is there, and has its note.
+        (Some(_), None) => None,
+        (_, pose) => start_pose(pose.as_ref(), path, node.place, reading),
+    };
+    Some(Robot { name: keys.name.as_ref()?.value.clone(), pose: pose?, vehicle, role: role? })
 }
 
 /// The robot's vehicle, with a note where its limits contradict each other.
@@ -128,18 +140,14 @@ fn role(
     let name = keys.name.as_ref()?;
     match (node.get("path"), node.get("leader")) {
         (Some(_), None) => {
-            for entry in
-                ["leader", "distance", "bearing", "speed", "law", "observer"].map(|key| node.entry(key))
-            {
-                if let Some(entry) = entry {
-                    let message =
-                        format!("`{}` is for robots that follow, but `{}` leads", entry.key, name.value);
-                    reading.note(entry.place, message);
-                }
+            let theirs = ["leader", "distance", "bearing", "speed", "law", "observer"];
+            for entry in theirs.into_iter().filter_map(|key| node.entry(key)) {
+                let message =
+                    format!("`{}` is for robots that follow, but `{}` leads", entry.key, name.value);
+                reading.note(entry.place, message);
             }
             let path = keys.path.as_ref()?;
             check_path(path, vehicle, reading);
-            check_start(path, keys.pose.as_ref()?, reading);
             Some(Role::Lead { path: path.value.clone() })
         }
         (None, Some(_)) => follow(keys, node, vehicle, defaults, reading).map(Role::Follow),
@@ -232,14 +240,27 @@ pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reading: &mut Re
     }
 }
 
-/// Notes a robot that does not stand where its curve starts.
-pub(crate) fn check_start(path: &Found<Path>, pose: &Found<[f64; 3]>, reading: &mut Reading) {
-    if let Path::Waypoints { points, .. } = &path.value
-        && let Some([x, y]) = points.first()
-        && (x - pose.value[0]).hypot(y - pose.value[1]) > 1e-6
-    {
-        reading.note(pose.place, format!("`pose` must start at the first of the path's points, [{x}, {y}]"));
+/// Where a robot starts: its `pose`, or the start of its path; a note if they contradict each other or are missing.
+pub(crate) fn start_pose(
+    pose: Option<&Found<[f64; 3]>>,
+    path: Option<&Path>,
+    place: Place,
+    reading: &mut Reading,
+) -> Option<Pose> {
+    let start = path.and_then(Path::start);
+    let Some(pose) = pose else {
+        if start.is_none() {
+            reading.note(place, "`pose` is missing: write [x, y, heading]");
+        }
+        return start;
+    };
+    let [x, y, heading] = pose.value;
+    if let Some(start) = start.filter(|start| (x - start.x).hypot(y - start.y) > 1e-6) {
+        let message =
+            format!("`pose` must start at the first of the path's points, [{}, {}]", start.x, start.y);
+        reading.note(pose.place, message);
     }
+    Some(Pose::new(x, y, heading))
 }
 
 fn views(part: &ViewsPart, drafts: &[Draft], reading: &mut Reading) -> Views {

@@ -3,7 +3,10 @@
 
 use crate::text::{Node, Reading, Value};
 use serde_json::{Value as Json, json};
-use std::{f64::consts::PI, marker::PhantomData};
+use std::{
+    f64::consts::{PI, TAU},
+    marker::PhantomData,
+};
 use vocabulary::wrap;
 
 /// What a value may look like.
@@ -61,8 +64,8 @@ impl Number {
     pub(crate) fn expected(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" in {}", self.unit) };
         let infinite = if self.infinite { ", or inf" } else { "" };
-        let low = if self.open { "above" } else { "of at least" };
-        format!("a number{unit} {low} {} and at most {}{infinite}", self.low, self.high)
+        let (low, and) = if self.open { ("above", "and at most") } else { ("from", "to") };
+        format!("a number{unit} {low} {} {and} {}{infinite}", self.low, self.high)
     }
 
     /// Whether `value` is in range.
@@ -107,16 +110,14 @@ pub(crate) const fn angle() -> Angle {
     Angle { low: -PI, high: PI, wrapped: true }
 }
 
-impl Angle {
-    /// From `low` to `high` in rad; stays as it is written.
-    pub(crate) const fn within(self, low: f64, high: f64) -> Self {
-        Self { low, high, wrapped: false }
-    }
+/// An angle from `low` to `high` in rad; it stays as it is written.
+pub(crate) const fn angle_within(low: f64, high: f64) -> Angle {
+    Angle { low, high, wrapped: false }
+}
 
-    /// Up to `turns` either way, still read into (−π, π].
-    pub(crate) const fn of_turns(self, turns: f64) -> Self {
-        Self { low: -turns * 2.0 * PI, high: turns * 2.0 * PI, ..self }
-    }
+/// An angle of up to `turns` either way, read into (−π, π].
+pub(crate) const fn angle_of_turns(turns: f64) -> Angle {
+    Angle { low: -turns * TAU, high: turns * TAU, wrapped: true }
 }
 
 impl Form for Angle {

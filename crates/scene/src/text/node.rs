@@ -54,10 +54,9 @@ impl Node {
     pub(crate) fn parse_value(text: &str, source: usize, offset: usize) -> Self {
         match DeValue::parse(text) {
             Ok(value) => from_value(value.get_ref(), place(source, offset, &value.span()), offset),
-            Err(_) => Self {
-                place: place(source, offset, &(0..text.len())),
-                value: Value::Text(text.trim().to_owned()),
-            },
+            Err(_) => {
+                Self { place: place(source, offset, &(0..text.len())), value: Value::Text(text.to_owned()) }
+            }
         }
     }
 

@@ -1,14 +1,14 @@
 //! What a run has to show.
 
 use crate::text::{
-    angle, couple, flag, form::Angle, form::Number, lists::Couple, number, optional, settings,
+    angle_within, couple, flag, form::Angle, form::Number, lists::Couple, number, optional, settings,
 };
 use std::f64::consts::PI;
 
 /// Size of a distance error.
 const LENGTH: Number = number("m").from(0.0);
 /// Size of a bearing error.
-const TURN: Angle = angle().within(0.0, PI);
+const TURN: Angle = angle_within(0.0, PI);
 /// Sizes of both.
 const ERROR: Couple<Number, Angle> = couple(LENGTH, TURN);
 /// Sizes of the rates of both.

@@ -1,8 +1,9 @@
 //! What a lead robot does.
 
 use serde::Serialize;
+use vocabulary::Pose;
 
-/// Motion of a lead robot as plain data; it starts at the robot's pose.
+/// Motion of a lead robot as plain data; it starts at the robot's pose, way-points at their own start.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Path {
@@ -44,7 +45,8 @@ pub enum Path {
     },
     /// A smooth curve through points.
     Waypoints {
-        /// World coordinates [x, y], m; at least two, neighbours distinct. The first is the robot's position.
+        /// World coordinates [x, y], m; at least two, neighbours distinct. The first is the robot's position; its
+        /// heading is that of the curve there, whatever its pose says.
         points: Vec<[f64; 2]>,
         /// Whether the curve returns to its first point and goes on; then at least three points, the last not the
         /// first again.
@@ -73,6 +75,13 @@ pub enum SpeedProfile {
 }
 
 impl Path {
+    /// Where the path itself says that its robot starts, heading for the second point.
+    pub(crate) fn start(&self) -> Option<Pose> {
+        let Self::Waypoints { points, .. } = self else { return None };
+        let [first, second, ..] = points.as_slice() else { return None };
+        Some(Pose::new(first[0], first[1], (second[1] - first[1]).atan2(second[0] - first[0])))
+    }
+
     /// Bounds on |speed| in m/s and |turn rate| in rad/s over all times, where they can be told beforehand.
     pub(crate) fn peaks(&self) -> (f64, Option<f64>) {
         let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
@@ -83,8 +92,8 @@ impl Path {
             Self::Sinusoid { speed, speed_amplitude, turn_rate, turn_rate_amplitude, .. } => {
                 (speed + speed_amplitude.abs(), Some(turn_rate.abs() + turn_rate_amplitude.abs()))
             }
-            Self::FigureEight { speed, .. } => (*speed, None),
-            Self::Waypoints { speed: SpeedProfile::Constant(speed), .. } => (*speed, None),
+            Self::FigureEight { speed, .. }
+            | Self::Waypoints { speed: SpeedProfile::Constant(speed), .. } => (*speed, None),
             Self::Waypoints { speed: SpeedProfile::Distance(rows) | SpeedProfile::Time(rows), .. } => {
                 (largest(&mut rows.iter().map(|row| row[1])), None)
             }

@@ -1,6 +1,8 @@
 //! What one channel of a set point does in time.
 
-use crate::text::{Form, Found, Node, Reading, Value, angle, form::Number, keys, list, number, table};
+use crate::text::{
+    Form, Found, Node, Reading, Value, angle, angle_within, form::Number, keys, list, number, table,
+};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 use std::f64::consts::{PI, TAU};
@@ -60,9 +62,9 @@ macro_rules! channel {
             struct $wave {
                 /// In the middle, m or rad.
                 mean: f64 = $held, required;
-                /// m or rad.
+                /// Swing to either side, m or rad.
                 amplitude: f64 = $amplitude, required;
-                /// rad/s.
+                /// Rate of the sine, rad/s.
                 rate: f64 = number("rad/s").up_to(1000.0), required;
             }
         }
@@ -118,7 +120,7 @@ channel!(
 );
 channel!(
     /// A wanted bearing.
-    BearingForm, BearingWave, BearingPassage, angle(), angle().within(-TAU, TAU), angle().within(-PI, PI)
+    BearingForm, BearingWave, BearingPassage, angle(), angle_within(-TAU, TAU), angle_within(-PI, PI)
 );
 
 /// A distance between two robots.

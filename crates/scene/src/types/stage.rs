@@ -1,7 +1,7 @@
 //! What pictures need beyond the robots.
 
 use crate::text::{
-    Form, Node, Reading, angle, couple, integer, number, optional, settings, words::not_a_word,
+    Form, Node, Reading, angle, angle_within, couple, integer, number, optional, settings, words::not_a_word,
 };
 use serde_json::{Value as Json, json};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -11,7 +11,7 @@ settings! {
     #[derive(Copy)]
     pub struct Environment from EnvironmentPart {
         /// Height of the sun over the horizon, rad or "38 deg".
-        pub sun_elevation: f64 = 38f64.to_radians(), angle().within(PI / 180.0, FRAC_PI_2);
+        pub sun_elevation: f64 = 38f64.to_radians(), angle_within(PI / 180.0, FRAC_PI_2);
         /// Direction to the sun, rad or "60 deg", counter-clockwise from the world's x axis.
         pub sun_azimuth: f64 = 60f64.to_radians(), angle();
         /// Distance at which haze sets in, m.

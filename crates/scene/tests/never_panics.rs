@@ -1,0 +1,108 @@
+//! Whatever a file holds, it is read or refused, never a crash, and what is read is sound.
+
+use proptest::prelude::*;
+use scene::{Override, Role, Scene};
+
+fn shipped() -> Vec<String> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
+    let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths.iter().filter_map(|path| std::fs::read_to_string(path).ok()).collect()
+}
+
+/// Reads `text`; what is accepted has to hold what [`Scene`] promises, and what is refused has to be printable.
+fn try_out(text: &str, changes: &[Override]) {
+    match Scene::parse(text, "t.toml", changes) {
+        Ok(loaded) => assert_sound(&loaded.scene),
+        Err(diagnostics) => {
+            assert!(!diagnostics.all().is_empty());
+            assert!(!diagnostics.to_string().is_empty());
+        }
+    }
+}
+
+fn assert_sound(scene: &Scene) {
+    let again = Scene::parse(&scene.to_toml(), "t.toml", &[]).unwrap_or_else(|fault| panic!("{fault}"));
+    assert_eq!(*scene, again.scene);
+    assert!(scene.time.period <= scene.time.duration && !scene.robots.is_empty());
+    for robot in &scene.robots {
+        assert!(robot.vehicle.speed_min < robot.vehicle.speed_max);
+        if let Role::Follow(follow) = &robot.role {
+            assert!(scene.index_of(&follow.leader).is_some());
+            assert!(follow.distance.least() >= follow.law.distance_min);
+        }
+    }
+}
+
+/// Pieces that are likely to hit something.
+const PIECES: [&str; 24] = [
+    "nan",
+    "-inf",
+    "1e999",
+    "-1",
+    "0",
+    "\"\"",
+    "[",
+    "]",
+    "{",
+    "}",
+    "=",
+    "\n",
+    "\"",
+    "[[robots]]",
+    "leader = \"leader\"",
+    "\u{1F697}",
+    "\u{0}",
+    "name",
+    ".",
+    "1979-05-27",
+    "'''",
+    "0x7fffffffffffffff",
+    "999999999999999999999",
+    "ä",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn any_text(text in "\\PC{0,200}") {
+        try_out(&text, &[]);
+    }
+
+    #[test]
+    fn shipped_scenes_with_pieces_replaced(
+        which in 0usize..7,
+        edits in prop::collection::vec((0.0f64..1.0, 0usize..12, 0usize..PIECES.len()), 1..4),
+    ) {
+        let scenes = shipped();
+        let mut text = scenes[which % scenes.len()].clone();
+        for (share, length, piece) in edits {
+            let boundary = |at: usize| (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
+            let start = boundary((share * text.len() as f64) as usize);
+            let end = boundary(start + length).max(start);
+            text.replace_range(start..end, PIECES[piece]);
+        }
+        try_out(&text, &[]);
+    }
+
+    #[test]
+    fn any_override(
+        which in 0usize..7,
+        path in "(time|law|robots|groups|observer|[a-z]{1,5})(\\.(0|1|leader|follower-1|k|path|distance|[a-z]{1,4})){0,3}",
+        value in "(nan|inf|-1|0|1e9|\\[\\]|\\{\\}|\\[1,2\\]|\\PC{0,12})",
+    ) {
+        let scenes = shipped();
+        if let Ok(change) = format!("{path}={value}").parse() {
+            try_out(&scenes[which % scenes.len()], &[change]);
+        }
+    }
+}
+
+#[test]
+fn deep_nesting_and_many_faults() {
+    try_out(&format!("a = {}", "[".repeat(10_000)), &[]);
+    try_out(&format!("a = {}{}", "[".repeat(200), "]".repeat(200)), &[]);
+    try_out(&(0..10_000).map(|n| format!("key{n} = 1")).collect::<Vec<_>>().join("\n"), &[]);
+    try_out(&"[[robots]]\nname = \"a\"\n".repeat(5_000), &[]);
+}

@@ -1,0 +1,77 @@
+//! Changes from the command line.
+
+use scene::{Channel, Diagnostics, Override, Path, Role, Scene};
+
+const SCENE: &str = "\
+schema = 1
+title = \"t\"
+[[robots]]
+name = \"leader\"
+pose = [0.0, 0.0, 0.0]
+path = { kind = \"circle\", turn_rate = 0.3 }
+[[robots]]
+name = \"follower-1\"
+pose = [-2.0, -1.0, 0.0]
+leader = \"leader\"
+distance = 2.0
+bearing = \"-135 deg\"
+";
+
+fn with(changes: &[&str]) -> Result<Scene, Diagnostics> {
+    let changes: Vec<Override> = changes.iter().map(|change| change.parse().unwrap()).collect();
+    Scene::parse(SCENE, "test.toml", &changes).map(|loaded| loaded.scene)
+}
+
+#[test]
+fn values_are_put_where_the_path_says() {
+    let scene = with(&[
+        "time.duration=5",
+        "title=Another title",
+        "robots.follower-1.distance=1.5",
+        "robots.1.law.kind=full-state",
+        "robots.leader.path.turn_rate = -0.2",
+        "robots.follower-1.bearing={ mean = 2.0, amplitude = 0.1, rate = 1 }",
+        "law.k=[4, 6]",
+        "seed=9",
+    ])
+    .unwrap();
+    assert_eq!((scene.time.duration, scene.seed, scene.title.as_str()), (5.0, 9, "Another title"));
+    let Role::Follow(follow) = &scene.robots[1].role else { panic!("robot 1 follows") };
+    assert_eq!((&follow.distance, follow.law.k), (&Channel::Constant(1.5), [4.0, 6.0]));
+    assert_eq!(follow.law.kind.word(), "full-state");
+    assert_eq!(follow.bearing, Channel::Sinusoid { mean: 2.0, amplitude: 0.1, rate: 1.0 });
+    assert_eq!(scene.robots[0].role, Role::Lead { path: Path::Circle { speed: 1.0, turn_rate: -0.2 } });
+}
+
+#[test]
+fn the_last_of_several_holds() {
+    assert_eq!(with(&["time.duration=5", "time.duration=6"]).unwrap().time.duration, 6.0);
+}
+
+#[test]
+fn faults_point_into_the_override() {
+    for (change, column, words) in [
+        ("time.durration=5", 6, "did you mean `duration`?"),
+        ("tme.duration=5", 1, "did you mean `time`?"),
+        ("time.duration=-5", 15, "`duration` must be"),
+        ("time.duration= soon", 16, "the text \"soon\""),
+        ("robots.folower-1.distance=1", 8, "did you mean `follower-1`?"),
+        ("robots.2.distance=1", 8, "counted from 0"),
+        ("title.colour=1", 7, "plain value"),
+        ("robots.1.leader=leda", 17, "did you mean `leader`?"),
+    ] {
+        let diagnostics = with(&[change]).unwrap_err();
+        let [fault] = diagnostics.all() else { panic!("one fault expected: {diagnostics}") };
+        assert_eq!((fault.origin.as_str(), fault.line, fault.column), ("--set", 1, column), "{fault}");
+        assert!(fault.message.contains(words), "{fault}");
+        assert_eq!(fault.excerpt, change);
+    }
+}
+
+#[test]
+fn what_is_no_override_is_told() {
+    for text in ["time.duration", "=5", "time..duration=5", ""] {
+        let fault = text.parse::<Override>().unwrap_err().to_string();
+        assert!(fault.contains("path.to.key=value"), "{fault}");
+    }
+}
