@@ -24,12 +24,14 @@
 mod camera;
 mod crowd;
 mod error;
+mod film;
 mod gpu;
 mod inset;
 mod labels;
 mod model;
 mod paint;
 mod palette;
+mod partial;
 mod passes;
 pub mod png;
 mod renderer;
@@ -40,6 +42,7 @@ mod trail;
 mod view;
 
 pub use error::Error;
+pub use film::{Film, FilmKind};
 pub use gpu::{AdapterChoice, AdapterInfo, Gpu, adapters};
 pub use palette::robot_colours;
 pub use renderer::Renderer;

@@ -3,20 +3,20 @@
 use vocabulary::Cast;
 
 /// An sRGB colour, 0 to 1 a channel.
-pub type Rgb = [f32; 3];
+pub(crate) type Rgb = [f32; 3];
 
 const fn hex(code: u32) -> Rgb {
     [((code >> 16) & 255) as f32 / 255.0, ((code >> 8) & 255) as f32 / 255.0, (code & 255) as f32 / 255.0]
 }
 
 /// Near-black, for robots that follow nobody.
-pub const LEAD: Rgb = hex(0x001e_1e22);
+pub(crate) const LEAD: Rgb = hex(0x001e_1e22);
 /// The stripe on robots that follow nobody.
-pub const GOLD: Rgb = hex(0x00e3_b341);
+pub(crate) const GOLD: Rgb = hex(0x00e3_b341);
 /// Text on a light halo.
-pub const INK: Rgb = hex(0x0012_161c);
+pub(crate) const INK: Rgb = hex(0x0012_161c);
 /// Halo, and text on dark ground.
-pub const PAPER: Rgb = hex(0x00fb_faf6);
+pub(crate) const PAPER: Rgb = hex(0x00fb_faf6);
 
 // Okabe and Ito, "Color universal design" (2008), without black, which the lead robots have.
 const FOLLOWERS: [Rgb; 7] = [

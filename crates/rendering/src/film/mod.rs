@@ -1,0 +1,178 @@
+//! Pictures to films, encoded on a thread of their own while the next picture is drawn.
+
+mod animation;
+mod ffmpeg;
+mod h264;
+mod mp4;
+mod sequence;
+
+use crate::Error;
+use std::path::Path;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::JoinHandle;
+use vocabulary::Picture;
+
+/// How a film is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FilmKind {
+    /// H.264 in an .mp4 by the built-in encoder.
+    Mp4,
+    /// An animated .gif, for small pictures.
+    Gif,
+    /// A folder of `frame-00000.png`, `frame-00001.png`, …
+    PngSequence,
+    /// Through an ffmpeg on PATH, in the format of the file's ending.
+    Ffmpeg,
+}
+
+impl FilmKind {
+    /// The kind that a file's ending asks for: `.mp4` and `.gif` are built in, others are left to ffmpeg, and
+    /// without an ending it is a folder of pictures.
+    pub fn of(path: &Path) -> Self {
+        match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
+            None => Self::PngSequence,
+            Some("mp4" | "m4v") => Self::Mp4,
+            Some("gif") => Self::Gif,
+            Some(_) => Self::Ffmpeg,
+        }
+    }
+}
+
+/// A film's measures.
+#[derive(Debug, Clone, Copy)]
+struct Format {
+    width: u32,
+    height: u32,
+    /// Frames a second.
+    rate: f64,
+}
+
+/// Takes pictures in order; dropped before `finish`, it leaves nothing behind.
+trait Sink: Send {
+    fn add(&mut self, picture: &Picture) -> Result<(), Error>;
+    fn finish(self: Box<Self>) -> Result<(), Error>;
+}
+
+enum Message {
+    Frame(Picture),
+    End,
+}
+
+/// A film being written. Dropped before [`Film::finish`], it leaves no file.
+#[derive(Debug)]
+pub struct Film {
+    sender: Option<SyncSender<Message>>,
+    thread: Option<JoinHandle<Result<(), Error>>>,
+    format: Format,
+    frames: u64,
+}
+
+/// Pictures that may wait for the encoder: enough to smooth its pace, few enough to keep memory flat.
+const WAITING: usize = 3;
+
+impl Film {
+    /// Begins a film of `rate` frames a second; frame k will be shown at k/`rate`.
+    ///
+    /// # Errors
+    /// [`Error::OddSize`], [`Error::Size`] or [`Error::FrameRate`] for what the kind cannot hold,
+    /// [`Error::Write`] where the file cannot be written, [`Error::NoFfmpeg`] where that is asked for and absent.
+    pub fn create(path: &Path, kind: FilmKind, width: u32, height: u32, rate: f64) -> Result<Self, Error> {
+        let format = Format { width, height, rate };
+        check(kind, &format)?;
+        let sink: Box<dyn Sink> = match kind {
+            FilmKind::Mp4 => Box::new(h264::H264::create(path, format)?),
+            FilmKind::Gif => Box::new(animation::Animation::create(path, format)?),
+            FilmKind::PngSequence => Box::new(sequence::Sequence::create(path)?),
+            FilmKind::Ffmpeg => Box::new(ffmpeg::Ffmpeg::create(path, format)?),
+        };
+        let (sender, receiver) = sync_channel(WAITING);
+        let thread = std::thread::Builder::new()
+            .name("film".into())
+            .spawn(move || work(sink, &receiver))
+            .map_err(|e| Error::write(path, e))?;
+        Ok(Self { sender: Some(sender), thread: Some(thread), format, frames: 0 })
+    }
+
+    /// Adds the next picture; waits while the encoder is behind.
+    ///
+    /// # Errors
+    /// [`Error::Mismatch`] for a picture of another size, else whatever stopped the encoder.
+    pub fn push(&mut self, picture: Picture) -> Result<(), Error> {
+        let (want, got) = ((self.format.width, self.format.height), (picture.width, picture.height));
+        if want != got || picture.rgba.len() != 4 * want.0 as usize * want.1 as usize {
+            return Err(Error::Mismatch { want, got });
+        }
+        self.send(Message::Frame(picture))?;
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// Frames pushed so far.
+    pub fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    /// Completes the file and gives it its name.
+    ///
+    /// # Errors
+    /// Whatever stopped the encoder, or [`Error::Encode`] for a film without pictures.
+    pub fn finish(mut self) -> Result<(), Error> {
+        if self.frames == 0 {
+            return Err(Error::Encode("a film needs at least one picture".into()));
+        }
+        self.send(Message::End)?;
+        self.join()
+    }
+
+    fn send(&mut self, message: Message) -> Result<(), Error> {
+        let sent = self.sender.as_ref().is_some_and(|sender| sender.send(message).is_ok());
+        // A closed channel means that the encoder has given up: its error is the one to report.
+        if sent { Ok(()) } else { self.join().and_then(|()| Err(stopped())) }
+    }
+
+    fn join(&mut self) -> Result<(), Error> {
+        self.sender = None;
+        self.thread.take().map_or_else(|| Err(stopped()), |thread| thread.join().unwrap_or_else(|_| Err(stopped())))
+    }
+}
+
+impl Drop for Film {
+    fn drop(&mut self) {
+        // The temporary file is gone when this returns. An abandoned film has nobody to report errors to.
+        if self.thread.is_some() {
+            let _ = self.join();
+        }
+    }
+}
+
+fn stopped() -> Error {
+    Error::Encode("the encoder has stopped".into())
+}
+
+fn work(mut sink: Box<dyn Sink>, receiver: &Receiver<Message>) -> Result<(), Error> {
+    loop {
+        match receiver.recv() {
+            Ok(Message::Frame(picture)) => sink.add(&picture)?,
+            Ok(Message::End) => return sink.finish(),
+            // Abandoned: the sink cleans up.
+            Err(_) => return Ok(()),
+        }
+    }
+}
+
+fn check(kind: FilmKind, format: &Format) -> Result<(), Error> {
+    let &Format { width, height, rate } = format;
+    let most = 8192;
+    let fine = |side: u32| (16..=most).contains(&side);
+    if !fine(width) || !fine(height) {
+        return Err(Error::Size { width, height, most });
+    }
+    if !(1.0..=240.0).contains(&rate) {
+        return Err(Error::FrameRate(rate));
+    }
+    let halved = matches!(kind, FilmKind::Mp4 | FilmKind::Ffmpeg);
+    if halved && (width % 2 == 1 || height % 2 == 1) {
+        return Err(Error::OddSize { width, height });
+    }
+    Ok(())
+}

@@ -1,0 +1,39 @@
+//! A folder of numbered pictures.
+
+use super::Sink;
+use crate::partial::Partial;
+use crate::{Error, png};
+use std::path::Path;
+use vocabulary::Picture;
+
+/// The folder under its temporary name.
+pub(super) struct Sequence {
+    folder: Partial,
+    count: u32,
+}
+
+impl Sequence {
+    pub(super) fn create(path: &Path) -> Result<Self, Error> {
+        // Pictures of an older, longer film would stay among the new ones.
+        if std::fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some()) {
+            let full = std::io::Error::new(std::io::ErrorKind::DirectoryNotEmpty, "the folder is not empty");
+            return Err(Error::write(path, full));
+        }
+        let folder = Partial::new(path);
+        std::fs::create_dir(&folder.path).map_err(|e| Error::write(path, e))?;
+        Ok(Self { folder, count: 0 })
+    }
+}
+
+impl Sink for Sequence {
+    fn add(&mut self, picture: &Picture) -> Result<(), Error> {
+        let name = format!("frame-{:05}.png", self.count);
+        self.count += 1;
+        let shown = self.folder.goal.join(&name);
+        png::write_file(&self.folder.path.join(&name), &shown, picture, &[])
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), Error> {
+        self.folder.rename()
+    }
+}

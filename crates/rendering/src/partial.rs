@@ -1,0 +1,42 @@
+//! Files and folders that appear under their name only when they are complete.
+
+use crate::Error;
+use std::path::{Path, PathBuf};
+
+/// A file or folder under a temporary name beside its final one; removed unless it is renamed.
+#[derive(Debug)]
+pub(crate) struct Partial {
+    pub(crate) path: PathBuf,
+    pub(crate) goal: PathBuf,
+}
+
+impl Partial {
+    pub(crate) fn new(goal: &Path) -> Self {
+        Self::marked(goal, "part")
+    }
+
+    /// `mark` tells several temporary files of one goal apart. The ending stays, since programs go by it.
+    pub(crate) fn marked(goal: &Path, mark: &str) -> Self {
+        let part = |text: Option<&std::ffi::OsStr>| text.unwrap_or_default().to_string_lossy().into_owned();
+        let (stem, ending) = (part(goal.file_stem()), part(goal.extension()));
+        // The process id keeps two programs that write the same film apart.
+        let name = format!(".{stem}.{}.{mark}.{ending}", std::process::id());
+        Self { path: goal.with_file_name(name.trim_end_matches('.')), goal: goal.to_owned() }
+    }
+
+    /// Gives it its name.
+    pub(crate) fn rename(self) -> Result<(), Error> {
+        std::fs::rename(&self.path, &self.goal).map_err(|e| Error::write(&self.goal, e))
+    }
+}
+
+impl Drop for Partial {
+    fn drop(&mut self) {
+        // After a rename there is nothing left to remove.
+        if self.path.is_dir() {
+            let _ = std::fs::remove_dir_all(&self.path);
+        } else {
+            let _ = std::fs::remove_file(&self.path);
+        }
+    }
+}
