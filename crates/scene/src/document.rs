@@ -110,6 +110,8 @@ keys! {
         pose: [f64; 3] = POSE, optional;
         /// Distance between neighbours, m.
         distance: f64 = number("m").above(0.0).up_to(1000.0), or(2.0);
+        /// Whom the robots follow.
+        follows: Follows = Follows::form(), or(Follows::Neighbour);
         /// Bearing of a neighbour in shapes `v` and `diamond`.
         angle: f64 = angle_within(FRAC_PI_2, PI), or(0.75 * PI);
         /// Followers start at most this far from their places along each axis, m, by the scene's seed; 0 starts in
@@ -141,6 +143,17 @@ words! {
         Diamond = "diamond",
         /// A circle with equal distances between neighbours, the leader in front.
         Circle = "circle",
+    }
+}
+
+words! {
+    /// Whom the robots of a group follow.
+    pub(crate) enum Follows {
+        /// The one before them on their wing: each keeps its place by what is next to it, and passes on its own errors,
+        /// enlarged from robot to robot.
+        Neighbour = "neighbour",
+        /// The group's leader, every one of them.
+        Leader = "leader",
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::{
     Channel, Follow, Robot, Role, Vehicle,
-    document::{GroupKeys, MOST_ROBOTS},
+    document::{Follows, GroupKeys, MOST_ROBOTS},
     graph::{Named, check_known},
     resolve::{Defaults, Draft, check_distance, check_path, start_pose, start_speed, vehicle},
     text::{Found, Node, Reading},
@@ -22,7 +22,8 @@ pub(crate) fn expand(
     reading: &mut Reading,
 ) -> Option<()> {
     let keys = group.keys;
-    let (shape, count) = (keys.shape.as_ref()?.value, keys.count.as_ref()?);
+    let (shape, count, follows) =
+        (keys.shape.as_ref()?.value, keys.count.as_ref()?, keys.follows.as_ref()?.value);
     if let Some(fault) = shape.refuses(count.value) {
         reading.note(count.place, fault);
         return None;
@@ -46,17 +47,24 @@ pub(crate) fn expand(
         let step = shape.step(place, count.value, angle);
         let [x, y] = *places.get(step.leader)?;
         let (sin, cos) = step.bearing.sin_cos();
-        places.push([x + distance.value * cos, y + distance.value * sin]);
+        let [x, y] = [x + distance.value * cos, y + distance.value * sin];
+        places.push([x, y]);
+        let (followed, distance, bearing) = match follows {
+            Follows::Neighbour => (name_of(step.leader), distance.value, step.bearing),
+            Follows::Leader => (leader.clone(), x.hypot(y), wrap(y.atan2(x))),
+        };
         let role = Role::Follow(Follow {
-            leader: name_of(step.leader),
+            leader: followed,
             speed,
-            distance: Channel::Constant(distance.value),
-            bearing: Channel::Constant(step.bearing),
+            distance: Channel::Constant(distance),
+            bearing: Channel::Constant(bearing),
             law,
             observer,
         });
-        let pose = scatter.around(origin, *places.last()?);
-        group.push(Robot { name: name_of(place), pose, vehicle, role }, drafts);
+        group.push(
+            Robot { name: name_of(place), pose: scatter.around(origin, [x, y]), vehicle, role },
+            drafts,
+        );
     }
     Some(())
 }

@@ -21,7 +21,7 @@ impl Shape {
             Self::Circle if count < 3 => "at least 3 places",
             _ => return None,
         };
-        Some(format!("shape `{}` needs {needs}, not {count}", self.word()))
+        Some(format!("shape `{}` needs {needs}, not {count}", Self::form().word_of(self)))
     }
 
     /// Who place `place` ≥ 1 of `count` follows, and at which bearing; `angle` in rad is that of the wings.

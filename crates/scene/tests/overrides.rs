@@ -1,6 +1,6 @@
 //! Changes from the command line.
 
-use scene::{Channel, Diagnostics, Override, Path, Role, Scene};
+use scene::{Channel, Diagnostics, LawKind, Override, Path, Role, Scene};
 
 const SCENE: &str = "\
 schema = 1
@@ -38,7 +38,7 @@ fn values_are_put_where_the_path_says() {
     assert_eq!((scene.time.duration, scene.seed, scene.title.as_str()), (5.0, 9, "Another title"));
     let Role::Follow(follow) = &scene.robots[1].role else { panic!("robot 1 follows") };
     assert_eq!((&follow.distance, follow.law.k), (&Channel::Constant(1.5), [4.0, 6.0]));
-    assert_eq!(follow.law.kind.word(), "full-state");
+    assert_eq!(follow.law.kind, LawKind::FullState);
     assert_eq!(follow.bearing, Channel::Sinusoid { mean: 2.0, amplitude: 0.1, rate: 1.0 });
     assert_eq!(scene.robots[0].role, Role::Lead { path: Path::Circle { speed: 1.0, turn_rate: -0.2 } });
 }

@@ -127,9 +127,10 @@ fn group(keys: &str) -> String {
 
 #[test]
 fn groups_without_scatter_start_in_formation() {
-    for shape in ["v", "column", "abreast", "diamond", "circle"] {
+    let shapes = ["v", "column", "abreast", "diamond", "circle"];
+    for (shape, follows) in shapes.into_iter().flat_map(|s| [(s, "neighbour"), (s, "leader")]) {
         let text = group(&format!(
-            "shape = \"{shape}\"\ncount = 8\nscatter = 0\nscatter_heading = 0\npose = [3, 4, 1]"
+            "shape = \"{shape}\"\ncount = 8\nscatter = 0\nscatter_heading = 0\npose = [3, 4, 1]\nfollows = \"{follows}\""
         ));
         let scene = Scene::parse(&text, "t.toml", &[]).unwrap_or_else(|fault| panic!("{fault}")).scene;
         assert_eq!(scene.robots.len(), 8);
@@ -139,7 +140,9 @@ fn groups_without_scatter_start_in_formation() {
             let (dx, dy) = (robot.pose.x - leader.pose.x, robot.pose.y - leader.pose.y);
             let bearing = vocabulary::wrap(dy.atan2(dx) - leader.pose.heading);
             let Channel::Constant(wanted) = follow.bearing else { panic!("a constant bearing") };
-            assert!((dx.hypot(dy) - 2.0).abs() < 1e-9, "{shape}: {}", robot.name);
+            let Channel::Constant(distance) = follow.distance else { panic!("a constant distance") };
+            assert!((dx.hypot(dy) - distance).abs() < 1e-9, "{shape}: {}", robot.name);
+            assert!(if follows == "leader" { follow.leader == "robot-1" } else { distance == 2.0 });
             assert!(vocabulary::wrap(bearing - wanted).abs() < 1e-9, "{shape}: {}", robot.name);
         }
     }

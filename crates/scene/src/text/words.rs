@@ -6,6 +6,13 @@ use serde_json::{Value as Json, json};
 /// A form that takes one of a few words.
 pub(crate) struct Words<T: 'static>(pub(crate) &'static [(&'static str, T, &'static str)]);
 
+impl<T: Copy + PartialEq> Words<T> {
+    /// The word for `value`.
+    pub(crate) fn word_of(&self, value: T) -> &'static str {
+        self.0.iter().find(|(_, known, _)| *known == value).map_or("", |(word, ..)| word)
+    }
+}
+
 impl<T: Copy + 'static> Form for Words<T> {
     type Out = T;
 
@@ -67,11 +74,6 @@ macro_rules! words {
         impl $name {
             pub(crate) const fn form() -> $crate::text::words::Words<Self> {
                 $crate::text::words::Words(&[$( ($word, Self::$variant, concat!($($doc),*)), )+])
-            }
-
-            /// The word for it in a scene file.
-            $vis const fn word(self) -> &'static str {
-                match self { $( Self::$variant => $word, )+ }
             }
         }
     };
