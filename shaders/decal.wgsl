@@ -1,4 +1,4 @@
-// Paint on the ground: contact patches, tyre marks, ribbons, rings, arrows and edges.
+// Paint on the ground: tyre marks, ribbons, rings, arrows, edges, and over them shadows and contact patches.
 
 struct Corner {
     // Relative to the local origin, m.
@@ -25,7 +25,7 @@ fn vertex(in: Corner) -> Varying {
 }
 
 fn coverage(kind: vec2<f32>, shape: vec2<f32>, pixel: vec2<f32>) -> f32 {
-    // 0: solid between the long sides, 1: ring, 2: soft blob, 3: soft box.
+    // 0: solid between the long sides, 1: ring, 2: soft blob, 3: soft box; 4, cast shadow, is handled apart.
     if kind.x < 0.5 {
         return clamp((1.0 - abs(shape.x)) / max(pixel.x, 1e-4), 0.0, 1.0);
     }
@@ -38,15 +38,20 @@ fn coverage(kind: vec2<f32>, shape: vec2<f32>, pixel: vec2<f32>) -> f32 {
         let inside = max(1.0 - radius, 0.0);
         return inside * inside * (3.0 - 2.0 * inside);
     }
-    let edge = smoothstep(vec2<f32>(1.0), vec2<f32>(kind.y), abs(shape));
-    return edge.x * edge.y;
+    let edge = clamp((1.0 - abs(shape)) / (1.0 - kind.y), vec2<f32>(0.0), vec2<f32>(1.0));
+    let eased = edge * edge * (3.0 - 2.0 * edge);
+    return eased.x * eased.y;
 }
 
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let pixel = abs(dpdx(in.shape)) + abs(dpdy(in.shape));
-    let cover = coverage(in.kind, in.shape, pixel) * in.colour.a;
+    var cover = in.colour.a;
+    if in.kind.x > 3.5 {
+        cover *= 1.0 - sunlight(in.local);
+    } else {
+        cover *= coverage(in.kind, in.shape, pixel);
+    }
     let distance = length(frame.eye.xyz - in.local) * frame.eye.w;
-    let shade = 0.52 + 0.48 * sunlight(in.local);
-    return vec4<f32>(in.colour.rgb * shade, cover * (1.0 - haze(distance)));
+    return vec4<f32>(in.colour.rgb, cover * (1.0 - haze(distance)));
 }

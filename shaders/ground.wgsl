@@ -1,7 +1,8 @@
-// The ground: asphalt, metre lines, sun and shadow.
+// The ground: asphalt and metre lines in full sun; shadows are painted over it.
 
 @group(2) @binding(0) var asphalt: texture_2d<f32>;
 @group(2) @binding(1) var asphalt_sampler: sampler;
+@group(2) @binding(2) var patches: texture_2d<f32>;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Ray {
@@ -27,18 +28,15 @@ fn fragment(ray: Ray) -> @location(0) vec4<f32> {
     let local = ray.start + ray.direction * reach;
     let footprint = max(abs(dpdx(local.xy)), abs(dpdy(local.xy)));
     let tiled = local.xy + frame.ground.xy;
-    let fine = textureSample(asphalt, asphalt_sampler, tiled * 0.5).r;
-    let broad = textureSample(asphalt, asphalt_sampler, tiled.yx * 0.05).g;
+    // Between the longer and the shorter side of the footprint: sharper than the rule, and still calm.
+    let level = 0.5 * log2(footprint.x * footprint.y * 65536.0 + 1e-9);
+    let fine = textureSampleLevel(asphalt, asphalt_sampler, tiled * 0.5, level).r;
+    let broad = textureSampleLevel(patches, asphalt_sampler, tiled.yx * 0.05, 0.0).r;
     let distance = reach * length(ray.direction) * frame.eye.w;
-    var albedo = vec3<f32>(0.118, 0.119, 0.122) * (0.45 + 1.1 * fine) * (0.72 + 0.56 * broad);
+    var albedo = vec3<f32>(0.158, 0.155, 0.150) * (0.42 + 1.16 * fine) * (0.74 + 0.52 * broad);
     let thin = lines(local.xy, footprint, 1.0, 0.014) * 0.30;
     let thick = lines(local.xy, footprint, 5.0, 0.030) * 0.62;
-    albedo = mix(albedo, vec3<f32>(0.62, 0.63, 0.64), max(thin, thick) * frame.ground.z);
-    var sun = frame.sun.z;
-    if distance < 60.0 {
-        sun *= sunlight(vec3<f32>(local.xy, 0.0));
-    }
-    let light = albedo * (SUN_LIGHT * sun + ambient(vec3<f32>(0.0, 0.0, 1.0)));
-    let far = vec3<f32>(HORIZON);
-    return vec4<f32>(tone(mix(light, far, haze(distance))), 1.0);
+    albedo = mix(albedo, vec3<f32>(0.66, 0.66, 0.65), max(thin, thick) * frame.ground.z);
+    let light = albedo * (SUN_LIGHT * frame.sun.z + ambient(vec3<f32>(0.0, 0.0, 1.0)));
+    return vec4<f32>(tone(mix(light, HORIZON, haze(distance))), 1.0);
 }

@@ -49,7 +49,7 @@ fn vertex(in: Corner, instance: Instance) -> Varying {
 }
 
 // Ink of the number on the roof at `uv`, 0 to 1.
-fn numeral(number: f32, uv: vec2<f32>) -> f32 {
+fn numeral(number: f32, uv: vec2<f32>, pixel: vec2<f32>) -> f32 {
     let count = select(select(1.0, 2.0, number > 9.5), 3.0, number > 99.5);
     // A digit is 0.62 as wide as high; three of them must share the roof.
     let height = min(0.82, 0.96 / (0.62 * count));
@@ -59,7 +59,9 @@ fn numeral(number: f32, uv: vec2<f32>) -> f32 {
     let digit = floor(number / pow(10.0, count - 1.0 - place) + 0.001) % 10.0;
     let inside = x >= 0.0 && x < count && y >= 0.0 && y < 1.0;
     let at = vec2<f32>((digit + clamp(x - place, 0.02, 0.98)) * 0.1, clamp(y, 0.01, 0.99));
-    let ink = textureSample(digits, digit_sampler, at).r;
+    // A digit is 64 texels high.
+    let level = log2(max(max(pixel.x, pixel.y) * 64.0 / height, 1.0));
+    let ink = textureSampleLevel(digits, digit_sampler, at, level).r;
     return select(0.0, ink, inside);
 }
 
@@ -69,8 +71,9 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let to_eye = normalize(mix(-frame.forward.xyz, frame.eye.xyz - in.local, frame.eye.w));
     let distance = length(frame.eye.xyz - in.local) * frame.eye.w;
     var albedo = in.albedo;
-    let ink = numeral(max(in.marks.x, 0.0), in.surface.zw);
+    let pixel = abs(dpdx(in.surface.zw)) + abs(dpdy(in.surface.zw));
     if in.marks.x >= 0.0 {
+        let ink = numeral(in.marks.x, in.surface.zw, pixel * 0.7);
         // Dark on light paint, light on dark paint.
         let bright = dot(albedo, vec3<f32>(0.21, 0.72, 0.07));
         albedo = mix(albedo, select(vec3<f32>(0.80), vec3<f32>(0.015), bright > 0.16), ink);
@@ -94,4 +97,17 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let shine = in.surface.x * (seen * fresnel * open + SUN_LIGHT * spark);
     let light = mix(diffuse + shine + albedo * in.surface.y, HORIZON, haze(distance));
     return vec4<f32>(tone(light), in.marks.y);
+}
+
+// Ghosts are too faint for shadows and mirrors.
+@fragment
+fn ghost(in: Varying) -> @location(0) vec4<f32> {
+    let sun = max(dot(in.normal, frame.sun.xyz), 0.0);
+    return vec4<f32>(tone(in.albedo * (SUN_LIGHT * sun + ambient(in.normal))), in.marks.y);
+}
+
+// Depth alone.
+@fragment
+fn hidden() -> @location(0) vec4<f32> {
+    return vec4<f32>(0.0);
 }

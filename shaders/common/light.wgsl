@@ -1,8 +1,8 @@
 // Light shared by all surfaces: sun, sky, haze, shadow and the tone curve.
 
-const SUN_LIGHT = vec3<f32>(2.05, 1.86, 1.58);
-const ZENITH = vec3<f32>(0.13, 0.30, 0.66);
-const HORIZON = vec3<f32>(0.68, 0.76, 0.84);
+const SUN_LIGHT = vec3<f32>(2.30, 2.06, 1.72);
+const ZENITH = vec3<f32>(0.15, 0.38, 0.86);
+const HORIZON = vec3<f32>(1.02, 1.16, 1.30);
 const BOUNCE = vec3<f32>(0.17, 0.165, 0.155);
 
 @group(1) @binding(0) var shadow_map: texture_depth_2d;
@@ -19,7 +19,7 @@ fn sky_light(direction: vec3<f32>) -> vec3<f32> {
 
 // Light from sky and ground on a surface facing `normal`.
 fn ambient(normal: vec3<f32>) -> vec3<f32> {
-    let sky = mix(HORIZON, ZENITH, 0.5) * 0.62;
+    let sky = mix(HORIZON, ZENITH, 0.55) * 0.56;
     return mix(BOUNCE, sky, 0.5 + 0.5 * normal.z);
 }
 

@@ -33,7 +33,7 @@ struct Composition {
 }
 
 const SNAKE: Composition =
-    Composition { field_of_view: 0.6632, horizon: 0.08, width: 0.70, rows: [-0.66, 0.34], nearest: 3.0 };
+    Composition { field_of_view: 0.8029, horizon: 0.10, width: 0.70, rows: [-0.72, 0.30], nearest: 2.6 };
 
 impl Camera {
     /// The camera of `view` on a picture `aspect` times as wide as high.

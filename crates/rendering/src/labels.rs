@@ -93,9 +93,9 @@ pub(crate) struct Ink {
 }
 
 impl Ink {
-    pub(crate) const ON_PICTURE: Self = Self { colour: palette::INK, alpha: 1.0, halo: (0.55, palette::PAPER) };
+    pub(crate) const DARK: Self = Self { colour: palette::INK, alpha: 0.92, halo: (0.0, palette::PAPER) };
     pub(crate) const ON_PANEL: Self = Self { colour: palette::INK, alpha: 0.9, halo: (0.0, palette::PAPER) };
-    pub(crate) const LIGHT: Self = Self { colour: palette::PAPER, alpha: 1.0, halo: (0.45, palette::INK) };
+    pub(crate) const LIGHT: Self = Self { colour: palette::PAPER, alpha: 1.0, halo: (0.30, palette::INK) };
 
     pub(crate) fn faded(self, alpha: f32) -> Self {
         Self { alpha: self.alpha * alpha, ..self }
@@ -114,8 +114,10 @@ fn overlap(a: &Box4, b: &Box4) -> bool {
     a[0] < b[0] + b[2] && b[0] < a[0] + a[2] && a[1] < b[1] + b[3] && b[1] < a[1] + a[3]
 }
 
-/// Title, law and time, at the corners of the whole picture.
-pub(crate) fn caption(words: &mut Words<'_>, stage: &Stage<'_>, height: u32) {
+/// Title, law and time, at the corners of the whole picture; `sky` is how far down the sky reaches, pixels.
+pub(crate) fn caption(words: &mut Words<'_>, stage: &Stage<'_>, height: u32, sky: f32) {
+    // Dark on the sky, light on the ground.
+    let ink = if sky > words.scaled(64.0) { Ink::DARK } else { Ink::LIGHT };
     let margin = words.scaled(MARGIN);
     let cast = stage.cast;
     if stage.style.caption {
@@ -126,7 +128,7 @@ pub(crate) fn caption(words: &mut Words<'_>, stage: &Stage<'_>, height: u32) {
                 let width = words.width(text, size, bold);
                 let half = words.scaled(0.7 * size);
                 words.reserve([margin - 6.0, middle - half, width + 12.0, 2.0 * half]);
-                words.write(text.clone(), [margin, middle], size, bold, Ink::ON_PICTURE);
+                words.write(text.clone(), [margin, middle], size, bold, ink);
             }
         }
     }
@@ -181,7 +183,7 @@ fn names(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
         let away = 0.20 * metre + words.scaled(11.0);
         let side = 0.20 * metre + 0.5 * words.width(&member.name, 13.0, true) + words.scaled(8.0);
         let places = [Vec2::new(0.0, -away), Vec2::new(0.0, away), Vec2::new(side, 0.0), Vec2::new(-side, 0.0)];
-        let ink = Ink::ON_PICTURE.faded(stage.detail.max(0.6));
+        let ink = Ink::LIGHT.faded(stage.detail.max(0.6));
         words.try_write(&member.name, &places.map(|p| at + p), 13.0, &window.tile, true, ink);
     }
 }
@@ -209,7 +211,7 @@ fn edges(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
             middle - near + outward * reach,
             middle + near - outward * reach,
         ];
-        let ink = Ink::ON_PICTURE.faded(stage.detail);
+        let ink = Ink::LIGHT.faded(stage.detail);
         words.try_write(&text, &places, 13.0, &window.tile, false, ink);
     }
 }
@@ -251,7 +253,7 @@ fn coordinates(words: &mut Words<'_>, window: Window<'_>) {
             let point = DVec3::new(x, y, 0.0);
             let pixel = window.camera.metres_per_pixel(point, f64::from(window.tile.height));
             // Fades before the crossings crowd together.
-            let alpha = ((0.035 - pixel) / 0.015).clamp(0.0, 1.0) as f32;
+            let alpha = ((0.013 - pixel) / 0.004).clamp(0.0, 1.0) as f32;
             if let (true, Some(at)) = (alpha > 0.02, window.pixel(point)) {
                 let text = format!("{x:.0}, {y:.0}").replace('-', "\u{2212}");
                 let half = 0.5 * words.width(&text, 11.0, false);

@@ -3,6 +3,7 @@
 use crate::camera::Camera;
 use crate::palette::{self, Rgb};
 use crate::passes::decal::{Corner, Form};
+use crate::passes::shadow::SUN;
 use crate::trail::{RIBBON, Trail, set_points};
 use crate::{Style, View};
 use glam::{DVec2, DVec3};
@@ -14,6 +15,9 @@ const RIBBON_HALF: f64 = 0.03;
 pub(crate) const RING: f64 = 0.25;
 /// Position errors above this are shown by an arrow, m.
 const ARROW_ABOVE: f64 = 0.05;
+
+/// Shadows are lit by the sky alone, so they are a little blue.
+const SHADE: Rgb = [0.015, 0.02, 0.04];
 
 /// What the painters look at.
 #[derive(Debug, Clone, Copy)]
@@ -33,17 +37,18 @@ struct Painter<'a> {
     corners: Vec<Corner>,
     camera: &'a Camera,
     height: f64,
+    /// Pixels of a line that is one wide at scale 1.
+    stage_scale: f64,
     origin: DVec3,
 }
 
 /// All decals of one view on a tile `height` pixels high.
 pub(crate) fn paint(stage: &Stage<'_>, view: &View, camera: &Camera, height: f64) -> Vec<Corner> {
-    let mut painter = Painter { corners: Vec::new(), camera, height, origin: stage.origin };
+    let mut painter = Painter { corners: Vec::new(), camera, height, stage_scale: stage.style.scale, origin: stage.origin };
     let style = stage.style;
     if style.marks {
         painter.marks(stage);
     }
-    painter.contacts(stage);
     if style.ribbons {
         painter.ribbons(stage);
     }
@@ -54,6 +59,11 @@ pub(crate) fn paint(stage: &Stage<'_>, view: &View, camera: &Camera, height: f64
     if style.edges && !matches!(view, View::SnakeEye) {
         painter.edges(stage);
     }
+    // Over the paint, as shadows are.
+    if style.shadows {
+        painter.shadows(stage);
+    }
+    painter.contacts(stage);
     painter.corners
 }
 
@@ -79,11 +89,21 @@ impl Painter<'_> {
         if along.length() < 1e-6 {
             return;
         }
-        // At least a pixel and a half, or far lines would crumble.
-        let middle = (0.5 * (from + to)).extend(0.0);
-        let half = 0.5 * width.max(1.6 * self.camera.metres_per_pixel(middle, self.height));
-        let across = along.perp().normalize() * half;
-        self.patch(0.5 * (from + to), along, across, Form::Solid, colour, alpha);
+        let middle = 0.5 * (from + to);
+        let across = along.perp().normalize();
+        // Lines that run across the picture are foreshortened: at least two pixels, or they would crumble.
+        let half = (0.5 * width).max(1.1 * self.stage_scale / self.pixels_per_metre(middle, across));
+        self.patch(middle, along, across * half, Form::Solid, colour, alpha);
+    }
+
+    /// How long a metre along `direction` appears at `place`, pixels.
+    fn pixels_per_metre(&self, place: DVec2, direction: DVec2) -> f64 {
+        let step = 0.05;
+        let ends = [place, place + direction * step].map(|p| self.camera.project(p.extend(0.0)));
+        let [Some(a), Some(b)] = ends else { return 1e3 };
+        let aspect = self.camera.half.x / self.camera.half.y;
+        let apart = (b - a) * DVec2::new(aspect, 1.0) * (0.5 * self.height);
+        (apart.length() / step).max(1.0)
     }
 
     /// A band through `points`, each with its opacity.
@@ -118,6 +138,20 @@ impl Painter<'_> {
                     self.band(&points, 0.013, side * member.body.track, [0.05, 0.05, 0.055]);
                 }
             }
+        }
+    }
+
+    /// Patches that surely hold the shadow of each robot: few pixels look at the shadow map.
+    fn shadows(&mut self, stage: &Stage<'_>) {
+        let away = -DVec2::new(SUN.x, SUN.y) / SUN.z;
+        for (robot, member) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members) {
+            // As high as the camera on its mast, and as far around as the shell or the bonnet.
+            let (top, around) = (0.34 + robot.attitude.height, 0.62 * member.body.length);
+            let reach = away * (0.5 * top);
+            let along = reach + reach.normalize() * around;
+            let [x, y] = robot.motion.pose.world_from_body(0.15 * member.body.length, 0.0);
+            let across = reach.perp().normalize() * around;
+            self.patch(DVec2::new(x, y) + reach, along, across, Form::Shadow, SHADE, 0.60);
         }
     }
 
@@ -188,7 +222,7 @@ impl Painter<'_> {
         let at = |k: usize| stage.moment.snapshot.robots.get(k).map(|r| flat(&r.motion.pose));
         for edge in &stage.cast.edges {
             if let (Some(leader), Some(follower)) = (at(edge.leader), at(edge.follower)) {
-                self.line(leader, follower, 0.016, palette::PAPER, 0.80 * stage.detail);
+                self.line(leader, follower, 0.016, palette::PAPER, 0.85 * stage.detail);
             }
         }
     }

@@ -305,7 +305,8 @@ impl Renderer {
         self.encode_overlay(encoder, target, prepared)
     }
 
-    /// Robots first, then what they hide, the sky last: each pixel is shaded about once.
+    /// Ground and sky are painted first and without depth: robots cover little of them, and on processors the
+    /// depth test of every pixel would cost more than shading the few that are hidden.
     fn encode_world(&self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView, prepared: &Prepared) {
         let passes = &self.passes;
         let sampled = self.attachments.sampled.as_ref();
@@ -334,10 +335,10 @@ impl Renderer {
             pass.set_scissor_rect(tile.x, tile.y, tile.width, tile.height);
             pass.set_bind_group(0, &passes.groups.view, &[FrameGroups::offset(index)]);
             pass.set_bind_group(1, &passes.groups.light, &[]);
-            passes.robot.draw_solid(&mut pass, &passes.models, &prepared.crowd);
+            passes.sky.draw(&mut pass);
             passes.ground.draw(&mut pass);
             passes.decal.draw(&mut pass, decals.clone());
-            passes.sky.draw(&mut pass);
+            passes.robot.draw_solid(&mut pass, &passes.models, &prepared.crowd);
             passes.robot.draw_ghosts(&mut pass, &passes.models, &prepared.crowd);
         }
     }
@@ -403,7 +404,8 @@ fn words(
     [width, height]: [u32; 2],
 ) -> (Vec<Line>, Shapes) {
     let mut words = Words::new(text, stage.style.scale);
-    caption(&mut words, stage, height);
+    let sky = windows.first().map_or(0.0, |w| 0.5 * (1.0 - w.camera.horizon()) * f64::from(w.tile.height));
+    caption(&mut words, stage, height, sky as f32);
     if stage.style.inset {
         inset(&mut words, stage, [width, height]);
     }

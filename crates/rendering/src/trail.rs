@@ -11,7 +11,7 @@ const GHOST_EVERY: f64 = 2.5;
 /// Most points of a ribbon.
 const RIBBON_POINTS: usize = 160;
 /// Most points of a tyre mark or of a curve in the chart, which both keep the whole run.
-const CURVE_POINTS: usize = 512;
+const CURVE_POINTS: usize = 360;
 
 /// What a picture needs to know of the past. It depends on the pushed moments alone.
 #[derive(Debug, Clone)]
@@ -102,7 +102,7 @@ pub(crate) struct Thinning<T> {
 
 impl<T> Thinning<T> {
     fn new() -> Self {
-        Self { entries: Vec::new(), every: 0.05 }
+        Self { entries: Vec::new(), every: 0.1 }
     }
 
     fn push(&mut self, time: f64, value: impl FnOnce() -> T) {

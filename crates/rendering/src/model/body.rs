@@ -120,6 +120,12 @@ fn stripe(mesh: &mut Mesh) {
     mesh.quad([at(0.054, -0.018), at(0.118, -0.018), at(0.118, 0.018), at(0.054, 0.018)], Material::Stripe);
 }
 
+/// Hull and cabin.
+pub(super) fn outline(mesh: &mut Mesh) {
+    hull(mesh);
+    cabin(mesh);
+}
+
 pub(super) fn build(mesh: &mut Mesh) {
     hull(mesh);
     cabin(mesh);

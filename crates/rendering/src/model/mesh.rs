@@ -102,6 +102,19 @@ impl Mesh {
         self.vertices.extend(other.vertices.iter().map(moved));
     }
 
+    /// Appends the corners, each once, and the triangles between them.
+    pub(crate) fn weld(&self, vertices: &mut Vec<Vertex>, indices: &mut Vec<u32>) {
+        let mut seen = HashMap::new();
+        for vertex in &self.vertices {
+            let bits: [u8; size_of::<Vertex>()] = bytemuck::cast(*vertex);
+            let index = *seen.entry(bits).or_insert_with(|| {
+                vertices.push(*vertex);
+                vertices.len() as u32 - 1
+            });
+            indices.push(index);
+        }
+    }
+
     /// Rounds the shading over edges where faces of one material meet at less than `crease` (cosine).
     pub(crate) fn smooth(&mut self, from: usize, crease: f32) {
         let key = |v: &Vertex| (v.position.map(|x| (x * 2e4).round() as i32), v.material);

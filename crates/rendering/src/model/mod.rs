@@ -33,6 +33,14 @@ pub(crate) fn body() -> Mesh {
     mesh
 }
 
+/// The outline of a robot, with few faces: what a ghost needs.
+pub(crate) fn ghost() -> Mesh {
+    let mut mesh = Mesh::default();
+    body::outline(&mut mesh);
+    shell::outline(&mut mesh);
+    mesh
+}
+
 /// A wheel around its hub, the outer face to the left.
 pub(crate) fn wheel() -> Mesh {
     wheel::wheel()

@@ -38,6 +38,12 @@ fn ring(mesh: &mut Mesh, low: f32, high: f32, outset: f32, outer: Material, inne
     }
 }
 
+/// The five faces, seen from both sides.
+pub(super) fn outline(mesh: &mut Mesh) {
+    let (low, high) = (CENTRE - 0.5 * HEIGHT, CENTRE + 0.5 * HEIGHT);
+    ring(mesh, low, high, 0.0, Material::Paint, Material::Paint);
+}
+
 pub(super) fn build(mesh: &mut Mesh) {
     let (low, high) = (CENTRE - 0.5 * HEIGHT, CENTRE + 0.5 * HEIGHT);
     ring(mesh, low, high, 0.0, Material::Shell, Material::Lining);

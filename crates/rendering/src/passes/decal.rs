@@ -28,6 +28,8 @@ pub(crate) enum Form {
     Blob,
     /// A box that is full up to this share of its sides.
     SoftBox(f32),
+    /// As dark as the shadow map says.
+    Shadow,
 }
 
 impl Form {
@@ -37,6 +39,7 @@ impl Form {
             Self::Ring(hole) => [1.0, hole],
             Self::Blob => [2.0, 0.0],
             Self::SoftBox(full) => [3.0, full],
+            Self::Shadow => [4.0, 0.0],
         }
     }
 }
@@ -63,7 +66,7 @@ impl DecalPass {
                 attributes: &Self::ATTRIBUTES,
             }],
             colour: Some((canvas, Some(wgpu::BlendState::ALPHA_BLENDING))),
-            depth: Some((wgpu::CompareFunction::LessEqual, false)),
+            depth: Some((wgpu::CompareFunction::Always, false)),
             ..Default::default()
         }
         .build(device);

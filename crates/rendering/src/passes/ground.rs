@@ -11,6 +11,7 @@ pub(crate) const SHADER: &str =
 pub(crate) const TILE: f64 = 20.0;
 
 const SIZE: u32 = 512;
+const PATCHES: u32 = 128;
 
 /// Its texture and pipeline.
 #[derive(Debug)]
@@ -21,8 +22,8 @@ pub(crate) struct GroundPass {
 
 impl GroundPass {
     pub(crate) fn new(device: &Device, queue: &Queue, canvas: Canvas, groups: &FrameGroups) -> Self {
-        let levels = shrink(asphalt(), SIZE, SIZE, 2);
-        let texture = mipped(device, queue, "asphalt", (SIZE, SIZE), 2, &levels);
+        let texture = mipped(device, queue, "asphalt", (SIZE, SIZE), &shrink(asphalt(), SIZE, SIZE));
+        let patches = mipped(device, queue, "patches", (PATCHES, PATCHES), &[patches()]);
         let repeat = wgpu::AddressMode::Repeat;
         let sampler = wgpu::SamplerDescriptor {
             address_mode_u: repeat,
@@ -32,15 +33,15 @@ impl GroundPass {
             mipmap_filter: wgpu::MipmapFilterMode::Linear,
             ..Default::default()
         };
-        let (layout, asphalt) = textured(device, "asphalt", &texture, &sampler);
+        let (layout, asphalt) = textured(device, "asphalt", &[&texture, &patches], &sampler);
         let pipeline = Recipe {
             label: "ground",
             source: SHADER,
             groups: &[&groups.view_layout, &groups.light_layout, &layout],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             colour: Some((canvas, None)),
-            // No depth: what lies on the ground is drawn over it in order, so nothing can flicker.
-            depth: Some((wgpu::CompareFunction::LessEqual, false)),
+            // No depth: what lies on the ground is painted over it in order, so nothing can flicker.
+            depth: Some((wgpu::CompareFunction::Always, false)),
             ..Default::default()
         }
         .build(device);
@@ -54,22 +55,28 @@ impl GroundPass {
     }
 }
 
-/// Two channels: grain of the stones, and broad patches.
+/// Grain of the stones; one tile is 2 m.
 fn asphalt() -> Vec<u8> {
-    let mut texels = Vec::with_capacity((SIZE * SIZE * 2) as usize);
-    for y in 0..SIZE {
-        for x in 0..SIZE {
-            let grain = 0.30 * noise(x, y, 2, 1) + 0.30 * noise(x, y, 4, 2) + 0.22 * noise(x, y, 16, 3);
-            let speck = chance(x / 2, y / 2, 4);
-            // A few stones are bright, a few holes are dark.
-            let stone = if speck > 0.985 { 0.42 } else if speck < 0.02 { -0.24 } else { 0.0 };
-            let fine = grain + 0.18 * chance(x, y, 5) + stone;
-            let broad = 0.5 * noise(x, y, 128, 6) + 0.32 * noise(x, y, 32, 7) + 0.18 * noise(x, y, 8, 8);
-            texels.push((fine.clamp(0.0, 1.0) * 255.0) as u8);
-            texels.push((broad * 255.0) as u8);
-        }
-    }
-    texels
+    let texel = |k: u32| {
+        let (x, y) = (k % SIZE, k / SIZE);
+        let noise = |cell, salt| noise(x, y, SIZE, cell, salt);
+        let grain = 0.30 * noise(2, 1) + 0.30 * noise(4, 2) + 0.22 * noise(16, 3);
+        let speck = chance(x / 2, y / 2, 4);
+        // A few stones are bright, a few holes are dark.
+        let stone = if speck > 0.985 { 0.42 } else if speck < 0.02 { -0.24 } else { 0.0 };
+        let fine = grain + 0.18 * chance(x, y, 5) + stone;
+        (fine.clamp(0.0, 1.0) * 255.0) as u8
+    };
+    (0..SIZE * SIZE).map(texel).collect()
+}
+
+/// Broad patches; one tile is 20 m.
+fn patches() -> Vec<u8> {
+    let texel = |k: u32| {
+        let noise = |cell, salt| noise(k % PATCHES, k / PATCHES, PATCHES, cell, salt);
+        ((0.46 * noise(32, 6) + 0.32 * noise(8, 7) + 0.22 * noise(2, 8)) * 255.0) as u8
+    };
+    (0..PATCHES * PATCHES).map(texel).collect()
 }
 
 /// A number from 0 to 1 that depends on a place alone; it repeats with the tile.
@@ -80,9 +87,9 @@ fn chance(x: u32, y: u32, salt: u32) -> f32 {
     ((h ^ (h >> 15)) & 0xffff) as f32 / 65_535.0
 }
 
-/// Value noise with cells of `cell` texels.
-fn noise(x: u32, y: u32, cell: u32, salt: u32) -> f32 {
-    let cells = SIZE / cell;
+/// Value noise with cells of `cell` texels that repeats after `size`.
+fn noise(x: u32, y: u32, size: u32, cell: u32, salt: u32) -> f32 {
+    let cells = size / cell;
     let (i, j) = (x / cell, y / cell);
     let ease = |t: f32| t * t * (3.0 - 2.0 * t);
     let u = ease((x % cell) as f32 / cell as f32);

@@ -43,6 +43,8 @@ pub(crate) struct Canvas {
 pub(crate) struct Recipe<'a> {
     pub(crate) label: &'a str,
     pub(crate) source: &'a str,
+    /// The fragment stage's entry point.
+    pub(crate) entry: &'a str,
     pub(crate) groups: &'a [&'a BindGroupLayout],
     pub(crate) buffers: &'a [wgpu::VertexBufferLayout<'a>],
     pub(crate) topology: wgpu::PrimitiveTopology,
@@ -61,6 +63,7 @@ impl Default for Recipe<'_> {
         Self {
             label: "",
             source: "",
+            entry: "fragment",
             groups: &[],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
@@ -95,7 +98,7 @@ impl Recipe<'_> {
             .collect();
         let fragment = wgpu::FragmentState {
             module: &module,
-            entry_point: Some("fragment"),
+            entry_point: Some(self.entry),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &targets,
         };
@@ -165,63 +168,65 @@ impl Stream {
 }
 
 /// A buffer that never changes.
-pub(crate) fn constant(device: &Device, queue: &Queue, label: &'static str, bytes: &[u8]) -> Stream {
-    let mut stream = Stream::new(device, label, BufferUsages::VERTEX);
+pub(crate) fn constant(
+    device: &Device,
+    queue: &Queue,
+    label: &'static str,
+    usage: BufferUsages,
+    bytes: &[u8],
+) -> Stream {
+    let mut stream = Stream::new(device, label, usage);
     stream.fill(device, queue, bytes);
     stream
 }
 
-/// Layout and bind group of a texture with its sampler.
+/// Layout and bind group of textures with their sampler: the first is binding 0, the sampler 1, others follow.
 pub(crate) fn textured(
     device: &Device,
     label: &str,
-    texture: &wgpu::Texture,
+    textures: &[&wgpu::Texture],
     sampler: &wgpu::SamplerDescriptor<'_>,
 ) -> (BindGroupLayout, wgpu::BindGroup) {
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(label),
-        entries: &[
-            wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-                count: None,
-            },
-            wgpu::BindGroupLayoutEntry {
-                binding: 1,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                count: None,
-            },
-        ],
-    });
-    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let place = |k: usize| if k == 0 { 0 } else { k as u32 + 1 };
+    let slot = |binding: u32, ty: wgpu::BindingType| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty,
+        count: None,
+    };
+    let image = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let mut slots = vec![slot(1, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering))];
+    slots.extend((0..textures.len()).map(|k| slot(place(k), image)));
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &slots };
+    let layout = device.create_bind_group_layout(&descriptor);
     let sampler = device.create_sampler(sampler);
+    let views: Vec<_> = textures.iter().map(|t| t.create_view(&wgpu::TextureViewDescriptor::default())).collect();
+    let mut entries =
+        vec![wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&sampler) }];
+    entries.extend(views.iter().enumerate().map(|(k, view)| wgpu::BindGroupEntry {
+        binding: place(k),
+        resource: wgpu::BindingResource::TextureView(view),
+    }));
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some(label),
         layout: &layout,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&sampler) },
-        ],
+        entries: &entries,
     });
     (layout, group)
 }
 
-/// A texture with the given mip levels, each half as large as the one before, `channels` bytes a texel (1 or 2).
+/// A texture of one byte a texel with the given mip levels, each half as large as the one before.
 pub(crate) fn mipped(
     device: &Device,
     queue: &Queue,
     label: &str,
     size: (u32, u32),
-    channels: u32,
     levels: &[Vec<u8>],
 ) -> wgpu::Texture {
-    let format = if channels == 1 { TextureFormat::R8Unorm } else { TextureFormat::Rg8Unorm };
     let extent = |level: u32| wgpu::Extent3d {
         width: (size.0 >> level).max(1),
         height: (size.1 >> level).max(1),
@@ -233,42 +238,34 @@ pub(crate) fn mipped(
         mip_level_count: levels.len() as u32,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format,
+        format: TextureFormat::R8Unorm,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
     for (level, texels) in (0..).zip(levels) {
         let extent = extent(level);
         let copy = wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() };
-        let rows = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(extent.width * channels),
-            rows_per_image: None,
-        };
+        let rows =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(extent.width), rows_per_image: None };
         queue.write_texture(copy, texels, rows, extent);
     }
     texture
 }
 
 /// The levels below `first`, each texel the mean of four; down to one texel on the shorter side.
-pub(crate) fn shrink(first: Vec<u8>, width: u32, height: u32, channels: u32) -> Vec<Vec<u8>> {
+pub(crate) fn shrink(first: Vec<u8>, width: u32, height: u32) -> Vec<Vec<u8>> {
     let mut levels = vec![first];
     let (mut w, mut h) = (width as usize, height as usize);
-    let c = channels as usize;
     while w > 1 && h > 1 {
         let above = &levels[levels.len() - 1];
-        let (half_w, half_h) = (w / 2, h / 2);
-        let mut level = Vec::with_capacity(half_w * half_h * c);
-        for y in 0..half_h {
-            for x in 0..half_w {
-                for k in 0..c {
-                    let at = |dx: usize, dy: usize| u32::from(above[((2 * y + dy) * w + 2 * x + dx) * c + k]);
-                    level.push(((at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1) + 2) / 4) as u8);
-                }
-            }
-        }
+        let texel = |k: usize| {
+            let (x, y) = (2 * (k % (w / 2)), 2 * (k / (w / 2)));
+            let at = |dx: usize, dy: usize| u32::from(above[(y + dy) * w + x + dx]);
+            ((at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1) + 2) / 4) as u8
+        };
+        let level = (0..(w / 2) * (h / 2)).map(texel).collect();
         levels.push(level);
-        (w, h) = (half_w, half_h);
+        (w, h) = (w / 2, h / 2);
     }
     levels
 }

@@ -1,4 +1,4 @@
-//! Robots and their ghosts: three models, drawn as often as there are copies.
+//! Robots and their ghosts: four models, drawn as often as there are copies.
 
 use super::frame::FrameGroups;
 use super::{Canvas, Recipe, Stream, constant, mipped, shader, shrink, textured};
@@ -32,9 +32,11 @@ pub(crate) struct Crowd {
 #[derive(Debug)]
 pub(crate) struct Models {
     vertices: Stream,
+    indices: Stream,
     body: Range<u32>,
     wheel: Range<u32>,
     camera: Range<u32>,
+    ghost: Range<u32>,
     instances: Stream,
 }
 
@@ -60,17 +62,22 @@ impl Models {
 
     pub(crate) fn new(device: &Device, queue: &Queue) -> Self {
         let mut vertices = Vec::new();
+        let mut indices = Vec::new();
         let mut add = |mesh: model::Mesh| {
-            let first = vertices.len() as u32;
-            vertices.extend(mesh.vertices);
-            first..vertices.len() as u32
+            let first = indices.len() as u32;
+            mesh.weld(&mut vertices, &mut indices);
+            first..indices.len() as u32
         };
         let (body, wheel, camera) = (add(model::body()), add(model::wheel()), add(model::camera()));
+        let ghost = add(model::ghost());
+        let usage = wgpu::BufferUsages::VERTEX;
         Self {
-            vertices: constant(device, queue, "models", bytemuck::cast_slice(&vertices)),
+            vertices: constant(device, queue, "corners", usage, bytemuck::cast_slice(&vertices)),
+            indices: constant(device, queue, "triangles", wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&indices)),
             body,
             wheel,
             camera,
+            ghost,
             instances: Stream::new(device, "instances", wgpu::BufferUsages::VERTEX),
         }
     }
@@ -88,7 +95,7 @@ impl Models {
         for (mesh, copies) in [(&self.body, &crowd.bodies), (&self.wheel, &crowd.wheels), (&self.camera, &crowd.cameras)]
         {
             let last = first + copies.len() as u32;
-            pass.draw(mesh.clone(), first..last);
+            pass.draw_indexed(mesh.clone(), 0, first..last);
             first = last;
         }
     }
@@ -96,12 +103,13 @@ impl Models {
     fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
         self.bind(pass);
         let first = (crowd.bodies.len() + crowd.wheels.len() + crowd.cameras.len()) as u32;
-        pass.draw(self.body.clone(), first..first + crowd.ghosts.len() as u32);
+        pass.draw_indexed(self.ghost.clone(), 0, first..first + crowd.ghosts.len() as u32);
     }
 
     fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_vertex_buffer(0, self.vertices.slice());
         pass.set_vertex_buffer(1, self.instances.slice());
+        pass.set_index_buffer(self.indices.slice(), wgpu::IndexFormat::Uint32);
     }
 }
 
@@ -124,14 +132,14 @@ impl RobotPass {
         digits: (Vec<u8>, u32, u32),
     ) -> Self {
         let (texels, width, height) = digits;
-        let texture = mipped(device, queue, "digits", (width, height), 1, &shrink(texels, width, height, 1)[..4]);
+        let texture = mipped(device, queue, "digits", (width, height), &shrink(texels, width, height)[..4]);
         let sampler = wgpu::SamplerDescriptor {
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             mipmap_filter: wgpu::MipmapFilterMode::Linear,
             ..Default::default()
         };
-        let (layout, digits) = textured(device, "digits", &texture, &sampler);
+        let (layout, digits) = textured(device, "digits", &[&texture], &sampler);
         let recipe = Recipe {
             label: "robot",
             source: SHADER,
@@ -146,8 +154,8 @@ impl RobotPass {
         let equal = Some((wgpu::CompareFunction::LessEqual, false));
         Self {
             solid: recipe.build(device),
-            ghost_depth: Recipe { label: "ghost depth", visible: false, ..recipe }.build(device),
-            ghost: Recipe { label: "ghost", colour: blended, depth: equal, ..recipe }.build(device),
+            ghost_depth: Recipe { label: "ghost depth", entry: "hidden", visible: false, ..recipe }.build(device),
+            ghost: Recipe { label: "ghost", entry: "ghost", colour: blended, depth: equal, ..recipe }.build(device),
             digits,
         }
     }

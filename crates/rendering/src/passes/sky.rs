@@ -1,4 +1,4 @@
-//! The sky above the horizon, drawn last so that hidden parts cost nothing.
+//! The sky above the horizon.
 
 use super::frame::FrameGroups;
 use super::{Canvas, Recipe, shader};
@@ -21,7 +21,7 @@ impl SkyPass {
             groups: &[&groups.view_layout, &groups.light_layout],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             colour: Some((canvas, None)),
-            depth: Some((wgpu::CompareFunction::LessEqual, false)),
+            depth: Some((wgpu::CompareFunction::Always, false)),
             ..Default::default()
         }
         .build(device);
