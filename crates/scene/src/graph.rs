@@ -30,7 +30,7 @@ pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, r
         let Some(leader) = &robot.leader else { continue };
         if robot.name.as_ref().is_some_and(|name| name.value == leader.value) {
             reading.note(leader.place, format!("`{}` cannot follow itself", leader.value));
-        } else if !leader_of.contains_key(leader.value.as_str()) {
+        } else if !leader_of.contains_key(leader.value.as_str()) && !reading.is_full() {
             check_known(&leader.value, leader.place, robots.clone(), reading);
         }
     }

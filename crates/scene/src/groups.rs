@@ -13,7 +13,7 @@ use rand_chacha::{
 };
 use vocabulary::{Pose, wrap};
 
-/// Appends the robots of `group`, the `index`-th of the scene.
+/// Appends the robots of `group`; `None` after a note.
 pub(crate) fn expand(
     group: &Group<'_>,
     seed: u64,
@@ -22,51 +22,41 @@ pub(crate) fn expand(
     reading: &mut Reading,
 ) -> Option<()> {
     let keys = group.keys;
-    let (shape, count, follows) =
-        (keys.shape.as_ref()?.value, keys.count.as_ref()?, keys.follows.as_ref()?.value);
-    if let Some(fault) = shape.refuses(count.value) {
-        reading.note(count.place, fault);
-        return None;
-    }
-    if drafts.len() + count.value > MOST_ROBOTS {
-        reading.note(count.place, format!("this makes more than {MOST_ROBOTS} robots"));
-        return None;
-    }
+    let count = group.count(drafts.len(), reading)?;
     let vehicle = vehicle(keys.vehicle.as_ref(), defaults, reading);
     let speed = start_speed(keys.speed.as_ref(), &vehicle, reading);
     let law = keys.law.as_ref()?.value.complete(&defaults.law);
     let observer = keys.observer.as_ref()?.value.complete(&defaults.observer);
-    let (distance, angle) = (keys.distance.as_ref()?, keys.angle.as_ref()?.value);
-    check_distance(distance.value, law.distance_min, distance.place, reading);
-
+    let spacing = keys.distance.as_ref()?;
+    check_distance(spacing.value, law.distance_min, spacing.place, reading);
     let (leader, origin) = group.leader(&vehicle, drafts, reading)?;
-    let name_of = |place: usize| if place == 0 { leader.clone() } else { group.name(place) };
     let mut scatter = Scatter::new(keys, group.index, seed)?;
-    let mut places = vec![[0.0, 0.0]];
-    for place in 1..count.value {
-        let step = shape.step(place, count.value, angle);
-        let [x, y] = *places.get(step.leader)?;
-        let (sin, cos) = step.bearing.sin_cos();
-        let [x, y] = [x + distance.value * cos, y + distance.value * sin];
-        places.push([x, y]);
-        let (followed, distance, bearing) = match follows {
-            Follows::Neighbour => (name_of(step.leader), distance.value, step.bearing),
-            Follows::Leader => (leader.clone(), x.hypot(y), wrap(y.atan2(x))),
-        };
+    for (place, spot) in group.spots(count)?.into_iter().enumerate().skip(1) {
+        let followed = if spot.follows == 0 { leader.clone() } else { group.name(spot.follows) };
         let role = Role::Follow(Follow {
             leader: followed,
             speed,
-            distance: Channel::Constant(distance),
-            bearing: Channel::Constant(bearing),
+            distance: Channel::Constant(spot.distance),
+            bearing: Channel::Constant(spot.bearing),
             law,
             observer,
         });
-        group.push(
-            Robot { name: name_of(place), pose: scatter.around(origin, [x, y]), vehicle, role },
-            drafts,
-        );
+        let pose = scatter.around(origin, spot.at);
+        group.push(Robot { name: group.name(place), pose, vehicle, role }, drafts);
     }
     Some(())
+}
+
+/// A place in a group.
+struct Spot {
+    /// [forward, left] of the group's leader, m.
+    at: [f64; 2],
+    /// Place that is followed.
+    follows: usize,
+    /// Distance from there, m.
+    distance: f64,
+    /// Bearing from there, rad.
+    bearing: f64,
 }
 
 /// A group as it is written, and where.
@@ -77,6 +67,38 @@ pub(crate) struct Group<'a> {
 }
 
 impl Group<'_> {
+    /// Number of places, if the shape and the scene, which has `before` robots already, can take them.
+    fn count(&self, before: usize, reading: &mut Reading) -> Option<usize> {
+        let (shape, count) = (self.keys.shape.as_ref()?.value, self.keys.count.as_ref()?);
+        let crowd = || format!("this makes more than {MOST_ROBOTS} robots");
+        let fault = shape.refuses(count.value).or_else(|| (before + count.value > MOST_ROBOTS).then(crowd));
+        if let Some(fault) = fault {
+            reading.note(count.place, fault);
+            return None;
+        }
+        Some(count.value)
+    }
+
+    /// All places; the first is the leader's.
+    fn spots(&self, count: usize) -> Option<Vec<Spot>> {
+        let keys = self.keys;
+        let (shape, follows) = (keys.shape.as_ref()?.value, keys.follows.as_ref()?.value);
+        let (spacing, angle) = (keys.distance.as_ref()?.value, keys.angle.as_ref()?.value);
+        let mut spots = vec![Spot { at: [0.0; 2], follows: 0, distance: 0.0, bearing: 0.0 }];
+        for place in 1..count {
+            let step = shape.step(place, count, angle);
+            let [x, y] = spots.get(step.leader)?.at;
+            let (sin, cos) = step.bearing.sin_cos();
+            let [x, y] = [x + spacing * cos, y + spacing * sin];
+            let (follows, distance, bearing) = match follows {
+                Follows::Neighbour => (step.leader, spacing, step.bearing),
+                Follows::Leader => (0, x.hypot(y), wrap(y.atan2(x))),
+            };
+            spots.push(Spot { at: [x, y], follows, distance, bearing });
+        }
+        Some(spots)
+    }
+
     /// Name of the robot in `place`, counted from 0.
     fn name(&self, place: usize) -> String {
         format!("{}-{}", self.keys.name.as_ref().map_or("robot", |name| &name.value), place + 1)

@@ -3,7 +3,7 @@
 
 use crate::{
     Film, Follow, Path, Robot, Role, Scene, Time, Vehicle, Views,
-    document::{Document, RobotKeys},
+    document::{Document, GroupKeys, RobotKeys},
     graph::{Named, check_graph, check_known},
     groups::{Group, expand},
     text::{Found, Node, Place, Reading},
@@ -30,6 +30,7 @@ pub(crate) struct Draft {
 
 /// The checked scene, or `None` after notes.
 pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) -> Option<Scene> {
+    // Another version may mean anything.
     document.schema?;
     let seed = document.seed?.value;
     let defaults = Defaults {
@@ -38,19 +39,8 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         observer: document.observer?.value,
     };
     let time = time(&document.time?.value, reading);
-    let (robots, groups) = (document.robots, document.groups);
-    let (robots, groups) = (robots?.value, groups?.value);
-    let nodes = root.items("robots");
-    let mut drafts: Vec<_> =
-        robots.iter().zip(nodes).map(|(keys, node)| draft(keys, node, &defaults, reading)).collect();
-    for (index, (group, node)) in groups.iter().zip(root.items("groups")).enumerate() {
-        let group = Group { keys: group, node, index: index as u64 };
-        // A group that cannot be read has its notes already.
-        let _ = expand(&group, seed, &defaults, &mut drafts, reading);
-    }
-    if ["robots", "groups"].iter().all(|key| root.items(key).is_empty()) {
-        reading.note(root.place.first(), "a scene needs at least one robot: write [[robots]] or [[groups]]");
-    }
+    let (robots, groups) = (document.robots?.value, document.groups?.value);
+    let drafts = drafts(&robots, &groups, root, seed, &defaults, reading);
     check_graph(drafts.iter().map(|draft| &draft.named), reading);
     let views = views(&document.views?.value, &drafts, reading);
     let film = film(&document.film?.value, &drafts, reading);
@@ -66,6 +56,29 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         film,
         expect: document.expect?.value.complete(&ExpectPart::default()),
     })
+}
+
+/// All robots, those of groups after those that stand alone.
+fn drafts(
+    robots: &[RobotKeys],
+    groups: &[GroupKeys],
+    root: &Node,
+    seed: u64,
+    defaults: &Defaults,
+    reading: &mut Reading,
+) -> Vec<Draft> {
+    let nodes = root.items("robots");
+    let mut drafts: Vec<_> =
+        robots.iter().zip(nodes).map(|(keys, node)| draft(keys, node, defaults, reading)).collect();
+    for (index, (keys, node)) in groups.iter().zip(root.items("groups")).enumerate() {
+        let group = Group { keys, node, index: index as u64 };
+        // A group that cannot be read has its notes already.
+        let _ = expand(&group, seed, defaults, &mut drafts, reading);
+    }
+    if ["robots", "groups"].iter().all(|key| root.items(key).is_empty()) {
+        reading.note(root.place.first(), "a scene needs at least one robot: write [[robots]] or [[groups]]");
+    }
+    drafts
 }
 
 /// More control steps than this are a slip of the pen.
@@ -139,17 +152,7 @@ fn role(
 ) -> Option<Role> {
     let name = keys.name.as_ref()?;
     match (node.get("path"), node.get("leader")) {
-        (Some(_), None) => {
-            let theirs = ["leader", "distance", "bearing", "speed", "law", "observer"];
-            for entry in theirs.into_iter().filter_map(|key| node.entry(key)) {
-                let message =
-                    format!("`{}` is for robots that follow, but `{}` leads", entry.key, name.value);
-                reading.note(entry.place, message);
-            }
-            let path = keys.path.as_ref()?;
-            check_path(path, vehicle, reading);
-            Some(Role::Lead { path: path.value.clone() })
-        }
+        (Some(_), None) => lead(keys, node, vehicle, reading),
         (None, Some(_)) => follow(keys, node, vehicle, defaults, reading).map(Role::Follow),
         (Some(_), Some(leader)) => {
             let message = format!("`{}` has a `path` and a `leader`; a robot leads or follows", name.value);
@@ -165,6 +168,18 @@ fn role(
             None
         }
     }
+}
+
+fn lead(keys: &RobotKeys, node: &Node, vehicle: &Vehicle, reading: &mut Reading) -> Option<Role> {
+    let name = &keys.name.as_ref()?.value;
+    for entry in
+        ["distance", "bearing", "speed", "law", "observer"].into_iter().filter_map(|key| node.entry(key))
+    {
+        reading.note(entry.place, format!("`{}` is for robots that follow, but `{name}` leads", entry.key));
+    }
+    let path = keys.path.as_ref()?;
+    check_path(path, vehicle, reading);
+    Some(Role::Lead { path: path.value.clone() })
 }
 
 fn follow(

@@ -64,35 +64,31 @@ fn read_rows(text: &str, source: usize, reading: &mut Reading) -> Option<Vec<[f6
     let mut table =
         csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
     let columns = find_columns(table.headers().ok()?, source, reading)?;
-    let mut rows = Vec::new();
+    let mut rows: Vec<[f64; 3]> = Vec::new();
     let mut good = true;
-    for record in table.records() {
-        let (line, row) = match record {
-            Ok(record) => (line_at(&record, text, source), read_row(&record, columns)),
-            Err(error) => {
-                let start = error.position().map_or(0, |position| position.byte() as usize);
-                (Place { source, start, end: start }, Err(format!("not a row of the table: {error}")))
-            }
-        };
-        match row {
+    for record in table.records().take(MOST_ROWS + 1) {
+        let place = line_at(
+            record.as_ref().map_or_else(csv::Error::position, csv::StringRecord::position),
+            text,
+            source,
+        );
+        let row = record.map_err(|error| format!("not a row of the table: {error}"));
+        match row.and_then(|record| read_row(&record, columns)) {
             Ok(row) => {
-                if let Some(fault) = out_of_order(rows.last().map(|last: &[f64; 3]| last[0]), row[0]) {
-                    reading.note(line, fault);
+                if let Some(fault) = out_of_order(rows.last().map(|last| last[0]), row[0]) {
+                    reading.note(place, fault);
                 }
                 rows.push(row);
             }
             Err(fault) => {
-                reading.note(line, fault);
+                reading.note(place, fault);
                 good = false;
             }
         }
-        if rows.len() > MOST_ROWS {
-            reading.note(line, format!("more than {MOST_ROWS} rows"));
-            return None;
-        }
     }
-    if good && rows.is_empty() {
-        reading.note(Place { source, start: 0, end: 0 }, "a table needs at least one row under its header");
+    if good && !(1..=MOST_ROWS).contains(&rows.len()) {
+        let message = format!("a table needs 1 to {MOST_ROWS} rows under its header");
+        reading.note(Place { source, start: 0, end: 0 }, message);
         return None;
     }
     good.then_some(rows)
@@ -119,8 +115,8 @@ fn read_row(record: &csv::StringRecord, columns: [usize; 3]) -> Result<[f64; 3],
     Ok(row)
 }
 
-fn line_at(record: &csv::StringRecord, text: &str, source: usize) -> Place {
-    let start = record.position().map_or(0, |position| position.byte() as usize);
+fn line_at(position: Option<&csv::Position>, text: &str, source: usize) -> Place {
+    let start = position.map_or(0, |position| position.byte() as usize);
     let length = text.get(start..).and_then(|rest| rest.lines().next()).map_or(0, str::len);
     Place { source, start, end: start + length }
 }

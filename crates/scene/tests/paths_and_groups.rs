@@ -110,7 +110,7 @@ fn tables_stand_beside_the_scene() {
         ("t,v,omega\n0,1,0\n0,1,0\n", 3, "rows must rise"),
         ("t,v,omega\n0,1\n", 2, "not a row"),
         ("t,v,w\n0,1,0\n", 1, "columns must be t, v, omega"),
-        ("t,v,omega\n", 1, "at least one row"),
+        ("t,v,omega\n", 1, "1 to 100000 rows"),
         ("", 1, "columns must be"),
     ] {
         fs::write(&table, text).unwrap();

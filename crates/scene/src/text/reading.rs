@@ -55,7 +55,7 @@ impl Reading {
     }
 
     pub(crate) fn note(&mut self, place: Place, message: impl Into<String>) {
-        if self.notes.len() < MOST_NOTES {
+        if !self.is_full() {
             self.notes.push((place, message.into()));
         }
     }
@@ -80,6 +80,11 @@ impl Reading {
         if let Some((_, message)) = self.notes.last_mut() {
             message.push_str(more);
         }
+    }
+
+    /// Whether further notes are dropped.
+    pub(crate) fn is_full(&self) -> bool {
+        self.notes.len() >= MOST_NOTES
     }
 
     pub(crate) fn is_clean(&self) -> bool {

@@ -32,7 +32,8 @@ settings! {
         pub settling_band: [f64; 2] = [0.02, 0.02], ERROR;
         /// Smallest distance between the outlines of any two bodies over the run, m.
         pub clearance_min: Option<f64> = None, optional(LENGTH);
-        /// [slowest, fastest] speed any follower may have after `settling_time` (the whole run without one), m/s.
+        /// [slowest, fastest] speed any follower may have, m/s: once its edge has settled if there is a
+        /// `settling_time`, else over the whole run.
         pub speed_within: Option<[f64; 2]> = None, optional(couple(number("m/s"), number("m/s")));
         /// What the largest |estimated rate| of [distance, bearing] of some edge has to reach, [m/s, rad/s]: peaking.
         pub rate_peak_at_least: Option<[f64; 2]> = None, optional(RATES);
