@@ -1,2 +1,47 @@
-//! The program.
-fn main() {}
+//! The program `echelon`: a file per subcommand.
+
+mod args;
+mod capture;
+mod check;
+mod doctor;
+mod failure;
+mod film;
+mod interrupt;
+mod load;
+mod picture;
+mod playback;
+mod print;
+mod progress;
+mod report;
+mod run;
+mod welcome;
+
+use args::{Command, Program};
+use clap::Parser;
+use failure::Failure;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let program = Program::parse();
+    interrupt::watch();
+    let outcome = match program.command {
+        None => welcome::welcome(),
+        Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Capture(args)) => capture::capture(&args),
+        Some(Command::Film(args)) => film::film(&args),
+        Some(Command::Check(args)) => check::check(&args),
+        Some(Command::Schema) => print::schema(),
+        Some(Command::Doctor(args)) => doctor::doctor(&args),
+        Some(Command::Completions { shell }) => print::completions(shell),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.tell();
+            ExitCode::from(failure.code())
+        }
+    }
+}
+
+/// What a subcommand returns.
+type Outcome = Result<(), Failure>;

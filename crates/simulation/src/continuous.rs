@@ -46,7 +46,13 @@ impl Continuous {
     }
 
     /// One control period from `time`.
-    pub(crate) fn advance(&mut self, formation: &Formation, state: &mut FormationState, time: f64, period: f64) {
+    pub(crate) fn advance(
+        &mut self,
+        formation: &Formation,
+        state: &mut FormationState,
+        time: f64,
+        period: f64,
+    ) {
         let mut scratch = state.clone();
         let robots = motions(&self.world).map(|m| [m.pose.x, m.pose.y, m.pose.heading, m.speed]).collect();
         let mut y = State { robots, estimates: state.estimates.clone() };
@@ -84,7 +90,8 @@ impl Continuous {
         let mut out = State { robots: vec![[0.0; 4]; y.robots.len()], estimates: y.estimates.clone() };
         for (robot, lead) in formation.leads() {
             let drive = lead.at(t);
-            out.robots[*robot] = unicycle(y.robots[*robot][2], drive.speed, drive.acceleration, drive.turn_rate);
+            out.robots[*robot] =
+                unicycle(y.robots[*robot][2], drive.speed, drive.acceleration, drive.turn_rate);
         }
         for (index, edge) in formation.edges().iter().enumerate() {
             let (seen, applied) = (&self.observations[index], scratch.decisions[index].applied);

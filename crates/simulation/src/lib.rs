@@ -9,4 +9,4 @@ mod step;
 pub mod verdict;
 
 pub use build::{BuildError, build, caption};
-pub use step::{Setup, Simulation, Timing};
+pub use step::{ObserverStart, Setup, Simulation, Timing};

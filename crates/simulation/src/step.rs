@@ -73,7 +73,8 @@ impl Simulation {
         let mut observations = Vec::with_capacity(edges);
         perception::observe(world.snapshot(), setup.formation.edges(), &mut observations);
         let start = |(o, s): (&Observation, &ObserverStart)| first_estimate(&o.relative, *s);
-        let state = setup.formation.start(observations.iter().zip(&setup.observer_starts).map(start).collect());
+        let state =
+            setup.formation.start(observations.iter().zip(&setup.observer_starts).map(start).collect());
         let moment = Moment { snapshot: world.snapshot().clone(), edges: vec![EdgeState::default(); edges] };
         let plant = match setup.timing {
             Timing::Continuous => Plant::Continuous(Box::new(Continuous::new(world, &setup.formation))),
@@ -151,7 +152,8 @@ impl Simulation {
         self.moment.snapshot.time = time;
         for (index, (edge, out)) in self.formation.edges().iter().zip(&mut self.moment.edges).enumerate() {
             let robots = &mut self.moment.snapshot.robots;
-            let relative = Relative::between(robots[edge.leader].motion.pose, robots[edge.follower].motion.pose);
+            let relative =
+                Relative::between(robots[edge.leader].motion.pose, robots[edge.follower].motion.pose);
             let decision = &self.state.decisions[index];
             let wanted = decision.set_point;
             robots[edge.follower].camera_pan = wrap(relative.view_angle - PI);
@@ -165,6 +167,14 @@ impl Simulation {
                 limited: decision.limited,
                 too_close: decision.too_close,
             };
+        }
+    }
+
+    /// Adds to the rates an edge's observer estimates, [m/s, rad/s]: to watch it recover.
+    pub fn disturb_observer(&mut self, edge: usize, by: [f64; 2]) {
+        if let Some(estimate) = self.state.estimates.get_mut(edge) {
+            estimate.rates[0] += by[0];
+            estimate.rates[1] += by[1];
         }
     }
 
@@ -238,4 +248,3 @@ fn samples(duration: f64, period: f64) -> u64 {
 pub(crate) fn motions(world: &dyn World) -> impl Iterator<Item = Motion> + '_ {
     world.snapshot().robots.iter().map(|r| r.motion)
 }
-

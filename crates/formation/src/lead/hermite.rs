@@ -24,6 +24,11 @@ impl Hermite {
         Some(curve)
     }
 
+    /// The same `value` at all times.
+    pub fn constant(value: f64) -> Self {
+        Self { points: vec![[0.0, value]], slopes: vec![0.0], integrals: vec![0.0] }
+    }
+
     /// Value and slope at `t`.
     pub fn at(&self, t: f64) -> [f64; 2] {
         match self.place(t) {

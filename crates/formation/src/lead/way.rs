@@ -2,7 +2,7 @@
 //!
 //! The curve is the interpolating cubic spline over chord length: its curvature is continuous, so the turn rate is.
 
-use super::{Hermite, Pace};
+use super::Pace;
 use kurbo::{CubicBez, ParamCurve, ParamCurveArclen, ParamCurveDeriv, Point, Vec2};
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
@@ -149,6 +149,7 @@ fn tangents(knots: &[Point], chords: &[f64], closed: bool) -> Vec<Vec2> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Hermite;
     use super::*;
 
     fn pace(rows: Vec<[f64; 2]>) -> Pace {

@@ -1,0 +1,161 @@
+//! Subcommands and flags.
+
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
+use scene::Override;
+use std::path::PathBuf;
+
+/// Echelon, a 3D laboratory for vehicle formations.
+#[derive(Debug, Parser)]
+#[command(name = "echelon", version, about, max_term_width = 110)]
+#[command(after_help = "Exit codes: 0 done and expectations met, 1 an expectation of the scene failed, \
+    2 wrong usage or a bad scene, 3 the machine (no adapter, disk full), 130 interrupted.")]
+pub(crate) struct Program {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Simulate a scene, record it, and hold it against what it expects
+    Run(RunArgs),
+    /// Draw pictures of a scene at given times
+    Capture(CaptureArgs),
+    /// Make a film of a scene
+    Film(FilmArgs),
+    /// Read scenes and say what is wrong with them, without running
+    Check(CheckArgs),
+    /// Print the JSON Schema of scene files
+    Schema,
+    /// Say which adapters, drivers and encoders this machine has, and what is missing
+    Doctor(DoctorArgs),
+    /// Print completions for a shell
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+}
+
+/// What every subcommand on a scene takes.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArgs {
+    /// Scene file
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: PathBuf,
+    /// Change a value of the scene, such as time.duration=5 or robots.follower-1.distance=1.5; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<Override>,
+    /// Seed in place of the scene's
+    #[arg(long)]
+    pub(crate) seed: Option<u64>,
+    /// Print the result as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print errors only
+    #[arg(long, short, conflicts_with = "json")]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Folder for the run; runs/NAME-001, -002, … if left out
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Also write the tables as CSV
+    #[arg(long)]
+    pub(crate) csv: bool,
+    /// Replace an earlier run in the folder
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Record nothing, only simulate and judge
+    #[arg(long, conflicts_with_all = ["out", "csv", "force"])]
+    pub(crate) no_record: bool,
+}
+
+/// How pictures look.
+#[derive(Debug, Args)]
+pub(crate) struct PictureArgs {
+    /// snake, snake-eye, top, orbit, follow:ROBOT or fixed; several joined by '+' split the picture
+    #[arg(long)]
+    pub(crate) view: Option<String>,
+    /// Pixels, such as 1280x720
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<[u32; 2]>,
+    /// Elements to leave out, such as labels,inset,ghosts
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) without: Vec<String>,
+    /// Size of text and lines; grows with the height of the picture if left out
+    #[arg(long, value_parser = scale)]
+    pub(crate) scale: Option<f64>,
+    /// Adapter to draw with: vulkan, gl, or part of its name; fails where there is none such
+    #[arg(long, default_value = "auto")]
+    pub(crate) adapter: String,
+    /// Samples a pixel: 4, or 1 for speed
+    #[arg(long, default_value_t = 4)]
+    pub(crate) samples: u32,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CaptureArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    /// Times in s, such as 0,5,15; the end of the run if left out
+    #[arg(long, value_name = "TIMES", value_delimiter = ',')]
+    pub(crate) at: Vec<f64>,
+    /// Folder for the pictures; it may hold others
+    #[arg(long, short, value_name = "DIR", default_value = ".")]
+    pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FilmArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    /// Frames a second of simulation time
+    #[arg(long)]
+    pub(crate) fps: Option<f64>,
+    /// Film file: .mp4 or .gif; without an ending, a folder of PNG frames. NAME.mp4 if left out
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Encode with the ffmpeg on PATH instead of the built-in encoder
+    #[arg(long)]
+    pub(crate) ffmpeg: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    /// Scene files
+    #[arg(value_name = "SCENE", required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Change a value of every scene
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<Override>,
+    /// Print the resolved scene, every default written out
+    #[arg(long)]
+    pub(crate) resolved: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DoctorArgs {
+    /// Print the result as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let parse = |t: &str| t.parse::<u32>().ok();
+    text.split_once(['x', 'X', '×'])
+        .and_then(|(w, h)| Some([parse(w)?, parse(h)?]))
+        .ok_or_else(|| "write width and height in pixels, such as 1280x720".to_owned())
+}
+
+fn scale(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| (0.25..=8.0).contains(v));
+    value.ok_or_else(|| "write a number from 0.25 to 8".to_owned())
+}

@@ -1,0 +1,31 @@
+//! `echelon check`: is a scene right?
+
+use crate::Outcome;
+use crate::args::CheckArgs;
+use crate::failure::Failure;
+use crate::load::load_file;
+use crate::print::say;
+
+pub(crate) fn check(args: &CheckArgs) -> Outcome {
+    let mut problems = Vec::new();
+    for path in &args.scenes {
+        match load_file(path, &args.set) {
+            Ok((scene, setup)) if args.resolved => {
+                say(&format!("# {}: {} robots", path.display(), setup.cast.members.len()));
+                say(&scene.to_toml());
+            }
+            Ok((scene, setup)) => {
+                let (robots, edges) = (setup.cast.members.len(), setup.cast.edges.len());
+                let length = scene.time.duration;
+                say(&format!(
+                    "{}: good: {}; {robots} robots, {edges} edges, {length} s",
+                    path.display(),
+                    scene.title
+                ));
+            }
+            Err(Failure::Usage(text)) => problems.push(text),
+            Err(other) => return Err(other),
+        }
+    }
+    if problems.is_empty() { Ok(()) } else { Err(Failure::Usage(problems.join("\nerror: "))) }
+}

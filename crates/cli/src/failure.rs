@@ -1,0 +1,56 @@
+//! What can end a subcommand early, and the exit code it ends with.
+
+use std::io::Write;
+
+/// Why the program does not end with 0.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The run did not show what its scene expects; already told in the report.
+    Expectation,
+    /// The command line or the scene is wrong.
+    Usage(String),
+    /// The machine cannot do it: no adapter, disk full.
+    Machine(String),
+    /// Ctrl-C.
+    Interrupted(String),
+}
+
+impl Failure {
+    pub(crate) fn code(&self) -> u8 {
+        match self {
+            Self::Expectation => 1,
+            Self::Usage(_) => 2,
+            Self::Machine(_) => 3,
+            Self::Interrupted(_) => 130,
+        }
+    }
+
+    /// One message on standard error.
+    pub(crate) fn tell(&self) {
+        let message = match self {
+            Self::Expectation => return,
+            Self::Usage(text) | Self::Machine(text) => format!("error: {text}"),
+            Self::Interrupted(text) => format!("interrupted: {text}"),
+        };
+        // Nobody is left to tell if standard error is closed.
+        let _ = writeln!(std::io::stderr(), "{message}");
+    }
+}
+
+impl From<rendering::Error> for Failure {
+    fn from(error: rendering::Error) -> Self {
+        let text = error.to_string();
+        if error.is_usage() { Self::Usage(text) } else { Self::Machine(text) }
+    }
+}
+
+impl From<recording::Error> for Failure {
+    fn from(error: recording::Error) -> Self {
+        let text = error.to_string();
+        if matches!(error, recording::Error::Occupied { .. }) {
+            Self::Usage(text)
+        } else {
+            Self::Machine(text)
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! A run at any time: the moments between two control samples are interpolated, and the past is remembered.
+
+use rendering::Trail;
+use simulation::Simulation;
+use vocabulary::Moment;
+
+/// A simulation that is asked for growing times.
+pub(crate) struct Playback {
+    simulation: Simulation,
+    trail: Trail,
+    before: Moment,
+    after: Moment,
+}
+
+impl Playback {
+    /// At time 0.
+    pub(crate) fn new(mut simulation: Simulation) -> Self {
+        let mut trail = Trail::new(simulation.cast());
+        let first = simulation.next_moment().cloned().unwrap_or_default();
+        trail.push(&first);
+        Self { simulation, trail, before: first.clone(), after: first }
+    }
+
+    /// The moment at `time` s, not before the last one asked for; the last moment of the run after its end.
+    pub(crate) fn at(&mut self, time: f64) -> Moment {
+        while self.after.snapshot.time < time {
+            std::mem::swap(&mut self.before, &mut self.after);
+            match self.simulation.next_moment() {
+                Some(moment) => self.after.clone_from(moment),
+                None => {
+                    std::mem::swap(&mut self.before, &mut self.after);
+                    break;
+                }
+            }
+            self.trail.push(&self.after);
+        }
+        let (from, to) = (self.before.snapshot.time, self.after.snapshot.time);
+        let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
+        Moment::between(&self.before, &self.after, share)
+    }
+
+    /// What has been.
+    pub(crate) fn trail(&self) -> &Trail {
+        &self.trail
+    }
+}

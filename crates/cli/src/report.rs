@@ -1,0 +1,98 @@
+//! What a run showed, for people and for machines.
+
+use crate::print::{json, note, say};
+use recording::Metrics;
+use scene::Scene;
+use serde_json::json;
+use simulation::verdict::Finding;
+use std::path::PathBuf;
+
+/// A run that reached its end.
+pub(crate) struct Report<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) metrics: &'a Metrics,
+    pub(crate) findings: &'a [Finding],
+    pub(crate) digest: String,
+    pub(crate) folder: Option<PathBuf>,
+    /// s of wall time, simulation and recording.
+    pub(crate) wall: f64,
+    pub(crate) steps: u64,
+}
+
+/// Edges a report lists one by one.
+const MOST_EDGES: usize = 12;
+
+pub(crate) fn as_text(report: &Report<'_>) {
+    let Report { scene, metrics, .. } = report;
+    say(&format!("{}\n{}\n", scene.title, simulation::caption(scene)));
+    edges(metrics);
+    if let (Some(clearance), Some(time), Some([a, b])) =
+        (metrics.clearance_min, metrics.clearance_min_time, &metrics.clearance_min_robots)
+    {
+        say(&format!("least clearance {clearance:.3} m, between {a} and {b} at {time:.2} s"));
+    }
+    let speed = metrics.duration / report.wall.max(1e-9);
+    say(&format!("{:.2} s in {} steps, {speed:.0} times real time", metrics.duration, report.steps));
+    say(&format!("digest {}", report.digest));
+    if let Some(folder) = &report.folder {
+        say(&format!("recorded in {}", folder.display()));
+    }
+    expectations(report);
+}
+
+fn edges(metrics: &Metrics) {
+    if metrics.edges.is_empty() {
+        return;
+    }
+    let width = metrics.edges.iter().map(|e| e.leader.len() + e.follower.len() + 3).max().unwrap_or(0).max(4);
+    say(&format!(
+        "{:width$}  {:>23}  {:>23}  {:>9}  {:>7}",
+        "edge", "final error", "rms error", "settled", "limited"
+    ));
+    let channel = |e: [f64; 2]| format!("{:>10.4} m {:>8.3}°", e[0], e[1].to_degrees());
+    for edge in metrics.edges.iter().take(MOST_EDGES) {
+        let name = format!("{} → {}", edge.leader, edge.follower);
+        let settled = edge.settling_time.map_or("never".to_owned(), |t| format!("{t:.2} s"));
+        let (last, rms) = (channel(edge.final_error), channel(edge.rms_error));
+        let limited = format!("{:.1} %", edge.limited * 100.0);
+        say(&format!("{name:width$}  {last:>23}  {rms:>23}  {settled:>9}  {limited:>7}"));
+    }
+    if metrics.edges.len() > MOST_EDGES {
+        say(&format!("… and {} more edges, all in metrics.json", metrics.edges.len() - MOST_EDGES));
+    }
+    let band = metrics.settling_band;
+    say(&format!("settled: within ±{} m and ±{:.2}° to the end\n", band[0], band[1].to_degrees()));
+}
+
+fn expectations(report: &Report<'_>) {
+    if report.findings.is_empty() {
+        return;
+    }
+    say("\nexpectations");
+    for finding in report.findings {
+        let mark = if finding.met { "met   " } else { "FAILED" };
+        say(&format!("  {mark} {:22} {}, found {}", finding.key, finding.wanted, finding.found));
+    }
+}
+
+/// The expectations that failed, on standard error.
+pub(crate) fn failures(report: &Report<'_>) {
+    for finding in report.findings.iter().filter(|f| !f.met) {
+        note(&format!("expectation failed: {} {}, found {}", finding.key, finding.wanted, finding.found));
+    }
+}
+
+pub(crate) fn as_json(report: &Report<'_>) {
+    let finding = |f: &Finding| json!({ "key": f.key, "wanted": f.wanted, "found": f.found, "met": f.met });
+    json(&json!({
+        "title": report.scene.title,
+        "seed": report.scene.seed,
+        "steps": report.steps,
+        "wall_seconds": report.wall,
+        "digest": report.digest,
+        "folder": report.folder.as_ref().map(|f| f.display().to_string()),
+        "metrics": report.metrics,
+        "expectations": report.findings.iter().map(finding).collect::<Vec<_>>(),
+        "met": report.findings.iter().all(|f| f.met),
+    }));
+}

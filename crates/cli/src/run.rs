@@ -1,0 +1,126 @@
+//! `echelon run`: simulate, record, judge.
+
+use crate::Outcome;
+use crate::args::RunArgs;
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::load::{Loaded, load, stem};
+use crate::progress::Progress;
+use crate::report::{self, Report};
+use recording::{Digest, Metrics, MetricsBuilder, Recorder, RunOptions, Status};
+use simulation::verdict::verdict;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Name and version, as manifests and pictures carry it.
+pub(crate) const PROGRAM: &str = concat!("echelon ", env!("CARGO_PKG_VERSION"));
+
+/// Steps between two looks at the bar and at Ctrl-C.
+const STRIDE: u64 = 64;
+
+pub(crate) fn run(args: &RunArgs) -> Outcome {
+    let Loaded { scene, mut simulation } = load(&args.scene)?;
+    let folder = if args.no_record { None } else { Some(folder(args)) };
+    let mut sink = match &folder {
+        Some(folder) => Sink::record(folder, args, &scene, &simulation)?,
+        None => Sink::Judge(Box::new((
+            MetricsBuilder::new(simulation.cast(), scene.expect.settling_band),
+            Digest::default(),
+        ))),
+    };
+    let steps = simulation.len();
+    let what = format!("Simulating {}, {} s", stem(&args.scene.scene), scene.time.duration);
+    let progress = Progress::begin(&what, steps, args.scene.quiet || args.scene.json);
+    let began = Instant::now();
+    let mut step = 0;
+    while let Some(moment) = simulation.next_moment() {
+        sink.push(moment)?;
+        step += 1;
+        if step % STRIDE == 0 {
+            progress.at(step);
+            if interrupt::asked() {
+                break;
+            }
+        }
+    }
+    let wall = began.elapsed().as_secs_f64();
+    progress.end();
+    let complete = step == steps;
+    let (metrics, digest) = sink.finish(if complete { Status::Complete } else { Status::Interrupted })?;
+    if !complete {
+        let place = folder.map_or_else(String::new, |f| format!(", recorded in {}", f.display()));
+        return Err(Failure::Interrupted(format!(
+            "{:.2} of {} s{place}",
+            metrics.duration, scene.time.duration
+        )));
+    }
+    let findings = verdict(&scene.expect, &metrics, complete);
+    let met = findings.iter().all(|f| f.met);
+    let report =
+        Report { scene: &scene, metrics: &metrics, findings: &findings, digest, folder, wall, steps };
+    if args.scene.json {
+        report::as_json(&report);
+    } else if !args.scene.quiet {
+        report::as_text(&report);
+    } else if !met {
+        report::failures(&report);
+    }
+    if met { Ok(()) } else { Err(Failure::Expectation) }
+}
+
+/// Where moments go.
+enum Sink {
+    Record(Box<Recorder>),
+    Judge(Box<(MetricsBuilder, Digest)>),
+}
+
+impl Sink {
+    fn record(
+        folder: &Path,
+        args: &RunArgs,
+        scene: &scene::Scene,
+        simulation: &simulation::Simulation,
+    ) -> Result<Self, Failure> {
+        let options = RunOptions {
+            csv: args.csv,
+            force: args.force,
+            scene: scene.to_toml(),
+            program: PROGRAM.to_owned(),
+            commit: option_env!("ECHELON_COMMIT").map(str::to_owned),
+            seed: scene.seed,
+            period: scene.time.period,
+            settling_band: scene.expect.settling_band,
+        };
+        Ok(Self::Record(Box::new(Recorder::create(folder, simulation.cast(), options)?)))
+    }
+
+    fn push(&mut self, moment: &vocabulary::Moment) -> Result<(), recording::Error> {
+        match self {
+            Self::Record(recorder) => recorder.push(moment),
+            Self::Judge(judge) => {
+                judge.0.push(moment);
+                judge.1.push(moment);
+                Ok(())
+            }
+        }
+    }
+
+    fn finish(self, status: Status) -> Result<(Metrics, String), recording::Error> {
+        match self {
+            Self::Record(recorder) => {
+                let (manifest, metrics) = recorder.finish(status)?;
+                Ok((metrics, manifest.digest.unwrap_or_default()))
+            }
+            Self::Judge(judge) => Ok((judge.0.finish(), judge.1.text())),
+        }
+    }
+}
+
+/// The folder asked for, or the next free runs/NAME-001.
+fn folder(args: &RunArgs) -> PathBuf {
+    args.out.clone().unwrap_or_else(|| {
+        let stem = stem(&args.scene.scene);
+        let numbered = (1..).map(|k: u32| Path::new("runs").join(format!("{stem}-{k:03}")));
+        numbered.into_iter().find(|path| !path.exists()).unwrap_or_else(|| PathBuf::from("runs"))
+    })
+}

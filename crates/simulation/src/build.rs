@@ -1,0 +1,236 @@
+//! A checked scene, turned into the parts that run it.
+
+use crate::step::{ObserverStart, Setup, Timing};
+use formation::lead::{Courses, Hermite, Pace, Table, Way, WayError};
+use formation::{Course, EdgeLaw, Formation, Graph, GraphError, SetPointCourse};
+use scene::{Channel, Follow, Path, Role, Scene, SpeedProfile};
+use std::sync::Arc;
+use thiserror::Error;
+use vocabulary::{Cast, Member, Pose, Profile};
+use world::Unicycle;
+
+/// Why a scene that reads well cannot run.
+#[derive(Debug, Error)]
+pub enum BuildError {
+    /// Robots and edges make no formation.
+    #[error(transparent)]
+    Graph(#[from] GraphError),
+    /// The way-points of a lead robot make no curve.
+    #[error("the path of `{robot}`: {source}")]
+    Way {
+        /// The lead robot.
+        robot: String,
+        /// What is wrong with its points.
+        source: WayError,
+    },
+}
+
+/// Puts the run of `scene` together.
+///
+/// # Errors
+/// [`BuildError`], naming the robots.
+pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
+    let names: Vec<&str> = scene.robots.iter().map(|r| &*r.name).collect();
+    let followers: Vec<(&str, &Follow)> = scene.robots.iter().filter_map(follows).collect();
+    let pairs: Vec<(&str, &str)> = followers.iter().map(|(name, follow)| (&*follow.leader, *name)).collect();
+    let graph = Graph::new(&names, &pairs)?;
+    graph.require_connected()?;
+
+    let mut leads: Vec<(usize, Arc<dyn Profile>)> = Vec::new();
+    let mut robots = Vec::with_capacity(names.len());
+    for (index, robot) in scene.robots.iter().enumerate() {
+        let mut unicycle = Unicycle {
+            pose: robot.pose,
+            speed: 0.0,
+            limits: robot.vehicle.limits(),
+            body: robot.vehicle.body(),
+            lead: None,
+        };
+        match &robot.role {
+            Role::Lead { path } => {
+                let (profile, start) =
+                    lead(path).map_err(|source| BuildError::Way { robot: robot.name.clone(), source })?;
+                unicycle.pose = start.unwrap_or(robot.pose);
+                unicycle.lead = Some(profile.clone());
+                leads.push((index, profile));
+            }
+            Role::Follow(follow) => unicycle.speed = follow.speed,
+        }
+        robots.push(unicycle);
+    }
+    let edges = graph.edges().to_vec();
+    let laws = followers.iter().map(|(_, follow)| edge_law(follow)).collect();
+    let limits = robots.iter().map(|r| r.limits).collect();
+    let member = |robot: &scene::Robot| Member {
+        name: robot.name.clone(),
+        leads: matches!(robot.role, Role::Lead { .. }),
+        body: robot.vehicle.body(),
+    };
+    Ok(Setup {
+        cast: Cast {
+            title: scene.title.clone(),
+            caption: caption(scene),
+            duration: scene.time.duration,
+            members: scene.robots.iter().map(member).collect(),
+            edges,
+        },
+        formation: Formation::new(graph, laws, limits, leads, scene.time.period),
+        robots,
+        observer_starts: followers.iter().map(|(_, follow)| observer_start(follow)).collect(),
+        timing: match scene.time.mode {
+            scene::Mode::Continuous => Timing::Continuous,
+            scene::Mode::Sampled => Timing::Sampled,
+            scene::Mode::Measured => Timing::Measured,
+        },
+        period: scene.time.period,
+        duration: scene.time.duration,
+    })
+}
+
+fn follows(robot: &scene::Robot) -> Option<(&str, &Follow)> {
+    match &robot.role {
+        Role::Lead { .. } => None,
+        Role::Follow(follow) => Some((&robot.name, follow)),
+    }
+}
+
+/// A lead robot's motion, and where it has to start if its path says so.
+fn lead(path: &Path) -> Result<(Arc<dyn Profile>, Option<Pose>), WayError> {
+    let profile: Arc<dyn Profile> = match path {
+        Path::Constant { speed, turn_rate } | Path::Circle { speed, turn_rate } => {
+            Arc::new(Courses::constant(*speed, *turn_rate))
+        }
+        Path::Sinusoid {
+            speed,
+            speed_amplitude,
+            speed_rate,
+            turn_rate,
+            turn_rate_amplitude,
+            turn_rate_rate,
+        } => {
+            let wave = |mean: &f64, amplitude: &f64, rate: &f64| Course::Sinusoid {
+                mean: *mean,
+                amplitude: *amplitude,
+                rate: *rate,
+            };
+            Arc::new(Courses {
+                speed: wave(speed, speed_amplitude, speed_rate),
+                turn_rate: wave(turn_rate, turn_rate_amplitude, turn_rate_rate),
+            })
+        }
+        Path::FigureEight { speed, length } => Arc::new(Courses::figure_eight(*speed, length / speed)),
+        Path::Waypoints { points, closed, speed } => {
+            let way = Way::new(points, *closed, pace(speed))?;
+            let start = way.start();
+            return Ok((Arc::new(way), Some(start)));
+        }
+        // A checked table has rows; one without would stand still.
+        Path::Table { rows } => Table::new(rows)
+            .map_or_else(|| Arc::new(Courses::constant(0.0, 0.0)) as Arc<dyn Profile>, |t| Arc::new(t)),
+    };
+    Ok((profile, None))
+}
+
+fn pace(speed: &SpeedProfile) -> Pace {
+    // Checked profiles have rows.
+    let through = |rows: &[[f64; 2]]| Hermite::new(rows.to_vec()).unwrap_or_else(|| Hermite::constant(0.0));
+    match speed {
+        SpeedProfile::Constant(v) => Pace::over_time(Hermite::constant(*v)),
+        SpeedProfile::Time(rows) => Pace::over_time(through(rows)),
+        SpeedProfile::Distance(rows) => Pace::over_distance(through(rows)),
+    }
+}
+
+fn edge_law(follow: &Follow) -> EdgeLaw {
+    let (law, observer) = (&follow.law, &follow.observer);
+    EdgeLaw {
+        law: formation::Law {
+            kind: match law.kind {
+                scene::LawKind::FullState => formation::LawKind::FullState,
+                scene::LawKind::RobustState => formation::LawKind::RobustState,
+                scene::LawKind::OutputFeedback => formation::LawKind::OutputFeedback,
+            },
+            gain: law.k,
+            robust_gain: law.beta,
+            switching: match law.switching {
+                scene::Switching::Tanh => formation::Switching::Tanh(law.slope),
+                scene::Switching::Sign => formation::Switching::Sign,
+            },
+            distance_min: law.distance_min,
+        },
+        observer: formation::Observer {
+            epsilon: observer.epsilon,
+            alpha1: observer.alpha1,
+            alpha2: observer.alpha2,
+            distance_min: law.distance_min,
+        },
+        set_point: SetPointCourse { distance: course(&follow.distance), bearing: course(&follow.bearing) },
+    }
+}
+
+fn course(channel: &Channel) -> Course {
+    match channel {
+        Channel::Constant(value) => Course::Constant(*value),
+        Channel::Sinusoid { mean, amplitude, rate } => {
+            Course::Sinusoid { mean: *mean, amplitude: *amplitude, rate: *rate }
+        }
+        Channel::Ramps(ramps) => Course::Ramps {
+            from: ramps.first().map_or(0.0, |r| r.from),
+            ramps: ramps.iter().map(|r| formation::Ramp { start: r.start, over: r.over, to: r.to }).collect(),
+        },
+    }
+}
+
+fn observer_start(follow: &Follow) -> ObserverStart {
+    match follow.observer.start {
+        scene::ObserverStart::Measured => ObserverStart::Offset([0.0; 2]),
+        scene::ObserverStart::Offset(offset) => ObserverStart::Offset(offset),
+        scene::ObserverStart::At(at) => ObserverStart::At(at),
+    }
+}
+
+/// Law, gains and timing of a scene in one line, for pictures and reports; of the first follower where they differ.
+pub fn caption(scene: &Scene) -> String {
+    let Some((_, follow)) = scene.robots.iter().find_map(follows) else {
+        return "No followers".to_owned();
+    };
+    let law = &follow.law;
+    let mut parts = vec![
+        match law.kind {
+            scene::LawKind::FullState => "Full state feedback".to_owned(),
+            scene::LawKind::RobustState => "Robust state feedback".to_owned(),
+            scene::LawKind::OutputFeedback => "Output feedback".to_owned(),
+        },
+        format!("K {}", pair(law.k)),
+    ];
+    if law.kind != scene::LawKind::FullState {
+        parts.push(format!("β {}", pair(law.beta)));
+        parts.push(match law.switching {
+            scene::Switching::Tanh => format!("tanh slope {}", pair(law.slope)),
+            scene::Switching::Sign => "sign".to_owned(),
+        });
+    }
+    if law.kind == scene::LawKind::OutputFeedback {
+        parts.push(format!("ε {} s", pair(follow.observer.epsilon)));
+    }
+    let mode = match scene.time.mode {
+        scene::Mode::Continuous => "continuous time".to_owned(),
+        scene::Mode::Sampled => format!("every {} ms", short(scene.time.period * 1e3)),
+        scene::Mode::Measured => format!("every {} ms, sampled measurement", short(scene.time.period * 1e3)),
+    };
+    parts.push(mode);
+    parts.join(" · ")
+}
+
+fn pair(values: [f64; 2]) -> String {
+    if values[0] == values[1] {
+        short(values[0])
+    } else {
+        format!("({}, {})", short(values[0]), short(values[1]))
+    }
+}
+
+/// A number to six significant digits, without those that come from arithmetic only.
+fn short(value: f64) -> String {
+    format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string()
+}
