@@ -89,6 +89,9 @@ impl<'n> TableReader<'n> {
     /// Notes the keys that were not asked for.
     pub(crate) fn finish(self, reading: &mut Reading) {
         for entry in self.entries.iter().filter(|entry| !self.known.contains(&entry.key.as_str())) {
+            if reading.is_full() {
+                return;
+            }
             let known = self.known.iter().copied();
             let hint = nearest(&entry.key, known.clone()).map_or_else(String::new, did_you_mean);
             let message = format!("unknown key `{}`{hint} (known here: {})", entry.key, quoted(known));

@@ -4,7 +4,7 @@ use crate::{Diagnostic, Diagnostics, text::Node};
 use std::path::{Path, PathBuf};
 
 /// More notes than this help nobody.
-const MOST_NOTES: usize = 200;
+const MOST_NOTES: usize = 100;
 
 /// Where something stands: bytes `start..end` of one of the texts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]

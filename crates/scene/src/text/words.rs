@@ -51,7 +51,7 @@ pub(crate) fn quoted<'a>(words: impl Iterator<Item = &'a str>) -> String {
 pub(crate) fn nearest<'a>(text: &str, words: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     // Longer texts are no slips of the pen, and comparing them takes time.
     let text = text.get(..text.len().min(60))?.to_lowercase();
-    let close = words.map(|word| (strsim::damerau_levenshtein(&text, &word.to_lowercase()), word));
+    let close = words.map(|word| (strsim::osa_distance(&text, &word.to_lowercase()), word));
     let (distance, word) = close.min_by_key(|(distance, _)| *distance)?;
     (distance <= 1 + word.chars().count() / 3).then_some(word)
 }
