@@ -33,10 +33,10 @@ fn fragment(ray: Ray) -> @location(0) vec4<f32> {
     let fine = textureSampleLevel(asphalt, asphalt_sampler, tiled * 0.5, level).r;
     let broad = textureSampleLevel(patches, asphalt_sampler, tiled.yx * 0.05, 0.0).r;
     let distance = reach * length(ray.direction) * frame.eye.w;
-    var albedo = vec3<f32>(0.158, 0.155, 0.150) * (0.42 + 1.16 * fine) * (0.74 + 0.52 * broad);
+    var albedo = vec3<f32>(0.156, 0.155, 0.153) * (0.42 + 1.16 * fine) * (0.74 + 0.52 * broad);
     let thin = lines(local.xy, footprint, 1.0, 0.014) * 0.30;
     let thick = lines(local.xy, footprint, 5.0, 0.030) * 0.62;
     albedo = mix(albedo, vec3<f32>(0.66, 0.66, 0.65), max(thin, thick) * frame.ground.z);
     let light = albedo * (SUN_LIGHT * frame.sun.z + ambient(vec3<f32>(0.0, 0.0, 1.0)));
-    return vec4<f32>(tone(mix(light, HORIZON, haze(distance))), 1.0);
+    return vec4<f32>(mix(tone(light), HAZE, haze(distance)), 1.0);
 }

@@ -2,7 +2,10 @@
 
 const SUN_LIGHT = vec3<f32>(2.30, 2.06, 1.72);
 const ZENITH = vec3<f32>(0.15, 0.38, 0.86);
-const HORIZON = vec3<f32>(1.02, 1.16, 1.30);
+const HORIZON = vec3<f32>(0.98, 1.13, 1.28);
+// Display-encoded: far ground and the lowest sky, and the sky overhead.
+const HAZE = vec3<f32>(0.835, 0.880, 0.915);
+const BLUE = vec3<f32>(0.335, 0.560, 0.835);
 const BOUNCE = vec3<f32>(0.17, 0.165, 0.155);
 
 @group(1) @binding(0) var shadow_map: texture_depth_2d;
@@ -31,7 +34,7 @@ fn tone(light: vec3<f32>) -> vec3<f32> {
 
 // Share of haze in front of something `distance` m away.
 fn haze(distance: f32) -> f32 {
-    return 1.0 - exp(-max(distance - frame.ground.w, 0.0) * 0.011);
+    return 1.0 - exp(-max(distance - frame.ground.w, 0.0) * 0.45 / frame.ground.w);
 }
 
 fn lit(at: vec3<f32>, x: f32, y: f32) -> f32 {

@@ -33,7 +33,7 @@ struct Composition {
 }
 
 const SNAKE: Composition =
-    Composition { field_of_view: 0.8029, horizon: 0.10, width: 0.70, rows: [-0.72, 0.30], nearest: 2.6 };
+    Composition { field_of_view: 0.8029, horizon: 0.10, width: 0.70, rows: [-0.52, 0.30], nearest: 2.6 };
 
 impl Camera {
     /// The camera of `view` on a picture `aspect` times as wide as high.
@@ -133,7 +133,7 @@ impl Camera {
         let z = across.min(down).min(near - composition.nearest);
         let (lowest, highest) = (over + top * z, bottom * z - under);
         let x = 0.5 * (right - left);
-        self.eye = self.right * x + self.up * (0.5 * (lowest + highest)) + self.forward * z;
+        self.eye = self.right * x + self.up * (0.2 * lowest + 0.8 * highest) + self.forward * z;
     }
 }
 
@@ -156,15 +156,19 @@ fn snake(steady: &Steady, aspect: f64) -> Camera {
     let pitch = ((1.0 - 2.0 * SNAKE.horizon) * tangent).atan();
     let extent = steady.formation();
     let mut camera = Camera::pitched(extent.frame.heading, pitch, tangent, aspect);
-    camera.fit(&corners(&extent, 0.3), &SNAKE);
+    camera.fit(&corners(&extent, 0.16), &SNAKE);
     camera
 }
 
 fn snake_eye(steady: &Steady, aspect: f64) -> Camera {
     let extent = steady.formation();
     let heading = extent.frame.heading;
-    let mut camera = Camera::pitched(heading, 0.02, (27.5_f64).to_radians().tan(), aspect);
-    let [x, y] = extent.frame.world_from_body(extent.forward[0] - 1.2, extent.rear);
+    let tangent = (27.5_f64).to_radians().tan();
+    let mut camera = Camera::pitched(heading, 0.08, tangent, aspect);
+    // Far enough back for the last row to fit, unless that row is very wide.
+    let aside = extent.left.map(|left| (left - extent.rear).abs());
+    let back = ((aside[0].max(aside[1]) + 0.2) / (0.86 * tangent * aspect)).clamp(1.2, 6.0);
+    let [x, y] = extent.frame.world_from_body(extent.forward[0] - back, extent.rear);
     camera.eye = DVec3::new(x, y, 0.35);
     camera
 }
@@ -175,7 +179,7 @@ fn top(steady: &Steady, aspect: f64) -> Camera {
     // A circle around the formation, so that turning does not zoom.
     let grown = extent.grown(0.45);
     let across = 0.5 * (grown.forward[1] - grown.forward[0]).hypot(grown.left[1] - grown.left[0]);
-    let half = (across * 1.12 / aspect.min(1.0)).max(1.2);
+    let half = (across * 1.04 / aspect.min(1.0)).max(1.2);
     Camera {
         eye: DVec3::new(x, y, 100.0),
         forward: DVec3::NEG_Z,
@@ -192,7 +196,7 @@ fn orbit(steady: &Steady, time: f64, aspect: f64) -> Camera {
     let grown = extent.grown(0.4);
     let radius = 0.5 * (grown.forward[1] - grown.forward[0]).hypot(grown.left[1] - grown.left[0]);
     let tangent = (19.0_f64).to_radians().tan();
-    let distance = radius / (0.8 * tangent * aspect.min(1.6)) + 0.6 * radius;
+    let distance = radius / (0.85 * tangent * aspect.min(1.78)) + 0.3 * radius;
     // A full turn in 40 s, from behind on the left, so that no side stays hidden.
     let (turn, rise) = (2.6 + time * 0.157, 0.42_f64);
     let eye = DVec3::new(turn.cos() * rise.cos(), turn.sin() * rise.cos(), rise.sin()) * distance.max(3.0);

@@ -116,8 +116,6 @@ fn overlap(a: &Box4, b: &Box4) -> bool {
 
 /// Title, law and time, at the corners of the whole picture; `sky` is how far down the sky reaches, pixels.
 pub(crate) fn caption(words: &mut Words<'_>, stage: &Stage<'_>, height: u32, sky: f32) {
-    // Dark on the sky, light on the ground.
-    let ink = if sky > words.scaled(64.0) { Ink::DARK } else { Ink::LIGHT };
     let margin = words.scaled(MARGIN);
     let cast = stage.cast;
     if stage.style.caption {
@@ -127,6 +125,8 @@ pub(crate) fn caption(words: &mut Words<'_>, stage: &Stage<'_>, height: u32, sky
                 let middle = margin + words.scaled(down);
                 let width = words.width(text, size, bold);
                 let half = words.scaled(0.7 * size);
+                // Dark on sky and haze, light on the ground.
+                let ink = if middle < 1.3 * sky { Ink::DARK } else { Ink::LIGHT };
                 words.reserve([margin - 6.0, middle - half, width + 12.0, 2.0 * half]);
                 words.write(text.clone(), [margin, middle], size, bold, ink);
             }
@@ -180,8 +180,8 @@ fn names(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
         let middle = DVec3::new(x, y, 0.15);
         let Some(at) = window.pixel(middle) else { continue };
         let metre = 1.0 / window.camera.metres_per_pixel(middle, f64::from(window.tile.height)) as f32;
-        let away = 0.20 * metre + words.scaled(11.0);
-        let side = 0.20 * metre + 0.5 * words.width(&member.name, 13.0, true) + words.scaled(8.0);
+        let away = 0.27 * metre + words.scaled(9.0);
+        let side = 0.25 * metre + 0.5 * words.width(&member.name, 13.0, true) + words.scaled(8.0);
         let places = [Vec2::new(0.0, -away), Vec2::new(0.0, away), Vec2::new(side, 0.0), Vec2::new(-side, 0.0)];
         let ink = Ink::LIGHT.faded(stage.detail.max(0.6));
         words.try_write(&member.name, &places.map(|p| at + p), 13.0, &window.tile, true, ink);

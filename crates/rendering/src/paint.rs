@@ -44,7 +44,7 @@ struct Painter<'a> {
 
 /// All decals of one view on a tile `height` pixels high.
 pub(crate) fn paint(stage: &Stage<'_>, view: &View, camera: &Camera, height: f64) -> Vec<Corner> {
-    let mut painter = Painter { corners: Vec::new(), camera, height, stage_scale: stage.style.scale, origin: stage.origin };
+    let mut painter = Painter { corners: Vec::new(), camera, height, stage_scale: stage.style.scale * (height / 720.0).clamp(0.6, 1.0), origin: stage.origin };
     let style = stage.style;
     if style.marks {
         painter.marks(stage);
@@ -92,7 +92,7 @@ impl Painter<'_> {
         let middle = 0.5 * (from + to);
         let across = along.perp().normalize();
         // Lines that run across the picture are foreshortened: at least two pixels, or they would crumble.
-        let half = (0.5 * width).max(1.1 * self.stage_scale / self.pixels_per_metre(middle, across));
+        let half = (0.5 * width).max(1.35 * self.stage_scale / self.pixels_per_metre(middle, across));
         self.patch(middle, along, across * half, Form::Solid, colour, alpha);
     }
 
@@ -131,7 +131,7 @@ impl Painter<'_> {
                 .iter()
                 .filter_map(|(_, poses)| poses.get(robot))
                 .chain(stage.moment.snapshot.robots.get(robot).map(|r| &r.motion.pose))
-                .map(|pose| (flat(pose), 0.20))
+                .map(|pose| (flat(pose), 0.13))
                 .collect();
             if points.len() > 1 {
                 for side in [-0.5, 0.5] {
@@ -222,7 +222,7 @@ impl Painter<'_> {
         let at = |k: usize| stage.moment.snapshot.robots.get(k).map(|r| flat(&r.motion.pose));
         for edge in &stage.cast.edges {
             if let (Some(leader), Some(follower)) = (at(edge.leader), at(edge.follower)) {
-                self.line(leader, follower, 0.016, palette::PAPER, 0.85 * stage.detail);
+                self.line(leader, follower, 0.016, palette::PAPER, 0.92 * stage.detail);
             }
         }
     }

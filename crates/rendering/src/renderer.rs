@@ -59,7 +59,7 @@ impl Passes {
         let groups = FrameGroups::new(device, &map.0);
         let digits = text.digits();
         Self {
-            models: Models::new(device, queue),
+            models: Models::new(device, queue, robots),
             shadow: ShadowPass::new(device, &groups, map),
             robot: RobotPass::new(device, queue, canvas, &groups, digits),
             ground: GroundPass::new(device, queue, canvas, &groups),
@@ -390,8 +390,10 @@ fn sun_over(moment: &Moment, origin: DVec3) -> SunView {
 fn frame(camera: &Camera, stage: &Stage<'_>, sun: &SunView, penumbra: f32) -> Frame {
     let mut frame = Frame::new(camera, stage.origin, sun.shadow_from_local);
     let [x, y, z] = SUN.as_vec3().to_array();
+    // A large formation is seen from farther away and would drown in it.
+    let haze = (6.0 * camera.eye.z).max(30.0) as f32;
     frame.sun = [x, y, z, if stage.style.shadows { penumbra } else { 0.0 }];
-    frame.ground = [0.0, 0.0, f32::from(u8::from(stage.style.grid)), 30.0];
+    frame.ground = [0.0, 0.0, f32::from(u8::from(stage.style.grid)), haze];
     frame
 }
 
@@ -406,7 +408,8 @@ fn words(
     let mut words = Words::new(text, stage.style.scale);
     let sky = windows.first().map_or(0.0, |w| 0.5 * (1.0 - w.camera.horizon()) * f64::from(w.tile.height));
     caption(&mut words, stage, height, sky as f32);
-    if stage.style.inset {
+    // In a quarter of a picture it would cover a whole view.
+    if stage.style.inset && layout.views.len() < 3 {
         inset(&mut words, stage, [width, height]);
     }
     for (view, window) in layout.views.iter().zip(windows) {

@@ -37,7 +37,7 @@ impl Trail {
     pub fn new(cast: &Cast) -> Self {
         let lead = cast.members.iter().position(|m| m.leads).unwrap_or(0);
         // Many robots have coarser ribbons: the picture shows each of them smaller.
-        let points = RIBBON_POINTS.min(16_000 / cast.members.len().max(1)).max(48);
+        let points = RIBBON_POINTS.min(6_000 / cast.members.len().max(1)).max(48);
         Self {
             steady: Steady::new(lead),
             ribbons: VecDeque::new(),

@@ -126,14 +126,16 @@ pub(super) fn outline(mesh: &mut Mesh) {
     cabin(mesh);
 }
 
-pub(super) fn build(mesh: &mut Mesh) {
-    hull(mesh);
-    cabin(mesh);
+pub(super) fn build(mesh: &mut Mesh, plain: bool) {
+    outline(mesh);
+    lights(mesh);
+    stripe(mesh);
+    if plain {
+        return;
+    }
     for axle in [0.0, 0.27] {
         arch(mesh, axle, 1.0);
         arch(mesh, axle, -1.0);
     }
     bumpers(mesh);
-    lights(mesh);
-    stripe(mesh);
 }

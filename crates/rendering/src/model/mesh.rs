@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn models_are_small_and_point_outwards() {
-        for (mesh, most) in [(super::super::body(), 2600), (super::super::wheel(), 500)] {
+        for (mesh, most) in [(super::super::body(false), 2600), (super::super::wheel(false), 500)] {
             let triangles = mesh.vertices.len() / 3;
             assert!(triangles < most, "{triangles}");
             assert!(mesh.vertices.iter().all(|v| (Vec3::from_array(v.normal).length() - 1.0).abs() < 1e-3));

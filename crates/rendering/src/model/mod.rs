@@ -25,11 +25,11 @@ pub(crate) enum Material {
     Lining = 10,
 }
 
-/// Body, shell and mast of a robot, all that moves as one.
-pub(crate) fn body() -> Mesh {
+/// Body, shell and mast of a robot, all that moves as one; `plain` leaves out what is lost in a crowd.
+pub(crate) fn body(plain: bool) -> Mesh {
     let mut mesh = Mesh::default();
-    body::build(&mut mesh);
-    shell::build(&mut mesh);
+    body::build(&mut mesh, plain);
+    shell::build(&mut mesh, plain);
     mesh
 }
 
@@ -42,8 +42,8 @@ pub(crate) fn ghost() -> Mesh {
 }
 
 /// A wheel around its hub, the outer face to the left.
-pub(crate) fn wheel() -> Mesh {
-    wheel::wheel()
+pub(crate) fn wheel(plain: bool) -> Mesh {
+    wheel::wheel(plain)
 }
 
 /// The camera's head around its pan axis.

@@ -44,12 +44,21 @@ pub(super) fn outline(mesh: &mut Mesh) {
     ring(mesh, low, high, 0.0, Material::Paint, Material::Paint);
 }
 
-pub(super) fn build(mesh: &mut Mesh) {
+pub(super) fn build(mesh: &mut Mesh, plain: bool) {
     let (low, high) = (CENTRE - 0.5 * HEIGHT, CENTRE + 0.5 * HEIGHT);
     ring(mesh, low, high, 0.0, Material::Shell, Material::Lining);
     // Rims in the robot's colour, outside the area of the tags.
     ring(mesh, high, high + 0.012, 0.002, Material::Paint, Material::Paint);
     ring(mesh, low - 0.012, low, 0.002, Material::Paint, Material::Paint);
+    if !plain {
+        struts(mesh);
+    }
+    let [x, y, z] = CAMERA;
+    mesh.cuboid([x - 0.007, y - 0.007, 0.20], [x + 0.007, y + 0.007, z - 0.018], Material::Metal);
+}
+
+/// What carries the shell.
+fn struts(mesh: &mut Mesh) {
     for y in [-0.085_f32, 0.085] {
         mesh.cuboid([-0.17, y - 0.006, 0.104], [0.05, y + 0.006, 0.112], Material::Plastic);
         mesh.cuboid([-0.05, y.min(0.07 * y.signum()), 0.098], [-0.03, y.max(0.07 * y.signum()), 0.112], Material::Plastic);
@@ -57,8 +66,6 @@ pub(super) fn build(mesh: &mut Mesh) {
     for y in [-0.186_f32, 0.180] {
         mesh.cuboid([-0.045, y.min(0.07 * y.signum()), 0.108], [-0.030, y.max(0.07 * y.signum()), 0.116], Material::Plastic);
     }
-    let [x, y, z] = CAMERA;
-    mesh.cuboid([x - 0.007, y - 0.007, 0.20], [x + 0.007, y + 0.007, z - 0.018], Material::Metal);
 }
 
 pub(super) fn camera() -> Mesh {

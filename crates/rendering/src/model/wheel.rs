@@ -7,10 +7,16 @@ use glam::{Vec2, Vec3};
 pub(crate) const RADIUS: f32 = 0.045;
 const SPOKES: usize = 5;
 
-pub(super) fn wheel() -> Mesh {
+/// Turned tyre and rim, spokes, hub; `plain` is a disc with spokes.
+pub(super) fn wheel(plain: bool) -> Mesh {
     let mut mesh = Mesh::default();
     let half = 0.018;
     let profile = [[-half, 0.0], [-half, 0.034], [-0.014, RADIUS], [0.014, RADIUS], [half, 0.037], [half, 0.031], [0.008, 0.0295], [0.007, 0.0]];
+    if plain {
+        mesh.turned(&[[-half, 0.0], [-half, RADIUS], [half, RADIUS], [half, 0.0]], 8, |_| Material::Tyre);
+        mesh.turned(&[[half, 0.028], [half + 0.002, 0.0]], 5, |_| Material::Metal);
+        return mesh;
+    }
     mesh.turned(&profile, 18, |s| if s == 6 { Material::Plastic } else { Material::Tyre });
     mesh.smooth(0, 0.7);
     let at = |angle: f32, radius: f32, y: f32| {
