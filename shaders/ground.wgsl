@@ -9,34 +9,32 @@ fn vertex(@builtin(vertex_index) index: u32) -> Ray {
     return screen_corner(index, -1.0, clamp(frame.up.w, -1.0, 1.0));
 }
 
-// Coverage of lines `width` m wide every `every` m; lines thinner than a pixel fade instead of shimmering.
-fn lines(at: vec2<f32>, footprint: vec2<f32>, every: f32, width: f32) -> f32 {
-    let coordinate = at / every;
-    let pixel = footprint / every;
-    let wanted = vec2<f32>(width / every);
-    let drawn = clamp(pixel, wanted, vec2<f32>(0.5));
-    let away = abs(fract(coordinate - 0.5) - 0.5) * 2.0;
-    let soft = max(pixel * 1.5, vec2<f32>(1e-5));
-    var cover = smoothstep(drawn + soft, drawn - soft, away) * clamp(wanted / drawn, vec2<f32>(0.0), vec2<f32>(1.0));
-    cover = mix(cover, wanted, clamp(pixel * 2.0 - 1.0, vec2<f32>(0.0), vec2<f32>(1.0)));
-    return max(cover.x, cover.y);
+// Coverage of lines `width` m wide every `every` m, where a metre has `density` pixels along each axis.
+// Lines thinner than a pixel are drawn a pixel wide and fainter, so that they fade instead of shimmering.
+fn lines(at: vec2<f32>, density: vec2<f32>, every: f32, width: f32) -> f32 {
+    let away = abs(fract(at * (1.0 / every) - 0.5) - 0.5) * every;
+    let strength = min(density * width, vec2<f32>(1.0));
+    let edge = max(density * (0.5 * width), vec2<f32>(0.5)) + 0.5;
+    // Beyond half a line to a pixel only the mean is left.
+    let resolved = clamp(density * every - 1.0, vec2<f32>(0.0), vec2<f32>(1.0));
+    let drawn = clamp(edge - away * density, vec2<f32>(0.0), vec2<f32>(1.0)) * strength * resolved;
+    return max(drawn.x, drawn.y);
 }
 
 @fragment
 fn fragment(ray: Ray) -> @location(0) vec4<f32> {
+    // Also the depth of the point, since the ray's direction is one deep.
     let reach = -ray.start.z / min(ray.direction.z, -1e-5);
-    let local = ray.start + ray.direction * reach;
-    let footprint = max(abs(dpdx(local.xy)), abs(dpdy(local.xy)));
-    let tiled = local.xy + frame.ground.xy;
+    let local = ray.start.xy + ray.direction.xy * reach;
+    let footprint = max(abs(dpdx(local)), abs(dpdy(local)));
     // Between the longer and the shorter side of the footprint: sharper than the rule, and still calm.
     let level = 0.5 * log2(footprint.x * footprint.y * 65536.0 + 1e-9);
-    let fine = textureSampleLevel(asphalt, asphalt_sampler, tiled * 0.5, level).r;
-    let broad = textureSampleLevel(patches, asphalt_sampler, tiled.yx * 0.05, 0.0).r;
-    let distance = reach * length(ray.direction) * frame.eye.w;
-    var albedo = vec3<f32>(0.156, 0.155, 0.153) * (0.42 + 1.16 * fine) * (0.74 + 0.52 * broad);
-    let thin = lines(local.xy, footprint, 1.0, 0.014) * 0.30;
-    let thick = lines(local.xy, footprint, 5.0, 0.030) * 0.62;
-    albedo = mix(albedo, vec3<f32>(0.66, 0.66, 0.65), max(thin, thick) * frame.ground.z);
+    let fine = textureSampleLevel(asphalt, asphalt_sampler, local * 0.5, level).r;
+    let broad = textureSampleLevel(patches, asphalt_sampler, local.yx * 0.05, 0.0).r;
+    let grain = 0.155 * (0.42 + 1.16 * fine) * (0.74 + 0.52 * broad);
+    let density = 1.0 / max(footprint, vec2<f32>(1e-5));
+    let painted = max(lines(local, density, 1.0, 0.014) * 0.34, lines(local, density, 5.0, 0.030) * 0.66);
+    let albedo = mix(grain, 0.66, painted * frame.ground.z);
     let light = albedo * (SUN_LIGHT * frame.sun.z + ambient(vec3<f32>(0.0, 0.0, 1.0)));
-    return vec4<f32>(mix(tone(light), HAZE, haze(distance)), 1.0);
+    return vec4<f32>(mix(tone(light), HAZE, haze(reach * frame.eye.w)), 1.0);
 }

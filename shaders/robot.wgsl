@@ -81,7 +81,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let facing = dot(normal, frame.sun.xyz);
     var sun = 0.0;
     if facing > 0.0 {
-        sun = facing * sunlight(in.local + normal * 0.012);
+        sun = facing * sunlight_quick(in.local + normal * 0.012);
     }
     // Near the ground less of the sky is in sight.
     let open = 0.45 + 0.55 * clamp(in.local.z * 5.0, 0.0, 1.0);

@@ -11,7 +11,7 @@ struct Frame {
     forward: vec4<f32>,
     // Towards the sun; w is the penumbra in texels of the shadow map, 0 without shadows.
     sun: vec4<f32>,
-    // x, y: the local origin within the asphalt's tile, m; z: strength of the grid; w: where haze begins, m.
+    // x: 1 over the distance at which haze begins, 1/m; z: strength of the grid; y, w: spare.
     ground: vec4<f32>,
     spare: vec4<f32>,
     spare_too: vec4<f32>,

@@ -6,7 +6,7 @@ const HORIZON = vec3<f32>(0.98, 1.13, 1.28);
 // Display-encoded: far ground and the lowest sky, and the sky overhead.
 const HAZE = vec3<f32>(0.835, 0.880, 0.915);
 const BLUE = vec3<f32>(0.335, 0.560, 0.835);
-const BOUNCE = vec3<f32>(0.17, 0.165, 0.155);
+const BOUNCE = vec3<f32>(0.26, 0.25, 0.235);
 
 @group(1) @binding(0) var shadow_map: texture_depth_2d;
 @group(1) @binding(1) var shadow_sampler: sampler_comparison;
@@ -34,20 +34,31 @@ fn tone(light: vec3<f32>) -> vec3<f32> {
 
 // Share of haze in front of something `distance` m away.
 fn haze(distance: f32) -> f32 {
-    return 1.0 - exp(-max(distance - frame.ground.w, 0.0) * 0.45 / frame.ground.w);
+    let beyond = max(distance * frame.ground.x - 1.0, 0.0) * 0.42;
+    return beyond * beyond / (1.0 + beyond * beyond) * 0.4 + beyond / (1.0 + beyond) * 0.6;
 }
 
 fn lit(at: vec3<f32>, x: f32, y: f32) -> f32 {
     return textureSampleCompareLevel(shadow_map, shadow_sampler, at.xy + vec2<f32>(x, y), at.z);
 }
 
-// Share of the sun that reaches a point: 1 in the open.
-fn sunlight(local: vec3<f32>) -> f32 {
+// The same place in the shadow map and its depth there; outside the map, depth is negative.
+fn shadow_place(local: vec3<f32>) -> vec3<f32> {
     let clip = frame.shadow_from_local * vec4<f32>(local, 1.0);
-    let at = vec3<f32>(clip.x * 0.5 + 0.5, 0.5 - clip.y * 0.5, clip.z);
-    if frame.sun.w == 0.0 || any(abs(clip.xy) > vec2<f32>(0.99)) {
-        return 1.0;
-    }
+    let outside = frame.sun.w == 0.0 || any(abs(clip.xy) > vec2<f32>(0.99));
+    return vec3<f32>(clip.x * 0.5 + 0.5, 0.5 - clip.y * 0.5, select(clip.z, -1.0, outside));
+}
+
+// Share of the sun that reaches a point, 1 in the open, with edges soft enough for curved bodies.
+fn sunlight_quick(local: vec3<f32>) -> f32 {
+    let at = shadow_place(local);
+    let r = frame.sun.w * 0.6;
+    return 0.25 * (lit(at, -r, -r) + lit(at, r, -r) + lit(at, -r, r) + lit(at, r, r));
+}
+
+// The same with the wide, smooth edges that a flat ground shows.
+fn sunlight(local: vec3<f32>) -> f32 {
+    let at = shadow_place(local);
     // Four corners first: most points are wholly in light or wholly in shadow.
     let r = frame.sun.w;
     let corners = lit(at, -r, -r) + lit(at, r, -r) + lit(at, -r, r) + lit(at, r, r);

@@ -393,7 +393,7 @@ fn frame(camera: &Camera, stage: &Stage<'_>, sun: &SunView, penumbra: f32) -> Fr
     // A large formation is seen from farther away and would drown in it.
     let haze = (6.0 * camera.eye.z).max(30.0) as f32;
     frame.sun = [x, y, z, if stage.style.shadows { penumbra } else { 0.0 }];
-    frame.ground = [0.0, 0.0, f32::from(u8::from(stage.style.grid)), haze];
+    frame.ground = [1.0 / haze, 0.0, f32::from(u8::from(stage.style.grid)), 0.0];
     frame
 }
 
