@@ -1,0 +1,53 @@
+//! Simulated seconds per second: columns of 3 to 1000 robots under each law, nothing recorded.
+//!
+//! Throughput is in steps; at the control period of 10 ms a hundred steps are a second, so 500 000 steps a second
+//! are 5000 times real time.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use scene::Scene;
+use simulation::{Simulation, build};
+use std::hint::black_box;
+
+/// Control samples in a run of one simulated second.
+const STEPS: u64 = 101;
+
+fn scene(robots: usize, law: &str, mode: &str) -> String {
+    format!(
+        "schema = 1\ntitle = \"bench\"\n[time]\nduration = 1.0\nmode = \"{mode}\"\n[law]\nkind = \"{law}\"\n\
+         [[groups]]\nshape = \"v\"\ncount = {robots}\nname = \"robot\"\nfollows = \"leader\"\nscatter = 0.1\n\
+         distance = 0.8\npath = {{ kind = \"circle\", speed = 0.05, turn_rate = 0.001 }}\n"
+    )
+}
+
+fn seconds_per_second(c: &mut Criterion) {
+    let mut group = c.benchmark_group("simulate");
+    group.sample_size(20);
+    for (law, mode) in [
+        ("robust-state", "sampled"),
+        ("full-state", "sampled"),
+        ("output-feedback", "sampled"),
+        ("output-feedback", "measured"),
+    ] {
+        for robots in [3, 7, 100, 1000] {
+            let text = scene(robots, law, mode);
+            let loaded = Scene::parse(&text, "bench.toml", &[]).expect("a scene");
+            let setup = build(&loaded.scene).expect("a formation");
+            group.throughput(Throughput::Elements(STEPS));
+            group.bench_with_input(BenchmarkId::new(format!("{law}, {mode}"), robots), &setup, |b, setup| {
+                b.iter_batched_ref(
+                    || Simulation::new(setup.clone()),
+                    |run| {
+                        while let Some(moment) = run.next_moment() {
+                            black_box(moment);
+                        }
+                    },
+                    criterion::BatchSize::LargeInput,
+                );
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, seconds_per_second);
+criterion_main!(benches);
