@@ -1,1 +1,85 @@
-fn main() {}
+//! How long a frame takes, per view, size and number of robots, and how many frames a second a film is made at.
+//!
+//! `cargo bench -p rendering` prints medians; other work on the machine shows in them.
+
+#[path = "../tests/stage/mod.rs"]
+mod stage;
+
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use rendering::{AdapterChoice, Film, FilmKind, Gpu, Layout, Renderer, Style};
+use stage::{Path, Play};
+
+fn gpu() -> Gpu {
+    let adapter = std::env::var("ECHELON_ADAPTER").unwrap_or_default();
+    Gpu::open(&AdapterChoice::from(adapter.as_str())).expect("benchmarks need a graphics adapter")
+}
+
+fn frames(criterion: &mut Criterion) {
+    let gpu = gpu();
+    let mut group = criterion.benchmark_group(format!("frame on {}", gpu.description()));
+    group.sample_size(20);
+    let sizes = [(1280, 720), (640, 360), (1920, 1080)];
+    let cases = [
+        ("snake", 3, 4),
+        ("snake", 3, 1),
+        ("snake", 7, 4),
+        ("snake", 100, 4),
+        ("top", 3, 4),
+        ("snake+top", 3, 4),
+    ];
+    for (width, height) in sizes {
+        for (view, robots, samples) in cases {
+            if (width, view, robots, samples) != (1280, view, robots, samples)
+                && (view, robots, samples) != cases[0]
+            {
+                continue;
+            }
+            let play = Play::new(robots, Path::named("eight"));
+            let Ok(mut renderer) = Renderer::new(&gpu, &play.cast, width, height, samples) else { continue };
+            let (trail, moment, style) = (play.trail(12.0), play.at(12.0), Style::default());
+            let Ok(layout) = Layout::parse(view, &[]) else { continue };
+            group.bench_function(
+                format!("{view}, {robots} robots, {width}x{height}, {samples} samples"),
+                |b| {
+                    b.iter(|| renderer.draw(&trail, &moment, &layout, &style));
+                },
+            );
+        }
+    }
+    group.finish();
+}
+
+fn film(criterion: &mut Criterion) {
+    let gpu = gpu();
+    let play = Play::new(3, Path::named("eight"));
+    let count = 45;
+    let moments: Vec<_> = (0..count).map(|k| play.at(f64::from(k) / 30.0)).collect();
+    let layout = Layout::single(rendering::View::Snake);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut group = criterion.benchmark_group("film");
+    group.sample_size(10).throughput(Throughput::Elements(u64::from(count.unsigned_abs())));
+    group.bench_function("snake, 3 robots, 1280x720, mp4", |b| {
+        let mut renderer = Renderer::new(&gpu, &play.cast, 1280, 720, 4).expect("a renderer");
+        b.iter_batched(
+            || play.trail(0.0),
+            |mut trail| -> Result<(), rendering::Error> {
+                let mut film = Film::create(&folder.path().join("a.mp4"), FilmKind::Mp4, 1280, 720, 30.0)?;
+                for moment in &moments {
+                    trail.push(moment);
+                    if let Some(picture) = renderer.draw_next(&trail, moment, &layout, &Style::default())? {
+                        film.push(picture)?;
+                    }
+                }
+                if let Some(picture) = renderer.finish()? {
+                    film.push(picture)?;
+                }
+                film.finish()
+            },
+            BatchSize::PerIteration,
+        );
+    });
+    group.finish();
+}
+
+criterion_group!(benches, frames, film);
+criterion_main!(benches);

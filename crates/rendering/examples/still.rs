@@ -12,12 +12,7 @@ fn main() -> Result<(), rendering::Error> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let word = |k: usize, other: &str| words.get(k).cloned().unwrap_or_else(|| other.to_owned());
     let number = |k: usize, other: f64| words.get(k).and_then(|w| w.parse().ok()).unwrap_or(other);
-    let path = match word(3, "eight").as_str() {
-        "straight" => Path::Straight,
-        "circle" => Path::Circle,
-        _ => Path::Eight,
-    };
-    let play = Play::new(number(2, 3.0) as usize, path);
+    let play = Play::new(number(2, 3.0) as usize, Path::named(&word(3, "eight")));
     let names: Vec<_> = play.cast.members.iter().map(|m| m.name.clone()).collect();
     let time = number(4, 12.0);
     let gpu = Gpu::open(&AdapterChoice::from(word(8, "auto").as_str()))?;
@@ -33,7 +28,11 @@ fn main() -> Result<(), rendering::Error> {
     let drawn = start.elapsed();
     let file = word(0, "still.png");
     png::write(file.as_ref(), &picture, &[("Adapter", &gpu.description())])?;
-    println!("{}: open {opened:?}, build {built:?}, drawn {drawn:?}, written {:?}", gpu.description(), start.elapsed());
+    println!(
+        "{}: open {opened:?}, build {built:?}, drawn {drawn:?}, written {:?}",
+        gpu.description(),
+        start.elapsed()
+    );
     let mut times: Vec<_> = (0..15)
         .map(|_| {
             let start = Instant::now();

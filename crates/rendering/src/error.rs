@@ -32,7 +32,9 @@ pub enum Error {
     #[error("encoding failed: {0}")]
     Encode(String),
     /// ffmpeg was asked for and is not there.
-    #[error("ffmpeg was not found on PATH; install it (`apt-get install ffmpeg`) or write an .mp4 with the built-in encoder")]
+    #[error(
+        "ffmpeg was not found on PATH; install it (`apt-get install ffmpeg`) or write an .mp4 with the built-in encoder"
+    )]
     NoFfmpeg,
     /// A view that does not exist.
     #[error("unknown view {given:?}{}; views are {valid}, and several joined by '+'", .nearest.as_ref().map_or(String::new(), |n| format!(" (did you mean {n:?}?)")))]

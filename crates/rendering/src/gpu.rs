@@ -16,7 +16,11 @@ pub enum AdapterChoice {
 
 impl From<&str> for AdapterChoice {
     fn from(name: &str) -> Self {
-        if name.is_empty() || name.eq_ignore_ascii_case("auto") { Self::Auto } else { Self::Named(name.to_owned()) }
+        if name.is_empty() || name.eq_ignore_ascii_case("auto") {
+            Self::Auto
+        } else {
+            Self::Named(name.to_owned())
+        }
     }
 }
 
@@ -81,8 +85,8 @@ impl Gpu {
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..Default::default()
         };
-        let (device, queue) =
-            pollster::block_on(adapter.request_device(&descriptor)).map_err(|e| Error::Device(e.to_string()))?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|e| Error::Device(e.to_string()))?;
         Ok(Self::from_device(device, queue, &adapter.get_info()))
     }
 
@@ -132,7 +136,8 @@ fn choose(choice: &AdapterChoice) -> Result<Adapter, Error> {
 }
 
 fn fits(info: &Info, name: &str) -> bool {
-    info.backend.to_str().eq_ignore_ascii_case(name) || info.name.to_lowercase().contains(&name.to_lowercase())
+    info.backend.to_str().eq_ignore_ascii_case(name)
+        || info.name.to_lowercase().contains(&name.to_lowercase())
 }
 
 fn sorted(backends: Backends) -> Vec<Adapter> {
@@ -163,5 +168,9 @@ fn rank(info: &Info) -> (u8, u8) {
 
 fn found() -> String {
     let all: Vec<_> = adapters().iter().map(|a| format!("{} ({})", a.name, a.backend)).collect();
-    if all.is_empty() { "this machine has none".into() } else { format!("this machine has {}", all.join(", ")) }
+    if all.is_empty() {
+        "this machine has none".into()
+    } else {
+        format!("this machine has {}", all.join(", "))
+    }
 }

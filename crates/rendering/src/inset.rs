@@ -69,9 +69,19 @@ fn frame(words: &mut Words<'_>, axes: &Axes, limit: f32, [x, top, bottom]: [f32;
         words.shapes.line(Vec2::new(axes.left, height), Vec2::new(axes.right, height), thin, ink(alpha));
     }
     let unit = if limit < 0.1 { "cm" } else { "m" };
-    words.write("distance error of each edge".into(), [x + words.scaled(12.0), top - words.scaled(13.0)], 11.0, true, Ink::ON_PANEL);
+    words.write(
+        "distance error of each edge".into(),
+        [x + words.scaled(12.0), top - words.scaled(13.0)],
+        11.0,
+        true,
+        Ink::ON_PANEL,
+    );
     let shown = if limit < 0.1 { limit * 100.0 } else { limit };
-    let rows = [(format!("{shown} {unit}"), top), ("0".into(), axes.zero), (format!("\u{2212}{shown} {unit}"), bottom)];
+    let rows = [
+        (format!("{shown} {unit}"), top),
+        ("0".into(), axes.zero),
+        (format!("\u{2212}{shown} {unit}"), bottom),
+    ];
     for (text, height) in rows {
         let width = words.width(&text, 10.0, false);
         words.write(text, [axes.left - width - words.scaled(5.0), height], 10.0, false, Ink::ON_PANEL);

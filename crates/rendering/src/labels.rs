@@ -69,7 +69,15 @@ impl<'a> Words<'a> {
     }
 
     /// Writes a centred line at the first of `places` that is free and inside `within`.
-    fn try_write(&mut self, text: &str, places: &[Vec2], size: f32, within: &Tile, bold: bool, ink: Ink) -> bool {
+    fn try_write(
+        &mut self,
+        text: &str,
+        places: &[Vec2],
+        size: f32,
+        within: &Tile,
+        bold: bool,
+        ink: Ink,
+    ) -> bool {
         let width = self.width(text, size, bold);
         let height = line_height(self.scaled(size));
         for place in places {
@@ -182,7 +190,8 @@ fn names(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
         let metre = 1.0 / window.camera.metres_per_pixel(middle, f64::from(window.tile.height)) as f32;
         let away = 0.27 * metre + words.scaled(9.0);
         let side = 0.25 * metre + 0.5 * words.width(&member.name, 13.0, true) + words.scaled(8.0);
-        let places = [Vec2::new(0.0, -away), Vec2::new(0.0, away), Vec2::new(side, 0.0), Vec2::new(-side, 0.0)];
+        let places =
+            [Vec2::new(0.0, -away), Vec2::new(0.0, away), Vec2::new(side, 0.0), Vec2::new(-side, 0.0)];
         let ink = Ink::LIGHT.faded(stage.detail.max(0.6));
         words.try_write(&member.name, &places.map(|p| at + p), 13.0, &window.tile, true, ink);
     }
@@ -277,4 +286,3 @@ fn ground_ahead(camera: &Camera) -> Option<DVec3> {
 pub(crate) fn detail(robots: usize) -> f32 {
     ((40.0 - robots as f32) / 28.0).clamp(0.0, 1.0)
 }
-

@@ -44,7 +44,13 @@ struct Painter<'a> {
 
 /// All decals of one view on a tile `height` pixels high.
 pub(crate) fn paint(stage: &Stage<'_>, view: &View, camera: &Camera, height: f64) -> Vec<Corner> {
-    let mut painter = Painter { corners: Vec::new(), camera, height, stage_scale: stage.style.scale * (height / 720.0).clamp(0.6, 1.0), origin: stage.origin };
+    let mut painter = Painter {
+        corners: Vec::new(),
+        camera,
+        height,
+        stage_scale: stage.style.scale * (height / 720.0).clamp(0.6, 1.0),
+        origin: stage.origin,
+    };
     let style = stage.style;
     if style.marks {
         painter.marks(stage);
@@ -166,7 +172,14 @@ impl Painter<'_> {
             for (x, y) in [(0.0, -0.5), (0.0, 0.5), (1.0, -0.5), (1.0, 0.5)] {
                 let at = place(x * body.wheelbase, y * body.track);
                 let size = body.wheel_radius;
-                self.patch(at, ahead * (1.25 * size), ahead.perp() * (0.85 * size), Form::Blob, [0.0; 3], 0.85);
+                self.patch(
+                    at,
+                    ahead * (1.25 * size),
+                    ahead.perp() * (0.85 * size),
+                    Form::Blob,
+                    [0.0; 3],
+                    0.85,
+                );
             }
         }
     }
@@ -189,7 +202,9 @@ impl Painter<'_> {
     fn set_points(&mut self, stage: &Stage<'_>) {
         let goals = set_points(stage.cast, stage.moment);
         for (edge, goal) in stage.cast.edges.iter().zip(goals) {
-            let (Some(goal), Some(robot)) = (goal, stage.moment.snapshot.robots.get(edge.follower)) else { continue };
+            let (Some(goal), Some(robot)) = (goal, stage.moment.snapshot.robots.get(edge.follower)) else {
+                continue;
+            };
             let goal = DVec2::from_array(goal);
             let colour = stage.colours[edge.follower];
             let thin = (3.0 * self.camera.metres_per_pixel(goal.extend(0.0), self.height)).max(0.022);
@@ -239,7 +254,9 @@ fn ribbon(trail: &Trail, robot: usize, now: f64) -> Vec<(DVec2, f32)> {
         // The last tenth fades away, so that the end is not a cut.
         (0.9 - 0.75 * age) * ((1.0 - age) / 0.1).min(1.0)
     };
-    let row = |k: usize| trail.ribbons.get(k).and_then(|row| row.poses.get(robot).map(|pose| (row.time, flat(pose))));
+    let row = |k: usize| {
+        trail.ribbons.get(k).and_then(|row| row.poses.get(robot).map(|pose| (row.time, flat(pose))))
+    };
     let mut points = Vec::with_capacity(trail.ribbons.len() + 1);
     for k in 0..trail.ribbons.len() {
         let Some((time, place)) = row(k) else { continue };

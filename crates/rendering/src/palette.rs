@@ -46,8 +46,3 @@ pub fn robot_colours(cast: &Cast) -> Vec<Rgb> {
 pub(crate) fn linear(colour: Rgb) -> Rgb {
     colour.map(|c| if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) })
 }
-
-/// `a` and `b` mixed, `share` of `b`.
-pub(crate) fn mix(a: Rgb, b: Rgb, share: f32) -> Rgb {
-    std::array::from_fn(|k| a[k] + (b[k] - a[k]) * share)
-}

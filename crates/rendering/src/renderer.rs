@@ -6,6 +6,7 @@ use crate::inset::inset;
 use crate::labels::{Window, Words, caption, detail, view_words};
 use crate::paint::{Stage, paint};
 use crate::palette::{Rgb, robot_colours};
+use crate::passes::Canvas;
 use crate::passes::decal::DecalPass;
 use crate::passes::frame::{Frame, FrameGroups};
 use crate::passes::ground::{GroundPass, TILE};
@@ -14,7 +15,6 @@ use crate::passes::robot::{Crowd, Models, RobotPass};
 use crate::passes::shadow::{SUN, ShadowPass, SunView, sun_view};
 use crate::passes::sky::SkyPass;
 use crate::passes::text::{Line, TextPass};
-use crate::passes::Canvas;
 use crate::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
 use crate::{Error, Gpu, Layout, Style, Trail, view::Tile};
 use glam::DVec3;
@@ -147,7 +147,13 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Cast`] for a moment of other robots, [`Error::Device`] where the device fails.
-    pub fn draw(&mut self, trail: &Trail, moment: &Moment, layout: &Layout, style: &Style) -> Result<Picture, Error> {
+    pub fn draw(
+        &mut self,
+        trail: &Trail,
+        moment: &Moment,
+        layout: &Layout,
+        style: &Style,
+    ) -> Result<Picture, Error> {
         let (slot, submission) = self.submit(trail, moment, layout, style)?;
         self.offscreen[slot].read(&self.gpu, submission)
     }
@@ -248,8 +254,10 @@ impl Renderer {
         };
         let crowd = crowd(&stage);
         let sun = sun_over(moment, stage.origin);
-        let frames: Vec<_> =
-            cameras.iter().map(|camera| frame(camera, &stage, &sun, self.passes.shadow.penumbra(&sun))).collect();
+        let frames: Vec<_> = cameras
+            .iter()
+            .map(|camera| frame(camera, &stage, &sun, self.passes.shadow.penumbra(&sun)))
+            .collect();
         let mut corners = Vec::new();
         let mut decals = Vec::new();
         for ((view, camera), tile) in layout.views.iter().zip(&cameras).zip(&tiles) {
@@ -307,7 +315,12 @@ impl Renderer {
 
     /// Ground and sky are painted first and without depth: robots cover little of them, and on processors the
     /// depth test of every pixel would cost more than shading the few that are hidden.
-    fn encode_world(&self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView, prepared: &Prepared) {
+    fn encode_world(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        prepared: &Prepared,
+    ) {
         let passes = &self.passes;
         let sampled = self.attachments.sampled.as_ref();
         let store = if sampled.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };

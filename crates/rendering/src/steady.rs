@@ -85,7 +85,8 @@ impl Steady {
         self.headings.resize(robots.len(), f64::NAN);
         for (kept, robot) in self.headings.iter_mut().zip(robots) {
             let heading = robot.motion.pose.heading;
-            *kept = if kept.is_nan() { heading } else { *kept + share * (nearest_turn(heading, *kept) - *kept) };
+            *kept =
+                if kept.is_nan() { heading } else { *kept + share * (nearest_turn(heading, *kept) - *kept) };
         }
     }
 
@@ -101,7 +102,9 @@ impl Steady {
         let poses = robots.iter().map(|r| [r.motion.pose.x, r.motion.pose.y]);
         let points: Vec<_> = poses.chain(set_points.iter().copied()).map(local).collect();
         let range = |k: usize| {
-            points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[k]), high.max(p[k])])
+            points
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[k]), high.max(p[k])])
         };
         let (forward, left) = (range(0), range(1));
         // Weighing softly keeps the place steady while robots take turns at being last.

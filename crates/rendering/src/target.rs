@@ -33,7 +33,8 @@ pub(crate) struct Attachments {
 
 impl Attachments {
     pub(crate) fn new(device: &Device, size: (u32, u32), format: TextureFormat, samples: u32) -> Self {
-        let sampled = (samples > 1).then(|| view(&colour(device, size, format, samples, TextureUsages::empty())));
+        let sampled =
+            (samples > 1).then(|| view(&colour(device, size, format, samples, TextureUsages::empty())));
         Self { sampled, depth: depth_texture(device, size, samples, false) }
     }
 }
@@ -42,7 +43,13 @@ fn view(texture: &Texture) -> TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-fn colour(device: &Device, size: (u32, u32), format: TextureFormat, samples: u32, usage: TextureUsages) -> Texture {
+fn colour(
+    device: &Device,
+    size: (u32, u32),
+    format: TextureFormat,
+    samples: u32,
+    usage: TextureUsages,
+) -> Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("picture"),
         size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },

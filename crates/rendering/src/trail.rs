@@ -83,7 +83,8 @@ pub(crate) fn set_points(cast: &Cast, moment: &Moment) -> Vec<Option<[f64; 2]>> 
 
 fn keep(rows: &mut VecDeque<Row>, time: f64, every: f64, span: f64, poses: impl Fn() -> Vec<Pose>) {
     // Whole multiples of the spacing, so that what is kept does not hang on where the run began.
-    let due = rows.back().is_none_or(|last| (time / every + 1e-9).floor() > (last.time / every + 1e-9).floor());
+    let due =
+        rows.back().is_none_or(|last| (time / every + 1e-9).floor() > (last.time / every + 1e-9).floor());
     if due {
         rows.push_back(Row { time, poses: poses() });
     }

@@ -141,7 +141,10 @@ mod tests {
     fn views_are_found_by_name() {
         let names = ["leader".to_owned(), "follower-1".to_owned()];
         assert_eq!(View::parse("follow:follower-1", &names).ok(), Some(View::Follow(1)));
-        assert_eq!(Layout::parse("snake+top", &names).ok().map(|l| l.views), Some(vec![View::Snake, View::Top]));
+        assert_eq!(
+            Layout::parse("snake+top", &names).ok().map(|l| l.views),
+            Some(vec![View::Snake, View::Top])
+        );
         assert!(matches!(View::parse("fixed:0,-5,3,0,0,0", &names), Ok(View::Fixed { .. })));
         assert!(View::parse("fixed:0,0,0,0,0,0", &names).is_err());
     }

@@ -24,7 +24,8 @@ impl Animation {
         let file = Partial::new(path);
         let out = BufWriter::new(File::create(&file.path).map_err(|e| Error::write(path, e))?);
         let failed = |e| failed(&file, e);
-        let mut encoder = gif::Encoder::new(out, format.width as u16, format.height as u16, &[]).map_err(failed)?;
+        let mut encoder =
+            gif::Encoder::new(out, format.width as u16, format.height as u16, &[]).map_err(failed)?;
         encoder.set_repeat(gif::Repeat::Infinite).map_err(failed)?;
         Ok(Self { encoder, file, rate: format.rate, count: 0 })
     }

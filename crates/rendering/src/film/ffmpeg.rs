@@ -34,7 +34,9 @@ impl Ffmpeg {
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
             .spawn()
-            .map_err(|e| if e.kind() == ErrorKind::NotFound { Error::NoFfmpeg } else { Error::write(path, e) })?;
+            .map_err(
+                |e| if e.kind() == ErrorKind::NotFound { Error::NoFfmpeg } else { Error::write(path, e) },
+            )?;
         let words = child.stderr.take().map(|mut pipe| {
             std::thread::spawn(move || {
                 let mut text = String::new();

@@ -4,7 +4,8 @@ use super::{Format, Sink, mp4};
 use crate::Error;
 use crate::partial::Partial;
 use openh264::encoder::{
-    BitRate, Complexity, Encoder, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, RateControlMode, UsageType, VuiConfig,
+    Complexity, Encoder, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, RateControlMode, UsageType,
+    VuiConfig,
 };
 use openh264::formats::YUVSlices;
 use openh264::{OpenH264API, Timestamp};
@@ -12,9 +13,6 @@ use std::fs::File;
 use std::io::{BufWriter, Seek, Write};
 use std::path::Path;
 use vocabulary::Picture;
-
-/// Bits a pixel: fine asphalt that moves is dear, and below this it smears.
-const DENSITY: f64 = 0.22;
 
 /// Encoder, frames so far, and where they are.
 pub(super) struct H264 {
@@ -28,11 +26,9 @@ pub(super) struct H264 {
 
 impl H264 {
     pub(super) fn create(path: &Path, format: Format) -> Result<Self, Error> {
-        let bits = f64::from(format.width) * f64::from(format.height) * format.rate * DENSITY;
         let config = EncoderConfig::new()
-            .bitrate(BitRate::from_bps(bits.min(60e6) as u32))
             .max_frame_rate(FrameRate::from_hz(format.rate as f32))
-            .rate_control_mode(RateControlMode::Bitrate)
+            .rate_control_mode(RateControlMode::Off)
             .usage_type(UsageType::CameraVideoRealTime)
             .complexity(Complexity::Low)
             .intra_frame_period(IntraFramePeriod::from_num_frames((2.0 * format.rate).round() as u32))
@@ -40,9 +36,11 @@ impl H264 {
             .skip_frames(false)
             .num_threads(1)
             .vui(VuiConfig::bt601());
-        let encoder = Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|e| refused(&e))?;
+        let encoder =
+            Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|e| refused(&e))?;
         let samples_file = Partial::marked(path, "samples");
-        let file = File::options().read(true).write(true).create(true).truncate(true).open(&samples_file.path);
+        let file =
+            File::options().read(true).write(true).create(true).truncate(true).open(&samples_file.path);
         let samples = BufWriter::with_capacity(1 << 18, file.map_err(|e| Error::write(path, e))?);
         let planes = Planes::new(format.width as usize, format.height as usize);
         let track = mp4::Track::new(format.width, format.height, format.rate);
@@ -120,7 +118,9 @@ impl Planes {
             let (upper, lower) = rows.split_at(4 * width);
             let blocks = upper.chunks_exact(8).zip(lower.chunks_exact(8));
             for ((u, v), (a, b)) in u_row.iter_mut().zip(v_row).zip(blocks) {
-                let mean = |k: usize| (i32::from(a[k]) + i32::from(a[k + 4]) + i32::from(b[k]) + i32::from(b[k + 4]) + 2) / 4;
+                let mean = |k: usize| {
+                    (i32::from(a[k]) + i32::from(a[k + 4]) + i32::from(b[k]) + i32::from(b[k + 4]) + 2) / 4
+                };
                 let [r, g, b] = [mean(0), mean(1), mean(2)];
                 *u = ((-38 * r - 74 * g + 112 * b + 128 + (128 << 8)) >> 8) as u8;
                 *v = ((112 * r - 94 * g - 18 * b + 128 + (128 << 8)) >> 8) as u8;
@@ -135,7 +135,9 @@ mod tests {
 
     #[test]
     fn colours_have_their_video_levels() {
-        for (rgb, yuv) in [([255, 255, 255], [235, 128, 128]), ([0, 0, 0], [16, 128, 128]), ([255, 0, 0], [82, 90, 240])] {
+        for (rgb, yuv) in
+            [([255, 255, 255], [235, 128, 128]), ([0, 0, 0], [16, 128, 128]), ([255, 0, 0], [82, 90, 240])]
+        {
             let mut planes = Planes::new(2, 2);
             planes.fill(&[rgb[0], rgb[1], rgb[2], 255].repeat(4));
             assert_eq!([planes.y[3], planes.u[0], planes.v[0]], yuv);

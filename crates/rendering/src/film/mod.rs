@@ -132,7 +132,9 @@ impl Film {
 
     fn join(&mut self) -> Result<(), Error> {
         self.sender = None;
-        self.thread.take().map_or_else(|| Err(stopped()), |thread| thread.join().unwrap_or_else(|_| Err(stopped())))
+        self.thread
+            .take()
+            .map_or_else(|| Err(stopped()), |thread| thread.join().unwrap_or_else(|_| Err(stopped())))
     }
 }
 

@@ -80,7 +80,15 @@ impl Track {
         let movie = full(
             b"mvhd",
             0x0100_0000,
-            &[&times, &clock, &length, &words(&[0x1_0000, 0x0100_0000, 0, 0]), &identity, &[0; 24], &words(&[2])],
+            &[
+                &times,
+                &clock,
+                &length,
+                &words(&[0x1_0000, 0x0100_0000, 0, 0]),
+                &identity,
+                &[0; 24],
+                &words(&[2]),
+            ],
         );
         let size = words(&[self.width << 16, self.height << 16]);
         let header =
@@ -200,7 +208,10 @@ mod tests {
         let mut track = Track::new(64, 32, 30.0);
         let stream = [0, 0, 0, 1, 0x67, 66, 0, 31, 0, 0, 0, 1, 0x68, 9, 0, 0, 1, 0x65, 7, 8];
         assert_eq!(track.add(&stream, true), [0, 0, 0, 3, 0x65, 7, 8]);
-        assert_eq!((track.sequence.as_slice(), track.picture.as_slice()), (&[0x67, 66, 0, 31][..], &[0x68, 9][..]));
+        assert_eq!(
+            (track.sequence.as_slice(), track.picture.as_slice()),
+            (&[0x67, 66, 0, 31][..], &[0x68, 9][..])
+        );
         assert_eq!((track.sizes, track.keys), (vec![7], vec![1]));
     }
 }

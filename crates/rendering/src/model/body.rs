@@ -48,16 +48,35 @@ fn cabin(mesh: &mut Mesh) {
     let at = |p: [f32; 2], side: f32, z: f32| Vec3::new(p[0], p[1] * side, z);
     for k in 0..3 {
         let glass = if k == 2 { Material::Paint } else { Material::Glass };
-        let left = [at(foot[k + 1], 1.0, base), at(foot[k], 1.0, base), at(head[k], 1.0, roof), at(head[k + 1], 1.0, roof)];
-        let right = [at(foot[k], -1.0, base), at(foot[k + 1], -1.0, base), at(head[k + 1], -1.0, roof), at(head[k], -1.0, roof)];
+        let left = [
+            at(foot[k + 1], 1.0, base),
+            at(foot[k], 1.0, base),
+            at(head[k], 1.0, roof),
+            at(head[k + 1], 1.0, roof),
+        ];
+        let right = [
+            at(foot[k], -1.0, base),
+            at(foot[k + 1], -1.0, base),
+            at(head[k + 1], -1.0, roof),
+            at(head[k], -1.0, roof),
+        ];
         mesh.quad(left, glass);
         mesh.quad(right, glass);
     }
-    mesh.quad([at(foot[0], 1.0, base), at(foot[0], -1.0, base), at(head[0], -1.0, roof), at(head[0], 1.0, roof)], Material::Glass);
-    mesh.quad([at(foot[3], -1.0, base), at(foot[3], 1.0, base), at(head[3], 1.0, roof), at(head[3], -1.0, roof)], Material::Glass);
+    mesh.quad(
+        [at(foot[0], 1.0, base), at(foot[0], -1.0, base), at(head[0], -1.0, roof), at(head[0], 1.0, roof)],
+        Material::Glass,
+    );
+    mesh.quad(
+        [at(foot[3], -1.0, base), at(foot[3], 1.0, base), at(head[3], 1.0, roof), at(head[3], -1.0, roof)],
+        Material::Glass,
+    );
     // The roof's lip overhangs the glass a little and catches the sun.
     let lip = |x: f32, half: f32| section(x, half, roof - 0.004, roof + 0.010, 0.006);
-    mesh.loft(&[lip(-0.062, 0.052), lip(-0.050, 0.063), lip(0.078, 0.064), lip(0.116, 0.058), lip(0.126, 0.050)], |_, _| Material::Paint);
+    mesh.loft(
+        &[lip(-0.062, 0.052), lip(-0.050, 0.063), lip(0.078, 0.064), lip(0.116, 0.058), lip(0.126, 0.050)],
+        |_, _| Material::Paint,
+    );
     mesh.smooth(from, 0.75);
     let z = roof + 0.0108;
     let patch = [[-0.052, 0.050], [-0.052, -0.050], [0.048, -0.050], [0.048, 0.050]];
@@ -86,8 +105,16 @@ fn arch(mesh: &mut Mesh, axle: f32, side: f32) {
 
 fn bumpers(mesh: &mut Mesh) {
     let from = mesh.vertices.len();
-    let front = [section(0.298, 0.112, 0.030, 0.060, 0.010), section(0.318, 0.108, 0.030, 0.060, 0.010), section(0.330, 0.088, 0.034, 0.056, 0.010)];
-    let rear = [section(-0.090, 0.092, 0.034, 0.062, 0.010), section(-0.082, 0.110, 0.030, 0.066, 0.010), section(-0.068, 0.112, 0.030, 0.066, 0.010)];
+    let front = [
+        section(0.298, 0.112, 0.030, 0.060, 0.010),
+        section(0.318, 0.108, 0.030, 0.060, 0.010),
+        section(0.330, 0.088, 0.034, 0.056, 0.010),
+    ];
+    let rear = [
+        section(-0.090, 0.092, 0.034, 0.062, 0.010),
+        section(-0.082, 0.110, 0.030, 0.066, 0.010),
+        section(-0.068, 0.112, 0.030, 0.066, 0.010),
+    ];
     mesh.loft(&front, |_, _| Material::Plastic);
     mesh.loft(&rear, |_, _| Material::Plastic);
     for side in [-1.0_f32, 1.0] {
@@ -113,7 +140,10 @@ fn stripe(mesh: &mut Mesh) {
     let points = [[0.198, 0.1305], [0.236, 0.1250], [0.272, 0.1185], [0.305, 0.1045]];
     for pair in points.windows(2) {
         let at = |p: [f32; 2], y: f32| Vec3::new(p[0], y, p[1]);
-        mesh.quad([at(pair[0], -0.018), at(pair[1], -0.018), at(pair[1], 0.018), at(pair[0], 0.018)], Material::Stripe);
+        mesh.quad(
+            [at(pair[0], -0.018), at(pair[1], -0.018), at(pair[1], 0.018), at(pair[0], 0.018)],
+            Material::Stripe,
+        );
     }
     let z = 0.2168;
     let at = |x: f32, y: f32| Vec3::new(x, y, z);

@@ -83,7 +83,12 @@ impl Mesh {
     }
 
     /// A turned shape around the y axis: `profile` lists [y, radius] from right (−y) to left (+y).
-    pub(crate) fn turned(&mut self, profile: &[[f32; 2]], sides: usize, material: impl Fn(usize) -> Material) {
+    pub(crate) fn turned(
+        &mut self,
+        profile: &[[f32; 2]],
+        sides: usize,
+        material: impl Fn(usize) -> Material,
+    ) {
         let at = |[y, radius]: [f32; 2], k: usize| {
             let turn = Vec2::from_angle(std::f32::consts::TAU * (k % sides) as f32 / sides as f32);
             Vec3::new(turn.x * radius, y, turn.y * radius)

@@ -32,7 +32,12 @@ fn ring(mesh: &mut Mesh, low: f32, high: f32, outset: f32, outer: Material, inne
         mesh.quad([inn(a, low), inn(b, low), out(b, low), out(a, low)], inner);
     }
     for (angle, flip) in [(67.5, false), (292.5, true)] {
-        let face = [corner(angle, low, WALL), corner(angle, low, -outset), corner(angle, high, -outset), corner(angle, high, WALL)];
+        let face = [
+            corner(angle, low, WALL),
+            corner(angle, low, -outset),
+            corner(angle, high, -outset),
+            corner(angle, high, WALL),
+        ];
         let [a, b, c, d] = face;
         mesh.quad(if flip { [d, c, b, a] } else { face }, outer);
     }
@@ -61,10 +66,18 @@ pub(super) fn build(mesh: &mut Mesh, plain: bool) {
 fn struts(mesh: &mut Mesh) {
     for y in [-0.085_f32, 0.085] {
         mesh.cuboid([-0.17, y - 0.006, 0.104], [0.05, y + 0.006, 0.112], Material::Plastic);
-        mesh.cuboid([-0.05, y.min(0.07 * y.signum()), 0.098], [-0.03, y.max(0.07 * y.signum()), 0.112], Material::Plastic);
+        mesh.cuboid(
+            [-0.05, y.min(0.07 * y.signum()), 0.098],
+            [-0.03, y.max(0.07 * y.signum()), 0.112],
+            Material::Plastic,
+        );
     }
     for y in [-0.186_f32, 0.180] {
-        mesh.cuboid([-0.045, y.min(0.07 * y.signum()), 0.108], [-0.030, y.max(0.07 * y.signum()), 0.116], Material::Plastic);
+        mesh.cuboid(
+            [-0.045, y.min(0.07 * y.signum()), 0.108],
+            [-0.030, y.max(0.07 * y.signum()), 0.116],
+            Material::Plastic,
+        );
     }
 }
 

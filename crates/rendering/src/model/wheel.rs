@@ -11,7 +11,16 @@ const SPOKES: usize = 5;
 pub(super) fn wheel(plain: bool) -> Mesh {
     let mut mesh = Mesh::default();
     let half = 0.018;
-    let profile = [[-half, 0.0], [-half, 0.034], [-0.014, RADIUS], [0.014, RADIUS], [half, 0.037], [half, 0.031], [0.008, 0.0295], [0.007, 0.0]];
+    let profile = [
+        [-half, 0.0],
+        [-half, 0.034],
+        [-0.014, RADIUS],
+        [0.014, RADIUS],
+        [half, 0.037],
+        [half, 0.031],
+        [0.008, 0.0295],
+        [0.007, 0.0],
+    ];
     if plain {
         mesh.turned(&[[-half, 0.0], [-half, RADIUS], [half, RADIUS], [half, 0.0]], 8, |_| Material::Tyre);
         mesh.turned(&[[half, 0.028], [half + 0.002, 0.0]], 5, |_| Material::Metal);
@@ -27,7 +36,12 @@ pub(super) fn wheel(plain: bool) -> Mesh {
     for k in 0..SPOKES {
         let angle = std::f32::consts::TAU * k as f32 / SPOKES as f32;
         let (foot, tip) = (0.42, 0.17);
-        let face = [at(angle + foot, 0.011, y), at(angle - foot, 0.011, y), at(angle - tip, 0.0305, y), at(angle + tip, 0.0305, y)];
+        let face = [
+            at(angle + foot, 0.011, y),
+            at(angle - foot, 0.011, y),
+            at(angle - tip, 0.0305, y),
+            at(angle + tip, 0.0305, y),
+        ];
         let [a, b, c, d] = face;
         mesh.quad([d, c, b, a], Material::Metal);
         let low = |p: Vec3| Vec3::new(p.x, 0.007, p.z);

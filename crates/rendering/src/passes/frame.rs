@@ -6,7 +6,6 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4};
 use wgpu::{BindGroup, BindGroupLayout, Device, ShaderStages};
 
-
 /// Most views in one picture.
 pub(crate) const MOST_VIEWS: u64 = 4;
 
@@ -28,13 +27,9 @@ pub(crate) struct Frame {
 impl Frame {
     /// The frame of `camera` with positions relative to `origin`.
     pub(crate) fn new(camera: &Camera, origin: DVec3, shadow_from_local: Mat4) -> Self {
-        let [eye, right, up, forward] = [
-            camera.eye - origin,
-            camera.right * camera.half.x,
-            camera.up * camera.half.y,
-            camera.forward,
-        ]
-        .map(|v| v.as_vec3());
+        let [eye, right, up, forward] =
+            [camera.eye - origin, camera.right * camera.half.x, camera.up * camera.half.y, camera.forward]
+                .map(|v| v.as_vec3());
         Self {
             clip_from_local: camera.clip_from_local(origin).to_cols_array_2d(),
             shadow_from_local: shadow_from_local.to_cols_array_2d(),
@@ -148,7 +143,12 @@ fn light_layout(device: &Device) -> BindGroupLayout {
 }
 
 /// A depth texture to draw into, and to read where it is a shadow map.
-pub(crate) fn depth_texture(device: &Device, size: (u32, u32), samples: u32, read: bool) -> wgpu::TextureView {
+pub(crate) fn depth_texture(
+    device: &Device,
+    size: (u32, u32),
+    samples: u32,
+    read: bool,
+) -> wgpu::TextureView {
     let binding = if read { wgpu::TextureUsages::TEXTURE_BINDING } else { wgpu::TextureUsages::empty() };
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("depth"),

@@ -9,6 +9,9 @@ pub(crate) mod shadow;
 pub(crate) mod sky;
 pub(crate) mod text;
 
+#[cfg(test)]
+mod tests;
+
 use wgpu::{BindGroupLayout, Buffer, BufferUsages, Device, Queue, TextureFormat};
 
 macro_rules! shader {
@@ -163,7 +166,12 @@ impl Stream {
     }
 
     fn make(device: &Device, label: &str, usage: BufferUsages, size: u64) -> Buffer {
-        device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+        device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage,
+            mapped_at_creation: false,
+        })
     }
 }
 
@@ -204,7 +212,8 @@ pub(crate) fn textured(
     let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &slots };
     let layout = device.create_bind_group_layout(&descriptor);
     let sampler = device.create_sampler(sampler);
-    let views: Vec<_> = textures.iter().map(|t| t.create_view(&wgpu::TextureViewDescriptor::default())).collect();
+    let views: Vec<_> =
+        textures.iter().map(|t| t.create_view(&wgpu::TextureViewDescriptor::default())).collect();
     let mut entries =
         vec![wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&sampler) }];
     entries.extend(views.iter().enumerate().map(|(k, view)| wgpu::BindGroupEntry {
@@ -245,8 +254,11 @@ pub(crate) fn mipped(
     for (level, texels) in (0..).zip(levels) {
         let extent = extent(level);
         let copy = wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() };
-        let rows =
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(extent.width), rows_per_image: None };
+        let rows = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(extent.width),
+            rows_per_image: None,
+        };
         queue.write_texture(copy, texels, rows, extent);
     }
     texture

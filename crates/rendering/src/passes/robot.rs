@@ -7,8 +7,7 @@ use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
 
-pub(crate) const SHADER: &str =
-    shader!("common/frame", "common/light", "common/robot", "robot");
+pub(crate) const SHADER: &str = shader!("common/frame", "common/light", "common/robot", "robot");
 
 /// Mirrors `Instance` of the shaders.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -78,7 +77,13 @@ impl Models {
         let usage = wgpu::BufferUsages::VERTEX;
         Self {
             vertices: constant(device, queue, "corners", usage, bytemuck::cast_slice(&vertices)),
-            indices: constant(device, queue, "triangles", wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&indices)),
+            indices: constant(
+                device,
+                queue,
+                "triangles",
+                wgpu::BufferUsages::INDEX,
+                bytemuck::cast_slice(&indices),
+            ),
             body,
             wheel,
             camera,
@@ -97,7 +102,8 @@ impl Models {
     pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
         self.bind(pass);
         let mut first = 0;
-        for (mesh, copies) in [(&self.body, &crowd.bodies), (&self.wheel, &crowd.wheels), (&self.camera, &crowd.cameras)]
+        for (mesh, copies) in
+            [(&self.body, &crowd.bodies), (&self.wheel, &crowd.wheels), (&self.camera, &crowd.cameras)]
         {
             let last = first + copies.len() as u32;
             pass.draw_indexed(mesh.clone(), 0, first..last);
@@ -159,8 +165,10 @@ impl RobotPass {
         let equal = Some((wgpu::CompareFunction::LessEqual, false));
         Self {
             solid: recipe.build(device),
-            ghost_depth: Recipe { label: "ghost depth", entry: "hidden", visible: false, ..recipe }.build(device),
-            ghost: Recipe { label: "ghost", entry: "ghost", colour: blended, depth: equal, ..recipe }.build(device),
+            ghost_depth: Recipe { label: "ghost depth", entry: "hidden", visible: false, ..recipe }
+                .build(device),
+            ghost: Recipe { label: "ghost", entry: "ghost", colour: blended, depth: equal, ..recipe }
+                .build(device),
             digits,
         }
     }

@@ -57,12 +57,21 @@ impl ShadowPass {
         (PENUMBRA / (2.0 * sun.half)).max(0.9 / f64::from(self.size)) as f32
     }
 
-    pub(crate) fn draw(&self, encoder: &mut wgpu::CommandEncoder, groups: &FrameGroups, models: &Models, crowd: &Crowd) {
+    pub(crate) fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        groups: &FrameGroups,
+        models: &Models,
+        crowd: &Crowd,
+    ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.map,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Store,
+                }),
                 stencil_ops: None,
             }),
             ..Default::default()

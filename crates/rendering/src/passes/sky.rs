@@ -4,8 +4,7 @@ use super::frame::FrameGroups;
 use super::{Canvas, Recipe, shader};
 use wgpu::Device;
 
-pub(crate) const SHADER: &str =
-    shader!("common/frame", "common/light", "common/screen", "sky");
+pub(crate) const SHADER: &str = shader!("common/frame", "common/light", "common/screen", "sky");
 
 /// Its pipeline.
 #[derive(Debug)]

@@ -4,8 +4,8 @@ use super::Canvas;
 use crate::palette::Rgb;
 use glyphon::cosmic_text::{FeatureTag, FontFeatures};
 use glyphon::{
-    Attrs, Buffer, Cache, Color, ColorMode, Family, FontSystem, Metrics, Resolution, Shaping, SwashCache, TextArea,
-    TextAtlas, TextBounds, TextRenderer, Viewport, Weight, fontdb,
+    Attrs, Buffer, Cache, Color, ColorMode, Family, FontSystem, Metrics, Resolution, Shaping, SwashCache,
+    TextArea, TextAtlas, TextBounds, TextRenderer, Viewport, Weight, fontdb,
 };
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -167,12 +167,19 @@ impl TextPass {
             let shift = (0.5 * (cell as f32 - width)).round() as i32;
             // The line is taller than the figures: its upper part is space for accents.
             let rise = -(0.5 * (line_height(size) - height as f32)).round() as i32;
-            buffer.draw(&mut self.fonts, &mut self.glyphs, Color::rgb(255, 255, 255), |x, y, w, h, colour| {
-                let inside = |v: i32, most: usize| usize::try_from(v).ok().filter(|v| *v < most);
-                if let (1, 1, Some(x), Some(y)) = (w, h, inside(x + shift, cell), inside(y + rise, height)) {
-                    texels[y * cell * 10 + digit * cell + x] = colour.a();
-                }
-            });
+            buffer.draw(
+                &mut self.fonts,
+                &mut self.glyphs,
+                Color::rgb(255, 255, 255),
+                |x, y, w, h, colour| {
+                    let inside = |v: i32, most: usize| usize::try_from(v).ok().filter(|v| *v < most);
+                    if let (1, 1, Some(x), Some(y)) =
+                        (w, h, inside(x + shift, cell), inside(y + rise, height))
+                    {
+                        texels[y * cell * 10 + digit * cell + x] = colour.a();
+                    }
+                },
+            );
         }
         (texels, (cell * 10) as u32, height as u32)
     }

@@ -1,13 +1,13 @@
 //! A play for tests: formations that move along prescribed curves, without any control law.
 
-#![expect(dead_code, reason = "tests, benchmarks and examples each use a part of it")]
-
 use std::f64::consts::{FRAC_PI_2, TAU};
-use vocabulary::{Body, Cast, Edge, EdgeState, Member, Moment, Motion, Pose, Relative, RobotState, Snapshot, Wheel, wrap};
+use vocabulary::{
+    Body, Cast, Edge, EdgeState, Member, Moment, Motion, Pose, Relative, RobotState, Snapshot, Wheel, wrap,
+};
 
 /// What the lead robot drives.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Path {
+pub(crate) enum Path {
     /// Along x at 0.6 m/s.
     Straight,
     /// A circle of 3 m radius.
@@ -16,18 +16,29 @@ pub enum Path {
     Eight,
 }
 
+impl Path {
+    /// The path called `name`; an eight for every other name.
+    pub(crate) fn named(name: &str) -> Self {
+        match name {
+            "straight" => Self::Straight,
+            "circle" => Self::Circle,
+            _ => Self::Eight,
+        }
+    }
+}
+
 /// A cast and its motion as a function of time.
 #[derive(Debug, Clone)]
-pub struct Play {
+pub(crate) struct Play {
     /// Who is on stage.
-    pub cast: Cast,
+    pub(crate) cast: Cast,
     goals: Vec<[f64; 2]>,
     path: Path,
 }
 
 impl Play {
     /// Three robots in a triangle, seven in a wedge, or a column of rows for more.
-    pub fn new(robots: usize, path: Path) -> Self {
+    pub(crate) fn new(robots: usize, path: Path) -> Self {
         let mut edges = Vec::new();
         let mut goals = Vec::new();
         for follower in 1..robots {
@@ -64,7 +75,9 @@ impl Play {
     }
 
     fn place(&self, robot: usize, time: f64) -> [f64; 2] {
-        let Some(k) = self.cast.edges.iter().position(|e| e.follower == robot) else { return self.lead(time) };
+        let Some(k) = self.cast.edges.iter().position(|e| e.follower == robot) else {
+            return self.lead(time);
+        };
         let leader = self.pose(self.cast.edges[k].leader, time);
         let [distance, bearing] = self.goals[k];
         let off = 0.5 * (-time / 3.0).exp();
@@ -85,7 +98,7 @@ impl Play {
     }
 
     /// The moment at `time`, s.
-    pub fn at(&self, time: f64) -> Moment {
+    pub(crate) fn at(&self, time: f64) -> Moment {
         let robots: Vec<_> = (0..self.cast.members.len()).map(|k| self.robot(k, time)).collect();
         let edge = |(edge, goal): (&Edge, &[f64; 2])| {
             let (leader, follower) = (robots[edge.leader].motion.pose, robots[edge.follower].motion.pose);
@@ -115,7 +128,7 @@ impl Play {
     }
 
     /// A trail up to and including `time`.
-    pub fn trail(&self, time: f64) -> rendering::Trail {
+    pub(crate) fn trail(&self, time: f64) -> rendering::Trail {
         let mut trail = rendering::Trail::new(&self.cast);
         for k in 0..=(time * 30.0) as i32 {
             trail.push(&self.at(f64::from(k) / 30.0));

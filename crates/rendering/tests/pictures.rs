@@ -1,0 +1,220 @@
+//! What pictures show, by their properties, and a few of them as a whole.
+//!
+//! These need an adapter; `apt-get install mesa-vulkan-drivers` brings one that draws on the processor.
+
+mod stage;
+
+use rendering::{AdapterChoice, Error, Gpu, Layout, Renderer, Style, View};
+use stage::{Path, Play};
+use std::sync::OnceLock;
+use vocabulary::{Moment, Picture};
+
+const SIZE: (u32, u32) = (640, 360);
+
+fn gpu() -> &'static Gpu {
+    static GPU: OnceLock<Gpu> = OnceLock::new();
+    GPU.get_or_init(|| Gpu::open(&AdapterChoice::Auto).expect("tests of pictures need a graphics adapter"))
+}
+
+fn draw(play: &Play, view: View, time: f64, style: &Style) -> Picture {
+    let mut renderer = Renderer::new(gpu(), &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+    renderer.draw(&play.trail(time), &play.at(time), &Layout::single(view), style).unwrap()
+}
+
+/// Straight down on the x-y plane, 9 m high: pixels are easily computed.
+fn plan() -> View {
+    View::Fixed { eye: [6.0, 0.0, 9.0], target: [6.0, 0.0, 0.0], field_of_view: 0.6 }
+}
+
+/// The pixel of a point on the ground in [`plan`], whose picture has +x up and +y to the left.
+fn pixel(x: f64, y: f64) -> (u32, u32) {
+    let scale = 0.5 * f64::from(SIZE.1) / (0.3_f64.tan() * 9.0);
+    let at = |middle: u32, shift: f64| (0.5 * f64::from(middle) - shift * scale).round() as u32;
+    (at(SIZE.0, y), at(SIZE.1, x - 6.0))
+}
+
+fn hue([r, g, b]: [u8; 3]) -> [f64; 3] {
+    let most = f64::from(r.max(g).max(b).max(1));
+    [r, g, b].map(|c| f64::from(c) / most)
+}
+
+/// Pixels of a colour's kind around a place.
+fn alike(picture: &Picture, (x, y): (u32, u32), reach: u32, wanted: [f64; 3]) -> usize {
+    let near = |c: [u8; 3]| (0..3).all(|k| (hue(c)[k] - wanted[k]).abs() < 0.16) && c.iter().any(|v| *v > 90);
+    let columns = x.saturating_sub(reach)..=x + reach;
+    let rows = y.saturating_sub(reach)..=y + reach;
+    columns
+        .flat_map(|x| rows.clone().map(move |y| (x, y)))
+        .filter_map(|(x, y)| picture.rgb(x, y))
+        .filter(|c| near(*c))
+        .count()
+}
+
+const ORANGE: [f64; 3] = [1.0, 0.69, 0.05];
+const BLUE: [f64; 3] = [0.37, 0.78, 1.0];
+
+#[test]
+fn robots_stand_where_they_are_in_their_colours() {
+    let play = Play::new(3, Path::Straight);
+    let time = 12.0;
+    let picture = draw(&play, plan(), time, &Style::bare());
+    let moment = play.at(time);
+    for (robot, colour) in [(1, ORANGE), (2, BLUE)] {
+        let pose = moment.snapshot.robots[robot].motion.pose;
+        let found = alike(&picture, pixel(pose.x + 0.05, pose.y), 8, colour);
+        assert!(found > 25, "robot {robot}: {found}");
+        assert!(alike(&picture, pixel(pose.x, -pose.y), 8, colour) < 5);
+    }
+    let lead = moment.snapshot.robots[0].motion.pose;
+    let (x, y) = pixel(lead.x + 0.24, lead.y + 0.06);
+    let dark = picture.rgb(x, y).unwrap();
+    assert!(dark.iter().all(|c| *c < 90), "{dark:?}");
+}
+
+#[test]
+fn the_sky_is_above_and_the_ground_below() {
+    let play = Play::new(3, Path::Straight);
+    let picture = draw(&play, View::Snake, 12.0, &Style::bare());
+    for x in [5, 320, 634] {
+        let [r, _, b] = picture.rgb(x, 4).unwrap();
+        assert!(b > r && b > 190, "sky at {x}");
+        let [r, g, b] = picture.rgb(x, 340).unwrap().map(i32::from);
+        assert!((r - b).abs() < 40 && (60..200).contains(&g), "ground at {x}: {r} {g} {b}");
+    }
+}
+
+#[test]
+fn no_picture_is_black_or_clipped() {
+    let play = Play::new(7, Path::named("eight"));
+    for view in [View::Snake, View::SnakeEye, View::Top, View::Orbit, View::Follow(3), plan()] {
+        let picture = draw(&play, view.clone(), 9.0, &Style::default());
+        let pixels = picture.rgba.chunks_exact(4);
+        let total = pixels.len();
+        let dark = pixels.clone().filter(|p| p[..3].iter().all(|c| *c < 12)).count();
+        let white = pixels.clone().filter(|p| p[..3].iter().all(|c| *c == 255)).count();
+        assert!(dark * 50 < total && white * 100 < total, "{view:?}: {dark} dark, {white} white of {total}");
+        assert!(pixels.clone().all(|p| p[3] == 255), "{view:?} is transparent");
+    }
+}
+
+#[test]
+fn a_ribbon_lies_behind_its_robot() {
+    let play = Play::new(3, Path::Straight);
+    let time = 12.0;
+    let with = draw(&play, plan(), time, &Style::bare());
+    let mut style = Style::bare();
+    style.ribbons = true;
+    let ribbons = draw(&play, plan(), time, &style);
+    let pose = play.at(time).snapshot.robots[1].motion.pose;
+    let behind = pixel(pose.x - 0.6, pose.y);
+    assert!(alike(&ribbons, behind, 3, ORANGE) > 8);
+    assert_eq!(alike(&with, behind, 3, ORANGE), 0);
+}
+
+#[test]
+fn every_element_can_be_switched_off() {
+    let play = Play::new(3, Path::Eight);
+    let draw = |style: &Style| {
+        let mut renderer = Renderer::new(gpu(), &play.cast, 800, 600, 4).unwrap();
+        renderer.draw(&play.trail(2.0), &play.at(2.0), &Layout::single(View::Snake), style).unwrap()
+    };
+    let full = draw(&Style::default());
+    for name in Style::ELEMENTS {
+        let without = draw(&Style::without(&[name]).unwrap());
+        assert!(without != full, "{name} changes nothing");
+    }
+}
+
+#[test]
+fn a_crowd_is_drawn_without_its_labels() {
+    let play = Play::new(100, Path::Straight);
+    let full = draw(&play, View::Snake, 2.0, &Style::default());
+    let quiet = Style::without(&["labels", "edges", "ghosts", "names"]).unwrap();
+    assert_eq!(draw(&play, View::Snake, 2.0, &quiet), full);
+}
+
+#[test]
+fn the_same_moments_give_the_same_bytes() {
+    let play = Play::new(7, Path::Eight);
+    let layout = Layout::parse("snake+top", &[]).unwrap();
+    let mut renderer = Renderer::new(gpu(), &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+    let trail = play.trail(6.0);
+    let first = renderer.draw(&trail, &play.at(6.0), &layout, &Style::default()).unwrap();
+    // Other pictures in between, and the pipelined way, must not show.
+    renderer.draw(&play.trail(3.0), &play.at(3.0), &Layout::single(View::Top), &Style::default()).unwrap();
+    assert_eq!(renderer.draw(&trail, &play.at(6.0), &layout, &Style::default()).unwrap(), first);
+    assert!(renderer.draw_next(&trail, &play.at(6.0), &layout, &Style::default()).unwrap().is_none());
+    assert_eq!(
+        renderer.draw_next(&trail, &play.at(6.0), &layout, &Style::default()).unwrap().as_ref(),
+        Some(&first)
+    );
+    assert_eq!(renderer.finish().unwrap().as_ref(), Some(&first));
+    assert!(renderer.finish().unwrap().is_none());
+}
+
+#[test]
+fn a_formation_far_from_the_origin_looks_the_same() {
+    let play = Play::new(3, Path::Circle);
+    let away = |moment: &Moment| {
+        let mut moved = moment.clone();
+        moved.snapshot.robots.iter_mut().for_each(|r| r.motion.pose.x += 40_000.0);
+        moved
+    };
+    let mut renderer = Renderer::new(gpu(), &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+    let style = Style::without(&["grid"]).unwrap();
+    let mut pictures = Vec::new();
+    for shifted in [false, true] {
+        let mut trail = rendering::Trail::new(&play.cast);
+        let mut last = Moment::default();
+        for k in 0..90 {
+            let moment = play.at(f64::from(k) / 30.0);
+            last = if shifted { away(&moment) } else { moment };
+            trail.push(&last);
+        }
+        pictures.push(renderer.draw(&trail, &last, &Layout::single(View::Snake), &style).unwrap());
+    }
+    let differ = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 3;
+    let count = pictures[0].rgba.iter().zip(&pictures[1].rgba).filter(|p| differ(*p)).count();
+    assert!(count * 500 < pictures[0].rgba.len(), "{count} values differ");
+}
+
+#[test]
+fn bad_input_is_refused_with_reasons() {
+    let play = Play::new(3, Path::Straight);
+    for (width, height) in [(0, 720), (1280, 0), (9000, 720), (1280, 1_000_000)] {
+        let error = Renderer::new(gpu(), &play.cast, width, height, 4).unwrap_err();
+        assert!(matches!(error, Error::Size { .. }) && error.is_usage(), "{error}");
+    }
+    assert!(matches!(Renderer::new(gpu(), &play.cast, 64, 64, 3), Err(Error::Samples(3))));
+    let mut renderer = Renderer::new(gpu(), &play.cast, 64, 64, 1).unwrap();
+    let other = Play::new(2, Path::Straight);
+    let error =
+        renderer.draw(&other.trail(0.0), &other.at(0.0), &Layout::single(View::Top), &Style::default());
+    assert!(matches!(error, Err(Error::Cast { what: "robots", got: 2, want: 3 })));
+    let error = Gpu::open(&AdapterChoice::from("voodoo")).unwrap_err();
+    assert!(!error.is_usage() && error.to_string().contains("mesa-vulkan-drivers"), "{error}");
+}
+
+/// Compares with a picture that was looked at; `ECHELON_BLESS=1` takes the new one instead.
+fn golden(name: &str, picture: &Picture) {
+    let file = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/{name}.png"));
+    if std::env::var_os("ECHELON_BLESS").is_some() {
+        return rendering::png::write(&file, picture, &[]).unwrap();
+    }
+    let wanted = image::open(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display())).to_rgb8();
+    let rgb = picture.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+    let got = image::RgbImage::from_raw(picture.width, picture.height, rgb).unwrap();
+    let likeness = image_compare::rgb_hybrid_compare(&wanted, &got).unwrap().score;
+    assert!(likeness > 0.97, "{name} is like its golden picture to {likeness:.4}");
+}
+
+#[test]
+fn golden_pictures() {
+    let play = Play::new(3, Path::Eight);
+    let mut renderer = Renderer::new(gpu(), &play.cast, 240, 136, 4).unwrap();
+    let style = Style { scale: 0.6, ..Style::default() };
+    for (name, view) in [("snake", View::Snake), ("top", View::Top), ("orbit", View::Orbit)] {
+        let picture = renderer.draw(&play.trail(5.0), &play.at(5.0), &Layout::single(view), &style).unwrap();
+        golden(name, &picture);
+    }
+}
