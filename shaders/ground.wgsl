@@ -9,6 +9,10 @@ fn vertex(@builtin(vertex_index) index: u32) -> Ray {
     return screen_corner(index, -1.0, clamp(frame.up.w, -1.0, 1.0));
 }
 
+// Sun and sky on flat ground, as one number and the tint that its shade of grey has when displayed.
+const GREY_LIGHT = 1.68;
+const GREY_TINT = vec3<f32>(1.012, 1.0, 0.985);
+
 // Coverage of lines `width` m wide every `every` m, where a metre has `density` pixels along each axis.
 // Lines thinner than a pixel are drawn a pixel wide and fainter, so that they fade instead of shimmering.
 fn lines(at: vec2<f32>, density: vec2<f32>, every: f32, width: f32) -> f32 {
@@ -27,14 +31,12 @@ fn fragment(ray: Ray) -> @location(0) vec4<f32> {
     let reach = -ray.start.z / min(ray.direction.z, -1e-5);
     let local = ray.start.xy + ray.direction.xy * reach;
     let footprint = max(abs(dpdx(local)), abs(dpdy(local)));
-    // Between the longer and the shorter side of the footprint: sharper than the rule, and still calm.
-    let level = 0.5 * log2(footprint.x * footprint.y * 65536.0 + 1e-9);
-    let fine = textureSampleLevel(asphalt, asphalt_sampler, local * 0.5, level).r;
+    // A little sharper than the rule, which goes by the longer side of the footprint.
+    let fine = textureSampleBias(asphalt, asphalt_sampler, local * 0.5, -0.8).r;
     let broad = textureSampleLevel(patches, asphalt_sampler, local.yx * 0.05, 0.0).r;
     let grain = 0.155 * (0.42 + 1.16 * fine) * (0.74 + 0.52 * broad);
     let density = 1.0 / max(footprint, vec2<f32>(1e-5));
     let painted = max(lines(local, density, 1.0, 0.014) * 0.34, lines(local, density, 5.0, 0.030) * 0.66);
     let albedo = mix(grain, 0.66, painted * frame.ground.z);
-    let light = albedo * (SUN_LIGHT * frame.sun.z + ambient(vec3<f32>(0.0, 0.0, 1.0)));
-    return vec4<f32>(mix(tone(light), HAZE, haze(reach * frame.eye.w)), 1.0);
+    return vec4<f32>(mix(tone_grey(albedo * GREY_LIGHT) * GREY_TINT, HAZE, haze(reach * frame.eye.w)), 1.0);
 }

@@ -32,6 +32,12 @@ fn tone(light: vec3<f32>) -> vec3<f32> {
     return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);
 }
 
+// The same curve for a grey.
+fn tone_grey(light: f32) -> f32 {
+    let x = max(light * 0.62 - 0.004, 0.0);
+    return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);
+}
+
 // Share of haze in front of something `distance` m away.
 fn haze(distance: f32) -> f32 {
     let beyond = max(distance * frame.ground.x - 1.0, 0.0) * 0.42;

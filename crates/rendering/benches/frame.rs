@@ -52,12 +52,12 @@ fn frames(criterion: &mut Criterion) {
 fn film(criterion: &mut Criterion) {
     let gpu = gpu();
     let play = Play::new(3, Path::named("eight"));
-    let count = 45;
+    let count = 45_u32;
     let moments: Vec<_> = (0..count).map(|k| play.at(f64::from(k) / 30.0)).collect();
     let layout = Layout::single(rendering::View::Snake);
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut group = criterion.benchmark_group("film");
-    group.sample_size(10).throughput(Throughput::Elements(u64::from(count.unsigned_abs())));
+    group.sample_size(10).throughput(Throughput::Elements(u64::from(count)));
     group.bench_function("snake, 3 robots, 1280x720, mp4", |b| {
         let mut renderer = Renderer::new(&gpu, &play.cast, 1280, 720, 4).expect("a renderer");
         b.iter_batched(

@@ -137,18 +137,10 @@ impl Camera {
     }
 }
 
+/// Outline of the formation from the ground to the robots' height.
 fn corners(extent: &Extent, margin: f64) -> Vec<DVec3> {
-    let grown = extent.grown(margin);
-    let mut all = Vec::with_capacity(8);
-    for height in [0.0, 0.3] {
-        for forward in grown.forward {
-            for left in grown.left {
-                let [x, y] = extent.frame.world_from_body(forward, left);
-                all.push(DVec3::new(x, y, height));
-            }
-        }
-    }
-    all
+    let places = extent.outline(margin).into_iter().map(|[f, l]| extent.frame.world_from_body(f, l));
+    places.flat_map(|[x, y]| [DVec3::new(x, y, 0.0), DVec3::new(x, y, 0.3)]).collect()
 }
 
 fn snake(steady: &Steady, aspect: f64) -> Camera {
@@ -209,7 +201,7 @@ fn follow(steady: &Steady, snapshot: &Snapshot, robot: usize, aspect: f64) -> Ca
     let heading = steady.heading(robot).unwrap_or(pose.heading);
     let ahead = DVec3::new(heading.cos(), heading.sin(), 0.0);
     let at = DVec3::new(pose.x, pose.y, 0.0);
-    let target = at + ahead * 0.9 + DVec3::Z * 0.12;
+    let target = at + ahead * 0.6 + DVec3::Z * 0.12;
     Camera::looking(at - ahead * 1.5 + DVec3::Z * 0.95, target, (42.0_f64).to_radians(), aspect)
 }
 

@@ -2,18 +2,20 @@
 
 use crate::labels::{Ink, Words};
 use crate::paint::Stage;
+use crate::view::Tile;
 use glam::Vec2;
 
 /// Size at scale 1, pixels.
 const SIZE: [f32; 2] = [320.0, 130.0];
 const MARGIN: f32 = 24.0;
 
-/// Where the panel is in a picture of this size; nothing where it would fill the picture.
-fn place(words: &Words<'_>, size: [u32; 2]) -> Option<[f32; 4]> {
+/// Where the panel is in a tile; nothing where it would fill the tile.
+fn place(words: &Words<'_>, tile: Tile) -> Option<[f32; 4]> {
     let [width, height] = SIZE.map(|s| words.scaled(s));
     let margin = words.scaled(MARGIN);
-    let [x, y] = [size[0] as f32 - margin - width, size[1] as f32 - margin - height];
-    (x > 0.25 * size[0] as f32 && y > 0.45 * size[1] as f32).then_some([x, y, width, height])
+    let [right, bottom] = [tile.width, tile.height].map(|side| side as f32 - margin);
+    let fits = right - width > words.scaled(150.0) && bottom - height > 0.45 * tile.height as f32;
+    fits.then_some([tile.x as f32 + right - width, tile.y as f32 + bottom - height, width, height])
 }
 
 /// Maps time and error to pixels.
@@ -33,9 +35,9 @@ impl Axes {
 }
 
 /// Draws panel, axes and curves.
-pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, size: [u32; 2]) {
+pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, tile: Tile) {
     let entries = &stage.trail.errors.entries;
-    let Some(panel) = place(words, size).filter(|_| !stage.cast.edges.is_empty()) else { return };
+    let Some(panel) = place(words, tile).filter(|_| !stage.cast.edges.is_empty()) else { return };
     let now = stage.moment.snapshot.time;
     words.reserve(panel);
     let radius = words.scaled(7.0);

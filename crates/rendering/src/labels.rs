@@ -103,7 +103,7 @@ pub(crate) struct Ink {
 impl Ink {
     pub(crate) const DARK: Self = Self { colour: palette::INK, alpha: 0.92, halo: (0.0, palette::PAPER) };
     pub(crate) const ON_PANEL: Self = Self { colour: palette::INK, alpha: 0.9, halo: (0.0, palette::PAPER) };
-    pub(crate) const LIGHT: Self = Self { colour: palette::PAPER, alpha: 1.0, halo: (0.30, palette::INK) };
+    pub(crate) const LIGHT: Self = Self { colour: palette::PAPER, alpha: 1.0, halo: (0.42, palette::INK) };
 
     pub(crate) fn faded(self, alpha: f32) -> Self {
         Self { alpha: self.alpha * alpha, ..self }

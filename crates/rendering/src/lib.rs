@@ -22,6 +22,7 @@
 //! The same moments give the same picture, byte for byte, on the same adapter.
 
 mod camera;
+mod compose;
 mod crowd;
 mod error;
 mod film;

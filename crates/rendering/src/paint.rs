@@ -52,7 +52,8 @@ pub(crate) fn paint(stage: &Stage<'_>, view: &View, camera: &Camera, height: f64
         origin: stage.origin,
     };
     let style = stage.style;
-    if style.marks {
+    // In a crowd the marks of all would cover the road, and cost more than the robots.
+    if style.marks && stage.detail > 0.5 {
         painter.marks(stage);
     }
     if style.ribbons {
@@ -70,6 +71,7 @@ pub(crate) fn paint(stage: &Stage<'_>, view: &View, camera: &Camera, height: f64
         painter.shadows(stage);
     }
     painter.contacts(stage);
+    painter.dots(stage);
     painter.corners
 }
 
@@ -112,13 +114,16 @@ impl Painter<'_> {
         (apart.length() / step).max(1.0)
     }
 
-    /// A band through `points`, each with its opacity.
-    fn band(&mut self, points: &[(DVec2, f32)], half: f64, shift: f64, colour: Rgb) {
+    /// A band through `points`, each with its opacity; half its width is `half` m, but `least` pixels.
+    fn band(&mut self, points: &[(DVec2, f32)], half: f64, least: f64, shift: f64, colour: Rgb) {
         let side = |k: usize| {
             let (before, after) = (points[k.saturating_sub(1)].0, points[(k + 1).min(points.len() - 1)].0);
             (after - before).normalize_or(DVec2::X).perp()
         };
         let edge = |k: usize, u: f32| {
+            // Wide enough to be seen from afar.
+            let pixel = self.camera.metres_per_pixel(points[k].0.extend(0.0), self.height);
+            let half = half.max(least * self.stage_scale * pixel);
             let place = points[k].0 + side(k) * (shift + half * f64::from(u));
             self.corner(place, Form::Solid, [u, 0.0], colour, points[k].1)
         };
@@ -141,7 +146,7 @@ impl Painter<'_> {
                 .collect();
             if points.len() > 1 {
                 for side in [-0.5, 0.5] {
-                    self.band(&points, 0.013, side * member.body.track, [0.05, 0.05, 0.055]);
+                    self.band(&points, 0.013, 0.0, side * member.body.track, [0.05, 0.05, 0.055]);
                 }
             }
         }
@@ -184,6 +189,21 @@ impl Painter<'_> {
         }
     }
 
+    /// Dots under robots that are only a few pixels long, so that a crowd keeps its colours.
+    fn dots(&mut self, stage: &Stage<'_>) {
+        let robots = stage.moment.snapshot.robots.iter().zip(&stage.cast.members).zip(stage.colours);
+        for ((robot, member), colour) in robots {
+            let middle = flat(&robot.motion.pose);
+            let pixel = self.camera.metres_per_pixel(middle.extend(0.0), self.height) * self.stage_scale;
+            let alpha = ((26.0 - member.body.length / pixel) / 10.0).clamp(0.0, 0.95) as f32;
+            if alpha > 0.0 {
+                let colour = if member.leads { palette::GOLD } else { *colour };
+                let radius = 6.5 * pixel;
+                self.patch(middle, DVec2::X * radius, DVec2::Y * radius, Form::Ring(0.0), colour, alpha);
+            }
+        }
+    }
+
     fn ribbons(&mut self, stage: &Stage<'_>) {
         let now = stage.moment.snapshot.time;
         for (robot, state) in stage.moment.snapshot.robots.iter().enumerate() {
@@ -191,10 +211,10 @@ impl Painter<'_> {
             let leads = stage.cast.members[robot].leads;
             let mut points = ribbon(stage.trail, robot, now);
             points.push((flat(&state.motion.pose), 0.9));
-            self.band(&points, RIBBON_HALF, 0.0, colour);
+            self.band(&points, RIBBON_HALF, 0.9, 0.0, colour);
             if leads {
                 // Near-black alone would be lost on asphalt.
-                self.band(&points, 0.009, 0.0, palette::GOLD);
+                self.band(&points, 0.009, 0.35, 0.0, palette::GOLD);
             }
         }
     }

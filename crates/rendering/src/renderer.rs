@@ -1,23 +1,22 @@
 //! Moments to pictures. The passes stand in `encode` in the order in which they run.
 
 use crate::camera::Camera;
+use crate::compose::{frame, local_origin, sun_over, words};
 use crate::crowd::crowd;
-use crate::inset::inset;
-use crate::labels::{Window, Words, caption, detail, view_words};
+use crate::labels::{Window, detail};
 use crate::paint::{Stage, paint};
 use crate::palette::{Rgb, robot_colours};
 use crate::passes::Canvas;
 use crate::passes::decal::DecalPass;
 use crate::passes::frame::{Frame, FrameGroups};
-use crate::passes::ground::{GroundPass, TILE};
+use crate::passes::ground::GroundPass;
 use crate::passes::overlay::{OverlayPass, Shapes};
 use crate::passes::robot::{Crowd, Models, RobotPass};
-use crate::passes::shadow::{SUN, ShadowPass, SunView, sun_view};
+use crate::passes::shadow::ShadowPass;
 use crate::passes::sky::SkyPass;
 use crate::passes::text::{Line, TextPass};
 use crate::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
-use crate::{Error, Gpu, Layout, Style, Trail, view::Tile};
-use glam::DVec3;
+use crate::{Error, Gpu, Layout, Style, Trail, View, view::Tile};
 use std::ops::Range;
 use vocabulary::{Cast, Moment, Picture};
 use wgpu::TextureFormat;
@@ -77,6 +76,8 @@ struct Prepared {
     crowd: Crowd,
     tiles: Vec<Tile>,
     decals: Vec<Range<u32>>,
+    /// Whether a view shows ghosts: near the ground they would veil what is behind them.
+    ghosts: Vec<bool>,
     shapes: Shapes,
 }
 
@@ -267,9 +268,10 @@ impl Renderer {
         }
         let windows: Vec<_> =
             cameras.iter().zip(&tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
-        let (lines, shapes) = words(&mut self.passes.text, &stage, layout, &windows, [width, height]);
+        let (lines, shapes) = words(&mut self.passes.text, &stage, layout, &windows, height);
         self.upload(&frames, &crowd, &corners, &shapes, &lines)?;
-        Ok(Prepared { crowd, tiles, decals, shapes })
+        let ghosts = layout.views.iter().map(|view| !matches!(view, View::SnakeEye)).collect();
+        Ok(Prepared { crowd, tiles, decals, ghosts, shapes })
     }
 
     fn check(&self, moment: &Moment) -> Result<(), Error> {
@@ -352,7 +354,9 @@ impl Renderer {
             passes.ground.draw(&mut pass);
             passes.decal.draw(&mut pass, decals.clone());
             passes.robot.draw_solid(&mut pass, &passes.models, &prepared.crowd);
-            passes.robot.draw_ghosts(&mut pass, &passes.models, &prepared.crowd);
+            if prepared.ghosts[index] {
+                passes.robot.draw_ghosts(&mut pass, &passes.models, &prepared.crowd);
+            }
         }
     }
 
@@ -375,58 +379,4 @@ impl Renderer {
         self.passes.overlay.draw(&mut pass, &prepared.shapes);
         self.passes.text.draw(&mut pass).map_err(|e| Error::Device(e.to_string()))
     }
-}
-
-/// A multiple of the ground's tile near the robots, so that single precision is enough around it.
-fn local_origin(moment: &Moment) -> DVec3 {
-    let places = moment.snapshot.robots.iter().map(|r| r.motion.pose);
-    let first = places.clone().find(|p| p.x.is_finite() && p.y.is_finite()).unwrap_or_default();
-    let snap = |x: f64| (x / TILE).round() * TILE;
-    DVec3::new(snap(first.x), snap(first.y), 0.0)
-}
-
-/// The sun's view of all robots.
-fn sun_over(moment: &Moment, origin: DVec3) -> SunView {
-    let places = || {
-        let poses = moment.snapshot.robots.iter().map(|r| r.motion.pose);
-        poses.filter(|p| p.x.is_finite() && p.y.is_finite()).map(|p| DVec3::new(p.x, p.y, 0.1))
-    };
-    let low = places().fold(DVec3::INFINITY, DVec3::min);
-    let high = places().fold(DVec3::NEG_INFINITY, DVec3::max);
-    if !low.is_finite() {
-        return sun_view(DVec3::ZERO, 1.0);
-    }
-    // Beyond 40 m a shadow is below a texel, wherever the robots are.
-    sun_view((low + high) * 0.5 - origin, (0.5 * low.distance(high) + 0.8).min(40.0))
-}
-
-fn frame(camera: &Camera, stage: &Stage<'_>, sun: &SunView, penumbra: f32) -> Frame {
-    let mut frame = Frame::new(camera, stage.origin, sun.shadow_from_local);
-    let [x, y, z] = SUN.as_vec3().to_array();
-    // A large formation is seen from farther away and would drown in it.
-    let haze = (6.0 * camera.eye.z).max(30.0) as f32;
-    frame.sun = [x, y, z, if stage.style.shadows { penumbra } else { 0.0 }];
-    frame.ground = [1.0 / haze, 0.0, f32::from(u8::from(stage.style.grid)), 0.0];
-    frame
-}
-
-/// Text and flat shapes of the whole picture.
-fn words(
-    text: &mut TextPass,
-    stage: &Stage<'_>,
-    layout: &Layout,
-    windows: &[Window<'_>],
-    [width, height]: [u32; 2],
-) -> (Vec<Line>, Shapes) {
-    let mut words = Words::new(text, stage.style.scale);
-    let sky = windows.first().map_or(0.0, |w| 0.5 * (1.0 - w.camera.horizon()) * f64::from(w.tile.height));
-    caption(&mut words, stage, height, sky as f32);
-    // In a quarter of a picture it would cover a whole view.
-    if stage.style.inset && layout.views.len() < 3 {
-        inset(&mut words, stage, [width, height]);
-    }
-    for (view, window) in layout.views.iter().zip(windows) {
-        view_words(&mut words, stage, *window, view);
-    }
-    (words.lines, words.shapes)
 }

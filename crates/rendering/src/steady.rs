@@ -9,7 +9,7 @@ const EXTENT_LAG: f64 = 1.0;
 /// Fastest change of size, 1/s: a zoom slower than 15% a second goes unnoticed.
 const ZOOM_RATE: f64 = 0.13;
 
-/// The rectangle of the formation, seen along a heading.
+/// The formation's outline along a heading: a rectangle with its corners cut off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Extent {
     /// Its origin is the lead robot, its heading the filtered one.
@@ -18,6 +18,8 @@ pub(crate) struct Extent {
     pub(crate) forward: [f64; 2],
     /// Rightmost and leftmost, m.
     pub(crate) left: [f64; 2],
+    /// How far each corner is cut off along both sides, m; in the order of [`CORNERS`].
+    pub(crate) cuts: [f64; 4],
     /// To the left of the lead robot, where the rear of the formation is, m.
     pub(crate) rear: f64,
 }
@@ -27,11 +29,25 @@ impl Extent {
         [0.5 * (self.forward[0] + self.forward[1]), 0.5 * (self.left[0] + self.left[1])]
     }
 
+    /// The eight corners of the outline, `margin` wider on all sides, in the frame, m.
+    pub(crate) fn outline(&self, margin: f64) -> Vec<[f64; 2]> {
+        let grown = self.grown(margin);
+        let side = |[low, high]: [f64; 2], sign: f64| if sign > 0.0 { high } else { low };
+        let corners = CORNERS.iter().zip(&self.cuts).flat_map(|([f, l], cut)| {
+            let (forward, left) = (side(grown.forward, *f), side(grown.left, *l));
+            [[forward - f * cut, left], [forward, left - l * cut]]
+        });
+        corners.collect()
+    }
+
     pub(crate) fn grown(&self, margin: f64) -> Self {
         let grow = |[low, high]: [f64; 2]| [low - margin, high + margin];
         Self { forward: grow(self.forward), left: grow(self.left), ..*self }
     }
 }
+
+/// Signs of forward and left at each corner.
+const CORNERS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
 
 /// Filtered headings and extent.
 #[derive(Debug, Clone, Default)]
@@ -75,6 +91,7 @@ impl Steady {
             frame: Pose::default(),
             forward: [-1.0, 1.0],
             left: [-1.0, 1.0],
+            cuts: [0.0; 4],
             rear: 0.0,
         })
     }
@@ -111,7 +128,12 @@ impl Steady {
         let weigh = |p: &[f64; 2]| (-(p[0] - forward[0]) / 0.3).exp();
         let total: f64 = points.iter().map(weigh).sum();
         let rear = points.iter().map(|p| weigh(p) * p[1]).sum::<f64>() / total;
-        Some(Extent { frame, forward, left, rear })
+        let cuts = CORNERS.map(|[f, l]| {
+            let most = points.iter().map(|p| f * p[0] + l * p[1]).fold(f64::NEG_INFINITY, f64::max);
+            let pick = |[low, high]: [f64; 2], sign: f64| if sign > 0.0 { high } else { -low };
+            (pick(forward, f) + pick(left, l) - most).max(0.0)
+        });
+        Some(Extent { frame, forward, left, cuts, rear })
     }
 }
 
@@ -133,6 +155,7 @@ fn approach(old: &Extent, wanted: &Extent, step: f64) -> Extent {
         frame: wanted.frame,
         forward: range(old.forward, wanted.forward),
         left: range(old.left, wanted.left),
+        cuts: std::array::from_fn(|k| mix(old.cuts[k], wanted.cuts[k])),
         rear: mix(old.rear, wanted.rear),
     }
 }

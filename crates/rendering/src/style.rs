@@ -7,7 +7,6 @@ macro_rules! elements {
     ($($(#[$doc:meta])* $field:ident = $name:literal,)*) => {
         /// Which elements a picture has, and how large its text is.
         #[derive(Debug, Clone, PartialEq)]
-        #[expect(clippy::struct_excessive_bools, reason = "independent switches, set by name")]
         pub struct Style {
             $($(#[$doc])* pub $field: bool,)*
             /// Size of text and lines relative to a picture of 720 lines at arm's length; 2 for dense screens.

@@ -13,7 +13,8 @@ const SIZE: (u32, u32) = (640, 360);
 
 fn gpu() -> &'static Gpu {
     static GPU: OnceLock<Gpu> = OnceLock::new();
-    GPU.get_or_init(|| Gpu::open(&AdapterChoice::Auto).expect("tests of pictures need a graphics adapter"))
+    let wanted = || AdapterChoice::from(std::env::var("ECHELON_ADAPTER").unwrap_or_default().as_str());
+    GPU.get_or_init(|| Gpu::open(&wanted()).expect("tests of pictures need a graphics adapter"))
 }
 
 fn draw(play: &Play, view: View, time: f64, style: &Style) -> Picture {

@@ -54,7 +54,7 @@ impl Track {
 
     /// Everything in front of the frames, which then follow in one piece.
     pub(super) fn head(&self) -> Vec<u8> {
-        let kind = boxed(b"ftyp", &[b"isom", &512_u32.to_be_bytes(), b"isomiso2avc1mp41"]);
+        let kind = boxed(*b"ftyp", &[b"isom", &512_u32.to_be_bytes(), b"isomiso2avc1mp41"]);
         let frames: u64 = self.sizes.iter().map(|s| u64::from(*s)).sum();
         // The place of the frames depends on the index's length, not on its content.
         let index = self.index(0).len() as u64;
@@ -78,7 +78,7 @@ impl Track {
         let identity = words(&[0x1_0000, 0, 0, 0, 0x1_0000, 0, 0, 0, 0x4000_0000]);
         let clock = self.clock.to_be_bytes();
         let movie = full(
-            b"mvhd",
+            *b"mvhd",
             0x0100_0000,
             &[
                 &times,
@@ -92,32 +92,32 @@ impl Track {
         );
         let size = words(&[self.width << 16, self.height << 16]);
         let header =
-            full(b"tkhd", 0x0100_0003, &[&times, &words(&[1, 0]), &length, &[0; 16], &identity, &size]);
+            full(*b"tkhd", 0x0100_0003, &[&times, &words(&[1, 0]), &length, &[0; 16], &identity, &size]);
         // Language: und, as three letters of five bits.
-        let media = full(b"mdhd", 0x0100_0000, &[&times, &clock, &length, &[0x55, 0xc4, 0, 0]]);
-        let handler = full(b"hdlr", 0, &[&[0; 4], b"vide", &[0; 12], b"video\0"]);
-        let source = full(b"dref", 0, &[&words(&[1]), &full(b"url ", 1, &[])]);
+        let media = full(*b"mdhd", 0x0100_0000, &[&times, &clock, &length, &[0x55, 0xc4, 0, 0]]);
+        let handler = full(*b"hdlr", 0, &[&[0; 4], b"vide", &[0; 12], b"video\0"]);
+        let source = full(*b"dref", 0, &[&words(&[1]), &full(*b"url ", 1, &[])]);
         let information = boxed(
-            b"minf",
-            &[&full(b"vmhd", 1, &[&[0; 8]]), &boxed(b"dinf", &[&source]), &self.table(frames_at)],
+            *b"minf",
+            &[&full(*b"vmhd", 1, &[&[0; 8]]), &boxed(*b"dinf", &[&source]), &self.table(frames_at)],
         );
-        let media = boxed(b"mdia", &[&media, &handler, &information]);
-        boxed(b"moov", &[&movie, &boxed(b"trak", &[&header, &media])])
+        let media = boxed(*b"mdia", &[&media, &handler, &information]);
+        boxed(*b"moov", &[&movie, &boxed(*b"trak", &[&header, &media])])
     }
 
     fn table(&self, frames_at: u64) -> Vec<u8> {
         let count = self.sizes.len() as u32;
         let keys = [words(&[self.keys.len() as u32]), words(&self.keys)].concat();
         boxed(
-            b"stbl",
+            *b"stbl",
             &[
-                &full(b"stsd", 0, &[&words(&[1]), &self.description()]),
-                &full(b"stts", 0, &[&words(&[1, count, TICKS])]),
-                &full(b"stss", 0, &[&keys]),
+                &full(*b"stsd", 0, &[&words(&[1]), &self.description()]),
+                &full(*b"stts", 0, &[&words(&[1, count, TICKS])]),
+                &full(*b"stss", 0, &[&keys]),
                 // One chunk holds all frames.
-                &full(b"stsc", 0, &[&words(&[1, 1, count, 1])]),
-                &full(b"stsz", 0, &[&words(&[0, count]), &words(&self.sizes)]),
-                &full(b"co64", 0, &[&words(&[1]), &frames_at.to_be_bytes()]),
+                &full(*b"stsc", 0, &[&words(&[1, 1, count, 1])]),
+                &full(*b"stsz", 0, &[&words(&[0, count]), &words(&self.sizes)]),
+                &full(*b"co64", 0, &[&words(&[1]), &frames_at.to_be_bytes()]),
             ],
         )
     }
@@ -126,7 +126,7 @@ impl Track {
         let short = |n: u32| (n as u16).to_be_bytes();
         let profile: Vec<u8> = self.sequence.get(1..4).unwrap_or(&[66, 0, 31]).to_vec();
         let parameters = boxed(
-            b"avcC",
+            *b"avcC",
             &[
                 &[1],
                 &profile,
@@ -140,9 +140,9 @@ impl Track {
             ],
         );
         // BT.601 in video range, as the pictures are converted.
-        let colour = boxed(b"colr", &[b"nclx", &[0, 6, 0, 6, 0, 6, 0]]);
+        let colour = boxed(*b"colr", &[b"nclx", &[0, 6, 0, 6, 0, 6, 0]]);
         boxed(
-            b"avc1",
+            *b"avc1",
             &[
                 &[0, 0, 0, 0, 0, 0, 0, 1],
                 &[0; 16],
@@ -181,17 +181,19 @@ fn units(stream: &[u8]) -> Vec<&[u8]> {
     starts.iter().copied().zip(ends).map(unit).filter(|u| !u.is_empty()).collect()
 }
 
-fn boxed(name: &[u8; 4], parts: &[&[u8]]) -> Vec<u8> {
+fn boxed(name: [u8; 4], parts: &[&[u8]]) -> Vec<u8> {
     let body: usize = parts.iter().map(|p| p.len()).sum();
     let mut out = Vec::with_capacity(body + 8);
     out.extend((body as u32 + 8).to_be_bytes());
     out.extend(name);
-    parts.iter().for_each(|p| out.extend(*p));
+    for part in parts {
+        out.extend(*part);
+    }
     out
 }
 
 /// A box with version (upper byte) and flags.
-fn full(name: &[u8; 4], version: u32, parts: &[&[u8]]) -> Vec<u8> {
+fn full(name: [u8; 4], version: u32, parts: &[&[u8]]) -> Vec<u8> {
     boxed(name, &[&version.to_be_bytes(), &parts.concat()])
 }
 

@@ -107,7 +107,7 @@ fn bumpers(mesh: &mut Mesh) {
     let from = mesh.vertices.len();
     let front = [
         section(0.298, 0.112, 0.030, 0.060, 0.010),
-        section(0.318, 0.108, 0.030, 0.060, 0.010),
+        section(0.319, 0.108, 0.030, 0.060, 0.010),
         section(0.330, 0.088, 0.034, 0.056, 0.010),
     ];
     let rear = [

@@ -29,7 +29,7 @@ impl Frame {
     pub(crate) fn new(camera: &Camera, origin: DVec3, shadow_from_local: Mat4) -> Self {
         let [eye, right, up, forward] =
             [camera.eye - origin, camera.right * camera.half.x, camera.up * camera.half.y, camera.forward]
-                .map(|v| v.as_vec3());
+                .map(DVec3::as_vec3);
         Self {
             clip_from_local: camera.clip_from_local(origin).to_cols_array_2d(),
             shadow_from_local: shadow_from_local.to_cols_array_2d(),

@@ -204,9 +204,9 @@ fn halo<'a>(areas: &mut Vec<TextArea<'a>>, line: &Line, buffer: &'a Buffer) {
     if strength <= 0.0 {
         return;
     }
-    let reach = (line.size / 13.0 * 1.5).max(1.0);
-    for k in 0..8 {
-        let (sin, cos) = (std::f32::consts::FRAC_PI_4 * k as f32).sin_cos();
+    let reach = (line.size / 13.0 * 1.4).max(1.0);
+    for k in 0..4 {
+        let (sin, cos) = (std::f32::consts::FRAC_PI_4 * (2 * k + 1) as f32).sin_cos();
         areas.push(area(line, buffer, [reach * cos, reach * sin], colour, strength * line.alpha));
     }
 }

@@ -1,0 +1,68 @@
+//! From a moment to what its picture consists of: origin, light, frames and words.
+
+use crate::Layout;
+use crate::camera::Camera;
+use crate::inset::inset;
+use crate::labels::{Window, Words, caption, view_words};
+use crate::paint::Stage;
+use crate::passes::frame::Frame;
+use crate::passes::ground::TILE;
+use crate::passes::overlay::Shapes;
+use crate::passes::shadow::{SUN, SunView, sun_view};
+use crate::passes::text::{Line, TextPass};
+use glam::DVec3;
+use vocabulary::Moment;
+
+/// A multiple of the ground's tile near the robots, so that single precision is enough around it.
+pub(crate) fn local_origin(moment: &Moment) -> DVec3 {
+    let places = moment.snapshot.robots.iter().map(|r| r.motion.pose);
+    let first = places.clone().find(|p| p.x.is_finite() && p.y.is_finite()).unwrap_or_default();
+    let snap = |x: f64| (x / TILE).round() * TILE;
+    DVec3::new(snap(first.x), snap(first.y), 0.0)
+}
+
+/// The sun's view of all robots.
+pub(crate) fn sun_over(moment: &Moment, origin: DVec3) -> SunView {
+    let places = || {
+        let poses = moment.snapshot.robots.iter().map(|r| r.motion.pose);
+        poses.filter(|p| p.x.is_finite() && p.y.is_finite()).map(|p| DVec3::new(p.x, p.y, 0.1))
+    };
+    let low = places().fold(DVec3::INFINITY, DVec3::min);
+    let high = places().fold(DVec3::NEG_INFINITY, DVec3::max);
+    if !low.is_finite() {
+        return sun_view(DVec3::ZERO, 1.0);
+    }
+    // Beyond 40 m a shadow is below a texel, wherever the robots are.
+    sun_view((low + high) * 0.5 - origin, (0.5 * low.distance(high) + 0.8).min(40.0))
+}
+
+pub(crate) fn frame(camera: &Camera, stage: &Stage<'_>, sun: &SunView, penumbra: f32) -> Frame {
+    let mut frame = Frame::new(camera, stage.origin, sun.shadow_from_local);
+    let [x, y, z] = SUN.as_vec3().to_array();
+    // A large formation is seen from farther away and would drown in it.
+    let haze = (6.0 * camera.eye.z).max(30.0) as f32;
+    frame.sun = [x, y, z, if stage.style.shadows { penumbra } else { 0.0 }];
+    frame.ground = [1.0 / haze, 0.0, f32::from(u8::from(stage.style.grid)), 0.0];
+    frame
+}
+
+/// Text and flat shapes of the whole picture.
+pub(crate) fn words(
+    text: &mut TextPass,
+    stage: &Stage<'_>,
+    layout: &Layout,
+    windows: &[Window<'_>],
+    height: u32,
+) -> (Vec<Line>, Shapes) {
+    let mut words = Words::new(text, stage.style.scale);
+    let sky = windows.first().map_or(0.0, |w| 0.5 * (1.0 - w.camera.horizon()) * f64::from(w.tile.height));
+    caption(&mut words, stage, height, sky as f32);
+    // In a quarter of a picture it would cover a whole view.
+    if let (true, [first] | [first, _]) = (stage.style.inset, windows) {
+        inset(&mut words, stage, first.tile);
+    }
+    for (view, window) in layout.views.iter().zip(windows) {
+        view_words(&mut words, stage, *window, view);
+    }
+    (words.lines, words.shapes)
+}
