@@ -358,6 +358,8 @@ impl Renderer {
                 passes.robot.draw_ghosts(&mut pass, &passes.models, &prepared.crowd);
             }
         }
+        // On GL the samples are resolved at the end of the pass within whatever scissor is set then.
+        pass.set_scissor_rect(0, 0, self.size.0, self.size.1);
     }
 
     fn encode_overlay(

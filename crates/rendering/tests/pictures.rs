@@ -87,8 +87,11 @@ fn the_sky_is_above_and_the_ground_below() {
 #[test]
 fn no_picture_is_black_or_clipped() {
     let play = Play::new(7, Path::named("eight"));
-    for view in [View::Snake, View::SnakeEye, View::Top, View::Orbit, View::Follow(3), plan()] {
-        let picture = draw(&play, view.clone(), 9.0, &Style::default());
+    let single = [View::Snake, View::SnakeEye, View::Top, View::Orbit, View::Follow(3), plan()];
+    let split = Layout { views: single[..3].to_vec() };
+    for view in single.into_iter().map(Layout::single).chain([split]) {
+        let mut renderer = Renderer::new(gpu(), &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+        let picture = renderer.draw(&play.trail(9.0), &play.at(9.0), &view, &Style::default()).unwrap();
         let pixels = picture.rgba.chunks_exact(4);
         let total = pixels.len();
         let dark = pixels.clone().filter(|p| p[..3].iter().all(|c| *c < 12)).count();
@@ -212,7 +215,7 @@ fn golden(name: &str, picture: &Picture) {
 #[test]
 fn golden_pictures() {
     let play = Play::new(3, Path::Eight);
-    let mut renderer = Renderer::new(gpu(), &play.cast, 240, 136, 4).unwrap();
+    let mut renderer = Renderer::new(gpu(), &play.cast, 216, 122, 4).unwrap();
     let style = Style { scale: 0.6, ..Style::default() };
     for (name, view) in [("snake", View::Snake), ("top", View::Top), ("orbit", View::Orbit)] {
         let picture = renderer.draw(&play.trail(5.0), &play.at(5.0), &Layout::single(view), &style).unwrap();
