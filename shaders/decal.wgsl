@@ -45,7 +45,9 @@ fn coverage(kind: vec2<f32>, shape: vec2<f32>, pixel: vec2<f32>) -> f32 {
 
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
-    let pixel = abs(dpdx(in.shape)) + abs(dpdy(in.shape));
+    let across = dpdx(in.shape);
+    let down = dpdy(in.shape);
+    let pixel = sqrt(across * across + down * down);
     var cover = in.colour.a;
     if in.kind.x > 3.5 {
         cover *= 1.0 - sunlight(in.local);

@@ -16,7 +16,7 @@ fn gpu() -> Gpu {
 
 fn frames(criterion: &mut Criterion) {
     let gpu = gpu();
-    let mut group = criterion.benchmark_group(format!("frame on {}", gpu.description()));
+    let mut group = criterion.benchmark_group(format!("frame ({})", gpu.info().backend));
     group.sample_size(20);
     let sizes = [(1280, 720), (640, 360), (1920, 1080)];
     let cases = [

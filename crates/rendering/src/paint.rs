@@ -100,7 +100,7 @@ impl Painter<'_> {
         let middle = 0.5 * (from + to);
         let across = along.perp().normalize();
         // Lines that run across the picture are foreshortened: at least two pixels, or they would crumble.
-        let half = (0.5 * width).max(1.35 * self.stage_scale / self.pixels_per_metre(middle, across));
+        let half = (0.5 * width).max(1.5 * self.stage_scale / self.pixels_per_metre(middle, across));
         self.patch(middle, along, across * half, Form::Solid, colour, alpha);
     }
 
@@ -227,9 +227,10 @@ impl Painter<'_> {
             };
             let goal = DVec2::from_array(goal);
             let colour = stage.colours[edge.follower];
-            let thin = (3.0 * self.camera.metres_per_pixel(goal.extend(0.0), self.height)).max(0.022);
+            let thin = (3.6 * self.camera.metres_per_pixel(goal.extend(0.0), self.height)).max(0.024);
             let hole = (1.0 - thin / RING).clamp(0.0, 1.0) as f32;
             let alpha = 0.35 + 0.6 * stage.detail;
+            self.patch(goal, DVec2::X * RING, DVec2::Y * RING, Form::Ring(0.0), colour, 0.16 * stage.detail);
             self.patch(goal, DVec2::X * RING, DVec2::Y * RING, Form::Ring(hole), colour, alpha);
             self.arrow(flat(&robot.motion.pose), goal, colour, 0.95 * stage.detail.max(0.3));
         }
