@@ -13,10 +13,12 @@
 //! Nothing on the right is of size 1/ε any more but the decay itself. Short stretches are solved by the power series
 //! of the solution (g_s varies in it), stiff ones by their polynomial solution plus an exponential that dies out.
 
+mod stretch;
+
 use crate::relative::Geometry;
-use nalgebra::{Matrix4, SMatrix, Vector2, Vector4};
-use std::sync::LazyLock;
-use vocabulary::{EdgeSample, Relative, TRACK_NODES, Track, nearest_turn, wrap};
+use nalgebra::{Matrix4, Vector4};
+use stretch::{DEGREE, Poly, Stretch, input_effect, mean, shifted};
+use vocabulary::{EdgeSample, Relative, TRACK_NODES, Track, wrap};
 
 /// Parameters of the observer; every pair is [distance, bearing].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -209,8 +211,6 @@ impl Observer {
     }
 }
 
-/// Polynomials of the stretch have this degree, one less than the nodes of a track.
-const DEGREE: usize = TRACK_NODES - 1;
 /// Above this many time constants (stiffness × duration) the exponential form takes over.
 const STIFF: f64 = 30.0;
 /// Time constants one power series may span: its largest term stays near 10, so 15 digits survive.
@@ -218,134 +218,10 @@ const SERIES_REACH: f64 = 4.0;
 /// At reach 4 the last of these is below 1e-19 of the first.
 const SERIES_TERMS: usize = 40;
 
-/// Coefficients of 1, τ, τ², … with τ from 0 to 1 over the stretch.
-type Poly = [f64; DEGREE + 1];
-
-/// What the observer meets over a stretch of time, as polynomials.
-struct Stretch {
-    duration: f64,
-    /// p, [m, rad].
-    measurement: [Poly; 2],
-    /// First column of g_s.
-    rate_column: [Poly; 2],
-    /// w.
-    forcing: [Poly; 2],
-}
-
-impl Stretch {
-    fn of_track(track: &Track, distance_min: f64) -> Self {
-        let h = track.duration;
-        let origin = track.samples[0].relative;
-        let mut values = [[0.0; TRACK_NODES]; 6];
-        for (k, sample) in track.samples.iter().enumerate() {
-            let geometry = Geometry::new(&sample.relative, distance_min);
-            let (column, input) = (geometry.rate_column(sample.own_speed), input_effect(&geometry, sample));
-            values[0][k] = sample.relative.distance - origin.distance;
-            values[1][k] = sample.relative.bearing - origin.bearing;
-            (values[2][k], values[3][k]) = (column.x, column.y);
-            (values[4][k], values[5][k]) = (input.x, input.y);
-        }
-        let [mut distance, mut bearing, column_d, column_b, input_d, input_b] = values.map(|v| fit(&v));
-        // Values were taken relative to the first to keep digits in the derivatives.
-        distance[0] += origin.distance;
-        bearing[0] += origin.bearing;
-        let (rate_column, measurement) = ([column_d, column_b], [distance, bearing]);
-        let forcing = [0, 1].map(|i| {
-            let input = if i == 0 { &input_d } else { &input_b };
-            residue(input, &rate_column[i], &distance, &measurement[i], h)
-        });
-        Self { duration: h, measurement, rate_column, forcing }
-    }
-
-    fn of_samples(before: &EdgeSample, after: &Relative, duration: f64, distance_min: f64) -> Self {
-        let geometry = Geometry::new(&before.relative, distance_min);
-        let (column, input) = (geometry.rate_column(before.own_speed), input_effect(&geometry, before));
-        let start = [before.relative.distance, before.relative.bearing];
-        let end = [after.distance, nearest_turn(after.bearing, start[1])];
-        let line = [0, 1].map(|i| polynomial(&[start[i], end[i] - start[i]]));
-        let slope = line[0][1] / duration;
-        Self {
-            duration,
-            measurement: line,
-            rate_column: [polynomial(&[column.x]), polynomial(&[column.y])],
-            forcing: [polynomial(&[input.x - column.x * slope]), polynomial(&[input.y - column.y * slope])],
-        }
-    }
-
-    /// Value and slope of the measurement at the end, [m, rad] and [m/s, rad/s].
-    fn measurement_at_end(&self) -> ([f64; 2], [f64; 2]) {
-        let value = self.measurement.map(|p| p.iter().sum());
-        let slope =
-            self.measurement.map(|p| (1..=DEGREE).map(|k| k as f64 * p[k]).sum::<f64>() / self.duration);
-        (value, slope)
-    }
-}
-
-/// −g ϖ − g0, [m/s², rad/s²]: what the follower's own input does to d²s/dt².
-fn input_effect(geometry: &Geometry, sample: &EdgeSample) -> Vector2<f64> {
-    let command = Vector2::new(sample.acceleration, sample.turn_rate);
-    -(geometry.input_matrix(sample.own_speed) * command + geometry.drift(sample.own_speed))
-}
-
-/// w = input − column · dℓ/dt − d²p/dt², as a polynomial cut at the common degree.
-fn residue(input: &Poly, column: &Poly, distance: &Poly, measurement: &Poly, h: f64) -> Poly {
-    let mut out = *input;
-    for k in 0..DEGREE {
-        let slope = (k + 1) as f64 * distance[k + 1] / h;
-        for j in 0..=DEGREE - k {
-            out[k + j] -= column[j] * slope;
-        }
-    }
-    for k in 0..=DEGREE - 2 {
-        out[k] -= ((k + 1) * (k + 2)) as f64 * measurement[k + 2] / (h * h);
-    }
-    out
-}
-
-fn polynomial(low: &[f64]) -> Poly {
-    let mut out = [0.0; DEGREE + 1];
-    out[..low.len()].copy_from_slice(low);
-    out
-}
-
-/// Mean over the stretch.
-fn mean(p: &Poly) -> f64 {
-    p.iter().enumerate().map(|(k, c)| c / (k + 1) as f64).sum()
-}
-
-/// p(from + share · τ) as a polynomial in τ: Horner's scheme, repeated.
-fn shifted(p: &Poly, from: f64, share: f64) -> Poly {
-    let mut out = *p;
-    for k in 0..DEGREE {
-        for j in (k..DEGREE).rev() {
-            out[j] += from * out[j + 1];
-        }
-    }
-    let mut scale = 1.0;
-    for c in &mut out {
-        *c *= scale;
-        scale *= share;
-    }
-    out
-}
-
-/// The polynomial through values at the nodes of a track.
-fn fit(values: &[f64; TRACK_NODES]) -> Poly {
-    let v = *COEFFICIENTS_FROM_NODES * SMatrix::<f64, TRACK_NODES, 1>::from(*values);
-    v.into()
-}
-
-static COEFFICIENTS_FROM_NODES: LazyLock<SMatrix<f64, TRACK_NODES, TRACK_NODES>> = LazyLock::new(|| {
-    let vandermonde = SMatrix::<f64, TRACK_NODES, TRACK_NODES>::from_fn(|row, column| {
-        Track::NODES[row].powi(column as i32)
-    });
-    vandermonde.try_inverse().unwrap_or_else(SMatrix::identity)
-});
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::Pose;
+    use vocabulary::{Pose, nearest_turn};
 
     /// A leader on a gentle curve and a follower that holds `acceleration` and `turn_rate`, at time t.
     fn sample(t: f64, acceleration: f64, turn_rate: f64) -> EdgeSample {

@@ -1,0 +1,6 @@
+//! The program as its users meet it: every subcommand, through its command line.
+
+mod bad_input;
+mod common;
+mod pictures;
+mod runs;

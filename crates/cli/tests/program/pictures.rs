@@ -1,0 +1,98 @@
+//! `echelon capture` and `echelon film`: the files they make.
+
+use crate::common::{echelon, files, scene, told};
+use serde_json::Value;
+use std::fs;
+
+#[test]
+fn capture_writes_one_picture_per_time_and_view_words_are_obeyed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let args = [
+        "capture",
+        &scene("circle-three"),
+        "--at",
+        "5,0",
+        "--size",
+        "320x180",
+        "-o",
+        "shots",
+        "--view",
+        "snake+top",
+    ];
+    let (code, out, err) = told(&echelon(folder.path(), &args));
+    assert_eq!(code, 0, "{err}");
+    let names: Vec<String> = files(&folder.path().join("shots"))
+        .iter()
+        .map(|p| p.file_name().expect("a name").to_string_lossy().into())
+        .collect();
+    assert_eq!(names, ["circle-three-000.000.png", "circle-three-005.000.png"]);
+    assert_eq!(out.lines().count(), 2);
+    let bytes = fs::read(folder.path().join("shots/circle-three-000.000.png")).expect("a picture");
+    assert_eq!(&bytes[..8], b"\x89PNG\r\n\x1a\n");
+    // Width and height stand at a fixed place in the first chunk.
+    assert_eq!((&bytes[16..20], &bytes[20..24]), (&320_u32.to_be_bytes()[..], &180_u32.to_be_bytes()[..]));
+}
+
+#[test]
+fn the_same_picture_twice_is_the_same_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut pictures = vec![];
+    for out in ["a", "b"] {
+        let args = ["capture", &scene("seven-v"), "--at", "3", "--size", "256x144", "-q", "-o", out];
+        assert_eq!(told(&echelon(folder.path(), &args)).0, 0);
+        pictures.push(fs::read(folder.path().join(out).join("seven-v-003.000.png")).expect("a picture"));
+    }
+    assert_eq!(pictures[0], pictures[1]);
+}
+
+#[test]
+fn a_film_has_one_frame_per_tick_of_simulation_time() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let short = ["--set", "time.duration=0.5", "--size", "160x90", "--json"];
+    for (out, fps, frames) in [("film.mp4", "20", 10), ("film.gif", "10", 5), ("frames", "6", 3)] {
+        let scene = scene("circle-three");
+        let args = [&["film", &*scene, "-o", out, "--fps", fps], &short[..]].concat();
+        let (code, text, err) = told(&echelon(folder.path(), &args));
+        assert_eq!(code, 0, "{out}: {err}");
+        let report: Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(report["frames"], frames);
+        assert!(folder.path().join(out).exists(), "{out} is missing");
+    }
+    assert_eq!(files(&folder.path().join("frames")).len(), 3);
+    assert_eq!(&fs::read(folder.path().join("film.mp4")).expect("a film")[4..8], b"ftyp");
+    assert_eq!(&fs::read(folder.path().join("film.gif")).expect("a film")[..6], b"GIF89a");
+}
+
+#[test]
+fn doctor_names_the_adapter_it_would_draw_with() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (code, text, err) = told(&echelon(folder.path(), &["doctor", "--json"]));
+    assert_eq!(code, 0, "{err}");
+    let report: Value = serde_json::from_str(&text).expect("JSON");
+    assert!(!report["adapters"].as_array().expect("a list").is_empty());
+    assert!(report["opened"].is_string());
+}
+
+/// The scene file and the pictures know the same views.
+#[test]
+fn every_view_a_scene_may_name_can_be_drawn() {
+    let schema = scene::schema();
+    let views = find_views(&schema).expect("the schema lists the views");
+    assert!(views.len() >= 5, "{views:?}");
+    let names = ["ann".to_owned()];
+    for view in views {
+        rendering::View::parse(&view, &names).unwrap_or_else(|e| panic!("{view}: {e}"));
+    }
+}
+
+/// The list of words that has `snake-eye` in it.
+fn find_views(value: &Value) -> Option<Vec<String>> {
+    match value {
+        Value::Array(items) if items.iter().any(|i| i == "snake-eye") => {
+            Some(items.iter().filter_map(|i| i.as_str().map(str::to_owned)).collect())
+        }
+        Value::Array(items) => items.iter().find_map(find_views),
+        Value::Object(map) => map.values().find_map(find_views),
+        _ => None,
+    }
+}

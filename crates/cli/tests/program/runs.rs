@@ -1,0 +1,171 @@
+//! `echelon run`, `check`, `schema`, `completions`: what they print, what they leave, how they end.
+
+use crate::common::{command, echelon, files, scene, told};
+use recording::{Manifest, Status, TableKind, read_table};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+fn manifest(folder: &Path) -> Manifest {
+    let text = fs::read_to_string(folder.join("manifest.json")).expect("a manifest");
+    serde_json::from_str(&text).expect("valid")
+}
+
+#[test]
+fn every_shipped_scene_meets_its_expectations() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let mut names: Vec<_> = fs::read_dir(scenes)
+        .expect("scenes")
+        .flatten()
+        .map(|e| e.path())
+        .filter(|p| p.extension().is_some_and(|e| e == "toml"))
+        .collect();
+    names.sort();
+    assert!(names.len() >= 7, "{names:?}");
+    for path in names {
+        let (code, out, err) =
+            told(&echelon(folder.path(), &["run", &path.display().to_string(), "--no-record"]));
+        assert_eq!(code, 0, "{}\n{out}\n{err}", path.display());
+        assert!(out.contains("expectations"), "{} expects nothing", path.display());
+    }
+}
+
+#[test]
+fn a_run_leaves_a_folder_that_runs_again_to_the_same_digest() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = folder.path().join("first");
+    let out = run.display().to_string();
+    let (code, _, err) =
+        told(&echelon(folder.path(), &["run", &scene("line-three"), "-o", &out, "--csv", "-q"]));
+    assert_eq!(code, 0, "{err}");
+    let names: Vec<String> =
+        files(&run).iter().map(|p| p.strip_prefix(&run).expect("inside").display().to_string()).collect();
+    let expected = [
+        "manifest.json",
+        "metrics.json",
+        "scene.toml",
+        "tables/edges.csv",
+        "tables/edges.parquet",
+        "tables/robots.csv",
+        "tables/robots.parquet",
+    ];
+    assert_eq!(names, expected);
+    let first = manifest(&run);
+    assert_eq!((first.status, first.samples), (Status::Complete, 1501));
+    // The resolved scene is a scene of its own, and gives the same run.
+    let resolved = run.join("scene.toml").display().to_string();
+    let (code, text, err) = told(&echelon(folder.path(), &["run", &resolved, "--json", "--no-record"]));
+    assert_eq!(code, 0, "{err}");
+    let report: Value = serde_json::from_str(&text).expect("JSON only on standard output");
+    assert_eq!(report["digest"].as_str(), first.digest.as_deref());
+    assert_eq!(report["met"], true);
+}
+
+#[test]
+fn a_failed_expectation_is_exit_code_1_and_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let args = ["run", &scene("line-three"), "--no-record", "--set", "expect.final_distance_error=0.001"];
+    let (code, out, _) = told(&echelon(folder.path(), &args));
+    assert_eq!(code, 1);
+    assert!(out.lines().any(|l| l.contains("FAILED") && l.contains("final_distance_error")), "{out}");
+    let (code, out, err) = told(&echelon(folder.path(), &[&args[..], &["--quiet"]].concat()));
+    assert_eq!((code, &*out), (1, ""));
+    assert!(err.contains("final_distance_error"), "{err}");
+}
+
+#[test]
+fn an_existing_run_is_kept_unless_forced_and_default_folders_count_up() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let args = ["run", &scene("line-three"), "-q", "--set", "time.duration=1", "--set", "expect={}"];
+    for _ in 0..2 {
+        assert_eq!(told(&echelon(folder.path(), &args)).0, 0);
+    }
+    assert!(folder.path().join("runs/line-three-002/manifest.json").exists());
+    let again = [&args[..], &["-o", "runs/line-three-001"]].concat();
+    let (code, _, err) = told(&echelon(folder.path(), &again));
+    assert_eq!(code, 2);
+    assert!(err.contains("already holds a run") && err.contains("--force"), "{err}");
+    assert_eq!(told(&echelon(folder.path(), &[&again[..], &["--force"]].concat())).0, 0);
+}
+
+/// A run long enough to be stopped, recording into `folder`/run; returns once its first rows are on disk.
+#[cfg(unix)]
+fn long_run(folder: &Path) -> std::process::Child {
+    let args = ["run", &scene("seven-v"), "-o", "run", "--set", "time.duration=20000"];
+    let child = command(folder, &args).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("started");
+    let parts = folder.join("run/tables/edges.parts/000001.parquet");
+    for _ in 0..600 {
+        if parts.exists() {
+            return child;
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    panic!("no rows appeared");
+}
+
+#[cfg(unix)]
+fn signal(child: &std::process::Child, name: &str) {
+    let sent = Command::new("kill").args([name, &child.id().to_string()]).status().expect("kill runs");
+    assert!(sent.success());
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_a_readable_run_marked_interrupted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let child = long_run(folder.path());
+    signal(&child, "-INT");
+    let (code, _, err) = told(&child.wait_with_output().expect("ended"));
+    assert_eq!(code, 130, "{err}");
+    assert!(err.contains("recorded in"), "{err}");
+    let run = folder.path().join("run");
+    let manifest = manifest(&run);
+    assert_eq!(manifest.status, Status::Interrupted);
+    let robots = read_table(&run, TableKind::Robots).expect("a table");
+    let recording::Column::Number(time) = &robots[0] else { panic!("no times") };
+    assert_eq!(time.len() as u64, 7 * manifest.samples);
+}
+
+#[cfg(unix)]
+#[test]
+fn kill_leaves_the_rows_written_so_far() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut child = long_run(folder.path());
+    signal(&child, "-KILL");
+    child.wait().expect("ended");
+    let run = folder.path().join("run");
+    assert_eq!(manifest(&run).status, Status::Running);
+    let edges = read_table(&run, TableKind::Edges).expect("parts");
+    let recording::Column::Number(time) = &edges[0] else { panic!("no times") };
+    assert!(time.len() >= 1500, "{} rows", time.len());
+}
+
+#[test]
+fn check_names_good_scenes_and_prints_resolved_ones() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (code, out, _) = told(&echelon(folder.path(), &["check", &scene("seven-v"), &scene("hundred")]));
+    assert_eq!(code, 0);
+    assert!(out.contains("7 robots, 6 edges") && out.contains("100 robots, 99 edges"), "{out}");
+    let (_, out, _) = told(&echelon(folder.path(), &["check", &scene("line-three"), "--resolved"]));
+    assert!(out.contains("epsilon = ") && out.contains("schema = 1"), "{out}");
+}
+
+#[test]
+fn schema_and_completions_print_what_they_say() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, out, _) = told(&echelon(folder.path(), &["schema"]));
+    let schema: Value = serde_json::from_str(&out).expect("JSON");
+    assert!(schema["properties"]["robots"].is_object());
+    let (code, out, _) = told(&echelon(folder.path(), &["completions", "bash"]));
+    assert!(code == 0 && out.contains("_echelon"), "{out}");
+}
+
+#[test]
+fn alone_it_prints_a_helpful_start() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (code, out, _) = told(&echelon(folder.path(), &[]));
+    assert!(code == 0 && out.contains("echelon film scenes/circle-three.toml"), "{out}");
+}

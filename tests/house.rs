@@ -1,0 +1,122 @@
+//! House rules that a compiler does not check.
+
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Normal dependencies of every workspace member on other packages.
+fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version=1", "--no-deps", "--offline"])
+        .current_dir(root())
+        .output()
+        .expect("cargo metadata");
+    let metadata: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let mut all = BTreeMap::new();
+    for package in metadata["packages"].as_array().expect("packages") {
+        let normal =
+            package["dependencies"].as_array().expect("a list").iter().filter(|d| d["kind"].is_null());
+        let names = normal.map(|d| d["name"].as_str().expect("a name").to_owned()).collect();
+        all.insert(package["name"].as_str().expect("a name").to_owned(), names);
+    }
+    all
+}
+
+/// Whom each crate may use among our own; everybody else may not.
+const ARROWS: [(&str, &[&str]); 9] = [
+    ("vocabulary", &[]),
+    ("scene", &["vocabulary"]),
+    ("formation", &["vocabulary"]),
+    ("world", &["vocabulary"]),
+    ("perception", &["vocabulary"]),
+    ("recording", &["vocabulary"]),
+    ("rendering", &["vocabulary"]),
+    ("simulation", &["vocabulary", "scene", "formation", "world", "perception", "recording"]),
+    ("cli", &["vocabulary", "scene", "simulation", "recording", "rendering"]),
+];
+
+/// Heavy crates and the only members that may name them.
+const LEAVES: [(&str, &[&str]); 4] =
+    [("wgpu", &["rendering"]), ("parquet", &["recording"]), ("clap", &["cli"]), ("openh264", &["rendering"])];
+
+#[test]
+fn arrows_point_one_way() {
+    let all = dependencies();
+    let ours: BTreeSet<&str> = ARROWS.iter().map(|(name, _)| *name).collect();
+    for (name, uses) in &all {
+        let Some((_, allowed)) = ARROWS.iter().find(|(member, _)| member == name) else {
+            assert_eq!(name, "tests", "`{name}` has no place in the list of arrows");
+            continue;
+        };
+        for used in uses.iter().filter(|u| ours.contains(u.as_str())) {
+            assert!(allowed.contains(&used.as_str()), "`{name}` may not use `{used}`");
+        }
+        for (heavy, members) in LEAVES {
+            assert!(
+                !uses.contains(heavy) || members.contains(&name.as_str()),
+                "`{name}` may not use `{heavy}`"
+            );
+        }
+    }
+    assert_eq!(all.len(), ARROWS.len() + 1);
+}
+
+/// Source files of the project, with their text.
+fn sources(endings: &[&str]) -> Vec<(PathBuf, String)> {
+    let mut open: Vec<PathBuf> =
+        ["crates", "tests", "shaders", "scripts", "scenes", ".ci"].iter().map(|d| root().join(d)).collect();
+    let mut found = vec![];
+    while let Some(folder) = open.pop() {
+        for path in fs::read_dir(&folder).expect("a folder").flatten().map(|e| e.path()) {
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|e| endings.iter().any(|ending| e == *ending)) {
+                found.push((path.clone(), fs::read_to_string(&path).expect("text")));
+            }
+        }
+    }
+    assert!(!found.is_empty());
+    found
+}
+
+#[test]
+fn every_file_says_why_it_exists() {
+    for (path, text) in sources(&["rs", "wgsl"]) {
+        let head = if path.extension().is_some_and(|e| e == "rs") { "//!" } else { "//" };
+        assert!(text.starts_with(head), "{} does not begin with `{head}`", path.display());
+    }
+}
+
+#[test]
+fn files_stay_short() {
+    for (path, text) in sources(&["rs", "wgsl"]) {
+        let lines = text.lines().count();
+        assert!(lines <= 450, "{} has {lines} lines: divide it", path.display());
+    }
+}
+
+#[test]
+fn nothing_is_silenced_or_left_undone() {
+    // Written in two parts so that this file does not find itself.
+    let words = [["#![", "allow"], ["#[", "allow("], ["todo", "!("], ["unimplemented", "!("], ["FIX", "ME"]];
+    for (path, text) in sources(&["rs"]) {
+        for word in words.map(|w| w.concat()) {
+            assert!(!text.contains(&word), "{} contains `{word}`", path.display());
+        }
+    }
+}
+
+#[test]
+fn the_clock_is_read_by_the_program_only() {
+    let words = [["Instant::", "now"], ["SystemTime::", "now"]].map(|w| w.concat());
+    for (path, text) in sources(&["rs"]) {
+        let allowed = path.components().any(|c| c.as_os_str() == "cli" || c.as_os_str() == "benches");
+        assert!(allowed || !words.iter().any(|w| text.contains(w)), "{} reads the clock", path.display());
+    }
+}
