@@ -32,7 +32,10 @@ impl H264 {
             .usage_type(UsageType::CameraVideoRealTime)
             .complexity(Complexity::Low)
             .intra_frame_period(IntraFramePeriod::from_num_frames((2.0 * format.rate).round() as u32))
+            // The scene is steady and the quality constant: analysing pictures first would only cost time.
             .scene_change_detect(false)
+            .background_detection(false)
+            .adaptive_quantization(false)
             .skip_frames(false)
             .num_threads(1)
             .vui(VuiConfig::bt601());
