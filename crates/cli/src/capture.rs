@@ -48,7 +48,9 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
     if args.scene.json {
         json(&json!({ "files": files, "times": times, "size": studio.size, "adapter": adapter }));
     } else if !args.scene.quiet {
-        files.iter().for_each(|file| say(file));
+        for file in &files {
+            say(file);
+        }
     }
     Ok(())
 }

@@ -25,14 +25,23 @@ fn main() -> ExitCode {
     let program = Program::parse();
     interrupt::watch();
     let outcome = match program.command {
-        None => welcome::welcome(),
+        None => {
+            welcome::welcome();
+            Ok(())
+        }
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Capture(args)) => capture::capture(&args),
         Some(Command::Film(args)) => film::film(&args),
         Some(Command::Check(args)) => check::check(&args),
-        Some(Command::Schema) => print::schema(),
+        Some(Command::Schema) => {
+            print::schema();
+            Ok(())
+        }
         Some(Command::Doctor(args)) => doctor::doctor(&args),
-        Some(Command::Completions { shell }) => print::completions(shell),
+        Some(Command::Completions { shell }) => {
+            print::completions(shell);
+            Ok(())
+        }
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -25,13 +25,11 @@ impl Playback {
     pub(crate) fn at(&mut self, time: f64) -> Moment {
         while self.after.snapshot.time < time {
             std::mem::swap(&mut self.before, &mut self.after);
-            match self.simulation.next_moment() {
-                Some(moment) => self.after.clone_from(moment),
-                None => {
-                    std::mem::swap(&mut self.before, &mut self.after);
-                    break;
-                }
-            }
+            let Some(moment) = self.simulation.next_moment() else {
+                std::mem::swap(&mut self.before, &mut self.after);
+                break;
+            };
+            self.after.clone_from(moment);
             self.trail.push(&self.after);
         }
         let (from, to) = (self.before.snapshot.time, self.after.snapshot.time);

@@ -1,6 +1,5 @@
 //! Printing, and the subcommands that only print.
 
-use crate::Outcome;
 use crate::args::Program;
 use clap::CommandFactory;
 use clap_complete::Shell;
@@ -21,14 +20,12 @@ pub(crate) fn json(value: &serde_json::Value) {
     say(&format!("{value:#}"));
 }
 
-pub(crate) fn schema() -> Outcome {
+pub(crate) fn schema() {
     json(&scene::schema());
-    Ok(())
 }
 
-pub(crate) fn completions(shell: Shell) -> Outcome {
+pub(crate) fn completions(shell: Shell) {
     let mut text = Vec::new();
     clap_complete::generate(shell, &mut Program::command(), "echelon", &mut text);
     let _ = std::io::stdout().write_all(&text);
-    Ok(())
 }

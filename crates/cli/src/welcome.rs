@@ -1,6 +1,5 @@
 //! `echelon` alone: a helpful start.
 
-use crate::Outcome;
 use crate::print::say;
 
 const TEXT: &str = "Echelon, a 3D laboratory for vehicle formations
@@ -17,7 +16,6 @@ Change something:
 
 More: `echelon --help`, `echelon film --help`, `echelon doctor` if drawing does not work.";
 
-pub(crate) fn welcome() -> Outcome {
+pub(crate) fn welcome() {
     say(TEXT);
-    Ok(())
 }

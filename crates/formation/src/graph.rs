@@ -56,7 +56,7 @@ pub enum GraphError {
 /// A checked formation graph: acyclic, every follower with one leader.
 #[derive(Debug, Clone)]
 pub struct Graph {
-    graph: DiGraph<String, usize>,
+    nodes: DiGraph<String, usize>,
     edges: Vec<Edge>,
     evaluation_order: Vec<usize>,
 }
@@ -80,17 +80,17 @@ impl Graph {
         let order =
             toposort(&graph, None).map_err(|cycle| GraphError::Cycle(ring(&graph, cycle.node_id())))?;
         let evaluation_order = order.into_iter().filter_map(|node| incoming(&graph, node)).collect();
-        Ok(Self { graph, edges, evaluation_order })
+        Ok(Self { nodes: graph, edges, evaluation_order })
     }
 
     /// Robots.
     pub fn robots(&self) -> usize {
-        self.graph.node_count()
+        self.nodes.node_count()
     }
 
     /// Name of a robot; empty for an index out of range.
     pub fn name(&self, robot: usize) -> &str {
-        self.graph.node_weight(NodeIndex::new(robot)).map_or("", String::as_str)
+        self.nodes.node_weight(NodeIndex::new(robot)).map_or("", String::as_str)
     }
 
     /// Edges in the order they were given.
@@ -105,18 +105,18 @@ impl Graph {
 
     /// The edge that leads to `robot`, if it follows.
     pub fn edge_to(&self, robot: usize) -> Option<usize> {
-        incoming(&self.graph, NodeIndex::new(robot))
+        incoming(&self.nodes, NodeIndex::new(robot))
     }
 
     /// Edges that lead to `robot`: 0 for a lead robot, 1 for a follower.
     pub fn in_degree(&self, robot: usize) -> usize {
-        self.graph.edges_directed(NodeIndex::new(robot), Direction::Incoming).count()
+        self.nodes.edges_directed(NodeIndex::new(robot), Direction::Incoming).count()
     }
 
     /// Robots joined to `robot` by an edge in either direction, in ascending order (section 2.1).
     pub fn neighbours(&self, robot: usize) -> Vec<usize> {
         let mut all: Vec<usize> =
-            self.graph.neighbors_undirected(NodeIndex::new(robot)).map(NodeIndex::index).collect();
+            self.nodes.neighbors_undirected(NodeIndex::new(robot)).map(NodeIndex::index).collect();
         all.sort_unstable();
         all
     }
@@ -132,7 +132,7 @@ impl Graph {
 
     /// Whether any two robots are joined by a weak path (section 2.1).
     pub fn weakly_connected(&self) -> bool {
-        connected_components(&self.graph) == 1
+        connected_components(&self.nodes) == 1
     }
 
     /// Edges between `robot` and its lead robot.

@@ -84,7 +84,8 @@ mod tests {
             if robot == 0 {
                 return Motion::default();
             }
-            let angle = 3.14 + elapsed;
+            // Half a turn less 2 ms: the bearing crosses the seam on the way.
+            let angle = std::f64::consts::PI - 0.002 + elapsed;
             let pose = Pose::new(2.0 * angle.cos(), 2.0 * angle.sin(), angle);
             let acceleration = if elapsed <= 0.004 { 5.0 } else { 0.0 };
             Motion { pose, speed: 2.0, acceleration, turn_rate: 1.0 }

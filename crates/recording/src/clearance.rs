@@ -15,7 +15,7 @@ pub struct Closest {
 ///
 /// Robots are swept in the order of x, so that a hundred cost little more than a few.
 pub fn closest(cast: &Cast, snapshot: &Snapshot, below: f64, order: &mut Vec<usize>) -> Option<Closest> {
-    let pose = |i: usize| snapshot.robots[i].motion.pose;
+    let pose = |i: usize| middle(snapshot.robots[i].motion.pose, &cast.members[i].body);
     let reach = |i: usize| radius(&cast.members[i].body);
     let largest = cast.members.iter().map(|m| radius(&m.body)).fold(0.0, f64::max);
     if order.len() != snapshot.robots.len() {
@@ -33,7 +33,7 @@ pub fn closest(cast: &Cast, snapshot: &Snapshot, below: f64, order: &mut Vec<usi
             if (q.x - p.x).hypot(q.y - p.y) - reach(i) - reach(j) > limit {
                 continue;
             }
-            let clearance = between(p, &cast.members[i].body, q, &cast.members[j].body);
+            let clearance = between_middles(p, &cast.members[i].body, q, &cast.members[j].body);
             if clearance < limit {
                 best = Some(Closest { clearance, robots: [i.min(j), i.max(j)] });
             }
@@ -47,8 +47,13 @@ fn radius(body: &Body) -> f64 {
     body.length.hypot(body.width) / 2.0
 }
 
-/// m between the outlines of two bodies; 0 where they touch or overlap.
+/// m between the outlines of two robots at poses `a` and `b`; 0 where they touch or overlap.
 pub fn between(a: Pose, body_a: &Body, b: Pose, body_b: &Body) -> f64 {
+    between_middles(middle(a, body_a), body_a, middle(b, body_b), body_b)
+}
+
+/// As [`between`], from the middles of the bodies.
+fn between_middles(a: Pose, body_a: &Body, b: Pose, body_b: &Body) -> f64 {
     let (outline_a, outline_b) = (outline(a, body_a), outline(b, body_b));
     if overlap(a, body_a, &outline_b) || overlap(b, body_b, &outline_a) || cross(&outline_a, &outline_b) {
         return 0.0;
@@ -58,6 +63,12 @@ pub fn between(a: Pose, body_a: &Body, b: Pose, body_b: &Body) -> f64 {
         sides.fold(f64::INFINITY, f64::min)
     };
     corners(&outline_a, &outline_b).min(corners(&outline_b, &outline_a))
+}
+
+/// The middle of the body, half a wheelbase ahead of the rear axle.
+fn middle(pose: Pose, body: &Body) -> Pose {
+    let [x, y] = pose.world_from_body(body.wheelbase / 2.0, 0.0);
+    Pose { x, y, ..pose }
 }
 
 /// Corners in order, m, world frame.
@@ -104,14 +115,23 @@ mod tests {
 
     #[test]
     fn known_distances() {
-        let at =
-            |x: f64, y: f64, heading: f64| between(Pose::default(), &BODY, Pose::new(x, y, heading), &BODY);
+        let at = |x: f64, y: f64, heading: f64| {
+            between_middles(Pose::default(), &BODY, Pose::new(x, y, heading), &BODY)
+        };
         assert!((at(1.0, 0.0, 0.0) - 0.6).abs() < 1e-12);
         assert!((at(0.0, 1.0, 0.0) - 0.8).abs() < 1e-12);
         assert!((at(1.0, 0.0, std::f64::consts::FRAC_PI_2) - 0.7).abs() < 1e-12);
         assert!((at(1.0, 1.0, 0.0) - 0.6_f64.hypot(0.8)).abs() < 1e-12);
         assert_eq!(at(0.3, 0.05, 0.1), 0.0);
         assert_eq!(at(0.0, 0.0, std::f64::consts::FRAC_PI_2), 0.0, "crossed without a corner inside");
+    }
+
+    /// Two robots face to face are closer than their rear axles tell.
+    #[test]
+    fn bodies_reach_ahead_of_their_rear_axles() {
+        let facing = between(Pose::default(), &BODY, Pose::new(1.0, 0.0, std::f64::consts::PI), &BODY);
+        let ahead = BODY.wheelbase / 2.0 + BODY.length / 2.0;
+        assert!((facing - (1.0 - 2.0 * ahead)).abs() < 1e-12, "{facing}");
     }
 
     proptest! {

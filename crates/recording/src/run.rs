@@ -167,7 +167,7 @@ mod tests {
         let time = f64::from(k) * 0.01;
         let mut robots = vec![RobotState::default(); 2];
         robots[1].motion.pose.x = time / 3.0;
-        let edge = EdgeState { error: [time, -time], limited: k % 2 == 0, ..EdgeState::default() };
+        let edge = EdgeState { error: [time, -time], limited: k.is_multiple_of(2), ..EdgeState::default() };
         Moment { snapshot: Snapshot { time, robots }, edges: vec![edge] }
     }
 

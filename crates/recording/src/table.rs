@@ -288,7 +288,9 @@ fn parquet_writer(path: &Path, schema: &Arc<Schema>) -> Result<ArrowWriter<File>
 
 fn open(path: &Path) -> Result<parquet::arrow::arrow_reader::ParquetRecordBatchReader, Error> {
     let file = File::open(path).map_err(Error::io("open", path))?;
-    ParquetRecordBatchReaderBuilder::try_new(file).and_then(|b| b.build()).map_err(Error::table(path))
+    ParquetRecordBatchReaderBuilder::try_new(file)
+        .and_then(ParquetRecordBatchReaderBuilder::build)
+        .map_err(Error::table(path))
 }
 
 /// Reads a table of the run in `folder` back, in the order of [`TableKind::columns`]; of a run that was killed, the
@@ -329,9 +331,9 @@ fn append(column: &mut Column, array: Option<&ArrayRef>) -> Option<()> {
         Column::Text(v) => {
             v.extend(any.downcast_ref::<StringArray>()?.iter().map(|t| t.unwrap_or_default().to_owned()));
         }
-        Column::Number(v) => v.extend(any.downcast_ref::<Float64Array>()?.values()),
+        Column::Number(v) => v.extend(any.downcast_ref::<Float64Array>()?.values().iter()),
         Column::Flag(v) => {
-            v.extend(any.downcast_ref::<BooleanArray>()?.iter().map(Option::unwrap_or_default))
+            v.extend(any.downcast_ref::<BooleanArray>()?.iter().map(Option::unwrap_or_default));
         }
     }
     Some(())

@@ -6,7 +6,7 @@ use formation::{Course, EdgeLaw, Formation, Graph, GraphError, SetPointCourse};
 use scene::{Channel, Follow, Path, Role, Scene, SpeedProfile};
 use std::sync::Arc;
 use thiserror::Error;
-use vocabulary::{Cast, Member, Pose, Profile};
+use vocabulary::{Cast, Light, Member, Pose, Profile};
 use world::Unicycle;
 
 /// Why a scene that reads well cannot run.
@@ -71,6 +71,11 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
             title: scene.title.clone(),
             caption: caption(scene),
             duration: scene.time.duration,
+            light: Light {
+                sun_elevation: scene.environment.sun_elevation,
+                sun_azimuth: scene.environment.sun_azimuth,
+                haze_from: scene.environment.haze_from,
+            },
             members: scene.robots.iter().map(member).collect(),
             edges,
         },

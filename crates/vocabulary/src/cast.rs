@@ -3,6 +3,9 @@
 use crate::Edge;
 
 /// Outer measures of a robot's body, for drawing and clearance.
+///
+/// A robot's pose is the ground point under the middle of its rear axle; the body reaches as far beyond the rear axle
+/// as it does beyond the front one, so its middle lies half a wheelbase ahead of the pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
     /// Bumper to bumper, m.
@@ -35,6 +38,24 @@ pub struct Member {
     pub body: Body,
 }
 
+/// Sun and air, for pictures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Light {
+    /// Height of the sun over the horizon, rad in (0, π/2].
+    pub sun_elevation: f64,
+    /// Direction to the sun, rad from the world's x axis, counter-clockwise.
+    pub sun_azimuth: f64,
+    /// Distance at which haze sets in, m; positive.
+    pub haze_from: f64,
+}
+
+impl Default for Light {
+    /// An afternoon sun from the left, and clear air.
+    fn default() -> Self {
+        Self { sun_elevation: 38_f64.to_radians(), sun_azimuth: 60_f64.to_radians(), haze_from: 30.0 }
+    }
+}
+
 /// Robots, edges and words of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cast {
@@ -44,6 +65,8 @@ pub struct Cast {
     pub caption: String,
     /// Length of the run, s.
     pub duration: f64,
+    /// Sun and air.
+    pub light: Light,
     /// In the order of the snapshots.
     pub members: Vec<Member>,
     /// In the order of the edge states.

@@ -17,7 +17,7 @@ mod profile;
 mod snapshot;
 
 pub use angle::{nearest_turn, wrap};
-pub use cast::{Body, Cast, Member};
+pub use cast::{Body, Cast, Light, Member};
 pub use command::Command;
 pub use edge::{Edge, Relative, SetPoint};
 pub use limits::Limits;

@@ -5,7 +5,7 @@ use crate::Pose;
 /// How a robot moves at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Motion {
-    /// Where it is.
+    /// Where the ground point under the middle of its rear axle is.
     pub pose: Pose,
     /// Forward speed, m/s.
     pub speed: f64,

@@ -61,7 +61,7 @@ impl Unicycles {
     pub fn place(&mut self, time: f64, motions: &[Motion]) {
         let elapsed = time - self.snapshot.time;
         for ((state, robot), motion) in self.snapshot.robots.iter_mut().zip(&self.robots).zip(motions) {
-            let mean_speed = (state.motion.speed + motion.speed) / 2.0;
+            let mean_speed = f64::midpoint(state.motion.speed, motion.speed);
             roll(state, &robot.body, mean_speed * elapsed, motion);
         }
         self.snapshot.time = time;

@@ -95,7 +95,8 @@ fn an_existing_run_is_kept_unless_forced_and_default_folders_count_up() {
 #[cfg(unix)]
 fn long_run(folder: &Path) -> std::process::Child {
     let args = ["run", &scene("seven-v"), "-o", "run", "--set", "time.duration=20000"];
-    let child = command(folder, &args).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("started");
+    let mut child =
+        command(folder, &args).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("started");
     let parts = folder.join("run/tables/edges.parts/000001.parquet");
     for _ in 0..600 {
         if parts.exists() {
@@ -103,7 +104,8 @@ fn long_run(folder: &Path) -> std::process::Child {
         }
         std::thread::sleep(Duration::from_millis(50));
     }
-    panic!("no rows appeared");
+    child.kill().expect("killed");
+    panic!("no rows appeared: {:?}", child.wait());
 }
 
 #[cfg(unix)]

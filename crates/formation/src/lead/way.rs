@@ -183,7 +183,7 @@ mod tests {
     fn travelled_time(way: &Way, travelled: f64) -> f64 {
         let (mut low, mut high) = (0.0, 100.0);
         for _ in 0..60 {
-            let middle = (low + high) / 2.0;
+            let middle = f64::midpoint(low, high);
             if way.pace.at(middle)[0] < travelled { low = middle } else { high = middle }
         }
         low
