@@ -12,6 +12,7 @@ mod picture;
 mod playback;
 mod print;
 mod progress;
+mod quiet;
 mod report;
 mod run;
 mod welcome;
@@ -23,6 +24,9 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let program = Program::parse();
+    if matches!(program.command, Some(Command::Capture(_) | Command::Film(_) | Command::Doctor(_))) {
+        quiet::restart_if_needed();
+    }
     interrupt::watch();
     let outcome = match program.command {
         None => {
