@@ -1,4 +1,4 @@
-//! A smooth curve through points that never overshoots them (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980).
+//! A smooth curve through points that never overshoots them (Fritsch and Carlson, SIAM Journal on Numerical Analysis 17, 1980).
 
 /// A monotone cubic Hermite interpolant; constant outside its points.
 #[derive(Debug, Clone, PartialEq)]
