@@ -24,6 +24,8 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
     let mut playback = Playback::new(loaded.simulation);
     let what = format!("Drawing {} pictures of {stem}", times.len());
     let progress = Progress::begin(&what, times.len() as u64, args.scene.quiet || times.len() < 4);
+    let decimals = decimals(&times);
+    let width = decimals + 4;
     let mut files = Vec::new();
     for (count, time) in times.iter().enumerate() {
         if interrupt::asked() {
@@ -31,7 +33,7 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
         }
         let moment = playback.at(*time);
         let picture = studio.renderer.draw(playback.trail(), &moment, &studio.layout, &studio.style)?;
-        let path = args.out.join(format!("{stem}-{time:07.3}.png"));
+        let path = args.out.join(format!("{stem}-{time:0width$.decimals$}.png"));
         let time_text = time.to_string();
         let scene_text = args.scene.scene.display().to_string();
         let metadata = [
@@ -53,6 +55,14 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
         }
     }
     Ok(())
+}
+
+/// Digits after the point that file names need: milliseconds, or as many as tell all times apart.
+fn decimals(times: &[f64]) -> usize {
+    let apart = |digits: usize| {
+        times.windows(2).all(|t| format!("{:.digits$}", t[0]) != format!("{:.digits$}", t[1]))
+    };
+    (3..17).find(|digits| apart(*digits)).unwrap_or(17)
 }
 
 /// The times asked for, checked and in order, each once; the end of the run if none.

@@ -198,10 +198,9 @@ impl TableWriter {
         let path = self.part(self.parts);
         let draft = path.with_extension("tmp");
         let batch = batch(self.kind, &mut self.columns).map_err(Error::table(&path))?;
-        let mut writer = parquet_writer(&draft, &batch.schema())?;
-        writer.write(&batch).map_err(Error::table(&path))?;
-        writer.close().map_err(Error::table(&path))?;
-        fs::rename(&draft, &path).map_err(Error::io("write", &path))?;
+        write_parquet(&draft, &path, &batch.schema(), |writer| {
+            writer.write(&batch).map_err(Error::table(&path))
+        })?;
         self.parts += 1;
         self.samples = 0;
         Ok(())
@@ -222,15 +221,16 @@ impl TableWriter {
         self.flush()?;
         let (path, draft) = (self.path("parquet"), self.path("parquet.tmp"));
         let schema = Arc::new(schema(self.kind));
-        let mut writer = parquet_writer(&draft, &schema)?;
-        for index in 0..self.parts {
-            for batch in open(&self.part(index))? {
-                let batch = batch.map_err(Error::table(&path))?;
-                writer.write(&batch).map_err(Error::table(&path))?;
+        let all_parts = |writer: &mut ArrowWriter<File>| {
+            for index in 0..self.parts {
+                for batch in open(&self.part(index))? {
+                    let batch = batch.map_err(Error::table(&path))?;
+                    writer.write(&batch).map_err(Error::table(&path))?;
+                }
             }
-        }
-        writer.close().map_err(Error::table(&path))?;
-        fs::rename(&draft, &path).map_err(Error::io("write", &path))?;
+            Ok(())
+        };
+        write_parquet(&draft, &path, &schema, all_parts)?;
         fs::remove_dir_all(self.parts_folder()).map_err(Error::io("remove", &self.parts_folder()))
     }
 }
@@ -277,6 +277,25 @@ fn schema(kind: TableKind) -> Schema {
 
 fn batch(kind: TableKind, columns: &mut [Column]) -> Result<RecordBatch, arrow_schema::ArrowError> {
     RecordBatch::try_new(Arc::new(schema(kind)), columns.iter_mut().map(Column::take).collect())
+}
+
+/// Writes a whole Parquet file as `draft` and renames it to `path`; where that fails, no draft is left.
+fn write_parquet(
+    draft: &Path,
+    path: &Path,
+    schema: &Arc<Schema>,
+    fill: impl FnOnce(&mut ArrowWriter<File>) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let write = || {
+        let mut writer = parquet_writer(draft, schema)?;
+        fill(&mut writer)?;
+        writer.close().map_err(Error::table(path))?;
+        fs::rename(draft, path).map_err(Error::io("write", path))
+    };
+    write().inspect_err(|_| {
+        // The draft may not exist; the first error is the one to tell.
+        let _ = fs::remove_file(draft);
+    })
 }
 
 fn parquet_writer(path: &Path, schema: &Arc<Schema>) -> Result<ArrowWriter<File>, Error> {

@@ -97,7 +97,7 @@ keys! {
 }
 
 keys! {
-    /// Speed and turn rate from a table, linear in between, held after its last row.
+    /// Speed and turn rate from a table, smooth in between without overshoot, held after its last row.
     struct TableKeys {
         /// CSV file with columns t (s), v (m/s), omega (rad/s), beside the scene; or give `rows`.
         file: Vec<[f64; 3]> = CsvForm, optional;

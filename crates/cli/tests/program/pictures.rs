@@ -34,6 +34,16 @@ fn capture_writes_one_picture_per_time_and_view_words_are_obeyed() {
 }
 
 #[test]
+fn times_a_hair_apart_are_files_apart() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let args =
+        ["capture", &scene("circle-three"), "--at", "1,1.00001,2", "--size", "64x36", "-q", "-o", "shots"];
+    let (code, _, err) = told(&echelon(folder.path(), &args));
+    assert_eq!(code, 0, "{err}");
+    assert_eq!(files(&folder.path().join("shots")).len(), 3);
+}
+
+#[test]
 fn the_same_picture_twice_is_the_same_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut pictures = vec![];

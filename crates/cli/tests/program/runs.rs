@@ -165,6 +165,20 @@ fn schema_and_completions_print_what_they_say() {
     assert!(code == 0 && out.contains("_echelon"), "{out}");
 }
 
+/// The scene of README.md is good, and shows what it expects.
+#[test]
+fn the_scene_of_the_readme_runs() {
+    let readme =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md")).expect("a text");
+    let (_, rest) = readme.split_once("```toml\n").expect("a scene");
+    let (text, _) = rest.split_once("```").expect("its end");
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("two.toml"), text).expect("written");
+    let (code, out, err) = told(&echelon(folder.path(), &["run", "two.toml", "--no-record"]));
+    assert_eq!(code, 0, "{out}{err}");
+    assert!(out.contains("met    final_distance_error"), "{out}");
+}
+
 #[test]
 fn alone_it_prints_a_helpful_start() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -54,7 +54,7 @@ pub enum Path {
         /// Speed along the curve.
         speed: SpeedProfile,
     },
-    /// Speed and turn rate from a table, linear in between, held after the last row.
+    /// Speed and turn rate from a table, smooth in between without overshoot, held after the last row.
     Table {
         /// Rows of [time in s, speed in m/s, turn rate in rad/s], time rising from 0.
         rows: Vec<[f64; 3]>,
