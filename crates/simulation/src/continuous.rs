@@ -3,7 +3,6 @@
 //! Classical Runge-Kutta with a step well below the observers' time constants; speeds stop at their bounds after
 //! every step. It costs about 1/ε evaluations per simulated second, which is the price of continuous time.
 
-use crate::step::motions;
 use formation::{Estimate, Formation, FormationState, LawKind};
 use vocabulary::{EdgeSample, Motion, Observation, Pose, Relative, wrap};
 use world::{Unicycles, World};
@@ -54,7 +53,7 @@ impl Continuous {
         period: f64,
     ) {
         let mut scratch = state.clone();
-        let robots = motions(&self.world).map(|m| [m.pose.x, m.pose.y, m.pose.heading, m.speed]).collect();
+        let robots = self.world.snapshot().robots.iter().map(|r| variables(&r.motion)).collect();
         let mut y = State { robots, estimates: state.estimates.clone() };
         let steps = (period / self.step).ceil();
         let h = period / steps;
@@ -118,6 +117,10 @@ impl Continuous {
 fn unicycle(heading: f64, speed: f64, acceleration: f64, turn_rate: f64) -> [f64; 4] {
     let (sin, cos) = heading.sin_cos();
     [speed * cos, speed * sin, turn_rate, acceleration]
+}
+
+fn variables(m: &Motion) -> [f64; 4] {
+    [m.pose.x, m.pose.y, m.pose.heading, m.speed]
 }
 
 fn motion(y: &[f64; 4]) -> Motion {

@@ -3,7 +3,7 @@
 use crate::continuous::Continuous;
 use formation::{Estimate, Formation, FormationState, LawKind};
 use std::f64::consts::PI;
-use vocabulary::{Cast, EdgeState, Moment, Motion, Observation, Relative, wrap};
+use vocabulary::{Cast, EdgeState, Moment, Observation, Relative, wrap};
 use world::{Unicycle, Unicycles, World};
 
 /// How law and observer act in time.
@@ -242,9 +242,4 @@ fn first_estimate(seen: &Relative, start: ObserverStart) -> Estimate {
 /// Whole periods in the run; a period that misses the end by rounding only counts.
 fn samples(duration: f64, period: f64) -> u64 {
     (duration / period * (1.0 + 1e-12) + 1e-9).floor() as u64
-}
-
-/// Motions of all robots in a snapshot.
-pub(crate) fn motions(world: &dyn World) -> impl Iterator<Item = Motion> + '_ {
-    world.snapshot().robots.iter().map(|r| r.motion)
 }
