@@ -9,8 +9,9 @@ fn vertex(@builtin(vertex_index) index: u32) -> Ray {
     return screen_corner(index, -1.0, clamp(frame.up.w, -1.0, 1.0));
 }
 
-// Sun and sky on flat ground, as one number and the tint that its shade of grey has when displayed.
-const GREY_LIGHT = 1.68;
+// Sky on flat ground and a sun straight above it, as numbers, and the tint that their grey has when displayed.
+const GREY_SKY = 0.41;
+const GREY_SUN = 2.063;
 const GREY_TINT = vec3<f32>(1.012, 1.0, 0.985);
 
 // Coverage of lines `width` m wide every `every` m, where a metre has `density` pixels along each axis.
@@ -38,5 +39,5 @@ fn fragment(ray: Ray) -> @location(0) vec4<f32> {
     let density = 1.0 / max(footprint, vec2<f32>(1e-5));
     let painted = max(lines(local, density, 1.0, 0.014) * 0.34, lines(local, density, 5.0, 0.030) * 0.66);
     let albedo = mix(grain, 0.66, painted * frame.ground.z);
-    return vec4<f32>(mix(tone_grey(albedo * GREY_LIGHT) * GREY_TINT, HAZE, haze(reach * frame.eye.w)), 1.0);
+    return vec4<f32>(mix(tone_grey(albedo * (GREY_SKY + GREY_SUN * frame.sun.z)) * GREY_TINT, HAZE, haze(reach * frame.eye.w)), 1.0);
 }

@@ -8,10 +8,10 @@ use crate::paint::Stage;
 use crate::passes::frame::Frame;
 use crate::passes::ground::TILE;
 use crate::passes::overlay::Shapes;
-use crate::passes::shadow::{SUN, SunView, sun_view};
+use crate::passes::shadow::{SunView, sun_view};
 use crate::passes::text::{Line, TextPass};
 use glam::DVec3;
-use vocabulary::Moment;
+use vocabulary::{Light, Moment};
 
 /// A multiple of the ground's tile near the robots, so that single precision is enough around it.
 pub(crate) fn local_origin(moment: &Moment) -> DVec3 {
@@ -21,8 +21,19 @@ pub(crate) fn local_origin(moment: &Moment) -> DVec3 {
     DVec3::new(snap(first.x), snap(first.y), 0.0)
 }
 
-/// The sun's view of all robots.
-pub(crate) fn sun_over(moment: &Moment, origin: DVec3) -> SunView {
+/// Lowest sun that is drawn, rad: below, shadows would leave their map.
+const LOWEST_SUN: f64 = 0.05;
+
+/// Direction to the sun.
+pub(crate) fn towards_sun(light: &Light) -> DVec3 {
+    let (sin, cos) = light.sun_elevation.clamp(LOWEST_SUN, std::f64::consts::FRAC_PI_2).sin_cos();
+    let (across, along) = light.sun_azimuth.sin_cos();
+    DVec3::new(along * cos, across * cos, sin)
+}
+
+/// The view that the sun of a stage has of all robots.
+pub(crate) fn sun_over(stage: &Stage<'_>) -> SunView {
+    let (moment, origin, sun) = (stage.moment, stage.origin, stage.sun);
     let places = || {
         let poses = moment.snapshot.robots.iter().map(|r| r.motion.pose);
         poses.filter(|p| p.x.is_finite() && p.y.is_finite()).map(|p| DVec3::new(p.x, p.y, 0.1))
@@ -30,17 +41,17 @@ pub(crate) fn sun_over(moment: &Moment, origin: DVec3) -> SunView {
     let low = places().fold(DVec3::INFINITY, DVec3::min);
     let high = places().fold(DVec3::NEG_INFINITY, DVec3::max);
     if !low.is_finite() {
-        return sun_view(DVec3::ZERO, 1.0);
+        return sun_view(sun, DVec3::ZERO, 1.0);
     }
     // Beyond 40 m a shadow is below a texel, wherever the robots are.
-    sun_view((low + high) * 0.5 - origin, (0.5 * low.distance(high) + 0.8).min(40.0))
+    sun_view(sun, (low + high) * 0.5 - origin, (0.5 * low.distance(high) + 0.8).min(40.0))
 }
 
 pub(crate) fn frame(camera: &Camera, stage: &Stage<'_>, sun: &SunView, penumbra: f32) -> Frame {
     let mut frame = Frame::new(camera, stage.origin, sun.shadow_from_local);
-    let [x, y, z] = SUN.as_vec3().to_array();
+    let [x, y, z] = stage.sun.as_vec3().to_array();
     // A large formation is seen from farther away and would drown in it.
-    let haze = (6.0 * camera.eye.z).max(30.0) as f32;
+    let haze = (stage.cast.light.haze_from.max(0.1) * (0.2 * camera.eye.z).max(1.0)) as f32;
     frame.sun = [x, y, z, if stage.style.shadows { penumbra } else { 0.0 }];
     frame.ground = [1.0 / haze, 0.0, f32::from(u8::from(stage.style.grid)), 0.0];
     frame

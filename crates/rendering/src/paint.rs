@@ -3,7 +3,6 @@
 use crate::camera::Camera;
 use crate::palette::{self, Rgb};
 use crate::passes::decal::{Corner, Form};
-use crate::passes::shadow::SUN;
 use crate::trail::{RIBBON, Trail, set_points};
 use crate::{Style, View};
 use glam::{DVec2, DVec3};
@@ -28,6 +27,8 @@ pub(crate) struct Stage<'a> {
     pub(crate) moment: &'a Moment,
     pub(crate) style: &'a Style,
     pub(crate) origin: DVec3,
+    /// Direction to the sun.
+    pub(crate) sun: DVec3,
     /// How clearly edges, labels, rings and ghosts show: 1 for small formations, 0 for large ones.
     pub(crate) detail: f32,
 }
@@ -154,15 +155,18 @@ impl Painter<'_> {
 
     /// Patches that surely hold the shadow of each robot: few pixels look at the shadow map.
     fn shadows(&mut self, stage: &Stage<'_>) {
-        let away = -DVec2::new(SUN.x, SUN.y) / SUN.z;
+        let away = -stage.sun.truncate() / stage.sun.z;
+        // What the sun gives, of all the light on flat ground: shadows under a low sun are faint.
+        let share = 2.063 * stage.sun.z / (2.063 * stage.sun.z + 0.41);
+        let alpha = (0.80 * share) as f32;
         for (robot, member) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members) {
             // As high as the camera on its mast, and as far around as the shell or the bonnet.
             let (top, around) = (0.34 + robot.attitude.height, 0.62 * member.body.length);
             let reach = away * (0.5 * top);
-            let along = reach + reach.normalize() * around;
+            let along = reach + reach.normalize_or(DVec2::X) * around;
             let [x, y] = robot.motion.pose.world_from_body(0.15 * member.body.length, 0.0);
-            let across = reach.perp().normalize() * around;
-            self.patch(DVec2::new(x, y) + reach, along, across, Form::Shadow, SHADE, 0.60);
+            let across = along.perp().normalize() * around;
+            self.patch(DVec2::new(x, y) + reach, along, across, Form::Shadow, SHADE, alpha);
         }
     }
 

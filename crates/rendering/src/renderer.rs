@@ -1,7 +1,7 @@
 //! Moments to pictures. The passes stand in `encode` in the order in which they run.
 
 use crate::camera::Camera;
-use crate::compose::{frame, local_origin, sun_over, words};
+use crate::compose::{frame, local_origin, sun_over, towards_sun, words};
 use crate::crowd::crowd;
 use crate::labels::{Window, detail};
 use crate::paint::{Stage, paint};
@@ -251,10 +251,11 @@ impl Renderer {
             moment,
             style,
             origin: local_origin(moment),
+            sun: towards_sun(&self.cast.light),
             detail: detail(self.cast.members.len()),
         };
         let crowd = crowd(&stage);
-        let sun = sun_over(moment, stage.origin);
+        let sun = sun_over(&stage);
         let frames: Vec<_> = cameras
             .iter()
             .map(|camera| frame(camera, &stage, &sun, self.passes.shadow.penumbra(&sun)))

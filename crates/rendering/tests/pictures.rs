@@ -222,3 +222,52 @@ fn golden_pictures() {
         golden(name, &picture);
     }
 }
+
+/// The middle of what the shadows darken, pixels.
+fn shadow_middle(play: &Play) -> [f64; 2] {
+    let lit = draw(play, plan(), 12.0, &Style::without(Style::ELEMENTS).unwrap());
+    let shaded = draw(play, plan(), 12.0, &Style::bare());
+    let (mut count, mut sum) = (0.0, [0.0; 2]);
+    for (x, y) in (0..SIZE.0).flat_map(|x| (0..SIZE.1).map(move |y| (x, y))) {
+        let [before, after] = [&lit, &shaded].map(|p| i32::from(p.rgb(x, y).unwrap()[1]));
+        if before - after > 20 {
+            count += 1.0;
+            sum = [sum[0] + f64::from(x), sum[1] + f64::from(y)];
+        }
+    }
+    assert!(count > 50.0, "{count}");
+    sum.map(|s| s / count)
+}
+
+#[test]
+fn shadows_fall_away_from_the_sun() {
+    let mut play = Play::new(1, Path::Straight);
+    play.cast.light.sun_elevation = 0.5;
+    // The picture has +x up and +y to the left.
+    play.cast.light.sun_azimuth = 0.0;
+    let [x, below] = shadow_middle(&play);
+    play.cast.light.sun_azimuth = std::f64::consts::PI;
+    let [_, above] = shadow_middle(&play);
+    assert!(below > above + 8.0, "{below} {above}");
+    play.cast.light.sun_azimuth = std::f64::consts::FRAC_PI_2;
+    let [right, _] = shadow_middle(&play);
+    assert!(right > x + 4.0, "{right} {x}");
+    // Straight above there is no direction to fall in, and still a picture.
+    play.cast.light.sun_elevation = std::f64::consts::FRAC_PI_2;
+    let _ = draw(&play, plan(), 12.0, &Style::bare());
+}
+
+#[test]
+fn haze_covers_distant_ground_and_spares_what_is_near() {
+    let mut play = Play::new(3, Path::Straight);
+    let picture = |play: &Play| draw(play, View::Snake, 12.0, &Style::bare());
+    let clear = picture(&play);
+    play.cast.light.haze_from = 8.0;
+    let hazy = picture(&play);
+    let row = |picture: &Picture, y: u32| {
+        (0..SIZE.0).map(|x| f64::from(picture.rgb(x, y).unwrap()[1])).sum::<f64>() / f64::from(SIZE.0)
+    };
+    let (far, near) = (SIZE.1 * 16 / 100, SIZE.1 - 8);
+    assert!(row(&hazy, far) > row(&clear, far) + 8.0, "{} {}", row(&hazy, far), row(&clear, far));
+    assert!((row(&hazy, near) - row(&clear, near)).abs() < 0.5);
+}

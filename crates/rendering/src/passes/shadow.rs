@@ -8,9 +8,6 @@ use wgpu::Device;
 
 pub(crate) const SHADER: &str = shader!("common/frame", "common/robot", "shadow");
 
-/// Direction to the sun: 38° high, from the left behind a robot that drives along x.
-pub(crate) const SUN: DVec3 = DVec3::new(-0.3716, 0.6953, 0.6157);
-
 /// Half the width of a soft edge, m.
 const PENUMBRA: f64 = 0.02;
 
@@ -82,17 +79,18 @@ impl ShadowPass {
     }
 }
 
-/// The sun's view of everything within `radius` of `centre` (relative to the local origin).
-pub(crate) fn sun_view(centre: DVec3, radius: f64) -> SunView {
+/// The view of a sun in direction `sun` of everything within `radius` of `centre` (relative to the local origin).
+pub(crate) fn sun_view(sun: DVec3, centre: DVec3, radius: f64) -> SunView {
     let half = radius.max(0.8);
-    let right = DVec3::Z.cross(SUN).normalize();
-    let up = SUN.cross(right);
+    // Any direction will do where the sun is straight above.
+    let right = DVec3::Z.cross(sun).normalize_or(DVec3::X);
+    let up = sun.cross(right);
     let depth = 2.0 * half + 2.0;
     let row = |axis: DVec3, scale: f64, shift: f64| (axis * scale).extend(shift - axis.dot(centre) * scale);
     let rows = DMat4::from_cols(
         row(right, 1.0 / half, 0.0),
         row(up, 1.0 / half, 0.0),
-        row(-SUN, 0.5 / depth, 0.5),
+        row(-sun, 0.5 / depth, 0.5),
         glam::DVec4::W,
     );
     SunView { shadow_from_local: rows.transpose().as_mat4(), half }

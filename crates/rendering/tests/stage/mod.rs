@@ -62,6 +62,7 @@ impl Play {
             duration: 30.0,
             members: (0..robots).map(member).collect(),
             edges,
+            ..Cast::default()
         };
         Self { cast, goals, path }
     }
