@@ -3,7 +3,7 @@
 use crate::View;
 use crate::steady::{Extent, Steady};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
-use vocabulary::Snapshot;
+use vocabulary::{Edge, Snapshot};
 
 /// A camera without roll: its horizon is level.
 #[derive(Debug, Clone, Copy)]
@@ -37,13 +37,13 @@ const SNAKE: Composition =
 
 impl Camera {
     /// The camera of `view` on a picture `aspect` times as wide as high.
-    pub(crate) fn of(view: &View, steady: &Steady, snapshot: &Snapshot, aspect: f64) -> Self {
+    pub(crate) fn of(view: &View, steady: &Steady, snapshot: &Snapshot, edges: &[Edge], aspect: f64) -> Self {
         match view {
             View::Snake => snake(steady, aspect),
             View::SnakeEye => snake_eye(steady, aspect),
             View::Top => top(steady, aspect),
             View::Orbit => orbit(steady, snapshot.time, aspect),
-            View::Follow(robot) => follow(steady, snapshot, *robot, aspect),
+            View::Follow(robot) => follow(steady, snapshot, edges, *robot, aspect),
             View::Fixed { eye, target, field_of_view } => {
                 Self::looking(DVec3::from_array(*eye), DVec3::from_array(*target), *field_of_view, aspect)
             }
@@ -196,13 +196,27 @@ fn orbit(steady: &Steady, time: f64, aspect: f64) -> Camera {
     Camera::looking(target + eye, target, (38.0_f64).to_radians(), aspect)
 }
 
-fn follow(steady: &Steady, snapshot: &Snapshot, robot: usize, aspect: f64) -> Camera {
-    let pose = snapshot.robots.get(robot).map(|r| r.motion.pose).unwrap_or_default();
+/// Behind one robot, turned a little to its leader and far enough back for that to be in the picture.
+fn follow(steady: &Steady, snapshot: &Snapshot, edges: &[Edge], robot: usize, aspect: f64) -> Camera {
+    let place = |k: usize| snapshot.robots.get(k).map(|r| r.motion.pose);
+    let pose = place(robot).unwrap_or_default();
     let heading = steady.heading(robot).unwrap_or(pose.heading);
-    let ahead = DVec3::new(heading.cos(), heading.sin(), 0.0);
-    let at = DVec3::new(pose.x, pose.y, 0.0);
-    let target = at + ahead * 0.6 + DVec3::Z * 0.12;
-    Camera::looking(at - ahead * 1.5 + DVec3::Z * 0.95, target, (42.0_f64).to_radians(), aspect)
+    let leader = edges.iter().find(|e| e.follower == robot).and_then(|e| place(e.leader));
+    let to_leader = leader.map_or(DVec2::ZERO, |l| DVec2::new(l.x - pose.x, l.y - pose.y));
+    // The sine keeps the turn steady where the leader is straight behind.
+    let bearing = to_leader.y.atan2(to_leader.x) - heading;
+    let turn = if leader.is_some() { 0.6 * bearing.sin() } else { 0.0 };
+    let forward = DVec2::from_angle(heading + turn);
+    let tangent = (25.0_f64).to_radians().tan();
+    let (ahead, aside) = (to_leader.dot(forward), to_leader.perp_dot(forward).abs() + 0.2);
+    // Not farther: the robot that is followed must stay large.
+    let back = (aside / (0.86 * tangent * aspect) - ahead).clamp(2.0, 4.5);
+    let rise = 0.5 * back;
+    // The robot stands in the lower third.
+    let pitch = (rise / back).atan() - (0.48 * tangent).atan();
+    let mut camera = Camera::pitched(heading + turn, pitch, tangent, aspect);
+    camera.eye = (DVec2::new(pose.x, pose.y) - forward * back).extend(rise);
+    camera
 }
 
 #[cfg(test)]
@@ -219,6 +233,24 @@ mod tests {
         assert!((f64::from(clip.x / clip.w) - seen.x).abs() < 1e-5);
         assert!((f64::from(clip.y / clip.w) - seen.y).abs() < 1e-5);
         assert!(clip.z > 0.0 && clip.z < clip.w);
+    }
+
+    #[test]
+    fn a_followed_robot_is_low_and_its_leader_in_the_picture() {
+        let edges = [Edge { leader: 0, follower: 1 }];
+        for degrees in [0.0, 45.0, 90.0, 120.0, -60.0, -120.0] {
+            let (sin, cos) = f64::to_radians(degrees).sin_cos();
+            let mut snapshot = Snapshot { time: 0.0, robots: vec![vocabulary::RobotState::default(); 2] };
+            snapshot.robots[0].motion.pose = vocabulary::Pose::new(2.0 * cos, 2.0 * sin, 0.3);
+            let mut steady = Steady::new(0);
+            steady.push(&vocabulary::Moment { snapshot: snapshot.clone(), edges: vec![] }, &[]);
+            let camera = follow(&steady, &snapshot, &edges, 1, 16.0 / 9.0);
+            let seen = |x, y| camera.project(DVec3::new(x, y, 0.0)).unwrap();
+            let own = seen(0.0, 0.0);
+            assert!(own.x.abs() < 1e-9 && (-0.7..-0.34).contains(&own.y), "{own}");
+            let leader = seen(2.0 * cos, 2.0 * sin);
+            assert!(leader.abs().max_element() < 0.95, "{degrees}: {leader}");
+        }
     }
 
     #[test]

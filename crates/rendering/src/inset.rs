@@ -1,4 +1,4 @@
-//! The chart in the corner: error of each edge over the whole run so far.
+//! The charts in the corner: distance and bearing error of each edge over the whole run so far.
 
 use crate::labels::{Ink, Words};
 use crate::paint::Stage;
@@ -6,8 +6,34 @@ use crate::view::Tile;
 use glam::Vec2;
 
 /// Size at scale 1, pixels.
-const SIZE: [f32; 2] = [320.0, 130.0];
+const SIZE: [f32; 2] = [320.0, 170.0];
 const MARGIN: f32 = 24.0;
+
+/// What one chart shows, by its index in an error.
+#[derive(Debug, Clone, Copy)]
+struct Quantity {
+    index: usize,
+    title: &'static str,
+    unit: &'static str,
+    /// Shown units in one of the error's.
+    factor: f32,
+    /// Smallest range, in shown units: below, noise would fill the chart.
+    least: f32,
+    /// Largest range, in shown units.
+    most: f32,
+}
+
+const QUANTITIES: [Quantity; 2] = [
+    Quantity { index: 0, title: "distance error", unit: " m", factor: 1.0, least: 0.02, most: f32::MAX },
+    Quantity {
+        index: 1,
+        title: "bearing error",
+        unit: "°",
+        factor: 180.0 / std::f32::consts::PI,
+        least: 1.0,
+        most: 180.0,
+    },
+];
 
 /// Where the panel is in a tile; nothing where it would fill the tile.
 fn place(words: &Words<'_>, tile: Tile) -> Option<[f32; 4]> {
@@ -18,43 +44,63 @@ fn place(words: &Words<'_>, tile: Tile) -> Option<[f32; 4]> {
     fits.then_some([tile.x as f32 + right - width, tile.y as f32 + bottom - height, width, height])
 }
 
-/// Maps time and error to pixels.
+/// Maps time and error, in shown units, to pixels.
 struct Axes {
     left: f32,
     right: f32,
+    top: f32,
     zero: f32,
-    metre: f32,
+    bottom: f32,
+    /// Pixels a unit.
+    unit: f32,
     duration: f32,
 }
 
 impl Axes {
     fn at(&self, time: f64, error: f32) -> Vec2 {
         let share = (time as f32 / self.duration).clamp(0.0, 1.0);
-        Vec2::new(self.left + share * (self.right - self.left), self.zero - error * self.metre)
+        let height = (self.zero - error * self.unit).clamp(self.top, self.bottom);
+        Vec2::new(self.left + share * (self.right - self.left), height)
     }
 }
 
-/// Draws panel, axes and curves.
+/// Draws the panel and both charts over one time axis.
 pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, tile: Tile) {
-    let entries = &stage.trail.errors.entries;
     let Some(panel) = place(words, tile).filter(|_| !stage.cast.edges.is_empty()) else { return };
-    let now = stage.moment.snapshot.time;
     words.reserve(panel);
     let radius = words.scaled(7.0);
-    words.shapes.panel(panel, radius, [0.98, 0.98, 0.97, 0.80]);
+    words.shapes.panel(panel, radius, [0.98, 0.98, 0.97, 0.86]);
     let [x, y, width, height] = panel;
-    let most = entries.iter().flat_map(|(_, e)| e.iter()).map(|e| e[0].abs()).filter(|e| e.is_finite());
-    let limit = ceiling(most.fold(0.02, f32::max));
-    let (top, bottom) = (y + words.scaled(26.0), y + height - words.scaled(20.0));
-    let axes = Axes {
-        left: x + words.scaled(48.0),
-        right: x + width - words.scaled(14.0),
-        zero: 0.5 * (top + bottom),
-        metre: 0.5 * (bottom - top) / limit,
-        duration: stage.cast.duration.max(now).max(1e-3) as f32,
-    };
-    frame(words, &axes, limit, [x, top, bottom]);
-    curves(words, stage, &axes, limit);
+    let duration = stage.cast.duration.max(stage.moment.snapshot.time).max(1e-3) as f32;
+    let (left, right) = (x + words.scaled(50.0), x + width - words.scaled(14.0));
+    for (quantity, row) in QUANTITIES.iter().zip([24.0, 95.0]) {
+        let limit = ceiling(largest(stage, quantity)).min(quantity.most);
+        let (top, high) = (y + words.scaled(row), words.scaled(50.0));
+        let axes = Axes {
+            left,
+            right,
+            top,
+            zero: top + 0.5 * high,
+            bottom: top + high,
+            unit: 0.5 * high / limit,
+            duration,
+        };
+        frame(words, &axes, quantity, limit);
+        curves(words, stage, &axes, quantity);
+    }
+    let under = y + height - words.scaled(12.0);
+    words.write("0".into(), [left, under], 10.0, false, Ink::ON_PANEL);
+    let text = format!("{} s", (duration * 10.0).round() / 10.0);
+    let width = words.width(&text, 10.0, false);
+    words.write(text, [right - width, under], 10.0, false, Ink::ON_PANEL);
+}
+
+/// The largest error so far, in shown units.
+fn largest(stage: &Stage<'_>, quantity: &Quantity) -> f32 {
+    let now = stage.moment.edges.iter().map(|e| e.error[quantity.index] as f32);
+    let past = stage.trail.errors.entries.iter().flat_map(|(_, e)| e).map(|e| e[quantity.index]);
+    let sizes = past.chain(now).map(|e| e.abs() * quantity.factor).filter(|e| e.is_finite());
+    sizes.fold(quantity.least, f32::max)
 }
 
 /// A round number not below `most`.
@@ -63,60 +109,58 @@ fn ceiling(most: f32) -> f32 {
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|n| n * power).find(|n| *n >= most * 0.999).unwrap_or(most)
 }
 
-fn frame(words: &mut Words<'_>, axes: &Axes, limit: f32, [x, top, bottom]: [f32; 3]) {
+fn frame(words: &mut Words<'_>, axes: &Axes, quantity: &Quantity, limit: f32) {
     let thin = words.scaled(1.0);
     let ink = |alpha: f32| [0.07, 0.09, 0.11, alpha];
-    for (height, alpha) in [(top, 0.15), (axes.zero, 0.55), (bottom, 0.15)] {
+    for (height, alpha) in [(axes.top, 0.15), (axes.zero, 0.55), (axes.bottom, 0.15)] {
         let height = height.round() + 0.5;
         words.shapes.line(Vec2::new(axes.left, height), Vec2::new(axes.right, height), thin, ink(alpha));
     }
-    let unit = if limit < 0.1 { "cm" } else { "m" };
-    words.write(
-        "distance error of each edge".into(),
-        [x + words.scaled(12.0), top - words.scaled(13.0)],
-        11.0,
-        true,
-        Ink::ON_PANEL,
-    );
-    let shown = if limit < 0.1 { limit * 100.0 } else { limit };
+    // Right of the numbers, which reach down to the next title.
+    let title = [axes.left, axes.top - words.scaled(11.0)];
+    words.write(quantity.title.into(), title, 11.0, true, Ink::ON_PANEL);
+    // Small distances read better in centimetres.
+    let (shown, unit) =
+        if quantity.index == 0 && limit < 0.1 { (limit * 100.0, " cm") } else { (limit, quantity.unit) };
+    let shown = (shown * 1e3).round() / 1e3;
     let rows = [
-        (format!("{shown} {unit}"), top),
+        (format!("{shown}{unit}"), axes.top),
         ("0".into(), axes.zero),
-        (format!("\u{2212}{shown} {unit}"), bottom),
+        (format!("\u{2212}{shown}{unit}"), axes.bottom),
     ];
     for (text, height) in rows {
         let width = words.width(&text, 10.0, false);
         words.write(text, [axes.left - width - words.scaled(5.0), height], 10.0, false, Ink::ON_PANEL);
     }
-    let under = bottom + words.scaled(11.0);
-    words.write("0".into(), [axes.left, under], 10.0, false, Ink::ON_PANEL);
-    let text = format!("{} s", (axes.duration * 10.0).round() / 10.0);
-    let width = words.width(&text, 10.0, false);
-    words.write(text, [axes.right - width, under], 10.0, false, Ink::ON_PANEL);
 }
 
-fn curves(words: &mut Words<'_>, stage: &Stage<'_>, axes: &Axes, limit: f32) {
+fn curves(words: &mut Words<'_>, stage: &Stage<'_>, axes: &Axes, quantity: &Quantity) {
     let now = stage.moment.snapshot.time;
     let wide = words.scaled(if stage.cast.edges.len() > 12 { 1.0 } else { 1.6 });
+    let pick = |error: f32| error * quantity.factor;
     for (index, edge) in stage.cast.edges.iter().enumerate() {
         let [r, g, b] = stage.colours[edge.follower];
         // A little darker than on the ground: the panel is bright.
         let colour = [r * 0.86, g * 0.86, b * 0.86, 0.95];
-        let last = stage.moment.edges.get(index).map(|e| (now, e.error[0] as f32));
-        let past = stage.trail.errors.entries.iter().filter_map(|(t, e)| e.get(index).map(|e| (*t, e[0])));
+        let last = stage.moment.edges.get(index).map(|e| (now, pick(e.error[quantity.index] as f32)));
+        let past = stage.trail.errors.entries.iter();
+        let past = past.filter_map(|(t, e)| e.get(index).map(|e| (*t, pick(e[quantity.index]))));
         let points = past.filter(|(t, _)| *t < now).chain(last).filter(|(_, e)| e.is_finite());
-        let mut before: Option<Vec2> = None;
+        let mut before: Option<(Vec2, f32)> = None;
         for (time, error) in points {
-            let at = axes.at(time, error.clamp(-limit, limit));
+            let at = axes.at(time, error);
             // Steps below a pixel would only cost time.
-            if before.is_none_or(|b| b.distance(at) > 0.9) {
-                if let Some(from) = before {
-                    words.shapes.line(from, at, wide, colour);
-                }
-                before = Some(at);
+            if before.is_some_and(|(b, _)| b.distance(at) <= 0.9) {
+                continue;
             }
+            // A bearing that goes through ±180° goes round, not through zero.
+            let round = quantity.unit == "°" && before.is_some_and(|(_, e)| (e - error).abs() > 180.0);
+            if let (Some((from, _)), false) = (before, round) {
+                words.shapes.line(from, at, wide, colour);
+            }
+            before = Some((at, error));
         }
-        if let Some(end) = before {
+        if let Some((end, _)) = before {
             let dot = words.scaled(2.5);
             words.shapes.panel([end.x - dot, end.y - dot, 2.0 * dot, 2.0 * dot], dot, colour);
         }

@@ -7,6 +7,7 @@ use crate::passes::overlay::Shapes;
 use crate::passes::text::{Line, TextPass, line_height};
 use crate::{View, view::Tile};
 use glam::{DVec2, DVec3, Vec2};
+use vocabulary::{Member, RobotState};
 
 /// Distance of words from the picture's edge at scale 1, pixels.
 const MARGIN: f32 = 24.0;
@@ -34,12 +35,15 @@ impl Window<'_> {
     /// Where a world point appears in pixels of the whole picture; `None` outside the tile.
     pub(crate) fn pixel(&self, point: DVec3) -> Option<Vec2> {
         let seen = self.camera.project(point)?;
-        let inside = seen.x.abs() < 1.0 && seen.y.abs() < 1.0;
-        inside.then(|| {
-            let x = f64::from(self.tile.x) + (seen.x + 1.0) * 0.5 * f64::from(self.tile.width);
-            let y = f64::from(self.tile.y) + (1.0 - seen.y) * 0.5 * f64::from(self.tile.height);
-            DVec2::new(x, y).as_vec2()
-        })
+        if seen.x.abs() < 1.0 && seen.y.abs() < 1.0 { self.anywhere(point) } else { None }
+    }
+
+    /// The same, also beside the tile; `None` behind the eye.
+    fn anywhere(&self, point: DVec3) -> Option<Vec2> {
+        let seen = self.camera.project(point)?;
+        let x = f64::from(self.tile.x) + (seen.x + 1.0) * 0.5 * f64::from(self.tile.width);
+        let y = f64::from(self.tile.y) + (1.0 - seen.y) * 0.5 * f64::from(self.tile.height);
+        Some(DVec2::new(x, y).as_vec2())
     }
 }
 
@@ -162,7 +166,7 @@ pub(crate) fn view_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Windo
         edges(words, stage, window);
     }
     if stage.style.grid {
-        coordinates(words, window);
+        coordinates(words, stage, window);
     }
 }
 
@@ -252,9 +256,35 @@ fn scale_bar(words: &mut Words<'_>, window: Window<'_>) {
     words.write(text, [right - 0.5 * (pixels + width), y - half], 13.0, false, Ink::LIGHT);
 }
 
+/// The rectangle of the picture that holds each robot, mast and shell included.
+fn robot_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Box4> {
+    let robots = stage.moment.snapshot.robots.iter().zip(&stage.cast.members);
+    let area = |(robot, member): (&RobotState, &Member)| {
+        let body = member.body;
+        let (middle, reach) = (0.5 * body.wheelbase, 0.5 * body.length + 0.05);
+        let side = 0.5 * body.width + 0.06;
+        let mut low = Vec2::INFINITY;
+        let mut high = Vec2::NEG_INFINITY;
+        for k in 0..8 {
+            let sign = |bit: usize| if k & bit == 0 { -1.0 } else { 1.0 };
+            let [x, y] = robot.motion.pose.world_from_body(middle + sign(1) * reach, sign(2) * side);
+            let up = robot.attitude.height + 0.17 + sign(4) * 0.17;
+            let at = window.anywhere(DVec3::new(x, y, up))?;
+            (low, high) = (low.min(at), high.max(at));
+        }
+        let size = high - low;
+        size.is_finite().then_some([low.x, low.y, size.x, size.y])
+    };
+    robots.filter_map(area).collect()
+}
+
 /// Coordinates where the strong lines of the ground cross.
-fn coordinates(words: &mut Words<'_>, window: Window<'_>) {
+fn coordinates(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
     let Some(centre) = ground_ahead(window.camera) else { return };
+    for area in robot_boxes(stage, window) {
+        // Words lie on the ground: none may stand in front of a robot.
+        words.reserve(area);
+    }
     let nearest = |x: f64| (x / 5.0).round() * 5.0;
     for i in -4_i32..=4 {
         for j in -4_i32..=4 {

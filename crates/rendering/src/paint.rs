@@ -45,13 +45,7 @@ struct Painter<'a> {
 
 /// All decals of one view on a tile `height` pixels high.
 pub(crate) fn paint(stage: &Stage<'_>, view: &View, camera: &Camera, height: f64) -> Vec<Corner> {
-    let mut painter = Painter {
-        corners: Vec::new(),
-        camera,
-        height,
-        stage_scale: stage.style.scale * (height / 720.0).clamp(0.6, 1.0),
-        origin: stage.origin,
-    };
+    let mut painter = Painter::new(stage, camera, height);
     let style = stage.style;
     // In a crowd the marks of all would cover the road, and cost more than the robots.
     if style.marks && stage.detail > 0.5 {
@@ -74,6 +68,27 @@ pub(crate) fn paint(stage: &Stage<'_>, view: &View, camera: &Camera, height: f64
     painter.contacts(stage);
     painter.dots(stage);
     painter.corners
+}
+
+/// What shows through the robots: rings and arrows of followers that are not where they should be.
+pub(crate) fn paint_over(stage: &Stage<'_>, camera: &Camera, height: f64) -> Vec<Corner> {
+    let mut painter = Painter::new(stage, camera, height);
+    if stage.style.set_points {
+        painter.errors(stage);
+    }
+    painter.corners
+}
+
+impl<'a> Painter<'a> {
+    fn new(stage: &Stage<'_>, camera: &'a Camera, height: f64) -> Self {
+        Self {
+            corners: Vec::new(),
+            camera,
+            height,
+            stage_scale: stage.style.scale * (height / 720.0).clamp(0.6, 1.0),
+            origin: stage.origin,
+        }
+    }
 }
 
 impl Painter<'_> {
@@ -226,31 +241,51 @@ impl Painter<'_> {
     fn set_points(&mut self, stage: &Stage<'_>) {
         let goals = set_points(stage.cast, stage.moment);
         for (edge, goal) in stage.cast.edges.iter().zip(goals) {
-            let (Some(goal), Some(robot)) = (goal, stage.moment.snapshot.robots.get(edge.follower)) else {
-                continue;
-            };
-            let goal = DVec2::from_array(goal);
+            let Some(goal) = goal.map(DVec2::from_array) else { continue };
             let colour = stage.colours[edge.follower];
-            let thin = (3.6 * self.camera.metres_per_pixel(goal.extend(0.0), self.height)).max(0.024);
-            let hole = (1.0 - thin / RING).clamp(0.0, 1.0) as f32;
-            let alpha = 0.35 + 0.6 * stage.detail;
             self.patch(goal, DVec2::X * RING, DVec2::Y * RING, Form::Ring(0.0), colour, 0.16 * stage.detail);
-            self.patch(goal, DVec2::X * RING, DVec2::Y * RING, Form::Ring(hole), colour, alpha);
-            self.arrow(flat(&robot.motion.pose), goal, colour, 0.95 * stage.detail.max(0.3));
+            self.ring(goal, colour, 0.35 + 0.6 * stage.detail);
         }
     }
 
-    fn arrow(&mut self, from: DVec2, to: DVec2, colour: Rgb, alpha: f32) {
-        let along = to - from;
-        let length = along.length();
-        if length < ARROW_ABOVE {
-            return;
+    fn errors(&mut self, stage: &Stage<'_>) {
+        let goals = set_points(stage.cast, stage.moment);
+        for (edge, goal) in stage.cast.edges.iter().zip(goals) {
+            let robot = stage.moment.snapshot.robots.get(edge.follower);
+            let (Some(goal), Some(robot)) = (goal.map(DVec2::from_array), robot) else { continue };
+            let from = flat(&robot.motion.pose);
+            // Comes and goes gently, so that nothing flickers around the threshold.
+            let strength = ((from.distance(goal) - ARROW_ABOVE) / 0.03).clamp(0.0, 1.0) as f32;
+            if strength > 0.0 {
+                let colour = stage.colours[edge.follower];
+                self.ring(goal, colour, 0.55 * strength * stage.detail);
+                let alpha = strength * stage.detail.max(0.3);
+                let pixel = self.stage_scale * self.camera.metres_per_pixel(goal.extend(0.0), self.height);
+                // A dark rim tells it from a shell of the same colour.
+                self.arrow(from, goal, 1.8 * pixel, palette::INK, 0.75 * alpha);
+                self.arrow(from, goal, 0.0, colour, alpha);
+            }
         }
-        let ahead = along / length;
-        let head = 0.14_f64.min(0.6 * length);
-        self.line(from, to - ahead * head, 0.03, colour, alpha);
+    }
+
+    fn ring(&mut self, middle: DVec2, colour: Rgb, alpha: f32) {
+        let thin = (3.6 * self.camera.metres_per_pixel(middle.extend(0.0), self.height)).max(0.024);
+        let hole = (1.0 - thin / RING).clamp(0.0, 1.0) as f32;
+        self.patch(middle, DVec2::X * RING, DVec2::Y * RING, Form::Ring(hole), colour, alpha);
+    }
+
+    /// An arrow, larger by `rim` m on all sides.
+    fn arrow(&mut self, from: DVec2, to: DVec2, rim: f64, colour: Rgb, alpha: f32) {
+        let along = to - from;
+        let ahead = along.normalize_or(DVec2::X);
+        let across = ahead.perp();
+        let head = 0.17_f64.min(0.6 * along.length());
         let foot = to - ahead * head;
-        let tip = [to, foot + ahead.perp() * (0.5 * head), foot - ahead.perp() * (0.5 * head)];
+        let half = 0.018 + rim;
+        let (start, end) = (from - ahead * rim, foot - ahead * rim);
+        self.patch(0.5 * (start + end), 0.5 * (end - start), across * half, Form::Solid, colour, alpha);
+        let wide = 0.5 * head + 1.6 * rim;
+        let tip = [to + ahead * (2.2 * rim), end + across * wide, end - across * wide];
         let corners = tip.map(|place| self.corner(place, Form::Solid, [0.0; 2], colour, alpha));
         self.corners.extend(corners);
     }

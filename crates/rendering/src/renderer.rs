@@ -4,10 +4,10 @@ use crate::camera::Camera;
 use crate::compose::{frame, local_origin, sun_over, towards_sun, words};
 use crate::crowd::crowd;
 use crate::labels::{Window, detail};
-use crate::paint::{Stage, paint};
+use crate::paint::{Stage, paint, paint_over};
 use crate::palette::{Rgb, robot_colours};
 use crate::passes::Canvas;
-use crate::passes::decal::DecalPass;
+use crate::passes::decal::{Corner, DecalPass};
 use crate::passes::frame::{Frame, FrameGroups};
 use crate::passes::ground::GroundPass;
 use crate::passes::overlay::{OverlayPass, Shapes};
@@ -75,7 +75,8 @@ impl Passes {
 struct Prepared {
     crowd: Crowd,
     tiles: Vec<Tile>,
-    decals: Vec<Range<u32>>,
+    /// Under the robots and over them.
+    decals: Vec<[Range<u32>; 2]>,
     /// Whether a view shows ghosts: near the ground they would veil what is behind them.
     ghosts: Vec<bool>,
     shapes: Shapes,
@@ -242,7 +243,9 @@ impl Renderer {
             .views
             .iter()
             .zip(&tiles)
-            .map(|(view, tile)| Camera::of(view, &trail.steady, &moment.snapshot, aspect(tile)))
+            .map(|(view, tile)| {
+                Camera::of(view, &trail.steady, &moment.snapshot, &self.cast.edges, aspect(tile))
+            })
             .collect();
         let stage = Stage {
             cast: &self.cast,
@@ -263,9 +266,13 @@ impl Renderer {
         let mut corners = Vec::new();
         let mut decals = Vec::new();
         for ((view, camera), tile) in layout.views.iter().zip(&cameras).zip(&tiles) {
-            let first = corners.len() as u32;
-            corners.extend(paint(&stage, view, camera, f64::from(tile.height)));
-            decals.push(first..corners.len() as u32);
+            let mut add = |more: Vec<Corner>| {
+                let first = corners.len() as u32;
+                corners.extend(more);
+                first..corners.len() as u32
+            };
+            let height = f64::from(tile.height);
+            decals.push([add(paint(&stage, view, camera, height)), add(paint_over(&stage, camera, height))]);
         }
         let windows: Vec<_> =
             cameras.iter().zip(&tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
@@ -290,7 +297,7 @@ impl Renderer {
         &mut self,
         frames: &[Frame],
         crowd: &Crowd,
-        corners: &[crate::passes::decal::Corner],
+        corners: &[Corner],
         shapes: &Shapes,
         lines: &[Line],
     ) -> Result<(), Error> {
@@ -345,7 +352,7 @@ impl Renderer {
             }),
             ..Default::default()
         });
-        for (index, (tile, decals)) in prepared.tiles.iter().zip(&prepared.decals).enumerate() {
+        for (index, (tile, [under, over])) in prepared.tiles.iter().zip(&prepared.decals).enumerate() {
             let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
             pass.set_viewport(x, y, width, height, 0.0, 1.0);
             pass.set_scissor_rect(tile.x, tile.y, tile.width, tile.height);
@@ -353,11 +360,12 @@ impl Renderer {
             pass.set_bind_group(1, &passes.groups.light, &[]);
             passes.sky.draw(&mut pass);
             passes.ground.draw(&mut pass);
-            passes.decal.draw(&mut pass, decals.clone());
+            passes.decal.draw(&mut pass, under.clone());
             passes.robot.draw_solid(&mut pass, &passes.models, &prepared.crowd);
             if prepared.ghosts[index] {
                 passes.robot.draw_ghosts(&mut pass, &passes.models, &prepared.crowd);
             }
+            passes.decal.draw(&mut pass, over.clone());
         }
         // On GL the samples are resolved at the end of the pass within whatever scissor is set then.
         pass.set_scissor_rect(0, 0, self.size.0, self.size.1);

@@ -23,7 +23,21 @@ pub enum BuildError {
         /// What is wrong with its points.
         source: WayError,
     },
+    /// An observer too fast for continuous time.
+    #[error(
+        "the observer of `{robot}` has ε = {epsilon} s: mode \"continuous\" takes steps of an eighth of it and would \
+         not come to an end; use ε of at least {EPSILON_MIN} s, or mode \"sampled\", which is exact at any ε"
+    )]
+    Stiff {
+        /// The follower.
+        robot: String,
+        /// Its smallest ε, s.
+        epsilon: f64,
+    },
 }
+
+/// Smallest ε that continuous time takes, s: three robots then run at about a third of real time.
+const EPSILON_MIN: f64 = 1e-5;
 
 /// Puts the run of `scene` together.
 ///
@@ -35,6 +49,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let pairs: Vec<(&str, &str)> = followers.iter().map(|(name, follow)| (&*follow.leader, *name)).collect();
     let graph = Graph::new(&names, &pairs)?;
     graph.require_connected()?;
+    check_stiffness(scene, &followers)?;
 
     let mut leads: Vec<(usize, Arc<dyn Profile>)> = Vec::new();
     let mut robots = Vec::with_capacity(names.len());
@@ -90,6 +105,19 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
         period: scene.time.period,
         duration: scene.time.duration,
     })
+}
+
+fn check_stiffness(scene: &Scene, followers: &[(&str, &Follow)]) -> Result<(), BuildError> {
+    if scene.time.mode != scene::Mode::Continuous {
+        return Ok(());
+    }
+    for (name, follow) in followers.iter().filter(|(_, f)| f.law.kind == scene::LawKind::OutputFeedback) {
+        let [a, b] = follow.observer.epsilon;
+        if a.min(b) < EPSILON_MIN {
+            return Err(BuildError::Stiff { robot: (*name).to_owned(), epsilon: a.min(b) });
+        }
+    }
+    Ok(())
 }
 
 fn follows(robot: &scene::Robot) -> Option<(&str, &Follow)> {

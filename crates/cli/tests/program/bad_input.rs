@@ -103,6 +103,12 @@ fn names_that_do_not_fit() {
 }
 
 #[test]
+fn an_observer_too_fast_for_continuous_time_is_refused() {
+    let text = with("period = 0.01", "period = 0.01\nmode = \"continuous\"\n[observer]\nepsilon = 1e-9");
+    refused(&text, &["bob", "0.00001 s", "sampled"]);
+}
+
+#[test]
 fn several_mistakes_are_told_at_once() {
     let text = with("duration = 1.0", "durration = 1.0\nduration = -3");
     refused(&text, &["durration", "bad.toml:5:"]);

@@ -3,8 +3,9 @@
 use super::{Format, Sink};
 use crate::Error;
 use crate::partial::Partial;
+use std::ffi::{OsStr, OsString};
 use std::io::{ErrorKind, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::thread::JoinHandle;
 use vocabulary::Picture;
@@ -19,17 +20,12 @@ pub(super) struct Ffmpeg {
 
 impl Ffmpeg {
     pub(super) fn create(path: &Path, format: Format) -> Result<Self, Error> {
+        let program = find(std::env::var_os("PATH").as_deref())?;
         let file = Partial::new(path);
         // ffmpeg would report an unwritable folder only after the first picture.
         std::fs::File::create(&file.path).map_err(|e| Error::write(path, e))?;
-        let size = format!("{}x{}", format.width, format.height);
-        let rate = format.rate.to_string();
-        let input = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s", &size, "-r", &rate, "-i", "-"];
-        let mut child = Command::new("ffmpeg")
-            .args(["-y", "-loglevel", "error"])
-            .args(input)
-            .args(["-an", "-pix_fmt", "yuv420p"])
-            .arg(&file.path)
+        let mut child = Command::new(program)
+            .args(arguments(format, &file.path))
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
@@ -76,5 +72,50 @@ impl Drop for Ffmpeg {
         // After `finish` both do nothing; before, they end an abandoned film.
         let _ = self.child.kill();
         let _ = self.child.wait();
+    }
+}
+
+/// The program in one of the folders of a search path.
+fn find(search: Option<&OsStr>) -> Result<PathBuf, Error> {
+    let name = format!("ffmpeg{}", std::env::consts::EXE_SUFFIX);
+    let folders = search.into_iter().flat_map(std::env::split_paths).filter(|f| !f.as_os_str().is_empty());
+    folders.map(|folder| folder.join(&name)).find(|file| file.is_file()).ok_or(Error::NoFfmpeg)
+}
+
+/// Raw pictures on standard input to a film in `file`.
+fn arguments(format: Format, file: &Path) -> Vec<OsString> {
+    let size = format!("{}x{}", format.width, format.height);
+    let rate = format.rate.to_string();
+    let words = ["-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", &size, "-r", &rate];
+    let output = ["-i", "-", "-an", "-pix_fmt", "yuv420p"];
+    words.into_iter().chain(output).map(OsString::from).chain([file.as_os_str().to_owned()]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_found_where_the_search_path_has_it() {
+        let (empty, full) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let program = full.path().join(format!("ffmpeg{}", std::env::consts::EXE_SUFFIX));
+        std::fs::write(&program, "").unwrap();
+        // A folder of that name is no program.
+        std::fs::create_dir(empty.path().join(format!("ffmpeg{}", std::env::consts::EXE_SUFFIX))).unwrap();
+        let both = std::env::join_paths([empty.path(), full.path()]).unwrap();
+        assert_eq!(find(Some(&both)).ok(), Some(program));
+        for search in [None, Some(OsStr::new("")), Some(empty.path().as_os_str())] {
+            let error = find(search).unwrap_err();
+            assert!(matches!(error, Error::NoFfmpeg) && error.to_string().contains("install"), "{error}");
+        }
+    }
+
+    #[test]
+    fn it_is_told_size_rate_and_file() {
+        let words = arguments(Format { width: 640, height: 360, rate: 29.97 }, Path::new("a film.webm"));
+        let after = |name: &str| words.iter().skip_while(|w| *w != name).nth(1).and_then(|w| w.to_str());
+        assert_eq!([after("-s"), after("-r"), after("-i")], [Some("640x360"), Some("29.97"), Some("-")]);
+        // One word, spaces and all, and the last.
+        assert_eq!(words.last().and_then(|w| w.to_str()), Some("a film.webm"));
     }
 }
