@@ -50,7 +50,10 @@ impl Estimate {
 
     fn or_restart_at(self, relative: &Relative) -> Self {
         let finite = self.output.iter().chain(&self.rates).all(|x| x.is_finite());
-        if finite { self } else { Self::at(relative) }
+        // Even a measurement that is no number leaves an estimate that is one.
+        let number = |x: f64| if x.is_finite() { x } else { 0.0 };
+        let restart = Self { output: [number(relative.distance), number(relative.bearing)], rates: [0.0; 2] };
+        if finite { self } else { restart }
     }
 }
 
@@ -221,6 +224,7 @@ const SERIES_TERMS: usize = 40;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
     use vocabulary::{Pose, nearest_turn};
 
     /// A leader on a gentle curve and a follower that holds `acceleration` and `turn_rate`, at time t.
@@ -354,6 +358,33 @@ mod tests {
         // 0.083 rad in 10 ms is 8.3 rad/s; the long way round would be hundreds.
         assert!(estimate.rates[1].abs() < 20.0, "{estimate:?}");
         assert!(wrap(estimate.output[1] - after.bearing).abs() < 0.2);
+    }
+
+    fn any_f64() -> impl Strategy<Value = f64> {
+        let odd = [0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN_POSITIVE];
+        prop_oneof![3 => -1e3..1e3, 2 => proptest::sample::select(odd.to_vec())]
+    }
+
+    proptest! {
+        /// No input may produce NaN.
+        #[test]
+        fn estimates_are_finite_for_any_input(
+            n in proptest::collection::vec(any_f64(), 12), epsilon in prop_oneof![Just(1e-9), Just(1e-3), Just(0.1), Just(50.0)],
+        ) {
+            let relative = |k: usize| Relative { distance: n[k], bearing: n[k + 1], view_angle: n[k + 2] };
+            let sample = |k: usize| EdgeSample {
+                relative: relative(k),
+                own_speed: n[k + 3],
+                acceleration: n[k + 4],
+                turn_rate: n[k + 5],
+            };
+            let track = Track { duration: 0.01, samples: [0, 1, 2, 3, 4, 5].map(|k| sample(k % 4)) };
+            let start = Estimate { output: [n[10], n[11]], rates: [n[9], n[8]] };
+            let observer = observer(epsilon);
+            for estimate in [observer.follow(&start, &track), observer.follow_samples(&start, &sample(0), &relative(6), 0.01)] {
+                prop_assert!(estimate.output.iter().chain(&estimate.rates).all(|x| x.is_finite()), "{estimate:?}");
+            }
+        }
     }
 
     #[test]
