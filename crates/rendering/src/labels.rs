@@ -316,3 +316,40 @@ fn ground_ahead(camera: &Camera) -> Option<DVec3> {
 pub(crate) fn detail(robots: usize) -> f32 {
     ((40.0 - robots as f32) / 28.0).clamp(0.0, 1.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Style, Trail};
+    use vocabulary::{Body, Cast, Moment, Pose, Snapshot};
+
+    #[test]
+    fn a_robots_box_holds_all_of_it() {
+        let member = Member { name: "a".into(), leads: true, body: Body::default() };
+        let cast = Cast { members: vec![member], ..Cast::default() };
+        let mut robot = RobotState::default();
+        robot.motion.pose = Pose::new(1.0, 2.0, 0.0);
+        let moment = Moment { snapshot: Snapshot { time: 0.0, robots: vec![robot] }, edges: vec![] };
+        let (trail, style) = (Trail::new(&cast), Style::default());
+        let stage = Stage {
+            cast: &cast,
+            colours: &[palette::LEAD],
+            trail: &trail,
+            moment: &moment,
+            style: &style,
+            origin: DVec3::ZERO,
+            sun: DVec3::Z,
+            detail: 1.0,
+        };
+        let camera = Camera::looking(DVec3::new(-2.0, 2.0, 1.5), DVec3::new(1.0, 2.0, 0.0), 0.7, 1.0);
+        let window = Window { camera: &camera, tile: Tile { x: 100, y: 0, width: 400, height: 400 } };
+        let boxes = robot_boxes(&stage, window);
+        assert_eq!(boxes.len(), 1);
+        let [left, top, width, height] = boxes[0];
+        assert!(width > 20.0 && width < 150.0 && height > 20.0 && height < 150.0, "{:?}", boxes[0]);
+        for (forward, side, up) in [(0.33, 0.12, 0.0), (-0.07, -0.12, 0.1), (0.13, 0.0, 0.33)] {
+            let at = window.anywhere(DVec3::new(1.0 + forward, 2.0 + side, up)).unwrap();
+            assert!(at.x > left && at.x < left + width && at.y > top && at.y < top + height, "{at}");
+        }
+    }
+}
