@@ -262,7 +262,7 @@ impl Painter<'_> {
                 let alpha = strength * stage.detail.max(0.3);
                 let pixel = self.stage_scale * self.camera.metres_per_pixel(goal.extend(0.0), self.height);
                 // A dark rim tells it from a shell of the same colour.
-                self.arrow(from, goal, 1.8 * pixel, palette::INK, 0.75 * alpha);
+                self.arrow(from, goal, 1.4 * pixel, palette::INK, 0.75 * alpha);
                 self.arrow(from, goal, 0.0, colour, alpha);
             }
         }
@@ -281,7 +281,9 @@ impl Painter<'_> {
         let across = ahead.perp();
         let head = 0.17_f64.min(0.6 * along.length());
         let foot = to - ahead * head;
-        let half = 0.018 + rim;
+        // From afar the rim would leave nothing of the colour.
+        let pixel = self.stage_scale * self.camera.metres_per_pixel(to.extend(0.0), self.height);
+        let half = 0.018_f64.max(1.7 * pixel) + rim;
         let (start, end) = (from - ahead * rim, foot - ahead * rim);
         self.patch(0.5 * (start + end), 0.5 * (end - start), across * half, Form::Solid, colour, alpha);
         let wide = 0.5 * head + 1.6 * rim;
