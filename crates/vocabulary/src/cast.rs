@@ -50,9 +50,9 @@ pub struct Light {
 }
 
 impl Default for Light {
-    /// An afternoon sun from the left, and clear air.
+    /// An afternoon sun over the left shoulder of a robot that heads along x, and clear air.
     fn default() -> Self {
-        Self { sun_elevation: 38_f64.to_radians(), sun_azimuth: 60_f64.to_radians(), haze_from: 30.0 }
+        Self { sun_elevation: 38_f64.to_radians(), sun_azimuth: 118_f64.to_radians(), haze_from: 30.0 }
     }
 }
 

@@ -5,17 +5,18 @@ use crate::text::{
 };
 use serde_json::{Value as Json, json};
 use std::f64::consts::{FRAC_PI_2, PI};
+use vocabulary::Light;
 
 settings! {
     /// Light and air.
     #[derive(Copy)]
     pub struct Environment from EnvironmentPart {
         /// Height of the sun over the horizon, rad or "38 deg".
-        pub sun_elevation: f64 = 38f64.to_radians(), angle_within(PI / 180.0, FRAC_PI_2);
+        pub sun_elevation: f64 = Light::default().sun_elevation, angle_within(PI / 180.0, FRAC_PI_2);
         /// Direction to the sun, rad or "60 deg", counter-clockwise from the world's x axis.
-        pub sun_azimuth: f64 = 60f64.to_radians(), angle();
+        pub sun_azimuth: f64 = Light::default().sun_azimuth, angle();
         /// Distance at which haze sets in, m.
-        pub haze_from: f64 = 30.0, number("m").above(0.0);
+        pub haze_from: f64 = Light::default().haze_from, number("m").above(0.0);
     }
 }
 
