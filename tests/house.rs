@@ -93,6 +93,20 @@ fn every_file_says_why_it_exists() {
     }
 }
 
+/// Pictures and pages that the documentation points at are there.
+#[test]
+fn links_lead_somewhere() {
+    for page in ["README.md", "docs/architecture.md"] {
+        let text = fs::read_to_string(root().join(page)).expect("a page");
+        let links: Vec<&str> = text.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+        assert!(!links.is_empty(), "{page} has no links");
+        for link in links.iter().filter(|l| !l.starts_with("http")) {
+            let target = root().join(page).with_file_name("").join(link);
+            assert!(target.exists(), "{page} points at {link}");
+        }
+    }
+}
+
 #[test]
 fn files_stay_short() {
     for (path, text) in sources(&["rs", "wgsl"]) {

@@ -104,7 +104,7 @@ pub(crate) struct CaptureArgs {
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     /// Times in s, such as 0,5,15; the end of the run if left out
-    #[arg(long, value_name = "TIMES", value_delimiter = ',')]
+    #[arg(long, value_name = "TIMES", value_delimiter = ',', allow_negative_numbers = true)]
     pub(crate) at: Vec<f64>,
     /// Folder for the pictures; it may hold others
     #[arg(long, short, value_name = "DIR", default_value = ".")]
@@ -120,7 +120,8 @@ pub(crate) struct FilmArgs {
     /// Frames a second of simulation time
     #[arg(long)]
     pub(crate) fps: Option<f64>,
-    /// Film file: .mp4 or .gif; without an ending, a folder of PNG frames. NAME.mp4 if left out
+    /// Film file: .mp4 or .gif (480x270, 10 frames a second if not said otherwise); without an ending, a folder of
+    /// PNG frames; any other ending needs ffmpeg. NAME.mp4 if left out
     #[arg(long, short, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Encode with the ffmpeg on PATH instead of the built-in encoder

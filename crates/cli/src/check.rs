@@ -17,11 +17,9 @@ pub(crate) fn check(args: &CheckArgs) -> Outcome {
             Ok((scene, setup)) => {
                 let (robots, edges) = (setup.cast.members.len(), setup.cast.edges.len());
                 let length = scene.time.duration;
-                say(&format!(
-                    "{}: good: {}; {robots} robots, {edges} edges, {length} s",
-                    path.display(),
-                    scene.title
-                ));
+                let count = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
+                let (robots, edges) = (count(robots, "robot"), count(edges, "edge"));
+                say(&format!("{}: good: {}; {robots} and {edges}, {length} s", path.display(), scene.title));
             }
             Err(Failure::Usage(text)) => problems.push(text),
             Err(other) => return Err(other),

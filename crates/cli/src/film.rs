@@ -18,17 +18,19 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
     let began = Instant::now();
     let loaded = load(&args.scene)?;
     let settings = loaded.scene.film.clone();
-    let rate = args.fps.unwrap_or(f64::from(settings.fps));
+    let name = stem(&args.scene.scene);
+    let path = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.mp4")));
+    let kind = if args.ffmpeg { FilmKind::Ffmpeg } else { FilmKind::of(&path) };
+    // An animation stores every pixel that changes, and on moving ground all do.
+    let (size, fps) = if kind == FilmKind::Gif { ([480, 270], 10) } else { (settings.size, settings.fps) };
+    let rate = args.fps.unwrap_or(f64::from(fps));
     if !(1.0..=240.0).contains(&rate) {
         return Err(rendering::Error::FrameRate(rate).into());
     }
     let frames = ((loaded.scene.time.duration * rate).round() as u64).max(1);
-    let name = stem(&args.scene.scene);
-    let path = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.mp4")));
-    let kind = if args.ffmpeg { FilmKind::Ffmpeg } else { FilmKind::of(&path) };
     let view = settings.view.as_deref().unwrap_or(&loaded.scene.views.default);
     let cast = loaded.simulation.cast().clone();
-    let mut studio = Studio::open(&args.picture, &cast, view, settings.size)?;
+    let mut studio = Studio::open(&args.picture, &cast, view, size)?;
     let mut film = Film::create(&path, kind, studio.size[0], studio.size[1], rate)?;
 
     let what = format!("Filming {name}, {frames} frames, to {}", path.display());

@@ -48,6 +48,11 @@ fn main() -> ExitCode {
         }
     };
     match outcome {
+        Ok(()) if print::lost() => {
+            let failure = Failure::Machine("standard output could not be written".to_owned());
+            failure.tell();
+            ExitCode::from(failure.code())
+        }
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure.tell();

@@ -1,35 +1,52 @@
-//! A bar with the time left on a terminal; elsewhere a line at the start of long jobs.
+//! A bar with the time left on a terminal; elsewhere a line at the start of long jobs and one every ten seconds.
 
 use crate::print::note;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::cell::Cell;
 use std::io::IsTerminal;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Progress of one job.
-pub(crate) struct Progress(Option<ProgressBar>);
+pub(crate) struct Progress(Shown);
+
+enum Shown {
+    Nothing,
+    Bar(ProgressBar),
+    Lines { steps: u64, told: Cell<Instant> },
+}
+
+/// Between two lines where there is no terminal.
+const PAUSE: Duration = Duration::from_secs(10);
 
 impl Progress {
     /// Begins a job of `steps` steps; silent where `quiet`.
     pub(crate) fn begin(what: &str, steps: u64, quiet: bool) -> Self {
         if quiet {
-            return Self(None);
+            return Self(Shown::Nothing);
         }
         if !std::io::stderr().is_terminal() {
             note(&format!("{what} …"));
-            return Self(None);
+            return Self(Shown::Lines { steps, told: Cell::new(Instant::now()) });
         }
         let bar = ProgressBar::new(steps).with_message(what.to_owned());
         if let Ok(style) = ProgressStyle::with_template("{msg} [{bar:30}] {percent:>3} %  {eta} left") {
             bar.set_style(style.progress_chars("━╸─"));
         }
         bar.enable_steady_tick(Duration::from_millis(200));
-        Self(Some(bar))
+        Self(Shown::Bar(bar))
     }
 
     /// Where the job is.
     pub(crate) fn at(&self, step: u64) {
-        if let Some(bar) = &self.0 {
-            bar.set_position(step);
+        match &self.0 {
+            Shown::Nothing => {}
+            Shown::Bar(bar) => bar.set_position(step),
+            Shown::Lines { steps, told } => {
+                if told.get().elapsed() >= PAUSE {
+                    told.set(Instant::now());
+                    note(&format!("{step} of {steps}"));
+                }
+            }
         }
     }
 
@@ -41,7 +58,7 @@ impl Progress {
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Some(bar) = &self.0 {
+        if let Shown::Bar(bar) = &self.0 {
             bar.finish_and_clear();
         }
     }

@@ -61,7 +61,11 @@ fn edges(metrics: &Metrics) {
         say(&format!("… and {} more edges, all in metrics.json", metrics.edges.len() - MOST_EDGES));
     }
     let band = metrics.settling_band;
-    say(&format!("settled: within ±{} m and ±{:.2}° to the end\n", band[0], band[1].to_degrees()));
+    say(&format!(
+        "limited: samples at which a bound on speed, turn rate or acceleration cut the command\nsettled: within ±{} m and ±{:.2}° to the end\n",
+        band[0],
+        band[1].to_degrees()
+    ));
 }
 
 fn expectations(report: &Report<'_>) {

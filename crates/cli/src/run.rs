@@ -20,7 +20,7 @@ const STRIDE: u64 = 16;
 
 pub(crate) fn run(args: &RunArgs) -> Outcome {
     let Loaded { scene, mut simulation } = load(&args.scene)?;
-    let folder = if args.no_record { None } else { Some(folder(args)) };
+    let folder = if args.no_record { None } else { Some(folder(args)?) };
     let mut sink = match &folder {
         Some(folder) => Sink::record(folder, args, &scene, &simulation)?,
         None => Sink::Judge(Box::new((
@@ -34,7 +34,10 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     let began = Instant::now();
     let mut step = 0;
     while let Some(moment) = simulation.next_moment() {
-        sink.push(moment)?;
+        if let Err(error) = sink.push(moment) {
+            sink.abandon();
+            return Err(error.into());
+        }
         step += 1;
         if step % STRIDE == 0 {
             progress.at(step);
@@ -105,6 +108,12 @@ impl Sink {
         }
     }
 
+    fn abandon(self) {
+        if let Self::Record(recorder) = self {
+            recorder.abandon();
+        }
+    }
+
     fn finish(self, status: Status) -> Result<(Metrics, String), recording::Error> {
         match self {
             Self::Record(recorder) => {
@@ -116,11 +125,23 @@ impl Sink {
     }
 }
 
-/// The folder asked for, or the next free runs/NAME-001.
-fn folder(args: &RunArgs) -> PathBuf {
-    args.out.clone().unwrap_or_else(|| {
-        let stem = stem(&args.scene.scene);
-        let numbered = (1..).map(|k: u32| Path::new("runs").join(format!("{stem}-{k:03}")));
-        numbered.into_iter().find(|path| !path.exists()).unwrap_or_else(|| PathBuf::from("runs"))
-    })
+/// The folder asked for, or the next free runs/NAME-001, made at once so that runs started together get one each.
+fn folder(args: &RunArgs) -> Result<PathBuf, Failure> {
+    if let Some(folder) = &args.out {
+        return Ok(folder.clone());
+    }
+    let stem = stem(&args.scene.scene);
+    let refused =
+        |path: &Path, e: &std::io::Error| Failure::Machine(format!("cannot create {}: {e}", path.display()));
+    let runs = Path::new("runs");
+    std::fs::create_dir_all(runs).map_err(|e| refused(runs, &e))?;
+    let mut number = 1;
+    loop {
+        let path = runs.join(format!("{stem}-{number:03}"));
+        match std::fs::create_dir(&path) {
+            Ok(()) => return Ok(path),
+            Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => number += 1,
+            Err(e) => return Err(refused(&path, &e)),
+        }
+    }
 }

@@ -43,6 +43,10 @@ impl Error {
 
     pub(crate) fn table<E: std::fmt::Display>(path: &Path) -> impl FnOnce(E) -> Self {
         let path = path.to_owned();
-        move |error| Self::Table { path, message: error.to_string() }
+        // The library's word for errors of the system says nothing to a user.
+        move |error| Self::Table {
+            path,
+            message: error.to_string().trim_start_matches("External: ").to_owned(),
+        }
     }
 }

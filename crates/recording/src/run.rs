@@ -4,6 +4,7 @@ use crate::manifest::FORMAT;
 use crate::table::{TableKind, TableWriter};
 use crate::{Digest, Error, Manifest, Metrics, MetricsBuilder, Status, write_whole};
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use vocabulary::{Cast, Moment};
 
@@ -49,8 +50,15 @@ impl Recorder {
     /// cannot be written.
     pub fn create(folder: &Path, cast: &Cast, options: RunOptions) -> Result<Self, Error> {
         clear(folder, options.force)?;
+        fs::create_dir_all(folder).map_err(Error::io("create", folder))?;
         let tables = folder.join("tables");
-        fs::create_dir_all(&tables).map_err(Error::io("create", &tables))?;
+        // Only one of several programs makes this folder; the others find it made.
+        fs::create_dir(&tables).map_err(|source| match source.kind() {
+            ErrorKind::AlreadyExists => {
+                Error::Occupied { path: folder.to_owned(), what: "is being written by another run" }
+            }
+            _ => Error::io("create", &tables)(source),
+        })?;
         write_whole(&folder.join("scene.toml"), options.scene.as_bytes())?;
         let writer = |kind| TableWriter::create(&tables, kind, options.csv);
         let recorder = Self {
@@ -93,6 +101,13 @@ impl Recorder {
         self.manifest.digest = Some(self.digest.text());
         self.write_manifest()?;
         Ok((self.manifest, metrics))
+    }
+
+    /// Marks the run as interrupted after its disk refused a moment; tables keep the parts that were closed.
+    pub fn abandon(mut self) {
+        self.manifest.status = Status::Interrupted;
+        // The disk has just refused: if it refuses again, the error before is the one to tell.
+        let _ = self.write_manifest();
     }
 
     fn write_manifest(&self) -> Result<(), Error> {
@@ -237,6 +252,23 @@ mod tests {
         fs::write(other.path().join("thesis.tex"), "years").expect("written");
         let refused = Recorder::create(other.path(), &cast(), options(true)).err().expect("refused");
         assert!(refused.to_string().contains("other files"), "{refused}");
+    }
+
+    #[test]
+    fn two_runs_at_once_do_not_share_a_folder() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let run = folder.path().join("run");
+        fs::create_dir_all(run.join("tables")).expect("another run has just begun");
+        let refused = Recorder::create(&run, &cast(), options(false)).err().expect("refused");
+        assert!(matches!(refused, Error::Occupied { .. }), "{refused}");
+    }
+
+    #[test]
+    fn an_abandoned_run_says_interrupted() {
+        let folder = tempfile::tempdir().expect("a folder");
+        record(folder.path(), 800).abandon();
+        let manifest = manifest(folder.path());
+        assert_eq!((manifest.status, manifest.samples), (Status::Interrupted, 800));
     }
 
     #[test]

@@ -46,6 +46,9 @@ pub enum Error {
         /// All valid forms.
         valid: String,
     },
+    /// More views than a picture is split into.
+    #[error("{0} views are too many for one picture: join at most four")]
+    TooManyViews(usize),
     /// An element of the picture that does not exist.
     #[error("unknown element {given:?}{}; elements are {valid}", .nearest.as_ref().map_or(String::new(), |n| format!(" (did you mean {n:?}?)")))]
     Element {
@@ -106,6 +109,7 @@ impl Error {
         matches!(
             self,
             Self::View { .. }
+                | Self::TooManyViews(_)
                 | Self::Element { .. }
                 | Self::Size { .. }
                 | Self::Samples(_)

@@ -12,15 +12,11 @@ pub(crate) struct Partial {
 
 impl Partial {
     pub(crate) fn new(goal: &Path) -> Self {
-        Self::marked(goal, "part")
-    }
-
-    /// `mark` tells several temporary files of one goal apart. The ending stays, since programs go by it.
-    pub(crate) fn marked(goal: &Path, mark: &str) -> Self {
         let part = |text: Option<&std::ffi::OsStr>| text.unwrap_or_default().to_string_lossy().into_owned();
         let (stem, ending) = (part(goal.file_stem()), part(goal.extension()));
+        // The ending stays, since programs go by it.
         // The process id keeps two programs that write the same film apart.
-        let name = format!(".{stem}.{}.{mark}.{ending}", std::process::id());
+        let name = format!(".{stem}.{}.part.{ending}", std::process::id());
         Self { path: goal.with_file_name(name.trim_end_matches('.')), goal: goal.to_owned() }
     }
 

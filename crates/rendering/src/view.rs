@@ -106,11 +106,11 @@ impl Layout {
     /// Views joined by '+', at most four.
     ///
     /// # Errors
-    /// [`Error::View`] for the first that is unknown, or for more than four.
+    /// [`Error::View`] for the first that is unknown, [`Error::TooManyViews`] for more than four.
     pub fn parse(text: &str, names: &[String]) -> Result<Self, Error> {
         let views = text.split('+').map(|part| View::parse(part, names)).collect::<Result<Vec<_>, _>>()?;
         if views.len() > 4 {
-            return Err(unknown(text, names));
+            return Err(Error::TooManyViews(views.len()));
         }
         Ok(Self { views })
     }

@@ -150,6 +150,8 @@ fn pictures_that_cannot_be() {
     drawing_refused(&["capture", &scene, "--at=-1"], 2, &["0 to 15"]);
     drawing_refused(&["capture", &scene, "--at", "nan"], 2, &["0 to 15"]);
     drawing_refused(&["capture", &scene, "--view", "snak"], 2, &["snak", "did you mean", "snake-eye"]);
+    drawing_refused(&["capture", &scene, "--view", "top+top+top+top+top"], 2, &["at most four"]);
+    drawing_refused(&["capture", &scene, "--at", "-1"], 2, &["0 to 15"]);
     drawing_refused(&["capture", &scene, "--view", "follow:bob"], 2, &["bob"]);
     drawing_refused(&["capture", &scene, "--without", "lables"], 2, &["did you mean \"labels\""]);
     drawing_refused(&["capture", &scene, "--samples", "3"], 2, &["4"]);

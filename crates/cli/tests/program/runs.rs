@@ -91,6 +91,32 @@ fn an_existing_run_is_kept_unless_forced_and_default_folders_count_up() {
     assert_eq!(told(&echelon(folder.path(), &[&again[..], &["--force"]].concat())).0, 0);
 }
 
+#[test]
+fn runs_started_together_get_a_folder_each() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let args = ["run", &scene("line-three"), "-q", "--set", "time.duration=1", "--set", "expect={}"];
+    let start = |_| command(folder.path(), &args).stderr(Stdio::piped()).spawn().expect("started");
+    let children: Vec<_> = (0..4).map(start).collect();
+    for child in children {
+        let (code, _, err) = told(&child.wait_with_output().expect("ended"));
+        assert_eq!(code, 0, "{err}");
+    }
+    for number in 1..=4 {
+        let run = folder.path().join(format!("runs/line-three-00{number}"));
+        assert_eq!(manifest(&run).status, Status::Complete);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn output_that_is_lost_is_the_machines_failure() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let full = fs::File::options().write(true).open("/dev/full").expect("always full");
+    let output = command(folder.path(), &["schema"]).stdout(full).output().expect("it ran");
+    let (code, _, err) = told(&output);
+    assert!(code == 3 && err.contains("standard output"), "{code} {err}");
+}
+
 /// A run long enough to be stopped, recording into `folder`/run; returns once its first rows are on disk.
 #[cfg(unix)]
 fn long_run(folder: &Path) -> std::process::Child {
@@ -150,7 +176,7 @@ fn check_names_good_scenes_and_prints_resolved_ones() {
     let folder = tempfile::tempdir().expect("a folder");
     let (code, out, _) = told(&echelon(folder.path(), &["check", &scene("seven-v"), &scene("hundred")]));
     assert_eq!(code, 0);
-    assert!(out.contains("7 robots, 6 edges") && out.contains("100 robots, 99 edges"), "{out}");
+    assert!(out.contains("7 robots and 6 edges") && out.contains("100 robots and 99 edges"), "{out}");
     let (_, out, _) = told(&echelon(folder.path(), &["check", &scene("line-three"), "--resolved"]));
     assert!(out.contains("epsilon = ") && out.contains("schema = 1"), "{out}");
 }

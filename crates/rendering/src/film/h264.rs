@@ -11,7 +11,7 @@ use openh264::formats::YUVSlices;
 use openh264::{OpenH264API, Timestamp};
 use std::fs::File;
 use std::io::{BufWriter, Seek, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use vocabulary::Picture;
 
 /// Encoder, frames so far, and where they are.
@@ -20,7 +20,7 @@ pub(super) struct H264 {
     planes: Planes,
     format: Format,
     samples: BufWriter<File>,
-    samples_file: Partial,
+    goal: PathBuf,
     track: mp4::Track,
 }
 
@@ -41,13 +41,13 @@ impl H264 {
             .vui(VuiConfig::bt601());
         let encoder =
             Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|e| refused(&e))?;
-        let samples_file = Partial::marked(path, "samples");
-        let file =
-            File::options().read(true).write(true).create(true).truncate(true).open(&samples_file.path);
-        let samples = BufWriter::with_capacity(1 << 18, file.map_err(|e| Error::write(path, e))?);
+        // Without a name, so that nothing is left of it however the program ends.
+        let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let file = tempfile::tempfile_in(folder).map_err(|e| Error::write(path, e))?;
+        let samples = BufWriter::with_capacity(1 << 18, file);
         let planes = Planes::new(format.width as usize, format.height as usize);
         let track = mp4::Track::new(format.width, format.height, format.rate);
-        Ok(Self { encoder, planes, format, samples, samples_file, track })
+        Ok(Self { encoder, planes, format, samples, goal: path.to_owned(), track })
     }
 }
 
@@ -68,12 +68,11 @@ impl Sink for H264 {
         if frame.is_empty() {
             return Err(Error::Encode("H.264: the encoder skipped a picture".into()));
         }
-        self.samples.write_all(&frame).map_err(|e| Error::write(&self.samples_file.goal, e))
+        self.samples.write_all(&frame).map_err(|e| Error::write(&self.goal, e))
     }
 
     fn finish(self: Box<Self>) -> Result<(), Error> {
-        let Self { samples, samples_file, track, .. } = *self;
-        let goal = samples_file.goal.clone();
+        let Self { samples, goal, track, .. } = *self;
         let failed = |e: std::io::Error| Error::write(&goal, e);
         let mut samples = samples.into_inner().map_err(|e| failed(e.into_error()))?;
         samples.rewind().map_err(failed)?;
