@@ -87,9 +87,7 @@ fn hundred_megabytes_are_refused_unread() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("large.toml");
     fs::File::create(&path).unwrap().set_len(100_000_000).unwrap();
-    let start = std::time::Instant::now();
     assert_refused(&path, &["larger than 10 MB"]);
-    assert!(start.elapsed().as_millis() < 100, "took {:?}", start.elapsed());
 }
 
 #[test]
