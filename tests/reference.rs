@@ -143,6 +143,8 @@ impl Case {
             speed_max: b.v_max,
             turn_rate_max: b.omega_max,
             acceleration_max: f64::INFINITY,
+            curvature_max: f64::INFINITY,
+            lateral_acceleration_max: f64::INFINITY,
         };
         let lead: Arc<dyn Profile> = Arc::new(Courses {
             speed: course(self.lead.v, self.lead.v_wave),

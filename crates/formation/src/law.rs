@@ -113,8 +113,14 @@ mod tests {
     use std::f64::consts::PI;
     use vocabulary::{Limits, Pose, Relative, wrap};
 
-    const LIMITS: Limits =
-        Limits { speed_min: 0.01, speed_max: 1.6, turn_rate_max: 11.5, acceleration_max: f64::INFINITY };
+    const LIMITS: Limits = Limits {
+        speed_min: 0.01,
+        speed_max: 1.6,
+        turn_rate_max: 11.5,
+        acceleration_max: f64::INFINITY,
+        curvature_max: f64::INFINITY,
+        lateral_acceleration_max: f64::INFINITY,
+    };
 
     fn law(kind: LawKind) -> Law {
         Law {
@@ -182,7 +188,7 @@ mod tests {
                 geometry: &geometry, error: [n[14], n[15]], set_point: &set_point, rates: [n[5], n[6]], own_speed,
                 leader: &leader,
             });
-            let cut = LIMITS.saturate(asked);
+            let cut = LIMITS.saturate(asked, 1.0);
             prop_assert!(cut.acceleration.is_finite() && cut.turn_rate.abs() <= 11.5);
         }
     }

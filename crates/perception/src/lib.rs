@@ -122,7 +122,7 @@ mod tests {
         let mut robots = [RobotState::default(); 2];
         robots[0].motion.speed = 1.5;
         robots[1].motion.pose = Pose::new(-2.0, 0.0, 0.0);
-        let snapshot = Snapshot { time: 0.0, robots: robots.to_vec() };
+        let snapshot = Snapshot { time: 0.0, robots: robots.to_vec(), props: vec![] };
         let mut observations = vec![];
         observe(&snapshot, &[EDGE], &mut observations);
         assert_eq!(observations.len(), 1);

@@ -111,7 +111,8 @@ mod tests {
     use proptest::prelude::*;
     use vocabulary::{Member, RobotState};
 
-    const BODY: Body = Body { length: 0.4, width: 0.2, wheelbase: 0.3, track: 0.2, wheel_radius: 0.05 };
+    const BODY: Body =
+        Body { length: 0.4, width: 0.2, height: 0.2, wheelbase: 0.3, track: 0.2, wheel_radius: 0.05 };
 
     #[test]
     fn known_distances() {
@@ -145,7 +146,7 @@ mod tests {
             for (robot, pose) in robots.iter_mut().zip(&poses) {
                 robot.motion.pose = *pose;
             }
-            let snapshot = Snapshot { time: 0.0, robots };
+            let snapshot = Snapshot { time: 0.0, robots, props: vec![] };
             let swept = closest(&cast, &snapshot, f64::INFINITY, &mut vec![]).expect("two robots");
             let mut least = f64::INFINITY;
             for i in 0..poses.len() {

@@ -44,8 +44,10 @@ mod tests {
         for (k, x) in values.iter().enumerate() {
             let mut robot = RobotState::default();
             robot.motion.pose.x = *x;
-            digest
-                .push(&Moment { snapshot: Snapshot { time: k as f64, robots: vec![robot] }, edges: vec![] });
+            digest.push(&Moment {
+                snapshot: Snapshot { time: k as f64, robots: vec![robot], props: vec![] },
+                ..Moment::default()
+            });
         }
         digest.text()
     }

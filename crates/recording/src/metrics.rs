@@ -209,7 +209,11 @@ mod tests {
             robots[1].motion.pose = Pose::new(-1.0 - (time - 5.0).abs(), 0.0, 0.0);
             robots[1].motion.speed = 1.0;
             let edge = EdgeState { error: [(-time).exp(), 0.0], ..EdgeState::default() };
-            builder.push(&Moment { snapshot: Snapshot { time, robots }, edges: vec![edge] });
+            builder.push(&Moment {
+                snapshot: Snapshot { time, robots, props: vec![] },
+                edges: vec![edge],
+                contacts: vec![],
+            });
         }
         builder.finish()
     }
@@ -245,8 +249,8 @@ mod tests {
         let mut builder = MetricsBuilder::new(&cast, [0.1, 0.1]);
         for error in [0.0, 0.05, 0.2] {
             let edge = EdgeState { error: [0.0, error], ..EdgeState::default() };
-            let snapshot = Snapshot { time: error, robots: vec![RobotState::default(); 2] };
-            builder.push(&Moment { snapshot, edges: vec![edge] });
+            let snapshot = Snapshot { time: error, robots: vec![RobotState::default(); 2], props: vec![] };
+            builder.push(&Moment { snapshot, edges: vec![edge], contacts: vec![] });
         }
         let metrics = builder.finish();
         assert_eq!((metrics.edges[0].settling_time, metrics.edges[0].settled_rms_error), (None, None));

@@ -183,7 +183,7 @@ mod tests {
         let mut robots = vec![RobotState::default(); 2];
         robots[1].motion.pose.x = time / 3.0;
         let edge = EdgeState { error: [time, -time], limited: k.is_multiple_of(2), ..EdgeState::default() };
-        Moment { snapshot: Snapshot { time, robots }, edges: vec![edge] }
+        Moment { snapshot: Snapshot { time, robots, props: vec![] }, edges: vec![edge], contacts: vec![] }
     }
 
     fn options(force: bool) -> RunOptions {

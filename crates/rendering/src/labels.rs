@@ -329,7 +329,8 @@ mod tests {
         let cast = Cast { members: vec![member], ..Cast::default() };
         let mut robot = RobotState::default();
         robot.motion.pose = Pose::new(1.0, 2.0, 0.0);
-        let moment = Moment { snapshot: Snapshot { time: 0.0, robots: vec![robot] }, edges: vec![] };
+        let moment =
+            Moment { snapshot: Snapshot { robots: vec![robot], ..Snapshot::default() }, ..Moment::default() };
         let (trail, style) = (Trail::new(&cast), Style::default());
         let stage = Stage {
             cast: &cast,

@@ -171,7 +171,8 @@ mod tests {
             robot.motion.pose = Pose::new(p[0], p[1], p[2]);
             robot
         };
-        Moment { snapshot: Snapshot { time, robots: places.iter().map(robot).collect() }, edges: vec![] }
+        let robots = places.iter().map(robot).collect();
+        Moment { snapshot: Snapshot { time, robots, ..Snapshot::default() }, ..Moment::default() }
     }
 
     #[test]

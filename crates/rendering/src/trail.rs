@@ -134,8 +134,9 @@ mod tests {
         let cast = Cast { members: vec![member], ..Cast::default() };
         let mut trail = Trail::new(&cast);
         for k in 0..200_000 {
-            let snapshot = Snapshot { time: f64::from(k) * 0.01, robots: vec![RobotState::default()] };
-            trail.push(&Moment { snapshot, edges: vec![] });
+            let robots = vec![RobotState::default()];
+            let snapshot = Snapshot { time: f64::from(k) * 0.01, robots, ..Snapshot::default() };
+            trail.push(&Moment { snapshot, ..Moment::default() });
         }
         assert!(trail.ribbons.len() <= RIBBON_POINTS + 2);
         assert!(trail.ghosts.len() <= 6);

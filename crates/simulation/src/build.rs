@@ -93,6 +93,8 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
             },
             members: scene.robots.iter().map(member).collect(),
             edges,
+            props: Vec::new(),
+            terrain: None,
         },
         formation: Formation::new(graph, laws, limits, leads, scene.time.period),
         robots,

@@ -75,7 +75,11 @@ impl Simulation {
         let start = |(o, s): (&Observation, &ObserverStart)| first_estimate(&o.relative, *s);
         let state =
             setup.formation.start(observations.iter().zip(&setup.observer_starts).map(start).collect());
-        let moment = Moment { snapshot: world.snapshot().clone(), edges: vec![EdgeState::default(); edges] };
+        let moment = Moment {
+            snapshot: world.snapshot().clone(),
+            edges: vec![EdgeState::default(); edges],
+            contacts: Vec::new(),
+        };
         let plant = match setup.timing {
             Timing::Continuous => Plant::Continuous(Box::new(Continuous::new(world, &setup.formation))),
             Timing::Sampled | Timing::Measured => Plant::Held(Box::new(world)),

@@ -1,6 +1,7 @@
 //! Who is on stage: everything about a run that does not change while it runs and that a picture needs.
 
-use crate::Edge;
+use crate::{Edge, Prop, Terrain};
+use std::sync::Arc;
 
 /// Outer measures of a robot's body, for drawing and clearance.
 ///
@@ -12,6 +13,8 @@ pub struct Body {
     pub length: f64,
     /// m.
     pub width: f64,
+    /// Ground to roof, m.
+    pub height: f64,
     /// Between the axles, m.
     pub wheelbase: f64,
     /// Between the wheels of an axle, m.
@@ -23,7 +26,7 @@ pub struct Body {
 impl Default for Body {
     /// The 1/10 class vehicle of the pictures: 0.42 m long.
     fn default() -> Self {
-        Self { length: 0.42, width: 0.24, wheelbase: 0.27, track: 0.20, wheel_radius: 0.045 }
+        Self { length: 0.42, width: 0.24, height: 0.22, wheelbase: 0.27, track: 0.20, wheel_radius: 0.045 }
     }
 }
 
@@ -56,7 +59,7 @@ impl Default for Light {
     }
 }
 
-/// Robots, edges and words of a run.
+/// Robots, edges, surroundings and words of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cast {
     /// Title of the scene.
@@ -71,4 +74,8 @@ pub struct Cast {
     pub members: Vec<Member>,
     /// In the order of the edge states.
     pub edges: Vec<Edge>,
+    /// Solid things that are no robots, in the order of the snapshots.
+    pub props: Vec<Prop>,
+    /// The lie of the land; flat at z = 0 where there is none.
+    pub terrain: Option<Arc<Terrain>>,
 }

@@ -13,15 +13,26 @@ pub struct Limits {
     pub turn_rate_max: f64,
     /// m/s², either direction; infinite where unbounded.
     pub acceleration_max: f64,
+    /// Tightest turn, 1/m: |ω| ≤ |v| × this, as steered wheels have it (tan δ_max / L); infinite for a unicycle.
+    pub curvature_max: f64,
+    /// Largest |v ω|, m/s², before tyres slide; infinite where they never do.
+    pub lateral_acceleration_max: f64,
 }
 
 impl Limits {
-    /// `command` within the bounds on acceleration and turn rate (the sat{} of eq 42); zero where not a number.
-    pub fn saturate(&self, command: Command) -> Command {
+    /// `command` within the bounds on acceleration and turn rate at a speed (the sat{} of eq 42); zero where not a
+    /// number.
+    pub fn saturate(&self, command: Command, speed: f64) -> Command {
         Command {
             acceleration: clamp(command.acceleration, self.acceleration_max),
-            turn_rate: clamp(command.turn_rate, self.turn_rate_max),
+            turn_rate: clamp(command.turn_rate, self.turn_rate_at(speed)),
         }
+    }
+
+    /// Largest |turn rate| at `speed`, rad/s.
+    pub fn turn_rate_at(&self, speed: f64) -> f64 {
+        let speed = speed.abs().max(f64::MIN_POSITIVE);
+        self.turn_rate_max.min(speed * self.curvature_max).min(self.lateral_acceleration_max / speed)
     }
 
     /// The acceleration that takes effect at `speed`: none outward where the speed stands at a bound.
@@ -49,15 +60,29 @@ fn clamp(value: f64, bound: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const LIMITS: Limits =
-        Limits { speed_min: 0.01, speed_max: 1.6, turn_rate_max: 11.5, acceleration_max: f64::INFINITY };
+    const LIMITS: Limits = Limits {
+        speed_min: 0.01,
+        speed_max: 1.6,
+        turn_rate_max: 11.5,
+        acceleration_max: f64::INFINITY,
+        curvature_max: f64::INFINITY,
+        lateral_acceleration_max: f64::INFINITY,
+    };
 
     #[test]
     fn saturation_is_finite_for_any_command() {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -3.0] {
-            let cut = LIMITS.saturate(Command { acceleration: value, turn_rate: value });
+            let cut = LIMITS.saturate(Command { acceleration: value, turn_rate: value }, 1.0);
             assert!(cut.acceleration.is_finite() && cut.turn_rate.abs() <= 11.5, "{value} gave {cut:?}");
         }
+    }
+
+    #[test]
+    fn steered_wheels_turn_with_the_speed_and_slide_at_a_bound() {
+        let car = Limits { curvature_max: 2.0, lateral_acceleration_max: 4.0, ..LIMITS };
+        let turns = |speed| car.saturate(Command { acceleration: 0.0, turn_rate: -9.0 }, speed).turn_rate;
+        assert_eq!((turns(0.0), turns(0.5), turns(4.0)), (0.0, -1.0, -1.0));
+        assert_eq!(LIMITS.turn_rate_at(0.0), 11.5);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! One row of a run: the truth, and what every edge wanted, knew and did. Pictures and records are made of it.
 
-use crate::{Command, Pose, Relative, Snapshot, nearest_turn, wrap};
+use crate::{Command, Contact, Placement, Pose, Relative, Snapshot, nearest_turn, wrap};
 
 /// One edge at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -30,6 +30,8 @@ pub struct Moment {
     pub snapshot: Snapshot,
     /// One entry per edge, in the order of [`crate::Cast::edges`].
     pub edges: Vec<EdgeState>,
+    /// Contacts that are open, or that ended since the moment before.
+    pub contacts: Vec<Contact>,
 }
 
 impl Moment {
@@ -55,6 +57,9 @@ impl Moment {
                 w.compression = mix(w.compression, m.compression);
             }
         }
+        for (o, n) in out.snapshot.props.iter_mut().zip(&b.snapshot.props) {
+            *o = Placement::between(o, n, share);
+        }
         for (o, n) in out.edges.iter_mut().zip(&b.edges) {
             o.relative.distance = mix(o.relative.distance, n.relative.distance);
             o.relative.bearing = turn(o.relative.bearing, n.relative.bearing);
@@ -76,7 +81,10 @@ mod tests {
         let at = |time, heading| {
             let mut robot = RobotState::default();
             robot.motion.pose = Pose::new(time, 0.0, heading);
-            Moment { snapshot: Snapshot { time, robots: vec![robot] }, edges: vec![] }
+            Moment {
+                snapshot: Snapshot { time, robots: vec![robot], ..Snapshot::default() },
+                ..Moment::default()
+            }
         };
         let middle = Moment::between(&at(0.0, 3.0), &at(1.0, -3.0), 0.5);
         let pose = middle.snapshot.robots[0].motion.pose;

@@ -1,6 +1,6 @@
 //! The truth about all robots at one instant: the only way out of a world.
 
-use crate::Pose;
+use crate::{Placement, Pose};
 
 /// How a robot moves at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -37,6 +37,20 @@ pub struct Wheel {
     pub compression: f64,
 }
 
+/// Whether a robot can still drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Condition {
+    /// It can.
+    #[default]
+    Able,
+    /// Its wheels are not under it.
+    Overturned,
+    /// It is told to drive and does not move.
+    Stuck,
+    /// It is deep below the ground around it, or out of all bounds.
+    Fallen,
+}
+
 /// One robot at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RobotState {
@@ -48,13 +62,17 @@ pub struct RobotState {
     pub wheels: [Wheel; 4],
     /// Direction of the camera from the heading, rad.
     pub camera_pan: f64,
+    /// Whether it can still drive.
+    pub condition: Condition,
 }
 
-/// All robots at one instant, in the order of the scene.
+/// All robots and props at one instant, in the order of the scene.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Snapshot {
     /// s from the start of the run.
     pub time: f64,
     /// One entry per robot.
     pub robots: Vec<RobotState>,
+    /// One entry per prop of the cast, those that never move included.
+    pub props: Vec<Placement>,
 }

@@ -52,7 +52,7 @@ impl Unicycles {
             let motion = Motion { pose: robot.pose, speed, acceleration: 0.0, turn_rate };
             RobotState { motion, ..RobotState::default() }
         };
-        let snapshot = Snapshot { time: 0.0, robots: robots.iter().map(state).collect() };
+        let snapshot = Snapshot { time: 0.0, robots: robots.iter().map(state).collect(), props: vec![] };
         let steps = vec![Step::default(); robots.len()];
         Self { robots, snapshot, steps, started: 0.0, duration: 0.0 }
     }
@@ -196,8 +196,14 @@ mod tests {
     use super::*;
     use vocabulary::Drive;
 
-    const LIMITS: Limits =
-        Limits { speed_min: 0.01, speed_max: 1.6, turn_rate_max: 11.5, acceleration_max: f64::INFINITY };
+    const LIMITS: Limits = Limits {
+        speed_min: 0.01,
+        speed_max: 1.6,
+        turn_rate_max: 11.5,
+        acceleration_max: f64::INFINITY,
+        curvature_max: f64::INFINITY,
+        lateral_acceleration_max: f64::INFINITY,
+    };
 
     #[derive(Debug)]
     struct Swing;
@@ -271,7 +277,7 @@ mod tests {
     fn any_finite_command_leaves_a_finite_world() {
         for command in [f64::MAX, -1e6, 1e6, f64::MIN_POSITIVE] {
             let mut world = Unicycles::new(vec![robot(1.0, None)]);
-            let cut = LIMITS.saturate(Command { acceleration: command, turn_rate: command });
+            let cut = LIMITS.saturate(Command { acceleration: command, turn_rate: command }, 1.0);
             for _ in 0..10 {
                 world.apply(&[cut]);
                 world.advance(0.01);

@@ -113,7 +113,7 @@ impl Play {
             EdgeState { relative, set_point: *goal, error, ..EdgeState::default() }
         };
         let edges = self.cast.edges.iter().zip(&self.goals).map(edge).collect();
-        Moment { snapshot: Snapshot { time, robots }, edges }
+        Moment { snapshot: Snapshot { time, robots, props: vec![] }, edges, contacts: vec![] }
     }
 
     fn robot(&self, robot: usize, time: f64) -> RobotState {

@@ -49,6 +49,8 @@ impl Vehicle {
             speed_max: self.speed_max,
             turn_rate_max: self.turn_rate_max,
             acceleration_max: self.acceleration_max,
+            curvature_max: f64::INFINITY,
+            lateral_acceleration_max: f64::INFINITY,
         }
     }
 
@@ -57,6 +59,7 @@ impl Vehicle {
         Body {
             length: self.length,
             width: self.width,
+            height: Body::default().height,
             wheelbase: self.wheelbase,
             track: self.track,
             wheel_radius: self.wheel_radius,
