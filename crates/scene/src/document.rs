@@ -11,7 +11,7 @@ use crate::{
         number, table, text, triple, words,
     },
     types::{
-        BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, LawPart, ObserverPart, SensingPart,
+        BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, LawPart, ObserverPart, PhysicsPart, SensingPart,
         TimePart, VehiclePart, ViewsPart,
     },
 };
@@ -41,7 +41,9 @@ keys! {
         seed: u64 = integer::<u64>(0, i64::MAX as u64), or(1);
         /// Length, control period and mode of the run.
         time: TimePart = table::<TimePart>(), part;
-        /// Kind, limits and measures of every robot that says nothing else.
+        /// How vehicles with wheels and props that move are carried through time.
+        physics: PhysicsPart = table::<PhysicsPart>(), part;
+        /// Kind, limits and measures of every robot that says nothing else: a kind alone, or a table.
         vehicle: VehiclePart = table::<VehiclePart>(), part;
         /// Control law of every follower that says nothing else.
         law: LawPart = table::<LawPart>(), part;

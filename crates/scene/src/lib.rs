@@ -23,6 +23,7 @@ pub use diagnostics::{Diagnostic, Diagnostics};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
 pub use types::{
-    Channel, Environment, Expect, Film, Follow, Law, LawKind, Mode, Observer, ObserverStart, Path, Ramp,
-    Robot, Role, Scene, Sensing, SensingKind, SpeedProfile, Switching, Time, Vehicle, VehicleKind, Views,
+    Channel, Compensation, Environment, Expect, Film, Follow, Ground, Law, LawKind, Mode, Noise, Observer,
+    ObserverStart, OnContact, Patch, Path, Physics, Prop, PropMotion, Ramp, Relief, Robot, Role, Scene, Sensing,
+    SensingKind, SpeedProfile, Switching, Time, Vehicle, VehicleKind, Views,
 };

@@ -2,13 +2,13 @@
 //! everything else.
 
 use crate::{
-    Film, Follow, Path, Robot, Role, Scene, Time, Vehicle, Views,
+    Film, Follow, Ground, Path, Relief, Robot, Role, Scene, Time, Vehicle, Views,
     document::{Document, GroupKeys, RobotKeys},
     graph::{Named, check_graph, check_known},
     groups::{Group, expand},
     text::{Found, Node, Place, Reading},
     types::{
-        EnvironmentPart, ExpectPart, FOLLOW, FilmPart, LawPart, ObserverPart, SensingPart, TimePart,
+        EnvironmentPart, ExpectPart, FOLLOW, FilmPart, LawPart, ObserverPart, PhysicsPart, SensingPart, TimePart,
         VehiclePart, ViewsPart,
     },
 };
@@ -49,6 +49,9 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         description: document.description?.value,
         seed,
         time,
+        physics: document.physics?.value.complete(&PhysicsPart::default()),
+        ground: Ground { relief: Relief::Flat { cell: 0.25 }, friction: 1.0, patches: vec![], terrain: None },
+        props: vec![],
         sensing: document.sensing?.value.complete(&SensingPart::default()),
         robots: drafts.into_iter().map(|draft| draft.robot).collect::<Option<_>>()?,
         environment: document.environment?.value.complete(&EnvironmentPart::default()),

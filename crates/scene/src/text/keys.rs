@@ -228,7 +228,11 @@ macro_rules! settings {
         impl $part {
             /// What is said here, else what `base` says, else the default.
             pub(crate) fn complete(&self, base: &Self) -> $name {
-                let default = $name::default();
+                self.complete_with(base, $name::default())
+            }
+
+            /// What is said here, else what `base` says, else `default`.
+            pub(crate) fn complete_with(&self, base: &Self, default: $name) -> $name {
                 $name { $(
                     $key: match self.$key.as_ref().or(base.$key.as_ref()) {
                         Some(found) => found.value.clone(),

@@ -1,7 +1,8 @@
 //! What a run has to show.
 
 use crate::text::{
-    angle_within, couple, flag, form::Angle, form::Number, lists::Couple, number, optional, settings,
+    angle_within, couple, flag, form::Angle, form::Number, integer, lists::Couple, number, optional,
+    settings,
 };
 use std::f64::consts::PI;
 
@@ -13,6 +14,8 @@ const TURN: Angle = angle_within(0.0, PI);
 const ERROR: Couple<Number, Angle> = couple(LENGTH, TURN);
 /// Sizes of the rates of both.
 const RATES: Couple<Number, Number> = couple(number("m/s").from(0.0), number("rad/s").from(0.0));
+/// Size of a push.
+const IMPULSE: Number = number("N s").from(0.0);
 
 settings! {
     /// What a run has to show, so that a scene is a test. What is left out is not asked for.
@@ -41,5 +44,17 @@ settings! {
         pub rate_peak_at_most: Option<[f64; 2]> = None, optional(RATES);
         /// What no |error| of any edge may exceed over the whole run, [m, rad].
         pub error_peak_at_most: Option<[f64; 2]> = None, optional(ERROR);
+        /// What no |error| of any edge may exceed from `settled_after` to the end, [m, rad].
+        pub settled_error_at_most: Option<[f64; 2]> = None, optional(ERROR);
+        /// Time from which `settled_error_at_most` holds, s.
+        pub settled_after: Option<f64> = None, optional(number("s").from(0.0));
+        /// Number of contacts of two bodies, props and ground included, over the run.
+        pub contacts_exactly: Option<u32> = None, optional(integer::<u32>(0, 1_000_000));
+        /// [least, most] that the largest impulse of any contact may be, N s; 0 where nothing touches.
+        pub contact_impulse_within: Option<[f64; 2]> = None, optional(couple(IMPULSE, IMPULSE));
+        /// Whether every robot has to be able to drive at the end: not overturned, stuck or fallen.
+        pub all_able: bool = false, flag();
+        /// Largest height of any robot's ground point over the ground, m: jumps and climbs.
+        pub lift_at_most: Option<f64> = None, optional(LENGTH);
     }
 }

@@ -4,8 +4,10 @@
 //! are read. No number is NaN and every one lies in the range its description names.
 
 mod expect;
+mod ground;
 mod law;
 mod path;
+mod prop;
 mod robot;
 mod run;
 mod set_point;
@@ -13,17 +15,19 @@ mod stage;
 mod vehicle;
 
 pub use expect::Expect;
+pub use ground::{Ground, Noise, Patch, Relief};
 pub use law::{Law, LawKind, Observer, ObserverStart, Switching};
 pub use path::{Path, SpeedProfile};
+pub use prop::{Prop, PropMotion};
 pub use robot::{Follow, Robot, Role};
-pub use run::{Mode, Sensing, SensingKind, Time};
+pub use run::{Mode, OnContact, Physics, Sensing, SensingKind, Time};
 pub use set_point::{Channel, Ramp};
 pub use stage::{Environment, Film, Views};
-pub use vehicle::{Vehicle, VehicleKind};
+pub use vehicle::{Compensation, Vehicle, VehicleKind};
 
 pub(crate) use expect::ExpectPart;
 pub(crate) use law::{LawPart, ObserverPart};
-pub(crate) use run::{SensingPart, TimePart};
+pub(crate) use run::{PhysicsPart, SensingPart, TimePart};
 pub(crate) use set_point::{BearingForm, DistanceForm};
 pub(crate) use stage::{EnvironmentPart, FOLLOW, FilmPart, ViewsPart};
 pub(crate) use vehicle::VehiclePart;
@@ -41,11 +45,17 @@ pub struct Scene {
     pub seed: u64,
     /// Length, control period and mode of the run.
     pub time: Time,
+    /// How vehicles with wheels and props that move are carried through time.
+    pub physics: Physics,
     /// What a robot knows of its leader.
     pub sensing: Sensing,
+    /// The lie of the land and its grip.
+    pub ground: Ground,
     /// All robots in the order of the file, groups in place of their members, at least one. Names are unique.
     pub robots: Vec<Robot>,
-    /// Ground, light and air.
+    /// Solid things that are no robots, those of patterns after the others. Names are unique, among robots too.
+    pub props: Vec<Prop>,
+    /// Light and air.
     pub environment: Environment,
     /// How pictures look at the run.
     pub views: Views,

@@ -1,4 +1,4 @@
-//! The run as a whole: its time and what is sensed.
+//! The run as a whole: its time, its physics and what is sensed.
 
 use crate::text::{number, settings, words};
 
@@ -41,5 +41,28 @@ words! {
     pub enum SensingKind {
         /// The true relative position, without noise or delay.
         Truth = "truth",
+    }
+}
+
+settings! {
+    /// How vehicles with wheels and props that move are carried through time.
+    #[derive(Copy)]
+    pub struct Physics from PhysicsPart {
+        /// Step of the physics, s.
+        pub step: f64 = 0.005, number("s").from(1e-4).up_to(0.02);
+        /// What a contact of two bodies does to the run.
+        pub on_contact: OnContact = OnContact::Record, OnContact::form();
+    }
+}
+
+words! {
+    /// What a contact of two bodies does to the run.
+    pub enum OnContact {
+        /// It is recorded, and the run goes on.
+        Record = "record",
+        /// It is recorded, and the run ends there.
+        Stop = "stop",
+        /// It is recorded, and the run ends there as failed.
+        Fail = "fail",
     }
 }
