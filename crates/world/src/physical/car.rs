@@ -1,0 +1,201 @@
+//! One wheeled vehicle in the physical world: its driver, its four wheels, and what stands under them.
+
+use super::bodies::Bodies;
+use super::watch::Watch;
+use crate::guide::chase;
+use crate::wheeled::driver::{Driver, Effort, Pace};
+use crate::wheeled::tyre::Brush;
+use crate::wheeled::wheel::{Carriage, Footing, Mounting, Pull, Push};
+use crate::{Unicycle, Wheeled};
+use rapier3d_f64::prelude::{RigidBodyHandle, Vector};
+use std::sync::Arc;
+use vocabulary::{Command, Limits, Motion, Surface, Terrain, Wheel};
+
+/// What vehicles drive on and among.
+#[derive(Debug, Clone)]
+pub(super) struct Surroundings {
+    pub(super) terrain: Option<Arc<Terrain>>,
+    pub(super) grip: f64,
+    /// Whether there are any props that a wheel could climb.
+    pub(super) props: bool,
+}
+
+impl Surroundings {
+    pub(super) fn surface(&self, x: f64, y: f64) -> Surface {
+        let surface = self.terrain.as_ref().map_or(Surface::FLAT, |terrain| terrain.at(x, y));
+        Surface { grip: surface.grip * self.grip, ..surface }
+    }
+}
+
+/// Parameters and state of a vehicle.
+#[derive(Debug, Clone)]
+pub(super) struct Car {
+    /// Of the robot.
+    pub(super) index: usize,
+    pub(super) body: RigidBodyHandle,
+    vehicle: Arc<Wheeled>,
+    limits: Limits,
+    leads: bool,
+    mountings: [Mounting; 4],
+    pace: Pace,
+    command: Command,
+    pub(super) driver: Driver,
+    brushes: [Brush; 4],
+    pub(super) wheels: [Wheel; 4],
+    pub(super) watch: Watch,
+    /// Of all wheels and the air in this physics step.
+    pub(super) push: Push,
+    /// What the wheels do to the loose props they stand on: body, force, place.
+    pub(super) reactions: Vec<(RigidBodyHandle, Vector, Vector)>,
+}
+
+impl Car {
+    pub(super) fn new(
+        index: usize,
+        vehicle: Arc<Wheeled>,
+        body: RigidBodyHandle,
+        robot: &Unicycle,
+        speed: f64,
+        step: f64,
+    ) -> Self {
+        Self {
+            index,
+            body,
+            limits: robot.limits,
+            leads: robot.lead.is_some(),
+            mountings: Mounting::of(&vehicle),
+            pace: Pace::new(&vehicle, step),
+            command: Command::default(),
+            driver: Driver { target: speed, ..Driver::default() },
+            brushes: [Brush::default(); 4],
+            wheels: [Wheel::default(); 4],
+            watch: Watch::default(),
+            push: Push::default(),
+            reactions: Vec::new(),
+            vehicle,
+        }
+    }
+
+    /// Takes the command for the time to come; a lead robot chases its ideal.
+    pub(super) fn take(&mut self, command: Command, ideal: &Motion, now: &Motion) {
+        self.command = if self.leads {
+            chase(ideal, now, self.vehicle.body.wheelbase, &self.limits)
+        } else {
+            self.limits.saturate(command, now.speed)
+        };
+    }
+
+    /// Drives for one physics step of `h` s: from the command to the push of all wheels.
+    pub(super) fn drive(&mut self, bodies: &Bodies, surroundings: &Surroundings, h: f64) {
+        if self.pace.step() != h {
+            self.pace = Pace::new(&self.vehicle, h);
+        }
+        let (carriage, origin) = bodies.carriage(self.body);
+        let [ahead, ..] = carriage.axes;
+        let level = Vector::new(ahead.x, ahead.y, 0.0).normalize_or(Vector::X);
+        let arm = origin - carriage.centre;
+        let speed = (carriage.velocity + carriage.spin.cross(arm)).dot(level);
+        let effort = self.driver.drive(&self.vehicle, &self.pace, self.command, speed, carriage.spin.z);
+        self.reactions.clear();
+        let air = carriage.velocity * (-self.vehicle.drag * carriage.velocity.length());
+        self.push = Push { force: air, ..Push::default() };
+        let climb = surroundings.props && bodies.props_near(self.body, self.vehicle.body.wheel_radius);
+        let headings = headings(&self.vehicle, effort.tan_steering);
+        for k in 0..4 {
+            let pull = Pull { heading: headings[k], drive: effort.drive[k], brake: effort.brake[k] };
+            self.turn_wheel(k, &carriage, origin, &pull, bodies, surroundings, climb, h);
+        }
+        self.note_steering(&effort, &headings);
+    }
+
+    fn turn_wheel(
+        &mut self,
+        k: usize,
+        carriage: &Carriage,
+        origin: Vector,
+        pull: &Pull,
+        bodies: &Bodies,
+        surroundings: &Surroundings,
+        climb: bool,
+        h: f64,
+    ) {
+        let mounting = self.mountings[k];
+        let [ahead, left, up] = carriage.axes;
+        let mount = origin + ahead * mounting.place.x + left * mounting.place.y;
+        let ground = stand(&mounting, mount, up, surroundings);
+        let prop = if climb {
+            let radius = self.vehicle.body.wheel_radius;
+            bodies.prop_under(mount, up, 2.0 * radius, -mounting.droop, surroundings.grip)
+        } else {
+            None
+        };
+        let higher = |(compression, _, _): &(f64, Footing, Option<RigidBodyHandle>)| {
+            *compression > mounting.droop && ground.is_none_or(|(below, _)| *compression > below)
+        };
+        let (footing, below) = match prop.filter(higher) {
+            Some((compression, footing, body)) => (Some((compression, footing)), body),
+            None => (ground, None),
+        };
+        let wheel = &mut self.wheels[k];
+        let Some((compression, footing)) = footing else {
+            // In the air it goes on rolling as it did.
+            wheel.compression = mounting.droop;
+            self.brushes[k] = Brush::default();
+            return;
+        };
+        let push = mounting.push(carriage, &footing, compression, pull, &mut self.brushes[k], h);
+        wheel.compression = compression.min(self.vehicle.body.wheel_radius);
+        wheel.rotation += push.rolling * h / self.vehicle.body.wheel_radius;
+        self.push.force += push.force;
+        self.push.torque += push.torque;
+        if let Some(body) = below {
+            self.reactions.push((body, -push.force, footing.place));
+        }
+    }
+
+    fn note_steering(&mut self, effort: &Effort, headings: &[[f64; 2]; 4]) {
+        // Straight ahead needs no arc tangent.
+        let steered = effort.tan_steering != 0.0;
+        for (wheel, [cos, sin]) in self.wheels.iter_mut().zip(headings).take(2) {
+            wheel.steering = if steered { sin.atan2(*cos) } else { 0.0 };
+        }
+    }
+}
+
+/// Where a wheel stands on the ground, and its compression; `None` in the air.
+fn stand(
+    mounting: &Mounting,
+    mount: Vector,
+    up: Vector,
+    surroundings: &Surroundings,
+) -> Option<(f64, Footing)> {
+    let footing = |at: Vector| {
+        let surface = surroundings.surface(at.x, at.y);
+        let place = Vector::new(at.x, at.y, surface.height);
+        Footing { place, normal: Vector::from(surface.normal), velocity: Vector::ZERO, grip: surface.grip }
+    };
+    let first = footing(mount);
+    let mut compression = mounting.compression(mount, up, first.place, first.normal)?;
+    let mut found = first;
+    if surroundings.terrain.is_some() {
+        // The wheel's axis leans: what it meets lies a little beside what is straight below.
+        found = footing(mount + up * compression);
+        compression = mounting.compression(mount, up, found.place, found.normal)?;
+    }
+    Some((compression, Footing { place: mount + up * compression, ..found }))
+}
+
+/// [cos, sin] of the angle of each wheel: the front ones both point across the same turning centre (Ackermann).
+fn headings(vehicle: &Wheeled, tan: f64) -> [[f64; 2]; 4] {
+    let straight = [1.0, 0.0];
+    if tan == 0.0 {
+        return [straight; 4];
+    }
+    let curvature = tan / vehicle.body.wheelbase;
+    let aside = curvature * vehicle.body.track / 2.0;
+    let towards = |cos: f64| {
+        let norm = cos.hypot(tan);
+        [cos / norm, tan / norm]
+    };
+    [towards(1.0 - aside), towards(1.0 + aside), straight, straight]
+}

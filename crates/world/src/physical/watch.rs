@@ -1,0 +1,57 @@
+//! Notices robots that cannot drive any more.
+
+use crate::wheeled::Driver;
+use vocabulary::{Attitude, Condition, Motion};
+
+/// Cosine of the tilt beyond which a vehicle lies on its side or roof.
+const TILTED: f64 = 0.35;
+/// How long it has to lie there, s.
+const LYING: f64 = 0.5;
+/// A vehicle slower than this does not move, m/s.
+const STILL: f64 = 0.03;
+/// By how much its target speed is then ahead, m/s.
+const PULLING: f64 = 0.15;
+/// How long it has to pull in vain, s.
+const STUCK: f64 = 1.5;
+/// Depth under the ground at which a robot has fallen through or off, m.
+const DEEP: f64 = 1.0;
+/// Nobody drives so far away, m.
+const AWAY: f64 = 1e5;
+
+/// Since when something is wrong with a vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Watch {
+    tilted: Option<f64>,
+    pulling: Option<f64>,
+}
+
+impl Watch {
+    /// The vehicle's condition at `time`, `below` m of its surface.
+    pub(super) fn look(
+        &mut self,
+        time: f64,
+        driver: &Driver,
+        motion: &Motion,
+        attitude: &Attitude,
+        below: f64,
+    ) -> Condition {
+        let lasts = |since: &mut Option<f64>, now: bool, long: f64| {
+            *since = if now { Some(since.unwrap_or(time)) } else { None };
+            since.is_some_and(|since| time - since >= long)
+        };
+        let tilted = attitude.roll.cos() * attitude.pitch.cos() < TILTED;
+        let pulling = motion.speed.abs() < STILL && driver.target - motion.speed > PULLING;
+        let lying = lasts(&mut self.tilted, tilted, LYING);
+        let stuck = lasts(&mut self.pulling, pulling, STUCK);
+        let away = motion.pose.x.abs().max(motion.pose.y.abs()) > AWAY;
+        if below > DEEP || away || !below.is_finite() {
+            Condition::Fallen
+        } else if lying {
+            Condition::Overturned
+        } else if stuck {
+            Condition::Stuck
+        } else {
+            Condition::Able
+        }
+    }
+}

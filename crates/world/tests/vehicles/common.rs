@@ -1,0 +1,102 @@
+//! Vehicles and worlds for the checks.
+
+use std::sync::Arc;
+use vocabulary::{Body, Command, Limits, Motion, Pose, Snapshot};
+use world::wheeled::tyre::Tyre;
+use world::{Actor, Drivetrain, Physical, Stage, Unicycle, Wheeled, World};
+
+/// A 1/10 truck.
+pub(crate) fn truck() -> Wheeled {
+    let body =
+        Body { length: 0.49, width: 0.39, height: 0.32, wheelbase: 0.30, track: 0.285, wheel_radius: 0.0825 };
+    let angle_max = 28_f64.to_radians();
+    Wheeled {
+        body,
+        limits: Limits {
+            speed_min: 0.01,
+            speed_max: 4.0,
+            turn_rate_max: 8.0,
+            acceleration_max: 6.0,
+            curvature_max: angle_max.tan() / body.wheelbase,
+            lateral_acceleration_max: 7.0,
+        },
+        mass: 5.01,
+        mass_height: 0.11,
+        mass_forward: 0.5,
+        inertia_scale: 1.0,
+        clearance: 0.075,
+        spring: 700.0,
+        damping: 40.0,
+        travel: 0.04,
+        tyre: Tyre { friction: 0.9, cornering: 12.0, relaxation: 0.06, rolling: 0.03 },
+        drag: 0.02,
+        drivetrain: Drivetrain::Steered { angle_max, rate: 5.0, lag: 0.08 },
+        drive_force: 30.0,
+        drive_lag: 0.1,
+        brake_force: 35.0,
+        brake_lag: 0.05,
+        compensation: true,
+        speed_gain: 4.0,
+        turn_gain: 0.5,
+    }
+}
+
+/// A robot with two driven wheels.
+pub(crate) fn differential() -> Wheeled {
+    let body =
+        Body { length: 0.42, width: 0.40, height: 0.25, wheelbase: 0.2, track: 0.34, wheel_radius: 0.0825 };
+    let limits = Limits { curvature_max: f64::INFINITY, ..truck().limits };
+    Wheeled {
+        body,
+        limits,
+        drivetrain: Drivetrain::Differential,
+        mass: 8.0,
+        mass_height: 0.09,
+        spring: 3000.0,
+        damping: 150.0,
+        ..truck()
+    }
+}
+
+/// A vehicle at a pose with a speed.
+pub(crate) fn actor(vehicle: &Wheeled, pose: Pose, speed: f64) -> Actor {
+    let robot = Unicycle { pose, speed, limits: vehicle.limits, body: vehicle.body, lead: None };
+    Actor { robot, wheels: Some(Arc::new(vehicle.clone())) }
+}
+
+/// A unicycle at a pose with a speed.
+pub(crate) fn unicycle(pose: Pose, speed: f64) -> Actor {
+    let truck = truck();
+    let robot = Unicycle { pose, speed, limits: truck.limits, body: truck.body, lead: None };
+    Actor { robot, wheels: None }
+}
+
+/// A flat world with these robots.
+pub(crate) fn flat(actors: Vec<Actor>) -> Stage {
+    Stage { actors, props: vec![], terrain: None, grip: 1.0, step: 0.005 }
+}
+
+/// A run of one world, sample by sample.
+pub(crate) struct Run {
+    pub(crate) world: Physical,
+}
+
+impl Run {
+    pub(crate) fn new(stage: Stage) -> Self {
+        Self { world: Physical::new(stage) }
+    }
+
+    /// Applies the same command to all for `time` s, every 10 ms, and looks on.
+    pub(crate) fn hold(&mut self, command: Command, time: f64, mut look: impl FnMut(&Snapshot)) {
+        let commands = vec![command; self.world.snapshot().robots.len()];
+        for _ in 0..(time * 100.0).round() as usize {
+            self.world.apply(&commands);
+            self.world.advance(0.01);
+            look(self.world.snapshot());
+        }
+    }
+
+    pub(crate) fn motion(&self) -> Motion {
+        self.world.snapshot().robots[0].motion
+    }
+}

@@ -1,0 +1,5 @@
+//! The vehicles against independent models: closed forms, the kinematic bicycle, a single-track model, conservation laws.
+
+mod alone;
+mod common;
+mod together;

@@ -1,0 +1,192 @@
+//! Vehicles among each other and among props.
+
+use crate::common::{Run, actor, differential, flat, truck, unicycle};
+use proptest::prelude::*;
+use std::f64::consts::PI;
+use vocabulary::{Command, Contact, Mobility, Placement, Pose, Prop, Snapshot, Solid, Thing};
+use world::{Physical, PropBody, Stage, Wheeled, World};
+
+const FORWARD: Command = Command { acceleration: 0.0, turn_rate: 0.0 };
+
+fn prop(solid: Solid, pose: Pose, mass: Option<f64>) -> PropBody {
+    let mobility = if mass.is_some() { Mobility::Loose } else { Mobility::Fixed };
+    let placement = Placement::upright(pose, 0.0);
+    PropBody {
+        prop: Prop { name: "prop".into(), solid, placement, mobility },
+        mass: mass.unwrap_or(1.0),
+        path: None,
+        friction: 0.6,
+        restitution: 0.1,
+    }
+}
+
+/// Contacts that were told, once each.
+fn told(run: &mut Run, command: Command, time: f64) -> Vec<Contact> {
+    let mut ended = Vec::new();
+    let commands = vec![command; run.world.snapshot().robots.len()];
+    for _ in 0..(time * 100.0) as usize {
+        run.world.apply(&commands);
+        run.world.advance(0.01);
+        ended.extend(run.world.contacts().iter().filter(|c| !c.open).copied());
+    }
+    ended.extend(run.world.contacts().iter().filter(|c| c.open).copied());
+    ended
+}
+
+/// A head-on collision: one contact, and its impulse is the change of momentum of each.
+#[test]
+fn a_head_on_collision_balances_momentum() {
+    let glide = Wheeled { drive_force: 1e-9, brake_force: 1e-9, drag: 0.0, ..truck() };
+    let still = Wheeled { tyre: world::wheeled::tyre::Tyre { rolling: 0.0, ..glide.tyre }, ..glide };
+    let mut run = Run::new(flat(vec![
+        actor(&still, Pose::default(), 1.5),
+        actor(&still, Pose::new(2.0, 0.0, PI), 1.5),
+    ]));
+    let contacts = told(&mut run, FORWARD, 1.5);
+    assert_eq!(contacts.len(), 1, "{contacts:?}");
+    let speeds = run.world.snapshot().robots.iter().map(|r| r.motion.speed).collect::<Vec<_>>();
+    let change = still.mass * (1.5 - speeds[0]);
+    assert!((contacts[0].impulse / change - 1.0).abs() < 0.10, "{} N s, not {change}", contacts[0].impulse);
+    assert_eq!(contacts[0].things, [Thing::Robot(0), Thing::Robot(1)]);
+    assert!(contacts[0].normal[0] > 0.99 && (contacts[0].place[0] - 1.0).abs() < 0.2, "{contacts:?}");
+    assert!((speeds[0] - speeds[1]).abs() < 0.05, "{speeds:?}");
+}
+
+/// Nothing else pushes: what one loses the other gains.
+#[test]
+fn free_contacts_conserve_momentum() {
+    let slick = world::wheeled::tyre::Tyre { friction: 1e-9, ..truck().tyre };
+    let ice = Wheeled { tyre: slick, drag: 0.0, ..truck() };
+    let mut run = Run::new(flat(vec![
+        actor(&ice, Pose::default(), 2.0),
+        actor(&Wheeled { mass: 2.0, ..ice.clone() }, Pose::new(1.5, 0.1, 0.3), 0.0),
+    ]));
+    let momentum = |snapshot: &Snapshot, before: &Snapshot| {
+        let velocity = |k: usize| {
+            // Of the centre of mass, by differences of its place.
+            let place = |s: &Snapshot| s.robots[k].motion.pose.world_from_body(0.15, 0.0);
+            let (now, then) = (place(snapshot), place(before));
+            [(now[0] - then[0]) / 0.01, (now[1] - then[1]) / 0.01]
+        };
+        let (p, q) = (velocity(0), velocity(1));
+        [5.01 * p[0] + 2.0 * q[0], 5.01 * p[1] + 2.0 * q[1]]
+    };
+    let mut before = run.world.snapshot().clone();
+    let mut contacts = 0;
+    for _ in 0..150 {
+        run.world.apply(&[FORWARD; 2]);
+        run.world.advance(0.01);
+        let [px, py] = momentum(run.world.snapshot(), &before);
+        // Pitching moves the centre of mass a little against the pose's point.
+        if run.world.snapshot().time > 0.9 {
+            assert!((px - 10.02).abs() < 0.2 && py.abs() < 0.2, "{px} {py} at {}", before.time);
+        }
+        contacts += run.world.contacts().len();
+        before = run.world.snapshot().clone();
+    }
+    assert!(contacts > 0);
+}
+
+#[test]
+fn nobody_tunnels_at_ten_metres_a_second() {
+    let fast = Wheeled { limits: vocabulary::Limits { speed_max: 12.0, ..truck().limits }, ..truck() };
+    let wall = prop(Solid::Block { size: [0.02, 4.0, 0.5] }, Pose::new(2.0, 0.0, 0.0), None);
+    let mut run = Run::new(Stage { props: vec![wall], ..flat(vec![actor(&fast, Pose::default(), 10.0)]) });
+    let mut farthest = 0.0_f64;
+    run.hold(FORWARD, 1.0, |snapshot| farthest = farthest.max(snapshot.robots[0].motion.pose.x));
+    assert!(farthest < 1.75, "it came to {farthest} m");
+    assert!(!run.world.contacts().is_empty() || farthest > 1.0);
+}
+
+#[test]
+fn a_crate_is_pushed_and_a_ramp_is_climbed() {
+    let ramp = prop(Solid::Wedge { size: [2.0, 1.5, 0.25] }, Pose::new(2.0, 0.0, 0.0), None);
+    let mut run = Run::new(Stage { props: vec![ramp], ..flat(vec![actor(&truck(), Pose::default(), 1.0)]) });
+    run.hold(FORWARD, 2.3, |_| {});
+    let robot = &run.world.snapshot().robots[0];
+    let slope = (0.25_f64 / 2.0).atan();
+    assert!((robot.attitude.pitch + slope).abs() < 0.05, "{:?} {:?}", robot.attitude, robot.motion);
+    assert!((robot.attitude.height - (robot.motion.pose.x - 1.0) * 0.125).abs() < 0.02, "{robot:?}");
+    let crate_ = prop(Solid::Block { size: [0.3, 0.3, 0.3] }, Pose::new(1.5, 0.0, 0.0), Some(1.0));
+    let mut run =
+        Run::new(Stage { props: vec![crate_], ..flat(vec![actor(&truck(), Pose::default(), 1.0)]) });
+    let contacts = told(&mut run, FORWARD, 2.5);
+    assert!(run.world.snapshot().props[0].position[0] > 1.9, "{:?}", run.world.snapshot().props);
+    assert_eq!(contacts[0].things, [Thing::Robot(0), Thing::Prop(0)]);
+}
+
+/// Unicycles have no mass, but their contacts are found.
+#[test]
+fn unicycles_touch_too() {
+    let pillar = prop(Solid::Cylinder { radius: 0.1, height: 1.0 }, Pose::new(1.5, 0.0, 0.0), None);
+    let actors = vec![unicycle(Pose::default(), 1.0), unicycle(Pose::new(3.0, 0.0, PI), 0.5)];
+    let mut run = Run::new(Stage { props: vec![pillar], ..flat(actors) });
+    let contacts = told(&mut run, FORWARD, 2.5);
+    let with = |things: [Thing; 2]| contacts.iter().filter(|c| c.things == things).count();
+    assert_eq!(with([Thing::Robot(0), Thing::Prop(0)]), 1, "{contacts:?}");
+    assert_eq!(with([Thing::Robot(0), Thing::Robot(1)]), 1, "{contacts:?}");
+    let first = contacts.iter().find(|c| c.things == [Thing::Robot(0), Thing::Prop(0)]).unwrap();
+    assert!((first.begin - (1.4 - 0.395)).abs() < 0.02, "{first:?}");
+}
+
+fn crowd(count: usize) -> Stage {
+    let kinds = [truck(), differential()];
+    let place = |k: usize| Pose::new((k % 12) as f64 * 0.9, (k / 12) as f64 * 0.9, k as f64);
+    flat((0..count).map(|k| actor(&kinds[k % 2], place(k), 1.0)).collect())
+}
+
+fn trajectory(world: &mut dyn World, from: usize, steps: usize) -> Vec<[u64; 4]> {
+    let mut bits = Vec::new();
+    for step in from..from + steps {
+        let wave = |k: usize| (k as f64 + step as f64 * 0.02).sin();
+        let count = world.snapshot().robots.len();
+        let commands: Vec<Command> =
+            (0..count).map(|k| Command { acceleration: wave(k), turn_rate: 3.0 * wave(k + 7) }).collect();
+        world.apply(&commands);
+        world.advance(0.01);
+        bits.extend(world.snapshot().robots.iter().map(|r| {
+            let m = &r.motion;
+            [m.pose.x.to_bits(), m.pose.y.to_bits(), m.pose.heading.to_bits(), r.attitude.height.to_bits()]
+        }));
+    }
+    bits
+}
+
+/// A crowd with contacts: the same bits on one thread and on four, and after a save in the middle of it.
+#[test]
+fn the_future_does_not_depend_on_threads_or_saves() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| trajectory(&mut Physical::new(crowd(100)), 0, 150))
+    };
+    let (one, four) = (run(1), run(4));
+    assert!(one == four);
+    let mut world = Physical::new(crowd(100));
+    let mut bits = trajectory(&mut world, 0, 80);
+    assert!(!world.contacts().is_empty(), "the save should fall among contacts");
+    let mut saved = world.save();
+    bits.extend(trajectory(saved.as_mut(), 80, 70));
+    assert!(bits == one);
+    assert!(trajectory(&mut world, 80, 70) == one[8000..]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+    /// Whatever is commanded and wherever they start, nothing breaks and nobody sinks.
+    #[test]
+    fn random_crowds_stay_finite_and_above_the_ground(seed in 0_u64..1 << 40) {
+        let mut world = Physical::new(crowd(24));
+        for step in 0..200_u64 {
+            let chance = |k: u64| ((seed.wrapping_mul(k + 1).wrapping_add(step / 10 * 7919)) % 2001) as f64 / 1000.0 - 1.0;
+            let commands: Vec<Command> = (0..24).map(|k| Command {
+                acceleration: 20.0 * chance(k), turn_rate: 20.0 * chance(k + 99),
+            }).collect();
+            world.apply(&commands);
+            world.advance(0.01);
+        }
+        for robot in &world.snapshot().robots {
+            prop_assert!(robot.motion.pose.x.is_finite() && robot.motion.speed.is_finite());
+            prop_assert!(robot.attitude.height > -0.1, "{:?}", robot.attitude);
+        }
+    }
+}
