@@ -11,9 +11,10 @@ use crate::{
         number, table, text, triple, words,
     },
     types::{
-        BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, LawPart, ObserverPart, PhysicsPart, SensingPart,
-        TimePart, VehiclePart, ViewsPart,
+        BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, LawPart, ObserverPart, PhysicsPart,
+        SensingPart, TimePart, VehiclePart, ViewsPart,
     },
+    vehicle::VehicleForm,
 };
 use serde_json::{Value as Json, json};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -44,7 +45,7 @@ keys! {
         /// How vehicles with wheels and props that move are carried through time.
         physics: PhysicsPart = table::<PhysicsPart>(), part;
         /// Kind, limits and measures of every robot that says nothing else: a kind alone, or a table.
-        vehicle: VehiclePart = table::<VehiclePart>(), part;
+        vehicle: VehiclePart = VehicleForm, part;
         /// Control law of every follower that says nothing else.
         law: LawPart = table::<LawPart>(), part;
         /// Observer of every follower that says nothing else.
@@ -84,7 +85,7 @@ keys! {
         /// Speed of a follower at the start, m/s; its `speed_min` if left out.
         speed: f64 = SPEED, optional;
         /// What differs from the scene's `vehicle`.
-        vehicle: VehiclePart = table::<VehiclePart>(), optional;
+        vehicle: VehiclePart = VehicleForm, optional;
         /// What differs from the scene's `law`.
         law: LawPart = table::<LawPart>(), optional;
         /// What differs from the scene's `observer`.
@@ -124,7 +125,7 @@ keys! {
         /// Speed of the followers at the start, m/s; their `speed_min` if left out.
         speed: f64 = SPEED, optional;
         /// What differs from the scene's `vehicle`.
-        vehicle: VehiclePart = table::<VehiclePart>(), part;
+        vehicle: VehiclePart = VehicleForm, part;
         /// What differs from the scene's `law`.
         law: LawPart = table::<LawPart>(), part;
         /// What differs from the scene's `observer`.

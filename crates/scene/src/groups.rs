@@ -4,8 +4,8 @@ use crate::{
     Channel, Follow, Robot, Role, Vehicle,
     document::{Follows, GroupKeys, MOST_ROBOTS},
     graph::{Named, check_known},
-    resolve::{Defaults, Draft, check_distance, check_path, start_pose, start_speed, vehicle},
-    text::{Found, Node, Reading},
+    resolve::{Defaults, Draft, check_distance, check_path, start_pose, start_speed},
+    text::{Found, Node, Part, Reading},
 };
 use rand_chacha::{
     ChaCha8Rng,
@@ -23,7 +23,7 @@ pub(crate) fn expand(
 ) -> Option<()> {
     let keys = group.keys;
     let count = group.count(drafts.len(), reading)?;
-    let vehicle = vehicle(keys.vehicle.as_ref(), defaults, reading);
+    let vehicle = defaults.vehicle(keys.vehicle.as_ref(), group.node.place, reading);
     let speed = start_speed(keys.speed.as_ref(), &vehicle, reading);
     let law = keys.law.as_ref()?.value.complete(&defaults.law);
     let observer = keys.observer.as_ref()?.value.complete(&defaults.observer);

@@ -18,12 +18,13 @@ mod shape;
 mod table_file;
 mod text;
 mod types;
+mod vehicle;
 
 pub use diagnostics::{Diagnostic, Diagnostics};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
 pub use types::{
     Channel, Compensation, Environment, Expect, Film, Follow, Ground, Law, LawKind, Mode, Noise, Observer,
-    ObserverStart, OnContact, Patch, Path, Physics, Prop, PropMotion, Ramp, Relief, Robot, Role, Scene, Sensing,
-    SensingKind, SpeedProfile, Switching, Time, Vehicle, VehicleKind, Views,
+    ObserverStart, OnContact, Patch, Path, Physics, Prop, PropMotion, Ramp, Relief, Robot, Role, Scene,
+    Sensing, SensingKind, SpeedProfile, Switching, Time, Vehicle, VehicleKind, Views,
 };

@@ -6,11 +6,12 @@ use crate::{
     document::{Document, GroupKeys, RobotKeys},
     graph::{Named, check_graph, check_known},
     groups::{Group, expand},
-    text::{Found, Node, Place, Reading},
+    text::{Found, Node, Part, Place, Reading},
     types::{
-        EnvironmentPart, ExpectPart, FOLLOW, FilmPart, LawPart, ObserverPart, PhysicsPart, SensingPart, TimePart,
-        VehiclePart, ViewsPart,
+        EnvironmentPart, ExpectPart, FOLLOW, FilmPart, LawPart, ObserverPart, PhysicsPart, SensingPart,
+        TimePart, VehiclePart, ViewsPart,
     },
+    vehicle::{Written, check_meaning, usual_kind, vehicle},
 };
 use vocabulary::Pose;
 
@@ -19,6 +20,25 @@ pub(crate) struct Defaults {
     pub(crate) vehicle: VehiclePart,
     pub(crate) law: LawPart,
     pub(crate) observer: ObserverPart,
+    /// Step of the physics, s.
+    pub(crate) step: f64,
+    /// Where that is said.
+    pub(crate) step_place: Option<Place>,
+}
+
+impl Defaults {
+    /// The vehicle of a robot or group that says `own` of it and stands at `place`.
+    pub(crate) fn vehicle(
+        &self,
+        own: Option<&Found<VehiclePart>>,
+        place: Place,
+        reading: &mut Reading,
+    ) -> Vehicle {
+        let nothing = VehiclePart::default();
+        let own = own.map_or(&nothing, |found| &found.value);
+        let place = self.step_place.unwrap_or(place);
+        vehicle(&Written { own, scene: &self.vehicle, step: self.step, place }, reading)
+    }
 }
 
 /// A robot as far as it could be made out, and where it came from.
@@ -33,11 +53,15 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
     // Another version may mean anything.
     document.schema?;
     let seed = document.seed?.value;
+    let physics = document.physics?.value;
     let defaults = Defaults {
         vehicle: document.vehicle?.value,
         law: document.law?.value,
         observer: document.observer?.value,
+        step: physics.complete(&PhysicsPart::default()).step,
+        step_place: physics.step.as_ref().map(|found| found.place),
     };
+    check_meaning(&defaults.vehicle, usual_kind(&defaults.vehicle), reading);
     let time = time(&document.time?.value, reading);
     let (robots, groups) = (document.robots?.value, document.groups?.value);
     let drafts = drafts(&robots, &groups, root, seed, &defaults, reading);
@@ -49,7 +73,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         description: document.description?.value,
         seed,
         time,
-        physics: document.physics?.value.complete(&PhysicsPart::default()),
+        physics: physics.complete(&PhysicsPart::default()),
         ground: Ground { relief: Relief::Flat { cell: 0.25 }, friction: 1.0, patches: vec![], terrain: None },
         props: vec![],
         sensing: document.sensing?.value.complete(&SensingPart::default()),
@@ -114,7 +138,7 @@ fn draft(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Readi
 }
 
 fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Reading) -> Option<Robot> {
-    let vehicle = vehicle(keys.vehicle.as_ref(), defaults, reading);
+    let vehicle = defaults.vehicle(keys.vehicle.as_ref(), node.place, reading);
     let role = role(keys, node, &vehicle, defaults, reading);
     let path = keys.path.as_ref().map(|path| &path.value);
     let pose = match (node.get("pose"), &keys.pose) {
@@ -123,27 +147,6 @@ fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Readi
         (_, pose) => start_pose(pose.as_ref(), path, node.place, reading),
     };
     Some(Robot { name: keys.name.as_ref()?.value.clone(), pose: pose?, vehicle, role: role? })
-}
-
-/// The robot's vehicle, with a note where its limits contradict each other.
-pub(crate) fn vehicle(
-    part: Option<&Found<VehiclePart>>,
-    defaults: &Defaults,
-    reading: &mut Reading,
-) -> Vehicle {
-    let none = VehiclePart::default();
-    let part = part.map_or(&none, |found| &found.value);
-    let vehicle = part.complete(&defaults.vehicle);
-    let written =
-        [&part.speed_max, &part.speed_min, &defaults.vehicle.speed_max, &defaults.vehicle.speed_min];
-    if vehicle.speed_min >= vehicle.speed_max
-        && let Some(found) = written.into_iter().flatten().next()
-    {
-        let Vehicle { speed_min, speed_max, .. } = vehicle;
-        let message = format!("`speed_min` of {speed_min} m/s must be below `speed_max` of {speed_max} m/s");
-        reading.note(found.place, message);
-    }
-    vehicle
 }
 
 fn role(

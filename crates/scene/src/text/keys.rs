@@ -34,6 +34,23 @@ pub(crate) trait Keys: Sized {
 
     /// The JSON Schema of every known key.
     fn fields() -> Vec<Field>;
+
+    /// Every key that was read, and where its value stands.
+    fn places(&self) -> Vec<(&'static str, Place)>;
+}
+
+/// What one table of a file says of something in which every key has a default; made by [`settings!`].
+pub(crate) trait Part {
+    /// It with every key.
+    type Whole: Default;
+
+    /// What is said here, else what `base` says, else `default`.
+    fn complete_with(&self, base: &Self, default: Self::Whole) -> Self::Whole;
+
+    /// What is said here, else what `base` says, else the default.
+    fn complete(&self, base: &Self) -> Self::Whole {
+        self.complete_with(base, Self::Whole::default())
+    }
 }
 
 /// A key as the JSON Schema sees it.
@@ -182,6 +199,11 @@ macro_rules! keys {
                     schema: $crate::text::Form::schema(&$form),
                 }, )+ ]
             }
+
+            fn places(&self) -> Vec<(&'static str, $crate::text::Place)> {
+                let all = [ $( (stringify!($key), self.$key.as_ref().map(|found| found.place)), )+ ];
+                all.into_iter().filter_map(|(key, place)| Some((key, place?))).collect()
+            }
         }
     };
     (@required required) => { true };
@@ -225,14 +247,10 @@ macro_rules! settings {
             struct $part { $( $(#[doc = $doc])* $key: $type = $form, default($default); )+ }
         }
 
-        impl $part {
-            /// What is said here, else what `base` says, else the default.
-            pub(crate) fn complete(&self, base: &Self) -> $name {
-                self.complete_with(base, $name::default())
-            }
+        impl $crate::text::Part for $part {
+            type Whole = $name;
 
-            /// What is said here, else what `base` says, else `default`.
-            pub(crate) fn complete_with(&self, base: &Self, default: $name) -> $name {
+            fn complete_with(&self, base: &Self, default: $name) -> $name {
                 $name { $(
                     $key: match self.$key.as_ref().or(base.$key.as_ref()) {
                         Some(found) => found.value.clone(),

@@ -8,7 +8,7 @@ pub(crate) mod reading;
 pub(crate) mod words;
 
 pub(crate) use form::{Form, angle, angle_of_turns, angle_within, flag, integer, number, optional, text};
-pub(crate) use keys::{Found, Keys, keys, settings, table};
+pub(crate) use keys::{Found, Keys, Part, keys, settings, table};
 pub(crate) use lists::{couple, list, pair, triple};
 pub(crate) use node::{Node, Value};
 pub(crate) use reading::{Place, Reading};

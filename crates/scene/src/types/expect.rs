@@ -1,8 +1,7 @@
 //! What a run has to show.
 
 use crate::text::{
-    angle_within, couple, flag, form::Angle, form::Number, integer, lists::Couple, number, optional,
-    settings,
+    angle_within, couple, flag, form::Angle, form::Number, integer, lists::Couple, number, optional, settings,
 };
 use std::f64::consts::PI;
 

@@ -1,6 +1,7 @@
 //! Robots and their roles.
 
 use super::{Channel, Law, Observer, Path, Vehicle};
+use crate::vehicle::written;
 use serde::{Serialize, Serializer};
 use vocabulary::Pose;
 
@@ -13,6 +14,7 @@ pub struct Robot {
     #[serde(serialize_with = "pose_as_list")]
     pub pose: Pose,
     /// What it is and what it can do.
+    #[serde(serialize_with = "written")]
     pub vehicle: Vehicle,
     /// Whether it leads or follows.
     #[serde(flatten)]
