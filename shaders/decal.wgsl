@@ -21,7 +21,15 @@ struct Varying {
 
 @vertex
 fn vertex(in: Corner) -> Varying {
-    return Varying(frame.clip_from_local * vec4<f32>(in.position, 1.0), in.position, in.kind, in.shape, in.colour);
+    var clip = frame.clip_from_local * vec4<f32>(in.position, 1.0);
+    if frame.terrain.w > 0.5 {
+        // On a terrain depth is tested: a little nearer than the ground in which it lies.
+        let away = in.position - frame.eye.xyz;
+        let pull = 0.012 + 0.004 * length(away) * frame.eye.w;
+        let near = frame.clip_from_local * vec4<f32>(in.position - normalize(mix(frame.forward.xyz, away, frame.eye.w)) * pull, 1.0);
+        clip.z = near.z / near.w * clip.w;
+    }
+    return Varying(clip, in.position, in.kind, in.shape, in.colour);
 }
 
 fn coverage(kind: vec2<f32>, shape: vec2<f32>, pixel: vec2<f32>) -> f32 {

@@ -7,8 +7,8 @@ struct Varying {
     @location(2) albedo: vec3<f32>,
     // x: gloss, y: light of its own, z, w: place on the roof.
     @location(3) surface: vec4<f32>,
-    // x: number or −1, y: opacity.
-    @location(4) @interpolate(flat) marks: vec2<f32>,
+    // x: number or −1, y: opacity, z: height of the ground below.
+    @location(4) @interpolate(flat) marks: vec3<f32>,
 }
 
 @group(2) @binding(0) var digits: texture_2d<f32>;
@@ -44,7 +44,7 @@ fn vertex(in: Corner, instance: Instance) -> Varying {
     out.albedo = made.rgb;
     let own = select(select(0.0, 0.55, in.material == 5u), 0.9, in.material == 4u);
     out.surface = vec4<f32>(made.a, own, in.uv);
-    out.marks = vec2<f32>(select(-1.0, instance.marks.x, in.material == 8u), instance.colour.a);
+    out.marks = vec3<f32>(select(-1.0, instance.marks.x, in.material == 8u), instance.colour.a, instance.marks.z);
     return out;
 }
 
@@ -84,7 +84,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
         sun = facing * sunlight_quick(in.local + normal * 0.012);
     }
     // Near the ground less of the sky is in sight.
-    let open = 0.45 + 0.55 * clamp(in.local.z * 5.0, 0.0, 1.0);
+    let open = 0.45 + 0.55 * clamp((in.local.z - in.marks.z) * 5.0, 0.0, 1.0);
     let diffuse = albedo * (SUN_LIGHT * sun + ambient(normal) * open);
     let grazing = 1.0 - max(dot(normal, to_eye), 0.0);
     let fresnel = 0.035 + 0.5 * grazing * grazing * grazing * grazing;

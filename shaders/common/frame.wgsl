@@ -13,8 +13,9 @@ struct Frame {
     sun: vec4<f32>,
     // x: 1 over the distance at which haze begins, 1/m; z: strength of the grid; y, w: spare.
     ground: vec4<f32>,
+    // The terrain's origin; w is 1 where there is a terrain.
+    terrain: vec4<f32>,
     spare: vec4<f32>,
-    spare_too: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -14,7 +14,7 @@ struct Instance {
     @location(6) row_z: vec4<f32>,
     // Linear colour of the paint, and opacity.
     @location(7) colour: vec4<f32>,
-    // x: number on the roof, negative for none; y: 1 for lead robots.
+    // x: number on the roof, negative for none; y: 1 for lead robots; z: height of the ground below.
     @location(8) marks: vec4<f32>,
 }
 

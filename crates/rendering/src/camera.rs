@@ -3,7 +3,7 @@
 use crate::View;
 use crate::steady::{Extent, Steady};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
-use vocabulary::{Edge, Snapshot};
+use vocabulary::{Cast, Edge, Snapshot, Terrain};
 
 /// A camera without roll: its horizon is level.
 #[derive(Debug, Clone, Copy)]
@@ -19,6 +19,8 @@ pub(crate) struct Camera {
 
 const NEAR: f64 = 0.05;
 const FAR: f64 = 600.0;
+/// Of an eye that the ground would hide, m.
+const LEAST_OVER_GROUND: f64 = 0.28;
 
 /// How a view is composed: the numbers of the snake view, from looking at pictures.
 struct Composition {
@@ -37,17 +39,36 @@ const SNAKE: Composition =
 
 impl Camera {
     /// The camera of `view` on a picture `aspect` times as wide as high.
-    pub(crate) fn of(view: &View, steady: &Steady, snapshot: &Snapshot, edges: &[Edge], aspect: f64) -> Self {
-        match view {
+    pub(crate) fn of(view: &View, steady: &Steady, snapshot: &Snapshot, cast: &Cast, aspect: f64) -> Self {
+        let mut camera = match view {
             View::Snake => snake(steady, aspect),
             View::SnakeEye => snake_eye(steady, aspect),
             View::Top => top(steady, aspect),
             View::Orbit => orbit(steady, snapshot.time, aspect),
-            View::Follow(robot) => follow(steady, snapshot, edges, *robot, aspect),
+            View::Follow(robot) => follow(steady, snapshot, &cast.edges, *robot, aspect),
             View::Fixed { eye, target, field_of_view } => {
-                Self::looking(DVec3::from_array(*eye), DVec3::from_array(*target), *field_of_view, aspect)
+                return Self::looking(
+                    DVec3::from_array(*eye),
+                    DVec3::from_array(*target),
+                    *field_of_view,
+                    aspect,
+                );
             }
+        };
+        if let Some(terrain) = &cast.terrain {
+            camera.stay_above(terrain);
         }
+        camera
+    }
+
+    /// No hill may swallow the eye.
+    fn stay_above(&mut self, terrain: &Terrain) {
+        // Around the eye too, so that it rises before a slope reaches it.
+        let least = [DVec2::ZERO, DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].map(|off| {
+            let place = self.eye.truncate() + off * 0.4;
+            terrain.at(place.x, place.y).height
+        });
+        self.eye.z = least.into_iter().fold(self.eye.z, |z, ground| z.max(ground + LEAST_OVER_GROUND));
     }
 
     /// A camera at `eye` that looks at `target`.
@@ -116,7 +137,7 @@ impl Camera {
     }
 
     /// Moves the eye so that `points` fill the picture between the composition's bounds, turning nothing.
-    fn fit(&mut self, points: &[DVec3], composition: &Composition) {
+    fn fit(&mut self, points: &[DVec3], composition: &Composition, size: f64) {
         self.eye = DVec3::ZERO;
         let seen: Vec<_> = points.iter().map(|p| self.view_from_world(*p)).collect();
         let most = |f: &dyn Fn(&DVec3) -> f64| seen.iter().map(f).fold(f64::NEG_INFINITY, f64::max);
@@ -130,7 +151,7 @@ impl Camera {
         let near = seen.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
         let across = -(left + right) / (2.0 * side);
         let down = -(over + under) / (top - bottom);
-        let z = across.min(down).min(near - composition.nearest);
+        let z = across.min(down).min(near - composition.nearest * size);
         let (lowest, highest) = (over + top * z, bottom * z - under);
         let x = 0.5 * (right - left);
         self.eye = self.right * x + self.up * (0.2 * lowest + 0.8 * highest) + self.forward * z;
@@ -140,7 +161,8 @@ impl Camera {
 /// Outline of the formation from the ground to the robots' height.
 fn corners(extent: &Extent, margin: f64) -> Vec<DVec3> {
     let places = extent.outline(margin).into_iter().map(|[f, l]| extent.frame.world_from_body(f, l));
-    places.flat_map(|[x, y]| [DVec3::new(x, y, 0.0), DVec3::new(x, y, 0.3)]).collect()
+    let [low, high] = [extent.ground[0], extent.ground[1] + 0.3 * extent.size];
+    places.flat_map(|[x, y]| [DVec3::new(x, y, low), DVec3::new(x, y, high)]).collect()
 }
 
 fn snake(steady: &Steady, aspect: f64) -> Camera {
@@ -148,7 +170,7 @@ fn snake(steady: &Steady, aspect: f64) -> Camera {
     let pitch = ((1.0 - 2.0 * SNAKE.horizon) * tangent).atan();
     let extent = steady.formation();
     let mut camera = Camera::pitched(extent.frame.heading, pitch, tangent, aspect);
-    camera.fit(&corners(&extent, 0.16), &SNAKE);
+    camera.fit(&corners(&extent, 0.16 * extent.size), &SNAKE, extent.size);
     camera
 }
 
@@ -159,9 +181,10 @@ fn snake_eye(steady: &Steady, aspect: f64) -> Camera {
     let mut camera = Camera::pitched(heading, 0.08, tangent, aspect);
     // Far enough back for the last row to fit, unless that row is very wide.
     let aside = extent.left.map(|left| (left - extent.rear).abs());
-    let back = ((aside[0].max(aside[1]) + 0.2) / (0.86 * tangent * aspect)).clamp(1.2, 6.0);
+    let size = extent.size;
+    let back = ((aside[0].max(aside[1]) + 0.2 * size) / (0.86 * tangent * aspect)).clamp(1.2 * size, 6.0 * size);
     let [x, y] = extent.frame.world_from_body(extent.forward[0] - back, extent.rear);
-    camera.eye = DVec3::new(x, y, 0.35);
+    camera.eye = DVec3::new(x, y, extent.ground[0] + 0.35 * size);
     camera
 }
 
@@ -169,11 +192,11 @@ fn top(steady: &Steady, aspect: f64) -> Camera {
     let extent = steady.formation();
     let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
     // A circle around the formation, so that turning does not zoom.
-    let grown = extent.grown(0.45);
+    let grown = extent.grown(0.45 * extent.size);
     let across = 0.5 * (grown.forward[1] - grown.forward[0]).hypot(grown.left[1] - grown.left[0]);
-    let half = (across * 1.04 / aspect.min(1.0)).max(1.2);
+    let half = (across * 1.04 / aspect.min(1.0)).max(1.2 * extent.size);
     Camera {
-        eye: DVec3::new(x, y, 100.0),
+        eye: DVec3::new(x, y, 100.0 + extent.ground[1]),
         forward: DVec3::NEG_Z,
         right: DVec3::X,
         up: DVec3::Y,
@@ -185,14 +208,15 @@ fn top(steady: &Steady, aspect: f64) -> Camera {
 fn orbit(steady: &Steady, time: f64, aspect: f64) -> Camera {
     let extent = steady.formation();
     let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
-    let grown = extent.grown(0.4);
+    let grown = extent.grown(0.4 * extent.size);
     let radius = 0.5 * (grown.forward[1] - grown.forward[0]).hypot(grown.left[1] - grown.left[0]);
     let tangent = (19.0_f64).to_radians().tan();
     let distance = radius / (0.85 * tangent * aspect.min(1.78)) + 0.3 * radius;
     // A full turn in 40 s, from behind on the left, so that no side stays hidden.
     let (turn, rise) = (2.6 + time * 0.157, 0.42_f64);
-    let eye = DVec3::new(turn.cos() * rise.cos(), turn.sin() * rise.cos(), rise.sin()) * distance.max(3.0);
-    let target = DVec3::new(x, y, 0.1);
+    let distance = distance.max(3.0 * extent.size);
+    let eye = DVec3::new(turn.cos() * rise.cos(), turn.sin() * rise.cos(), rise.sin()) * distance;
+    let target = DVec3::new(x, y, 0.5 * (extent.ground[0] + extent.ground[1]) + 0.1);
     Camera::looking(target + eye, target, (38.0_f64).to_radians(), aspect)
 }
 
@@ -208,14 +232,15 @@ fn follow(steady: &Steady, snapshot: &Snapshot, edges: &[Edge], robot: usize, as
     let turn = if leader.is_some() { 0.6 * bearing.sin() } else { 0.0 };
     let forward = DVec2::from_angle(heading + turn);
     let tangent = (25.0_f64).to_radians().tan();
-    let (ahead, aside) = (to_leader.dot(forward), to_leader.perp_dot(forward).abs() + 0.2);
+    let size = steady.formation().size;
+    let (ahead, aside) = (to_leader.dot(forward), to_leader.perp_dot(forward).abs() + 0.2 * size);
     // Not farther: the robot that is followed must stay large.
-    let back = (aside / (0.86 * tangent * aspect) - ahead).clamp(2.0, 4.5);
+    let back = (aside / (0.86 * tangent * aspect) - ahead).clamp(2.0 * size, 4.5 * size);
     let rise = 0.5 * back;
     // The robot stands in the lower third.
     let pitch = (rise / back).atan() - (0.48 * tangent).atan();
     let mut camera = Camera::pitched(heading + turn, pitch, tangent, aspect);
-    camera.eye = (DVec2::new(pose.x, pose.y) - forward * back).extend(rise);
+    camera.eye = (DVec2::new(pose.x, pose.y) - forward * back).extend(steady.height(robot) + rise);
     camera
 }
 
@@ -240,10 +265,12 @@ mod tests {
         let edges = [Edge { leader: 0, follower: 1 }];
         for degrees in [0.0, 45.0, 90.0, 120.0, -60.0, -120.0] {
             let (sin, cos) = f64::to_radians(degrees).sin_cos();
-            let mut snapshot = Snapshot { time: 0.0, robots: vec![vocabulary::RobotState::default(); 2] };
+            let robots = vec![vocabulary::RobotState::default(); 2];
+            let mut snapshot = Snapshot { robots, ..Snapshot::default() };
             snapshot.robots[0].motion.pose = vocabulary::Pose::new(2.0 * cos, 2.0 * sin, 0.3);
-            let mut steady = Steady::new(0);
-            steady.push(&vocabulary::Moment { snapshot: snapshot.clone(), edges: vec![] }, &[]);
+            let mut steady = Steady::new(0, 1.0);
+            let moment = vocabulary::Moment { snapshot: snapshot.clone(), ..vocabulary::Moment::default() };
+            steady.push(&moment, &[]);
             let camera = follow(&steady, &snapshot, &edges, 1, 16.0 / 9.0);
             let seen = |x, y| camera.project(DVec3::new(x, y, 0.0)).unwrap();
             let own = seen(0.0, 0.0);

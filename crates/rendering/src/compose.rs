@@ -10,8 +10,8 @@ use crate::passes::ground::TILE;
 use crate::passes::overlay::Shapes;
 use crate::passes::shadow::{SunView, sun_view};
 use crate::passes::text::{Line, TextPass};
-use glam::DVec3;
-use vocabulary::{Light, Moment};
+use glam::{DVec2, DVec3};
+use vocabulary::{Cast, Light, Moment};
 
 /// A multiple of the ground's tile near the robots, so that single precision is enough around it.
 pub(crate) fn local_origin(moment: &Moment) -> DVec3 {
@@ -31,20 +31,43 @@ pub(crate) fn towards_sun(light: &Light) -> DVec3 {
     DVec3::new(along * cos, across * cos, sin)
 }
 
-/// The view that the sun of a stage has of all robots.
-pub(crate) fn sun_over(stage: &Stage<'_>) -> SunView {
-    let (moment, origin, sun) = (stage.moment, stage.origin, stage.sun);
+/// Shadows are cast by props up to this far from the formation, m: farther, a texel would be as wide as a wheel.
+const PROPS_WITHIN: f64 = 13.0;
+
+/// Middle and radius of what the shadow map has to cover: all robots, and the props around them.
+pub(crate) fn shadowed(cast: &Cast, moment: &Moment) -> (DVec2, f64) {
+    let (middle, radius) = robots_within(cast, moment).unwrap_or((DVec3::ZERO, 1.0));
+    let mut reach = radius;
+    for (k, prop) in cast.props.iter().enumerate() {
+        let place = moment.snapshot.props.get(k).unwrap_or(&prop.placement).position;
+        let away = middle.distance(DVec3::from_array(place)) + prop.solid.reach().hypot(prop.solid.extent()[2]);
+        let away = away.min(PROPS_WITHIN.max(radius));
+        // A prop that is too far for the map widens it to its limit only where it comes near.
+        if away.is_finite() && middle.distance(DVec3::from_array(place)) < PROPS_WITHIN + radius {
+            reach = reach.max(away);
+        }
+    }
+    (middle.truncate(), reach)
+}
+
+/// Middle and radius of a ball around all robots; beyond 40 m a shadow is below a texel, wherever the robots are.
+fn robots_within(cast: &Cast, moment: &Moment) -> Option<(DVec3, f64)> {
     let places = || {
-        let poses = moment.snapshot.robots.iter().map(|r| r.motion.pose);
-        poses.filter(|p| p.x.is_finite() && p.y.is_finite()).map(|p| DVec3::new(p.x, p.y, 0.1))
+        let states = moment.snapshot.robots.iter().map(|r| (r.motion.pose, r.attitude.height));
+        states.map(|(p, height)| DVec3::new(p.x, p.y, 0.1 + height)).filter(|p| p.is_finite())
     };
     let low = places().fold(DVec3::INFINITY, DVec3::min);
     let high = places().fold(DVec3::NEG_INFINITY, DVec3::max);
-    if !low.is_finite() {
-        return sun_view(sun, DVec3::ZERO, 1.0);
+    let size = cast.members.iter().map(|m| crate::model::size(&m.body)).fold(1.0, f64::max);
+    low.is_finite().then(|| ((low + high) * 0.5, (0.5 * low.distance(high) + 0.8 * size).min(40.0)))
+}
+
+/// The view that the sun of a stage has of all robots and the props around them.
+pub(crate) fn sun_over(stage: &Stage<'_>) -> SunView {
+    match robots_within(stage.cast, stage.moment) {
+        Some((middle, _)) => sun_view(stage.sun, middle - stage.origin, stage.shadowed.1),
+        None => sun_view(stage.sun, DVec3::ZERO, 1.0),
     }
-    // Beyond 40 m a shadow is below a texel, wherever the robots are.
-    sun_view(sun, (low + high) * 0.5 - origin, (0.5 * low.distance(high) + 0.8).min(40.0))
 }
 
 pub(crate) fn frame(camera: &Camera, stage: &Stage<'_>, sun: &SunView, penumbra: f32) -> Frame {
@@ -53,6 +76,10 @@ pub(crate) fn frame(camera: &Camera, stage: &Stage<'_>, sun: &SunView, penumbra:
     // A large formation is seen from farther away and would drown in it.
     let haze = (stage.cast.light.haze_from.max(0.1) * (0.2 * camera.eye.z).max(1.0)) as f32;
     frame.sun = [x, y, z, if stage.style.shadows { penumbra } else { 0.0 }];
+    if let Some(terrain) = &stage.cast.terrain {
+        let [x, y] = terrain.origin;
+        frame.terrain = (DVec3::new(x, y, 0.0) - stage.origin).as_vec3().extend(1.0).to_array();
+    }
     frame.ground = [1.0 / haze, 0.0, f32::from(u8::from(stage.style.grid)), 0.0];
     frame
 }

@@ -1,24 +1,50 @@
 //! Copies of the models for a moment: where bodies, wheels, cameras and ghosts stand.
 
-use crate::model::{CAMERA, WHEEL_RADIUS};
+use crate::model::Build;
 use crate::paint::Stage;
 use crate::palette::{Rgb, linear};
-use crate::passes::robot::{Crowd, Instance};
-use glam::{DVec3, Mat3, Mat4, Vec3};
-use vocabulary::{Attitude, Body, Member, Pose, RobotState};
+use crate::passes::robot::{Crowd, Instance, Squad};
+use glam::{DVec2, DVec3, Mat3, Mat4, Vec3};
+use vocabulary::{Attitude, Cast, Member, Pose, RobotState};
 
 /// Opacity of a ghost.
 const GHOST: f32 = 0.18;
 
+/// The builds of a cast, each once, and which of them every robot has.
+#[derive(Debug)]
+pub(crate) struct Fleet {
+    pub(crate) builds: Vec<Build>,
+    of: Vec<usize>,
+}
+
+impl Fleet {
+    pub(crate) fn new(cast: &Cast) -> Self {
+        let mut builds: Vec<Build> = Vec::new();
+        let of = cast.members.iter().map(|member| {
+            let build = Build::new(&member.body);
+            builds.iter().position(|b| *b == build).unwrap_or_else(|| {
+                builds.push(build);
+                builds.len() - 1
+            })
+        });
+        let of = of.collect();
+        Self { builds, of }
+    }
+}
+
 /// All copies of the models in a picture.
-pub(crate) fn crowd(stage: &Stage<'_>) -> Crowd {
-    let mut crowd = Crowd::default();
+pub(crate) fn crowd(stage: &Stage<'_>, fleet: &Fleet) -> Crowd {
+    let mut crowd = Crowd { squads: vec![Squad::default(); fleet.builds.len()], ..Crowd::default() };
     for (index, (robot, member)) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members).enumerate() {
-        let look = Look::new(member, index, stage.colours[index]);
-        stand(&mut crowd, robot, &member.body, &look, stage.origin);
+        let mut look = Look::new(member, index, stage.colours[index]);
+        let pose = robot.motion.pose;
+        look.marks[2] = (stage.ground(DVec2::new(pose.x, pose.y)) - stage.origin.z) as f32;
+        let kind = fleet.of[index];
+        let (squad, build) = (&mut crowd.squads[kind], &fleet.builds[kind]);
+        crowd.cameras.push(stand(squad, robot, build, &look, stage.origin));
     }
     if stage.style.ghosts && stage.detail > 0.0 {
-        ghosts(&mut crowd, stage);
+        ghosts(&mut crowd, stage, fleet);
     }
     crowd
 }
@@ -60,23 +86,11 @@ fn local_from_body(pose: &Pose, attitude: &Attitude, origin: DVec3) -> Mat4 {
     Mat4::from_translation(place.as_vec3()) * Mat4::from_mat3(turn)
 }
 
-/// The model's measures are those of the default body; others are stretched from it.
-fn stretch(body: &Body) -> Vec3 {
-    let model = Body::default();
-    let scale = |wanted: f64, modelled: f64| (wanted / modelled).clamp(0.2, 20.0) as f32;
-    let (x, y) = (scale(body.length, model.length), scale(body.width, model.width));
-    Vec3::new(x, y, (x * y).sqrt())
-}
-
-fn stand(crowd: &mut Crowd, robot: &RobotState, body: &Body, look: &Look, origin: DVec3) {
+/// Body and wheels of a robot, and its camera.
+fn stand(squad: &mut Squad, robot: &RobotState, build: &Build, look: &Look, origin: DVec3) -> Instance {
+    let body = &build.body;
     let base = local_from_body(&robot.motion.pose, &robot.attitude, origin);
-    let scale = stretch(body);
-    crowd.bodies.push(look.instance(base * Mat4::from_scale(scale), 1.0));
-    let camera = base
-        * Mat4::from_translation(Vec3::from_array(CAMERA) * scale)
-        * Mat4::from_rotation_z(robot.camera_pan as f32)
-        * Mat4::from_scale(Vec3::splat(scale.z));
-    crowd.cameras.push(look.instance(camera, 1.0));
+    squad.bodies.push(look.instance(base, 1.0));
     let radius = body.wheel_radius as f32;
     let places = [(1.0, 0.5), (1.0, -0.5), (0.0, 0.5), (0.0, -0.5)];
     for (wheel, (forward, left)) in robot.wheels.iter().zip(places) {
@@ -88,12 +102,17 @@ fn stand(crowd: &mut Crowd, robot: &RobotState, body: &Body, look: &Look, origin
             * Mat4::from_translation(raised)
             * Mat4::from_rotation_z(wheel.steering as f32 + about)
             * Mat4::from_rotation_y(roll * wheel.rotation as f32)
-            * Mat4::from_scale(Vec3::splat(radius / WHEEL_RADIUS));
-        crowd.wheels.push(look.instance(model, 1.0));
+            * Mat4::from_scale(build.wheel);
+        squad.wheels.push(look.instance(model, 1.0));
     }
+    let camera = base
+        * Mat4::from_translation(build.camera)
+        * Mat4::from_rotation_z(robot.camera_pan as f32)
+        * Mat4::from_scale(Vec3::splat(build.head));
+    look.instance(camera, 1.0)
 }
 
-fn ghosts(crowd: &mut Crowd, stage: &Stage<'_>) {
+fn ghosts(crowd: &mut Crowd, stage: &Stage<'_>, fleet: &Fleet) {
     let now = stage.moment.snapshot.time;
     for row in &stage.trail.ghosts {
         let age = now - row.time;
@@ -108,16 +127,30 @@ fn ghosts(crowd: &mut Crowd, stage: &Stage<'_>) {
             let alpha = GHOST * stage.detail * (away * late) as f32;
             if alpha > 0.01 {
                 let look = Look::new(member, index, stage.colours[index]);
-                let base = local_from_body(pose, &Attitude::default(), stage.origin);
-                crowd.ghosts.push(look.instance(base * Mat4::from_scale(stretch(&member.body)), alpha));
+                let base = local_from_body(pose, &lying(stage, pose), stage.origin);
+                crowd.squads[fleet.of[index]].ghosts.push(look.instance(base, alpha));
             }
         }
+    }
+}
+
+/// How a body stands that has all its wheels on the ground at a pose.
+fn lying(stage: &Stage<'_>, pose: &Pose) -> Attitude {
+    let Some(terrain) = &stage.cast.terrain else { return Attitude::default() };
+    let surface = terrain.at(pose.x, pose.y);
+    let [x, y, z] = surface.normal;
+    let (sin, cos) = pose.heading.sin_cos();
+    Attitude {
+        height: surface.height,
+        roll: (x * sin - y * cos).atan2(z),
+        pitch: (x * cos + y * sin).atan2(z),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vocabulary::Body;
 
     #[test]
     fn roofs_show_the_number_of_the_name() {

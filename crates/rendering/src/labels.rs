@@ -340,6 +340,8 @@ mod tests {
             style: &style,
             origin: DVec3::ZERO,
             sun: DVec3::Z,
+            size: 1.0,
+            shadowed: (DVec2::ZERO, 1.0),
             detail: 1.0,
         };
         let camera = Camera::looking(DVec3::new(-2.0, 2.0, 1.5), DVec3::new(1.0, 2.0, 0.0), 0.7, 1.0);

@@ -1,12 +1,13 @@
 //! What lies on the ground in one view: contact patches, marks, ribbons, rings, arrows and edges.
 
 use crate::camera::Camera;
+use crate::drape::drape;
 use crate::palette::{self, Rgb};
 use crate::passes::decal::{Corner, Form};
 use crate::trail::{RIBBON, Trail, set_points};
 use crate::{Style, View};
 use glam::{DVec2, DVec3};
-use vocabulary::{Cast, Moment, Pose};
+use vocabulary::{Body, Cast, Moment, Pose, Terrain};
 
 /// Half the width of a ribbon, m.
 const RIBBON_HALF: f64 = 0.03;
@@ -15,8 +16,7 @@ pub(crate) const RING: f64 = 0.25;
 /// Position errors above this are shown by an arrow, m.
 const ARROW_ABOVE: f64 = 0.05;
 
-/// Shadows are lit by the sky alone, so they are a little blue.
-const SHADE: Rgb = [0.015, 0.02, 0.04];
+const RUBBER: Rgb = [0.05, 0.05, 0.055];
 
 /// What the painters look at.
 #[derive(Debug, Clone, Copy)]
@@ -29,24 +29,39 @@ pub(crate) struct Stage<'a> {
     pub(crate) origin: DVec3,
     /// Direction to the sun.
     pub(crate) sun: DVec3,
+    /// How many times as large as the default body the largest is.
+    pub(crate) size: f64,
+    /// Middle and radius of what the shadow map covers, m.
+    pub(crate) shadowed: (DVec2, f64),
     /// How clearly edges, labels, rings and ghosts show: 1 for small formations, 0 for large ones.
     pub(crate) detail: f32,
 }
 
+impl Stage<'_> {
+    /// Height of the ground at a place, m.
+    pub(crate) fn ground(&self, place: DVec2) -> f64 {
+        self.cast.terrain.as_ref().map_or(0.0, |terrain| terrain.at(place.x, place.y).height)
+    }
+}
+
 /// Collects corners; points are world coordinates on the ground.
-struct Painter<'a> {
-    corners: Vec<Corner>,
-    camera: &'a Camera,
+pub(crate) struct Painter<'a> {
+    pub(crate) corners: Vec<Corner>,
+    pub(crate) camera: &'a Camera,
     height: f64,
     /// Pixels of a line that is one wide at scale 1.
-    stage_scale: f64,
-    origin: DVec3,
+    pub(crate) stage_scale: f64,
+    pub(crate) origin: DVec3,
+    terrain: Option<&'a Terrain>,
 }
 
 /// All decals of one view on a tile `height` pixels high.
 pub(crate) fn paint(stage: &Stage<'_>, view: &View, camera: &Camera, height: f64) -> Vec<Corner> {
     let mut painter = Painter::new(stage, camera, height);
     let style = stage.style;
+    if style.contacts {
+        painter.scuffs(stage);
+    }
     // In a crowd the marks of all would cover the road, and cost more than the robots.
     if style.marks && stage.detail > 0.5 {
         painter.marks(stage);
@@ -65,41 +80,72 @@ pub(crate) fn paint(stage: &Stage<'_>, view: &View, camera: &Camera, height: f64
     if style.shadows {
         painter.shadows(stage);
     }
-    painter.contacts(stage);
+    painter.feet(stage);
     painter.dots(stage);
-    painter.corners
+    painter.laid()
 }
 
-/// What shows through the robots: rings and arrows of followers that are not where they should be.
+/// What shows through the robots: rings and arrows of followers that are not where they should be, and flashes where
+/// things touch.
 pub(crate) fn paint_over(stage: &Stage<'_>, camera: &Camera, height: f64) -> Vec<Corner> {
     let mut painter = Painter::new(stage, camera, height);
     if stage.style.set_points {
         painter.errors(stage);
     }
-    painter.corners
+    let mut flashes = Painter::new(stage, camera, height);
+    if stage.style.contacts {
+        flashes.flashes(stage);
+    }
+    let mut corners = painter.laid();
+    corners.append(&mut flashes.corners);
+    corners
 }
 
 impl<'a> Painter<'a> {
-    fn new(stage: &Stage<'_>, camera: &'a Camera, height: f64) -> Self {
+    fn new(stage: &Stage<'a>, camera: &'a Camera, height: f64) -> Self {
         Self {
             corners: Vec::new(),
             camera,
             height,
             stage_scale: stage.style.scale * (height / 720.0).clamp(0.6, 1.0),
             origin: stage.origin,
+            terrain: stage.cast.terrain.as_deref(),
         }
     }
 }
 
 impl Painter<'_> {
-    fn corner(&self, at: DVec2, form: Form, shape: [f32; 2], colour: Rgb, alpha: f32) -> Corner {
+    /// The corners as they lie on the ground.
+    fn laid(self) -> Vec<Corner> {
+        match self.terrain {
+            Some(terrain) => drape(self.corners, terrain, self.origin),
+            None => self.corners,
+        }
+    }
+
+    /// Pixels down the tile.
+    pub(crate) fn lines(&self) -> f64 {
+        self.height
+    }
+
+    /// The point of the ground at a place.
+    pub(crate) fn on(&self, place: DVec2) -> DVec3 {
+        place.extend(self.terrain.map_or(0.0, |terrain| terrain.at(place.x, place.y).height))
+    }
+
+    /// Size of a pixel on the ground at a place, m.
+    pub(crate) fn pixel(&self, place: DVec2) -> f64 {
+        self.camera.metres_per_pixel(self.on(place), self.height)
+    }
+
+    pub(crate) fn corner(&self, at: DVec2, form: Form, shape: [f32; 2], colour: Rgb, alpha: f32) -> Corner {
         let local = at.extend(0.0) - self.origin;
         let [r, g, b] = colour;
         Corner { position: local.as_vec3().to_array(), kind: form.code(), shape, colour: [r, g, b, alpha] }
     }
 
     /// A parallelogram around `middle`.
-    fn patch(&mut self, middle: DVec2, along: DVec2, across: DVec2, form: Form, colour: Rgb, alpha: f32) {
+    pub(crate) fn patch(&mut self, middle: DVec2, along: DVec2, across: DVec2, form: Form, colour: Rgb, alpha: f32) {
         let at = |u: f32, v: f32| {
             let place = middle + along * f64::from(v) + across * f64::from(u);
             self.corner(place, form, [u, v], colour, alpha)
@@ -108,7 +154,7 @@ impl Painter<'_> {
         self.corners.extend([0, 1, 2, 0, 2, 3].map(|k| quad[k]));
     }
 
-    fn line(&mut self, from: DVec2, to: DVec2, width: f64, colour: Rgb, alpha: f32) {
+    pub(crate) fn line(&mut self, from: DVec2, to: DVec2, width: f64, colour: Rgb, alpha: f32) {
         let along = 0.5 * (to - from);
         if along.length() < 1e-6 {
             return;
@@ -123,7 +169,7 @@ impl Painter<'_> {
     /// How long a metre along `direction` appears at `place`, pixels.
     fn pixels_per_metre(&self, place: DVec2, direction: DVec2) -> f64 {
         let step = 0.05;
-        let ends = [place, place + direction * step].map(|p| self.camera.project(p.extend(0.0)));
+        let ends = [place, place + direction * step].map(|p| self.camera.project(self.on(p)));
         let [Some(a), Some(b)] = ends else { return 1e3 };
         let aspect = self.camera.half.x / self.camera.half.y;
         let apart = (b - a) * DVec2::new(aspect, 1.0) * (0.5 * self.height);
@@ -138,7 +184,7 @@ impl Painter<'_> {
         };
         let edge = |k: usize, u: f32| {
             // Wide enough to be seen from afar.
-            let pixel = self.camera.metres_per_pixel(points[k].0.extend(0.0), self.height);
+            let pixel = self.pixel(points[k].0);
             let half = half.max(least * self.stage_scale * pixel);
             let place = points[k].0 + side(k) * (shift + half * f64::from(u));
             self.corner(place, Form::Solid, [u, 0.0], colour, points[k].1)
@@ -156,54 +202,14 @@ impl Painter<'_> {
         for (robot, member) in stage.cast.members.iter().enumerate() {
             let points: Vec<_> = entries
                 .iter()
-                .filter_map(|(_, poses)| poses.get(robot))
-                .chain(stage.moment.snapshot.robots.get(robot).map(|r| &r.motion.pose))
-                .map(|pose| (flat(pose), 0.13))
+                .filter_map(|(_, rows)| rows.get(robot))
+                .map(|mark| (flat(&mark.pose), 0.13 + 0.42 * mark.slide))
+                .chain(stage.moment.snapshot.robots.get(robot).map(|r| (flat(&r.motion.pose), 0.13)))
                 .collect();
             if points.len() > 1 {
                 for side in [-0.5, 0.5] {
-                    self.band(&points, 0.013, 0.0, side * member.body.track, [0.05, 0.05, 0.055]);
+                    self.band(&points, 0.013 / 0.045 * tyre(&member.body), 0.0, side * member.body.track, RUBBER);
                 }
-            }
-        }
-    }
-
-    /// Patches that surely hold the shadow of each robot: few pixels look at the shadow map.
-    fn shadows(&mut self, stage: &Stage<'_>) {
-        let away = -stage.sun.truncate() / stage.sun.z;
-        // What the sun gives, of all the light on flat ground: shadows under a low sun are faint.
-        let share = 2.063 * stage.sun.z / (2.063 * stage.sun.z + 0.41);
-        let alpha = (0.80 * share) as f32;
-        for (robot, member) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members) {
-            // As high as the camera on its mast, and as far around as the shell or the bonnet.
-            let (top, around) = (0.34 + robot.attitude.height, 0.62 * member.body.length);
-            let reach = away * (0.5 * top);
-            let along = reach + reach.normalize_or(DVec2::X) * around;
-            let [x, y] = robot.motion.pose.world_from_body(0.15 * member.body.length, 0.0);
-            let across = along.perp().normalize() * around;
-            self.patch(DVec2::new(x, y) + reach, along, across, Form::Shadow, SHADE, alpha);
-        }
-    }
-
-    fn contacts(&mut self, stage: &Stage<'_>) {
-        for (robot, member) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members) {
-            let (pose, body) = (robot.motion.pose, member.body);
-            let ahead = DVec2::from_angle(pose.heading);
-            let place = |forward, left| DVec2::from_array(pose.world_from_body(forward, left));
-            let middle = place(0.46 * body.wheelbase, 0.0);
-            let sides = (ahead * (0.62 * body.length), ahead.perp() * (0.78 * body.width));
-            self.patch(middle, sides.0, sides.1, Form::SoftBox(0.35), [0.0; 3], 0.50);
-            for (x, y) in [(0.0, -0.5), (0.0, 0.5), (1.0, -0.5), (1.0, 0.5)] {
-                let at = place(x * body.wheelbase, y * body.track);
-                let size = body.wheel_radius;
-                self.patch(
-                    at,
-                    ahead * (1.25 * size),
-                    ahead.perp() * (0.85 * size),
-                    Form::Blob,
-                    [0.0; 3],
-                    0.85,
-                );
             }
         }
     }
@@ -213,7 +219,7 @@ impl Painter<'_> {
         let robots = stage.moment.snapshot.robots.iter().zip(&stage.cast.members).zip(stage.colours);
         for ((robot, member), colour) in robots {
             let middle = flat(&robot.motion.pose);
-            let pixel = self.camera.metres_per_pixel(middle.extend(0.0), self.height) * self.stage_scale;
+            let pixel = self.pixel(middle) * self.stage_scale;
             let alpha = ((26.0 - member.body.length / pixel) / 10.0).clamp(0.0, 0.95) as f32;
             if alpha > 0.0 {
                 let colour = if member.leads { palette::GOLD } else { *colour };
@@ -260,7 +266,7 @@ impl Painter<'_> {
                 let colour = stage.colours[edge.follower];
                 self.ring(goal, colour, 0.55 * strength * stage.detail);
                 let alpha = strength * stage.detail.max(0.3);
-                let pixel = self.stage_scale * self.camera.metres_per_pixel(goal.extend(0.0), self.height);
+                let pixel = self.stage_scale * self.pixel(goal);
                 // A dark rim tells it from a shell of the same colour.
                 self.arrow(from, goal, 1.4 * pixel, palette::INK, 0.75 * alpha);
                 self.arrow(from, goal, 0.0, colour, alpha);
@@ -269,7 +275,7 @@ impl Painter<'_> {
     }
 
     fn ring(&mut self, middle: DVec2, colour: Rgb, alpha: f32) {
-        let thin = (3.6 * self.camera.metres_per_pixel(middle.extend(0.0), self.height)).max(0.024);
+        let thin = (3.6 * self.pixel(middle)).max(0.024);
         let hole = (1.0 - thin / RING).clamp(0.0, 1.0) as f32;
         self.patch(middle, DVec2::X * RING, DVec2::Y * RING, Form::Ring(hole), colour, alpha);
     }
@@ -282,7 +288,7 @@ impl Painter<'_> {
         let head = 0.17_f64.min(0.6 * along.length());
         let foot = to - ahead * head;
         // From afar the rim would leave nothing of the colour.
-        let pixel = self.stage_scale * self.camera.metres_per_pixel(to.extend(0.0), self.height);
+        let pixel = self.stage_scale * self.pixel(to);
         let half = 0.018_f64.max(1.7 * pixel) + rim;
         let (start, end) = (from - ahead * rim, foot - ahead * rim);
         self.patch(0.5 * (start + end), 0.5 * (end - start), across * half, Form::Solid, colour, alpha);
@@ -305,7 +311,14 @@ impl Painter<'_> {
     }
 }
 
-fn flat(pose: &Pose) -> DVec2 {
+/// Width of a tyre, m.
+fn tyre(body: &Body) -> f64 {
+    let radius = body.wheel_radius;
+    // The default tyre leaves a mark of 26 mm.
+    (radius / 0.045 * 0.045).min((body.width - body.track) / 0.04 * 0.045).max(0.2 * radius)
+}
+
+pub(crate) fn flat(pose: &Pose) -> DVec2 {
     DVec2::new(pose.x, pose.y)
 }
 

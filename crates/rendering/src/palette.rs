@@ -5,7 +5,7 @@ use vocabulary::Cast;
 /// An sRGB colour, 0 to 1 a channel.
 pub(crate) type Rgb = [f32; 3];
 
-const fn hex(code: u32) -> Rgb {
+pub(crate) const fn hex(code: u32) -> Rgb {
     [((code >> 16) & 255) as f32 / 255.0, ((code >> 8) & 255) as f32 / 255.0, (code & 255) as f32 / 255.0]
 }
 

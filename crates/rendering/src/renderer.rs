@@ -1,23 +1,17 @@
-//! Moments to pictures. The passes stand in `encode` in the order in which they run.
+//! Moments to pictures.
 
 use crate::camera::Camera;
-use crate::compose::{frame, local_origin, sun_over, towards_sun, words};
-use crate::crowd::crowd;
+use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun, words};
+use crate::crowd::{Fleet, crowd};
+use crate::encode::{Passes, Prepared, Surface};
 use crate::labels::{Window, detail};
 use crate::paint::{Stage, paint, paint_over};
 use crate::palette::{Rgb, robot_colours};
 use crate::passes::Canvas;
-use crate::passes::decal::{Corner, DecalPass};
-use crate::passes::frame::{Frame, FrameGroups};
-use crate::passes::ground::GroundPass;
-use crate::passes::overlay::{OverlayPass, Shapes};
-use crate::passes::robot::{Crowd, Models, RobotPass};
-use crate::passes::shadow::ShadowPass;
-use crate::passes::sky::SkyPass;
-use crate::passes::text::{Line, TextPass};
+use crate::passes::decal::Corner;
+use crate::props::props;
 use crate::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
 use crate::{Error, Gpu, Layout, Style, Trail, View, view::Tile};
-use std::ops::Range;
 use vocabulary::{Cast, Moment, Picture};
 use wgpu::TextureFormat;
 
@@ -27,6 +21,7 @@ pub struct Renderer {
     gpu: Gpu,
     cast: Cast,
     colours: Vec<Rgb>,
+    fleet: Fleet,
     size: (u32, u32),
     canvas: Canvas,
     attachments: Attachments,
@@ -34,52 +29,6 @@ pub struct Renderer {
     /// Two, so that one picture can be drawn while the one before is read.
     offscreen: Vec<Offscreen>,
     waiting: Option<(usize, wgpu::SubmissionIndex)>,
-}
-
-#[derive(Debug)]
-struct Passes {
-    groups: FrameGroups,
-    models: Models,
-    shadow: ShadowPass,
-    robot: RobotPass,
-    ground: GroundPass,
-    decal: DecalPass,
-    sky: SkyPass,
-    overlay: OverlayPass,
-    text: TextPass,
-}
-
-impl Passes {
-    fn new(gpu: &Gpu, canvas: Canvas, robots: usize) -> Self {
-        let (device, queue) = (&gpu.device, &gpu.queue);
-        let flat = Canvas { samples: 1, ..canvas };
-        let mut text = TextPass::new(device, queue, flat);
-        let map = ShadowPass::map(device, robots);
-        let groups = FrameGroups::new(device, &map.0);
-        let digits = text.digits();
-        Self {
-            models: Models::new(device, queue, robots),
-            shadow: ShadowPass::new(device, &groups, map),
-            robot: RobotPass::new(device, queue, canvas, &groups, digits),
-            ground: GroundPass::new(device, queue, canvas, &groups),
-            decal: DecalPass::new(device, canvas, &groups),
-            sky: SkyPass::new(device, canvas, &groups),
-            overlay: OverlayPass::new(device, flat),
-            text,
-            groups,
-        }
-    }
-}
-
-/// What a picture consists of, once its data is on the device.
-struct Prepared {
-    crowd: Crowd,
-    tiles: Vec<Tile>,
-    /// Under the robots and over them.
-    decals: Vec<[Range<u32>; 2]>,
-    /// Whether a view shows ghosts: near the ground they would veil what is behind them.
-    ghosts: Vec<bool>,
-    shapes: Shapes,
 }
 
 impl Renderer {
@@ -109,14 +58,17 @@ impl Renderer {
             return Err(Error::Samples(samples));
         }
         let canvas = Canvas { format, samples };
+        let fleet = Fleet::new(cast);
+        let passes = Passes::new(gpu, canvas, cast, &fleet);
         let renderer = Self {
             gpu: gpu.clone(),
             cast: cast.clone(),
             colours: robot_colours(cast),
+            fleet,
             size: (width, height),
             canvas,
             attachments: Attachments::new(&gpu.device, (width, height), format, samples),
-            passes: Passes::new(gpu, canvas, cast.members.len()),
+            passes,
             offscreen: Vec::new(),
             waiting: None,
         };
@@ -200,7 +152,7 @@ impl Renderer {
     ) -> Result<wgpu::SubmissionIndex, Error> {
         let prepared = self.prepare(trail, moment, layout, style)?;
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.encode(&mut encoder, target, &prepared)?;
+        self.passes.encode(&mut encoder, self.surface(target), &prepared)?;
         let submission = self.gpu.queue.submit([encoder.finish()]);
         self.gpu.check()?;
         Ok(submission)
@@ -220,7 +172,7 @@ impl Renderer {
         }
         let offscreen = &self.offscreen[slot];
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.encode(&mut encoder, &offscreen.view, &prepared)?;
+        self.passes.encode(&mut encoder, self.surface(&offscreen.view), &prepared)?;
         offscreen.copy(&mut encoder);
         let submission = self.gpu.queue.submit([encoder.finish()]);
         self.gpu.check()?;
@@ -243,9 +195,7 @@ impl Renderer {
             .views
             .iter()
             .zip(&tiles)
-            .map(|(view, tile)| {
-                Camera::of(view, &trail.steady, &moment.snapshot, &self.cast.edges, aspect(tile))
-            })
+            .map(|(view, tile)| Camera::of(view, &trail.steady, &moment.snapshot, &self.cast, aspect(tile)))
             .collect();
         let stage = Stage {
             cast: &self.cast,
@@ -255,9 +205,11 @@ impl Renderer {
             style,
             origin: local_origin(moment),
             sun: towards_sun(&self.cast.light),
+            size: trail.steady.formation().size,
+            shadowed: shadowed(&self.cast, moment),
             detail: detail(self.cast.members.len()),
         };
-        let crowd = crowd(&stage);
+        let (crowd, props) = (crowd(&stage, &self.fleet), props(&stage));
         let sun = sun_over(&stage);
         let frames: Vec<_> = cameras
             .iter()
@@ -277,9 +229,15 @@ impl Renderer {
         let windows: Vec<_> =
             cameras.iter().zip(&tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
         let (lines, shapes) = words(&mut self.passes.text, &stage, layout, &windows, height);
-        self.upload(&frames, &crowd, &corners, &shapes, &lines)?;
         let ghosts = layout.views.iter().map(|view| !matches!(view, View::SnakeEye)).collect();
-        Ok(Prepared { crowd, tiles, decals, ghosts, shapes })
+        let prepared = Prepared { crowd, props, tiles, decals, ghosts, shapes };
+        self.passes.upload(&self.gpu, self.size, &frames, &prepared, &corners, &lines)?;
+        Ok(prepared)
+    }
+
+    /// A target with all that drawing into it takes.
+    fn surface<'a>(&'a self, target: &'a wgpu::TextureView) -> Surface<'a> {
+        Surface { target, attachments: &self.attachments, size: self.size }
     }
 
     fn check(&self, moment: &Moment) -> Result<(), Error> {
@@ -291,103 +249,5 @@ impl Renderer {
             }
         }
         Ok(())
-    }
-
-    fn upload(
-        &mut self,
-        frames: &[Frame],
-        crowd: &Crowd,
-        corners: &[Corner],
-        shapes: &Shapes,
-        lines: &[Line],
-    ) -> Result<(), Error> {
-        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        let (width, height) = self.size;
-        let passes = &mut self.passes;
-        passes.groups.fill(queue, frames);
-        passes.models.fill(device, queue, crowd);
-        passes.decal.fill(device, queue, corners);
-        passes.overlay.fill(device, queue, [width as f32, height as f32], shapes);
-        passes.text.fill(device, queue, [width, height], lines).map_err(|e| Error::Device(e.to_string()))
-    }
-
-    fn encode(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        target: &wgpu::TextureView,
-        prepared: &Prepared,
-    ) -> Result<(), Error> {
-        let passes = &self.passes;
-        passes.shadow.draw(encoder, &passes.groups, &passes.models, &prepared.crowd);
-        self.encode_world(encoder, target, prepared);
-        self.encode_overlay(encoder, target, prepared)
-    }
-
-    /// Ground and sky are painted first and without depth: robots cover little of them, and on processors the
-    /// depth test of every pixel would cost more than shading the few that are hidden.
-    fn encode_world(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        target: &wgpu::TextureView,
-        prepared: &Prepared,
-    ) {
-        let passes = &self.passes;
-        let sampled = self.attachments.sampled.as_ref();
-        let store = if sampled.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("world"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: sampled.unwrap_or(target),
-                depth_slice: None,
-                resolve_target: sampled.map(|_| target),
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.attachments.depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(1.0),
-                    store: wgpu::StoreOp::Discard,
-                }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        });
-        for (index, (tile, [under, over])) in prepared.tiles.iter().zip(&prepared.decals).enumerate() {
-            let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
-            pass.set_viewport(x, y, width, height, 0.0, 1.0);
-            pass.set_scissor_rect(tile.x, tile.y, tile.width, tile.height);
-            pass.set_bind_group(0, &passes.groups.view, &[FrameGroups::offset(index)]);
-            pass.set_bind_group(1, &passes.groups.light, &[]);
-            passes.sky.draw(&mut pass);
-            passes.ground.draw(&mut pass);
-            passes.decal.draw(&mut pass, under.clone());
-            passes.robot.draw_solid(&mut pass, &passes.models, &prepared.crowd);
-            if prepared.ghosts[index] {
-                passes.robot.draw_ghosts(&mut pass, &passes.models, &prepared.crowd);
-            }
-            passes.decal.draw(&mut pass, over.clone());
-        }
-        // On GL the samples are resolved at the end of the pass within whatever scissor is set then.
-        pass.set_scissor_rect(0, 0, self.size.0, self.size.1);
-    }
-
-    fn encode_overlay(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        target: &wgpu::TextureView,
-        prepared: &Prepared,
-    ) -> Result<(), Error> {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("overlay"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
-        self.passes.overlay.draw(&mut pass, &prepared.shapes);
-        self.passes.text.draw(&mut pass).map_err(|e| Error::Device(e.to_string()))
     }
 }

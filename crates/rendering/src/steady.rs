@@ -22,6 +22,10 @@ pub(crate) struct Extent {
     pub(crate) cuts: [f64; 4],
     /// To the left of the lead robot, where the rear of the formation is, m.
     pub(crate) rear: f64,
+    /// Lowest and highest ground under a robot, m.
+    pub(crate) ground: [f64; 2],
+    /// How many times as large as the default body the largest is; 1 or more.
+    pub(crate) size: f64,
 }
 
 impl Extent {
@@ -54,13 +58,16 @@ const CORNERS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.
 pub(crate) struct Steady {
     lead: usize,
     time: Option<f64>,
+    size: f64,
     headings: Vec<f64>,
+    heights: Vec<f64>,
     extent: Option<Extent>,
 }
 
 impl Steady {
-    pub(crate) fn new(lead: usize) -> Self {
-        Self { lead, ..Self::default() }
+    /// For robots of which the largest is `size` times as large as the default body.
+    pub(crate) fn new(lead: usize, size: f64) -> Self {
+        Self { lead, size: size.max(1.0), ..Self::default() }
     }
 
     /// Takes in a moment together with the set points on the ground.
@@ -85,6 +92,11 @@ impl Steady {
         self.headings.get(robot).copied()
     }
 
+    /// The filtered height of a robot, m.
+    pub(crate) fn height(&self, robot: usize) -> f64 {
+        self.heights.get(robot).copied().unwrap_or_default()
+    }
+
     /// The formation as the camera sees it.
     pub(crate) fn formation(&self) -> Extent {
         self.extent.unwrap_or(Extent {
@@ -93,6 +105,8 @@ impl Steady {
             left: [-1.0, 1.0],
             cuts: [0.0; 4],
             rear: 0.0,
+            ground: [0.0; 2],
+            size: self.size.max(1.0),
         })
     }
 
@@ -104,6 +118,11 @@ impl Steady {
             let heading = robot.motion.pose.heading;
             *kept =
                 if kept.is_nan() { heading } else { *kept + share * (nearest_turn(heading, *kept) - *kept) };
+        }
+        self.heights.resize(robots.len(), f64::NAN);
+        for (kept, robot) in self.heights.iter_mut().zip(robots) {
+            let height = robot.attitude.height;
+            *kept = if kept.is_nan() { height } else { *kept + share * (height - *kept) };
         }
     }
 
@@ -133,7 +152,10 @@ impl Steady {
             let pick = |[low, high]: [f64; 2], sign: f64| if sign > 0.0 { high } else { -low };
             (pick(forward, f) + pick(left, l) - most).max(0.0)
         });
-        Some(Extent { frame, forward, left, cuts, rear })
+        let heights = || robots.iter().map(|r| r.attitude.height).filter(|h| h.is_finite());
+        let ground = [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)];
+        let ground = if ground[0] <= ground[1] { ground } else { [0.0; 2] };
+        Some(Extent { frame, forward, left, cuts, rear, ground, size: self.size.max(1.0) })
     }
 }
 
@@ -157,6 +179,8 @@ fn approach(old: &Extent, wanted: &Extent, step: f64) -> Extent {
         left: range(old.left, wanted.left),
         cuts: std::array::from_fn(|k| mix(old.cuts[k], wanted.cuts[k])),
         rear: mix(old.rear, wanted.rear),
+        ground: std::array::from_fn(|k| mix(old.ground[k], wanted.ground[k])),
+        size: wanted.size,
     }
 }
 
@@ -177,7 +201,7 @@ mod tests {
 
     #[test]
     fn a_turn_is_followed_without_overshoot() {
-        let mut steady = Steady::new(0);
+        let mut steady = Steady::new(0, 1.0);
         steady.push(&moment(0.0, &[[0.0, 0.0, 3.0]]), &[]);
         let mut last = 3.0;
         for k in 1..800 {
@@ -191,7 +215,7 @@ mod tests {
 
     #[test]
     fn a_stray_robot_zooms_slowly() {
-        let mut steady = Steady::new(0);
+        let mut steady = Steady::new(0, 1.0);
         steady.push(&moment(0.0, &[[0.0; 3], [-2.0, -2.0, 0.0]]), &[]);
         let size = |s: &Steady| s.formation().left[1] - s.formation().left[0];
         let before = size(&steady);

@@ -58,6 +58,8 @@ elements! {
     shadows = "shadows",
     /// Tyre marks that stay.
     marks = "marks",
+    /// Flashes where things touch, and the marks that stay there.
+    contacts = "contacts",
 }
 
 impl Style {

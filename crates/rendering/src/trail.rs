@@ -2,7 +2,7 @@
 
 use crate::steady::Steady;
 use std::collections::VecDeque;
-use vocabulary::{Cast, Moment, Pose};
+use vocabulary::{Cast, Contact, Moment, Pose, wrap};
 
 /// How long a ribbon is, s.
 pub(crate) const RIBBON: f64 = 12.0;
@@ -13,13 +13,25 @@ const RIBBON_POINTS: usize = 160;
 /// Most points of a tyre mark or of a curve in the chart, which both keep the whole run.
 const CURVE_POINTS: usize = 360;
 
+/// Most contacts that are remembered.
+const TOUCHES: usize = 256;
+/// A tyre that slides by less than this does not show it, rad; by the second it leaves all its rubber.
+const SLIDE: [f64; 2] = [0.052, 0.35];
+
 /// What a picture needs to know of the past. It depends on the pushed moments alone.
 #[derive(Debug, Clone)]
 pub struct Trail {
     pub(crate) steady: Steady,
     pub(crate) ribbons: VecDeque<Row>,
     pub(crate) ghosts: VecDeque<Row>,
-    pub(crate) marks: Thinning<Vec<Pose>>,
+    pub(crate) marks: Thinning<Vec<Mark>>,
+    /// Contacts by their first sight, old to new.
+    pub(crate) touches: VecDeque<Contact>,
+    /// Contacts up to this number are known or forgotten.
+    forgotten: Option<u64>,
+    /// Of the moment before, and how each robot has slid since the last mark.
+    before: Vec<Pose>,
+    slides: Vec<f32>,
     pub(crate) errors: Thinning<Vec<[f32; 2]>>,
     cast: Cast,
     spacing: f64,
@@ -32,6 +44,13 @@ pub(crate) struct Row {
     pub(crate) poses: Vec<Pose>,
 }
 
+/// Where a robot drove, and how much it slid there: 0 to 1.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Mark {
+    pub(crate) pose: Pose,
+    pub(crate) slide: f32,
+}
+
 impl Trail {
     /// An empty memory of a run by `cast`.
     pub fn new(cast: &Cast) -> Self {
@@ -39,10 +58,14 @@ impl Trail {
         // Many robots have coarser ribbons: the picture shows each of them smaller.
         let points = RIBBON_POINTS.min(6_000 / cast.members.len().max(1)).max(48);
         Self {
-            steady: Steady::new(lead),
+            steady: Steady::new(lead, sizes(cast)),
             ribbons: VecDeque::new(),
             ghosts: VecDeque::new(),
             marks: Thinning::new(),
+            touches: VecDeque::new(),
+            forgotten: None,
+            before: Vec::new(),
+            slides: Vec::new(),
             errors: Thinning::new(),
             cast: cast.clone(),
             spacing: RIBBON / points as f64,
@@ -62,10 +85,58 @@ impl Trail {
         let poses = || moment.snapshot.robots.iter().map(|r| r.motion.pose).collect::<Vec<_>>();
         keep(&mut self.ribbons, time, self.spacing, RIBBON, poses);
         keep(&mut self.ghosts, time, GHOST_EVERY, RIBBON, poses);
-        self.marks.push(time, poses);
+        self.touch(&moment.contacts);
+        self.slide(poses());
+        let (before, slides) = (&self.before, &self.slides);
+        let marks = || before.iter().zip(slides).map(|(pose, slide)| Mark { pose: *pose, slide: *slide }).collect();
+        if self.marks.push(time, marks) {
+            self.slides.fill(0.0);
+        }
         let error = |e: &[f64; 2]| e.map(|x| x as f32);
         self.errors.push(time, || moment.edges.iter().map(|e| error(&e.error)).collect());
     }
+
+    /// Remembers contacts that are new.
+    fn touch(&mut self, contacts: &[Contact]) {
+        for contact in contacts {
+            let known = self.touches.iter().any(|t| t.number == contact.number);
+            let place = contact.place.iter().all(|x| x.is_finite());
+            if known || !place || self.forgotten.is_some_and(|number| contact.number <= number) {
+                continue;
+            }
+            self.touches.push_back(*contact);
+            if self.touches.len() > TOUCHES {
+                self.forgotten = self.touches.pop_front().map(|t| t.number).max(self.forgotten);
+            }
+        }
+    }
+
+    /// Compares where the robots went since the moment before with where they look.
+    fn slide(&mut self, poses: Vec<Pose>) {
+        self.slides.resize(poses.len(), 0.0);
+        for ((slide, from), to) in self.slides.iter_mut().zip(&self.before).zip(&poses) {
+            *slide = slide.max(slid(from, to));
+        }
+        self.before = poses;
+    }
+}
+
+/// How much a robot slid between two poses, 0 to 1.
+fn slid(from: &Pose, to: &Pose) -> f32 {
+    let (dx, dy) = (to.x - from.x, to.y - from.y);
+    if dx.hypot(dy) < 1e-3 {
+        return 0.0;
+    }
+    let heading = from.heading + 0.5 * wrap(to.heading - from.heading);
+    let angle = wrap(dy.atan2(dx) - heading).abs();
+    // Backwards is no slide.
+    let angle = angle.min(std::f64::consts::PI - angle);
+    ((angle - SLIDE[0]) / (SLIDE[1] - SLIDE[0])).clamp(0.0, 1.0) as f32
+}
+
+/// How many times as large as the default body every robot is.
+fn sizes(cast: &Cast) -> f64 {
+    cast.members.iter().map(|m| crate::model::size(&m.body)).fold(0.0, f64::max)
 }
 
 /// Where on the ground each edge wants its follower, m.
@@ -106,10 +177,11 @@ impl<T> Thinning<T> {
         Self { entries: Vec::new(), every: 0.1 }
     }
 
-    fn push(&mut self, time: f64, value: impl FnOnce() -> T) {
+    /// Whether the value was due and is kept.
+    fn push(&mut self, time: f64, value: impl FnOnce() -> T) -> bool {
         let due = |last: f64| (time / self.every + 1e-9).floor() > (last / self.every + 1e-9).floor();
         if self.entries.last().is_some_and(|(last, _)| !due(*last)) {
-            return;
+            return false;
         }
         if self.entries.len() >= CURVE_POINTS {
             let mut index = 0;
@@ -120,6 +192,7 @@ impl<T> Thinning<T> {
             self.every *= 2.0;
         }
         self.entries.push((time, value()));
+        true
     }
 }
 
@@ -142,5 +215,37 @@ mod tests {
         assert!(trail.ghosts.len() <= 6);
         assert!(trail.marks.entries.len() <= CURVE_POINTS && trail.marks.entries.len() > CURVE_POINTS / 4);
         assert!(trail.marks.entries[0].0 == 0.0);
+    }
+
+    #[test]
+    fn contacts_are_remembered_once_and_not_for_ever() {
+        let mut trail = Trail::new(&Cast::default());
+        let contact = |number: u64, begin: f64| Contact {
+            number,
+            things: [vocabulary::Thing::Robot(0), vocabulary::Thing::Ground],
+            begin,
+            end: begin,
+            open: true,
+            place: [0.0; 3],
+            normal: [0.0, 0.0, 1.0],
+            impulse: 0.0,
+        };
+        for k in 0..2_000_u64 {
+            let contacts = vec![contact(k, k as f64), contact(k / 2, k as f64)];
+            let snapshot = Snapshot { time: k as f64, ..Snapshot::default() };
+            trail.push(&Moment { snapshot, contacts, ..Moment::default() });
+        }
+        assert_eq!(trail.touches.len(), TOUCHES);
+        assert!(trail.touches.iter().all(|t| t.begin == t.number as f64));
+    }
+
+    #[test]
+    fn only_sideways_is_a_slide() {
+        let pose = |x, y, heading| Pose::new(x, y, heading);
+        assert_eq!(slid(&pose(0.0, 0.0, 0.0), &pose(0.1, 0.0, 0.0)), 0.0);
+        assert_eq!(slid(&pose(0.0, 0.0, 0.0), &pose(-0.1, 0.0, 0.0)), 0.0);
+        assert_eq!(slid(&pose(0.0, 0.0, 3.1), &pose(-0.1, 0.0, -3.1)), 0.0);
+        assert!(slid(&pose(0.0, 0.0, 0.0), &pose(0.1, 0.01, 0.0)) > 0.1);
+        assert_eq!(slid(&pose(0.0, 0.0, 0.0), &pose(0.0, 0.1, 0.0)), 1.0);
     }
 }

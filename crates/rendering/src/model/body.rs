@@ -1,6 +1,6 @@
 //! Bonnet, cabin, bumpers, arches and lights.
 
-use super::{Material, Mesh};
+use super::{Build, Material, Mesh, chassis};
 use glam::Vec3;
 
 /// Half a turn of a rounded rectangle would be too many corners for a body 60 pixels long; this has 14.
@@ -84,13 +84,14 @@ fn cabin(mesh: &mut Mesh) {
 }
 
 /// An arch over a wheel: a strip of a ring around the axle.
-fn arch(mesh: &mut Mesh, axle: f32, side: f32) {
+fn arch(mesh: &mut Mesh, build: &Build, axle: f32, side: f32) {
+    let (tall, wide) = (build.wheel.x, build.arch());
     let from = mesh.vertices.len();
     let at = |k: i32, radius: f32, y: f32| {
         let turn = (18.0 + 20.571 * k as f32).to_radians();
-        Vec3::new(axle + radius * turn.cos(), y, 0.045 + radius * turn.sin())
+        Vec3::new(axle + tall * radius * turn.cos(), y, tall * (0.045 + radius * turn.sin()))
     };
-    let (inner, outer) = (0.074 * side, 0.121 * side);
+    let (inner, outer) = (0.074 * side * wide, 0.121 * side * wide);
     let mut face = |corners: [Vec3; 4]| {
         let [a, b, c, d] = corners;
         mesh.quad(if side > 0.0 { [a, b, c, d] } else { [d, c, b, a] }, Material::Paint);
@@ -156,16 +157,29 @@ pub(super) fn outline(mesh: &mut Mesh) {
     cabin(mesh);
 }
 
-pub(super) fn build(mesh: &mut Mesh, plain: bool) {
-    outline(mesh);
-    lights(mesh);
-    stripe(mesh);
+/// A part as modelled, moved to where it is on this hull.
+fn fitted(mesh: &mut Mesh, build: &Build, part: fn(&mut Mesh)) {
+    let mut modelled = Mesh::default();
+    part(&mut modelled);
+    build.fit(&mut modelled);
+    mesh.append(&modelled, Vec3::ZERO);
+}
+
+pub(super) fn build(mesh: &mut Mesh, plain: bool, build: &Build) {
+    fitted(mesh, build, outline);
+    fitted(mesh, build, lights);
+    fitted(mesh, build, stripe);
+    if build.high {
+        chassis::build(mesh, build);
+    }
     if plain {
         return;
     }
-    for axle in [0.0, 0.27] {
-        arch(mesh, axle, 1.0);
-        arch(mesh, axle, -1.0);
+    if !build.high {
+        for axle in [0.0, build.body.wheelbase as f32] {
+            arch(mesh, build, axle, 1.0);
+            arch(mesh, build, axle, -1.0);
+        }
     }
-    bumpers(mesh);
+    fitted(mesh, build, bumpers);
 }

@@ -101,6 +101,17 @@ impl Mesh {
         }
     }
 
+    /// Normals of the faces as they are now, after corners were moved, rounded where they nearly agree.
+    pub(crate) fn face(&mut self) {
+        for triangle in self.vertices.chunks_exact_mut(3) {
+            let at = [0, 1, 2].map(|k| Vec3::from_array(triangle[k].position));
+            let old = Vec3::from_array(triangle[0].normal);
+            let normal = (at[1] - at[0]).cross(at[2] - at[0]).normalize_or(old).to_array();
+            triangle.iter_mut().for_each(|vertex| vertex.normal = normal);
+        }
+        self.smooth(0, 0.6);
+    }
+
     /// Everything of `other`, moved.
     pub(crate) fn append(&mut self, other: &Self, by: Vec3) {
         let moved = |v: &Vertex| Vertex { position: (Vec3::from_array(v.position) + by).to_array(), ..*v };
@@ -152,7 +163,11 @@ mod tests {
 
     #[test]
     fn models_are_small_and_point_outwards() {
-        for (mesh, most) in [(super::super::body(false), 2600), (super::super::wheel(false), 500)] {
+        for (mesh, most) in [
+            (super::super::body(false, &super::super::Build::new(&vocabulary::Body::default())), 2600),
+            (super::super::wheel(false, false), 500),
+            (super::super::wheel(false, true), 1200),
+        ] {
             let triangles = mesh.vertices.len() / 3;
             assert!(triangles < most, "{triangles}");
             assert!(mesh.vertices.iter().all(|v| (Vec3::from_array(v.normal).length() - 1.0).abs() < 1e-3));

@@ -1,12 +1,16 @@
 //! The robots' shapes, modelled in code: x forward, y left, z up, m, the origin on the ground under the rear axle.
 
 mod body;
+mod build;
+mod chassis;
 mod mesh;
 mod shell;
+mod solid;
 mod wheel;
 
+pub(crate) use build::{Build, size};
 pub(crate) use mesh::{Mesh, Vertex};
-pub(crate) use wheel::RADIUS as WHEEL_RADIUS;
+pub(crate) use solid::solids;
 
 /// What a surface is made of; the shader's table has the same order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,24 +30,25 @@ pub(crate) enum Material {
 }
 
 /// Body, shell and mast of a robot, all that moves as one; `plain` leaves out what is lost in a crowd.
-pub(crate) fn body(plain: bool) -> Mesh {
+pub(crate) fn body(plain: bool, build: &Build) -> Mesh {
     let mut mesh = Mesh::default();
-    body::build(&mut mesh, plain);
-    shell::build(&mut mesh, plain);
+    body::build(&mut mesh, plain, build);
+    shell::build(&mut mesh, plain, build);
     mesh
 }
 
 /// The outline of a robot, with few faces: what a ghost needs.
-pub(crate) fn ghost() -> Mesh {
+pub(crate) fn ghost(build: &Build) -> Mesh {
     let mut mesh = Mesh::default();
     body::outline(&mut mesh);
-    shell::outline(&mut mesh);
+    build.fit(&mut mesh);
+    shell::outline(&mut mesh, build);
     mesh
 }
 
-/// A wheel around its hub, the outer face to the left.
-pub(crate) fn wheel(plain: bool) -> Mesh {
-    wheel::wheel(plain)
+/// A wheel around its hub, the outer face to the left; with `lugs` for rough ground.
+pub(crate) fn wheel(plain: bool, lugs: bool) -> Mesh {
+    wheel::wheel(plain, lugs)
 }
 
 /// The camera's head around its pan axis.
@@ -52,4 +57,4 @@ pub(crate) fn camera() -> Mesh {
 }
 
 /// Where the camera's head sits, in the frame of the body.
-pub(crate) const CAMERA: [f32; 3] = [0.105, 0.0, 0.30];
+const CAMERA: [f32; 3] = [0.105, 0.0, 0.30];

@@ -1,6 +1,6 @@
 //! The shell that carries the identification tags, and the camera on its mast.
 
-use super::{CAMERA, Material, Mesh};
+use super::{Build, CAMERA, Material, Mesh};
 use glam::{Vec2, Vec3};
 
 const APOTHEM: f32 = 0.187;
@@ -44,12 +44,31 @@ fn ring(mesh: &mut Mesh, low: f32, high: f32, outset: f32, outer: Material, inne
 }
 
 /// The five faces, seen from both sides.
-pub(super) fn outline(mesh: &mut Mesh) {
-    let (low, high) = (CENTRE - 0.5 * HEIGHT, CENTRE + 0.5 * HEIGHT);
-    ring(mesh, low, high, 0.0, Material::Paint, Material::Paint);
+pub(super) fn outline(mesh: &mut Mesh, build: &Build) {
+    if build.shell.is_some() {
+        let mut shell = Mesh::default();
+        let (low, high) = (CENTRE - 0.5 * HEIGHT, CENTRE + 0.5 * HEIGHT);
+        ring(&mut shell, low, high, 0.0, Material::Paint, Material::Paint);
+        build.fit_shell(&mut shell);
+        mesh.append(&shell, Vec3::ZERO);
+    }
 }
 
-pub(super) fn build(mesh: &mut Mesh, plain: bool) {
+pub(super) fn build(mesh: &mut Mesh, plain: bool, build: &Build) {
+    if build.shell.is_none() {
+        // The camera alone, on a short mast on the roof.
+        let [x, z, roof] = [build.camera.x, build.camera.z, build.body.height as f32];
+        mesh.cuboid([x - 0.02, -0.02, roof - 0.05], [x + 0.02, 0.02, z - 0.05], Material::Metal);
+        return;
+    }
+    let mut shell = Mesh::default();
+    modelled(&mut shell, plain);
+    build.fit_shell(&mut shell);
+    mesh.append(&shell, Vec3::ZERO);
+}
+
+/// Shell and mast of the default body.
+fn modelled(mesh: &mut Mesh, plain: bool) {
     let (low, high) = (CENTRE - 0.5 * HEIGHT, CENTRE + 0.5 * HEIGHT);
     ring(mesh, low, high, 0.0, Material::Shell, Material::Lining);
     // Rims in the robot's colour, outside the area of the tags.

@@ -6,9 +6,11 @@ use glam::{Vec2, Vec3};
 /// As modelled, m.
 pub(crate) const RADIUS: f32 = 0.045;
 const SPOKES: usize = 5;
+/// Blocks in each of the two rows of a coarse tread.
+const LUGS: usize = 15;
 
 /// Turned tyre and rim, spokes, hub; `plain` is a disc with spokes.
-pub(super) fn wheel(plain: bool) -> Mesh {
+pub(super) fn wheel(plain: bool, lugs: bool) -> Mesh {
     let mut mesh = Mesh::default();
     let half = 0.018;
     let profile = [
@@ -28,6 +30,9 @@ pub(super) fn wheel(plain: bool) -> Mesh {
     }
     mesh.turned(&profile, 18, |s| if s == 6 { Material::Plastic } else { Material::Tyre });
     mesh.smooth(0, 0.7);
+    if lugs {
+        tread(&mut mesh);
+    }
     let at = |angle: f32, radius: f32, y: f32| {
         let turn = Vec2::from_angle(angle) * radius;
         Vec3::new(turn.x, y, turn.y)
@@ -52,4 +57,40 @@ pub(super) fn wheel(plain: bool) -> Mesh {
     hub.turned(&[[0.007, 0.0125], [0.0165, 0.0115], [0.0165, 0.0]], 10, |_| Material::Metal);
     mesh.append(&hub, Vec3::ZERO);
     mesh
+}
+
+/// Two rows of blocks around the tyre, each row turned against the other.
+fn tread(mesh: &mut Mesh) {
+    let step = std::f32::consts::TAU / LUGS as f32;
+    for (row, side) in [(0.0, 1.0), (0.5, -1.0)] {
+        for k in 0..LUGS {
+            let angle = step * (k as f32 + row);
+            let corner = |turn: f32, y: f32, radius: f32| {
+                let turned = Vec2::from_angle(angle + turn * step) * radius;
+                Vec3::new(turned.x, y * side, turned.y)
+            };
+            // The block leans along the tyre as it goes outwards.
+            let foot = [
+                corner(-0.28, 0.001, 0.0440),
+                corner(0.10, 0.001, 0.0440),
+                corner(0.34, 0.0165, 0.0405),
+                corner(-0.02, 0.0165, 0.0405),
+            ];
+            let head = [
+                corner(-0.24, 0.001, RADIUS + 0.0022),
+                corner(0.06, 0.001, RADIUS + 0.0022),
+                corner(0.30, 0.0155, RADIUS + 0.0006),
+                corner(0.02, 0.0155, RADIUS + 0.0006),
+            ];
+            let mut face = |corners: [Vec3; 4]| {
+                let [a, b, c, d] = corners;
+                mesh.quad(if side > 0.0 { [d, c, b, a] } else { [a, b, c, d] }, Material::Tyre);
+            };
+            face(head);
+            for n in 0..4 {
+                let m = (n + 1) % 4;
+                face([foot[n], foot[m], head[m], head[n]]);
+            }
+        }
+    }
 }

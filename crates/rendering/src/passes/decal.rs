@@ -47,7 +47,9 @@ impl Form {
 /// Pipeline and the corners of this picture.
 #[derive(Debug)]
 pub(crate) struct DecalPass {
-    pipeline: wgpu::RenderPipeline,
+    flat: wgpu::RenderPipeline,
+    /// Behind hills there is nothing to see of the ground.
+    hidden: wgpu::RenderPipeline,
     corners: Stream,
 }
 
@@ -56,7 +58,7 @@ impl DecalPass {
         vertex_attr_array![0 => Float32x3, 1 => Float32x2, 2 => Float32x2, 3 => Float32x4];
 
     pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups) -> Self {
-        let pipeline = Recipe {
+        let recipe = Recipe {
             label: "decal",
             source: SHADER,
             groups: &[&groups.view_layout, &groups.light_layout],
@@ -68,19 +70,28 @@ impl DecalPass {
             colour: Some((canvas, Some(wgpu::BlendState::ALPHA_BLENDING))),
             depth: Some((wgpu::CompareFunction::Always, false)),
             ..Default::default()
+        };
+        let tested = Some((wgpu::CompareFunction::LessEqual, false));
+        Self {
+            flat: recipe.build(device),
+            hidden: Recipe { label: "draped decal", depth: tested, ..recipe }.build(device),
+            corners: Stream::new(device, "decals", wgpu::BufferUsages::VERTEX),
         }
-        .build(device);
-        Self { pipeline, corners: Stream::new(device, "decals", wgpu::BufferUsages::VERTEX) }
     }
 
     pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, corners: &[Corner]) {
         self.corners.fill(device, queue, bytemuck::cast_slice(corners));
     }
 
-    /// Draws the corners of one view.
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, corners: std::ops::Range<u32>) {
+    /// Draws the corners of one view; where they lie on a terrain, what is behind it is hidden.
+    pub(crate) fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        corners: std::ops::Range<u32>,
+        on_terrain: bool,
+    ) {
         if !corners.is_empty() {
-            pass.set_pipeline(&self.pipeline);
+            pass.set_pipeline(if on_terrain { &self.hidden } else { &self.flat });
             pass.set_vertex_buffer(0, self.corners.slice());
             pass.draw(corners, 0..1);
         }

@@ -21,7 +21,8 @@ pub(crate) struct Frame {
     pub(crate) forward: [f32; 4],
     pub(crate) sun: [f32; 4],
     pub(crate) ground: [f32; 4],
-    pub(crate) spare: [[f32; 4]; 2],
+    pub(crate) terrain: [f32; 4],
+    pub(crate) spare: [f32; 4],
 }
 
 impl Frame {
@@ -39,7 +40,8 @@ impl Frame {
             forward: forward.extend(0.0).to_array(),
             sun: [0.0; 4],
             ground: [0.0; 4],
-            spare: [[0.0; 4]; 2],
+            terrain: [0.0; 4],
+            spare: [0.0; 4],
         }
     }
 }

@@ -1,12 +1,15 @@
 //! One file per pass: its shader, its data, its pipeline and its draw. Here is what they share.
 
+pub(crate) mod asphalt;
 pub(crate) mod decal;
 pub(crate) mod frame;
 pub(crate) mod ground;
 pub(crate) mod overlay;
+pub(crate) mod prop;
 pub(crate) mod robot;
 pub(crate) mod shadow;
 pub(crate) mod sky;
+pub(crate) mod terrain;
 pub(crate) mod text;
 
 #[cfg(test)]
@@ -23,11 +26,13 @@ pub(crate) use shader;
 
 /// Every shader as it is compiled, by name: for validation without an adapter.
 #[cfg(test)]
-pub(crate) const SHADERS: [(&str, &str); 6] = [
+pub(crate) const SHADERS: [(&str, &str); 8] = [
     ("shadow", shadow::SHADER),
     ("robot", robot::SHADER),
     ("ground", ground::SHADER),
+    ("terrain", terrain::SHADER),
     ("decal", decal::SHADER),
+    ("prop", prop::SHADER),
     ("sky", sky::SHADER),
     ("overlay", overlay::SHADER),
 ];

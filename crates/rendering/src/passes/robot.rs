@@ -1,8 +1,8 @@
-//! Robots and their ghosts: four models, drawn as often as there are copies.
+//! Robots and their ghosts: a few models, drawn as often as there are copies.
 
 use super::frame::FrameGroups;
 use super::{Canvas, Recipe, Stream, constant, mipped, shader, shrink, textured};
-use crate::model::{self, Vertex};
+use crate::model::{self, Build, Vertex};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
@@ -21,13 +21,27 @@ pub(crate) struct Instance {
 /// Robots from which on their models are plain.
 const PLAIN_ABOVE: usize = 24;
 
+/// Copies of robots that share their measures.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Squad {
+    pub(crate) bodies: Vec<Instance>,
+    pub(crate) wheels: Vec<Instance>,
+    pub(crate) ghosts: Vec<Instance>,
+}
+
 /// All copies of a picture.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Crowd {
-    pub(crate) bodies: Vec<Instance>,
-    pub(crate) wheels: Vec<Instance>,
+    pub(crate) squads: Vec<Squad>,
     pub(crate) cameras: Vec<Instance>,
-    pub(crate) ghosts: Vec<Instance>,
+}
+
+/// Where the meshes of a squad are.
+#[derive(Debug)]
+struct Kit {
+    body: Range<u32>,
+    wheel: Range<u32>,
+    ghost: Range<u32>,
 }
 
 /// Models on the device, and the copies of this picture.
@@ -35,10 +49,8 @@ pub(crate) struct Crowd {
 pub(crate) struct Models {
     vertices: Stream,
     indices: Stream,
-    body: Range<u32>,
-    wheel: Range<u32>,
+    kits: Vec<Kit>,
     camera: Range<u32>,
-    ghost: Range<u32>,
     instances: Stream,
 }
 
@@ -62,8 +74,9 @@ impl Models {
         },
     ];
 
-    /// In a crowd each robot is small in the picture: plainer models draw three times as fast.
-    pub(crate) fn new(device: &Device, queue: &Queue, robots: usize) -> Self {
+    /// One set of models for each build. In a crowd each robot is small in the picture: plainer models draw three
+    /// times as fast.
+    pub(crate) fn new(device: &Device, queue: &Queue, robots: usize, builds: &[Build]) -> Self {
         let plain = robots > PLAIN_ABOVE;
         let mut vertices = Vec::new();
         let mut indices = Vec::new();
@@ -72,49 +85,58 @@ impl Models {
             mesh.weld(&mut vertices, &mut indices);
             first..indices.len() as u32
         };
-        let (body, wheel, camera) = (add(model::body(plain)), add(model::wheel(plain)), add(model::camera()));
-        let ghost = add(model::ghost());
-        let usage = wgpu::BufferUsages::VERTEX;
+        let wheels = [false, true].map(|lugs| add(model::wheel(plain, lugs)));
+        let camera = add(model::camera());
+        let kit = |build: &Build| Kit {
+            body: add(model::body(plain, build)),
+            wheel: wheels[usize::from(build.lugs())].clone(),
+            ghost: add(model::ghost(build)),
+        };
+        let kits = builds.iter().map(kit).collect();
+        let (corners, triangles) = (bytemuck::cast_slice(&vertices), bytemuck::cast_slice(&indices));
         Self {
-            vertices: constant(device, queue, "corners", usage, bytemuck::cast_slice(&vertices)),
-            indices: constant(
-                device,
-                queue,
-                "triangles",
-                wgpu::BufferUsages::INDEX,
-                bytemuck::cast_slice(&indices),
-            ),
-            body,
-            wheel,
+            vertices: constant(device, queue, "corners", wgpu::BufferUsages::VERTEX, corners),
+            indices: constant(device, queue, "triangles", wgpu::BufferUsages::INDEX, triangles),
+            kits,
             camera,
-            ghost,
             instances: Stream::new(device, "instances", wgpu::BufferUsages::VERTEX),
         }
     }
 
     pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, crowd: &Crowd) {
-        let all = [&crowd.bodies, &crowd.wheels, &crowd.cameras, &crowd.ghosts];
-        let all: Vec<Instance> = all.into_iter().flatten().copied().collect();
+        let solid = crowd.squads.iter().flat_map(|s| [&s.bodies, &s.wheels]).chain([&crowd.cameras]);
+        let all = solid.chain(crowd.squads.iter().map(|s| &s.ghosts));
+        let all: Vec<Instance> = all.flatten().copied().collect();
         self.instances.fill(device, queue, bytemuck::cast_slice(&all));
     }
 
     /// Bodies, wheels and cameras.
     pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
+        let squads = self.kits.iter().zip(&crowd.squads);
+        let parts = squads.flat_map(|(kit, squad)| [(&kit.body, &squad.bodies), (&kit.wheel, &squad.wheels)]);
+        self.draw(pass, 0, parts.chain([(&self.camera, &crowd.cameras)]));
+    }
+
+    fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
+        let solid: usize = crowd.squads.iter().map(|s| s.bodies.len() + s.wheels.len()).sum();
+        let first = (solid + crowd.cameras.len()) as u32;
+        let squads = self.kits.iter().zip(&crowd.squads);
+        self.draw(pass, first, squads.map(|(kit, squad)| (&kit.ghost, &squad.ghosts)));
+    }
+
+    /// Meshes with their copies, which follow each other from `first` on.
+    fn draw<'a>(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        mut first: u32,
+        parts: impl Iterator<Item = (&'a Range<u32>, &'a Vec<Instance>)>,
+    ) {
         self.bind(pass);
-        let mut first = 0;
-        for (mesh, copies) in
-            [(&self.body, &crowd.bodies), (&self.wheel, &crowd.wheels), (&self.camera, &crowd.cameras)]
-        {
+        for (mesh, copies) in parts {
             let last = first + copies.len() as u32;
             pass.draw_indexed(mesh.clone(), 0, first..last);
             first = last;
         }
-    }
-
-    fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
-        self.bind(pass);
-        let first = (crowd.bodies.len() + crowd.wheels.len() + crowd.cameras.len()) as u32;
-        pass.draw_indexed(self.ghost.clone(), 0, first..first + crowd.ghosts.len() as u32);
     }
 
     fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
@@ -181,7 +203,7 @@ impl RobotPass {
 
     /// Depth first, so that only the faces in front shine through.
     pub(crate) fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, models: &Models, crowd: &Crowd) {
-        if crowd.ghosts.is_empty() {
+        if crowd.squads.iter().all(|s| s.ghosts.is_empty()) {
             return;
         }
         pass.set_bind_group(2, &self.digits, &[]);

@@ -1,7 +1,7 @@
-//! The shadow map: depth of the robots as the sun sees them, fitted to the formation and shared by all views.
+//! The shadow map: depth of robots and props as the sun sees them, fitted to the formation and shared by all views.
 
 use super::frame::{FrameGroups, depth_texture};
-use super::robot::{Crowd, Models};
+use super::robot::Models;
 use super::{Recipe, shader};
 use glam::{DMat4, DVec3, Mat4};
 use wgpu::Device;
@@ -29,8 +29,8 @@ pub(crate) struct SunView {
 
 impl ShadowPass {
     /// The map comes before the bind groups that read it, the pipeline after.
-    pub(crate) fn map(device: &Device, robots: usize) -> (wgpu::TextureView, u32) {
-        let size = if robots > 12 { 2048 } else { 1024 };
+    pub(crate) fn map(device: &Device, crowded: bool) -> (wgpu::TextureView, u32) {
+        let size = if crowded { 2048 } else { 1024 };
         (depth_texture(device, (size, size), 1, true), size)
     }
 
@@ -54,13 +54,12 @@ impl ShadowPass {
         (PENUMBRA / (2.0 * sun.half)).max(0.9 / f64::from(self.size)) as f32
     }
 
-    pub(crate) fn draw(
+    /// The pass into which all that casts shadows is drawn.
+    pub(crate) fn begin<'a>(
         &self,
-        encoder: &mut wgpu::CommandEncoder,
+        encoder: &'a mut wgpu::CommandEncoder,
         groups: &FrameGroups,
-        models: &Models,
-        crowd: &Crowd,
-    ) {
+    ) -> wgpu::RenderPass<'a> {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
@@ -75,7 +74,7 @@ impl ShadowPass {
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &groups.view, &[0]);
-        models.draw_solid(&mut pass, crowd);
+        pass
     }
 }
 

@@ -1,6 +1,6 @@
 //! Shaders without a device: they are valid, and their structures are those of Rust, byte for byte.
 
-use super::{SHADERS, decal, frame, overlay, robot};
+use super::{SHADERS, decal, frame, overlay, robot, terrain};
 use crate::model::Vertex;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::mem::offset_of;
@@ -69,8 +69,8 @@ fn the_frame_is_the_shaders_frame() {
         offset_of!(frame::Frame, forward),
         offset_of!(frame::Frame, sun),
         offset_of!(frame::Frame, ground),
+        offset_of!(frame::Frame, terrain),
         offset_of!(frame::Frame, spare),
-        offset_of!(frame::Frame, spare) + 16,
     ];
     assert_eq!(offsets.iter().map(|o| *o as usize).collect::<Vec<_>>(), ours);
     // Views share a buffer at offsets that every adapter accepts.
@@ -83,6 +83,10 @@ fn vertices_are_the_shaders_vertices() {
     let [corner, instance] = robot::Models::LAYOUTS;
     agree(&robots, "Corner", corner.attributes, size_of::<Vertex>());
     agree(&robots, "Instance", instance.attributes, size_of::<robot::Instance>());
+    let props = module("prop");
+    agree(&props, "Corner", corner.attributes, size_of::<Vertex>());
+    agree(&props, "Instance", instance.attributes, size_of::<robot::Instance>());
+    agree(&module("terrain"), "Point", &terrain::TerrainPass::ATTRIBUTES, size_of::<terrain::Point>());
     agree(&module("decal"), "Corner", &decal::DecalPass::ATTRIBUTES, size_of::<decal::Corner>());
     agree(&module("overlay"), "Corner", &overlay::OverlayPass::ATTRIBUTES, size_of::<overlay::Corner>());
 }

@@ -1,0 +1,142 @@
+//! Paint laid over ground that is not flat: triangles are cut where the ground bends, so that every piece lies in it.
+
+use crate::passes::decal::Corner;
+use glam::{DVec2, DVec3};
+use vocabulary::Terrain;
+
+/// Lays triangles of corners, relative to `origin`, on the terrain.
+pub(crate) fn drape(corners: Vec<Corner>, terrain: &Terrain, origin: DVec3) -> Vec<Corner> {
+    let mut out = Vec::with_capacity(corners.len() * 2);
+    for triangle in corners.chunks_exact(3) {
+        let mut pieces = vec![triangle.to_vec()];
+        if !within_one(triangle, terrain, origin) {
+            // Lines of the grid, then the diagonals of its cells.
+            for across in [DVec2::X, DVec2::Y, DVec2::new(1.0, -1.0)] {
+                pieces = pieces.into_iter().flat_map(|p| slice(p, across, terrain, origin)).collect();
+            }
+        }
+        for piece in pieces {
+            for k in 2..piece.len() {
+                out.extend([0, k - 1, k].map(|c| lifted(piece[c], terrain, origin)));
+            }
+        }
+    }
+    out
+}
+
+/// A place in cells of the grid.
+fn cells(corner: &Corner, terrain: &Terrain, origin: DVec3) -> DVec2 {
+    let [x, y, _] = corner.position.map(f64::from);
+    (DVec2::new(x, y) + origin.truncate() - DVec2::from_array(terrain.origin)) / terrain.cell
+}
+
+/// Most small things lie within one triangle of the ground.
+fn within_one(triangle: &[Corner], terrain: &Terrain, origin: DVec3) -> bool {
+    let last = DVec2::new((terrain.columns - 1) as f64, (terrain.rows - 1) as f64);
+    let facet = |corner: &Corner| {
+        let at = cells(corner, terrain, origin).clamp(DVec2::splat(-1.0), last + 0.5);
+        let low = at.floor();
+        (low, (at - low).x >= (at - low).y)
+    };
+    let first = facet(&triangle[0]);
+    triangle[1..].iter().all(|corner| facet(corner) == first)
+}
+
+/// A convex piece cut along whole numbers of cells in one direction; beyond the field there is nothing to cut.
+fn slice(piece: Vec<Corner>, across: DVec2, terrain: &Terrain, origin: DVec3) -> Vec<Vec<Corner>> {
+    let at = |corner: &Corner| cells(corner, terrain, origin).dot(across);
+    let (low, high) = piece
+        .iter()
+        .map(at)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let [least, most] = bounds(across, terrain);
+    let mut cut = Vec::new();
+    let mut rest = piece;
+    let mut line = low.max(least).ceil();
+    while line <= high.min(most) {
+        let (below, above) = split(&rest, |corner| at(corner) - line);
+        cut.extend((below.len() > 2).then_some(below));
+        rest = above;
+        line += 1.0;
+    }
+    cut.extend((rest.len() > 2).then_some(rest));
+    cut
+}
+
+/// Between which lines of a direction the field lies.
+fn bounds(across: DVec2, terrain: &Terrain) -> [f64; 2] {
+    let (columns, rows) = ((terrain.columns - 1) as f64, (terrain.rows - 1) as f64);
+    match (across.x > 0.0, across.y) {
+        (true, 0.0) => [0.0, columns],
+        (false, _) => [0.0, rows],
+        _ => [-rows, columns],
+    }
+}
+
+/// The parts of a convex piece below and above zero of `side`.
+fn split(piece: &[Corner], side: impl Fn(&Corner) -> f64) -> (Vec<Corner>, Vec<Corner>) {
+    let (mut below, mut above) = (Vec::with_capacity(piece.len() + 1), Vec::with_capacity(piece.len() + 1));
+    for (k, corner) in piece.iter().enumerate() {
+        let next = &piece[(k + 1) % piece.len()];
+        let (a, b) = (side(corner), side(next));
+        if a <= 0.0 {
+            below.push(*corner);
+        }
+        if a >= 0.0 {
+            above.push(*corner);
+        }
+        if a * b < 0.0 {
+            let between = mixed(corner, next, (a / (a - b)) as f32);
+            below.push(between);
+            above.push(between);
+        }
+    }
+    (below, above)
+}
+
+fn mixed(a: &Corner, b: &Corner, share: f32) -> Corner {
+    let mix = |p: f32, q: f32| p + (q - p) * share;
+    Corner {
+        position: std::array::from_fn(|k| mix(a.position[k], b.position[k])),
+        kind: a.kind,
+        shape: std::array::from_fn(|k| mix(a.shape[k], b.shape[k])),
+        colour: std::array::from_fn(|k| mix(a.colour[k], b.colour[k])),
+    }
+}
+
+fn lifted(corner: Corner, terrain: &Terrain, origin: DVec3) -> Corner {
+    let [x, y, _] = corner.position;
+    let height = terrain.at(f64::from(x) + origin.x, f64::from(y) + origin.y).height - origin.z;
+    Corner { position: [x, y, height as f32], ..corner }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_piece_lies_in_the_ground() {
+        let heights: Vec<_> = (0..25).map(|k| f64::from((k * 7) % 5) * 0.2).collect();
+        let terrain =
+            Terrain { origin: [-1.0, -1.0], cell: 0.5, columns: 5, rows: 5, heights, grip: vec![] };
+        let origin = DVec3::new(20.0, 0.0, 0.0);
+        let corner = |x: f64, y: f64, u: f32| Corner {
+            position: [(x - origin.x) as f32, y as f32, 0.0],
+            kind: [0.0; 2],
+            shape: [u, 0.0],
+            colour: [1.0; 4],
+        };
+        let triangle = vec![corner(-2.0, -0.3, -1.0), corner(2.5, -0.6, 1.0), corner(0.1, 0.9, 0.0)];
+        let out = drape(triangle, &terrain, origin);
+        assert!(out.len() > 30 && out.len() % 3 == 0);
+        let mut area = 0.0;
+        for piece in out.chunks_exact(3) {
+            let at = |k: usize| DVec3::from_array(piece[k].position.map(f64::from)) + origin;
+            let middle = (at(0) + at(1) + at(2)) / 3.0;
+            assert!((terrain.at(middle.x, middle.y).height - middle.z).abs() < 1e-5, "{middle}");
+            area += 0.5 * (at(1) - at(0)).truncate().perp_dot((at(2) - at(0)).truncate()).abs();
+        }
+        let whole = 0.5 * DVec2::new(4.5, -0.3).perp_dot(DVec2::new(2.1, 1.2)).abs();
+        assert!((area - whole).abs() < 1e-4, "{area} {whole}");
+    }
+}

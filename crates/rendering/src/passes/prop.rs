@@ -1,0 +1,89 @@
+//! Props: four solids, drawn as often as there are copies.
+
+use super::asphalt::Asphalt;
+use super::frame::FrameGroups;
+use super::robot::{Instance, Models};
+use super::{Canvas, Recipe, Stream, constant, shader};
+use crate::model::solids;
+use std::ops::Range;
+use wgpu::{Device, Queue};
+
+pub(crate) const SHADER: &str =
+    shader!("common/frame", "common/light", "common/robot", "common/asphalt", "prop");
+
+/// Copies of a picture, by solid, in the order of [`solids`].
+pub(crate) type Copies = [Vec<Instance>; 4];
+
+/// Solids on the device, their pipeline and the copies of this picture.
+#[derive(Debug)]
+pub(crate) struct PropPass {
+    pipeline: wgpu::RenderPipeline,
+    vertices: Stream,
+    indices: Stream,
+    solids: Vec<Range<u32>>,
+    instances: Stream,
+}
+
+impl PropPass {
+    pub(crate) fn new(
+        device: &Device,
+        queue: &Queue,
+        canvas: Canvas,
+        groups: &FrameGroups,
+        asphalt: &Asphalt,
+    ) -> Self {
+        let (mut vertices, mut indices) = (Vec::new(), Vec::new());
+        let solids = solids().map(|mesh| {
+            let first = indices.len() as u32;
+            mesh.weld(&mut vertices, &mut indices);
+            first..indices.len() as u32
+        });
+        let (corners, triangles) = (bytemuck::cast_slice(&vertices), bytemuck::cast_slice(&indices));
+        let pipeline = Recipe {
+            label: "prop",
+            source: SHADER,
+            groups: &[&groups.view_layout, &groups.light_layout, &asphalt.layout],
+            buffers: &Models::LAYOUTS,
+            cull: true,
+            colour: Some((canvas, None)),
+            depth: Some((wgpu::CompareFunction::Less, true)),
+            ..Default::default()
+        }
+        .build(device);
+        Self {
+            pipeline,
+            vertices: constant(device, queue, "prop corners", wgpu::BufferUsages::VERTEX, corners),
+            indices: constant(device, queue, "prop triangles", wgpu::BufferUsages::INDEX, triangles),
+            solids: solids.to_vec(),
+            instances: Stream::new(device, "props", wgpu::BufferUsages::VERTEX),
+        }
+    }
+
+    pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, copies: &Copies) {
+        let all: Vec<Instance> = copies.iter().flatten().copied().collect();
+        self.instances.fill(device, queue, bytemuck::cast_slice(&all));
+    }
+
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, asphalt: &Asphalt, copies: &Copies) {
+        if copies.iter().any(|c| !c.is_empty()) {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(2, &asphalt.group, &[]);
+            self.draw_solid(pass, copies);
+        }
+    }
+
+    /// The copies alone, with whatever pipeline is set.
+    pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, copies: &Copies) {
+        pass.set_vertex_buffer(0, self.vertices.slice());
+        pass.set_vertex_buffer(1, self.instances.slice());
+        pass.set_index_buffer(self.indices.slice(), wgpu::IndexFormat::Uint32);
+        let mut first = 0;
+        for (solid, copies) in self.solids.iter().zip(copies) {
+            let last = first + copies.len() as u32;
+            if last > first {
+                pass.draw_indexed(solid.clone(), 0, first..last);
+            }
+            first = last;
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Ground that is not flat: a mesh of the height field that goes on level far beyond its edges.
+
+use super::asphalt::Asphalt;
+use super::frame::FrameGroups;
+use super::{Canvas, Recipe, Stream, constant, shader};
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use vocabulary::Terrain;
+use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
+
+pub(crate) const SHADER: &str = shader!("common/frame", "common/light", "common/asphalt", "terrain");
+
+/// How far the ground goes on beyond the field, m: to where the view ends.
+const BEYOND: f64 = 560.0;
+
+/// Mirrors `Point` of the shader.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Point {
+    pub(crate) position: [f32; 3],
+    pub(crate) normal: [f32; 3],
+    pub(crate) grip: f32,
+}
+
+/// Mesh and pipeline.
+#[derive(Debug)]
+pub(crate) struct TerrainPass {
+    pipeline: wgpu::RenderPipeline,
+    points: Stream,
+    triangles: Stream,
+    count: u32,
+}
+
+impl TerrainPass {
+    pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 3] =
+        vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32];
+
+    pub(crate) fn new(
+        device: &Device,
+        queue: &Queue,
+        canvas: Canvas,
+        groups: &FrameGroups,
+        asphalt: &Asphalt,
+        terrain: &Terrain,
+    ) -> Self {
+        let (points, triangles) = mesh(terrain);
+        let pipeline = Recipe {
+            label: "terrain",
+            source: SHADER,
+            groups: &[&groups.view_layout, &groups.light_layout, &asphalt.layout],
+            buffers: &[VertexBufferLayout {
+                array_stride: size_of::<Point>() as u64,
+                step_mode: VertexStepMode::Vertex,
+                attributes: &Self::ATTRIBUTES,
+            }],
+            colour: Some((canvas, None)),
+            depth: Some((wgpu::CompareFunction::Less, true)),
+            ..Default::default()
+        }
+        .build(device);
+        let (corners, indices) = (bytemuck::cast_slice(&points), bytemuck::cast_slice(&triangles));
+        Self {
+            pipeline,
+            points: constant(device, queue, "terrain", wgpu::BufferUsages::VERTEX, corners),
+            triangles: constant(device, queue, "terrain", wgpu::BufferUsages::INDEX, indices),
+            count: triangles.len() as u32,
+        }
+    }
+
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, asphalt: &Asphalt) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(2, &asphalt.group, &[]);
+        pass.set_vertex_buffer(0, self.points.slice());
+        pass.set_index_buffer(self.triangles.slice(), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.count, 0, 0..1);
+    }
+}
+
+/// Points relative to the terrain's origin, one more around the field on all sides, and triangles between them.
+fn mesh(terrain: &Terrain) -> (Vec<Point>, Vec<u32>) {
+    let (columns, rows) = (terrain.columns + 2, terrain.rows + 2);
+    let mut points = Vec::with_capacity(columns * rows);
+    for row in 0..rows {
+        for column in 0..columns {
+            points.push(point(terrain, column, row));
+        }
+    }
+    let mut triangles = Vec::with_capacity(6 * (columns - 1) * (rows - 1));
+    for row in 0..rows - 1 {
+        for column in 0..columns - 1 {
+            let first = (row * columns + column) as u32;
+            let above = first + columns as u32;
+            triangles.extend([first, first + 1, above + 1, first, above + 1, above]);
+        }
+    }
+    (points, triangles)
+}
+
+/// A point by its place in the grid that is one wider than the field.
+fn point(terrain: &Terrain, column: usize, row: usize) -> Point {
+    let held = |k: usize, count: usize| k.clamp(1, count) - 1;
+    let (i, j) = (held(column, terrain.columns), held(row, terrain.rows));
+    let height = |i: usize, j: usize| terrain.heights[j * terrain.columns + i];
+    let along = |k: usize, count: usize| {
+        let off = if k == 0 { -BEYOND } else { f64::from(u8::from(k > count)) * BEYOND };
+        held(k, count) as f64 * terrain.cell + off
+    };
+    // Slopes across two cells; the border is shaded as the level ground that begins there.
+    let slope = |low: f64, high: f64| (high - low) / (2.0 * terrain.cell);
+    let (west, east) = (i.saturating_sub(1), (i + 1).min(terrain.columns - 1));
+    let (south, north) = (j.saturating_sub(1), (j + 1).min(terrain.rows - 1));
+    let inside = |k: usize, count: usize| (2..count).contains(&k);
+    let dx = if inside(column, terrain.columns) { slope(height(west, j), height(east, j)) } else { 0.0 };
+    let dy = if inside(row, terrain.rows) { slope(height(i, south), height(i, north)) } else { 0.0 };
+    let normal = Vec3::new(-dx as f32, -dy as f32, 1.0).normalize();
+    let place = [along(column, terrain.columns), along(row, terrain.rows), height(i, j)];
+    let grip = terrain.grip.get(j * terrain.columns + i).copied().unwrap_or(1.0);
+    Point { position: place.map(|x| x as f32), normal: normal.to_array(), grip: grip as f32 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mesh_is_the_field_and_goes_on_level() {
+        let heights = (0..12).map(|k| f64::from(k % 4) * 0.1).collect();
+        let terrain =
+            Terrain { origin: [2.0, 3.0], cell: 0.5, columns: 4, rows: 3, heights, grip: vec![] };
+        let (points, triangles) = mesh(&terrain);
+        assert_eq!((points.len(), triangles.len()), (30, 6 * 5 * 4));
+        for point in &points {
+            let [x, y, z] = point.position.map(f64::from);
+            let surface = terrain.at(x + 2.0, y + 3.0);
+            assert!((surface.height - z).abs() < 1e-6, "{point:?}");
+            assert!(point.normal[2] > 0.9 && point.grip == 1.0);
+        }
+        assert!(points[0].position[0] < -500.0 && points[29].position[1] > 500.0);
+    }
+}

@@ -1,0 +1,89 @@
+//! Where the props of a moment stand, and what they are made of.
+
+use crate::paint::Stage;
+use crate::palette::{Rgb, hex, linear};
+use crate::passes::prop::Copies;
+use crate::passes::robot::Instance;
+use glam::{DQuat, DVec3, Mat4};
+use vocabulary::{Mobility, Placement, Prop, Solid};
+
+const CONCRETE: Rgb = hex(0x00c2_b8a8);
+const PALE: Rgb = hex(0x00dc_d7cb);
+const ORANGE: Rgb = hex(0x00f2_6418);
+const PLYWOOD: Rgb = hex(0x00d3_b384);
+const CRATE: Rgb = hex(0x00b9_8a55);
+const BARREL: Rgb = hex(0x00a8_7a42);
+/// What moves by itself is none of the robots' colours.
+const GUIDED: Rgb = hex(0x00a5_434c);
+
+/// Every prop of the cast with its place: that of the moment, else the one where it starts.
+pub(crate) fn placed<'a>(stage: &Stage<'a>) -> impl Iterator<Item = (&'a Prop, Placement)> + use<'a> {
+    let now = &stage.moment.snapshot.props;
+    let all = stage.cast.props.iter().enumerate();
+    all.map(|(k, prop)| (prop, now.get(k).copied().unwrap_or(prop.placement))).filter(|(_, p)| sound(p))
+}
+
+fn sound(placement: &Placement) -> bool {
+    placement.position.iter().chain(&placement.rotation).all(|x| x.is_finite())
+}
+
+pub(crate) fn turn(placement: &Placement) -> DQuat {
+    DQuat::from_array(placement.rotation).normalize()
+}
+
+/// The eight corners of the box around a prop, in the world.
+pub(crate) fn corners(prop: &Prop, placement: &Placement) -> [DVec3; 8] {
+    let [length, width, height] = prop.solid.extent();
+    let (turn, foot) = (turn(placement), DVec3::from_array(placement.position));
+    std::array::from_fn(|k| {
+        let side = |bit: usize| if k & bit == 0 { -0.5 } else { 0.5 };
+        let up = if k & 4 == 0 { 0.0 } else { height };
+        foot + turn * DVec3::new(side(1) * length, side(2) * width, up)
+    })
+}
+
+/// All copies of the solids in a picture.
+pub(crate) fn props(stage: &Stage<'_>) -> Copies {
+    let mut copies = Copies::default();
+    for (prop, placement) in placed(stage) {
+        let (kind, scale) = match prop.solid {
+            Solid::Block { size } => (0, size),
+            Solid::Cylinder { radius, height } => (1, [radius, radius, height]),
+            Solid::Cone { radius, height } => (2, [radius, radius, height]),
+            Solid::Wedge { size } => (3, size),
+        };
+        copies[kind].push(instance(stage, prop, &placement, kind, DVec3::from_array(scale)));
+    }
+    copies
+}
+
+fn instance(stage: &Stage<'_>, prop: &Prop, placement: &Placement, kind: usize, scale: DVec3) -> Instance {
+    let place = DVec3::from_array(placement.position);
+    let turn = turn(placement).as_quat();
+    let model = Mat4::from_scale_rotation_translation(scale.as_vec3(), turn, (place - stage.origin).as_vec3());
+    let rows = model.transpose();
+    let [r, g, b] = linear(colour(prop));
+    let mobility = match prop.mobility {
+        Mobility::Fixed => 0.0,
+        Mobility::Loose => 1.0,
+        Mobility::Guided => 2.0,
+    };
+    let ground = stage.ground(place.truncate()) - stage.origin.z;
+    Instance {
+        rows: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.to_array()),
+        colour: [r, g, b, 1.0],
+        marks: [kind as f32, mobility, ground as f32, 0.0],
+    }
+}
+
+fn colour(prop: &Prop) -> Rgb {
+    match (prop.solid, prop.mobility) {
+        (Solid::Cone { .. }, _) => ORANGE,
+        (_, Mobility::Guided) => GUIDED,
+        (Solid::Wedge { .. }, _) => PLYWOOD,
+        (Solid::Cylinder { .. }, Mobility::Loose) => BARREL,
+        (Solid::Cylinder { .. }, Mobility::Fixed) => PALE,
+        (Solid::Block { .. }, Mobility::Loose) => CRATE,
+        (Solid::Block { .. }, Mobility::Fixed) => CONCRETE,
+    }
+}
