@@ -2,7 +2,11 @@
 
 use crate::{
     Channel, Path,
-    path_form::PathForm,
+    ground::{GroundForm, GroundKeys},
+    path_form::PATH,
+    patterns::{PatternForm, PatternKeys},
+    prop_form::{PropForm, PropKeys},
+    props::MOST_PROPS,
     text::{
         Form, Node, Reading, angle_of_turns, angle_within,
         form::{Angle, Number},
@@ -24,7 +28,7 @@ pub(crate) const SCHEMA_VERSION: u64 = 1;
 /// Most robots of a scene.
 pub(crate) const MOST_ROBOTS: usize = 10_000;
 /// Start pose [m, m, rad].
-const POSE: Triple<Number, Number, Angle> = triple(number("m"), number("m"), angle_of_turns(10.0));
+pub(crate) const POSE: Triple<Number, Number, Angle> = triple(number("m"), number("m"), angle_of_turns(10.0));
 /// Speed at the start.
 const SPEED: Number = number("m/s").from(0.0).up_to(100.0);
 
@@ -52,10 +56,16 @@ keys! {
         observer: ObserverPart = table::<ObserverPart>(), part;
         /// What a robot knows of its leader.
         sensing: SensingPart = table::<SensingPart>(), part;
+        /// The lie of the land and its grip; flat if left out.
+        ground: GroundKeys = GroundForm, optional;
         /// Robots one by one.
         robots: Vec<RobotKeys> = list(table::<RobotKeys>(), 0, MOST_ROBOTS), part;
         /// Robots in well-known shapes.
         groups: Vec<GroupKeys> = list(table::<GroupKeys>(), 0, 1000), part;
+        /// Solid things that are no robots: walls, pillars, ramps, cones, crates.
+        props: Vec<PropKeys> = list(PropForm, 0, MOST_PROPS), part;
+        /// Props in well-known arrangements.
+        patterns: Vec<PatternKeys> = list(PatternForm, 0, 200), part;
         /// Light and air.
         environment: EnvironmentPart = table::<EnvironmentPart>(), part;
         /// How pictures look at the run.
@@ -71,13 +81,13 @@ keys! {
     /// A robot: one that leads has a `path`, one that follows has a `leader`, a `distance` and a `bearing`.
     struct RobotKeys {
         /// Unique name.
-        name: String = NameForm, required;
+        name: String = NameForm::WHOLE, required;
         /// Where it starts: [x in m, y in m, heading]; may be left out with way-points, which say it.
         pose: [f64; 3] = POSE, optional;
         /// Motion of a robot that leads.
-        path: Path = PathForm, optional;
+        path: Path = PATH, optional;
         /// Name of the robot that is followed.
-        leader: String = NameForm, optional;
+        leader: String = NameForm::WHOLE, optional;
         /// Wanted distance from the leader, m: a number, a sinusoid, or smooth passages.
         distance: Channel = DistanceForm, optional;
         /// Wanted bearing, seen from the leader's heading, left positive: an angle, a sinusoid, or smooth passages.
@@ -103,11 +113,11 @@ keys! {
         /// Number of places, the leader's included.
         count: usize = integer::<usize>(2, MOST_ROBOTS as u64), required;
         /// Start of the robots' names.
-        name: String = NameForm, or("robot".to_owned());
+        name: String = NameForm::START, or("robot".to_owned());
         /// Motion of the group's leader; or give `leader`.
-        path: Path = PathForm, optional;
+        path: Path = PATH, optional;
         /// Name of a robot outside the group that leads it; or give `path`.
-        leader: String = NameForm, optional;
+        leader: String = NameForm::WHOLE, optional;
         /// Where the group's leader starts, with a `path`: [x in m, y in m, heading]; the origin, or the path's
         /// first way-point, if left out.
         pose: [f64; 3] = POSE, optional;
@@ -160,23 +170,34 @@ words! {
     }
 }
 
-/// A robot's name: fit for paths of overrides, columns of tables and file names.
-struct NameForm;
+/// A robot's or prop's name: fit for paths of overrides, columns of tables and file names.
+pub(crate) struct NameForm {
+    /// Most characters.
+    most: usize,
+}
+
+impl NameForm {
+    /// A whole name.
+    pub(crate) const WHOLE: Self = Self { most: 40 };
+    /// The start of names that end in a number.
+    pub(crate) const START: Self = Self { most: 34 };
+}
 
 impl Form for NameForm {
     type Out = String;
 
     fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
         let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-        let name =
-            node.as_text().filter(|name| name.chars().all(fits) && (1..=40).contains(&name.chars().count()));
+        let name = node
+            .as_text()
+            .filter(|name| name.chars().all(fits) && (1..=self.most).contains(&name.chars().count()));
         if name.is_none() {
-            reading.wrong(node, "a name of 1 to 40 letters, digits, `-` and `_`");
+            reading.wrong(node, &format!("a name of 1 to {} letters, digits, `-` and `_`", self.most));
         }
         name.map(str::to_owned)
     }
 
     fn schema(&self) -> Json {
-        json!({ "type": "string", "pattern": r"^[\p{L}\p{N}\p{M}_-]{1,40}$" })
+        json!({ "type": "string", "pattern": format!(r"^[\p{{L}}\p{{N}}\p{{M}}_-]{{1,{}}}$", self.most) })
     }
 }

@@ -13,11 +13,10 @@ use std::collections::HashMap;
 pub(crate) struct Named {
     pub(crate) name: Option<Found<String>>,
     pub(crate) leader: Option<Found<String>>,
-    /// Whether it goes its own way.
-    pub(crate) leads: bool,
 }
 
-/// Notes duplicate names, unknown leaders, robots that follow themselves, second formations, and cycles.
+/// Notes duplicate names, unknown leaders, robots that follow themselves, and cycles. Without these every follower
+/// comes to a robot that leads if it goes from leader to leader; there may be several that lead.
 pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, reading: &mut Reading) {
     let mut leader_of: HashMap<&str, Option<&Found<String>>> = HashMap::new();
     for robot in robots.clone() {
@@ -32,17 +31,6 @@ pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, r
             reading.note(leader.place, format!("`{}` cannot follow itself", leader.value));
         } else if !leader_of.contains_key(leader.value.as_str()) && !reading.is_full() {
             check_known(&leader.value, leader.place, robots.clone(), reading);
-        }
-    }
-    // Whoever follows has one leader, so there are as many formations as robots that lead.
-    let mut heads = robots.clone().filter(|robot| robot.leads).filter_map(|robot| robot.name.as_ref());
-    if let Some(first) = heads.next() {
-        for other in heads {
-            let (name, head) = (&other.value, &first.value);
-            reading.note(
-                other.place,
-                format!("`{name}` is not connected: `{head}` leads already, and one robot leads"),
-            );
         }
     }
     check_cycles(robots, &leader_of, reading);

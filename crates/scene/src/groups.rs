@@ -107,9 +107,8 @@ impl Group<'_> {
     fn push(&self, robot: Robot, drafts: &mut Vec<Draft>) {
         let place = self.keys.name.as_ref().map_or(self.node.place, |name| name.place);
         let name = Some(Found { place, value: robot.name.clone() });
-        let leads = matches!(robot.role, Role::Lead { .. });
         // Leaders inside the group exist, and the one outside has been looked up.
-        drafts.push(Draft { named: Named { name, leader: None, leads }, robot: Some(robot) });
+        drafts.push(Draft { named: Named { name, leader: None }, robot: Some(robot) });
     }
 
     /// Name and start pose of the robot in place 1, which is made if it is the group's own.

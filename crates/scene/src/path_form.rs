@@ -4,12 +4,13 @@ use crate::{
     Path, SpeedProfile,
     table_file::{CsvForm, check_rising},
     text::{
-        Form, Found, Node, Reading, couple, flag,
+        Form, Node, Reading, couple, flag,
         form::Number,
         keys,
-        keys::{Field, Keys, TableReader, object},
+        keys::one_of,
+        kinds::{KindKeys, Kinds, kind},
         list, number, table, triple,
-        words::{Words, not_a_word},
+        words::Words,
     },
 };
 use serde_json::{Value as Json, json};
@@ -144,41 +145,14 @@ impl Form for SpeedForm {
     }
 }
 
-/// Whichever of two keys is given, and whether it was the second; a note if none or both are.
-fn one_of<T>(
-    node: &Node,
-    first: (&str, Option<Found<T>>),
-    second: (&str, Option<Found<T>>),
-    reading: &mut Reading,
-) -> Option<(Found<T>, bool)> {
-    match (first.1, second.1) {
-        (Some(found), None) => Some((found, false)),
-        (None, Some(found)) => Some((found, true)),
-        _ => {
-            // A key that is there but was wrong has its own note already.
-            let given = [first.0, second.0].iter().filter(|key| node.get(key).is_some()).count();
-            if given != 1 {
-                reading.note(node.place, format!("give either `{}` or `{}` here", first.0, second.0));
-            }
-            None
-        }
-    }
-}
-
-/// A kind of path: the keys of its table and what they make.
-trait PathKind: Keys {
-    /// The path, or `None` after a note.
-    fn path(self, node: &Node, reading: &mut Reading) -> Option<Path>;
-}
-
-impl PathKind for ConstantKeys {
-    fn path(self, _: &Node, _: &mut Reading) -> Option<Path> {
+impl KindKeys<Path> for ConstantKeys {
+    fn make(self, _: &Node, _: &mut Reading) -> Option<Path> {
         Some(Path::Constant { speed: self.speed?.value, turn_rate: self.turn_rate?.value })
     }
 }
 
-impl PathKind for SinusoidKeys {
-    fn path(self, _: &Node, reading: &mut Reading) -> Option<Path> {
+impl KindKeys<Path> for SinusoidKeys {
+    fn make(self, _: &Node, reading: &mut Reading) -> Option<Path> {
         let (speed, amplitude) = (self.speed?.value, self.speed_amplitude?);
         if amplitude.value.abs() > speed {
             let message =
@@ -196,8 +170,8 @@ impl PathKind for SinusoidKeys {
     }
 }
 
-impl PathKind for CircleKeys {
-    fn path(self, node: &Node, reading: &mut Reading) -> Option<Path> {
+impl KindKeys<Path> for CircleKeys {
+    fn make(self, node: &Node, reading: &mut Reading) -> Option<Path> {
         let speed = self.speed?.value;
         let (size, by_turn_rate) =
             one_of(node, ("radius", self.radius), ("turn_rate", self.turn_rate), reading)?;
@@ -221,16 +195,16 @@ impl PathKind for CircleKeys {
     }
 }
 
-impl PathKind for FigureEightKeys {
-    fn path(self, node: &Node, reading: &mut Reading) -> Option<Path> {
+impl KindKeys<Path> for FigureEightKeys {
+    fn make(self, node: &Node, reading: &mut Reading) -> Option<Path> {
         let speed = self.speed?.value;
         let (size, by_period) = one_of(node, ("length", self.length), ("period", self.period), reading)?;
         Some(Path::FigureEight { speed, length: if by_period { speed * size.value } else { size.value } })
     }
 }
 
-impl PathKind for WaypointsKeys {
-    fn path(self, _: &Node, reading: &mut Reading) -> Option<Path> {
+impl KindKeys<Path> for WaypointsKeys {
+    fn make(self, _: &Node, reading: &mut Reading) -> Option<Path> {
         let (points, closed) = (self.points?, self.closed?.value);
         let (place, points) = (points.place, points.value);
         if closed && points.len() < 3 {
@@ -246,8 +220,8 @@ impl PathKind for WaypointsKeys {
     }
 }
 
-impl PathKind for TableKeys {
-    fn path(self, node: &Node, reading: &mut Reading) -> Option<Path> {
+impl KindKeys<Path> for TableKeys {
+    fn make(self, node: &Node, reading: &mut Reading) -> Option<Path> {
         let (rows, from_file) = one_of(node, ("rows", self.rows), ("file", self.file), reading)?;
         if !from_file {
             check_rising(rows.value.iter().map(|row| row[0]), rows.place, reading);
@@ -256,75 +230,16 @@ impl PathKind for TableKeys {
     }
 }
 
-/// One kind as [`PathForm`] needs it.
-struct Kind {
-    word: &'static str,
-    about: &'static str,
-    read: fn(&Node, &mut TableReader<'_>, &mut Reading) -> Option<Path>,
-    fields: fn() -> Vec<Field>,
-}
-
-const fn kind<K: PathKind>(word: &'static str) -> Kind {
-    Kind {
-        word,
-        about: K::ABOUT,
-        read: |node, table, reading| K::read(table, reading).path(node, reading),
-        fields: K::fields,
-    }
-}
-
-const KINDS: &[Kind] = &[
-    kind::<ConstantKeys>("constant"),
-    kind::<SinusoidKeys>("sinusoid"),
-    kind::<CircleKeys>("circle"),
-    kind::<FigureEightKeys>("figure-eight"),
-    kind::<WaypointsKeys>("waypoints"),
-    kind::<TableKeys>("table"),
-];
-
-/// A table whose `kind` says which other keys it has.
-pub(crate) struct PathForm;
-
-/// The word that `kind` is.
-struct KindForm;
-
-impl Form for KindForm {
-    type Out = &'static Kind;
-
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<&'static Kind> {
-        let words = || KINDS.iter().map(|kind| kind.word);
-        let found = KINDS.iter().find(|kind| node.as_text() == Some(kind.word));
-        if found.is_none() {
-            not_a_word(node, words(), reading);
-        }
-        found
-    }
-
-    fn schema(&self) -> Json {
-        json!({ "enum": KINDS.iter().map(|kind| kind.word).collect::<Vec<_>>() })
-    }
-}
-
-impl Form for PathForm {
-    type Out = Path;
-
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Path> {
-        let mut table = TableReader::of(node, reading)?;
-        let kind = table.take("kind", &KindForm, true, reading)?.value;
-        let path = (kind.read)(node, &mut table, reading);
-        table.finish(reading);
-        path
-    }
-
-    fn schema(&self) -> Json {
-        let one = |kind: &Kind| {
-            let mut schema = object(kind.about, (kind.fields)());
-            schema["properties"]["kind"] = json!({ "const": kind.word });
-            if let Some(required) = schema["required"].as_array_mut() {
-                required.push(json!("kind"));
-            }
-            schema
-        };
-        json!({ "oneOf": KINDS.iter().map(one).collect::<Vec<_>>() })
-    }
-}
+/// A lead robot's path.
+pub(crate) const PATH: Kinds<Path> = Kinds {
+    key: "kind",
+    usual: None,
+    kinds: &[
+        kind::<_, ConstantKeys>("constant"),
+        kind::<_, SinusoidKeys>("sinusoid"),
+        kind::<_, CircleKeys>("circle"),
+        kind::<_, FigureEightKeys>("figure-eight"),
+        kind::<_, WaypointsKeys>("waypoints"),
+        kind::<_, TableKeys>("table"),
+    ],
+};

@@ -2,10 +2,13 @@
 //! everything else.
 
 use crate::{
-    Film, Follow, Ground, Path, Relief, Robot, Role, Scene, Time, Vehicle, Views,
+    Expect, Film, Follow, Mode, Path, Prop, PropMotion, Robot, Role, Scene, Time, Vehicle, Views,
     document::{Document, GroupKeys, RobotKeys},
     graph::{Named, check_graph, check_known},
+    ground::ground,
     groups::{Group, expand},
+    props::{Placed, Stage},
+    start::check_start,
     text::{Found, Node, Part, Place, Reading},
     types::{
         EnvironmentPart, ExpectPart, FOLLOW, FilmPart, LawPart, ObserverPart, PhysicsPart, SensingPart,
@@ -13,6 +16,7 @@ use crate::{
     },
     vehicle::{Written, check_meaning, usual_kind, vehicle},
 };
+use std::collections::HashSet;
 use vocabulary::Pose;
 
 /// What holds for every robot that says nothing else.
@@ -62,10 +66,29 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         step_place: physics.step.as_ref().map(|found| found.place),
     };
     check_meaning(&defaults.vehicle, usual_kind(&defaults.vehicle), reading);
-    let time = time(&document.time?.value, reading);
+    let time_part = document.time?.value;
+    let time = time(&time_part, reading);
     let (robots, groups) = (document.robots?.value, document.groups?.value);
+    let ground = match (root.get("ground"), &document.ground) {
+        // It is there, and has its note.
+        (Some(_), None) => None,
+        (_, keys) => ground(keys.as_ref().map(|found| &found.value), seed, reading),
+    };
     let drafts = drafts(&robots, &groups, root, seed, &defaults, reading);
     check_graph(drafts.iter().map(|draft| &draft.named), reading);
+    let (props, patterns) = (document.props?.value, document.patterns?.value);
+    let standing: Vec<_> = drafts.iter().filter_map(|draft| draft.robot.as_ref()).collect();
+    let stage = Stage { ground: ground.as_ref(), robots: &standing, seed };
+    let props = stage.props(&props, &patterns, root, reading);
+    check_names(&drafts, &props, reading);
+    check_continuous(&time_part, &drafts, &props, reading);
+    if let Some(ground) = &ground
+        && reading.is_clean()
+    {
+        let robots =
+            drafts.iter().filter_map(|draft| Some((draft.named.name.as_ref()?.place, draft.robot.as_ref()?)));
+        check_start(robots, &props, ground, reading);
+    }
     let views = views(&document.views?.value, &drafts, reading);
     let film = film(&document.film?.value, &drafts, reading);
     Some(Scene {
@@ -74,15 +97,73 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         seed,
         time,
         physics: physics.complete(&PhysicsPart::default()),
-        ground: Ground { relief: Relief::Flat { cell: 0.25 }, friction: 1.0, patches: vec![], terrain: None },
-        props: vec![],
+        ground: ground?,
+        props: props.into_iter().map(|placed| placed.value).collect(),
         sensing: document.sensing?.value.complete(&SensingPart::default()),
         robots: drafts.into_iter().map(|draft| draft.robot).collect::<Option<_>>()?,
         environment: document.environment?.value.complete(&EnvironmentPart::default()),
         views,
         film,
-        expect: document.expect?.value.complete(&ExpectPart::default()),
+        expect: expect(&document.expect?.value, &time, reading),
     })
+}
+
+fn expect(part: &ExpectPart, time: &Time, reading: &mut Reading) -> Expect {
+    let expect = part.complete(&ExpectPart::default());
+    match (&part.settled_error_at_most, &part.settled_after) {
+        (Some(error), None) => {
+            reading.note(error.place, "`settled_after` is missing: from when on, in s, does this hold?");
+        }
+        (None, Some(after)) => {
+            reading
+                .note(after.place, "`settled_after` needs `settled_error_at_most`, which holds from then on");
+        }
+        (_, Some(after)) if expect.settled_after.is_some_and(|after| after >= time.duration) => {
+            let message = format!("`settled_after` must be before the end of the run at {} s", time.duration);
+            reading.note(after.place, message);
+        }
+        _ => {}
+    }
+    let ranges =
+        [("speed_within", &part.speed_within), ("contact_impulse_within", &part.contact_impulse_within)];
+    for (key, found) in ranges {
+        if let Some(Found { place, value: Some([low, high]) }) = found
+            && low > high
+        {
+            reading.note(*place, format!("`{key}` is [least, most], and {low} is more than {high}"));
+        }
+    }
+    expect
+}
+
+/// Notes props that are called as a robot or another prop.
+fn check_names(drafts: &[Draft], props: &[Placed], reading: &mut Reading) {
+    let robots: HashSet<_> =
+        drafts.iter().filter_map(|draft| Some(&draft.named.name.as_ref()?.value)).collect();
+    let mut seen = HashSet::new();
+    for Placed { place, value: Prop { name, .. } } in props {
+        if robots.contains(name) {
+            reading.note(*place, format!("there are a robot and a prop called `{name}`"));
+        } else if !seen.insert(name) {
+            reading.note(*place, format!("there are two props called `{name}`"));
+        }
+    }
+}
+
+/// Notes what continuous time cannot carry.
+fn check_continuous(part: &TimePart, drafts: &[Draft], props: &[Placed], reading: &mut Reading) {
+    let Some(mode) = part.mode.as_ref().filter(|mode| mode.value == Mode::Continuous) else { return };
+    let mut robots = drafts.iter().filter_map(|draft| draft.robot.as_ref());
+    let wheels =
+        robots.find(|robot| robot.vehicle.kind.has_wheels()).map(|robot| (&robot.name, "has wheels"));
+    let mut moving = props.iter().map(|prop| &prop.value).filter(|prop| prop.motion != PropMotion::Fixed);
+    if let Some((name, why)) = wheels.or_else(|| moving.next().map(|prop| (&prop.name, "can move"))) {
+        let message = format!(
+            "mode `continuous` is for unicycles and props that stand, but `{name}` {why}; \
+             use `sampled` or `measured`"
+        );
+        reading.note(mode.place, message);
+    }
 }
 
 /// All robots, those of groups after those that stand alone.
@@ -129,11 +210,7 @@ fn time(part: &TimePart, reading: &mut Reading) -> Time {
 }
 
 fn draft(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Reading) -> Draft {
-    let named = Named {
-        name: keys.name.clone(),
-        leader: keys.leader.clone(),
-        leads: node.get("path").is_some() && node.get("leader").is_none(),
-    };
+    let named = Named { name: keys.name.clone(), leader: keys.leader.clone() };
     Draft { named, robot: robot(keys, node, defaults, reading) }
 }
 
@@ -258,6 +335,18 @@ pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reading: &mut Re
             path.place,
             format!("`path` turns at {turn_rate} rad/s, above `turn_rate_max` of {most} rad/s"),
         );
+    }
+    if let Path::Constant { speed, turn_rate } | Path::Circle { speed, turn_rate } = path.value {
+        let curvature = vehicle.limits().curvature_max;
+        if speed > 0.0 && turn_rate.abs() > speed * curvature {
+            let message = format!(
+                "`path` turns tighter than the vehicle can: {turn_rate} rad/s at {speed} m/s is a circle of {:.3} m, and \
+                 `steering_max` allows {:.3} m",
+                speed / turn_rate.abs(),
+                1.0 / curvature
+            );
+            reading.note(path.place, message);
+        }
     }
 }
 

@@ -115,7 +115,8 @@ fn read_row(record: &csv::StringRecord, columns: [usize; 3]) -> Result<[f64; 3],
     Ok(row)
 }
 
-fn line_at(position: Option<&csv::Position>, text: &str, source: usize) -> Place {
+/// The line at a position in a file.
+pub(crate) fn line_at(position: Option<&csv::Position>, text: &str, source: usize) -> Place {
     let start = position.map_or(0, |position| position.byte() as usize);
     let length = text.get(start..).and_then(|rest| rest.lines().next()).map_or(0, str::len);
     Place { source, start, end: start + length }

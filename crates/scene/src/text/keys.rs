@@ -24,6 +24,27 @@ pub(crate) fn found_or<T>(
     found.or_else(|| Some(Found { place, value: default() }))
 }
 
+/// Whichever of two keys is given, and whether it was the second; a note if none or both are.
+pub(crate) fn one_of<T>(
+    node: &Node,
+    first: (&str, Option<Found<T>>),
+    second: (&str, Option<Found<T>>),
+    reading: &mut Reading,
+) -> Option<(Found<T>, bool)> {
+    match (first.1, second.1) {
+        (Some(found), None) => Some((found, false)),
+        (None, Some(found)) => Some((found, true)),
+        _ => {
+            // A key that is there but was wrong has its own note already.
+            let given = [first.0, second.0].iter().filter(|key| node.get(key).is_some()).count();
+            if given != 1 {
+                reading.note(node.place, format!("give either `{}` or `{}` here", first.0, second.0));
+            }
+            None
+        }
+    }
+}
+
 /// A table with known keys; made by [`keys!`] or [`settings!`].
 pub(crate) trait Keys: Sized {
     /// What the table is about.

@@ -2,6 +2,7 @@
 
 pub(crate) mod form;
 pub(crate) mod keys;
+pub(crate) mod kinds;
 pub(crate) mod lists;
 pub(crate) mod node;
 pub(crate) mod reading;

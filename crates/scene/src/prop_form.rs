@@ -1,0 +1,204 @@
+//! How props are written: shapes with their measures, and what all of them have.
+
+use crate::{
+    Path,
+    document::{NameForm, POSE},
+    path_form::PATH,
+    text::{
+        Form, Found, Keys, Node, Reading, couple,
+        form::Number,
+        keys,
+        keys::TableReader,
+        kinds::{Kind, KindKeys, Kinds, Taken, kind},
+        lists::Triple,
+        number, triple,
+    },
+};
+use serde_json::Value as Json;
+use vocabulary::{Pose, Solid};
+
+/// A measure of a prop.
+pub(crate) const MEASURE: Number = number("m").above(0.0).up_to(1000.0);
+/// [length, width, height].
+const SIZE: Triple<Number, Number, Number> = triple(MEASURE, MEASURE, MEASURE);
+/// What makes a prop loose.
+pub(crate) const MASS: Number = number("kg").above(0.0);
+/// Of a prop's surface.
+pub(crate) const FRICTION: Number = number("").from(0.0).up_to(5.0);
+/// Of an impact.
+pub(crate) const RESTITUTION: Number = number("").from(0.0).up_to(1.0);
+
+keys! {
+    /// A box.
+    struct BlockKeys {
+        /// [length, width, height], m.
+        size: [f64; 3] = SIZE, required;
+    }
+}
+
+keys! {
+    /// From the ground at its rear end it rises evenly to its full height at its front end.
+    struct RampKeys {
+        /// [length, width, height], m.
+        size: [f64; 3] = SIZE, required;
+    }
+}
+
+keys! {
+    /// Round and upright.
+    struct CylinderKeys {
+        /// Of its foot, m.
+        radius: f64 = MEASURE, required;
+        /// From foot to top, m.
+        height: f64 = MEASURE, required;
+    }
+}
+
+keys! {
+    /// Round and upright, its tip on top.
+    struct ConeKeys {
+        /// Of its foot, m.
+        radius: f64 = MEASURE, required;
+        /// From foot to tip, m.
+        height: f64 = MEASURE, required;
+    }
+}
+
+keys! {
+    /// A long block between two points; it has no `pose`.
+    struct WallKeys {
+        /// One end [x, y], m.
+        from: [f64; 2] = couple(number("m"), number("m")), required;
+        /// The other end [x, y], m.
+        to: [f64; 2] = couple(number("m"), number("m")), required;
+        /// From foot to top, m.
+        height: f64 = MEASURE, or(0.5);
+        /// From side to side, m.
+        thickness: f64 = MEASURE, or(0.1);
+    }
+}
+
+/// A solid, and its place where its measures say that.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Measured {
+    pub(crate) solid: Solid,
+    pub(crate) pose: Option<Pose>,
+}
+
+fn anywhere(solid: Solid) -> Measured {
+    Measured { solid, pose: None }
+}
+
+impl KindKeys<Measured> for BlockKeys {
+    fn make(self, _: &Node, _: &mut Reading) -> Option<Measured> {
+        Some(anywhere(Solid::Block { size: self.size?.value }))
+    }
+}
+
+impl KindKeys<Measured> for RampKeys {
+    fn make(self, _: &Node, _: &mut Reading) -> Option<Measured> {
+        Some(anywhere(Solid::Wedge { size: self.size?.value }))
+    }
+}
+
+impl KindKeys<Measured> for CylinderKeys {
+    fn make(self, _: &Node, _: &mut Reading) -> Option<Measured> {
+        Some(anywhere(Solid::Cylinder { radius: self.radius?.value, height: self.height?.value }))
+    }
+}
+
+impl KindKeys<Measured> for ConeKeys {
+    fn make(self, _: &Node, _: &mut Reading) -> Option<Measured> {
+        Some(anywhere(Solid::Cone { radius: self.radius?.value, height: self.height?.value }))
+    }
+}
+
+impl KindKeys<Measured> for WallKeys {
+    fn make(self, _: &Node, reading: &mut Reading) -> Option<Measured> {
+        let (from, to) = (self.from?.value, self.to?);
+        let [dx, dy] = [to.value[0] - from[0], to.value[1] - from[1]];
+        let length = dx.hypot(dy);
+        if length < 1e-3 {
+            reading.note(to.place, "a wall must be at least 0.001 m long: `to` is where `from` is");
+            return None;
+        }
+        let pose = Pose::new(from[0] + 0.5 * dx, from[1] + 0.5 * dy, dy.atan2(dx));
+        let size = [length, self.thickness?.value, self.height?.value];
+        Some(Measured { solid: Solid::Block { size }, pose: Some(pose) })
+    }
+}
+
+const BLOCK: Kind<Measured> = kind::<_, BlockKeys>("block");
+const CYLINDER: Kind<Measured> = kind::<_, CylinderKeys>("cylinder");
+const CONE: Kind<Measured> = kind::<_, ConeKeys>("cone");
+const RAMP: Kind<Measured> = kind::<_, RampKeys>("ramp");
+const WALL: Kind<Measured> = kind::<_, WallKeys>("wall");
+
+/// Shapes of props.
+const SHAPES: Kinds<Measured> =
+    Kinds { key: "shape", usual: None, kinds: &[BLOCK, CYLINDER, CONE, WALL, RAMP] };
+
+/// Shapes of props that can stand anywhere.
+pub(crate) const SOLIDS: Kinds<Measured> =
+    Kinds { key: "shape", usual: None, kinds: &[BLOCK, CYLINDER, CONE, RAMP] };
+
+keys! {
+    /// What all props have.
+    struct SharedKeys {
+        /// Unique name, among robots too.
+        name: String = NameForm::WHOLE, required;
+        /// Where the middle of its foot is: [x in m, y in m, heading]; a wall has none.
+        pose: [f64; 3] = POSE, optional;
+        /// Height of its foot over z = 0, m; on the ground if left out.
+        elevation: f64 = number("m").from(-1000.0).up_to(1000.0), optional;
+        /// kg; a prop with a mass is loose: it can be pushed, and falls.
+        mass: f64 = MASS, optional;
+        /// Its way, as that of a robot that leads; nothing stops it.
+        path: Path = PATH, optional;
+        /// Coefficient of friction of its surface.
+        friction: f64 = FRICTION, or(0.6);
+        /// Share of the speed of an impact that it is thrown back with.
+        restitution: f64 = RESTITUTION, or(0.1);
+    }
+}
+
+/// A prop as it is written.
+#[derive(Debug, Clone)]
+pub(crate) struct PropKeys {
+    pub(crate) measured: Measured,
+    pub(crate) name: Found<String>,
+    pub(crate) pose: Option<Found<[f64; 3]>>,
+    pub(crate) elevation: Option<f64>,
+    pub(crate) mass: Option<Found<f64>>,
+    pub(crate) path: Option<Path>,
+    pub(crate) friction: f64,
+    pub(crate) restitution: f64,
+}
+
+/// A table that describes a prop.
+pub(crate) struct PropForm;
+
+impl Form for PropForm {
+    type Out = PropKeys;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<PropKeys> {
+        let mut table = TableReader::of(node, reading)?;
+        let Taken::Known(measured) = SHAPES.take(node, &mut table, reading) else { return None };
+        let shared = SharedKeys::read(&mut table, reading);
+        table.finish(reading);
+        Some(PropKeys {
+            measured: measured?,
+            name: shared.name?,
+            pose: shared.pose,
+            elevation: shared.elevation.map(|found| found.value),
+            mass: shared.mass,
+            path: shared.path.map(|found| found.value),
+            friction: shared.friction?.value,
+            restitution: shared.restitution?.value,
+        })
+    }
+
+    fn schema(&self) -> Json {
+        SHAPES.schema_with(SharedKeys::fields)
+    }
+}

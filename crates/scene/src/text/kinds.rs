@@ -1,0 +1,110 @@
+//! Tables of which one key says what other keys there are.
+
+use crate::text::{
+    Form, Keys, Node, Reading,
+    keys::{Field, TableReader, object},
+    words::not_a_word,
+};
+use serde_json::{Value as Json, json};
+
+/// A table whose `key` is the word of one of `kinds`, which says which other keys it has.
+pub(crate) struct Kinds<T: 'static> {
+    pub(crate) key: &'static str,
+    /// Word that is meant where the key is missing.
+    pub(crate) usual: Option<&'static str>,
+    pub(crate) kinds: &'static [Kind<T>],
+}
+
+/// One kind: its word, and the keys it brings.
+pub(crate) struct Kind<T> {
+    word: &'static str,
+    about: &'static str,
+    read: fn(&Node, &mut TableReader<'_>, &mut Reading) -> Option<T>,
+    fields: fn() -> Vec<Field>,
+}
+
+/// Keys that a kind brings, and what they make.
+pub(crate) trait KindKeys<T>: Keys {
+    /// What they make, or `None` after a note.
+    fn make(self, node: &Node, reading: &mut Reading) -> Option<T>;
+}
+
+/// The kind called `word` with the keys of `K`.
+pub(crate) const fn kind<T, K: KindKeys<T>>(word: &'static str) -> Kind<T> {
+    Kind {
+        word,
+        about: K::ABOUT,
+        read: |node, table, reading| K::read(table, reading).make(node, reading),
+        fields: K::fields,
+    }
+}
+
+impl<T> Kinds<T> {
+    /// Reads the kind of `table`, whose node is `node`, and the keys it brings.
+    pub(crate) fn take(&self, node: &Node, table: &mut TableReader<'_>, reading: &mut Reading) -> Taken<T> {
+        let found = table.take(self.key, &KindForm(self.kinds), self.usual.is_none(), reading);
+        let kind = match (found, node.get(self.key)) {
+            (None, None) => self.kinds.iter().find(|kind| Some(kind.word) == self.usual),
+            (found, _) => found.map(|found| found.value),
+        };
+        kind.map_or(Taken::Unknown, |kind| Taken::Known((kind.read)(node, table, reading)))
+    }
+
+    /// Each kind's table, with `shared` keys that all of them have besides.
+    pub(crate) fn schema_with(&self, shared: fn() -> Vec<Field>) -> Json {
+        let one = |kind: &Kind<T>| {
+            let fields = (kind.fields)().into_iter().chain(shared());
+            let mut schema = object(kind.about, fields.collect());
+            schema["properties"][self.key] = json!({ "const": kind.word, "description": kind.about.trim() });
+            if self.usual != Some(kind.word)
+                && let Some(required) = schema["required"].as_array_mut()
+            {
+                required.push(json!(self.key));
+            }
+            schema
+        };
+        json!({ "oneOf": self.kinds.iter().map(one).collect::<Vec<_>>() })
+    }
+}
+
+/// What became of reading a kind.
+pub(crate) enum Taken<T> {
+    /// Its keys were read, and made this, or `None` after a note.
+    Known(Option<T>),
+    /// Nobody knows which keys there are.
+    Unknown,
+}
+
+impl<T> Form for Kinds<T> {
+    type Out = T;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<T> {
+        let mut table = TableReader::of(node, reading)?;
+        let Taken::Known(made) = self.take(node, &mut table, reading) else { return None };
+        table.finish(reading);
+        made
+    }
+
+    fn schema(&self) -> Json {
+        self.schema_with(Vec::new)
+    }
+}
+
+/// The word of a kind.
+struct KindForm<T: 'static>(&'static [Kind<T>]);
+
+impl<T> Form for KindForm<T> {
+    type Out = &'static Kind<T>;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<&'static Kind<T>> {
+        let found = self.0.iter().find(|kind| node.as_text() == Some(kind.word));
+        if found.is_none() {
+            not_a_word(node, self.0.iter().map(|kind| kind.word), reading);
+        }
+        found
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "enum": self.0.iter().map(|kind| kind.word).collect::<Vec<_>>() })
+    }
+}

@@ -1,0 +1,228 @@
+//! How a vehicle is written, made complete, and held against itself and the step of the physics.
+
+use crate::{
+    Vehicle, VehicleKind,
+    text::{Form, Found, Keys, Node, Part, Place, Reading, Value, table, words::quoted},
+    types::VehiclePart,
+};
+use serde::{Serializer, ser};
+use serde_json::{Value as Json, json};
+
+/// Keys that every kind has.
+const EVERYBODY: [&str; 11] = [
+    "kind",
+    "speed_min",
+    "speed_max",
+    "turn_rate_max",
+    "acceleration_max",
+    "length",
+    "width",
+    "height",
+    "wheelbase",
+    "track",
+    "wheel_radius",
+];
+/// Keys of kinds whose wheels are steered.
+const STEERED: [&str; 3] = ["steering_max", "steering_rate", "steering_lag"];
+
+/// Whether `key` means something for vehicles of `kind`.
+fn applies(key: &str, kind: VehicleKind) -> bool {
+    EVERYBODY.contains(&key) || (kind.has_wheels() && (kind.steers() || !STEERED.contains(&key)))
+}
+
+/// A vehicle: the word of a kind, or a table.
+pub(crate) struct VehicleForm;
+
+impl Form for VehicleForm {
+    type Out = VehiclePart;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<VehiclePart> {
+        match &node.value {
+            Value::Text(_) => {
+                let value = VehicleKind::form().read(node, reading)?;
+                Some(VehiclePart { kind: Some(Found { place: node.place, value }), ..VehiclePart::default() })
+            }
+            _ => table::<VehiclePart>().read(node, reading),
+        }
+    }
+
+    /// The defaults depend on the kind, so they are told in words.
+    fn schema(&self) -> Json {
+        let mut schema = table::<VehiclePart>().schema();
+        let made = VehicleKind::ALL
+            .map(|kind| (kind, serde_json::to_value(Vehicle::ready_made(kind)).unwrap_or_default()));
+        for (key, property) in schema["properties"].as_object_mut().into_iter().flatten() {
+            if key == "kind" {
+                continue;
+            }
+            if let Some(property) = property.as_object_mut() {
+                property.remove("default");
+            }
+            let values = made.iter().filter(|(kind, _)| applies(key, *kind)).map(|(kind, values)| {
+                // JSON has no infinity.
+                let value = if values[key].is_null() { "inf".to_owned() } else { values[key].to_string() };
+                format!("{} {value}", VehicleKind::form().word_of(*kind))
+            });
+            let values = values.collect::<Vec<_>>().join(", ");
+            let about = property["description"].as_str().unwrap_or_default();
+            property["description"] = json!(format!("{about} Default: {values}."));
+        }
+        json!({ "anyOf": [VehicleKind::form().schema(), schema] })
+    }
+}
+
+/// Writes the keys that mean something for the vehicle's kind, in their order.
+pub(crate) fn written<S: Serializer>(vehicle: &Vehicle, serializer: S) -> Result<S::Ok, S::Error> {
+    let values = toml::Table::try_from(vehicle).map_err(ser::Error::custom)?;
+    let keys = VehiclePart::fields().into_iter().map(|field| field.key);
+    serializer.collect_map(
+        keys.filter(|key| applies(key, vehicle.kind)).filter_map(|key| Some((key, values.get(key)?))),
+    )
+}
+
+/// Where a robot's vehicle is written, and what it is driven by.
+pub(crate) struct Written<'a> {
+    /// The robot's or group's own words.
+    pub(crate) own: &'a VehiclePart,
+    /// The scene's words for all.
+    pub(crate) scene: &'a VehiclePart,
+    /// Step of the physics, s.
+    pub(crate) step: f64,
+    /// Where that is said, or the robot where it is not.
+    pub(crate) place: Place,
+}
+
+/// The vehicle that is written, with notes where its values contradict each other.
+pub(crate) fn vehicle(written: &Written<'_>, reading: &mut Reading) -> Vehicle {
+    let nothing = VehiclePart::default();
+    let usual = usual_kind(written.scene);
+    let kind = written.own.kind.as_ref().map_or(usual, |found| found.value);
+    check_meaning(written.own, kind, reading);
+    let scene = if kind == usual { written.scene } else { &nothing };
+    let vehicle = written.own.complete_with(scene, Vehicle::ready_made(kind));
+    let check = Check { written: &Written { scene, ..*written }, vehicle };
+    check.run(reading);
+    vehicle
+}
+
+/// The kind of robots that name none, with `scene` the scene's words for all.
+pub(crate) fn usual_kind(scene: &VehiclePart) -> VehicleKind {
+    scene.kind.as_ref().map_or(VehicleKind::Unicycle, |found| found.value)
+}
+
+/// Notes keys of `part` that mean nothing for vehicles of `kind`.
+pub(crate) fn check_meaning(part: &VehiclePart, kind: VehicleKind, reading: &mut Reading) {
+    for (key, place) in part.places().into_iter().filter(|(key, _)| !applies(key, kind)) {
+        let others = VehicleKind::ALL.into_iter().filter(|other| applies(key, *other));
+        let others = quoted(others.map(|other| VehicleKind::form().word_of(other)));
+        let kind = VehicleKind::form().word_of(kind);
+        reading
+            .note(place, format!("`{key}` means nothing for a vehicle of kind `{kind}`; it is for {others}"));
+    }
+}
+
+/// A vehicle under inspection.
+struct Check<'a> {
+    written: &'a Written<'a>,
+    vehicle: Vehicle,
+}
+
+impl Check<'_> {
+    fn run(&self, reading: &mut Reading) {
+        let Vehicle { speed_min, speed_max, .. } = self.vehicle;
+        if speed_min >= speed_max {
+            let message =
+                format!("`speed_min` of {speed_min} m/s must be below `speed_max` of {speed_max} m/s");
+            self.note(&["speed_max", "speed_min"], message, reading);
+        }
+        if self.vehicle.kind.has_wheels() {
+            self.measures(reading);
+            self.springs(reading);
+            self.step(reading);
+        }
+    }
+
+    /// Notes `message` at the first of `keys` that is written.
+    fn note(&self, keys: &[&str], message: String, reading: &mut Reading) {
+        let Written { own, scene, place, .. } = *self.written;
+        let written = [own.places(), scene.places()].concat();
+        let find = |key: &&str| written.iter().find(|(written, _)| written == key);
+        reading.note(keys.iter().find_map(find).map_or(place, |(_, place)| *place), message);
+    }
+
+    fn measures(&self, reading: &mut Reading) {
+        let Vehicle { length, width, height, wheelbase, track, wheel_radius, .. } = self.vehicle;
+        let Vehicle { mass_height, clearance, .. } = self.vehicle;
+        if wheel_radius >= height {
+            let message = format!(
+                "the middle of a wheel of `wheel_radius` {wheel_radius} m must lie below the roof, `height` of {height} m"
+            );
+            self.note(&["wheel_radius", "height"], message, reading);
+        }
+        if clearance >= height {
+            let message = format!("`clearance` of {clearance} m must be below `height` of {height} m");
+            self.note(&["clearance", "height"], message, reading);
+        }
+        if mass_height > height {
+            let message = format!("`mass_height` of {mass_height} m must be at most `height` of {height} m");
+            self.note(&["mass_height", "height"], message, reading);
+        }
+        if wheelbase > 1.2 * length {
+            let message = format!(
+                "`wheelbase` of {wheelbase} m is too large for a `length` of {length} m: at most 1.2 of it"
+            );
+            self.note(&["wheelbase", "length"], message, reading);
+        }
+        if track > 1.5 * width {
+            let message =
+                format!("`track` of {track} m is too large for a `width` of {width} m: at most 1.5 of it");
+            self.note(&["track", "width"], message, reading);
+        }
+    }
+
+    fn springs(&self, reading: &mut Reading) {
+        let Vehicle { mass, spring, travel, .. } = self.vehicle;
+        let sag = mass * 9.81 / 4.0 / spring;
+        if sag >= 5.0 * travel {
+            let least = mass * 9.81 / 4.0 / (5.0 * travel);
+            let message = format!(
+                "springs of {spring} N/m do not carry {mass} kg: they sag by {sag:.3} m, with a `travel` of {travel} m; \
+                 stiffer than {least:.0} N/m"
+            );
+            self.note(&["spring", "mass", "travel"], message, reading);
+        }
+    }
+
+    fn step(&self, reading: &mut Reading) {
+        let Vehicle { mass, spring, damping, speed_max, width, .. } = self.vehicle;
+        let step = self.written.step;
+        // Explicit integration of the springs: both products have to stay below 1.
+        let frequency = (4.0 * spring / mass).sqrt();
+        if frequency * step >= 1.0 {
+            let message = format!(
+                "the springs are too stiff for a physics step of {step} s: softer than {:.0} N/m, or a step below {:.2e} s",
+                0.25 * mass / (step * step),
+                1.0 / frequency
+            );
+            self.note(&["spring", "mass"], message, reading);
+        }
+        let rate = 4.0 * damping / mass;
+        if rate * step >= 1.0 {
+            let message = format!(
+                "the dampers are too stiff for a physics step of {step} s: softer than {:.1} N s/m, or a step below {:.2e} s",
+                0.25 * mass / step,
+                1.0 / rate
+            );
+            self.note(&["damping", "mass"], message, reading);
+        }
+        if speed_max * step > 0.5 * width {
+            let message = format!(
+                "at `speed_max` of {speed_max} m/s the vehicle moves more than half its `width` of {width} m in a \
+                 physics step of {step} s: slower than {:.1} m/s, or a step below {:.2e} s",
+                0.5 * width / step,
+                0.5 * width / speed_max
+            );
+            self.note(&["speed_max", "width"], message, reading);
+        }
+    }
+}
