@@ -42,8 +42,13 @@ const ARROWS: [(&str, &[&str]); 9] = [
 ];
 
 /// Heavy crates and the only members that may name them.
-const LEAVES: [(&str, &[&str]); 4] =
-    [("wgpu", &["rendering"]), ("parquet", &["recording"]), ("clap", &["cli"]), ("openh264", &["rendering"])];
+const LEAVES: [(&str, &[&str]); 5] = [
+    ("wgpu", &["rendering"]),
+    ("parquet", &["recording"]),
+    ("clap", &["cli"]),
+    ("openh264", &["rendering"]),
+    ("rapier3d-f64", &["world"]),
+];
 
 #[test]
 fn arrows_point_one_way() {

@@ -18,7 +18,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use vocabulary::{Body, Cast, Limits, Member, Moment, Pose, Profile, wrap};
-use world::Unicycle;
+use world::{Actor, Stage, Unicycle};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
@@ -150,13 +150,17 @@ impl Case {
             speed: course(self.lead.v, self.lead.v_wave),
             turn_rate: course(self.lead.omega, self.lead.omega_wave),
         });
-        let robot = |(index, r): (usize, &Robot)| Unicycle {
-            pose: Pose::new(r.pose[0], r.pose[1], wrap(r.pose[2])),
-            speed: r.v,
-            limits,
-            body: Body::default(),
-            lead: (index == 0).then(|| lead.clone()),
+        let actor = |(index, r): (usize, &Robot)| Actor {
+            robot: Unicycle {
+                pose: Pose::new(r.pose[0], r.pose[1], wrap(r.pose[2])),
+                speed: r.v,
+                limits,
+                body: Body::default(),
+                lead: (index == 0).then(|| lead.clone()),
+            },
+            wheels: None,
         };
+        let actors = self.robots.iter().enumerate().map(actor).collect();
         let member = |(index, name): (usize, &String)| Member {
             name: name.clone(),
             leads: index == 0,
@@ -170,7 +174,8 @@ impl Case {
                 ..Cast::default()
             },
             observer_starts: vec![ObserverStart::Offset([0.0; 2]); self.edges.len()],
-            robots: self.robots.iter().enumerate().map(robot).collect(),
+            stage: Stage { actors, props: vec![], terrain: None, grip: 1.0, step: 0.005 },
+            stop_at_contact: false,
             formation: Formation::new(
                 graph,
                 laws,

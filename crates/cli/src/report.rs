@@ -31,6 +31,7 @@ pub(crate) fn as_text(report: &Report<'_>) {
     {
         say(&format!("least clearance {clearance:.3} m, between {a} and {b} at {time:.2} s"));
     }
+    contacts(metrics);
     let speed = metrics.duration / report.wall.max(1e-9);
     say(&format!("{:.2} s in {} steps, {speed:.0} times real time", metrics.duration, report.steps));
     say(&format!("digest {}", report.digest));
@@ -38,6 +39,26 @@ pub(crate) fn as_text(report: &Report<'_>) {
         say(&format!("recorded in {}", folder.display()));
     }
     expectations(report);
+}
+
+/// Contacts a report lists one by one.
+const MOST_CONTACTS: usize = 6;
+
+fn contacts(metrics: &Metrics) {
+    for contact in metrics.first_contacts.iter().take(MOST_CONTACTS) {
+        let ([a, b], [x, y, _]) = (&contact.between, contact.place);
+        let (begin, impulse) = (contact.begin, contact.impulse);
+        say(&format!("contact of {a} and {b} at {begin:.2} s, at ({x:.2}, {y:.2}) m, {impulse:.2} N s"));
+    }
+    if metrics.contacts > MOST_CONTACTS {
+        say(&format!(
+            "… and {} more contacts, all in the table of contacts",
+            metrics.contacts - MOST_CONTACTS
+        ));
+    }
+    for robot in metrics.robots.iter().filter(|robot| robot.condition != "able") {
+        say(&format!("{} is {}", robot.robot, robot.condition));
+    }
 }
 
 fn edges(metrics: &Metrics) {

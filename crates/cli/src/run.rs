@@ -7,7 +7,7 @@ use crate::interrupt;
 use crate::load::{Loaded, load, stem};
 use crate::progress::Progress;
 use crate::report::{self, Report};
-use recording::{Digest, Metrics, MetricsBuilder, Recorder, RunOptions, Status};
+use recording::{Digest, Judging, Metrics, MetricsBuilder, Recorder, RunOptions, Status};
 use simulation::verdict::verdict;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -24,7 +24,7 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     let mut sink = match &folder {
         Some(folder) => Sink::record(folder, args, &scene, &simulation)?,
         None => Sink::Judge(Box::new((
-            MetricsBuilder::new(simulation.cast(), scene.expect.settling_band),
+            MetricsBuilder::new(simulation.cast(), judging(&scene)),
             Digest::default(),
         ))),
     };
@@ -48,7 +48,9 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     }
     let wall = began.elapsed().as_secs_f64();
     progress.end();
-    let complete = step == steps;
+    // A run that its scene ends at a contact has not been cut short.
+    let whole = step == steps;
+    let complete = whole || simulation.stopped();
     let (metrics, digest) = sink.finish(if complete { Status::Complete } else { Status::Interrupted })?;
     if !complete {
         let place = folder.map_or_else(String::new, |f| format!(", recorded in {}", f.display()));
@@ -57,10 +59,10 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
             metrics.duration, scene.time.duration
         )));
     }
-    let findings = verdict(&scene.expect, &metrics, complete);
+    let findings = verdict(&scene, &metrics, whole);
     let met = findings.iter().all(|f| f.met);
     let report =
-        Report { scene: &scene, metrics: &metrics, findings: &findings, digest, folder, wall, steps };
+        Report { scene: &scene, metrics: &metrics, findings: &findings, digest, folder, wall, steps: step };
     if args.scene.json {
         report::as_json(&report);
     } else if !args.scene.quiet {
@@ -69,6 +71,11 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
         report::failures(&report);
     }
     if met { Ok(()) } else { Err(Failure::Expectation) }
+}
+
+fn judging(scene: &scene::Scene) -> Judging {
+    let settled_after = scene.expect.settled_after.unwrap_or(0.0);
+    Judging { settling_band: scene.expect.settling_band, settled_after }
 }
 
 /// Where moments go.
@@ -92,7 +99,7 @@ impl Sink {
             commit: option_env!("ECHELON_COMMIT").map(str::to_owned),
             seed: scene.seed,
             period: scene.time.period,
-            settling_band: scene.expect.settling_band,
+            judging: judging(scene),
         };
         Ok(Self::Record(Box::new(Recorder::create(folder, simulation.cast(), options)?)))
     }

@@ -43,14 +43,6 @@ pub enum GraphError {
     /// Followers lead one another in a ring.
     #[error("these robots follow each other in a ring: {}", .0.join(" → "))]
     Cycle(Vec<String>),
-    /// Some robots have no path of edges to the first.
-    #[error("not connected to `{first}` by any edge: {}", .apart.join(", "))]
-    NotConnected {
-        /// The first robot of the formation.
-        first: String,
-        /// Robots that no edge joins to it.
-        apart: Vec<String>,
-    },
 }
 
 /// A checked formation graph: acyclic, every follower with one leader.
@@ -65,7 +57,7 @@ impl Graph {
     /// Builds the graph of `names` and (leader, follower) pairs of names.
     ///
     /// # Errors
-    /// The first [`GraphError`] found; connection is checked apart, by [`Graph::require_connected`].
+    /// The first [`GraphError`] found.
     pub fn new<S: AsRef<str>>(names: &[S], pairs: &[(S, S)]) -> Result<Self, GraphError> {
         if names.is_empty() {
             return Err(GraphError::Empty);
@@ -144,26 +136,6 @@ impl Graph {
             depth += 1;
         }
         depth
-    }
-
-    /// Checks weak connection.
-    ///
-    /// # Errors
-    /// [`GraphError::NotConnected`] with the robots that stand apart from the first one.
-    pub fn require_connected(&self) -> Result<(), GraphError> {
-        let mut seen = vec![false; self.robots()];
-        let mut open = vec![0];
-        while let Some(robot) = open.pop() {
-            if !std::mem::replace(&mut seen[robot], true) {
-                open.extend(self.neighbours(robot));
-            }
-        }
-        let apart: Vec<String> =
-            (0..self.robots()).filter(|&i| !seen[i]).map(|i| self.name(i).to_owned()).collect();
-        if apart.is_empty() {
-            return Ok(());
-        }
-        Err(GraphError::NotConnected { first: self.name(0).to_owned(), apart })
     }
 }
 
@@ -249,7 +221,7 @@ mod tests {
         assert_eq!((graph.in_degree(0), graph.in_degree(6)), (0, 1));
         assert_eq!(graph.edge_to(4), Some(3));
         assert_eq!(graph.depth(6), 3);
-        assert!(graph.weakly_connected() && graph.require_connected().is_ok());
+        assert!(graph.weakly_connected());
         let adjacency = graph.adjacency();
         assert_eq!(adjacency[(1, 3)], 1);
         assert_eq!(adjacency[(3, 1)], 0);
@@ -291,13 +263,5 @@ mod tests {
         assert_eq!(names.len(), 3);
         assert_eq!(names.first(), names.last());
         assert!(!names.contains(&"tail".to_owned()));
-    }
-
-    #[test]
-    fn robots_apart_are_named() {
-        let graph = build(&["ann", "bob", "cy", "dan"], &[("ann", "bob")]).expect("a graph");
-        assert!(!graph.weakly_connected());
-        let message = graph.require_connected().expect_err("two stand apart").to_string();
-        assert!(message.contains("cy") && message.contains("dan") && !message.contains("bob"), "{message}");
     }
 }

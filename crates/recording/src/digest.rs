@@ -11,7 +11,7 @@ pub struct Digest {
 }
 
 impl Digest {
-    /// Takes in a moment: time, poses, speeds, commands, estimates.
+    /// Takes in a moment: time, poses, speeds, commands, estimates, props, contacts.
     pub fn push(&mut self, moment: &Moment) {
         self.bytes.clear();
         let mut put = |values: &[f64]| self.bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
@@ -24,6 +24,13 @@ impl Digest {
         for edge in &moment.edges {
             put(&[edge.set_point[0], edge.set_point[1], edge.error[0], edge.error[1]]);
             put(&[edge.applied.acceleration, edge.applied.turn_rate, edge.rates[0], edge.rates[1]]);
+        }
+        for prop in &moment.snapshot.props {
+            put(&prop.position);
+            put(&prop.rotation);
+        }
+        for contact in &moment.contacts {
+            put(&[contact.begin, contact.end, contact.impulse]);
         }
         self.hash.update(&self.bytes);
     }

@@ -3,14 +3,15 @@
 //! ```text
 //! manifest.json     what ran, how it ended, the digest of its trajectory
 //! scene.toml        the scene with every default written out
-//! metrics.json      errors, effort, clearance
-//! tables/           robots.parquet, edges.parquet; also .csv where asked for
+//! metrics.json      errors, effort, clearance, contacts
+//! tables/           robots, edges, contacts and, where any can move, props as .parquet; also .csv where asked for
 //! ```
 //!
 //! Rows reach the disk as the run goes, in parts that are each complete, so a run that is cut short leaves what it
 //! had; its manifest then says `running` or `interrupted`, never `complete`.
 
 pub mod clearance;
+mod contacts;
 mod digest;
 mod error;
 mod file;
@@ -23,6 +24,6 @@ pub use digest::Digest;
 pub use error::Error;
 pub use file::write_whole;
 pub use manifest::{Manifest, Status};
-pub use metrics::{EdgeMetrics, Metrics, MetricsBuilder};
+pub use metrics::{ContactMetrics, EdgeMetrics, Judging, Metrics, MetricsBuilder, RobotMetrics};
 pub use run::{Recorder, RunOptions};
 pub use table::{Column, TableKind, read_table};

@@ -1,8 +1,9 @@
 //! Errors, effort and clearance of a run, gathered as it goes.
 
-use crate::clearance::{Closest, closest};
+use crate::clearance::Clearance;
+use crate::contacts::ContactLog;
 use serde::Serialize;
-use vocabulary::{Cast, EdgeState, Moment};
+use vocabulary::{Cast, Condition, Contact, EdgeState, Moment, Thing};
 
 /// `metrics.json`. Every pair is [distance, bearing] or [acceleration, turn rate].
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -11,14 +12,65 @@ pub struct Metrics {
     pub duration: f64,
     /// Per edge.
     pub edges: Vec<EdgeMetrics>,
-    /// Least room between any two bodies, m; `None` with one robot.
+    /// Per robot.
+    pub robots: Vec<RobotMetrics>,
+    /// Least room between any robot and another body, m; `None` where there is no other.
     pub clearance_min: Option<f64>,
     /// When that was, s.
     pub clearance_min_time: Option<f64>,
     /// Between whom.
     pub clearance_min_robots: Option<[String; 2]>,
+    /// Contacts of robots with each other, with props and with the ground.
+    pub contacts: usize,
+    /// Largest impulse of a contact, N s.
+    pub contact_impulse_max: f64,
+    /// The first contacts, in the order in which they began; all are in the table.
+    pub first_contacts: Vec<ContactMetrics>,
     /// |error| under which an edge counts as settled, [m, rad].
     pub settling_band: [f64; 2],
+}
+
+/// One robot over a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Default)]
+pub struct RobotMetrics {
+    /// Its name.
+    pub robot: String,
+    /// Least room to anything else but ramps and the ground, m; `None` where there is nothing else.
+    pub clearance_min: Option<f64>,
+    /// To what.
+    pub nearest: Option<String>,
+    /// When that was, s.
+    pub clearance_min_time: Option<f64>,
+    /// Largest height of its ground point over the ground, m.
+    pub lift_max: f64,
+    /// At the end: able, overturned, stuck or fallen.
+    pub condition: String,
+}
+
+/// One contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Default)]
+pub struct ContactMetrics {
+    /// The two.
+    pub between: [String; 2],
+    /// First touch, s.
+    pub begin: f64,
+    /// Last touch, s.
+    pub end: f64,
+    /// Of the first touch, m.
+    pub place: [f64; 3],
+    /// From the first to the second.
+    pub normal: [f64; 3],
+    /// N s.
+    pub impulse: f64,
+}
+
+/// What a run is judged by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Judging {
+    /// |error| under which an edge counts as settled, [m, rad].
+    pub settling_band: [f64; 2],
+    /// Time from which [`EdgeMetrics::late_peak_error`] is looked for, s.
+    pub settled_after: f64,
 }
 
 /// One edge over a run.
@@ -40,6 +92,8 @@ pub struct EdgeMetrics {
     pub ise: [f64; 2],
     /// Largest |error|, [m, rad].
     pub peak_error: [f64; 2],
+    /// Largest |error| from a given time to the end, [m, rad].
+    pub late_peak_error: [f64; 2],
     /// Time from which both errors stay within the band, s; `None` if they do not.
     pub settling_time: Option<f64>,
     /// ∫ |command applied| dt, [m/s, rad].
@@ -60,12 +114,14 @@ pub struct EdgeMetrics {
 #[derive(Debug, Clone)]
 pub struct MetricsBuilder {
     cast: Cast,
-    band: [f64; 2],
+    judging: Judging,
     edges: Vec<EdgeSums>,
     samples: u64,
     time: f64,
-    closest: Option<(Closest, f64)>,
-    order: Vec<usize>,
+    clearance: Clearance,
+    contacts: ContactLog,
+    lifts: Vec<f64>,
+    conditions: Vec<Condition>,
 }
 
 /// Running sums of one edge.
@@ -77,6 +133,7 @@ struct EdgeSums {
     square_integral: [f64; 2],
     effort: [f64; 2],
     peak_error: [f64; 2],
+    late_peak_error: [f64; 2],
     peak_rates: [f64; 2],
     limited: u64,
     too_close: u64,
@@ -94,10 +151,20 @@ struct Settled {
 }
 
 impl MetricsBuilder {
-    /// For a run of `cast`; an edge is settled while its errors are within `band` [m, rad].
-    pub fn new(cast: &Cast, band: [f64; 2]) -> Self {
+    /// For a run of `cast`.
+    pub fn new(cast: &Cast, judging: Judging) -> Self {
         let edges = vec![EdgeSums { speeds: [f64::INFINITY, 0.0], ..EdgeSums::default() }; cast.edges.len()];
-        Self { cast: cast.clone(), band, edges, samples: 0, time: 0.0, closest: None, order: Vec::new() }
+        Self {
+            judging,
+            edges,
+            samples: 0,
+            time: 0.0,
+            clearance: Clearance::new(cast),
+            contacts: ContactLog::default(),
+            lifts: vec![0.0; cast.members.len()],
+            conditions: vec![Condition::Able; cast.members.len()],
+            cast: cast.clone(),
+        }
     }
 
     /// Takes in a moment.
@@ -106,35 +173,63 @@ impl MetricsBuilder {
         let step = if self.samples == 0 { 0.0 } else { time - self.time };
         for (index, edge) in moment.edges.iter().enumerate() {
             let speed = moment.snapshot.robots[self.cast.edges[index].follower].motion.speed;
-            self.edges[index].push(edge, speed, time, step, self.band);
+            self.edges[index].push(edge, speed, time, step, &self.judging);
         }
-        let below = self.closest.map_or(f64::INFINITY, |(c, _)| c.clearance);
-        if below > 0.0
-            && let Some(found) = closest(&self.cast, &moment.snapshot, below, &mut self.order)
-        {
-            self.closest = Some((found, time));
+        for (index, robot) in moment.snapshot.robots.iter().enumerate() {
+            let pose = robot.motion.pose;
+            let lift = robot.attitude.height - self.cast.surface(pose.x, pose.y).height;
+            self.lifts[index] = self.lifts[index].max(lift);
+            self.conditions[index] = robot.condition;
         }
+        self.clearance.push(&moment.snapshot);
+        self.contacts.push(&moment.contacts);
         self.samples += 1;
         self.time = time;
     }
 
     /// The metrics of all moments so far.
     pub fn finish(&self) -> Metrics {
-        let name = |robot: usize| self.cast.members[robot].name.clone();
+        let name = |thing: Thing| self.cast.name(thing).to_owned();
+        let robot = |index: usize| name(Thing::Robot(index));
         let pairs = self.edges.iter().zip(&self.cast.edges);
+        let rooms = self.clearance.least().iter().enumerate();
+        let least = rooms.filter_map(|(k, room)| Some((k, (*room)?)));
+        let least = least.min_by(|a, b| a.1.clearance.total_cmp(&b.1.clearance));
         Metrics {
             duration: self.time,
-            edges: pairs.map(|(s, e)| s.finish(name(e.leader), name(e.follower), self.samples)).collect(),
-            clearance_min: self.closest.map(|(c, _)| c.clearance),
-            clearance_min_time: self.closest.map(|(_, time)| time),
-            clearance_min_robots: self.closest.map(|(c, _)| c.robots.map(name)),
-            settling_band: self.band,
+            edges: pairs.map(|(s, e)| s.finish(robot(e.leader), robot(e.follower), self.samples)).collect(),
+            robots: (0..self.cast.members.len()).map(|k| self.robot(k)).collect(),
+            clearance_min: least.map(|(_, room)| room.clearance),
+            clearance_min_time: least.map(|(_, room)| room.time),
+            clearance_min_robots: least.map(|(k, room)| [robot(k), name(room.nearest)]),
+            contacts: self.contacts.count(),
+            contact_impulse_max: self.contacts.largest(),
+            first_contacts: self.contacts.first(&self.cast),
+            settling_band: self.judging.settling_band,
+        }
+    }
+
+    /// The contacts that have not ended, as if they ended now.
+    pub(crate) fn close_contacts(&self) -> Vec<Contact> {
+        self.contacts.close()
+    }
+
+    fn robot(&self, index: usize) -> RobotMetrics {
+        let room = self.clearance.least()[index];
+        RobotMetrics {
+            robot: self.cast.name(Thing::Robot(index)).to_owned(),
+            clearance_min: room.map(|r| r.clearance),
+            nearest: room.map(|r| self.cast.name(r.nearest).to_owned()),
+            clearance_min_time: room.map(|r| r.time),
+            lift_max: self.lifts[index],
+            condition: self.conditions[index].name().to_owned(),
         }
     }
 }
 
 impl EdgeSums {
-    fn push(&mut self, edge: &EdgeState, speed: f64, time: f64, step: f64, band: [f64; 2]) {
+    fn push(&mut self, edge: &EdgeState, speed: f64, time: f64, step: f64, judging: &Judging) {
+        let band = judging.settling_band;
         let commands = |e: &EdgeState| [e.applied.acceleration, e.applied.turn_rate];
         let (now, before) = (commands(edge), commands(&self.last));
         for i in 0..2 {
@@ -145,6 +240,9 @@ impl EdgeSums {
             self.square_integral[i] += step * (e * e + last * last) / 2.0;
             self.effort[i] += step * (now[i].abs() + before[i].abs()) / 2.0;
             self.peak_error[i] = self.peak_error[i].max(e.abs());
+            if time >= judging.settled_after {
+                self.late_peak_error[i] = self.late_peak_error[i].max(e.abs());
+            }
             self.peak_rates[i] = self.peak_rates[i].max(edge.rates[i].abs());
         }
         self.limited += u64::from(edge.limited);
@@ -180,6 +278,7 @@ impl EdgeSums {
             iae: self.absolute_integral,
             ise: self.square_integral,
             peak_error: self.peak_error,
+            late_peak_error: self.late_peak_error,
             settling_time: self.settled.map(|s| s.since),
             effort: self.effort,
             peak_rates: self.peak_rates,
@@ -202,7 +301,8 @@ mod tests {
             |name: &str| Member { name: name.into(), leads: name == "a", body: vocabulary::Body::default() };
         let edges = vec![Edge { leader: 0, follower: 1 }];
         let cast = Cast { members: vec![member("a"), member("b")], edges, ..Cast::default() };
-        let mut builder = MetricsBuilder::new(&cast, [0.1, 0.1]);
+        let mut builder =
+            MetricsBuilder::new(&cast, Judging { settling_band: [0.1, 0.1], settled_after: 1.0 });
         for k in 0..=1000 {
             let time = f64::from(k) * 0.01;
             let mut robots = vec![RobotState::default(); 2];
@@ -246,7 +346,8 @@ mod tests {
             edges: vec![Edge { leader: 0, follower: 1 }],
             ..Cast::default()
         };
-        let mut builder = MetricsBuilder::new(&cast, [0.1, 0.1]);
+        let mut builder =
+            MetricsBuilder::new(&cast, Judging { settling_band: [0.1, 0.1], settled_after: 1.0 });
         for error in [0.0, 0.05, 0.2] {
             let edge = EdgeState { error: [0.0, error], ..EdgeState::default() };
             let snapshot = Snapshot { time: error, robots: vec![RobotState::default(); 2], props: vec![] };

@@ -2,7 +2,7 @@
 
 use crate::manifest::FORMAT;
 use crate::table::{TableKind, TableWriter};
-use crate::{Digest, Error, Manifest, Metrics, MetricsBuilder, Status, write_whole};
+use crate::{Digest, Error, Judging, Manifest, Metrics, MetricsBuilder, Status, write_whole};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -25,8 +25,8 @@ pub struct RunOptions {
     pub seed: u64,
     /// Control period, s.
     pub period: f64,
-    /// |error| under which an edge counts as settled, [m, rad].
-    pub settling_band: [f64; 2],
+    /// What the metrics are judged by.
+    pub judging: Judging,
 }
 
 /// Writes a run folder; dropped without [`Recorder::finish`], it leaves what it had, marked `running`.
@@ -34,7 +34,7 @@ pub struct Recorder {
     folder: PathBuf,
     cast: Cast,
     manifest: Manifest,
-    tables: [TableWriter; 2],
+    tables: Vec<TableWriter>,
     metrics: MetricsBuilder,
     digest: Digest,
 }
@@ -64,8 +64,8 @@ impl Recorder {
         let recorder = Self {
             folder: folder.to_owned(),
             cast: cast.clone(),
-            tables: [writer(TableKind::Robots)?, writer(TableKind::Edges)?],
-            metrics: MetricsBuilder::new(cast, options.settling_band),
+            tables: TableKind::of(cast).into_iter().map(writer).collect::<Result<_, _>>()?,
+            metrics: MetricsBuilder::new(cast, options.judging),
             digest: Digest::default(),
             manifest: first_manifest(cast, options),
         };
@@ -92,7 +92,9 @@ impl Recorder {
     /// # Errors
     /// [`Error`] when the disk does not take it.
     pub fn finish(mut self, status: Status) -> Result<(Manifest, Metrics), Error> {
+        let last = Moment { contacts: self.metrics.close_contacts(), ..Moment::default() };
         for table in &mut self.tables {
+            table.push(&self.cast, &last)?;
             table.finish()?;
         }
         let metrics = self.metrics.finish();

@@ -13,15 +13,19 @@ use parquet::file::properties::WriterProperties;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{Cast, Moment};
+use vocabulary::{Cast, Mobility, Moment};
 
-/// The two tables of a run.
+/// The tables of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TableKind {
     /// Poses and speeds of every robot.
     Robots,
     /// Set point, error, command and estimate of every edge.
     Edges,
+    /// Contacts, each once, when it has ended.
+    Contacts,
+    /// Where the props are that can move.
+    Props,
 }
 
 /// Values of one column.
@@ -44,6 +48,8 @@ impl TableKind {
         match self {
             Self::Robots => "robots",
             Self::Edges => "edges",
+            Self::Contacts => "contacts",
+            Self::Props => "props",
         }
     }
 
@@ -59,6 +65,11 @@ impl TableKind {
                 "speed_m_s",
                 "acceleration_m_s2",
                 "turn_rate_rad_s",
+                "height_m",
+                "roll_rad",
+                "pitch_rad",
+                "steering_rad",
+                "condition",
             ],
             Self::Edges => &[
                 "time_s",
@@ -80,12 +91,35 @@ impl TableKind {
                 "limited",
                 "too_close",
             ],
+            Self::Contacts => &[
+                "first",
+                "second",
+                "begin_s",
+                "end_s",
+                "x_m",
+                "y_m",
+                "z_m",
+                "normal_x",
+                "normal_y",
+                "normal_z",
+                "impulse_n_s",
+            ],
+            Self::Props => &["time_s", "prop", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"],
         }
+    }
+
+    /// The tables that a run of `cast` has.
+    pub fn of(cast: &Cast) -> Vec<Self> {
+        let moving = cast.props.iter().any(|prop| prop.mobility != Mobility::Fixed);
+        let all = [Self::Robots, Self::Edges, Self::Contacts, Self::Props];
+        all.into_iter().filter(|kind| moving || *kind != Self::Props).collect()
     }
 
     fn empty_columns(self) -> Vec<Column> {
         let kind = |name: &&str| match *name {
-            "robot" | "leader" | "follower" => Column::Text(vec![]),
+            "robot" | "leader" | "follower" | "condition" | "first" | "second" | "prop" => {
+                Column::Text(vec![])
+            }
             "limited" | "too_close" => Column::Flag(vec![]),
             _ => Column::Number(vec![]),
         };
@@ -99,9 +133,21 @@ impl TableKind {
             Self::Robots => {
                 for (member, robot) in cast.members.iter().zip(&moment.snapshot.robots) {
                     let m = &robot.motion;
-                    let numbers =
-                        [time, m.pose.x, m.pose.y, m.pose.heading, m.speed, m.acceleration, m.turn_rate];
-                    put(&[&member.name], &numbers, &[]);
+                    let (a, [left, right, ..]) = (&robot.attitude, &robot.wheels);
+                    let numbers = [
+                        time,
+                        m.pose.x,
+                        m.pose.y,
+                        m.pose.heading,
+                        m.speed,
+                        m.acceleration,
+                        m.turn_rate,
+                        a.height,
+                        a.roll,
+                        a.pitch,
+                        f64::midpoint(left.steering, right.steering),
+                    ];
+                    put(&[&member.name, robot.condition.name()], &numbers, &[]);
                 }
             }
             Self::Edges => {
@@ -125,6 +171,21 @@ impl TableKind {
                         s.rates[1],
                     ];
                     put(&names, &numbers, &[s.limited, s.too_close]);
+                }
+            }
+            Self::Contacts => {
+                for contact in moment.contacts.iter().filter(|contact| !contact.open) {
+                    let names = contact.things.map(|thing| cast.name(thing));
+                    let ([x, y, z], [nx, ny, nz]) = (contact.place, contact.normal);
+                    put(&names, &[contact.begin, contact.end, x, y, z, nx, ny, nz, contact.impulse], &[]);
+                }
+            }
+            Self::Props => {
+                for (prop, placement) in cast.props.iter().zip(&moment.snapshot.props) {
+                    if prop.mobility != Mobility::Fixed {
+                        let ([x, y, z], [qx, qy, qz, qw]) = (placement.position, placement.rotation);
+                        put(&[&prop.name], &[time, x, y, z, qx, qy, qz, qw], &[]);
+                    }
                 }
             }
         }

@@ -1,13 +1,12 @@
 //! A checked scene, turned into the parts that run it.
 
+use crate::stage::stage;
 use crate::step::{ObserverStart, Setup, Timing};
-use formation::lead::{Courses, Hermite, Pace, Table, Way, WayError};
+use formation::lead::WayError;
 use formation::{Course, EdgeLaw, Formation, Graph, GraphError, SetPointCourse};
-use scene::{Channel, Follow, Path, Role, Scene, SpeedProfile};
-use std::sync::Arc;
+use scene::{Channel, Follow, OnContact, Role, Scene};
 use thiserror::Error;
-use vocabulary::{Cast, Light, Member, Pose, Profile};
-use world::Unicycle;
+use vocabulary::{Cast, Light, Member};
 
 /// Why a scene that reads well cannot run.
 #[derive(Debug, Error)]
@@ -15,10 +14,10 @@ pub enum BuildError {
     /// Robots and edges make no formation.
     #[error(transparent)]
     Graph(#[from] GraphError),
-    /// The way-points of a lead robot make no curve.
+    /// The way-points of a lead robot or of a guided prop make no curve.
     #[error("the path of `{robot}`: {source}")]
     Way {
-        /// The lead robot.
+        /// The lead robot or prop.
         robot: String,
         /// What is wrong with its points.
         source: WayError,
@@ -48,34 +47,14 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let followers: Vec<(&str, &Follow)> = scene.robots.iter().filter_map(follows).collect();
     let pairs: Vec<(&str, &str)> = followers.iter().map(|(name, follow)| (&*follow.leader, *name)).collect();
     let graph = Graph::new(&names, &pairs)?;
-    graph.require_connected()?;
     check_stiffness(scene, &followers)?;
 
-    let mut leads: Vec<(usize, Arc<dyn Profile>)> = Vec::new();
-    let mut robots = Vec::with_capacity(names.len());
-    for (index, robot) in scene.robots.iter().enumerate() {
-        let mut unicycle = Unicycle {
-            pose: robot.pose,
-            speed: 0.0,
-            limits: robot.vehicle.limits(),
-            body: robot.vehicle.body(),
-            lead: None,
-        };
-        match &robot.role {
-            Role::Lead { path } => {
-                let (profile, start) =
-                    lead(path).map_err(|source| BuildError::Way { robot: robot.name.clone(), source })?;
-                unicycle.pose = start.unwrap_or(robot.pose);
-                unicycle.lead = Some(profile.clone());
-                leads.push((index, profile));
-            }
-            Role::Follow(follow) => unicycle.speed = follow.speed,
-        }
-        robots.push(unicycle);
-    }
+    let stage = stage(scene)?;
+    let leading = stage.actors.iter().enumerate();
+    let leads = leading.filter_map(|(index, actor)| Some((index, actor.robot.lead.clone()?))).collect();
+    let limits = stage.actors.iter().map(|actor| actor.robot.limits).collect();
     let edges = graph.edges().to_vec();
     let laws = followers.iter().map(|(_, follow)| edge_law(follow)).collect();
-    let limits = robots.iter().map(|r| r.limits).collect();
     let member = |robot: &scene::Robot| Member {
         name: robot.name.clone(),
         leads: matches!(robot.role, Role::Lead { .. }),
@@ -93,17 +72,18 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
             },
             members: scene.robots.iter().map(member).collect(),
             edges,
-            props: Vec::new(),
-            terrain: None,
+            props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
+            terrain: stage.terrain.clone(),
         },
         formation: Formation::new(graph, laws, limits, leads, scene.time.period),
-        robots,
+        stage,
         observer_starts: followers.iter().map(|(_, follow)| observer_start(follow)).collect(),
         timing: match scene.time.mode {
             scene::Mode::Continuous => Timing::Continuous,
             scene::Mode::Sampled => Timing::Sampled,
             scene::Mode::Measured => Timing::Measured,
         },
+        stop_at_contact: scene.physics.on_contact != OnContact::Record,
         period: scene.time.period,
         duration: scene.time.duration,
     })
@@ -126,53 +106,6 @@ fn follows(robot: &scene::Robot) -> Option<(&str, &Follow)> {
     match &robot.role {
         Role::Lead { .. } => None,
         Role::Follow(follow) => Some((&robot.name, follow)),
-    }
-}
-
-/// A lead robot's motion, and where it has to start if its path says so.
-fn lead(path: &Path) -> Result<(Arc<dyn Profile>, Option<Pose>), WayError> {
-    let profile: Arc<dyn Profile> = match path {
-        Path::Constant { speed, turn_rate } | Path::Circle { speed, turn_rate } => {
-            Arc::new(Courses::constant(*speed, *turn_rate))
-        }
-        Path::Sinusoid {
-            speed,
-            speed_amplitude,
-            speed_rate,
-            turn_rate,
-            turn_rate_amplitude,
-            turn_rate_rate,
-        } => {
-            let wave = |mean: &f64, amplitude: &f64, rate: &f64| Course::Sinusoid {
-                mean: *mean,
-                amplitude: *amplitude,
-                rate: *rate,
-            };
-            Arc::new(Courses {
-                speed: wave(speed, speed_amplitude, speed_rate),
-                turn_rate: wave(turn_rate, turn_rate_amplitude, turn_rate_rate),
-            })
-        }
-        Path::FigureEight { speed, length } => Arc::new(Courses::figure_eight(*speed, length / speed)),
-        Path::Waypoints { points, closed, speed } => {
-            let way = Way::new(points, *closed, pace(speed))?;
-            let start = way.start();
-            return Ok((Arc::new(way), Some(start)));
-        }
-        // A checked table has rows; one without would stand still.
-        Path::Table { rows } => Table::new(rows)
-            .map_or_else(|| Arc::new(Courses::constant(0.0, 0.0)) as Arc<dyn Profile>, |t| Arc::new(t)),
-    };
-    Ok((profile, None))
-}
-
-fn pace(speed: &SpeedProfile) -> Pace {
-    // Checked profiles have rows.
-    let through = |rows: &[[f64; 2]]| Hermite::new(rows.to_vec()).unwrap_or_else(|| Hermite::constant(0.0));
-    match speed {
-        SpeedProfile::Constant(v) => Pace::over_time(Hermite::constant(*v)),
-        SpeedProfile::Time(rows) => Pace::over_time(through(rows)),
-        SpeedProfile::Distance(rows) => Pace::over_distance(through(rows)),
     }
 }
 

@@ -13,6 +13,7 @@ const STEP_MAX: f64 = 2.5e-4;
 const STEPS_PER_EPSILON: f64 = 8.0;
 
 /// All that moves in continuous time.
+#[derive(Clone)]
 pub(crate) struct Continuous {
     world: Unicycles,
     step: f64,

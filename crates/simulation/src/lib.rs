@@ -5,6 +5,7 @@
 
 mod build;
 mod continuous;
+mod stage;
 mod step;
 pub mod verdict;
 

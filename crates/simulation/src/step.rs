@@ -4,7 +4,7 @@ use crate::continuous::Continuous;
 use formation::{Estimate, Formation, FormationState, LawKind};
 use std::f64::consts::PI;
 use vocabulary::{Cast, EdgeState, Moment, Observation, Relative, wrap};
-use world::{Unicycle, Unicycles, World};
+use world::{Physical, Stage, Unicycles, World};
 
 /// How law and observer act in time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,12 +24,14 @@ pub struct Setup {
     pub cast: Cast,
     /// Graph, laws, set points, lead motions.
     pub formation: Formation,
-    /// Robots at their starts.
-    pub robots: Vec<Unicycle>,
+    /// Robots, props and ground at the start.
+    pub stage: Stage,
     /// Where observers start: added to the first measurement [m, rad], or in its place.
     pub observer_starts: Vec<ObserverStart>,
     /// How law and observer act in time.
     pub timing: Timing,
+    /// Whether the run ends where bodies touch.
+    pub stop_at_contact: bool,
     /// Control period, s.
     pub period: f64,
     /// Length of the run, s.
@@ -57,6 +59,8 @@ pub struct Simulation {
     moment: Moment,
     sample: u64,
     last_sample: u64,
+    stop_at_contact: bool,
+    stopped: bool,
 }
 
 /// What moves the robots: a world that is told commands to hold, or plant, law and observers as one system.
@@ -69,7 +73,8 @@ impl Simulation {
     /// A run at time 0, nothing evaluated yet.
     pub fn new(setup: Setup) -> Self {
         let edges = setup.formation.edges().len();
-        let world = Unicycles::new(setup.robots);
+        let plant = Plant::new(setup.stage, setup.timing, &setup.formation);
+        let world = plant.world();
         let mut observations = Vec::with_capacity(edges);
         perception::observe(world.snapshot(), setup.formation.edges(), &mut observations);
         let start = |(o, s): (&Observation, &ObserverStart)| first_estimate(&o.relative, *s);
@@ -79,10 +84,6 @@ impl Simulation {
             snapshot: world.snapshot().clone(),
             edges: vec![EdgeState::default(); edges],
             contacts: Vec::new(),
-        };
-        let plant = match setup.timing {
-            Timing::Continuous => Plant::Continuous(Box::new(Continuous::new(world, &setup.formation))),
-            Timing::Sampled | Timing::Measured => Plant::Held(Box::new(world)),
         };
         Self {
             cast: setup.cast,
@@ -95,12 +96,14 @@ impl Simulation {
             moment,
             sample: 0,
             last_sample: samples(setup.duration, setup.period),
+            stop_at_contact: setup.stop_at_contact,
+            stopped: false,
         }
     }
 
     /// The next control sample: what is seen, what is decided, what is applied. `None` when the run is over.
     pub fn next_moment(&mut self) -> Option<&Moment> {
-        if self.sample > self.last_sample {
+        if self.sample > self.last_sample || self.stopped {
             return None;
         }
         if self.sample > 0 {
@@ -112,6 +115,7 @@ impl Simulation {
         self.formation.decide(time, &self.observations, &mut self.state);
         self.plant.world_mut().apply(&self.state.commands);
         self.write_moment(time);
+        self.stopped = self.stop_at_contact && !self.moment.contacts.is_empty();
         self.sample += 1;
         Some(&self.moment)
     }
@@ -154,6 +158,8 @@ impl Simulation {
     fn write_moment(&mut self, time: f64) {
         self.moment.snapshot.clone_from(self.plant.world().snapshot());
         self.moment.snapshot.time = time;
+        self.moment.contacts.clear();
+        self.moment.contacts.extend_from_slice(self.plant.world().contacts());
         for (index, (edge, out)) in self.formation.edges().iter().zip(&mut self.moment.edges).enumerate() {
             let robots = &mut self.moment.snapshot.robots;
             let relative =
@@ -197,6 +203,25 @@ impl Simulation {
         self.last_sample + 1
     }
 
+    /// Whether the run ended before its time because bodies touched.
+    pub fn stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// A copy of the whole run as it stands: it goes on to the same future, bit for bit.
+    #[must_use]
+    pub fn save(&self) -> Self {
+        Self {
+            cast: self.cast.clone(),
+            formation: self.formation.clone(),
+            state: self.state.clone(),
+            plant: self.plant.save(),
+            observations: self.observations.clone(),
+            moment: self.moment.clone(),
+            ..*self
+        }
+    }
+
     /// Never: a run has at least its first sample.
     pub fn is_empty(&self) -> bool {
         false
@@ -209,6 +234,28 @@ impl Simulation {
 }
 
 impl Plant {
+    /// Unicycles on an empty plane are moved exactly; all else is moved by forces.
+    fn new(stage: Stage, timing: Timing, formation: &Formation) -> Self {
+        let ideal = stage.props.is_empty()
+            && stage.terrain.is_none()
+            && stage.actors.iter().all(|a| a.wheels.is_none());
+        if !ideal && timing != Timing::Continuous {
+            return Self::Held(Box::new(Physical::new(stage)));
+        }
+        let world = Unicycles::new(stage.actors.into_iter().map(|actor| actor.robot).collect());
+        match timing {
+            Timing::Continuous => Self::Continuous(Box::new(Continuous::new(world, formation))),
+            Timing::Sampled | Timing::Measured => Self::Held(Box::new(world)),
+        }
+    }
+
+    fn save(&self) -> Self {
+        match self {
+            Self::Held(world) => Self::Held(world.save()),
+            Self::Continuous(system) => Self::Continuous(system.clone()),
+        }
+    }
+
     fn world(&self) -> &dyn World {
         match self {
             Self::Held(world) => world.as_ref(),

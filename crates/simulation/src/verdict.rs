@@ -1,7 +1,7 @@
 //! What a run showed, held against what its scene expects.
 
 use recording::{EdgeMetrics, Metrics};
-use scene::Expect;
+use scene::{Expect, OnContact, Scene};
 
 /// One expectation and what became of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,15 +16,44 @@ pub struct Finding {
     pub met: bool,
 }
 
-/// Every expectation of a scene, in the order of its keys.
-pub fn verdict(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Finding> {
+/// Everything that a scene asks of its run, in the order of its keys.
+pub fn verdict(scene: &Scene, metrics: &Metrics, completed: bool) -> Vec<Finding> {
+    let mut findings = expectations(&scene.expect, metrics, completed);
+    if scene.physics.on_contact == OnContact::Fail && !scene.expect.no_contact {
+        let mut more = Findings { metrics, list: Vec::new() };
+        more.contacts("on_contact", "none, else the run fails".into(), |count| count == 0);
+        findings.extend(more.list);
+    }
+    findings
+}
+
+fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Finding> {
     let mut findings = Findings { metrics, list: Vec::new() };
     if expect.completed {
         let found = format!("{:.2} s", metrics.duration);
         findings.add("completed", "the whole run".into(), found, completed);
     }
     if expect.no_contact {
-        findings.clearance("no_contact", "> 0 m".into(), |clearance| clearance > 0.0);
+        findings.contacts("no_contact", "none".into(), |count| count == 0);
+    }
+    if let Some(count) = expect.contacts_exactly {
+        findings.contacts("contacts_exactly", count.to_string(), |found| found == count as usize);
+    }
+    if let Some([least, most]) = expect.contact_impulse_within {
+        let found = metrics.contact_impulse_max;
+        let met = (least..=most).contains(&found);
+        findings.add(
+            "contact_impulse_within",
+            format!("{least} to {most} N s"),
+            format!("{found:.3} N s"),
+            met,
+        );
+    }
+    if expect.all_able {
+        findings.able();
+    }
+    if let Some(most) = expect.lift_at_most {
+        findings.lift(most);
     }
     if let Some(least) = expect.clearance_min {
         findings.clearance("clearance_min", format!("≥ {least} m"), |clearance| clearance >= least);
@@ -44,6 +73,11 @@ pub fn verdict(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Findi
     if let Some(most) = expect.error_peak_at_most {
         for (channel, most) in most.into_iter().enumerate() {
             findings.worst("error_peak_at_most", channel, most, |edge| edge.peak_error);
+        }
+    }
+    if let Some(most) = expect.settled_error_at_most {
+        for (channel, most) in most.into_iter().enumerate() {
+            findings.worst("settled_error_at_most", channel, most, |edge| edge.late_peak_error);
         }
     }
     if let Some(most) = expect.rate_peak_at_most {
@@ -73,6 +107,36 @@ const RATE_UNITS: [&str; 2] = ["m/s", "rad/s"];
 impl Findings<'_> {
     fn add(&mut self, key: &'static str, wanted: String, found: String, met: bool) {
         self.list.push(Finding { key, wanted, found, met });
+    }
+
+    fn contacts(&mut self, key: &'static str, wanted: String, met: impl Fn(usize) -> bool) {
+        let count = self.metrics.contacts;
+        let first = self.metrics.first_contacts.first().map_or_else(String::new, |contact| {
+            let [a, b] = &contact.between;
+            format!(", first `{a}` and `{b}` at {:.2} s", contact.begin)
+        });
+        self.add(key, wanted, format!("{count}{first}"), met(count));
+    }
+
+    fn able(&mut self) {
+        let unable: Vec<String> = self
+            .metrics
+            .robots
+            .iter()
+            .filter(|r| r.condition != "able")
+            .map(|r| format!("`{}` is {}", r.robot, r.condition))
+            .collect();
+        let found = if unable.is_empty() { "every robot".into() } else { unable.join(", ") };
+        self.add("all_able", "every robot able to drive".into(), found, unable.is_empty());
+    }
+
+    fn lift(&mut self, most: f64) {
+        let highest = self.metrics.robots.iter().max_by(|a, b| a.lift_max.total_cmp(&b.lift_max));
+        let (found, met) = match highest {
+            Some(robot) => (format!("{:.4} m, `{}`", robot.lift_max, robot.robot), robot.lift_max <= most),
+            None => ("no robots".into(), true),
+        };
+        self.add("lift_at_most", format!("≤ {most} m"), found, met);
     }
 
     fn clearance(&mut self, key: &'static str, wanted: String, met: impl Fn(f64) -> bool) {
@@ -164,12 +228,14 @@ fn name(edge: &EdgeMetrics) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use recording::RobotMetrics;
 
     fn metrics() -> Metrics {
         let edge = EdgeMetrics {
             leader: "ann".into(),
             follower: "bob".into(),
             final_error: [-0.03, 0.001],
+            late_peak_error: [0.02, 0.03],
             settling_time: Some(2.0),
             peak_rates: [40.0, 3.0],
             speeds: [0.1, 1.6],
@@ -183,16 +249,45 @@ mod tests {
             clearance_min_time: Some(1.0),
             clearance_min_robots: Some(["ann".into(), "bob".into()]),
             settling_band: [0.05, 0.05],
+            contacts: 2,
+            contact_impulse_max: 3.0,
+            robots: vec![RobotMetrics {
+                robot: "ann".into(),
+                lift_max: 0.1,
+                condition: "stuck".into(),
+                ..RobotMetrics::default()
+            }],
+            first_contacts: vec![],
         }
     }
 
     fn met(expect: &Expect, metrics: &Metrics, key: &str) -> Vec<bool> {
-        verdict(expect, metrics, true).iter().filter(|f| f.key == key).map(|f| f.met).collect()
+        expectations(expect, metrics, true).iter().filter(|f| f.key == key).map(|f| f.met).collect()
     }
 
     #[test]
     fn each_expectation_can_be_met_and_missed() {
-        let cases: [(&str, Expect, Expect); 6] = [
+        let cases: [(&str, Expect, Expect); 10] = [
+            (
+                "contacts_exactly",
+                Expect { contacts_exactly: Some(2), ..Expect::default() },
+                Expect { contacts_exactly: Some(1), ..Expect::default() },
+            ),
+            (
+                "contact_impulse_within",
+                Expect { contact_impulse_within: Some([2.0, 4.0]), ..Expect::default() },
+                Expect { contact_impulse_within: Some([3.5, 4.0]), ..Expect::default() },
+            ),
+            (
+                "lift_at_most",
+                Expect { lift_at_most: Some(0.1), ..Expect::default() },
+                Expect { lift_at_most: Some(0.09), ..Expect::default() },
+            ),
+            (
+                "settled_error_at_most",
+                Expect { settled_error_at_most: Some([0.02, 0.03]), ..Expect::default() },
+                Expect { settled_error_at_most: Some([0.01, 0.02]), ..Expect::default() },
+            ),
             (
                 "final_distance_error",
                 Expect { final_distance_error: Some(0.03), ..Expect::default() },
@@ -232,6 +327,12 @@ mod tests {
     }
 
     #[test]
+    fn a_robot_that_cannot_drive_is_named() {
+        let findings = expectations(&Expect { all_able: true, ..Expect::default() }, &metrics(), true);
+        assert!(findings.iter().any(|f| !f.met && f.found.contains("`ann` is stuck")), "{findings:?}");
+    }
+
+    #[test]
     fn speeds_after_settling_are_those_that_count_when_a_settling_time_is_asked() {
         let expect = Expect { speed_within: Some([0.8, 1.2]), settling_time: Some(3.0), ..Expect::default() };
         assert_eq!(met(&expect, &metrics(), "speed_within"), [true]);
@@ -240,10 +341,10 @@ mod tests {
     #[test]
     fn contact_and_an_edge_that_never_settles_are_failures_that_name_it() {
         let mut metrics = metrics();
-        metrics.clearance_min = Some(0.0);
+        metrics.contacts = 1;
         metrics.edges[0].settling_time = None;
         let expect = Expect { no_contact: true, settling_time: Some(9.0), ..Expect::default() };
-        let findings = verdict(&expect, &metrics, false);
+        let findings = expectations(&expect, &metrics, false);
         assert_eq!(findings.iter().filter(|f| !f.met).count(), 3);
         assert!(findings.iter().any(|f| f.found.contains("bob` does not settle")), "{findings:?}");
     }

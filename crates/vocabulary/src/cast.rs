@@ -1,6 +1,6 @@
 //! Who is on stage: everything about a run that does not change while it runs and that a picture needs.
 
-use crate::{Edge, Prop, Terrain};
+use crate::{Edge, Prop, Surface, Terrain, Thing};
 use std::sync::Arc;
 
 /// Outer measures of a robot's body, for drawing and clearance.
@@ -78,4 +78,20 @@ pub struct Cast {
     pub props: Vec<Prop>,
     /// The lie of the land; flat at z = 0 where there is none.
     pub terrain: Option<Arc<Terrain>>,
+}
+
+impl Cast {
+    /// Name of a robot or prop; "ground", or empty for an index out of range.
+    pub fn name(&self, thing: Thing) -> &str {
+        match thing {
+            Thing::Robot(index) => self.members.get(index).map_or("", |member| &member.name),
+            Thing::Prop(index) => self.props.get(index).map_or("", |prop| &prop.name),
+            Thing::Ground => "ground",
+        }
+    }
+
+    /// The ground under (x, y), m; props do not count.
+    pub fn surface(&self, x: f64, y: f64) -> Surface {
+        self.terrain.as_ref().map_or(Surface::FLAT, |terrain| terrain.at(x, y))
+    }
 }

@@ -51,6 +51,18 @@ pub enum Condition {
     Fallen,
 }
 
+impl Condition {
+    /// One word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Able => "able",
+            Self::Overturned => "overturned",
+            Self::Stuck => "stuck",
+            Self::Fallen => "fallen",
+        }
+    }
+}
+
 /// One robot at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RobotState {

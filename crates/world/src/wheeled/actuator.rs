@@ -10,9 +10,10 @@ pub fn share(step: f64, lag: f64) -> f64 {
 /// rate bound what can be gained.
 const LEAD: f64 = 3.0;
 
-/// What to demand so that an actuator which stands at `now` comes to `wanted`: beyond it, if its lag is led.
-pub fn demand(now: f64, wanted: f64, led: bool) -> f64 {
-    if led { now + LEAD * (wanted - now) } else { wanted }
+/// What to demand so that an actuator which stands at `now` and goes `share` of its way in a step comes to `wanted`:
+/// beyond it, if its lag is led, but never so far that it would overshoot within the step.
+pub fn demand(now: f64, wanted: f64, share: f64, led: bool) -> f64 {
+    if led { now + LEAD.min(1.0 / share) * (wanted - now) } else { wanted }
 }
 
 #[cfg(test)]
@@ -22,7 +23,8 @@ mod tests {
     fn after(time: f64, lag: f64, led: bool) -> f64 {
         let mut at = 0.0;
         for _ in 0..(time / 0.005_f64).round() as usize {
-            at += share(0.005, lag) * (demand(at, 1.0, led) - at);
+            let share = share(0.005, lag);
+            at += share * (demand(at, 1.0, share, led) - at);
         }
         at
     }
@@ -37,5 +39,6 @@ mod tests {
     fn a_lead_answers_sooner_and_does_not_overshoot() {
         assert!(after(0.05, 0.1, true) > 0.75 && after(0.05, 0.1, false) < 0.40);
         assert!(after(1.0, 0.1, true) <= 1.0);
+        assert_eq!(after(0.005, 0.0, true), 1.0, "an actuator without lag is there at once");
     }
 }

@@ -109,7 +109,7 @@ impl Driver {
         let wanted = vehicle.mass * (acceleration + vehicle.speed_gain * missing) + resistance;
         let range = |force: f64| force.clamp(-vehicle.brake_force, vehicle.drive_force);
         let share = if self.force >= 0.0 { pace.drive } else { pace.brake };
-        let asked = range(demand(self.force, range(wanted), vehicle.compensation));
+        let asked = range(demand(self.force, range(wanted), share, vehicle.compensation));
         self.force += share * (asked - self.force);
     }
 
@@ -117,7 +117,7 @@ impl Driver {
         let [speed, turn_rate] = now;
         let turn = wanted + vehicle.turn_gain * (wanted - turn_rate);
         let angle = (vehicle.body.wheelbase * turn / speed.abs().max(CRAWL)).atan().clamp(-most, most);
-        let asked = demand(self.turn, angle, vehicle.compensation).clamp(-most, most);
+        let asked = demand(self.turn, angle, pace.turn, vehicle.compensation).clamp(-most, most);
         let reach = rate * pace.step;
         self.turn += (pace.turn * (asked - self.turn)).clamp(-reach, reach);
     }
@@ -132,7 +132,7 @@ impl Driver {
         let swing = vehicle.mass * ahead * speed * turn_rate;
         let wanted = (inertia * (wanted - turn_rate) / time + swing) / arm;
         let range = |force: f64| force.clamp(-vehicle.drive_force, vehicle.drive_force);
-        let asked = range(demand(self.turn, range(wanted), vehicle.compensation));
+        let asked = range(demand(self.turn, range(wanted), pace.turn, vehicle.compensation));
         self.turn += pace.turn * (asked - self.turn);
     }
 }

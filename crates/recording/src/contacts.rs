@@ -1,0 +1,91 @@
+//! The contacts of a run, each counted once.
+
+use crate::metrics::ContactMetrics;
+use std::collections::BTreeMap;
+use vocabulary::{Cast, Contact};
+
+/// Contacts that metrics list one by one.
+const LISTED: u64 = 100;
+
+/// Takes in the contacts of moment after moment: most of them again and again, until they end.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ContactLog {
+    count: usize,
+    largest: f64,
+    first: Vec<Contact>,
+    /// Those that had not ended when last seen, by number.
+    open: BTreeMap<u64, Contact>,
+}
+
+impl ContactLog {
+    pub(crate) fn push(&mut self, contacts: &[Contact]) {
+        for contact in contacts {
+            self.count = self.count.max(contact.number as usize + 1);
+            self.largest = self.largest.max(contact.impulse);
+            match self.first.iter_mut().find(|known| known.number == contact.number) {
+                Some(known) => *known = *contact,
+                None if contact.number < LISTED => self.first.push(*contact),
+                None => {}
+            }
+            if contact.open {
+                self.open.insert(contact.number, *contact);
+            } else {
+                self.open.remove(&contact.number);
+            }
+        }
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Of all impulses, N s.
+    pub(crate) fn largest(&self) -> f64 {
+        self.largest
+    }
+
+    /// Those that have not ended, as if they ended now.
+    pub(crate) fn close(&self) -> Vec<Contact> {
+        self.open.values().map(|contact| Contact { open: false, ..*contact }).collect()
+    }
+
+    pub(crate) fn first(&self, cast: &Cast) -> Vec<ContactMetrics> {
+        let entry = |contact: &Contact| ContactMetrics {
+            between: contact.things.map(|thing| cast.name(thing).to_owned()),
+            begin: contact.begin,
+            end: contact.end,
+            place: contact.place,
+            normal: contact.normal,
+            impulse: contact.impulse,
+        };
+        self.first.iter().map(entry).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vocabulary::Thing;
+
+    #[test]
+    fn a_contact_that_lasts_is_one() {
+        let contact = |number, impulse, open| Contact {
+            number,
+            things: [Thing::Robot(0), Thing::Ground],
+            begin: 1.0,
+            end: 2.0,
+            open,
+            place: [0.0; 3],
+            normal: [0.0, 0.0, -1.0],
+            impulse,
+        };
+        let mut log = ContactLog::default();
+        log.push(&[contact(0, 1.0, true)]);
+        log.push(&[contact(0, 5.0, true), contact(1, 2.0, true)]);
+        log.push(&[contact(0, 5.0, false), contact(1, 3.0, true)]);
+        assert_eq!((log.count(), log.largest()), (2, 5.0));
+        assert_eq!(log.close(), [contact(1, 3.0, false)]);
+        let first = log.first(&Cast::default());
+        assert_eq!((first.len(), first[1].impulse, &*first[1].between[1]), (2, 3.0, "ground"));
+    }
+}
