@@ -134,8 +134,24 @@ fn painted(in: Varying, grainy: f32) -> vec3<f32> {
     return colour;
 }
 
+struct Painted {
+    @location(0) colour: vec4<f32>,
+    @builtin(sample_mask) samples: u32,
+}
+
+// Which of four samples a prop covers that stands between the eye and the robots; with one sample a pixel, which
+// pixels.
+fn veil(clip: vec4<f32>, depth: f32) -> u32 {
+    let share = clamp((depth - frame.spare.x) * 2.0, 0.0, 1.0);
+    let count = 1u + u32(share * 3.0 + 0.5);
+    let first = (u32(clip.x) & 1u) + 2u * (u32(clip.y) & 1u);
+    let bits = ((1u << count) - 1u) << first;
+    return (bits | (bits >> 4u)) & 15u;
+}
+
 @fragment
-fn fragment(in: Varying) -> @location(0) vec4<f32> {
+fn fragment(in: Varying) -> Painted {
+    let samples = veil(in.clip, dot(in.local - frame.eye.xyz, frame.forward.xyz));
     let normal = normalize(in.normal);
     let at = face(in.spot, in.size, in.side);
     let grainy = textureSample(asphalt, asphalt_sampler, at.xy * vec2<f32>(0.9, select(0.9, 0.16, in.marks.y == 1.0))).r;
@@ -149,5 +165,5 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     // The foot sees less of the sky.
     let open = 0.55 + 0.45 * clamp((in.local.z - in.marks.z) * 2.5, 0.0, 1.0);
     let light = albedo * (SUN_LIGHT * sun + ambient(normal) * open);
-    return vec4<f32>(mix(tone(light), HAZE, haze(distance)), 1.0);
+    return Painted(vec4<f32>(mix(tone(light), HAZE, haze(distance)), 1.0), samples);
 }

@@ -182,7 +182,8 @@ fn snake_eye(steady: &Steady, aspect: f64) -> Camera {
     // Far enough back for the last row to fit, unless that row is very wide.
     let aside = extent.left.map(|left| (left - extent.rear).abs());
     let size = extent.size;
-    let back = ((aside[0].max(aside[1]) + 0.2 * size) / (0.86 * tangent * aspect)).clamp(1.2 * size, 6.0 * size);
+    let back =
+        ((aside[0].max(aside[1]) + 0.2 * size) / (0.86 * tangent * aspect)).clamp(1.2 * size, 6.0 * size);
     let [x, y] = extent.frame.world_from_body(extent.forward[0] - back, extent.rear);
     camera.eye = DVec3::new(x, y, extent.ground[0] + 0.35 * size);
     camera

@@ -1,6 +1,6 @@
 //! From a moment to what its picture consists of: origin, light, frames and words.
 
-use crate::Layout;
+use crate::{Layout, View};
 use crate::camera::Camera;
 use crate::inset::inset;
 use crate::labels::{Window, Words, caption, view_words};
@@ -11,7 +11,7 @@ use crate::passes::overlay::Shapes;
 use crate::passes::shadow::{SunView, sun_view};
 use crate::passes::text::{Line, TextPass};
 use glam::{DVec2, DVec3};
-use vocabulary::{Cast, Light, Moment};
+use vocabulary::{Cast, Light, Moment, RobotState};
 
 /// A multiple of the ground's tile near the robots, so that single precision is enough around it.
 pub(crate) fn local_origin(moment: &Moment) -> DVec3 {
@@ -40,7 +40,8 @@ pub(crate) fn shadowed(cast: &Cast, moment: &Moment) -> (DVec2, f64) {
     let mut reach = radius;
     for (k, prop) in cast.props.iter().enumerate() {
         let place = moment.snapshot.props.get(k).unwrap_or(&prop.placement).position;
-        let away = middle.distance(DVec3::from_array(place)) + prop.solid.reach().hypot(prop.solid.extent()[2]);
+        let away =
+            middle.distance(DVec3::from_array(place)) + prop.solid.reach().hypot(prop.solid.extent()[2]);
         let away = away.min(PROPS_WITHIN.max(radius));
         // A prop that is too far for the map widens it to its limit only where it comes near.
         if away.is_finite() && middle.distance(DVec3::from_array(place)) < PROPS_WITHIN + radius {
@@ -70,7 +71,32 @@ pub(crate) fn sun_over(stage: &Stage<'_>) -> SunView {
     }
 }
 
-pub(crate) fn frame(camera: &Camera, stage: &Stage<'_>, sun: &SunView, penumbra: f32) -> Frame {
+/// Depth up to which props are seen through: just short of the nearest robot that is in the picture. Where somebody
+/// has put the eye, or above all, they stay as they are.
+fn veiled(camera: &Camera, stage: &Stage<'_>, view: &View) -> f64 {
+    if matches!(view, View::Top | View::Fixed { .. }) {
+        return f64::NEG_INFINITY;
+    }
+    let nearest = |index: usize, state: &RobotState| {
+        if matches!(view, View::Follow(robot) if *robot != index) {
+            return f64::INFINITY;
+        }
+        let pose = state.motion.pose;
+        let place = DVec3::new(pose.x, pose.y, state.attitude.height);
+        let seen = camera.project(place).is_some_and(|p| p.abs().max_element() < 1.0);
+        if seen { camera.view_from_world(place).z } else { f64::INFINITY }
+    };
+    let robots = stage.moment.snapshot.robots.iter().enumerate();
+    robots.map(|(k, robot)| nearest(k, robot)).fold(f64::INFINITY, f64::min) - 0.9 * stage.size
+}
+
+pub(crate) fn frame(
+    camera: &Camera,
+    stage: &Stage<'_>,
+    view: &View,
+    sun: &SunView,
+    penumbra: f32,
+) -> Frame {
     let mut frame = Frame::new(camera, stage.origin, sun.shadow_from_local);
     let [x, y, z] = stage.sun.as_vec3().to_array();
     // A large formation is seen from farther away and would drown in it.
@@ -80,6 +106,8 @@ pub(crate) fn frame(camera: &Camera, stage: &Stage<'_>, sun: &SunView, penumbra:
         let [x, y] = terrain.origin;
         frame.terrain = (DVec3::new(x, y, 0.0) - stage.origin).as_vec3().extend(1.0).to_array();
     }
+    let veiled = veiled(camera, stage, view);
+    frame.spare[0] = if veiled.is_finite() { veiled as f32 } else { -1e6 };
     frame.ground = [1.0 / haze, 0.0, f32::from(u8::from(stage.style.grid)), 0.0];
     frame
 }

@@ -4,16 +4,20 @@ use crate::passes::decal::Corner;
 use glam::{DVec2, DVec3};
 use vocabulary::Terrain;
 
-/// Lays triangles of corners, relative to `origin`, on the terrain.
-pub(crate) fn drape(corners: Vec<Corner>, terrain: &Terrain, origin: DVec3) -> Vec<Corner> {
+/// Lays triangles of corners, relative to `origin`, on the terrain; the farther from `eye` they are, the farther from
+/// it they may lie: the shader pulls them nearer by more.
+pub(crate) fn drape(corners: &[Corner], terrain: &Terrain, origin: DVec3, eye: Option<DVec3>) -> Vec<Corner> {
     let mut out = Vec::with_capacity(corners.len() * 2);
     for triangle in corners.chunks_exact(3) {
+        let raised = [0, 1, 2].map(|k| lifted(triangle[k], terrain, origin));
+        if level(&raised, terrain, origin, eye) {
+            out.extend(raised);
+            continue;
+        }
         let mut pieces = vec![triangle.to_vec()];
-        if !within_one(triangle, terrain, origin) {
-            // Lines of the grid, then the diagonals of its cells.
-            for across in [DVec2::X, DVec2::Y, DVec2::new(1.0, -1.0)] {
-                pieces = pieces.into_iter().flat_map(|p| slice(p, across, terrain, origin)).collect();
-            }
+        // Lines of the grid, then the diagonals of its cells.
+        for across in [DVec2::X, DVec2::Y, DVec2::new(1.0, -1.0)] {
+            pieces = pieces.into_iter().flat_map(|p| slice(p, across, terrain, origin)).collect();
         }
         for piece in pieces {
             for k in 2..piece.len() {
@@ -30,16 +34,17 @@ fn cells(corner: &Corner, terrain: &Terrain, origin: DVec3) -> DVec2 {
     (DVec2::new(x, y) + origin.truncate() - DVec2::from_array(terrain.origin)) / terrain.cell
 }
 
-/// Most small things lie within one triangle of the ground.
-fn within_one(triangle: &[Corner], terrain: &Terrain, origin: DVec3) -> bool {
-    let last = DVec2::new((terrain.columns - 1) as f64, (terrain.rows - 1) as f64);
-    let facet = |corner: &Corner| {
-        let at = cells(corner, terrain, origin).clamp(DVec2::splat(-1.0), last + 0.5);
-        let low = at.floor();
-        (low, (at - low).x >= (at - low).y)
-    };
-    let first = facet(&triangle[0]);
-    triangle[1..].iter().all(|corner| facet(corner) == first)
+/// Whether a triangle that was lifted by its corners lies in the ground all over.
+fn level(triangle: &[Corner; 3], terrain: &Terrain, origin: DVec3, eye: Option<DVec3>) -> bool {
+    let at = triangle.map(|corner| DVec3::from_array(corner.position.map(f64::from)) + origin);
+    let size = (at[0].max(at[1]).max(at[2]) - at[0].min(at[1]).min(at[2])).truncate();
+    if size.max_element() > 1.5 * terrain.cell {
+        return false;
+    }
+    let middle = (at[0] + at[1] + at[2]) / 3.0;
+    let bound = 0.003 + eye.map_or(0.0, |eye| 0.001 * eye.distance(middle));
+    let off = |p: DVec3| (terrain.at(p.x, p.y).height - p.z).abs() < bound;
+    off(middle) && (0..3).all(|k| off((at[k] + at[(k + 1) % 3]) * 0.5))
 }
 
 /// A convex piece cut along whole numbers of cells in one direction; beyond the field there is nothing to cut.
@@ -117,8 +122,7 @@ mod tests {
     #[test]
     fn every_piece_lies_in_the_ground() {
         let heights: Vec<_> = (0..25).map(|k| f64::from((k * 7) % 5) * 0.2).collect();
-        let terrain =
-            Terrain { origin: [-1.0, -1.0], cell: 0.5, columns: 5, rows: 5, heights, grip: vec![] };
+        let terrain = Terrain { origin: [-1.0, -1.0], cell: 0.5, columns: 5, rows: 5, heights, grip: vec![] };
         let origin = DVec3::new(20.0, 0.0, 0.0);
         let corner = |x: f64, y: f64, u: f32| Corner {
             position: [(x - origin.x) as f32, y as f32, 0.0],
@@ -127,7 +131,7 @@ mod tests {
             colour: [1.0; 4],
         };
         let triangle = vec![corner(-2.0, -0.3, -1.0), corner(2.5, -0.6, 1.0), corner(0.1, 0.9, 0.0)];
-        let out = drape(triangle, &terrain, origin);
+        let out = drape(&triangle, &terrain, origin, None);
         assert!(out.len() > 30 && out.len() % 3 == 0);
         let mut area = 0.0;
         for piece in out.chunks_exact(3) {

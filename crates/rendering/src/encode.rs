@@ -126,12 +126,7 @@ impl Passes {
 
     /// Flat ground and sky are painted first and without depth: robots cover little of them, and on processors the
     /// depth test of every pixel would cost more than shading the few that are hidden.
-    fn encode_world(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        surface: Surface<'_>,
-        prepared: &Prepared,
-    ) {
+    fn encode_world(&self, encoder: &mut wgpu::CommandEncoder, surface: Surface<'_>, prepared: &Prepared) {
         let sampled = surface.attachments.sampled.as_ref();
         let store = if sampled.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

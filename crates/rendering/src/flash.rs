@@ -34,10 +34,9 @@ impl Painter<'_> {
         for touch in &stage.trail.touches {
             let age = (now - touch.begin) / FLASH;
             if (0.0..1.0).contains(&age) {
-                let least = 9.0 * self.stage_scale * self.camera.metres_per_pixel(
-                    DVec3::from_array(touch.place),
-                    self.lines(),
-                );
+                let least = 9.0
+                    * self.stage_scale
+                    * self.camera.metres_per_pixel(DVec3::from_array(touch.place), self.lines());
                 self.flash(DVec3::from_array(touch.place), age, (0.11 * stage.size).max(least));
             }
         }
@@ -71,7 +70,15 @@ impl Painter<'_> {
         self.corners.extend([0, 1, 2, 0, 2, 3].map(|k| quad[k]));
     }
 
-    fn seen(&self, middle: DVec3, aside: DVec2, form: Form, shape: [f32; 2], colour: Rgb, alpha: f32) -> Corner {
+    fn seen(
+        &self,
+        middle: DVec3,
+        aside: DVec2,
+        form: Form,
+        shape: [f32; 2],
+        colour: Rgb,
+        alpha: f32,
+    ) -> Corner {
         let place = middle + self.camera.right * aside.x + self.camera.up * aside.y - self.origin;
         let [r, g, b] = colour;
         Corner { position: place.as_vec3().to_array(), kind: form.code(), shape, colour: [r, g, b, alpha] }

@@ -1,13 +1,14 @@
 //! Words in the picture: caption, time, names, edges and coordinates, placed so that none covers another.
 
 use crate::camera::Camera;
+use crate::model::Build;
 use crate::paint::Stage;
 use crate::palette::{self, Rgb};
 use crate::passes::overlay::Shapes;
 use crate::passes::text::{Line, TextPass, line_height};
 use crate::{View, view::Tile};
 use glam::{DVec2, DVec3, Vec2};
-use vocabulary::{Member, RobotState};
+use vocabulary::{Condition, Member, RobotState};
 
 /// Distance of words from the picture's edge at scale 1, pixels.
 const MARGIN: f32 = 24.0;
@@ -109,6 +110,8 @@ impl Ink {
     pub(crate) const ON_PANEL: Self = Self { colour: palette::INK, alpha: 0.9, halo: (0.0, palette::PAPER) };
     pub(crate) const LIGHT: Self = Self { colour: palette::PAPER, alpha: 1.0, halo: (0.42, palette::INK) };
 
+    pub(crate) const ALARM: Self = Self { colour: palette::ALARM, alpha: 1.0, halo: (0.55, palette::INK) };
+
     pub(crate) fn faded(self, alpha: f32) -> Self {
         Self { alpha: self.alpha * alpha, ..self }
     }
@@ -170,41 +173,60 @@ pub(crate) fn view_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Windo
     }
 }
 
+/// The middle of a robot, and how many times as large as the default body it is.
+fn middle(robot: &RobotState, member: &Member) -> (DVec3, f64) {
+    let size = crate::model::size(&member.body);
+    let [x, y] = robot.motion.pose.world_from_body(0.12 * size, 0.0);
+    (DVec3::new(x, y, robot.attitude.height + 0.15 * size), size)
+}
+
 fn reserve_robots(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
-    for robot in &stage.moment.snapshot.robots {
-        let pose = robot.motion.pose;
-        let [x, y] = pose.world_from_body(0.12, 0.0);
-        let middle = DVec3::new(x, y, 0.15);
+    for (robot, member) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members) {
+        let (middle, size) = middle(robot, member);
         if let Some(at) = window.pixel(middle) {
-            let metre = 1.0 / window.camera.metres_per_pixel(middle, f64::from(window.tile.height)) as f32;
+            let pixel = window.camera.metres_per_pixel(middle, f64::from(window.tile.height));
+            let metre = (size / pixel) as f32;
             words.reserve([at.x - 0.20 * metre, at.y - 0.20 * metre, 0.40 * metre, 0.40 * metre]);
         }
     }
 }
 
-fn names(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
-    if stage.cast.members.len() > 24 {
-        return;
+/// What keeps a robot from driving, in a word.
+fn trouble(condition: Condition) -> Option<&'static str> {
+    match condition {
+        Condition::Able => None,
+        Condition::Overturned => Some("overturned"),
+        Condition::Stuck => Some("stuck"),
+        Condition::Fallen => Some("fallen"),
     }
+}
+
+fn names(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
+    let crowded = stage.cast.members.len() > 24;
     for (robot, member) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members) {
-        let pose = robot.motion.pose;
-        let [x, y] = pose.world_from_body(0.12, 0.0);
-        let middle = DVec3::new(x, y, 0.15);
+        let trouble = trouble(robot.condition);
+        // In a crowd only those who are in trouble are named.
+        if crowded && trouble.is_none() {
+            continue;
+        }
+        let (middle, size) = middle(robot, member);
         let Some(at) = window.pixel(middle) else { continue };
-        let metre = 1.0 / window.camera.metres_per_pixel(middle, f64::from(window.tile.height)) as f32;
+        let text = trouble.map_or_else(|| member.name.clone(), |word| format!("{} · {word}", member.name));
+        let pixel = window.camera.metres_per_pixel(middle, f64::from(window.tile.height));
+        let metre = (size / pixel) as f32;
         let away = 0.27 * metre + words.scaled(9.0);
-        let side = 0.25 * metre + 0.5 * words.width(&member.name, 13.0, true) + words.scaled(8.0);
+        let side = 0.25 * metre + 0.5 * words.width(&text, 13.0, true) + words.scaled(8.0);
         let places =
             [Vec2::new(0.0, -away), Vec2::new(0.0, away), Vec2::new(side, 0.0), Vec2::new(-side, 0.0)];
-        let ink = Ink::LIGHT.faded(stage.detail.max(0.6));
-        words.try_write(&member.name, &places.map(|p| at + p), 13.0, &window.tile, true, ink);
+        let ink = if trouble.is_some() { Ink::ALARM } else { Ink::LIGHT.faded(stage.detail.max(0.6)) };
+        words.try_write(&text, &places.map(|p| at + p), 13.0, &window.tile, true, ink);
     }
 }
 
 fn edges(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
     let place = |k: usize| {
         let pose = stage.moment.snapshot.robots.get(k)?.motion.pose;
-        window.pixel(DVec3::new(pose.x, pose.y, 0.0))
+        window.pixel(stage.on_ground(pose.x, pose.y))
     };
     for (edge, state) in stage.cast.edges.iter().zip(&stage.moment.edges) {
         let (Some(a), Some(b)) = (place(edge.leader), place(edge.follower)) else { continue };
@@ -263,12 +285,13 @@ fn robot_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Box4> {
         let body = member.body;
         let (middle, reach) = (0.5 * body.wheelbase, 0.5 * body.length + 0.05);
         let side = 0.5 * body.width + 0.06;
+        let half = 0.5 * Build::new(&body).top();
         let mut low = Vec2::INFINITY;
         let mut high = Vec2::NEG_INFINITY;
         for k in 0..8 {
             let sign = |bit: usize| if k & bit == 0 { -1.0 } else { 1.0 };
             let [x, y] = robot.motion.pose.world_from_body(middle + sign(1) * reach, sign(2) * side);
-            let up = robot.attitude.height + 0.17 + sign(4) * 0.17;
+            let up = robot.attitude.height + half + sign(4) * half;
             let at = window.anywhere(DVec3::new(x, y, up))?;
             (low, high) = (low.min(at), high.max(at));
         }
@@ -280,7 +303,8 @@ fn robot_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Box4> {
 
 /// Coordinates where the strong lines of the ground cross.
 fn coordinates(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
-    let Some(centre) = ground_ahead(window.camera) else { return };
+    let level = stage.trail.steady.formation().ground[0];
+    let Some(centre) = ground_ahead(window.camera, level) else { return };
     for area in robot_boxes(stage, window) {
         // Words lie on the ground: none may stand in front of a robot.
         words.reserve(area);
@@ -289,7 +313,7 @@ fn coordinates(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
     for i in -4_i32..=4 {
         for j in -4_i32..=4 {
             let (x, y) = (nearest(centre.x) + f64::from(i) * 5.0, nearest(centre.y) + f64::from(j) * 5.0);
-            let point = DVec3::new(x, y, 0.0);
+            let point = stage.on_ground(x, y);
             let pixel = window.camera.metres_per_pixel(point, f64::from(window.tile.height));
             // Fades before the crossings crowd together.
             let alpha = ((0.013 - pixel) / 0.004).clamp(0.0, 1.0) as f32;
@@ -303,13 +327,13 @@ fn coordinates(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
     }
 }
 
-/// Where the lower middle of the picture meets the ground.
-fn ground_ahead(camera: &Camera) -> Option<DVec3> {
+/// Where the lower middle of the picture meets level ground.
+fn ground_ahead(camera: &Camera, level: f64) -> Option<DVec3> {
     if !camera.perspective {
         return Some(camera.eye);
     }
     let ray = camera.forward - camera.up * (0.3 * camera.half.y);
-    (ray.z < -1e-3).then(|| camera.eye + ray * (camera.eye.z / -ray.z))
+    (ray.z < -1e-3).then(|| camera.eye + ray * ((camera.eye.z - level) / -ray.z))
 }
 
 /// The detail of a formation of so many robots: all of it up to twelve, none from forty.

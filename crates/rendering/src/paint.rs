@@ -42,6 +42,11 @@ impl Stage<'_> {
     pub(crate) fn ground(&self, place: DVec2) -> f64 {
         self.cast.terrain.as_ref().map_or(0.0, |terrain| terrain.at(place.x, place.y).height)
     }
+
+    /// The point of the ground at (x, y), m.
+    pub(crate) fn on_ground(&self, x: f64, y: f64) -> DVec3 {
+        DVec3::new(x, y, self.ground(DVec2::new(x, y)))
+    }
 }
 
 /// Collects corners; points are world coordinates on the ground.
@@ -118,7 +123,10 @@ impl Painter<'_> {
     /// The corners as they lie on the ground.
     fn laid(self) -> Vec<Corner> {
         match self.terrain {
-            Some(terrain) => drape(self.corners, terrain, self.origin),
+            Some(terrain) => {
+                let eye = self.camera.perspective.then_some(self.camera.eye);
+                drape(&self.corners, terrain, self.origin, eye)
+            }
             None => self.corners,
         }
     }
@@ -145,7 +153,15 @@ impl Painter<'_> {
     }
 
     /// A parallelogram around `middle`.
-    pub(crate) fn patch(&mut self, middle: DVec2, along: DVec2, across: DVec2, form: Form, colour: Rgb, alpha: f32) {
+    pub(crate) fn patch(
+        &mut self,
+        middle: DVec2,
+        along: DVec2,
+        across: DVec2,
+        form: Form,
+        colour: Rgb,
+        alpha: f32,
+    ) {
         let at = |u: f32, v: f32| {
             let place = middle + along * f64::from(v) + across * f64::from(u);
             self.corner(place, form, [u, v], colour, alpha)
@@ -208,7 +224,13 @@ impl Painter<'_> {
                 .collect();
             if points.len() > 1 {
                 for side in [-0.5, 0.5] {
-                    self.band(&points, 0.013 / 0.045 * tyre(&member.body), 0.0, side * member.body.track, RUBBER);
+                    self.band(
+                        &points,
+                        0.013 / 0.045 * tyre(&member.body),
+                        0.0,
+                        side * member.body.track,
+                        RUBBER,
+                    );
                 }
             }
         }
@@ -236,10 +258,10 @@ impl Painter<'_> {
             let leads = stage.cast.members[robot].leads;
             let mut points = ribbon(stage.trail, robot, now);
             points.push((flat(&state.motion.pose), 0.9));
-            self.band(&points, RIBBON_HALF, 0.9, 0.0, colour);
+            self.band(&points, RIBBON_HALF * stage.size, 0.9, 0.0, colour);
             if leads {
                 // Near-black alone would be lost on asphalt.
-                self.band(&points, 0.009, 0.35, 0.0, palette::GOLD);
+                self.band(&points, 0.009 * stage.size, 0.35, 0.0, palette::GOLD);
             }
         }
     }
@@ -249,8 +271,10 @@ impl Painter<'_> {
         for (edge, goal) in stage.cast.edges.iter().zip(goals) {
             let Some(goal) = goal.map(DVec2::from_array) else { continue };
             let colour = stage.colours[edge.follower];
-            self.patch(goal, DVec2::X * RING, DVec2::Y * RING, Form::Ring(0.0), colour, 0.16 * stage.detail);
-            self.ring(goal, colour, 0.35 + 0.6 * stage.detail);
+            let reach = RING * stage.size;
+            let alpha = 0.16 * stage.detail;
+            self.patch(goal, DVec2::X * reach, DVec2::Y * reach, Form::Ring(0.0), colour, alpha);
+            self.ring(goal, reach, colour, 0.35 + 0.6 * stage.detail);
         }
     }
 
@@ -261,35 +285,35 @@ impl Painter<'_> {
             let (Some(goal), Some(robot)) = (goal.map(DVec2::from_array), robot) else { continue };
             let from = flat(&robot.motion.pose);
             // Comes and goes gently, so that nothing flickers around the threshold.
-            let strength = ((from.distance(goal) - ARROW_ABOVE) / 0.03).clamp(0.0, 1.0) as f32;
+            let strength = ((from.distance(goal) - ARROW_ABOVE * stage.size) / (0.03 * stage.size)).clamp(0.0, 1.0) as f32;
             if strength > 0.0 {
                 let colour = stage.colours[edge.follower];
-                self.ring(goal, colour, 0.55 * strength * stage.detail);
+                self.ring(goal, RING * stage.size, colour, 0.55 * strength * stage.detail);
                 let alpha = strength * stage.detail.max(0.3);
                 let pixel = self.stage_scale * self.pixel(goal);
                 // A dark rim tells it from a shell of the same colour.
-                self.arrow(from, goal, 1.4 * pixel, palette::INK, 0.75 * alpha);
-                self.arrow(from, goal, 0.0, colour, alpha);
+                self.arrow([from, goal], stage.size, 1.4 * pixel, palette::INK, 0.75 * alpha);
+                self.arrow([from, goal], stage.size, 0.0, colour, alpha);
             }
         }
     }
 
-    fn ring(&mut self, middle: DVec2, colour: Rgb, alpha: f32) {
-        let thin = (3.6 * self.pixel(middle)).max(0.024);
-        let hole = (1.0 - thin / RING).clamp(0.0, 1.0) as f32;
-        self.patch(middle, DVec2::X * RING, DVec2::Y * RING, Form::Ring(hole), colour, alpha);
+    fn ring(&mut self, middle: DVec2, reach: f64, colour: Rgb, alpha: f32) {
+        let thin = (3.6 * self.pixel(middle)).max(0.096 * reach);
+        let hole = (1.0 - thin / reach).clamp(0.0, 1.0) as f32;
+        self.patch(middle, DVec2::X * reach, DVec2::Y * reach, Form::Ring(hole), colour, alpha);
     }
 
     /// An arrow, larger by `rim` m on all sides.
-    fn arrow(&mut self, from: DVec2, to: DVec2, rim: f64, colour: Rgb, alpha: f32) {
+    fn arrow(&mut self, [from, to]: [DVec2; 2], size: f64, rim: f64, colour: Rgb, alpha: f32) {
         let along = to - from;
         let ahead = along.normalize_or(DVec2::X);
         let across = ahead.perp();
-        let head = 0.17_f64.min(0.6 * along.length());
+        let head = (0.17 * size).min(0.6 * along.length());
         let foot = to - ahead * head;
         // From afar the rim would leave nothing of the colour.
         let pixel = self.stage_scale * self.pixel(to);
-        let half = 0.018_f64.max(1.7 * pixel) + rim;
+        let half = (0.018 * size).max(1.7 * pixel) + rim;
         let (start, end) = (from - ahead * rim, foot - ahead * rim);
         self.patch(0.5 * (start + end), 0.5 * (end - start), across * half, Form::Solid, colour, alpha);
         let wide = 0.5 * head + 1.6 * rim;

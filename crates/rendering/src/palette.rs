@@ -13,6 +13,8 @@ pub(crate) const fn hex(code: u32) -> Rgb {
 pub(crate) const LEAD: Rgb = hex(0x001e_1e22);
 /// The stripe on robots that follow nobody.
 pub(crate) const GOLD: Rgb = hex(0x00e3_b341);
+/// The names of robots in trouble.
+pub(crate) const ALARM: Rgb = hex(0x00ff_9a7a);
 /// Text on a light halo.
 pub(crate) const INK: Rgb = hex(0x0012_161c);
 /// Halo, and text on dark ground.

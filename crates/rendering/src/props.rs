@@ -60,7 +60,8 @@ pub(crate) fn props(stage: &Stage<'_>) -> Copies {
 fn instance(stage: &Stage<'_>, prop: &Prop, placement: &Placement, kind: usize, scale: DVec3) -> Instance {
     let place = DVec3::from_array(placement.position);
     let turn = turn(placement).as_quat();
-    let model = Mat4::from_scale_rotation_translation(scale.as_vec3(), turn, (place - stage.origin).as_vec3());
+    let model =
+        Mat4::from_scale_rotation_translation(scale.as_vec3(), turn, (place - stage.origin).as_vec3());
     let rows = model.transpose();
     let [r, g, b] = linear(colour(prop));
     let mobility = match prop.mobility {

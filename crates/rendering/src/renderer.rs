@@ -211,10 +211,10 @@ impl Renderer {
         };
         let (crowd, props) = (crowd(&stage, &self.fleet), props(&stage));
         let sun = sun_over(&stage);
-        let frames: Vec<_> = cameras
-            .iter()
-            .map(|camera| frame(camera, &stage, &sun, self.passes.shadow.penumbra(&sun)))
-            .collect();
+        let penumbra = self.passes.shadow.penumbra(&sun);
+        let seen = layout.views.iter().zip(&cameras);
+        let frames: Vec<_> =
+            seen.map(|(view, camera)| frame(camera, &stage, view, &sun, penumbra)).collect();
         let mut corners = Vec::new();
         let mut decals = Vec::new();
         for ((view, camera), tile) in layout.views.iter().zip(&cameras).zip(&tiles) {

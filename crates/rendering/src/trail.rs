@@ -88,7 +88,8 @@ impl Trail {
         self.touch(&moment.contacts);
         self.slide(poses());
         let (before, slides) = (&self.before, &self.slides);
-        let marks = || before.iter().zip(slides).map(|(pose, slide)| Mark { pose: *pose, slide: *slide }).collect();
+        let marks =
+            || before.iter().zip(slides).map(|(pose, slide)| Mark { pose: *pose, slide: *slide }).collect();
         if self.marks.push(time, marks) {
             self.slides.fill(0.0);
         }

@@ -126,7 +126,11 @@ impl Build {
         let (radius, height, roof) = (self.body.wheel_radius as f32, self.body.height as f32, 0.216);
         let knots = if self.high {
             let top = 2.0 * radius + 0.15 * radius;
-            [[HULL_LOW, 1.2 * radius], [BELT, (top + 0.35 * (height - top)).max(1.6 * radius)], [roof, height]]
+            [
+                [HULL_LOW, 1.2 * radius],
+                [BELT, (top + 0.35 * (height - top)).max(1.6 * radius)],
+                [roof, height],
+            ]
         } else {
             [[0.0, 0.0], [wheel::RADIUS, radius], [roof, height]]
         };
@@ -185,8 +189,16 @@ mod tests {
 
     #[test]
     fn hulls_fill_their_measures_and_leave_room_for_the_wheels() {
-        let truck = Body { length: 0.49, width: 0.39, height: 0.32, wheelbase: 0.30, track: 0.285, wheel_radius: 0.0825 };
-        let car = Body { length: 4.5, width: 1.8, height: 1.45, wheelbase: 2.7, track: 1.55, wheel_radius: 0.32 };
+        let truck = Body {
+            length: 0.49,
+            width: 0.39,
+            height: 0.32,
+            wheelbase: 0.30,
+            track: 0.285,
+            wheel_radius: 0.0825,
+        };
+        let car =
+            Body { length: 4.5, width: 1.8, height: 1.45, wheelbase: 2.7, track: 1.55, wheel_radius: 0.32 };
         for body in [truck, car] {
             let build = Build::new(&body);
             let mesh = super::super::ghost(&Build { shell: None, ..build });

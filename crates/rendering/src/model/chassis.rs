@@ -28,7 +28,8 @@ pub(super) fn build(mesh: &mut Mesh, build: &Build) {
         );
         for side in [-1.0, 1.0] {
             for lean in [-0.75, 0.75] {
-                let foot = Vec3::new(axle + 0.2 * lean * radius, side * (0.5 * track - 0.75 * radius), radius);
+                let foot =
+                    Vec3::new(axle + 0.2 * lean * radius, side * (0.5 * track - 0.75 * radius), radius);
                 let head = Vec3::new(axle + lean * radius, side * 0.62 * radius, 2.0 * radius);
                 strut(mesh, foot, head, 0.11 * radius);
             }

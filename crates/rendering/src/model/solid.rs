@@ -62,7 +62,9 @@ mod tests {
             assert!((found - volume).abs() < 0.15 * volume, "{found} {volume}");
             for vertex in &mesh.vertices {
                 let z = vertex.position[2];
-                assert!((0.0..=1.0).contains(&z) && (Vec3::from_array(vertex.normal).length() - 1.0).abs() < 1e-3);
+                assert!(
+                    (0.0..=1.0).contains(&z) && (Vec3::from_array(vertex.normal).length() - 1.0).abs() < 1e-3
+                );
             }
         }
     }

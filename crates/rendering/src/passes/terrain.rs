@@ -125,8 +125,7 @@ mod tests {
     #[test]
     fn the_mesh_is_the_field_and_goes_on_level() {
         let heights = (0..12).map(|k| f64::from(k % 4) * 0.1).collect();
-        let terrain =
-            Terrain { origin: [2.0, 3.0], cell: 0.5, columns: 4, rows: 3, heights, grip: vec![] };
+        let terrain = Terrain { origin: [2.0, 3.0], cell: 0.5, columns: 4, rows: 3, heights, grip: vec![] };
         let (points, triangles) = mesh(&terrain);
         assert_eq!((points.len(), triangles.len()), (30, 6 * 5 * 4));
         for point in &points {
