@@ -217,7 +217,7 @@ impl KindKeys<Written> for TableKeys {
 const RELIEF: Kinds<Written> = Kinds {
     key: "kind",
     usual: Some("flat"),
-    kinds: &[
+    all: &[
         kind::<_, FlatKeys>("flat"),
         kind::<_, RoughKeys>("rough"),
         kind::<_, HillKeys>("hills"),
@@ -269,40 +269,39 @@ pub(crate) fn ground(keys: Option<&GroundKeys>, seed: u64, reading: &mut Reading
     {
         noise.seed = seed;
     }
+    let friction = keys.friction;
     let patches: Vec<_> = keys.patches.iter().map(|patch| patch.value).collect();
-    let terrain = match &relief {
-        Relief::Flat { cell } => flat(*cell, keys, reading)?,
-        Relief::Rough(noise) => Some(relief::make(noise, ROUGH_LAYERS)),
-        Relief::Hills(noise) => Some(relief::make(noise, 1)),
-        Relief::Table { origin, cell, heights } => Some(Terrain {
+    let mut terrain = match &relief {
+        Relief::Flat { .. } if friction == 1.0 && patches.is_empty() => {
+            return Some(Ground { relief, friction, patches, terrain: None });
+        }
+        Relief::Flat { cell } => flat(*cell, &keys.patches, reading)?,
+        Relief::Rough(noise) => relief::make(noise, ROUGH_LAYERS),
+        Relief::Hills(noise) => relief::make(noise, 1),
+        Relief::Table { origin, cell, heights } => Terrain {
             origin: *origin,
             cell: *cell,
             columns: heights.first().map_or(0, Vec::len),
             rows: heights.len(),
             heights: heights.concat(),
             grip: vec![],
-        }),
+        },
     };
-    let terrain = terrain.map(|mut terrain| {
-        check_patches(&keys.patches, &terrain, reading);
-        terrain.grip = grip(&terrain, keys.friction, &patches);
-        Arc::new(terrain)
-    });
-    Some(Ground { relief, friction: keys.friction, patches, terrain })
+    check_patches(&keys.patches, &terrain, reading);
+    terrain.grip = grip(&terrain, friction, &patches);
+    Some(Ground { relief, friction, patches, terrain: Some(Arc::new(terrain)) })
 }
 
-/// Flat ground, if there is anything to tell of it, just around its patches.
-fn flat(cell: f64, keys: &GroundKeys, reading: &mut Reading) -> Option<Option<Terrain>> {
-    let mut regions = keys.patches.iter().map(|patch| patch.value.region);
-    let Some(first) = regions.next() else {
-        let plain = keys.friction == 1.0;
-        return Some((!plain).then(|| relief::level([0.0, 0.0, cell, cell], cell)));
-    };
-    let [x0, y0, x1, y1] =
-        regions.fold(first, |[a, b, c, d], [x0, y0, x1, y1]| [a.min(x0), b.min(y0), c.max(x1), d.max(y1)]);
+/// Flat ground, just around its patches.
+fn flat(cell: f64, patches: &[Found<Patch>], reading: &mut Reading) -> Option<Terrain> {
+    let Some(first) = patches.first() else { return Some(relief::level([0.0, 0.0, cell, cell], cell)) };
+    let [x0, y0, x1, y1] = patches.iter().fold(first.value.region, |[a, b, c, d], patch| {
+        let [x0, y0, x1, y1] = patch.value.region;
+        [a.min(x0), b.min(y0), c.max(x1), d.max(y1)]
+    });
     let around = [x0 - cell, y0 - cell, x1 + cell, y1 + cell];
-    check_points(around, cell, keys.patches.first()?.place, reading)?;
-    Some(Some(relief::level(around, cell)))
+    check_points(around, cell, first.place, reading)?;
+    Some(relief::level(around, cell))
 }
 
 /// Notes patches that the grid cannot show: beyond its edges the ground goes on as it is there, without end.

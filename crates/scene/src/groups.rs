@@ -4,7 +4,7 @@ use crate::{
     Channel, Follow, Robot, Role, Vehicle,
     document::{Follows, GroupKeys, MOST_ROBOTS},
     graph::{Named, check_known},
-    resolve::{Defaults, Draft, check_distance, check_path, start_pose, start_speed},
+    robots::{Defaults, Draft, check_distance, check_path, start_pose, start_speed},
     text::{Found, Node, Part, Reading},
 };
 use rand_chacha::{

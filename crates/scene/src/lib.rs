@@ -3,7 +3,8 @@
 //! [`Scene::load`] reads a TOML file, applies overrides, reports everything that is wrong with it at once, and hands
 //! out a [`Scene`] in which every default is filled in. Nothing behind that door checks a scene again.
 //!
-//! text → tree with places (`text::node`) → overrides → keys (`document`) → robots (`resolve`, `groups`) → [`Scene`].
+//! text → tree with places (`text::node`) → overrides → keys (`document`) → robots (`robots`, `groups`), ground and props
+//! (`ground`, `props`) → everything held against everything (`resolve`) → [`Scene`].
 
 mod diagnostics;
 mod document;
@@ -21,6 +22,7 @@ mod prop_form;
 mod props;
 mod relief;
 mod resolve;
+mod robots;
 mod shape;
 mod start;
 mod table_file;

@@ -234,7 +234,7 @@ impl KindKeys<Path> for TableKeys {
 pub(crate) const PATH: Kinds<Path> = Kinds {
     key: "kind",
     usual: None,
-    kinds: &[
+    all: &[
         kind::<_, ConstantKeys>("constant"),
         kind::<_, SinusoidKeys>("sinusoid"),
         kind::<_, CircleKeys>("circle"),

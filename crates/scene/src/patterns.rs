@@ -157,7 +157,7 @@ impl KindKeys<Layout> for FieldKeys {
 const PATTERNS: Kinds<Layout> = Kinds {
     key: "kind",
     usual: None,
-    kinds: &[
+    all: &[
         kind::<_, SlalomKeys>("slalom"),
         kind::<_, CorridorKeys>("corridor"),
         kind::<_, GateKeys>("gate"),

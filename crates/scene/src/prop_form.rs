@@ -136,11 +136,11 @@ const WALL: Kind<Measured> = kind::<_, WallKeys>("wall");
 
 /// Shapes of props.
 const SHAPES: Kinds<Measured> =
-    Kinds { key: "shape", usual: None, kinds: &[BLOCK, CYLINDER, CONE, WALL, RAMP] };
+    Kinds { key: "shape", usual: None, all: &[BLOCK, CYLINDER, CONE, WALL, RAMP] };
 
 /// Shapes of props that can stand anywhere.
 pub(crate) const SOLIDS: Kinds<Measured> =
-    Kinds { key: "shape", usual: None, kinds: &[BLOCK, CYLINDER, CONE, RAMP] };
+    Kinds { key: "shape", usual: None, all: &[BLOCK, CYLINDER, CONE, RAMP] };
 
 keys! {
     /// What all props have.

@@ -5,7 +5,7 @@ use crate::{
     outline::Outline,
     patterns::{Field, Layout, PatternKeys},
     prop_form::PropKeys,
-    resolve::start_pose,
+    robots::start_pose,
     text::{Found, Node, Place, Reading},
 };
 use rand_chacha::{

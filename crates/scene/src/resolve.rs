@@ -1,56 +1,19 @@
-//! From the keys of a file to the checked scene: defaults filled in, groups expanded, everything held against
-//! everything else.
+//! From the keys of a file to the checked scene: parts put together and held against each other.
 
 use crate::{
-    Expect, Film, Follow, Mode, Path, Prop, PropMotion, Robot, Role, Scene, Time, Vehicle, Views,
+    Expect, Film, Mode, Prop, PropMotion, Scene, Time, Views,
     document::{Document, GroupKeys, RobotKeys},
-    graph::{Named, check_graph, check_known},
+    graph::{check_graph, check_known},
     ground::ground,
     groups::{Group, expand},
     props::{Placed, Stage},
+    robots::{Defaults, Draft, draft},
     start::check_start,
     text::{Found, Node, Part, Place, Reading},
-    types::{
-        EnvironmentPart, ExpectPart, FOLLOW, FilmPart, LawPart, ObserverPart, PhysicsPart, SensingPart,
-        TimePart, VehiclePart, ViewsPart,
-    },
-    vehicle::{Written, check_meaning, usual_kind, vehicle},
+    types::{EnvironmentPart, ExpectPart, FOLLOW, FilmPart, PhysicsPart, SensingPart, TimePart, ViewsPart},
+    vehicle::{check_meaning, usual_kind},
 };
 use std::collections::HashSet;
-use vocabulary::Pose;
-
-/// What holds for every robot that says nothing else.
-pub(crate) struct Defaults {
-    pub(crate) vehicle: VehiclePart,
-    pub(crate) law: LawPart,
-    pub(crate) observer: ObserverPart,
-    /// Step of the physics, s.
-    pub(crate) step: f64,
-    /// Where that is said.
-    pub(crate) step_place: Option<Place>,
-}
-
-impl Defaults {
-    /// The vehicle of a robot or group that says `own` of it and stands at `place`.
-    pub(crate) fn vehicle(
-        &self,
-        own: Option<&Found<VehiclePart>>,
-        place: Place,
-        reading: &mut Reading,
-    ) -> Vehicle {
-        let nothing = VehiclePart::default();
-        let own = own.map_or(&nothing, |found| &found.value);
-        let place = self.step_place.unwrap_or(place);
-        vehicle(&Written { own, scene: &self.vehicle, step: self.step, place }, reading)
-    }
-}
-
-/// A robot as far as it could be made out, and where it came from.
-pub(crate) struct Draft {
-    pub(crate) named: Named,
-    /// `None` after a note.
-    pub(crate) robot: Option<Robot>,
-}
 
 /// The checked scene, or `None` after notes.
 pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) -> Option<Scene> {
@@ -207,170 +170,6 @@ fn time(part: &TimePart, reading: &mut Reading) -> Time {
         reading.note(place, format!("{steps:.0} control periods in the run; the most are {MOST_STEPS:.0}"));
     }
     time
-}
-
-fn draft(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Reading) -> Draft {
-    let named = Named { name: keys.name.clone(), leader: keys.leader.clone() };
-    Draft { named, robot: robot(keys, node, defaults, reading) }
-}
-
-fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Reading) -> Option<Robot> {
-    let vehicle = defaults.vehicle(keys.vehicle.as_ref(), node.place, reading);
-    let role = role(keys, node, &vehicle, defaults, reading);
-    let path = keys.path.as_ref().map(|path| &path.value);
-    let pose = match (node.get("pose"), &keys.pose) {
-        // It is there, and has its note.
-        (Some(_), None) => None,
-        (_, pose) => start_pose(pose.as_ref(), path, node.place, reading),
-    };
-    Some(Robot { name: keys.name.as_ref()?.value.clone(), pose: pose?, vehicle, role: role? })
-}
-
-fn role(
-    keys: &RobotKeys,
-    node: &Node,
-    vehicle: &Vehicle,
-    defaults: &Defaults,
-    reading: &mut Reading,
-) -> Option<Role> {
-    let name = keys.name.as_ref()?;
-    match (node.get("path"), node.get("leader")) {
-        (Some(_), None) => lead(keys, node, vehicle, reading),
-        (None, Some(_)) => follow(keys, node, vehicle, defaults, reading).map(Role::Follow),
-        (Some(_), Some(leader)) => {
-            let message = format!("`{}` has a `path` and a `leader`; a robot leads or follows", name.value);
-            reading.note(leader.place, message);
-            None
-        }
-        (None, None) => {
-            let message = format!(
-                "robot `{}` is not connected: it needs a `path` to lead, or a `leader` to follow",
-                name.value
-            );
-            reading.note(name.place, message);
-            None
-        }
-    }
-}
-
-fn lead(keys: &RobotKeys, node: &Node, vehicle: &Vehicle, reading: &mut Reading) -> Option<Role> {
-    let name = &keys.name.as_ref()?.value;
-    for entry in
-        ["distance", "bearing", "speed", "law", "observer"].into_iter().filter_map(|key| node.entry(key))
-    {
-        reading.note(entry.place, format!("`{}` is for robots that follow, but `{name}` leads", entry.key));
-    }
-    let path = keys.path.as_ref()?;
-    check_path(path, vehicle, reading);
-    Some(Role::Lead { path: path.value.clone() })
-}
-
-fn follow(
-    keys: &RobotKeys,
-    node: &Node,
-    vehicle: &Vehicle,
-    defaults: &Defaults,
-    reading: &mut Reading,
-) -> Option<Follow> {
-    for key in ["distance", "bearing"] {
-        if node.get(key).is_none() {
-            reading.note(
-                keys.leader.as_ref()?.place,
-                format!("`{key}` is missing: a robot that follows needs it"),
-            );
-        }
-    }
-    let law =
-        keys.law.as_ref().map_or_else(LawPart::default, |found| found.value.clone()).complete(&defaults.law);
-    let observer = keys.observer.as_ref().map_or_else(ObserverPart::default, |found| found.value.clone());
-    let speed = start_speed(keys.speed.as_ref(), vehicle, reading);
-    let (distance, bearing) = (keys.distance.as_ref()?, keys.bearing.as_ref()?);
-    check_distance(distance.value.least(), law.distance_min, distance.place, reading);
-    Some(Follow {
-        leader: keys.leader.as_ref()?.value.clone(),
-        speed,
-        distance: distance.value.clone(),
-        bearing: bearing.value.clone(),
-        law,
-        observer: observer.complete(&defaults.observer),
-    })
-}
-
-/// A follower's speed at the start, m/s.
-pub(crate) fn start_speed(speed: Option<&Found<f64>>, vehicle: &Vehicle, reading: &mut Reading) -> f64 {
-    let Some(speed) = speed else { return vehicle.speed_min };
-    let Vehicle { speed_min, speed_max, .. } = *vehicle;
-    if !(speed_min..=speed_max).contains(&speed.value) {
-        let message = format!(
-            "`speed` of {} m/s is outside the vehicle's limits, {speed_min} to {speed_max} m/s",
-            speed.value
-        );
-        reading.note(speed.place, message);
-    }
-    speed.value
-}
-
-/// Notes a wanted distance (m) that falls below the least one the law divides by.
-pub(crate) fn check_distance(least: f64, distance_min: f64, place: Place, reading: &mut Reading) {
-    if least < distance_min {
-        let message =
-            format!("`distance` falls to {least} m, below the law's `distance_min` of {distance_min} m");
-        reading.note(place, message);
-    }
-}
-
-/// Notes a path that its robot cannot drive.
-pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reading: &mut Reading) {
-    let (speed, turn_rate) = path.value.peaks();
-    if speed > vehicle.speed_max {
-        let message = format!(
-            "`path` reaches {speed} m/s, above the vehicle's `speed_max` of {} m/s",
-            vehicle.speed_max
-        );
-        reading.note(path.place, message);
-    }
-    if let Some(turn_rate) = turn_rate.filter(|rate| *rate > vehicle.turn_rate_max) {
-        let most = vehicle.turn_rate_max;
-        reading.note(
-            path.place,
-            format!("`path` turns at {turn_rate} rad/s, above `turn_rate_max` of {most} rad/s"),
-        );
-    }
-    if let Path::Constant { speed, turn_rate } | Path::Circle { speed, turn_rate } = path.value {
-        let curvature = vehicle.limits().curvature_max;
-        if speed > 0.0 && turn_rate.abs() > speed * curvature {
-            let message = format!(
-                "`path` turns tighter than the vehicle can: {turn_rate} rad/s at {speed} m/s is a circle of {:.3} m, and \
-                 `steering_max` allows {:.3} m",
-                speed / turn_rate.abs(),
-                1.0 / curvature
-            );
-            reading.note(path.place, message);
-        }
-    }
-}
-
-/// Where a robot starts: its `pose`, or the start of its path; a note if they contradict each other or are missing.
-pub(crate) fn start_pose(
-    pose: Option<&Found<[f64; 3]>>,
-    path: Option<&Path>,
-    place: Place,
-    reading: &mut Reading,
-) -> Option<Pose> {
-    let start = path.and_then(Path::start);
-    let Some(pose) = pose else {
-        if start.is_none() {
-            reading.note(place, "`pose` is missing: write [x, y, heading]");
-        }
-        return start;
-    };
-    let [x, y, heading] = pose.value;
-    if let Some(start) = start.filter(|start| (x - start.x).hypot(y - start.y) > 1e-6) {
-        let message =
-            format!("`pose` must start at the first of the path's points, [{}, {}]", start.x, start.y);
-        reading.note(pose.place, message);
-    }
-    Some(Pose::new(x, y, heading))
 }
 
 fn views(part: &ViewsPart, drafts: &[Draft], reading: &mut Reading) -> Views {

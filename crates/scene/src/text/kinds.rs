@@ -7,12 +7,12 @@ use crate::text::{
 };
 use serde_json::{Value as Json, json};
 
-/// A table whose `key` is the word of one of `kinds`, which says which other keys it has.
+/// A table whose `key` is the word of one of `all` kinds, which says which other keys it has.
 pub(crate) struct Kinds<T: 'static> {
     pub(crate) key: &'static str,
     /// Word that is meant where the key is missing.
     pub(crate) usual: Option<&'static str>,
-    pub(crate) kinds: &'static [Kind<T>],
+    pub(crate) all: &'static [Kind<T>],
 }
 
 /// One kind: its word, and the keys it brings.
@@ -42,9 +42,9 @@ pub(crate) const fn kind<T, K: KindKeys<T>>(word: &'static str) -> Kind<T> {
 impl<T> Kinds<T> {
     /// Reads the kind of `table`, whose node is `node`, and the keys it brings.
     pub(crate) fn take(&self, node: &Node, table: &mut TableReader<'_>, reading: &mut Reading) -> Taken<T> {
-        let found = table.take(self.key, &KindForm(self.kinds), self.usual.is_none(), reading);
+        let found = table.take(self.key, &KindForm(self.all), self.usual.is_none(), reading);
         let kind = match (found, node.get(self.key)) {
-            (None, None) => self.kinds.iter().find(|kind| Some(kind.word) == self.usual),
+            (None, None) => self.all.iter().find(|kind| Some(kind.word) == self.usual),
             (found, _) => found.map(|found| found.value),
         };
         kind.map_or(Taken::Unknown, |kind| Taken::Known((kind.read)(node, table, reading)))
@@ -63,7 +63,7 @@ impl<T> Kinds<T> {
             }
             schema
         };
-        json!({ "oneOf": self.kinds.iter().map(one).collect::<Vec<_>>() })
+        json!({ "oneOf": self.all.iter().map(one).collect::<Vec<_>>() })
     }
 }
 
