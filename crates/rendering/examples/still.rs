@@ -1,18 +1,53 @@
-//! A still of a synthetic formation: `still FILE VIEW ROBOTS PATH TIME WIDTH HEIGHT SCALE ADAPTER`, all optional.
+//! A still of a synthetic formation: `still FILE VIEW ROBOTS PATH TIME WIDTH HEIGHT SCALE ADAPTER BODY GROUND WITHOUT`, all
+//! optional; BODY is small, truck, car or rover, GROUND flat, props, hills or course.
 
+#[path = "../tests/stage/course.rs"]
+mod course;
 #[path = "../tests/stage/mod.rs"]
 mod stage;
 
-use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, png};
+use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded, overturn, touch};
+use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, png};
 use stage::{Path, Play};
 use std::time::Instant;
+use vocabulary::{Body, Moment};
+
+/// The play with its bodies and its ground, and how large it is.
+fn staged(robots: usize, path: &str, body: &str, ground: &str) -> (Play, f64) {
+    let mut play = Play::new(robots, Path::named(path));
+    let (body, scale) = match body {
+        "truck" => (TRUCK, 1.0),
+        "car" => (CAR, 10.0),
+        "rover" => (ROVER, 1.0),
+        _ => (Body::default(), 1.0),
+    };
+    let props = matches!(ground, "props" | "course");
+    furnish(&mut play.cast, body, matches!(ground, "hills" | "course"), props);
+    (play, scale)
+}
+
+/// A moment on that ground; on a course the last robot ends on its roof.
+fn moment(play: &Play, scale: f64, wreck: f64, time: f64) -> Moment {
+    let mut moment = play.at(time);
+    enlarge(&mut moment, scale);
+    let mut moment = grounded(&play.cast, moment);
+    let last = play.cast.members.len() - 1;
+    if time > wreck {
+        overturn(&play.cast, &mut moment, last);
+        let robot = moment.snapshot.robots[last];
+        let (pose, height) = (robot.motion.pose, robot.attitude.height);
+        moment.contacts.push(touch(0, wreck + 0.1, [pose.x + 0.3, pose.y - 0.1, height - 0.2]));
+    }
+    moment
+}
 
 fn main() -> Result<(), rendering::Error> {
     let start = Instant::now();
     let words: Vec<String> = std::env::args().skip(1).collect();
     let word = |k: usize, other: &str| words.get(k).cloned().unwrap_or_else(|| other.to_owned());
     let number = |k: usize, other: f64| words.get(k).and_then(|w| w.parse().ok()).unwrap_or(other);
-    let play = Play::new(number(2, 3.0) as usize, Path::named(&word(3, "eight")));
+    let ground = word(10, "flat");
+    let (play, scale) = staged(number(2, 3.0) as usize, &word(3, "eight"), &word(9, "small"), &ground);
     let names: Vec<_> = play.cast.members.iter().map(|m| m.name.clone()).collect();
     let time = number(4, 12.0);
     let gpu = Gpu::open(&AdapterChoice::from(word(8, "auto").as_str()))?;
@@ -20,10 +55,16 @@ fn main() -> Result<(), rendering::Error> {
     let (width, height) = (number(5, 1280.0) as u32, number(6, 720.0) as u32);
     let mut renderer = Renderer::new(&gpu, &play.cast, width, height, 4)?;
     let built = start.elapsed();
-    let trail = play.trail(time);
-    let style = Style { scale: number(7, 1.0), ..Style::default() };
+    let wreck = if ground == "course" { time - 0.22 } else { f64::INFINITY };
+    let mut trail = if words.len() > 9 { Trail::new(&play.cast) } else { play.trail(time) };
+    for k in 0..=(time * 30.0) as i32 {
+        trail.push(&moment(&play, scale, wreck, f64::from(k) / 30.0));
+    }
+    let without = word(11, "");
+    let mut style = Style::without(&without.split(',').filter(|w| !w.is_empty()).collect::<Vec<_>>())?;
+    style.scale = number(7, 1.0);
     let layout = Layout::parse(&word(1, "snake"), &names)?;
-    let moment = play.at(time);
+    let moment = moment(&play, scale, wreck, time);
     let picture = renderer.draw(&trail, &moment, &layout, &style)?;
     let drawn = start.elapsed();
     let file = word(0, "still.png");

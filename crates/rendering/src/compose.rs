@@ -1,6 +1,5 @@
 //! From a moment to what its picture consists of: origin, light, frames and words.
 
-use crate::{Layout, View};
 use crate::camera::Camera;
 use crate::inset::inset;
 use crate::labels::{Window, Words, caption, view_words};
@@ -10,6 +9,7 @@ use crate::passes::ground::TILE;
 use crate::passes::overlay::Shapes;
 use crate::passes::shadow::{SunView, sun_view};
 use crate::passes::text::{Line, TextPass};
+use crate::{Layout, View};
 use glam::{DVec2, DVec3};
 use vocabulary::{Cast, Light, Moment, RobotState};
 
@@ -90,13 +90,7 @@ fn veiled(camera: &Camera, stage: &Stage<'_>, view: &View) -> f64 {
     robots.map(|(k, robot)| nearest(k, robot)).fold(f64::INFINITY, f64::min) - 0.9 * stage.size
 }
 
-pub(crate) fn frame(
-    camera: &Camera,
-    stage: &Stage<'_>,
-    view: &View,
-    sun: &SunView,
-    penumbra: f32,
-) -> Frame {
+pub(crate) fn frame(camera: &Camera, stage: &Stage<'_>, view: &View, sun: &SunView, penumbra: f32) -> Frame {
     let mut frame = Frame::new(camera, stage.origin, sun.shadow_from_local);
     let [x, y, z] = stage.sun.as_vec3().to_array();
     // A large formation is seen from farther away and would drown in it.

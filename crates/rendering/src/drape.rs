@@ -132,7 +132,7 @@ mod tests {
         };
         let triangle = vec![corner(-2.0, -0.3, -1.0), corner(2.5, -0.6, 1.0), corner(0.1, 0.9, 0.0)];
         let out = drape(&triangle, &terrain, origin, None);
-        assert!(out.len() > 30 && out.len() % 3 == 0);
+        assert!(out.len() > 30 && out.len().is_multiple_of(3));
         let mut area = 0.0;
         for piece in out.chunks_exact(3) {
             let at = |k: usize| DVec3::from_array(piece[k].position.map(f64::from)) + origin;

@@ -285,7 +285,8 @@ impl Painter<'_> {
             let (Some(goal), Some(robot)) = (goal.map(DVec2::from_array), robot) else { continue };
             let from = flat(&robot.motion.pose);
             // Comes and goes gently, so that nothing flickers around the threshold.
-            let strength = ((from.distance(goal) - ARROW_ABOVE * stage.size) / (0.03 * stage.size)).clamp(0.0, 1.0) as f32;
+            let strength = ((from.distance(goal) - ARROW_ABOVE * stage.size) / (0.03 * stage.size))
+                .clamp(0.0, 1.0) as f32;
             if strength > 0.0 {
                 let colour = stage.colours[edge.follower];
                 self.ring(goal, RING * stage.size, colour, 0.55 * strength * stage.detail);

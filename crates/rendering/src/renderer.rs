@@ -213,8 +213,7 @@ impl Renderer {
         let sun = sun_over(&stage);
         let penumbra = self.passes.shadow.penumbra(&sun);
         let seen = layout.views.iter().zip(&cameras);
-        let frames: Vec<_> =
-            seen.map(|(view, camera)| frame(camera, &stage, view, &sun, penumbra)).collect();
+        let frames: Vec<_> = seen.map(|(view, camera)| frame(camera, &stage, view, &sun, penumbra)).collect();
         let mut corners = Vec::new();
         let mut decals = Vec::new();
         for ((view, camera), tile) in layout.views.iter().zip(&cameras).zip(&tiles) {

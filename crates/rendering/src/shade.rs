@@ -92,7 +92,8 @@ impl Painter<'_> {
         }
         let alpha = 0.62 * (1.0 - over.max(0.0) / 0.1) as f32;
         let (ahead, aside) = (turn.x_axis.truncate(), turn.y_axis.truncate());
-        let margin = FOOT.min(0.5 * prop.solid.extent()[2] + 0.04);
+        // Small things darken little.
+        let margin = FOOT.min(0.35 * prop.solid.extent()[2] + 0.25 * prop.solid.reach());
         match prop.solid {
             Solid::Block { size } | Solid::Wedge { size } => {
                 let half = [0.5 * size[0], 0.5 * size[1]];

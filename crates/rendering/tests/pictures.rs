@@ -7,7 +7,7 @@ mod stage;
 use rendering::{AdapterChoice, Error, Gpu, Layout, Renderer, Style, View};
 use stage::{Path, Play};
 use std::sync::OnceLock;
-use vocabulary::{Moment, Picture};
+use vocabulary::{Contact, Moment, Picture, Pose, Thing};
 
 const SIZE: (u32, u32) = (640, 360);
 
@@ -115,12 +115,28 @@ fn a_ribbon_lies_behind_its_robot() {
     assert_eq!(alike(&with, behind, 3, ORANGE), 0);
 }
 
+fn touch(pose: Pose) -> Contact {
+    Contact {
+        number: 0,
+        things: [Thing::Robot(0), Thing::Ground],
+        begin: 1.95,
+        end: 2.0,
+        open: true,
+        place: [pose.x, pose.y, 0.1],
+        normal: [0.0, 0.0, 1.0],
+        impulse: 0.0,
+    }
+}
+
 #[test]
 fn every_element_can_be_switched_off() {
     let play = Play::new(3, Path::Eight);
     let draw = |style: &Style| {
         let mut renderer = Renderer::new(gpu(), &play.cast, 800, 600, 4).unwrap();
-        renderer.draw(&play.trail(2.0), &play.at(2.0), &Layout::single(View::Snake), style).unwrap()
+        let (mut trail, mut moment) = (play.trail(1.9), play.at(2.0));
+        moment.contacts = vec![touch(moment.snapshot.robots[0].motion.pose)];
+        trail.push(&moment);
+        renderer.draw(&trail, &moment, &Layout::single(View::Snake), style).unwrap()
     };
     let full = draw(&Style::default());
     for name in Style::ELEMENTS {

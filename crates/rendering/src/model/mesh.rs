@@ -107,7 +107,9 @@ impl Mesh {
             let at = [0, 1, 2].map(|k| Vec3::from_array(triangle[k].position));
             let old = Vec3::from_array(triangle[0].normal);
             let normal = (at[1] - at[0]).cross(at[2] - at[0]).normalize_or(old).to_array();
-            triangle.iter_mut().for_each(|vertex| vertex.normal = normal);
+            for vertex in triangle {
+                vertex.normal = normal;
+            }
         }
         self.smooth(0, 0.6);
     }

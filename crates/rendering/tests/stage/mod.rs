@@ -1,7 +1,5 @@
 //! A play for tests: formations that move along prescribed curves, without any control law.
 
-pub(crate) mod course;
-
 use std::f64::consts::{FRAC_PI_2, TAU};
 use vocabulary::{
     Body, Cast, Edge, EdgeState, Member, Moment, Motion, Pose, Relative, RobotState, Snapshot, Wheel, wrap,
@@ -36,7 +34,6 @@ pub(crate) struct Play {
     pub(crate) cast: Cast,
     goals: Vec<[f64; 2]>,
     path: Path,
-    scale: f64,
 }
 
 impl Play {
@@ -67,22 +64,15 @@ impl Play {
             edges,
             ..Cast::default()
         };
-        Self { cast, goals, path, scale: 1.0 }
-    }
-
-    /// Makes everything larger but the robots.
-    pub(crate) fn stretch(&mut self, scale: f64) {
-        self.scale = scale;
-        self.goals.iter_mut().for_each(|goal| goal[0] *= scale);
+        Self { cast, goals, path }
     }
 
     fn lead(&self, time: f64) -> [f64; 2] {
-        let place = match self.path {
+        match self.path {
             Path::Straight => [0.6 * time, 0.0],
             Path::Circle => [3.0 * (0.2 * time).sin(), 3.0 - 3.0 * (0.2 * time).cos()],
             Path::Eight => [4.0 * (TAU * time / 40.0).sin(), 2.0 * (2.0 * TAU * time / 40.0).sin()],
-        };
-        place.map(|x| self.scale * x)
+        }
     }
 
     fn place(&self, robot: usize, time: f64) -> [f64; 2] {
@@ -91,7 +81,7 @@ impl Play {
         };
         let leader = self.pose(self.cast.edges[k].leader, time);
         let [distance, bearing] = self.goals[k];
-        let off = 0.5 * self.scale.min(2.0) * (-time / 3.0).exp();
+        let off = 0.5 * (-time / 3.0).exp();
         let (sin, cos) = (bearing + 0.5 * off).sin_cos();
         leader.world_from_body((distance + off) * cos, (distance + off) * sin)
     }
