@@ -58,6 +58,7 @@ impl Car {
         speed: f64,
         step: f64,
     ) -> Self {
+        let slowest = if robot.lead.is_some() { 0.0 } else { robot.limits.speed_min };
         Self {
             index,
             body,
@@ -66,7 +67,7 @@ impl Car {
             mountings: Mounting::of(&vehicle),
             pace: Pace::new(&vehicle, step),
             command: Command::default(),
-            driver: Driver { target: speed, ..Driver::default() },
+            driver: Driver { target: speed, slowest, ..Driver::default() },
             brushes: [Brush::default(); 4],
             wheels: [Wheel::default(); 4],
             watch: Watch::default(),

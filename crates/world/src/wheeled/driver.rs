@@ -13,6 +13,8 @@ use vocabulary::Command;
 pub struct Driver {
     /// Speed that the commands so far add up to, m/s.
     pub target: f64,
+    /// It is never below this, m/s: a follower never stands still, since steered wheels that do not roll cannot turn.
+    pub slowest: f64,
     /// Force of the motors (or, below zero, of the brakes) together, N.
     pub force: f64,
     /// Angle of a wheel midway between the front wheels, rad; of a differential drive, the difference of the forces of
@@ -102,8 +104,8 @@ impl Driver {
         [speed, turn_rate]: [f64; 2],
     ) {
         let window = WINDOW * vehicle.limits.speed_max;
-        self.target = (self.target + pace.step * acceleration).clamp(speed - window, speed + window);
-        self.target = self.target.clamp(0.0, vehicle.limits.speed_max);
+        let held = (self.target + pace.step * acceleration).clamp(speed - window, speed + window);
+        self.target = held.clamp(self.slowest, vehicle.limits.speed_max);
         let resistance = resistance(vehicle, speed, turn_rate);
         let missing = self.target - speed;
         let wanted = vehicle.mass * (acceleration + vehicle.speed_gain * missing) + resistance;
