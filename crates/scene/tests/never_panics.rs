@@ -7,7 +7,14 @@ fn shipped() -> Vec<String> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");
     let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
-    paths.iter().filter_map(|path| std::fs::read_to_string(path).ok()).collect()
+    let everything = include_str!("everything.toml").to_owned();
+    paths.iter().filter_map(|path| std::fs::read_to_string(path).ok()).chain([everything]).collect()
+}
+
+/// The scene that a number stands for: every other time the one that uses everything.
+fn scene(which: usize) -> String {
+    let scenes = shipped();
+    scenes[if which.is_multiple_of(2) { scenes.len() - 1 } else { (which / 2) % scenes.len() }].clone()
 }
 
 /// Reads `text`; what is accepted has to hold what [`Scene`] promises, and what is refused has to be printable.
@@ -25,6 +32,16 @@ fn assert_sound(scene: &Scene) {
     let again = Scene::parse(&scene.to_toml(), "t.toml", &[]).unwrap_or_else(|fault| panic!("{fault}"));
     assert_eq!(*scene, again.scene);
     assert!(scene.time.period <= scene.time.duration && !scene.robots.is_empty());
+    if let Some(terrain) = &scene.ground.terrain {
+        assert!(terrain.columns >= 2 && terrain.rows >= 2 && terrain.cell > 0.0);
+        assert_eq!(terrain.heights.len(), terrain.columns * terrain.rows);
+        assert!(terrain.grip.is_empty() || terrain.grip.len() == terrain.heights.len());
+        assert!(terrain.heights.iter().chain(&terrain.grip).all(|value| value.is_finite()));
+    }
+    for prop in &scene.props {
+        assert!(prop.solid.extent().iter().all(|side| *side > 0.0) && prop.elevation.is_finite());
+        assert!(scene.index_of(&prop.name).is_none());
+    }
     for robot in &scene.robots {
         assert!(robot.vehicle.speed_min < robot.vehicle.speed_max);
         if let Role::Follow(follow) = &robot.role {
@@ -72,11 +89,10 @@ proptest! {
 
     #[test]
     fn shipped_scenes_with_pieces_replaced(
-        which in 0usize..7,
+        which in 0usize..100,
         edits in prop::collection::vec((0.0f64..1.0, 0usize..12, 0usize..PIECES.len()), 1..4),
     ) {
-        let scenes = shipped();
-        let mut text = scenes[which % scenes.len()].clone();
+        let mut text = scene(which);
         for (share, length, piece) in edits {
             let boundary = |at: usize| (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
             let start = boundary((share * text.len() as f64) as usize);
@@ -88,13 +104,13 @@ proptest! {
 
     #[test]
     fn any_override(
-        which in 0usize..7,
-        path in "(time|law|robots|groups|observer|[a-z]{1,5})(\\.(0|1|leader|follower-1|k|path|distance|[a-z]{1,4})){0,3}",
-        value in "(nan|inf|-1|0|1e9|\\[\\]|\\{\\}|\\[1,2\\]|\\PC{0,12})",
+        which in 0usize..100,
+        path in "(time|law|robots|groups|observer|ground|props|patterns|vehicle|physics|[a-z]{1,5})\
+                (\\.(0|1|leader|follower-1|k|path|distance|kind|cell|region|mass|step|count|prop|size|spring|[a-z]{1,4})){0,3}",
+        value in "(nan|inf|-1|0|1e9|0.001|3|rough|car|cone|\\[0,0,9,9\\]|\\[\\]|\\{\\}|\\[1,2\\]|\\PC{0,12})",
     ) {
-        let scenes = shipped();
         if let Ok(change) = format!("{path}={value}").parse() {
-            try_out(&scenes[which % scenes.len()], &[change]);
+            try_out(&scene(which), &[change]);
         }
     }
 }

@@ -120,7 +120,7 @@ fn props_that_cannot_be() {
     let block = "[[props]]\nname = \"b\"\nshape = \"block\"\nsize = [1, 1, 1]\npose = [5, 0, 0]";
     for (keys, line, words) in [
         (
-            "[[props]]\nname = \"b\"\nshape = \"blok\"",
+            "[[props]]\nname = \"b\"\nshape = \"blocks\"",
             9,
             &["`shape` must be one of", "did you mean `block`?"][..],
         ),
