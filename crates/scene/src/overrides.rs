@@ -75,6 +75,9 @@ fn put(node: &mut Node, path: &[Part<'_>], value: Node, reading: &mut Reading) {
                 entries.len() - 1
             });
             if let Some(entry) = entries.get_mut(index) {
+                if entry.key == "vehicle" && !rest.is_empty() {
+                    spell_out(&mut entry.node);
+                }
                 put(&mut entry.node, rest, value, reading);
             }
         }
@@ -88,6 +91,15 @@ fn put(node: &mut Node, path: &[Part<'_>], value: Node, reading: &mut Reading) {
         },
         _ => reading
             .note(part.place, format!("there is nothing called `{}` here: this is a plain value", part.text)),
+    }
+}
+
+/// Makes a vehicle that is the word of its kind a table of that kind.
+fn spell_out(vehicle: &mut Node) {
+    if vehicle.as_text().is_some() {
+        let place = vehicle.place;
+        let kind = Entry { key: "kind".to_owned(), place, node: vehicle.clone() };
+        vehicle.value = Value::Table(vec![kind]);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Changes from the command line.
 
-use scene::{Channel, Diagnostics, LawKind, Override, Path, Role, Scene};
+use scene::{Channel, Diagnostics, LawKind, Override, Path, Role, Scene, Vehicle, VehicleKind};
 
 const SCENE: &str = "\
 schema = 1
@@ -41,6 +41,13 @@ fn values_are_put_where_the_path_says() {
     assert_eq!(follow.law.kind, LawKind::FullState);
     assert_eq!(follow.bearing, Channel::Sinusoid { mean: 2.0, amplitude: 0.1, rate: 1.0 });
     assert_eq!(scene.robots[0].role, Role::Lead { path: Path::Circle { speed: 1.0, turn_rate: -0.2 } });
+}
+
+#[test]
+fn a_vehicle_named_by_a_word_can_be_changed() {
+    let scene = with(&["vehicle=car", "vehicle.mass=6", "robots.leader.vehicle=differential"]).unwrap();
+    assert_eq!(scene.robots[1].vehicle, Vehicle { mass: 6.0, ..Vehicle::ready_made(VehicleKind::Car) });
+    assert_eq!(scene.robots[0].vehicle, Vehicle::ready_made(VehicleKind::Differential));
 }
 
 #[test]
