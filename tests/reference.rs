@@ -174,7 +174,7 @@ impl Case {
                 ..Cast::default()
             },
             observer_starts: vec![ObserverStart::Offset([0.0; 2]); self.edges.len()],
-            stage: Stage { actors, props: vec![], terrain: None, grip: 1.0, step: 0.005 },
+            stage: Stage { actors, props: vec![], terrain: None, step: 0.005 },
             stop_at_contact: false,
             formation: Formation::new(
                 graph,

@@ -1,6 +1,6 @@
 //! How much room there is: the distance between the bodies of robots and props, by parry.
 //!
-//! Ramps do not count, since robots drive on them; neither does the ground.
+//! What a robot drives on does not count: ramps, the ground, and props whose top is lower than the middle of its body.
 
 use parry3d_f64::math::{Pose as Frame, Rotation, Vector};
 use parry3d_f64::query::distance;
@@ -38,6 +38,8 @@ struct Hull {
     inside: Frame,
     /// Radius of the ball around its middle.
     reach: f64,
+    /// Half its height while it stands upright, m.
+    half_height: f64,
     frame: Frame,
 }
 
@@ -78,7 +80,7 @@ impl Clearance {
                     break;
                 }
                 let limit = known(least, i).max(known(least, j));
-                if limit <= 0.0 || a.at_least(b) >= limit {
+                if limit <= 0.0 || a.at_least(b) >= limit || a.drives_over(b) || b.drives_over(a) {
                     continue;
                 }
                 let clearance = a.distance(b);
@@ -105,6 +107,7 @@ impl Hull {
             shape: std::sync::Arc::new(Cuboid::new(half)),
             inside: Frame::from_translation(Vector::new(0.5 * body.wheelbase, 0.0, 0.5 * body.height)),
             reach: half.length(),
+            half_height: half.z,
             frame: Frame::identity(),
         }
     }
@@ -126,7 +129,14 @@ impl Hull {
             Solid::Cone { radius, height } => (std::sync::Arc::new(Cone::new(0.5 * height, radius)), stood),
         };
         let reach = (0.25 * (l * l + w * w + h * h)).sqrt();
-        Some(Self { thing: Thing::Prop(index), shape, inside, reach, frame: Frame::identity() })
+        Some(Self {
+            thing: Thing::Prop(index),
+            shape,
+            inside,
+            reach,
+            half_height: 0.5 * h,
+            frame: Frame::identity(),
+        })
     }
 
     fn stand(&mut self, snapshot: &Snapshot) {
@@ -146,6 +156,12 @@ impl Hull {
 
     fn right(&self) -> f64 {
         self.frame.translation.x + self.reach
+    }
+
+    /// Whether the other is a prop lower than the middle of this robot's body.
+    fn drives_over(&self, other: &Self) -> bool {
+        let robot = matches!(self.thing, Thing::Robot(_)) && matches!(other.thing, Thing::Prop(_));
+        robot && other.frame.translation.z + other.half_height < self.frame.translation.z
     }
 
     /// A lower bound of the distance, m.
@@ -240,6 +256,15 @@ mod tests {
         assert!((room.clearance - 0.7).abs() < 1e-6, "{room:?}");
         assert_eq!((room.nearest, room.time), (Thing::Prop(0), 1.0));
         assert_eq!(least(&cast(1, &[ramp]), &snapshot(&[Pose::default()], &places[1..]))[0], None);
+    }
+
+    #[test]
+    fn what_is_driven_over_does_not_count() {
+        let (kerb, wall) = (Solid::Block { size: [1.0, 1.0, 0.05] }, Solid::Block { size: [1.0, 1.0, 0.5] });
+        let beside = [Pose::new(1.5, 0.0, 0.0)];
+        let clearance = |solid| least(&cast(1, &[solid]), &snapshot(&[Pose::default()], &beside))[0];
+        assert_eq!(clearance(kerb), None);
+        assert!((clearance(wall).expect("a wall").clearance - 0.65).abs() < 1e-9);
     }
 
     proptest! {

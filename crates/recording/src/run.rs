@@ -197,7 +197,7 @@ mod tests {
             commit: None,
             seed: 7,
             period: 0.01,
-            settling_band: [0.02; 2],
+            judging: Judging { settling_band: [0.02; 2], settled_after: 0.0 },
         }
     }
 

@@ -15,7 +15,6 @@ pub(crate) fn stage(scene: &Scene) -> Result<Stage, BuildError> {
         actors: scene.robots.iter().map(actor).collect::<Result<_, _>>()?,
         props: scene.props.iter().map(prop).collect::<Result<_, _>>()?,
         terrain: scene.ground.terrain.clone(),
-        grip: scene.ground.friction,
         step: scene.physics.step,
     })
 }

@@ -31,7 +31,8 @@ impl Limits {
 
     /// Largest |turn rate| at `speed`, rad/s.
     pub fn turn_rate_at(&self, speed: f64) -> f64 {
-        let speed = speed.abs().max(f64::MIN_POSITIVE);
+        let speed = speed.abs();
+        // At rest an infinite bound gives no number, which `min` passes over.
         self.turn_rate_max.min(speed * self.curvature_max).min(self.lateral_acceleration_max / speed)
     }
 

@@ -80,7 +80,9 @@ impl Placement {
         let mix = |p: f64, q: f64| p + (q - p) * share;
         let mut rotation = [0, 1, 2, 3].map(|k| mix(a.rotation[k], sign * b.rotation[k]));
         let norm = rotation.iter().map(|x| x * x).sum::<f64>().sqrt();
-        rotation.iter_mut().for_each(|x| *x /= norm);
+        for x in &mut rotation {
+            *x /= norm;
+        }
         Self { position: [0, 1, 2].map(|k| mix(a.position[k], b.position[k])), rotation }
     }
 }

@@ -52,7 +52,7 @@ fn world(count: usize) -> Physical {
         Actor { robot, wheels: Some(vehicle.clone()) }
     };
     let actors = (0..count).map(actor).collect();
-    Physical::new(Stage { actors, props: vec![], terrain: None, grip: 1.0, step: 0.005 })
+    Physical::new(Stage { actors, props: vec![], terrain: None, step: 0.005 })
 }
 
 fn cars(c: &mut Criterion) {

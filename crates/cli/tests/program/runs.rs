@@ -47,6 +47,8 @@ fn a_run_leaves_a_folder_that_runs_again_to_the_same_digest() {
         "manifest.json",
         "metrics.json",
         "scene.toml",
+        "tables/contacts.csv",
+        "tables/contacts.parquet",
         "tables/edges.csv",
         "tables/edges.parquet",
         "tables/robots.csv",
@@ -210,4 +212,43 @@ fn alone_it_prints_a_helpful_start() {
     let folder = tempfile::tempdir().expect("a folder");
     let (code, out, _) = told(&echelon(folder.path(), &[]));
     assert!(code == 0 && out.contains("echelon film scenes/circle-three.toml"), "{out}");
+}
+
+/// A head-on collision: recorded, or the end of the run, or its failure.
+#[test]
+fn a_contact_is_recorded_or_ends_the_run_or_fails_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let crash = scene("cars-crash");
+    let run = |on_contact: &str, out: &str| {
+        let set = format!("physics.on_contact={on_contact}");
+        // Cut short at the first touch, the contact has not pushed as hard as it will.
+        let expect = ["expect.completed=false", "expect.contact_impulse_within=[0.1, 20.0]"];
+        let args = ["run", &crash, "--set", &set, "--set", expect[0], "--set", expect[1], "--csv", "-o", out];
+        told(&echelon(folder.path(), &args))
+    };
+    let (code, text, err) = run("record", "recorded");
+    assert_eq!(code, 0, "{text}{err}");
+    assert!(text.contains("contact of eastbound and westbound at 1.41 s"), "{text}");
+    let table = fs::read_to_string(folder.path().join("recorded/tables/contacts.csv")).expect("contacts");
+    assert!(table.lines().nth(1).is_some_and(|l| l.starts_with("eastbound,westbound,1.4")), "{table}");
+    assert_eq!(table.lines().count(), 2, "{table}");
+    let (code, text, _) = run("stop", "stopped");
+    assert!(code == 0 && text.contains("1.41 s in 142 steps"), "{text}");
+    assert_eq!(manifest(&folder.path().join("stopped")).status, Status::Complete);
+    let table = fs::read_to_string(folder.path().join("stopped/tables/contacts.csv")).expect("contacts");
+    assert_eq!(table.lines().count(), 2, "a contact that has not ended is told too: {table}");
+    let (code, text, _) = run("fail", "failed");
+    assert!(code == 1 && text.contains("FAILED on_contact"), "{text}");
+}
+
+#[test]
+fn physics_gives_the_same_digest_in_every_process() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let digest = || {
+        let args = ["run", &scene("cars-rough"), "--no-record", "--json", "--set", "time.duration=8"];
+        let (_, text, _) = told(&echelon(folder.path(), &args));
+        serde_json::from_str::<Value>(&text).expect("JSON")["digest"].as_str().map(str::to_owned)
+    };
+    let first = digest();
+    assert!(first.is_some() && first == digest());
 }

@@ -89,7 +89,7 @@ settings! {
         /// Feedback on the speed, 1/s: acceleration asked for per error of speed.
         pub speed_gain: f64 = 4.0, number("1/s").from(0.0).up_to(1000.0);
         /// Feedback on the turn rate: share of its error that is added to what is asked for.
-        pub turn_gain: f64 = 0.5, number("").from(0.0).up_to(100.0);
+        pub turn_gain: f64 = 0.0, number("").from(0.0).up_to(100.0);
     }
 }
 
@@ -139,6 +139,8 @@ impl Vehicle {
             VehicleKind::Unicycle => Self::default(),
             VehicleKind::Car => Self {
                 kind,
+                // Steered wheels that do not roll cannot turn.
+                speed_min: 0.2,
                 speed_max: 4.0,
                 turn_rate_max: 8.0,
                 acceleration_max: 4.0,
@@ -152,6 +154,7 @@ impl Vehicle {
             },
             VehicleKind::FullSizeCar => Self {
                 kind,
+                speed_min: 0.5,
                 speed_max: 25.0,
                 turn_rate_max: 1.0,
                 acceleration_max: 5.0,
@@ -194,6 +197,7 @@ impl Vehicle {
                 wheel_radius: 0.0825,
                 mass: 8.0,
                 mass_height: 0.09,
+                mass_forward: 0.2,
                 clearance: 0.05,
                 spring: 3000.0,
                 damping: 150.0,
@@ -205,6 +209,7 @@ impl Vehicle {
                 drive_force: 25.0,
                 drive_lag: 0.06,
                 brake_force: 25.0,
+                turn_gain: 0.5,
                 ..Self::default()
             },
         }

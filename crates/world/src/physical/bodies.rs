@@ -258,7 +258,6 @@ impl Bodies {
         up: Vector,
         above: f64,
         below: f64,
-        grip: f64,
     ) -> Option<(f64, Footing, Option<RigidBodyHandle>)> {
         let is_prop = |_, collider: &Collider| matches!(thing_of(collider), Thing::Prop(_));
         let ray = Ray::new(mount + up * above, -up);
@@ -272,7 +271,7 @@ impl Bodies {
         let body = self.colliders[hit].parent();
         let velocity = body.map_or(Vector::ZERO, |body| self.bodies[body].velocity_at_point(place));
         let loose = body.filter(|body| self.bodies[*body].is_dynamic());
-        Some((above - at.time_of_impact, Footing { place, normal: at.normal, velocity, grip }, loose))
+        Some((above - at.time_of_impact, Footing { place, normal: at.normal, velocity, grip: 1.0 }, loose))
     }
 
     fn query<'a>(&'a self, filter: QueryFilter<'a>) -> rapier3d_f64::prelude::QueryPipeline<'a> {

@@ -15,15 +15,13 @@ use vocabulary::{Command, Limits, Motion, Surface, Terrain, Wheel};
 #[derive(Debug, Clone)]
 pub(super) struct Surroundings {
     pub(super) terrain: Option<Arc<Terrain>>,
-    pub(super) grip: f64,
     /// Whether there are any props that a wheel could climb.
     pub(super) props: bool,
 }
 
 impl Surroundings {
     pub(super) fn surface(&self, x: f64, y: f64) -> Surface {
-        let surface = self.terrain.as_ref().map_or(Surface::FLAT, |terrain| terrain.at(x, y));
-        Surface { grip: surface.grip * self.grip, ..surface }
+        self.terrain.as_ref().map_or(Surface::FLAT, |terrain| terrain.at(x, y))
     }
 }
 
@@ -126,7 +124,7 @@ impl Car {
         let ground = stand(&mounting, mount, up, surroundings);
         let prop = if climb {
             let radius = self.vehicle.body.wheel_radius;
-            bodies.prop_under(mount, up, 2.0 * radius, -mounting.droop, surroundings.grip)
+            bodies.prop_under(mount, up, 2.0 * radius, -mounting.droop)
         } else {
             None
         };

@@ -53,8 +53,6 @@ pub struct Stage {
     pub props: Vec<PropBody>,
     /// The lie of the land; flat where there is none.
     pub terrain: Option<Arc<Terrain>>,
-    /// Multiplies the tyres' friction everywhere.
-    pub grip: f64,
     /// Longest physics step, s.
     pub step: f64,
 }
@@ -91,10 +89,10 @@ const PARALLEL_FROM: usize = 64;
 impl Physical {
     /// Robots and props at their starts, at time 0.
     pub fn new(stage: Stage) -> Self {
-        let Stage { actors, props, terrain, grip, step } = stage;
+        let Stage { actors, props, terrain, step } = stage;
         let mut bodies = Bodies::new(terrain.as_deref());
         let ideals = Unicycles::new(actors.iter().map(|actor| actor.robot.clone()).collect());
-        let surroundings = Surroundings { terrain, grip, props: !props.is_empty() };
+        let surroundings = Surroundings { terrain, props: !props.is_empty() };
         let mut snapshot = ideals.snapshot().clone();
         let (mut cars, mut unicycles, mut guided) = (Vec::new(), Vec::new(), Vec::new());
         for (index, actor) in actors.iter().enumerate() {

@@ -73,7 +73,7 @@ pub(crate) fn unicycle(pose: Pose, speed: f64) -> Actor {
 
 /// A flat world with these robots.
 pub(crate) fn flat(actors: Vec<Actor>) -> Stage {
-    Stage { actors, props: vec![], terrain: None, grip: 1.0, step: 0.005 }
+    Stage { actors, props: vec![], terrain: None, step: 0.005 }
 }
 
 /// A run of one world, sample by sample.
