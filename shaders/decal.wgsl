@@ -33,7 +33,7 @@ fn vertex(in: Corner) -> Varying {
 }
 
 fn coverage(kind: vec2<f32>, shape: vec2<f32>, pixel: vec2<f32>) -> f32 {
-    // 0: solid between the long sides, 1: ring, 2: soft blob, 3: soft box; 4, cast shadow, is handled apart.
+    // 0: solid between the long sides, 1: ring, 2: soft blob, 3: soft box.
     if kind.x < 0.5 {
         return clamp((1.0 - abs(shape.x)) / max(pixel.x, 1e-4), 0.0, 1.0);
     }
@@ -51,17 +51,21 @@ fn coverage(kind: vec2<f32>, shape: vec2<f32>, pixel: vec2<f32>) -> f32 {
     return eased.x * eased.y;
 }
 
+fn hazy(in: Varying, cover: f32) -> vec4<f32> {
+    let distance = length(frame.eye.xyz - in.local) * frame.eye.w;
+    return vec4<f32>(in.colour.rgb, in.colour.a * cover * (1.0 - haze(distance)));
+}
+
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let across = dpdx(in.shape);
     let down = dpdy(in.shape);
     let pixel = sqrt(across * across + down * down);
-    var cover = in.colour.a;
-    if in.kind.x > 3.5 {
-        cover *= 1.0 - sunlight(in.local);
-    } else {
-        cover *= coverage(in.kind, in.shape, pixel);
-    }
-    let distance = length(frame.eye.xyz - in.local) * frame.eye.w;
-    return vec4<f32>(in.colour.rgb, cover * (1.0 - haze(distance)));
+    return hazy(in, coverage(in.kind, in.shape, pixel));
+}
+
+// Apart from the others: processors would look at the shadow map for every decal.
+@fragment
+fn shadow(in: Varying) -> @location(0) vec4<f32> {
+    return hazy(in, 1.0 - sunlight(in.local));
 }

@@ -8,15 +8,11 @@ struct Varying {
     // On the thing, m, and its normal there.
     @location(2) spot: vec3<f32>,
     @location(3) side: vec3<f32>,
-    // x: solid, y: mobility, z: height of the ground below.
+    // x: 1 for what moves by itself; z: height of the ground below.
     @location(4) @interpolate(flat) marks: vec4<f32>,
     @location(5) @interpolate(flat) size: vec3<f32>,
     @location(6) @interpolate(flat) colour: vec4<f32>,
 }
-
-const BLOCK = 0.0;
-const CYLINDER = 1.0;
-const CONE = 2.0;
 
 @vertex
 fn vertex(in: Corner, instance: Instance) -> Varying {
@@ -62,76 +58,28 @@ fn face(spot: vec3<f32>, size: vec3<f32>, side: vec3<f32>) -> vec4<f32> {
     return vec4<f32>(middle.xz, size.xz);
 }
 
-fn concrete(base: vec3<f32>, at: vec4<f32>, grainy: f32, pixel: vec2<f32>, top: bool) -> vec3<f32> {
-    // A pale edge where corners have worn, panels of a metre and a half.
-    let inset = 0.5 * at.zw - abs(at.xy);
-    let edge = 1.0 - smoothstep(0.0, 0.018 + max(pixel.x, pixel.y), min(inset.x, inset.y));
-    var colour = base * (0.80 + 0.40 * grainy);
-    if !top {
-        colour *= 1.0 - 0.38 * seams(at.x, 1.5, 0.014, pixel.x);
-        // Dirt where it meets the ground.
-        colour *= 0.78 + 0.22 * smoothstep(0.0, 0.22 * at.w + 0.02, at.y + 0.5 * at.w);
-    }
-    return mix(colour, base * 1.25, 0.55 * edge);
+// What a place on a prop is, found out once for all patterns.
+struct Spot {
+    // Place and size on its face.
+    at: vec4<f32>,
+    // Size of a pixel across and up the face, and over the height of the prop.
+    pixel: vec2<f32>,
+    rise: f32,
+    // Share of the height.
+    high: f32,
+    grainy: f32,
+    upward: bool,
 }
 
-fn timber(base: vec3<f32>, at: vec4<f32>, grainy: f32, pixel: vec2<f32>) -> vec3<f32> {
-    let least = min(at.z, at.w);
-    let inset = 0.5 * at.zw - abs(at.xy);
-    let rim = min(inset.x, inset.y);
-    let wide = max(pixel.x, pixel.y);
-    let plank = least / 4.0;
-    var colour = base * (0.82 + 0.36 * grainy);
-    colour *= 0.90 + 0.20 * fract(sin(floor(at.y / plank + 0.5) * 12.9898) * 43758.5453);
-    colour *= 1.0 - 0.62 * seams(at.y, plank, 0.05 * plank, pixel.y);
-    // A frame of lighter battens, and the shade below it.
-    let batten = 0.13 * least;
-    let framed = clamp((batten - rim) / max(wide, 1e-4) + 0.5, 0.0, 1.0);
-    colour *= 1.0 - 0.45 * band(rim, batten, batten * 1.22, wide);
-    return mix(colour, base * (1.12 + 0.25 * grainy), framed);
-}
-
-fn painted(in: Varying, grainy: f32) -> vec3<f32> {
-    let base = in.colour.rgb;
-    let spot = in.spot;
-    let pixel = max(abs(dpdx(spot)), abs(dpdy(spot)));
-    let at = face(spot, in.size, in.side);
-    let area = max(abs(dpdx(at.xy)), abs(dpdy(at.xy)));
-    let high = spot.z / in.size.z;
-    let fine = pixel.z / in.size.z;
-    let guided = in.marks.y > 1.5;
-    if in.marks.x == CONE {
-        let white = max(band(high, 0.36, 0.56, fine), 0.0);
-        return mix(base, vec3<f32>(0.80), white) * (0.92 + 0.16 * grainy);
-    }
-    if in.marks.x == CYLINDER {
-        let ring = max(band(high, 0.80, 0.90, fine), 0.6 * band(high, -1.0, 0.08, fine)) * (1.0 - step(0.7, in.side.z));
-        let ink = select(base * 0.42, vec3<f32>(0.80), guided);
-        return mix(base * (0.86 + 0.28 * grainy), ink, ring);
-    }
-    if in.marks.x == BLOCK {
-        if guided {
-            let stripe = band(abs(at.y) / max(at.w, 1e-4), 0.0, 0.07, area.y / max(at.w, 1e-4));
-            return mix(base * (0.92 + 0.16 * grainy), vec3<f32>(0.80), stripe * (1.0 - step(0.7, in.side.z)));
-        }
-        if in.marks.y > 0.5 {
-            return timber(base, at, grainy, area);
-        }
-        return concrete(base, at, grainy, area, in.side.z > 0.7);
-    }
-    // A ramp: chevrons on its slope point up, its sides show the layers of the board.
-    var colour = base * (0.84 + 0.32 * grainy);
-    if in.side.z > 0.05 {
-        let every = clamp(0.34 * in.size.y, 0.05, 0.6);
-        let along = spot.x + abs(spot.y) - 0.5 * in.size.x;
-        let stripe = seams(along, every, 0.34 * every, pixel.x + pixel.y);
-        let inset = 0.5 * in.size.y - abs(spot.y);
-        let inner = clamp((inset - 0.09 * in.size.y) / max(pixel.y, 1e-4) + 0.5, 0.0, 1.0);
-        colour = mix(colour, base * 0.22, stripe * inner * 0.85);
-    } else {
-        colour *= 0.82 - 0.30 * seams(spot.z, 0.08, 0.012, pixel.z);
-    }
-    return colour;
+fn spotted(in: Varying, stretch: f32) -> Spot {
+    var spot: Spot;
+    spot.at = face(in.spot, in.size, in.side);
+    spot.pixel = max(abs(dpdx(spot.at.xy)), abs(dpdy(spot.at.xy)));
+    spot.high = in.spot.z / in.size.z;
+    spot.rise = max(abs(dpdx(spot.high)), abs(dpdy(spot.high)));
+    spot.grainy = textureSample(asphalt, asphalt_sampler, spot.at.xy * vec2<f32>(0.9, stretch)).r;
+    spot.upward = in.side.z > 0.7;
+    return spot;
 }
 
 struct Painted {
@@ -149,21 +97,89 @@ fn veil(clip: vec4<f32>, depth: f32) -> u32 {
     return (bits | (bits >> 4u)) & 15u;
 }
 
-@fragment
-fn fragment(in: Varying) -> Painted {
-    let samples = veil(in.clip, dot(in.local - frame.eye.xyz, frame.forward.xyz));
+fn lighted(in: Varying, albedo: vec3<f32>) -> Painted {
     let normal = normalize(in.normal);
-    let at = face(in.spot, in.size, in.side);
-    let grainy = textureSample(asphalt, asphalt_sampler, at.xy * vec2<f32>(0.9, select(0.9, 0.16, in.marks.y == 1.0))).r;
-    let albedo = painted(in, grainy);
-    let distance = length(frame.eye.xyz - in.local) * frame.eye.w;
+    let away = in.local - frame.eye.xyz;
     let facing = dot(normal, frame.sun.xyz);
-    var sun = 0.0;
-    if facing > 0.0 {
-        sun = facing * sunlight_quick(in.local + normal * 0.025);
-    }
+    let sun = max(facing, 0.0) * sunlight_quick(in.local + normal * 0.025);
     // The foot sees less of the sky.
     let open = 0.55 + 0.45 * clamp((in.local.z - in.marks.z) * 2.5, 0.0, 1.0);
-    let light = albedo * (SUN_LIGHT * sun + ambient(normal) * open);
-    return Painted(vec4<f32>(mix(tone(light), HAZE, haze(distance)), 1.0), samples);
+    let light = tone(albedo * (SUN_LIGHT * sun + ambient(normal) * open));
+    let colour = mix(light, HAZE, haze(length(away) * frame.eye.w));
+    return Painted(vec4<f32>(colour, 1.0), veil(in.clip, dot(away, frame.forward.xyz)));
+}
+
+// Every material has its own entry point: processors would work out all patterns for every pixel.
+@fragment
+fn concrete(in: Varying) -> Painted {
+    let spot = spotted(in, 0.9);
+    let base = in.colour.rgb;
+    // A pale edge where corners have worn, panels of a metre and a half.
+    let inset = 0.5 * spot.at.zw - abs(spot.at.xy);
+    let edge = 1.0 - smoothstep(0.0, 0.018 + max(spot.pixel.x, spot.pixel.y), min(inset.x, inset.y));
+    // Dirt where it meets the ground.
+    let dirt = 0.78 + 0.22 * smoothstep(0.0, 0.22 * spot.at.w + 0.02, spot.at.y + 0.5 * spot.at.w);
+    let side = (1.0 - 0.38 * seams(spot.at.x, 1.5, 0.014, spot.pixel.x)) * dirt;
+    let colour = base * (0.80 + 0.40 * spot.grainy) * select(side, 1.0, spot.upward);
+    return lighted(in, mix(colour, base * 1.25, 0.55 * edge));
+}
+
+@fragment
+fn timber(in: Varying) -> Painted {
+    let spot = spotted(in, 0.16);
+    let base = in.colour.rgb;
+    let least = min(spot.at.z, spot.at.w);
+    let inset = 0.5 * spot.at.zw - abs(spot.at.xy);
+    let rim = min(inset.x, inset.y);
+    let wide = max(spot.pixel.x, spot.pixel.y);
+    let plank = least / 4.0;
+    var colour = base * (0.82 + 0.36 * spot.grainy);
+    // Every plank is of another tree.
+    colour *= 0.90 + 0.20 * fract(floor(spot.at.y / plank + 0.5) * 0.618);
+    colour *= 1.0 - 0.62 * seams(spot.at.y, plank, 0.05 * plank, spot.pixel.y);
+    // A frame of lighter battens, and the shade below it.
+    let batten = 0.13 * least;
+    let framed = clamp((batten - rim) / max(wide, 1e-4) + 0.5, 0.0, 1.0);
+    colour *= 1.0 - 0.45 * band(rim, batten, batten * 1.22, wide);
+    return lighted(in, mix(colour, base * (1.12 + 0.25 * spot.grainy), framed));
+}
+
+@fragment
+fn machine(in: Varying) -> Painted {
+    let spot = spotted(in, 0.9);
+    let up = max(spot.at.w, 1e-4);
+    let stripe = band(abs(spot.at.y) / up, 0.0, 0.07, spot.pixel.y / up) * select(1.0, 0.0, spot.upward);
+    return lighted(in, mix(in.colour.rgb * (0.92 + 0.16 * spot.grainy), vec3<f32>(0.80), stripe));
+}
+
+@fragment
+fn pillar(in: Varying) -> Painted {
+    let spot = spotted(in, 0.9);
+    let base = in.colour.rgb;
+    let bands = max(band(spot.high, 0.80, 0.90, spot.rise), 0.6 * band(spot.high, -1.0, 0.08, spot.rise));
+    let ink = select(base * 0.42, vec3<f32>(0.80), in.marks.x > 0.5);
+    return lighted(in, mix(base * (0.86 + 0.28 * spot.grainy), ink, bands * select(1.0, 0.0, spot.upward)));
+}
+
+@fragment
+fn cone(in: Varying) -> Painted {
+    let spot = spotted(in, 0.9);
+    let white = band(spot.high, 0.36, 0.56, spot.rise);
+    return lighted(in, mix(in.colour.rgb, vec3<f32>(0.80), white) * (0.92 + 0.16 * spot.grainy));
+}
+
+// Chevrons on the slope point up; the sides show the layers of the board.
+@fragment
+fn ramp(in: Varying) -> Painted {
+    let spot = spotted(in, 0.9);
+    let pixel = max(abs(dpdx(in.spot)), abs(dpdy(in.spot)));
+    let every = clamp(0.34 * in.size.y, 0.05, 0.6);
+    let along = in.spot.x + abs(in.spot.y) - 0.5 * in.size.x;
+    let stripe = seams(along, every, 0.34 * every, pixel.x + pixel.y);
+    let inset = 0.5 * in.size.y - abs(in.spot.y);
+    let inner = clamp((inset - 0.09 * in.size.y) / max(pixel.y, 1e-4) + 0.5, 0.0, 1.0);
+    let slope = mix(vec3<f32>(1.0), vec3<f32>(0.30), stripe * inner);
+    let layers = vec3<f32>(0.82 - 0.30 * seams(in.spot.z, 0.08, 0.012, pixel.z));
+    let board = in.colour.rgb * (0.84 + 0.32 * spot.grainy);
+    return lighted(in, board * select(layers, slope, in.side.z > 0.05));
 }

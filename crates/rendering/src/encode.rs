@@ -3,7 +3,7 @@
 use crate::crowd::Fleet;
 use crate::passes::Canvas;
 use crate::passes::asphalt::Asphalt;
-use crate::passes::decal::{Corner, DecalPass};
+use crate::passes::decal::{Corner, DecalPass, Layer};
 use crate::passes::frame::{Frame, FrameGroups};
 use crate::passes::ground::GroundPass;
 use crate::passes::overlay::{OverlayPass, Shapes};
@@ -41,8 +41,8 @@ pub(crate) struct Prepared {
     pub(crate) crowd: Crowd,
     pub(crate) props: Copies,
     pub(crate) tiles: Vec<Tile>,
-    /// Under the robots and over them.
-    pub(crate) decals: Vec<[Range<u32>; 2]>,
+    /// Corners of each view.
+    pub(crate) decals: Vec<[(Layer, Range<u32>); 4]>,
     /// Whether a view shows ghosts: near the ground they would veil what is behind them.
     pub(crate) ghosts: Vec<bool>,
     pub(crate) shapes: Shapes,
@@ -75,7 +75,7 @@ impl Passes {
             ground: GroundPass::new(device, canvas, &groups, &asphalt),
             terrain: terrain.map(|t| TerrainPass::new(device, queue, canvas, &groups, &asphalt, t)),
             prop: with_props.then(|| PropPass::new(device, queue, canvas, &groups, &asphalt)),
-            decal: DecalPass::new(device, canvas, &groups),
+            decal: DecalPass::new(device, canvas, &groups, terrain.is_some()),
             sky: SkyPass::new(device, canvas, &groups),
             overlay: OverlayPass::new(device, flat),
             asphalt,
@@ -158,7 +158,7 @@ impl Passes {
     }
 
     fn draw_view(&self, pass: &mut wgpu::RenderPass<'_>, index: usize, prepared: &Prepared) {
-        let [under, over] = prepared.decals[index].clone();
+        let [under @ .., (layer, over)] = &prepared.decals[index];
         pass.set_bind_group(0, &self.groups.view, &[FrameGroups::offset(index)]);
         pass.set_bind_group(1, &self.groups.light, &[]);
         self.sky.draw(pass);
@@ -166,7 +166,9 @@ impl Passes {
             Some(terrain) => terrain.draw(pass, &self.asphalt),
             None => self.ground.draw(pass, &self.asphalt),
         }
-        self.decal.draw(pass, under, self.terrain.is_some());
+        for (layer, corners) in under {
+            self.decal.draw(pass, corners, *layer);
+        }
         if let Some(prop) = &self.prop {
             prop.draw(pass, &self.asphalt, &prepared.props);
         }
@@ -174,7 +176,7 @@ impl Passes {
         if prepared.ghosts[index] {
             self.robot.draw_ghosts(pass, &self.models, &prepared.crowd);
         }
-        self.decal.draw(pass, over, false);
+        self.decal.draw(pass, over, *layer);
     }
 
     fn encode_overlay(

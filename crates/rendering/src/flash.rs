@@ -34,9 +34,7 @@ impl Painter<'_> {
         for touch in &stage.trail.touches {
             let age = (now - touch.begin) / FLASH;
             if (0.0..1.0).contains(&age) {
-                let least = 9.0
-                    * self.stage_scale
-                    * self.camera.metres_per_pixel(DVec3::from_array(touch.place), self.lines());
+                let least = 9.0 * self.stage_scale * self.pixel_at(DVec3::from_array(touch.place));
                 self.flash(DVec3::from_array(touch.place), age, (0.11 * stage.size).max(least));
             }
         }

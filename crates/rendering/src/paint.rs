@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use crate::drape::drape;
 use crate::palette::{self, Rgb};
-use crate::passes::decal::{Corner, Form};
+use crate::passes::decal::{Corner, Form, Layer};
 use crate::trail::{RIBBON, Trail, set_points};
 use crate::{Style, View};
 use glam::{DVec2, DVec3};
@@ -60,50 +60,40 @@ pub(crate) struct Painter<'a> {
     terrain: Option<&'a Terrain>,
 }
 
-/// All decals of one view on a tile `height` pixels high.
-pub(crate) fn paint(stage: &Stage<'_>, view: &View, camera: &Camera, height: f64) -> Vec<Corner> {
-    let mut painter = Painter::new(stage, camera, height);
+/// All decals of one view on a tile `height` pixels high, layer by layer, in the order in which they are drawn.
+pub(crate) fn paint(
+    stage: &Stage<'_>,
+    view: &View,
+    camera: &Camera,
+    height: f64,
+) -> [(Layer, Vec<Corner>); 4] {
+    let painted = |fill: &dyn Fn(&mut Painter<'_>)| {
+        let mut painter = Painter::new(stage, camera, height);
+        fill(&mut painter);
+        painter.laid()
+    };
     let style = stage.style;
+    let shadows = painted(&|painter| {
+        if style.shadows {
+            painter.shadows(stage);
+        }
+    });
+    let feet = painted(&|painter| {
+        painter.feet(stage);
+        painter.dots(stage);
+    });
+    let mut over = painted(&|painter| {
+        if style.set_points {
+            painter.errors(stage);
+        }
+    });
     if style.contacts {
-        painter.scuffs(stage);
-    }
-    // In a crowd the marks of all would cover the road, and cost more than the robots.
-    if style.marks && stage.detail > 0.5 {
-        painter.marks(stage);
-    }
-    if style.ribbons {
-        painter.ribbons(stage);
-    }
-    if style.set_points {
-        painter.set_points(stage);
-    }
-    // From close behind a robot the lines would cover the road.
-    if style.edges && !matches!(view, View::SnakeEye) {
-        painter.edges(stage);
-    }
-    // Over the paint, as shadows are.
-    if style.shadows {
-        painter.shadows(stage);
-    }
-    painter.feet(stage);
-    painter.dots(stage);
-    painter.laid()
-}
-
-/// What shows through the robots: rings and arrows of followers that are not where they should be, and flashes where
-/// things touch.
-pub(crate) fn paint_over(stage: &Stage<'_>, camera: &Camera, height: f64) -> Vec<Corner> {
-    let mut painter = Painter::new(stage, camera, height);
-    if stage.style.set_points {
-        painter.errors(stage);
-    }
-    let mut flashes = Painter::new(stage, camera, height);
-    if stage.style.contacts {
+        let mut flashes = Painter::new(stage, camera, height);
         flashes.flashes(stage);
+        over.append(&mut flashes.corners);
     }
-    let mut corners = painter.laid();
-    corners.append(&mut flashes.corners);
-    corners
+    let lines = painted(&|painter| painter.lines(stage, view));
+    [(Layer::Paint, lines), (Layer::Shadow, shadows), (Layer::Paint, feet), (Layer::Over, over)]
 }
 
 impl<'a> Painter<'a> {
@@ -120,6 +110,28 @@ impl<'a> Painter<'a> {
 }
 
 impl Painter<'_> {
+    /// Paint, over which shadows fall.
+    fn lines(&mut self, stage: &Stage<'_>, view: &View) {
+        let style = stage.style;
+        if style.contacts {
+            self.scuffs(stage);
+        }
+        // In a crowd the marks of all would cover the road, and cost more than the robots.
+        if style.marks && stage.detail > 0.5 {
+            self.marks(stage);
+        }
+        if style.ribbons {
+            self.ribbons(stage);
+        }
+        if style.set_points {
+            self.set_points(stage);
+        }
+        // From close behind a robot the lines would cover the road.
+        if style.edges && !matches!(view, View::SnakeEye) {
+            self.edges(stage);
+        }
+    }
+
     /// The corners as they lie on the ground.
     fn laid(self) -> Vec<Corner> {
         match self.terrain {
@@ -131,9 +143,9 @@ impl Painter<'_> {
         }
     }
 
-    /// Pixels down the tile.
-    pub(crate) fn lines(&self) -> f64 {
-        self.height
+    /// Size of a pixel at a point, m.
+    pub(crate) fn pixel_at(&self, point: DVec3) -> f64 {
+        self.camera.metres_per_pixel(point, self.height)
     }
 
     /// The point of the ground at a place.
@@ -143,7 +155,7 @@ impl Painter<'_> {
 
     /// Size of a pixel on the ground at a place, m.
     pub(crate) fn pixel(&self, place: DVec2) -> f64 {
-        self.camera.metres_per_pixel(self.on(place), self.height)
+        self.pixel_at(self.on(place))
     }
 
     pub(crate) fn corner(&self, at: DVec2, form: Form, shape: [f32; 2], colour: Rgb, alpha: f32) -> Corner {

@@ -2,7 +2,7 @@
 
 use crate::paint::Stage;
 use crate::palette::{Rgb, hex, linear};
-use crate::passes::prop::Copies;
+use crate::passes::prop::{Copies, Look};
 use crate::passes::robot::Instance;
 use glam::{DQuat, DVec3, Mat4};
 use vocabulary::{Mobility, Placement, Prop, Solid};
@@ -46,34 +46,39 @@ pub(crate) fn corners(prop: &Prop, placement: &Placement) -> [DVec3; 8] {
 pub(crate) fn props(stage: &Stage<'_>) -> Copies {
     let mut copies = Copies::default();
     for (prop, placement) in placed(stage) {
-        let (kind, scale) = match prop.solid {
-            Solid::Block { size } => (0, size),
-            Solid::Cylinder { radius, height } => (1, [radius, radius, height]),
-            Solid::Cone { radius, height } => (2, [radius, radius, height]),
-            Solid::Wedge { size } => (3, size),
+        let scale = match prop.solid {
+            Solid::Block { size } | Solid::Wedge { size } => size,
+            Solid::Cylinder { radius, height } | Solid::Cone { radius, height } => [radius, radius, height],
         };
-        copies[kind].push(instance(stage, prop, &placement, kind, DVec3::from_array(scale)));
+        copies[look(prop) as usize].push(instance(stage, prop, &placement, DVec3::from_array(scale)));
     }
     copies
 }
 
-fn instance(stage: &Stage<'_>, prop: &Prop, placement: &Placement, kind: usize, scale: DVec3) -> Instance {
+fn look(prop: &Prop) -> Look {
+    match (prop.solid, prop.mobility) {
+        (Solid::Block { .. }, Mobility::Fixed) => Look::Concrete,
+        (Solid::Block { .. }, Mobility::Loose) => Look::Timber,
+        (Solid::Block { .. }, Mobility::Guided) => Look::Machine,
+        (Solid::Cylinder { .. }, _) => Look::Pillar,
+        (Solid::Cone { .. }, _) => Look::Cone,
+        (Solid::Wedge { .. }, _) => Look::Ramp,
+    }
+}
+
+fn instance(stage: &Stage<'_>, prop: &Prop, placement: &Placement, scale: DVec3) -> Instance {
     let place = DVec3::from_array(placement.position);
     let turn = turn(placement).as_quat();
     let model =
         Mat4::from_scale_rotation_translation(scale.as_vec3(), turn, (place - stage.origin).as_vec3());
     let rows = model.transpose();
     let [r, g, b] = linear(colour(prop));
-    let mobility = match prop.mobility {
-        Mobility::Fixed => 0.0,
-        Mobility::Loose => 1.0,
-        Mobility::Guided => 2.0,
-    };
+    let guided = f32::from(u8::from(prop.mobility == Mobility::Guided));
     let ground = stage.ground(place.truncate()) - stage.origin.z;
     Instance {
         rows: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.to_array()),
         colour: [r, g, b, 1.0],
-        marks: [kind as f32, mobility, ground as f32, 0.0],
+        marks: [guided, 0.0, ground as f32, 0.0],
     }
 }
 

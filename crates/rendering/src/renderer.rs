@@ -5,10 +5,10 @@ use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun, words
 use crate::crowd::{Fleet, crowd};
 use crate::encode::{Passes, Prepared, Surface};
 use crate::labels::{Window, detail};
-use crate::paint::{Stage, paint, paint_over};
+use crate::paint::{Stage, paint};
 use crate::palette::{Rgb, robot_colours};
 use crate::passes::Canvas;
-use crate::passes::decal::Corner;
+use crate::passes::decal::{Corner, Layer};
 use crate::props::props;
 use crate::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
 use crate::{Error, Gpu, Layout, Style, Trail, View, view::Tile};
@@ -217,13 +217,12 @@ impl Renderer {
         let mut corners = Vec::new();
         let mut decals = Vec::new();
         for ((view, camera), tile) in layout.views.iter().zip(&cameras).zip(&tiles) {
-            let mut add = |more: Vec<Corner>| {
+            let add = |(layer, more): (Layer, Vec<Corner>)| {
                 let first = corners.len() as u32;
                 corners.extend(more);
-                first..corners.len() as u32
+                (layer, first..corners.len() as u32)
             };
-            let height = f64::from(tile.height);
-            decals.push([add(paint(&stage, view, camera, height)), add(paint_over(&stage, camera, height))]);
+            decals.push(paint(&stage, view, camera, f64::from(tile.height)).map(add));
         }
         let windows: Vec<_> =
             cameras.iter().zip(&tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();

@@ -28,8 +28,19 @@ pub(crate) enum Form {
     Blob,
     /// A box that is full up to this share of its sides.
     SoftBox(f32),
-    /// As dark as the shadow map says.
+    /// As dark as the shadow map says: for corners of [`Layer::Shadow`].
     Shadow,
+}
+
+/// What corners a view has, in the order in which they are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Layer {
+    /// Paint on the ground.
+    Paint,
+    /// Cast shadows over it.
+    Shadow,
+    /// What shows through the robots.
+    Over,
 }
 
 impl Form {
@@ -39,7 +50,7 @@ impl Form {
             Self::Ring(hole) => [1.0, hole],
             Self::Blob => [2.0, 0.0],
             Self::SoftBox(full) => [3.0, full],
-            Self::Shadow => [4.0, 0.0],
+            Self::Shadow => [0.0, 0.0],
         }
     }
 }
@@ -47,9 +58,10 @@ impl Form {
 /// Pipeline and the corners of this picture.
 #[derive(Debug)]
 pub(crate) struct DecalPass {
-    flat: wgpu::RenderPipeline,
-    /// Behind hills there is nothing to see of the ground.
-    hidden: wgpu::RenderPipeline,
+    over: wgpu::RenderPipeline,
+    /// On the ground: behind hills there is nothing to see of it.
+    paint: wgpu::RenderPipeline,
+    shadow: wgpu::RenderPipeline,
     corners: Stream,
 }
 
@@ -57,7 +69,8 @@ impl DecalPass {
     pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
         vertex_attr_array![0 => Float32x3, 1 => Float32x2, 2 => Float32x2, 3 => Float32x4];
 
-    pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups) -> Self {
+    /// On a terrain the depth of the ground is tested.
+    pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups, on_terrain: bool) -> Self {
         let recipe = Recipe {
             label: "decal",
             source: SHADER,
@@ -71,10 +84,12 @@ impl DecalPass {
             depth: Some((wgpu::CompareFunction::Always, false)),
             ..Default::default()
         };
-        let tested = Some((wgpu::CompareFunction::LessEqual, false));
+        let test = if on_terrain { wgpu::CompareFunction::LessEqual } else { wgpu::CompareFunction::Always };
+        let paint = Recipe { depth: Some((test, false)), ..recipe };
         Self {
-            flat: recipe.build(device),
-            hidden: Recipe { label: "draped decal", depth: tested, ..recipe }.build(device),
+            over: recipe.build(device),
+            paint: paint.build(device),
+            shadow: Recipe { label: "shadow decal", entry: "shadow", ..paint }.build(device),
             corners: Stream::new(device, "decals", wgpu::BufferUsages::VERTEX),
         }
     }
@@ -83,17 +98,16 @@ impl DecalPass {
         self.corners.fill(device, queue, bytemuck::cast_slice(corners));
     }
 
-    /// Draws the corners of one view; where they lie on a terrain, what is behind it is hidden.
-    pub(crate) fn draw(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        corners: std::ops::Range<u32>,
-        on_terrain: bool,
-    ) {
+    /// Draws corners of one view.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, corners: &std::ops::Range<u32>, layer: Layer) {
         if !corners.is_empty() {
-            pass.set_pipeline(if on_terrain { &self.hidden } else { &self.flat });
+            pass.set_pipeline(match layer {
+                Layer::Paint => &self.paint,
+                Layer::Shadow => &self.shadow,
+                Layer::Over => &self.over,
+            });
             pass.set_vertex_buffer(0, self.corners.slice());
-            pass.draw(corners, 0..1);
+            pass.draw(corners.clone(), 0..1);
         }
     }
 }

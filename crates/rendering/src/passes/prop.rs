@@ -11,13 +11,30 @@ use wgpu::{Device, Queue};
 pub(crate) const SHADER: &str =
     shader!("common/frame", "common/light", "common/robot", "common/asphalt", "prop");
 
-/// Copies of a picture, by solid, in the order of [`solids`].
-pub(crate) type Copies = [Vec<Instance>; 4];
+/// How a prop is painted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Look {
+    Concrete,
+    Timber,
+    Machine,
+    Pillar,
+    Cone,
+    Ramp,
+}
+
+impl Look {
+    /// The shader's entry point of each look and the index of its solid, in the order of the copies.
+    const ALL: [(&str, usize); 6] =
+        [("concrete", 0), ("timber", 0), ("machine", 0), ("pillar", 1), ("cone", 2), ("ramp", 3)];
+}
+
+/// Copies of a picture, by look.
+pub(crate) type Copies = [Vec<Instance>; Look::ALL.len()];
 
 /// Solids on the device, their pipeline and the copies of this picture.
 #[derive(Debug)]
 pub(crate) struct PropPass {
-    pipeline: wgpu::RenderPipeline,
+    pipelines: Vec<wgpu::RenderPipeline>,
     vertices: Stream,
     indices: Stream,
     solids: Vec<Range<u32>>,
@@ -39,7 +56,7 @@ impl PropPass {
             first..indices.len() as u32
         });
         let (corners, triangles) = (bytemuck::cast_slice(&vertices), bytemuck::cast_slice(&indices));
-        let pipeline = Recipe {
+        let recipe = Recipe {
             label: "prop",
             source: SHADER,
             groups: &[&groups.view_layout, &groups.light_layout, &asphalt.layout],
@@ -48,10 +65,9 @@ impl PropPass {
             colour: Some((canvas, None)),
             depth: Some((wgpu::CompareFunction::Less, true)),
             ..Default::default()
-        }
-        .build(device);
+        };
         Self {
-            pipeline,
+            pipelines: Look::ALL.map(|(entry, _)| Recipe { entry, ..recipe }.build(device)).to_vec(),
             vertices: constant(device, queue, "prop corners", wgpu::BufferUsages::VERTEX, corners),
             indices: constant(device, queue, "prop triangles", wgpu::BufferUsages::INDEX, triangles),
             solids: solids.to_vec(),
@@ -65,23 +81,30 @@ impl PropPass {
     }
 
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, asphalt: &Asphalt, copies: &Copies) {
-        if copies.iter().any(|c| !c.is_empty()) {
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(2, &asphalt.group, &[]);
-            self.draw_solid(pass, copies);
-        }
+        pass.set_bind_group(2, &asphalt.group, &[]);
+        self.draw_each(pass, copies, |pass, look| pass.set_pipeline(&self.pipelines[look]));
     }
 
-    /// The copies alone, with whatever pipeline is set.
+    /// The copies with whatever pipeline is set.
     pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, copies: &Copies) {
+        self.draw_each(pass, copies, |_, _| ());
+    }
+
+    fn draw_each(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        copies: &Copies,
+        prepare: impl Fn(&mut wgpu::RenderPass<'_>, usize),
+    ) {
         pass.set_vertex_buffer(0, self.vertices.slice());
         pass.set_vertex_buffer(1, self.instances.slice());
         pass.set_index_buffer(self.indices.slice(), wgpu::IndexFormat::Uint32);
         let mut first = 0;
-        for (solid, copies) in self.solids.iter().zip(copies) {
+        for (look, ((_, solid), copies)) in Look::ALL.iter().zip(copies).enumerate() {
             let last = first + copies.len() as u32;
             if last > first {
-                pass.draw_indexed(solid.clone(), 0, first..last);
+                prepare(pass, look);
+                pass.draw_indexed(self.solids[*solid].clone(), 0, first..last);
             }
             first = last;
         }

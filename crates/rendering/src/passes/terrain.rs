@@ -5,6 +5,7 @@ use super::frame::FrameGroups;
 use super::{Canvas, Recipe, Stream, constant, shader};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
+use std::ops::Range;
 use vocabulary::Terrain;
 use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
 
@@ -25,10 +26,12 @@ pub(crate) struct Point {
 /// Mesh and pipeline.
 #[derive(Debug)]
 pub(crate) struct TerrainPass {
-    pipeline: wgpu::RenderPipeline,
+    dry: wgpu::RenderPipeline,
+    slick: wgpu::RenderPipeline,
     points: Stream,
     triangles: Stream,
-    count: u32,
+    /// Triangles that grip come first.
+    parts: [Range<u32>; 2],
 }
 
 impl TerrainPass {
@@ -44,7 +47,7 @@ impl TerrainPass {
         terrain: &Terrain,
     ) -> Self {
         let (points, triangles) = mesh(terrain);
-        let pipeline = Recipe {
+        let recipe = Recipe {
             label: "terrain",
             source: SHADER,
             groups: &[&groups.view_layout, &groups.light_layout, &asphalt.layout],
@@ -56,24 +59,40 @@ impl TerrainPass {
             colour: Some((canvas, None)),
             depth: Some((wgpu::CompareFunction::Less, true)),
             ..Default::default()
-        }
-        .build(device);
+        };
+        let (dry, slick) = (recipe.build(device), Recipe { entry: "slick", ..recipe }.build(device));
+        let (triangles, parts) = parted(&triangles, &points);
         let (corners, indices) = (bytemuck::cast_slice(&points), bytemuck::cast_slice(&triangles));
         Self {
-            pipeline,
+            dry,
+            slick,
             points: constant(device, queue, "terrain", wgpu::BufferUsages::VERTEX, corners),
             triangles: constant(device, queue, "terrain", wgpu::BufferUsages::INDEX, indices),
-            count: triangles.len() as u32,
+            parts,
         }
     }
 
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, asphalt: &Asphalt) {
-        pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(2, &asphalt.group, &[]);
         pass.set_vertex_buffer(0, self.points.slice());
         pass.set_index_buffer(self.triangles.slice(), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..self.count, 0, 0..1);
+        for (pipeline, part) in [&self.dry, &self.slick].into_iter().zip(&self.parts) {
+            if !part.is_empty() {
+                pass.set_pipeline(pipeline);
+                pass.draw_indexed(part.clone(), 0, 0..1);
+            }
+        }
     }
+}
+
+/// Triangles that grip and then those that do not, and where each kind lies.
+fn parted(triangles: &[u32], points: &[Point]) -> (Vec<u32>, [Range<u32>; 2]) {
+    let grips = |triangle: &&[u32]| triangle.iter().all(|k| points[*k as usize].grip >= 1.0);
+    let (dry, slick): (Vec<_>, Vec<_>) = triangles.chunks_exact(3).partition(grips);
+    let middle = 3 * dry.len() as u32;
+    let all: Vec<u32> = dry.into_iter().chain(slick).flatten().copied().collect();
+    let end = all.len() as u32;
+    (all, [0..middle, middle..end])
 }
 
 /// Points relative to the terrain's origin, one more around the field on all sides, and triangles between them.
