@@ -177,7 +177,9 @@ pub(crate) fn view_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Windo
 fn middle(robot: &RobotState, member: &Member) -> (DVec3, f64) {
     let size = crate::model::size(&member.body);
     let [x, y] = robot.motion.pose.world_from_body(0.12 * size, 0.0);
-    (DVec3::new(x, y, robot.attitude.height + 0.15 * size), size)
+    // Over its ground point, or under it where it lies on its roof.
+    let upright = robot.attitude.roll.cos() * robot.attitude.pitch.cos();
+    (DVec3::new(x, y, robot.attitude.height + 0.15 * size * upright), size)
 }
 
 fn reserve_robots(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {

@@ -24,7 +24,8 @@ pub(crate) fn placed<'a>(stage: &Stage<'a>) -> impl Iterator<Item = (&'a Prop, P
 }
 
 fn sound(placement: &Placement) -> bool {
-    placement.position.iter().chain(&placement.rotation).all(|x| x.is_finite())
+    let turns = placement.rotation.iter().map(|x| x * x).sum::<f64>() > 1e-12;
+    turns && placement.position.iter().chain(&placement.rotation).all(|x| x.is_finite())
 }
 
 pub(crate) fn turn(placement: &Placement) -> DQuat {

@@ -1,6 +1,6 @@
 //! What cameras follow: headings and the formation's extent, filtered so that a picture never jumps.
 
-use vocabulary::{Moment, Pose, nearest_turn};
+use vocabulary::{Condition, Moment, Pose, nearest_turn};
 
 /// Time constant of headings, s: calm in curves, and a first order filter cannot overshoot.
 const HEADING_LAG: f64 = 0.8;
@@ -152,7 +152,9 @@ impl Steady {
             let pick = |[low, high]: [f64; 2], sign: f64| if sign > 0.0 { high } else { -low };
             (pick(forward, f) + pick(left, l) - most).max(0.0)
         });
-        let heights = || robots.iter().map(|r| r.attitude.height).filter(|h| h.is_finite());
+        // What falls out of the world does not take the camera along.
+        let standing = || robots.iter().filter(|r| r.condition != Condition::Fallen);
+        let heights = || standing().map(|r| r.attitude.height).filter(|h| h.is_finite());
         let ground = [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)];
         let ground = if ground[0] <= ground[1] { ground } else { [0.0; 2] };
         Some(Extent { frame, forward, left, cuts, rear, ground, size: self.size.max(1.0) })

@@ -46,11 +46,10 @@ pub(crate) enum Layer {
 impl Form {
     pub(crate) fn code(self) -> [f32; 2] {
         match self {
-            Self::Solid => [0.0, 0.0],
+            Self::Solid | Self::Shadow => [0.0, 0.0],
             Self::Ring(hole) => [1.0, hole],
             Self::Blob => [2.0, 0.0],
             Self::SoftBox(full) => [3.0, full],
-            Self::Shadow => [0.0, 0.0],
         }
     }
 }
