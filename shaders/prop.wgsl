@@ -82,22 +82,12 @@ fn spotted(in: Varying, stretch: f32) -> Spot {
     return spot;
 }
 
-struct Painted {
-    @location(0) colour: vec4<f32>,
-    @builtin(sample_mask) samples: u32,
+// Opacity at a depth: a prop between the eye and the robots must not hide them.
+fn veil(depth: f32) -> f32 {
+    return mix(0.2, 1.0, smoothstep(0.0, 0.6, depth - frame.spare.x));
 }
 
-// Which of four samples a prop covers that stands between the eye and the robots; with one sample a pixel, which
-// pixels.
-fn veil(clip: vec4<f32>, depth: f32) -> u32 {
-    let share = clamp((depth - frame.spare.x) * 2.0, 0.0, 1.0);
-    let count = 1u + u32(share * 3.0 + 0.5);
-    let first = (u32(clip.x) & 1u) + 2u * (u32(clip.y) & 1u);
-    let bits = ((1u << count) - 1u) << first;
-    return (bits | (bits >> 4u)) & 15u;
-}
-
-fn lighted(in: Varying, albedo: vec3<f32>) -> Painted {
+fn lighted(in: Varying, albedo: vec3<f32>) -> vec4<f32> {
     let normal = normalize(in.normal);
     let away = in.local - frame.eye.xyz;
     let facing = dot(normal, frame.sun.xyz);
@@ -106,12 +96,12 @@ fn lighted(in: Varying, albedo: vec3<f32>) -> Painted {
     let open = 0.55 + 0.45 * clamp((in.local.z - in.marks.z) * 2.5, 0.0, 1.0);
     let light = tone(albedo * (SUN_LIGHT * sun + ambient(normal) * open));
     let colour = mix(light, HAZE, haze(length(away) * frame.eye.w));
-    return Painted(vec4<f32>(colour, 1.0), veil(in.clip, dot(away, frame.forward.xyz)));
+    return vec4<f32>(colour, veil(dot(away, frame.forward.xyz)));
 }
 
 // Every material has its own entry point: processors would work out all patterns for every pixel.
 @fragment
-fn concrete(in: Varying) -> Painted {
+fn concrete(in: Varying) -> @location(0) vec4<f32> {
     let spot = spotted(in, 0.9);
     let base = in.colour.rgb;
     // A pale edge where corners have worn, panels of a metre and a half.
@@ -125,7 +115,7 @@ fn concrete(in: Varying) -> Painted {
 }
 
 @fragment
-fn timber(in: Varying) -> Painted {
+fn timber(in: Varying) -> @location(0) vec4<f32> {
     let spot = spotted(in, 0.16);
     let base = in.colour.rgb;
     let least = min(spot.at.z, spot.at.w);
@@ -145,7 +135,7 @@ fn timber(in: Varying) -> Painted {
 }
 
 @fragment
-fn machine(in: Varying) -> Painted {
+fn machine(in: Varying) -> @location(0) vec4<f32> {
     let spot = spotted(in, 0.9);
     let up = max(spot.at.w, 1e-4);
     let stripe = band(abs(spot.at.y) / up, 0.0, 0.07, spot.pixel.y / up) * select(1.0, 0.0, spot.upward);
@@ -153,7 +143,7 @@ fn machine(in: Varying) -> Painted {
 }
 
 @fragment
-fn pillar(in: Varying) -> Painted {
+fn pillar(in: Varying) -> @location(0) vec4<f32> {
     let spot = spotted(in, 0.9);
     let base = in.colour.rgb;
     let bands = max(band(spot.high, 0.80, 0.90, spot.rise), 0.6 * band(spot.high, -1.0, 0.08, spot.rise));
@@ -162,7 +152,7 @@ fn pillar(in: Varying) -> Painted {
 }
 
 @fragment
-fn cone(in: Varying) -> Painted {
+fn cone(in: Varying) -> @location(0) vec4<f32> {
     let spot = spotted(in, 0.9);
     let white = band(spot.high, 0.36, 0.56, spot.rise);
     return lighted(in, mix(in.colour.rgb, vec3<f32>(0.80), white) * (0.92 + 0.16 * spot.grainy));
@@ -170,7 +160,7 @@ fn cone(in: Varying) -> Painted {
 
 // Chevrons on the slope point up; the sides show the layers of the board.
 @fragment
-fn ramp(in: Varying) -> Painted {
+fn ramp(in: Varying) -> @location(0) vec4<f32> {
     let spot = spotted(in, 0.9);
     let pixel = max(abs(dpdx(in.spot)), abs(dpdy(in.spot)));
     let every = clamp(0.34 * in.size.y, 0.05, 0.6);

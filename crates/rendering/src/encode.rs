@@ -169,10 +169,11 @@ impl Passes {
         for (layer, corners) in under {
             self.decal.draw(pass, corners, *layer);
         }
+        self.robot.draw_solid(pass, &self.models, &prepared.crowd);
+        // After the robots, which show through those in front of them.
         if let Some(prop) = &self.prop {
             prop.draw(pass, &self.asphalt, &prepared.props);
         }
-        self.robot.draw_solid(pass, &self.models, &prepared.crowd);
         if prepared.ghosts[index] {
             self.robot.draw_ghosts(pass, &self.models, &prepared.crowd);
         }

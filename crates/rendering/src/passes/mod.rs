@@ -61,6 +61,8 @@ pub(crate) struct Recipe<'a> {
     pub(crate) colour: Option<(Canvas, Option<wgpu::BlendState>)>,
     /// Writes colour where there is a target; a pass may only want its depth.
     pub(crate) visible: bool,
+    /// Opacity is the share of a pixel's samples that are covered, whatever the order of what is drawn.
+    pub(crate) coverage: bool,
     /// Depth comparison and whether depth is written.
     pub(crate) depth: Option<(wgpu::CompareFunction, bool)>,
     pub(crate) bias: wgpu::DepthBiasState,
@@ -78,6 +80,7 @@ impl Default for Recipe<'_> {
             cull: false,
             colour: None,
             visible: true,
+            coverage: false,
             depth: None,
             bias: wgpu::DepthBiasState::default(),
         }
@@ -97,7 +100,11 @@ impl Recipe<'_> {
             immediate_size: 0,
         });
         let buffers: Vec<_> = self.buffers.iter().cloned().map(Some).collect();
-        let write = if self.visible { wgpu::ColorWrites::ALL } else { wgpu::ColorWrites::empty() };
+        let write = match (self.visible, self.coverage) {
+            (false, _) => wgpu::ColorWrites::empty(),
+            (true, true) => wgpu::ColorWrites::COLOR,
+            (true, false) => wgpu::ColorWrites::ALL,
+        };
         let targets: Vec<_> = self
             .colour
             .map(|(canvas, blend)| wgpu::ColorTargetState { format: canvas.format, blend, write_mask: write })
@@ -133,6 +140,7 @@ impl Recipe<'_> {
             }),
             multisample: wgpu::MultisampleState {
                 count: self.colour.map_or(1, |(canvas, _)| canvas.samples),
+                alpha_to_coverage_enabled: self.coverage,
                 ..Default::default()
             },
             fragment: self.colour.is_some().then_some(fragment),

@@ -56,13 +56,18 @@ impl PropPass {
             first..indices.len() as u32
         });
         let (corners, triangles) = (bytemuck::cast_slice(&vertices), bytemuck::cast_slice(&indices));
+        // Seen through where a prop stands before the robots; with one sample a pixel, whatever is farther and comes
+        // later is lost behind it.
+        let coverage = canvas.samples > 1;
+        let blend = (!coverage).then_some(wgpu::BlendState::ALPHA_BLENDING);
         let recipe = Recipe {
             label: "prop",
             source: SHADER,
             groups: &[&groups.view_layout, &groups.light_layout, &asphalt.layout],
             buffers: &Models::LAYOUTS,
             cull: true,
-            colour: Some((canvas, None)),
+            colour: Some((canvas, blend)),
+            coverage,
             depth: Some((wgpu::CompareFunction::Less, true)),
             ..Default::default()
         };
