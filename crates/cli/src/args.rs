@@ -23,6 +23,8 @@ pub(crate) enum Command {
     Capture(CaptureArgs),
     /// Make a film of a scene
     Film(FilmArgs),
+    /// Search gains that fit a scene's vehicles, and print them
+    Tune(TuneArgs),
     /// Read scenes and say what is wrong with them, without running
     Check(CheckArgs),
     /// Print the JSON Schema of scene files
@@ -127,6 +129,15 @@ pub(crate) struct FilmArgs {
     /// Encode with the ffmpeg on PATH instead of the built-in encoder
     #[arg(long)]
     pub(crate) ffmpeg: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TuneArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Runs of the scene to try, at most
+    #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u64).range(3..=100_000))]
+    pub(crate) trials: u64,
 }
 
 #[derive(Debug, Args)]

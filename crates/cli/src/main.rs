@@ -15,6 +15,7 @@ mod progress;
 mod quiet;
 mod report;
 mod run;
+mod tune;
 mod welcome;
 
 use args::{Command, Program};
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Capture(args)) => capture::capture(&args),
         Some(Command::Film(args)) => film::film(&args),
+        Some(Command::Tune(args)) => tune::tune(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Schema) => {
             print::schema();

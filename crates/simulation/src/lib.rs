@@ -7,6 +7,7 @@ mod build;
 mod continuous;
 mod stage;
 mod step;
+pub mod tune;
 pub mod verdict;
 
 pub use build::{BuildError, build, caption};

@@ -94,7 +94,9 @@ impl Touches {
             }
         }
         found.sort_by_key(|touch| touch.things);
-        found.iter().for_each(|touch| self.touch(snapshot.time, touch));
+        for touch in &found {
+            self.touch(snapshot.time, touch);
+        }
         self.part(snapshot.time);
     }
 }

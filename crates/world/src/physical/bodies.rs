@@ -29,7 +29,7 @@ pub(super) struct Bodies {
     islands: IslandManager,
     broad_phase: BroadPhaseBvh,
     narrow_phase: NarrowPhase,
-    bodies: RigidBodySet,
+    set: RigidBodySet,
     colliders: ColliderSet,
     joints: ImpulseJointSet,
     multibodies: MultibodyJointSet,
@@ -48,7 +48,7 @@ impl Clone for Bodies {
             islands: self.islands.clone(),
             broad_phase: self.broad_phase.clone(),
             narrow_phase: self.narrow_phase.clone(),
-            bodies: self.bodies.clone(),
+            set: self.set.clone(),
             colliders: self.colliders.clone(),
             joints: self.joints.clone(),
             multibodies: self.multibodies.clone(),
@@ -76,7 +76,7 @@ impl Bodies {
             islands: IslandManager::new(),
             broad_phase: BroadPhaseBvh::default(),
             narrow_phase: NarrowPhase::new(),
-            bodies: RigidBodySet::new(),
+            set: RigidBodySet::new(),
             colliders,
             joints: ImpulseJointSet::new(),
             multibodies: MultibodyJointSet::new(),
@@ -112,8 +112,8 @@ impl Bodies {
             .can_sleep(false)
             // Only what can cross its own width in a few steps needs the swept test.
             .ccd_enabled(vehicle.limits.speed_max * step > 0.02);
-        let (body, shell) = (self.bodies.insert(body), shell(index, &vehicle.body, vehicle.clearance));
-        self.colliders.insert_with_parent(shell, body, &mut self.bodies);
+        let (body, shell) = (self.set.insert(body), shell(index, &vehicle.body, vehicle.clearance));
+        self.colliders.insert_with_parent(shell, body, &mut self.set);
         body
     }
 
@@ -126,9 +126,9 @@ impl Bodies {
         surface: &Surface,
     ) -> RigidBodyHandle {
         let handle =
-            self.bodies.insert(RigidBodyBuilder::kinematic_position_based().pose(on_surface(pose, surface)));
+            self.set.insert(RigidBodyBuilder::kinematic_position_based().pose(on_surface(pose, surface)));
         let shell = shell(index, body, 0.2 * body.height).active_collision_types(ActiveCollisionTypes::all());
-        self.colliders.insert_with_parent(shell, handle, &mut self.bodies);
+        self.colliders.insert_with_parent(shell, handle, &mut self.set);
         handle
     }
 
@@ -144,15 +144,13 @@ impl Bodies {
             .active_collision_types(ActiveCollisionTypes::all());
         let handle = match prop.prop.mobility {
             Mobility::Fixed => None,
-            Mobility::Loose => Some(self.bodies.insert(RigidBodyBuilder::dynamic().pose(frame))),
+            Mobility::Loose => Some(self.set.insert(RigidBodyBuilder::dynamic().pose(frame))),
             Mobility::Guided => {
-                Some(self.bodies.insert(RigidBodyBuilder::kinematic_position_based().pose(frame)))
+                Some(self.set.insert(RigidBodyBuilder::kinematic_position_based().pose(frame)))
             }
         };
         match handle {
-            Some(body) => {
-                self.colliders.insert_with_parent(collider.position(inside), body, &mut self.bodies)
-            }
+            Some(body) => self.colliders.insert_with_parent(collider.position(inside), body, &mut self.set),
             None => self.colliders.insert(collider.position(frame * inside)),
         };
         self.props.push(handle);
@@ -168,7 +166,7 @@ impl Bodies {
             &mut self.islands,
             &mut self.broad_phase,
             &mut self.narrow_phase,
-            &mut self.bodies,
+            &mut self.set,
             &mut self.colliders,
             &mut self.joints,
             &mut self.multibodies,
@@ -181,12 +179,12 @@ impl Bodies {
 
     /// Where a guided body is at the end of the coming step.
     pub(super) fn place(&mut self, body: RigidBodyHandle, frame: Frame) {
-        self.bodies[body].set_next_kinematic_position(frame);
+        self.set[body].set_next_kinematic_position(frame);
     }
 
     /// Replaces the force and torque on a body for the coming step.
     pub(super) fn push(&mut self, body: RigidBodyHandle, force: Vector, torque: Vector) {
-        let body = &mut self.bodies[body];
+        let body = &mut self.set[body];
         body.reset_forces(false);
         body.reset_torques(false);
         body.add_force(force, false);
@@ -196,12 +194,12 @@ impl Bodies {
     /// Pushes a body at a place for the length of one step, as an impulse, since nobody resets its forces.
     pub(super) fn push_at(&mut self, body: RigidBodyHandle, force: Vector, place: Vector) {
         let step = self.parameters.dt;
-        self.bodies[body].apply_impulse_at_point(force * step, place, true);
+        self.set[body].apply_impulse_at_point(force * step, place, true);
     }
 
     /// How a body moves, and the origin of its frame.
     pub(super) fn carriage(&self, body: RigidBodyHandle) -> (Carriage, Vector) {
-        let body = &self.bodies[body];
+        let body = &self.set[body];
         let turn = body.rotation();
         let axes = [*turn * Vector::X, *turn * Vector::Y, *turn * Vector::Z];
         let carriage =
@@ -236,14 +234,14 @@ impl Bodies {
 
     /// Where a prop is now; `None` for one that is fixed.
     pub(super) fn placement(&self, prop: usize) -> Option<Placement> {
-        let frame = self.bodies[self.props[prop]?].position();
+        let frame = self.set[self.props[prop]?].position();
         let turn = frame.rotation;
         Some(Placement { position: frame.translation.to_array(), rotation: [turn.x, turn.y, turn.z, turn.w] })
     }
 
     /// Whether any prop is within `reach` m of the box around a vehicle.
     pub(super) fn props_near(&self, body: RigidBodyHandle, reach: f64) -> bool {
-        let Some(collider) = self.bodies[body].colliders().first() else { return false };
+        let Some(collider) = self.set[body].colliders().first() else { return false };
         let around = self.colliders[*collider].compute_aabb().loosened(reach);
         let is_prop = |_, collider: &Collider| matches!(thing_of(collider), Thing::Prop(_));
         let filter = QueryFilter::new().predicate(&is_prop);
@@ -269,15 +267,15 @@ impl Bodies {
         }
         let place = ray.point_at(at.time_of_impact);
         let body = self.colliders[hit].parent();
-        let velocity = body.map_or(Vector::ZERO, |body| self.bodies[body].velocity_at_point(place));
-        let loose = body.filter(|body| self.bodies[*body].is_dynamic());
+        let velocity = body.map_or(Vector::ZERO, |body| self.set[body].velocity_at_point(place));
+        let loose = body.filter(|body| self.set[*body].is_dynamic());
         Some((above - at.time_of_impact, Footing { place, normal: at.normal, velocity, grip: 1.0 }, loose))
     }
 
     fn query<'a>(&'a self, filter: QueryFilter<'a>) -> rapier3d_f64::prelude::QueryPipeline<'a> {
         self.broad_phase.as_query_pipeline(
             self.narrow_phase.query_dispatcher(),
-            &self.bodies,
+            &self.set,
             &self.colliders,
             filter,
         )

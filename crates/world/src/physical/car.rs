@@ -98,40 +98,28 @@ impl Car {
         self.reactions.clear();
         let air = carriage.velocity * (-self.vehicle.drag * carriage.velocity.length());
         self.push = Push { force: air, ..Push::default() };
-        let climb = surroundings.props && bodies.props_near(self.body, self.vehicle.body.wheel_radius);
+        let radius = self.vehicle.body.wheel_radius;
+        let climbs = surroundings.props && bodies.props_near(self.body, radius);
+        let ride = Ride { carriage, origin, bodies, surroundings, climbs, step: h };
         let headings = headings(&self.vehicle, effort.tan_steering);
-        for k in 0..4 {
-            let pull = Pull { heading: headings[k], drive: effort.drive[k], brake: effort.brake[k] };
-            self.turn_wheel(k, &carriage, origin, &pull, bodies, surroundings, climb, h);
+        for (k, heading) in headings.into_iter().enumerate() {
+            let pull = Pull { heading, drive: effort.drive[k], brake: effort.brake[k] };
+            self.turn_wheel(k, &ride, &pull);
         }
         self.note_steering(&effort, &headings);
     }
 
-    fn turn_wheel(
-        &mut self,
-        k: usize,
-        carriage: &Carriage,
-        origin: Vector,
-        pull: &Pull,
-        bodies: &Bodies,
-        surroundings: &Surroundings,
-        climb: bool,
-        h: f64,
-    ) {
+    fn turn_wheel(&mut self, k: usize, ride: &Ride<'_>, pull: &Pull) {
         let mounting = self.mountings[k];
-        let [ahead, left, up] = carriage.axes;
-        let mount = origin + ahead * mounting.place.x + left * mounting.place.y;
-        let ground = stand(&mounting, mount, up, surroundings);
-        let prop = if climb {
-            let radius = self.vehicle.body.wheel_radius;
-            bodies.prop_under(mount, up, 2.0 * radius, -mounting.droop)
-        } else {
-            None
+        let [ahead, left, up] = ride.carriage.axes;
+        let mount = ride.origin + ahead * mounting.place.x + left * mounting.place.y;
+        let radius = self.vehicle.body.wheel_radius;
+        let ground = stand(&mounting, mount, up, ride.surroundings);
+        let below = |(compression, ..): &(f64, Footing, Option<RigidBodyHandle>)| {
+            *compression > ground.map_or(mounting.droop, |(compression, _)| compression)
         };
-        let higher = |(compression, _, _): &(f64, Footing, Option<RigidBodyHandle>)| {
-            *compression > mounting.droop && ground.is_none_or(|(below, _)| *compression > below)
-        };
-        let (footing, below) = match prop.filter(higher) {
+        let prop = ride.climbs.then(|| ride.bodies.prop_under(mount, up, 2.0 * radius, -mounting.droop));
+        let (footing, bearer) = match prop.flatten().filter(below) {
             Some((compression, footing, body)) => (Some((compression, footing)), body),
             None => (ground, None),
         };
@@ -142,12 +130,13 @@ impl Car {
             self.brushes[k] = Brush::default();
             return;
         };
-        let push = mounting.push(carriage, &footing, compression, pull, &mut self.brushes[k], h);
-        wheel.compression = compression.min(self.vehicle.body.wheel_radius);
-        wheel.rotation += push.rolling * h / self.vehicle.body.wheel_radius;
+        let push =
+            mounting.push(&ride.carriage, &footing, compression, pull, &mut self.brushes[k], ride.step);
+        wheel.compression = compression.min(radius);
+        wheel.rotation += push.rolling * ride.step / radius;
         self.push.force += push.force;
         self.push.torque += push.torque;
-        if let Some(body) = below {
+        if let Some(body) = bearer {
             self.reactions.push((body, -push.force, footing.place));
         }
     }
@@ -159,6 +148,18 @@ impl Car {
             wheel.steering = if steered { sin.atan2(*cos) } else { 0.0 };
         }
     }
+}
+
+/// What the wheels of a vehicle share in a physics step.
+struct Ride<'a> {
+    carriage: Carriage,
+    /// Of the body frame.
+    origin: Vector,
+    bodies: &'a Bodies,
+    surroundings: &'a Surroundings,
+    /// Whether a prop is near enough to be climbed.
+    climbs: bool,
+    step: f64,
 }
 
 /// Where a wheel stands on the ground, and its compression; `None` in the air.

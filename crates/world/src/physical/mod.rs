@@ -171,7 +171,9 @@ impl Physical {
     fn find_touches(&mut self, time: f64) {
         let mut found: Vec<Touch> = self.bodies.touches();
         found.sort_by_key(|touch| touch.things);
-        found.iter().for_each(|touch| self.touches.touch(time, touch));
+        for touch in &found {
+            self.touches.touch(time, touch);
+        }
         self.touches.part(time);
     }
 

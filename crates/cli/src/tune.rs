@@ -1,0 +1,63 @@
+//! `echelon tune`: gains that fit the vehicles of a scene.
+
+use crate::Outcome;
+use crate::args::TuneArgs;
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::load::{Loaded, load, stem};
+use crate::print::{json, say};
+use crate::progress::Progress;
+use serde_json::json;
+use simulation::tune::{Trial, tune as search};
+
+pub(crate) fn tune(args: &TuneArgs) -> Outcome {
+    let Loaded { scene, .. } = load(&args.scene)?;
+    let quiet = args.scene.quiet || args.scene.json;
+    let what = format!("Tuning {}, at most {} runs", stem(&args.scene.scene), args.trials);
+    let progress = Progress::begin(&what, args.trials, quiet);
+    let (mut tried, mut interrupted) = (0, false);
+    let look = |_: &Trial| {
+        tried += 1;
+        progress.at(tried);
+        interrupted = interrupt::asked();
+        !interrupted
+    };
+    let most = usize::try_from(args.trials).unwrap_or(usize::MAX);
+    let found = search(&scene, most, look).map_err(|error| Failure::Usage(error.to_string()))?;
+    progress.end();
+    let [first, best] = &found;
+    if args.scene.json {
+        json(&json!({ "trials": tried, "first": as_json(first), "best": as_json(best) }));
+    } else if !args.scene.quiet {
+        say(&format!("{}\n{}\n", scene.title, simulation::caption(&scene)));
+        say(&format!(
+            "{:12} {:>8} {:>26} {:>9} {:>9}",
+            "", "cost", "error in the second half", "limited", "contacts"
+        ));
+        row("as it is", first);
+        row("best", best);
+        let gains = &best.gains;
+        say(&format!("\nof {tried} runs; in the scene:\n"));
+        say(&format!("[law]\nk = {:.2}\nbeta = {:.2}\nslope = {:.1}\n", gains.k, gains.beta, gains.slope));
+        say(&format!("[observer]\nepsilon = {:.4}", gains.epsilon));
+    }
+    if interrupted {
+        return Err(Failure::Interrupted(format!("after {tried} runs; the best so far is printed")));
+    }
+    Ok(())
+}
+
+fn row(name: &str, trial: &Trial) {
+    let [distance, bearing] = trial.late_error;
+    let error = format!("{distance:.4} m {:>8.3}°", bearing.to_degrees());
+    let limited = format!("{:.1} %", trial.limited * 100.0);
+    say(&format!("{name:12} {:>8.2} {error:>26} {limited:>9} {:>9}", trial.cost, trial.contacts));
+}
+
+fn as_json(trial: &Trial) -> serde_json::Value {
+    let gains = &trial.gains;
+    json!({
+        "k": gains.k, "beta": gains.beta, "slope": gains.slope, "epsilon": gains.epsilon,
+        "cost": trial.cost, "late_error": trial.late_error, "limited": trial.limited, "contacts": trial.contacts,
+    })
+}
