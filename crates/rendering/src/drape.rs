@@ -38,13 +38,33 @@ fn cells(corner: &Corner, terrain: &Terrain, origin: DVec3) -> DVec2 {
 fn level(triangle: &[Corner; 3], terrain: &Terrain, origin: DVec3, eye: Option<DVec3>) -> bool {
     let at = triangle.map(|corner| DVec3::from_array(corner.position.map(f64::from)) + origin);
     let size = (at[0].max(at[1]).max(at[2]) - at[0].min(at[1]).min(at[2])).truncate();
-    if size.max_element() > 1.5 * terrain.cell {
-        return false;
-    }
     let middle = (at[0] + at[1] + at[2]) / 3.0;
     let bound = 0.003 + eye.map_or(0.0, |eye| 0.001 * eye.distance(middle));
     let off = |p: DVec3| (terrain.at(p.x, p.y).height - p.z).abs() < bound;
-    off(middle) && (0..3).all(|k| off((at[k] + at[(k + 1) % 3]) * 0.5))
+    let bends = || size.max_element() > 1.5 * terrain.cell && !plain(&at, bound, terrain);
+    off(middle) && (0..3).all(|k| off((at[k] + at[(k + 1) % 3]) * 0.5)) && !bends()
+}
+
+/// Whether every point of the grid around a triangle lies in its plane.
+fn plain(at: &[DVec3; 3], bound: f64, terrain: &Terrain) -> bool {
+    let normal = (at[1] - at[0]).cross(at[2] - at[0]);
+    if normal.z.abs() < 1e-9 {
+        return false;
+    }
+    let index = |x: f64, k: usize, count: usize| {
+        ((x - terrain.origin[k]) / terrain.cell).clamp(0.0, (count - 1) as f64)
+    };
+    let (low, high) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]));
+    let columns = [low.x, high.x].map(|x| index(x, 0, terrain.columns));
+    let rows = [low.y, high.y].map(|y| index(y, 1, terrain.rows));
+    (rows[0].floor() as usize..=rows[1].ceil() as usize).all(|row| {
+        (columns[0].floor() as usize..=columns[1].ceil() as usize).all(|column| {
+            let place =
+                DVec2::new(column as f64, row as f64) * terrain.cell + DVec2::from_array(terrain.origin);
+            let plane = at[0].z - (place - at[0].truncate()).dot(normal.truncate()) / normal.z;
+            (terrain.heights[row * terrain.columns + column] - plane).abs() < bound
+        })
+    })
 }
 
 /// A convex piece cut along whole numbers of cells in one direction; beyond the field there is nothing to cut.
@@ -142,5 +162,21 @@ mod tests {
         }
         let whole = 0.5 * DVec2::new(4.5, -0.3).perp_dot(DVec2::new(2.1, 1.2)).abs();
         assert!((area - whole).abs() < 1e-4, "{area} {whole}");
+    }
+
+    #[test]
+    fn on_a_plane_nothing_is_cut() {
+        let heights: Vec<_> = (0..100).map(|k| f64::from(k % 10) * 0.03).collect();
+        let terrain = Terrain { origin: [0.0; 2], cell: 0.1, columns: 10, rows: 10, heights, grip: vec![] };
+        let corner = |x: f32, y: f32| Corner {
+            position: [x, y, 0.0],
+            kind: [0.0; 2],
+            shape: [0.0; 2],
+            colour: [1.0; 4],
+        };
+        let inside = [corner(0.1, 0.1), corner(0.8, 0.2), corner(0.4, 0.85)];
+        assert_eq!(drape(&inside, &terrain, DVec3::ZERO, None).len(), 3);
+        let across = [corner(0.1, 0.1), corner(1.8, 0.2), corner(0.4, 0.85)];
+        assert!(drape(&across, &terrain, DVec3::ZERO, None).len() > 6);
     }
 }

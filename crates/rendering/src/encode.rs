@@ -18,6 +18,9 @@ use crate::{Error, Gpu, view::Tile};
 use std::ops::Range;
 use vocabulary::Cast;
 
+/// Shows where triangles of the terrain do not quite meet.
+const STONE: wgpu::Color = wgpu::Color { r: 0.42, g: 0.42, b: 0.41, a: 1.0 };
+
 /// Every pass with what it keeps on the device.
 #[derive(Debug)]
 pub(crate) struct Passes {
@@ -135,7 +138,7 @@ impl Passes {
                 view: sampled.unwrap_or(surface.target),
                 depth_slice: None,
                 resolve_target: sampled.map(|_| surface.target),
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store },
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(STONE), store },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &surface.attachments.depth,

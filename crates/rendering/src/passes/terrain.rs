@@ -104,15 +104,52 @@ fn mesh(terrain: &Terrain) -> (Vec<Point>, Vec<u32>) {
             points.push(point(terrain, column, row));
         }
     }
-    let mut triangles = Vec::with_capacity(6 * (columns - 1) * (rows - 1));
+    let triangles = faces(&points, columns, rows);
+    (points, triangles)
+}
+
+/// Most cells along a side of what is drawn as one.
+const MOST_MERGED: usize = 64;
+
+/// Two triangles for every cell; level cells that grip alike are drawn together.
+fn faces(points: &[Point], columns: usize, rows: usize) -> Vec<u32> {
+    let wide = columns - 1;
+    let mut done = vec![false; wide * (rows - 1)];
+    let mut triangles = Vec::new();
     for row in 0..rows - 1 {
-        for column in 0..columns - 1 {
-            let first = (row * columns + column) as u32;
-            let above = first + columns as u32;
-            triangles.extend([first, first + 1, above + 1, first, above + 1, above]);
+        for column in 0..wide {
+            if done[row * wide + column] {
+                continue;
+            }
+            let alike = |i: usize, j: usize| {
+                i < wide - 1
+                    && j < rows - 2
+                    && !done[j * wide + i]
+                    && level(points, columns, i, j, [column, row])
+            };
+            // The outermost cells are as long as the ground goes on.
+            let inner = column > 0 && row > 0 && alike(column, row);
+            let across = |j: usize| (column..column + MOST_MERGED).take_while(|i| alike(*i, j)).count();
+            let count = if inner { across(row) } else { 1 };
+            let full = |j: &usize| (column..column + count).all(|i| alike(i, *j));
+            let high = if inner { (row..row + MOST_MERGED).take_while(full).count() } else { 1 };
+            for j in row..row + high {
+                done[j * wide + column..j * wide + column + count].fill(true);
+            }
+            let at = |i: usize, j: usize| (j * columns + i) as u32;
+            let (last, top) = (column + count, row + high);
+            triangles.extend([at(column, row), at(last, row), at(last, top)]);
+            triangles.extend([at(column, row), at(last, top), at(column, top)]);
         }
     }
-    (points, triangles)
+    triangles
+}
+
+/// Whether a cell is level and grips like the first point of another.
+fn level(points: &[Point], columns: usize, i: usize, j: usize, other: [usize; 2]) -> bool {
+    let like = points[other[1] * columns + other[0]];
+    let corners = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)].map(|(i, j)| points[j * columns + i]);
+    corners.iter().all(|p| p.normal[2] == 1.0 && p.position[2] == like.position[2] && p.grip == like.grip)
 }
 
 /// A point by its place in the grid that is one wider than the field.
@@ -154,5 +191,25 @@ mod tests {
             assert!(point.normal[2] > 0.9 && point.grip == 1.0);
         }
         assert!(points[0].position[0] < -500.0 && points[29].position[1] > 500.0);
+    }
+
+    #[test]
+    fn level_ground_is_drawn_in_large_pieces() {
+        let (columns, rows) = (60, 50);
+        let bump = 25 * columns + 30;
+        let heights = (0..columns * rows).map(|k| f64::from(u8::from(k == bump))).collect();
+        let terrain = Terrain { origin: [0.0; 2], cell: 0.5, columns, rows, heights, grip: vec![] };
+        let (points, triangles) = mesh(&terrain);
+        assert!(triangles.len() < 6 * 300, "{}", triangles.len());
+        let area: f64 = triangles
+            .chunks_exact(3)
+            .map(|t| {
+                let at = |k: usize| points[t[k] as usize].position.map(f64::from);
+                let (a, b, c) = (at(0), at(1), at(2));
+                0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+            })
+            .sum();
+        let side = |cells: usize| cells as f64 * 0.5 + 2.0 * BEYOND;
+        assert!((area / (side(columns - 1) * side(rows - 1)) - 1.0).abs() < 1e-6, "{area}");
     }
 }
