@@ -185,7 +185,8 @@ fn snake_eye(steady: &Steady, aspect: f64) -> Camera {
     let back =
         ((aside[0].max(aside[1]) + 0.2 * size) / (0.86 * tangent * aspect)).clamp(1.2 * size, 6.0 * size);
     let [x, y] = extent.frame.world_from_body(extent.forward[0] - back, extent.rear);
-    camera.eye = DVec3::new(x, y, extent.ground[0] + 0.35 * size);
+    // Half-way up the formation, so that fewer hills are in the way.
+    camera.eye = DVec3::new(x, y, 0.5 * (extent.ground[0] + extent.ground[1]) + 0.35 * size);
     camera
 }
 
