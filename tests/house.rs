@@ -101,7 +101,7 @@ fn every_file_says_why_it_exists() {
 /// Pictures and pages that the documentation points at are there.
 #[test]
 fn links_lead_somewhere() {
-    for page in ["README.md", "docs/architecture.md"] {
+    for page in ["README.md", "docs/architecture.md", "docs/vehicles.md"] {
         let text = fs::read_to_string(root().join(page)).expect("a page");
         let links: Vec<&str> = text.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
         assert!(!links.is_empty(), "{page} has no links");

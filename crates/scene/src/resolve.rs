@@ -1,7 +1,7 @@
 //! From the keys of a file to the checked scene: parts put together and held against each other.
 
 use crate::{
-    Expect, Film, Mode, Prop, PropMotion, Scene, Time, Views,
+    Expect, Film, Mode, Prop, Scene, Time, Views,
     document::{Document, GroupKeys, RobotKeys},
     graph::{check_graph, check_known},
     ground::ground,
@@ -44,7 +44,8 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
     let stage = Stage { ground: ground.as_ref(), robots: &standing, seed };
     let props = stage.props(&props, &patterns, root, reading);
     check_names(&drafts, &props, reading);
-    check_continuous(&time_part, &drafts, &props, reading);
+    let level = ground.as_ref().is_none_or(|ground| ground.terrain.is_none());
+    check_continuous(&time_part, &drafts, &props, level, reading);
     if let Some(ground) = &ground
         && reading.is_clean()
     {
@@ -114,16 +115,16 @@ fn check_names(drafts: &[Draft], props: &[Placed], reading: &mut Reading) {
 }
 
 /// Notes what continuous time cannot carry.
-fn check_continuous(part: &TimePart, drafts: &[Draft], props: &[Placed], reading: &mut Reading) {
+fn check_continuous(part: &TimePart, drafts: &[Draft], props: &[Placed], level: bool, reading: &mut Reading) {
     let Some(mode) = part.mode.as_ref().filter(|mode| mode.value == Mode::Continuous) else { return };
     let mut robots = drafts.iter().filter_map(|draft| draft.robot.as_ref());
     let wheels =
         robots.find(|robot| robot.vehicle.kind.has_wheels()).map(|robot| (&robot.name, "has wheels"));
-    let mut moving = props.iter().map(|prop| &prop.value).filter(|prop| prop.motion != PropMotion::Fixed);
-    if let Some((name, why)) = wheels.or_else(|| moving.next().map(|prop| (&prop.name, "can move"))) {
+    let prop = props.first().map(|prop| (&prop.value.name, "is in their way"));
+    let hindrance = wheels.or(prop).map(|(name, why)| format!("`{name}` {why}"));
+    if let Some(why) = hindrance.or_else(|| (!level).then(|| "`ground` is not bare and level".to_owned())) {
         let message = format!(
-            "mode `continuous` is for unicycles and props that stand, but `{name}` {why}; \
-             use `sampled` or `measured`"
+            "mode `continuous` is for unicycles on empty ground, but {why}; use `sampled` or `measured`"
         );
         reading.note(mode.place, message);
     }

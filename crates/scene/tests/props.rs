@@ -160,7 +160,12 @@ fn props_that_cannot_be() {
         (&FIELD.replace("cylinder", "wall"), 13, &["`shape` must be one of"]),
         ("[physics]\nstep = 0.05", 8, &["`step`", "from 0.0001 to 0.02"]),
         ("[physics]\non_contact = \"explode\"", 8, &["`record`, `stop`, `fail`"]),
-        (&format!("[time]\nmode = \"continuous\"\n{block}\nmass = 1"), 8, &["for unicycles", "`b` can move"]),
+        (&format!("[time]\nmode = \"continuous\"\n{block}"), 8, &["for unicycles", "`b` is in their way"]),
+        (
+            "[time]\nmode = \"continuous\"\n[ground]\nkind = \"rough\"\nregion = [0, 0, 5, 5]",
+            8,
+            &["for unicycles", "`ground` is not"],
+        ),
         ("vehicle = \"car\"\n[time]\nmode = \"continuous\"", 9, &["for unicycles", "`a` has wheels"]),
         ("[expect]\nsettled_error_at_most = [0.1, 0.1]", 8, &["`settled_after` is missing"]),
         ("[expect]\nsettled_after = 3", 8, &["needs `settled_error_at_most`"]),

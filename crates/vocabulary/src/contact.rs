@@ -28,6 +28,6 @@ pub struct Contact {
     pub place: [f64; 3],
     /// Unit vector at that place from the first thing to the second.
     pub normal: [f64; 3],
-    /// Sum of what they pushed each other apart with, N s; 0 where a robot without mass takes part.
+    /// Sum of what they pushed each other apart with, N s; 0 where neither has a mass that moves.
     pub impulse: f64,
 }

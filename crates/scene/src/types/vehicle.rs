@@ -102,7 +102,7 @@ words! {
         Car = "car",
         /// Four wheels, the front ones steered: a passenger car.
         FullSizeCar = "full-size-car",
-        /// Four wheels, those of a side driven together: it turns by driving its sides at different speeds.
+        /// Two driven wheels behind and castors in front: it turns by driving its sides at different speeds.
         Differential = "differential",
     }
 }

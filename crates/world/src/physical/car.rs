@@ -3,7 +3,7 @@
 use super::bodies::Bodies;
 use super::watch::Watch;
 use crate::guide::chase;
-use crate::wheeled::driver::{Driver, Effort, Pace};
+use crate::wheeled::driver::{Driver, Effort, Pace, WINDOW};
 use crate::wheeled::tyre::Brush;
 use crate::wheeled::wheel::{Carriage, Footing, Mounting, Pull, Push};
 use crate::{Unicycle, Wheeled};
@@ -82,6 +82,11 @@ impl Car {
         } else {
             self.limits.saturate(command, now.speed)
         };
+    }
+
+    /// How far the driver's target is ahead of `speed`, as a share of how far it can be.
+    pub(super) fn ahead(&self, speed: f64) -> f64 {
+        (self.driver.target - speed) / (WINDOW * self.limits.speed_max)
     }
 
     /// Drives for one physics step of `h` s: from the command to the push of all wheels.

@@ -188,7 +188,8 @@ impl Physical {
             let (motion, attitude) = (self.record.last(slot), self.bodies.attitude(car.body));
             let below = self.surroundings.surface(motion.pose.x, motion.pose.y).height - attitude.height;
             let robot = &mut self.snapshot.robots[car.index];
-            robot.condition = car.watch.look(self.snapshot.time, &car.driver, &motion, &attitude, below);
+            robot.condition =
+                car.watch.look(self.snapshot.time, car.ahead(motion.speed), &motion, &attitude, below);
             (robot.motion, robot.attitude, robot.wheels) = (motion, attitude, car.wheels);
         }
         for (index, placement) in self.snapshot.props.iter_mut().enumerate() {

@@ -1,6 +1,5 @@
 //! Notices robots that cannot drive any more.
 
-use crate::wheeled::Driver;
 use vocabulary::{Attitude, Condition, Motion};
 
 /// Cosine of the tilt beyond which a vehicle lies on its side or roof.
@@ -9,8 +8,8 @@ const TILTED: f64 = 0.35;
 const LYING: f64 = 0.5;
 /// A vehicle slower than this does not move, m/s.
 const STILL: f64 = 0.03;
-/// By how much its target speed is then ahead, m/s.
-const PULLING: f64 = 0.15;
+/// How far its target speed is then ahead, as a share of how far it can be.
+const PULLING: f64 = 0.5;
 /// How long it has to pull in vain, s.
 const STUCK: f64 = 1.5;
 /// Depth under the ground at which a robot has fallen through or off, m.
@@ -26,11 +25,12 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// The vehicle's condition at `time`, `below` m of its surface.
+    /// The vehicle's condition at `time`, `below` m under its surface; its target speed is `ahead` of its speed by that
+    /// share of what it can be.
     pub(super) fn look(
         &mut self,
         time: f64,
-        driver: &Driver,
+        ahead: f64,
         motion: &Motion,
         attitude: &Attitude,
         below: f64,
@@ -40,7 +40,7 @@ impl Watch {
             since.is_some_and(|since| time - since >= long)
         };
         let tilted = attitude.roll.cos() * attitude.pitch.cos() < TILTED;
-        let pulling = motion.speed.abs() < STILL && driver.target - motion.speed > PULLING;
+        let pulling = motion.speed.abs() < STILL && ahead > PULLING;
         let lying = lasts(&mut self.tilted, tilted, LYING);
         let stuck = lasts(&mut self.pulling, pulling, STUCK);
         let away = motion.pose.x.abs().max(motion.pose.y.abs()) > AWAY;

@@ -45,7 +45,7 @@ pub struct Pace {
 /// Speed below which steering does not grow steeper, m/s.
 const CRAWL: f64 = 0.1;
 /// How far the target may run ahead of the speed, as a share of the largest speed: nothing winds up.
-const WINDOW: f64 = 0.1;
+pub const WINDOW: f64 = 0.1;
 /// A differential drive closes a turn rate error with this time constant, s; at least its lag.
 const TURN_TIME: f64 = 0.08;
 
