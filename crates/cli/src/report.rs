@@ -41,7 +41,7 @@ pub(crate) fn as_text(report: &Report<'_>) {
     expectations(report);
 }
 
-/// Contacts a report lists one by one.
+/// Contacts, and robots in trouble, that a report lists one by one.
 const MOST_CONTACTS: usize = 6;
 
 fn contacts(metrics: &Metrics) {
@@ -56,8 +56,12 @@ fn contacts(metrics: &Metrics) {
             metrics.contacts - MOST_CONTACTS
         ));
     }
-    for robot in metrics.robots.iter().filter(|robot| robot.condition != "able") {
+    let unable: Vec<_> = metrics.robots.iter().filter(|robot| robot.condition != "able").collect();
+    for robot in unable.iter().take(MOST_CONTACTS) {
         say(&format!("{} is {}", robot.robot, robot.condition));
+    }
+    if unable.len() > MOST_CONTACTS {
+        say(&format!("… and {} more robots that cannot drive", unable.len() - MOST_CONTACTS));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Groups become robots.
 
 use crate::{
-    Channel, Follow, Robot, Role, Vehicle,
+    Channel, Follow, Law, Observer, Robot, Role, Vehicle,
     document::{Follows, GroupKeys, MOST_ROBOTS},
     graph::{Named, check_known},
     robots::{Defaults, Draft, check_distance, check_path, start_pose, start_speed},
@@ -25,8 +25,9 @@ pub(crate) fn expand(
     let count = group.count(drafts.len(), reading)?;
     let vehicle = defaults.vehicle(keys.vehicle.as_ref(), group.node.place, reading);
     let speed = start_speed(keys.speed.as_ref(), &vehicle, reading);
-    let law = keys.law.as_ref()?.value.complete(&defaults.law);
-    let observer = keys.observer.as_ref()?.value.complete(&defaults.observer);
+    let law = keys.law.as_ref()?.value.complete_with(&defaults.law, Law::fitting(vehicle.kind));
+    let observer =
+        keys.observer.as_ref()?.value.complete_with(&defaults.observer, Observer::fitting(vehicle.kind));
     let spacing = keys.distance.as_ref()?;
     check_distance(spacing.value, law.distance_min, spacing.place, reading);
     let (leader, origin) = group.leader(&vehicle, drafts, reading)?;

@@ -1,7 +1,7 @@
 //! From the keys of a robot to a checked robot.
 
 use crate::{
-    Follow, Path, Robot, Role, Vehicle,
+    Follow, Law, Observer, Path, Robot, Role, Vehicle,
     document::RobotKeys,
     graph::Named,
     text::{Found, Node, Part, Place, Reading},
@@ -115,8 +115,8 @@ fn follow(
             );
         }
     }
-    let law =
-        keys.law.as_ref().map_or_else(LawPart::default, |found| found.value.clone()).complete(&defaults.law);
+    let law = keys.law.as_ref().map_or_else(LawPart::default, |found| found.value.clone());
+    let law = law.complete_with(&defaults.law, Law::fitting(vehicle.kind));
     let observer = keys.observer.as_ref().map_or_else(ObserverPart::default, |found| found.value.clone());
     let speed = start_speed(keys.speed.as_ref(), vehicle, reading);
     let (distance, bearing) = (keys.distance.as_ref()?, keys.bearing.as_ref()?);
@@ -127,7 +127,7 @@ fn follow(
         distance: distance.value.clone(),
         bearing: bearing.value.clone(),
         law,
-        observer: observer.complete(&defaults.observer),
+        observer: observer.complete_with(&defaults.observer, Observer::fitting(vehicle.kind)),
     })
 }
 

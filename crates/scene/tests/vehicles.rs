@@ -175,3 +175,22 @@ fn paths_tighter_than_the_wheels_turn() {
         "{diagnostics}"
     );
 }
+
+/// Gains that nobody wrote fit the vehicle; those that somebody wrote stay.
+#[test]
+fn gains_that_are_not_said_fit_the_vehicle() {
+    let follower = "\n[[robots]]\nname = \"b\"\npose = [-2, -1, 0]\nspeed = 0.5\nleader = \"a\"\ndistance = 2\nbearing = 2.4";
+    let gains = |keys: &str, own: &str| {
+        let scene =
+            Scene::parse(&text(keys, &format!("{follower}\n{own}")), "t.toml", &[]).expect("a scene").scene;
+        let scene::Role::Follow(follow) = &scene.robots[1].role else { panic!("b follows") };
+        (follow.law.k[0], follow.law.beta[0], follow.law.slope[0], follow.observer.epsilon[0])
+    };
+    assert_eq!(gains("", ""), (5.0, 5.0, 24.53, 0.001));
+    assert_eq!(gains("vehicle = \"car\"", ""), (3.0, 3.0, 10.0, 0.02));
+    assert_eq!(gains("", "vehicle = \"differential\""), (3.0, 3.0, 10.0, 0.02));
+    assert_eq!(
+        gains("vehicle = \"car\"\nlaw.k = 4", "law.slope = 7\nobserver.epsilon = 0.1"),
+        (4.0, 3.0, 7.0, 0.1)
+    );
+}

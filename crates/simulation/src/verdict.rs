@@ -96,6 +96,9 @@ fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Find
     findings.list
 }
 
+/// Robots that a finding names.
+const TOLD: usize = 4;
+
 struct Findings<'a> {
     metrics: &'a Metrics,
     list: Vec<Finding>,
@@ -119,14 +122,14 @@ impl Findings<'_> {
     }
 
     fn able(&mut self) {
-        let unable: Vec<String> = self
-            .metrics
-            .robots
-            .iter()
-            .filter(|r| r.condition != "able")
-            .map(|r| format!("`{}` is {}", r.robot, r.condition))
-            .collect();
-        let found = if unable.is_empty() { "every robot".into() } else { unable.join(", ") };
+        let unable: Vec<_> = self.metrics.robots.iter().filter(|r| r.condition != "able").collect();
+        let told = unable.iter().take(TOLD).map(|r| format!("`{}` is {}", r.robot, r.condition));
+        let mut found = told.collect::<Vec<_>>().join(", ");
+        if unable.is_empty() {
+            "every robot".clone_into(&mut found);
+        } else if unable.len() > TOLD {
+            found = format!("{found} and {} more", unable.len() - TOLD);
+        }
         self.add("all_able", "every robot able to drive".into(), found, unable.is_empty());
     }
 

@@ -1,5 +1,7 @@
-//! Parameters of the law and of the observer of one edge. The defaults are the paper's.
+//! Parameters of the law and of the observer of one edge. The defaults are the paper's; on wheels, whose actuators lag,
+//! they are gains that settle.
 
+use super::VehicleKind;
 use crate::text::{
     Form, Node, Reading, Value, angle, couple, keys, number, pair, settings, table, words, words::Words,
 };
@@ -7,7 +9,8 @@ use serde::Serialize;
 use serde_json::{Value as Json, json};
 
 settings! {
-    /// Parameters of a control law. A pair is for [distance, bearing]; one value stands for both.
+    /// Parameters of a control law. A pair is for [distance, bearing]; one value stands for both. On wheels the gains that
+    /// are not said are those that fit the kind of vehicle.
     #[derive(Copy)]
     pub struct Law from LawPart {
         /// Which law.
@@ -59,6 +62,35 @@ settings! {
         pub alpha2: [f64; 2] = [1.0; 2], pair(number("").above(0.0));
         /// Where the estimate of [distance, bearing] starts; that of their rates starts at 0.
         pub start: ObserverStart = ObserverStart::Measured, StartForm;
+    }
+}
+
+impl Law {
+    /// The gains that fit a kind of vehicle: the paper's for a unicycle; on wheels they were found with `echelon tune`
+    /// and rounded.
+    pub fn fitting(kind: VehicleKind) -> Self {
+        match kind {
+            VehicleKind::Unicycle => Self::default(),
+            VehicleKind::Car | VehicleKind::Differential => {
+                Self { k: [3.0; 2], beta: [3.0; 2], slope: [10.0; 2], ..Self::default() }
+            }
+            // At some metres a second and ten metres apart; a radian of bearing is ten metres there.
+            VehicleKind::FullSizeCar => {
+                Self { k: [1.0; 2], beta: [2.5, 0.25], slope: [2.0, 10.0], ..Self::default() }
+            }
+        }
+    }
+}
+
+impl Observer {
+    /// The time constant that fits a kind of vehicle.
+    pub fn fitting(kind: VehicleKind) -> Self {
+        let epsilon = match kind {
+            VehicleKind::Unicycle => 0.001,
+            VehicleKind::Car | VehicleKind::Differential => 0.02,
+            VehicleKind::FullSizeCar => 0.05,
+        };
+        Self { epsilon: [epsilon; 2], ..Self::default() }
     }
 }
 
