@@ -2,47 +2,15 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::sync::Arc;
-use vocabulary::{Body, Command, Limits, Pose};
-use world::wheeled::tyre::Tyre;
-use world::{Actor, Drivetrain, Physical, Stage, Unicycle, Wheeled, World};
+use vocabulary::{Command, Pose};
+use world::{Actor, Physical, Stage, Unicycle, World};
+
+#[path = "../tests/vehicles/truck.rs"]
+mod truck;
+use truck::truck;
 
 const PERIOD: f64 = 0.01;
 const STEPS_A_PERIOD: u64 = 2;
-
-fn truck() -> Wheeled {
-    let body =
-        Body { length: 0.49, width: 0.39, height: 0.32, wheelbase: 0.30, track: 0.285, wheel_radius: 0.0825 };
-    let limits = Limits {
-        speed_min: 0.01,
-        speed_max: 4.0,
-        turn_rate_max: 8.0,
-        acceleration_max: 4.0,
-        curvature_max: 1.77,
-        lateral_acceleration_max: 7.0,
-    };
-    Wheeled {
-        body,
-        limits,
-        mass: 5.01,
-        mass_height: 0.11,
-        mass_forward: 0.5,
-        inertia_scale: 1.0,
-        clearance: 0.075,
-        spring: 700.0,
-        damping: 40.0,
-        travel: 0.04,
-        tyre: Tyre { friction: 0.9, cornering: 12.0, relaxation: 0.06, rolling: 0.03 },
-        drag: 0.02,
-        drivetrain: Drivetrain::Steered { angle_max: 0.49, rate: 5.0, lag: 0.08 },
-        drive_force: 30.0,
-        drive_lag: 0.1,
-        brake_force: 35.0,
-        brake_lag: 0.05,
-        compensation: true,
-        speed_gain: 4.0,
-        turn_gain: 0.5,
-    }
-}
 
 fn world(count: usize) -> Physical {
     let vehicle = Arc::new(truck());

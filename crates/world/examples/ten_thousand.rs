@@ -4,9 +4,12 @@
 
 use std::sync::Arc;
 use std::time::Instant;
-use vocabulary::{Body, Command, Limits, Pose};
-use world::wheeled::tyre::Tyre;
-use world::{Actor, Drivetrain, Physical, Stage, Unicycle, Wheeled, World};
+use vocabulary::{Command, Pose};
+use world::{Actor, Physical, Stage, Unicycle, World};
+
+#[path = "../tests/vehicles/truck.rs"]
+mod truck;
+use truck::truck;
 
 const COUNT: usize = 10_000;
 const SECONDS: usize = 10;
@@ -18,41 +21,6 @@ fn chance(k: usize, salt: u64) -> f64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-}
-
-fn truck() -> Wheeled {
-    let body =
-        Body { length: 0.49, width: 0.39, height: 0.32, wheelbase: 0.30, track: 0.285, wheel_radius: 0.0825 };
-    let limits = Limits {
-        speed_min: 0.01,
-        speed_max: 4.0,
-        turn_rate_max: 8.0,
-        acceleration_max: 4.0,
-        curvature_max: 1.77,
-        lateral_acceleration_max: 7.0,
-    };
-    Wheeled {
-        body,
-        limits,
-        mass: 5.01,
-        mass_height: 0.11,
-        mass_forward: 0.5,
-        inertia_scale: 1.0,
-        clearance: 0.075,
-        spring: 700.0,
-        damping: 40.0,
-        travel: 0.04,
-        tyre: Tyre { friction: 0.9, cornering: 12.0, relaxation: 0.06, rolling: 0.03 },
-        drag: 0.02,
-        drivetrain: Drivetrain::Steered { angle_max: 0.49, rate: 5.0, lag: 0.08 },
-        drive_force: 30.0,
-        drive_lag: 0.1,
-        brake_force: 35.0,
-        brake_lag: 0.05,
-        compensation: true,
-        speed_gain: 4.0,
-        turn_gain: 0.0,
-    }
 }
 
 fn main() {
@@ -92,5 +60,7 @@ fn main() {
     let unable = world.snapshot().robots.iter().filter(|r| r.condition.name() != "able").count();
     let steps = (COUNT * SECONDS * 200) as f64;
     println!("{COUNT} trucks, {SECONDS} s in {wall:.1} s, {:.0} vehicle-steps a second", steps / wall);
-    println!("all numbers finite, lowest ground point {lowest:.4} m, {contacts} contacts, {unable} overturned or stuck");
+    println!(
+        "all numbers finite, lowest ground point {lowest:.4} m, {contacts} contacts, {unable} overturned or stuck"
+    );
 }

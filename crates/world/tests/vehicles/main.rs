@@ -3,3 +3,4 @@
 mod alone;
 mod common;
 mod together;
+mod truck;
