@@ -138,14 +138,8 @@ impl Case {
             laws.push(EdgeLaw { set_point: SetPointCourse { distance, bearing }, ..self.law()? });
         }
         let b = &self.bounds;
-        let limits = Limits {
-            speed_min: b.v_min,
-            speed_max: b.v_max,
-            turn_rate_max: b.omega_max,
-            acceleration_max: f64::INFINITY,
-            curvature_max: f64::INFINITY,
-            lateral_acceleration_max: f64::INFINITY,
-        };
+        let limits =
+            Limits { speed_min: b.v_min, speed_max: b.v_max, turn_rate_max: b.omega_max, ..Limits::PAPER };
         let lead: Arc<dyn Profile> = Arc::new(Courses {
             speed: course(self.lead.v, self.lead.v_wave),
             turn_rate: course(self.lead.omega, self.lead.omega_wave),

@@ -221,14 +221,7 @@ mod tests {
         };
         let observer = Observer { epsilon: [1e-3; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 };
         let edge = EdgeLaw { law, observer, set_point: SetPointCourse::constant(2.0, -2.3) };
-        let limits = Limits {
-            speed_min: 0.01,
-            speed_max: 1.6,
-            turn_rate_max: 11.5,
-            acceleration_max: f64::INFINITY,
-            curvature_max: f64::INFINITY,
-            lateral_acceleration_max: f64::INFINITY,
-        };
+        let limits = Limits::PAPER;
         let lead: Arc<dyn Profile> = Arc::new(Courses::constant(1.0, 0.3));
         Formation::new(graph, vec![edge.clone(), edge], vec![limits; 3], vec![(0, lead)], 0.01)
     }

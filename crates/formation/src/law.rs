@@ -113,14 +113,7 @@ mod tests {
     use std::f64::consts::PI;
     use vocabulary::{Limits, Pose, Relative, wrap};
 
-    const LIMITS: Limits = Limits {
-        speed_min: 0.01,
-        speed_max: 1.6,
-        turn_rate_max: 11.5,
-        acceleration_max: f64::INFINITY,
-        curvature_max: f64::INFINITY,
-        lateral_acceleration_max: f64::INFINITY,
-    };
+    const LIMITS: Limits = Limits::PAPER;
 
     fn law(kind: LawKind) -> Law {
         Law {

@@ -1,5 +1,6 @@
 //! Reading text files that somebody named: one clear message for each way this can fail.
 
+use crate::text::{Node, Reading};
 use std::{
     fs::File,
     io::{ErrorKind, Read},
@@ -33,4 +34,24 @@ pub(crate) fn read_text(path: &Path) -> Result<String, String> {
         let line = error.as_bytes()[..error.utf8_error().valid_up_to()].split(|byte| *byte == b'\n').count();
         format!("is not UTF-8 text: line {line} holds bytes that are no character")
     })
+}
+
+/// Reads a file that a scene names, lying beside it: its text, and what to call it in notes; `None` after a note.
+pub(crate) fn read_beside(node: &Node, reading: &mut Reading) -> Option<(String, usize)> {
+    let Some(name) = node.as_text() else {
+        reading.wrong(node, "the name of a CSV file");
+        return None;
+    };
+    let path = reading.beside_scene(name);
+    match read_text(&path) {
+        Ok(text) => {
+            let source = reading.add_source(path.display().to_string(), &text);
+            reading.files.push(path);
+            Some((text, source))
+        }
+        Err(fault) => {
+            reading.note(node.place, format!("{}: {fault}", path.display()));
+            None
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Heights of the ground, in files beside the scene.
 
 use crate::{
-    files::read_text,
+    files::read_beside,
     ground::HEIGHT,
     table_file::line_at,
     text::{Form, Node, Place, Reading},
@@ -18,20 +18,7 @@ impl Form for HeightsForm {
     type Out = Vec<Vec<f64>>;
 
     fn read(&self, node: &Node, reading: &mut Reading) -> Option<Vec<Vec<f64>>> {
-        let Some(name) = node.as_text() else {
-            reading.wrong(node, "the name of a CSV file");
-            return None;
-        };
-        let path = reading.beside_scene(name);
-        let text = match read_text(&path) {
-            Ok(text) => text,
-            Err(fault) => {
-                reading.note(node.place, format!("{}: {fault}", path.display()));
-                return None;
-            }
-        };
-        let source = reading.add_source(path.display().to_string(), &text);
-        reading.files.push(path);
+        let (text, source) = read_beside(node, reading)?;
         read_rows(&text, source, reading)
     }
 

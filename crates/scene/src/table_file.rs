@@ -1,7 +1,7 @@
 //! Tables of a lead robot's motion, in files beside the scene.
 
 use crate::{
-    files::read_text,
+    files::read_beside,
     path_form::{MOST_ROWS, SPEED, TIME, TURN_RATE},
     text::{Form, Node, Place, Reading, form::Number},
 };
@@ -17,20 +17,7 @@ impl Form for CsvForm {
     type Out = Vec<[f64; 3]>;
 
     fn read(&self, node: &Node, reading: &mut Reading) -> Option<Vec<[f64; 3]>> {
-        let Some(name) = node.as_text() else {
-            reading.wrong(node, "the name of a CSV file");
-            return None;
-        };
-        let path = reading.beside_scene(name);
-        let text = match read_text(&path) {
-            Ok(text) => text,
-            Err(fault) => {
-                reading.note(node.place, format!("{}: {fault}", path.display()));
-                return None;
-            }
-        };
-        let source = reading.add_source(path.display().to_string(), &text);
-        reading.files.push(path);
+        let (text, source) = read_beside(node, reading)?;
         read_rows(&text, source, reading)
     }
 

@@ -20,6 +20,16 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// Those of the paper's simulations: unicycles from 0.01 to 1.6 m/s that turn up to 11.5 rad/s.
+    pub const PAPER: Self = Self {
+        speed_min: 0.01,
+        speed_max: 1.6,
+        turn_rate_max: 11.5,
+        acceleration_max: f64::INFINITY,
+        curvature_max: f64::INFINITY,
+        lateral_acceleration_max: f64::INFINITY,
+    };
+
     /// `command` within the bounds on acceleration and turn rate at a speed (the sat{} of eq 42); zero where not a
     /// number.
     pub fn saturate(&self, command: Command, speed: f64) -> Command {
@@ -61,14 +71,7 @@ fn clamp(value: f64, bound: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const LIMITS: Limits = Limits {
-        speed_min: 0.01,
-        speed_max: 1.6,
-        turn_rate_max: 11.5,
-        acceleration_max: f64::INFINITY,
-        curvature_max: f64::INFINITY,
-        lateral_acceleration_max: f64::INFINITY,
-    };
+    const LIMITS: Limits = Limits::PAPER;
 
     #[test]
     fn saturation_is_finite_for_any_command() {

@@ -25,13 +25,13 @@ settings! {
         /// How it moves, and which values it has where nothing else is said.
         pub kind: VehicleKind = VehicleKind::Unicycle, VehicleKind::form();
         /// Slowest forward speed of a follower, m/s; above 0, since the law is singular at rest.
-        pub speed_min: f64 = 0.01, number("m/s").above(0.0).up_to(100.0);
+        pub speed_min: f64 = Limits::PAPER.speed_min, number("m/s").above(0.0).up_to(100.0);
         /// Fastest forward speed, m/s; above `speed_min`.
-        pub speed_max: f64 = 1.6, number("m/s").above(0.0).up_to(100.0);
+        pub speed_max: f64 = Limits::PAPER.speed_max, number("m/s").above(0.0).up_to(100.0);
         /// Largest |turn rate|, rad/s.
-        pub turn_rate_max: f64 = 11.5, number("rad/s").above(0.0).up_to(1000.0);
+        pub turn_rate_max: f64 = Limits::PAPER.turn_rate_max, number("rad/s").above(0.0).up_to(1000.0);
         /// Largest |dv/dt|, m/s²; `inf` for unbounded.
-        pub acceleration_max: f64 = f64::INFINITY, number("m/s²").above(0.0).or_infinite();
+        pub acceleration_max: f64 = Limits::PAPER.acceleration_max, number("m/s²").above(0.0).or_infinite();
         /// Bumper to bumper, m.
         pub length: f64 = Body::default().length, MEASURE;
         /// Side to side, m.
