@@ -62,7 +62,7 @@ pub struct Stage {
 pub struct Physical {
     bodies: Bodies,
     cars: Vec<Car>,
-    /// Unicycles, and the ideals that lead vehicles chase; the entries of other robots stand still.
+    /// Unicycles, and the ideals that lead vehicles chase; nobody looks at those of other robots.
     ideals: Unicycles,
     /// Robots that are unicycles.
     unicycles: Vec<(usize, RigidBodyHandle)>,

@@ -55,3 +55,35 @@ impl Watch {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(seconds: f64, roll: f64, speed: f64, ahead: f64, below: f64) -> Condition {
+        let mut watch = Watch::default();
+        let (motion, attitude) =
+            (Motion { speed, ..Motion::default() }, Attitude { roll, ..Attitude::default() });
+        let mut condition = Condition::Able;
+        for k in 0..=(seconds * 100.0) as usize {
+            condition = watch.look(k as f64 * 0.01, ahead, &motion, &attitude, below);
+        }
+        condition
+    }
+
+    #[test]
+    fn each_condition_is_named_and_takes_its_time() {
+        assert_eq!(after(9.0, 0.3, 1.0, 0.0, 0.0), Condition::Able);
+        assert_eq!(
+            (after(0.4, 1.5, 0.0, 0.0, 0.0), after(0.6, 1.5, 0.0, 0.0, 0.0)),
+            (Condition::Able, Condition::Overturned)
+        );
+        assert_eq!(
+            (after(1.4, 0.0, 0.0, 0.9, 0.0), after(1.6, 0.0, 0.0, 0.9, 0.0)),
+            (Condition::Able, Condition::Stuck)
+        );
+        assert_eq!(after(9.0, 0.0, 0.0, 0.1, 0.0), Condition::Able, "who is not told to drive is not stuck");
+        assert_eq!(after(0.0, 0.0, 1.0, 0.0, 1.5), Condition::Fallen);
+        assert_eq!(after(0.0, 0.0, 1.0, 0.0, f64::NAN), Condition::Fallen);
+    }
+}
