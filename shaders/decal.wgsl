@@ -22,8 +22,8 @@ struct Varying {
 @vertex
 fn vertex(in: Corner) -> Varying {
     var clip = frame.clip_from_local * vec4<f32>(in.position, 1.0);
-    if frame.terrain.w > 0.5 {
-        // On a terrain depth is tested: a little nearer than the ground in which it lies.
+    if frame.spare.y > 0.5 {
+        // On hills and decks depth is tested: a little nearer than the floor in which it lies.
         let away = in.position - frame.eye.xyz;
         let pull = 0.012 + 0.004 * length(away) * frame.eye.w;
         let near = frame.clip_from_local * vec4<f32>(in.position - normalize(mix(frame.forward.xyz, away, frame.eye.w)) * pull, 1.0);

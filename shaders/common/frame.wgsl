@@ -15,7 +15,8 @@ struct Frame {
     ground: vec4<f32>,
     // The terrain's origin; w is 1 where there is a terrain.
     terrain: vec4<f32>,
-    // x: depth up to which props are seen through, so that they do not hide the robots.
+    // x: depth up to which props are seen through, so that they do not hide the robots; y: 1 where the depth of
+    // paint is tested.
     spare: vec4<f32>,
 }
 

@@ -1,9 +1,10 @@
 //! Cameras: where each view stands, solved from what it has to show.
 
 use crate::View;
+use crate::floor::Floor;
 use crate::steady::{Extent, Steady};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
-use vocabulary::{Cast, Edge, Snapshot, Terrain};
+use vocabulary::{Cast, Edge, Snapshot};
 
 /// A camera without roll: its horizon is level.
 #[derive(Debug, Clone, Copy)]
@@ -39,12 +40,18 @@ const SNAKE: Composition =
 
 impl Camera {
     /// The camera of `view` on a picture `aspect` times as wide as high.
-    pub(crate) fn of(view: &View, steady: &Steady, snapshot: &Snapshot, cast: &Cast, aspect: f64) -> Self {
+    pub(crate) fn of(
+        view: &View,
+        steady: &Steady,
+        snapshot: &Snapshot,
+        (cast, floor): (&Cast, &Floor),
+        aspect: f64,
+    ) -> Self {
         let mut camera = match view {
             View::Snake => snake(steady, aspect),
             View::SnakeEye => snake_eye(steady, aspect),
             View::Top => top(steady, aspect),
-            View::Orbit => orbit(steady, snapshot.time, aspect),
+            View::Orbit => orbit(steady, snapshot.time, cast.edges.is_empty(), aspect),
             View::Follow(robot) => follow(steady, snapshot, &cast.edges, *robot, aspect),
             View::Fixed { eye, target, field_of_view } => {
                 return Self::looking(
@@ -55,19 +62,17 @@ impl Camera {
                 );
             }
         };
-        if let Some(terrain) = &cast.terrain {
-            camera.stay_above(terrain);
+        if !floor.is_plane() {
+            camera.stay_above(floor);
         }
         camera
     }
 
-    /// No hill may swallow the eye.
-    fn stay_above(&mut self, terrain: &Terrain) {
+    /// No hill or ramp may swallow the eye.
+    fn stay_above(&mut self, floor: &Floor) {
         // Around the eye too, so that it rises before a slope reaches it.
-        let least = [DVec2::ZERO, DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].map(|off| {
-            let place = self.eye.truncate() + off * 0.4;
-            terrain.at(place.x, place.y).height
-        });
+        let least = [DVec2::ZERO, DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y]
+            .map(|off| floor.height(self.eye.truncate() + off * 0.4));
         self.eye.z = least.into_iter().fold(self.eye.z, |z, ground| z.max(ground + LEAST_OVER_GROUND));
     }
 
@@ -207,15 +212,17 @@ fn top(steady: &Steady, aspect: f64) -> Camera {
     }
 }
 
-fn orbit(steady: &Steady, time: f64, aspect: f64) -> Camera {
+fn orbit(steady: &Steady, time: f64, alone: bool, aspect: f64) -> Camera {
     let extent = steady.formation();
     let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
     let grown = extent.grown(0.4 * extent.size);
     let radius = 0.5 * (grown.forward[1] - grown.forward[0]).hypot(grown.left[1] - grown.left[0]);
     let tangent = (19.0_f64).to_radians().tan();
     let distance = radius / (0.85 * tangent * aspect.min(1.78)) + 0.3 * radius;
-    // A full turn in 40 s, from behind on the left, so that no side stays hidden.
-    let (turn, rise) = (2.6 + time * 0.157, 0.42_f64);
+    // A full turn in 40 s, so that no side stays hidden: from behind a formation on the left; robots of which none
+    // follows another often meet, and meetings are seen from the side.
+    let start = if alone { 1.6 } else { 2.6 };
+    let (turn, rise) = (start + time * 0.157, 0.42_f64);
     let distance = distance.max(3.0 * extent.size);
     let eye = DVec3::new(turn.cos() * rise.cos(), turn.sin() * rise.cos(), rise.sin()) * distance;
     let target = DVec3::new(x, y, 0.5 * (extent.ground[0] + extent.ground[1]) + 0.1);

@@ -1,6 +1,7 @@
 //! From a moment to what its picture consists of: origin, light, frames and words.
 
 use crate::camera::Camera;
+use crate::floor::Deck;
 use crate::inset::inset;
 use crate::labels::{Window, Words, caption, view_words};
 use crate::paint::Stage;
@@ -11,7 +12,7 @@ use crate::passes::shadow::{SunView, sun_view};
 use crate::passes::text::{Line, TextPass};
 use crate::{Layout, View};
 use glam::{DVec2, DVec3};
-use vocabulary::{Cast, Light, Moment, RobotState};
+use vocabulary::{Cast, Light, Member, Moment, RobotState};
 
 /// A multiple of the ground's tile near the robots, so that single precision is enough around it.
 pub(crate) fn local_origin(moment: &Moment) -> DVec3 {
@@ -90,6 +91,36 @@ fn veiled(camera: &Camera, stage: &Stage<'_>, view: &View) -> f64 {
     robots.map(|(k, robot)| nearest(k, robot)).fold(f64::INFINITY, f64::min) - 0.9 * stage.size
 }
 
+/// In a larger formation no robot is looked for behind decks.
+const MOST_LOOKED_FOR: usize = 500;
+
+/// Which decks hide most of a robot. Others stay as they are: who looks at a ramp wants to see it.
+pub(crate) fn veiled_decks(camera: &Camera, stage: &Stage<'_>, view: &View) -> Vec<bool> {
+    let robots = &stage.moment.snapshot.robots;
+    let decks = &stage.floor.decks;
+    if decks.is_empty() || robots.len() > MOST_LOOKED_FOR || matches!(view, View::Top | View::Fixed { .. }) {
+        return vec![false; decks.len()];
+    }
+    let looked_for = |k: &usize| !matches!(view, View::Follow(robot) if robot != k);
+    let all = robots.iter().zip(&stage.cast.members).enumerate().filter(|(k, _)| looked_for(k));
+    let spots: Vec<_> = all.map(|(_, (robot, member))| spots(robot, member)).collect();
+    let hides = |deck: &Deck| {
+        spots.iter().any(|of| of.iter().filter(|spot| deck.hides(camera.eye, **spot)).count() > of.len() / 2)
+    };
+    decks.iter().map(hides).collect()
+}
+
+/// Five places on a robot, half-way up.
+fn spots(robot: &RobotState, member: &Member) -> [DVec3; 5] {
+    let body = &member.body;
+    let up = robot.attitude.height + 0.5 * body.height;
+    [(0.0, 0.0), (0.4, 0.4), (0.4, -0.4), (-0.4, -0.4), (-0.4, 0.4)].map(|(forward, left)| {
+        let ahead = 0.5 * body.wheelbase + forward * body.length;
+        let [x, y] = robot.motion.pose.world_from_body(ahead, left * body.width);
+        DVec3::new(x, y, up)
+    })
+}
+
 pub(crate) fn frame(camera: &Camera, stage: &Stage<'_>, view: &View, sun: &SunView, penumbra: f32) -> Frame {
     let mut frame = Frame::new(camera, stage.origin, sun.shadow_from_local);
     let [x, y, z] = stage.sun.as_vec3().to_array();
@@ -100,6 +131,7 @@ pub(crate) fn frame(camera: &Camera, stage: &Stage<'_>, view: &View, sun: &SunVi
         let [x, y] = terrain.origin;
         frame.terrain = (DVec3::new(x, y, 0.0) - stage.origin).as_vec3().extend(1.0).to_array();
     }
+    frame.spare[1] = f32::from(u8::from(!stage.floor.is_plane()));
     let veiled = veiled(camera, stage, view);
     frame.spare[0] = if veiled.is_finite() { veiled as f32 } else { -1e6 };
     frame.ground = [1.0 / haze, 0.0, f32::from(u8::from(stage.style.grid)), 0.0];

@@ -1,10 +1,10 @@
 //! Copies of the models for a moment: where bodies, wheels, cameras and ghosts stand.
 
 use crate::model::Build;
-use crate::paint::Stage;
+use crate::paint::{Stage, flat};
 use crate::palette::{Rgb, linear};
 use crate::passes::robot::{Crowd, Instance, Squad};
-use glam::{DVec2, DVec3, Mat3, Mat4, Vec3};
+use glam::{DVec3, Mat3, Mat4, Vec3};
 use vocabulary::{Attitude, Cast, Member, Pose, RobotState};
 
 /// Opacity of a ghost.
@@ -38,7 +38,7 @@ pub(crate) fn crowd(stage: &Stage<'_>, fleet: &Fleet) -> Crowd {
     for (index, (robot, member)) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members).enumerate() {
         let mut look = Look::new(member, index, stage.colours[index]);
         let pose = robot.motion.pose;
-        look.marks[2] = (stage.ground(DVec2::new(pose.x, pose.y)) - stage.origin.z) as f32;
+        look.marks[2] = (stage.floor.height(flat(&pose)) - stage.origin.z) as f32;
         let kind = fleet.of[index];
         let (squad, build) = (&mut crowd.squads[kind], &fleet.builds[kind]);
         crowd.cameras.push(stand(squad, robot, build, &look, stage.origin));
@@ -136,15 +136,12 @@ fn ghosts(crowd: &mut Crowd, stage: &Stage<'_>, fleet: &Fleet) {
 
 /// How a body stands that has all its wheels on the ground at a pose.
 fn lying(stage: &Stage<'_>, pose: &Pose) -> Attitude {
-    let Some(terrain) = &stage.cast.terrain else { return Attitude::default() };
-    let surface = terrain.at(pose.x, pose.y);
-    let [x, y, z] = surface.normal;
-    let (sin, cos) = pose.heading.sin_cos();
-    Attitude {
-        height: surface.height,
-        roll: (x * sin - y * cos).atan2(z),
-        pitch: (x * cos + y * sin).atan2(z),
+    if stage.floor.is_plane() {
+        return Attitude::default();
     }
+    let (height, DVec3 { x, y, z }) = stage.floor.surface(flat(pose));
+    let (sin, cos) = pose.heading.sin_cos();
+    Attitude { height, roll: (x * sin - y * cos).atan2(z), pitch: (x * cos + y * sin).atan2(z) }
 }
 
 #[cfg(test)]

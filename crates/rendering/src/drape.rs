@@ -1,12 +1,102 @@
-//! Paint laid over ground that is not flat: triangles are cut where the ground bends, so that every piece lies in it.
+//! Paint laid over ground that is not flat: triangles are cut where the ground bends, so that every piece lies in it,
+//! and where decks begin.
 
+use crate::floor::{Deck, Floor};
 use crate::passes::decal::Corner;
 use glam::{DVec2, DVec3};
 use vocabulary::Terrain;
 
+/// What of the floor paint is laid on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Onto {
+    /// Whatever is uppermost.
+    Floor,
+    /// The ground alone: what a deck covers is left out.
+    Ground,
+}
+
+/// Lays triangles of corners, relative to `origin`, on the floor; `eye` as for [`drape`].
+pub(crate) fn lay(
+    corners: Vec<Corner>,
+    floor: &Floor,
+    onto: Onto,
+    origin: DVec3,
+    eye: Option<DVec3>,
+) -> Vec<Corner> {
+    let on_ground = match &floor.terrain {
+        Some(terrain) => drape(&corners, terrain, origin, eye),
+        None => corners,
+    };
+    if floor.decks.is_empty() { on_ground } else { raise(&on_ground, &floor.decks, onto, origin) }
+}
+
+/// Puts what lies on the ground under decks on top of them.
+fn raise(corners: &[Corner], decks: &[Deck], onto: Onto, origin: DVec3) -> Vec<Corner> {
+    let mut out = Vec::with_capacity(corners.len() * 2);
+    for triangle in corners.chunks_exact(3) {
+        let places = [0, 1, 2].map(|k| place(&triangle[k], origin));
+        let low = places[0].min(places[1]).min(places[2]);
+        let high = places[0].max(places[1]).max(places[2]);
+        let mut near = decks.iter().filter(|deck| deck.near(low, high)).peekable();
+        if near.peek().is_none() {
+            out.extend_from_slice(triangle);
+            continue;
+        }
+        // Pieces, each with whether it lies on a deck.
+        let mut pieces = vec![(triangle.to_vec(), false)];
+        for deck in near {
+            let mut cut = Vec::with_capacity(pieces.len() + 4);
+            for (piece, raised) in pieces {
+                cut_out(piece, raised, deck, origin, &mut cut);
+            }
+            pieces = cut;
+        }
+        for (piece, _) in pieces.iter().filter(|(_, raised)| onto == Onto::Floor || !raised) {
+            for k in 2..piece.len() {
+                out.extend([0, k - 1, k].map(|c| piece[c]));
+            }
+        }
+    }
+    out
+}
+
+/// Cuts a convex piece along the sides of a deck and where it comes out of the deck, and lifts what is under it.
+fn cut_out(piece: Vec<Corner>, raised: bool, deck: &Deck, origin: DVec3, cut: &mut Vec<(Vec<Corner>, bool)>) {
+    let mut rest = piece;
+    for (at, inward) in deck.sides() {
+        let (outside, inside) = split(&rest, |corner| (place(corner, origin) - at).dot(inward));
+        cut.extend((outside.len() > 2).then_some((outside, raised)));
+        rest = inside;
+    }
+    let over = |corner: &Corner| {
+        let gap = deck.height(place(corner, origin)) - origin.z - f64::from(corner.position[2]);
+        // Where they meet the deck is above.
+        if gap.abs() < 1e-6 { 0.0 } else { gap }
+    };
+    let (above, under) = (rest.iter().any(|c| over(c) < 0.0), rest.iter().any(|c| over(c) > 0.0));
+    let (above, under) = match (above, under) {
+        (true, true) => split(&rest, over),
+        (true, false) => (rest, Vec::new()),
+        (false, _) => (Vec::new(), rest),
+    };
+    cut.extend((above.len() > 2).then_some((above, raised)));
+    if under.len() > 2 {
+        let lift = |corner: Corner| {
+            let height = deck.height(place(&corner, origin)) - origin.z;
+            Corner { position: [corner.position[0], corner.position[1], height as f32], ..corner }
+        };
+        cut.push((under.into_iter().map(lift).collect(), true));
+    }
+}
+
+fn place(corner: &Corner, origin: DVec3) -> DVec2 {
+    let [x, y, _] = corner.position.map(f64::from);
+    DVec2::new(x, y) + origin.truncate()
+}
+
 /// Lays triangles of corners, relative to `origin`, on the terrain; the farther from `eye` they are, the farther from
 /// it they may lie: the shader pulls them nearer by more.
-pub(crate) fn drape(corners: &[Corner], terrain: &Terrain, origin: DVec3, eye: Option<DVec3>) -> Vec<Corner> {
+fn drape(corners: &[Corner], terrain: &Terrain, origin: DVec3, eye: Option<DVec3>) -> Vec<Corner> {
     let mut out = Vec::with_capacity(corners.len() * 2);
     for triangle in corners.chunks_exact(3) {
         let raised = [0, 1, 2].map(|k| lifted(triangle[k], terrain, origin));
@@ -30,8 +120,7 @@ pub(crate) fn drape(corners: &[Corner], terrain: &Terrain, origin: DVec3, eye: O
 
 /// A place in cells of the grid.
 fn cells(corner: &Corner, terrain: &Terrain, origin: DVec3) -> DVec2 {
-    let [x, y, _] = corner.position.map(f64::from);
-    (DVec2::new(x, y) + origin.truncate() - DVec2::from_array(terrain.origin)) / terrain.cell
+    (place(corner, origin) - DVec2::from_array(terrain.origin)) / terrain.cell
 }
 
 /// Whether a triangle that was lifted by its corners lies in the ground all over.

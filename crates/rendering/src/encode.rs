@@ -1,6 +1,7 @@
 //! All passes of a picture, in the order in which they run.
 
 use crate::crowd::Fleet;
+use crate::floor::Floor;
 use crate::passes::Canvas;
 use crate::passes::asphalt::Asphalt;
 use crate::passes::decal::{Corner, DecalPass, Layer};
@@ -44,6 +45,8 @@ pub(crate) struct Prepared {
     pub(crate) crowd: Crowd,
     pub(crate) props: Copies,
     pub(crate) tiles: Vec<Tile>,
+    /// Which decks hide a robot in each view.
+    pub(crate) veiled: Vec<Vec<bool>>,
     /// Corners of each view.
     pub(crate) decals: Vec<[(Layer, Range<u32>); 4]>,
     /// Whether a view shows ghosts: near the ground they would veil what is behind them.
@@ -60,7 +63,7 @@ pub(crate) struct Surface<'a> {
 }
 
 impl Passes {
-    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, cast: &Cast, fleet: &Fleet) -> Self {
+    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, cast: &Cast, fleet: &Fleet, floor: &Floor) -> Self {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let flat = Canvas { samples: 1, ..canvas };
         let robots = cast.members.len();
@@ -70,15 +73,15 @@ impl Passes {
         let asphalt = Asphalt::new(device, queue);
         let digits = text.digits();
         let terrain = cast.terrain.as_deref();
-        let with_props = !cast.props.is_empty();
+        let (with_props, with_decks) = (!cast.props.is_empty(), !floor.decks.is_empty());
         Self {
             models: Models::new(device, queue, robots, &fleet.builds),
             shadow: ShadowPass::new(device, &groups, map),
             robot: RobotPass::new(device, queue, canvas, &groups, digits),
             ground: GroundPass::new(device, canvas, &groups, &asphalt),
             terrain: terrain.map(|t| TerrainPass::new(device, queue, canvas, &groups, &asphalt, t)),
-            prop: with_props.then(|| PropPass::new(device, queue, canvas, &groups, &asphalt)),
-            decal: DecalPass::new(device, canvas, &groups, terrain.is_some()),
+            prop: with_props.then(|| PropPass::new(device, queue, canvas, &groups, &asphalt, with_decks)),
+            decal: DecalPass::new(device, canvas, &groups, !floor.is_plane()),
             sky: SkyPass::new(device, canvas, &groups),
             overlay: OverlayPass::new(device, flat),
             asphalt,
@@ -169,13 +172,17 @@ impl Passes {
             Some(terrain) => terrain.draw(pass, &self.asphalt),
             None => self.ground.draw(pass, &self.asphalt),
         }
+        let veiled = &prepared.veiled[index];
+        if let Some(prop) = &self.prop {
+            prop.draw_decks(pass, &self.asphalt, &prepared.props, veiled);
+        }
         for (layer, corners) in under {
             self.decal.draw(pass, corners, *layer);
         }
         self.robot.draw_solid(pass, &self.models, &prepared.crowd);
         // After the robots, which show through those in front of them.
         if let Some(prop) = &self.prop {
-            prop.draw(pass, &self.asphalt, &prepared.props);
+            prop.draw(pass, &self.asphalt, &prepared.props, veiled);
         }
         if prepared.ghosts[index] {
             self.robot.draw_ghosts(pass, &self.models, &prepared.crowd);

@@ -228,7 +228,7 @@ fn names(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
 fn edges(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
     let place = |k: usize| {
         let pose = stage.moment.snapshot.robots.get(k)?.motion.pose;
-        window.pixel(stage.on_ground(pose.x, pose.y))
+        window.pixel(stage.on_floor(pose.x, pose.y))
     };
     for (edge, state) in stage.cast.edges.iter().zip(&stage.moment.edges) {
         let (Some(a), Some(b)) = (place(edge.leader), place(edge.follower)) else { continue };
@@ -315,7 +315,7 @@ fn coordinates(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
     for i in -4_i32..=4 {
         for j in -4_i32..=4 {
             let (x, y) = (nearest(centre.x) + f64::from(i) * 5.0, nearest(centre.y) + f64::from(j) * 5.0);
-            let point = stage.on_ground(x, y);
+            let point = stage.on_floor(x, y);
             let pixel = window.camera.metres_per_pixel(point, f64::from(window.tile.height));
             // Fades before the crossings crowd together.
             let alpha = ((0.013 - pixel) / 0.004).clamp(0.0, 1.0) as f32;
@@ -346,6 +346,7 @@ pub(crate) fn detail(robots: usize) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::floor::Floor;
     use crate::{Style, Trail};
     use vocabulary::{Body, Cast, Moment, Pose, Snapshot};
 
@@ -360,6 +361,7 @@ mod tests {
         let (trail, style) = (Trail::new(&cast), Style::default());
         let stage = Stage {
             cast: &cast,
+            floor: &Floor::new(&cast),
             colours: &[palette::LEAD],
             trail: &trail,
             moment: &moment,

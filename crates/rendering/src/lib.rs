@@ -29,6 +29,7 @@ mod encode;
 mod error;
 mod film;
 mod flash;
+mod floor;
 mod gpu;
 mod inset;
 mod labels;

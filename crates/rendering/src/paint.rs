@@ -1,13 +1,14 @@
 //! What lies on the ground in one view: contact patches, marks, ribbons, rings, arrows and edges.
 
 use crate::camera::Camera;
-use crate::drape::drape;
+use crate::drape::{Onto, lay};
+use crate::floor::Floor;
 use crate::palette::{self, Rgb};
 use crate::passes::decal::{Corner, Form, Layer};
 use crate::trail::{RIBBON, Trail, set_points};
 use crate::{Style, View};
 use glam::{DVec2, DVec3};
-use vocabulary::{Body, Cast, Moment, Pose, Terrain};
+use vocabulary::{Body, Cast, Moment, Pose};
 
 /// Half the width of a ribbon, m.
 const RIBBON_HALF: f64 = 0.03;
@@ -22,6 +23,7 @@ const RUBBER: Rgb = [0.05, 0.05, 0.055];
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stage<'a> {
     pub(crate) cast: &'a Cast,
+    pub(crate) floor: &'a Floor,
     pub(crate) colours: &'a [Rgb],
     pub(crate) trail: &'a Trail,
     pub(crate) moment: &'a Moment,
@@ -38,14 +40,9 @@ pub(crate) struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    /// Height of the ground at a place, m.
-    pub(crate) fn ground(&self, place: DVec2) -> f64 {
-        self.cast.terrain.as_ref().map_or(0.0, |terrain| terrain.at(place.x, place.y).height)
-    }
-
-    /// The point of the ground at (x, y), m.
-    pub(crate) fn on_ground(&self, x: f64, y: f64) -> DVec3 {
-        DVec3::new(x, y, self.ground(DVec2::new(x, y)))
+    /// The point of the floor at (x, y), m.
+    pub(crate) fn on_floor(&self, x: f64, y: f64) -> DVec3 {
+        DVec3::new(x, y, self.floor.height(DVec2::new(x, y)))
     }
 }
 
@@ -57,7 +54,7 @@ pub(crate) struct Painter<'a> {
     /// Pixels of a line that is one wide at scale 1.
     pub(crate) stage_scale: f64,
     pub(crate) origin: DVec3,
-    terrain: Option<&'a Terrain>,
+    floor: &'a Floor,
 }
 
 /// All decals of one view on a tile `height` pixels high, layer by layer, in the order in which they are drawn.
@@ -67,21 +64,24 @@ pub(crate) fn paint(
     camera: &Camera,
     height: f64,
 ) -> [(Layer, Vec<Corner>); 4] {
-    let painted = |fill: &dyn Fn(&mut Painter<'_>)| {
+    let laid = |onto: Onto, fill: &dyn Fn(&mut Painter<'_>)| {
         let mut painter = Painter::new(stage, camera, height);
         fill(&mut painter);
-        painter.laid()
+        painter.laid(onto)
     };
+    let painted = |fill: &dyn Fn(&mut Painter<'_>)| laid(Onto::Floor, fill);
     let style = stage.style;
-    let shadows = painted(&|painter| {
+    // Decks are shaded by themselves.
+    let shadows = laid(Onto::Ground, &|painter| {
         if style.shadows {
             painter.shadows(stage);
         }
     });
-    let feet = painted(&|painter| {
+    let mut feet = laid(Onto::Ground, &|painter| painter.deck_feet(stage));
+    feet.append(&mut painted(&|painter| {
         painter.feet(stage);
         painter.dots(stage);
-    });
+    }));
     let mut over = painted(&|painter| {
         if style.set_points {
             painter.errors(stage);
@@ -104,7 +104,7 @@ impl<'a> Painter<'a> {
             height,
             stage_scale: stage.style.scale * (height / 720.0).clamp(0.6, 1.0),
             origin: stage.origin,
-            terrain: stage.cast.terrain.as_deref(),
+            floor: stage.floor,
         }
     }
 }
@@ -132,15 +132,10 @@ impl Painter<'_> {
         }
     }
 
-    /// The corners as they lie on the ground.
-    fn laid(self) -> Vec<Corner> {
-        match self.terrain {
-            Some(terrain) => {
-                let eye = self.camera.perspective.then_some(self.camera.eye);
-                drape(&self.corners, terrain, self.origin, eye)
-            }
-            None => self.corners,
-        }
+    /// The corners as they lie on the floor.
+    fn laid(self, onto: Onto) -> Vec<Corner> {
+        let eye = self.camera.perspective.then_some(self.camera.eye);
+        lay(self.corners, self.floor, onto, self.origin, eye)
     }
 
     /// Size of a pixel at a point, m.
@@ -148,9 +143,9 @@ impl Painter<'_> {
         self.camera.metres_per_pixel(point, self.height)
     }
 
-    /// The point of the ground at a place.
+    /// The point of the floor at a place.
     pub(crate) fn on(&self, place: DVec2) -> DVec3 {
-        place.extend(self.terrain.map_or(0.0, |terrain| terrain.at(place.x, place.y).height))
+        place.extend(self.floor.height(place))
     }
 
     /// Size of a pixel on the ground at a place, m.

@@ -16,11 +16,11 @@ const BARREL: Rgb = hex(0x00a8_7a42);
 /// What moves by itself is none of the robots' colours.
 const GUIDED: Rgb = hex(0x00a5_434c);
 
-/// Every prop of the cast with its place: that of the moment, else the one where it starts.
-pub(crate) fn placed<'a>(stage: &Stage<'a>) -> impl Iterator<Item = (&'a Prop, Placement)> + use<'a> {
+/// Every prop of the cast with its index and its place: that of the moment, else the one where it starts.
+pub(crate) fn placed<'a>(stage: &Stage<'a>) -> impl Iterator<Item = (usize, &'a Prop, Placement)> + use<'a> {
     let now = &stage.moment.snapshot.props;
     let all = stage.cast.props.iter().enumerate();
-    all.map(|(k, prop)| (prop, now.get(k).copied().unwrap_or(prop.placement))).filter(|(_, p)| sound(p))
+    all.map(|(k, prop)| (k, prop, now.get(k).copied().unwrap_or(prop.placement))).filter(|(.., p)| sound(p))
 }
 
 fn sound(placement: &Placement) -> bool {
@@ -46,12 +46,14 @@ pub(crate) fn corners(prop: &Prop, placement: &Placement) -> [DVec3; 8] {
 /// All copies of the solids in a picture.
 pub(crate) fn props(stage: &Stage<'_>) -> Copies {
     let mut copies = Copies::default();
-    for (prop, placement) in placed(stage) {
-        let scale = match prop.solid {
-            Solid::Block { size } | Solid::Wedge { size } => size,
-            Solid::Cylinder { radius, height } | Solid::Cone { radius, height } => [radius, radius, height],
-        };
-        copies[look(prop) as usize].push(instance(stage, prop, &placement, DVec3::from_array(scale)));
+    for (_, prop, placement) in placed(stage).filter(|(k, ..)| !stage.floor.is_deck(*k)) {
+        let ground = stage.floor.height(DVec3::from_array(placement.position).truncate());
+        copies.others[look(prop) as usize].push(instance(stage, prop, &placement, ground));
+    }
+    for deck in &stage.floor.decks {
+        let prop = &stage.cast.props[deck.prop];
+        let ground = stage.floor.ground(DVec3::from_array(prop.placement.position).truncate());
+        copies.decks.push((look(prop), instance(stage, prop, &prop.placement, ground)));
     }
     copies
 }
@@ -67,7 +69,13 @@ fn look(prop: &Prop) -> Look {
     }
 }
 
-fn instance(stage: &Stage<'_>, prop: &Prop, placement: &Placement, scale: DVec3) -> Instance {
+fn instance(stage: &Stage<'_>, prop: &Prop, placement: &Placement, ground: f64) -> Instance {
+    let scale = match prop.solid {
+        Solid::Block { size } | Solid::Wedge { size } => DVec3::from_array(size),
+        Solid::Cylinder { radius, height } | Solid::Cone { radius, height } => {
+            DVec3::new(radius, radius, height)
+        }
+    };
     let place = DVec3::from_array(placement.position);
     let turn = turn(placement).as_quat();
     let model =
@@ -75,11 +83,10 @@ fn instance(stage: &Stage<'_>, prop: &Prop, placement: &Placement, scale: DVec3)
     let rows = model.transpose();
     let [r, g, b] = linear(colour(prop));
     let guided = f32::from(u8::from(prop.mobility == Mobility::Guided));
-    let ground = stage.ground(place.truncate()) - stage.origin.z;
     Instance {
         rows: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.to_array()),
         colour: [r, g, b, 1.0],
-        marks: [guided, 0.0, ground as f32, 0.0],
+        marks: [guided, 0.0, (ground - stage.origin.z) as f32, 0.0],
     }
 }
 

@@ -1,9 +1,10 @@
 //! Moments to pictures.
 
 use crate::camera::Camera;
-use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun, words};
+use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun, veiled_decks, words};
 use crate::crowd::{Fleet, crowd};
 use crate::encode::{Passes, Prepared, Surface};
+use crate::floor::Floor;
 use crate::labels::{Window, detail};
 use crate::paint::{Stage, paint};
 use crate::palette::{Rgb, robot_colours};
@@ -22,6 +23,7 @@ pub struct Renderer {
     cast: Cast,
     colours: Vec<Rgb>,
     fleet: Fleet,
+    floor: Floor,
     size: (u32, u32),
     canvas: Canvas,
     attachments: Attachments,
@@ -59,12 +61,14 @@ impl Renderer {
         }
         let canvas = Canvas { format, samples };
         let fleet = Fleet::new(cast);
-        let passes = Passes::new(gpu, canvas, cast, &fleet);
+        let floor = Floor::new(cast);
+        let passes = Passes::new(gpu, canvas, cast, &fleet, &floor);
         let renderer = Self {
             gpu: gpu.clone(),
             cast: cast.clone(),
             colours: robot_colours(cast),
             fleet,
+            floor,
             size: (width, height),
             canvas,
             attachments: Attachments::new(&gpu.device, (width, height), format, samples),
@@ -195,10 +199,13 @@ impl Renderer {
             .views
             .iter()
             .zip(&tiles)
-            .map(|(view, tile)| Camera::of(view, &trail.steady, &moment.snapshot, &self.cast, aspect(tile)))
+            .map(|(view, tile)| {
+                Camera::of(view, &trail.steady, &moment.snapshot, (&self.cast, &self.floor), aspect(tile))
+            })
             .collect();
         let stage = Stage {
             cast: &self.cast,
+            floor: &self.floor,
             colours: &self.colours,
             trail,
             moment,
@@ -228,7 +235,9 @@ impl Renderer {
             cameras.iter().zip(&tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
         let (lines, shapes) = words(&mut self.passes.text, &stage, layout, &windows, height);
         let ghosts = layout.views.iter().map(|view| !matches!(view, View::SnakeEye)).collect();
-        let prepared = Prepared { crowd, props, tiles, decals, ghosts, shapes };
+        let seen = layout.views.iter().zip(&cameras);
+        let veiled = seen.map(|(view, camera)| veiled_decks(camera, &stage, view)).collect();
+        let prepared = Prepared { crowd, props, tiles, veiled, decals, ghosts, shapes };
         self.passes.upload(&self.gpu, self.size, &frames, &prepared, &corners, &lines)?;
         Ok(prepared)
     }

@@ -33,7 +33,7 @@ impl Painter<'_> {
         }
         // Props stand close together, and where patches overlap their shadows would be dark twice.
         let reach = stage.shadowed;
-        patches.extend(placed(stage).filter_map(|(prop, place)| prop_shadow(stage, prop, &place)));
+        patches.extend(placed(stage).filter_map(|(_, prop, place)| prop_shadow(stage, prop, &place)));
         let near = |p: &Patch| p[0].distance(reach.0) < reach.1 * 1.5 + p[1].length() + p[2].length();
         patches.retain(near);
         let cell = (reach.1 / 40.0).clamp(0.1, 1.0);
@@ -49,11 +49,21 @@ impl Painter<'_> {
 
     /// The dark under bodies, wheels and props.
     pub(crate) fn feet(&mut self, stage: &Stage<'_>) {
-        for (prop, place) in placed(stage) {
-            self.foot(stage, prop, &place);
+        for (_, prop, place) in placed(stage).filter(|(k, ..)| !stage.floor.is_deck(*k)) {
+            let height = stage.floor.height(DVec3::from_array(place.position).truncate());
+            self.foot(height, prop, &place);
         }
         for (robot, member) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members) {
             self.tyres(stage, robot, member);
+        }
+    }
+
+    /// The dark around decks, on the ground alone.
+    pub(crate) fn deck_feet(&mut self, stage: &Stage<'_>) {
+        for deck in &stage.floor.decks {
+            let prop = &stage.cast.props[deck.prop];
+            let height = stage.floor.ground(DVec3::from_array(prop.placement.position).truncate());
+            self.foot(height, prop, &prop.placement);
         }
     }
 
@@ -61,7 +71,7 @@ impl Painter<'_> {
         let (pose, body) = (robot.motion.pose, member.body);
         let ahead = DVec2::from_angle(pose.heading);
         let place = |forward, left| DVec2::from_array(pose.world_from_body(forward, left));
-        let gap = |at: DVec2| (robot.attitude.height - stage.ground(at)).max(0.0) / body.wheel_radius;
+        let gap = |at: DVec2| (robot.attitude.height - stage.floor.height(at)).max(0.0) / body.wheel_radius;
         let middle = place(0.46 * body.wheelbase, 0.0);
         let upright = robot.attitude.roll.cos() * robot.attitude.pitch.cos();
         // A body that lies on its roof touches the ground with that.
@@ -75,17 +85,18 @@ impl Painter<'_> {
             let at = place(x * body.wheelbase, y * body.track);
             let size = body.wheel_radius;
             // A body that is tilted against the ground has wheels in the air.
-            let raised = wheel_height(robot, x * body.wheelbase, y * body.track) - stage.ground(at);
+            let raised = wheel_height(robot, x * body.wheelbase, y * body.track) - stage.floor.height(at);
             let near = fade((raised / size).max(0.0));
             let across = ahead.perp() * (0.85 * size);
             self.patch(at, ahead * (1.25 * size), across, Form::Blob, [0.0; 3], 0.85 * near);
         }
     }
 
-    fn foot(&mut self, stage: &Stage<'_>, prop: &Prop, place: &Placement) {
+    /// The dark around a prop over a floor of some height.
+    fn foot(&mut self, floor: f64, prop: &Prop, place: &Placement) {
         let turn = DMat3::from_quat(turn(place));
         let at = DVec3::from_array(place.position);
-        let over = at.z - stage.ground(at.truncate());
+        let over = at.z - floor;
         // Only what stands on its foot; what lies or flies has its shadow.
         if turn.z_axis.z < 0.97 || !(-0.5..0.1).contains(&over) {
             return;
@@ -96,8 +107,9 @@ impl Painter<'_> {
         let margin = FOOT.min(0.35 * prop.solid.extent()[2] + 0.25 * prop.solid.reach());
         match prop.solid {
             Solid::Block { size } | Solid::Wedge { size } => {
+                let thin = matches!(prop.solid, Solid::Wedge { .. });
                 let half = [0.5 * size[0], 0.5 * size[1]];
-                self.skirt(at.truncate(), [ahead, aside], half, margin, alpha);
+                self.skirt(at.truncate(), [ahead, aside], half, margin, (alpha, thin));
             }
             Solid::Cylinder { radius, .. } | Solid::Cone { radius, .. } => {
                 let reach = radius + 1.4 * margin;
@@ -107,16 +119,28 @@ impl Painter<'_> {
         }
     }
 
-    /// A box with soft edges as wide on long sides as on short ones.
-    fn skirt(&mut self, middle: DVec2, axes: [DVec2; 2], half: [f64; 2], margin: f64, alpha: f32) {
+    /// A box with soft edges as wide on long sides as on short ones; what is `thin` where it begins darkens nothing
+    /// there.
+    fn skirt(
+        &mut self,
+        middle: DVec2,
+        axes: [DVec2; 2],
+        half: [f64; 2],
+        margin: f64,
+        (alpha, thin): (f32, bool),
+    ) {
         let knots = |half: f64| [-half - margin, -half, half, half + margin];
         let shapes = [-1.0, -0.25, 0.25, 1.0];
-        let (along, across) = (knots(half[0]), knots(half[1]));
+        let (mut along, across) = (knots(half[0]), knots(half[1]));
+        let mut rising = shapes;
+        if thin {
+            (along[0], rising[1]) = (along[1], rising[0]);
+        }
         for i in 0..3 {
             for j in 0..3 {
                 let at = |di: usize, dj: usize| {
                     let place = middle + axes[0] * along[i + di] + axes[1] * across[j + dj];
-                    let shape = [shapes[i + di], shapes[j + dj]];
+                    let shape = [rising[i + di], shapes[j + dj]];
                     self.corner(place, Form::SoftBox(0.25), shape, [0.0; 3], alpha)
                 };
                 let quad = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
@@ -142,7 +166,7 @@ fn robot_shadow(stage: &Stage<'_>, robot: &RobotState, member: &Member) -> Patch
     let away = -stage.sun.truncate() / stage.sun.z;
     let [x, y] = robot.motion.pose.world_from_body(0.15 * member.body.length, 0.0);
     // As high as the camera on its mast, and as far around as the shell or the bonnet.
-    let over = (robot.attitude.height - stage.ground(DVec2::new(x, y))).max(0.0);
+    let over = (robot.attitude.height - stage.floor.ground(DVec2::new(x, y))).max(0.0);
     let (top, around) = (build.top() + over, build.around());
     let reach = away * (0.5 * top);
     let along = reach + reach.normalize_or(DVec2::X) * around;
@@ -155,7 +179,7 @@ fn prop_shadow(stage: &Stage<'_>, prop: &Prop, place: &Placement) -> Option<Patc
     let away = -stage.sun.truncate() / stage.sun.z;
     let ahead = away.normalize_or(DVec2::X);
     let foot = DVec3::from_array(place.position);
-    let ground = stage.ground(foot.truncate());
+    let ground = stage.floor.ground(foot.truncate());
     // Ground that falls away lengthens shadows.
     let stretch = if stage.cast.terrain.is_some() { 1.6 } else { 1.0 };
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);

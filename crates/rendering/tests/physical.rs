@@ -246,6 +246,97 @@ fn what_stands_before_the_robots_is_seen_through() {
     assert!(plain > 150 && found * 3 > plain, "{plain} {found}");
 }
 
+/// A moment of the straight play on a platform under all robots, 0.3 m high.
+fn on_a_platform() -> (Cast, Moment) {
+    let (mut cast, mut moment) = straight();
+    cast.props = vec![prop(Solid::Block { size: [24.0, 12.0, 0.3] }, Mobility::Fixed, 6.0, 0.0, 0.0)];
+    moment.snapshot.robots.iter_mut().for_each(|r| r.attitude.height = 0.3);
+    (cast, moment)
+}
+
+#[test]
+fn a_ribbon_lies_on_the_ramp_under_it() {
+    let play = Play::new(3, Path::Straight);
+    let (mut cast, moment) = (play.cast.clone(), play.at(12.0));
+    let style = Style { ribbons: true, ..Style::bare() };
+    let painted = |cast: &Cast| shot(cast, &play.trail(12.0), &moment, plan(0.0), &style);
+    let plain = count(&painted(&cast), blue);
+    let place = moment.snapshot.robots[2].motion.pose;
+    let (middle, size) = (place.x - 1.4, [2.0, 1.6, 0.3]);
+    cast.props = vec![prop(Solid::Wedge { size }, Mobility::Fixed, middle, place.y, 0.0)];
+    let picture = painted(&cast);
+    for x in [-0.8, -0.4, 0.0, 0.4, 0.8] {
+        // What is higher is nearer to the eye, which is over (6, 0).
+        let near = 9.0 / (9.0 - size[2] * (x / size[0] + 0.5));
+        let at =
+            |aside: f64| mean(&picture, pixel(6.0 + (middle + x - 6.0) * near, (place.y + aside) * near), 0);
+        let [[r, _, b], [bare_r, _, bare_b]] = [at(0.0), at(0.3)];
+        assert!(b > r + 30.0 && bare_b < bare_r, "{x}: {r} {b}, beside it {bare_r} {bare_b}");
+    }
+    let found = count(&picture, blue);
+    assert!(found * 10 > plain * 8, "{found} of {plain}");
+    // Nobody drives on a wall: what is under it is hidden.
+    cast.props = vec![prop(Solid::Block { size: [2.0, 1.6, 1.2] }, Mobility::Fixed, middle, place.y, 0.0)];
+    let hidden = count(&painted(&cast), blue);
+    assert!(hidden * 2 < plain, "{hidden} of {plain}");
+}
+
+#[test]
+fn a_platform_is_like_higher_ground() {
+    let (cast, moment) = on_a_platform();
+    let style = Style { ribbons: false, ..Style::without(&["caption", "names", "grid"]).unwrap() };
+    let high = snap(&cast, &moment, plan(0.3), &style);
+    let (mut flat, moment) = straight();
+    flat.props = vec![];
+    let low = snap(&flat, &moment, plan(0.0), &style);
+    // Rings and contact patches are where they are on the ground.
+    for like in [orange, blue] {
+        let (on, under) = (count(&high, like), count(&low, like));
+        assert!(under > 20 && on * 10 > under * 9, "{on} {under}");
+    }
+    let pose = moment.snapshot.robots[0].motion.pose;
+    let dark = |picture: &Picture| {
+        let [near, far] = [0.13, 1.5].map(|y| mean(picture, pixel(pose.x, pose.y + y), 0)[1]);
+        near / far
+    };
+    assert!(dark(&high) < 0.85 && dark(&low) < 0.85, "{} {}", dark(&high), dark(&low));
+}
+
+#[test]
+fn what_robots_drive_on_is_not_darkened() {
+    let (cast, moment) = on_a_platform();
+    for view in [View::Snake, View::SnakeEye, View::Follow(1)] {
+        let name = format!("{view:?}");
+        let picture = snap(&cast, &moment, view, &Style::bare());
+        for x in [40, 160, 480, 600] {
+            let [r, _, b] = mean(&picture, (x, SIZE.1 - 12), 6);
+            assert!(r > 150.0 && r > b + 5.0, "{name} {x}: {r} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_platform_before_a_robot_is_seen_through() {
+    let (mut cast, moment) = straight();
+    let mut yellow = |props: Vec<vocabulary::Prop>, samples: u32| {
+        cast.props = props;
+        let mut trail = Trail::new(&cast);
+        trail.push(&moment);
+        let mut renderer = Renderer::new(gpu(), &cast, SIZE.0, SIZE.1, samples).unwrap();
+        let layout = Layout::single(View::Follow(1));
+        let picture = renderer.draw(&trail, &moment, &layout, &Style::bare()).unwrap();
+        assert!(picture.rgba.chunks_exact(4).all(|p| p[3] == 255));
+        count(&picture, |[r, g, b]| r > g + 12 && g > b + 25)
+    };
+    let pose = moment.snapshot.robots[1].motion.pose;
+    let platform = Solid::Block { size: [1.0, 4.0, 0.9] };
+    for samples in [1, 4] {
+        let open = yellow(vec![], samples);
+        let behind = yellow(vec![prop(platform, Mobility::Fixed, pose.x - 0.9, pose.y, 0.0)], samples);
+        assert!(open > 150 && behind * 4 > open, "{open} {behind}");
+    }
+}
+
 #[test]
 fn bodies_of_all_sizes_are_in_the_picture() {
     for (body, scale) in [(TRUCK, 1.0), (ROVER, 1.0), (CAR, 10.0), (Body::default(), 1.0)] {

@@ -58,7 +58,7 @@ impl Form {
 #[derive(Debug)]
 pub(crate) struct DecalPass {
     over: wgpu::RenderPipeline,
-    /// On the ground: behind hills there is nothing to see of it.
+    /// On the floor: behind hills and decks there is nothing to see of it.
     paint: wgpu::RenderPipeline,
     shadow: wgpu::RenderPipeline,
     corners: Stream,
@@ -68,8 +68,8 @@ impl DecalPass {
     pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
         vertex_attr_array![0 => Float32x3, 1 => Float32x2, 2 => Float32x2, 3 => Float32x4];
 
-    /// On a terrain the depth of the ground is tested.
-    pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups, on_terrain: bool) -> Self {
+    /// On hills and decks depth is tested.
+    pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups, uneven: bool) -> Self {
         let recipe = Recipe {
             label: "decal",
             source: SHADER,
@@ -83,7 +83,7 @@ impl DecalPass {
             depth: Some((wgpu::CompareFunction::Always, false)),
             ..Default::default()
         };
-        let test = if on_terrain { wgpu::CompareFunction::LessEqual } else { wgpu::CompareFunction::Always };
+        let test = if uneven { wgpu::CompareFunction::LessEqual } else { wgpu::CompareFunction::Always };
         let paint = Recipe { depth: Some((test, false)), ..recipe };
         Self {
             over: recipe.build(device),

@@ -59,8 +59,8 @@ pub(crate) struct Recipe<'a> {
     pub(crate) cull: bool,
     /// Colour target, its samples and blending; depth alone without.
     pub(crate) colour: Option<(Canvas, Option<wgpu::BlendState>)>,
-    /// Writes colour where there is a target; a pass may only want its depth.
-    pub(crate) visible: bool,
+    /// What of the colour is written where there is a target; a pass may only want its depth.
+    pub(crate) write: wgpu::ColorWrites,
     /// Opacity is the share of a pixel's samples that are covered, whatever the order of what is drawn.
     pub(crate) coverage: bool,
     /// Depth comparison and whether depth is written.
@@ -79,7 +79,7 @@ impl Default for Recipe<'_> {
             topology: wgpu::PrimitiveTopology::TriangleList,
             cull: false,
             colour: None,
-            visible: true,
+            write: wgpu::ColorWrites::ALL,
             coverage: false,
             depth: None,
             bias: wgpu::DepthBiasState::default(),
@@ -100,14 +100,13 @@ impl Recipe<'_> {
             immediate_size: 0,
         });
         let buffers: Vec<_> = self.buffers.iter().cloned().map(Some).collect();
-        let write = match (self.visible, self.coverage) {
-            (false, _) => wgpu::ColorWrites::empty(),
-            (true, true) => wgpu::ColorWrites::COLOR,
-            (true, false) => wgpu::ColorWrites::ALL,
-        };
         let targets: Vec<_> = self
             .colour
-            .map(|(canvas, blend)| wgpu::ColorTargetState { format: canvas.format, blend, write_mask: write })
+            .map(|(canvas, blend)| wgpu::ColorTargetState {
+                format: canvas.format,
+                blend,
+                write_mask: self.write,
+            })
             .into_iter()
             .map(Some)
             .collect();

@@ -28,13 +28,24 @@ impl Look {
         [("concrete", 0), ("timber", 0), ("machine", 0), ("pillar", 1), ("cone", 2), ("ramp", 3)];
 }
 
-/// Copies of a picture, by look.
-pub(crate) type Copies = [Vec<Instance>; Look::ALL.len()];
+/// Copies of a picture.
+#[derive(Debug, Default)]
+pub(crate) struct Copies {
+    /// By look.
+    pub(crate) others: [Vec<Instance>; Look::ALL.len()],
+    /// What robots drive on, in the order of the floor's decks.
+    pub(crate) decks: Vec<(Look, Instance)>,
+}
 
 /// Solids on the device, their pipeline and the copies of this picture.
 #[derive(Debug)]
 pub(crate) struct PropPass {
+    /// By look: what is seen through where it stands before the robots.
     pipelines: Vec<wgpu::RenderPipeline>,
+    /// By look: what never is. Empty without decks.
+    firm: Vec<wgpu::RenderPipeline>,
+    /// Whether what is seen through leaves samples to what comes later.
+    coverage: bool,
     vertices: Stream,
     indices: Stream,
     solids: Vec<Range<u32>>,
@@ -48,6 +59,7 @@ impl PropPass {
         canvas: Canvas,
         groups: &FrameGroups,
         asphalt: &Asphalt,
+        with_decks: bool,
     ) -> Self {
         let (mut vertices, mut indices) = (Vec::new(), Vec::new());
         let solids = solids().map(|mesh| {
@@ -68,11 +80,18 @@ impl PropPass {
             cull: true,
             colour: Some((canvas, blend)),
             coverage,
+            write: wgpu::ColorWrites::COLOR,
             depth: Some((wgpu::CompareFunction::Less, true)),
             ..Default::default()
         };
+        let firm = Recipe { label: "deck", colour: Some((canvas, None)), coverage: false, ..recipe };
+        let build = |recipe: Recipe<'_>| {
+            Look::ALL.map(|(entry, _)| Recipe { entry, ..recipe }.build(device)).to_vec()
+        };
         Self {
-            pipelines: Look::ALL.map(|(entry, _)| Recipe { entry, ..recipe }.build(device)).to_vec(),
+            pipelines: build(recipe),
+            firm: if with_decks { build(firm) } else { Vec::new() },
+            coverage,
             vertices: constant(device, queue, "prop corners", wgpu::BufferUsages::VERTEX, corners),
             indices: constant(device, queue, "prop triangles", wgpu::BufferUsages::INDEX, triangles),
             solids: solids.to_vec(),
@@ -81,37 +100,98 @@ impl PropPass {
     }
 
     pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, copies: &Copies) {
-        let all: Vec<Instance> = copies.iter().flatten().copied().collect();
+        let decks = copies.decks.iter().map(|(_, copy)| copy);
+        let all: Vec<Instance> = copies.others.iter().flatten().chain(decks).copied().collect();
         self.instances.fill(device, queue, bytemuck::cast_slice(&all));
     }
 
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, asphalt: &Asphalt, copies: &Copies) {
+    /// What robots drive on, before the paint on it; `veiled` tells which of it hides a robot from the eye.
+    pub(crate) fn draw_decks(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        asphalt: &Asphalt,
+        copies: &Copies,
+        veiled: &[bool],
+    ) {
+        if copies.decks.is_empty() {
+            return;
+        }
         pass.set_bind_group(2, &asphalt.group, &[]);
-        self.draw_each(pass, copies, |pass, look| pass.set_pipeline(&self.pipelines[look]));
+        self.bind(pass);
+        let seen_through = |k: usize| veiled.get(k).copied().unwrap_or_default();
+        self.each_deck(pass, copies, |pass, k| {
+            let look = copies.decks[k].0 as usize;
+            let later = seen_through(k) && !self.coverage;
+            if !later {
+                pass.set_pipeline(if seen_through(k) { &self.pipelines[look] } else { &self.firm[look] });
+            }
+            !later
+        });
     }
 
-    /// The copies with whatever pipeline is set.
+    /// All others, after the robots.
+    pub(crate) fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        asphalt: &Asphalt,
+        copies: &Copies,
+        veiled: &[bool],
+    ) {
+        pass.set_bind_group(2, &asphalt.group, &[]);
+        self.bind(pass);
+        self.each_other(pass, copies, |pass, look| pass.set_pipeline(&self.pipelines[look]));
+        self.each_deck(pass, copies, |pass, k| {
+            let later = !self.coverage && veiled.get(k).copied().unwrap_or_default();
+            if later {
+                pass.set_pipeline(&self.pipelines[copies.decks[k].0 as usize]);
+            }
+            later
+        });
+    }
+
+    /// All copies with whatever pipeline is set.
     pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, copies: &Copies) {
-        self.draw_each(pass, copies, |_, _| ());
+        self.bind(pass);
+        self.each_other(pass, copies, |_, _| ());
+        self.each_deck(pass, copies, |_, _| true);
     }
 
-    fn draw_each(
+    fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_vertex_buffer(0, self.vertices.slice());
+        pass.set_vertex_buffer(1, self.instances.slice());
+        pass.set_index_buffer(self.indices.slice(), wgpu::IndexFormat::Uint32);
+    }
+
+    fn each_other(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         copies: &Copies,
         prepare: impl Fn(&mut wgpu::RenderPass<'_>, usize),
     ) {
-        pass.set_vertex_buffer(0, self.vertices.slice());
-        pass.set_vertex_buffer(1, self.instances.slice());
-        pass.set_index_buffer(self.indices.slice(), wgpu::IndexFormat::Uint32);
         let mut first = 0;
-        for (look, ((_, solid), copies)) in Look::ALL.iter().zip(copies).enumerate() {
+        for (look, ((_, solid), copies)) in Look::ALL.iter().zip(&copies.others).enumerate() {
             let last = first + copies.len() as u32;
             if last > first {
                 prepare(pass, look);
                 pass.draw_indexed(self.solids[*solid].clone(), 0, first..last);
             }
             first = last;
+        }
+    }
+
+    /// Draws the decks for which `prepare` says so.
+    fn each_deck(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        copies: &Copies,
+        prepare: impl Fn(&mut wgpu::RenderPass<'_>, usize) -> bool,
+    ) {
+        let first = copies.others.iter().map(Vec::len).sum::<usize>();
+        for (k, (look, _)) in copies.decks.iter().enumerate() {
+            if prepare(pass, k) {
+                let at = (first + k) as u32;
+                pass.draw_indexed(self.solids[Look::ALL[*look as usize].1].clone(), 0, at..at + 1);
+            }
         }
     }
 }

@@ -187,8 +187,13 @@ impl RobotPass {
         let equal = Some((wgpu::CompareFunction::LessEqual, false));
         Self {
             solid: recipe.build(device),
-            ghost_depth: Recipe { label: "ghost depth", entry: "hidden", visible: false, ..recipe }
-                .build(device),
+            ghost_depth: Recipe {
+                label: "ghost depth",
+                entry: "hidden",
+                write: wgpu::ColorWrites::empty(),
+                ..recipe
+            }
+            .build(device),
             ghost: Recipe { label: "ghost", entry: "ghost", colour: blended, depth: equal, ..recipe }
                 .build(device),
             digits,
