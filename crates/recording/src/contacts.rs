@@ -1,11 +1,28 @@
 //! The contacts of a run, each counted once.
 
-use crate::metrics::ContactMetrics;
+use serde::Serialize;
 use std::collections::BTreeMap;
 use vocabulary::{Cast, Contact};
 
 /// Contacts that metrics list one by one.
 const LISTED: u64 = 100;
+
+/// One contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Default)]
+pub struct ContactMetrics {
+    /// The two.
+    pub between: [String; 2],
+    /// First touch, s.
+    pub begin: f64,
+    /// Last touch, s.
+    pub end: f64,
+    /// Of the first touch, m.
+    pub place: [f64; 3],
+    /// From the first to the second.
+    pub normal: [f64; 3],
+    /// N s.
+    pub impulse: f64,
+}
 
 /// Takes in the contacts of moment after moment: most of them again and again, until they end.
 #[derive(Debug, Clone, Default)]

@@ -20,10 +20,11 @@ mod metrics;
 mod run;
 mod table;
 
+pub use contacts::ContactMetrics;
 pub use digest::Digest;
 pub use error::Error;
 pub use file::write_whole;
 pub use manifest::{Manifest, Status};
-pub use metrics::{ContactMetrics, EdgeMetrics, Judging, Metrics, MetricsBuilder, RobotMetrics};
+pub use metrics::{EdgeMetrics, Judging, Metrics, MetricsBuilder, RobotMetrics};
 pub use run::{Recorder, RunOptions};
 pub use table::{Column, TableKind, read_table};

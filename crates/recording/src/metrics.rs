@@ -1,7 +1,7 @@
 //! Errors, effort and clearance of a run, gathered as it goes.
 
 use crate::clearance::Clearance;
-use crate::contacts::ContactLog;
+use crate::contacts::{ContactLog, ContactMetrics};
 use serde::Serialize;
 use vocabulary::{Cast, Condition, Contact, EdgeState, Moment, Thing};
 
@@ -45,23 +45,6 @@ pub struct RobotMetrics {
     pub lift_max: f64,
     /// At the end: able, overturned, stuck or fallen.
     pub condition: String,
-}
-
-/// One contact.
-#[derive(Debug, Clone, PartialEq, Serialize, Default)]
-pub struct ContactMetrics {
-    /// The two.
-    pub between: [String; 2],
-    /// First touch, s.
-    pub begin: f64,
-    /// Last touch, s.
-    pub end: f64,
-    /// Of the first touch, m.
-    pub place: [f64; 3],
-    /// From the first to the second.
-    pub normal: [f64; 3],
-    /// N s.
-    pub impulse: f64,
 }
 
 /// What a run is judged by.

@@ -3,32 +3,23 @@
 use crate::{
     Channel, Path,
     ground::{GroundForm, GroundKeys},
+    names::{NameForm, POSE},
     path_form::PATH,
     patterns::{PatternForm, PatternKeys},
-    prop_form::{PropForm, PropKeys},
-    props::MOST_PROPS,
-    text::{
-        Form, Node, Reading, angle_of_turns, angle_within,
-        form::{Angle, Number},
-        integer, keys, list,
-        lists::Triple,
-        number, table, text, triple, words,
-    },
+    prop_form::{MOST_PROPS, PropForm, PropKeys},
+    text::{angle_within, form::Number, integer, keys, list, number, table, text, words},
     types::{
         BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, LawPart, ObserverPart, PhysicsPart,
         SensingPart, TimePart, VehiclePart, ViewsPart,
     },
     vehicle::VehicleForm,
 };
-use serde_json::{Value as Json, json};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Version of the format of scene files.
 pub(crate) const SCHEMA_VERSION: u64 = 1;
 /// Most robots of a scene.
 pub(crate) const MOST_ROBOTS: usize = 10_000;
-/// Start pose [m, m, rad].
-pub(crate) const POSE: Triple<Number, Number, Angle> = triple(number("m"), number("m"), angle_of_turns(10.0));
 /// Speed at the start.
 const SPEED: Number = number("m/s").from(0.0).up_to(100.0);
 
@@ -167,37 +158,5 @@ words! {
         Neighbour = "neighbour",
         /// The group's leader, every one of them.
         Leader = "leader",
-    }
-}
-
-/// A robot's or prop's name: fit for paths of overrides, columns of tables and file names.
-pub(crate) struct NameForm {
-    /// Most characters.
-    most: usize,
-}
-
-impl NameForm {
-    /// A whole name.
-    pub(crate) const WHOLE: Self = Self { most: 40 };
-    /// The start of names that end in a number.
-    pub(crate) const START: Self = Self { most: 34 };
-}
-
-impl Form for NameForm {
-    type Out = String;
-
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
-        let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-        let name = node
-            .as_text()
-            .filter(|name| name.chars().all(fits) && (1..=self.most).contains(&name.chars().count()));
-        if name.is_none() {
-            reading.wrong(node, &format!("a name of 1 to {} letters, digits, `-` and `_`", self.most));
-        }
-        name.map(str::to_owned)
-    }
-
-    fn schema(&self) -> Json {
-        json!({ "type": "string", "pattern": format!(r"^[\p{{L}}\p{{N}}\p{{M}}_-]{{1,{}}}$", self.most) })
     }
 }

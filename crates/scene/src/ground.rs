@@ -2,7 +2,7 @@
 
 use crate::{
     Ground, Noise, Patch, Relief,
-    heights_file::{HeightsForm, wrong_length, wrong_size},
+    heights_file::{HEIGHT, HeightsForm, wrong_length, wrong_size},
     relief,
     text::{
         Form, Found, Keys, Node, Place, Reading, Value, couple,
@@ -17,8 +17,6 @@ use serde_json::{Value as Json, json};
 use std::sync::Arc;
 use vocabulary::Terrain;
 
-/// Height of a point.
-pub(crate) const HEIGHT: Number = number("m").from(-1000.0).up_to(1000.0);
 /// Side of a cell.
 const CELL: Number = number("m").from(0.001).up_to(1000.0);
 /// Length of waves.

@@ -2,12 +2,13 @@
 
 use crate::{
     files::read_beside,
-    ground::HEIGHT,
     table_file::line_at,
-    text::{Form, Node, Place, Reading},
+    text::{Form, Node, Place, Reading, form::Number, number},
 };
 use serde_json::{Value as Json, json};
 
+/// One height.
+pub(crate) const HEIGHT: Number = number("m").from(-1000.0).up_to(1000.0);
 /// Most heights that are read: as many as can be written into a scene and read again.
 pub(crate) const MOST_HEIGHTS: usize = 300_000;
 

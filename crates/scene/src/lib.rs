@@ -14,6 +14,7 @@ mod ground;
 mod groups;
 mod heights_file;
 mod load;
+mod names;
 mod outline;
 mod overrides;
 mod path_form;

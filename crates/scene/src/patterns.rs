@@ -1,8 +1,8 @@
 //! Props in well-known arrangements, as they are written.
 
 use crate::{
-    document::{NameForm, POSE},
     ground::RegionForm,
+    names::{NameForm, POSE},
     prop_form::{FRICTION, MASS, MEASURE, Measured, RESTITUTION, SOLIDS},
     text::{
         Form, Found, Keys, Node, Reading, integer, keys,

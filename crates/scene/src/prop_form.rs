@@ -2,7 +2,7 @@
 
 use crate::{
     Path,
-    document::{NameForm, POSE},
+    names::{NameForm, POSE},
     path_form::PATH,
     text::{
         Form, Found, Keys, Node, Reading, couple,
@@ -17,6 +17,8 @@ use crate::{
 use serde_json::Value as Json;
 use vocabulary::{Pose, Solid};
 
+/// Most props of a scene.
+pub(crate) const MOST_PROPS: usize = 2000;
 /// A measure of a prop.
 pub(crate) const MEASURE: Number = number("m").above(0.0).up_to(1000.0);
 /// [length, width, height].

@@ -4,7 +4,7 @@ use crate::{
     Ground, Prop, PropMotion, Robot,
     outline::Outline,
     patterns::{Field, Layout, PatternKeys},
-    prop_form::PropKeys,
+    prop_form::{MOST_PROPS, PropKeys},
     robots::start_pose,
     text::{Found, Node, Place, Reading},
 };
@@ -15,8 +15,6 @@ use rand_chacha::{
 use std::f64::consts::PI;
 use vocabulary::{Pose, Solid};
 
-/// Most props of a scene.
-pub(crate) const MOST_PROPS: usize = 2000;
 /// Keeps the random numbers of fields apart from those of groups.
 const FIRST_STREAM: u64 = 1 << 32;
 /// Places that are tried for a prop of a field.

@@ -1,42 +1,11 @@
 //! A checked scene, turned into the parts that run it.
 
+use crate::error::{BuildError, EPSILON_MIN};
 use crate::stage::stage;
 use crate::step::{ObserverStart, Setup, Timing};
-use formation::lead::WayError;
-use formation::{Course, EdgeLaw, Formation, Graph, GraphError, SetPointCourse};
+use formation::{Course, EdgeLaw, Formation, Graph, SetPointCourse};
 use scene::{Channel, Follow, OnContact, Role, Scene};
-use thiserror::Error;
 use vocabulary::{Cast, Light, Member};
-
-/// Why a scene that reads well cannot run.
-#[derive(Debug, Error)]
-pub enum BuildError {
-    /// Robots and edges make no formation.
-    #[error(transparent)]
-    Graph(#[from] GraphError),
-    /// The way-points of a lead robot or of a guided prop make no curve.
-    #[error("the path of `{robot}`: {source}")]
-    Way {
-        /// The lead robot or prop.
-        robot: String,
-        /// What is wrong with its points.
-        source: WayError,
-    },
-    /// An observer too fast for continuous time.
-    #[error(
-        "the observer of `{robot}` has ε = {epsilon} s: mode \"continuous\" takes steps of an eighth of it and would \
-         not come to an end; use ε of at least {EPSILON_MIN} s, or mode \"sampled\", which is exact at any ε"
-    )]
-    Stiff {
-        /// The follower.
-        robot: String,
-        /// Its smallest ε, s.
-        epsilon: f64,
-    },
-}
-
-/// Smallest ε that continuous time takes, s: three robots then run at about a third of real time.
-const EPSILON_MIN: f64 = 1e-5;
 
 /// Puts the run of `scene` together.
 ///

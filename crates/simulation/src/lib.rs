@@ -5,10 +5,12 @@
 
 mod build;
 mod continuous;
+mod error;
 mod stage;
 mod step;
 pub mod tune;
 pub mod verdict;
 
-pub use build::{BuildError, build, caption};
+pub use build::{build, caption};
+pub use error::BuildError;
 pub use step::{ObserverStart, Setup, Simulation, Timing};

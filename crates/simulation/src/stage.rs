@@ -1,6 +1,6 @@
 //! The stage of a scene: its robots, props and ground as the world takes them.
 
-use crate::build::BuildError;
+use crate::error::BuildError;
 use formation::Course;
 use formation::lead::{Courses, Hermite, Pace, Table, Way, WayError};
 use scene::{Compensation, Path, PropMotion, Role, Scene, SpeedProfile, VehicleKind};

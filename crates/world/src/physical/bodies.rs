@@ -3,7 +3,6 @@
 
 use super::PropBody;
 use super::ground::ground;
-use super::passage::Knot;
 use crate::Wheeled;
 use crate::touch::Touch;
 use crate::wheeled::GRAVITY;
@@ -37,6 +36,17 @@ pub(super) struct Bodies {
     ccd: CCDSolver,
     /// Of each prop; none of one that is fixed.
     props: Vec<Option<RigidBodyHandle>>,
+}
+
+/// A vehicle at the end of a physics step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Knot {
+    pub(super) pose: Pose,
+    /// Of the pose's point, m/s, world.
+    pub(super) velocity: [f64; 2],
+    pub(super) speed: f64,
+    pub(super) acceleration: f64,
+    pub(super) turn_rate: f64,
 }
 
 impl Clone for Bodies {

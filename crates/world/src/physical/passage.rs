@@ -1,19 +1,8 @@
 //! The motion of the vehicles through the current advance, for observers that look at it continuously.
 
-use super::bodies::Bodies;
+use super::bodies::{Bodies, Knot};
 use super::car::Car;
 use vocabulary::{Motion, Pose, nearest_turn, wrap};
-
-/// A vehicle at the end of a physics step.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Knot {
-    pub(super) pose: Pose,
-    /// Of the pose's point, m/s, world.
-    pub(super) velocity: [f64; 2],
-    pub(super) speed: f64,
-    pub(super) acceleration: f64,
-    pub(super) turn_rate: f64,
-}
 
 /// Knots of all vehicles, step by step.
 #[derive(Debug, Clone)]

@@ -1,0 +1,44 @@
+//! What robots and props have in common as they are written: names and poses.
+
+use crate::text::{
+    Form, Node, Reading, angle_of_turns,
+    form::{Angle, Number},
+    lists::Triple,
+    number, triple,
+};
+use serde_json::{Value as Json, json};
+
+/// Start pose [m, m, rad].
+pub(crate) const POSE: Triple<Number, Number, Angle> = triple(number("m"), number("m"), angle_of_turns(10.0));
+
+/// A robot's or prop's name: fit for paths of overrides, columns of tables and file names.
+pub(crate) struct NameForm {
+    /// Most characters.
+    most: usize,
+}
+
+impl NameForm {
+    /// A whole name.
+    pub(crate) const WHOLE: Self = Self { most: 40 };
+    /// The start of names that end in a number.
+    pub(crate) const START: Self = Self { most: 34 };
+}
+
+impl Form for NameForm {
+    type Out = String;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
+        let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+        let name = node
+            .as_text()
+            .filter(|name| name.chars().all(fits) && (1..=self.most).contains(&name.chars().count()));
+        if name.is_none() {
+            reading.wrong(node, &format!("a name of 1 to {} letters, digits, `-` and `_`", self.most));
+        }
+        name.map(str::to_owned)
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "string", "pattern": format!(r"^[\p{{L}}\p{{N}}\p{{M}}_-]{{1,{}}}$", self.most) })
+    }
+}

@@ -1,0 +1,35 @@
+//! Why a scene that reads well cannot run.
+
+use formation::GraphError;
+use formation::lead::WayError;
+use thiserror::Error;
+
+/// Why a scene that reads well cannot run.
+#[derive(Debug, Error)]
+pub enum BuildError {
+    /// Robots and edges make no formation.
+    #[error(transparent)]
+    Graph(#[from] GraphError),
+    /// The way-points of a lead robot or of a guided prop make no curve.
+    #[error("the path of `{robot}`: {source}")]
+    Way {
+        /// The lead robot or prop.
+        robot: String,
+        /// What is wrong with its points.
+        source: WayError,
+    },
+    /// An observer too fast for continuous time.
+    #[error(
+        "the observer of `{robot}` has ε = {epsilon} s: mode \"continuous\" takes steps of an eighth of it and would \
+         not come to an end; use ε of at least {EPSILON_MIN} s, or mode \"sampled\", which is exact at any ε"
+    )]
+    Stiff {
+        /// The follower.
+        robot: String,
+        /// Its smallest ε, s.
+        epsilon: f64,
+    },
+}
+
+/// Smallest ε that continuous time takes, s: three robots then run at about a third of real time.
+pub(crate) const EPSILON_MIN: f64 = 1e-5;
