@@ -227,6 +227,8 @@ fn lifted(corner: Corner, terrain: &Terrain, origin: DVec3) -> Corner {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
+    use vocabulary::{Cast, Mobility, Placement, Pose, Prop, Solid};
 
     #[test]
     fn every_piece_lies_in_the_ground() {
@@ -251,6 +253,53 @@ mod tests {
         }
         let whole = 0.5 * DVec2::new(4.5, -0.3).perp_dot(DVec2::new(2.1, 1.2)).abs();
         assert!((area - whole).abs() < 1e-4, "{area} {whole}");
+    }
+
+    #[test]
+    fn on_decks_every_piece_lies_on_what_is_uppermost() {
+        let fixed = |solid: Solid, x: f64, y: f64, heading: f64, foot: f64| Prop {
+            name: String::new(),
+            solid,
+            placement: Placement::upright(Pose::new(x, y, heading), foot),
+            mobility: Mobility::Fixed,
+        };
+        let heights = (0..25).map(|k| f64::from((k * 7) % 5) * 0.04).collect();
+        let terrain = Terrain { origin: [-1.0, -1.0], cell: 0.5, columns: 5, rows: 5, heights, grip: vec![] };
+        // A ramp, a platform that cuts it, and one that is partly sunk.
+        let props = vec![
+            fixed(Solid::Wedge { size: [1.5, 0.9, 0.5] }, 0.1, 0.1, 0.5, 0.0),
+            fixed(Solid::Block { size: [1.2, 1.1, 0.3] }, 0.6, 0.2, 1.1, 0.0),
+            fixed(Solid::Block { size: [1.0, 1.0, 0.1] }, -0.7, 0.1, 0.0, 0.0),
+        ];
+        let cast = Cast { props, terrain: Some(Arc::new(terrain)), ..Cast::default() };
+        let floor = Floor::new(&cast);
+        assert_eq!(floor.decks.len(), 3);
+        let origin = DVec3::new(20.0, 0.0, 0.0);
+        let corner = |x: f64, y: f64| Corner {
+            position: [(x - origin.x) as f32, y as f32, 0.0],
+            kind: [0.0; 2],
+            shape: [0.0; 2],
+            colour: [1.0; 4],
+        };
+        let triangle = || vec![corner(-2.0, -0.3), corner(2.5, -0.6), corner(0.1, 0.9)];
+        let area = |onto: Onto| {
+            let mut area = 0.0;
+            for piece in lay(triangle(), &floor, onto, origin, None).chunks_exact(3) {
+                let at = |k: usize| DVec3::from_array(piece[k].position.map(f64::from)) + origin;
+                let middle = (at(0) + at(1) + at(2)) / 3.0;
+                let share = 0.5 * (at(1) - at(0)).truncate().perp_dot((at(2) - at(0)).truncate()).abs();
+                area += share;
+                if share > 1e-6 {
+                    let height = floor.height(middle.truncate());
+                    assert!((height - middle.z).abs() < 1e-4, "{middle} {height}");
+                    assert!(onto == Onto::Floor || height == floor.ground(middle.truncate()));
+                }
+            }
+            area
+        };
+        let whole = 0.5 * DVec2::new(4.5, -0.3).perp_dot(DVec2::new(2.1, 1.2)).abs();
+        let (all, open) = (area(Onto::Floor), area(Onto::Ground));
+        assert!((all - whole).abs() < 1e-4 && open > 0.3 && open < whole - 1.0, "{all} {open} {whole}");
     }
 
     #[test]
