@@ -136,7 +136,7 @@ pub(crate) struct TuneArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
     /// Runs of the scene to try, at most
-    #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u64).range(3..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u64).range(4..=100_000))]
     pub(crate) trials: u64,
 }
 

@@ -28,10 +28,10 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
     let width = decimals + 4;
     let mut files = Vec::new();
     for (count, time) in times.iter().enumerate() {
+        let moment = playback.at(*time);
         if interrupt::asked() {
             return Err(Failure::Interrupted(format!("{count} of {} pictures are written", times.len())));
         }
-        let moment = playback.at(*time);
         let picture = studio.renderer.draw(playback.trail(), &moment, &studio.layout, &studio.style)?;
         let path = args.out.join(format!("{stem}-{time:0width$.decimals$}.png"));
         let time_text = time.to_string();

@@ -1,5 +1,6 @@
 //! A run at any time: the moments between two control samples are interpolated, and the past is remembered.
 
+use crate::interrupt;
 use rendering::Trail;
 use simulation::Simulation;
 use vocabulary::Moment;
@@ -21,9 +22,10 @@ impl Playback {
         Self { simulation, trail, before: first.clone(), after: first }
     }
 
-    /// The moment at `time` s, not before the last one asked for; the last moment of the run after its end.
+    /// The moment at `time` s, not before the last one asked for; the last moment of the run after its end; an
+    /// earlier one where the program has been asked to stop.
     pub(crate) fn at(&mut self, time: f64) -> Moment {
-        while self.after.snapshot.time < time {
+        while self.after.snapshot.time < time && !interrupt::asked() {
             std::mem::swap(&mut self.before, &mut self.after);
             let Some(moment) = self.simulation.next_moment() else {
                 std::mem::swap(&mut self.before, &mut self.after);

@@ -47,8 +47,10 @@ const MOST_CONTACTS: usize = 6;
 fn contacts(metrics: &Metrics) {
     for contact in metrics.first_contacts.iter().take(MOST_CONTACTS) {
         let ([a, b], [x, y, _]) = (&contact.between, contact.place);
-        let (begin, impulse) = (contact.begin, contact.impulse);
-        say(&format!("contact of {a} and {b} at {begin:.2} s, at ({x:.2}, {y:.2}) m, {impulse:.2} N s"));
+        let (begin, impulse, length) = (contact.begin, contact.impulse, contact.end - contact.begin);
+        say(&format!(
+            "contact of {a} and {b} at {begin:.2} s, at ({x:.2}, {y:.2}) m: {impulse:.2} N s in {length:.2} s"
+        ));
     }
     if metrics.contacts > MOST_CONTACTS {
         say(&format!(

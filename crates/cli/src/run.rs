@@ -48,18 +48,20 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     }
     let wall = began.elapsed().as_secs_f64();
     progress.end();
-    // A run that its scene ends at a contact has not been cut short.
-    let whole = step == steps;
-    let complete = whole || simulation.stopped();
-    let (metrics, digest) = sink.finish(if complete { Status::Complete } else { Status::Interrupted })?;
-    if !complete {
+    let status = match step == steps {
+        true => Status::Complete,
+        false if simulation.stopped() => Status::Stopped,
+        false => Status::Interrupted,
+    };
+    let (metrics, digest) = sink.finish(status)?;
+    if status == Status::Interrupted {
         let place = folder.map_or_else(String::new, |f| format!(", recorded in {}", f.display()));
         return Err(Failure::Interrupted(format!(
             "{:.2} of {} s{place}",
             metrics.duration, scene.time.duration
         )));
     }
-    let findings = verdict(&scene, &metrics, whole);
+    let findings = verdict(&scene, &metrics, status == Status::Complete);
     let met = findings.iter().all(|f| f.met);
     let report =
         Report { scene: &scene, metrics: &metrics, findings: &findings, digest, folder, wall, steps: step };
@@ -135,6 +137,10 @@ impl Sink {
 /// The folder asked for, or the next free runs/NAME-001, made at once so that runs started together get one each.
 fn folder(args: &RunArgs) -> Result<PathBuf, Failure> {
     if let Some(folder) = &args.out {
+        if folder.is_file() {
+            let text = format!("{} is a file; --out names a folder for the run", folder.display());
+            return Err(Failure::Usage(text));
+        }
         return Ok(folder.clone());
     }
     let stem = stem(&args.scene.scene);

@@ -22,7 +22,8 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
         interrupted = interrupt::asked();
         !interrupted
     };
-    let most = usize::try_from(args.trials).unwrap_or(usize::MAX);
+    // The scene's own gains are the first trial.
+    let most = usize::try_from(args.trials - 1).unwrap_or(usize::MAX);
     let found = search(&scene, most, look).map_err(|error| Failure::Usage(error.to_string()))?;
     progress.end();
     let [first, best] = &found;

@@ -12,6 +12,8 @@ pub enum Status {
     Interrupted,
     /// To its end.
     Complete,
+    /// Ended by its scene, where bodies touched.
+    Stopped,
 }
 
 /// `manifest.json`.

@@ -75,7 +75,15 @@ impl Stage<'_> {
             (None, None) => PropMotion::Fixed,
         };
         let solid = keys.measured.solid;
-        let elevation = keys.elevation.unwrap_or_else(|| self.foot(solid, pose, &motion));
+        let foot = self.foot(solid, pose, &motion);
+        let elevation = keys.elevation.unwrap_or(foot);
+        if matches!(motion, PropMotion::Loose { .. }) && elevation < foot - 1e-6 {
+            let message = format!(
+                "`{}` starts in the ground: `elevation` of {elevation} m must be at least {foot:.3} m, or left out",
+                keys.name.value
+            );
+            reading.note(keys.name.place, message);
+        }
         let (friction, restitution) = (keys.friction, keys.restitution);
         let name = keys.name.value.clone();
         let prop = Prop { name, solid, pose, elevation, motion, friction, restitution };

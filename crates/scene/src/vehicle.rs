@@ -158,6 +158,11 @@ impl Check<'_> {
                 "the middle of a wheel of `wheel_radius` {wheel_radius} m must lie below the roof, `height` of {height} m"
             );
             self.note(&["wheel_radius", "height"], message, reading);
+        } else if 2.0 * wheel_radius >= wheelbase {
+            let message = format!(
+                "front and rear wheels of `wheel_radius` {wheel_radius} m overlap: below half the `wheelbase` of {wheelbase} m"
+            );
+            self.note(&["wheel_radius", "wheelbase"], message, reading);
         }
         if clearance >= height {
             let message = format!("`clearance` of {clearance} m must be below `height` of {height} m");

@@ -158,6 +158,7 @@ fn props_that_cannot_be() {
         (&FIELD.replace("-5, -5", "5, -5"), 11, &["each `from` below its `to`"]),
         (&FIELD.replace("[-5, -5, 5, 5]", "[1, 1, 3, 3]"), 10, &["there is room for", "0.4 m clear"]),
         (&FIELD.replace("cylinder", "wall"), 13, &["`shape` must be one of"]),
+        (&format!("{block}\nmass = 1\nelevation = -5"), 8, &["`b` starts in the ground", "or left out"]),
         ("[physics]\nstep = 0.05", 8, &["`step`", "from 0.0001 to 0.02"]),
         ("[physics]\non_contact = \"explode\"", 8, &["`record`, `stop`, `fail`"]),
         (&format!("[time]\nmode = \"continuous\"\n{block}"), 8, &["for unicycles", "`b` is in their way"]),

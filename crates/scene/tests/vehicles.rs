@@ -188,7 +188,7 @@ fn gains_that_are_not_said_fit_the_vehicle() {
     };
     assert_eq!(gains("", ""), (5.0, 5.0, 24.53, 0.001));
     assert_eq!(gains("vehicle = \"car\"", ""), (3.0, 3.0, 10.0, 0.02));
-    assert_eq!(gains("", "vehicle = \"differential\""), (3.0, 3.0, 10.0, 0.02));
+    assert_eq!(gains("", "vehicle = \"differential\""), (2.0, 1.5, 8.0, 0.02));
     assert_eq!(
         gains("vehicle = \"car\"\nlaw.k = 4", "law.slope = 7\nobserver.epsilon = 0.1"),
         (4.0, 3.0, 7.0, 0.1)

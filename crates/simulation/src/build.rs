@@ -168,6 +168,6 @@ fn pair(values: [f64; 2]) -> String {
 }
 
 /// A number to six significant digits, without those that come from arithmetic only.
-fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string()
 }

@@ -122,7 +122,7 @@ pub fn tune(scene: &Scene, most: usize, look: impl FnMut(&Trial) -> bool) -> Res
     let starts = [&[own][..], &STARTS].concat();
     for start in &starts {
         let no_constraints: [fn(&[f64], &mut ()) -> f64; 0] = [];
-        let (first_step, share) = (RhoBeg::All(FIRST_STEP.ln()), most / starts.len());
+        let (first_step, share) = (RhoBeg::All(FIRST_STEP.ln()), (most / starts.len()).max(1));
         // It ends by its tolerance or by the number of trials; the best that was seen counts either way.
         let _ = minimize(
             cost,

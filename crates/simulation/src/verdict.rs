@@ -1,5 +1,6 @@
 //! What a run showed, held against what its scene expects.
 
+use crate::build::short;
 use recording::{EdgeMetrics, Metrics};
 use scene::{Expect, OnContact, Scene};
 
@@ -18,7 +19,9 @@ pub struct Finding {
 
 /// Everything that a scene asks of its run, in the order of its keys.
 pub fn verdict(scene: &Scene, metrics: &Metrics, completed: bool) -> Vec<Finding> {
-    let mut findings = expectations(&scene.expect, metrics, completed);
+    // Where the scene ends a run at a contact, that is its end.
+    let stopped = scene.physics.on_contact == OnContact::Stop && metrics.contacts > 0;
+    let mut findings = expectations(&scene.expect, metrics, completed || stopped);
     if scene.physics.on_contact == OnContact::Fail && !scene.expect.no_contact {
         let mut more = Findings { metrics, list: Vec::new() };
         more.contacts("on_contact", "none, else the run fails".into(), |count| count == 0);
@@ -170,7 +173,7 @@ impl Findings<'_> {
         value: impl Fn(&EdgeMetrics) -> [f64; 2],
     ) {
         let unit = ERROR_UNITS[channel];
-        let wanted = format!("≤ {most} {unit}");
+        let wanted = format!("≤ {} {unit}", short(most));
         let (found, met) = match self.largest(channel, value) {
             Some((edge, size)) => (format!("{size:.6} {unit} on {}", name(edge)), size <= most),
             None => ("no edges".into(), true),
@@ -187,7 +190,7 @@ impl Findings<'_> {
         met: impl Fn(f64) -> bool,
     ) {
         let unit = RATE_UNITS[channel];
-        let wanted = format!("{sign} {bound} {unit}");
+        let wanted = format!("{sign} {} {unit}", short(bound));
         let (found, met) = match self.largest(channel, |edge| edge.peak_rates) {
             Some((edge, size)) => (format!("{size:.3} {unit} on {}", name(edge)), met(size)),
             None => ("no edges".into(), false),
@@ -197,7 +200,7 @@ impl Findings<'_> {
 
     fn settling(&mut self, latest: f64) {
         let band = self.metrics.settling_band;
-        let wanted = format!("≤ {latest} s into ±{} m, ±{} rad", band[0], band[1]);
+        let wanted = format!("≤ {latest} s into ±{} m, ±{} rad", short(band[0]), short(band[1]));
         let unsettled = self.metrics.edges.iter().find(|edge| edge.settling_time.is_none());
         let slowest = self.metrics.edges.iter().filter_map(|edge| edge.settling_time.map(|t| (t, edge)));
         let (found, met) = match (unsettled, slowest.max_by(|a, b| a.0.total_cmp(&b.0))) {

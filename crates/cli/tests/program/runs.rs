@@ -234,7 +234,7 @@ fn a_contact_is_recorded_or_ends_the_run_or_fails_it() {
     assert_eq!(table.lines().count(), 2, "{table}");
     let (code, text, _) = run("stop", "stopped");
     assert!(code == 0 && text.contains("1.41 s in 142 steps"), "{text}");
-    assert_eq!(manifest(&folder.path().join("stopped")).status, Status::Complete);
+    assert_eq!(manifest(&folder.path().join("stopped")).status, Status::Stopped);
     let table = fs::read_to_string(folder.path().join("stopped/tables/contacts.csv")).expect("contacts");
     assert_eq!(table.lines().count(), 2, "a contact that has not ended is told too: {table}");
     let (code, text, _) = run("fail", "failed");

@@ -71,8 +71,9 @@ impl Law {
     pub fn fitting(kind: VehicleKind) -> Self {
         match kind {
             VehicleKind::Unicycle => Self::default(),
-            VehicleKind::Car | VehicleKind::Differential => {
-                Self { k: [3.0; 2], beta: [3.0; 2], slope: [10.0; 2], ..Self::default() }
+            VehicleKind::Car => Self { k: [3.0; 2], beta: [3.0; 2], slope: [10.0; 2], ..Self::default() },
+            VehicleKind::Differential => {
+                Self { k: [2.0; 2], beta: [1.5; 2], slope: [8.0; 2], ..Self::default() }
             }
             // At some metres a second and ten metres apart; a radian of bearing is ten metres there.
             VehicleKind::FullSizeCar => {

@@ -18,6 +18,8 @@ use vocabulary::{Attitude, Body, Mobility, Motion, Placement, Pose, Solid, Surfa
 
 /// Bodies whose nearest points are closer than this touch, m.
 const TOUCHING: f64 = 1e-4;
+/// Points of a contact that are less than this farther apart than the nearest belong to it, m.
+const CORNERS: f64 = 2e-3;
 /// Friction and restitution of robots' bodies.
 const SHELL: [f64; 2] = [0.4, 0.1];
 
@@ -305,10 +307,13 @@ impl Bodies {
         }
         let impulse = pair.total_impulse_magnitude();
         let points = pair.manifolds().iter().flat_map(|m| m.points.iter().map(move |p| (m, p)));
-        let (manifold, point) = points.min_by(|(_, a), (_, b)| a.dist.total_cmp(&b.dist))?;
-        if impulse <= 0.0 && point.dist > TOUCHING {
+        let (manifold, deepest) = points.min_by(|(_, a), (_, b)| a.dist.total_cmp(&b.dist))?;
+        if impulse <= 0.0 && deepest.dist > TOUCHING {
             return None;
         }
+        // A face that meets a face touches at its corners; the place is their middle.
+        let about = manifold.points.iter().filter(|point| point.dist <= deepest.dist + CORNERS);
+        let (sum, count) = about.fold((Vector::ZERO, 0.0), |(sum, n), point| (sum + point.local_p1, n + 1.0));
         let frame = match manifold.subshape_pos1() {
             Some(part) => *colliders[0].position() * part,
             None => *colliders[0].position(),
@@ -318,7 +323,7 @@ impl Bodies {
             things.swap(0, 1);
             normal = -normal;
         }
-        let place = frame.transform_point(point.local_p1).to_array();
+        let place = frame.transform_point(sum / count).to_array();
         Some(Touch { things, place, normal: normal.to_array(), impulse })
     }
 }

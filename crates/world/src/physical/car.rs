@@ -80,7 +80,8 @@ impl Car {
         self.command = if self.leads {
             chase(ideal, now, self.vehicle.body.wheelbase, &self.limits)
         } else {
-            self.limits.saturate(command, now.speed)
+            let Command { acceleration, turn_rate } = self.limits.saturate(command, now.speed);
+            Command { acceleration: self.limits.admissible(acceleration, now.speed), turn_rate }
         };
     }
 

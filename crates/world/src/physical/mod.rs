@@ -79,6 +79,7 @@ pub struct Physical {
 struct Guided {
     body: RigidBodyHandle,
     path: Arc<dyn Profile>,
+    /// At the start of the current advance.
     pose: Pose,
     height: f64,
 }
@@ -224,6 +225,9 @@ impl World for Physical {
         self.record.begin(h);
         for k in 1..=steps as u32 {
             self.step(h, f64::from(k) * h);
+        }
+        for prop in &mut self.guided {
+            prop.pose = prescribed(prop.path.as_ref(), prop.pose, self.snapshot.time, duration).pose;
         }
         self.snapshot.time += duration;
         self.write_snapshot();

@@ -194,3 +194,16 @@ fn an_overturned_and_a_stuck_robot_are_named() {
     run.hold(Command { acceleration: 1.0, turn_rate: 0.0 }, 3.0, |_| {});
     assert_eq!(run.world.snapshot().robots[0].condition, Condition::Stuck);
 }
+
+/// A law that brakes on and on does not stop a follower: it keeps to its slowest speed, and can still turn.
+#[test]
+fn a_follower_never_stands_still() {
+    let mut vehicle = truck();
+    vehicle.limits.speed_min = 0.2;
+    let mut run = alone(&vehicle, 1.0);
+    run.hold(Command { acceleration: -4.0, turn_rate: 3.0 }, 3.0, |snapshot| {
+        let motion = &snapshot.robots[0].motion;
+        assert!(motion.speed > 0.1, "{} m/s after {} s", motion.speed, snapshot.time);
+    });
+    assert!((run.motion().speed - 0.2).abs() < 0.02 && run.motion().turn_rate > 0.3, "{:?}", run.motion());
+}

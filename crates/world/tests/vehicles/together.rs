@@ -129,6 +129,37 @@ fn unicycles_touch_too() {
     assert!((first.begin - (1.4 - 0.395)).abs() < 0.02, "{first:?}");
 }
 
+#[derive(Debug)]
+struct Circle;
+
+impl vocabulary::Profile for Circle {
+    fn at(&self, _: f64) -> vocabulary::Drive {
+        vocabulary::Drive { speed: 0.9, turn_rate: 0.3, ..vocabulary::Drive::default() }
+    }
+}
+
+/// A guided prop goes its way to the end, and nothing stops it.
+#[test]
+fn a_guided_prop_keeps_going() {
+    let mut cart = prop(Solid::Block { size: [0.8, 0.5, 0.6] }, Pose::new(0.0, -3.0, 0.0), None);
+    cart.prop.mobility = Mobility::Guided;
+    cart.path = Some(std::sync::Arc::new(Circle));
+    let mut run = Run::new(Stage { props: vec![cart], ..flat(vec![actor(&truck(), Pose::default(), 0.0)]) });
+    let quarter = std::f64::consts::FRAC_PI_2 / 0.3;
+    for _ in 0..(quarter / 0.01).round() as usize {
+        run.world.apply(&[FORWARD]);
+        run.world.advance(0.01);
+    }
+    let placement = run.world.snapshot().props[0];
+    assert!(
+        (placement.position[0] - 3.0).abs() < 0.01 && placement.position[1].abs() < 0.01,
+        "{placement:?}"
+    );
+    assert!(
+        (2.0 * placement.rotation[2].atan2(placement.rotation[3]) - std::f64::consts::FRAC_PI_2).abs() < 0.01
+    );
+}
+
 fn crowd(count: usize) -> Stage {
     let kinds = [truck(), differential()];
     let place = |k: usize| Pose::new((k % 12) as f64 * 0.9, (k / 12) as f64 * 0.9, k as f64);
