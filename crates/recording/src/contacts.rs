@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use vocabulary::{Cast, Contact};
 
 /// Contacts that metrics list one by one.
-const LISTED: u64 = 100;
+const LISTED: usize = 100;
 
 /// One contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
@@ -24,10 +24,13 @@ pub struct ContactMetrics {
     pub impulse: f64,
 }
 
-/// Takes in the contacts of moment after moment: most of them again and again, until they end.
+/// Takes in the contacts of moment after moment: most of them again and again, until they end. Contacts between props
+/// go into the table only.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ContactLog {
     count: usize,
+    /// Number of the newest that was counted: contacts come in the order in which they began.
+    newest: Option<u64>,
     largest: f64,
     first: Vec<Contact>,
     /// Those that had not ended when last seen, by number.
@@ -37,17 +40,27 @@ pub(crate) struct ContactLog {
 impl ContactLog {
     pub(crate) fn push(&mut self, contacts: &[Contact]) {
         for contact in contacts {
-            self.count = self.count.max(contact.number as usize + 1);
-            self.largest = self.largest.max(contact.impulse);
-            match self.first.iter_mut().find(|known| known.number == contact.number) {
-                Some(known) => *known = *contact,
-                None if contact.number < LISTED => self.first.push(*contact),
-                None => {}
+            if contact.of_robot() {
+                self.note(contact);
             }
             if contact.open {
                 self.open.insert(contact.number, *contact);
             } else {
                 self.open.remove(&contact.number);
+            }
+        }
+    }
+
+    /// Counts a contact of a robot, once.
+    fn note(&mut self, contact: &Contact) {
+        self.largest = self.largest.max(contact.impulse);
+        if let Some(known) = self.first.iter_mut().find(|known| known.number == contact.number) {
+            *known = *contact;
+        } else if self.newest.is_none_or(|newest| contact.number > newest) {
+            self.newest = Some(contact.number);
+            self.count += 1;
+            if self.first.len() < LISTED {
+                self.first.push(*contact);
             }
         }
     }
@@ -96,12 +109,14 @@ mod tests {
             normal: [0.0, 0.0, -1.0],
             impulse,
         };
+        let props =
+            |number| Contact { things: [Thing::Prop(0), Thing::Prop(1)], ..contact(number, 9.0, true) };
         let mut log = ContactLog::default();
         log.push(&[contact(0, 1.0, true)]);
         log.push(&[contact(0, 5.0, true), contact(1, 2.0, true)]);
-        log.push(&[contact(0, 5.0, false), contact(1, 3.0, true)]);
+        log.push(&[contact(0, 5.0, false), contact(1, 3.0, true), props(2)]);
         assert_eq!((log.count(), log.largest()), (2, 5.0));
-        assert_eq!(log.close(), [contact(1, 3.0, false)]);
+        assert_eq!(log.close(), [contact(1, 3.0, false), Contact { open: false, ..props(2) }]);
         let first = log.first(&Cast::default());
         assert_eq!((first.len(), first[1].impulse, &*first[1].between[1]), (2, 3.0, "ground"));
     }

@@ -3,7 +3,7 @@
 use crate::continuous::Continuous;
 use formation::{Estimate, Formation, FormationState, LawKind};
 use std::f64::consts::PI;
-use vocabulary::{Cast, EdgeState, Moment, Observation, Relative, wrap};
+use vocabulary::{Cast, Contact, EdgeState, Moment, Observation, Relative, wrap};
 use world::{Physical, Stage, Unicycles, World};
 
 /// How law and observer act in time.
@@ -115,7 +115,7 @@ impl Simulation {
         self.formation.decide(time, &self.observations, &mut self.state);
         self.plant.world_mut().apply(&self.state.commands);
         self.write_moment(time);
-        self.stopped = self.stop_at_contact && !self.moment.contacts.is_empty();
+        self.stopped = self.stop_at_contact && self.moment.contacts.iter().any(Contact::of_robot);
         self.sample += 1;
         Some(&self.moment)
     }

@@ -11,6 +11,13 @@ pub enum Thing {
     Ground,
 }
 
+impl Contact {
+    /// Whether a robot takes part.
+    pub fn of_robot(&self) -> bool {
+        self.things.iter().any(|thing| matches!(thing, Thing::Robot(_)))
+    }
+}
+
 /// One contact of two things, from their first touch until they have parted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {

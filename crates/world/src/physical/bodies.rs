@@ -293,16 +293,17 @@ impl Bodies {
         )
     }
 
-    /// The touches in which robots take part.
+    /// The touches of robots and props.
     pub(super) fn touches(&self) -> Vec<Touch> {
         self.narrow_phase.contact_pairs().filter_map(|pair| self.touch(pair)).collect()
     }
 
-    /// The touch of a pair, if it touches and a robot takes part.
+    /// The touch of a pair, if it touches and is not a prop on the ground.
     fn touch(&self, pair: &ContactPair) -> Option<Touch> {
         let colliders = [&self.colliders[pair.collider1], &self.colliders[pair.collider2]];
         let mut things = colliders.map(thing_of);
-        if !things.iter().any(|thing| matches!(thing, Thing::Robot(_))) {
+        // What lies on the ground is no collision, except a robot's body.
+        if things.contains(&Thing::Ground) && !things.iter().any(|thing| matches!(thing, Thing::Robot(_))) {
             return None;
         }
         let impulse = pair.total_impulse_magnitude();

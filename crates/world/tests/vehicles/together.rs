@@ -129,6 +129,23 @@ fn unicycles_touch_too() {
     assert!((first.begin - (1.4 - 0.395)).abs() < 0.02, "{first:?}");
 }
 
+/// A crate pushed against a pillar: three contacts, one of them between props.
+#[test]
+fn props_that_meet_are_told_too() {
+    let box_ = prop(Solid::Block { size: [0.3, 0.3, 0.3] }, Pose::new(1.0, 0.0, 0.0), Some(0.5));
+    let pillar = prop(Solid::Cylinder { radius: 0.2, height: 1.0 }, Pose::new(1.8, 0.0, 0.0), None);
+    let mut run =
+        Run::new(Stage { props: vec![box_, pillar], ..flat(vec![actor(&truck(), Pose::default(), 1.0)]) });
+    let contacts = told(&mut run, FORWARD, 2.0);
+    let between =
+        contacts.iter().find(|c| c.things == [Thing::Prop(0), Thing::Prop(1)]).expect("the crate hits");
+    assert!(
+        between.impulse > 0.1 && !between.of_robot() && (between.place[0] - 1.6).abs() < 0.03,
+        "{between:?}"
+    );
+    assert!(contacts.iter().all(|c| c.things[1] != Thing::Ground), "{contacts:?}");
+}
+
 #[derive(Debug)]
 struct Circle;
 
