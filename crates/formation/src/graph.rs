@@ -222,6 +222,8 @@ mod tests {
         assert_eq!(graph.edge_to(4), Some(3));
         assert_eq!(graph.depth(6), 3);
         assert!(graph.weakly_connected());
+        let apart = build(&["ann", "bob", "cy"], &[("ann", "bob")]).expect("two formations");
+        assert!(!apart.weakly_connected());
         let adjacency = graph.adjacency();
         assert_eq!(adjacency[(1, 3)], 1);
         assert_eq!(adjacency[(3, 1)], 0);

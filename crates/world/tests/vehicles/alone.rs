@@ -18,8 +18,7 @@ fn idle() -> Wheeled {
 
 #[test]
 fn rest_stays_at_rest_for_a_minute() {
-    for vehicle in [truck(), differential()] {
-        let mut vehicle = vehicle;
+    for mut vehicle in [truck(), differential()] {
         vehicle.limits.speed_min = 0.0;
         let mut run = alone(&vehicle, 0.0);
         run.hold(FORWARD, 60.0, |snapshot| {

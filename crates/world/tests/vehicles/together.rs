@@ -92,10 +92,11 @@ fn nobody_tunnels_at_ten_metres_a_second() {
     let fast = Wheeled { limits: vocabulary::Limits { speed_max: 12.0, ..truck().limits }, ..truck() };
     let wall = prop(Solid::Block { size: [0.02, 4.0, 0.5] }, Pose::new(2.0, 0.0, 0.0), None);
     let mut run = Run::new(Stage { props: vec![wall], ..flat(vec![actor(&fast, Pose::default(), 10.0)]) });
-    let mut farthest = 0.0_f64;
-    run.hold(FORWARD, 1.0, |snapshot| farthest = farthest.max(snapshot.robots[0].motion.pose.x));
-    assert!(farthest < 1.75, "it came to {farthest} m");
-    assert!(!run.world.contacts().is_empty() || farthest > 1.0);
+    let contacts = told(&mut run, FORWARD, 1.0);
+    let places = contacts.iter().map(|contact| contact.place[0]);
+    assert!(places.clone().count() > 0 && places.clone().all(|x| (x - 1.99).abs() < 0.06), "{contacts:?}");
+    let ended = run.motion().pose.x;
+    assert!(ended < 1.75, "it came to {ended} m");
 }
 
 #[test]
