@@ -155,11 +155,7 @@ impl Case {
             wheels: None,
         };
         let actors = self.robots.iter().enumerate().map(actor).collect();
-        let member = |(index, name): (usize, &String)| Member {
-            name: name.clone(),
-            leads: index == 0,
-            body: Body::default(),
-        };
+        let member = |(index, name): (usize, &String)| Member::new(name.clone(), index == 0, Body::default());
         Ok(Setup {
             cast: Cast {
                 duration: self.duration,

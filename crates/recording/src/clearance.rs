@@ -204,7 +204,7 @@ mod tests {
         Body { length: 0.4, width: 0.2, height: 0.2, wheelbase: 0.3, track: 0.2, wheel_radius: 0.05 };
 
     fn cast(robots: usize, props: &[Solid]) -> Cast {
-        let member = Member { name: String::new(), leads: false, body: BODY };
+        let member = Member::new("", false, BODY);
         let prop = |solid: &Solid| Prop {
             name: String::new(),
             solid: *solid,

@@ -1,6 +1,6 @@
 //! One number for a whole trajectory.
 
-use vocabulary::Moment;
+use vocabulary::{Moment, Relative};
 use xxhash_rust::xxh3::Xxh3;
 
 /// A running 128-bit digest (XXH3) of every f64 of every moment, in order: equal only for bitwise equal runs.
@@ -11,7 +11,7 @@ pub struct Digest {
 }
 
 impl Digest {
-    /// Takes in a moment: time, poses, speeds, commands, estimates, props, contacts.
+    /// Takes in a moment: time, poses, speeds, commands, estimates, props, contacts, looks at leaders.
     pub fn push(&mut self, moment: &Moment) {
         self.bytes.clear();
         let mut put = |values: &[f64]| self.bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
@@ -31,6 +31,10 @@ impl Digest {
         }
         for contact in &moment.contacts {
             put(&[contact.begin, contact.end, contact.impulse]);
+        }
+        for frame in &moment.frames {
+            let Relative { distance, bearing, view_angle } = frame.sighting.relative;
+            put(&[frame.sighting.stamp, frame.arrival, distance, bearing, view_angle]);
         }
         self.hash.update(&self.bytes);
     }

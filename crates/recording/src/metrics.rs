@@ -280,8 +280,7 @@ mod tests {
 
     /// An error that falls by e^(−t) on an edge of two robots 1 m apart at the start.
     fn run() -> Metrics {
-        let member =
-            |name: &str| Member { name: name.into(), leads: name == "a", body: vocabulary::Body::default() };
+        let member = |name: &str| Member::new(name, name == "a", vocabulary::Body::default());
         let edges = vec![Edge { leader: 0, follower: 1 }];
         let cast = Cast { members: vec![member("a"), member("b")], edges, ..Cast::default() };
         let mut builder =
@@ -295,7 +294,7 @@ mod tests {
             builder.push(&Moment {
                 snapshot: Snapshot { time, robots, props: vec![] },
                 edges: vec![edge],
-                contacts: vec![],
+                ..Moment::default()
             });
         }
         builder.finish()
@@ -325,7 +324,7 @@ mod tests {
     #[test]
     fn an_edge_that_leaves_its_band_has_not_settled() {
         let cast = Cast {
-            members: vec![Member { name: "a".into(), leads: true, body: vocabulary::Body::default() }; 2],
+            members: vec![Member::new("a", true, vocabulary::Body::default()); 2],
             edges: vec![Edge { leader: 0, follower: 1 }],
             ..Cast::default()
         };
@@ -334,7 +333,7 @@ mod tests {
         for error in [0.0, 0.05, 0.2] {
             let edge = EdgeState { error: [0.0, error], ..EdgeState::default() };
             let snapshot = Snapshot { time: error, robots: vec![RobotState::default(); 2], props: vec![] };
-            builder.push(&Moment { snapshot, edges: vec![edge], contacts: vec![] });
+            builder.push(&Moment { snapshot, edges: vec![edge], ..Moment::default() });
         }
         let metrics = builder.finish();
         assert_eq!((metrics.edges[0].settling_time, metrics.edges[0].settled_rms_error), (None, None));

@@ -170,7 +170,7 @@ mod tests {
     use vocabulary::{Body, Edge, EdgeState, Member, RobotState, Snapshot};
 
     fn cast() -> Cast {
-        let member = |name: &str| Member { name: name.into(), leads: name == "ann", body: Body::default() };
+        let member = |name: &str| Member::new(name, name == "ann", Body::default());
         Cast {
             title: "two".into(),
             duration: 20.0,
@@ -185,7 +185,7 @@ mod tests {
         let mut robots = vec![RobotState::default(); 2];
         robots[1].motion.pose.x = time / 3.0;
         let edge = EdgeState { error: [time, -time], limited: k.is_multiple_of(2), ..EdgeState::default() };
-        Moment { snapshot: Snapshot { time, robots, props: vec![] }, edges: vec![edge], contacts: vec![] }
+        Moment { snapshot: Snapshot { time, robots, props: vec![] }, edges: vec![edge], ..Moment::default() }
     }
 
     fn options(force: bool) -> RunOptions {

@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn roofs_show_the_number_of_the_name() {
-        let member = |name: &str| Member { name: name.into(), leads: false, body: Body::default() };
+        let member = |name: &str| Member::new(name, false, Body::default());
         assert_eq!(roof_number(&member("follower-12"), 3), 12.0);
         assert_eq!(roof_number(&member("leader"), 0), 0.0);
         assert_eq!(roof_number(&member("x99999999"), 4), 4.0);

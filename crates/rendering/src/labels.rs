@@ -352,7 +352,7 @@ mod tests {
 
     #[test]
     fn a_robots_box_holds_all_of_it() {
-        let member = Member { name: "a".into(), leads: true, body: Body::default() };
+        let member = Member::new("a", true, Body::default());
         let cast = Cast { members: vec![member], ..Cast::default() };
         let mut robot = RobotState::default();
         robot.motion.pose = Pose::new(1.0, 2.0, 0.0);

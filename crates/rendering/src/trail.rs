@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn memory_is_bounded() {
-        let member = Member { name: "a".into(), leads: true, body: vocabulary::Body::default() };
+        let member = Member::new("a", true, vocabulary::Body::default());
         let cast = Cast { members: vec![member], ..Cast::default() };
         let mut trail = Trail::new(&cast);
         for k in 0..200_000 {

@@ -5,7 +5,7 @@ use crate::stage::stage;
 use crate::step::{ObserverStart, Setup, Timing};
 use formation::{Course, EdgeLaw, Formation, Graph, SetPointCourse};
 use scene::{Channel, Follow, OnContact, Role, Scene};
-use vocabulary::{Cast, Light, Member};
+use vocabulary::{Cast, Light, Member, Shell};
 
 /// Puts the run of `scene` together.
 ///
@@ -24,10 +24,11 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let limits = stage.actors.iter().map(|actor| actor.robot.limits).collect();
     let edges = graph.edges().to_vec();
     let laws = followers.iter().map(|(_, follow)| edge_law(follow)).collect();
-    let member = |robot: &scene::Robot| Member {
-        name: robot.name.clone(),
-        leads: matches!(robot.role, Role::Lead { .. }),
-        body: robot.vehicle.body(),
+    let member = |(index, robot): (usize, &scene::Robot)| {
+        let body = robot.vehicle.body();
+        let leads = matches!(robot.role, Role::Lead { .. });
+        let shell = Some(Shell::fitting(&body).tagged(index));
+        Member { shell, ..Member::new(robot.name.clone(), leads, body) }
     };
     Ok(Setup {
         cast: Cast {
@@ -39,7 +40,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
                 sun_azimuth: scene.environment.sun_azimuth,
                 haze_from: scene.environment.haze_from,
             },
-            members: scene.robots.iter().map(member).collect(),
+            members: scene.robots.iter().enumerate().map(member).collect(),
             edges,
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
             terrain: stage.terrain.clone(),

@@ -83,7 +83,7 @@ impl Simulation {
         let moment = Moment {
             snapshot: world.snapshot().clone(),
             edges: vec![EdgeState::default(); edges],
-            contacts: Vec::new(),
+            ..Moment::default()
         };
         Self {
             cast: setup.cast,
@@ -169,6 +169,7 @@ impl Simulation {
             robots[edge.follower].camera_pan = wrap(relative.view_angle - PI);
             *out = EdgeState {
                 relative,
+                seen: relative,
                 set_point: wanted,
                 error: [wanted[0] - relative.distance, wrap(wanted[1] - relative.bearing)],
                 asked: decision.asked,
@@ -176,6 +177,7 @@ impl Simulation {
                 rates: decision.rates,
                 limited: decision.limited,
                 too_close: decision.too_close,
+                ..EdgeState::default()
             };
         }
     }

@@ -1,6 +1,6 @@
 //! Who is on stage: everything about a run that does not change while it runs and that a picture needs.
 
-use crate::{Edge, Prop, Surface, Terrain, Thing};
+use crate::{Edge, Lens, Mount, Prop, Shell, Surface, Terrain, Thing};
 use std::sync::Arc;
 
 /// Outer measures of a robot's body, for drawing and clearance.
@@ -39,6 +39,20 @@ pub struct Member {
     pub leads: bool,
     /// Outer measures.
     pub body: Body,
+    /// What its followers recognise it by; `None` for a robot that carries nothing.
+    pub shell: Option<Shell>,
+    /// Where its camera sits.
+    pub mount: Mount,
+    /// What its camera sees.
+    pub lens: Lens,
+}
+
+impl Member {
+    /// A robot with the shell and camera that fit its body, the shell blank.
+    pub fn new(name: impl Into<String>, leads: bool, body: Body) -> Self {
+        let (shell, lens) = (Some(Shell::fitting(&body)), Lens::default());
+        Self { name: name.into(), leads, body, shell, mount: Mount::fitting(&body), lens }
+    }
 }
 
 /// Sun and air, for pictures.

@@ -1,12 +1,18 @@
 //! One row of a run: the truth, and what every edge wanted, knew and did. Pictures and records are made of it.
 
-use crate::{Command, Contact, Placement, Pose, Relative, Snapshot, nearest_turn, wrap};
+use crate::{Command, Contact, Frame, Relative, Sight, Snapshot, nearest_turn, wrap};
 
 /// One edge at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EdgeState {
     /// True relative position.
     pub relative: Relative,
+    /// Relative position as the follower took it: the truth where it is told the truth.
+    pub seen: Relative,
+    /// How well it knows where its leader is.
+    pub sight: Sight,
+    /// Time since the last look that corrected the estimate, s; 0 where it is told the truth.
+    pub age: f64,
     /// Wanted [distance in m, bearing in rad].
     pub set_point: [f64; 2],
     /// Tracking error [m, rad], set point minus truth, bearing wrapped (eq 14).
@@ -32,6 +38,8 @@ pub struct Moment {
     pub edges: Vec<EdgeState>,
     /// Contacts that are open, or that ended since the moment before.
     pub contacts: Vec<Contact>,
+    /// Looks at leaders that arrived since the moment before.
+    pub frames: Vec<Frame>,
 }
 
 impl Moment {
@@ -42,24 +50,7 @@ impl Moment {
         let mix = |p: f64, q: f64| p + (q - p) * share;
         let turn = |p: f64, q: f64| wrap(mix(p, nearest_turn(q, p)));
         let mut out = a.clone();
-        out.snapshot.time = mix(a.snapshot.time, b.snapshot.time);
-        for (o, n) in out.snapshot.robots.iter_mut().zip(&b.snapshot.robots) {
-            let (p, q) = (o.motion.pose, n.motion.pose);
-            o.motion.pose = Pose::new(mix(p.x, q.x), mix(p.y, q.y), turn(p.heading, q.heading));
-            o.motion.speed = mix(o.motion.speed, n.motion.speed);
-            o.attitude.height = mix(o.attitude.height, n.attitude.height);
-            o.attitude.roll = turn(o.attitude.roll, n.attitude.roll);
-            o.attitude.pitch = turn(o.attitude.pitch, n.attitude.pitch);
-            o.camera_pan = turn(o.camera_pan, n.camera_pan);
-            for (w, m) in o.wheels.iter_mut().zip(&n.wheels) {
-                w.rotation = mix(w.rotation, m.rotation);
-                w.steering = mix(w.steering, m.steering);
-                w.compression = mix(w.compression, m.compression);
-            }
-        }
-        for (o, n) in out.snapshot.props.iter_mut().zip(&b.snapshot.props) {
-            *o = Placement::between(o, n, share);
-        }
+        out.snapshot = Snapshot::between(&a.snapshot, &b.snapshot, share);
         for (o, n) in out.edges.iter_mut().zip(&b.edges) {
             o.relative.distance = mix(o.relative.distance, n.relative.distance);
             o.relative.bearing = turn(o.relative.bearing, n.relative.bearing);
@@ -74,7 +65,7 @@ impl Moment {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::RobotState;
+    use crate::{Pose, RobotState};
 
     #[test]
     fn headings_take_the_short_way_round() {

@@ -1,6 +1,6 @@
 //! The truth about all robots at one instant: the only way out of a world.
 
-use crate::{Placement, Pose};
+use crate::{Placement, Pose, Rigid, nearest_turn, wrap};
 
 /// How a robot moves at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -78,6 +78,14 @@ pub struct RobotState {
     pub condition: Condition,
 }
 
+impl RobotState {
+    /// The body's frame in the world's: its origin is the reference point on the ground.
+    pub fn world_from_body(&self) -> Rigid {
+        let (pose, tilt) = (self.motion.pose, self.attitude);
+        Rigid::turned([pose.x, pose.y, tilt.height], pose.heading, tilt.pitch, tilt.roll)
+    }
+}
+
 /// All robots and props at one instant, in the order of the scene.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Snapshot {
@@ -87,4 +95,33 @@ pub struct Snapshot {
     pub robots: Vec<RobotState>,
     /// One entry per prop of the cast, those that never move included.
     pub props: Vec<Placement>,
+}
+
+impl Snapshot {
+    /// The snapshot at `share` (0 to 1) of the way from `a` to `b`; positions and angles are interpolated linearly.
+    #[must_use]
+    pub fn between(a: &Self, b: &Self, share: f64) -> Self {
+        let mix = |p: f64, q: f64| p + (q - p) * share;
+        let turn = |p: f64, q: f64| wrap(mix(p, nearest_turn(q, p)));
+        let mut out = a.clone();
+        out.time = mix(a.time, b.time);
+        for (o, n) in out.robots.iter_mut().zip(&b.robots) {
+            let (p, q) = (o.motion.pose, n.motion.pose);
+            o.motion.pose = Pose::new(mix(p.x, q.x), mix(p.y, q.y), turn(p.heading, q.heading));
+            o.motion.speed = mix(o.motion.speed, n.motion.speed);
+            o.attitude.height = mix(o.attitude.height, n.attitude.height);
+            o.attitude.roll = turn(o.attitude.roll, n.attitude.roll);
+            o.attitude.pitch = turn(o.attitude.pitch, n.attitude.pitch);
+            o.camera_pan = turn(o.camera_pan, n.camera_pan);
+            for (w, m) in o.wheels.iter_mut().zip(&n.wheels) {
+                w.rotation = mix(w.rotation, m.rotation);
+                w.steering = mix(w.steering, m.steering);
+                w.compression = mix(w.compression, m.compression);
+            }
+        }
+        for (o, n) in out.props.iter_mut().zip(&b.props) {
+            *o = Placement::between(o, n, share);
+        }
+        out
+    }
 }

@@ -55,7 +55,7 @@ impl Play {
             goals.push(goal);
         }
         let name = |k: usize| if k == 0 { "leader".to_owned() } else { format!("follower-{k}") };
-        let member = |k| Member { name: name(k), leads: k == 0, body: Body::default() };
+        let member = |k| Member::new(name(k), k == 0, Body::default());
         let cast = Cast {
             title: "Holding a shape".into(),
             caption: "output feedback, observer · k = (5, 5), β = 5, ε = 0.001".into(),
@@ -113,7 +113,7 @@ impl Play {
             EdgeState { relative, set_point: *goal, error, ..EdgeState::default() }
         };
         let edges = self.cast.edges.iter().zip(&self.goals).map(edge).collect();
-        Moment { snapshot: Snapshot { time, robots, props: vec![] }, edges, contacts: vec![] }
+        Moment { snapshot: Snapshot { time, robots, props: vec![] }, edges, ..Moment::default() }
     }
 
     fn robot(&self, robot: usize, time: f64) -> RobotState {

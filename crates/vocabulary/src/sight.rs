@@ -1,0 +1,102 @@
+//! What a follower got to see of its leader.
+
+use crate::{FACES, Region, Relative};
+
+/// One look at a leader: what a sensor reports of one instant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sighting {
+    /// The instant of the look, s from the start of the run.
+    pub stamp: f64,
+    /// Relative position as measured.
+    pub relative: Relative,
+    /// Standard deviations of distance, bearing and view angle as the sensor judges them itself, [m, rad, rad].
+    pub deviation: [f64; 3],
+}
+
+/// How well a follower knows where its leader is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sight {
+    /// It is told the truth at every instant.
+    #[default]
+    Truth,
+    /// It has seen its leader a moment ago.
+    Tracking,
+    /// It has missed some looks and goes by its prediction.
+    Coasting,
+    /// It has not seen its leader for too long: it slows down and searches.
+    Lost,
+}
+
+impl Sight {
+    /// One word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Truth => "truth",
+            Self::Tracking => "tracking",
+            Self::Coasting => "coasting",
+            Self::Lost => "lost",
+        }
+    }
+}
+
+/// What came of one look.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Outcome {
+    /// The estimate was corrected by it.
+    #[default]
+    Used,
+    /// It was too far from the prediction to be believed.
+    Rejected,
+    /// Two poses explain it alike.
+    Ambiguous,
+    /// The leader was not seen.
+    Missed,
+    /// The frame never arrived.
+    Dropped,
+}
+
+impl Outcome {
+    /// One word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Used => "used",
+            Self::Rejected => "rejected",
+            Self::Ambiguous => "ambiguous",
+            Self::Missed => "missed",
+            Self::Dropped => "dropped",
+        }
+    }
+
+    /// Whether the leader was recognised in it.
+    pub fn seen(self) -> bool {
+        matches!(self, Self::Used | Self::Rejected | Self::Ambiguous)
+    }
+}
+
+/// One look at a leader as it goes into the record.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Frame {
+    /// Index of the edge.
+    pub edge: usize,
+    /// The look; only its stamp counts where the leader was not recognised.
+    pub sighting: Sighting,
+    /// When it reached the follower, s from the start of the run.
+    pub arrival: f64,
+    /// What came of it.
+    pub outcome: Outcome,
+    /// Where the follower truly was at the stamp.
+    pub truth: Relative,
+    /// Corners of the tags seen, by face, pixels: top left, top right, bottom right, bottom left of the tag.
+    pub tags: [Option<[[f64; 2]; 4]>; FACES],
+    /// The part of the picture that was looked at; empty for sensors without pictures.
+    pub region: Region,
+    /// Direction of the camera from the follower's heading at the stamp, rad.
+    pub pan: f64,
+}
+
+impl Frame {
+    /// How many faces were seen.
+    pub fn faces(&self) -> usize {
+        self.tags.iter().flatten().count()
+    }
+}
