@@ -10,7 +10,7 @@ use crate::{
     text::{angle_within, form::Number, integer, keys, list, number, table, text, words},
     types::{
         BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, LawPart, ObserverPart, PhysicsPart,
-        SensingPart, TimePart, VehiclePart, ViewsPart,
+        SensingForm, SensingPart, TimePart, VehiclePart, ViewsPart, VisionPart,
     },
     vehicle::VehicleForm,
 };
@@ -45,8 +45,10 @@ keys! {
         law: LawPart = table::<LawPart>(), part;
         /// Observer of every follower that says nothing else.
         observer: ObserverPart = table::<ObserverPart>(), part;
-        /// What a robot knows of its leader.
-        sensing: SensingPart = table::<SensingPart>(), part;
+        /// What every follower that says nothing else knows of its leader: a kind alone, or a table.
+        sensing: SensingPart = SensingForm, part;
+        /// Cameras and shells of all robots.
+        vision: VisionPart = table::<VisionPart>(), part;
         /// The lie of the land and its grip; flat if left out.
         ground: GroundKeys = GroundForm, optional;
         /// Robots one by one.
@@ -91,6 +93,10 @@ keys! {
         law: LawPart = table::<LawPart>(), optional;
         /// What differs from the scene's `observer`.
         observer: ObserverPart = table::<ObserverPart>(), optional;
+        /// What differs from the scene's `sensing`.
+        sensing: SensingPart = SensingForm, optional;
+        /// Number on its shell, unique: its tags are 5·number to 5·number + 4; the lowest that is free if left out.
+        number: usize = integer::<usize>(0, MOST_ROBOTS as u64), optional;
     }
 }
 
@@ -131,6 +137,8 @@ keys! {
         law: LawPart = table::<LawPart>(), part;
         /// What differs from the scene's `observer`.
         observer: ObserverPart = table::<ObserverPart>(), part;
+        /// What differs from the scene's `sensing`.
+        sensing: SensingPart = SensingForm, part;
     }
 }
 

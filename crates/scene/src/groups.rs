@@ -1,7 +1,7 @@
 //! Groups become robots.
 
 use crate::{
-    Channel, Follow, Law, Observer, Robot, Role, Vehicle,
+    Channel, Follow, Law, Robot, Role, Vehicle,
     document::{Follows, GroupKeys, MOST_ROBOTS},
     graph::{Named, check_known},
     robots::{Defaults, Draft, check_distance, check_path, start_pose, start_speed},
@@ -26,8 +26,8 @@ pub(crate) fn expand(
     let vehicle = defaults.vehicle(keys.vehicle.as_ref(), group.node.place, reading);
     let speed = start_speed(keys.speed.as_ref(), &vehicle, reading);
     let law = keys.law.as_ref()?.value.complete_with(&defaults.law, Law::fitting(vehicle.kind));
-    let observer =
-        keys.observer.as_ref()?.value.complete_with(&defaults.observer, Observer::fitting(vehicle.kind));
+    let observer = defaults.observer(&keys.observer.as_ref()?.value, &vehicle);
+    let sensing = defaults.sensing(&keys.sensing.as_ref()?.value);
     let spacing = keys.distance.as_ref()?;
     check_distance(spacing.value, law.distance_min, spacing.place, reading);
     let (leader, origin) = group.leader(&vehicle, drafts, reading)?;
@@ -41,9 +41,10 @@ pub(crate) fn expand(
             bearing: Channel::Constant(spot.bearing),
             law,
             observer,
+            sensing,
         });
         let pose = scatter.around(origin, spot.at);
-        group.push(Robot { name: group.name(place), pose, vehicle, role }, drafts);
+        group.push(Robot { name: group.name(place), pose, number: 0, vehicle, role }, drafts);
     }
     Some(())
 }
@@ -109,7 +110,7 @@ impl Group<'_> {
         let place = self.keys.name.as_ref().map_or(self.node.place, |name| name.place);
         let name = Some(Found { place, value: robot.name.clone() });
         // Leaders inside the group exist, and the one outside has been looked up.
-        drafts.push(Draft { named: Named { name, leader: None }, robot: Some(robot) });
+        drafts.push(Draft { named: Named { name, leader: None }, number: None, robot: Some(robot) });
     }
 
     /// Name and start pose of the robot in place 1, which is made if it is the group's own.
@@ -129,7 +130,7 @@ impl Group<'_> {
                 let pose = start_pose(given, Some(&path.value), self.node.place, reading)?;
                 let name = self.name(0);
                 let role = Role::Lead { path: path.value.clone() };
-                self.push(Robot { name: name.clone(), pose, vehicle: *vehicle, role }, drafts);
+                self.push(Robot { name: name.clone(), pose, number: 0, vehicle: *vehicle, role }, drafts);
                 Some((name, pose))
             }
             (None, Some(_)) => {

@@ -25,6 +25,7 @@ mod relief;
 mod resolve;
 mod robots;
 mod shape;
+mod sight;
 mod start;
 mod table_file;
 mod text;
@@ -36,6 +37,6 @@ pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
 pub use types::{
     Channel, Compensation, Environment, Expect, Film, Follow, Ground, Law, LawKind, Mode, Noise, Observer,
-    ObserverStart, OnContact, Patch, Path, Physics, Prop, PropMotion, Ramp, Relief, Robot, Role, Scene,
-    Sensing, SensingKind, SpeedProfile, Switching, Time, Vehicle, VehicleKind, Views,
+    ObserverKind, ObserverStart, OnContact, Patch, Path, Physics, Prop, PropMotion, Ramp, Relief, Robot,
+    Role, Scene, Sensing, SensingKind, SpeedProfile, Switching, Time, Vehicle, VehicleKind, Views, Vision,
 };

@@ -8,9 +8,12 @@ use crate::{
     groups::{Group, expand},
     props::{Placed, Stage},
     robots::{Defaults, Draft, draft},
+    sight::{Said, check_sight, number},
     start::check_start,
     text::{Found, Node, Part, Place, Reading},
-    types::{EnvironmentPart, ExpectPart, FOLLOW, FilmPart, PhysicsPart, SensingPart, TimePart, ViewsPart},
+    types::{
+        EnvironmentPart, ExpectPart, FilmPart, PhysicsPart, ROBOT_VIEWS, TimePart, ViewsPart, VisionPart,
+    },
     vehicle::{check_meaning, usual_kind},
 };
 use std::collections::HashSet;
@@ -25,6 +28,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         vehicle: document.vehicle?.value,
         law: document.law?.value,
         observer: document.observer?.value,
+        sensing: document.sensing?.value,
         step: physics.complete(&PhysicsPart::default()).step,
         step_place: physics.step.as_ref().map(|found| found.place),
     };
@@ -37,13 +41,17 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         (Some(_), None) => None,
         (_, keys) => ground(keys.as_ref().map(|found| &found.value), seed, reading),
     };
-    let drafts = drafts(&robots, &groups, root, seed, &defaults, reading);
+    let mut drafts = drafts(&robots, &groups, root, seed, &defaults, reading);
+    number(&mut drafts, reading);
     check_graph(drafts.iter().map(|draft| &draft.named), reading);
     let (props, patterns) = (document.props?.value, document.patterns?.value);
     let standing: Vec<_> = drafts.iter().filter_map(|draft| draft.robot.as_ref()).collect();
     let stage = Stage { ground: ground.as_ref(), robots: &standing, seed };
     let props = stage.props(&props, &patterns, root, reading);
     check_names(&drafts, &props, reading);
+    let vision_part = document.vision?.value;
+    let vision = vision_part.complete(&VisionPart::default());
+    check_sight(&Said { time: &time_part, part: &vision_part, vision: &vision }, &drafts, reading);
     let level = ground.as_ref().is_none_or(|ground| ground.terrain.is_none());
     check_continuous(&time_part, &drafts, &props, level, reading);
     if let Some(ground) = &ground
@@ -63,7 +71,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         physics: physics.complete(&PhysicsPart::default()),
         ground: ground?,
         props: props.into_iter().map(|placed| placed.value).collect(),
-        sensing: document.sensing?.value.complete(&SensingPart::default()),
+        vision,
         robots: drafts.into_iter().map(|draft| draft.robot).collect::<Option<_>>()?,
         environment: document.environment?.value.complete(&EnvironmentPart::default()),
         views,
@@ -74,13 +82,14 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
 
 fn expect(part: &ExpectPart, time: &Time, reading: &mut Reading) -> Expect {
     let expect = part.complete(&ExpectPart::default());
-    match (&part.settled_error_at_most, &part.settled_after) {
+    let bound = part.settled_error_at_most.as_ref().or(part.settled_rms_at_most.as_ref());
+    match (bound, &part.settled_after) {
         (Some(error), None) => {
             reading.note(error.place, "`settled_after` is missing: from when on, in s, does this hold?");
         }
         (None, Some(after)) => {
-            reading
-                .note(after.place, "`settled_after` needs `settled_error_at_most`, which holds from then on");
+            let message = "`settled_after` needs `settled_error_at_most` or `settled_rms_at_most`, which hold from then on";
+            reading.note(after.place, message);
         }
         (_, Some(after)) if expect.settled_after.is_some_and(|after| after >= time.duration) => {
             let message = format!("`settled_after` must be before the end of the run at {} s", time.duration);
@@ -187,10 +196,10 @@ fn film(part: &FilmPart, drafts: &[Draft], reading: &mut Reading) -> Film {
     part.complete(&FilmPart::default())
 }
 
-/// Notes a view that follows a robot which is not there.
+/// Notes a view of a robot which is not there.
 fn check_view(view: Option<(Place, &str)>, drafts: &[Draft], reading: &mut Reading) {
     if let Some((place, view)) = view
-        && let Some(name) = view.strip_prefix(FOLLOW)
+        && let Some(name) = ROBOT_VIEWS.iter().find_map(|start| view.strip_prefix(start))
     {
         check_known(name, place, drafts.iter().map(|draft| &draft.named), reading);
     }

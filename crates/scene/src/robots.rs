@@ -1,11 +1,11 @@
 //! From the keys of a robot to a checked robot.
 
 use crate::{
-    Follow, Law, Observer, Path, Robot, Role, Vehicle,
+    Follow, Law, Observer, Path, Robot, Role, Sensing, Vehicle,
     document::RobotKeys,
     graph::Named,
     text::{Found, Node, Part, Place, Reading},
-    types::{LawPart, ObserverPart, VehiclePart},
+    types::{LawPart, ObserverPart, SensingPart, VehiclePart},
     vehicle::{Written, vehicle},
 };
 use vocabulary::Pose;
@@ -15,6 +15,7 @@ pub(crate) struct Defaults {
     pub(crate) vehicle: VehiclePart,
     pub(crate) law: LawPart,
     pub(crate) observer: ObserverPart,
+    pub(crate) sensing: SensingPart,
     /// Step of the physics, s.
     pub(crate) step: f64,
     /// Where that is said.
@@ -34,11 +35,26 @@ impl Defaults {
         let place = self.step_place.unwrap_or(place);
         vehicle(&Written { own, scene: &self.vehicle, step: self.step, place }, reading)
     }
+
+    /// The observer of a robot or group that says `own` of it.
+    pub(crate) fn observer(&self, own: &ObserverPart, vehicle: &Vehicle) -> Observer {
+        let observer = own.complete_with(&self.observer, Observer::fitting(vehicle.kind));
+        let written = own.epsilon.is_some() || self.observer.epsilon.is_some();
+        let said = own.adaptive.as_ref().or(self.observer.adaptive.as_ref());
+        Observer { adaptive: said.map_or(!written, |found| found.value), ..observer }
+    }
+
+    /// The sensing of a robot or group that says `own` of it.
+    pub(crate) fn sensing(&self, own: &SensingPart) -> Sensing {
+        own.complete_with(&self.sensing, Sensing::default())
+    }
 }
 
 /// A robot as far as it could be made out, and where it came from.
 pub(crate) struct Draft {
     pub(crate) named: Named,
+    /// The number it is given in the file.
+    pub(crate) number: Option<Found<usize>>,
     /// `None` after a note.
     pub(crate) robot: Option<Robot>,
 }
@@ -46,7 +62,7 @@ pub(crate) struct Draft {
 /// The robot of one table.
 pub(crate) fn draft(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Reading) -> Draft {
     let named = Named { name: keys.name.clone(), leader: keys.leader.clone() };
-    Draft { named, robot: robot(keys, node, defaults, reading) }
+    Draft { named, number: keys.number.clone(), robot: robot(keys, node, defaults, reading) }
 }
 
 fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Reading) -> Option<Robot> {
@@ -58,7 +74,7 @@ fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Readi
         (Some(_), None) => None,
         (_, pose) => start_pose(pose.as_ref(), path, node.place, reading),
     };
-    Some(Robot { name: keys.name.as_ref()?.value.clone(), pose: pose?, vehicle, role: role? })
+    Some(Robot { name: keys.name.as_ref()?.value.clone(), pose: pose?, number: 0, vehicle, role: role? })
 }
 
 fn role(
@@ -90,8 +106,9 @@ fn role(
 
 fn lead(keys: &RobotKeys, node: &Node, vehicle: &Vehicle, reading: &mut Reading) -> Option<Role> {
     let name = &keys.name.as_ref()?.value;
-    for entry in
-        ["distance", "bearing", "speed", "law", "observer"].into_iter().filter_map(|key| node.entry(key))
+    for entry in ["distance", "bearing", "speed", "law", "observer", "sensing"]
+        .into_iter()
+        .filter_map(|key| node.entry(key))
     {
         reading.note(entry.place, format!("`{}` is for robots that follow, but `{name}` leads", entry.key));
     }
@@ -118,6 +135,7 @@ fn follow(
     let law = keys.law.as_ref().map_or_else(LawPart::default, |found| found.value.clone());
     let law = law.complete_with(&defaults.law, Law::fitting(vehicle.kind));
     let observer = keys.observer.as_ref().map_or_else(ObserverPart::default, |found| found.value.clone());
+    let sensing = keys.sensing.as_ref().map_or_else(SensingPart::default, |found| found.value.clone());
     let speed = start_speed(keys.speed.as_ref(), vehicle, reading);
     let (distance, bearing) = (keys.distance.as_ref()?, keys.bearing.as_ref()?);
     check_distance(distance.value.least(), law.distance_min, distance.place, reading);
@@ -127,7 +145,8 @@ fn follow(
         distance: distance.value.clone(),
         bearing: bearing.value.clone(),
         law,
-        observer: observer.complete_with(&defaults.observer, Observer::fitting(vehicle.kind)),
+        observer: defaults.observer(&observer, vehicle),
+        sensing: defaults.sensing(&sensing),
     })
 }
 

@@ -45,7 +45,11 @@ settings! {
         pub error_peak_at_most: Option<[f64; 2]> = None, optional(ERROR);
         /// What no |error| of any edge may exceed from `settled_after` to the end, [m, rad].
         pub settled_error_at_most: Option<[f64; 2]> = None, optional(ERROR);
-        /// Time from which `settled_error_at_most` holds, s.
+        /// What the root mean square of no edge's error may exceed from `settled_after` to the end, [m, rad].
+        pub settled_rms_at_most: Option<[f64; 2]> = None, optional(ERROR);
+        /// Share of the looks that arrived in which every follower has to have recognised its leader.
+        pub in_view_at_least: Option<f64> = None, optional(number("").from(0.0).up_to(1.0));
+        /// Time from which `settled_error_at_most` and `settled_rms_at_most` hold, s.
         pub settled_after: Option<f64> = None, optional(number("s").from(0.0));
         /// Number of contacts of two bodies, props and ground included, over the run.
         pub contacts_exactly: Option<u32> = None, optional(integer::<u32>(0, 1_000_000));

@@ -3,7 +3,7 @@
 
 use super::VehicleKind;
 use crate::text::{
-    Form, Node, Reading, Value, angle, couple, keys, number, pair, settings, table, words, words::Words,
+    Form, Node, Reading, Value, angle, couple, flag, keys, number, pair, settings, table, words, words::Words,
 };
 use serde::Serialize;
 use serde_json::{Value as Json, json};
@@ -60,8 +60,27 @@ settings! {
         pub alpha1: [f64; 2] = [2.0; 2], pair(number("").above(0.0));
         /// α2 of s² + α1 s + α2; above 0 for stability.
         pub alpha2: [f64; 2] = [1.0; 2], pair(number("").above(0.0));
+        /// How looks at the leader become an estimate; looks come with every sensing but `truth`.
+        pub kind: ObserverKind = ObserverKind::HighGain, ObserverKind::form();
+        /// With looks: whether ε follows from how certain each look is, ε⁵ = 3σ²T/(32 δ²), instead of being `epsilon`; true
+        /// where `epsilon` is not written.
+        pub adaptive: bool = true, flag();
+        /// With looks: size of what the observer does not know (δ = |g_v V_i|), [m/s², rad/s²].
+        pub disturbance: [f64; 2] = [1.0; 2], pair(number("m/s² or rad/s²").above(0.0).up_to(1e4));
+        /// With looks: a look farther from the prediction than this many standard deviations is not believed.
+        pub gate: f64 = 6.0, number("").above(0.0).up_to(1e6);
         /// Where the estimate of [distance, bearing] starts; that of their rates starts at 0.
         pub start: ObserverStart = ObserverStart::Measured, StartForm;
+    }
+}
+
+words! {
+    /// How looks at the leader become an estimate of [distance, bearing] and of their rates.
+    pub enum ObserverKind {
+        /// The high-gain observer, carried on by eqs 31-32 and corrected by each look.
+        HighGain = "high-gain",
+        /// Two unscented Kalman filters, one for the relative position and one for the leader's speed and turn rate.
+        Unscented = "unscented",
     }
 }
 

@@ -10,26 +10,29 @@ mod path;
 mod prop;
 mod robot;
 mod run;
+mod sensing;
 mod set_point;
 mod stage;
 mod vehicle;
 
 pub use expect::Expect;
 pub use ground::{Ground, Noise, Patch, Relief};
-pub use law::{Law, LawKind, Observer, ObserverStart, Switching};
+pub use law::{Law, LawKind, Observer, ObserverKind, ObserverStart, Switching};
 pub use path::{Path, SpeedProfile};
 pub use prop::{Prop, PropMotion};
 pub use robot::{Follow, Robot, Role};
-pub use run::{Mode, OnContact, Physics, Sensing, SensingKind, Time};
+pub use run::{Mode, OnContact, Physics, Time};
+pub use sensing::{Sensing, SensingKind, Vision};
 pub use set_point::{Channel, Ramp};
 pub use stage::{Environment, Film, Views};
 pub use vehicle::{Compensation, Vehicle, VehicleKind};
 
 pub(crate) use expect::ExpectPart;
 pub(crate) use law::{LawPart, ObserverPart};
-pub(crate) use run::{PhysicsPart, SensingPart, TimePart};
+pub(crate) use run::{PhysicsPart, TimePart};
+pub(crate) use sensing::{SensingForm, SensingPart, VisionPart};
 pub(crate) use set_point::{BearingForm, DistanceForm};
-pub(crate) use stage::{EnvironmentPart, FOLLOW, FilmPart, ViewsPart};
+pub(crate) use stage::{EnvironmentPart, FilmPart, ROBOT_VIEWS, ViewsPart};
 pub(crate) use vehicle::VehiclePart;
 
 use serde::Serialize;
@@ -47,8 +50,8 @@ pub struct Scene {
     pub time: Time,
     /// How vehicles with wheels and props that move are carried through time.
     pub physics: Physics,
-    /// What a robot knows of its leader.
-    pub sensing: Sensing,
+    /// Cameras and shells of all robots.
+    pub vision: Vision,
     /// The lie of the land and its grip.
     pub ground: Ground,
     /// All robots in the order of the file, groups in place of their members, at least one. Names are unique.

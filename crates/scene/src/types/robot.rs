@@ -1,6 +1,6 @@
 //! Robots and their roles.
 
-use super::{Channel, Law, Observer, Path, Vehicle};
+use super::{Channel, Law, Observer, Path, Sensing, Vehicle};
 use crate::vehicle::written;
 use serde::{Serialize, Serializer};
 use vocabulary::Pose;
@@ -13,6 +13,8 @@ pub struct Robot {
     /// Where it starts, [m, m, rad].
     #[serde(serialize_with = "pose_as_list")]
     pub pose: Pose,
+    /// Number on its shell; unique.
+    pub number: usize,
     /// What it is and what it can do.
     #[serde(serialize_with = "written")]
     pub vehicle: Vehicle,
@@ -49,6 +51,8 @@ pub struct Follow {
     pub law: Law,
     /// Observer; used by the output-feedback law only.
     pub observer: Observer,
+    /// What it knows of its leader.
+    pub sensing: Sensing,
 }
 
 fn pose_as_list<S: Serializer>(pose: &Pose, serializer: S) -> Result<S::Ok, S::Error> {

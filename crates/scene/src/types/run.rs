@@ -1,4 +1,4 @@
-//! The run as a whole: its time, its physics and what is sensed.
+//! The run as a whole: its time and its physics.
 
 use crate::text::{number, settings, words};
 
@@ -24,23 +24,6 @@ words! {
         Sampled = "sampled",
         /// As sampled, but the observer sees samples only.
         Measured = "measured",
-    }
-}
-
-settings! {
-    /// What a robot knows of its leader.
-    #[derive(Copy)]
-    pub struct Sensing from SensingPart {
-        /// Where observations come from.
-        pub kind: SensingKind = SensingKind::Truth, SensingKind::form();
-    }
-}
-
-words! {
-    /// Where observations come from.
-    pub enum SensingKind {
-        /// The true relative position, without noise or delay.
-        Truth = "truth",
     }
 }
 

@@ -23,8 +23,8 @@ settings! {
 settings! {
     /// How pictures look at the run.
     pub struct Views from ViewsPart {
-        /// View used where the command line names none: `snake`, `snake-eye`, `top`, `orbit`, `fixed` or
-        /// `follow:<robot>`.
+        /// View used where the command line names none: `snake`, `snake-eye`, `top`, `orbit`, `fixed`,
+        /// `follow:<robot>` or `camera:<robot>`.
         pub default: String = "snake".to_owned(), ViewForm;
     }
 }
@@ -43,8 +43,8 @@ settings! {
 
 /// Views that need no robot's name.
 const VIEWS: [&str; 5] = ["snake", "snake-eye", "top", "orbit", "fixed"];
-/// What stands before the name of the robot that is followed.
-pub(crate) const FOLLOW: &str = "follow:";
+/// What stands before the name of a robot in the views that go with one.
+pub(crate) const ROBOT_VIEWS: [&str; 2] = ["follow:", "camera:"];
 
 /// The name of a view.
 struct ViewForm;
@@ -53,14 +53,16 @@ impl Form for ViewForm {
     type Out = String;
 
     fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
-        let name = node.as_text().filter(|name| VIEWS.contains(name) || name.starts_with(FOLLOW));
+        let name = node
+            .as_text()
+            .filter(|name| VIEWS.contains(name) || ROBOT_VIEWS.iter().any(|v| name.starts_with(v)));
         if name.is_none() {
-            not_a_word(node, VIEWS.into_iter().chain(["follow:<robot>"]), reading);
+            not_a_word(node, VIEWS.into_iter().chain(["follow:<robot>", "camera:<robot>"]), reading);
         }
         name.map(str::to_owned)
     }
 
     fn schema(&self) -> Json {
-        json!({ "anyOf": [{ "enum": VIEWS }, { "type": "string", "pattern": format!("^{FOLLOW}.+$") }] })
+        json!({ "anyOf": [{ "enum": VIEWS }, { "type": "string", "pattern": format!("^({}).+$", ROBOT_VIEWS.join("|")) }] })
     }
 }

@@ -1,0 +1,211 @@
+//! What followers can and cannot see: shells, cameras and the looks that are possible.
+
+use crate::{
+    Channel, Follow, LawKind, Mode, Robot, Role, SensingKind, Vision,
+    robots::Draft,
+    text::{Found, Place, Reading, words::quoted},
+    types::{SensingKind as Kind, TimePart, VisionPart},
+};
+use std::collections::HashMap;
+use vocabulary::{FACES, Lens, Mount, Pose, Shell, TAGS};
+
+/// Robots whose shells the tag family can tell apart.
+const MOST_SHELLS: usize = TAGS / FACES;
+/// A tag is read up to this angle from its normal, rad.
+const STEEPEST: f64 = 65.0 / 180.0 * std::f64::consts::PI;
+/// Pixels that a cell needs at least.
+const LEAST_CELL: f64 = 1.5;
+
+impl Vision {
+    /// The shell of a robot, its tags those of `number`; blank where the family has none.
+    pub fn shell(&self, robot: &Robot) -> Shell {
+        let fitting = Shell::fitting(&robot.vehicle.body());
+        let shell = fitting.scaled(self.shell_scale).tagged(robot.number);
+        Shell { cell: self.tag_cell.unwrap_or(shell.cell), ..shell }
+    }
+
+    /// Where the camera of a robot sits.
+    pub fn mount(&self, robot: &Robot) -> Mount {
+        let (usual, shell) = (Mount::fitting(&robot.vehicle.body()), self.shell(robot));
+        // As far above a shell of another size as above the usual one.
+        let above = usual.height + (self.shell_scale - 1.0) * (usual.height - shell.height);
+        Mount {
+            forward: self.camera_forward.unwrap_or(usual.forward),
+            height: self.camera_height.unwrap_or(above),
+        }
+    }
+
+    /// What every camera sees.
+    pub fn lens(&self) -> Lens {
+        let [width, height] = self.resolution;
+        let distortion = [self.k1, self.k2, self.p1, self.p2, self.k3];
+        Lens { distortion, ..Lens::pinhole(width, height, self.field_of_view) }
+    }
+}
+
+/// Numbers for the robots that name none: the lowest that are free.
+pub(crate) fn number(drafts: &mut [Draft], reading: &mut Reading) {
+    let mut taken: HashMap<usize, String> = HashMap::new();
+    for draft in drafts.iter() {
+        let (Some(number), Some(name)) = (&draft.number, &draft.named.name) else { continue };
+        if let Some(other) = taken.insert(number.value, name.value.clone()) {
+            let first = FACES * number.value;
+            let message = format!(
+                "`number` {} is that of `{other}` already: tags {first} to {} would be on two shells",
+                number.value,
+                first + FACES - 1
+            );
+            reading.note(number.place, message);
+        }
+    }
+    let mut free = (0..).filter(|number| !taken.contains_key(number));
+    for draft in drafts.iter_mut() {
+        let number = draft.number.as_ref().map(|found| found.value).or_else(|| free.next());
+        if let (Some(robot), Some(number)) = (&mut draft.robot, number) {
+            robot.number = number;
+        }
+    }
+}
+
+/// Where things are said that sight depends on.
+pub(crate) struct Said<'a> {
+    pub(crate) time: &'a TimePart,
+    pub(crate) part: &'a VisionPart,
+    pub(crate) vision: &'a Vision,
+}
+
+/// Notes looks that cannot be.
+pub(crate) fn check_sight(said: &Said<'_>, drafts: &[Draft], reading: &mut Reading) {
+    let robots: HashMap<&str, &Robot> = drafts
+        .iter()
+        .filter_map(|draft| draft.robot.as_ref())
+        .map(|robot| (robot.name.as_str(), robot))
+        .collect();
+    let mut inside = false;
+    for draft in drafts {
+        let (Some(robot), Some(name)) = (&draft.robot, &draft.named.name) else { continue };
+        let Role::Follow(follow) = &robot.role else { continue };
+        let kind = follow.sensing.kind;
+        if kind == Kind::Truth {
+            continue;
+        }
+        check_law(said, follow, robot, name.place, reading);
+        let leader = robots.get(follow.leader.as_str()).copied();
+        if let Some(leader) = leader.filter(|_| kind.needs_tags()) {
+            if !inside {
+                inside = check_shell(said, robot, name.place, reading);
+            }
+            check_visible(said, follow, (leader, robot), name.place, reading);
+        }
+    }
+}
+
+fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Place, reading: &mut Reading) {
+    let word = SensingKind::form().word_of(follow.sensing.kind);
+    if follow.law.kind != LawKind::OutputFeedback {
+        let law = LawKind::form().word_of(follow.law.kind);
+        let message = format!(
+            "`{}` uses the `{law}` law, which has to know more than looks tell; with sensing `{word}` its law must be \
+             `output-feedback`",
+            robot.name
+        );
+        reading.note(place, message);
+    }
+    if let Some(mode) = said.time.mode.as_ref().filter(|mode| mode.value == Mode::Continuous) {
+        let words =
+            quoted([Mode::Sampled, Mode::Measured].into_iter().map(|mode| Mode::form().word_of(mode)));
+        let message = format!(
+            "mode `continuous` knows no looks, but `{}` senses by `{word}`; use one of {words}",
+            robot.name
+        );
+        reading.note(mode.place, message);
+    }
+}
+
+/// Notes cameras and tags that do not fit the robot's shell; whether it did.
+fn check_shell(said: &Said<'_>, robot: &Robot, place: Place, reading: &mut Reading) -> bool {
+    let (shell, mount) = (said.vision.shell(robot), said.vision.mount(robot));
+    let place = |found: [Option<Place>; 3]| found.into_iter().flatten().next().unwrap_or(place);
+    let at = |found: &Option<Found<f64>>| found.as_ref().map(|found| found.place);
+    let part = said.part;
+    let up = mount.height - shell.height;
+    let half = 0.5 * shell.face_height;
+    let within = shell.apothem - up * shell.lean.tan();
+    let camera =
+        [&part.camera_height, &part.camera_forward].map(|found| found.as_ref().map(|found| found.place));
+    if up.abs() < half && (mount.forward - shell.forward).abs() < within {
+        let message = format!(
+            "the camera of `{}` is inside its own shell: at {:.3} m over the ground, and the shell reaches from {:.3} m to \
+             {:.3} m; set `camera_height` above that, or `camera_forward` beyond {:.3} m",
+            robot.name,
+            mount.height,
+            shell.height - half,
+            shell.height + half,
+            shell.forward + within
+        );
+        reading.note(place([camera[0], camera[1], at(&part.shell_scale)]), message);
+        return true;
+    }
+    let slope = shell.face_height / shell.lean.cos();
+    let side = 2.0 * shell.half_tag();
+    if side > slope || shell.half_tag() > shell.half_width(shell.half_tag()) {
+        let message = format!(
+            "tags of `tag_cell` {} m are squares of {side:.3} m, too large for faces of {:.3} m by {slope:.3} m",
+            shell.cell,
+            2.0 * shell.half_width(0.0)
+        );
+        let cell = part.tag_cell.as_ref().map(|found| found.place);
+        reading.note(place([cell, at(&part.shell_scale), None]), message);
+        return true;
+    }
+    false
+}
+
+/// Notes a leader that shows its follower no tag at its set point.
+fn check_visible(
+    said: &Said<'_>,
+    follow: &Follow,
+    (leader, robot): (&Robot, &Robot),
+    place: Place,
+    reading: &mut Reading,
+) {
+    if leader.number >= MOST_SHELLS {
+        let message = format!(
+            "`{}` follows `{}` by its tags, but that is number {} and there are tags for {MOST_SHELLS} robots only",
+            robot.name, leader.name, leader.number
+        );
+        reading.note(place, message);
+        return;
+    }
+    let (Channel::Constant(distance), Channel::Constant(bearing)) = (&follow.distance, &follow.bearing)
+    else {
+        return;
+    };
+    let (shell, mount, lens) = (said.vision.shell(leader), said.vision.mount(robot), said.vision.lens());
+    let (sin, cos) = bearing.sin_cos();
+    let [x, y] = Pose::new(distance * cos, distance * sin, 0.0).world_from_body(mount.forward, 0.0);
+    let eye = [x, y, mount.height];
+    let faces = (0..FACES).filter_map(|face| {
+        let frame = shell.body_from_face(face);
+        let [right, up, out] = frame.inverse().apply(eye);
+        let away = (right * right + up * up + out * out).sqrt();
+        let slant = out / away;
+        (slant > STEEPEST.cos()).then_some(lens.focal * shell.cell * slant.sqrt() / away)
+    });
+    let largest = faces.fold(None, |most: Option<f64>, size| Some(most.map_or(size, |most| most.max(size))));
+    let degrees = bearing.to_degrees();
+    let message = match largest {
+        None => format!(
+            "`{}` can never see its leader: at a bearing of {degrees:.0} deg the shell of `{}` shows no tag within 65 deg of \
+             its normal; keep |bearing| above 30 deg",
+            robot.name, leader.name
+        ),
+        Some(pixels) if pixels < LEAST_CELL => format!(
+            "`{}` can never see its leader: at {distance} m and {degrees:.0} deg a cell of a tag covers {pixels:.2} pixels, and \
+             reading one takes {LEAST_CELL}; come nearer, or give more `resolution` or a larger `shell_scale`",
+            robot.name
+        ),
+        Some(_) => return,
+    };
+    reading.note(place, message);
+}
