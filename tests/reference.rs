@@ -122,6 +122,7 @@ impl Case {
                 alpha2: [c.alpha2; 2],
                 distance_min,
             },
+            looks: None,
             set_point: SetPointCourse::constant(0.0, 0.0),
         })
     }

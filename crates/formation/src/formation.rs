@@ -2,11 +2,12 @@
 
 use crate::graph::Graph;
 use crate::law::{Law, LawInput, LawKind};
+use crate::looks::LookLaw;
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
 use crate::set_point::SetPointCourse;
 use std::sync::Arc;
-use vocabulary::{Command, Drive, Edge, Limits, Observation, Profile, SetPoint, wrap};
+use vocabulary::{Command, Drive, Edge, Limits, Observation, Profile, SetPoint, Sight, wrap};
 
 /// Parameters of one edge.
 #[derive(Debug, Clone)]
@@ -15,6 +16,8 @@ pub struct EdgeLaw {
     pub law: Law,
     /// Its observer; used by output feedback.
     pub observer: Observer,
+    /// How it makes an estimate of looks; `None` where it is told the truth.
+    pub looks: Option<LookLaw>,
     /// Where it shall be.
     pub set_point: SetPointCourse,
 }
@@ -147,6 +150,9 @@ impl Formation {
     fn decide_edge(&self, index: usize, time: f64, seen: &Observation, state: &FormationState) -> Decision {
         let (edge, parameters) = (self.edges()[index], &self.edges[index]);
         let limits = &self.limits[edge.follower];
+        if seen.sight == Sight::Lost {
+            return slow_down(&parameters.set_point.at(time), seen, limits);
+        }
         // What the leader does within this sample it tells its follower; its speed the follower has to observe.
         let leader = Drive { speed: seen.leader_speed.unwrap_or(0.0), ..state.drives[edge.leader] };
         let geometry = Geometry::new(&seen.relative, parameters.law.distance_min);
@@ -180,6 +186,25 @@ impl Formation {
         }
     }
 }
+
+/// What a follower does that has lost its leader: it brakes to its slowest speed, straight on.
+fn slow_down(set_point: &SetPoint, seen: &Observation, limits: &Limits) -> Decision {
+    let asked = Command { acceleration: (limits.speed_min - seen.own_speed) / BRAKING, turn_rate: 0.0 };
+    let commanded = limits.saturate(asked, seen.own_speed);
+    let acceleration = limits.admissible(commanded.acceleration, seen.own_speed);
+    let applied = Command { acceleration, ..commanded };
+    Decision {
+        set_point: [set_point.value[0], wrap(set_point.value[1])],
+        asked,
+        commanded,
+        applied,
+        limited: applied != asked,
+        ..Decision::default()
+    }
+}
+
+/// Time constant with which a follower brakes that has lost its leader, s.
+const BRAKING: f64 = 0.5;
 
 /// e = s^d − s, [m, rad], bearing wrapped (eq 14).
 fn tracking_error(set_point: &SetPoint, seen: &Observation) -> [f64; 2] {
@@ -220,7 +245,7 @@ mod tests {
             distance_min: 0.1,
         };
         let observer = Observer { epsilon: [1e-3; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 };
-        let edge = EdgeLaw { law, observer, set_point: SetPointCourse::constant(2.0, -2.3) };
+        let edge = EdgeLaw { law, observer, looks: None, set_point: SetPointCourse::constant(2.0, -2.3) };
         let limits = Limits::PAPER;
         let lead: Arc<dyn Profile> = Arc::new(Courses::constant(1.0, 0.3));
         Formation::new(graph, vec![edge.clone(), edge], vec![limits; 3], vec![(0, lead)], 0.01)
@@ -228,7 +253,7 @@ mod tests {
 
     fn observation(distance: f64) -> Observation {
         let relative = Relative { distance, bearing: -2.29, view_angle: -2.29 };
-        Observation { relative, own_speed: 1.0, leader_speed: Some(1.0) }
+        Observation { relative, own_speed: 1.0, leader_speed: Some(1.0), ..Observation::default() }
     }
 
     #[test]

@@ -17,7 +17,8 @@ mod stretch;
 
 use crate::relative::Geometry;
 use nalgebra::{Matrix4, Vector4};
-use stretch::{DEGREE, Poly, Stretch, input_effect, mean, shifted};
+pub(crate) use stretch::input_effect;
+use stretch::{DEGREE, Poly, Stretch, mean, shifted};
 use vocabulary::{EdgeSample, Relative, TRACK_NODES, Track, wrap};
 
 /// Parameters of the observer; every pair is [distance, bearing].

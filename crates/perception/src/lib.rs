@@ -15,6 +15,7 @@ pub fn observe(snapshot: &Snapshot, edges: &[Edge], observations: &mut Vec<Obser
             relative: Relative::between(leader.pose, follower.pose),
             own_speed: follower.speed,
             leader_speed: Some(leader.speed),
+            ..Observation::default()
         }
     }));
 }

@@ -3,9 +3,9 @@
 use crate::error::{BuildError, EPSILON_MIN};
 use crate::stage::stage;
 use crate::step::{ObserverStart, Setup, Timing};
-use formation::{Course, EdgeLaw, Formation, Graph, SetPointCourse};
-use scene::{Channel, Follow, OnContact, Role, Scene};
-use vocabulary::{Cast, Light, Member, Shell};
+use formation::{Course, EdgeLaw, Formation, Graph, LookLaw, Method, SetPointCourse};
+use scene::{Channel, Follow, OnContact, Role, Scene, SensingKind};
+use vocabulary::{Cast, Light, Member};
 
 /// Puts the run of `scene` together.
 ///
@@ -24,11 +24,13 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let limits = stage.actors.iter().map(|actor| actor.robot.limits).collect();
     let edges = graph.edges().to_vec();
     let laws = followers.iter().map(|(_, follow)| edge_law(follow)).collect();
-    let member = |(index, robot): (usize, &scene::Robot)| {
-        let body = robot.vehicle.body();
-        let leads = matches!(robot.role, Role::Lead { .. });
-        let shell = Some(Shell::fitting(&body).tagged(index));
-        Member { shell, ..Member::new(robot.name.clone(), leads, body) }
+    let member = |robot: &scene::Robot| Member {
+        name: robot.name.clone(),
+        leads: matches!(robot.role, Role::Lead { .. }),
+        body: robot.vehicle.body(),
+        shell: Some(scene.vision.shell(robot)),
+        mount: scene.vision.mount(robot),
+        lens: scene.vision.lens(),
     };
     Ok(Setup {
         cast: Cast {
@@ -40,7 +42,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
                 sun_azimuth: scene.environment.sun_azimuth,
                 haze_from: scene.environment.haze_from,
             },
-            members: scene.robots.iter().enumerate().map(member).collect(),
+            members: scene.robots.iter().map(member).collect(),
             edges,
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
             terrain: stage.terrain.clone(),
@@ -80,7 +82,7 @@ fn follows(robot: &scene::Robot) -> Option<(&str, &Follow)> {
 }
 
 fn edge_law(follow: &Follow) -> EdgeLaw {
-    let (law, observer) = (&follow.law, &follow.observer);
+    let (law, observer) = (&follow.law, observer(follow));
     EdgeLaw {
         law: formation::Law {
             kind: match law.kind {
@@ -96,14 +98,35 @@ fn edge_law(follow: &Follow) -> EdgeLaw {
             },
             distance_min: law.distance_min,
         },
-        observer: formation::Observer {
-            epsilon: observer.epsilon,
-            alpha1: observer.alpha1,
-            alpha2: observer.alpha2,
-            distance_min: law.distance_min,
-        },
+        observer,
+        looks: look_law(follow, observer),
         set_point: SetPointCourse { distance: course(&follow.distance), bearing: course(&follow.bearing) },
     }
+}
+
+fn observer(follow: &Follow) -> formation::Observer {
+    let observer = &follow.observer;
+    formation::Observer {
+        epsilon: observer.epsilon,
+        alpha1: observer.alpha1,
+        alpha2: observer.alpha2,
+        distance_min: follow.law.distance_min,
+    }
+}
+
+fn look_law(follow: &Follow, observer: formation::Observer) -> Option<LookLaw> {
+    (follow.sensing.kind != SensingKind::Truth).then_some(LookLaw {
+        method: match follow.observer.kind {
+            scene::ObserverKind::HighGain => Method::HighGain,
+            scene::ObserverKind::Unscented => Method::Unscented,
+        },
+        observer,
+        adaptive: follow.observer.adaptive,
+        disturbance: follow.observer.disturbance,
+        gate: follow.observer.gate,
+        interval: 1.0 / follow.sensing.rate,
+        hold: follow.sensing.hold,
+    })
 }
 
 fn course(channel: &Channel) -> Course {

@@ -82,6 +82,7 @@ impl Continuous {
                 relative: Relative::between(leader.pose, follower.pose),
                 own_speed: follower.speed,
                 leader_speed: Some(leader.speed),
+                ..Observation::default()
             }
         };
         self.observations.extend(formation.edges().iter().map(observe));

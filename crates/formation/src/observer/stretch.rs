@@ -76,7 +76,7 @@ impl Stretch {
 }
 
 /// −g ϖ − g0, [m/s², rad/s²]: what the follower's own input does to d²s/dt².
-pub(super) fn input_effect(geometry: &Geometry, sample: &EdgeSample) -> Vector2<f64> {
+pub(crate) fn input_effect(geometry: &Geometry, sample: &EdgeSample) -> Vector2<f64> {
     let command = Vector2::new(sample.acceleration, sample.turn_rate);
     -(geometry.input_matrix(sample.own_speed) * command + geometry.drift(sample.own_speed))
 }

@@ -1,0 +1,151 @@
+//! The high-gain observer on looks: eqs 31-32 without innovation between looks, a discrete correction at each.
+
+use super::{LookLaw, Own, innovation};
+use crate::observer::{Estimate, Observer, input_effect};
+use crate::relative::Geometry;
+use vocabulary::{EdgeSample, Relative, Sighting};
+
+/// ŝ1 and ŝ2, and the view angle, which no law controls but all of them use.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HighGain {
+    pub(super) estimate: Estimate,
+    /// γ, rad.
+    view_angle: f64,
+    /// How fast the line to the leader turns in the world, rad/s; dγ/dt is that less the follower's turn rate.
+    line_rate: f64,
+    /// Variances of the looks, smoothed.
+    variance: [f64; 3],
+}
+
+/// Share of a look's own variance in the smoothed one.
+const SMOOTHING: f64 = 0.2;
+/// ε that follows from noise stays above this share of the time between looks, and below this time, s.
+const EPSILON: [f64; 2] = [0.25, 0.3];
+/// Longest step of the prediction, s.
+const STEP: f64 = 0.02;
+
+/// State of the prediction: ℓ, ψ, their rates, γ and the rate of the line.
+type State = [f64; 6];
+
+impl HighGain {
+    /// Begins at a look with rates of zero.
+    pub(super) fn at(look: &Sighting) -> Self {
+        Self {
+            estimate: Estimate::at(&look.relative),
+            view_angle: look.relative.view_angle,
+            line_rate: 0.0,
+            variance: look.deviation.map(|d| d * d),
+        }
+    }
+
+    /// Where the follower is relative to its leader; angles run on.
+    pub fn relative(&self) -> Relative {
+        let [distance, bearing] = self.estimate.output;
+        Relative { distance, bearing, view_angle: self.view_angle }
+    }
+
+    /// Carries on over `duration` s in midpoint steps. The line turns with the bearing but for the leader's own turn,
+    /// so both have the same second derivative where that turn is steady.
+    pub(super) fn predict(&mut self, law: &LookLaw, own: Own, duration: f64) {
+        let steps = (duration / STEP).ceil().max(1.0);
+        let h = duration / steps;
+        for k in 0..steps as usize {
+            let start = Own { speed: own.speed + own.acceleration * h * k as f64, ..own };
+            let middle = Own { speed: start.speed + own.acceleration * 0.5 * h, ..own };
+            let x = self.state();
+            let slope = slope(&x, law.observer.distance_min, start);
+            let half: State = std::array::from_fn(|i| x[i] + 0.5 * h * slope[i]);
+            let slope = slope_at(&half, law, middle);
+            self.set(std::array::from_fn(|i| x[i] + h * slope[i]));
+        }
+    }
+
+    fn state(&self) -> State {
+        let ([distance, bearing], [dd, db]) = (self.estimate.output, self.estimate.rates);
+        [distance, bearing, dd, db, self.view_angle, self.line_rate]
+    }
+
+    fn set(&mut self, [distance, bearing, dd, db, view_angle, line_rate]: State) {
+        self.estimate = Estimate { output: [distance, bearing], rates: [dd, db] };
+        (self.view_angle, self.line_rate) = (view_angle, line_rate);
+    }
+
+    /// How far a look is from what was expected, in standard deviations: those of the look, of the estimate it meets,
+    /// and what the leader may have done unseen in `age` s.
+    pub(super) fn surprise(&self, law: &LookLaw, look: &Sighting, age: f64) -> f64 {
+        let off = innovation(&look.relative, &self.relative());
+        let unseen = |k: usize| {
+            let delta = law.disturbance[k.min(1)];
+            // Rates are known about as well as ε allows, and what is unknown acts for `age` more.
+            let reach = age + 2.0 * self.epsilon(law, k, age);
+            0.5 * delta * reach * reach
+        };
+        let share = |k: usize| {
+            let variance = look.deviation[k].powi(2) + self.variance[k] + unseen(k).powi(2);
+            off[k].abs() / variance.max(1e-24).sqrt()
+        };
+        (0..3).map(share).fold(0.0, f64::max)
+    }
+
+    /// Corrects each channel with L = [1 − p², (1 − p)²/Δt], p = e^(−Δt/ε), Δt the time since the last look.
+    pub(super) fn correct(&mut self, law: &LookLaw, look: &Sighting, age: f64) {
+        for (variance, deviation) in self.variance.iter_mut().zip(look.deviation) {
+            *variance += SMOOTHING * (deviation * deviation - *variance);
+        }
+        let off = innovation(&look.relative, &self.relative());
+        for k in 0..2 {
+            let [position, rate] = gain(&law.observer, k, self.epsilon(law, k, age), age);
+            self.estimate.output[k] += position * off[k];
+            self.estimate.rates[k] += rate * off[k];
+        }
+        let [position, rate] = gain(&law.observer, 1, self.epsilon(law, 2, age), age);
+        self.view_angle += position * off[2];
+        self.line_rate += rate * off[2];
+    }
+
+    /// ε of a channel, s: as given, or the one at which noise and disturbance err alike, ε⁵ = 3σ²T/(32 δ²).
+    fn epsilon(&self, law: &LookLaw, channel: usize, age: f64) -> f64 {
+        if !law.adaptive {
+            return law.observer.epsilon[channel.min(1)];
+        }
+        let delta = law.disturbance[channel.min(1)];
+        let interval = law.interval;
+        let best = (3.0 * self.variance[channel] * interval / (32.0 * delta * delta)).powf(0.2);
+        best.clamp(EPSILON[0] * interval.min(age), EPSILON[1])
+    }
+}
+
+/// Gains on position [1] and rate [1/s] after `age` s without a look: the poles of s² + α1 s + α2 at ε, taken through
+/// e^(s Δt).
+fn gain(observer: &Observer, channel: usize, epsilon: f64, age: f64) -> [f64; 2] {
+    let (a1, a2) = (observer.alpha1[channel], observer.alpha2[channel]);
+    let reach = age / epsilon;
+    let product = (-a1 * reach).exp();
+    let root = 0.25 * a1 * a1 - a2;
+    let decay = (-0.5 * a1 * reach).exp();
+    let sum = if root >= 0.0 {
+        let r = root.sqrt() * reach;
+        // Two decaying exponentials, written so that neither overflows.
+        (r - 0.5 * a1 * reach).exp() + (-r - 0.5 * a1 * reach).exp()
+    } else {
+        2.0 * decay * ((-root).sqrt() * reach).cos()
+    };
+    [1.0 - product, (1.0 - sum + product) / age]
+}
+
+fn slope_at(x: &State, law: &LookLaw, own: Own) -> State {
+    slope(x, law.observer.distance_min, own)
+}
+
+fn slope(&[distance, bearing, dd, db, view_angle, line_rate]: &State, distance_min: f64, own: Own) -> State {
+    let relative = Relative { distance, bearing, view_angle };
+    let geometry = Geometry::new(&relative, distance_min);
+    let sample = EdgeSample {
+        relative,
+        own_speed: own.speed,
+        acceleration: own.acceleration,
+        turn_rate: own.turn_rate,
+    };
+    let second = input_effect(&geometry, &sample) - geometry.rate_column(own.speed) * dd;
+    [dd, db, second.x, second.y, line_rate - own.turn_rate, second.y]
+}
