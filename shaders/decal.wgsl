@@ -61,11 +61,11 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let across = dpdx(in.shape);
     let down = dpdy(in.shape);
     let pixel = sqrt(across * across + down * down);
-    return hazy(in, coverage(in.kind, in.shape, pixel));
+    return covering(hazy(in, coverage(in.kind, in.shape, pixel)));
 }
 
 // Apart from the others: processors would look at the shadow map for every decal.
 @fragment
 fn shadow(in: Varying) -> @location(0) vec4<f32> {
-    return hazy(in, 1.0 - sunlight(in.local));
+    return shading(hazy(in, 1.0 - sunlight(in.local)));
 }

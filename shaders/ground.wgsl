@@ -12,5 +12,6 @@ fn fragment(ray: Ray) -> @location(0) vec4<f32> {
     let local = ray.start.xy + ray.direction.xy * reach;
     let footprint = max(abs(dpdx(local)), abs(dpdy(local)));
     let albedo = marked(local, footprint);
-    return vec4<f32>(mix(tone_grey(albedo * (GREY_SKY + GREY_SUN * frame.sun.z)) * GREY_TINT, HAZE, haze(reach * frame.eye.w)), 1.0);
+    let light = developed_grey(albedo * (GREY_SKY + GREY_SUN * frame.sun.z));
+    return vec4<f32>(mix(light, far_air(), haze(reach * frame.eye.w)), 1.0);
 }

@@ -94,8 +94,8 @@ fn lighted(in: Varying, albedo: vec3<f32>) -> vec4<f32> {
     let sun = max(facing, 0.0) * sunlight_quick(in.local + normal * 0.025);
     // The foot sees less of the sky.
     let open = 0.55 + 0.45 * clamp((in.local.z - in.marks.z) * 2.5, 0.0, 1.0);
-    let light = tone(albedo * (SUN_LIGHT * sun + ambient(normal) * open));
-    let colour = mix(light, HAZE, haze(length(away) * frame.eye.w));
+    let light = developed(albedo * (SUN_LIGHT * sun + ambient(normal) * open));
+    let colour = mix(light, far_air(), haze(length(away) * frame.eye.w));
     return vec4<f32>(colour, veil(dot(away, frame.forward.xyz)));
 }
 

@@ -96,7 +96,7 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let spark = h16 * h16 * h16 * h16 * 1.4 * select(0.0, 1.0, sun > 0.0) * sun;
     let shine = in.surface.x * (seen * fresnel * open + SUN_LIGHT * spark);
     let light = diffuse + shine + albedo * in.surface.y;
-    return vec4<f32>(mix(tone(light), HAZE, haze(distance)), in.marks.y);
+    return vec4<f32>(mix(developed(light), far_air(), haze(distance)), in.marks.y);
 }
 
 // Ghosts are too faint for shadows and mirrors.
@@ -105,7 +105,7 @@ fn ghost(in: Varying) -> @location(0) vec4<f32> {
     let sun = max(dot(in.normal, frame.sun.xyz), 0.0);
     // None right in front of the eye, where it would veil the picture.
     let near = mix(1.0, clamp((length(frame.eye.xyz - in.local) - 1.2) * 0.6, 0.0, 1.0), frame.eye.w);
-    return vec4<f32>(tone(in.albedo * (SUN_LIGHT * sun + ambient(in.normal))), in.marks.y * near);
+    return vec4<f32>(developed(in.albedo * (SUN_LIGHT * sun + ambient(in.normal))), in.marks.y * near);
 }
 
 // Depth alone.

@@ -13,6 +13,5 @@ fn fragment(ray: Ray) -> @location(0) vec4<f32> {
     // Most of the change is near the horizon, where the air is thickest.
     let clear = 1.0 - exp(-height * 5.5);
     let glow = max(dot(direction, frame.sun.xyz), 0.0);
-    let warm = vec3<f32>(0.20, 0.15, 0.06) * clear * glow * glow * glow * glow;
-    return vec4<f32>(min(mix(HAZE, BLUE, clear) + warm, vec3<f32>(0.99)), 1.0);
+    return vec4<f32>(far_sky(clear, glow * glow * glow * glow), 1.0);
 }

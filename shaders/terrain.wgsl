@@ -35,7 +35,7 @@ fn bare(in: Varying, normal: vec3<f32>) -> Bare {
     ground.facing = max(dot(normal, frame.sun.xyz), 0.0);
     // Slopes see less of the sky.
     let sky = GREY_SKY * (0.5 + 0.5 * normal.z);
-    ground.light = tone_grey(ground.albedo * (sky + GREY_SUN * ground.facing)) * GREY_TINT;
+    ground.light = developed_grey(ground.albedo * (sky + GREY_SUN * ground.facing));
     ground.haze = haze(length(frame.eye.xyz - in.local) * frame.eye.w);
     return ground;
 }
@@ -43,7 +43,7 @@ fn bare(in: Varying, normal: vec3<f32>) -> Bare {
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let ground = bare(in, normalize(in.normal));
-    return vec4<f32>(mix(ground.light, HAZE, ground.haze), 1.0);
+    return vec4<f32>(mix(ground.light, far_air(), ground.haze), 1.0);
 }
 
 const ICE = vec3<f32>(0.50, 0.62, 0.74);
@@ -60,7 +60,7 @@ fn slick(in: Varying) -> @location(0) vec4<f32> {
     let halfway = max(dot(normal, normalize(to_eye + frame.sun.xyz)), 0.0);
     let spark = pow(halfway, 90.0) * 0.8 * step(0.001, ground.facing);
     let diffuse = body * (SUN_LIGHT * ground.facing + ambient(normal)) * (1.0 - mirror);
-    let ice = tone(diffuse + sky_light(reflect(-to_eye, normal)) * mirror + SUN_LIGHT * spark);
+    let ice = developed(diffuse + sky_light(reflect(-to_eye, normal)) * mirror + SUN_LIGHT * spark);
     let share = smoothstep(0.0, 0.75, 1.0 - in.grip);
-    return vec4<f32>(mix(mix(ground.light, ice, share), HAZE, ground.haze), 1.0);
+    return vec4<f32>(mix(mix(ground.light, ice, share), far_air(), ground.haze), 1.0);
 }

@@ -4,10 +4,9 @@
 @group(2) @binding(1) var asphalt_sampler: sampler;
 @group(2) @binding(2) var patches: texture_2d<f32>;
 
-// Sky on flat ground and a sun straight above it, as numbers, and the tint that their grey has when displayed.
+// Sky on flat ground and a sun straight above it, as numbers.
 const GREY_SKY = 0.41;
 const GREY_SUN = 2.063;
-const GREY_TINT = vec3<f32>(1.012, 1.0, 0.985);
 
 // Coverage of lines `width` m wide every `every` m, where a metre has `density` pixels along each axis.
 // Lines thinner than a pixel are drawn a pixel wide and fainter, so that they fade instead of shimmering.

@@ -11,7 +11,8 @@ struct Frame {
     forward: vec4<f32>,
     // Towards the sun; w is the penumbra in texels of the shadow map, 0 without shadows.
     sun: vec4<f32>,
-    // x: 1 over the distance at which haze begins, 1/m; z: strength of the grid; y, w: spare.
+    // x: 1 over the distance at which haze begins, 1/m; y: exposure of a sensor; z: strength of the grid;
+    // w: spare.
     ground: vec4<f32>,
     // The terrain's origin; w is 1 where there is a terrain.
     terrain: vec4<f32>,

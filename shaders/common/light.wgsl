@@ -1,11 +1,8 @@
-// Light shared by all surfaces: sun, sky, haze, shadow and the tone curve.
+// Light shared by all surfaces: sun, sky, haze and shadow.
 
 const SUN_LIGHT = vec3<f32>(2.30, 2.06, 1.72);
 const ZENITH = vec3<f32>(0.15, 0.38, 0.86);
 const HORIZON = vec3<f32>(0.98, 1.13, 1.28);
-// Display-encoded: far ground and the lowest sky, and the sky overhead.
-const HAZE = vec3<f32>(0.835, 0.880, 0.915);
-const BLUE = vec3<f32>(0.335, 0.560, 0.835);
 const BOUNCE = vec3<f32>(0.26, 0.25, 0.235);
 
 @group(1) @binding(0) var shadow_map: texture_depth_2d;
@@ -24,18 +21,6 @@ fn sky_light(direction: vec3<f32>) -> vec3<f32> {
 fn ambient(normal: vec3<f32>) -> vec3<f32> {
     let sky = mix(HORIZON, ZENITH, 0.55) * 0.56;
     return mix(BOUNCE, sky, 0.5 + 0.5 * normal.z);
-}
-
-// Filmic curve after Hejl and Burgess-Dawson; its result is display-encoded.
-fn tone(light: vec3<f32>) -> vec3<f32> {
-    let x = max(light * 0.62 - 0.004, vec3<f32>(0.0));
-    return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);
-}
-
-// The same curve for a grey.
-fn tone_grey(light: f32) -> f32 {
-    let x = max(light * 0.62 - 0.004, 0.0);
-    return (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);
 }
 
 // Share of haze in front of something `distance` m away.

@@ -14,7 +14,8 @@ struct Instance {
     @location(6) row_z: vec4<f32>,
     // Linear colour of the paint, and opacity.
     @location(7) colour: vec4<f32>,
-    // x: number on the roof, negative for none; y: 1 for lead robots; z: height of the ground below.
+    // x: number on the roof, negative for none; y: 1 for lead robots; z: height of the ground below;
+    // w: tag of the first face of the shell, negative for none.
     @location(8) marks: vec4<f32>,
 }
 

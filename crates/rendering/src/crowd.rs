@@ -21,7 +21,7 @@ impl Fleet {
     pub(crate) fn new(cast: &Cast) -> Self {
         let mut builds: Vec<Build> = Vec::new();
         let of = cast.members.iter().map(|member| {
-            let build = Build::new(&member.body);
+            let build = Build::new(member);
             builds.iter().position(|b| *b == build).unwrap_or_else(|| {
                 builds.push(build);
                 builds.len() - 1
@@ -57,7 +57,8 @@ struct Look {
 
 impl Look {
     fn new(member: &Member, index: usize, colour: Rgb) -> Self {
-        Self { colour, marks: [roof_number(member, index), f32::from(u8::from(member.leads)), 0.0, 0.0] }
+        let tag = member.shell.and_then(|shell| shell.first_tag).map_or(-1.0, f32::from);
+        Self { colour, marks: [roof_number(member, index), f32::from(u8::from(member.leads)), 0.0, tag] }
     }
 
     fn instance(&self, local_from_model: Mat4, alpha: f32) -> Instance {

@@ -12,6 +12,7 @@ use crate::passes::prop::{Copies, PropPass};
 use crate::passes::robot::{Crowd, Models, RobotPass};
 use crate::passes::shadow::ShadowPass;
 use crate::passes::sky::SkyPass;
+use crate::passes::tag::TagPass;
 use crate::passes::terrain::TerrainPass;
 use crate::passes::text::{Line, TextPass};
 use crate::target::Attachments;
@@ -22,6 +23,9 @@ use vocabulary::Cast;
 /// Shows where triangles of the terrain do not quite meet.
 const STONE: wgpu::Color = wgpu::Color { r: 0.42, g: 0.42, b: 0.41, a: 1.0 };
 
+/// Robots from which on their models are plain.
+const PLAIN_ABOVE: usize = 24;
+
 /// Every pass with what it keeps on the device.
 #[derive(Debug)]
 pub(crate) struct Passes {
@@ -30,6 +34,7 @@ pub(crate) struct Passes {
     pub(crate) shadow: ShadowPass,
     asphalt: Asphalt,
     robot: RobotPass,
+    tag: TagPass,
     ground: GroundPass,
     /// In place of the flat ground.
     terrain: Option<TerrainPass>,
@@ -75,9 +80,10 @@ impl Passes {
         let terrain = cast.terrain.as_deref();
         let (with_props, with_decks) = (!cast.props.is_empty(), !floor.decks.is_empty());
         Self {
-            models: Models::new(device, queue, robots, &fleet.builds),
+            models: Models::new(device, queue, robots > PLAIN_ABOVE, &fleet.builds),
             shadow: ShadowPass::new(device, &groups, map),
             robot: RobotPass::new(device, queue, canvas, &groups, digits),
+            tag: TagPass::new(device, queue, canvas, &groups),
             ground: GroundPass::new(device, canvas, &groups, &asphalt),
             terrain: terrain.map(|t| TerrainPass::new(device, queue, canvas, &groups, &asphalt, t)),
             prop: with_props.then(|| PropPass::new(device, queue, canvas, &groups, &asphalt, with_decks)),
@@ -96,13 +102,13 @@ impl Passes {
         gpu: &Gpu,
         (width, height): (u32, u32),
         frames: &[Frame],
-        prepared: &Prepared,
+        prepared: &mut Prepared,
         corners: &[Corner],
         lines: &[Line],
     ) -> Result<(), Error> {
         let (device, queue) = (&gpu.device, &gpu.queue);
         self.groups.fill(queue, frames);
-        self.models.fill(device, queue, &prepared.crowd);
+        self.models.fill(device, queue, std::iter::once(&mut prepared.crowd));
         if let Some(prop) = &mut self.prop {
             prop.fill(device, queue, &prepared.props);
         }
@@ -125,6 +131,7 @@ impl Passes {
     fn encode_shadow(&self, encoder: &mut wgpu::CommandEncoder, prepared: &Prepared) {
         let mut pass = self.shadow.begin(encoder, &self.groups);
         self.models.draw_solid(&mut pass, &prepared.crowd);
+        self.models.draw_faces(&mut pass, &prepared.crowd);
         if let Some(prop) = &self.prop {
             prop.draw_solid(&mut pass, &prepared.props);
         }
@@ -180,6 +187,7 @@ impl Passes {
             self.decal.draw(pass, corners, *layer);
         }
         self.robot.draw_solid(pass, &self.models, &prepared.crowd);
+        self.tag.draw(pass, &self.models, &prepared.crowd);
         // After the robots, which show through those in front of them.
         if let Some(prop) = &self.prop {
             prop.draw(pass, &self.asphalt, &prepared.props, veiled);

@@ -287,7 +287,7 @@ fn robot_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Box4> {
         let body = member.body;
         let (middle, reach) = (0.5 * body.wheelbase, 0.5 * body.length + 0.05);
         let side = 0.5 * body.width + 0.06;
-        let half = 0.5 * Build::new(&body).top();
+        let half = 0.5 * Build::new(member).top();
         let mut low = Vec2::INFINITY;
         let mut high = Vec2::NEG_INFINITY;
         for k in 0..8 {

@@ -59,7 +59,7 @@ impl Renderer {
         if !matches!(samples, 1 | 4) {
             return Err(Error::Samples(samples));
         }
-        let canvas = Canvas { format, samples };
+        let canvas = Canvas { format, samples, mono: false };
         let fleet = Fleet::new(cast);
         let floor = Floor::new(cast);
         let passes = Passes::new(gpu, canvas, cast, &fleet, &floor);
@@ -237,8 +237,8 @@ impl Renderer {
         let ghosts = layout.views.iter().map(|view| !matches!(view, View::SnakeEye)).collect();
         let seen = layout.views.iter().zip(&cameras);
         let veiled = seen.map(|(view, camera)| veiled_decks(camera, &stage, view)).collect();
-        let prepared = Prepared { crowd, props, tiles, veiled, decals, ghosts, shapes };
-        self.passes.upload(&self.gpu, self.size, &frames, &prepared, &corners, &lines)?;
+        let mut prepared = Prepared { crowd, props, tiles, veiled, decals, ghosts, shapes };
+        self.passes.upload(&self.gpu, self.size, &frames, &mut prepared, &corners, &lines)?;
         Ok(prepared)
     }
 

@@ -162,7 +162,7 @@ fn wheel_height(robot: &RobotState, forward: f64, left: f64) -> f64 {
 }
 
 fn robot_shadow(stage: &Stage<'_>, robot: &RobotState, member: &Member) -> Patch {
-    let build = Build::new(&member.body);
+    let build = Build::new(member);
     let away = -stage.sun.truncate() / stage.sun.z;
     let [x, y] = robot.motion.pose.world_from_body(0.15 * member.body.length, 0.0);
     // As high as the camera on its mast, and as far around as the shell or the bonnet.

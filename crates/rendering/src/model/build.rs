@@ -1,20 +1,16 @@
 //! How a body of given measures is put together from the models of the default one.
 
-use super::{CAMERA, Mesh, wheel};
+use super::{Mesh, shell, wheel};
 use glam::Vec3;
-use vocabulary::Body;
+use vocabulary::{Body, Member, Shell};
 
 /// Measures of the model.
 const HALF_HULL: f32 = 0.08;
 const HULL_LOW: f32 = 0.034;
 const BELT: f32 = 0.132;
 const OVERHANG: f32 = 0.075;
-/// Middle of the shell's height.
-const SHELL: f32 = 0.20;
-/// Bodies longer than this are vehicles for people and carry no shell of tags, m.
-const FULL_SIZE: f64 = 1.2;
 
-/// Where the parts of a body go.
+/// Where the parts of a robot go; robots alike in all but their tags share one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Build {
     pub(crate) body: Body,
@@ -23,48 +19,34 @@ pub(crate) struct Build {
     /// Where the camera's head turns, and its size.
     pub(crate) camera: Vec3,
     pub(crate) head: f32,
-    /// Size of the shell and the height of its middle; none for vehicles that carry people.
-    pub(super) shell: Option<(f32, f32)>,
+    /// Blank; none on robots that carry nothing.
+    pub(super) shell: Option<Shell>,
     /// Whether the hull stands over its wheels instead of between arches.
     pub(super) high: bool,
 }
 
 impl Build {
-    pub(crate) fn new(body: &Body) -> Self {
-        let body = sane(body);
+    pub(crate) fn new(member: &Member) -> Self {
+        let body = sane(&member.body);
         let radius = body.wheel_radius as f32;
         let tall = radius / wheel::RADIUS;
         // Tyres fill what the body is wider than its track.
         let wide = ((body.width - body.track) / 0.04) as f32;
-        let height = body.height as f32;
-        let size = (body.length as f32 / 0.42).sqrt().clamp(0.5, 1.8);
-        let shell = (body.length < FULL_SIZE).then(|| {
-            let over_wheels = 2.0 * radius + 0.022 + 0.092 * size;
-            (size, (height - 0.017 * size).max(over_wheels))
-        });
-        let [x, _, z] = CAMERA;
-        let camera = match shell {
-            Some((size, middle)) => Vec3::new(x * size, 0.0, middle + (z - SHELL) * size),
-            None => Vec3::new(0.45 * body.wheelbase as f32, 0.0, height + 0.16),
-        };
-        let build = Self {
+        let shell = member.shell.filter(sound).map(|shell| Shell { first_tag: None, ..shell });
+        let within = |x: f64| if x.is_finite() { x.clamp(-40.0, 40.0) as f32 } else { 0.0 };
+        Self {
             body,
             wheel: Vec3::new(tall, wide.clamp(0.45 * tall, 1.7 * tall), tall),
-            camera,
-            head: if shell.is_some() { size } else { 3.0 },
+            camera: Vec3::new(within(member.mount.forward), 0.0, within(member.mount.height)),
+            head: shell::size(&shell.unwrap_or_else(|| Shell::fitting(&body))) as f32,
             shell,
             high: f64::from(radius) > 0.24 * body.height,
-        };
-        if build.standard() { build.as_modelled() } else { build }
+        }
     }
 
     /// The default body is drawn exactly as it was modelled.
     pub(super) fn standard(&self) -> bool {
         self.body == Body::default()
-    }
-
-    fn as_modelled(self) -> Self {
-        Self { camera: Vec3::from_array(CAMERA), head: 1.0, shell: Some((1.0, SHELL)), ..self }
     }
 
     /// Whether the tyres are made for rough ground.
@@ -79,13 +61,17 @@ impl Build {
 
     /// Highest point over the ground, m.
     pub(crate) fn top(&self) -> f64 {
-        f64::from(self.camera.z + 0.04 * self.head)
+        let rim = |s: &Shell| s.height + 0.5 * s.face_height + 0.012 * shell::size(s);
+        let shell = self.shell.as_ref().map_or(0.0, rim);
+        f64::from(self.camera.z + 0.04 * self.head).max(self.body.height).max(shell)
     }
 
-    /// How far the outline reaches around the middle, m.
+    /// How far the outline reaches around a point 0.15 of the length ahead of the reference point, m.
     pub(crate) fn around(&self) -> f64 {
-        let shell = self.shell.map_or(0.0, |(size, _)| 0.21 * f64::from(size));
-        (0.62 * self.body.length).max(shell)
+        let off = |forward: f64| (forward - 0.15 * self.body.length).abs();
+        let shell = self.shell.map_or(0.0, |s| 0.21 * shell::size(&s) + off(s.forward));
+        let camera = off(f64::from(self.camera.x)) + 0.04 * f64::from(self.head);
+        (0.62 * self.body.length).max(shell).max(camera)
     }
 
     /// Moves what was modelled for the default hull to where it is on this one.
@@ -97,15 +83,6 @@ impl Build {
             vertex.position = self.place(Vec3::from_array(vertex.position)).to_array();
         }
         mesh.face();
-    }
-
-    /// Moves what was modelled around the default shell.
-    pub(super) fn fit_shell(&self, mesh: &mut Mesh) {
-        let Some((size, middle)) = self.shell.filter(|_| !self.standard()) else { return };
-        for vertex in &mut mesh.vertices {
-            let from_middle = Vec3::from_array(vertex.position) - Vec3::Z * SHELL;
-            vertex.position = (from_middle * size + Vec3::Z * middle).to_array();
-        }
     }
 
     fn place(&self, p: Vec3) -> Vec3 {
@@ -160,6 +137,16 @@ pub(crate) fn size(body: &Body) -> f64 {
     (body.length / model.length).max(body.width / model.width * 0.7).max(body.height / model.height * 0.7)
 }
 
+/// Whether a shell can be modelled.
+fn sound(shell: &Shell) -> bool {
+    let sizes = [shell.apothem, shell.face_height, shell.cell];
+    let places = [shell.forward, shell.height];
+    sizes.iter().all(|x| (1e-4..=40.0).contains(x))
+        && places.iter().all(|x| x.abs() <= 40.0)
+        && shell.lean.abs() < 1.2
+        && shell.apothem > shell.face_height * shell.lean.tan().abs()
+}
+
 /// Measures that a model can be made of, whatever was asked for.
 fn sane(body: &Body) -> Body {
     let within = |x: f64, other: f64| if x.is_finite() { x.clamp(0.02, 40.0) } else { other };
@@ -181,9 +168,9 @@ mod tests {
 
     #[test]
     fn the_default_body_is_as_modelled() {
-        let build = Build::new(&Body::default());
+        let build = Build::new(&Member::new("a", true, Body::default()));
         assert_eq!(build.wheel, Vec3::ONE);
-        assert_eq!((build.camera, build.head), (Vec3::from_array(CAMERA), 1.0));
+        assert!(build.camera.distance(Vec3::new(0.105, 0.0, 0.30)) < 1e-6 && build.head == 1.0);
         assert!((build.top() - 0.34).abs() < 1e-6 && (size(&build.body) - 1.0).abs() < 1e-12);
     }
 
@@ -200,7 +187,7 @@ mod tests {
         let car =
             Body { length: 4.5, width: 1.8, height: 1.45, wheelbase: 2.7, track: 1.55, wheel_radius: 0.32 };
         for body in [truck, car] {
-            let build = Build::new(&body);
+            let build = Build::new(&Member::new("a", true, body));
             let mesh = super::super::ghost(&Build { shell: None, ..build });
             let most = |k: usize| mesh.vertices.iter().map(|v| v.position[k]).fold(f32::MIN, f32::max);
             assert!((most(2) - body.height as f32).abs() < 0.02 * body.height as f32, "{}", most(2));
@@ -212,8 +199,9 @@ mod tests {
                 assert!(vertex.position[1].abs() < inner, "{vertex:?}");
             }
         }
-        let (truck, car) = (Build::new(&truck), Build::new(&car));
-        assert!(truck.shell.is_some() && truck.high && car.shell.is_none() && !car.high);
+        let (truck, car) =
+            (Build::new(&Member::new("a", true, truck)), Build::new(&Member::new("a", true, car)));
+        assert!(truck.head == 1.0 && truck.high && car.head == 4.0 && !car.high);
         assert!((0.036 * truck.wheel.y - 0.1).abs() < 0.01);
     }
 }

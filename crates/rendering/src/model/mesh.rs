@@ -166,7 +166,17 @@ mod tests {
     #[test]
     fn models_are_small_and_point_outwards() {
         for (mesh, most) in [
-            (super::super::body(false, &super::super::Build::new(&vocabulary::Body::default())), 2600),
+            (
+                super::super::body(
+                    false,
+                    &super::super::Build::new(&vocabulary::Member::new(
+                        "a",
+                        true,
+                        vocabulary::Body::default(),
+                    )),
+                ),
+                2600,
+            ),
             (super::super::wheel(false, false), 500),
             (super::super::wheel(false, true), 1200),
         ] {

@@ -56,5 +56,7 @@ pub(crate) fn camera() -> Mesh {
     shell::camera()
 }
 
-/// Where the camera's head sits, in the frame of the body.
-const CAMERA: [f32; 3] = [0.105, 0.0, 0.30];
+/// The outside of the faces that carry tags; the body leaves them out.
+pub(crate) fn faces(build: &Build) -> Mesh {
+    shell::faces(build)
+}

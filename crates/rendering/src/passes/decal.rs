@@ -1,11 +1,11 @@
 //! Paint on the ground, in the order in which it lies there.
 
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, Stream, shader};
+use super::{Canvas, Recipe, Stream, developed, shader};
 use bytemuck::{Pod, Zeroable};
 use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
 
-pub(crate) const SHADER: &str = shader!("common/frame", "common/light", "decal");
+pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "decal");
 
 /// Mirrors `Corner` of the shader.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -72,7 +72,7 @@ impl DecalPass {
     pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups, uneven: bool) -> Self {
         let recipe = Recipe {
             label: "decal",
-            source: SHADER,
+            source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout],
             buffers: &[VertexBufferLayout {
                 array_stride: size_of::<Corner>() as u64,

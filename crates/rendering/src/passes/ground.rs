@@ -2,11 +2,10 @@
 
 use super::asphalt::Asphalt;
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, shader};
+use super::{Canvas, Recipe, developed, shader};
 use wgpu::Device;
 
-pub(crate) const SHADER: &str =
-    shader!("common/frame", "common/light", "common/screen", "common/asphalt", "ground");
+pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/screen", "common/asphalt", "ground");
 
 /// The local origin is a multiple of this, m: a common multiple of the lines and of both scales of the texture.
 pub(crate) const TILE: f64 = 20.0;
@@ -21,7 +20,7 @@ impl GroundPass {
     pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups, asphalt: &Asphalt) -> Self {
         let pipeline = Recipe {
             label: "ground",
-            source: SHADER,
+            source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout, &asphalt.layout],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             colour: Some((canvas, None)),

@@ -9,6 +9,7 @@ pub(crate) mod prop;
 pub(crate) mod robot;
 pub(crate) mod shadow;
 pub(crate) mod sky;
+pub(crate) mod tag;
 pub(crate) mod terrain;
 pub(crate) mod text;
 
@@ -24,17 +25,29 @@ macro_rules! shader {
 }
 pub(crate) use shader;
 
+/// The source of what is developed for a screen, and of the same for a monochrome camera; the frame comes first.
+macro_rules! developed {
+    ($($name:literal),*) => {
+        [
+            shader!("common/frame", "common/display", $($name),*),
+            shader!("common/frame", "common/mono", $($name),*),
+        ]
+    };
+}
+pub(crate) use developed;
+
 /// Every shader as it is compiled, by name: for validation without an adapter.
 #[cfg(test)]
-pub(crate) const SHADERS: [(&str, &str); 8] = [
-    ("shadow", shadow::SHADER),
-    ("robot", robot::SHADER),
-    ("ground", ground::SHADER),
-    ("terrain", terrain::SHADER),
-    ("decal", decal::SHADER),
-    ("prop", prop::SHADER),
-    ("sky", sky::SHADER),
-    ("overlay", overlay::SHADER),
+pub(crate) const SHADERS: [(&str, &[&str]); 9] = [
+    ("shadow", &[shadow::SHADER]),
+    ("robot", &robot::SHADERS),
+    ("tag", &tag::SHADERS),
+    ("ground", &ground::SHADERS),
+    ("terrain", &terrain::SHADERS),
+    ("decal", &decal::SHADERS),
+    ("prop", &prop::SHADERS),
+    ("sky", &sky::SHADERS),
+    ("overlay", &[overlay::SHADER]),
 ];
 
 pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
@@ -44,6 +57,15 @@ pub(crate) const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 pub(crate) struct Canvas {
     pub(crate) format: TextureFormat,
     pub(crate) samples: u32,
+    /// Whether it takes light instead of what a screen shows.
+    pub(crate) mono: bool,
+}
+
+impl Canvas {
+    /// Which of two sources draws on it.
+    pub(crate) fn of(self, sources: [&'static str; 2]) -> &'static str {
+        sources[usize::from(self.mono)]
+    }
 }
 
 /// How a pipeline treats colour and depth.

@@ -3,13 +3,12 @@
 use super::asphalt::Asphalt;
 use super::frame::FrameGroups;
 use super::robot::{Instance, Models};
-use super::{Canvas, Recipe, Stream, constant, shader};
+use super::{Canvas, Recipe, Stream, constant, developed, shader};
 use crate::model::solids;
 use std::ops::Range;
 use wgpu::{Device, Queue};
 
-pub(crate) const SHADER: &str =
-    shader!("common/frame", "common/light", "common/robot", "common/asphalt", "prop");
+pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/robot", "common/asphalt", "prop");
 
 /// How a prop is painted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,7 +73,7 @@ impl PropPass {
         let blend = (!coverage).then_some(wgpu::BlendState::ALPHA_BLENDING);
         let recipe = Recipe {
             label: "prop",
-            source: SHADER,
+            source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout, &asphalt.layout],
             buffers: &Models::LAYOUTS,
             cull: true,

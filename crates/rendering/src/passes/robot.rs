@@ -1,13 +1,13 @@
 //! Robots and their ghosts: a few models, drawn as often as there are copies.
 
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, Stream, constant, mipped, shader, shrink, textured};
+use super::{Canvas, Recipe, Stream, constant, developed, mipped, shader, shrink, textured};
 use crate::model::{self, Build, Vertex};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
 
-pub(crate) const SHADER: &str = shader!("common/frame", "common/light", "common/robot", "robot");
+pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/robot", "robot");
 
 /// Mirrors `Instance` of the shaders.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -18,9 +18,6 @@ pub(crate) struct Instance {
     pub(crate) marks: [f32; 4],
 }
 
-/// Robots from which on their models are plain.
-const PLAIN_ABOVE: usize = 24;
-
 /// Copies of robots that share their measures.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Squad {
@@ -29,17 +26,28 @@ pub(crate) struct Squad {
     pub(crate) ghosts: Vec<Instance>,
 }
 
-/// All copies of a picture.
+/// Copies that are drawn together.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Crowd {
+    /// Where they begin among all that are on the device.
+    pub(crate) first: u32,
     pub(crate) squads: Vec<Squad>,
     pub(crate) cameras: Vec<Instance>,
+}
+
+impl Crowd {
+    /// In the order in which they lie on the device.
+    fn copies(&self) -> impl Iterator<Item = &Instance> {
+        let solid = self.squads.iter().flat_map(|s| [&s.bodies, &s.wheels]).chain([&self.cameras]);
+        solid.chain(self.squads.iter().map(|s| &s.ghosts)).flatten()
+    }
 }
 
 /// Where the meshes of a squad are.
 #[derive(Debug)]
 struct Kit {
     body: Range<u32>,
+    faces: Range<u32>,
     wheel: Range<u32>,
     ghost: Range<u32>,
 }
@@ -76,8 +84,8 @@ impl Models {
 
     /// One set of models for each build. In a crowd each robot is small in the picture: plainer models draw three
     /// times as fast.
-    pub(crate) fn new(device: &Device, queue: &Queue, robots: usize, builds: &[Build]) -> Self {
-        let plain = robots > PLAIN_ABOVE;
+    /// `plain` leaves out what is lost in a crowd.
+    pub(crate) fn new(device: &Device, queue: &Queue, plain: bool, builds: &[Build]) -> Self {
         let mut vertices = Vec::new();
         let mut indices = Vec::new();
         let mut add = |mesh: model::Mesh| {
@@ -89,6 +97,7 @@ impl Models {
         let camera = add(model::camera());
         let kit = |build: &Build| Kit {
             body: add(model::body(plain, build)),
+            faces: add(model::faces(build)),
             wheel: wheels[usize::from(build.lugs())].clone(),
             ghost: add(model::ghost(build)),
         };
@@ -103,38 +112,57 @@ impl Models {
         }
     }
 
-    pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, crowd: &Crowd) {
-        let solid = crowd.squads.iter().flat_map(|s| [&s.bodies, &s.wheels]).chain([&crowd.cameras]);
-        let all = solid.chain(crowd.squads.iter().map(|s| &s.ghosts));
-        let all: Vec<Instance> = all.flatten().copied().collect();
+    /// Brings the copies of all crowds to the device and notes where each crowd begins.
+    pub(crate) fn fill<'a>(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        crowds: impl Iterator<Item = &'a mut Crowd>,
+    ) {
+        let mut all: Vec<Instance> = Vec::new();
+        for crowd in crowds {
+            crowd.first = all.len() as u32;
+            all.extend(crowd.copies());
+        }
         self.instances.fill(device, queue, bytemuck::cast_slice(&all));
     }
 
-    /// Bodies, wheels and cameras.
+    /// Bodies, wheels and cameras, without the faces of shells.
     pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
         let squads = self.kits.iter().zip(&crowd.squads);
-        let parts = squads.flat_map(|(kit, squad)| [(&kit.body, &squad.bodies), (&kit.wheel, &squad.wheels)]);
-        self.draw(pass, 0, parts.chain([(&self.camera, &crowd.cameras)]));
+        let parts = squads
+            .flat_map(|(kit, squad)| [(&kit.body, squad.bodies.len()), (&kit.wheel, squad.wheels.len())]);
+        self.draw(pass, crowd.first, parts.chain([(&self.camera, crowd.cameras.len())]));
+    }
+
+    /// The faces of shells.
+    pub(crate) fn draw_faces(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
+        let squads = self.kits.iter().zip(&crowd.squads);
+        let parts =
+            squads.flat_map(|(kit, squad)| [(&kit.faces, squad.bodies.len()), (&NONE, squad.wheels.len())]);
+        self.draw(pass, crowd.first, parts);
     }
 
     fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
         let solid: usize = crowd.squads.iter().map(|s| s.bodies.len() + s.wheels.len()).sum();
-        let first = (solid + crowd.cameras.len()) as u32;
+        let first = crowd.first + (solid + crowd.cameras.len()) as u32;
         let squads = self.kits.iter().zip(&crowd.squads);
-        self.draw(pass, first, squads.map(|(kit, squad)| (&kit.ghost, &squad.ghosts)));
+        self.draw(pass, first, squads.map(|(kit, squad)| (&kit.ghost, squad.ghosts.len())));
     }
 
-    /// Meshes with their copies, which follow each other from `first` on.
+    /// Meshes, each as often as told; their copies follow each other from `first` on.
     fn draw<'a>(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         mut first: u32,
-        parts: impl Iterator<Item = (&'a Range<u32>, &'a Vec<Instance>)>,
+        parts: impl Iterator<Item = (&'a Range<u32>, usize)>,
     ) {
         self.bind(pass);
         for (mesh, copies) in parts {
-            let last = first + copies.len() as u32;
-            pass.draw_indexed(mesh.clone(), 0, first..last);
+            let last = first + copies as u32;
+            if last > first && !mesh.is_empty() {
+                pass.draw_indexed(mesh.clone(), 0, first..last);
+            }
             first = last;
         }
     }
@@ -145,6 +173,8 @@ impl Models {
         pass.set_index_buffer(self.indices.slice(), wgpu::IndexFormat::Uint32);
     }
 }
+
+const NONE: Range<u32> = 0..0;
 
 /// Pipelines for what is solid and what is not.
 #[derive(Debug)]
@@ -175,7 +205,7 @@ impl RobotPass {
         let (layout, digits) = textured(device, "digits", &[&texture], &sampler);
         let recipe = Recipe {
             label: "robot",
-            source: SHADER,
+            source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout, &layout],
             buffers: &Models::LAYOUTS,
             cull: true,

@@ -1,10 +1,10 @@
 //! The sky above the horizon.
 
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, shader};
+use super::{Canvas, Recipe, developed, shader};
 use wgpu::Device;
 
-pub(crate) const SHADER: &str = shader!("common/frame", "common/light", "common/screen", "sky");
+pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/screen", "sky");
 
 /// Its pipeline.
 #[derive(Debug)]
@@ -16,7 +16,7 @@ impl SkyPass {
     pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups) -> Self {
         let pipeline = Recipe {
             label: "sky",
-            source: SHADER,
+            source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
             colour: Some((canvas, None)),

@@ -2,14 +2,14 @@
 
 use super::asphalt::Asphalt;
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, Stream, constant, shader};
+use super::{Canvas, Recipe, Stream, constant, developed, shader};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use std::ops::Range;
 use vocabulary::Terrain;
 use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
 
-pub(crate) const SHADER: &str = shader!("common/frame", "common/light", "common/asphalt", "terrain");
+pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/asphalt", "terrain");
 
 /// How far the ground goes on beyond the field, m: to where the view ends.
 const BEYOND: f64 = 560.0;
@@ -49,7 +49,7 @@ impl TerrainPass {
         let (points, triangles) = mesh(terrain);
         let recipe = Recipe {
             label: "terrain",
-            source: SHADER,
+            source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout, &asphalt.layout],
             buffers: &[VertexBufferLayout {
                 array_stride: size_of::<Point>() as u64,

@@ -6,7 +6,11 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::mem::offset_of;
 
 fn module(name: &str) -> naga::Module {
-    let (_, source) = SHADERS.iter().find(|(n, _)| *n == name).unwrap();
+    let (_, sources) = SHADERS.iter().find(|(n, _)| *n == name).unwrap();
+    sources.iter().map(|source| parsed(name, source)).last().unwrap()
+}
+
+fn parsed(name: &str, source: &str) -> naga::Module {
     let module = naga::front::wgsl::parse_str(source);
     let module = module.unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(source)));
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
@@ -83,6 +87,9 @@ fn vertices_are_the_shaders_vertices() {
     let [corner, instance] = robot::Models::LAYOUTS;
     agree(&robots, "Corner", corner.attributes, size_of::<Vertex>());
     agree(&robots, "Instance", instance.attributes, size_of::<robot::Instance>());
+    let tags = module("tag");
+    agree(&tags, "Corner", corner.attributes, size_of::<Vertex>());
+    agree(&tags, "Instance", instance.attributes, size_of::<robot::Instance>());
     let props = module("prop");
     agree(&props, "Corner", corner.attributes, size_of::<Vertex>());
     agree(&props, "Instance", instance.attributes, size_of::<robot::Instance>());

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 use vocabulary::{
-    Attitude, Body, Cast, Condition, Contact, Mobility, Moment, Placement, Pose, Prop, Solid, Terrain, Thing,
+    Attitude, Body, Cast, Condition, Contact, Member, Mobility, Moment, Placement, Pose, Prop, Solid,
+    Terrain, Thing,
 };
 
 /// Big wheels on 1/10 of a truck.
@@ -91,7 +92,10 @@ fn settle(cast: &mut Cast) {
 
 /// Gives a cast bodies, and hills and props to drive among.
 pub(crate) fn furnish(cast: &mut Cast, body: Body, hilly: bool, with_props: bool) {
-    cast.members.iter_mut().for_each(|m| m.body = body);
+    for (k, member) in cast.members.iter_mut().enumerate() {
+        *member = Member::new(member.name.clone(), member.leads, body);
+        member.shell = member.shell.map(|shell| shell.tagged(k));
+    }
     cast.terrain = hilly.then(|| Arc::new(hills()));
     cast.props = if with_props { props() } else { vec![] };
     settle(cast);

@@ -55,7 +55,7 @@ impl Play {
             goals.push(goal);
         }
         let name = |k: usize| if k == 0 { "leader".to_owned() } else { format!("follower-{k}") };
-        let member = |k| Member::new(name(k), k == 0, Body::default());
+        let member = |k| Play::tagged(Member::new(name(k), k == 0, Body::default()), k);
         let cast = Cast {
             title: "Holding a shape".into(),
             caption: "output feedback, observer · k = (5, 5), β = 5, ε = 0.001".into(),
@@ -65,6 +65,12 @@ impl Play {
             ..Cast::default()
         };
         Self { cast, goals, path }
+    }
+
+    /// A member with the tags of its place.
+    fn tagged(member: Member, place: usize) -> Member {
+        let shell = member.shell.map(|shell| shell.tagged(place));
+        Member { shell, ..member }
     }
 
     fn lead(&self, time: f64) -> [f64; 2] {
