@@ -1,7 +1,12 @@
 //! What each robot knows of its leader.
 //!
 //! [`observe`] is one look at an instant; [`tracks`] is what an uninterrupted look over the last step would have
-//! seen, for observers that run in continuous time between control samples.
+//! seen, for observers that run in continuous time between control samples. Those two are the truth; what a camera
+//! makes of it goes from [`imaging`] through [`detect`] to [`pose`].
+
+pub mod detect;
+pub mod imaging;
+pub mod pose;
 
 use vocabulary::{Edge, EdgeSample, Observation, Passage, Relative, Snapshot, Track, nearest_turn};
 

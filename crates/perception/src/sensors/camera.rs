@@ -1,0 +1,222 @@
+//! Pictures: where to look, what the sensor makes of the light, and the tags in it.
+
+use super::{Look, Senses, all_faces, pan};
+use crate::detect::{Detector, Tag, identify};
+use crate::imaging::{Optics, expose, noise_stream, source_region};
+use crate::pose::SeenFace;
+use vocabulary::{Eyes, Grey, Lens, Region, Rigid, Shot, Snapshot};
+
+/// How cameras turn and take pictures; the lens and the mount are each robot's own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CameraModel {
+    /// Standard deviation of the blur, pixels.
+    pub blur: f64,
+    /// Standard deviation of a pixel's noise, share of full scale.
+    pub noise: f64,
+    /// Factor on the light.
+    pub exposure: f64,
+    /// Time over which a picture gathers light, s.
+    pub shutter: f64,
+    /// Fastest turn on the mast, rad/s.
+    pub pan_rate: f64,
+    /// Farthest turn from straight ahead, rad.
+    pub pan_max: f64,
+    /// Whether every look takes in the whole picture.
+    pub whole_frames: bool,
+}
+
+impl Default for CameraModel {
+    fn default() -> Self {
+        Self {
+            blur: 0.7,
+            noise: 3.0 / 255.0,
+            exposure: 1.0,
+            shutter: 0.0,
+            pan_rate: std::f64::consts::TAU,
+            pan_max: 170_f64.to_radians(),
+            whole_frames: false,
+        }
+    }
+}
+
+/// What was found in one picture.
+pub(super) struct Seen {
+    pub(super) region: Region,
+    pub(super) faces: Vec<SeenFace>,
+}
+
+/// Stream of random numbers for the noise of pixels.
+const PURPOSE: u64 = 2;
+/// Instants over which a picture with a shutter gathers its light.
+const SMEAR: u32 = 6;
+/// What is looked at reaches this share of the shell's size beyond where it is expected, and this many pixels.
+const MARGIN: (f64, f64) = (0.25, 14.0);
+/// Sides of regions are whole multiples of this, so that few sizes occur.
+const GRID: u32 = 16;
+
+impl CameraModel {
+    /// Standard deviation of a corner's coordinates as found in pictures, pixels.
+    pub(super) fn corner_noise(&self) -> f64 {
+        0.08
+    }
+
+    /// Takes the pictures of all looks at one instant and finds the leaders' tags in them.
+    pub(super) fn see(
+        &self,
+        senses: &Senses,
+        looks: &[&Look<'_>],
+        period: (&Snapshot, &Snapshot),
+        (eyes, detector): (&mut dyn Eyes, &mut dyn Detector),
+        seed: u64,
+    ) -> Result<Vec<Seen>, String> {
+        let regions: Vec<Region> = looks.iter().map(|look| self.region(senses, look)).collect();
+        let pictures = self.light(senses, looks, &regions, period, eyes)?;
+        let mut tags: Vec<Tag> = Vec::new();
+        let found = looks.iter().zip(regions).zip(pictures).map(|((look, region), light)| {
+            let lens = senses.kits[look.follower].lens;
+            let optics = Optics { lens, blur: self.blur, noise: self.noise };
+            let mut random = noise_stream(seed, look.follower as u64, look.number, PURPOSE);
+            let picture = expose(&optics, region, light, &mut random);
+            tags.clear();
+            detector.detect(&picture, &mut tags);
+            for corner in tags.iter_mut().flat_map(|tag| &mut tag.corners) {
+                *corner = [corner[0] + f64::from(region.x), corner[1] + f64::from(region.y)];
+            }
+            let faces = senses.kits[look.leader].shell.map_or_else(Vec::new, |shell| identify(&tags, &shell));
+            Seen { region, faces }
+        });
+        Ok(found.collect())
+    }
+
+    /// The light that falls on the sensors: ideal pictures of what each lens needs to see its region.
+    fn light(
+        &self,
+        senses: &Senses,
+        looks: &[&Look<'_>],
+        regions: &[Region],
+        (before, after): (&Snapshot, &Snapshot),
+        eyes: &mut dyn Eyes,
+    ) -> Result<Vec<Grey>, String> {
+        let shots = |snapshot: &Snapshot| -> Vec<Shot> {
+            let shot = |(look, region): (&&Look<'_>, &Region)| {
+                let kit = &senses.kits[look.follower];
+                shot(&kit.lens, *region, kit.mount.world_from_camera(&snapshot.robots[look.follower]), look, self)
+            };
+            looks.iter().zip(regions).map(shot).collect()
+        };
+        let Some(first) = looks.first() else { return Ok(Vec::new()) };
+        let mut pictures = Vec::new();
+        if self.shutter <= 0.0 || after.time <= before.time {
+            eyes.look(first.snapshot, &shots(first.snapshot), &mut pictures)?;
+            return checked(pictures, looks.len());
+        }
+        let mut sums: Vec<Vec<u32>> = Vec::new();
+        for k in 0..SMEAR {
+            // Backwards from the instant of the look, which is the end of the exposure.
+            let ago = self.shutter * f64::from(k) / f64::from(SMEAR - 1);
+            let into = first.snapshot.time - ago - before.time;
+            let mut then = Snapshot::between(before, after, into / (after.time - before.time));
+            for (robot, now) in then.robots.iter_mut().zip(&first.snapshot.robots) {
+                robot.camera_pan = now.camera_pan;
+            }
+            eyes.look(&then, &shots(&then), &mut pictures)?;
+            pictures = checked(pictures, looks.len())?;
+            sums.resize_with(pictures.len(), Vec::new);
+            for (sum, picture) in sums.iter_mut().zip(&pictures) {
+                sum.resize(picture.values.len(), 0);
+                for (total, value) in sum.iter_mut().zip(&picture.values) {
+                    *total += u32::from(*value);
+                }
+            }
+        }
+        for (picture, sum) in pictures.iter_mut().zip(&sums) {
+            for (value, total) in picture.values.iter_mut().zip(sum) {
+                *value = ((total + SMEAR / 2) / SMEAR) as u8;
+            }
+        }
+        Ok(pictures)
+    }
+
+    /// Where the leader is expected to be seen; the whole picture where that is not known.
+    fn region(&self, senses: &Senses, look: &Look<'_>) -> Region {
+        let lens = &senses.kits[look.follower].lens;
+        let whole = Region::whole(lens);
+        if self.whole_frames || !look.seen {
+            return whole;
+        }
+        expected(senses, look).and_then(|bounds| fitted(lens, bounds)).unwrap_or(whole)
+    }
+}
+
+fn checked(pictures: Vec<Grey>, wanted: usize) -> Result<Vec<Grey>, String> {
+    if pictures.len() == wanted {
+        return Ok(pictures);
+    }
+    Err(format!("{wanted} pictures were to be taken, and {} came", pictures.len()))
+}
+
+fn shot(lens: &Lens, region: Region, world_from_camera: Rigid, look: &Look<'_>, model: &CameraModel) -> Shot {
+    Shot {
+        robot: look.follower,
+        world_from_camera,
+        focal: lens.focal,
+        centre: lens.centre,
+        region: source_region(lens, region),
+        exposure: model.exposure,
+    }
+}
+
+/// Smallest and largest column and row of the leader's tags where the follower expects them.
+fn expected(senses: &Senses, look: &Look<'_>) -> Option<[[f64; 2]; 2]> {
+    let relative = look.expected?;
+    let (leader, follower) = (senses.kits.get(look.leader)?, senses.kits.get(look.follower)?);
+    let shell = leader.shell?;
+    let pose = pan::leader_pose(&relative);
+    let body_from_leader = Rigid::turned([pose.x, pose.y, 0.0], pose.heading, 0.0, 0.0);
+    let pan = look.snapshot.robots.get(look.follower)?.camera_pan;
+    let camera_from_leader = follower.mount.body_from_camera(pan).inverse().after(&body_from_leader);
+    let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for corner in all_faces().flat_map(|face| shell.tag_corners(face)) {
+        let pixel = follower.lens.project(camera_from_leader.apply(corner))?;
+        for k in 0..2 {
+            bounds[0][k] = bounds[0][k].min(pixel[k]);
+            bounds[1][k] = bounds[1][k].max(pixel[k]);
+        }
+    }
+    Some(bounds)
+}
+
+/// The region around some bounds, with a margin, cut at the edges of the picture; `None` where nothing is left.
+fn fitted(lens: &Lens, [low, high]: [[f64; 2]; 2]) -> Option<Region> {
+    let size = (high[0] - low[0]).max(high[1] - low[1]);
+    let margin = MARGIN.0 * size + MARGIN.1;
+    let along = |k: usize, pixels: u32| {
+        let first = ((low[k] - margin).max(0.0) as u32).min(pixels);
+        let last = ((high[k] + margin).max(0.0) as u32).min(pixels);
+        let first = first / GRID * GRID;
+        let length = (last.checked_sub(first)?).next_multiple_of(GRID).min(pixels - first);
+        (length >= 2 * GRID).then_some((first, length))
+    };
+    if !size.is_finite() {
+        return None;
+    }
+    let ((x, width), (y, height)) = (along(0, lens.width)?, along(1, lens.height)?);
+    Some(Region { x, y, width, height })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regions_hold_what_is_expected_and_stay_in_the_picture() {
+        let lens = Lens::default();
+        let region = fitted(&lens, [[300.0, 200.0], [420.0, 260.0]]).expect("a region");
+        assert!(region.x <= 256 && region.x + region.width >= 464 && region.y <= 156 && region.y + region.height >= 304);
+        assert!(region.width.is_multiple_of(GRID) && region.height.is_multiple_of(GRID));
+        let cut = fitted(&lens, [[-80.0, 300.0], [60.0, 900.0]]).expect("a region");
+        assert!(cut.x == 0 && cut.y + cut.height == lens.height);
+        assert_eq!(fitted(&lens, [[-500.0, 100.0], [-300.0, 200.0]]), None);
+        assert_eq!(fitted(&lens, [[f64::INFINITY, 0.0], [f64::NEG_INFINITY, 0.0]]), None);
+    }
+}

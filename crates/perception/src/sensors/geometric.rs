@@ -1,0 +1,53 @@
+//! Tags as a camera would see them, calculated: no picture is drawn.
+
+use super::{Look, Senses, all_faces, noise::normal, sightline::hidden};
+use crate::pose::SeenFace;
+use rand_chacha::rand_core::Rng;
+
+/// Pixels that a cell needs, seen from ahead and at the steepest angle at which a tag is still read.
+const LEAST_CELL: [f64; 2] = [1.75, 2.5];
+/// Cosine of that angle, 62°.
+const STEEPEST: f64 = 0.469;
+/// Pixels that a tag's corners keep from the edge of the picture.
+const MARGIN: f64 = 4.0;
+
+/// Corners of the tags that can be read, each coordinate with an error of `pixel_noise` pixels standard deviation.
+pub(super) fn faces(senses: &Senses, look: &Look<'_>, pixel_noise: f64, random: &mut impl Rng) -> Vec<SeenFace> {
+    let (Some(leader), Some(follower)) = (senses.kits.get(look.leader), senses.kits.get(look.follower)) else {
+        return Vec::new();
+    };
+    let (Some(shell), Some(camera_from_leader)) = (leader.shell, senses.camera_from_leader(look)) else {
+        return Vec::new();
+    };
+    let robots = &look.snapshot.robots;
+    let world_from_leader = robots[look.leader].world_from_body();
+    let world_from_camera = follower.mount.world_from_camera(&robots[look.follower]);
+    let mut seen = Vec::new();
+    for face in all_faces() {
+        // Errors are drawn for every face, so that a face out of sight changes none of the others.
+        let errors: [[f64; 2]; 4] = std::array::from_fn(|_| [normal(random), normal(random)]);
+        let eye = shell.body_from_face(face).inverse().after(&camera_from_leader.inverse()).translation;
+        let away = eye.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let slant = eye[2] / away;
+        if slant < STEEPEST || shell.first_tag.is_none() {
+            continue;
+        }
+        let share = (1.0 - slant) / (1.0 - STEEPEST);
+        let least = LEAST_CELL[0] + (LEAST_CELL[1] - LEAST_CELL[0]) * share;
+        if follower.lens.focal * shell.cell / away < least {
+            continue;
+        }
+        let corners = shell.tag_corners(face);
+        let pixels = corners.map(|corner| follower.lens.project(camera_from_leader.apply(corner)));
+        let [Some(a), Some(b), Some(c), Some(d)] = pixels else { continue };
+        let pixels = [a, b, c, d];
+        let in_picture = pixels.iter().all(|p| follower.lens.holds(*p, MARGIN));
+        let from = world_from_camera.translation;
+        let in_sight = || corners.iter().all(|c| !hidden(senses, look, from, world_from_leader.apply(*c)));
+        if in_picture && in_sight() {
+            let moved = |k: usize| [0, 1].map(|i| pixels[k][i] + pixel_noise * errors[k][i]);
+            seen.push(SeenFace { face, corners: [0, 1, 2, 3].map(moved) });
+        }
+    }
+    seen
+}

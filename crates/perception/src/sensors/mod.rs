@@ -1,0 +1,380 @@
+//! Looks at leaders: who looks when, by which sensor, and when the follower has what it saw.
+//!
+//! A look is taken at its own instant, which need not be a control sample: robots are where they were at that instant,
+//! cameras point where they pointed. What is seen is on its way for the sensor's latency. [`Senses`] are parameters,
+//! [`Watch`] is their state.
+
+mod camera;
+mod geometric;
+mod noise;
+mod pan;
+mod sightline;
+
+pub use camera::CameraModel;
+pub use noise::NoiseModel;
+
+use crate::imaging::noise_stream;
+use crate::pose::{Prior, Rig, locate};
+use crate::{detect::Locus, pose::SeenFace};
+use pan::Pan;
+use std::collections::VecDeque;
+use vocabulary::{
+    Body, Edge, Eyes, FACES, Frame, Lens, Member, Mount, Outcome, Passage, Prop, Relative, Rigid, Shell, Sight,
+    Sighting, Snapshot, Terrain,
+};
+
+/// Where the looks of one follower come from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Source {
+    /// It is told the truth at every instant, and does not look.
+    Truth,
+    /// The truth with errors.
+    Noise(NoiseModel),
+    /// Corners of tags, calculated, with errors of this standard deviation in pixels; the pose from them.
+    Geometric {
+        /// Of each coordinate, pixels.
+        pixel_noise: f64,
+    },
+    /// Pictures.
+    Camera,
+}
+
+/// How one follower senses its leader.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensor {
+    /// Where its looks come from.
+    pub source: Source,
+    /// Looks a second.
+    pub rate: f64,
+    /// From a look until the follower has it, s.
+    pub latency: f64,
+    /// Share of the looks that never arrive.
+    pub drop: f64,
+    /// How far bodies are expected to tilt against each other, standard deviation, rad.
+    pub tilt: f64,
+}
+
+/// What a robot is seen by and sees with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Kit {
+    pub(crate) body: Body,
+    pub(crate) shell: Option<Shell>,
+    pub(crate) mount: Mount,
+    pub(crate) lens: Lens,
+}
+
+/// Parameters of all followers' senses.
+#[derive(Debug, Clone)]
+pub struct Senses {
+    edges: Vec<Edge>,
+    sensors: Vec<Sensor>,
+    pub(crate) kits: Vec<Kit>,
+    pub(crate) props: Vec<Prop>,
+    pub(crate) terrain: Option<std::sync::Arc<Terrain>>,
+    camera: CameraModel,
+    seed: u64,
+}
+
+/// State of all followers' senses.
+#[derive(Debug, Clone)]
+pub struct Watch {
+    edges: Vec<EdgeWatch>,
+}
+
+/// State of one follower's senses.
+#[derive(Debug, Clone)]
+struct EdgeWatch {
+    /// Looks taken so far.
+    looks: u64,
+    pan: Pan,
+    /// Slowly changing errors of the noisy truth.
+    drift: noise::Drift,
+    /// Whether the leader was recognised in the last look.
+    seen: bool,
+    on_the_way: VecDeque<Frame>,
+}
+
+/// What a follower believes, for its camera to follow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Belief {
+    /// Where it believes itself to be relative to its leader.
+    pub relative: Option<Relative>,
+    /// How well it knows.
+    pub sight: Sight,
+}
+
+/// One look as it is taken.
+pub(crate) struct Look<'a> {
+    pub(crate) edge: usize,
+    pub(crate) leader: usize,
+    pub(crate) follower: usize,
+    /// Counts the looks of this follower.
+    pub(crate) number: u64,
+    /// All robots at that instant, cameras included.
+    pub(crate) snapshot: &'a Snapshot,
+    /// Where the follower expects to be relative to its leader.
+    pub(crate) expected: Option<Relative>,
+    /// Whether that can be relied on.
+    pub(crate) seen: bool,
+}
+
+/// Instants closer together than this are one, s.
+const INSTANT: f64 = 1e-9;
+/// Looks that are on their way at once, per follower; more than this and the oldest are lost.
+const MOST_ON_THE_WAY: usize = 4096;
+
+impl Senses {
+    /// Puts checked parts together: one sensor per edge, `members` in the order of the snapshots.
+    pub fn new(
+        edges: &[Edge],
+        sensors: Vec<Sensor>,
+        (members, props): (&[Member], &[Prop]),
+        terrain: Option<std::sync::Arc<Terrain>>,
+        camera: CameraModel,
+        seed: u64,
+    ) -> Self {
+        debug_assert_eq!(edges.len(), sensors.len());
+        let kit = |m: &Member| Kit { body: m.body, shell: m.shell, mount: m.mount, lens: m.lens };
+        Self {
+            edges: edges.to_vec(),
+            sensors,
+            kits: members.iter().map(kit).collect(),
+            props: props.to_vec(),
+            terrain,
+            camera,
+            seed,
+        }
+    }
+
+    /// The sensor of every edge.
+    pub fn sensors(&self) -> &[Sensor] {
+        &self.sensors
+    }
+
+    /// Whether any follower looks at all.
+    pub fn look(&self) -> bool {
+        self.sensors.iter().any(|sensor| sensor.source != Source::Truth)
+    }
+
+    /// Whether any follower needs pictures.
+    pub fn need_eyes(&self) -> bool {
+        self.sensors.iter().any(|sensor| sensor.source == Source::Camera)
+    }
+
+    /// The state before the first look: cameras point at the leaders as they stand.
+    pub fn start(&self, snapshot: &Snapshot) -> Watch {
+        let watch = |edge: &Edge| {
+            let (leader, follower) = (&snapshot.robots[edge.leader], &snapshot.robots[edge.follower]);
+            let relative = Relative::between(leader.motion.pose, follower.motion.pose);
+            let mount = self.kits[edge.follower].mount;
+            EdgeWatch {
+                looks: 0,
+                pan: Pan::at(pan::towards(&relative, mount.forward), &self.camera),
+                drift: noise::Drift::default(),
+                seen: false,
+                on_the_way: VecDeque::new(),
+            }
+        };
+        Watch { edges: self.edges.iter().map(watch).collect() }
+    }
+
+    /// Takes all looks due after the last ones up to the end of a period, which began with the snapshot `before` and
+    /// ended with `after`; both are the same for the looks at the start.
+    ///
+    /// # Errors
+    /// What kept the cameras from taking pictures, in words.
+    pub fn take_looks(
+        &self,
+        watch: &mut Watch,
+        (before, after): (&Snapshot, &Snapshot),
+        passage: &(impl Passage + ?Sized),
+        beliefs: &[Belief],
+        mut eyes: Option<&mut (dyn Eyes + '_)>,
+    ) -> Result<(), String> {
+        while let Some((instant, due)) = self.next_looks(watch, after.time) {
+            let share = if after.time > before.time {
+                (instant - before.time) / (after.time - before.time)
+            } else {
+                1.0
+            };
+            let snapshot = self.instant(watch, (before, after), passage, share);
+            let looks: Vec<Look<'_>> = due
+                .iter()
+                .map(|&edge| Look {
+                    edge,
+                    leader: self.edges[edge].leader,
+                    follower: self.edges[edge].follower,
+                    number: watch.edges[edge].looks,
+                    snapshot: &snapshot,
+                    expected: beliefs[edge].relative,
+                    seen: watch.edges[edge].seen && beliefs[edge].sight == Sight::Tracking,
+                })
+                .collect();
+            let pictures = self.pictures(&looks, (before, after), eyes.as_deref_mut())?;
+            for (look, picture) in looks.iter().zip(pictures) {
+                let frame = self.frame(watch, look, instant, picture);
+                let state = &mut watch.edges[look.edge];
+                state.looks += 1;
+                state.seen = frame.outcome.seen() || (state.seen && frame.outcome == Outcome::Dropped);
+                state.on_the_way.push_back(frame);
+                if state.on_the_way.len() > MOST_ON_THE_WAY {
+                    state.on_the_way.pop_front();
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The next instant at which someone looks, and who does.
+    fn next_looks(&self, watch: &Watch, until: f64) -> Option<(f64, Vec<usize>)> {
+        let due = |edge: usize| {
+            let sensor = &self.sensors[edge];
+            (sensor.source != Source::Truth).then(|| watch.edges[edge].looks as f64 / sensor.rate)
+        };
+        let all = 0..self.sensors.len();
+        let instant = all.clone().filter_map(due).fold(f64::INFINITY, f64::min);
+        (instant <= until + INSTANT)
+            .then(|| (instant, all.filter(|edge| due(*edge).is_some_and(|d| d <= instant + INSTANT)).collect()))
+    }
+
+    /// Everything as it was at `share` of the period: robots on their way, cameras between their directions.
+    fn instant(
+        &self,
+        watch: &Watch,
+        (before, after): (&Snapshot, &Snapshot),
+        passage: &(impl Passage + ?Sized),
+        share: f64,
+    ) -> Snapshot {
+        let mut now = Snapshot::between(before, after, share);
+        let duration = passage.duration();
+        if duration > 0.0 && after.time > before.time {
+            for (index, robot) in now.robots.iter_mut().enumerate() {
+                robot.motion = passage.during(index, share.clamp(0.0, 1.0) * duration);
+            }
+        }
+        for (edge, state) in self.edges.iter().zip(&watch.edges) {
+            if let Some(robot) = now.robots.get_mut(edge.follower) {
+                robot.camera_pan = state.pan.between(share);
+            }
+        }
+        now
+    }
+
+    /// What comes of one look.
+    fn frame(&self, watch: &mut Watch, look: &Look<'_>, stamp: f64, picture: Option<camera::Seen>) -> Frame {
+        let sensor = &self.sensors[look.edge];
+        let robot = |index: usize| &look.snapshot.robots[index];
+        let truth = Relative::between(robot(look.leader).motion.pose, robot(look.follower).motion.pose);
+        let mut frame = Frame {
+            edge: look.edge,
+            sighting: Sighting { stamp, ..Sighting::default() },
+            arrival: stamp + sensor.latency,
+            outcome: Outcome::Missed,
+            truth,
+            pan: robot(look.follower).camera_pan,
+            ..Frame::default()
+        };
+        let mut random = noise_stream(self.seed, look.follower as u64, look.number, noise::PURPOSE);
+        if noise::share(&mut random) < sensor.drop {
+            frame.outcome = Outcome::Dropped;
+            return frame;
+        }
+        match (sensor.source, picture) {
+            (Source::Noise(model), _) => {
+                let drift = &mut watch.edges[look.edge].drift;
+                frame.sighting = model.sighting(stamp, &truth, 1.0 / sensor.rate, drift, &mut random);
+                frame.outcome = Outcome::Used;
+            }
+            (Source::Geometric { pixel_noise }, _) => {
+                let faces = geometric::faces(self, look, pixel_noise, &mut random);
+                self.locate(look, &faces, pixel_noise, &mut frame);
+            }
+            (Source::Camera, Some(seen)) => {
+                frame.region = seen.region;
+                self.locate(look, &seen.faces, self.camera.corner_noise(), &mut frame);
+            }
+            (Source::Camera | Source::Truth, _) => {}
+        }
+        frame
+    }
+
+    /// The pose of the leader from the faces seen.
+    fn locate(&self, look: &Look<'_>, faces: &[SeenFace], deviation: f64, frame: &mut Frame) {
+        for seen in faces {
+            if let Some(tag) = frame.tags.get_mut(seen.face) {
+                *tag = Some(seen.corners);
+            }
+        }
+        let (Some(rig), false) = (self.rig(look), faces.is_empty()) else { return };
+        let prior = Prior { tilt: self.sensors[look.edge].tilt, height: 0.0 };
+        let near = look.expected.filter(|_| look.seen).map(|relative| pan::leader_pose(&relative));
+        let Some(found) = locate(&rig, faces, deviation.max(1e-3), &prior, near) else { return };
+        let (relative, deviation) = found.sighting();
+        frame.sighting = Sighting { stamp: frame.sighting.stamp, relative, deviation };
+        frame.outcome = if found.ambiguous { Outcome::Ambiguous } else { Outcome::Used };
+    }
+
+    /// What the follower looks at and with.
+    fn rig(&self, look: &Look<'_>) -> Option<Rig> {
+        let kit = self.kits.get(look.follower)?;
+        let pan = look.snapshot.robots.get(look.follower)?.camera_pan;
+        Some(Rig {
+            shell: self.kits.get(look.leader)?.shell?,
+            lens: kit.lens,
+            body_from_camera: kit.mount.body_from_camera(pan),
+        })
+    }
+
+    /// Takes the pictures of all looks that need one; `None` for those that do not.
+    fn pictures(
+        &self,
+        looks: &[Look<'_>],
+        period: (&Snapshot, &Snapshot),
+        eyes: Option<&mut (dyn Eyes + '_)>,
+    ) -> Result<Vec<Option<camera::Seen>>, String> {
+        let by_camera = |look: &Look<'_>| self.sensors[look.edge].source == Source::Camera;
+        if !looks.iter().any(by_camera) {
+            return Ok(looks.iter().map(|_| None).collect());
+        }
+        let eyes = eyes.ok_or("cameras are to take pictures, and nobody is there to draw them")?;
+        let mut detector = Locus::new();
+        let wanted: Vec<&Look<'_>> = looks.iter().filter(|look| by_camera(look)).collect();
+        let mut seen = self.camera.see(self, &wanted, period, (eyes, &mut detector), self.seed)?.into_iter();
+        Ok(looks.iter().map(|look| if by_camera(look) { seen.next() } else { None }).collect())
+    }
+
+    /// The looks of an edge that have arrived by `time`, in the order of their stamps.
+    pub fn arrived(watch: &mut Watch, edge: usize, time: f64) -> impl Iterator<Item = Frame> + '_ {
+        let waiting = watch.edges.get_mut(edge).map(|state| &mut state.on_the_way);
+        let mut waiting = waiting.into_iter().flat_map(move |frames| {
+            let count = frames.iter().take_while(|frame| frame.arrival <= time + INSTANT).count();
+            frames.drain(..count)
+        });
+        std::iter::from_fn(move || waiting.next())
+    }
+
+    /// Turns all cameras for a period to come towards where leaders are believed to be.
+    pub fn turn_cameras(&self, watch: &mut Watch, beliefs: &[Belief], period: f64) {
+        for ((edge, state), belief) in self.edges.iter().zip(&mut watch.edges).zip(beliefs) {
+            state.pan.turn(belief, self.kits[edge.follower].mount.forward, &self.camera, period);
+        }
+    }
+
+    /// Direction of the camera of an edge's follower at the start of the period that begins, rad from its heading.
+    pub fn pan(&self, watch: &Watch, edge: usize) -> f64 {
+        watch.edges.get(edge).map_or(0.0, |state| state.pan.between(0.0))
+    }
+
+    /// The shell's frames as a follower's camera sees them.
+    pub(crate) fn camera_from_leader(&self, look: &Look<'_>) -> Option<Rigid> {
+        let follower = look.snapshot.robots.get(look.follower)?;
+        let leader = look.snapshot.robots.get(look.leader)?;
+        let mount = self.kits.get(look.follower)?.mount;
+        Some(mount.world_from_camera(follower).inverse().after(&leader.world_from_body()))
+    }
+}
+
+/// Faces of a shell.
+pub(crate) fn all_faces() -> std::ops::Range<usize> {
+    0..FACES
+}

@@ -1,0 +1,96 @@
+//! The truth with errors.
+
+use rand_chacha::rand_core::Rng;
+use vocabulary::{Relative, Sighting, wrap};
+
+/// Stream of random numbers for drop-outs, noisy truth and corners.
+pub(super) const PURPOSE: u64 = 1;
+
+/// Errors of looks at the truth, each of [distance in m, bearing in rad, view angle in rad].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoiseModel {
+    /// Standard deviation.
+    pub deviation: [f64; 3],
+    /// The same in every look.
+    pub bias: [f64; 3],
+    /// Time over which errors are alike, s; 0 where each look has its own.
+    pub correlation: f64,
+}
+
+/// Slowly changing errors, in standard deviations.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Drift {
+    now: Option<[f64; 3]>,
+}
+
+impl NoiseModel {
+    /// A look `interval` s after the last one. Correlated errors are a first-order Gauss-Markov process, so that their
+    /// standard deviation stays what it is.
+    pub(super) fn sighting(
+        &self,
+        stamp: f64,
+        truth: &Relative,
+        interval: f64,
+        drift: &mut Drift,
+        random: &mut impl Rng,
+    ) -> Sighting {
+        let fresh = [normal(random), normal(random), normal(random)];
+        let keep = if self.correlation > 0.0 { (-interval / self.correlation).exp() } else { 0.0 };
+        let now = drift.now.map_or(fresh, |last| {
+            [0, 1, 2].map(|k| keep * last[k] + (1.0 - keep * keep).sqrt() * fresh[k])
+        });
+        drift.now = Some(now);
+        let error = |k: usize| self.bias[k] + self.deviation[k] * now[k];
+        Sighting {
+            stamp,
+            relative: Relative {
+                distance: (truth.distance + error(0)).max(0.0),
+                bearing: wrap(truth.bearing + error(1)),
+                view_angle: wrap(truth.view_angle + error(2)),
+            },
+            // A sensor without errors is still one of finite precision.
+            deviation: self.deviation.map(|d| d.max(1e-5)),
+        }
+    }
+}
+
+/// Evenly distributed in [0, 1).
+pub(super) fn share(random: &mut impl Rng) -> f64 {
+    (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// Standard normal, by Box and Muller.
+pub(super) fn normal(random: &mut impl Rng) -> f64 {
+    let radius = (-2.0 * (1.0 - share(random)).ln()).sqrt();
+    radius * (std::f64::consts::TAU * share(random)).cos()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+    #[test]
+    fn errors_have_the_size_bias_and_memory_they_should() {
+        let model = NoiseModel { deviation: [0.1, 0.02, 0.01], bias: [0.5, 0.0, -0.1], correlation: 0.2 };
+        let (mut drift, mut random) = (Drift::default(), ChaCha8Rng::seed_from_u64(5));
+        let truth = Relative { distance: 3.0, bearing: 3.1, view_angle: 0.0 };
+        let count = 20_000;
+        let errors: Vec<[f64; 3]> = (0..count)
+            .map(|k| {
+                let r = model.sighting(f64::from(k) * 0.1, &truth, 0.1, &mut drift, &mut random).relative;
+                [r.distance - 3.0, wrap(r.bearing - 3.1), r.view_angle]
+            })
+            .collect();
+        let mean = |f: &dyn Fn(usize) -> f64, n: usize| (0..n).map(f).sum::<f64>() / n as f64;
+        let n = errors.len();
+        for k in 0..3 {
+            let centre = mean(&|i| errors[i][k], n);
+            let spread = mean(&|i| (errors[i][k] - centre).powi(2), n);
+            let next = mean(&|i| (errors[i][k] - centre) * (errors[i + 1][k] - centre), n - 1);
+            assert!((centre - model.bias[k]).abs() < 0.05 * model.deviation[k], "{k}: {centre}");
+            assert!((spread.sqrt() / model.deviation[k] - 1.0).abs() < 0.05, "{k}: {spread}");
+            assert!((next / spread - (-0.5_f64).exp()).abs() < 0.05, "{k}: {}", next / spread);
+        }
+    }
+}
