@@ -2,7 +2,7 @@
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Ray {
-    return screen_corner(index, -1.0, clamp(frame.up.w, -1.0, 1.0));
+    return screen_corner(index, false, 0.0);
 }
 
 @fragment

@@ -3,7 +3,7 @@
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Ray {
     // A terrain may end a little below the horizon; the gap is haze.
-    return screen_corner(index, clamp(frame.up.w - select(0.0, 0.25, frame.terrain.w > 0.5), -1.0, 1.0), 1.0);
+    return screen_corner(index, true, select(0.0, 0.25, frame.terrain.w > 0.5));
 }
 
 @fragment

@@ -30,6 +30,9 @@ fn grain(at: vec2<f32>) -> f32 {
 
 // The same with the lines on it, where a pixel covers `footprint` m.
 fn marked(at: vec2<f32>, footprint: vec2<f32>) -> f32 {
+    if !LINES {
+        return grain(at);
+    }
     let density = 1.0 / max(footprint, vec2<f32>(1e-5));
     let painted = max(lines(at, density, 1.0, 0.014) * 0.34, lines(at, density, 5.0, 0.030) * 0.66);
     return mix(grain(at), 0.66, painted * frame.ground.z);

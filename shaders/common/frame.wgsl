@@ -5,7 +5,9 @@ struct Frame {
     shadow_from_local: mat4x4<f32>,
     // Eye; w is 1 for perspective, 0 for a parallel projection.
     eye: vec4<f32>,
-    // Axes of the view, the first two scaled to half the picture; up.w is the horizon's normalised height.
+    // Axes of the view, the first two scaled to half the picture, the last towards its middle and one deep. The horizon
+    // is at the normalised height up.w, rises by right.w per half width, and has the sky above it where forward.w is 1,
+    // below where −1.
     right: vec4<f32>,
     up: vec4<f32>,
     forward: vec4<f32>,

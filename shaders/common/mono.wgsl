@@ -6,6 +6,9 @@ const GAIN = 0.464;
 const HAZE_LIGHT = 1.10;
 const BLUE_LIGHT = 0.37;
 
+// A camera sees none of what is drawn to explain.
+const LINES = false;
+
 fn sensed(luminance: f32) -> vec3<f32> {
     return vec3<f32>(luminance * GAIN * frame.ground.y);
 }

@@ -4,9 +4,9 @@ use crate::View;
 use crate::floor::Floor;
 use crate::steady::{Extent, Steady};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
-use vocabulary::{Cast, Edge, Snapshot};
+use vocabulary::{Body, Cast, Edge, Lens, Mount, Region, Shot, Snapshot};
 
-/// A camera without roll: its horizon is level.
+/// Whence and how a picture is seen; only cameras on robots roll.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Camera {
     pub(crate) eye: DVec3,
@@ -15,10 +15,15 @@ pub(crate) struct Camera {
     pub(crate) up: DVec3,
     /// Tangents of half the fields of view across and down; for a parallel projection half the sides in m.
     pub(crate) half: DVec2,
+    /// Tangents of the directions to the middle of the picture, right and up; 0 where it looks straight ahead.
+    pub(crate) shift: DVec2,
+    pub(crate) near: f64,
     pub(crate) perspective: bool,
 }
 
 const NEAR: f64 = 0.05;
+/// Of cameras on robots, m.
+const NEAR_OF_ROBOTS: f64 = 0.02;
 const FAR: f64 = 600.0;
 /// Of an eye that the ground would hide, m.
 const LEAST_OVER_GROUND: f64 = 0.28;
@@ -53,6 +58,7 @@ impl Camera {
             View::Top => top(steady, aspect),
             View::Orbit => orbit(steady, snapshot.time, cast.edges.is_empty(), aspect),
             View::Follow(robot) => follow(steady, snapshot, &cast.edges, *robot, aspect),
+            View::Camera(robot) => return carried(snapshot, cast, *robot, aspect),
             View::Fixed { eye, target, field_of_view } => {
                 return Self::looking(
                     DVec3::from_array(*eye),
@@ -85,14 +91,32 @@ impl Camera {
         let right = DVec3::new(heading.y, -heading.x, 0.0);
         let tangent = (0.5 * field_of_view).tan();
         let half = DVec2::new(tangent * aspect, tangent);
-        Self { eye, forward, right, up: right.cross(forward), half, perspective: true }
+        Self {
+            eye,
+            forward,
+            right,
+            up: right.cross(forward),
+            half,
+            shift: DVec2::ZERO,
+            near: NEAR,
+            perspective: true,
+        }
     }
 
     fn pitched(heading: f64, pitch: f64, tangent: f64, aspect: f64) -> Self {
         let forward = DVec3::new(heading.cos() * pitch.cos(), heading.sin() * pitch.cos(), -pitch.sin());
         let right = DVec3::new(heading.sin(), -heading.cos(), 0.0);
         let half = DVec2::new(tangent * aspect, tangent);
-        Self { eye: DVec3::ZERO, forward, right, up: right.cross(forward), half, perspective: true }
+        Self {
+            eye: DVec3::ZERO,
+            forward,
+            right,
+            up: right.cross(forward),
+            half,
+            shift: DVec2::ZERO,
+            near: NEAR,
+            perspective: true,
+        }
     }
 
     /// Coordinates of a world point along right, up and forward, from the eye, m.
@@ -105,7 +129,7 @@ impl Camera {
     pub(crate) fn project(&self, point: DVec3) -> Option<DVec2> {
         let p = self.view_from_world(point);
         if self.perspective {
-            (p.z > NEAR).then(|| DVec2::new(p.x, p.y) / (self.half * p.z))
+            (p.z > self.near).then(|| (DVec2::new(p.x, p.y) / p.z - self.shift) / self.half)
         } else {
             Some(DVec2::new(p.x, p.y) / self.half)
         }
@@ -113,7 +137,7 @@ impl Camera {
 
     /// Metres per pixel at a world point, on a tile `height` pixels high.
     pub(crate) fn metres_per_pixel(&self, point: DVec3, height: f64) -> f64 {
-        let depth = if self.perspective { self.view_from_world(point).z.max(NEAR) } else { 1.0 };
+        let depth = if self.perspective { self.view_from_world(point).z.max(self.near) } else { 1.0 };
         2.0 * self.half.y * depth / height
     }
 
@@ -121,12 +145,12 @@ impl Camera {
     pub(crate) fn clip_from_local(&self, origin: DVec3) -> Mat4 {
         let eye = self.eye - origin;
         let row = |axis: DVec3, scale: f64| (axis * scale).extend(-axis.dot(eye) * scale);
-        let x = row(self.right, 1.0 / self.half.x);
-        let y = row(self.up, 1.0 / self.half.y);
+        let x = row(self.right - self.forward * self.shift.x, 1.0 / self.half.x);
+        let y = row(self.up - self.forward * self.shift.y, 1.0 / self.half.y);
         let along = row(self.forward, 1.0);
         let rows = if self.perspective {
-            let slope = FAR / (FAR - NEAR);
-            DMat4::from_cols(x, y, along * slope - DVec4::W * (NEAR * slope), along)
+            let slope = FAR / (FAR - self.near);
+            DMat4::from_cols(x, y, along * slope - DVec4::W * (self.near * slope), along)
         } else {
             DMat4::from_cols(x, y, along / FAR, DVec4::W)
         };
@@ -138,7 +162,54 @@ impl Camera {
         if !self.perspective || self.up.z < 1e-6 {
             return 4.0;
         }
-        -self.forward.z / (self.up.z * self.half.y)
+        (-self.forward.z / self.up.z - self.shift.y) / self.half.y
+    }
+
+    /// The horizon as the shaders have it: its normalised height in the middle, by how much it rises over half the
+    /// width, and 1 where the sky is above it, −1 where it is below.
+    pub(crate) fn skyline(&self) -> [f64; 3] {
+        let (aside, up) = (self.right.z * self.half.x, self.up.z * self.half.y);
+        if aside.abs() < 1e-9 && up >= 0.0 || !self.perspective {
+            return [self.horizon().clamp(-4.0, 4.0), 0.0, 1.0];
+        }
+        let up = if up.abs() < 1e-5 { 1e-5_f64.copysign(up) } else { up };
+        let middle = self.forward.z + self.right.z * self.shift.x + self.up.z * self.shift.y;
+        [-middle / up, -aside / up, up.signum()]
+    }
+
+    /// The camera of a shot: one that looks ahead in a frame with x to the right and y down, of whose picture it sees a
+    /// part.
+    pub(crate) fn shot(shot: &Shot) -> Self {
+        let axis = |k: usize| DVec3::from_array(shot.world_from_camera.rotation.map(|row| row[k]));
+        let region = shot.region;
+        // Half the side, and where its middle is; pixels have their middles at whole numbers.
+        let side = |size: u32| 0.5 * f64::from(size) / shot.focal;
+        let middle = |at: u32, size: u32, centre: f64| {
+            (f64::from(at) - 0.5 + 0.5 * f64::from(size) - centre) / shot.focal
+        };
+        Self {
+            eye: DVec3::from_array(shot.world_from_camera.translation),
+            forward: axis(2),
+            right: axis(0),
+            up: -axis(1),
+            half: DVec2::new(side(region.width), side(region.height)),
+            shift: DVec2::new(
+                middle(region.x, region.width, shot.centre[0]),
+                -middle(region.y, region.height, shot.centre[1]),
+            ),
+            near: NEAR_OF_ROBOTS,
+            perspective: true,
+        }
+    }
+
+    /// Whether a ball may be in the picture.
+    pub(crate) fn may_see(&self, middle: DVec3, radius: f64) -> bool {
+        let p = self.view_from_world(middle);
+        let beside = |at: f64, shift: f64, half: f64| {
+            let out = |edge: f64, side: f64| side * (at - edge * p.z) / edge.hypot(1.0) > radius;
+            out(shift + half, 1.0) || out(shift - half, -1.0)
+        };
+        p.z > -radius && !beside(p.x, self.shift.x, self.half.x) && !beside(p.y, self.shift.y, self.half.y)
     }
 
     /// Moves the eye so that `points` fill the picture between the composition's bounds, turning nothing.
@@ -208,6 +279,8 @@ fn top(steady: &Steady, aspect: f64) -> Camera {
         right: DVec3::X,
         up: DVec3::Y,
         half: DVec2::new(half * aspect, half),
+        shift: DVec2::ZERO,
+        near: NEAR,
         perspective: false,
     }
 }
@@ -227,6 +300,26 @@ fn orbit(steady: &Steady, time: f64, alone: bool, aspect: f64) -> Camera {
     let eye = DVec3::new(turn.cos() * rise.cos(), turn.sin() * rise.cos(), rise.sin()) * distance;
     let target = DVec3::new(x, y, 0.5 * (extent.ground[0] + extent.ground[1]) + 0.1);
     Camera::looking(target + eye, target, (38.0_f64).to_radians(), aspect)
+}
+
+/// Through the camera of a robot: all of its sensor, and what is beside that or over it where the picture has room.
+fn carried(snapshot: &Snapshot, cast: &Cast, robot: usize, aspect: f64) -> Camera {
+    let state = snapshot.robots.get(robot).copied().unwrap_or_default();
+    let (mount, lens) = cast.members.get(robot).map_or_else(
+        || (Mount::fitting(&Body::default()), Lens::default()),
+        |member| (member.mount, member.lens),
+    );
+    let mut camera = Camera::shot(&Shot {
+        robot,
+        world_from_camera: mount.world_from_camera(&state),
+        focal: lens.focal,
+        centre: lens.centre,
+        region: Region::whole(&lens),
+        exposure: 1.0,
+    });
+    let DVec2 { x, y } = camera.half;
+    camera.half = DVec2::new(x.max(y * aspect), y.max(x / aspect));
+    camera
 }
 
 /// Behind one robot, turned a little to its leader and far enough back for that to be in the picture.

@@ -75,7 +75,7 @@ pub(crate) fn sun_over(stage: &Stage<'_>) -> SunView {
 /// Depth up to which props are seen through: just short of the nearest robot that is in the picture. Where somebody
 /// has put the eye, or above all, they stay as they are.
 fn veiled(camera: &Camera, stage: &Stage<'_>, view: &View) -> f64 {
-    if matches!(view, View::Top | View::Fixed { .. }) {
+    if matches!(view, View::Top | View::Camera(_) | View::Fixed { .. }) {
         return f64::NEG_INFINITY;
     }
     let nearest = |index: usize, state: &RobotState| {
@@ -98,7 +98,10 @@ const MOST_LOOKED_FOR: usize = 500;
 pub(crate) fn veiled_decks(camera: &Camera, stage: &Stage<'_>, view: &View) -> Vec<bool> {
     let robots = &stage.moment.snapshot.robots;
     let decks = &stage.floor.decks;
-    if decks.is_empty() || robots.len() > MOST_LOOKED_FOR || matches!(view, View::Top | View::Fixed { .. }) {
+    if decks.is_empty()
+        || robots.len() > MOST_LOOKED_FOR
+        || matches!(view, View::Top | View::Camera(_) | View::Fixed { .. })
+    {
         return vec![false; decks.len()];
     }
     let looked_for = |k: &usize| !matches!(view, View::Follow(robot) if robot != k);

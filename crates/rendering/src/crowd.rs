@@ -1,5 +1,6 @@
 //! Copies of the models for a moment: where bodies, wheels, cameras and ghosts stand.
 
+use crate::camera::Camera;
 use crate::model::Build;
 use crate::paint::{Stage, flat};
 use crate::palette::{Rgb, linear};
@@ -47,6 +48,29 @@ pub(crate) fn crowd(stage: &Stage<'_>, fleet: &Fleet) -> Crowd {
         ghosts(&mut crowd, stage, fleet);
     }
     crowd
+}
+
+/// What of a crowd a camera on robot `own` may see: not the head it sits in.
+pub(crate) fn part(all: &Crowd, stage: &Stage<'_>, fleet: &Fleet, camera: &Camera, own: usize) -> Crowd {
+    let mut part = Crowd { squads: vec![Squad::default(); all.squads.len()], ..Crowd::default() };
+    let mut counts = vec![0; all.squads.len()];
+    for (index, robot) in stage.moment.snapshot.robots.iter().enumerate() {
+        let kind = fleet.of[index];
+        let place = counts[kind];
+        counts[kind] += 1;
+        let (middle, radius) = fleet.builds[kind].ball();
+        let middle = DVec3::from_array(robot.world_from_body().apply(middle));
+        if !camera.may_see(middle, radius) {
+            continue;
+        }
+        let (squad, whole) = (&mut part.squads[kind], &all.squads[kind]);
+        squad.bodies.push(whole.bodies[place]);
+        squad.wheels.extend_from_slice(&whole.wheels[4 * place..4 * place + 4]);
+        if index != own {
+            part.cameras.push(all.cameras[index]);
+        }
+    }
+    part
 }
 
 /// Colour and number of a robot.

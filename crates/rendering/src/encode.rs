@@ -3,20 +3,16 @@
 use crate::crowd::Fleet;
 use crate::floor::Floor;
 use crate::passes::Canvas;
-use crate::passes::asphalt::Asphalt;
-use crate::passes::decal::{Corner, DecalPass, Layer};
-use crate::passes::frame::{Frame, FrameGroups};
-use crate::passes::ground::GroundPass;
+use crate::passes::decal::{Corner, Layer};
+use crate::passes::frame::Frame;
 use crate::passes::overlay::{OverlayPass, Shapes};
-use crate::passes::prop::{Copies, PropPass};
-use crate::passes::robot::{Crowd, Models, RobotPass};
-use crate::passes::shadow::ShadowPass;
-use crate::passes::sky::SkyPass;
-use crate::passes::tag::TagPass;
-use crate::passes::terrain::TerrainPass;
+use crate::passes::prop::Copies;
+use crate::passes::robot::Crowd;
 use crate::passes::text::{Line, TextPass};
 use crate::target::Attachments;
+use crate::world::{Sight, World};
 use crate::{Error, Gpu, view::Tile};
+use std::iter::once;
 use std::ops::Range;
 use vocabulary::Cast;
 
@@ -29,18 +25,7 @@ const PLAIN_ABOVE: usize = 24;
 /// Every pass with what it keeps on the device.
 #[derive(Debug)]
 pub(crate) struct Passes {
-    groups: FrameGroups,
-    models: Models,
-    pub(crate) shadow: ShadowPass,
-    asphalt: Asphalt,
-    robot: RobotPass,
-    tag: TagPass,
-    ground: GroundPass,
-    /// In place of the flat ground.
-    terrain: Option<TerrainPass>,
-    prop: Option<PropPass>,
-    decal: DecalPass,
-    sky: SkyPass,
+    pub(crate) world: World,
     overlay: OverlayPass,
     pub(crate) text: TextPass,
 }
@@ -59,6 +44,21 @@ pub(crate) struct Prepared {
     pub(crate) shapes: Shapes,
 }
 
+impl Prepared {
+    fn sight(&self, index: usize) -> Sight<'_> {
+        let [under @ .., over] = &self.decals[index];
+        Sight {
+            index,
+            crowd: &self.crowd,
+            props: &self.props,
+            veiled: &self.veiled[index],
+            under,
+            over: Some(over),
+            ghosts: self.ghosts[index],
+        }
+    }
+}
+
 /// What a picture is drawn into.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Surface<'a> {
@@ -69,30 +69,13 @@ pub(crate) struct Surface<'a> {
 
 impl Passes {
     pub(crate) fn new(gpu: &Gpu, canvas: Canvas, cast: &Cast, fleet: &Fleet, floor: &Floor) -> Self {
-        let (device, queue) = (&gpu.device, &gpu.queue);
         let flat = Canvas { samples: 1, ..canvas };
         let robots = cast.members.len();
-        let mut text = TextPass::new(device, queue, flat);
-        let map = ShadowPass::map(device, robots > 12 || !cast.props.is_empty());
-        let groups = FrameGroups::new(device, &map.0);
-        let asphalt = Asphalt::new(device, queue);
-        let digits = text.digits();
-        let terrain = cast.terrain.as_deref();
-        let (with_props, with_decks) = (!cast.props.is_empty(), !floor.decks.is_empty());
+        let side = if robots > 12 || !cast.props.is_empty() { 2048 } else { 1024 };
         Self {
-            models: Models::new(device, queue, robots > PLAIN_ABOVE, &fleet.builds),
-            shadow: ShadowPass::new(device, &groups, map),
-            robot: RobotPass::new(device, queue, canvas, &groups, digits),
-            tag: TagPass::new(device, queue, canvas, &groups),
-            ground: GroundPass::new(device, canvas, &groups, &asphalt),
-            terrain: terrain.map(|t| TerrainPass::new(device, queue, canvas, &groups, &asphalt, t)),
-            prop: with_props.then(|| PropPass::new(device, queue, canvas, &groups, &asphalt, with_decks)),
-            decal: DecalPass::new(device, canvas, &groups, !floor.is_plane()),
-            sky: SkyPass::new(device, canvas, &groups),
-            overlay: OverlayPass::new(device, flat),
-            asphalt,
-            text,
-            groups,
+            world: World::new(gpu, canvas, cast, (fleet, floor), (robots > PLAIN_ABOVE, side)),
+            overlay: OverlayPass::new(&gpu.device, flat),
+            text: TextPass::new(&gpu.device, &gpu.queue, flat),
         }
     }
 
@@ -107,12 +90,8 @@ impl Passes {
         lines: &[Line],
     ) -> Result<(), Error> {
         let (device, queue) = (&gpu.device, &gpu.queue);
-        self.groups.fill(queue, frames);
-        self.models.fill(device, queue, std::iter::once(&mut prepared.crowd));
-        if let Some(prop) = &mut self.prop {
-            prop.fill(device, queue, &prepared.props);
-        }
-        self.decal.fill(device, queue, corners);
+        let (crowds, props) = (once(&mut prepared.crowd), once(&mut prepared.props));
+        self.world.upload(gpu, frames, crowds, props, corners);
         self.overlay.fill(device, queue, [width as f32, height as f32], &prepared.shapes);
         self.text.fill(device, queue, [width, height], lines).map_err(|e| Error::Device(e.to_string()))
     }
@@ -123,79 +102,21 @@ impl Passes {
         surface: Surface<'_>,
         prepared: &Prepared,
     ) -> Result<(), Error> {
-        self.encode_shadow(encoder, prepared);
+        self.world.encode_shadow(encoder, &prepared.crowd, &prepared.props);
         self.encode_world(encoder, surface, prepared);
         self.encode_overlay(encoder, surface.target, prepared)
     }
 
-    fn encode_shadow(&self, encoder: &mut wgpu::CommandEncoder, prepared: &Prepared) {
-        let mut pass = self.shadow.begin(encoder, &self.groups);
-        self.models.draw_solid(&mut pass, &prepared.crowd);
-        self.models.draw_faces(&mut pass, &prepared.crowd);
-        if let Some(prop) = &self.prop {
-            prop.draw_solid(&mut pass, &prepared.props);
-        }
-    }
-
-    /// Flat ground and sky are painted first and without depth: robots cover little of them, and on processors the
-    /// depth test of every pixel would cost more than shading the few that are hidden.
     fn encode_world(&self, encoder: &mut wgpu::CommandEncoder, surface: Surface<'_>, prepared: &Prepared) {
-        let sampled = surface.attachments.sampled.as_ref();
-        let store = if sampled.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("world"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: sampled.unwrap_or(surface.target),
-                depth_slice: None,
-                resolve_target: sampled.map(|_| surface.target),
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(STONE), store },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &surface.attachments.depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(1.0),
-                    store: wgpu::StoreOp::Discard,
-                }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        });
+        let mut pass = surface.attachments.begin(encoder, surface.target, STONE);
         for (index, tile) in prepared.tiles.iter().enumerate() {
             let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
             pass.set_viewport(x, y, width, height, 0.0, 1.0);
             pass.set_scissor_rect(tile.x, tile.y, tile.width, tile.height);
-            self.draw_view(&mut pass, index, prepared);
+            self.world.draw(&mut pass, &prepared.sight(index));
         }
         // On GL the samples are resolved at the end of the pass within whatever scissor is set then.
         pass.set_scissor_rect(0, 0, surface.size.0, surface.size.1);
-    }
-
-    fn draw_view(&self, pass: &mut wgpu::RenderPass<'_>, index: usize, prepared: &Prepared) {
-        let [under @ .., (layer, over)] = &prepared.decals[index];
-        pass.set_bind_group(0, &self.groups.view, &[FrameGroups::offset(index)]);
-        pass.set_bind_group(1, &self.groups.light, &[]);
-        self.sky.draw(pass);
-        match &self.terrain {
-            Some(terrain) => terrain.draw(pass, &self.asphalt),
-            None => self.ground.draw(pass, &self.asphalt),
-        }
-        let veiled = &prepared.veiled[index];
-        if let Some(prop) = &self.prop {
-            prop.draw_decks(pass, &self.asphalt, &prepared.props, veiled);
-        }
-        for (layer, corners) in under {
-            self.decal.draw(pass, corners, *layer);
-        }
-        self.robot.draw_solid(pass, &self.models, &prepared.crowd);
-        self.tag.draw(pass, &self.models, &prepared.crowd);
-        // After the robots, which show through those in front of them.
-        if let Some(prop) = &self.prop {
-            prop.draw(pass, &self.asphalt, &prepared.props, veiled);
-        }
-        if prepared.ghosts[index] {
-            self.robot.draw_ghosts(pass, &self.models, &prepared.crowd);
-        }
-        self.decal.draw(pass, over, *layer);
     }
 
     fn encode_overlay(

@@ -21,12 +21,14 @@
 //! The world is f64; positions are narrowed to f32 relative to an origin near the robots. Pictures are sRGB.
 //! The same moments give the same picture, byte for byte, on the same adapter.
 
+mod atlas;
 mod camera;
 mod compose;
 mod crowd;
 mod drape;
 mod encode;
 mod error;
+mod eyes;
 mod film;
 mod flash;
 mod floor;
@@ -47,8 +49,10 @@ mod style;
 mod target;
 mod trail;
 mod view;
+mod world;
 
 pub use error::Error;
+pub use eyes::CameraEyes;
 pub use film::{Film, FilmKind};
 pub use gpu::{AdapterChoice, AdapterInfo, Gpu, adapters};
 pub use palette::robot_colours;

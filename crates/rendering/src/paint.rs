@@ -96,6 +96,19 @@ pub(crate) fn paint(
     [(Layer::Paint, lines), (Layer::Shadow, shadows), (Layer::Paint, feet), (Layer::Over, over)]
 }
 
+/// Shadows and the dark at the foot of things alone, for any number of cameras on robots.
+pub(crate) fn shade(stage: &Stage<'_>, camera: &Camera) -> [(Layer, Vec<Corner>); 2] {
+    let laid = |onto: Onto, fill: &dyn Fn(&mut Painter<'_>)| {
+        let mut painter = Painter::new(stage, camera, 480.0);
+        fill(&mut painter);
+        lay(painter.corners, stage.floor, onto, stage.origin, None)
+    };
+    let shadows = laid(Onto::Ground, &|painter| painter.shadows(stage));
+    let mut feet = laid(Onto::Ground, &|painter| painter.deck_feet(stage));
+    feet.append(&mut laid(Onto::Floor, &|painter| painter.feet(stage)));
+    [(Layer::Shadow, shadows), (Layer::Paint, feet)]
+}
+
 impl<'a> Painter<'a> {
     fn new(stage: &Stage<'a>, camera: &'a Camera, height: f64) -> Self {
         Self {

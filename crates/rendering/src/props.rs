@@ -1,5 +1,6 @@
 //! Where the props of a moment stand, and what they are made of.
 
+use crate::camera::Camera;
 use crate::paint::Stage;
 use crate::palette::{Rgb, hex, linear};
 use crate::passes::prop::{Copies, Look};
@@ -56,6 +57,22 @@ pub(crate) fn props(stage: &Stage<'_>) -> Copies {
         copies.decks.push((look(prop), instance(stage, prop, &prop.placement, ground)));
     }
     copies
+}
+
+impl Copies {
+    /// Those that a camera may see.
+    pub(crate) fn part(&self, camera: &Camera, origin: DVec3) -> Self {
+        let seen = |copy: &Instance| {
+            let rows = copy.rows.map(|row| row.map(f64::from));
+            let place = DVec3::from_array(rows.map(|row| row[3])) + origin;
+            // A column is a side, or twice a radius.
+            let side = |k: usize| rows.iter().map(|row| row[k] * row[k]).sum::<f64>().sqrt();
+            camera.may_see(place, side(0).hypot(side(1)).hypot(side(2)))
+        };
+        let others = std::array::from_fn(|k| self.others[k].iter().filter(|c| seen(c)).copied().collect());
+        let decks = self.decks.iter().filter(|(_, copy)| seen(copy)).copied().collect();
+        Self { first: 0, others, decks }
+    }
 }
 
 fn look(prop: &Prop) -> Look {

@@ -218,7 +218,7 @@ impl Renderer {
         };
         let (crowd, props) = (crowd(&stage, &self.fleet), props(&stage));
         let sun = sun_over(&stage);
-        let penumbra = self.passes.shadow.penumbra(&sun);
+        let penumbra = self.passes.world.shadow.penumbra(&sun);
         let seen = layout.views.iter().zip(&cameras);
         let frames: Vec<_> = seen.map(|(view, camera)| frame(camera, &stage, view, &sun, penumbra)).collect();
         let mut corners = Vec::new();

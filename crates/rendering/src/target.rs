@@ -37,6 +37,35 @@ impl Attachments {
             (samples > 1).then(|| view(&colour(device, size, format, samples, TextureUsages::empty())));
         Self { sampled, depth: depth_texture(device, size, samples, false) }
     }
+
+    /// A pass that clears and then draws into `target`.
+    pub(crate) fn begin<'a>(
+        &self,
+        encoder: &'a mut wgpu::CommandEncoder,
+        target: &TextureView,
+        clear: wgpu::Color,
+    ) -> wgpu::RenderPass<'a> {
+        let sampled = self.sampled.as_ref();
+        let store = if sampled.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
+        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("world"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: sampled.unwrap_or(target),
+                depth_slice: None,
+                resolve_target: sampled.map(|_| target),
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Discard,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        })
+    }
 }
 
 fn view(texture: &Texture) -> TextureView {
@@ -97,27 +126,37 @@ impl Offscreen {
 
     /// Waits for the submission and takes the picture out of the buffer.
     pub(crate) fn read(&self, gpu: &Gpu, submission: wgpu::SubmissionIndex) -> Result<Picture, Error> {
-        let (sender, receiver) = mpsc::channel();
-        self.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // Nobody listens any more only where reading has already failed.
-            let _ = sender.send(result);
-        });
-        let failed = |e: &dyn std::fmt::Display| Error::Device(e.to_string());
-        gpu.device
-            .poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None })
-            .map_err(|e| failed(&e))?;
-        gpu.check()?;
-        receiver.recv().map_err(|e| failed(&e))?.map_err(|e| failed(&e))?;
         let size = self.texture.size();
         let row = 4 * size.width as usize;
         let mut rgba = Vec::with_capacity(row * size.height as usize);
-        {
-            let mapped = self.buffer.get_mapped_range(..).map_err(|e| failed(&e))?;
-            for line in mapped.chunks(self.pitch as usize) {
+        mapped(gpu, &self.buffer, submission, |bytes| {
+            for line in bytes.chunks(self.pitch as usize) {
                 rgba.extend_from_slice(&line[..row]);
             }
-        }
-        self.buffer.unmap();
+        })?;
         Ok(Picture { width: size.width, height: size.height, rgba })
     }
+}
+
+/// Waits for the submission and shows what it has put into the buffer.
+pub(crate) fn mapped(
+    gpu: &Gpu,
+    buffer: &wgpu::Buffer,
+    submission: wgpu::SubmissionIndex,
+    look: impl FnOnce(&[u8]),
+) -> Result<(), Error> {
+    let (sender, receiver) = mpsc::channel();
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+        // Nobody listens any more only where reading has already failed.
+        let _ = sender.send(result);
+    });
+    let failed = |e: &dyn std::fmt::Display| Error::Device(e.to_string());
+    gpu.device
+        .poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None })
+        .map_err(|e| failed(&e))?;
+    gpu.check()?;
+    receiver.recv().map_err(|e| failed(&e))?.map_err(|e| failed(&e))?;
+    look(&buffer.get_mapped_range(..).map_err(|e| failed(&e))?);
+    buffer.unmap();
+    Ok(())
 }

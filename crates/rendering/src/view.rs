@@ -16,6 +16,8 @@ pub enum View {
     Orbit,
     /// Close behind one robot, by its index.
     Follow(usize),
+    /// Through the camera of one robot, by its index.
+    Camera(usize),
     /// From a fixed place.
     Fixed {
         /// Where the eye is, m, world frame.
@@ -31,7 +33,7 @@ const PLAIN: [&str; 5] = ["snake", "snake-eye", "top", "orbit", "fixed"];
 
 impl View {
     /// The view called `text` of a scene whose robots are called `names`: `snake`, `snake-eye`, `top`, `orbit`,
-    /// `follow:NAME`, `fixed` or `fixed:ex,ey,ez,tx,ty,tz[,degrees]`.
+    /// `follow:NAME`, `camera:NAME`, `fixed` or `fixed:ex,ey,ez,tx,ty,tz[,degrees]`.
     ///
     /// # Errors
     /// [`Error::View`] with the valid forms and the nearest of them.
@@ -47,6 +49,10 @@ impl View {
                 .strip_prefix("follow:")
                 .and_then(|name| names.iter().position(|n| n == name.trim()))
                 .map(Self::Follow)
+                .or_else(|| {
+                    let name = text.strip_prefix("camera:")?.trim();
+                    names.iter().position(|n| n == name).map(Self::Camera)
+                })
                 .or_else(|| text.strip_prefix("fixed:").and_then(fixed)),
         };
         view.ok_or_else(|| unknown(text, names))
@@ -66,14 +72,23 @@ fn fixed(numbers: &str) -> Option<View> {
 }
 
 fn unknown(given: &str, names: &[String]) -> Error {
-    let follow: Vec<_> = names.iter().map(|n| format!("follow:{n}")).collect();
-    let valid = PLAIN.iter().copied().chain(follow.iter().map(String::as_str));
-    let listed: Vec<_> = follow.iter().take(8).map(String::as_str).collect();
-    let more = if follow.len() > 8 { ", …" } else { "" };
+    let bound = |kind: &str| names.iter().map(|n| format!("{kind}:{n}")).collect::<Vec<_>>();
+    let (follow, camera) = (bound("follow"), bound("camera"));
+    let both = || follow.iter().chain(&camera).map(String::as_str);
+    let valid = PLAIN.iter().copied().chain(both());
+    let few = |all: &[String]| {
+        let more = if all.len() > 6 { ", …" } else { "" };
+        format!("{}{more}", all[..all.len().min(6)].join(", "))
+    };
     Error::View {
         given: given.to_owned(),
         nearest: nearest(given, valid),
-        valid: format!("{}:ex,ey,ez,tx,ty,tz[,degrees], {}{more}", PLAIN.join(", "), listed.join(", ")),
+        valid: format!(
+            "{}:ex,ey,ez,tx,ty,tz[,degrees], {}, {}",
+            PLAIN.join(", "),
+            few(&follow),
+            few(&camera)
+        ),
     }
 }
 

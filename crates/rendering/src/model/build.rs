@@ -66,6 +66,13 @@ impl Build {
         f64::from(self.camera.z + 0.04 * self.head).max(self.body.height).max(shell)
     }
 
+    /// Middle and radius of a ball that holds all of it, in the frame of the body, m.
+    pub(crate) fn ball(&self) -> ([f64; 3], f64) {
+        let half = 0.5 * self.top();
+        let aside = self.around().max(0.8 * self.body.length).hypot(0.5 * self.body.width);
+        ([0.15 * self.body.length, 0.0, half], 1.1 * half.hypot(aside))
+    }
+
     /// How far the outline reaches around a point 0.15 of the length ahead of the reference point, m.
     pub(crate) fn around(&self) -> f64 {
         let off = |forward: f64| (forward - 0.15 * self.body.length).abs();

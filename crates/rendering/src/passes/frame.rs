@@ -6,9 +6,6 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4};
 use wgpu::{BindGroup, BindGroupLayout, Device, ShaderStages};
 
-/// Most views in one picture.
-pub(crate) const MOST_VIEWS: u64 = 4;
-
 /// Mirrors `Frame` of the shaders.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -28,16 +25,18 @@ pub(crate) struct Frame {
 impl Frame {
     /// The frame of `camera` with positions relative to `origin`.
     pub(crate) fn new(camera: &Camera, origin: DVec3, shadow_from_local: Mat4) -> Self {
+        let middle = camera.forward + camera.right * camera.shift.x + camera.up * camera.shift.y;
         let [eye, right, up, forward] =
-            [camera.eye - origin, camera.right * camera.half.x, camera.up * camera.half.y, camera.forward]
+            [camera.eye - origin, camera.right * camera.half.x, camera.up * camera.half.y, middle]
                 .map(DVec3::as_vec3);
+        let [height, slope, above] = camera.skyline().map(|x| x as f32);
         Self {
             clip_from_local: camera.clip_from_local(origin).to_cols_array_2d(),
             shadow_from_local: shadow_from_local.to_cols_array_2d(),
             eye: eye.extend(f32::from(u8::from(camera.perspective))).to_array(),
-            right: right.extend(0.0).to_array(),
-            up: up.extend(camera.horizon().clamp(-4.0, 4.0) as f32).to_array(),
-            forward: forward.extend(0.0).to_array(),
+            right: right.extend(slope).to_array(),
+            up: up.extend(height).to_array(),
+            forward: forward.extend(above).to_array(),
             sun: [0.0; 4],
             ground: [0.0; 4],
             terrain: [0.0; 4],
@@ -60,22 +59,7 @@ impl FrameGroups {
     pub(crate) fn new(device: &Device, shadow: &wgpu::TextureView) -> Self {
         let view_layout = view_layout(device);
         let light_layout = light_layout(device);
-        let uniform = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("frame"),
-            size: MOST_VIEWS * size_of::<Frame>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let one = wgpu::BufferBinding {
-            buffer: &uniform,
-            offset: 0,
-            size: std::num::NonZeroU64::new(size_of::<Frame>() as u64),
-        };
-        let view = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("frame"),
-            layout: &view_layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(one) }],
-        });
+        let (uniform, view) = views(device, &view_layout, 4);
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("shadow"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -94,14 +78,40 @@ impl FrameGroups {
         Self { view_layout, light_layout, view, light, uniform }
     }
 
-    pub(crate) fn fill(&self, queue: &wgpu::Queue, frames: &[Frame]) {
-        queue.write_buffer(&self.uniform, 0, bytemuck::cast_slice(frames));
+    pub(crate) fn fill(&mut self, device: &Device, queue: &wgpu::Queue, frames: &[Frame]) {
+        let bytes: &[u8] = bytemuck::cast_slice(frames);
+        if bytes.len() as u64 > self.uniform.size() {
+            (self.uniform, self.view) =
+                views(device, &self.view_layout, frames.len().next_power_of_two() as u64);
+        }
+        queue.write_buffer(&self.uniform, 0, bytes);
     }
 
     /// Where view `index` starts in the uniform.
     pub(crate) fn offset(index: usize) -> u32 {
         (index * size_of::<Frame>()) as u32
     }
+}
+
+/// Room for the frames of `count` views, and the group through which one at a time is read.
+fn views(device: &Device, layout: &BindGroupLayout, count: u64) -> (wgpu::Buffer, BindGroup) {
+    let uniform = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("frame"),
+        size: count * size_of::<Frame>() as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let one = wgpu::BufferBinding {
+        buffer: &uniform,
+        offset: 0,
+        size: std::num::NonZeroU64::new(size_of::<Frame>() as u64),
+    };
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("frame"),
+        layout,
+        entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(one) }],
+    });
+    (uniform, group)
 }
 
 fn view_layout(device: &Device) -> BindGroupLayout {

@@ -27,13 +27,26 @@ impl Look {
         [("concrete", 0), ("timber", 0), ("machine", 0), ("pillar", 1), ("cone", 2), ("ramp", 3)];
 }
 
-/// Copies of a picture.
+/// Copies that are drawn together.
 #[derive(Debug, Default)]
 pub(crate) struct Copies {
+    /// Where they begin among all that are on the device.
+    pub(crate) first: u32,
     /// By look.
     pub(crate) others: [Vec<Instance>; Look::ALL.len()],
     /// What robots drive on, in the order of the floor's decks.
     pub(crate) decks: Vec<(Look, Instance)>,
+}
+
+/// What is seen through where it stands before the robots.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Veil {
+    /// All props.
+    All,
+    /// All but decks that hide no robot.
+    ButDecks,
+    /// Nothing: cameras on robots see what stands before them.
+    None,
 }
 
 /// Solids on the device, their pipeline and the copies of this picture.
@@ -58,7 +71,7 @@ impl PropPass {
         canvas: Canvas,
         groups: &FrameGroups,
         asphalt: &Asphalt,
-        with_decks: bool,
+        veil: Veil,
     ) -> Self {
         let (mut vertices, mut indices) = (Vec::new(), Vec::new());
         let solids = solids().map(|mesh| {
@@ -69,8 +82,8 @@ impl PropPass {
         let (corners, triangles) = (bytemuck::cast_slice(&vertices), bytemuck::cast_slice(&indices));
         // Seen through where a prop stands before the robots; with one sample a pixel, whatever is farther and comes
         // later is lost behind it.
-        let coverage = canvas.samples > 1;
-        let blend = (!coverage).then_some(wgpu::BlendState::ALPHA_BLENDING);
+        let coverage = canvas.samples > 1 && veil != Veil::None;
+        let blend = (!coverage && veil != Veil::None).then_some(wgpu::BlendState::ALPHA_BLENDING);
         let recipe = Recipe {
             label: "prop",
             source: canvas.of(SHADERS),
@@ -89,7 +102,7 @@ impl PropPass {
         };
         Self {
             pipelines: build(recipe),
-            firm: if with_decks { build(firm) } else { Vec::new() },
+            firm: if veil == Veil::ButDecks { build(firm) } else { Vec::new() },
             coverage,
             vertices: constant(device, queue, "prop corners", wgpu::BufferUsages::VERTEX, corners),
             indices: constant(device, queue, "prop triangles", wgpu::BufferUsages::INDEX, triangles),
@@ -98,9 +111,19 @@ impl PropPass {
         }
     }
 
-    pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, copies: &Copies) {
-        let decks = copies.decks.iter().map(|(_, copy)| copy);
-        let all: Vec<Instance> = copies.others.iter().flatten().chain(decks).copied().collect();
+    /// Brings the copies of all pictures to the device and notes where those of each begin.
+    pub(crate) fn fill<'a>(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        pictures: impl Iterator<Item = &'a mut Copies>,
+    ) {
+        let mut all: Vec<Instance> = Vec::new();
+        for copies in pictures {
+            copies.first = all.len() as u32;
+            all.extend(copies.others.iter().flatten());
+            all.extend(copies.decks.iter().map(|(_, copy)| copy));
+        }
         self.instances.fill(device, queue, bytemuck::cast_slice(&all));
     }
 
@@ -122,7 +145,8 @@ impl PropPass {
             let look = copies.decks[k].0 as usize;
             let later = seen_through(k) && !self.coverage;
             if !later {
-                pass.set_pipeline(if seen_through(k) { &self.pipelines[look] } else { &self.firm[look] });
+                let seen_through = seen_through(k) || self.firm.is_empty();
+                pass.set_pipeline(if seen_through { &self.pipelines[look] } else { &self.firm[look] });
             }
             !later
         });
@@ -167,7 +191,7 @@ impl PropPass {
         copies: &Copies,
         prepare: impl Fn(&mut wgpu::RenderPass<'_>, usize),
     ) {
-        let mut first = 0;
+        let mut first = copies.first;
         for (look, ((_, solid), copies)) in Look::ALL.iter().zip(&copies.others).enumerate() {
             let last = first + copies.len() as u32;
             if last > first {
@@ -185,7 +209,7 @@ impl PropPass {
         copies: &Copies,
         prepare: impl Fn(&mut wgpu::RenderPass<'_>, usize) -> bool,
     ) {
-        let first = copies.others.iter().map(Vec::len).sum::<usize>();
+        let first = copies.first as usize + copies.others.iter().map(Vec::len).sum::<usize>();
         for (k, (look, _)) in copies.decks.iter().enumerate() {
             if prepare(pass, k) {
                 let at = (first + k) as u32;

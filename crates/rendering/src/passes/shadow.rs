@@ -14,7 +14,7 @@ const PENUMBRA: f64 = 0.02;
 /// Map and pipeline.
 #[derive(Debug)]
 pub(crate) struct ShadowPass {
-    pub(crate) map: wgpu::TextureView,
+    map: wgpu::TextureView,
     size: u32,
     pipeline: wgpu::RenderPipeline,
 }
@@ -29,12 +29,11 @@ pub(crate) struct SunView {
 
 impl ShadowPass {
     /// The map comes before the bind groups that read it, the pipeline after.
-    pub(crate) fn map(device: &Device, crowded: bool) -> (wgpu::TextureView, u32) {
-        let size = if crowded { 2048 } else { 1024 };
-        (depth_texture(device, (size, size), 1, true), size)
+    pub(crate) fn map(device: &Device, size: u32) -> wgpu::TextureView {
+        depth_texture(device, (size, size), 1, true)
     }
 
-    pub(crate) fn new(device: &Device, groups: &FrameGroups, (map, size): (wgpu::TextureView, u32)) -> Self {
+    pub(crate) fn new(device: &Device, groups: &FrameGroups, map: wgpu::TextureView, size: u32) -> Self {
         let pipeline = Recipe {
             label: "shadow",
             source: SHADER,

@@ -157,32 +157,26 @@ impl TextPass {
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) -> Result<(), glyphon::RenderError> {
         self.renderer.render(&self.atlas, &self.viewport, pass)
     }
+}
 
-    /// The digits 0 to 9 side by side, one byte a texel, with width and height: paint for the roofs.
-    pub(crate) fn digits(&mut self) -> (Vec<u8>, u32, u32) {
-        let (cell, height, size) = (40_usize, 64_usize, 78.0_f32);
-        let mut texels = vec![0_u8; cell * 10 * height];
-        for digit in 0..10 {
-            let (mut buffer, width) = shape(&mut self.fonts, &digit.to_string(), size, true);
-            let shift = (0.5 * (cell as f32 - width)).round() as i32;
-            // The line is taller than the figures: its upper part is space for accents.
-            let rise = -(0.5 * (line_height(size) - height as f32)).round() as i32;
-            buffer.draw(
-                &mut self.fonts,
-                &mut self.glyphs,
-                Color::rgb(255, 255, 255),
-                |x, y, w, h, colour| {
-                    let inside = |v: i32, most: usize| usize::try_from(v).ok().filter(|v| *v < most);
-                    if let (1, 1, Some(x), Some(y)) =
-                        (w, h, inside(x + shift, cell), inside(y + rise, height))
-                    {
-                        texels[y * cell * 10 + digit * cell + x] = colour.a();
-                    }
-                },
-            );
-        }
-        (texels, (cell * 10) as u32, height as u32)
+/// The digits 0 to 9 side by side, one byte a texel, with width and height: paint for the roofs.
+pub(crate) fn digits() -> (Vec<u8>, u32, u32) {
+    let (mut fonts, mut glyphs) = (fonts(), SwashCache::new());
+    let (cell, height, size) = (40_usize, 64_usize, 78.0_f32);
+    let mut texels = vec![0_u8; cell * 10 * height];
+    for digit in 0..10 {
+        let (mut buffer, width) = shape(&mut fonts, &digit.to_string(), size, true);
+        let shift = (0.5 * (cell as f32 - width)).round() as i32;
+        // The line is taller than the figures: its upper part is space for accents.
+        let rise = -(0.5 * (line_height(size) - height as f32)).round() as i32;
+        buffer.draw(&mut fonts, &mut glyphs, Color::rgb(255, 255, 255), |x, y, w, h, colour| {
+            let inside = |v: i32, most: usize| usize::try_from(v).ok().filter(|v| *v < most);
+            if let (1, 1, Some(x), Some(y)) = (w, h, inside(x + shift, cell), inside(y + rise, height)) {
+                texels[y * cell * 10 + digit * cell + x] = colour.a();
+            }
+        });
     }
+    (texels, (cell * 10) as u32, height as u32)
 }
 
 fn area<'a>(line: &Line, buffer: &'a Buffer, shift: [f32; 2], colour: Rgb, alpha: f32) -> TextArea<'a> {

@@ -2,7 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use vocabulary::{
-    Body, Cast, Edge, EdgeState, Member, Moment, Motion, Pose, Relative, RobotState, Snapshot, Wheel, wrap,
+    Body, Cast, Edge, EdgeState, FACES, Member, Moment, Motion, Pose, Region, Relative, RobotState, Shell,
+    Shot, Snapshot, Wheel, wrap,
 };
 
 /// What the lead robot drives.
@@ -142,4 +143,47 @@ impl Play {
         }
         trail
     }
+}
+
+/// The whole picture of every follower, which looks at its leader.
+pub(crate) fn shots(cast: &Cast, snapshot: &mut Snapshot) -> Vec<Shot> {
+    let turn = |edge: &Edge| {
+        let (leader, robot) = (snapshot.robots[edge.leader], &mut snapshot.robots[edge.follower]);
+        let member = &cast.members[edge.follower];
+        let shell = cast.members[edge.leader].shell.unwrap_or(Shell::PAPER);
+        let target = leader.world_from_body().apply([shell.forward, 0.0, shell.height]);
+        let from = robot.world_from_body().after(&member.mount.body_from_camera(0.0)).inverse();
+        let [x, _, z] = from.apply(target);
+        robot.camera_pan = -x.atan2(z);
+        Shot {
+            robot: edge.follower,
+            world_from_camera: member.mount.world_from_camera(robot),
+            focal: member.lens.focal,
+            centre: member.lens.centre,
+            region: Region::whole(&member.lens),
+            exposure: 1.0,
+        }
+    };
+    cast.edges.iter().map(turn).collect()
+}
+
+/// What a tracker would look at: the shell of a robot with some room around it.
+pub(crate) fn region_around(cast: &Cast, snapshot: &Snapshot, shot: &Shot, robot: usize) -> Region {
+    let lens = cast.members[shot.robot].lens;
+    let shell = cast.members[robot].shell.unwrap_or(Shell::PAPER);
+    let camera_from_body = shot.world_from_camera.inverse().after(&snapshot.robots[robot].world_from_body());
+    let seen: Vec<_> = (0..FACES)
+        .flat_map(|face| shell.tag_corners(face))
+        .filter_map(|corner| lens.project(camera_from_body.apply(corner)))
+        .collect();
+    let span = |k: usize, most: u32| {
+        let low = seen.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
+        let high = seen.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
+        let margin = 0.25 * (high - low);
+        let edge = |x: f64| x.clamp(0.0, f64::from(most)) as u32;
+        let from = edge(low - margin).min(most - 16);
+        [from, (edge(high + margin) - from).max(16)]
+    };
+    let ([x, width], [y, height]) = (span(0, lens.width), span(1, lens.height));
+    Region { x, y, width, height }
 }

@@ -1,0 +1,87 @@
+//! What the robots' cameras see: `eyes FILE ROBOTS TIME BODY GROUND ADAPTER`, all optional; BODY and GROUND as for
+//! `still`. Every follower looks at its leader; the pictures stand side by side, and their times are told.
+
+#[path = "../tests/stage/course.rs"]
+mod course;
+#[path = "../tests/stage/mod.rs"]
+mod stage;
+
+use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded};
+use rendering::{AdapterChoice, CameraEyes, Gpu, png};
+use stage::{Path, Play, region_around, shots};
+use std::time::Instant;
+use vocabulary::{Body, Grey, Picture, Region, Shot, Snapshot};
+
+fn median(eyes: &mut CameraEyes, snapshot: &Snapshot, shots: &[Shot]) -> Result<f64, rendering::Error> {
+    let mut pictures = Vec::new();
+    let mut times = Vec::new();
+    for _ in 0..31 {
+        let start = Instant::now();
+        eyes.take(snapshot, shots, &mut pictures)?;
+        times.push(start.elapsed().as_secs_f64() * 1e3);
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(times[15])
+}
+
+/// Pictures of one size, two to a row.
+fn sheet(pictures: &[Grey]) -> Picture {
+    let (width, height) = pictures.first().map_or((1, 1), |p| (p.width, p.height));
+    let rows = pictures.len().div_ceil(2) as u32;
+    let mut rgba = vec![255; (2 * width * rows * height * 4) as usize];
+    for (k, picture) in pictures.iter().enumerate() {
+        let (left, top) = ((k % 2) as u32 * width, (k / 2) as u32 * height);
+        for (n, value) in picture.values.iter().enumerate() {
+            let (x, y) = (left + n as u32 % width, top + n as u32 / width);
+            // Displays want the sRGB curve; about that.
+            let shown = (f64::from(*value) / 255.0).powf(1.0 / 2.2) * 255.0;
+            let at = ((y * 2 * width + x) * 4) as usize;
+            rgba[at..at + 3].fill(shown as u8);
+        }
+    }
+    Picture { width: 2 * width, height: rows * height, rgba }
+}
+
+fn main() -> Result<(), rendering::Error> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let word = |k: usize, other: &str| words.get(k).cloned().unwrap_or_else(|| other.to_owned());
+    let number = |k: usize, other: f64| words.get(k).and_then(|w| w.parse().ok()).unwrap_or(other);
+    let mut play = Play::new(number(1, 8.0) as usize, Path::Eight);
+    let (body, scale) = match word(3, "small").as_str() {
+        "truck" => (TRUCK, 1.0),
+        "car" => (CAR, 4.0),
+        "rover" => (ROVER, 1.0),
+        _ => (Body::default(), 1.0),
+    };
+    let ground = word(4, "flat");
+    furnish(
+        &mut play.cast,
+        body,
+        matches!(ground.as_str(), "hills" | "course"),
+        ground != "flat" && ground != "hills",
+    );
+    let mut moment = play.at(number(2, 12.0));
+    enlarge(&mut moment, scale);
+    let mut moment = grounded(&play.cast, moment);
+    let gpu = Gpu::open(&AdapterChoice::from(word(5, "auto").as_str()))?;
+    let mut eyes = CameraEyes::new(&gpu, &play.cast)?;
+    let whole = shots(&play.cast, &mut moment.snapshot);
+    let near: Vec<_> = whole
+        .iter()
+        .zip(&play.cast.edges)
+        .map(|(shot, edge)| Shot {
+            region: region_around(&play.cast, &moment.snapshot, shot, edge.leader),
+            ..*shot
+        })
+        .collect();
+    let fixed: Vec<_> = whole
+        .iter()
+        .map(|s| Shot { region: Region { x: 210, y: 160, width: 220, height: 160 }, ..*s })
+        .collect();
+    println!("{} shots of 220x160: {:.2} ms", fixed.len(), median(&mut eyes, &moment.snapshot, &fixed)?);
+    println!("{} shots of shells: {:.2} ms", near.len(), median(&mut eyes, &moment.snapshot, &near)?);
+    println!("{} shots of 640x480: {:.2} ms", whole.len(), median(&mut eyes, &moment.snapshot, &whole)?);
+    let mut pictures = Vec::new();
+    eyes.take(&moment.snapshot, &whole, &mut pictures)?;
+    png::write(word(0, "eyes.png").as_ref(), &sheet(&pictures[..pictures.len().min(4)]), &[])
+}
