@@ -2,11 +2,13 @@
 //!
 //! [`observe`] is one look at an instant; [`tracks`] is what an uninterrupted look over the last step would have
 //! seen, for observers that run in continuous time between control samples. Those two are the truth; what a camera
-//! makes of it goes from [`imaging`] through [`detect`] to [`pose`].
+//! makes of it goes from [`imaging`] through [`detect`] to [`pose`]. [`sensors`] puts
+//! all of it behind one interface: who looks when, and when the follower has what it saw.
 
 pub mod detect;
 pub mod imaging;
 pub mod pose;
+pub mod sensors;
 
 use vocabulary::{Edge, EdgeSample, Observation, Passage, Relative, Snapshot, Track, nearest_turn};
 

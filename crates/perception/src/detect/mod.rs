@@ -1,1 +1,49 @@
-//! Tags in pictures.
+//! Tags in pictures: a detector that is somebody else's, corners that are measured anew, and whose faces they are.
+
+mod identify;
+mod locus;
+mod sharpen;
+
+pub use identify::identify;
+pub use locus::Locus;
+pub use sharpen::sharpen;
+
+use crate::imaging::Optics;
+use crate::pose::SeenFace;
+use vocabulary::{Grey, Region, Shell};
+
+/// A tag found in a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tag {
+    /// Its number in the family.
+    pub id: u16,
+    /// Corners of its black square, pixels: top left, top right, bottom right, bottom left of the tag upright. The middle
+    /// of the picture's top left pixel is (0, 0).
+    pub corners: [[f64; 2]; 4],
+}
+
+/// Finds tags.
+pub trait Detector: Send {
+    /// Puts the tags of a picture, however many, into `found`, which is emptied first; in an order that depends on
+    /// nothing but the picture.
+    fn detect(&mut self, picture: &Grey, found: &mut Vec<Tag>);
+}
+
+/// The faces of `shell` in a picture of `region`: tags found, their corners sharpened, and judged. Corners are pixels of
+/// the whole frame.
+pub fn recognise(
+    detector: &mut dyn Detector,
+    picture: &Grey,
+    region: Region,
+    optics: &Optics,
+    shell: &Shell,
+) -> Vec<SeenFace> {
+    let mut tags = vec![];
+    detector.detect(picture, &mut tags);
+    tags.retain(|tag| shell.face_of(tag.id).is_some());
+    sharpen(picture, region, optics, &mut tags);
+    for corner in tags.iter_mut().flat_map(|tag| &mut tag.corners) {
+        *corner = [corner[0] + f64::from(region.x), corner[1] + f64::from(region.y)];
+    }
+    identify(&tags, shell)
+}

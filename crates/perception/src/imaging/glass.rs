@@ -59,7 +59,8 @@ impl Glass {
 pub(super) fn between(values: &[u8], width: usize, height: usize, x: f32, y: f32) -> f32 {
     let (left, top) = (x.floor(), y.floor());
     let (across, down) = (weights(x - left), weights(y - top));
-    let index = |from: f32, k: usize, size: usize| (from as i32 + k as i32 - 1).clamp(0, size as i32 - 1) as usize;
+    let index =
+        |from: f32, k: usize, size: usize| (from as i32 + k as i32 - 1).clamp(0, size as i32 - 1) as usize;
     let columns = [0, 1, 2, 3].map(|k| index(left, k, width));
     let mut sum = 0.0;
     for (k, weight) in down.iter().enumerate() {

@@ -29,7 +29,8 @@ fn an_edge_becomes_as_soft_as_the_blur_says() {
     let slope: Vec<f64> = row.windows(2).map(|w| f64::from(w[1]) - f64::from(w[0])).collect();
     let total: f64 = slope.iter().sum();
     let mean = slope.iter().enumerate().map(|(k, s)| (k as f64 + 0.5) * s).sum::<f64>() / total;
-    let square = slope.iter().enumerate().map(|(k, s)| (k as f64 + 0.5 - mean).powi(2) * s).sum::<f64>() / total;
+    let square =
+        slope.iter().enumerate().map(|(k, s)| (k as f64 + 0.5 - mean).powi(2) * s).sum::<f64>() / total;
     assert!((mean - 29.5).abs() < 0.02 && (square.sqrt() - 1.5).abs() < 0.05, "{mean} {}", square.sqrt());
 }
 
@@ -89,8 +90,11 @@ fn an_ideal_picture_of_the_wrong_size_gives_none() {
     assert!(picture.values.is_empty() && picture.width == 0);
     let nothing = Region::default();
     let source = sensor.source(nothing).region;
-    let ideal =
-        Grey { width: source.width, height: source.height, values: vec![9; (source.width * source.height) as usize] };
+    let ideal = Grey {
+        width: source.width,
+        height: source.height,
+        values: vec![9; (source.width * source.height) as usize],
+    };
     sensor.expose(&ideal, nothing, &mut stream, &mut picture);
     assert!(picture.values.is_empty());
 }

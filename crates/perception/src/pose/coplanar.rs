@@ -33,11 +33,7 @@ pub fn coplanar_posit(matches: &[Match]) -> Vec<Rigid> {
 pub fn misfit(camera_from_object: &Rigid, matches: &[Match]) -> f64 {
     let squares = matches.iter().map(|m| {
         let [x, y, z] = camera_from_object.apply(m.point);
-        if z > 1e-6 {
-            (x / z - m.seen[0]).powi(2) + (y / z - m.seen[1]).powi(2)
-        } else {
-            f64::INFINITY
-        }
+        if z > 1e-6 { (x / z - m.seen[0]).powi(2) + (y / z - m.seen[1]).powi(2) } else { f64::INFINITY }
     });
     (squares.sum::<f64>() / matches.len().max(1) as f64).sqrt()
 }
@@ -90,11 +86,7 @@ impl Plane {
         let (lambda, mu) = ((0.5 * (size + re)).max(0.0).sqrt(), (0.5 * (size - re)).max(0.0).sqrt());
         let mu = if im < 0.0 { -mu } else { mu };
         [1.0, -1.0].map(|sign| {
-            scaled_pose(
-                &(i0 + self.normal * (sign * lambda)),
-                &(j0 + self.normal * (sign * mu)),
-                shift,
-            )
+            scaled_pose(&(i0 + self.normal * (sign * lambda)), &(j0 + self.normal * (sign * mu)), shift)
         })
     }
 
@@ -114,7 +106,9 @@ impl Plane {
                 break;
             }
             let better = self.both(&stretched).into_iter().flatten().min_by(|a, b| {
-                let fit = |(r, t): &Turned| rigid(r, t, &self.middle).map_or(f64::INFINITY, |p| misfit(&p, matches));
+                let fit = |(r, t): &Turned| {
+                    rigid(r, t, &self.middle).map_or(f64::INFINITY, |p| misfit(&p, matches))
+                };
                 fit(a).total_cmp(&fit(b))
             });
             (rotation, translation) = better?;
@@ -187,7 +181,8 @@ pub(crate) fn homography(from: &[[f64; 2]; 4], to: &[[f64; 2]; 4]) -> Option<Mat
     let mut equations = SMatrix::<f64, 8, 8>::zeros();
     let mut values = SVector::<f64, 8>::zeros();
     for (k, ([x, y], [u, v])) in from.iter().zip(to).enumerate() {
-        let rows = [[*x, *y, 1.0, 0.0, 0.0, 0.0, -u * x, -u * y], [0.0, 0.0, 0.0, *x, *y, 1.0, -v * x, -v * y]];
+        let rows =
+            [[*x, *y, 1.0, 0.0, 0.0, 0.0, -u * x, -u * y], [0.0, 0.0, 0.0, *x, *y, 1.0, -v * x, -v * y]];
         for (r, row) in rows.iter().enumerate() {
             equations.set_row(2 * k + r, &SVector::<f64, 8>::from(*row).transpose());
         }
@@ -195,9 +190,7 @@ pub(crate) fn homography(from: &[[f64; 2]; 4], to: &[[f64; 2]; 4]) -> Option<Mat
         values[2 * k + 1] = *v;
     }
     let h = equations.lu().solve(&values)?;
-    h.iter()
-        .all(|x| x.is_finite())
-        .then(|| Matrix3::new(h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], 1.0))
+    h.iter().all(|x| x.is_finite()).then(|| Matrix3::new(h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], 1.0))
 }
 
 #[cfg(test)]

@@ -56,8 +56,8 @@ impl View {
         let seen = |face: usize| {
             let tag = camera_from_body.after(&rig.shell.body_from_face(face));
             let (out, at) = (tag.turn([0.0, 0.0, 1.0]), tag.translation);
-            let cosine = -(0..3).map(|k| out[k] * at[k]).sum::<f64>()
-                / at.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let cosine =
+                -(0..3).map(|k| out[k] * at[k]).sum::<f64>() / at.iter().map(|x| x * x).sum::<f64>().sqrt();
             let corners = rig.shell.tag_corners(face).map(|c| camera_from_body.apply(c));
             let ahead = corners.iter().all(|c| c[2] > 0.05);
             (cosine > 65_f64.to_radians().cos() && ahead)

@@ -1,8 +1,8 @@
 //! Pictures: where to look, what the sensor makes of the light, and the tags in it.
 
 use super::{Look, Senses, all_faces, pan};
-use crate::detect::{Detector, Tag, identify};
-use crate::imaging::{Optics, expose, noise_stream, source_region};
+use crate::detect::{Locus, recognise};
+use crate::imaging::{Optics, Purpose, Sensor, noise_stream};
 use crate::pose::SeenFace;
 use vocabulary::{Eyes, Grey, Lens, Region, Rigid, Shot, Snapshot};
 
@@ -39,14 +39,52 @@ impl Default for CameraModel {
     }
 }
 
+/// What of a picture is wanted, and the index of the sensor that takes it.
+#[derive(Clone, Copy)]
+struct Plan {
+    region: Region,
+    sensor: usize,
+}
+
 /// What was found in one picture.
 pub(super) struct Seen {
     pub(super) region: Region,
     pub(super) faces: Vec<SeenFace>,
 }
 
-/// Stream of random numbers for the noise of pixels.
-const PURPOSE: u64 = 2;
+/// What turns light into tags, kept from picture to picture; it remembers nothing that a result depends on.
+#[derive(Default)]
+pub(super) struct Darkroom {
+    /// By lens: robots may have different ones.
+    sensors: Vec<Sensor>,
+    detector: Option<Locus>,
+    picture: Grey,
+}
+
+impl Clone for Darkroom {
+    /// An empty one does as well.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl std::fmt::Debug for Darkroom {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Darkroom").field("sensors", &self.sensors.len()).finish_non_exhaustive()
+    }
+}
+
+impl Darkroom {
+    /// Index of the sensor behind a lens.
+    fn sensor(&mut self, lens: &Lens, model: &CameraModel) -> usize {
+        let optics = Optics { lens: *lens, blur: model.blur, noise: model.noise };
+        self.sensors.iter().position(|sensor| *sensor.optics() == optics).unwrap_or_else(|| {
+            self.sensors.push(Sensor::new(optics));
+            self.sensors.len() - 1
+        })
+    }
+}
+
 /// Instants over which a picture with a shutter gathers its light.
 const SMEAR: u32 = 6;
 /// What is looked at reaches this share of the shell's size beyond where it is expected, and this many pixels.
@@ -66,23 +104,25 @@ impl CameraModel {
         senses: &Senses,
         looks: &[&Look<'_>],
         period: (&Snapshot, &Snapshot),
-        (eyes, detector): (&mut dyn Eyes, &mut dyn Detector),
-        seed: u64,
+        (eyes, darkroom): (&mut dyn Eyes, &mut Darkroom),
     ) -> Result<Vec<Seen>, String> {
-        let regions: Vec<Region> = looks.iter().map(|look| self.region(senses, look)).collect();
-        let pictures = self.light(senses, looks, &regions, period, eyes)?;
-        let mut tags: Vec<Tag> = Vec::new();
-        let found = looks.iter().zip(regions).zip(pictures).map(|((look, region), light)| {
-            let lens = senses.kits[look.follower].lens;
-            let optics = Optics { lens, blur: self.blur, noise: self.noise };
-            let mut random = noise_stream(seed, look.follower as u64, look.number, PURPOSE);
-            let picture = expose(&optics, region, light, &mut random);
-            tags.clear();
-            detector.detect(&picture, &mut tags);
-            for corner in tags.iter_mut().flat_map(|tag| &mut tag.corners) {
-                *corner = [corner[0] + f64::from(region.x), corner[1] + f64::from(region.y)];
-            }
-            let faces = senses.kits[look.leader].shell.map_or_else(Vec::new, |shell| identify(&tags, &shell));
+        let plans: Vec<Plan> = looks
+            .iter()
+            .map(|look| {
+                let sensor = darkroom.sensor(&senses.kits[look.follower].lens, self);
+                Plan { region: self.region(senses, look), sensor }
+            })
+            .collect();
+        let pictures = self.light(senses, looks, &plans, period, (eyes, darkroom))?;
+        let found = looks.iter().zip(plans).zip(pictures).map(|((look, Plan { region, sensor }), light)| {
+            let Darkroom { sensors, detector, picture } = darkroom;
+            let mut random = noise_stream(senses.seed, look.follower, look.number, Purpose::Pixels);
+            let sensor = &mut sensors[sensor];
+            sensor.expose(&light, region, &mut random, picture);
+            let detector = detector.get_or_insert_default();
+            let faces = senses.kits[look.leader]
+                .shell
+                .map_or_else(Vec::new, |shell| recognise(detector, picture, region, sensor.optics(), &shell));
             Seen { region, faces }
         });
         Ok(found.collect())
@@ -93,16 +133,24 @@ impl CameraModel {
         &self,
         senses: &Senses,
         looks: &[&Look<'_>],
-        regions: &[Region],
+        plans: &[Plan],
         (before, after): (&Snapshot, &Snapshot),
-        eyes: &mut dyn Eyes,
+        (eyes, darkroom): (&mut dyn Eyes, &Darkroom),
     ) -> Result<Vec<Grey>, String> {
         let shots = |snapshot: &Snapshot| -> Vec<Shot> {
-            let shot = |(look, region): (&&Look<'_>, &Region)| {
+            let shot = |(look, plan): (&&Look<'_>, &Plan)| {
                 let kit = &senses.kits[look.follower];
-                shot(&kit.lens, *region, kit.mount.world_from_camera(&snapshot.robots[look.follower]), look, self)
+                let source = darkroom.sensors[plan.sensor].source(plan.region);
+                Shot {
+                    robot: look.follower,
+                    world_from_camera: kit.mount.world_from_camera(&snapshot.robots[look.follower]),
+                    focal: kit.lens.focal,
+                    centre: source.centre,
+                    region: source.region,
+                    exposure: self.exposure,
+                }
             };
-            looks.iter().zip(regions).map(shot).collect()
+            looks.iter().zip(plans).map(shot).collect()
         };
         let Some(first) = looks.first() else { return Ok(Vec::new()) };
         let mut pictures = Vec::new();
@@ -110,7 +158,7 @@ impl CameraModel {
             eyes.look(first.snapshot, &shots(first.snapshot), &mut pictures)?;
             return checked(pictures, looks.len());
         }
-        let mut sums: Vec<Vec<u32>> = Vec::new();
+        let mut sums: Vec<Vec<u32>> = vec![Vec::new(); looks.len()];
         for k in 0..SMEAR {
             // Backwards from the instant of the look, which is the end of the exposure.
             let ago = self.shutter * f64::from(k) / f64::from(SMEAR - 1);
@@ -121,7 +169,6 @@ impl CameraModel {
             }
             eyes.look(&then, &shots(&then), &mut pictures)?;
             pictures = checked(pictures, looks.len())?;
-            sums.resize_with(pictures.len(), Vec::new);
             for (sum, picture) in sums.iter_mut().zip(&pictures) {
                 sum.resize(picture.values.len(), 0);
                 for (total, value) in sum.iter_mut().zip(&picture.values) {
@@ -153,17 +200,6 @@ fn checked(pictures: Vec<Grey>, wanted: usize) -> Result<Vec<Grey>, String> {
         return Ok(pictures);
     }
     Err(format!("{wanted} pictures were to be taken, and {} came", pictures.len()))
-}
-
-fn shot(lens: &Lens, region: Region, world_from_camera: Rigid, look: &Look<'_>, model: &CameraModel) -> Shot {
-    Shot {
-        robot: look.follower,
-        world_from_camera,
-        focal: lens.focal,
-        centre: lens.centre,
-        region: source_region(lens, region),
-        exposure: model.exposure,
-    }
 }
 
 /// Smallest and largest column and row of the leader's tags where the follower expects them.
@@ -212,7 +248,12 @@ mod tests {
     fn regions_hold_what_is_expected_and_stay_in_the_picture() {
         let lens = Lens::default();
         let region = fitted(&lens, [[300.0, 200.0], [420.0, 260.0]]).expect("a region");
-        assert!(region.x <= 256 && region.x + region.width >= 464 && region.y <= 156 && region.y + region.height >= 304);
+        assert!(
+            region.x <= 256
+                && region.x + region.width >= 464
+                && region.y <= 156
+                && region.y + region.height >= 304
+        );
         assert!(region.width.is_multiple_of(GRID) && region.height.is_multiple_of(GRID));
         let cut = fitted(&lens, [[-80.0, 300.0], [60.0, 900.0]]).expect("a region");
         assert!(cut.x == 0 && cut.y + cut.height == lens.height);

@@ -1,8 +1,8 @@
 //! Tags as a camera would see them, calculated: no picture is drawn.
 
-use super::{Look, Senses, all_faces, noise::normal, sightline::hidden};
+use super::{Look, Senses, all_faces, sightline::hidden};
+use crate::imaging::Stream;
 use crate::pose::SeenFace;
-use rand_chacha::rand_core::Rng;
 
 /// Pixels that a cell needs, seen from ahead and at the steepest angle at which a tag is still read.
 const LEAST_CELL: [f64; 2] = [1.75, 2.5];
@@ -12,8 +12,14 @@ const STEEPEST: f64 = 0.469;
 const MARGIN: f64 = 4.0;
 
 /// Corners of the tags that can be read, each coordinate with an error of `pixel_noise` pixels standard deviation.
-pub(super) fn faces(senses: &Senses, look: &Look<'_>, pixel_noise: f64, random: &mut impl Rng) -> Vec<SeenFace> {
-    let (Some(leader), Some(follower)) = (senses.kits.get(look.leader), senses.kits.get(look.follower)) else {
+pub(super) fn faces(
+    senses: &Senses,
+    look: &Look<'_>,
+    pixel_noise: f64,
+    random: &mut Stream,
+) -> Vec<SeenFace> {
+    let (Some(leader), Some(follower)) = (senses.kits.get(look.leader), senses.kits.get(look.follower))
+    else {
         return Vec::new();
     };
     let (Some(shell), Some(camera_from_leader)) = (leader.shell, senses.camera_from_leader(look)) else {
@@ -25,7 +31,7 @@ pub(super) fn faces(senses: &Senses, look: &Look<'_>, pixel_noise: f64, random: 
     let mut seen = Vec::new();
     for face in all_faces() {
         // Errors are drawn for every face, so that a face out of sight changes none of the others.
-        let errors: [[f64; 2]; 4] = std::array::from_fn(|_| [normal(random), normal(random)]);
+        let errors: [[f64; 2]; 4] = std::array::from_fn(|_| [0, 1].map(|_| f64::from(random.normal())));
         let eye = shell.body_from_face(face).inverse().after(&camera_from_leader.inverse()).translation;
         let away = eye.iter().map(|x| x * x).sum::<f64>().sqrt();
         let slant = eye[2] / away;

@@ -11,16 +11,16 @@ mod pan;
 mod sightline;
 
 pub use camera::CameraModel;
+use camera::Darkroom;
 pub use noise::NoiseModel;
 
-use crate::imaging::noise_stream;
-use crate::pose::{Prior, Rig, locate};
-use crate::{detect::Locus, pose::SeenFace};
+use crate::imaging::{Purpose, noise_stream};
+use crate::pose::{Prior, Rig, SeenFace, locate};
 use pan::Pan;
 use std::collections::VecDeque;
 use vocabulary::{
-    Body, Edge, Eyes, FACES, Frame, Lens, Member, Mount, Outcome, Passage, Prop, Relative, Rigid, Shell, Sight,
-    Sighting, Snapshot, Terrain,
+    Body, Edge, Eyes, FACES, Frame, Lens, Member, Mount, Outcome, Passage, Prop, Relative, Rigid, Shell,
+    Sight, Sighting, Snapshot, Terrain,
 };
 
 /// Where the looks of one follower come from.
@@ -72,13 +72,14 @@ pub struct Senses {
     pub(crate) props: Vec<Prop>,
     pub(crate) terrain: Option<std::sync::Arc<Terrain>>,
     camera: CameraModel,
-    seed: u64,
+    pub(crate) seed: u64,
 }
 
 /// State of all followers' senses.
 #[derive(Debug, Clone)]
 pub struct Watch {
     edges: Vec<EdgeWatch>,
+    darkroom: Darkroom,
 }
 
 /// State of one follower's senses.
@@ -175,7 +176,7 @@ impl Senses {
                 on_the_way: VecDeque::new(),
             }
         };
-        Watch { edges: self.edges.iter().map(watch).collect() }
+        Watch { edges: self.edges.iter().map(watch).collect(), darkroom: Darkroom::default() }
     }
 
     /// Takes all looks due after the last ones up to the end of a period, which began with the snapshot `before` and
@@ -210,7 +211,8 @@ impl Senses {
                     seen: watch.edges[edge].seen && beliefs[edge].sight == Sight::Tracking,
                 })
                 .collect();
-            let pictures = self.pictures(&looks, (before, after), eyes.as_deref_mut())?;
+            let pictures =
+                self.pictures(&looks, (before, after), (eyes.as_deref_mut(), &mut watch.darkroom))?;
             for (look, picture) in looks.iter().zip(pictures) {
                 let frame = self.frame(watch, look, instant, picture);
                 let state = &mut watch.edges[look.edge];
@@ -233,8 +235,9 @@ impl Senses {
         };
         let all = 0..self.sensors.len();
         let instant = all.clone().filter_map(due).fold(f64::INFINITY, f64::min);
-        (instant <= until + INSTANT)
-            .then(|| (instant, all.filter(|edge| due(*edge).is_some_and(|d| d <= instant + INSTANT)).collect()))
+        (instant <= until + INSTANT).then(|| {
+            (instant, all.filter(|edge| due(*edge).is_some_and(|d| d <= instant + INSTANT)).collect())
+        })
     }
 
     /// Everything as it was at `share` of the period: robots on their way, cameras between their directions.
@@ -274,11 +277,12 @@ impl Senses {
             pan: robot(look.follower).camera_pan,
             ..Frame::default()
         };
-        let mut random = noise_stream(self.seed, look.follower as u64, look.number, noise::PURPOSE);
-        if noise::share(&mut random) < sensor.drop {
+        let stream = |purpose| noise_stream(self.seed, look.follower, look.number, purpose);
+        if stream(Purpose::Dropouts).uniform() < sensor.drop {
             frame.outcome = Outcome::Dropped;
             return frame;
         }
+        let mut random = stream(Purpose::Errors);
         match (sensor.source, picture) {
             (Source::Noise(model), _) => {
                 let drift = &mut watch.edges[look.edge].drift;
@@ -330,16 +334,15 @@ impl Senses {
         &self,
         looks: &[Look<'_>],
         period: (&Snapshot, &Snapshot),
-        eyes: Option<&mut (dyn Eyes + '_)>,
+        (eyes, darkroom): (Option<&mut (dyn Eyes + '_)>, &mut Darkroom),
     ) -> Result<Vec<Option<camera::Seen>>, String> {
         let by_camera = |look: &Look<'_>| self.sensors[look.edge].source == Source::Camera;
         if !looks.iter().any(by_camera) {
             return Ok(looks.iter().map(|_| None).collect());
         }
         let eyes = eyes.ok_or("cameras are to take pictures, and nobody is there to draw them")?;
-        let mut detector = Locus::new();
         let wanted: Vec<&Look<'_>> = looks.iter().filter(|look| by_camera(look)).collect();
-        let mut seen = self.camera.see(self, &wanted, period, (eyes, &mut detector), self.seed)?.into_iter();
+        let mut seen = self.camera.see(self, &wanted, period, (eyes, darkroom))?.into_iter();
         Ok(looks.iter().map(|look| if by_camera(look) { seen.next() } else { None }).collect())
     }
 

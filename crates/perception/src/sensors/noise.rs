@@ -1,10 +1,7 @@
 //! The truth with errors.
 
-use rand_chacha::rand_core::Rng;
+use crate::imaging::Stream;
 use vocabulary::{Relative, Sighting, wrap};
-
-/// Stream of random numbers for drop-outs, noisy truth and corners.
-pub(super) const PURPOSE: u64 = 1;
 
 /// Errors of looks at the truth, each of [distance in m, bearing in rad, view angle in rad].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,13 +29,13 @@ impl NoiseModel {
         truth: &Relative,
         interval: f64,
         drift: &mut Drift,
-        random: &mut impl Rng,
+        random: &mut Stream,
     ) -> Sighting {
-        let fresh = [normal(random), normal(random), normal(random)];
+        let fresh = [0, 1, 2].map(|_| f64::from(random.normal()));
         let keep = if self.correlation > 0.0 { (-interval / self.correlation).exp() } else { 0.0 };
-        let now = drift.now.map_or(fresh, |last| {
-            [0, 1, 2].map(|k| keep * last[k] + (1.0 - keep * keep).sqrt() * fresh[k])
-        });
+        let now = drift
+            .now
+            .map_or(fresh, |last| [0, 1, 2].map(|k| keep * last[k] + (1.0 - keep * keep).sqrt() * fresh[k]));
         drift.now = Some(now);
         let error = |k: usize| self.bias[k] + self.deviation[k] * now[k];
         Sighting {
@@ -54,26 +51,15 @@ impl NoiseModel {
     }
 }
 
-/// Evenly distributed in [0, 1).
-pub(super) fn share(random: &mut impl Rng) -> f64 {
-    (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64
-}
-
-/// Standard normal, by Box and Muller.
-pub(super) fn normal(random: &mut impl Rng) -> f64 {
-    let radius = (-2.0 * (1.0 - share(random)).ln()).sqrt();
-    radius * (std::f64::consts::TAU * share(random)).cos()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+    use crate::imaging::{Purpose, noise_stream};
 
     #[test]
     fn errors_have_the_size_bias_and_memory_they_should() {
         let model = NoiseModel { deviation: [0.1, 0.02, 0.01], bias: [0.5, 0.0, -0.1], correlation: 0.2 };
-        let (mut drift, mut random) = (Drift::default(), ChaCha8Rng::seed_from_u64(5));
+        let (mut drift, mut random) = (Drift::default(), noise_stream(5, 0, 0, Purpose::Errors));
         let truth = Relative { distance: 3.0, bearing: 3.1, view_angle: 0.0 };
         let count = 20_000;
         let errors: Vec<[f64; 3]> = (0..count)

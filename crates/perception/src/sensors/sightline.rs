@@ -32,7 +32,11 @@ fn robot_hides(kit: &Kit, frame: &Rigid, from: [f64; 3], to: [f64; 3]) -> bool {
     let (a, b) = (back.apply(from), back.apply(to));
     let body = kit.body;
     let middle = [0.5 * body.wheelbase, 0.0, 0.5 * body.height];
-    if crosses_box(shifted(a, middle), shifted(b, middle), [0.5 * body.length, 0.5 * body.width, 0.5 * body.height]) {
+    if crosses_box(
+        shifted(a, middle),
+        shifted(b, middle),
+        [0.5 * body.length, 0.5 * body.width, 0.5 * body.height],
+    ) {
         return true;
     }
     kit.shell.is_some_and(|shell| {

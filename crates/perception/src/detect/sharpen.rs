@@ -1,0 +1,275 @@
+//! Corners to a few hundredths of a pixel: the picture of a tag whose code is known is fitted to the pixels, all of its
+//! edges at once.
+//!
+//! A pixel that shows the point (u, v) of the tag is as bright as the tag blurred there: A + B·Σ cᵢⱼ Wᵢ(u) Wⱼ(v), with
+//! cᵢⱼ the cells and W a cell's share in a bell curve. Unknown are the eight numbers of the mapping from tag to picture
+//! and the two of the light. Along straight edges this is what the lens does; at corners of cells seen aslant it is off
+//! by less than noise. With noise of one strength in all pixels the fit is the most likely one (Gauss-Newton).
+
+mod bell;
+
+use super::Tag;
+use crate::imaging::Optics;
+use crate::pose::homography;
+use bell::Profile;
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use vocabulary::{Grey, Lens, Region, TAG_CELLS, tag_cell};
+
+/// Corners of the black square, in cells from the middle of the tag, x right and y down.
+const SQUARE: [[f64; 2]; 4] = [[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0]];
+
+/// Variance of a pixel's own square, pixels².
+const PIXEL: f64 = 1.0 / 12.0;
+
+/// Of a large tag no more pixels than about this are looked at.
+const PIXELS: f64 = 2500.0;
+
+const ROUNDS: usize = 8;
+
+/// Corners that move by less, pixels, have settled.
+const SETTLED: f64 = 2e-3;
+
+/// Corners that move further than this from where the detector saw them, pixels, have gone astray.
+const ASTRAY: f64 = 2.5;
+
+/// Pixels off by more than this many standard deviations count less.
+const FAR: f64 = 3.0;
+
+type Cells = [[f64; TAG_CELLS]; TAG_CELLS];
+type Normal = SMatrix<f64, 10, 10>;
+type Ten = SVector<f64, 10>;
+
+/// Moves corners of `tags`, which are pixels of a `picture` of `region`, to where their code fits best. Tags whose fit
+/// comes to nothing stay as they are.
+pub fn sharpen(picture: &Grey, region: Region, optics: &Optics, tags: &mut [Tag]) {
+    if picture.values.len() != picture.width as usize * picture.height as usize {
+        return;
+    }
+    let view = View { picture, lens: &optics.lens, corner: [f64::from(region.x), f64::from(region.y)] };
+    let blur = if optics.blur.is_finite() { optics.blur.clamp(0.0, 4.0) } else { 0.0 };
+    for tag in tags {
+        if let Some(corners) = fitted(&view, (blur * blur + PIXEL).sqrt(), tag) {
+            tag.corners = corners;
+        }
+    }
+}
+
+/// A picture and how its pixels lie in the ideal one.
+struct View<'a> {
+    picture: &'a Grey,
+    lens: &'a Lens,
+    corner: [f64; 2],
+}
+
+impl View<'_> {
+    fn ideal(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        if !self.lens.distorts() {
+            return [x, y];
+        }
+        let direction = self.lens.direction([x + self.corner[0], y + self.corner[1]]);
+        [0, 1].map(|k| self.lens.centre[k] + self.lens.focal * direction[k] - self.corner[k])
+    }
+
+    fn seen(&self, ideal: [f64; 2]) -> Option<[f64; 2]> {
+        if !self.lens.distorts() {
+            return Some(ideal);
+        }
+        let [x, y] = [0, 1].map(|k| (ideal[k] + self.corner[k] - self.lens.centre[k]) / self.lens.focal);
+        let [u, v] = self.lens.project([x, y, 1.0])?;
+        Some([u - self.corner[0], v - self.corner[1]])
+    }
+}
+
+/// A pixel, in units of the tag's size from the tag's middle, and its light.
+struct Sample {
+    at: [f64; 2],
+    light: f64,
+}
+
+fn fitted(view: &View<'_>, blur: f64, tag: &Tag) -> Option<[[f64; 2]; 4]> {
+    let cells = cells(tag.id)?;
+    let start = tag.corners.map(|c| view.ideal(c));
+    let middle = [0, 1].map(|k| start.iter().map(|c| c[k]).sum::<f64>() / 4.0);
+    let size = start.iter().map(|c| (c[0] - middle[0]).hypot(c[1] - middle[1])).sum::<f64>() / 4.0;
+    if !(size.is_finite() && size > 4.0) {
+        return None;
+    }
+    let normal = |c: [f64; 2]| [0, 1].map(|k| (c[k] - middle[k]) / size);
+    let mut h = homography(&SQUARE, &start.map(normal))?;
+    let samples = samples(view, &h, &tag.corners, normal)?;
+    let blur = blur / size;
+    let mut light = contrast(&samples, &h, &cells, blur)?;
+    let mut spread = f64::INFINITY;
+    let mut corners = start;
+    for _ in 0..ROUNDS {
+        let round = round(&samples, &h, &cells, blur, light, FAR * spread)?;
+        h += round.step;
+        light = [light[0] + round.light[0], light[1] + round.light[1]];
+        spread = round.spread;
+        let next = placed(&h)?.map(|c| [0, 1].map(|k| c[k] * size + middle[k]));
+        let moved = |a: &[[f64; 2]; 4], b: &[[f64; 2]; 4]| {
+            a.iter().zip(b).map(|(p, q)| (p[0] - q[0]).hypot(p[1] - q[1])).fold(0.0, f64::max)
+        };
+        // A number that is none is not below anything either.
+        if !(moved(&next, &start) < ASTRAY) {
+            return None;
+        }
+        let settled = moved(&next, &corners) < SETTLED;
+        corners = next;
+        if settled {
+            break;
+        }
+    }
+    // A tenth of the contrast between black and white is no noise: something else is there.
+    if !(light[1] > 4.0 && spread < 0.15 * light[1] + 4.0) {
+        return None;
+    }
+    let [a, b, c, d] = corners.map(|c| view.seen(c));
+    Some([a?, b?, c?, d?])
+}
+
+/// Cells of a tag, 1 for white, rows from the top.
+fn cells(id: u16) -> Option<Cells> {
+    tag_cell(id, 0, 0)?;
+    let cell = |row, column| if tag_cell(id, column, row) == Some(true) { 1.0 } else { 0.0 };
+    Some(std::array::from_fn(|row| std::array::from_fn(|column| cell(row, column))))
+}
+
+/// Corners of the black square under a mapping.
+fn placed(h: &Matrix3<f64>) -> Option<[[f64; 2]; 4]> {
+    let corners = SQUARE.map(|[u, v]| {
+        let p = h * Vector3::new(u, v, 1.0);
+        [p.x / p.z, p.y / p.z]
+    });
+    corners.iter().flatten().all(|x| x.is_finite()).then_some(corners)
+}
+
+/// Pixels that show the tag, `corners` being where it is in the picture.
+fn samples(
+    view: &View<'_>,
+    h: &Matrix3<f64>,
+    corners: &[[f64; 2]; 4],
+    normal: impl Fn([f64; 2]) -> [f64; 2],
+) -> Option<Vec<Sample>> {
+    let back = h.try_inverse()?;
+    let span = |k: usize, size: u32| {
+        let at = corners.map(|c| c[k]);
+        let (low, high) = at.iter().fold((f64::INFINITY, -f64::INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+        // The margin is an eighth of the black square; perspective makes it a little more.
+        let more = 0.2 * (high - low);
+        let clamp = |x: f64| x.clamp(0.0, f64::from(size));
+        (clamp((low - more).floor()) as usize, clamp((high + more).ceil() + 1.0) as usize)
+    };
+    let ((left, right), (top, bottom)) = (span(0, view.picture.width), span(1, view.picture.height));
+    let count = (right.saturating_sub(left) * bottom.saturating_sub(top)) as f64;
+    let every = (count / PIXELS).ceil().max(1.0) as usize;
+    let mut samples = Vec::with_capacity(count as usize / every + 1);
+    for y in top..bottom {
+        // Shifted from row to row, so that no column is left out.
+        for x in (left..right).filter(|x| (x + y * 7).is_multiple_of(every)) {
+            let at = normal(view.ideal([x as f64, y as f64]));
+            let p = back * Vector3::new(at[0], at[1], 1.0);
+            let inside = (p.x / p.z).abs().max((p.y / p.z).abs()) < 0.5 * TAG_CELLS as f64 + 0.5;
+            if inside && p.z > 0.0 {
+                let light = f64::from(*view.picture.values.get(y * view.picture.width as usize + x)?);
+                samples.push(Sample { at, light });
+            }
+        }
+    }
+    (samples.len() >= 50).then_some(samples)
+}
+
+/// A point's place on the tag, how bright the tag is there and how that changes with the point's place in the picture.
+struct Shade {
+    tag: [f64; 2],
+    value: f64,
+    slope: [f64; 2],
+}
+
+/// `None` for points whose blur reaches beyond the tag's margin.
+fn shade(back: &Matrix3<f64>, cells: &Cells, blur: f64, [x, y]: [f64; 2]) -> Option<Shade> {
+    let p = back * Vector3::new(x, y, 1.0);
+    let tag = [p.x / p.z, p.y / p.z];
+    let change = [0, 1].map(|k| [0, 1].map(|c| (back[(k, c)] - tag[k] * back[(2, c)]) / p.z));
+    let soft = change.map(|row| blur * row[0].hypot(row[1]));
+    let limit = |soft: f64| (0.5 * TAG_CELLS as f64 - 2.0 * soft).max(4.3);
+    if !(tag[0].abs() < limit(soft[0]) && tag[1].abs() < limit(soft[1])) {
+        return None;
+    }
+    let (across, down) = (Profile::new(tag[0], soft[0]), Profile::new(tag[1], soft[1]));
+    let (mut value, mut by_u, mut by_v) = (0.0, 0.0, 0.0);
+    for (row, weight, change) in down.shares() {
+        let (mut line, mut slope) = (0.0, 0.0);
+        for (column, weight, change) in across.shares() {
+            line += weight * cells[row][column];
+            slope += change * cells[row][column];
+        }
+        value += weight * line;
+        by_u += weight * slope;
+        by_v += change * line;
+    }
+    let slope = [0, 1].map(|c| by_u * change[0][c] + by_v * change[1][c]);
+    Some(Shade { tag, value, slope })
+}
+
+/// Light of black and what white has more, by a straight line through pixels and tag.
+fn contrast(samples: &[Sample], h: &Matrix3<f64>, cells: &Cells, blur: f64) -> Option<[f64; 2]> {
+    let back = h.try_inverse()?;
+    let mut sums = [0.0; 5];
+    for sample in samples.iter().step_by(3) {
+        if let Some(Shade { value, .. }) = shade(&back, cells, blur, sample.at) {
+            let terms = [1.0, value, sample.light, value * value, value * sample.light];
+            for (sum, term) in sums.iter_mut().zip(terms) {
+                *sum += term;
+            }
+        }
+    }
+    let [n, m, l, mm, ml] = sums;
+    let gain = (n * ml - m * l) / (n * mm - m * m);
+    (gain > 4.0 && gain.is_finite()).then(|| [(l - gain * m) / n, gain])
+}
+
+/// What a round of Gauss-Newton changes.
+struct Round {
+    step: Matrix3<f64>,
+    light: [f64; 2],
+    /// Standard deviation of what is left, grey levels.
+    spread: f64,
+}
+
+fn round(
+    samples: &[Sample],
+    h: &Matrix3<f64>,
+    cells: &Cells,
+    blur: f64,
+    light: [f64; 2],
+    far: f64,
+) -> Option<Round> {
+    let back = h.try_inverse()?;
+    let mut curvature = Normal::zeros();
+    let mut slope = Ten::zeros();
+    let (mut squares, mut count) = (0.0, 0.0);
+    for sample in samples {
+        let Some(Shade { tag: [u, v], value, slope: [sx, sy] }) = shade(&back, cells, blur, sample.at) else {
+            continue;
+        };
+        let off = sample.light - light[0] - light[1] * value;
+        let weight = if off.abs() > far { far / off.abs() } else { 1.0 };
+        // The mapping shifts what is seen here; the tag's brightness goes with it.
+        let depth = h[(2, 0)] * u + h[(2, 1)] * v + h[(2, 2)];
+        let (gx, gy) = (-light[1] * sx / depth, -light[1] * sy / depth);
+        let along = -(gx * sample.at[0] + gy * sample.at[1]);
+        let row = Ten::from([gx * u, gx * v, gx, gy * u, gy * v, gy, along * u, along * v, 1.0, value]);
+        curvature.ger(weight, &row, &row, 1.0);
+        slope.axpy(weight * off, &row, 1.0);
+        squares += weight * off * off;
+        count += 1.0;
+    }
+    if count < 30.0 {
+        return None;
+    }
+    let d = curvature.cholesky()?.solve(&slope);
+    let step = Matrix3::new(d[0], d[1], d[2], d[3], d[4], d[5], d[6], d[7], 0.0);
+    let finite = d.iter().all(|x| x.is_finite());
+    finite.then(|| Round { step, light: [d[8], d[9]], spread: (squares / (count - 10.0)).sqrt().max(0.5) })
+}
