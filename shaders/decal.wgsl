@@ -69,3 +69,9 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
 fn shadow(in: Varying) -> @location(0) vec4<f32> {
     return shading(hazy(in, 1.0 - sunlight(in.local)));
 }
+
+// The same with edges of one softness.
+@fragment
+fn shadow_quick(in: Varying) -> @location(0) vec4<f32> {
+    return shading(hazy(in, 1.0 - soft(shadow_place(in.local), frame.sun.w)));
+}

@@ -33,8 +33,7 @@ fn stuff(material: u32, paint: vec3<f32>, leads: bool) -> vec4<f32> {
     }
 }
 
-@vertex
-fn vertex(in: Corner, instance: Instance) -> Varying {
+fn placed(in: Corner, instance: Instance) -> Varying {
     var out: Varying;
     out.local = place(instance, in.position);
     out.clip = frame.clip_from_local * vec4<f32>(out.local, 1.0);
@@ -46,6 +45,11 @@ fn vertex(in: Corner, instance: Instance) -> Varying {
     out.surface = vec4<f32>(made.a, own, in.uv);
     out.marks = vec3<f32>(select(-1.0, instance.marks.x, in.material == 8u), instance.colour.a, instance.marks.z);
     return out;
+}
+
+@vertex
+fn vertex(in: Corner, instance: Instance) -> Varying {
+    return placed(in, instance);
 }
 
 // Ink of the number on the roof at `uv`, 0 to 1.
@@ -97,6 +101,40 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let shine = in.surface.x * (seen * fresnel * open + SUN_LIGHT * spark);
     let light = diffuse + shine + albedo * in.surface.y;
     return vec4<f32>(mix(developed(light), far_air(), haze(distance)), in.marks.y);
+}
+
+// As monochrome cameras see it: all but the shadow at the corners, and no number on the roof, since processors would
+// look it up for every pixel.
+struct Plain {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) shadow: vec3<f32>,
+    // Of the sky and of the sun.
+    @location(1) light: vec2<f32>,
+}
+
+@vertex
+fn plain_vertex(in: Corner, instance: Instance) -> Plain {
+    let whole = placed(in, instance);
+    let away = frame.eye.xyz - whole.local;
+    let open = 0.45 + 0.55 * clamp((whole.local.z - whole.marks.z) * 5.0, 0.0, 1.0);
+    let to_eye = normalize(away);
+    let grazing = 1.0 - max(dot(whole.normal, to_eye), 0.0);
+    let fresnel = 0.035 + 0.5 * grazing * grazing * grazing * grazing;
+    let mirrored = reflect(-to_eye, whole.normal);
+    let seen = mix(BOUNCE * 0.8, sky_light(mirrored), smoothstep(-0.15, 0.15, mirrored.z));
+    let sky = whole.albedo * (ambient(whole.normal) * open + whole.surface.y) + whole.surface.x * fresnel * open * seen;
+    let sun = whole.albedo * SUN_LIGHT * max(dot(whole.normal, frame.sun.xyz), 0.0);
+    let hazy = haze(length(away));
+    var out: Plain;
+    out.clip = whole.clip;
+    out.shadow = shadow_place(whole.local + whole.normal * 0.012);
+    out.light = vec2<f32>(mix(developed(sky).r, far_air().r, hazy), developed(sun).r * (1.0 - hazy));
+    return out;
+}
+
+@fragment
+fn plain(in: Plain) -> @location(0) vec4<f32> {
+    return vec4<f32>(in.light.x + in.light.y * lit(in.shadow, 0.0, 0.0));
 }
 
 // Ghosts are too faint for shadows and mirrors.

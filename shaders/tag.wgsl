@@ -5,12 +5,13 @@
 
 struct Varying {
     @builtin(position) clip: vec4<f32>,
-    @location(0) local: vec3<f32>,
-    @location(1) normal: vec3<f32>,
+    @location(0) shadow: vec3<f32>,
     // Column and row on the tag.
-    @location(2) cell: vec2<f32>,
-    // Height of the ground below.
-    @location(3) @interpolate(flat) ground: f32,
+    @location(1) cell: vec2<f32>,
+    // Light of the sky on a face, which is as good as even over it, and share of haze.
+    @location(2) sky: vec4<f32>,
+    // How much a face looks into the sun.
+    @location(3) @interpolate(flat) facing: f32,
     // The code, and in bit 8 of its high part whether there is one.
     @location(4) @interpolate(flat) code: vec2<u32>,
 }
@@ -18,11 +19,14 @@ struct Varying {
 @vertex
 fn vertex(in: Corner, instance: Instance) -> Varying {
     var out: Varying;
-    out.local = place(instance, in.position);
-    out.clip = frame.clip_from_local * vec4<f32>(out.local, 1.0);
-    out.normal = turn(instance, in.normal);
+    let local = place(instance, in.position);
+    let normal = turn(instance, in.normal);
+    out.clip = frame.clip_from_local * vec4<f32>(local, 1.0);
+    out.shadow = shadow_place(local + normal * 0.012);
     out.cell = in.uv;
-    out.ground = instance.marks.z;
+    let open = 0.45 + 0.55 * clamp((local.z - instance.marks.z) * 5.0, 0.0, 1.0);
+    out.sky = vec4<f32>(ambient(normal) * open, haze(length(frame.eye.xyz - local) * frame.eye.w));
+    out.facing = max(dot(normal, frame.sun.xyz), 0.0);
     out.code = vec2<u32>(0u);
     if instance.marks.w > -0.5 {
         // Faces have the tags that follow that of the first.
@@ -32,16 +36,28 @@ fn vertex(in: Corner, instance: Instance) -> Varying {
     return out;
 }
 
-// Share of a pixel short of a straight edge `away` from its middle: its footprint, seen along the edge, is the sum of two
-// boxes `wide` across.
-fn before(away: vec2<f32>, wide: vec2<f32>, thin: vec2<f32>) -> vec2<f32> {
+// A pixel's footprint along one side of the cells: the sum of two boxes, as an edge across that side meets it.
+struct Footprint {
+    reach: f32,
+    // Up to here from the middle its density is even.
+    even: f32,
+    density: f32,
+    // Of the tails.
+    bend: f32,
+}
+
+fn footprint(a: f32, b: f32) -> Footprint {
+    let wide = max(max(abs(a), abs(b)), 1e-6);
+    let thin = max(min(abs(a), abs(b)), 1e-6 * wide);
+    return Footprint(0.5 * (wide + thin), 0.5 * (wide - thin), 1.0 / wide, 0.5 / (wide * thin));
+}
+
+// Share of a footprint that is short of an edge `away` from its middle.
+fn short(away: f32, pixel: Footprint) -> f32 {
     let t = abs(away);
-    let reach = 0.5 * (wide + thin);
-    let slope = 0.5 + t / wide;
-    let rest = max(reach - t, vec2<f32>(0.0));
-    let tail = 1.0 - rest * rest / (2.0 * wide * max(thin, 1e-6 * wide));
-    let inside = select(tail, slope, t <= 0.5 * (wide - thin));
-    return select(1.0 - inside, inside, away > vec2<f32>(0.0));
+    let rest = max(pixel.reach - t, 0.0);
+    let share = select(0.5 - rest * rest * pixel.bend, t * pixel.density, t <= pixel.even);
+    return 0.5 + select(-share, share, away > 0.0);
 }
 
 fn black(code: vec2<u32>, column: i32, row: i32) -> bool {
@@ -54,25 +70,25 @@ fn black(code: vec2<u32>, column: i32, row: i32) -> bool {
 
 // Share of a pixel that is ink: exact along straight edges however they run, whatever the size of the cells.
 fn ink(at: vec2<f32>, code: vec2<u32>, across: vec2<f32>, down: vec2<f32>) -> f32 {
-    let wide = max(max(abs(across), abs(down)), vec2<f32>(1e-6));
-    let thin = min(abs(across), abs(down));
-    let reach = 0.5 * (wide + thin);
-    let low = vec2<i32>(clamp(floor(at - reach), vec2<f32>(1.0), vec2<f32>(9.0)));
-    let high = vec2<i32>(clamp(floor(at + reach), vec2<f32>(0.0), vec2<f32>(8.0)));
+    let wide = footprint(across.x, down.x);
+    let high = footprint(across.y, down.y);
+    let reach = vec2<f32>(wide.reach, high.reach);
+    let first = vec2<i32>(clamp(floor(at - reach), vec2<f32>(1.0), vec2<f32>(9.0)));
+    let none = (code.y & 256u) == 0u;
+    let last = select(vec2<i32>(clamp(floor(at + reach), vec2<f32>(0.0), vec2<f32>(8.0))), vec2<i32>(0), none);
     var sum = 0.0;
-    if (code.y & 256u) == 0u {
-        return 0.0;
-    }
-    for (var row = low.y; row <= high.y; row++) {
-        let y = vec2<f32>(0.0, f32(row));
-        let over = before(y.yy + vec2<f32>(0.0, 1.0) - at.yy, wide.yy, thin.yy);
+    var over = short(f32(first.y) - at.y, high);
+    for (var row = first.y; row <= last.y; row++) {
+        let under = short(f32(row + 1) - at.y, high);
         var line = 0.0;
-        for (var column = low.x; column <= high.x; column++) {
-            let x = f32(column) - at.x;
-            let share = before(vec2<f32>(x, x + 1.0), wide.xx, thin.xx);
-            line += select(0.0, share.y - share.x, black(code, column, row));
+        var left = short(f32(first.x) - at.x, wide);
+        for (var column = first.x; column <= last.x; column++) {
+            let right = short(f32(column + 1) - at.x, wide);
+            line += select(0.0, right - left, black(code, column, row));
+            left = right;
         }
-        sum += line * (over.y - over.x);
+        sum += line * (under - over);
+        over = under;
     }
     return sum;
 }
@@ -84,10 +100,6 @@ const INK = vec3<f32>(0.026, 0.026, 0.028);
 @fragment
 fn fragment(in: Varying) -> @location(0) vec4<f32> {
     let printed = ink(in.cell, in.code, dpdx(in.cell), dpdy(in.cell));
-    let normal = normalize(in.normal);
-    let distance = length(frame.eye.xyz - in.local) * frame.eye.w;
-    let sun = max(dot(normal, frame.sun.xyz), 0.0) * sunlight_quick(in.local + normal * 0.012);
-    let open = 0.45 + 0.55 * clamp((in.local.z - in.ground) * 5.0, 0.0, 1.0);
-    let light = mix(PAPER, INK, printed) * (SUN_LIGHT * sun + ambient(normal) * open);
-    return vec4<f32>(mix(developed(light), far_air(), haze(distance)), 1.0);
+    let light = mix(PAPER, INK, printed) * (in.sky.rgb + SUN_LIGHT * (in.facing * soft(in.shadow, 0.6 * frame.sun.w)));
+    return vec4<f32>(mix(developed(light), far_air(), in.sky.a), 1.0);
 }

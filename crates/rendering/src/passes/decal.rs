@@ -85,10 +85,12 @@ impl DecalPass {
         };
         let test = if uneven { wgpu::CompareFunction::LessEqual } else { wgpu::CompareFunction::Always };
         let paint = Recipe { depth: Some((test, false)), ..recipe };
+        // Where every millisecond counts.
+        let shadow = if canvas.mono { "shadow_quick" } else { "shadow" };
         Self {
             over: recipe.build(device),
             paint: paint.build(device),
-            shadow: Recipe { label: "shadow decal", entry: "shadow", ..paint }.build(device),
+            shadow: Recipe { label: "shadow decal", entry: shadow, ..paint }.build(device),
             corners: Stream::new(device, "decals", wgpu::BufferUsages::VERTEX),
         }
     }

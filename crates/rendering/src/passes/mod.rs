@@ -73,6 +73,7 @@ impl Canvas {
 pub(crate) struct Recipe<'a> {
     pub(crate) label: &'a str,
     pub(crate) source: &'a str,
+    pub(crate) vertex: &'a str,
     /// The fragment stage's entry point.
     pub(crate) entry: &'a str,
     pub(crate) groups: &'a [&'a BindGroupLayout],
@@ -95,6 +96,7 @@ impl Default for Recipe<'_> {
         Self {
             label: "",
             source: "",
+            vertex: "vertex",
             entry: "fragment",
             groups: &[],
             buffers: &[],
@@ -143,7 +145,7 @@ impl Recipe<'_> {
             layout: Some(&layout),
             vertex: wgpu::VertexState {
                 module: &module,
-                entry_point: Some("vertex"),
+                entry_point: Some(self.vertex),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &buffers,
             },

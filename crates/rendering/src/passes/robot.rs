@@ -213,10 +213,11 @@ impl RobotPass {
             depth: Some((wgpu::CompareFunction::Less, true)),
             ..Default::default()
         };
+        let (vertex, entry) = if canvas.mono { ("plain_vertex", "plain") } else { ("vertex", "fragment") };
         let blended = Some((canvas, Some(wgpu::BlendState::ALPHA_BLENDING)));
         let equal = Some((wgpu::CompareFunction::LessEqual, false));
         Self {
-            solid: recipe.build(device),
+            solid: Recipe { vertex, entry, ..recipe }.build(device),
             ghost_depth: Recipe {
                 label: "ghost depth",
                 entry: "hidden",
