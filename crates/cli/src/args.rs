@@ -50,6 +50,10 @@ pub(crate) struct SceneArgs {
     /// Seed in place of the scene's
     #[arg(long)]
     pub(crate) seed: Option<u64>,
+    /// Adapter to draw with, pictures of cameras on robots included: vulkan, gl, or part of its name; fails where there is
+    /// none such
+    #[arg(long, default_value = "auto")]
+    pub(crate) adapter: String,
     /// Print the result as JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -79,7 +83,7 @@ pub(crate) struct RunArgs {
 /// How pictures look.
 #[derive(Debug, Args)]
 pub(crate) struct PictureArgs {
-    /// snake, snake-eye, top, orbit, follow:ROBOT or fixed; several joined by '+' split the picture
+    /// snake, snake-eye, top, orbit, follow:ROBOT, camera:ROBOT or fixed; several joined by '+' split the picture
     #[arg(long)]
     pub(crate) view: Option<String>,
     /// Pixels, such as 1280x720
@@ -91,9 +95,6 @@ pub(crate) struct PictureArgs {
     /// Size of text and lines; grows with the height of the picture if left out
     #[arg(long, value_parser = scale)]
     pub(crate) scale: Option<f64>,
-    /// Adapter to draw with: vulkan, gl, or part of its name; fails where there is none such
-    #[arg(long, default_value = "auto")]
-    pub(crate) adapter: String,
     /// Samples a pixel: 4, or 1 for speed
     #[arg(long, default_value_t = 4)]
     pub(crate) samples: u32,

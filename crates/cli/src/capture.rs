@@ -13,10 +13,16 @@ use rendering::png;
 use serde_json::json;
 
 pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
-    let loaded = load(&args.scene)?;
+    let mut loaded = load(&args.scene)?;
     let times = times(&args.at, loaded.scene.time.duration)?;
     let cast = loaded.simulation.cast().clone();
-    let mut studio = Studio::open(&args.picture, &cast, &loaded.scene.views.default, loaded.scene.film.size)?;
+    let mut studio = Studio::open(
+        (&args.scene, &args.picture),
+        &cast,
+        &loaded.scene.views.default,
+        loaded.scene.film.size,
+    )?;
+    loaded.open_eyes(Some(&studio.gpu), &args.scene)?;
     std::fs::create_dir_all(&args.out)
         .map_err(|e| Failure::Machine(format!("cannot create {}: {e}", args.out.display())))?;
     let stem = stem(&args.scene.scene);
@@ -32,6 +38,7 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
         if interrupt::asked() {
             return Err(Failure::Interrupted(format!("{count} of {} pictures are written", times.len())));
         }
+        playback.check()?;
         let picture = studio.renderer.draw(playback.trail(), &moment, &studio.layout, &studio.style)?;
         let path = args.out.join(format!("{stem}-{time:0width$.decimals$}.png"));
         let time_text = time.to_string();

@@ -16,7 +16,7 @@ use std::time::Instant;
 
 pub(crate) fn film(args: &FilmArgs) -> Outcome {
     let began = Instant::now();
-    let loaded = load(&args.scene)?;
+    let mut loaded = load(&args.scene)?;
     let settings = loaded.scene.film.clone();
     let name = stem(&args.scene.scene);
     let path = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.mp4")));
@@ -30,7 +30,8 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
     let frames = ((loaded.scene.time.duration * rate).round() as u64).max(1);
     let view = settings.view.as_deref().unwrap_or(&loaded.scene.views.default);
     let cast = loaded.simulation.cast().clone();
-    let mut studio = Studio::open(&args.picture, &cast, view, size)?;
+    let mut studio = Studio::open((&args.scene, &args.picture), &cast, view, size)?;
+    loaded.open_eyes(Some(&studio.gpu), &args.scene)?;
     let mut film = Film::create(&path, kind, studio.size[0], studio.size[1], rate)?;
 
     let what = format!("Filming {name}, {frames} frames, to {}", path.display());
@@ -39,6 +40,7 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
     let mut shot = 0;
     while shot < frames && !interrupt::asked() {
         let moment = playback.at(shot as f64 / rate);
+        playback.check()?;
         let ready = studio.renderer.draw_next(playback.trail(), &moment, &studio.layout, &studio.style)?;
         ready.map_or(Ok(()), |picture| film.push(picture))?;
         shot += 1;

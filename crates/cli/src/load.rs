@@ -2,6 +2,7 @@
 
 use crate::args::SceneArgs;
 use crate::failure::Failure;
+use rendering::{AdapterChoice, CameraEyes, Gpu};
 use scene::{Override, Scene};
 use simulation::{Setup, Simulation};
 use std::path::Path;
@@ -20,6 +21,29 @@ pub(crate) fn load(args: &SceneArgs) -> Result<Loaded, Failure> {
     }
     let (scene, setup) = load_file(&args.scene, &overrides)?;
     Ok(Loaded { scene, simulation: Simulation::new(setup) })
+}
+
+impl Loaded {
+    /// Gives the robots' cameras someone to draw for them, where they take pictures: `gpu`, or the adapter of `args`.
+    pub(crate) fn open_eyes(&mut self, gpu: Option<&Gpu>, args: &SceneArgs) -> Result<(), Failure> {
+        open_eyes(&mut self.simulation, gpu, &args.adapter)
+    }
+}
+
+/// Gives the cameras of a run someone to draw for them, where they take pictures.
+pub(crate) fn open_eyes(
+    simulation: &mut Simulation,
+    gpu: Option<&Gpu>,
+    adapter: &str,
+) -> Result<(), Failure> {
+    if simulation.needs_eyes() {
+        let opened = if gpu.is_none() { Some(Gpu::open(&AdapterChoice::from(adapter))?) } else { None };
+        if let Some(gpu) = gpu.or(opened.as_ref()) {
+            let eyes = CameraEyes::new(gpu, simulation.cast())?;
+            simulation.open_eyes(Box::new(eyes));
+        }
+    }
+    Ok(())
 }
 
 /// Loads, checks and builds the scene at `path`.

@@ -25,7 +25,12 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let program = Program::parse();
-    if matches!(program.command, Some(Command::Capture(_) | Command::Film(_) | Command::Doctor(_))) {
+    if matches!(
+        program.command,
+        Some(
+            Command::Run(_) | Command::Capture(_) | Command::Film(_) | Command::Tune(_) | Command::Doctor(_)
+        )
+    ) {
         quiet::restart_if_needed();
     }
     interrupt::watch();

@@ -1,6 +1,6 @@
 //! What stills and films share: adapter, size, views and style.
 
-use crate::args::PictureArgs;
+use crate::args::{PictureArgs, SceneArgs};
 use crate::failure::Failure;
 use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style};
 use vocabulary::Cast;
@@ -16,14 +16,19 @@ pub(crate) struct Studio {
 
 impl Studio {
     /// Checks the words first and opens the adapter last, since that takes longest.
-    pub(crate) fn open(args: &PictureArgs, cast: &Cast, view: &str, size: [u32; 2]) -> Result<Self, Failure> {
+    pub(crate) fn open(
+        (scene, args): (&SceneArgs, &PictureArgs),
+        cast: &Cast,
+        view: &str,
+        size: [u32; 2],
+    ) -> Result<Self, Failure> {
         let names: Vec<String> = cast.members.iter().map(|m| m.name.clone()).collect();
         let layout = Layout::parse(args.view.as_deref().unwrap_or(view), &names)?;
         let size = args.size.unwrap_or(size);
         let mut style = Style::without(&args.without)?;
         // Text that suits 720 lines suits no poster: it grows with the picture, and never below its size there.
         style.scale = args.scale.unwrap_or_else(|| (f64::from(size[1]) / 720.0).max(1.0));
-        let gpu = Gpu::open(&AdapterChoice::from(&*args.adapter))?;
+        let gpu = Gpu::open(&AdapterChoice::from(&*scene.adapter))?;
         let renderer = Renderer::new(&gpu, cast, size[0], size[1], args.samples)?;
         Ok(Self { gpu, renderer, layout, style, size })
     }

@@ -1,5 +1,6 @@
 //! A run at any time: the moments between two control samples are interpolated, and the past is remembered.
 
+use crate::failure::Failure;
 use crate::interrupt;
 use rendering::Trail;
 use simulation::Simulation;
@@ -37,6 +38,11 @@ impl Playback {
         let (from, to) = (self.before.snapshot.time, self.after.snapshot.time);
         let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
         Moment::between(&self.before, &self.after, share)
+    }
+
+    /// Fails where the cameras on robots could not take their pictures.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        self.simulation.fault().map_or(Ok(()), |fault| Err(Failure::Machine(fault.to_owned())))
     }
 
     /// What has been.

@@ -31,6 +31,7 @@ pub(crate) fn as_text(report: &Report<'_>) {
     {
         say(&format!("least clearance {clearance:.3} m, between {a} and {b} at {time:.2} s"));
     }
+    looks(metrics);
     contacts(metrics);
     let speed = metrics.duration / report.wall.max(1e-9);
     say(&format!("{:.2} s in {} steps, {speed:.0} times real time", metrics.duration, report.steps));
@@ -93,6 +94,45 @@ fn edges(metrics: &Metrics) {
         band[0],
         band[1].to_degrees()
     ));
+}
+
+/// How followers that look saw their leaders.
+fn looks(metrics: &Metrics) {
+    let looks = || metrics.edges.iter().filter_map(|edge| Some((edge, edge.looks.as_ref()?)));
+    if looks().next().is_none() {
+        return;
+    }
+    let width = looks().map(|(e, _)| e.leader.len() + e.follower.len() + 3).max().unwrap_or(0).max(4);
+    say(&format!(
+        "{:width$}  {:>6}  {:>8}  {:>7}  {:>29}  {:>29}  {:>6}",
+        "looks",
+        "taken",
+        "in view",
+        "refused",
+        "rms error of looks (ℓ, ψ, γ)",
+        "of what the law was told",
+        "gap"
+    ));
+    let three =
+        |e: [f64; 3]| format!("{:>9.4} m {:>7.3}° {:>7.3}°", e[0], e[1].to_degrees(), e[2].to_degrees());
+    for (edge, look) in looks().take(MOST_EDGES) {
+        let name = format!("{} → {}", edge.leader, edge.follower);
+        let (errors, told) = (three(look.rms_error), three(look.rms_estimate_error));
+        let (view, refused) = (format!("{:.2} %", look.in_view * 100.0), look.rejected + look.ambiguous);
+        say(&format!(
+            "{name:width$}  {:>6}  {view:>8}  {refused:>7}  {errors:>29}  {told:>29}  {:>4.2} s",
+            look.taken, look.longest_gap
+        ));
+        if look.lost > 0.0 {
+            say(&format!("  {} had lost its leader for {:.2} s", edge.follower, look.lost));
+        }
+        if look.in_view == 0.0 {
+            say(&format!("  {} never saw its leader", edge.follower));
+        }
+    }
+    say(
+        "refused: looks too far from the prediction, or explained alike by two poses; gap: longest time without a look\n",
+    );
 }
 
 fn expectations(report: &Report<'_>) {

@@ -19,7 +19,9 @@ pub(crate) const PROGRAM: &str = concat!("echelon ", env!("CARGO_PKG_VERSION"));
 const STRIDE: u64 = 16;
 
 pub(crate) fn run(args: &RunArgs) -> Outcome {
-    let Loaded { scene, mut simulation } = load(&args.scene)?;
+    let mut loaded = load(&args.scene)?;
+    loaded.open_eyes(None, &args.scene)?;
+    let Loaded { scene, mut simulation } = loaded;
     let folder = if args.no_record { None } else { Some(folder(args)?) };
     let mut sink = match &folder {
         Some(folder) => Sink::record(folder, args, &scene, &simulation)?,
@@ -45,6 +47,10 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
                 break;
             }
         }
+    }
+    if let Some(fault) = simulation.fault() {
+        sink.abandon();
+        return Err(Failure::Machine(fault.to_owned()));
     }
     let wall = began.elapsed().as_secs_f64();
     progress.end();

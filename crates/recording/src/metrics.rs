@@ -2,6 +2,7 @@
 
 use crate::clearance::Clearance;
 use crate::contacts::{ContactLog, ContactMetrics};
+use crate::looks::{LookMetrics, LookSums};
 use serde::Serialize;
 use vocabulary::{Cast, Condition, Contact, EdgeState, Moment, Thing};
 
@@ -52,7 +53,7 @@ pub struct RobotMetrics {
 pub struct Judging {
     /// |error| under which an edge counts as settled, [m, rad].
     pub settling_band: [f64; 2],
-    /// Time from which [`EdgeMetrics::late_peak_error`] is looked for, s.
+    /// Time from which [`EdgeMetrics::late_peak_error`] and [`EdgeMetrics::late_rms_error`] count, s.
     pub settled_after: f64,
 }
 
@@ -77,6 +78,8 @@ pub struct EdgeMetrics {
     pub peak_error: [f64; 2],
     /// Largest |error| from a given time to the end, [m, rad].
     pub late_peak_error: [f64; 2],
+    /// Root mean square from that time to the end, [m, rad].
+    pub late_rms_error: [f64; 2],
     /// Time from which both errors stay within the band, s; `None` if they do not.
     pub settling_time: Option<f64>,
     /// ∫ |command applied| dt, [m/s, rad].
@@ -91,6 +94,8 @@ pub struct EdgeMetrics {
     pub speeds: [f64; 2],
     /// [slowest, fastest] speed of the follower since it settled, m/s; `None` if it did not.
     pub settled_speeds: Option<[f64; 2]>,
+    /// How well it saw its leader; `None` where it is told the truth.
+    pub looks: Option<LookMetrics>,
 }
 
 /// Gathers [`Metrics`].
@@ -117,7 +122,10 @@ struct EdgeSums {
     effort: [f64; 2],
     peak_error: [f64; 2],
     late_peak_error: [f64; 2],
+    late_squares: [f64; 2],
+    late_samples: u64,
     peak_rates: [f64; 2],
+    looks: LookSums,
     limited: u64,
     too_close: u64,
     speeds: [f64; 2],
@@ -157,6 +165,11 @@ impl MetricsBuilder {
         for (index, edge) in moment.edges.iter().enumerate() {
             let speed = moment.snapshot.robots[self.cast.edges[index].follower].motion.speed;
             self.edges[index].push(edge, speed, time, step, &self.judging);
+        }
+        for frame in &moment.frames {
+            if let Some(edge) = self.edges.get_mut(frame.edge) {
+                edge.looks.look(frame);
+            }
         }
         for (index, robot) in moment.snapshot.robots.iter().enumerate() {
             let pose = robot.motion.pose;
@@ -225,9 +238,12 @@ impl EdgeSums {
             self.peak_error[i] = self.peak_error[i].max(e.abs());
             if time >= judging.settled_after {
                 self.late_peak_error[i] = self.late_peak_error[i].max(e.abs());
+                self.late_squares[i] += e * e;
             }
             self.peak_rates[i] = self.peak_rates[i].max(edge.rates[i].abs());
         }
+        self.late_samples += u64::from(time >= judging.settled_after);
+        self.looks.know(edge, step);
         self.limited += u64::from(edge.limited);
         self.too_close += u64::from(edge.too_close);
         self.speeds = [self.speeds[0].min(speed), self.speeds[1].max(speed)];
@@ -262,6 +278,7 @@ impl EdgeSums {
             ise: self.square_integral,
             peak_error: self.peak_error,
             late_peak_error: self.late_peak_error,
+            late_rms_error: rms(self.late_squares, self.late_samples.max(1) as f64),
             settling_time: self.settled.map(|s| s.since),
             effort: self.effort,
             peak_rates: self.peak_rates,
@@ -269,6 +286,7 @@ impl EdgeSums {
             too_close: self.too_close,
             speeds: self.speeds,
             settled_speeds: self.settled.map(|s| s.speeds),
+            looks: self.looks.finish(),
         }
     }
 }

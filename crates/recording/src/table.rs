@@ -26,6 +26,8 @@ pub enum TableKind {
     Contacts,
     /// Where the props are that can move.
     Props,
+    /// Looks of followers at their leaders, when they arrive.
+    Looks,
 }
 
 /// Values of one column.
@@ -50,6 +52,7 @@ impl TableKind {
             Self::Edges => "edges",
             Self::Contacts => "contacts",
             Self::Props => "props",
+            Self::Looks => "looks",
         }
     }
 
@@ -88,6 +91,11 @@ impl TableKind {
                 "applied_turn_rate_rad_s",
                 "rate_distance_m_s",
                 "rate_bearing_rad_s",
+                "seen_distance_m",
+                "seen_bearing_rad",
+                "seen_view_angle_rad",
+                "age_s",
+                "sight",
                 "limited",
                 "too_close",
             ],
@@ -105,21 +113,47 @@ impl TableKind {
                 "impulse_n_s",
             ],
             Self::Props => &["time_s", "prop", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"],
+            Self::Looks => &[
+                "leader",
+                "follower",
+                "outcome",
+                "stamp_s",
+                "arrival_s",
+                "faces",
+                "distance_m",
+                "bearing_rad",
+                "view_angle_rad",
+                "true_distance_m",
+                "true_bearing_rad",
+                "true_view_angle_rad",
+                "deviation_distance_m",
+                "deviation_bearing_rad",
+                "deviation_view_angle_rad",
+                "pan_rad",
+                "region_x_px",
+                "region_y_px",
+                "region_width_px",
+                "region_height_px",
+            ],
         }
     }
 
     /// The tables that a run of `cast` has.
     pub fn of(cast: &Cast) -> Vec<Self> {
         let moving = cast.props.iter().any(|prop| prop.mobility != Mobility::Fixed);
-        let all = [Self::Robots, Self::Edges, Self::Contacts, Self::Props];
-        all.into_iter().filter(|kind| moving || *kind != Self::Props).collect()
+        let all = [Self::Robots, Self::Edges, Self::Contacts, Self::Props, Self::Looks];
+        let has = |kind: &Self| match kind {
+            Self::Props => moving,
+            Self::Looks => cast.looks,
+            _ => true,
+        };
+        all.into_iter().filter(has).collect()
     }
 
     fn empty_columns(self) -> Vec<Column> {
         let kind = |name: &&str| match *name {
-            "robot" | "leader" | "follower" | "condition" | "first" | "second" | "prop" => {
-                Column::Text(vec![])
-            }
+            "robot" | "leader" | "follower" | "condition" | "first" | "second" | "prop" | "sight"
+            | "outcome" => Column::Text(vec![]),
             "limited" | "too_close" => Column::Flag(vec![]),
             _ => Column::Number(vec![]),
         };
@@ -152,7 +186,8 @@ impl TableKind {
             }
             Self::Edges => {
                 for (edge, state) in cast.edges.iter().zip(&moment.edges) {
-                    let names = [&*cast.members[edge.leader].name, &*cast.members[edge.follower].name];
+                    let [leader, follower] =
+                        [&*cast.members[edge.leader].name, &*cast.members[edge.follower].name];
                     let (r, s) = (&state.relative, state);
                     let numbers = [
                         time,
@@ -169,8 +204,12 @@ impl TableKind {
                         s.applied.turn_rate,
                         s.rates[0],
                         s.rates[1],
+                        s.seen.distance,
+                        s.seen.bearing,
+                        s.seen.view_angle,
+                        s.age,
                     ];
-                    put(&names, &numbers, &[s.limited, s.too_close]);
+                    put(&[leader, follower, s.sight.name()], &numbers, &[s.limited, s.too_close]);
                 }
             }
             Self::Contacts => {
@@ -186,6 +225,36 @@ impl TableKind {
                         let ([x, y, z], [qx, qy, qz, qw]) = (placement.position, placement.rotation);
                         put(&[&prop.name], &[time, x, y, z, qx, qy, qz, qw], &[]);
                     }
+                }
+            }
+            Self::Looks => {
+                for frame in &moment.frames {
+                    let Some(edge) = cast.edges.get(frame.edge) else { continue };
+                    let [leader, follower] = [edge.leader, edge.follower].map(|k| &*cast.members[k].name);
+                    let (look, truth, region) = (&frame.sighting, &frame.truth, &frame.region);
+                    let [x, y, width, height] =
+                        [region.x, region.y, region.width, region.height].map(f64::from);
+                    let r = look.relative;
+                    let numbers = [
+                        look.stamp,
+                        frame.arrival,
+                        frame.faces() as f64,
+                        r.distance,
+                        r.bearing,
+                        r.view_angle,
+                        truth.distance,
+                        truth.bearing,
+                        truth.view_angle,
+                        look.deviation[0],
+                        look.deviation[1],
+                        look.deviation[2],
+                        frame.pan,
+                        x,
+                        y,
+                        width,
+                        height,
+                    ];
+                    put(&[leader, follower, frame.outcome.name()], &numbers, &[]);
                 }
             }
         }

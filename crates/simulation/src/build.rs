@@ -4,8 +4,11 @@ use crate::error::{BuildError, EPSILON_MIN};
 use crate::stage::stage;
 use crate::step::{ObserverStart, Setup, Timing};
 use formation::{Course, EdgeLaw, Formation, Graph, LookLaw, Method, SetPointCourse};
+use perception::sensors::{CameraModel, NoiseModel, Senses, Sensor, Source};
 use scene::{Channel, Follow, OnContact, Role, Scene, SensingKind};
-use vocabulary::{Cast, Light, Member};
+use std::sync::Arc;
+use vocabulary::{Cast, Edge, Light, Member};
+use world::Stage;
 
 /// Puts the run of `scene` together.
 ///
@@ -32,7 +35,9 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
         mount: scene.vision.mount(robot),
         lens: scene.vision.lens(),
     };
+    let members: Vec<Member> = scene.robots.iter().map(member).collect();
     Ok(Setup {
+        senses: senses(scene, &followers, (&edges, &members), &stage),
         cast: Cast {
             title: scene.title.clone(),
             caption: caption(scene),
@@ -42,8 +47,9 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
                 sun_azimuth: scene.environment.sun_azimuth,
                 haze_from: scene.environment.haze_from,
             },
-            members: scene.robots.iter().map(member).collect(),
+            members,
             edges,
+            looks: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
             terrain: stage.terrain.clone(),
         },
@@ -127,6 +133,54 @@ fn look_law(follow: &Follow, observer: formation::Observer) -> Option<LookLaw> {
         interval: 1.0 / follow.sensing.rate,
         hold: follow.sensing.hold,
     })
+}
+
+/// Tilt that is expected of bodies on springs or uneven ground, standard deviation, rad.
+const TILT: f64 = std::f64::consts::PI / 180.0;
+
+/// The senses of all followers; `None` where all are told the truth.
+fn senses(
+    scene: &Scene,
+    followers: &[(&str, &Follow)],
+    (edges, members): (&[Edge], &[Member]),
+    stage: &Stage,
+) -> Option<Arc<Senses>> {
+    let level = stage.terrain.is_none();
+    let sensors = followers.iter().zip(edges).map(|((_, follow), edge)| {
+        let sensing = &follow.sensing;
+        let firm = |index: usize| !scene.robots[index].vehicle.kind.has_wheels();
+        let upright = level && firm(edge.leader) && firm(edge.follower);
+        Sensor {
+            source: match sensing.kind {
+                SensingKind::Truth => Source::Truth,
+                SensingKind::Noise => Source::Noise(NoiseModel {
+                    deviation: [sensing.distance_noise, sensing.bearing_noise, sensing.view_noise],
+                    bias: [sensing.distance_bias, sensing.bearing_bias, sensing.view_bias],
+                    correlation: sensing.correlation,
+                }),
+                SensingKind::Geometric => Source::Geometric { pixel_noise: sensing.pixel_noise },
+                SensingKind::Camera => Source::Camera,
+            },
+            rate: sensing.rate,
+            latency: sensing.latency,
+            drop: sensing.drop,
+            tilt: sensing.tilt.unwrap_or(if upright { 0.0 } else { TILT }),
+        }
+    });
+    let vision = &scene.vision;
+    let camera = CameraModel {
+        blur: vision.blur,
+        noise: vision.noise,
+        exposure: vision.exposure,
+        shutter: vision.shutter,
+        pan_rate: vision.pan_rate,
+        pan_max: vision.pan_max,
+        whole_frames: vision.whole_frames,
+    };
+    let props: Vec<_> = stage.props.iter().map(|prop| prop.prop.clone()).collect();
+    let (things, ground) = ((members, props.as_slice()), stage.terrain.clone());
+    let senses = Senses::new(edges, sensors.collect(), things, ground, camera, scene.seed);
+    senses.look().then(|| Arc::new(senses))
 }
 
 fn course(channel: &Channel) -> Course {

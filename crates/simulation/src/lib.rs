@@ -6,6 +6,7 @@
 mod build;
 mod continuous;
 mod error;
+mod lookout;
 mod stage;
 mod step;
 pub mod tune;

@@ -1,9 +1,12 @@
 //! One step of a simulation. New here? This is the page to read first.
 
 use crate::continuous::Continuous;
+use crate::lookout::Lookout;
 use formation::{Estimate, Formation, FormationState, LawKind};
+use perception::sensors::Senses;
 use std::f64::consts::PI;
-use vocabulary::{Cast, Contact, EdgeState, Moment, Observation, Relative, wrap};
+use std::sync::Arc;
+use vocabulary::{Cast, Contact, EdgeState, Eyes, Frame, Moment, Observation, Relative, wrap};
 use world::{Physical, Stage, Unicycles, World};
 
 /// How law and observer act in time.
@@ -28,6 +31,8 @@ pub struct Setup {
     pub stage: Stage,
     /// Where observers start: added to the first measurement [m, rad], or in its place.
     pub observer_starts: Vec<ObserverStart>,
+    /// How followers sense their leaders; `None` where all are told the truth.
+    pub senses: Option<Arc<Senses>>,
     /// How law and observer act in time.
     pub timing: Timing,
     /// Whether the run ends where bodies touch.
@@ -56,11 +61,14 @@ pub struct Simulation {
     timing: Timing,
     period: f64,
     observations: Vec<Observation>,
+    lookout: Option<Lookout>,
+    frames: Vec<Frame>,
     moment: Moment,
     sample: u64,
     last_sample: u64,
     stop_at_contact: bool,
     stopped: bool,
+    fault: Option<String>,
 }
 
 /// What moves the robots: a world that is told commands to hold, or plant, law and observers as one system.
@@ -85,6 +93,8 @@ impl Simulation {
             edges: vec![EdgeState::default(); edges],
             ..Moment::default()
         };
+        let lookout =
+            setup.senses.map(|senses| Lookout::new(senses, setup.observer_starts.clone(), world.snapshot()));
         Self {
             cast: setup.cast,
             formation: setup.formation,
@@ -93,17 +103,20 @@ impl Simulation {
             timing: setup.timing,
             period: setup.period,
             observations,
+            lookout,
+            frames: Vec::new(),
             moment,
             sample: 0,
             last_sample: samples(setup.duration, setup.period),
             stop_at_contact: setup.stop_at_contact,
             stopped: false,
+            fault: None,
         }
     }
 
     /// The next control sample: what is seen, what is decided, what is applied. `None` when the run is over.
     pub fn next_moment(&mut self) -> Option<&Moment> {
-        if self.sample > self.last_sample || self.stopped {
+        if self.sample > self.last_sample || self.stopped || self.fault.is_some() {
             return None;
         }
         if self.sample > 0 {
@@ -112,6 +125,10 @@ impl Simulation {
         let time = self.sample as f64 * self.period;
         let snapshot = self.plant.world().snapshot();
         perception::observe(snapshot, self.formation.edges(), &mut self.observations);
+        if let Err(fault) = self.look(time) {
+            self.fault = Some(fault);
+            return None;
+        }
         self.formation.decide(time, &self.observations, &mut self.state);
         self.plant.world_mut().apply(&self.state.commands);
         self.write_moment(time);
@@ -120,8 +137,20 @@ impl Simulation {
         Some(&self.moment)
     }
 
+    /// Followers that are not told the truth look, and know what has arrived.
+    fn look(&mut self, time: f64) -> Result<(), String> {
+        let Some(lookout) = &mut self.lookout else { return Ok(()) };
+        lookout.look(&self.formation, self.plant.world(), time, &mut self.frames)?;
+        lookout.tell(self.formation.laws(), &mut self.observations, &mut self.state.estimates);
+        Ok(())
+    }
+
     /// Robots drive one period on, and observers with them.
     fn advance(&mut self) {
+        if let Some(lookout) = &mut self.lookout {
+            let time = (self.sample - 1) as f64 * self.period;
+            lookout.begin(self.plant.world().snapshot(), time, self.period);
+        }
         match &mut self.plant {
             Plant::Held(world) => {
                 world.advance(self.period);
@@ -129,6 +158,9 @@ impl Simulation {
                 match self.timing {
                     Timing::Measured => self.follow_samples(),
                     _ => follow(&self.formation, &mut self.state, world),
+                }
+                if let Some(lookout) = &mut self.lookout {
+                    lookout.follow(&self.formation, self.plant.world(), self.period);
                 }
             }
             Plant::Continuous(system) => {
@@ -143,7 +175,7 @@ impl Simulation {
         let world = self.plant.world();
         for (index, edge) in self.formation.edges().iter().enumerate() {
             let law = &self.formation.laws()[index];
-            if law.law.kind != LawKind::OutputFeedback {
+            if law.law.kind != LawKind::OutputFeedback || law.looks.is_some() {
                 continue;
             }
             let mut before = perception::sample(world, *edge, 0.0, None);
@@ -160,16 +192,23 @@ impl Simulation {
         self.moment.snapshot.time = time;
         self.moment.contacts.clear();
         self.moment.contacts.extend_from_slice(self.plant.world().contacts());
+        self.moment.frames.clone_from(&self.frames);
         for (index, (edge, out)) in self.formation.edges().iter().zip(&mut self.moment.edges).enumerate() {
             let robots = &mut self.moment.snapshot.robots;
             let relative =
                 Relative::between(robots[edge.leader].motion.pose, robots[edge.follower].motion.pose);
             let decision = &self.state.decisions[index];
             let wanted = decision.set_point;
-            robots[edge.follower].camera_pan = wrap(relative.view_angle - PI);
+            let looks = self.lookout.as_ref().filter(|_| self.formation.laws()[index].looks.is_some());
+            let (age, pan) = looks
+                .map_or_else(|| (0.0, wrap(relative.view_angle - PI)), |lookout| lookout.age_and_pan(index));
+            robots[edge.follower].camera_pan = pan;
+            let known = &self.observations[index];
             *out = EdgeState {
                 relative,
-                seen: relative,
+                seen: known.relative,
+                sight: known.sight,
+                age,
                 set_point: wanted,
                 error: [wanted[0] - relative.distance, wrap(wanted[1] - relative.bearing)],
                 asked: decision.asked,
@@ -177,7 +216,6 @@ impl Simulation {
                 rates: decision.rates,
                 limited: decision.limited,
                 too_close: decision.too_close,
-                ..EdgeState::default()
             };
         }
     }
@@ -187,6 +225,9 @@ impl Simulation {
         if let Some(estimate) = self.state.estimates.get_mut(edge) {
             estimate.rates[0] += by[0];
             estimate.rates[1] += by[1];
+        }
+        if let Some(lookout) = &mut self.lookout {
+            lookout.disturb(edge, by);
         }
     }
 
@@ -210,6 +251,23 @@ impl Simulation {
         self.stopped
     }
 
+    /// Whether cameras on robots take pictures, for which the run needs [`Simulation::open_eyes`].
+    pub fn needs_eyes(&self) -> bool {
+        self.lookout.as_ref().is_some_and(Lookout::need_eyes)
+    }
+
+    /// Who draws what the cameras on robots see.
+    pub fn open_eyes(&mut self, eyes: Box<dyn Eyes>) {
+        if let Some(lookout) = &mut self.lookout {
+            lookout.open(eyes);
+        }
+    }
+
+    /// Why the run ended before its time, where cameras could not take their pictures.
+    pub fn fault(&self) -> Option<&str> {
+        self.fault.as_deref()
+    }
+
     /// A copy of the whole run as it stands: it goes on to the same future, bit for bit.
     #[must_use]
     pub fn save(&self) -> Self {
@@ -219,7 +277,10 @@ impl Simulation {
             state: self.state.clone(),
             plant: self.plant.save(),
             observations: self.observations.clone(),
+            lookout: self.lookout.clone(),
+            frames: self.frames.clone(),
             moment: self.moment.clone(),
+            fault: self.fault.clone(),
             ..*self
         }
     }
@@ -277,7 +338,7 @@ impl Plant {
 fn follow(formation: &Formation, state: &mut FormationState, world: &dyn World) {
     for (index, edge) in formation.edges().iter().enumerate() {
         let law = &formation.laws()[index];
-        if law.law.kind == LawKind::OutputFeedback {
+        if law.law.kind == LawKind::OutputFeedback && law.looks.is_none() {
             let estimate = &mut state.estimates[index];
             perception::tracks(world, *edge, |track| *estimate = law.observer.follow(estimate, track));
         }

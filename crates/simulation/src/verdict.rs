@@ -83,6 +83,14 @@ fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Find
             findings.worst("settled_error_at_most", channel, most, |edge| edge.late_peak_error);
         }
     }
+    if let Some(most) = expect.settled_rms_at_most {
+        for (channel, most) in most.into_iter().enumerate() {
+            findings.worst("settled_rms_at_most", channel, most, |edge| edge.late_rms_error);
+        }
+    }
+    if let Some(least) = expect.in_view_at_least {
+        findings.in_view(least);
+    }
     if let Some(most) = expect.rate_peak_at_most {
         for (channel, most) in most.into_iter().enumerate() {
             findings.worst_rate("rate_peak_at_most", channel, "≤", most, |found| found <= most);
@@ -196,6 +204,16 @@ impl Findings<'_> {
             None => ("no edges".into(), false),
         };
         self.add(key, wanted, found, met);
+    }
+
+    fn in_view(&mut self, least: f64) {
+        let looks = self.metrics.edges.iter().filter_map(|edge| Some((edge, edge.looks.as_ref()?.in_view)));
+        let percent = |share: f64| format!("{:.2} %", share * 100.0);
+        let (found, met) = match looks.min_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((edge, share)) => (format!("{} on {}", percent(share), name(edge)), share >= least),
+            None => ("nobody looks".into(), false),
+        };
+        self.add("in_view_at_least", format!("≥ {} of the looks", percent(least)), found, met);
     }
 
     fn settling(&mut self, latest: f64) {

@@ -88,6 +88,8 @@ pub struct Cast {
     pub members: Vec<Member>,
     /// In the order of the edge states.
     pub edges: Vec<Edge>,
+    /// Whether any follower looks at its leader instead of being told the truth.
+    pub looks: bool,
     /// Solid things that are no robots, in the order of the snapshots.
     pub props: Vec<Prop>,
     /// The lie of the land; flat at z = 0 where there is none.

@@ -138,7 +138,7 @@ fn exact_looks_are_followed_and_latency_costs_next_to_nothing() {
         for late in [0, 1, 3] {
             let shown = run(&law(method), QUIET, late, |_, _| true);
             assert!(
-                shown.worst[0] < 2e-3 && shown.worst[1] < 3e-3 && shown.worst[2] < 3e-3,
+                shown.worst[0] < 4e-3 && shown.worst[1] < 3e-3 && shown.worst[2] < 3e-3,
                 "{method:?} {late}: {:?}",
                 shown.worst
             );

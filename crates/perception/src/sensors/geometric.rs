@@ -52,7 +52,7 @@ pub(super) fn faces(
         let in_sight = || corners.iter().all(|c| !hidden(senses, look, from, world_from_leader.apply(*c)));
         if in_picture && in_sight() {
             let moved = |k: usize| [0, 1].map(|i| pixels[k][i] + pixel_noise * errors[k][i]);
-            seen.push(SeenFace { face, corners: [0, 1, 2, 3].map(moved) });
+            seen.push(SeenFace { face, corners: [0, 1, 2, 3].map(moved), deviation: 0.0 });
         }
     }
     seen

@@ -1,0 +1,128 @@
+//! How well a follower saw its leader over a run.
+
+use serde::Serialize;
+use vocabulary::{EdgeState, Frame, Outcome, Sight, wrap};
+
+/// Looks of one follower over a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Default)]
+pub struct LookMetrics {
+    /// Looks that reached the follower, and those that were lost on the way.
+    pub taken: u64,
+    /// Looks that corrected the estimate.
+    pub used: u64,
+    /// Looks too far from the prediction to be believed.
+    pub rejected: u64,
+    /// Looks that two poses explained alike.
+    pub ambiguous: u64,
+    /// Looks in which the leader was not recognised.
+    pub missed: u64,
+    /// Looks that never arrived.
+    pub dropped: u64,
+    /// Share of the looks that arrived in which the leader was recognised.
+    pub in_view: f64,
+    /// Root mean square error of the looks used, [m, rad, rad]: distance, bearing, view angle.
+    pub rms_error: [f64; 3],
+    /// Root mean square error of what the law was told, [m, rad, rad], while the leader was not lost.
+    pub rms_estimate_error: [f64; 3],
+    /// Longest time without a look that corrected the estimate, s.
+    pub longest_gap: f64,
+    /// Time for which the leader was lost, s.
+    pub lost: f64,
+}
+
+/// Running sums of [`LookMetrics`].
+#[derive(Debug, Clone, Default)]
+pub(crate) struct LookSums {
+    metrics: LookMetrics,
+    squares: [f64; 3],
+    told_squares: [f64; 3],
+    told: u64,
+    looked: bool,
+}
+
+impl LookSums {
+    pub(crate) fn look(&mut self, frame: &Frame) {
+        self.looked = true;
+        let m = &mut self.metrics;
+        m.taken += 1;
+        match frame.outcome {
+            Outcome::Used => {
+                m.used += 1;
+                let (seen, truth) = (frame.sighting.relative, frame.truth);
+                let off = [
+                    seen.distance - truth.distance,
+                    wrap(seen.bearing - truth.bearing),
+                    wrap(seen.view_angle - truth.view_angle),
+                ];
+                add_squares(&mut self.squares, off);
+            }
+            Outcome::Rejected => m.rejected += 1,
+            Outcome::Ambiguous => m.ambiguous += 1,
+            Outcome::Missed => m.missed += 1,
+            Outcome::Dropped => m.dropped += 1,
+        }
+    }
+
+    /// Takes in what a follower knows at a sample, `step` s after the one before.
+    pub(crate) fn know(&mut self, edge: &EdgeState, step: f64) {
+        self.metrics.longest_gap = self.metrics.longest_gap.max(edge.age);
+        match edge.sight {
+            Sight::Truth => {}
+            Sight::Lost => self.metrics.lost += step,
+            Sight::Tracking | Sight::Coasting => {
+                let (seen, truth) = (edge.seen, edge.relative);
+                let off = [
+                    seen.distance - truth.distance,
+                    wrap(seen.bearing - truth.bearing),
+                    wrap(seen.view_angle - truth.view_angle),
+                ];
+                add_squares(&mut self.told_squares, off);
+                self.told += 1;
+            }
+        }
+    }
+
+    /// The metrics so far; `None` for a follower that does not look.
+    pub(crate) fn finish(&self) -> Option<LookMetrics> {
+        let m = &self.metrics;
+        let root = |squares: [f64; 3], count: u64| squares.map(|s| (s / count.max(1) as f64).sqrt());
+        let arrived = m.taken - m.dropped;
+        self.looked.then(|| LookMetrics {
+            in_view: (arrived - m.missed) as f64 / arrived.max(1) as f64,
+            rms_error: root(self.squares, m.used),
+            rms_estimate_error: root(self.told_squares, self.told),
+            ..m.clone()
+        })
+    }
+}
+
+fn add_squares(sums: &mut [f64; 3], off: [f64; 3]) {
+    for (sum, off) in sums.iter_mut().zip(off) {
+        *sum += off * off;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vocabulary::{Relative, Sighting};
+
+    #[test]
+    fn looks_are_counted_by_what_came_of_them() {
+        let mut sums = LookSums::default();
+        assert_eq!(sums.finish(), None);
+        let outcomes = [Outcome::Used, Outcome::Used, Outcome::Rejected, Outcome::Missed, Outcome::Dropped];
+        for (k, outcome) in (0..).zip(outcomes) {
+            let relative = Relative { distance: 2.0 + 0.1 * f64::from(k), ..Relative::default() };
+            let truth = Relative { distance: 2.0, ..Relative::default() };
+            let sighting = Sighting { relative, ..Sighting::default() };
+            sums.look(&Frame { outcome, sighting, truth, ..Frame::default() });
+        }
+        sums.know(&EdgeState { sight: Sight::Lost, age: 0.7, ..EdgeState::default() }, 0.01);
+        let metrics = sums.finish().expect("it looked");
+        assert_eq!((metrics.taken, metrics.used, metrics.dropped), (5, 2, 1));
+        assert!((metrics.in_view - 0.75).abs() < 1e-12);
+        assert!((metrics.rms_error[0] - (0.01_f64 / 2.0).sqrt()).abs() < 1e-12);
+        assert_eq!((metrics.longest_gap, metrics.lost), (0.7, 0.01));
+    }
+}

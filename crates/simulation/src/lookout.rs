@@ -1,0 +1,160 @@
+//! Followers that look: what they see, when it reaches them, and what they make of it.
+
+use crate::step::ObserverStart;
+use formation::{EdgeLaw, Estimate, Formation, Own, Tracker};
+use perception::sensors::{Belief, Senses, Watch};
+use std::sync::{Arc, Mutex, PoisonError};
+use vocabulary::{Edge, Eyes, Frame, Observation, Outcome, Passage, Relative, Sight, Snapshot};
+use world::World;
+
+/// Senses, estimates and eyes of all followers that are not told the truth.
+#[derive(Clone)]
+pub(crate) struct Lookout {
+    senses: Arc<Senses>,
+    watch: Watch,
+    trackers: Vec<Tracker>,
+    beliefs: Vec<Belief>,
+    starts: Vec<ObserverStart>,
+    /// Everything as it was a period ago.
+    before: Snapshot,
+    /// Shared by copies of a run, which take turns.
+    eyes: Option<Arc<Mutex<Box<dyn Eyes>>>>,
+}
+
+impl Lookout {
+    pub(crate) fn new(senses: Arc<Senses>, starts: Vec<ObserverStart>, snapshot: &Snapshot) -> Self {
+        let edges = senses.sensors().len();
+        Self {
+            watch: senses.start(snapshot),
+            trackers: vec![Tracker::default(); edges],
+            beliefs: vec![Belief { relative: None, sight: Sight::Coasting }; edges],
+            starts,
+            before: snapshot.clone(),
+            eyes: None,
+            senses,
+        }
+    }
+
+    pub(crate) fn need_eyes(&self) -> bool {
+        self.senses.need_eyes()
+    }
+
+    pub(crate) fn open(&mut self, eyes: Box<dyn Eyes>) {
+        self.eyes = Some(Arc::new(Mutex::new(eyes)));
+    }
+
+    /// Remembers everything as it is before a period, and turns the cameras for it.
+    pub(crate) fn begin(&mut self, snapshot: &Snapshot, time: f64, period: f64) {
+        self.before.clone_from(snapshot);
+        self.before.time = time;
+        self.senses.turn_cameras(&mut self.watch, &self.beliefs, period);
+    }
+
+    /// Carries estimates on over a period that has passed, by what the followers themselves did in it.
+    pub(crate) fn follow(&mut self, formation: &Formation, world: &dyn World, period: f64) {
+        for ((edge, law), tracker) in formation.edges().iter().zip(formation.laws()).zip(&mut self.trackers) {
+            if let Some(looks) = &law.looks {
+                tracker.advance(looks, own_motion(world, *edge, period), period);
+            }
+        }
+        self.believe(formation);
+    }
+
+    /// Takes the looks that are due by `time`, and puts those that have arrived into the estimates; `frames` are theirs.
+    pub(crate) fn look(
+        &mut self,
+        formation: &Formation,
+        world: &dyn World,
+        time: f64,
+        frames: &mut Vec<Frame>,
+    ) -> Result<(), String> {
+        let mut now = world.snapshot().clone();
+        now.time = time;
+        {
+            let mut eyes = self.eyes.as_ref().map(|eyes| eyes.lock().unwrap_or_else(PoisonError::into_inner));
+            let eyes = eyes.as_mut().map(|eyes| eyes.as_mut() as &mut dyn Eyes);
+            let period = (&self.before, &now);
+            self.senses.take_looks(&mut self.watch, period, world as &dyn Passage, &self.beliefs, eyes)?;
+        }
+        frames.clear();
+        for (index, law) in formation.laws().iter().enumerate() {
+            for mut frame in Senses::arrived(&mut self.watch, index, time) {
+                self.trackers[index].put(law, &mut frame, self.starts[index]);
+                frames.push(frame);
+            }
+        }
+        self.believe(formation);
+        Ok(())
+    }
+
+    fn believe(&mut self, formation: &Formation) {
+        for ((belief, tracker), law) in self.beliefs.iter_mut().zip(&self.trackers).zip(formation.laws()) {
+            *belief = law.looks.as_ref().map_or(Belief { relative: None, sight: Sight::Truth }, |looks| {
+                Belief { relative: tracker.relative(), sight: tracker.sight(looks) }
+            });
+        }
+    }
+
+    /// What followers that look know, in place of the truth in `observations`, and their estimates.
+    pub(crate) fn tell(
+        &self,
+        laws: &[EdgeLaw],
+        observations: &mut [Observation],
+        estimates: &mut [Estimate],
+    ) {
+        for (index, law) in laws.iter().enumerate() {
+            let Some(looks) = &law.looks else { continue };
+            let (belief, seen) = (&self.beliefs[index], &mut observations[index]);
+            seen.leader_speed = None;
+            // Before the first look there is nothing to go by.
+            seen.sight = if belief.relative.is_none() { Sight::Lost } else { belief.sight };
+            seen.relative = belief
+                .relative
+                .unwrap_or(Relative { distance: looks.observer.distance_min, ..Relative::default() });
+            estimates[index] = self.trackers[index].estimate(looks);
+        }
+    }
+
+    /// Time since the look that an edge's estimate rests on, s, and where the follower's camera points.
+    pub(crate) fn age_and_pan(&self, edge: usize) -> (f64, f64) {
+        (self.trackers[edge].age(), self.senses.pan(&self.watch, edge))
+    }
+
+    pub(crate) fn disturb(&mut self, edge: usize, rates: [f64; 2]) {
+        if let Some(tracker) = self.trackers.get_mut(edge) {
+            tracker.disturb([0.0; 2], rates);
+        }
+    }
+}
+
+/// Puts looks into an estimate.
+trait Put {
+    fn put(&mut self, law: &EdgeLaw, frame: &mut Frame, start: ObserverStart);
+}
+
+impl Put for Tracker {
+    fn put(&mut self, law: &EdgeLaw, frame: &mut Frame, start: ObserverStart) {
+        let (Some(looks), Outcome::Used) = (&law.looks, frame.outcome) else { return };
+        let first = self.relative().is_none();
+        frame.outcome = self.take(looks, &frame.sighting);
+        let (true, Some(seen)) = (first, self.relative()) else { return };
+        match start {
+            ObserverStart::Offset([0.0, 0.0]) => {}
+            ObserverStart::Offset(offset) => self.disturb(offset, [0.0; 2]),
+            ObserverStart::At([distance, bearing]) => {
+                self.disturb([distance - seen.distance, vocabulary::wrap(bearing - seen.bearing)], [0.0; 2]);
+            }
+        }
+    }
+}
+
+/// What a follower did over the period, as its own sensors tell it: the mean acceleration and turn rate.
+fn own_motion(world: &dyn World, edge: Edge, period: f64) -> Own {
+    let (before, after) = (world.during(edge.follower, 0.0), world.during(edge.follower, period));
+    let turned = vocabulary::wrap(after.pose.heading - before.pose.heading);
+    Own {
+        speed: before.speed,
+        acceleration: (after.speed - before.speed) / period,
+        turn_rate: turned / period,
+    }
+}
