@@ -42,10 +42,10 @@ fn corners(errors: &mut [f64]) -> String {
 
 fn main() {
     let scenes: usize = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(200);
-    let sigma: f64 = std::env::args().nth(2).and_then(|n| n.parse().ok()).unwrap_or(0.05);
+    let sigma: f64 = std::env::args().nth(2).and_then(|n| n.parse().ok()).unwrap_or(0.01);
     let flat = Prior::default();
     println!(
-        "  ℓ  seen/frames  faces  wrong  2+: n | refined, 2 faces or more  | raw POSIT, same | detector's corners, refined | 1 face refined (n, ambiguous, flips) | corners px rms/median: ours, detector's | chi² | ms detect, sharpen, locate, whole frame"
+        "  ℓ  seen/frames  faces  wrong  2+: n | refined, 2 faces or more  | raw POSIT, same | detector's corners, refined | 1 face refined (n, ambiguous, flips) | corners px rms/median: ours, detector's | residual, z of heading, deviation px | ms detect, sharpen, locate, whole frame"
     );
     for distance in [0.6, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0] {
         let mut views = Scenes::seeded(100 + (10.0 * distance) as u64);
@@ -57,7 +57,7 @@ fn main() {
         let (mut frames, mut seen, mut faces, mut visible, mut wrong, mut ambiguous, mut flips) =
             (0, 0, 0, 0, 0, 0, 0);
         let (mut off, mut off_theirs) = (vec![], vec![]);
-        let (mut chi, mut times) = (0.0, [Duration::ZERO; 4]);
+        let (mut chi, mut times) = ([0.0; 3], [Duration::ZERO; 4]);
         for frame in 0..scenes {
             let scene = views.next(distance);
             let whole = Region::whole(&views.lens);
@@ -103,14 +103,23 @@ fn main() {
             let clock = Instant::now();
             let estimate = locate(&scene.rig, &found, sigma, &flat, None);
             times[2] += clock.elapsed();
-            let Some(estimate) = estimate else { continue };
+            let Some(estimate) = estimate else {
+                if distance <= 4.0 {
+                    println!("missed: faces {:?} of {:?}, {} tags", found, scene.visible, tags.len());
+                }
+                continue;
+            };
             seen += 1;
             let far = wrap(estimate.pose.heading - scene.pose.heading).abs() > 8_f64.to_radians();
             ambiguous += usize::from(estimate.ambiguous);
             flips += usize::from(far && !estimate.ambiguous);
             if found.len() > 1 {
                 several.add(&estimate.pose, &scene.pose);
-                chi += estimate.residual.powi(2);
+                let c = estimate.covariance;
+                let bound = c[2][2].sqrt();
+                chi[0] += estimate.residual.powi(2);
+                chi[1] += (wrap(estimate.pose.heading - scene.pose.heading) / bound).powi(2);
+                chi[2] += found.iter().map(|f| f.deviation).sum::<f64>() / found.len() as f64;
                 if let Some(pose) = estimate.raw {
                     raw.add(&pose, &scene.pose);
                 }
@@ -123,7 +132,7 @@ fn main() {
         }
         let ms = times.map(|t| format!("{:.2}", t.as_secs_f64() * 1e3 / scenes as f64)).join(", ");
         println!(
-            "{distance:4.1} {seen:4}/{frames:<4} {faces:4}/{visible:<4} {wrong:3} {:4} | {} | {} | {} | {} ({}, {ambiguous}, {flips}) | {}, {} | {:.3} | {ms}",
+            "{distance:4.1} {seen:4}/{frames:<4} {faces:4}/{visible:<4} {wrong:3} {:4} | {} | {} | {} | {} ({}, {ambiguous}, {flips}) | {}, {} | {:.3} {:.2} {:.3} | {ms}",
             several.n,
             several.text(),
             raw.text(),
@@ -132,7 +141,9 @@ fn main() {
             single.n,
             corners(&mut off),
             corners(&mut off_theirs),
-            (chi / several.n).sqrt(),
+            (chi[0] / several.n).sqrt(),
+            (chi[1] / several.n).sqrt(),
+            chi[2] / several.n,
         );
     }
 }

@@ -21,7 +21,7 @@ pub fn identify(tags: &[Tag], shell: &Shell) -> Vec<SeenFace> {
         let Some(face) = shell.face_of(tag.id) else { continue };
         let Some(slot) = best.get_mut(face) else { continue };
         if slot.is_none_or(|known: SeenFace| area(&known.corners) < area(&tag.corners)) {
-            *slot = Some(SeenFace { face, corners: tag.corners });
+            *slot = Some(SeenFace { face, corners: tag.corners, deviation: tag.deviation });
         }
     }
     // Runs of neighbours: the faces' row has ends, for the front of the octagon is cut away.
@@ -53,7 +53,8 @@ mod tests {
     use super::*;
 
     fn tag(id: u16, x: f64, size: f64) -> Tag {
-        Tag { id, corners: [[x, 10.0], [x + size, 10.0], [x + size, 10.0 + size], [x, 10.0 + size]] }
+        let corners = [[x, 10.0], [x + size, 10.0], [x + size, 10.0 + size], [x, 10.0 + size]];
+        Tag { id, corners, deviation: 0.0 }
     }
 
     fn faces(tags: &[Tag]) -> Vec<usize> {
@@ -79,8 +80,10 @@ mod tests {
         turned.corners.rotate_left(1);
         let mut mirrored = tag(11, 0.0, 20.0);
         mirrored.corners.reverse();
-        let broken = Tag { id: 11, corners: [[f64::NAN, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]] };
-        let bent = Tag { id: 11, corners: [[15.0, 15.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]] };
+        let broken =
+            Tag { corners: [[f64::NAN, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]], ..tag(11, 0.0, 20.0) };
+        let bent =
+            Tag { corners: [[15.0, 15.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]], ..tag(11, 0.0, 20.0) };
         for tag in [turned, mirrored, broken, bent, tag(11, 0.0, 5.0)] {
             assert!(faces(&[tag]).is_empty(), "{tag:?}");
         }

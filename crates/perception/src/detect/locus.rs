@@ -52,7 +52,7 @@ impl Detector for Locus {
             let mut corners = corners.map(|c| [f64::from(c.x) - 0.5, f64::from(c.y) - 0.5]);
             corners.rotate_left(2);
             let finite = corners.iter().flatten().all(|x| x.is_finite());
-            Some(Tag { id: u16::try_from(*id).ok()?, corners }).filter(|_| finite)
+            Some(Tag { id: u16::try_from(*id).ok()?, corners, deviation: 0.0 }).filter(|_| finite)
         }));
         let middle = |t: &Tag| t.corners.iter().fold([0.0; 2], |sum, c| [sum[0] + c[0], sum[1] + c[1]]);
         found.sort_by(|a, b| {

@@ -22,7 +22,7 @@ const SQUARE: [[f64; 2]; 4] = [[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0
 const PIXEL: f64 = 1.0 / 12.0;
 
 /// Of a large tag no more pixels than about this are looked at.
-const PIXELS: f64 = 2500.0;
+const PIXELS: f64 = 1200.0;
 
 const ROUNDS: usize = 8;
 
@@ -48,8 +48,8 @@ pub fn sharpen(picture: &Grey, region: Region, optics: &Optics, tags: &mut [Tag]
     let view = View { picture, lens: &optics.lens, corner: [f64::from(region.x), f64::from(region.y)] };
     let blur = if optics.blur.is_finite() { optics.blur.clamp(0.0, 4.0) } else { 0.0 };
     for tag in tags {
-        if let Some(corners) = fitted(&view, (blur * blur + PIXEL).sqrt(), tag) {
-            tag.corners = corners;
+        if let Some((corners, deviation)) = fitted(&view, (blur * blur + PIXEL).sqrt(), tag) {
+            (tag.corners, tag.deviation) = (corners, deviation);
         }
     }
 }
@@ -86,7 +86,8 @@ struct Sample {
     light: f64,
 }
 
-fn fitted(view: &View<'_>, blur: f64, tag: &Tag) -> Option<[[f64; 2]; 4]> {
+/// Corners, and the deviation they should have.
+fn fitted(view: &View<'_>, blur: f64, tag: &Tag) -> Option<([[f64; 2]; 4], f64)> {
     let cells = cells(tag.id)?;
     let start = tag.corners.map(|c| view.ideal(c));
     let middle = [0, 1].map(|k| start.iter().map(|c| c[k]).sum::<f64>() / 4.0);
@@ -100,7 +101,7 @@ fn fitted(view: &View<'_>, blur: f64, tag: &Tag) -> Option<[[f64; 2]; 4]> {
     let blur = blur / size;
     let mut light = contrast(&samples, &h, &cells, blur)?;
     let mut spread = f64::INFINITY;
-    let mut corners = start;
+    let (mut corners, mut deviation) = (start, 0.0);
     for _ in 0..ROUNDS {
         let round = round(&samples, &h, &cells, blur, light, FAR * spread)?;
         h += round.step;
@@ -114,6 +115,7 @@ fn fitted(view: &View<'_>, blur: f64, tag: &Tag) -> Option<[[f64; 2]; 4]> {
         if !(moved(&next, &start) < ASTRAY) {
             return None;
         }
+        deviation = size * round.deviation;
         let settled = moved(&next, &corners) < SETTLED;
         corners = next;
         if settled {
@@ -125,7 +127,7 @@ fn fitted(view: &View<'_>, blur: f64, tag: &Tag) -> Option<[[f64; 2]; 4]> {
         return None;
     }
     let [a, b, c, d] = corners.map(|c| view.seen(c));
-    Some([a?, b?, c?, d?])
+    Some(([a?, b?, c?, d?], deviation))
 }
 
 /// Cells of a tag, 1 for white, rows from the top.
@@ -235,6 +237,8 @@ struct Round {
     light: [f64; 2],
     /// Standard deviation of what is left, grey levels.
     spread: f64,
+    /// Of a corner in one direction, from how well the pixels determine it: root of the mean variance.
+    deviation: f64,
 }
 
 fn round(
@@ -268,8 +272,27 @@ fn round(
     if count < 30.0 {
         return None;
     }
-    let d = curvature.cholesky()?.solve(&slope);
+    let factors = curvature.cholesky()?;
+    let d = factors.solve(&slope);
+    let spread = (squares / (count - 10.0)).sqrt().max(0.5);
     let step = Matrix3::new(d[0], d[1], d[2], d[3], d[4], d[5], d[6], d[7], 0.0);
     let finite = d.iter().all(|x| x.is_finite());
-    finite.then(|| Round { step, light: [d[8], d[9]], spread: (squares / (count - 10.0)).sqrt().max(0.5) })
+    finite.then(|| Round {
+        step,
+        light: [d[8], d[9]],
+        spread,
+        deviation: spread * corner_variance(h, &factors.inverse()).max(0.0).sqrt(),
+    })
+}
+
+/// Mean variance of the corners' coordinates for a covariance of the mapping's numbers.
+fn corner_variance(h: &Matrix3<f64>, covariance: &Normal) -> f64 {
+    let one = |[u, v]: [f64; 2]| {
+        let p = h * Vector3::new(u, v, 1.0);
+        let (x, y) = (p.x / p.z, p.y / p.z);
+        let across = Ten::from([u, v, 1.0, 0.0, 0.0, 0.0, -x * u, -x * v, 0.0, 0.0]) / p.z;
+        let down = Ten::from([0.0, 0.0, 0.0, u, v, 1.0, -y * u, -y * v, 0.0, 0.0]) / p.z;
+        across.dot(&(covariance * across)) + down.dot(&(covariance * down))
+    };
+    SQUARE.into_iter().map(one).sum::<f64>() / 8.0
 }

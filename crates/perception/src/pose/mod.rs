@@ -61,6 +61,8 @@ pub struct SeenFace {
     pub face: usize,
     /// Pixels of the whole picture, in the order of `Shell::tag_corners`.
     pub corners: [[f64; 2]; 4],
+    /// Standard deviation of a corner in one direction, pixels, where whoever measured it knows; otherwise 0.
+    pub deviation: f64,
 }
 
 /// Where the leader is.
@@ -96,8 +98,8 @@ impl PoseEstimate {
     }
 }
 
-/// The leader's pose from the faces seen of it, whose corners have errors of `pixel_sigma` pixels (standard deviation,
-/// each direction). `near` is one more place to start from; where two poses are ambiguous the one with the nearer
+/// The leader's pose from the faces seen of it. Corners have errors of `pixel_sigma` pixels (standard deviation, each
+/// direction) and independently of that those of their face's `deviation`. `near` is one more place to start from; where two poses are ambiguous the one with the nearer
 /// heading is given as `pose`, and the caller decides what to make of it.
 ///
 /// Two poses are ambiguous unless the sum of squared residuals (in standard deviations, prior included) of the worse is
@@ -119,8 +121,9 @@ pub fn locate(
     let mut corners = Vec::with_capacity(4 * faces.len());
     let mut matches = Vec::with_capacity(4 * faces.len());
     for seen in faces {
+        let sigma = pixel_sigma.hypot(seen.deviation);
         for (point, pixel) in rig.shell.tag_corners(seen.face).into_iter().zip(seen.corners) {
-            corners.push(Corner::new(&rig.lens, point, pixel, pixel_sigma)?);
+            corners.push(Corner::new(&rig.lens, point, pixel, sigma)?);
             matches.push(Match { point, seen: rig.lens.direction(pixel) });
         }
     }

@@ -221,7 +221,7 @@ proptest! {
         let rig = Rig { shell: Shell::PAPER, lens, body_from_camera };
         let seen: Vec<_> = faces.iter().enumerate().map(|(k, face)| SeenFace {
             face: *face,
-            corners: [0, 1, 2, 3].map(|c| [numbers[8 * k + 2 * c], numbers[8 * k + 2 * c + 1]]),
+            corners: [0, 1, 2, 3].map(|c| [numbers[8 * k + 2 * c], numbers[8 * k + 2 * c + 1]]), deviation: numbers[47],
         }).collect();
         let prior = Prior { tilt: numbers[44], height: numbers[45] };
         for prior in [prior, FLAT] {

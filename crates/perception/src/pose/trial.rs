@@ -78,7 +78,10 @@ impl View {
     /// The faces in pixels.
     pub(crate) fn seen(&self) -> Vec<SeenFace> {
         let pixel = |[x, y]: [f64; 2]| self.rig.lens.project([x, y, 1.0]).expect("in front");
-        self.faces.iter().map(|(face, c)| SeenFace { face: *face, corners: c.map(pixel) }).collect()
+        self.faces
+            .iter()
+            .map(|(face, c)| SeenFace { face: *face, corners: c.map(pixel), deviation: 0.0 })
+            .collect()
     }
 }
 
