@@ -47,7 +47,7 @@ fn main() {
     println!(
         "  ℓ  seen/frames  faces  wrong  2+: n | refined, 2 faces or more  | raw POSIT, same | detector's corners, refined | 1 face refined (n, ambiguous, flips) | corners px rms/median: ours, detector's | residual, z of heading, deviation px | ms detect, sharpen, locate, whole frame"
     );
-    for distance in [0.6, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0] {
+    for distance in [0.8, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0] {
         let mut views = Scenes::seeded(100 + (10.0 * distance) as u64);
         let mut sensor = sensor(views.lens);
         let optics = *sensor.optics();
@@ -123,7 +123,7 @@ fn main() {
                 if let Some(pose) = estimate.raw {
                     raw.add(&pose, &scene.pose);
                 }
-                if let Some(e) = locate(&scene.rig, &plain, 0.1, &flat, None) {
+                if let Some(e) = locate(&scene.rig, &plain, 0.01, &flat, None) {
                     theirs.add(&e.pose, &scene.pose);
                 }
             } else if !estimate.ambiguous {
