@@ -127,7 +127,7 @@ fn plain_vertex(in: Corner, instance: Instance) -> Plain {
     let hazy = haze(length(away));
     var out: Plain;
     out.clip = whole.clip;
-    out.shadow = shadow_place(whole.local + whole.normal * 0.012);
+    out.shadow = shadow_place(whole.local + whole.normal * frame.spare.z);
     out.light = vec2<f32>(mix(developed(sky).r, far_air().r, hazy), developed(sun).r * (1.0 - hazy));
     return out;
 }

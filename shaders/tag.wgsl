@@ -22,7 +22,7 @@ fn vertex(in: Corner, instance: Instance) -> Varying {
     let local = place(instance, in.position);
     let normal = turn(instance, in.normal);
     out.clip = frame.clip_from_local * vec4<f32>(local, 1.0);
-    out.shadow = shadow_place(local + normal * 0.012);
+    out.shadow = shadow_place(local + normal * frame.spare.z);
     out.cell = in.uv;
     let open = 0.45 + 0.55 * clamp((local.z - instance.marks.z) * 5.0, 0.0, 1.0);
     out.sky = vec4<f32>(ambient(normal) * open, haze(length(frame.eye.xyz - local) * frame.eye.w));

@@ -24,13 +24,16 @@ fn lines(at: vec2<f32>, density: vec2<f32>, every: f32, width: f32) -> f32 {
 fn grain(at: vec2<f32>) -> f32 {
     // A little sharper than the rule, which goes by the longer side of the footprint.
     let fine = textureSampleBias(asphalt, asphalt_sampler, at * 0.5, -0.8).r;
+    if !FINE {
+        return 0.155 * (0.42 + 1.16 * fine);
+    }
     let broad = textureSampleLevel(patches, asphalt_sampler, at.yx * 0.05, 0.0).r;
     return 0.155 * (0.42 + 1.16 * fine) * (0.74 + 0.52 * broad);
 }
 
 // The same with the lines on it, where a pixel covers `footprint` m.
 fn marked(at: vec2<f32>, footprint: vec2<f32>) -> f32 {
-    if !LINES {
+    if !FINE {
         return grain(at);
     }
     let density = 1.0 / max(footprint, vec2<f32>(1e-5));

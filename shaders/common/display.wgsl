@@ -6,8 +6,8 @@ const BLUE = vec3<f32>(0.335, 0.560, 0.835);
 // The tint of a grey ground when displayed.
 const GREY_TINT = vec3<f32>(1.012, 1.0, 0.985);
 
-// Whether there may be lines on the ground.
-const LINES = true;
+// Whether the ground has broad patches, and lines where they are wanted.
+const FINE = true;
 
 // Filmic curve after Hejl and Burgess-Dawson.
 fn developed(light: vec3<f32>) -> vec3<f32> {

@@ -19,7 +19,7 @@ struct Frame {
     // The terrain's origin; w is 1 where there is a terrain.
     terrain: vec4<f32>,
     // x: depth up to which props are seen through, so that they do not hide the robots; y: 1 where the depth of
-    // paint is tested.
+    // paint is tested; z: how far from a surface its light is looked up.
     spare: vec4<f32>,
 }
 

@@ -6,8 +6,8 @@ const GAIN = 0.464;
 const HAZE_LIGHT = 1.10;
 const BLUE_LIGHT = 0.37;
 
-// A camera sees none of what is drawn to explain.
-const LINES = false;
+// A camera sees none of what is drawn to explain, and does without what costs time.
+const FINE = false;
 
 fn sensed(luminance: f32) -> vec3<f32> {
     return vec3<f32>(luminance * GAIN * frame.ground.y);

@@ -8,7 +8,7 @@ use crate::paint::Stage;
 use crate::passes::frame::Frame;
 use crate::passes::ground::TILE;
 use crate::passes::overlay::Shapes;
-use crate::passes::shadow::{SunView, sun_view};
+use crate::passes::shadow::{ShadowPass, SunView, sun_view};
 use crate::passes::text::{Line, TextPass};
 use crate::{Layout, View};
 use glam::{DVec2, DVec3};
@@ -124,16 +124,23 @@ fn spots(robot: &RobotState, member: &Member) -> [DVec3; 5] {
     })
 }
 
-pub(crate) fn frame(camera: &Camera, stage: &Stage<'_>, view: &View, sun: &SunView, penumbra: f32) -> Frame {
+pub(crate) fn frame(
+    camera: &Camera,
+    stage: &Stage<'_>,
+    view: &View,
+    sun: &SunView,
+    shadow: &ShadowPass,
+) -> Frame {
     let mut frame = Frame::new(camera, stage.origin, sun.shadow_from_local);
     let [x, y, z] = stage.sun.as_vec3().to_array();
     // A large formation is seen from farther away and would drown in it.
     let haze = (stage.cast.light.haze_from.max(0.1) * (0.2 * camera.eye.z).max(1.0)) as f32;
-    frame.sun = [x, y, z, if stage.style.shadows { penumbra } else { 0.0 }];
+    frame.sun = [x, y, z, if stage.style.shadows { shadow.penumbra(sun) } else { 0.0 }];
     if let Some(terrain) = &stage.cast.terrain {
         let [x, y] = terrain.origin;
         frame.terrain = (DVec3::new(x, y, 0.0) - stage.origin).as_vec3().extend(1.0).to_array();
     }
+    frame.spare[2] = shadow.clearance(sun);
     frame.spare[1] = f32::from(u8::from(!stage.floor.is_plane()));
     let veiled = veiled(camera, stage, view);
     frame.spare[0] = if veiled.is_finite() { veiled as f32 } else { -1e6 };

@@ -54,15 +54,20 @@ pub(crate) fn crowd(stage: &Stage<'_>, fleet: &Fleet) -> Crowd {
 pub(crate) fn part(all: &Crowd, stage: &Stage<'_>, fleet: &Fleet, camera: &Camera, own: usize) -> Crowd {
     let mut part = Crowd { squads: vec![Squad::default(); all.squads.len()], ..Crowd::default() };
     let mut counts = vec![0; all.squads.len()];
+    let mut seen = Vec::new();
     for (index, robot) in stage.moment.snapshot.robots.iter().enumerate() {
         let kind = fleet.of[index];
-        let place = counts[kind];
-        counts[kind] += 1;
         let (middle, radius) = fleet.builds[kind].ball();
         let middle = DVec3::from_array(robot.world_from_body().apply(middle));
-        if !camera.may_see(middle, radius) {
-            continue;
+        if camera.may_see(middle, radius) {
+            seen.push((camera.view_from_world(middle).z, index, counts[kind]));
         }
+        counts[kind] += 1;
+    }
+    // What is near hides what is behind it.
+    seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (_, index, place) in seen {
+        let kind = fleet.of[index];
         let (squad, whole) = (&mut part.squads[kind], &all.squads[kind]);
         squad.bodies.push(whole.bodies[place]);
         squad.wheels.extend_from_slice(&whole.wheels[4 * place..4 * place + 4]);

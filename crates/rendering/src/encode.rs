@@ -2,6 +2,7 @@
 
 use crate::crowd::Fleet;
 use crate::floor::Floor;
+use crate::model::Detail;
 use crate::passes::Canvas;
 use crate::passes::decal::{Corner, Layer};
 use crate::passes::frame::Frame;
@@ -69,11 +70,12 @@ pub(crate) struct Surface<'a> {
 
 impl Passes {
     pub(crate) fn new(gpu: &Gpu, canvas: Canvas, cast: &Cast, fleet: &Fleet, floor: &Floor) -> Self {
+        let detail = if cast.members.len() > PLAIN_ABOVE { Detail::Plain } else { Detail::Full };
         let flat = Canvas { samples: 1, ..canvas };
         let robots = cast.members.len();
         let side = if robots > 12 || !cast.props.is_empty() { 2048 } else { 1024 };
         Self {
-            world: World::new(gpu, canvas, cast, (fleet, floor), (robots > PLAIN_ABOVE, side)),
+            world: World::new(gpu, canvas, cast, (fleet, floor), (detail, side)),
             overlay: OverlayPass::new(&gpu.device, flat),
             text: TextPass::new(&gpu.device, &gpu.queue, flat),
         }

@@ -5,6 +5,7 @@ use crate::camera::Camera;
 use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun};
 use crate::crowd::{Fleet, crowd, part};
 use crate::floor::Floor;
+use crate::model::Detail;
 use crate::paint::{Stage, shade};
 use crate::palette::{Rgb, robot_colours};
 use crate::passes::decal::{Corner, Layer};
@@ -53,7 +54,7 @@ impl CameraEyes {
     /// [`Error::Device`] where the device fails.
     pub fn new(gpu: &Gpu, cast: &Cast) -> Result<Self, Error> {
         let (fleet, floor) = (Fleet::new(cast), Floor::new(cast));
-        let world = World::new(gpu, CANVAS, cast, (&fleet, &floor), (true, SHADOWS));
+        let world = World::new(gpu, CANVAS, cast, (&fleet, &floor), (Detail::Coarse, SHADOWS));
         gpu.check()?;
         Ok(Self {
             gpu: gpu.clone(),
@@ -103,7 +104,6 @@ impl CameraEyes {
             detail: 0.0,
         };
         let sun = sun_over(&stage);
-        let penumbra = self.world.shadow.penumbra(&sun);
         let (mut all, mut things) = (crowd(&stage, &self.fleet), props(&stage));
         let mut corners: Vec<Corner> = Vec::new();
         let under = shade(&stage, &Camera::shot(first)).map(|(layer, more)| {
@@ -115,7 +115,7 @@ impl CameraEyes {
         let mut scenes: Vec<Scene> = Vec::with_capacity(shots.len());
         for (shot, tile) in shots.iter().zip(&tiles) {
             let camera = Camera::shot(shot);
-            let mut frame = frame(&camera, &stage, &View::Camera(shot.robot), &sun, penumbra);
+            let mut frame = frame(&camera, &stage, &View::Camera(shot.robot), &sun, &self.world.shadow);
             frame.ground[1] = shot.exposure as f32;
             frames.push(frame);
             scenes.push(Scene {

@@ -218,9 +218,9 @@ impl Renderer {
         };
         let (crowd, props) = (crowd(&stage, &self.fleet), props(&stage));
         let sun = sun_over(&stage);
-        let penumbra = self.passes.world.shadow.penumbra(&sun);
+        let shadow = &self.passes.world.shadow;
         let seen = layout.views.iter().zip(&cameras);
-        let frames: Vec<_> = seen.map(|(view, camera)| frame(camera, &stage, view, &sun, penumbra)).collect();
+        let frames: Vec<_> = seen.map(|(view, camera)| frame(camera, &stage, view, &sun, shadow)).collect();
         let mut corners = Vec::new();
         let mut decals = Vec::new();
         for ((view, camera), tile) in layout.views.iter().zip(&cameras).zip(&tiles) {

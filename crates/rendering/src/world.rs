@@ -3,6 +3,7 @@
 use crate::Gpu;
 use crate::crowd::Fleet;
 use crate::floor::Floor;
+use crate::model::Detail;
 use crate::passes::Canvas;
 use crate::passes::asphalt::Asphalt;
 use crate::passes::decal::{Corner, DecalPass, Layer};
@@ -53,13 +54,13 @@ pub(crate) struct Sight<'a> {
 }
 
 impl World {
-    /// `plain` models are for crowds; `shadows` is the side of the shadow map in texels.
+    /// `shadows` is the side of the shadow map in texels.
     pub(crate) fn new(
         gpu: &Gpu,
         canvas: Canvas,
         cast: &Cast,
         (fleet, floor): (&Fleet, &Floor),
-        (plain, shadows): (bool, u32),
+        (detail, shadows): (Detail, u32),
     ) -> Self {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let map = ShadowPass::map(device, shadows);
@@ -74,7 +75,7 @@ impl World {
         };
         let prop = || PropPass::new(device, queue, canvas, &groups, &asphalt, veil);
         Self {
-            models: Models::new(device, queue, plain, &fleet.builds),
+            models: Models::new(device, queue, detail, &fleet.builds),
             robot: RobotPass::new(device, queue, canvas, &groups, digits()),
             tag: TagPass::new(device, queue, canvas, &groups),
             ground: GroundPass::new(device, canvas, &groups, &asphalt),
@@ -131,8 +132,9 @@ impl World {
         for (layer, corners) in sight.under {
             self.decal.draw(pass, corners, *layer);
         }
-        self.robot.draw_solid(pass, &self.models, sight.crowd);
+        // Faces first: they hide much of the rest.
         self.tag.draw(pass, &self.models, sight.crowd);
+        self.robot.draw_solid(pass, &self.models, sight.crowd);
         // After the robots, which show through those in front of them.
         if let Some(prop) = &self.prop {
             prop.draw(pass, &self.asphalt, sight.props, sight.veiled);

@@ -1,6 +1,6 @@
 //! Bonnet, cabin, bumpers, arches and lights.
 
-use super::{Build, Material, Mesh, chassis};
+use super::{Build, Detail, Material, Mesh, chassis};
 use glam::Vec3;
 
 /// Half a turn of a rounded rectangle would be too many corners for a body 60 pixels long; this has 14.
@@ -22,8 +22,17 @@ fn section(x: f32, half: f32, low: f32, high: f32, round: f32) -> Vec<Vec3> {
     left.chain(mirrored).collect()
 }
 
+/// The sections, or in a coarse model those chosen, with every rounding one edge.
+fn thinned(sections: &[Vec<Vec3>], chosen: &[usize], detail: Detail) -> Vec<Vec<Vec3>> {
+    if detail > Detail::Coarse {
+        return sections.to_vec();
+    }
+    let kept = |section: &Vec<Vec3>| [1, 3, 4, 6, 8, 10, 11, 13].map(|k| section[k]).to_vec();
+    chosen.iter().map(|k| kept(&sections[*k])).collect()
+}
+
 /// The hull between the wheels, with the bonnet in front.
-fn hull(mesh: &mut Mesh) {
+fn hull(mesh: &mut Mesh, detail: Detail) {
     let from = mesh.vertices.len();
     let sections = [
         section(-0.083, 0.070, 0.050, 0.108, 0.016),
@@ -35,12 +44,12 @@ fn hull(mesh: &mut Mesh) {
         section(0.305, 0.073, 0.040, 0.103, 0.026),
         section(0.322, 0.066, 0.050, 0.084, 0.016),
     ];
-    mesh.loft(&sections, |_, _| Material::Paint);
+    mesh.loft(&thinned(&sections, &[0, 2, 4, 5, 7], detail), |_, _| Material::Paint);
     mesh.smooth(from, 0.6);
 }
 
 /// The cabin: glass all round, pillars by the paint of roof and hull.
-fn cabin(mesh: &mut Mesh) {
+fn cabin(mesh: &mut Mesh, detail: Detail) {
     let from = mesh.vertices.len();
     let (base, roof) = (0.128, 0.206);
     let foot = [[-0.078, 0.072], [-0.010, 0.078], [0.100, 0.078], [0.196, 0.070]];
@@ -73,10 +82,9 @@ fn cabin(mesh: &mut Mesh) {
     );
     // The roof's lip overhangs the glass a little and catches the sun.
     let lip = |x: f32, half: f32| section(x, half, roof - 0.004, roof + 0.010, 0.006);
-    mesh.loft(
-        &[lip(-0.062, 0.052), lip(-0.050, 0.063), lip(0.078, 0.064), lip(0.116, 0.058), lip(0.126, 0.050)],
-        |_, _| Material::Paint,
-    );
+    let sections =
+        [lip(-0.062, 0.052), lip(-0.050, 0.063), lip(0.078, 0.064), lip(0.116, 0.058), lip(0.126, 0.050)];
+    mesh.loft(&thinned(&sections, &[0, 2, 4], detail), |_, _| Material::Paint);
     mesh.smooth(from, 0.75);
     let z = roof + 0.0108;
     let patch = [[-0.052, 0.050], [-0.052, -0.050], [0.048, -0.050], [0.048, 0.050]];
@@ -152,27 +160,27 @@ fn stripe(mesh: &mut Mesh) {
 }
 
 /// Hull and cabin.
-pub(super) fn outline(mesh: &mut Mesh) {
-    hull(mesh);
-    cabin(mesh);
+pub(super) fn outline(mesh: &mut Mesh, detail: Detail) {
+    hull(mesh, detail);
+    cabin(mesh, detail);
 }
 
 /// A part as modelled, moved to where it is on this hull.
-fn fitted(mesh: &mut Mesh, build: &Build, part: fn(&mut Mesh)) {
+fn fitted(mesh: &mut Mesh, build: &Build, part: impl Fn(&mut Mesh)) {
     let mut modelled = Mesh::default();
     part(&mut modelled);
     build.fit(&mut modelled);
     mesh.append(&modelled, Vec3::ZERO);
 }
 
-pub(super) fn build(mesh: &mut Mesh, plain: bool, build: &Build) {
-    fitted(mesh, build, outline);
+pub(super) fn build(mesh: &mut Mesh, detail: Detail, build: &Build) {
+    fitted(mesh, build, |mesh| outline(mesh, detail));
     fitted(mesh, build, lights);
     fitted(mesh, build, stripe);
     if build.high {
-        chassis::build(mesh, build);
+        chassis::build(mesh, detail, build);
     }
-    if plain {
+    if detail < Detail::Full {
         return;
     }
     if !build.high {

@@ -1,9 +1,9 @@
 //! What carries a hull that stands over its wheels: ladder frame, axles, springs.
 
-use super::{Build, Material, Mesh};
+use super::{Build, Detail, Material, Mesh};
 use glam::Vec3;
 
-pub(super) fn build(mesh: &mut Mesh, build: &Build) {
+pub(super) fn build(mesh: &mut Mesh, detail: Detail, build: &Build) {
     let body = build.body;
     let [radius, wheelbase, track] = [body.wheel_radius, body.wheelbase, body.track].map(|x| x as f32);
     let thick = 0.14 * radius;
@@ -20,6 +20,9 @@ pub(super) fn build(mesh: &mut Mesh, build: &Build) {
             [axle + thick, high, radius + thick],
             Material::Metal,
         );
+        if detail == Detail::Coarse {
+            continue;
+        }
         let round = 0.34 * radius;
         mesh.cuboid(
             [axle - round, -round, radius - round],

@@ -168,7 +168,7 @@ mod tests {
         for (mesh, most) in [
             (
                 super::super::body(
-                    false,
+                    super::super::Detail::Full,
                     &super::super::Build::new(&vocabulary::Member::new(
                         "a",
                         true,
@@ -177,8 +177,8 @@ mod tests {
                 ),
                 2600,
             ),
-            (super::super::wheel(false, false), 500),
-            (super::super::wheel(false, true), 1200),
+            (super::super::wheel(super::super::Detail::Full, false), 500),
+            (super::super::wheel(super::super::Detail::Full, true), 1200),
         ] {
             let triangles = mesh.vertices.len() / 3;
             assert!(triangles < most, "{triangles}");

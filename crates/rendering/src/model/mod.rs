@@ -29,31 +29,41 @@ pub(crate) enum Material {
     Lining = 10,
 }
 
-/// Body, shell and mast of a robot, all that moves as one; `plain` leaves out what is lost in a crowd.
-pub(crate) fn body(plain: bool, build: &Build) -> Mesh {
+/// How much of a robot is modelled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Detail {
+    /// What robots need to see of each other, in half as many triangles: for pictures by the hundred.
+    Coarse,
+    /// Without what is lost in a crowd.
+    Plain,
+    Full,
+}
+
+/// Body, shell and mast of a robot, all that moves as one.
+pub(crate) fn body(detail: Detail, build: &Build) -> Mesh {
     let mut mesh = Mesh::default();
-    body::build(&mut mesh, plain, build);
-    shell::build(&mut mesh, plain, build);
+    body::build(&mut mesh, detail, build);
+    shell::build(&mut mesh, detail, build);
     mesh
 }
 
 /// The outline of a robot, with few faces: what a ghost needs.
 pub(crate) fn ghost(build: &Build) -> Mesh {
     let mut mesh = Mesh::default();
-    body::outline(&mut mesh);
+    body::outline(&mut mesh, Detail::Plain);
     build.fit(&mut mesh);
     shell::outline(&mut mesh, build);
     mesh
 }
 
 /// A wheel around its hub, the outer face to the left; with `lugs` for rough ground.
-pub(crate) fn wheel(plain: bool, lugs: bool) -> Mesh {
-    wheel::wheel(plain, lugs)
+pub(crate) fn wheel(detail: Detail, lugs: bool) -> Mesh {
+    wheel::wheel(detail < Detail::Full, lugs)
 }
 
 /// The camera's head around its pan axis.
-pub(crate) fn camera() -> Mesh {
-    shell::camera()
+pub(crate) fn camera(detail: Detail) -> Mesh {
+    shell::camera(detail)
 }
 
 /// The outside of the faces that carry tags; the body leaves them out.

@@ -1,6 +1,6 @@
 //! The shell that carries the identification tags, and the camera on its mast.
 
-use super::{Build, Material, Mesh};
+use super::{Build, Detail, Material, Mesh};
 use glam::{DVec2, DVec3, Vec3};
 use std::f64::consts::FRAC_PI_8;
 use vocabulary::{FACE_DIRECTIONS, Shell, TAG_CELLS};
@@ -35,7 +35,9 @@ fn ring(mesh: &mut Mesh, shell: &Shell, [low, high]: [f64; 2], outset: f64, oute
         if outside.is_some() {
             mesh.quad([out(a, low), out(b, low), out(b, high), out(a, high)], outer);
         }
-        mesh.quad([inn(b, low), inn(a, low), inn(a, high), inn(b, high)], inner);
+        if lining.is_some() {
+            mesh.quad([inn(b, low), inn(a, low), inn(a, high), inn(b, high)], inner);
+        }
         mesh.quad([out(a, high), out(b, high), inn(b, high), inn(a, high)], outer);
         mesh.quad([inn(a, low), inn(b, low), out(b, low), out(a, low)], inner);
     }
@@ -85,7 +87,7 @@ pub(super) fn faces(build: &Build) -> Mesh {
     mesh
 }
 
-pub(super) fn build(mesh: &mut Mesh, plain: bool, build: &Build) {
+pub(super) fn build(mesh: &mut Mesh, detail: Detail, build: &Build) {
     let Vec3 { x, z, .. } = build.camera;
     let head = build.head;
     // On the roof, or what is below it.
@@ -95,12 +97,13 @@ pub(super) fn build(mesh: &mut Mesh, plain: bool, build: &Build) {
     let Some(shell) = &build.shell else { return };
     let size = size(shell);
     let [low, high] = span(shell);
-    let painted = [Some(Material::Paint); 2];
+    // From far away the insides of the rims are not seen.
+    let painted = [Some(Material::Paint), (detail > Detail::Coarse).then_some(Material::Paint)];
     ring(mesh, shell, [low, high], 0.0, [None, Some(Material::Lining)]);
     // Rims in the robot's colour, outside the area of the tags.
     ring(mesh, shell, [high, high + RIM * size], LIP * size, painted);
     ring(mesh, shell, [low - RIM * size, low], LIP * size, painted);
-    if !plain {
+    if detail == Detail::Full {
         let mut struts = struts();
         let size = size as f32;
         let foot = [shell.forward, 0.0, shell.height + low].map(|x| x as f32);
@@ -133,9 +136,12 @@ fn struts() -> Mesh {
     mesh
 }
 
-pub(super) fn camera() -> Mesh {
+pub(super) fn camera(detail: Detail) -> Mesh {
     let mut mesh = Mesh::default();
     mesh.cuboid([-0.022, -0.021, -0.018], [0.016, 0.021, 0.018], Material::Plastic);
+    if detail == Detail::Coarse {
+        return mesh;
+    }
     mesh.cuboid([-0.0225, -0.012, -0.004], [-0.0221, 0.012, 0.004], Material::Metal);
     let from = mesh.vertices.len();
     let mut lens = Mesh::default();

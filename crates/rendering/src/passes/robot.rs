@@ -2,7 +2,7 @@
 
 use super::frame::FrameGroups;
 use super::{Canvas, Recipe, Stream, constant, developed, mipped, shader, shrink, textured};
-use crate::model::{self, Build, Vertex};
+use crate::model::{self, Build, Detail, Vertex};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
@@ -84,8 +84,7 @@ impl Models {
 
     /// One set of models for each build. In a crowd each robot is small in the picture: plainer models draw three
     /// times as fast.
-    /// `plain` leaves out what is lost in a crowd.
-    pub(crate) fn new(device: &Device, queue: &Queue, plain: bool, builds: &[Build]) -> Self {
+    pub(crate) fn new(device: &Device, queue: &Queue, detail: Detail, builds: &[Build]) -> Self {
         let mut vertices = Vec::new();
         let mut indices = Vec::new();
         let mut add = |mesh: model::Mesh| {
@@ -93,10 +92,10 @@ impl Models {
             mesh.weld(&mut vertices, &mut indices);
             first..indices.len() as u32
         };
-        let wheels = [false, true].map(|lugs| add(model::wheel(plain, lugs)));
-        let camera = add(model::camera());
+        let wheels = [false, true].map(|lugs| add(model::wheel(detail, lugs)));
+        let camera = add(model::camera(detail));
         let kit = |build: &Build| Kit {
-            body: add(model::body(plain, build)),
+            body: add(model::body(detail, build)),
             faces: add(model::faces(build)),
             wheel: wheels[usize::from(build.lugs())].clone(),
             ghost: add(model::ghost(build)),

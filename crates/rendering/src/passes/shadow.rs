@@ -53,6 +53,12 @@ impl ShadowPass {
         (PENUMBRA / (2.0 * sun.half)).max(0.9 / f64::from(self.size)) as f32
     }
 
+    /// How far from a surface its light is looked up, m: farther than the filter reaches, or it would shade itself.
+    pub(crate) fn clearance(&self, sun: &SunView) -> f32 {
+        (2.0 * sun.half * (0.6 * f64::from(self.penumbra(sun)) + 1.5 / f64::from(self.size))).max(0.012)
+            as f32
+    }
+
     /// The pass into which all that casts shadows is drawn.
     pub(crate) fn begin<'a>(
         &self,
