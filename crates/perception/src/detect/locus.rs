@@ -2,6 +2,7 @@
 
 use super::{Detector, Tag};
 use locus_core::{DetectorBuilder, FrameContext, ImageView, LocusEngine, TagFamily};
+use std::sync::LazyLock;
 use vocabulary::Grey;
 
 /// Pictures with fewer pixels across or down hold no tag: ten cells of little more than a pixel.
@@ -16,10 +17,25 @@ const BEHIND: usize = 16;
 /// Deviation of the corners it reports, pixels: 0.15 for tags of 60 pixels, 0.35 for tags of 20, measured.
 const DEVIATION: f64 = 0.25;
 
-/// Finds AprilTags 36h11 with locus-core.
+/// How strongly the dark is lifted before tags are looked for. The library's thresholds are fractions of a neighbourhood's
+/// range, and in linear light a face in the shade next to one in the sun lies below them: of 60 pictures of such shells it
+/// finds 17 tags as they are, 53 with 20, 78 with 40, 62 with 80.
+const LIFT: f64 = 40.0;
+
+/// Display value of every amount of light, as near to logarithmic as the noise of the dark allows.
+static DISPLAY: LazyLock<[u8; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|light| {
+        let lifted = (LIFT * light as f64 / 255.0).ln_1p() / LIFT.ln_1p();
+        (255.0 * lifted).round() as u8
+    })
+});
+
+/// Finds AprilTags 36h11 with locus-core. Corners come from a copy of the picture with its dark lifted and its noise softened:
+/// good to start from, and not as good as what [`super::sharpen`] makes of them on the picture itself.
 pub struct Locus {
     engine: LocusEngine,
     context: FrameContext,
+    softened: Vec<u8>,
     padded: Vec<u8>,
 }
 
@@ -33,7 +49,7 @@ impl Locus {
     /// A detector that works within the thread pool it is called from. Its results do not depend on the pool.
     pub fn new() -> Self {
         let engine = DetectorBuilder::new().with_family(TagFamily::AprilTag36h11).build_engine();
-        Self { engine, context: FrameContext::new(), padded: vec![] }
+        Self { engine, context: FrameContext::new(), softened: vec![], padded: vec![] }
     }
 }
 
@@ -66,11 +82,32 @@ impl Detector for Locus {
 }
 
 impl Locus {
+    /// Softens the picture by the weights 1, 2, 1 both ways, and lifts its dark.
+    fn soften(&mut self, picture: &Grey) {
+        let (width, height) = (picture.width as usize, picture.height as usize);
+        let row = |y: usize| picture.values.get(y * width..(y + 1) * width).unwrap_or_default();
+        self.softened.clear();
+        self.softened.reserve(width * height);
+        let mut upright = vec![0_u16; width];
+        for y in 0..height {
+            let (above, here, below) = (row(y.saturating_sub(1)), row(y), row((y + 1).min(height - 1)));
+            for (sum, ((a, h), b)) in upright.iter_mut().zip(above.iter().zip(here).zip(below)) {
+                *sum = u16::from(*a) + 2 * u16::from(*h) + u16::from(*b);
+            }
+            let at = |x: usize| upright.get(x).copied().unwrap_or_default();
+            self.softened.extend((0..width).map(|x| {
+                let sum = at(x.saturating_sub(1)) + 2 * at(x) + at((x + 1).min(width - 1));
+                DISPLAY.get(usize::from((sum + 8) / 16)).copied().unwrap_or(u8::MAX)
+            }));
+        }
+    }
+
     /// The picture with its last column and row repeated up to whole tiles.
     fn pad(&mut self, picture: &Grey, across: usize, down: usize) {
         self.padded.clear();
         let width = picture.width as usize;
-        for row in picture.values.chunks_exact(width) {
+        self.soften(picture);
+        for row in self.softened.chunks_exact(width) {
             self.padded.extend_from_slice(row);
             let last = row.last().copied().unwrap_or_default();
             self.padded.resize(self.padded.len() + across - width, last);

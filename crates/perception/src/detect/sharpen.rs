@@ -2,8 +2,8 @@
 //! edges at once.
 //!
 //! A pixel that shows the point (u, v) of the tag is as bright as the tag blurred there: A + B·Σ cᵢⱼ Wᵢ(u) Wⱼ(v), with
-//! cᵢⱼ the cells and W a cell's share in a bell curve. Unknown are the eight numbers of the mapping from tag to picture
-//! and the two of the light. Along straight edges this is what the lens does; at corners of cells seen aslant it is off
+//! cᵢⱼ the cells and W a cell's share in a bell curve. Unknown are the eight numbers of the mapping from tag to picture,
+//! the two of the light, and how wide the blur is: told wrong, it would make tags larger or smaller. Along straight edges this is what the lens does; at corners of cells seen aslant it is off
 //! by less than noise. With noise of one strength in all pixels the fit is the most likely one (Gauss-Newton).
 
 mod bell;
@@ -35,9 +35,15 @@ const ASTRAY: f64 = 2.5;
 /// Pixels off by more than this many standard deviations count less.
 const FAR: f64 = 3.0;
 
+/// Numbers of the mapping, of the light and of the blur.
+const UNKNOWN: usize = 11;
+
+/// The blur is within about this factor of what it is said to be, its natural logarithm.
+const BLUR_KNOWN: f64 = 0.4;
+
 type Cells = [[f64; TAG_CELLS]; TAG_CELLS];
-type Normal = SMatrix<f64, 10, 10>;
-type Ten = SVector<f64, 10>;
+type Normal = SMatrix<f64, UNKNOWN, UNKNOWN>;
+type Row = SVector<f64, UNKNOWN>;
 
 /// Moves corners of `tags`, which are pixels of a `picture` of `region`, to where their code fits best. Tags whose fit
 /// comes to nothing stay as they are.
@@ -98,15 +104,18 @@ fn fitted(view: &View<'_>, blur: f64, tag: &Tag) -> Option<([[f64; 2]; 4], f64)>
     let normal = |c: [f64; 2]| [0, 1].map(|k| (c[k] - middle[k]) / size);
     let mut h = homography(&SQUARE, &start.map(normal))?;
     let samples = samples(view, &h, &tag.corners, normal)?;
-    let blur = blur / size;
+    let told = blur / size;
+    let mut blur = told;
     let mut light = contrast(&samples, &h, &cells, blur)?;
     let mut spread = f64::INFINITY;
     let (mut corners, mut deviation) = (start, 0.0);
     for _ in 0..ROUNDS {
-        let round = round(&samples, &h, &cells, blur, light, FAR * spread)?;
+        let round = round(&samples, &h, &cells, (blur, told), light, spread)?;
         h += round.step;
         light = [light[0] + round.light[0], light[1] + round.light[1]];
         spread = round.spread;
+        // A pixel is never sharper than its own square.
+        blur = (blur * round.blur.clamp(-0.3, 0.3).exp()).max(PIXEL.sqrt() / size);
         let next = placed(&h)?.map(|c| [0, 1].map(|k| c[k] * size + middle[k]));
         let moved = |a: &[[f64; 2]; 4], b: &[[f64; 2]; 4]| {
             a.iter().zip(b).map(|(p, q)| (p[0] - q[0]).hypot(p[1] - q[1])).fold(0.0, f64::max)
@@ -186,6 +195,8 @@ struct Shade {
     tag: [f64; 2],
     value: f64,
     slope: [f64; 2],
+    /// How the brightness changes with the logarithm of the blur.
+    widen: f64,
 }
 
 /// `None` for points whose blur reaches beyond the tag's margin.
@@ -199,19 +210,21 @@ fn shade(back: &Matrix3<f64>, cells: &Cells, blur: f64, [x, y]: [f64; 2]) -> Opt
         return None;
     }
     let (across, down) = (Profile::new(tag[0], soft[0]), Profile::new(tag[1], soft[1]));
-    let (mut value, mut by_u, mut by_v) = (0.0, 0.0, 0.0);
-    for (row, weight, change) in down.shares() {
-        let (mut line, mut slope) = (0.0, 0.0);
-        for (column, weight, change) in across.shares() {
-            line += weight * cells[row][column];
-            slope += change * cells[row][column];
+    let (mut value, mut by_u, mut by_v, mut widen) = (0.0, 0.0, 0.0, 0.0);
+    for (row, [weight, change, widened]) in down.shares() {
+        let mut line = [0.0; 3];
+        for (column, shares) in across.shares() {
+            for (sum, share) in line.iter_mut().zip(shares) {
+                *sum += share * cells[row][column];
+            }
         }
-        value += weight * line;
-        by_u += weight * slope;
-        by_v += change * line;
+        value += weight * line[0];
+        by_u += weight * line[1];
+        by_v += change * line[0];
+        widen += weight * line[2] + widened * line[0];
     }
     let slope = [0, 1].map(|c| by_u * change[0][c] + by_v * change[1][c]);
-    Some(Shade { tag, value, slope })
+    Some(Shade { tag, value, slope, widen })
 }
 
 /// Light of black and what white has more, by a straight line through pixels and tag.
@@ -235,6 +248,8 @@ fn contrast(samples: &[Sample], h: &Matrix3<f64>, cells: &Cells, blur: f64) -> O
 struct Round {
     step: Matrix3<f64>,
     light: [f64; 2],
+    /// Of the blur, its logarithm.
+    blur: f64,
     /// Standard deviation of what is left, grey levels.
     spread: f64,
     /// Of a corner in one direction, from how well the pixels determine it: root of the mean variance.
@@ -245,16 +260,18 @@ fn round(
     samples: &[Sample],
     h: &Matrix3<f64>,
     cells: &Cells,
-    blur: f64,
+    (blur, told): (f64, f64),
     light: [f64; 2],
-    far: f64,
+    spread: f64,
 ) -> Option<Round> {
+    let far = FAR * spread;
     let back = h.try_inverse()?;
     let mut curvature = Normal::zeros();
-    let mut slope = Ten::zeros();
+    let mut slope = Row::zeros();
     let (mut squares, mut count) = (0.0, 0.0);
     for sample in samples {
-        let Some(Shade { tag: [u, v], value, slope: [sx, sy] }) = shade(&back, cells, blur, sample.at) else {
+        let Some(Shade { tag: [u, v], value, slope: [sx, sy], widen }) = shade(&back, cells, blur, sample.at)
+        else {
             continue;
         };
         let off = sample.light - light[0] - light[1] * value;
@@ -263,7 +280,19 @@ fn round(
         let depth = h[(2, 0)] * u + h[(2, 1)] * v + h[(2, 2)];
         let (gx, gy) = (-light[1] * sx / depth, -light[1] * sy / depth);
         let along = -(gx * sample.at[0] + gy * sample.at[1]);
-        let row = Ten::from([gx * u, gx * v, gx, gy * u, gy * v, gy, along * u, along * v, 1.0, value]);
+        let row = Row::from([
+            gx * u,
+            gx * v,
+            gx,
+            gy * u,
+            gy * v,
+            gy,
+            along * u,
+            along * v,
+            1.0,
+            value,
+            light[1] * widen,
+        ]);
         curvature.ger(weight, &row, &row, 1.0);
         slope.axpy(weight * off, &row, 1.0);
         squares += weight * off * off;
@@ -272,14 +301,18 @@ fn round(
     if count < 30.0 {
         return None;
     }
+    let known = (spread.min(20.0) / BLUR_KNOWN).powi(2);
+    curvature[(10, 10)] += known;
+    slope[10] += known * (told / blur).ln();
     let factors = curvature.cholesky()?;
     let d = factors.solve(&slope);
-    let spread = (squares / (count - 10.0)).sqrt().max(0.5);
+    let spread = (squares / (count - UNKNOWN as f64)).sqrt().max(0.5);
     let step = Matrix3::new(d[0], d[1], d[2], d[3], d[4], d[5], d[6], d[7], 0.0);
     let finite = d.iter().all(|x| x.is_finite());
     finite.then(|| Round {
         step,
         light: [d[8], d[9]],
+        blur: d[10],
         spread,
         deviation: spread * corner_variance(h, &factors.inverse()).max(0.0).sqrt(),
     })
@@ -290,8 +323,8 @@ fn corner_variance(h: &Matrix3<f64>, covariance: &Normal) -> f64 {
     let one = |[u, v]: [f64; 2]| {
         let p = h * Vector3::new(u, v, 1.0);
         let (x, y) = (p.x / p.z, p.y / p.z);
-        let across = Ten::from([u, v, 1.0, 0.0, 0.0, 0.0, -x * u, -x * v, 0.0, 0.0]) / p.z;
-        let down = Ten::from([0.0, 0.0, 0.0, u, v, 1.0, -y * u, -y * v, 0.0, 0.0]) / p.z;
+        let across = Row::from([u, v, 1.0, 0.0, 0.0, 0.0, -x * u, -x * v, 0.0, 0.0, 0.0]) / p.z;
+        let down = Row::from([0.0, 0.0, 0.0, u, v, 1.0, -y * u, -y * v, 0.0, 0.0, 0.0]) / p.z;
         across.dot(&(covariance * across)) + down.dot(&(covariance * down))
     };
     SQUARE.into_iter().map(one).sum::<f64>() / 8.0

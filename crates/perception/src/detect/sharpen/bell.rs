@@ -29,7 +29,7 @@ static TABLE: LazyLock<Vec<[f64; 2]>> = LazyLock::new(|| {
 pub(super) struct Profile {
     first: usize,
     count: usize,
-    shares: [[f64; 2]; TAG_CELLS],
+    shares: [[f64; 3]; TAG_CELLS],
 }
 
 impl Profile {
@@ -39,26 +39,28 @@ impl Profile {
         let at = at + 0.5 * TAG_CELLS as f64;
         let cell = |x: f64| (x.max(0.0) as usize).min(TAG_CELLS - 1);
         let (first, last) = (cell(at - REACH * soft), cell(at + REACH * soft));
-        let mut shares = [[0.0; 2]; TAG_CELLS];
-        let mut before = [0.0, 0.0];
+        let mut shares = [[0.0; 3]; TAG_CELLS];
+        let mut before = [0.0; 3];
         let table: &[[f64; 2]] = &TABLE;
         for (k, share) in shares.iter_mut().enumerate().take(last + 1 - first) {
             let edge = first + k + 1;
-            let until = if edge > last { [1.0, 0.0] } else { normal(table, (edge as f64 - at) / soft) };
+            let until = if edge > last {
+                [1.0, 0.0, 0.0]
+            } else {
+                let x = (edge as f64 - at) / soft;
+                let [below, density] = normal(table, x);
+                [below, density, x * density]
+            };
             // Moving on moves the edge back.
-            *share = [until[0] - before[0], (before[1] - until[1]) / soft];
+            *share = [until[0] - before[0], (before[1] - until[1]) / soft, before[2] - until[2]];
             before = until;
         }
         Self { first, count: last + 1 - first, shares }
     }
 
-    /// Cell, share, and change of the share per cell.
-    pub(super) fn shares(&self) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
-        self.shares
-            .iter()
-            .take(self.count)
-            .enumerate()
-            .map(|(k, [share, change])| (self.first + k, *share, *change))
+    /// Cell, and its share, the change of the share per cell, and its change with the logarithm of the deviation.
+    pub(super) fn shares(&self) -> impl Iterator<Item = (usize, [f64; 3])> + '_ {
+        self.shares.iter().take(self.count).enumerate().map(|(k, share)| (self.first + k, *share))
     }
 }
 
@@ -85,21 +87,20 @@ mod tests {
     #[test]
     fn shares_add_up_and_change_as_they_say() {
         for (at, soft) in [(-4.7, 0.3), (0.0, 0.2), (1.37, 0.5), (4.9, 0.9), (2.0, 0.01)] {
-            let shares = |at| {
-                let mut out = [[0.0; 2]; TAG_CELLS];
-                Profile::new(at, soft).shares().for_each(|(k, share, change)| out[k] = [share, change]);
+            let shares = |at, soft| {
+                let mut out = [[0.0; 3]; TAG_CELLS];
+                Profile::new(at, soft).shares().for_each(|(k, share)| out[k] = share);
                 out
             };
-            let (here, h) = (shares(at), 1e-3 * soft);
+            let (here, h) = (shares(at, soft), 1e-3);
             assert!((here.iter().map(|s| s[0]).sum::<f64>() - 1.0).abs() < 1e-12);
-            let (after, before) = (shares(at + h), shares(at - h));
+            let moved = (shares(at + h * soft, soft), shares(at - h * soft, soft));
+            let widened = (shares(at, soft * (1.0 + h)), shares(at, soft * (1.0 - h)));
             for k in 0..TAG_CELLS {
-                let change = (after[k][0] - before[k][0]) / (2.0 * h);
-                assert!(
-                    (change - here[k][1]).abs() < 2e-2 / soft,
-                    "{at} {soft} {k}: {change} {}",
-                    here[k][1]
-                );
+                let change = (moved.0[k][0] - moved.1[k][0]) / (2.0 * h);
+                assert!((change - soft * here[k][1]).abs() < 2e-2, "{at} {soft} {k}: {change} {:?}", here[k]);
+                let change = (widened.0[k][0] - widened.1[k][0]) / (2.0 * h);
+                assert!((change - here[k][2]).abs() < 2e-2, "{at} {soft} {k}: {change} {:?}", here[k]);
             }
         }
     }
