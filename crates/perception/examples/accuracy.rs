@@ -44,6 +44,7 @@ fn main() {
     let scenes: usize = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(200);
     let sigma: f64 = std::env::args().nth(2).and_then(|n| n.parse().ok()).unwrap_or(0.01);
     let flat = Prior::default();
+    time_imaging();
     println!(
         "  ℓ  seen/frames  faces  wrong  2+: n | refined, 2 faces or more  | raw POSIT, same | detector's corners, refined | 1 face refined (n, ambiguous, flips) | corners px rms/median: ours, detector's | residual, z of heading, deviation px | ms detect, sharpen, locate, whole frame"
     );
@@ -145,6 +146,31 @@ fn main() {
             (chi[1] / several.n).sqrt(),
             chi[2] / several.n,
         );
+    }
+}
+
+/// How long a sensor takes over a picture.
+fn time_imaging() {
+    use perception::imaging::{Optics, Purpose, Sensor, noise_stream};
+    use vocabulary::Lens;
+    let bent = Lens { distortion: [-0.28, 0.09, 1e-3, -7e-4, -0.01], ..Lens::default() };
+    for lens in [Lens::default(), bent] {
+        let mut sensor = Sensor::new(Optics { lens, ..Optics::default() });
+        for region in [Region { x: 200, y: 150, width: 200, height: 150 }, Region::whole(&lens)] {
+            let Region { width, height, .. } = sensor.source(region).region;
+            let ideal = Grey { width, height, values: vec![100; (width * height) as usize] };
+            let (mut picture, clock) = (Grey::default(), Instant::now());
+            for frame in 0..50 {
+                sensor.expose(&ideal, region, &mut noise_stream(1, 0, frame, Purpose::Pixels), &mut picture);
+            }
+            let ms = clock.elapsed().as_secs_f64() * 1e3 / 50.0;
+            println!(
+                "sensor, distorting: {}, {} by {}: {ms:.2} ms",
+                lens.distorts(),
+                region.width,
+                region.height
+            );
+        }
     }
 }
 

@@ -174,14 +174,14 @@ fn odd_pictures_hold_no_tags() {
                 0 => 0,
                 1 => (random.uniform() * 256.0) as u8,
                 2 => {
-                    if (k % width.max(1)) / 3 % 2 == 0 {
+                    if ((k % width.max(1)) / 3).is_multiple_of(2) {
                         255
                     } else {
                         0
                     }
                 }
                 _ => {
-                    if k % 7 == 0 {
+                    if k.is_multiple_of(7) {
                         255
                     } else {
                         30

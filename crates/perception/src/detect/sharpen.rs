@@ -120,8 +120,7 @@ fn fitted(view: &View<'_>, blur: f64, tag: &Tag) -> Option<([[f64; 2]; 4], f64)>
         let moved = |a: &[[f64; 2]; 4], b: &[[f64; 2]; 4]| {
             a.iter().zip(b).map(|(p, q)| (p[0] - q[0]).hypot(p[1] - q[1])).fold(0.0, f64::max)
         };
-        // A number that is none is not below anything either.
-        if !(moved(&next, &start) < ASTRAY) {
+        if moved(&next, &start) > ASTRAY {
             return None;
         }
         deviation = size * round.deviation;

@@ -42,12 +42,14 @@ impl Glass {
         let split = |at: i32, count: usize| {
             let from = (at + AROUND as i32).max(0) as usize;
             let cell = (from / SPACING).min(count - 2);
-            (cell, from.saturating_sub(cell * SPACING) as f32 / SPACING as f32)
+            (cell, (from - cell * SPACING) as f32 / SPACING as f32)
         };
         let ((column, u), (row, v)) = (split(x, self.columns), split(y, self.rows));
-        let node = |c: usize, r: usize| self.nodes.get(r * self.columns + c).copied().unwrap_or_default();
-        let (a, b) = (node(column, row), node(column + 1, row));
-        let (c, d) = (node(column, row + 1), node(column + 1, row + 1));
+        let pair = |row: usize| {
+            let start = row * self.columns + column;
+            self.nodes.get(start..start + 2).map_or([[0.0; 2]; 2], |pair| [pair[0], pair[1]])
+        };
+        let ([a, b], [c, d]) = (pair(row), pair(row + 1));
         [0, 1].map(|k| {
             let (top, bottom) = (a[k] + u * (b[k] - a[k]), c[k] + u * (d[k] - c[k]));
             top + v * (bottom - top)
@@ -57,17 +59,31 @@ impl Glass {
 
 /// A picture's light between its pixels: bicubic after Catmull and Rom; its rim goes on beyond it.
 pub(super) fn between(values: &[u8], width: usize, height: usize, x: f32, y: f32) -> f32 {
-    let (left, top) = (x.floor(), y.floor());
-    let (across, down) = (weights(x - left), weights(y - top));
-    let index =
-        |from: f32, k: usize, size: usize| (from as i32 + k as i32 - 1).clamp(0, size as i32 - 1) as usize;
-    let columns = [0, 1, 2, 3].map(|k| index(left, k, width));
+    // Rounding down without a call: places are not far outside the picture.
+    let whole = |x: f32| (x + 1024.0) as i32 - 1024;
+    let (left, top) = (whole(x), whole(y));
+    let (across, down) = (weights(x - left as f32), weights(y - top as f32));
+    let line = |row: &[u8], columns: [usize; 4]| {
+        let value = |k: usize| across[k] * row.get(columns[k]).map_or(0.0, |v| f32::from(*v));
+        value(0) + value(1) + value(2) + value(3)
+    };
+    let inside = left >= 1 && top >= 1 && left + 3 <= width as i32 && top + 3 <= height as i32;
     let mut sum = 0.0;
+    if inside {
+        let start = (top as usize - 1) * width + left as usize - 1;
+        for (k, weight) in down.iter().enumerate() {
+            let from = start + k * width;
+            let Some(&[a, b, c, d]) = values.get(from..from + 4) else { return 0.0 };
+            let [a, b, c, d] = [a, b, c, d].map(f32::from);
+            sum += weight * (across[0] * a + across[1] * b + across[2] * c + across[3] * d);
+        }
+        return sum;
+    }
+    let index = |from: i32, k: usize, size: usize| (from + k as i32 - 1).clamp(0, size as i32 - 1) as usize;
+    let columns = [0, 1, 2, 3].map(|k| index(left, k, width));
     for (k, weight) in down.iter().enumerate() {
         let start = index(top, k, height) * width;
-        let Some(row) = values.get(start..start + width) else { return 0.0 };
-        let line: f32 = (0..4).map(|c| across[c] * f32::from(row[columns[c]])).sum();
-        sum += weight * line;
+        sum += weight * values.get(start..start + width).map_or(0.0, |row| line(row, columns));
     }
     sum
 }

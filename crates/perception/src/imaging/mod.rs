@@ -146,10 +146,10 @@ impl Sensor {
     /// Corners of what a region's blur draws in, in the distorted picture: first pixel, and one past the last.
     fn drawn_in(&self, region: Region) -> [[i32; 2]; 2] {
         let reach = self.reach() as i32;
-        [
-            [region.x as i32 - reach, region.y as i32 - reach],
-            [(region.x + region.width) as i32 + reach, (region.y + region.height) as i32 + reach],
-        ]
+        // No picture is larger; sums stay within what numbers hold.
+        let pixel = |k: u32| k.min(1 << 20) as i32;
+        let (x, y) = (pixel(region.x), pixel(region.y));
+        [[x - reach, y - reach], [x + pixel(region.width) + reach, y + pixel(region.height) + reach]]
     }
 
     fn reach(&self) -> usize {

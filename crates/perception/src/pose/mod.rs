@@ -158,7 +158,8 @@ fn judge(
     let residual = |m: &Minimum| misfit(&camera_from_body.after(&m.body), matches) * rig.lens.focal;
     let mut best = minima.first()?;
     let side = faces.iter().map(|seen| longest_side(&seen.corners)).fold(0.0, f64::max);
-    if !(residual(best) < ABSURD * side) {
+    let explained = residual(best) < ABSURD * side;
+    if !explained {
         return None;
     }
     let turned = |m: &Minimum, from: &Minimum| wrap(m.pose.heading - from.pose.heading).abs();

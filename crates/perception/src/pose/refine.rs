@@ -130,7 +130,7 @@ impl Problem<'_> {
             let tilted = tilt * corner.point;
             let turned = heading * tilted;
             let seen = turn * (turned + place) + shift;
-            if !(seen.z > 1e-3) {
+            if seen.z.is_nan() || seen.z < 1e-3 {
                 return None;
             }
             // Derivatives of the point in the follower's body, one column per unknown.

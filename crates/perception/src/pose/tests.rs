@@ -95,7 +95,7 @@ fn one_bad_corner_does_little() {
         squares += error(&seen);
         n += 1.0;
     }
-    let (bad, clean) = ((squares / n as f64).sqrt(), (clean / n).sqrt());
+    let (bad, clean) = ((squares / n).sqrt(), (clean / n).sqrt());
     // Least squares without Huber's weights: 5 times.
     assert!(bad < 2.2 * clean, "{bad} {clean}");
 }

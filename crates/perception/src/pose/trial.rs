@@ -36,7 +36,7 @@ impl Views {
     pub(crate) fn next(&mut self, range: Range<f64>) -> View {
         let (distance, bearing) = (self.uniform(range), self.uniform(-0.8..0.8));
         let pose =
-            Pose::new(distance * bearing.cos(), distance * bearing.sin(), wrap(self.uniform(-3.14..3.14)));
+            Pose::new(distance * bearing.cos(), distance * bearing.sin(), wrap(self.uniform(-3.1..3.1)));
         let pan = bearing + self.uniform(-0.15..0.15);
         let body_from_camera = Mount::fitting(&Body::default()).body_from_camera(pan);
         let rig = Rig { shell: Shell::PAPER.tagged(3), lens: Lens::default(), body_from_camera };

@@ -67,7 +67,7 @@ impl Profile {
 /// The normal distribution and its density at `x`.
 fn normal(table: &[[f64; 2]], x: f64) -> [f64; 2] {
     let place = (x + 4.0) * FINE;
-    if !(place > 0.0) {
+    if place.is_nan() || place <= 0.0 {
         return [0.0; 2];
     }
     let index = place as usize;
@@ -96,11 +96,11 @@ mod tests {
             assert!((here.iter().map(|s| s[0]).sum::<f64>() - 1.0).abs() < 1e-12);
             let moved = (shares(at + h * soft, soft), shares(at - h * soft, soft));
             let widened = (shares(at, soft * (1.0 + h)), shares(at, soft * (1.0 - h)));
-            for k in 0..TAG_CELLS {
+            for (k, cell) in here.iter().enumerate() {
                 let change = (moved.0[k][0] - moved.1[k][0]) / (2.0 * h);
-                assert!((change - soft * here[k][1]).abs() < 2e-2, "{at} {soft} {k}: {change} {:?}", here[k]);
+                assert!((change - soft * cell[1]).abs() < 2e-2, "{at} {soft} {k}: {change} {cell:?}");
                 let change = (widened.0[k][0] - widened.1[k][0]) / (2.0 * h);
-                assert!((change - here[k][2]).abs() < 2e-2, "{at} {soft} {k}: {change} {:?}", here[k]);
+                assert!((change - cell[2]).abs() < 2e-2, "{at} {soft} {k}: {change} {cell:?}");
             }
         }
     }
