@@ -2,12 +2,16 @@
 //!
 //! `cargo bench -p rendering` prints medians; other work on the machine shows in them.
 
+#[path = "../tests/stage/course.rs"]
+mod course;
 #[path = "../tests/stage/mod.rs"]
 mod stage;
 
+use course::{TRUCK, furnish};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use rendering::{AdapterChoice, Film, FilmKind, Gpu, Layout, Renderer, Style};
-use stage::{Path, Play};
+use rendering::{AdapterChoice, CameraEyes, Film, FilmKind, Gpu, Layout, Renderer, Style};
+use stage::{Path, Play, shots};
+use vocabulary::{Region, Shot};
 
 fn gpu() -> Gpu {
     let adapter = std::env::var("ECHELON_ADAPTER").unwrap_or_default();
@@ -81,5 +85,24 @@ fn film(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, frames, film);
+/// Seven cameras on trucks, each of which looks at its leader.
+fn eyes(criterion: &mut Criterion) {
+    let gpu = gpu();
+    let mut play = Play::new(8, Path::named("eight"));
+    furnish(&mut play.cast, TRUCK, false, false);
+    let mut snapshot = play.at(12.0).snapshot;
+    let whole = shots(&play.cast, &mut snapshot);
+    let part = |shot: &Shot| Shot { region: Region { x: 210, y: 160, width: 220, height: 160 }, ..*shot };
+    let parts: Vec<_> = whole.iter().map(part).collect();
+    let mut group = criterion.benchmark_group("eyes");
+    group.sample_size(30);
+    for (name, shots) in [("7 of 220x160", &parts), ("7 of 640x480", &whole)] {
+        let Ok(mut eyes) = CameraEyes::new(&gpu, &play.cast) else { continue };
+        let mut pictures = Vec::new();
+        group.bench_function(name, |b| b.iter(|| eyes.take(&snapshot, shots, &mut pictures)));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, frames, film, eyes);
 criterion_main!(benches);

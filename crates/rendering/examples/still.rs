@@ -1,5 +1,6 @@
-//! A still of a synthetic formation: `still FILE VIEW ROBOTS PATH TIME WIDTH HEIGHT SCALE ADAPTER BODY GROUND WITHOUT`, all
-//! optional; BODY is small, truck, car or rover, GROUND flat, props, hills or course.
+//! A still of a synthetic formation: `still FILE VIEW ROBOTS PATH TIME WIDTH HEIGHT SCALE ADAPTER BODY GROUND WITHOUT CAMERA`, all
+//! optional; BODY is small, truck, car or rover, GROUND flat, props, hills or course;
+//! CAMERA is the index of a robot whose view is shown in a corner. Views through cameras show what was detected.
 
 #[path = "../tests/stage/course.rs"]
 mod course;
@@ -8,7 +9,7 @@ mod stage;
 
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded, overturn, touch};
 use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, png};
-use stage::{Path, Play};
+use stage::{Path, Play, looks};
 use std::time::Instant;
 use vocabulary::{Body, Moment};
 
@@ -61,10 +62,15 @@ fn main() -> Result<(), rendering::Error> {
         trail.push(&moment(&play, scale, wreck, f64::from(k) / 30.0));
     }
     let without = word(11, "");
-    let mut style = Style::without(&without.split(',').filter(|w| !w.is_empty()).collect::<Vec<_>>())?;
+    let mut style = Style::without(
+        &without.split(',').filter(|w| !w.is_empty() && *w != "detections").collect::<Vec<_>>(),
+    )?;
     style.scale = number(7, 1.0);
     let layout = Layout::parse(&word(1, "snake"), &names)?;
-    let moment = moment(&play, scale, wreck, time);
+    let mut moment = moment(&play, scale, wreck, time);
+    looks(&play.cast, &mut moment);
+    style.detections = !without.contains("detections");
+    style.picture_in_picture = words.get(12).and_then(|w| w.parse().ok());
     let picture = renderer.draw(&trail, &moment, &layout, &style)?;
     let drawn = start.elapsed();
     let file = word(0, "still.png");

@@ -1,5 +1,6 @@
 //! From a moment to what its picture consists of: origin, light, frames and words.
 
+use crate::View;
 use crate::camera::Camera;
 use crate::floor::Deck;
 use crate::inset::inset;
@@ -10,7 +11,6 @@ use crate::passes::ground::TILE;
 use crate::passes::overlay::Shapes;
 use crate::passes::shadow::{ShadowPass, SunView, sun_view};
 use crate::passes::text::{Line, TextPass};
-use crate::{Layout, View};
 use glam::{DVec2, DVec3};
 use vocabulary::{Cast, Light, Member, Moment, RobotState};
 
@@ -148,22 +148,30 @@ pub(crate) fn frame(
     frame
 }
 
-/// Text and flat shapes of the whole picture.
+/// Text and flat shapes of the whole picture; the last `upper` of the views lie over others.
 pub(crate) fn words(
     text: &mut TextPass,
     stage: &Stage<'_>,
-    layout: &Layout,
+    (views, upper): (&[View], usize),
     windows: &[Window<'_>],
     height: u32,
 ) -> (Vec<Line>, Shapes) {
     let mut words = Words::new(text, stage.style.scale);
-    let sky = windows.first().map_or(0.0, |w| 0.5 * (1.0 - w.camera.horizon()) * f64::from(w.tile.height));
-    caption(&mut words, stage, height, sky as f32);
-    // In a quarter of a picture it would cover a whole view.
-    if let (true, [first] | [first, _]) = (stage.style.inset, windows) {
-        inset(&mut words, stage, first.tile);
+    let (lower, over) = windows.split_at(windows.len() - upper);
+    for window in over {
+        words.framed(window.tile);
     }
-    for (view, window) in layout.views.iter().zip(windows) {
+    let carried = |view: &View| matches!(view, View::Camera(_));
+    let sky = windows.first().map_or(0.0, |w| 0.5 * (1.0 - w.camera.horizon()) * f64::from(w.tile.height));
+    let only_cameras = views.iter().all(carried);
+    caption(&mut words, stage, height, (sky as f32, !only_cameras));
+    // In a quarter of a picture it would cover a whole view.
+    if let (true, [first] | [first, _]) = (stage.style.inset, lower) {
+        if !views.first().is_some_and(carried) {
+            inset(&mut words, stage, first.tile);
+        }
+    }
+    for (view, window) in views.iter().zip(windows) {
         view_words(&mut words, stage, *window, view);
     }
     (words.lines, words.shapes)

@@ -34,6 +34,10 @@ pub(crate) struct Passes {
 /// What a picture consists of, once its data is on the device.
 pub(crate) struct Prepared {
     pub(crate) crowd: Crowd,
+    /// Of views through cameras: what they may see.
+    pub(crate) own: Vec<Option<Crowd>>,
+    /// How many of the tiles, the last, lie over others.
+    pub(crate) upper: usize,
     pub(crate) props: Copies,
     pub(crate) tiles: Vec<Tile>,
     /// Which decks hide a robot in each view.
@@ -50,7 +54,7 @@ impl Prepared {
         let [under @ .., over] = &self.decals[index];
         Sight {
             index,
-            crowd: &self.crowd,
+            crowd: self.own[index].as_ref().unwrap_or(&self.crowd),
             props: &self.props,
             veiled: &self.veiled[index],
             under,
@@ -92,7 +96,8 @@ impl Passes {
         lines: &[Line],
     ) -> Result<(), Error> {
         let (device, queue) = (&gpu.device, &gpu.queue);
-        let (crowds, props) = (once(&mut prepared.crowd), once(&mut prepared.props));
+        let (crowds, props) =
+            (once(&mut prepared.crowd).chain(prepared.own.iter_mut().flatten()), once(&mut prepared.props));
         self.world.upload(gpu, frames, crowds, props, corners);
         self.overlay.fill(device, queue, [width as f32, height as f32], &prepared.shapes);
         self.text.fill(device, queue, [width, height], lines).map_err(|e| Error::Device(e.to_string()))
@@ -113,7 +118,13 @@ impl Passes {
         let mut pass = surface.attachments.begin(encoder, surface.target, STONE);
         for (index, tile) in prepared.tiles.iter().enumerate() {
             let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
-            pass.set_viewport(x, y, width, height, 0.0, 1.0);
+            // What lies over others is nearer than all of them.
+            let (near, far) = match (prepared.upper, index + prepared.upper < prepared.tiles.len()) {
+                (0, _) => (0.0, 1.0),
+                (_, true) => (0.5, 1.0),
+                (_, false) => (0.0, 0.5),
+            };
+            pass.set_viewport(x, y, width, height, near, far);
             pass.set_scissor_rect(tile.x, tile.y, tile.width, tile.height);
             self.world.draw(&mut pass, &prepared.sight(index));
         }

@@ -1,6 +1,7 @@
 //! Words in the picture: caption, time, names, edges and coordinates, placed so that none covers another.
 
 use crate::camera::Camera;
+use crate::detections::detections;
 use crate::model::Build;
 use crate::paint::Stage;
 use crate::palette::{self, Rgb};
@@ -39,12 +40,22 @@ impl Window<'_> {
         if seen.x.abs() < 1.0 && seen.y.abs() < 1.0 { self.anywhere(point) } else { None }
     }
 
+    /// Where a direction is seen, by its tangents to the right and up of straight ahead.
+    pub(crate) fn direction(&self, right: f64, up: f64) -> Vec2 {
+        let seen = (DVec2::new(right, up) - self.camera.shift) / self.camera.half;
+        self.place(seen).as_vec2()
+    }
+
+    fn place(&self, seen: DVec2) -> DVec2 {
+        let x = f64::from(self.tile.x) + (seen.x + 1.0) * 0.5 * f64::from(self.tile.width);
+        let y = f64::from(self.tile.y) + (1.0 - seen.y) * 0.5 * f64::from(self.tile.height);
+        DVec2::new(x, y)
+    }
+
     /// The same, also beside the tile; `None` behind the eye.
     fn anywhere(&self, point: DVec3) -> Option<Vec2> {
         let seen = self.camera.project(point)?;
-        let x = f64::from(self.tile.x) + (seen.x + 1.0) * 0.5 * f64::from(self.tile.width);
-        let y = f64::from(self.tile.y) + (1.0 - seen.y) * 0.5 * f64::from(self.tile.height);
-        Some(DVec2::new(x, y).as_vec2())
+        Some(self.place(seen).as_vec2())
     }
 }
 
@@ -56,6 +67,19 @@ impl<'a> Words<'a> {
     /// Keeps words away from a rectangle.
     pub(crate) fn reserve(&mut self, area: Box4) {
         self.taken.push(area);
+    }
+
+    /// A thin frame around a tile, from which words keep away.
+    pub(crate) fn framed(&mut self, tile: Tile) {
+        let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
+        let thick = self.scaled(1.5);
+        let [a, b] = [Vec2::new(x, y), Vec2::new(x + width, y + height)];
+        let (c, d) = (Vec2::new(b.x, a.y), Vec2::new(a.x, b.y));
+        let [red, green, blue] = palette::PAPER;
+        for (from, to) in [(a, c), (c, b), (b, d), (d, a)] {
+            self.shapes.line(from, to, thick, [red, green, blue, 0.95]);
+        }
+        self.reserve([x, y, width, height]);
     }
 
     pub(crate) fn scaled(&self, size: f32) -> f32 {
@@ -129,11 +153,12 @@ fn overlap(a: &Box4, b: &Box4) -> bool {
     a[0] < b[0] + b[2] && b[0] < a[0] + a[2] && a[1] < b[1] + b[3] && b[1] < a[1] + a[3]
 }
 
-/// Title, law and time, at the corners of the whole picture; `sky` is how far down the sky reaches, pixels.
-pub(crate) fn caption(words: &mut Words<'_>, stage: &Stage<'_>, height: u32, sky: f32) {
+/// Title, law and time, at the corners of the whole picture; `sky` is how far down the sky reaches, pixels,
+/// and without a title a picture has no words of its own.
+pub(crate) fn caption(words: &mut Words<'_>, stage: &Stage<'_>, height: u32, (sky, titled): (f32, bool)) {
     let margin = words.scaled(MARGIN);
     let cast = stage.cast;
-    if stage.style.caption {
+    if stage.style.caption && titled {
         let rows = [(&cast.title, 20.0, true, 10.0), (&cast.caption, 13.0, false, 33.0)];
         for (text, size, bold, down) in rows {
             if !text.is_empty() {
@@ -147,7 +172,7 @@ pub(crate) fn caption(words: &mut Words<'_>, stage: &Stage<'_>, height: u32, sky
             }
         }
     }
-    if stage.style.clock {
+    if stage.style.clock && titled {
         let text = format!("t = {:.2} s", stage.moment.snapshot.time);
         let middle = height as f32 - margin - words.scaled(8.0);
         let (width, half) = (words.width(&text, 18.0, true), words.scaled(14.0));
@@ -158,6 +183,9 @@ pub(crate) fn caption(words: &mut Words<'_>, stage: &Stage<'_>, height: u32, sky
 
 /// Names, edges, scale bar and coordinates of one view.
 pub(crate) fn view_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, view: &View) {
+    if let View::Camera(robot) = view {
+        return camera_words(words, stage, window, *robot);
+    }
     reserve_robots(words, stage, window);
     if matches!(view, View::Top) && stage.style.grid {
         scale_bar(words, window);
@@ -171,6 +199,17 @@ pub(crate) fn view_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Windo
     if stage.style.grid {
         coordinates(words, stage, window);
     }
+}
+
+/// Whose camera a view is through, and what it found.
+fn camera_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robot: usize) {
+    let Some(member) = stage.cast.members.get(robot) else { return };
+    if stage.style.detections {
+        detections(words, stage, window, robot);
+    }
+    let tile = window.tile;
+    let at = [tile.x as f32 + words.scaled(10.0), tile.y as f32 + tile.height as f32 - words.scaled(12.0)];
+    words.write(format!("camera: {}", member.name), at, 12.0, true, Ink::LIGHT);
 }
 
 /// The middle of a robot, and how many times as large as the default body it is.

@@ -25,6 +25,7 @@ mod atlas;
 mod camera;
 mod compose;
 mod crowd;
+mod detections;
 mod drape;
 mod encode;
 mod error;

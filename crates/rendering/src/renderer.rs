@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun, veiled_decks, words};
-use crate::crowd::{Fleet, crowd};
+use crate::crowd::{Fleet, crowd, part};
 use crate::encode::{Passes, Prepared, Surface};
 use crate::floor::Floor;
 use crate::labels::{Window, detail};
@@ -12,7 +12,10 @@ use crate::passes::Canvas;
 use crate::passes::decal::{Corner, Layer};
 use crate::props::props;
 use crate::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
-use crate::{Error, Gpu, Layout, Style, Trail, View, view::Tile};
+use crate::{
+    Error, Gpu, Layout, Style, Trail, View,
+    view::{Tile, corner},
+};
 use vocabulary::{Cast, Moment, Picture};
 use wgpu::TextureFormat;
 
@@ -192,17 +195,18 @@ impl Renderer {
         style: &Style,
     ) -> Result<Prepared, Error> {
         self.check(moment)?;
-        let (width, height) = self.size;
-        let tiles = layout.tiles(width, height);
+        let height = self.size.1;
+        let (views, tiles, upper) = self.views(layout, style);
         let aspect = |tile: &Tile| f64::from(tile.width) / f64::from(tile.height);
-        let cameras: Vec<_> = layout
-            .views
+        let cameras: Vec<_> = views
             .iter()
             .zip(&tiles)
             .map(|(view, tile)| {
                 Camera::of(view, &trail.steady, &moment.snapshot, (&self.cast, &self.floor), aspect(tile))
             })
             .collect();
+        // Cameras on robots see nothing that is drawn to explain.
+        let bare = Style { shadows: style.shadows, ..Style::bare() };
         let stage = Stage {
             cast: &self.cast,
             floor: &self.floor,
@@ -219,27 +223,49 @@ impl Renderer {
         let (crowd, props) = (crowd(&stage, &self.fleet), props(&stage));
         let sun = sun_over(&stage);
         let shadow = &self.passes.world.shadow;
-        let seen = layout.views.iter().zip(&cameras);
-        let frames: Vec<_> = seen.map(|(view, camera)| frame(camera, &stage, view, &sun, shadow)).collect();
+        let stage_of = |view: &View| match view {
+            View::Camera(_) => Stage { style: &bare, ..stage },
+            _ => stage,
+        };
+        let seen = || views.iter().zip(&cameras);
+        let frames: Vec<_> =
+            seen().map(|(view, camera)| frame(camera, &stage_of(view), view, &sun, shadow)).collect();
+        let own = |(view, camera): (&View, &Camera)| match view {
+            View::Camera(robot) => Some(part(&crowd, &stage, &self.fleet, camera, *robot)),
+            _ => None,
+        };
+        let own = seen().map(own).collect();
         let mut corners = Vec::new();
         let mut decals = Vec::new();
-        for ((view, camera), tile) in layout.views.iter().zip(&cameras).zip(&tiles) {
+        for ((view, camera), tile) in seen().zip(&tiles) {
             let add = |(layer, more): (Layer, Vec<Corner>)| {
                 let first = corners.len() as u32;
                 corners.extend(more);
                 (layer, first..corners.len() as u32)
             };
-            decals.push(paint(&stage, view, camera, f64::from(tile.height)).map(add));
+            decals.push(paint(&stage_of(view), view, camera, f64::from(tile.height)).map(add));
         }
         let windows: Vec<_> =
             cameras.iter().zip(&tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
-        let (lines, shapes) = words(&mut self.passes.text, &stage, layout, &windows, height);
-        let ghosts = layout.views.iter().map(|view| !matches!(view, View::SnakeEye)).collect();
-        let seen = layout.views.iter().zip(&cameras);
-        let veiled = seen.map(|(view, camera)| veiled_decks(camera, &stage, view)).collect();
-        let mut prepared = Prepared { crowd, props, tiles, veiled, decals, ghosts, shapes };
+        let (lines, shapes) = words(&mut self.passes.text, &stage, (&views, upper), &windows, height);
+        let ghosts = views.iter().map(|view| !matches!(view, View::SnakeEye | View::Camera(_))).collect();
+        let veiled = seen().map(|(view, camera)| veiled_decks(camera, &stage, view)).collect();
+        let mut prepared = Prepared { crowd, own, upper, props, tiles, veiled, decals, ghosts, shapes };
         self.passes.upload(&self.gpu, self.size, &frames, &mut prepared, &corners, &lines)?;
         Ok(prepared)
+    }
+
+    /// The views of a picture with their tiles, and how many of them, the last, lie over others.
+    fn views(&self, layout: &Layout, style: &Style) -> (Vec<View>, Vec<Tile>, usize) {
+        let mut views = layout.views.clone();
+        let mut tiles = layout.tiles(self.size.0, self.size.1);
+        let member =
+            style.picture_in_picture.and_then(|robot| self.cast.members.get(robot).map(|m| (robot, m)));
+        let (Some((robot, member)), Some(first)) = (member, tiles.first()) else { return (views, tiles, 0) };
+        let aspect = f64::from(member.lens.width.max(1)) / f64::from(member.lens.height.max(1));
+        tiles.push(corner(first, aspect, 24.0 * style.scale));
+        views.push(View::Camera(robot));
+        (views, tiles, 1)
     }
 
     /// A target with all that drawing into it takes.

@@ -11,11 +11,15 @@ macro_rules! elements {
             $($(#[$doc])* pub $field: bool,)*
             /// Size of text and lines relative to a picture of 720 lines at arm's length; 2 for dense screens.
             pub scale: f64,
+            /// Over views through cameras: tags as they were found, and the leader where the estimate has it.
+            pub detections: bool,
+            /// The robot through whose camera a small picture in the corner is seen, by its index.
+            pub picture_in_picture: Option<usize>,
         }
 
         impl Default for Style {
             fn default() -> Self {
-                Self { $($field: true,)* scale: 1.0 }
+                Self { $($field: true,)* scale: 1.0, detections: false, picture_in_picture: None }
             }
         }
 

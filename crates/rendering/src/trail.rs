@@ -2,7 +2,7 @@
 
 use crate::steady::Steady;
 use std::collections::VecDeque;
-use vocabulary::{Cast, Contact, Moment, Pose, wrap};
+use vocabulary::{Cast, Contact, Frame, Moment, Pose, wrap};
 
 /// How long a ribbon is, s.
 pub(crate) const RIBBON: f64 = 12.0;
@@ -32,6 +32,8 @@ pub struct Trail {
     /// Of the moment before, and how each robot has slid since the last mark.
     before: Vec<Pose>,
     slides: Vec<f32>,
+    /// The last look of each edge.
+    looks: Vec<Option<Frame>>,
     pub(crate) errors: Thinning<Vec<[f32; 2]>>,
     cast: Cast,
     spacing: f64,
@@ -66,6 +68,7 @@ impl Trail {
             forgotten: None,
             before: Vec::new(),
             slides: Vec::new(),
+            looks: vec![None; cast.edges.len()],
             errors: Thinning::new(),
             cast: cast.clone(),
             spacing: RIBBON / points as f64,
@@ -86,6 +89,11 @@ impl Trail {
         keep(&mut self.ribbons, time, self.spacing, RIBBON, poses);
         keep(&mut self.ghosts, time, GHOST_EVERY, RIBBON, poses);
         self.touch(&moment.contacts);
+        for frame in &moment.frames {
+            if let Some(look) = self.looks.get_mut(frame.edge) {
+                *look = Some(*frame);
+            }
+        }
         self.slide(poses());
         let (before, slides) = (&self.before, &self.slides);
         let marks =
@@ -95,6 +103,11 @@ impl Trail {
         }
         let error = |e: &[f64; 2]| e.map(|x| x as f32);
         self.errors.push(time, || moment.edges.iter().map(|e| error(&e.error)).collect());
+    }
+
+    /// The last look of an edge that arrived.
+    pub(crate) fn look(&self, edge: usize) -> Option<&Frame> {
+        self.looks.get(edge)?.as_ref()
     }
 
     /// Remembers contacts that are new.

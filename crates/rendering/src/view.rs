@@ -148,6 +148,22 @@ impl Layout {
     }
 }
 
+/// Where a small picture `aspect` times as wide as high lies in the upper right corner of a tile.
+pub(crate) fn corner(tile: &Tile, aspect: f64, margin: f64) -> Tile {
+    let width = (0.30 * f64::from(tile.width)).max(16.0);
+    let height = (width / aspect).min(0.6 * f64::from(tile.height)).max(16.0);
+    let width = (height * aspect).min(f64::from(tile.width));
+    let margin = margin.min(0.1 * f64::from(tile.width.min(tile.height)));
+    let [width, height, margin] = [width, height, margin].map(|x| x.round() as u32);
+    let width = width.min(tile.width - margin);
+    Tile {
+        x: tile.x + tile.width - margin - width,
+        y: tile.y + margin,
+        width,
+        height: height.min(tile.height - margin),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -162,6 +178,9 @@ mod tests {
         );
         assert!(matches!(View::parse("fixed:0,-5,3,0,0,0", &names), Ok(View::Fixed { .. })));
         assert!(View::parse("fixed:0,0,0,0,0,0", &names).is_err());
+        assert_eq!(View::parse("camera:leader", &names).ok(), Some(View::Camera(0)));
+        let error = View::parse("camera:nobody", &names).unwrap_err().to_string();
+        assert!(error.contains("camera:follower-1"), "{error}");
     }
 
     #[test]

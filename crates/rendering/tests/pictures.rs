@@ -239,6 +239,39 @@ fn golden_pictures() {
     }
 }
 
+/// What a camera sees is shown where its pixels say, and a small picture lies over a large one.
+#[test]
+fn views_through_cameras_show_what_the_robot_sees() {
+    let mut play = Play::new(3, Path::Eight);
+    let mut moment = play.at(12.0);
+    stage::looks(&play.cast, &mut moment);
+    let frame = moment.frames[0];
+    let corners = frame.tags.iter().flatten().next().copied().unwrap();
+    let bare = Style { shadows: true, ..Style::bare() };
+    let marked = Style { detections: true, ..bare.clone() };
+    let inside = Style { picture_in_picture: Some(1), ..bare.clone() };
+    let mut draw = |view: View, style: &Style| {
+        let mut renderer = Renderer::new(gpu(), &play.cast, 640, 480, 4).unwrap();
+        renderer.draw(&play.trail(12.0), &moment, &Layout::single(view), style).unwrap()
+    };
+    let (plain, drawn) = (draw(View::Camera(1), &bare), draw(View::Camera(1), &marked));
+    for [x, y] in corners {
+        let at = |picture: &Picture| picture.rgb(x.round() as u32, y.round() as u32).unwrap();
+        let [r, g, b] = at(&drawn).map(i32::from);
+        assert!(g > r + 30 && g > b + 30, "{:?} at {x} {y}, {:?} without", at(&drawn), at(&plain));
+    }
+    // The border of the tag is black a cell inside its corner.
+    let middle = [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / 4.0);
+    let border = [0, 1].map(|k| (corners[0][k] + (middle[k] - corners[0][k]) / 8.0).round() as u32);
+    let dark = plain.rgb(border[0], border[1]).unwrap();
+    assert!(dark.iter().all(|c| *c < 70), "{dark:?}");
+    let (alone, with) = (draw(View::Snake, &bare), draw(View::Snake, &inside));
+    let changed = |x: u32, y: u32| alone.rgb(x, y) != with.rgb(x, y);
+    let count = (0..640 * 480).filter(|k| changed(k % 640, k / 640)).count();
+    assert!((15_000..40_000).contains(&count), "{count}");
+    assert!((0..640).all(|x| !changed(x, 300)) && changed(620, 30));
+}
+
 #[test]
 fn the_arrow_to_a_set_point_shows_through_its_robot() {
     let play = Play::new(3, Path::Straight);

@@ -1,0 +1,211 @@
+//! What a follower made of its camera's last picture, drawn over its view: tags, region, and the leader's shell where
+//! the estimate has it.
+
+use crate::labels::{Ink, Window, Words};
+use crate::paint::Stage;
+use crate::palette::{Rgb, hex};
+use crate::view::Tile;
+use glam::Vec2;
+use vocabulary::{FACES, Frame, Lens, Member, Outcome, Rigid, Shell, tag_code};
+
+/// Older looks are forgotten, s.
+const FORGOTTEN: f64 = 2.0;
+
+const USED: Rgb = hex(0x0048_e08a);
+const DOUBTED: Rgb = hex(0x00ff_c24a);
+const MISSED: Rgb = hex(0x00ff_6a5a);
+const REGION: Rgb = hex(0x00ff_ffff);
+const AXES: [Rgb; 3] = [hex(0x00ff_5a4a), hex(0x0048_e08a), hex(0x005a_a0ff)];
+
+fn colour(outcome: Outcome) -> Rgb {
+    match outcome {
+        Outcome::Used => USED,
+        Outcome::Rejected | Outcome::Ambiguous => DOUBTED,
+        Outcome::Missed | Outcome::Dropped => MISSED,
+    }
+}
+
+/// Draws in pixels of a camera's picture.
+struct Sketch<'a, 'b, 'c> {
+    words: &'a mut Words<'b>,
+    window: Window<'c>,
+    lens: Lens,
+    width: f32,
+}
+
+impl Sketch<'_, '_, '_> {
+    /// Where a direction (x/z right, y/z down) is seen, pixels of the whole picture.
+    fn at(&self, [x, y]: [f64; 2]) -> Vec2 {
+        self.window.direction(x, -y)
+    }
+
+    fn line(&mut self, from: [f64; 2], to: [f64; 2], colour: Rgb, alpha: f32) {
+        let ends = clipped(self.at(from), self.at(to), &self.window.tile);
+        if let Some((a, b)) = ends {
+            let [red, green, blue] = colour;
+            self.words.shapes.line(a, b, self.width, [red, green, blue, alpha]);
+        }
+    }
+
+    /// A closed line through pixels of the sensor.
+    fn outline(&mut self, corners: &[[f64; 2]], colour: Rgb, alpha: f32) {
+        for (k, a) in corners.iter().enumerate() {
+            let b = corners[(k + 1) % corners.len()];
+            let (a, b) = (self.lens.direction(*a), self.lens.direction(b));
+            self.line(a, b, colour, alpha);
+        }
+    }
+
+    /// A line between points in the camera's frame, m.
+    fn space(&mut self, from: [f64; 3], to: [f64; 3], colour: Rgb, alpha: f32) {
+        let seen = |[x, y, z]: [f64; 3]| (z > 0.02).then(|| [x / z, y / z]);
+        if let (Some(a), Some(b)) = (seen(from), seen(to)) {
+            self.line(a, b, colour, alpha);
+        }
+    }
+
+    fn shell(&mut self, camera_from_body: &Rigid, shell: &Shell, colour: Rgb) {
+        let half = 0.5 * shell.face_height / shell.lean.cos().max(0.1);
+        for face in 0..FACES {
+            let frame = camera_from_body.after(&shell.body_from_face(face));
+            let (low, high) = (shell.half_width(-half), shell.half_width(half));
+            let corners = [[-low, -half], [low, -half], [high, half], [-high, half]];
+            let corners = corners.map(|[x, y]| frame.apply([x, y, 0.0]));
+            let (at, out) = (frame.translation, frame.turn([0.0, 0.0, 1.0]));
+            let hidden = (0..3).map(|k| at[k] * out[k]).sum::<f64>() > 0.0;
+            for k in 0..4 {
+                self.space(corners[k], corners[(k + 1) % 4], colour, if hidden { 0.22 } else { 0.8 });
+            }
+        }
+        let middle = [shell.forward, 0.0, shell.height];
+        let from = camera_from_body.apply(middle);
+        for (k, axis) in AXES.into_iter().enumerate() {
+            let mut tip = middle;
+            tip[k] += 1.4 * shell.apothem;
+            self.space(from, camera_from_body.apply(tip), axis, 1.0);
+        }
+    }
+}
+
+/// The part of a line that lies in a tile.
+fn clipped(a: Vec2, b: Vec2, tile: &Tile) -> Option<(Vec2, Vec2)> {
+    let low = Vec2::new(tile.x as f32, tile.y as f32);
+    let high = low + Vec2::new(tile.width as f32, tile.height as f32);
+    let along = b - a;
+    let (mut from, mut to) = (0.0_f32, 1.0_f32);
+    for k in 0..2 {
+        if along[k].abs() < 1e-6 {
+            if a[k] < low[k] || a[k] > high[k] {
+                return None;
+            }
+            continue;
+        }
+        let (p, q) = ((low[k] - a[k]) / along[k], (high[k] - a[k]) / along[k]);
+        (from, to) = (from.max(p.min(q)), to.min(p.max(q)));
+    }
+    (from < to).then(|| (a + along * from, a + along * to))
+}
+
+/// The leader's body as the estimate has it, in the frame of the follower's camera at the look.
+fn estimated(frame: &Frame, follower: &Member) -> Rigid {
+    let relative = frame.sighting.relative;
+    let (sin, cos) = relative.view_angle.sin_cos();
+    let at = [-relative.distance * cos, -relative.distance * sin, 0.0];
+    let leader = Rigid::turned(at, relative.view_angle - relative.bearing, 0.0, 0.0);
+    follower.mount.body_from_camera(frame.pan).inverse().after(&leader)
+}
+
+/// Everything about the last look of each edge of a robot, over the view of its camera.
+pub(crate) fn detections(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robot: usize) {
+    let now = stage.moment.snapshot.time;
+    let mut row = 0.0;
+    for (index, edge) in stage.cast.edges.iter().enumerate().filter(|(_, edge)| edge.follower == robot) {
+        let news = stage.moment.frames.iter().rev().find(|frame| frame.edge == index);
+        let Some(frame) = news.or_else(|| stage.trail.look(index)) else { continue };
+        let (Some(follower), Some(leader)) =
+            (stage.cast.members.get(robot), stage.cast.members.get(edge.leader))
+        else {
+            continue;
+        };
+        if !(0.0..FORGOTTEN).contains(&(now - frame.sighting.stamp)) {
+            continue;
+        }
+        let ink = colour(frame.outcome);
+        let width = words.scaled(1.6);
+        let mut sketch = Sketch { words, window, lens: follower.lens, width };
+        region(&mut sketch, frame);
+        if let (true, Some(shell)) = (frame.outcome.seen(), &leader.shell) {
+            sketch.shell(&estimated(frame, follower), shell, ink);
+        }
+        sketch.width *= 1.2;
+        for corners in frame.tags.iter().flatten() {
+            sketch.outline(corners, ink, 1.0);
+        }
+        ids(&mut sketch, frame, leader, ink);
+        report(words, window.tile, &leader.name, frame, &mut row);
+    }
+}
+
+fn region(sketch: &mut Sketch<'_, '_, '_>, frame: &Frame) {
+    let r = frame.region;
+    if r.width == 0 || r.height == 0 {
+        return;
+    }
+    let [left, top] = [r.x, r.y].map(|x| f64::from(x) - 0.5);
+    let (right, bottom) = (left + f64::from(r.width), top + f64::from(r.height));
+    sketch.width *= 0.6;
+    sketch.outline(&[[left, top], [right, top], [right, bottom], [left, bottom]], REGION, 0.55);
+    sketch.width /= 0.6;
+}
+
+/// The numbers of the tags, in their middles.
+fn ids(sketch: &mut Sketch<'_, '_, '_>, frame: &Frame, leader: &Member, ink: Rgb) {
+    let Some(first) = leader.shell.and_then(|shell| shell.first_tag) else { return };
+    for (face, corners) in frame.tags.iter().enumerate() {
+        let Some(corners) = corners else { continue };
+        let id = first + face as u16;
+        if tag_code(id).is_none() {
+            continue;
+        }
+        let middle = [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / 4.0);
+        let at = sketch.at(sketch.lens.direction(middle));
+        let text = id.to_string();
+        let words = &mut *sketch.words;
+        let half = 0.5 * words.width(&text, 13.0, true);
+        let ink = Ink { colour: ink, ..Ink::LIGHT };
+        words.write(text, [at.x - half, at.y], 13.0, true, ink);
+    }
+}
+
+/// Numbers and outcome of a look in two lines at the foot of a tile.
+fn report(words: &mut Words<'_>, tile: Tile, leader: &str, frame: &Frame, row: &mut f32) {
+    let told = Ink { colour: colour(frame.outcome), ..Ink::LIGHT };
+    let left = tile.x as f32 + words.scaled(10.0);
+    let mut line = |words: &mut Words<'_>, text: String, bold: bool, ink: Ink| {
+        let y = tile.y as f32 + tile.height as f32 - words.scaled(30.0 + 16.0 * *row);
+        let size =
+            if words.width(&text, 12.0, bold) > tile.width as f32 - words.scaled(20.0) { 9.0 } else { 12.0 };
+        words.write(text, [left, y], size, bold, ink);
+        *row += 1.0;
+    };
+    if frame.outcome.seen() {
+        let (r, [d, b, v]) = (frame.sighting.relative, frame.sighting.deviation);
+        let angle = |x: f64, s: f64| {
+            format!("{:.1}° ± {:.2}°", x.to_degrees(), s.to_degrees()).replace('-', "\u{2212}")
+        };
+        let numbers = format!(
+            "ℓ {:.3} m ± {:.1} mm   ψ {}   γ {}",
+            r.distance,
+            1e3 * d,
+            angle(r.bearing, b),
+            angle(r.view_angle, v)
+        );
+        line(words, numbers, false, Ink::LIGHT);
+    }
+    let faces = match frame.faces() {
+        0 => String::new(),
+        1 => ", 1 face".to_owned(),
+        n => format!(", {n} faces"),
+    };
+    line(words, format!("{leader}: {}{faces}", frame.outcome.name()), true, told);
+}
