@@ -3,14 +3,20 @@
 //! `cargo bench -p rendering` prints medians; other work on the machine shows in them.
 
 #[path = "../tests/stage/course.rs"]
+#[allow(dead_code, reason = "shared with tests")]
 mod course;
+#[path = "../tests/stage/sight.rs"]
+#[allow(dead_code, reason = "shared with tests")]
+mod sight;
 #[path = "../tests/stage/mod.rs"]
+#[allow(dead_code, reason = "shared with tests")]
 mod stage;
 
 use course::{TRUCK, furnish};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use rendering::{AdapterChoice, CameraEyes, Film, FilmKind, Gpu, Layout, Renderer, Style};
-use stage::{Path, Play, shots};
+use sight::shots;
+use stage::{Path, Play};
 use vocabulary::{Region, Shot};
 
 fn gpu() -> Gpu {

@@ -2,13 +2,19 @@
 //! `still`. Every follower looks at its leader; the pictures stand side by side, and their times are told.
 
 #[path = "../tests/stage/course.rs"]
+#[allow(dead_code, reason = "shared with tests")]
 mod course;
+#[path = "../tests/stage/sight.rs"]
+#[allow(dead_code, reason = "shared with tests")]
+mod sight;
 #[path = "../tests/stage/mod.rs"]
+#[allow(dead_code, reason = "shared with tests")]
 mod stage;
 
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded};
 use rendering::{AdapterChoice, CameraEyes, Gpu, png};
-use stage::{Path, Play, region_around, shots};
+use sight::{region_around, shots};
+use stage::{Path, Play};
 use std::time::Instant;
 use vocabulary::{Body, Grey, Picture, Region, Shot, Snapshot};
 
@@ -79,12 +85,6 @@ fn main() -> Result<(), rendering::Error> {
         .map(|s| Shot { region: Region { x: 210, y: 160, width: 220, height: 160 }, ..*s })
         .collect();
     println!("{} shots of 220x160: {}", fixed.len(), median(&mut eyes, &moment.snapshot, &fixed)?);
-    if std::env::var_os("ONLY").is_some() {
-        for _ in 0..8 {
-            median(&mut eyes, &moment.snapshot, &fixed)?;
-        }
-        return Ok(());
-    }
     println!("{} shots of shells: {}", near.len(), median(&mut eyes, &moment.snapshot, &near)?);
     println!("{} shots of 640x480: {}", whole.len(), median(&mut eyes, &moment.snapshot, &whole)?);
     let mut pictures = Vec::new();

@@ -4,12 +4,15 @@
 
 #[path = "../tests/stage/course.rs"]
 mod course;
+#[path = "../tests/stage/sight.rs"]
+mod sight;
 #[path = "../tests/stage/mod.rs"]
 mod stage;
 
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded, overturn, touch};
 use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, png};
-use stage::{Path, Play, looks};
+use sight::looks;
+use stage::{Path, Play};
 use std::time::Instant;
 use vocabulary::{Body, Moment};
 

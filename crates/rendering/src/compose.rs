@@ -166,10 +166,9 @@ pub(crate) fn words(
     let only_cameras = views.iter().all(carried);
     caption(&mut words, stage, height, (sky as f32, !only_cameras));
     // In a quarter of a picture it would cover a whole view.
-    if let (true, [first] | [first, _]) = (stage.style.inset, lower) {
-        if !views.first().is_some_and(carried) {
-            inset(&mut words, stage, first.tile);
-        }
+    let charted = stage.style.inset && !views.first().is_some_and(carried);
+    if let (true, [first] | [first, _]) = (charted, lower) {
+        inset(&mut words, stage, first.tile);
     }
     for (view, window) in views.iter().zip(windows) {
         view_words(&mut words, stage, *window, view);

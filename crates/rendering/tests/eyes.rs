@@ -3,6 +3,7 @@
 //! These need an adapter; `apt-get install mesa-vulkan-drivers` brings one that draws on the processor.
 
 use rendering::{AdapterChoice, CameraEyes, Gpu};
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
 use vocabulary::{
     Attitude, Body, Cast, Edge, Eyes, FACES, Grey, Lens, Light, Member, Motion, Placement, Pose, Prop,
@@ -183,7 +184,7 @@ fn tags_show_their_codes_and_keep_their_mean() {
 fn light_is_linear_and_paper_in_the_sun_is_bright() {
     let mut cast = cast(Shell::PAPER);
     // The sun stands behind the follower and straight before the leader's rear face.
-    cast.light = Light { sun_elevation: 0.175, sun_azimuth: std::f64::consts::PI, ..Light::default() };
+    cast.light = Light { sun_elevation: 0.175, sun_azimuth: PI, ..Light::default() };
     let snapshot = stage(1.2, 0.0);
     let lens = Lens::pinhole(640, 480, 0.9);
     let one = shot(&cast, &snapshot, &lens);
@@ -258,7 +259,7 @@ fn horizons_may_lean_and_turn_over() {
     let cast = cast(Shell::PAPER);
     let snapshot = stage(2.0, 0.0);
     let lens = Lens::pinhole(320, 240, 0.9);
-    for roll in [0.0, 0.3, -0.9, 1.5707, 1.5708, 2.5, 3.1415, -2.0] {
+    for roll in [0.0, 0.3, -0.9, 1.57, FRAC_PI_2, 2.5, PI, -2.0] {
         for pitch in [0.1, -0.2] {
             let looking = Rigid::turned([500.0, -60.0, 1.0], 2.0, pitch, roll);
             let body_from_camera = cast.members[1].mount.body_from_camera(0.0);

@@ -7,7 +7,8 @@ use std::mem::offset_of;
 
 fn module(name: &str) -> naga::Module {
     let (_, sources) = SHADERS.iter().find(|(n, _)| *n == name).unwrap();
-    sources.iter().map(|source| parsed(name, source)).last().unwrap()
+    let mut modules: Vec<_> = sources.iter().map(|source| parsed(name, source)).collect();
+    modules.pop().unwrap()
 }
 
 fn parsed(name: &str, source: &str) -> naga::Module {
