@@ -1,10 +1,11 @@
 //! Cameras: where each view stands, solved from what it has to show.
 
 use crate::View;
+use crate::carried::carried;
 use crate::floor::Floor;
 use crate::steady::{Extent, Steady};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
-use vocabulary::{Body, Cast, Edge, Lens, Mount, Region, Shot, Snapshot};
+use vocabulary::{Cast, Edge, Snapshot};
 
 /// Whence and how a picture is seen; only cameras on robots roll.
 #[derive(Debug, Clone, Copy)]
@@ -22,8 +23,6 @@ pub(crate) struct Camera {
 }
 
 const NEAR: f64 = 0.05;
-/// Of cameras on robots, m.
-const NEAR_OF_ROBOTS: f64 = 0.02;
 const FAR: f64 = 600.0;
 /// Of an eye that the ground would hide, m.
 const LEAST_OVER_GROUND: f64 = 0.28;
@@ -177,41 +176,6 @@ impl Camera {
         [-middle / up, -aside / up, up.signum()]
     }
 
-    /// The camera of a shot: one that looks ahead in a frame with x to the right and y down, of whose picture it sees a
-    /// part.
-    pub(crate) fn shot(shot: &Shot) -> Self {
-        let axis = |k: usize| DVec3::from_array(shot.world_from_camera.rotation.map(|row| row[k]));
-        let region = shot.region;
-        // Half the side, and where its middle is; pixels have their middles at whole numbers.
-        let side = |size: u32| 0.5 * f64::from(size) / shot.focal;
-        let middle = |at: u32, size: u32, centre: f64| {
-            (f64::from(at) - 0.5 + 0.5 * f64::from(size) - centre) / shot.focal
-        };
-        Self {
-            eye: DVec3::from_array(shot.world_from_camera.translation),
-            forward: axis(2),
-            right: axis(0),
-            up: -axis(1),
-            half: DVec2::new(side(region.width), side(region.height)),
-            shift: DVec2::new(
-                middle(region.x, region.width, shot.centre[0]),
-                -middle(region.y, region.height, shot.centre[1]),
-            ),
-            near: NEAR_OF_ROBOTS,
-            perspective: true,
-        }
-    }
-
-    /// Whether a ball may be in the picture.
-    pub(crate) fn may_see(&self, middle: DVec3, radius: f64) -> bool {
-        let p = self.view_from_world(middle);
-        let beside = |at: f64, shift: f64, half: f64| {
-            let out = |edge: f64, side: f64| side * (at - edge * p.z) / edge.hypot(1.0) > radius;
-            out(shift + half, 1.0) || out(shift - half, -1.0)
-        };
-        p.z > -radius && !beside(p.x, self.shift.x, self.half.x) && !beside(p.y, self.shift.y, self.half.y)
-    }
-
     /// Moves the eye so that `points` fill the picture between the composition's bounds, turning nothing.
     fn fit(&mut self, points: &[DVec3], composition: &Composition, size: f64) {
         self.eye = DVec3::ZERO;
@@ -300,26 +264,6 @@ fn orbit(steady: &Steady, time: f64, alone: bool, aspect: f64) -> Camera {
     let eye = DVec3::new(turn.cos() * rise.cos(), turn.sin() * rise.cos(), rise.sin()) * distance;
     let target = DVec3::new(x, y, 0.5 * (extent.ground[0] + extent.ground[1]) + 0.1);
     Camera::looking(target + eye, target, (38.0_f64).to_radians(), aspect)
-}
-
-/// Through the camera of a robot: all of its sensor, and what is beside that or over it where the picture has room.
-fn carried(snapshot: &Snapshot, cast: &Cast, robot: usize, aspect: f64) -> Camera {
-    let state = snapshot.robots.get(robot).copied().unwrap_or_default();
-    let (mount, lens) = cast.members.get(robot).map_or_else(
-        || (Mount::fitting(&Body::default()), Lens::default()),
-        |member| (member.mount, member.lens),
-    );
-    let mut camera = Camera::shot(&Shot {
-        robot,
-        world_from_camera: mount.world_from_camera(&state),
-        focal: lens.focal,
-        centre: lens.centre,
-        region: Region::whole(&lens),
-        exposure: 1.0,
-    });
-    let DVec2 { x, y } = camera.half;
-    camera.half = DVec2::new(x.max(y * aspect), y.max(x / aspect));
-    camera
 }
 
 /// Behind one robot, turned a little to its leader and far enough back for that to be in the picture.

@@ -115,8 +115,19 @@ fn estimated(frame: &Frame, follower: &Member) -> Rigid {
     follower.mount.body_from_camera(frame.pan).inverse().after(&leader)
 }
 
+/// Whose camera a view is through, and what it found.
+pub(crate) fn camera_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robot: usize) {
+    let Some(member) = stage.cast.members.get(robot) else { return };
+    if stage.style.detections {
+        detections(words, stage, window, robot);
+    }
+    let tile = window.tile;
+    let at = [tile.x as f32 + words.scaled(10.0), tile.y as f32 + tile.height as f32 - words.scaled(12.0)];
+    words.write(format!("camera: {}", member.name), at, 12.0, true, Ink::LIGHT);
+}
+
 /// Everything about the last look of each edge of a robot, over the view of its camera.
-pub(crate) fn detections(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robot: usize) {
+fn detections(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robot: usize) {
     let now = stage.moment.snapshot.time;
     let mut row = 0.0;
     for (index, edge) in stage.cast.edges.iter().enumerate().filter(|(_, edge)| edge.follower == robot) {
@@ -131,7 +142,8 @@ pub(crate) fn detections(words: &mut Words<'_>, stage: &Stage<'_>, window: Windo
             continue;
         }
         let ink = colour(frame.outcome);
-        let width = words.scaled(1.6);
+        // Thin in a small picture, where thick lines would cover what they tell of.
+        let width = words.scaled(1.6 * (window.tile.width as f32 / 640.0).clamp(0.55, 1.0));
         let mut sketch = Sketch { words, window, lens: follower.lens, width };
         region(&mut sketch, frame);
         if let (true, Some(shell)) = (frame.outcome.seen(), &leader.shell) {
@@ -169,6 +181,10 @@ fn ids(sketch: &mut Sketch<'_, '_, '_>, frame: &Frame, leader: &Member, ink: Rgb
         }
         let middle = [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / 4.0);
         let at = sketch.at(sketch.lens.direction(middle));
+        let corner = sketch.at(sketch.lens.direction(corners[0]));
+        if at.distance(corner) < sketch.words.scaled(18.0) {
+            continue;
+        }
         let text = id.to_string();
         let words = &mut *sketch.words;
         let half = 0.5 * words.width(&text, 13.0, true);

@@ -1,7 +1,7 @@
 //! Words in the picture: caption, time, names, edges and coordinates, placed so that none covers another.
 
 use crate::camera::Camera;
-use crate::detections::detections;
+use crate::detections::camera_words;
 use crate::model::Build;
 use crate::paint::Stage;
 use crate::palette::{self, Rgb};
@@ -199,17 +199,6 @@ pub(crate) fn view_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Windo
     if stage.style.grid {
         coordinates(words, stage, window);
     }
-}
-
-/// Whose camera a view is through, and what it found.
-fn camera_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robot: usize) {
-    let Some(member) = stage.cast.members.get(robot) else { return };
-    if stage.style.detections {
-        detections(words, stage, window, robot);
-    }
-    let tile = window.tile;
-    let at = [tile.x as f32 + words.scaled(10.0), tile.y as f32 + tile.height as f32 - words.scaled(12.0)];
-    words.write(format!("camera: {}", member.name), at, 12.0, true, Ink::LIGHT);
 }
 
 /// The middle of a robot, and how many times as large as the default body it is.

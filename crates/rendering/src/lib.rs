@@ -23,6 +23,7 @@
 
 mod atlas;
 mod camera;
+mod carried;
 mod compose;
 mod crowd;
 mod detections;
