@@ -150,8 +150,8 @@ impl Formation {
     fn decide_edge(&self, index: usize, time: f64, seen: &Observation, state: &FormationState) -> Decision {
         let (edge, parameters) = (self.edges()[index], &self.edges[index]);
         let limits = &self.limits[edge.follower];
-        if seen.sight == Sight::Lost {
-            return slow_down(&parameters.set_point.at(time), seen, limits);
+        if matches!(seen.sight, Sight::Waiting | Sight::Lost) {
+            return without_leader(&parameters.set_point.at(time), seen, limits);
         }
         // What the leader does within this sample it tells its follower; its speed the follower has to observe.
         let leader = Drive { speed: seen.leader_speed.unwrap_or(0.0), ..state.drives[edge.leader] };
@@ -187,9 +187,12 @@ impl Formation {
     }
 }
 
-/// What a follower does that has lost its leader: it brakes to its slowest speed, straight on.
-fn slow_down(set_point: &SetPoint, seen: &Observation, limits: &Limits) -> Decision {
-    let asked = Command { acceleration: (limits.speed_min - seen.own_speed) / BRAKING, turn_rate: 0.0 };
+/// What a follower does that has not seen its leader yet: it goes straight on; and one that has lost it brakes to its
+/// slowest speed besides.
+fn without_leader(set_point: &SetPoint, seen: &Observation, limits: &Limits) -> Decision {
+    let braking = (limits.speed_min - seen.own_speed) / BRAKING;
+    let asked =
+        Command { acceleration: if seen.sight == Sight::Lost { braking } else { 0.0 }, turn_rate: 0.0 };
     let commanded = limits.saturate(asked, seen.own_speed);
     let acceleration = limits.admissible(commanded.acceleration, seen.own_speed);
     let applied = Command { acceleration, ..commanded };

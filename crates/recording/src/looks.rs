@@ -67,7 +67,7 @@ impl LookSums {
     pub(crate) fn know(&mut self, edge: &EdgeState, step: f64) {
         self.metrics.longest_gap = self.metrics.longest_gap.max(edge.age);
         match edge.sight {
-            Sight::Truth => {}
+            Sight::Truth | Sight::Waiting => {}
             Sight::Lost => self.metrics.lost += step,
             Sight::Tracking | Sight::Coasting => {
                 let (seen, truth) = (edge.seen, edge.relative);

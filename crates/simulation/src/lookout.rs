@@ -27,7 +27,7 @@ impl Lookout {
         Self {
             watch: senses.start(snapshot),
             trackers: vec![Tracker::default(); edges],
-            beliefs: vec![Belief { relative: None, sight: Sight::Coasting }; edges],
+            beliefs: vec![Belief { relative: None, sight: Sight::Waiting }; edges],
             starts,
             before: snapshot.clone(),
             eyes: None,
@@ -106,8 +106,7 @@ impl Lookout {
             let Some(looks) = &law.looks else { continue };
             let (belief, seen) = (&self.beliefs[index], &mut observations[index]);
             seen.leader_speed = None;
-            // Before the first look there is nothing to go by.
-            seen.sight = if belief.relative.is_none() { Sight::Lost } else { belief.sight };
+            seen.sight = belief.sight;
             seen.relative = belief
                 .relative
                 .unwrap_or(Relative { distance: looks.observer.distance_min, ..Relative::default() });

@@ -19,6 +19,8 @@ pub enum Sight {
     /// It is told the truth at every instant.
     #[default]
     Truth,
+    /// It has not seen its leader yet.
+    Waiting,
     /// It has seen its leader a moment ago.
     Tracking,
     /// It has missed some looks and goes by its prediction.
@@ -32,6 +34,7 @@ impl Sight {
     pub fn name(self) -> &'static str {
         match self {
             Self::Truth => "truth",
+            Self::Waiting => "waiting",
             Self::Tracking => "tracking",
             Self::Coasting => "coasting",
             Self::Lost => "lost",

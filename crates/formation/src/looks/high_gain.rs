@@ -21,6 +21,8 @@ pub struct HighGain {
 const SMOOTHING: f64 = 0.2;
 /// ε that follows from noise stays above this share of the time between looks, and below this time, s.
 const EPSILON: [f64; 2] = [0.25, 0.3];
+/// How much stronger than δ a leader's sudden moves are.
+const SUDDEN: f64 = 8.0;
 /// Longest step of the prediction, s.
 const STEP: f64 = 0.02;
 
@@ -76,9 +78,10 @@ impl HighGain {
         let off = innovation(&look.relative, &self.relative());
         let unseen = |k: usize| {
             let delta = law.disturbance[k.min(1)];
-            // Rates are known about as well as ε allows, and what is unknown acts for `age` more.
+            // Rates are known about as well as ε allows, and what is unknown acts for `age` more. A leader may do more
+            // for a moment than it does as a rule.
             let reach = age + 2.0 * self.epsilon(law, k, age);
-            0.5 * delta * reach * reach
+            0.5 * SUDDEN * delta * reach * reach
         };
         let share = |k: usize| {
             let variance = look.deviation[k].powi(2) + self.variance[k] + unseen(k).powi(2);

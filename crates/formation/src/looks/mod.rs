@@ -204,7 +204,9 @@ impl Tracker {
         let age = self.age();
         if age > law.hold {
             Sight::Lost
-        } else if self.anchor.is_none() || age > 2.5 * law.interval + 0.05 {
+        } else if self.anchor.is_none() {
+            Sight::Waiting
+        } else if age > 2.5 * law.interval + 0.05 {
             Sight::Coasting
         } else {
             Sight::Tracking

@@ -208,7 +208,7 @@ fn noise_sets_the_time_constant() {
 fn sight_is_lost_with_time_and_comes_back() {
     let law = law(Method::HighGain);
     let mut tracker = Tracker::default();
-    assert_eq!((tracker.sight(&law), tracker.relative()), (Sight::Coasting, None));
+    assert_eq!((tracker.sight(&law), tracker.relative()), (Sight::Waiting, None));
     let look = |stamp| Sighting {
         stamp,
         relative: Relative { distance: 2.0, bearing: -2.0, view_angle: -2.0 },

@@ -34,6 +34,8 @@ impl Pan {
         self.from = self.to;
         let wanted = match (belief.relative, belief.sight) {
             (Some(relative), Sight::Truth | Sight::Tracking | Sight::Coasting) => towards(&relative, forward),
+            // Nothing has been seen yet: the camera stays where it was pointed.
+            (_, Sight::Waiting) => self.from,
             _ => {
                 if self.from * self.sweep >= camera.pan_max - 1e-9 {
                     self.sweep = -self.sweep;
