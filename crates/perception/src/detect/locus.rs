@@ -17,6 +17,9 @@ const BEHIND: usize = 16;
 /// Deviation of the corners it reports, pixels: 0.15 for tags of 60 pixels, 0.35 for tags of 20, measured.
 const DEVIATION: f64 = 0.25;
 
+/// The same for corners from the copy with its dark lifted, whose edges have moved.
+const LIFTED_DEVIATION: f64 = 0.5;
+
 /// How strongly the dark is lifted before tags are looked for. The library's thresholds are fractions of a neighbourhood's
 /// range, and in linear light a face in the shade next to one in the sun lies below them: of 60 pictures of such shells it
 /// finds 17 tags as they are, 53 with 20, 78 with 40, 62 with 80.
@@ -30,8 +33,8 @@ static DISPLAY: LazyLock<[u8; 256]> = LazyLock::new(|| {
     })
 });
 
-/// Finds AprilTags 36h11 with locus-core. Corners come from a copy of the picture with its dark lifted and its noise softened:
-/// good to start from, and not as good as what [`super::sharpen`] makes of them on the picture itself.
+/// Finds AprilTags 36h11 with locus-core, in the picture and in a copy with its dark lifted and its noise softened. Corners
+/// are good to start from, and not as good as what [`super::sharpen`] makes of them on the picture itself.
 pub struct Locus {
     engine: LocusEngine,
     context: FrameContext,
@@ -60,19 +63,9 @@ impl Detector for Locus {
         if picture.width.min(picture.height) < LEAST || picture.values.len() != width * height {
             return;
         }
-        let (across, down) = (width.next_multiple_of(TILE), height.next_multiple_of(TILE));
-        self.pad(picture, across, down);
-        let Ok(image) = ImageView::new(&self.padded, across, down, across) else { return };
-        let Ok(seen) = self.engine.detect_with_context(&image, &mut self.context, None, None, false) else {
-            return;
-        };
-        found.extend(seen.ids.iter().zip(seen.corners).filter_map(|(id, corners)| {
-            // The library counts pixels from the corner of the top left one, and a tag's corners from the bottom right.
-            let mut corners = corners.map(|c| [f64::from(c.x) - 0.5, f64::from(c.y) - 0.5]);
-            corners.rotate_left(2);
-            let finite = corners.iter().flatten().all(|x| x.is_finite());
-            Some(Tag { id: u16::try_from(*id).ok()?, corners, deviation: DEVIATION }).filter(|_| finite)
-        }));
+        // As it is, evenly lit tags are found out to 6 m; with the dark lifted, those in the shade beside the sun.
+        self.pass(picture, false, DEVIATION, found);
+        self.pass(picture, true, LIFTED_DEVIATION, found);
         let middle = |t: &Tag| t.corners.iter().fold([0.0; 2], |sum, c| [sum[0] + c[0], sum[1] + c[1]]);
         found.sort_by(|a, b| {
             let (m, n) = (middle(a), middle(b));
@@ -82,6 +75,26 @@ impl Detector for Locus {
 }
 
 impl Locus {
+    /// Adds the tags that are found in the picture, or in the copy with its dark lifted, and are not among those known.
+    fn pass(&mut self, picture: &Grey, lifted: bool, deviation: f64, found: &mut Vec<Tag>) {
+        let (width, height) = (picture.width as usize, picture.height as usize);
+        let (across, down) = (width.next_multiple_of(TILE), height.next_multiple_of(TILE));
+        self.pad(picture, lifted, across, down);
+        let Ok(image) = ImageView::new(&self.padded, across, down, across) else { return };
+        let Ok(seen) = self.engine.detect_with_context(&image, &mut self.context, None, None, false) else {
+            return;
+        };
+        let known: Vec<u16> = found.iter().map(|tag| tag.id).collect();
+        found.extend(seen.ids.iter().zip(seen.corners).filter_map(|(id, corners)| {
+            let id = u16::try_from(*id).ok().filter(|id| !known.contains(id))?;
+            // The library counts pixels from the corner of the top left one, and a tag's corners from the bottom right.
+            let mut corners = corners.map(|c| [f64::from(c.x) - 0.5, f64::from(c.y) - 0.5]);
+            corners.rotate_left(2);
+            let finite = corners.iter().flatten().all(|x| x.is_finite());
+            finite.then_some(Tag { id, corners, deviation })
+        }));
+    }
+
     /// Softens the picture by the weights 1, 2, 1 both ways, and lifts its dark.
     fn soften(&mut self, picture: &Grey) {
         let (width, height) = (picture.width as usize, picture.height as usize);
@@ -103,11 +116,14 @@ impl Locus {
     }
 
     /// The picture with its last column and row repeated up to whole tiles.
-    fn pad(&mut self, picture: &Grey, across: usize, down: usize) {
+    fn pad(&mut self, picture: &Grey, lifted: bool, across: usize, down: usize) {
         self.padded.clear();
         let width = picture.width as usize;
-        self.soften(picture);
-        for row in self.softened.chunks_exact(width) {
+        if lifted {
+            self.soften(picture);
+        }
+        let values = if lifted { &self.softened } else { &picture.values };
+        for row in values.chunks_exact(width) {
             self.padded.extend_from_slice(row);
             let last = row.last().copied().unwrap_or_default();
             self.padded.resize(self.padded.len() + across - width, last);
