@@ -39,13 +39,6 @@ impl Default for CameraModel {
     }
 }
 
-/// What of a picture is wanted, and the index of the sensor that takes it.
-#[derive(Clone, Copy)]
-struct Plan {
-    region: Region,
-    sensor: usize,
-}
-
 /// What was found in one picture.
 pub(super) struct Seen {
     pub(super) region: Region,
@@ -55,9 +48,16 @@ pub(super) struct Seen {
 /// What turns light into tags, kept from picture to picture; it remembers nothing that a result depends on.
 #[derive(Default)]
 pub(super) struct Darkroom {
+    /// One for each thread.
+    benches: Vec<Bench>,
+}
+
+/// Where one picture after the other is developed.
+#[derive(Default)]
+struct Bench {
     /// By lens: robots may have different ones.
     sensors: Vec<Sensor>,
-    detector: Option<Locus>,
+    detector: Locus,
     picture: Grey,
 }
 
@@ -70,18 +70,52 @@ impl Clone for Darkroom {
 
 impl std::fmt::Debug for Darkroom {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Darkroom").field("sensors", &self.sensors.len()).finish_non_exhaustive()
+        f.debug_struct("Darkroom").field("benches", &self.benches.len()).finish_non_exhaustive()
     }
 }
 
 impl Darkroom {
-    /// Index of the sensor behind a lens.
-    fn sensor(&mut self, lens: &Lens, model: &CameraModel) -> usize {
+    /// As many benches as threads can work on `pictures` at once, at least one.
+    fn benches(&mut self, pictures: usize) -> &mut [Bench] {
+        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let wanted = threads.min(pictures).max(1);
+        while self.benches.len() < wanted {
+            self.benches.push(Bench::default());
+        }
+        &mut self.benches[..wanted]
+    }
+}
+
+impl Bench {
+    /// The sensor behind a lens.
+    fn sensor(&mut self, lens: &Lens, model: &CameraModel) -> &mut Sensor {
         let optics = Optics { lens: *lens, blur: model.blur, noise: model.noise };
-        self.sensors.iter().position(|sensor| *sensor.optics() == optics).unwrap_or_else(|| {
+        let known = self.sensors.iter().position(|sensor| *sensor.optics() == optics);
+        let index = known.unwrap_or_else(|| {
             self.sensors.push(Sensor::new(optics));
             self.sensors.len() - 1
-        })
+        });
+        &mut self.sensors[index]
+    }
+
+    /// The tags of the leader in one picture, from the light that fell on the sensor.
+    fn develop(
+        &mut self,
+        model: &CameraModel,
+        senses: &Senses,
+        look: &Look<'_>,
+        (region, light): (Region, &Grey),
+    ) -> Seen {
+        let mut random = noise_stream(senses.seed, look.follower, look.number, Purpose::Pixels);
+        let mut picture = std::mem::take(&mut self.picture);
+        let sensor = self.sensor(&senses.kits[look.follower].lens, model);
+        sensor.expose(light, region, &mut random, &mut picture);
+        let optics = *sensor.optics();
+        let shell = senses.kits[look.leader].shell;
+        let faces = shell
+            .map_or_else(Vec::new, |shell| recognise(&mut self.detector, &picture, region, &optics, &shell));
+        self.picture = picture;
+        Seen { region, faces }
     }
 }
 
@@ -106,26 +140,35 @@ impl CameraModel {
         period: (&Snapshot, &Snapshot),
         (eyes, darkroom): (&mut dyn Eyes, &mut Darkroom),
     ) -> Result<Vec<Seen>, String> {
-        let plans: Vec<Plan> = looks
-            .iter()
-            .map(|look| {
-                let sensor = darkroom.sensor(&senses.kits[look.follower].lens, self);
-                Plan { region: self.region(senses, look), sensor }
-            })
-            .collect();
-        let pictures = self.light(senses, looks, &plans, period, (eyes, darkroom))?;
-        let found = looks.iter().zip(plans).zip(pictures).map(|((look, Plan { region, sensor }), light)| {
-            let Darkroom { sensors, detector, picture } = darkroom;
-            let mut random = noise_stream(senses.seed, look.follower, look.number, Purpose::Pixels);
-            let sensor = &mut sensors[sensor];
-            sensor.expose(&light, region, &mut random, picture);
-            let detector = detector.get_or_insert_default();
-            let faces = senses.kits[look.leader]
-                .shell
-                .map_or_else(Vec::new, |shell| recognise(detector, picture, region, sensor.optics(), &shell));
-            Seen { region, faces }
-        });
-        Ok(found.collect())
+        let regions: Vec<Region> = looks.iter().map(|look| self.region(senses, look)).collect();
+        let benches = darkroom.benches(looks.len());
+        let pictures = self.light(senses, looks, &regions, period, (eyes, &mut benches[0]))?;
+        let jobs: Vec<_> = looks.iter().zip(regions.into_iter().zip(&pictures)).collect();
+        let threads = benches.len();
+        let mut found: Vec<Option<Seen>> = jobs.iter().map(|_| None).collect();
+        // Every thread takes every so manieth picture; who develops it makes no difference to what is found.
+        std::thread::scope(|scope| {
+            let mut work = Vec::new();
+            for (first, bench) in benches.iter_mut().enumerate() {
+                let own = jobs.iter().enumerate().skip(first).step_by(threads);
+                let task = move || -> Vec<(usize, Seen)> {
+                    own.map(|(k, (look, (region, light)))| {
+                        (k, bench.develop(self, senses, look, (*region, light)))
+                    })
+                    .collect()
+                };
+                work.push(if first + 1 < threads { Err(scope.spawn(task)) } else { Ok(task()) });
+            }
+            for done in work {
+                let done =
+                    done.or_else(|thread| thread.join().map_err(|_| "a thread that looks for tags failed"))?;
+                for (k, seen) in done {
+                    found[k] = Some(seen);
+                }
+            }
+            Ok::<(), &str>(())
+        })?;
+        Ok(found.into_iter().flatten().collect())
     }
 
     /// The light that falls on the sensors: ideal pictures of what each lens needs to see its region.
@@ -133,14 +176,14 @@ impl CameraModel {
         &self,
         senses: &Senses,
         looks: &[&Look<'_>],
-        plans: &[Plan],
+        regions: &[Region],
         (before, after): (&Snapshot, &Snapshot),
-        (eyes, darkroom): (&mut dyn Eyes, &Darkroom),
+        (eyes, bench): (&mut dyn Eyes, &mut Bench),
     ) -> Result<Vec<Grey>, String> {
-        let shots = |snapshot: &Snapshot| -> Vec<Shot> {
-            let shot = |(look, plan): (&&Look<'_>, &Plan)| {
+        let mut shots = |snapshot: &Snapshot| -> Vec<Shot> {
+            let shot = |(look, region): (&&Look<'_>, &Region)| {
                 let kit = &senses.kits[look.follower];
-                let source = darkroom.sensors[plan.sensor].source(plan.region);
+                let source = bench.sensor(&kit.lens, self).source(*region);
                 Shot {
                     robot: look.follower,
                     world_from_camera: kit.mount.world_from_camera(&snapshot.robots[look.follower]),
@@ -150,7 +193,7 @@ impl CameraModel {
                     exposure: self.exposure,
                 }
             };
-            looks.iter().zip(plans).map(shot).collect()
+            looks.iter().zip(regions).map(shot).collect()
         };
         let Some(first) = looks.first() else { return Ok(Vec::new()) };
         let mut pictures = Vec::new();
