@@ -59,18 +59,11 @@ impl Locus {
 impl Detector for Locus {
     fn detect(&mut self, picture: &Grey, found: &mut Vec<Tag>) {
         found.clear();
-        let (width, height) = (picture.width as usize, picture.height as usize);
-        if picture.width.min(picture.height) < LEAST || picture.values.len() != width * height {
-            return;
-        }
-        // As it is, evenly lit tags are found out to 6 m; with the dark lifted, those in the shade beside the sun.
         self.pass(picture, false, DEVIATION, found);
+    }
+
+    fn detect_in_shade(&mut self, picture: &Grey, found: &mut Vec<Tag>) {
         self.pass(picture, true, LIFTED_DEVIATION, found);
-        let middle = |t: &Tag| t.corners.iter().fold([0.0; 2], |sum, c| [sum[0] + c[0], sum[1] + c[1]]);
-        found.sort_by(|a, b| {
-            let (m, n) = (middle(a), middle(b));
-            a.id.cmp(&b.id).then(m[0].total_cmp(&n[0])).then(m[1].total_cmp(&n[1]))
-        });
     }
 }
 
@@ -78,6 +71,9 @@ impl Locus {
     /// Adds the tags that are found in the picture, or in the copy with its dark lifted, and are not among those known.
     fn pass(&mut self, picture: &Grey, lifted: bool, deviation: f64, found: &mut Vec<Tag>) {
         let (width, height) = (picture.width as usize, picture.height as usize);
+        if picture.width.min(picture.height) < LEAST || picture.values.len() != width * height {
+            return;
+        }
         let (across, down) = (width.next_multiple_of(TILE), height.next_multiple_of(TILE));
         self.pad(picture, lifted, across, down);
         let Ok(image) = ImageView::new(&self.padded, across, down, across) else { return };
@@ -93,6 +89,11 @@ impl Locus {
             let finite = corners.iter().flatten().all(|x| x.is_finite());
             finite.then_some(Tag { id, corners, deviation })
         }));
+        let middle = |t: &Tag| t.corners.iter().fold([0.0; 2], |sum, c| [sum[0] + c[0], sum[1] + c[1]]);
+        found.sort_by(|a, b| {
+            let (m, n) = (middle(a), middle(b));
+            a.id.cmp(&b.id).then(m[0].total_cmp(&n[0])).then(m[1].total_cmp(&n[1]))
+        });
     }
 
     /// Softens the picture by the weights 1, 2, 1 both ways, and lifts its dark.

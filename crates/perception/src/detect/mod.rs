@@ -10,7 +10,7 @@ pub use sharpen::sharpen;
 
 use crate::imaging::Optics;
 use crate::pose::SeenFace;
-use vocabulary::{Grey, Region, Shell};
+use vocabulary::{FACES, Grey, Region, Shell};
 
 /// A tag found in a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +29,9 @@ pub trait Detector: Send {
     /// Puts the tags of a picture, however many, into `found`, which is emptied first; in an order that depends on
     /// nothing but the picture.
     fn detect(&mut self, picture: &Grey, found: &mut Vec<Tag>);
+
+    /// Adds those that only show when the dark of the picture is lifted: in the shade beside what the sun lights.
+    fn detect_in_shade(&mut self, _picture: &Grey, _found: &mut Vec<Tag>) {}
 }
 
 /// The faces of `shell` in a picture of `region`: tags found, their corners sharpened, and judged. Corners are pixels of
@@ -40,9 +43,24 @@ pub fn recognise(
     optics: &Optics,
     shell: &Shell,
 ) -> Vec<SeenFace> {
+    recognise_expected(detector, (picture, region), optics, shell, FACES)
+}
+
+/// The same where no more than `expected` faces can be seen: once they are found, the shade is not searched.
+pub fn recognise_expected(
+    detector: &mut dyn Detector,
+    (picture, region): (&Grey, Region),
+    optics: &Optics,
+    shell: &Shell,
+    expected: usize,
+) -> Vec<SeenFace> {
     let mut tags = vec![];
     detector.detect(picture, &mut tags);
     tags.retain(|tag| shell.face_of(tag.id).is_some());
+    if tags.len() < expected {
+        detector.detect_in_shade(picture, &mut tags);
+        tags.retain(|tag| shell.face_of(tag.id).is_some());
+    }
     sharpen(picture, region, optics, &mut tags);
     for corner in tags.iter_mut().flat_map(|tag| &mut tag.corners) {
         *corner = [corner[0] + f64::from(region.x), corner[1] + f64::from(region.y)];

@@ -1,10 +1,10 @@
 //! Pictures: where to look, what the sensor makes of the light, and the tags in it.
 
 use super::{Look, Senses, all_faces, pan};
-use crate::detect::{Locus, recognise};
+use crate::detect::{Locus, recognise_expected};
 use crate::imaging::{Optics, Purpose, Sensor, noise_stream};
 use crate::pose::SeenFace;
-use vocabulary::{Eyes, Grey, Lens, Region, Rigid, Shot, Snapshot};
+use vocabulary::{Eyes, FACES, Grey, Lens, Region, Rigid, Shot, Snapshot};
 
 /// How cameras turn and take pictures; the lens and the mount are each robot's own.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,8 +112,10 @@ impl Bench {
         sensor.expose(light, region, &mut random, &mut picture);
         let optics = *sensor.optics();
         let shell = senses.kits[look.leader].shell;
-        let faces = shell
-            .map_or_else(Vec::new, |shell| recognise(&mut self.detector, &picture, region, &optics, &shell));
+        let expected = readable(senses, look).unwrap_or(FACES);
+        let faces = shell.map_or_else(Vec::new, |shell| {
+            recognise_expected(&mut self.detector, (&picture, region), &optics, &shell, expected)
+        });
         self.picture = picture;
         Seen { region, faces }
     }
@@ -127,9 +129,9 @@ const MARGIN: (f64, f64) = (0.25, 14.0);
 const GRID: u32 = 16;
 
 impl CameraModel {
-    /// Standard deviation of a corner's coordinates as found in pictures, pixels.
+    /// Standard deviation of a corner's coordinates as found in pictures, besides what its finder reports, pixels.
     pub(super) fn corner_noise(&self) -> f64 {
-        0.08
+        0.02
     }
 
     /// Takes the pictures of all looks at one instant and finds the leaders' tags in them.
@@ -245,15 +247,35 @@ fn checked(pictures: Vec<Grey>, wanted: usize) -> Result<Vec<Grey>, String> {
     Err(format!("{wanted} pictures were to be taken, and {} came", pictures.len()))
 }
 
-/// Smallest and largest column and row of the leader's tags where the follower expects them.
-fn expected(senses: &Senses, look: &Look<'_>) -> Option<[[f64; 2]; 2]> {
-    let relative = look.expected?;
-    let (leader, follower) = (senses.kits.get(look.leader)?, senses.kits.get(look.follower)?);
-    let shell = leader.shell?;
-    let pose = pan::leader_pose(&relative);
+/// The leader's frame in the camera's, as the follower expects it.
+fn camera_from_expected(senses: &Senses, look: &Look<'_>) -> Option<Rigid> {
+    let pose = pan::leader_pose(&look.expected?);
     let body_from_leader = Rigid::turned([pose.x, pose.y, 0.0], pose.heading, 0.0, 0.0);
     let pan = look.snapshot.robots.get(look.follower)?.camera_pan;
-    let camera_from_leader = follower.mount.body_from_camera(pan).inverse().after(&body_from_leader);
+    let mount = senses.kits.get(look.follower)?.mount;
+    Some(mount.body_from_camera(pan).inverse().after(&body_from_leader))
+}
+
+/// How many faces can surely be read where the leader is expected; `None` where that is not known.
+fn readable(senses: &Senses, look: &Look<'_>) -> Option<usize> {
+    let (leader, follower) = (senses.kits.get(look.leader)?, senses.kits.get(look.follower)?);
+    let (shell, from_leader) = (leader.shell?, camera_from_expected(senses, look)?);
+    let surely = |face: usize| {
+        let camera = from_leader.after(&shell.body_from_face(face)).inverse().translation;
+        let away = camera.iter().map(|x| x * x).sum::<f64>().sqrt();
+        camera[2] > SURELY.0 * away && follower.lens.focal * shell.cell > SURELY.1 * away
+    };
+    look.seen.then(|| all_faces().filter(|face| surely(*face)).count().max(1))
+}
+
+/// Cosine of the angle from its normal, and pixels a cell, at which a face is surely read.
+const SURELY: (f64, f64) = (0.55, 2.0);
+
+/// Smallest and largest column and row of the leader's tags where the follower expects them.
+fn expected(senses: &Senses, look: &Look<'_>) -> Option<[[f64; 2]; 2]> {
+    let camera_from_leader = camera_from_expected(senses, look)?;
+    let (leader, follower) = (senses.kits.get(look.leader)?, senses.kits.get(look.follower)?);
+    let shell = leader.shell?;
     let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for corner in all_faces().flat_map(|face| shell.tag_corners(face)) {
         let pixel = follower.lens.project(camera_from_leader.apply(corner))?;
