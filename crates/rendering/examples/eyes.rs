@@ -84,10 +84,6 @@ fn main() -> Result<(), rendering::Error> {
         .iter()
         .map(|s| Shot { region: Region { x: 210, y: 160, width: 220, height: 160 }, ..*s })
         .collect();
-    if std::env::var_os("ONLY").is_some() {
-        for _ in 0..8 { median(&mut eyes, &moment.snapshot, &fixed)?; }
-        return Ok(());
-    }
     println!("{} shots of 220x160: {}", fixed.len(), median(&mut eyes, &moment.snapshot, &fixed)?);
     println!("{} shots of shells: {}", near.len(), median(&mut eyes, &moment.snapshot, &near)?);
     println!("{} shots of 640x480: {}", whole.len(), median(&mut eyes, &moment.snapshot, &whole)?);

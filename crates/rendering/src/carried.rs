@@ -35,6 +35,9 @@ impl Camera {
 
     /// Whether a ball may be in the picture.
     pub(crate) fn may_see(&self, middle: DVec3, radius: f64) -> bool {
+        if !self.perspective {
+            return true;
+        }
         let p = self.view_from_world(middle);
         let beside = |at: f64, shift: f64, half: f64| {
             let out = |edge: f64, side: f64| side * (at - edge * p.z) / edge.hypot(1.0) > radius;

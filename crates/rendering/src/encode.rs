@@ -1,5 +1,6 @@
 //! All passes of a picture, in the order in which they run.
 
+use crate::camera::Camera;
 use crate::crowd::Fleet;
 use crate::floor::Floor;
 use crate::model::Detail;
@@ -34,6 +35,7 @@ pub(crate) struct Passes {
 /// What a picture consists of, once its data is on the device.
 pub(crate) struct Prepared {
     pub(crate) crowd: Crowd,
+    pub(crate) cameras: Vec<Camera>,
     /// Of views through cameras: what they may see.
     pub(crate) own: Vec<Option<Crowd>>,
     /// How many of the tiles, the last, lie over others.
@@ -54,6 +56,7 @@ impl Prepared {
         let [under @ .., over] = &self.decals[index];
         Sight {
             index,
+            camera: &self.cameras[index],
             crowd: self.own[index].as_ref().unwrap_or(&self.crowd),
             props: &self.props,
             veiled: &self.veiled[index],

@@ -42,6 +42,7 @@ pub struct CameraEyes {
 
 /// What one shot shows.
 struct Scene {
+    camera: Camera,
     crowd: Crowd,
     props: Copies,
     tile: Tile,
@@ -119,6 +120,7 @@ impl CameraEyes {
             frame.ground[1] = shot.exposure as f32;
             frames.push(frame);
             scenes.push(Scene {
+                camera,
                 crowd: part(&all, &stage, &self.fleet, &camera, shot.robot),
                 props: things.part(&camera, stage.origin),
                 tile: *tile,
@@ -180,6 +182,7 @@ impl CameraEyes {
                 pass.set_scissor_rect(tile.x, tile.y, tile.width, tile.height);
                 let sight = Sight {
                     index,
+                    camera: &scene.camera,
                     crowd: &scene.crowd,
                     props: &scene.props,
                     veiled: &[],

@@ -250,7 +250,8 @@ impl Renderer {
         let (lines, shapes) = words(&mut self.passes.text, &stage, (&views, upper), &windows, height);
         let ghosts = views.iter().map(|view| !matches!(view, View::SnakeEye | View::Camera(_))).collect();
         let veiled = seen().map(|(view, camera)| veiled_decks(camera, &stage, view)).collect();
-        let mut prepared = Prepared { crowd, own, upper, props, tiles, veiled, decals, ghosts, shapes };
+        let mut prepared =
+            Prepared { crowd, cameras, own, upper, props, tiles, veiled, decals, ghosts, shapes };
         self.passes.upload(&self.gpu, self.size, &frames, &mut prepared, &corners, &lines)?;
         Ok(prepared)
     }

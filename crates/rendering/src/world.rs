@@ -1,6 +1,7 @@
 //! The passes that draw the world: ground and sky, paint, robots, props and their shadows.
 
 use crate::Gpu;
+use crate::camera::Camera;
 use crate::crowd::Fleet;
 use crate::floor::Floor;
 use crate::model::Detail;
@@ -41,6 +42,7 @@ pub(crate) struct World {
 pub(crate) struct Sight<'a> {
     /// Of the view, among those uploaded.
     pub(crate) index: usize,
+    pub(crate) camera: &'a Camera,
     pub(crate) crowd: &'a Crowd,
     pub(crate) props: &'a Copies,
     /// Which decks hide a robot.
@@ -123,7 +125,7 @@ impl World {
         pass.set_bind_group(1, &self.groups.light, &[]);
         self.sky.draw(pass);
         match &self.terrain {
-            Some(terrain) => terrain.draw(pass, &self.asphalt),
+            Some(terrain) => terrain.draw(pass, &self.asphalt, sight.camera),
             None => self.ground.draw(pass, &self.asphalt),
         }
         if let Some(prop) = &self.prop {

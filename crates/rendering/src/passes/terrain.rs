@@ -3,8 +3,9 @@
 use super::asphalt::Asphalt;
 use super::frame::FrameGroups;
 use super::{Canvas, Recipe, Stream, constant, developed, shader};
+use crate::camera::Camera;
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::ops::Range;
 use vocabulary::Terrain;
 use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
@@ -30,8 +31,18 @@ pub(crate) struct TerrainPass {
     slick: wgpu::RenderPipeline,
     points: Stream,
     triangles: Stream,
-    /// Triangles that grip come first.
-    parts: [Range<u32>; 2],
+    /// Those that grip come first.
+    pieces: Vec<Piece>,
+}
+
+/// Triangles that lie together and look alike.
+#[derive(Debug, Clone, PartialEq)]
+struct Piece {
+    triangles: Range<u32>,
+    slick: bool,
+    /// A ball around them, in the world, m.
+    middle: DVec3,
+    radius: f64,
 }
 
 impl TerrainPass {
@@ -61,38 +72,75 @@ impl TerrainPass {
             ..Default::default()
         };
         let (dry, slick) = (recipe.build(device), Recipe { entry: "slick", ..recipe }.build(device));
-        let (triangles, parts) = parted(&triangles, &points);
+        let (triangles, pieces) = parted(&triangles, &points, terrain);
         let (corners, indices) = (bytemuck::cast_slice(&points), bytemuck::cast_slice(&triangles));
         Self {
             dry,
             slick,
             points: constant(device, queue, "terrain", wgpu::BufferUsages::VERTEX, corners),
             triangles: constant(device, queue, "terrain", wgpu::BufferUsages::INDEX, indices),
-            parts,
+            pieces,
         }
     }
 
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, asphalt: &Asphalt) {
+    /// What of it a camera may see.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, asphalt: &Asphalt, camera: &Camera) {
         pass.set_bind_group(2, &asphalt.group, &[]);
         pass.set_vertex_buffer(0, self.points.slice());
         pass.set_index_buffer(self.triangles.slice(), wgpu::IndexFormat::Uint32);
-        for (pipeline, part) in [&self.dry, &self.slick].into_iter().zip(&self.parts) {
-            if !part.is_empty() {
-                pass.set_pipeline(pipeline);
-                pass.draw_indexed(part.clone(), 0, 0..1);
+        for (slick, pipeline) in [(false, &self.dry), (true, &self.slick)] {
+            pass.set_pipeline(pipeline);
+            let seen = |p: &&Piece| p.slick == slick && camera.may_see(p.middle, p.radius);
+            let draw = |pass: &mut wgpu::RenderPass<'_>, run: Range<u32>| {
+                if !run.is_empty() {
+                    pass.draw_indexed(run, 0, 0..1);
+                }
+            };
+            // Pieces that follow each other are drawn as one.
+            let mut run = 0..0;
+            for piece in self.pieces.iter().filter(seen) {
+                if piece.triangles.start != run.end {
+                    draw(pass, run.clone());
+                    run.start = piece.triangles.start;
+                }
+                run.end = piece.triangles.end;
             }
+            draw(pass, run);
         }
     }
 }
 
-/// Triangles that grip and then those that do not, and where each kind lies.
-fn parted(triangles: &[u32], points: &[Point]) -> (Vec<u32>, [Range<u32>; 2]) {
-    let grips = |triangle: &&[u32]| triangle.iter().all(|k| points[*k as usize].grip >= 1.0);
-    let (dry, slick): (Vec<_>, Vec<_>) = triangles.chunks_exact(3).partition(grips);
-    let middle = 3 * dry.len() as u32;
-    let all: Vec<u32> = dry.into_iter().chain(slick).flatten().copied().collect();
-    let end = all.len() as u32;
-    (all, [0..middle, middle..end])
+/// Cells along the side of a piece.
+const PIECE: f64 = 12.0;
+
+/// Triangles by the piece they belong to, those that grip before those that do not, and the pieces.
+fn parted(triangles: &[u32], points: &[Point], terrain: &Terrain) -> (Vec<u32>, Vec<Piece>) {
+    let corner = |k: u32| DVec3::from_array(points[k as usize].position.map(f64::from));
+    let key = |t: &[u32]| {
+        let slick = t.iter().any(|k| points[*k as usize].grip < 1.0);
+        let middle = (corner(t[0]) + corner(t[1]) + corner(t[2])) / 3.0;
+        let place = |x: f64| (x / (PIECE * terrain.cell)).floor().clamp(-1.0, 1e6) as i64;
+        (slick, place(middle.y), place(middle.x))
+    };
+    let mut sorted: Vec<_> = triangles.chunks_exact(3).map(|t| (key(t), t)).collect();
+    sorted.sort_by_key(|(key, _)| *key);
+    let origin = DVec3::new(terrain.origin[0], terrain.origin[1], 0.0);
+    let mut pieces = Vec::new();
+    let mut first = 0;
+    for piece in sorted.chunk_by(|a, b| a.0 == b.0) {
+        let places = || piece.iter().flat_map(|(_, t)| t.iter().map(|k| corner(*k)));
+        let (low, high) =
+            places().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+        let last = first + 3 * piece.len() as u32;
+        pieces.push(Piece {
+            triangles: first..last,
+            slick: piece[0].0.0,
+            middle: origin + (low + high) * 0.5,
+            radius: 0.5 * low.distance(high),
+        });
+        first = last;
+    }
+    (sorted.iter().flat_map(|(_, t)| t.iter().copied()).collect(), pieces)
 }
 
 /// Points relative to the terrain's origin, one more around the field on all sides, and triangles between them.
@@ -191,6 +239,27 @@ mod tests {
             assert!(point.normal[2] > 0.9 && point.grip == 1.0);
         }
         assert!(points[0].position[0] < -500.0 && points[29].position[1] > 500.0);
+    }
+
+    #[test]
+    fn pieces_hold_all_triangles_once() {
+        let (columns, rows) = (60, 50);
+        let heights = (0..columns * rows).map(|k| f64::from(k as u32 % 7) * 0.1).collect();
+        let grip = (0..columns * rows).map(|k| if k % 60 < 9 { 0.3 } else { 1.0 }).collect();
+        let terrain = Terrain { origin: [5.0, -3.0], cell: 0.5, columns, rows, heights, grip };
+        let (points, triangles) = mesh(&terrain);
+        let (sorted, pieces) = parted(&triangles, &points, &terrain);
+        assert_eq!(sorted.len(), triangles.len());
+        assert!(
+            pieces.windows(2).all(|p| p[0].triangles.end == p[1].triangles.start && p[0].slick <= p[1].slick)
+        );
+        assert_eq!(pieces.last().map(|p| p.triangles.end as usize), Some(sorted.len()));
+        for piece in &pieces {
+            for k in &sorted[piece.triangles.start as usize..piece.triangles.end as usize] {
+                let [x, y, z] = points[*k as usize].position.map(f64::from);
+                assert!(piece.middle.distance(DVec3::new(x + 5.0, y - 3.0, z)) < piece.radius + 1e-6);
+            }
+        }
     }
 
     #[test]
