@@ -281,6 +281,21 @@ fn horizons_may_lean_and_turn_over() {
 }
 
 #[test]
+fn shells_may_be_blank_or_missing() {
+    let lens = Lens::pinhole(640, 480, 0.9);
+    let snapshot = stage(1.4, 0.0);
+    let bright = |shell: Option<Shell>| {
+        let mut cast = cast(Shell::PAPER);
+        cast.members[0].shell = shell;
+        let shot = Shot { exposure: 1.2, ..shot(&cast, &snapshot, &lens) };
+        look(&cast, &snapshot, &[shot])[0].values.iter().filter(|v| **v > 160).count()
+    };
+    let (tagged, blank, none) =
+        (bright(Some(Shell::PAPER.tagged(3))), bright(Some(Shell::PAPER)), bright(None));
+    assert!(blank > tagged + 2000 && tagged > none + 2000, "{tagged} {blank} {none}");
+}
+
+#[test]
 fn what_cannot_be_taken_is_refused() {
     let cast = cast(Shell::PAPER);
     let snapshot = stage(2.0, 0.0);
