@@ -6,7 +6,7 @@ const BLUE = vec3<f32>(0.335, 0.560, 0.835);
 // The tint of a grey ground when displayed.
 const GREY_TINT = vec3<f32>(1.012, 1.0, 0.985);
 
-// Whether the ground has broad patches, and lines where they are wanted.
+// Whether the ground has broad patches, and lines where they are wanted, and shadows on bodies have soft edges.
 const FINE = true;
 
 // Filmic curve after Hejl and Burgess-Dawson.

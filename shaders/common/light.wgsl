@@ -42,7 +42,11 @@ fn shadow_place(local: vec3<f32>) -> vec3<f32> {
 
 // Share of the sun that reaches a point, 1 in the open, with edges soft enough for curved bodies.
 fn sunlight_quick(local: vec3<f32>) -> f32 {
-    return soft(shadow_place(local), frame.sun.w * 0.6);
+    let at = shadow_place(local);
+    if !FINE {
+        return lit(at, 0.0, 0.0);
+    }
+    return soft(at, frame.sun.w * 0.6);
 }
 
 // The same at a place in the shadow map, over `r` on all sides.
