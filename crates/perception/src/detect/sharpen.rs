@@ -1,9 +1,10 @@
 //! Corners to a few hundredths of a pixel: the picture of a tag whose code is known is fitted to the pixels, all of its
 //! edges at once.
 //!
-//! A pixel that shows the point (u, v) of the tag is as bright as the tag blurred there: A + B·Σ cᵢⱼ Wᵢ(u) Wⱼ(v), with
-//! cᵢⱼ the cells and W a cell's share in a bell curve. Unknown are the eight numbers of the mapping from tag to picture,
-//! the two of the light, and how wide the blur is: told wrong, it would make tags larger or smaller. Along straight edges this is what the lens does; at corners of cells seen aslant it is off
+//! A pixel that shows the point (u, v) of the tag is as bright as the tag blurred there: A + (B + Cu + Dv)·Σ cᵢⱼ Wᵢ(u) Wⱼ(v),
+//! with cᵢⱼ the cells and W a cell's share in a bell curve. Unknown are the eight numbers of the mapping from tag to picture,
+//! the four of the light, since no face is lit evenly, and how wide the blur is: told wrong, either would make tags larger or
+//! smaller. Along straight edges this is what the lens does; at corners of cells seen aslant it is off
 //! by less than noise. With noise of one strength in all pixels the fit is the most likely one (Gauss-Newton).
 
 mod bell;
@@ -26,6 +27,9 @@ const PIXELS: f64 = 1200.0;
 
 const ROUNDS: usize = 8;
 
+/// Half a tag's side, cells.
+const HALF: f64 = 0.5 * TAG_CELLS as f64;
+
 /// Corners that move by less, pixels, have settled.
 const SETTLED: f64 = 2e-3;
 
@@ -36,7 +40,10 @@ const ASTRAY: f64 = 2.5;
 const FAR: f64 = 3.0;
 
 /// Numbers of the mapping, of the light and of the blur.
-const UNKNOWN: usize = 11;
+const UNKNOWN: usize = 13;
+
+/// Number of the blur among them.
+const BLUR: usize = UNKNOWN - 1;
 
 /// The blur is within about this factor of what it is said to be, its natural logarithm.
 const BLUR_KNOWN: f64 = 0.4;
@@ -106,13 +113,14 @@ fn fitted(view: &View<'_>, blur: f64, tag: &Tag) -> Option<([[f64; 2]; 4], f64)>
     let samples = samples(view, &h, &tag.corners, normal)?;
     let told = blur / size;
     let mut blur = told;
-    let mut light = contrast(&samples, &h, &cells, blur)?;
+    let [black, white] = contrast(&samples, &h, &cells, blur)?;
+    let mut light = [black, white, 0.0, 0.0];
     let mut spread = f64::INFINITY;
     let (mut corners, mut deviation) = (start, 0.0);
     for _ in 0..ROUNDS {
         let round = round(&samples, &h, &cells, (blur, told), light, spread)?;
         h += round.step;
-        light = [light[0] + round.light[0], light[1] + round.light[1]];
+        light = std::array::from_fn(|k| light[k] + round.light[k]);
         spread = round.spread;
         // A pixel is never sharper than its own square.
         blur = (blur * round.blur.clamp(-0.3, 0.3).exp()).max(PIXEL.sqrt() / size);
@@ -246,7 +254,7 @@ fn contrast(samples: &[Sample], h: &Matrix3<f64>, cells: &Cells, blur: f64) -> O
 /// What a round of Gauss-Newton changes.
 struct Round {
     step: Matrix3<f64>,
-    light: [f64; 2],
+    light: [f64; 4],
     /// Of the blur, its logarithm.
     blur: f64,
     /// Standard deviation of what is left, grey levels.
@@ -260,7 +268,7 @@ fn round(
     h: &Matrix3<f64>,
     cells: &Cells,
     (blur, told): (f64, f64),
-    light: [f64; 2],
+    light: [f64; 4],
     spread: f64,
 ) -> Option<Round> {
     let far = FAR * spread;
@@ -273,11 +281,13 @@ fn round(
         else {
             continue;
         };
-        let off = sample.light - light[0] - light[1] * value;
+        let (across, down) = (u / HALF, v / HALF);
+        let contrast = light[1] + light[2] * across + light[3] * down;
+        let off = sample.light - light[0] - contrast * value;
         let weight = if off.abs() > far { far / off.abs() } else { 1.0 };
         // The mapping shifts what is seen here; the tag's brightness goes with it.
         let depth = h[(2, 0)] * u + h[(2, 1)] * v + h[(2, 2)];
-        let (gx, gy) = (-light[1] * sx / depth, -light[1] * sy / depth);
+        let (gx, gy) = (-contrast * sx / depth, -contrast * sy / depth);
         let along = -(gx * sample.at[0] + gy * sample.at[1]);
         let row = Row::from([
             gx * u,
@@ -290,7 +300,9 @@ fn round(
             along * v,
             1.0,
             value,
-            light[1] * widen,
+            value * across,
+            value * down,
+            contrast * widen,
         ]);
         curvature.ger(weight, &row, &row, 1.0);
         slope.axpy(weight * off, &row, 1.0);
@@ -301,8 +313,8 @@ fn round(
         return None;
     }
     let known = (spread.min(20.0) / BLUR_KNOWN).powi(2);
-    curvature[(10, 10)] += known;
-    slope[10] += known * (told / blur).ln();
+    curvature[(BLUR, BLUR)] += known;
+    slope[BLUR] += known * (told / blur).ln();
     let factors = curvature.cholesky()?;
     let d = factors.solve(&slope);
     let spread = (squares / (count - UNKNOWN as f64)).sqrt().max(0.5);
@@ -310,8 +322,8 @@ fn round(
     let finite = d.iter().all(|x| x.is_finite());
     finite.then(|| Round {
         step,
-        light: [d[8], d[9]],
-        blur: d[10],
+        light: [d[8], d[9], d[10], d[11]],
+        blur: d[BLUR],
         spread,
         deviation: spread * corner_variance(h, &factors.inverse()).max(0.0).sqrt(),
     })
@@ -322,8 +334,9 @@ fn corner_variance(h: &Matrix3<f64>, covariance: &Normal) -> f64 {
     let one = |[u, v]: [f64; 2]| {
         let p = h * Vector3::new(u, v, 1.0);
         let (x, y) = (p.x / p.z, p.y / p.z);
-        let across = Row::from([u, v, 1.0, 0.0, 0.0, 0.0, -x * u, -x * v, 0.0, 0.0, 0.0]) / p.z;
-        let down = Row::from([0.0, 0.0, 0.0, u, v, 1.0, -y * u, -y * v, 0.0, 0.0, 0.0]) / p.z;
+        let row = |a: [f64; 8]| Row::from_fn(|k, _| a.get(k).copied().unwrap_or_default()) / p.z;
+        let across = row([u, v, 1.0, 0.0, 0.0, 0.0, -x * u, -x * v]);
+        let down = row([0.0, 0.0, 0.0, u, v, 1.0, -y * u, -y * v]);
         across.dot(&(covariance * across)) + down.dot(&(covariance * down))
     };
     SQUARE.into_iter().map(one).sum::<f64>() / 8.0
