@@ -38,7 +38,7 @@ const ARROWS: [(&str, &[&str]); 9] = [
     ("recording", &["vocabulary"]),
     ("rendering", &["vocabulary"]),
     ("simulation", &["vocabulary", "scene", "formation", "world", "perception", "recording"]),
-    ("cli", &["vocabulary", "scene", "simulation", "recording", "rendering"]),
+    ("cli", &["vocabulary", "scene", "perception", "simulation", "recording", "rendering"]),
 ];
 
 /// Heavy crates and the only members that may name them.

@@ -25,6 +25,10 @@ pub(crate) enum Command {
     Film(FilmArgs),
     /// Search gains that fit a scene's vehicles, and print them
     Tune(TuneArgs),
+    /// Write what the cameras of a scene see, with the truth about every tag: a labelled set of pictures
+    Dataset(DatasetArgs),
+    /// Measure how well leaders are found and located in drawn pictures
+    Accuracy(AccuracyArgs),
     /// Read scenes and say what is wrong with them, without running
     Check(CheckArgs),
     /// Print the JSON Schema of scene files
@@ -92,6 +96,12 @@ pub(crate) struct PictureArgs {
     /// Elements to leave out, such as labels,inset,ghosts
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) without: Vec<String>,
+    /// In views through cameras, draw the tags found, the pose estimated and how sure it is
+    #[arg(long)]
+    pub(crate) overlay: bool,
+    /// Show what this robot's camera sees in a corner of the picture, with the overlay
+    #[arg(long, value_name = "ROBOT")]
+    pub(crate) inset_camera: Option<String>,
     /// Size of text and lines; grows with the height of the picture if left out
     #[arg(long, value_parser = scale)]
     pub(crate) scale: Option<f64>,
@@ -142,6 +152,43 @@ pub(crate) struct TuneArgs {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct DatasetArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Folder for pictures, dataset.json and coco.json
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Time from one picture of a camera to its next, s
+    #[arg(long, value_name = "SECONDS", default_value = "0.2", value_parser = interval)]
+    pub(crate) every: f64,
+    /// Followers whose cameras take pictures; all if left out
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) edges: Vec<String>,
+    /// Look for the leader in the whole picture, instead of the part around where it is
+    #[arg(long)]
+    pub(crate) whole: bool,
+    /// Replace an earlier data set in the folder
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AccuracyArgs {
+    /// Poses of the leader to try
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    pub(crate) poses: u64,
+    /// Seed of the poses and of the noise
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Adapter to draw with: vulkan, gl, or part of its name; fails where there is none such
+    #[arg(long, default_value = "auto")]
+    pub(crate) adapter: String,
+    /// Print the result as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
     /// Scene files
     #[arg(value_name = "SCENE", required = true)]
@@ -166,6 +213,11 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     text.split_once(['x', 'X', '×'])
         .and_then(|(w, h)| Some([parse(w)?, parse(h)?]))
         .ok_or_else(|| "write width and height in pixels, such as 1280x720".to_owned())
+}
+
+fn interval(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| (0.001..=1e5).contains(v));
+    value.ok_or_else(|| "write seconds from 0.001 to 100000".to_owned())
 }
 
 fn scale(text: &str) -> Result<f64, String> {

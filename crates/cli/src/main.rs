@@ -1,9 +1,12 @@
 //! The program `echelon`: a file per subcommand.
 
+mod accuracy;
 mod args;
 mod capture;
 mod check;
+mod dataset;
 mod doctor;
+mod eyes;
 mod failure;
 mod film;
 mod interrupt;
@@ -28,7 +31,13 @@ fn main() -> ExitCode {
     if matches!(
         program.command,
         Some(
-            Command::Run(_) | Command::Capture(_) | Command::Film(_) | Command::Tune(_) | Command::Doctor(_)
+            Command::Run(_)
+                | Command::Capture(_)
+                | Command::Film(_)
+                | Command::Tune(_)
+                | Command::Dataset(_)
+                | Command::Accuracy(_)
+                | Command::Doctor(_)
         )
     ) {
         quiet::restart_if_needed();
@@ -43,6 +52,8 @@ fn main() -> ExitCode {
         Some(Command::Capture(args)) => capture::capture(&args),
         Some(Command::Film(args)) => film::film(&args),
         Some(Command::Tune(args)) => tune::tune(&args),
+        Some(Command::Dataset(args)) => dataset::dataset(&args),
+        Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Schema) => {
             print::schema();

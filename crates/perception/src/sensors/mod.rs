@@ -6,6 +6,7 @@
 
 mod camera;
 mod geometric;
+mod hiding;
 mod noise;
 mod pan;
 mod sightline;

@@ -1,0 +1,167 @@
+//! Draws poses, looks for the leader in them, and takes the time.
+
+use crate::accuracy::poses::{FOLLOWER, LEADER};
+use crate::accuracy::tally::{Errors, Sample};
+use crate::dataset::camera::{CORNER_NOISE, errors, relative_pose};
+use crate::dataset::view::{FaceView, region_around};
+use crate::failure::Failure;
+use perception::detect::{Detector, Locus, Tag, recognise};
+use perception::imaging::{Optics, Purpose, Sensor, noise_stream};
+use perception::pose::{Prior, Rig, SeenFace, locate};
+use rendering::{CameraEyes, Gpu};
+use std::time::Instant;
+use vocabulary::{Body, Cast, Edge, FACES, Grey, Member, Pose, Region, Rigid, Shell, Shot, Snapshot};
+
+/// What is timed, in the order of [`Times`].
+pub(crate) const STAGES: [&str; 4] = ["draw", "sensor", "detect and sharpen", "locate"];
+/// Milliseconds of each stage.
+pub(crate) type Times = [f64; 4];
+
+/// A corner that is off by more pixels, or by more than half a cell, is not that of the face it is said to be.
+const ELSEWHERE: f64 = 2.0;
+
+/// A leader, a camera that looks at it, and all that is needed to find the one in the picture of the other.
+pub(crate) struct Bench {
+    pub(crate) cast: Cast,
+    eyes: CameraEyes,
+    sensor: Sensor,
+    detector: Watched,
+    seed: u64,
+}
+
+/// A detector, and how many of the tags it found are not there.
+struct Watched {
+    inner: Locus,
+    shell: Shell,
+    foreign: usize,
+}
+
+impl Detector for Watched {
+    fn detect(&mut self, picture: &Grey, found: &mut Vec<Tag>) {
+        self.inner.detect(picture, found);
+        self.foreign += found.iter().filter(|tag| self.shell.face_of(tag.id).is_none()).count();
+    }
+}
+
+/// What was found in one picture.
+struct Found {
+    faces: Vec<SeenFace>,
+    wrong: usize,
+    times: Times,
+}
+
+impl Bench {
+    /// With a leader that carries the tags of robot number `number`.
+    pub(crate) fn new(gpu: &Gpu, number: usize, seed: u64) -> Result<Self, Failure> {
+        let mut leader = Member::new("leader", true, Body::default());
+        let shell = leader.shell.unwrap_or(Shell::PAPER).tagged(number);
+        leader.shell = Some(shell);
+        let cast = Cast {
+            members: vec![leader, Member::new("follower", false, Body::default())],
+            edges: vec![Edge { leader: LEADER, follower: FOLLOWER }],
+            looks: true,
+            ..Cast::default()
+        };
+        Ok(Self {
+            eyes: CameraEyes::new(gpu, &cast)?,
+            sensor: Sensor::new(Optics { lens: cast.members[FOLLOWER].lens, ..Optics::default() }),
+            detector: Watched { inner: Locus::new(), shell, foreign: 0 },
+            seed,
+            cast,
+        })
+    }
+
+    /// What comes of the `number`th pose, and the times of the tracked part and of the whole picture.
+    pub(crate) fn try_pose(
+        &mut self,
+        snapshot: &Snapshot,
+        number: u64,
+    ) -> Result<(Sample, [Times; 2]), Failure> {
+        let [leader, own] = [LEADER, FOLLOWER].map(|robot| snapshot.robots[robot]);
+        let follower = &self.cast.members[FOLLOWER];
+        let (shell, lens) = (self.detector.shell, follower.lens);
+        let body_from_camera = follower.mount.body_from_camera(own.camera_pan);
+        let camera_from_body =
+            follower.mount.world_from_camera(&own).inverse().after(&leader.world_from_body());
+        let truth = relative_pose(&leader.motion.pose, &own.motion.pose);
+        let view = |face: usize| FaceView::of(&shell, &lens, &camera_from_body, face);
+        let readable = (0..FACES).filter_map(view).filter(|view| view.readable(&lens)).count();
+
+        let region = region_around(&shell, &lens, &camera_from_body);
+        let mut near = self.look(snapshot, number, region, &camera_from_body)?;
+        let whole = self.look(snapshot, number, Region::whole(&lens), &camera_from_body)?;
+        let rig = Rig { shell, lens, body_from_camera };
+        let clock = Instant::now();
+        let estimate = locate(&rig, &near.faces, CORNER_NOISE, &Prior::default(), None);
+        near.times[3] = milliseconds(clock);
+        let off = |pose: &Pose| relative_errors(pose, &truth);
+        let sample = Sample {
+            distance: truth.x.hypot(truth.y),
+            readable,
+            seen: near.faces.len(),
+            seen_whole: whole.faces.len(),
+            wrong: near.wrong + whole.wrong,
+            refined: estimate.as_ref().map(|found| off(&found.pose)),
+            ambiguous: estimate.as_ref().is_some_and(|found| found.ambiguous),
+            raw: estimate.as_ref().and_then(|found| found.raw.as_ref()).map(off),
+        };
+        let located = near.times[3];
+        Ok((sample, [near.times, [whole.times[0], whole.times[1], whole.times[2], located]]))
+    }
+
+    /// Draws a part of the picture and finds the leader's faces in it.
+    fn look(
+        &mut self,
+        snapshot: &Snapshot,
+        number: u64,
+        region: Region,
+        camera_from_body: &Rigid,
+    ) -> Result<Found, Failure> {
+        let follower = &self.cast.members[FOLLOWER];
+        let source = self.sensor.source(region);
+        let shot = Shot {
+            robot: FOLLOWER,
+            world_from_camera: follower.mount.world_from_camera(&snapshot.robots[FOLLOWER]),
+            focal: follower.lens.focal,
+            centre: source.centre,
+            region: source.region,
+            exposure: 1.0,
+        };
+        let mut times = Times::default();
+        let mut pictures = Vec::new();
+        let clock = Instant::now();
+        self.eyes.take(snapshot, &[shot], &mut pictures)?;
+        times[0] = milliseconds(clock);
+        let light = pictures.pop().unwrap_or_default();
+        let mut picture = Grey::default();
+        let mut random = noise_stream(self.seed, FOLLOWER, number, Purpose::Pixels);
+        let clock = Instant::now();
+        self.sensor.expose(&light, region, &mut random, &mut picture);
+        times[1] = milliseconds(clock);
+        let optics = *self.sensor.optics();
+        let shell = self.detector.shell;
+        self.detector.foreign = 0;
+        let clock = Instant::now();
+        let faces = recognise(&mut self.detector, &picture, region, &optics, &shell);
+        times[2] = milliseconds(clock);
+        let strayed = faces.iter().filter(|seen| strays(seen, &shell, &optics, camera_from_body)).count();
+        Ok(Found { faces, wrong: self.detector.foreign + strayed, times })
+    }
+}
+
+/// Whether a face was found where it is not.
+fn strays(seen: &SeenFace, shell: &Shell, optics: &Optics, camera_from_body: &Rigid) -> bool {
+    let Some(view) = FaceView::of(shell, &optics.lens, camera_from_body, seen.face) else { return true };
+    let most = ELSEWHERE.max(0.5 * view.cell);
+    seen.corners.iter().zip(view.corners).any(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) > most)
+}
+
+/// Range as a share of the range, bearing and heading.
+fn relative_errors(pose: &Pose, truth: &Pose) -> Errors {
+    let [range, bearing, heading] = errors(pose, truth);
+    [range / truth.x.hypot(truth.y).max(1e-9), bearing, heading]
+}
+
+fn milliseconds(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
+}

@@ -1,0 +1,176 @@
+//! What came of many pictures, by distance.
+
+use crate::accuracy::poses::BINS;
+
+/// A heading that is off by more, rad, is a flip.
+pub(crate) const FLIP: f64 = 8.0 * std::f64::consts::PI / 180.0;
+
+/// Errors of one pose: range (share of the range), bearing, heading (rad).
+pub(crate) type Errors = [f64; 3];
+
+/// What came of one pose of the leader.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Sample {
+    /// m.
+    pub(crate) distance: f64,
+    /// Faces that should be read.
+    pub(crate) readable: usize,
+    /// Faces that were, in the part of the picture that a camera looks at which tracks the leader.
+    pub(crate) seen: usize,
+    /// And in the whole picture.
+    pub(crate) seen_whole: usize,
+    /// Ids found that are not there, and faces found where they are not, in both together.
+    pub(crate) wrong: usize,
+    /// The pose found, refined.
+    pub(crate) refined: Option<Errors>,
+    /// Whether another pose explains the picture as well, so that this one is not relied on.
+    pub(crate) ambiguous: bool,
+    /// What POSIT alone found.
+    pub(crate) raw: Option<Errors>,
+}
+
+/// Root mean squares of errors.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Rms {
+    squares: [f64; 3],
+    pub(crate) count: u32,
+}
+
+impl Rms {
+    fn add(&mut self, errors: &Errors) {
+        self.count += 1;
+        for (sum, error) in self.squares.iter_mut().zip(errors) {
+            *sum += error * error;
+        }
+    }
+
+    /// Range in percent, bearing and heading in degrees; `None` of nothing.
+    pub(crate) fn values(&self) -> Option<[f64; 3]> {
+        let [range, bearing, heading] = self.squares.map(|sum| (sum / f64::from(self.count)).sqrt());
+        (self.count > 0).then(|| [100.0 * range, bearing.to_degrees(), heading.to_degrees()])
+    }
+}
+
+/// All samples of one bin of distances.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Bin {
+    /// Poses tried.
+    pub(crate) poses: u32,
+    /// Views in which a face, and two faces, should be read.
+    pub(crate) views: [u32; 2],
+    /// In how many of these so many were, in the part that is tracked.
+    pub(crate) seen: [u32; 2],
+    /// And in the whole picture.
+    pub(crate) seen_whole: [u32; 2],
+    pub(crate) wrong: usize,
+    /// Poses that were relied on and flipped.
+    pub(crate) flips: u32,
+    /// Poses that were not relied on.
+    pub(crate) ambiguous: u32,
+    /// Two faces and more.
+    pub(crate) refined: Rms,
+    /// Two faces and more, POSIT alone.
+    pub(crate) raw: Rms,
+    /// One face, unless ambiguous.
+    pub(crate) single: Rms,
+}
+
+impl Bin {
+    pub(crate) fn add(&mut self, sample: &Sample) {
+        self.poses += 1;
+        self.wrong += sample.wrong;
+        for (k, least) in [1, 2].into_iter().enumerate() {
+            if sample.readable >= least {
+                self.views[k] += 1;
+                self.seen[k] += u32::from(sample.seen >= least);
+                self.seen_whole[k] += u32::from(sample.seen_whole >= least);
+            }
+        }
+        let Some(errors) = &sample.refined else { return };
+        self.ambiguous += u32::from(sample.ambiguous);
+        self.flips += u32::from(!sample.ambiguous && errors[2].abs() > FLIP);
+        match sample.seen {
+            0 => {}
+            1 if sample.ambiguous => {}
+            1 => self.single.add(errors),
+            _ => {
+                self.refined.add(errors);
+                if let Some(raw) = &sample.raw {
+                    self.raw.add(raw);
+                }
+            }
+        }
+    }
+}
+
+/// The bin of a distance.
+pub(crate) fn bin_of(distance: f64) -> usize {
+    let last = BINS.len() - 1;
+    BINS.iter().position(|[_, high]| distance < *high).unwrap_or(last)
+}
+
+/// What has to be reached, and what should be, in a bin: range in percent, bearing and heading in degrees.
+pub(crate) fn targets(bin: usize) -> Option<[[f64; 3]; 2]> {
+    match bin {
+        0 | 1 => Some([[0.1, 0.03, 0.2], [0.03, 0.01, 0.06]]),
+        2 => Some([[0.15, 0.03, 0.4], [0.07, 0.01, 0.15]]),
+        3 => Some([[0.25, 0.03, 0.5], [0.12, 0.012, 0.25]]),
+        _ => None,
+    }
+}
+
+/// Median, or the mean of the two in the middle; `None` of nothing.
+pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    let upper = values.get(middle)?;
+    if values.len().is_multiple_of(2) { Some(0.5 * (upper + values[middle - 1])) } else { Some(*upper) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_counted_where_they_belong() {
+        let mut bin = Bin::default();
+        let two = Sample {
+            readable: 2,
+            seen: 2,
+            seen_whole: 1,
+            refined: Some([0.003, 0.0, 0.2]),
+            raw: Some([0.004, 0.0, 0.0]),
+            ..Sample::default()
+        };
+        bin.add(&two);
+        bin.add(&Sample { refined: Some([0.004, 0.0, 0.0]), ..two });
+        bin.add(&Sample { readable: 1, seen: 1, seen_whole: 1, ..two });
+        bin.add(&Sample { readable: 1, seen: 1, ambiguous: true, ..two });
+        bin.add(&Sample { readable: 1, wrong: 1, ..Sample::default() });
+        bin.add(&Sample::default());
+        assert_eq!((bin.poses, bin.views, bin.seen), (6, [5, 2], [4, 2]));
+        assert_eq!((bin.seen_whole, bin.wrong), ([4, 0], 1));
+        assert_eq!((bin.flips, bin.ambiguous), (2, 1));
+        assert_eq!((bin.refined.count, bin.raw.count, bin.single.count), (2, 2, 1));
+        let range = bin.refined.values().expect("two")[0];
+        assert!((range - 100.0 * (0.5 * (0.003_f64.powi(2) + 0.004_f64.powi(2))).sqrt()).abs() < 1e-12);
+        assert_eq!(Rms::default().values(), None);
+    }
+
+    #[test]
+    fn bins_and_targets_go_together() {
+        assert_eq!([0.5, 0.99, 1.0, 3.99, 4.0, 6.0, 9.0].map(bin_of), [0, 0, 1, 3, 4, 5, 5]);
+        for bin in 0..BINS.len() {
+            let Some([must, stretch]) = targets(bin) else { continue };
+            assert!((0..3).all(|k| stretch[k] < must[k]));
+        }
+        assert!(targets(4).is_none());
+    }
+
+    #[test]
+    fn a_median_is_in_the_middle() {
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), Some(2.5));
+        assert_eq!(median(&mut []), None);
+    }
+}

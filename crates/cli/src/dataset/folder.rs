@@ -1,0 +1,120 @@
+//! The folder of a data set: refused where it holds other things, every file in it whole or not there.
+
+use crate::failure::Failure;
+use recording::{Error, write_whole};
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use vocabulary::Grey;
+
+/// What `--force` replaces.
+const OURS: [&str; 3] = ["dataset.json", "coco.json", PICTURES];
+/// Folder of the pictures.
+const PICTURES: &str = "pictures";
+
+/// A folder that is being filled.
+pub(crate) struct Folder(PathBuf);
+
+impl Folder {
+    /// Makes the folder; with `force`, removes an earlier data set from it, and nothing else.
+    pub(crate) fn create(path: &Path, force: bool) -> Result<Self, Failure> {
+        if path.is_file() {
+            let text = format!("{} is a file; --out names a folder for the data set", path.display());
+            return Err(Failure::Usage(text));
+        }
+        clear(path, force)?;
+        let pictures = path.join(PICTURES);
+        fs::create_dir_all(&pictures).map_err(|e| refused("create", &pictures, &e))?;
+        Ok(Self(path.to_owned()))
+    }
+
+    /// Writes a picture and returns its name within the folder.
+    pub(crate) fn picture(&self, name: &str, picture: &Grey) -> Result<String, Failure> {
+        let name = format!("{PICTURES}/{name}.png");
+        let path = self.0.join(&name);
+        let bytes = encoded(picture)
+            .map_err(|e| Failure::Machine(format!("cannot write {}: {e}", path.display())))?;
+        write_whole(&path, &bytes)?;
+        Ok(name)
+    }
+
+    /// Writes a text file.
+    pub(crate) fn json(&self, name: &str, value: &Value) -> Result<(), Failure> {
+        Ok(write_whole(&self.0.join(name), format!("{value:#}\n").as_bytes())?)
+    }
+}
+
+fn refused(action: &str, path: &Path, error: &std::io::Error) -> Failure {
+    Failure::Machine(format!("cannot {action} {}: {error}", path.display()))
+}
+
+fn clear(folder: &Path, force: bool) -> Result<(), Failure> {
+    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
+    let names: Vec<_> = entries.filter_map(|e| e.ok().map(|e| e.file_name())).collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    let occupied = |what| Err(Error::Occupied { path: folder.to_owned(), what }.into());
+    if !names.iter().any(|name| name == OURS[0]) {
+        return occupied("holds other files");
+    }
+    if !force {
+        return occupied("already holds a data set");
+    }
+    for name in names.iter().filter(|name| OURS.iter().any(|ours| *name == ours)) {
+        let path = folder.join(name);
+        let removed = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+        removed.map_err(|e| refused("remove", &path, &e))?;
+    }
+    Ok(())
+}
+
+/// A PNG file of 8 bits grey. The values are the sensor's, linear in light, and the file says so.
+fn encoded(picture: &Grey) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, picture.width, picture.height);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_gamma(png::ScaledFloat::new(1.0));
+    encoder.set_compression(png::Compression::Fast);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&picture.values)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grey_pictures_are_written_as_they_are() {
+        let values: Vec<u8> = (0..12).map(|k| k * 20).collect();
+        let bytes = encoded(&Grey { width: 4, height: 3, values: values.clone() }).expect("encoded");
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("a picture");
+        let mut read = vec![0; 12];
+        let info = reader.next_frame(&mut read).expect("a frame");
+        assert_eq!((info.width, info.height, info.color_type), (4, 3, png::ColorType::Grayscale));
+        assert_eq!(read, values);
+    }
+
+    #[test]
+    fn only_an_earlier_data_set_is_replaced() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        drop(Folder::create(folder.path(), false).expect("empty"));
+        fs::write(at("dataset.json"), "{}").expect("written");
+        fs::write(at("pictures/old.png"), "old").expect("written");
+        fs::write(at("notes.txt"), "mine").expect("written");
+        assert!(
+            matches!(Folder::create(folder.path(), false), Err(Failure::Usage(text)) if text.contains("--force"))
+        );
+        drop(Folder::create(folder.path(), true).expect("replaced"));
+        assert!(at("notes.txt").exists() && !at("pictures/old.png").exists() && !at("dataset.json").exists());
+        let text = match Folder::create(folder.path(), true) {
+            Err(Failure::Usage(text)) => text,
+            _ => String::new(),
+        };
+        assert!(text.contains("other files"), "{text}");
+    }
+}

@@ -1,0 +1,27 @@
+//! What is hidden from whom, for those who know the truth.
+
+use super::{Look, Senses, sightline};
+use vocabulary::Snapshot;
+
+impl Senses {
+    /// Whether anything hides the point `to` on the robot `watched` from the point `from` on the robot `watcher`, both in
+    /// the world's frame, m; those two robots themselves do not count.
+    pub fn hides(
+        &self,
+        snapshot: &Snapshot,
+        (watcher, watched): (usize, usize),
+        from: [f64; 3],
+        to: [f64; 3],
+    ) -> bool {
+        let look = Look {
+            edge: 0,
+            leader: watched,
+            follower: watcher,
+            number: 0,
+            snapshot,
+            expected: None,
+            seen: false,
+        };
+        sightline::hidden(self, &look, from, to)
+    }
+}
