@@ -1,8 +1,9 @@
 //! From a scene file to a simulation.
 
 use crate::args::SceneArgs;
+use crate::eyes::{self, Drawn};
 use crate::failure::Failure;
-use rendering::{AdapterChoice, CameraEyes, Gpu};
+use rendering::Gpu;
 use scene::{Override, Scene};
 use simulation::{Setup, Simulation};
 use std::path::Path;
@@ -25,25 +26,9 @@ pub(crate) fn load(args: &SceneArgs) -> Result<Loaded, Failure> {
 
 impl Loaded {
     /// Gives the robots' cameras someone to draw for them, where they take pictures: `gpu`, or the adapter of `args`.
-    pub(crate) fn open_eyes(&mut self, gpu: Option<&Gpu>, args: &SceneArgs) -> Result<(), Failure> {
-        open_eyes(&mut self.simulation, gpu, &args.adapter)
+    pub(crate) fn open_eyes(&mut self, gpu: Option<&Gpu>, args: &SceneArgs) -> Result<Drawn, Failure> {
+        eyes::open(&mut self.simulation, gpu, &args.adapter)
     }
-}
-
-/// Gives the cameras of a run someone to draw for them, where they take pictures.
-pub(crate) fn open_eyes(
-    simulation: &mut Simulation,
-    gpu: Option<&Gpu>,
-    adapter: &str,
-) -> Result<(), Failure> {
-    if simulation.needs_eyes() {
-        let opened = if gpu.is_none() { Some(Gpu::open(&AdapterChoice::from(adapter))?) } else { None };
-        if let Some(gpu) = gpu.or(opened.as_ref()) {
-            let eyes = CameraEyes::new(gpu, simulation.cast())?;
-            simulation.open_eyes(Box::new(eyes));
-        }
-    }
-    Ok(())
 }
 
 /// Loads, checks and builds the scene at `path`.

@@ -2,7 +2,7 @@
 
 use crate::args::{PictureArgs, SceneArgs};
 use crate::failure::Failure;
-use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style};
+use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, View};
 use vocabulary::Cast;
 
 /// Everything that draws.
@@ -26,6 +26,15 @@ impl Studio {
         let layout = Layout::parse(args.view.as_deref().unwrap_or(view), &names)?;
         let size = args.size.unwrap_or(size);
         let mut style = Style::without(&args.without)?;
+        style.detections = args.overlay || args.inset_camera.is_some();
+        if let Some(robot) = &args.inset_camera {
+            // The same words and the same mistakes as in a view.
+            let view = Layout::parse(&format!("camera:{robot}"), &names)?;
+            style.picture_in_picture = view.views.iter().find_map(|view| match view {
+                View::Camera(index) => Some(*index),
+                _ => None,
+            });
+        }
         // Text that suits 720 lines suits no poster: it grows with the picture, and never below its size there.
         style.scale = args.scale.unwrap_or_else(|| (f64::from(size[1]) / 720.0).max(1.0));
         let gpu = Gpu::open(&AdapterChoice::from(&*scene.adapter))?;

@@ -1,5 +1,6 @@
 //! What a run showed, for people and for machines.
 
+use crate::eyes::Drawn;
 use crate::print::{json, note, say};
 use recording::Metrics;
 use scene::Scene;
@@ -16,6 +17,8 @@ pub(crate) struct Report<'a> {
     pub(crate) folder: Option<PathBuf>,
     /// s of wall time, simulation and recording.
     pub(crate) wall: f64,
+    /// What of it went into the pictures of the robots' cameras.
+    pub(crate) drawn: Drawn,
     pub(crate) steps: u64,
 }
 
@@ -34,7 +37,16 @@ pub(crate) fn as_text(report: &Report<'_>) {
     looks(metrics);
     contacts(metrics);
     let speed = metrics.duration / report.wall.max(1e-9);
-    say(&format!("{:.2} s in {} steps, {speed:.0} times real time", metrics.duration, report.steps));
+    let speed = if speed < 10.0 { format!("{speed:.2}") } else { format!("{speed:.0}") };
+    say(&format!("{:.2} s in {} steps, {speed} times real time", metrics.duration, report.steps));
+    if report.drawn.pictures() > 0 {
+        let (pictures, seconds) = (report.drawn.pictures(), report.drawn.seconds());
+        say(&format!(
+            "{pictures} pictures of cameras, drawn in {seconds:.1} s of {:.1} s, {:.2} ms each",
+            report.wall,
+            seconds / pictures as f64 * 1e3
+        ));
+    }
     say(&format!("digest {}", report.digest));
     if let Some(folder) = &report.folder {
         say(&format!("recorded in {}", folder.display()));
@@ -160,6 +172,8 @@ pub(crate) fn as_json(report: &Report<'_>) {
         "seed": report.scene.seed,
         "steps": report.steps,
         "wall_seconds": report.wall,
+        "camera_pictures": report.drawn.pictures(),
+        "camera_seconds": report.drawn.seconds(),
         "digest": report.digest,
         "folder": report.folder.as_ref().map(|f| f.display().to_string()),
         "metrics": report.metrics,

@@ -20,7 +20,7 @@ const STRIDE: u64 = 16;
 
 pub(crate) fn run(args: &RunArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;
-    loaded.open_eyes(None, &args.scene)?;
+    let drawn = loaded.open_eyes(None, &args.scene)?;
     let Loaded { scene, mut simulation } = loaded;
     let folder = if args.no_record { None } else { Some(folder(args)?) };
     let mut sink = match &folder {
@@ -69,8 +69,16 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     }
     let findings = verdict(&scene, &metrics, status == Status::Complete);
     let met = findings.iter().all(|f| f.met);
-    let report =
-        Report { scene: &scene, metrics: &metrics, findings: &findings, digest, folder, wall, steps: step };
+    let report = Report {
+        scene: &scene,
+        metrics: &metrics,
+        findings: &findings,
+        digest,
+        folder,
+        wall,
+        drawn,
+        steps: step,
+    };
     if args.scene.json {
         report::as_json(&report);
     } else if !args.scene.quiet {

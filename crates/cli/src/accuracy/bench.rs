@@ -141,6 +141,7 @@ impl Bench {
         let optics = *self.sensor.optics();
         let shell = self.detector.shell;
         self.detector.foreign = 0;
+        self.detector.inner = Locus::new();
         let clock = Instant::now();
         let faces = recognise(&mut self.detector, &picture, region, &optics, &shell);
         times[2] = milliseconds(clock);
