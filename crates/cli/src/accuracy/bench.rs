@@ -5,7 +5,7 @@ use crate::accuracy::tally::{Errors, Sample};
 use crate::dataset::camera::{CORNER_NOISE, errors, relative_pose};
 use crate::dataset::view::{FaceView, region_around};
 use crate::failure::Failure;
-use perception::detect::{Detector, Locus, Tag, recognise};
+use perception::detect::{Detector, Locus, Tag, recognise_expected};
 use perception::imaging::{Optics, Purpose, Sensor, noise_stream};
 use perception::pose::{Prior, Rig, SeenFace, locate};
 use rendering::{CameraEyes, Gpu};
@@ -39,6 +39,18 @@ struct Watched {
 impl Detector for Watched {
     fn detect(&mut self, picture: &Grey, found: &mut Vec<Tag>) {
         self.inner.detect(picture, found);
+        self.count(found);
+    }
+
+    fn detect_in_shade(&mut self, picture: &Grey, found: &mut Vec<Tag>) {
+        // What was foreign before has been taken out.
+        self.inner.detect_in_shade(picture, found);
+        self.count(found);
+    }
+}
+
+impl Watched {
+    fn count(&mut self, found: &[Tag]) {
         self.foreign += found.iter().filter(|tag| self.shell.face_of(tag.id).is_none()).count();
     }
 }
@@ -47,6 +59,7 @@ impl Detector for Watched {
 struct Found {
     faces: Vec<SeenFace>,
     wrong: usize,
+    strayed: usize,
     times: Times,
 }
 
@@ -85,11 +98,14 @@ impl Bench {
             follower.mount.world_from_camera(&own).inverse().after(&leader.world_from_body());
         let truth = relative_pose(&leader.motion.pose, &own.motion.pose);
         let view = |face: usize| FaceView::of(&shell, &lens, &camera_from_body, face);
-        let readable = (0..FACES).filter_map(view).filter(|view| view.readable(&lens)).count();
+        let views: Vec<FaceView> = (0..FACES).filter_map(view).collect();
+        let readable = views.iter().filter(|view| view.readable(&lens)).count();
+        // A camera that tracks its leader expects so many, and searches the shade for them only.
+        let expected = views.iter().filter(|view| view.surely_readable()).count().max(1);
 
         let region = region_around(&shell, &lens, &camera_from_body);
-        let mut near = self.look(snapshot, number, region, &camera_from_body)?;
-        let whole = self.look(snapshot, number, Region::whole(&lens), &camera_from_body)?;
+        let mut near = self.look(snapshot, number, (region, expected), &camera_from_body)?;
+        let whole = self.look(snapshot, number, (Region::whole(&lens), FACES), &camera_from_body)?;
         let rig = Rig { shell, lens, body_from_camera };
         let clock = Instant::now();
         let estimate = locate(&rig, &near.faces, CORNER_NOISE, &Prior::default(), None);
@@ -101,6 +117,7 @@ impl Bench {
             seen: near.faces.len(),
             seen_whole: whole.faces.len(),
             wrong: near.wrong + whole.wrong,
+            strayed: near.strayed + whole.strayed,
             refined: estimate.as_ref().map(|found| off(&found.pose)),
             ambiguous: estimate.as_ref().is_some_and(|found| found.ambiguous),
             raw: estimate.as_ref().and_then(|found| found.raw.as_ref()).map(off),
@@ -114,7 +131,7 @@ impl Bench {
         &mut self,
         snapshot: &Snapshot,
         number: u64,
-        region: Region,
+        (region, expected): (Region, usize),
         camera_from_body: &Rigid,
     ) -> Result<Found, Failure> {
         let follower = &self.cast.members[FOLLOWER];
@@ -141,12 +158,11 @@ impl Bench {
         let optics = *self.sensor.optics();
         let shell = self.detector.shell;
         self.detector.foreign = 0;
-        self.detector.inner = Locus::new();
         let clock = Instant::now();
-        let faces = recognise(&mut self.detector, &picture, region, &optics, &shell);
+        let faces = recognise_expected(&mut self.detector, (&picture, region), &optics, &shell, expected);
         times[2] = milliseconds(clock);
         let strayed = faces.iter().filter(|seen| strays(seen, &shell, &optics, camera_from_body)).count();
-        Ok(Found { faces, wrong: self.detector.foreign + strayed, times })
+        Ok(Found { faces, wrong: self.detector.foreign, strayed, times })
     }
 }
 

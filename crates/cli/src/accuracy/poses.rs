@@ -8,8 +8,8 @@ use vocabulary::{Body, Member, Motion, Pose, RobotState, Snapshot};
 pub(crate) const BINS: [[f64; 2]; 6] =
     [[0.5, 1.0], [1.0, 2.0], [2.0, 3.0], [3.0, 4.0], [4.0, 5.0], [5.0, 6.0]];
 
-/// The camera turns so far on its mast, rad.
-const PAN: f64 = 170.0 * PI / 180.0;
+/// The camera turns so far from straight ahead, rad: beyond that its own shell stands in the picture.
+const PAN: f64 = 70.0 * PI / 180.0;
 /// The shell's axis stands within this share of the picture's width from its middle.
 const ASIDE: f64 = 0.42;
 /// Room between two bodies, m.
@@ -28,7 +28,7 @@ pub(crate) fn place(seed: u64, number: u64, follower: &Member) -> Snapshot {
     loop {
         // The sun shines from all sides in turn.
         let own = Pose::new(between(-2.0, 2.0), between(-2.0, 2.0), between(-PI, PI));
-        let direction = between(-PI, PI);
+        let direction = between(-2.0, 2.0);
         let [x, y] = own.world_from_body(distance * direction.cos(), distance * direction.sin());
         let leader = Pose::new(x, y, vocabulary::wrap(between(0.0, TAU)));
         // The leader stands anywhere across the picture: the camera looks past it by that much.

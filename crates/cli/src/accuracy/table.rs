@@ -14,7 +14,7 @@ pub(crate) type Medians = [[Option<f64>; 4]; 2];
 /// Everything as lines.
 pub(crate) fn text(bins: &[Bin], times: &Medians) -> Vec<String> {
     let mut lines = vec![format!(
-        "{:<8}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}{:>7}{:>11}",
+        "{:<10}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}{:>9}{:>7}{:>11}",
         "distance",
         "poses",
         "1 face",
@@ -24,12 +24,13 @@ pub(crate) fn text(bins: &[Bin], times: &Medians) -> Vec<String> {
         "found",
         "whole",
         "wrong",
+        "strayed",
         "flips",
         "ambiguous"
     )];
     for (bounds, bin) in BINS.iter().zip(bins) {
         lines.push(format!(
-            "{:<8}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}{:>7}{:>11}",
+            "{:<10}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}{:>9}{:>7}{:>11}",
             metres(bounds),
             bin.poses,
             bin.views[0],
@@ -39,6 +40,7 @@ pub(crate) fn text(bins: &[Bin], times: &Medians) -> Vec<String> {
             share(bin.seen[1], bin.views[1]),
             share(bin.seen_whole[1], bin.views[1]),
             bin.wrong,
+            bin.strayed,
             bin.flips,
             bin.ambiguous
         ));
@@ -46,14 +48,14 @@ pub(crate) fn text(bins: &[Bin], times: &Medians) -> Vec<String> {
     lines.push(String::new());
     lines.push("RMS error of range %, bearing °, heading °".into());
     lines.push(format!(
-        "{:<8}{:>5}  {:<20}{:<20}{:<20}{:<9}{:<20}{:>5}  {:<20}",
+        "{:<10}{:>5}  {:<20}{:<20}{:<20}{:<9}{:<20}{:>5}  {:<20}",
         "distance", "views", "2 faces or more", "must", "stretch", "", "POSIT alone", "views", "1 face"
     ));
     for (index, (bounds, bin)) in BINS.iter().zip(bins).enumerate() {
         let wanted = targets(index);
         let target = |k: usize| wanted.map_or_else(|| "–".to_owned(), |both| triple(Some(both[k])));
         lines.push(format!(
-            "{:<8}{:>5}  {:<20}{:<20}{:<20}{:<9}{:<20}{:>5}  {:<20}",
+            "{:<10}{:>5}  {:<20}{:<20}{:<20}{:<9}{:<20}{:>5}  {:<20}",
             metres(bounds),
             bin.refined.count,
             triple(bin.refined.values()),
@@ -121,7 +123,7 @@ pub(crate) fn as_json(bins: &[Bin], times: &Medians) -> Value {
                 "distance": bounds, "poses": bin.poses,
                 "one_face": { "views": bin.views[0], "found": bin.seen[0], "found_whole": bin.seen_whole[0] },
                 "two_faces": { "views": bin.views[1], "found": bin.seen[1], "found_whole": bin.seen_whole[1] },
-                "wrong": bin.wrong, "flips": bin.flips, "ambiguous": bin.ambiguous,
+                "wrong": bin.wrong, "strayed": bin.strayed, "flips": bin.flips, "ambiguous": bin.ambiguous,
                 "refined": rms(&bin.refined), "raw_posit": rms(&bin.raw), "single": rms(&bin.single),
                 "targets": targets(index).map(|[must, stretch]| json!({ "must": must, "stretch": stretch })),
                 "verdict": verdict(&bin.refined, targets(index)),

@@ -19,8 +19,10 @@ pub(crate) struct Sample {
     pub(crate) seen: usize,
     /// And in the whole picture.
     pub(crate) seen_whole: usize,
-    /// Ids found that are not there, and faces found where they are not, in both together.
+    /// Ids found that are not there, in both together.
     pub(crate) wrong: usize,
+    /// Faces whose corners are not where they should be, in both together.
+    pub(crate) strayed: usize,
     /// The pose found, refined.
     pub(crate) refined: Option<Errors>,
     /// Whether another pose explains the picture as well, so that this one is not relied on.
@@ -63,6 +65,7 @@ pub(crate) struct Bin {
     /// And in the whole picture.
     pub(crate) seen_whole: [u32; 2],
     pub(crate) wrong: usize,
+    pub(crate) strayed: usize,
     /// Poses that were relied on and flipped.
     pub(crate) flips: u32,
     /// Poses that were not relied on.
@@ -79,6 +82,7 @@ impl Bin {
     pub(crate) fn add(&mut self, sample: &Sample) {
         self.poses += 1;
         self.wrong += sample.wrong;
+        self.strayed += sample.strayed;
         for (k, least) in [1, 2].into_iter().enumerate() {
             if sample.readable >= least {
                 self.views[k] += 1;

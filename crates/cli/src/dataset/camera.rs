@@ -1,6 +1,6 @@
 //! One follower's camera: what its pictures show in truth, and what we find in them.
 
-use crate::dataset::view::{FaceView, region_around};
+use crate::dataset::view::{FaceView, region_around, walls_hide};
 use crate::dataset::words::{Labelled, camera, carrier, found, frame};
 use perception::detect::{Detector, Locus, Tag, identify, recognise, sharpen};
 use perception::imaging::{Optics, Purpose, Sensor, noise_stream};
@@ -9,8 +9,9 @@ use perception::sensors::Senses;
 use serde_json::{Value, json};
 use vocabulary::{Cast, Edge, FACES, Grey, Pose, Region, RobotState, Shell, Snapshot, wrap};
 
-/// Standard deviation of a corner's coordinates as found in pictures, pixels; what cameras that steer by them assume.
-pub(crate) const CORNER_NOISE: f64 = 0.08;
+/// Standard deviation of a corner's coordinates as found in pictures, besides what its finder reports, pixels; what
+/// cameras that steer by them assume.
+pub(crate) const CORNER_NOISE: f64 = 0.02;
 
 /// Along each side of a tag, how many points are tried for being hidden.
 const POINTS: u32 = 5;
@@ -58,6 +59,8 @@ impl FollowerCamera {
         let lens = &self.sensor.optics().lens;
         let world_from_camera = cast.members[follower].mount.world_from_camera(&snapshot.robots[follower]);
         let camera_from_world = world_from_camera.inverse();
+        let own = cast.members[follower].shell;
+        let own_from_world = snapshot.robots[follower].world_from_body().inverse();
         let mut labels = Vec::new();
         for (robot, (member, state)) in cast.members.iter().zip(&snapshot.robots).enumerate() {
             let Some((shell, first)) = member.shell.and_then(|s| Some((s, s.first_tag?))) else { continue };
@@ -70,8 +73,11 @@ impl FollowerCamera {
                 let Some(view) = FaceView::of(&shell, lens, &camera_from_body, face) else { continue };
                 let world_from_tag = world_from_body.after(&shell.body_from_face(face));
                 let hides = |x: f64, y: f64| {
-                    let to = world_from_tag.apply([x, y, 0.0]);
-                    senses.hides(snapshot, (follower, robot), world_from_camera.translation, to)
+                    let (from, to) = (world_from_camera.translation, world_from_tag.apply([x, y, 0.0]));
+                    let walls = own.is_some_and(|shell| {
+                        walls_hide(&shell, own_from_world.apply(from), own_from_world.apply(to))
+                    });
+                    walls || senses.hides(snapshot, (follower, robot), from, to)
                 };
                 let h = shell.half_tag();
                 let hidden = [[-h, h], [h, h], [h, -h], [-h, -h]].map(|[x, y]| hides(x, y));
@@ -105,6 +111,7 @@ impl FollowerCamera {
         let optics = *self.sensor.optics();
         let mut tags: Vec<Tag> = vec![];
         self.detector.detect(picture, &mut tags);
+        self.detector.detect_in_shade(picture, &mut tags);
         sharpen(picture, Region::whole(&optics.lens), &optics, &mut tags);
         let shells = cast.members.iter().filter_map(|member| member.shell);
         let accepted: Vec<_> = shells

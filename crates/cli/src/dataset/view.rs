@@ -9,6 +9,8 @@ const LEAST_CELL: [f64; 2] = [1.75, 2.5];
 const STEEPEST: f64 = 0.469;
 /// Pixels that the corners of a tag that is read keep from the edge of the picture.
 const MARGIN: f64 = 4.0;
+/// Cosine of the angle, and pixels a cell, at which a tag is surely read.
+const SURELY: (f64, f64) = (0.55, 2.0);
 /// What is looked at reaches this share of the shell's size beyond it, and this many pixels, as for cameras that track.
 const AROUND: (f64, f64) = (0.25, 14.0);
 /// Sides of what is looked at are whole multiples of this, pixels.
@@ -52,6 +54,11 @@ impl FaceView {
         })
     }
 
+    /// Whether there can be no doubt that it is read, as cameras that track judge it.
+    pub(crate) fn surely_readable(&self) -> bool {
+        self.incidence.cos() > SURELY.0 && self.cell > SURELY.1
+    }
+
     /// Whether a detector should read it: large enough for its slant, and not at the edge of the picture.
     pub(crate) fn readable(&self, lens: &Lens) -> bool {
         let slant = self.incidence.cos();
@@ -92,6 +99,21 @@ pub(crate) fn region_around(shell: &Shell, lens: &Lens, camera_from_body: &Rigid
         (Some((x, width)), Some((y, height))) => Region { x, y, width, height },
         _ => whole,
     }
+}
+
+/// Whether the walls of a shell stand between two points of its robot's frame: a camera that looks back over its
+/// shoulder has its own in the way.
+pub(crate) fn walls_hide(shell: &Shell, from: [f64; 3], to: [f64; 3]) -> bool {
+    (0..FACES).any(|face| {
+        let frame = shell.body_from_face(face).inverse();
+        let (a, b) = (frame.apply(from), frame.apply(to));
+        if a[2] * b[2] >= 0.0 {
+            return false;
+        }
+        let share = a[2] / (a[2] - b[2]);
+        let [x, y] = [0, 1].map(|k| a[k] + (b[k] - a[k]) * share);
+        2.0 * y.abs() * shell.lean.cos() < shell.face_height && x.abs() < shell.half_width(y)
+    })
 }
 
 #[cfg(test)]
@@ -151,6 +173,16 @@ mod tests {
             }
         }
         assert_eq!(region_around(&shell, &lens, &leader(-3.0, 0.0, 0.0)), Region::whole(&lens));
+    }
+
+    #[test]
+    fn a_shells_walls_are_behind_its_own_camera() {
+        let eye = Mount::fitting(&Body::default()).body_from_camera(0.0).translation;
+        let hides = |x: f64, y: f64, z: f64| walls_hide(&Shell::PAPER, eye, [x, y, z]);
+        assert!(!hides(2.0, 0.0, 0.2) && !hides(0.5, 0.0, 0.1) && !hides(0.3, 2.0, 0.2));
+        assert!(hides(-1.0, 0.0, 0.2) && hides(-0.8, 0.8, 0.15));
+        assert!(!hides(-1.0, 0.0, 0.4), "over the rim");
+        assert!(!hides(-0.1, 0.0, 0.2), "within the shell");
     }
 
     /// With strong distortion the edge of the world is drawn back into the picture.
