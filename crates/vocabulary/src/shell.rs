@@ -53,7 +53,7 @@ impl Shell {
     /// on the roof of a vehicle that carries people.
     pub fn fitting(body: &Body) -> Self {
         if body.length >= 1.2 {
-            return Self::PAPER.scaled(4.0).at(0.5 * body.wheelbase, body.height + 0.40);
+            return Self::PAPER.scaled(4.0).at(0.12 * body.wheelbase, body.height + 0.40);
         }
         // Its lower rim is 0.092 m below its middle and clears the wheels by 2 cm.
         let over_wheels = 2.0 * body.wheel_radius + 0.022 + 0.092;

@@ -49,9 +49,10 @@ impl Default for Locus {
 }
 
 impl Locus {
-    /// A detector that works within the thread pool it is called from. Its results do not depend on the pool.
+    /// A detector that works on one thread of its own: pictures are small, and many are looked at side by side.
     pub fn new() -> Self {
-        let engine = DetectorBuilder::new().with_family(TagFamily::AprilTag36h11).build_engine();
+        let engine =
+            DetectorBuilder::new().with_family(TagFamily::AprilTag36h11).with_threads(1).build_engine();
         Self { engine, context: FrameContext::new(), softened: vec![], padded: vec![] }
     }
 }

@@ -124,7 +124,7 @@ impl Bench {
 /// Instants over which a picture with a shutter gathers its light.
 const SMEAR: u32 = 6;
 /// What is looked at reaches this share of the shell's size beyond where it is expected, and this many pixels.
-const MARGIN: (f64, f64) = (0.25, 14.0);
+const MARGIN: (f64, f64) = (0.12, 12.0);
 /// Sides of regions are whole multiples of this, so that few sizes occur.
 const GRID: u32 = 16;
 
