@@ -207,7 +207,7 @@ fn report(words: &mut Words<'_>, tile: Tile, leader: &str, frame: &Frame, row: &
     if frame.outcome.seen() {
         let (r, [d, b, v]) = (frame.sighting.relative, frame.sighting.deviation);
         let angle = |x: f64, s: f64| {
-            format!("{:.1}° ± {:.2}°", x.to_degrees(), s.to_degrees()).replace('-', "\u{2212}")
+            format!("{:.1}° ± {:.3}°", x.to_degrees(), s.to_degrees()).replace('-', "\u{2212}")
         };
         let numbers = format!(
             "ℓ {:.3} m ± {:.1} mm   ψ {}   γ {}",

@@ -225,10 +225,23 @@ pub fn caption(scene: &Scene) -> String {
             scene::Switching::Sign => "sign".to_owned(),
         });
     }
-    if law.kind == scene::LawKind::OutputFeedback {
+    let looks = follow.sensing.kind != SensingKind::Truth;
+    if looks && follow.observer.kind == scene::ObserverKind::Unscented {
+        parts.push("dual unscented filter".to_owned());
+    } else if looks && follow.observer.adaptive {
+        parts.push("ε from noise".to_owned());
+    } else if law.kind == scene::LawKind::OutputFeedback {
         parts.push(format!("ε {} s", pair(follow.observer.epsilon)));
     }
+    let rate = short(follow.sensing.rate);
+    match follow.sensing.kind {
+        SensingKind::Truth => {}
+        SensingKind::Noise => parts.push(format!("{rate} noisy looks a second")),
+        SensingKind::Geometric => parts.push(format!("{rate} looks at tags a second")),
+        SensingKind::Camera => parts.push(format!("{rate} pictures a second")),
+    }
     let mode = match scene.time.mode {
+        _ if looks => format!("every {} ms", short(scene.time.period * 1e3)),
         scene::Mode::Continuous => "continuous time".to_owned(),
         scene::Mode::Sampled => format!("every {} ms", short(scene.time.period * 1e3)),
         scene::Mode::Measured => format!("every {} ms, sampled measurement", short(scene.time.period * 1e3)),

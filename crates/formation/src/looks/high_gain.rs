@@ -90,20 +90,25 @@ impl HighGain {
         (0..3).map(share).fold(0.0, f64::max)
     }
 
-    /// Corrects each channel with L = [1 − p², (1 − p)²/Δt], p = e^(−Δt/ε), Δt the time since the last look.
+    /// Corrects each channel with L = [1 − p², (1 − p)²/Δt], p = e^(−Δt/ε), Δt the time since the last look. A look that is
+    /// less certain than those before, such as the last one of a tag that slips behind a pillar, corrects less.
     pub(super) fn correct(&mut self, law: &LookLaw, look: &Sighting, age: f64) {
+        let trust: [f64; 3] = std::array::from_fn(|k| {
+            let ratio = look.deviation[k].powi(2) / self.variance[k].max(1e-24);
+            if ratio > 1.0 { 2.0 / (1.0 + ratio) } else { 1.0 }
+        });
         for (variance, deviation) in self.variance.iter_mut().zip(look.deviation) {
             *variance += SMOOTHING * (deviation * deviation - *variance);
         }
         let off = innovation(&look.relative, &self.relative());
         for k in 0..2 {
             let [position, rate] = gain(&law.observer, k, self.epsilon(law, k, age), age);
-            self.estimate.output[k] += position * off[k];
-            self.estimate.rates[k] += rate * off[k];
+            self.estimate.output[k] += trust[k] * position * off[k];
+            self.estimate.rates[k] += trust[k] * rate * off[k];
         }
         let [position, rate] = gain(&law.observer, 1, self.epsilon(law, 2, age), age);
-        self.view_angle += position * off[2];
-        self.line_rate += rate * off[2];
+        self.view_angle += trust[2] * position * off[2];
+        self.line_rate += trust[2] * rate * off[2];
     }
 
     /// ε of a channel, s: as given, or the one at which noise and disturbance err alike, ε⁵ = 3σ²T/(32 δ²).
