@@ -3,6 +3,8 @@
 Usage: judge.py FOLDER…, each written by `echelon dataset`. Exits with 1 where something does not hold.
 """
 
+import contextlib
+import io
 import json
 import sys
 import time
@@ -14,13 +16,15 @@ from pupil_apriltags import Detector
 from pycocotools.coco import COCO
 
 # Of the tags that another detector finds, so many may be missed by ours.
-MISSED = 0.02
+MISSED = 0.03
 # Two poses agree if they differ by no more than this times the error of the other's, RMS.
 AGREE = 1.25
 # Below these, RMS range in m, bearing and heading in rad, nobody is told to be worse.
 FLOOR = np.array([1e-4, 2e-5, 2e-4])
 # Corners that are off by more pixels belong to another tag.
 ASTRAY = 8.0
+# Tags that cover less of a picture, in square pixels, have no mask.
+SLIVER = 25.0
 
 
 class Pupil:
@@ -96,7 +100,7 @@ class Tally:
     """What was found by one detector, and by ours in the same pictures."""
 
     def __init__(self):
-        self.found = self.wrong = self.missed = 0
+        self.found = self.wrong = self.astray = self.missed = 0
         self.corners, self.our_corners = [], []
 
 
@@ -106,6 +110,7 @@ class Judge:
         self.tallies = {other.name: Tally() for other in self.others}
         self.ours = Tally()
         self.truths = self.readable = self.pictures = 0
+        self.tag_sizes = {}
         # By whether two faces or more were seen: errors of theirs, of ours, and between the two.
         self.poses = {True: [], False: []}
         self.complaints = []
@@ -113,6 +118,7 @@ class Judge:
     def look(self, folder):
         data = json.loads((folder / "dataset.json").read_text())
         self.expect(data["status"] == "complete", f"{folder} is {data['status']}")
+        self.tag_sizes = {robot["name"]: robot["tag_size"] for robot in data["robots"]}
         self.check_coco(folder, data)
         robots = {robot["name"]: robot for robot in data["robots"]}
         cameras = {camera["robot"]: camera for camera in data["cameras"]}
@@ -140,7 +146,7 @@ class Judge:
             for tag, corners in found:
                 if tag not in ours:
                     tally.missed += 1
-                elif tag in truth:
+                elif tag in truth and np.abs(corners - truth[tag]).max() <= ASTRAY:
                     tally.corners.extend(corners - truth[tag])
                     tally.our_corners.extend(ours[tag] - truth[tag])
             if other.name == Pupil.name:
@@ -153,37 +159,32 @@ class Judge:
                 tally.wrong += 1
                 self.complaints.append(f"{where}: {name} found tag {tag}, which is not in the picture")
             elif np.abs(corners - truth[tag]).max() > ASTRAY:
-                tally.wrong += 1
-                self.complaints.append(f"{where}: {name} found tag {tag} elsewhere than it is")
+                tally.astray += 1
+                self.expect(name != "ours", f"{where}: ours found tag {tag} elsewhere than it is")
 
     def check_projection(self, picture, camera):
         """Corners are where OpenCV's own camera model puts them."""
         matrix = np.array([[camera["fx"], 0, camera["cx"]], [0, camera["fy"], camera["cy"]], [0, 0, 1.0]])
         for tag in picture["tags"]:
             rotation, translation = rigid(tag["camera_from_tag"])
-            size = self.sizes(tag, picture)
-            square = np.array([[-1, 1, 0], [1, 1, 0], [1, -1, 0], [-1, -1, 0]]) * 0.5 * size
+            half = 0.5 * self.tag_sizes[tag["robot"]]
+            square = np.array([[-half, half, 0], [half, half, 0], [half, -half, 0], [-half, -half, 0]])
             seen, _ = cv2.projectPoints(
                 square, cv2.Rodrigues(rotation)[0], translation, matrix, np.array(camera["distortion"])
             )
             off = np.abs(seen.reshape(4, 2) - np.array(tag["corners"])).max()
             self.expect(off < 1e-6, f"{picture['file']}: corners of tag {tag['id']} are {off} px from OpenCV's")
 
-    def sizes(self, tag, picture):
-        return self.tag_sizes[tag["robot"]]
-
     def check_coco(self, folder, data):
-        self.tag_sizes = {robot["name"]: robot["tag_size"] for robot in data["robots"]}
-        stdout, sys.stdout = sys.stdout, sys.stderr
-        coco = COCO(str(folder / "coco.json"))
-        sys.stdout = stdout
+        with contextlib.redirect_stdout(io.StringIO()):
+            coco = COCO(str(folder / "coco.json"))
         tags = sum(len(picture["tags"]) for picture in data["pictures"])
         self.expect(len(coco.getImgIds()) == len(data["pictures"]), f"{folder}: COCO has other pictures")
         self.expect(len(coco.getAnnIds(catIds=coco.getCatIds())) == tags, f"{folder}: COCO has other tags")
         for note in coco.loadAnns(coco.getAnnIds()):
-            self.expect(
-                len(note["keypoints"]) == 12 and coco.annToMask(note).any(), f"{folder}: an annotation is empty"
-            )
+            # A tag seen from its edge may cover no pixel.
+            covers = note["area"] < SLIVER or coco.annToMask(note).any()
+            self.expect(len(note["keypoints"]) == 12 and covers, f"{folder}: an annotation is empty")
 
     def locate(self, picture, camera, leader, found):
         faces = {face["id"]: np.array(face["corners"]) for face in leader["faces"] if face["id"] in found}
@@ -196,18 +197,8 @@ class Judge:
         if pose is None:
             return
         truth, ours = numbers(picture["leader"]["truth"]), numbers(estimate)
-        same_count = len(picture["leader"]["faces"]) >= 2
-        if len(faces) >= 2 and not same_count:
-            return
-        self.poses[len(faces) >= 2].append(
-            (
-                planar_errors(pose, truth),
-                planar_errors(ours, truth),
-                planar_errors(pose, ours),
-                estimate["ambiguous"],
-                len(picture["leader"]["faces"]),
-            )
-        )
+        errors = planar_errors(pose, truth), planar_errors(ours, truth), planar_errors(pose, ours)
+        self.poses[len(faces) >= 2].append(errors)
 
     def expect(self, holds, complaint):
         if not holds:
@@ -215,12 +206,12 @@ class Judge:
 
     def verdict(self):
         print(f"{self.pictures} pictures, {self.truths} tags in view, {self.readable} of them readable and not hidden\n")
-        print(f"{'detector':18}{'found':>8}{'wrong':>8}{'of these not by us':>22}{'corners RMS px':>17}{'ours, same tags':>17}")
-        print(f"{'ours':18}{self.ours.found:8}{self.ours.wrong:8}")
+        print(f"{'detector':18}{'found':>8}{'wrong':>8}{'astray':>8}{'of these not by us':>22}{'corners RMS px':>17}{'ours, same tags':>17}")
+        print(f"{'ours':18}{self.ours.found:8}{self.ours.wrong:8}{self.ours.astray:8}")
         for name, tally in self.tallies.items():
             theirs, ours = rms(np.ravel(tally.corners)), rms(np.ravel(tally.our_corners))
             missed = tally.missed / max(tally.found, 1)
-            print(f"{name:18}{tally.found:8}{tally.wrong:8}{tally.missed:12} ({100 * missed:5.1f} %){theirs:17.4f}{ours:17.4f}")
+            print(f"{name:18}{tally.found:8}{tally.wrong:8}{tally.astray:8}{tally.missed:12} ({100 * missed:5.1f} %){theirs:17.4f}{ours:17.4f}")
             self.expect(tally.found > 0, f"{name} found nothing")
             self.expect(missed <= MISSED, f"ours misses {100 * missed:.1f} % of what {name} finds")
             self.expect(ours <= theirs, f"our corners are worse than those of {name}")
@@ -228,7 +219,7 @@ class Judge:
         for several, poses in self.poses.items():
             if not poses:
                 continue
-            what = "two faces or more" if several else "one face"
+            what = "two faces or more" if several else "one face found by pupil-apriltags"
             errors = [np.array([p[k] for p in poses]) for k in range(3)]
             rows = ["pupil-apriltags, SQPnP, Levenberg-Marquardt", "ours", "the one from the other"]
             print(what)

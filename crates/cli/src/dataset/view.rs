@@ -139,7 +139,8 @@ mod tests {
     #[test]
     fn the_faces_that_are_read_are_those_that_look_here_and_are_near() {
         assert_eq!(faces(&leader(2.0, 0.0, 0.0)), [1, 2, 3]);
-        assert_eq!(faces(&leader(2.0, 0.0, 0.75 * std::f64::consts::PI)), [3, 4]);
+        assert_eq!(faces(&leader(2.0, 0.0, std::f64::consts::FRAC_PI_4)), [0, 1, 2]);
+        assert_eq!(faces(&leader(2.0, 0.0, -0.75 * std::f64::consts::PI)), [4]);
         assert_eq!(faces(&leader(5.5, 0.0, 0.0)), [2]);
         assert!(faces(&leader(7.0, 0.0, 0.0)).is_empty());
         assert!(faces(&leader(2.0, 0.0, std::f64::consts::PI)).is_empty());
