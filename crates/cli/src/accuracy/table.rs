@@ -68,10 +68,10 @@ pub(crate) fn text(bins: &[Bin], times: &Medians) -> Vec<String> {
         ));
     }
     lines.push(String::new());
-    let heads: String = STAGES.iter().map(|stage| format!("{stage:>20}")).collect();
+    let heads = STAGES.map(|stage| format!("{stage:>20}")).concat();
     lines.push(format!("{:<22}{heads}{:>20}", "median ms", "without drawing"));
     for (way, times) in WAYS.iter().zip(times) {
-        let cells: String = times.iter().map(|t| format!("{:>20}", number(*t))).collect();
+        let cells = times.map(|time| format!("{:>20}", number(time))).concat();
         let rest = times[1..].iter().copied().sum::<Option<f64>>();
         lines.push(format!("{way:<22}{cells}{:>20}", number(rest)));
     }
