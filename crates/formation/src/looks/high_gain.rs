@@ -3,7 +3,7 @@
 use super::{LookLaw, Own, innovation};
 use crate::observer::{Estimate, Observer, input_effect};
 use crate::relative::Geometry;
-use vocabulary::{EdgeSample, Relative, Sighting};
+use vocabulary::{Drive, EdgeSample, Relative, Sighting};
 
 /// ŝ1 and ŝ2, and the view angle, which no law controls but all of them use.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,18 +47,19 @@ impl HighGain {
     }
 
     /// Carries on over `duration` s in midpoint steps. The line turns with the bearing but for the leader's own turn,
-    /// so both have the same second derivative where that turn is steady.
-    pub(super) fn predict(&mut self, law: &LookLaw, own: Own, duration: f64) {
+    /// so both have the same second derivative where that turn is steady. While looks come in, what the leader does is the
+    /// unknown that they make up for; when they stay out (`coasting`) it is taken to keep its speed and turn rate.
+    pub(super) fn predict(&mut self, law: &LookLaw, own: Own, duration: f64, coasting: bool) {
         let steps = (duration / STEP).ceil().max(1.0);
         let h = duration / steps;
         for k in 0..steps as usize {
             let start = Own { speed: own.speed + own.acceleration * h * k as f64, ..own };
             let middle = Own { speed: start.speed + own.acceleration * 0.5 * h, ..own };
             let x = self.state();
-            let slope = slope(&x, law.observer.distance_min, start);
+            let slope = slope(&x, law.observer.distance_min, start, coasting);
             let half: State = std::array::from_fn(|i| x[i] + 0.5 * h * slope[i]);
-            let slope = slope_at(&half, law, middle);
-            self.set(std::array::from_fn(|i| x[i] + h * slope[i]));
+            let again = self::slope(&half, law.observer.distance_min, middle, coasting);
+            self.set(std::array::from_fn(|i| x[i] + h * again[i]));
         }
     }
 
@@ -141,11 +142,8 @@ fn gain(observer: &Observer, channel: usize, epsilon: f64, age: f64) -> [f64; 2]
     [1.0 - product, (1.0 - sum + product) / age]
 }
 
-fn slope_at(x: &State, law: &LookLaw, own: Own) -> State {
-    slope(x, law.observer.distance_min, own)
-}
-
-fn slope(&[distance, bearing, dd, db, view_angle, line_rate]: &State, distance_min: f64, own: Own) -> State {
+fn slope(x: &State, distance_min: f64, own: Own, coasting: bool) -> State {
+    let [distance, bearing, dd, db, view_angle, line_rate] = *x;
     let relative = Relative { distance, bearing, view_angle };
     let geometry = Geometry::new(&relative, distance_min);
     let sample = EdgeSample {
@@ -154,6 +152,20 @@ fn slope(&[distance, bearing, dd, db, view_angle, line_rate]: &State, distance_m
         acceleration: own.acceleration,
         turn_rate: own.turn_rate,
     };
-    let second = input_effect(&geometry, &sample) - geometry.rate_column(own.speed) * dd;
+    let mut second = input_effect(&geometry, &sample) - geometry.rate_column(own.speed) * dd;
+    if coasting {
+        second -= geometry.leader_effect(own.speed, &leader(&geometry, x, own));
+    }
     [dd, db, second.x, second.y, line_rate - own.turn_rate, second.y]
+}
+
+/// What the leader does by the rates that are believed: eqs 6-7 solved for its speed, along its heading, and its turn rate.
+fn leader(geometry: &Geometry, &[_, _, dd, db, _, line_rate]: &State, own: Own) -> Drive {
+    let along = own.speed * geometry.cos_view - dd;
+    let across = line_rate * geometry.distance + own.speed * geometry.sin_view;
+    Drive {
+        speed: geometry.cos_bearing * along + geometry.sin_bearing * across,
+        turn_rate: line_rate - db,
+        ..Drive::default()
+    }
 }

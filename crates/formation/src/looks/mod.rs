@@ -42,6 +42,16 @@ pub struct LookLaw {
     pub hold: f64,
 }
 
+impl LookLaw {
+    /// Whether a look of this age, s, should have been followed by another.
+    fn coasts(&self, age: f64) -> bool {
+        age > 1.5 * self.interval + SLACK
+    }
+}
+
+/// Looks may come this much later than they should, s: they wait for a control sample, and for their latency.
+const SLACK: f64 = 0.03;
+
 /// What the follower itself does over a stretch of time, as applied.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Own {
@@ -90,8 +100,9 @@ impl Tracker {
     /// Carries the estimate on over a period that has passed.
     pub fn advance(&mut self, law: &LookLaw, own: Own, period: f64) {
         let stretch = Stretch { from: self.now, until: self.now + period, own };
+        let coasting = law.coasts(self.age());
         if let Some(belief) = &mut self.current {
-            belief.predict(law, own, 0.0, period);
+            belief.predict(law, own, (0.0, period), coasting);
         }
         self.past.push_back(stretch);
         self.now += period;
@@ -162,7 +173,8 @@ impl Tracker {
     fn replay(&self, law: &LookLaw, belief: &mut Belief, from: f64, until: f64) {
         for stretch in self.past.iter().filter(|s| s.until > from && s.from < until) {
             let (start, end) = (from.max(stretch.from), until.min(stretch.until));
-            belief.predict(law, stretch.own, start - stretch.from, end - start);
+            let coasting = law.coasts(stretch.from - from);
+            belief.predict(law, stretch.own, (start - stretch.from, end - start), coasting);
         }
     }
 
@@ -206,7 +218,7 @@ impl Tracker {
             Sight::Lost
         } else if self.anchor.is_none() {
             Sight::Waiting
-        } else if age > 2.5 * law.interval + 0.05 {
+        } else if law.coasts(age - law.interval) {
             Sight::Coasting
         } else {
             Sight::Tracking
@@ -216,10 +228,10 @@ impl Tracker {
 
 impl Belief {
     /// Carries it on over `duration` s of a stretch that began `since` s before.
-    fn predict(&mut self, law: &LookLaw, own: Own, since: f64, duration: f64) {
+    fn predict(&mut self, law: &LookLaw, own: Own, (since, duration): (f64, f64), coasting: bool) {
         let own = Own { speed: own.speed + own.acceleration * since, ..own };
         match self {
-            Self::HighGain(belief) => belief.predict(law, own, duration),
+            Self::HighGain(belief) => belief.predict(law, own, duration, coasting),
             Self::Unscented(belief) => belief.predict(law, own, duration),
         }
     }

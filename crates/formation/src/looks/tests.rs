@@ -227,6 +227,17 @@ fn a_look_that_doubts_itself_moves_little() {
     assert!(sudden > 0.15 && doubted < 0.15 * sudden, "{sudden} {doubted}");
 }
 
+/// A leader that is out of sight for a second is still there: it is taken to go on as it went.
+#[test]
+fn a_hidden_leader_is_followed_by_how_it_went() {
+    for method in [Method::HighGain, Method::Unscented] {
+        let law = LookLaw { hold: 2.0, adaptive: true, ..law(method) };
+        let shown = run(&law, QUIET, 1, |k, _| !(410..510).contains(&k));
+        // A tenth of what it drives in that second.
+        assert!(shown.worst[0] < 0.1 && shown.worst[1] < 0.02, "{method:?}: {:?}", shown.worst);
+    }
+}
+
 #[test]
 fn sight_is_lost_with_time_and_comes_back() {
     let law = law(Method::HighGain);
