@@ -29,7 +29,7 @@ fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// Whom each crate may use among our own; everybody else may not.
-const ARROWS: [(&str, &[&str]); 9] = [
+const ARROWS: [(&str, &[&str]); 10] = [
     ("vocabulary", &[]),
     ("scene", &["vocabulary"]),
     ("formation", &["vocabulary"]),
@@ -37,8 +37,9 @@ const ARROWS: [(&str, &[&str]); 9] = [
     ("perception", &["vocabulary"]),
     ("recording", &["vocabulary"]),
     ("rendering", &["vocabulary"]),
+    ("figures", &[]),
     ("simulation", &["vocabulary", "scene", "formation", "world", "perception", "recording"]),
-    ("cli", &["vocabulary", "scene", "perception", "simulation", "recording", "rendering"]),
+    ("cli", &["vocabulary", "scene", "perception", "simulation", "recording", "rendering", "figures"]),
 ];
 
 /// Heavy crates and the only members that may name them.

@@ -1,0 +1,289 @@
+//! A figure, laid out and drawn.
+
+use crate::axis::{CUT, Ruler, Tick};
+use crate::place::spread;
+use crate::svg::{Anchor, Svg, ink, point, width};
+use crate::{Figure, Guide, Key, Marker, Panel, Series, Stroke};
+use std::fmt::Write;
+
+/// Sizes of text, points of print.
+const SMALL: f64 = 7.0;
+const TITLE: f64 = 8.5;
+/// From one line of small text to the next.
+const LINE: f64 = 8.6;
+/// Over a panel: its label, and air.
+const HEAD: f64 = 15.5;
+/// Under the last panel: ticks' labels and the axis' own.
+const FOOT: f64 = 23.0;
+const MARGIN: f64 = 4.0;
+const TICK: f64 = 2.6;
+const GREY: &str = "#6b6f76";
+
+/// A panel's place on the sheet.
+struct Area {
+    left: f64,
+    top: f64,
+    width: f64,
+    height: f64,
+}
+
+impl Area {
+    fn x(&self, share: f64) -> f64 {
+        self.left + share * self.width
+    }
+
+    fn y(&self, share: f64) -> f64 {
+        self.top + (1.0 - share) * self.height
+    }
+
+    fn right(&self) -> f64 {
+        self.left + self.width
+    }
+
+    fn bottom(&self) -> f64 {
+        self.top + self.height
+    }
+}
+
+pub(crate) fn draw(figure: &Figure) -> String {
+    let points = |mm: f64| if mm.is_finite() { mm.clamp(5.0, 2000.0) } else { 85.0 } * 72.0 / 25.4;
+    let (sheet, height) = (points(figure.width), points(figure.height));
+    let across = Ruler::new(&figure.axis, figure.panels.iter().flat_map(abscissae), true);
+    let rulers: Vec<Ruler> = figure.panels.iter().map(|p| Ruler::new(&p.axis, ordinates(p), false)).collect();
+    let most = ((height / 11.0) as usize).max(2);
+    let ticks: Vec<Vec<Tick>> = rulers.iter().map(|r| r.ticks(most)).collect();
+    let labels = ticks.iter().flatten().map(|t| width(&t.label, SMALL)).fold(0.0, f64::max);
+    let left = MARGIN + labels + TICK + 2.0;
+    let named = figure.panels.iter().flat_map(|p| &p.series).filter(|s| !s.name.is_empty());
+    let names = named.map(|s| width(&s.name, SMALL) + 6.0).fold(6.0, f64::max).min(0.35 * sheet);
+    let along = (sheet - left - names - MARGIN).max(20.0);
+
+    let mut svg = Svg::new();
+    let mut top = MARGIN;
+    for line in wrapped(&figure.title, (sheet - 2.0 * MARGIN) / TITLE) {
+        top += TITLE + 1.0;
+        svg.text([MARGIN, top], &line, Anchor::Start, &format!("font-size=\"{TITLE}\" font-weight=\"600\""));
+    }
+    top = keys(&mut svg, &figure.keys, [left.min(MARGIN), top], sheet);
+    for (index, panel) in figure.panels.iter().enumerate() {
+        let area = Area { left, top: top + HEAD, width: along, height };
+        let last = index + 1 == figure.panels.len();
+        svg.text([MARGIN, area.top - 5.0], &panel.axis.label, Anchor::Start, "");
+        frame(&mut svg, &area, &across, &ticks[index], last);
+        guides(&mut svg, panel, &area, (&across, &rulers[index]));
+        let ends: Vec<_> =
+            panel.series.iter().map(|s| series(&mut svg, s, &area, (&across, &rulers[index]))).collect();
+        if ends.iter().all(Option::is_none) {
+            let middle = [area.x(0.5), area.y(0.5) + 2.5];
+            svg.text(middle, "no data", Anchor::Middle, &format!("fill=\"{GREY}\""));
+        }
+        names_at(&mut svg, &panel.series, &ends, &area);
+        top = area.bottom();
+    }
+    svg.text([left + 0.5 * along, top + FOOT - 4.0], &figure.axis.label, Anchor::Middle, "");
+    svg.finish(&figure.title, [sheet, top + FOOT])
+}
+
+fn abscissae(panel: &Panel) -> impl Iterator<Item = f64> {
+    let guides = panel.guides.iter().filter_map(|g| match g {
+        Guide::Upright(x, _) => Some(*x),
+        Guide::Level(..) | Guide::Band(_) => None,
+    });
+    panel.series.iter().flat_map(|s| s.points.iter().map(|p| p[0])).chain(guides)
+}
+
+fn ordinates(panel: &Panel) -> impl Iterator<Item = f64> {
+    let guides = panel.guides.iter().flat_map(|g| match g {
+        Guide::Upright(..) => vec![],
+        Guide::Level(y, _) => vec![*y],
+        Guide::Band(ends) => ends.to_vec(),
+    });
+    panel.series.iter().flat_map(|s| s.points.iter().map(|p| p[1])).chain(guides)
+}
+
+/// A text in lines of at most about `em` times its size.
+fn wrapped(text: &str, em: f64) -> Vec<String> {
+    let mut lines: Vec<String> = vec![];
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width(line, 1.0) + 0.3 + width(word, 1.0) <= em => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// What strokes and markers stand for, in rows; where they end.
+fn keys(svg: &mut Svg, keys: &[Key], [left, top]: [f64; 2], sheet: f64) -> f64 {
+    const SAMPLE: f64 = 16.0;
+    let (mut x, mut y) = (left, top + if keys.is_empty() { 0.0 } else { LINE + 1.5 });
+    for key in keys {
+        let wide = SAMPLE + 3.0 + width(&key.name, SMALL) + 8.0;
+        if x > left && x + wide > sheet {
+            (x, y) = (left, y + LINE);
+        }
+        let at = y - 2.5;
+        stroke(svg, &format!("M{}H{:.2}", point([x, at]), x + SAMPLE), key.stroke, GREY);
+        marker(svg, key.marker, [x + 0.5 * SAMPLE, at], GREY);
+        svg.text([x + SAMPLE + 3.0, y], &key.name, Anchor::Start, "");
+        x += wide;
+    }
+    y
+}
+
+/// Axes, ticks, and faint lines across from the labelled ones.
+fn frame(svg: &mut Svg, area: &Area, across: &Ruler, ticks: &[Tick], last: bool) {
+    let thin = "stroke=\"#1e1e22\" stroke-width=\"0.5\" fill=\"none\"";
+    for tick in ticks {
+        let y = area.y(tick.at);
+        let long = if tick.label.is_empty() { 0.5 * TICK } else { TICK };
+        if !tick.label.is_empty() {
+            svg.line([area.left, y], [area.right(), y], "stroke=\"#e3e4e6\" stroke-width=\"0.4\"");
+            svg.text([area.left - TICK - 2.0, y + 2.5], &tick.label, Anchor::End, "");
+        }
+        svg.line([area.left - long, y], [area.left, y], thin);
+    }
+    let room = ((area.width / 26.0) as usize).max(2);
+    for tick in across.ticks(room) {
+        let x = area.x(tick.at);
+        let long = if tick.label.is_empty() { 0.5 * TICK } else { TICK };
+        svg.line([x, area.bottom()], [x, area.bottom() + long], thin);
+        if last && !tick.label.is_empty() {
+            svg.text([x, area.bottom() + TICK + 7.5], &tick.label, Anchor::Middle, "");
+        }
+    }
+    let (left, right, bottom) = (area.left, area.right(), area.bottom());
+    svg.line([left, area.top], [left, bottom], thin);
+    if across.cut() {
+        let cut = area.x(CUT);
+        svg.line([left, bottom], [cut - 1.5, bottom], thin);
+        svg.line([cut + 1.5, bottom], [right, bottom], thin);
+        for x in [cut - 1.5, cut + 1.5] {
+            svg.line([x - 1.0, bottom + 2.0], [x + 1.0, bottom - 2.0], thin);
+        }
+    } else {
+        svg.line([left, bottom], [right, bottom], thin);
+    }
+}
+
+fn guides(svg: &mut Svg, panel: &Panel, area: &Area, (across, up): (&Ruler, &Ruler)) {
+    let dashes = format!("stroke=\"{GREY}\" stroke-width=\"0.6\" stroke-dasharray=\"1.2 1.6\"");
+    let fill = format!("fill=\"{GREY}\"");
+    for guide in &panel.guides {
+        match guide {
+            Guide::Upright(x, name) => {
+                let Some(x) = across.at(*x).map(|at| area.x(at)) else { continue };
+                svg.line([x, area.top], [x, area.bottom()], &dashes);
+                let wide = width(name, SMALL);
+                let left = x + 2.0 + wide > area.right();
+                let anchor = if left { Anchor::End } else { Anchor::Start };
+                svg.text([if left { x - 2.0 } else { x + 2.0 }, area.top + 4.0], name, anchor, &fill);
+            }
+            Guide::Level(y, name) => {
+                let Some(y) = up.at(*y).map(|at| area.y(at)) else { continue };
+                svg.line([area.left, y], [area.right(), y], &dashes);
+                svg.text([area.left + 2.0, y - 2.0], name, Anchor::Start, &fill);
+            }
+            Guide::Band([low, high]) => {
+                let (Some(low), Some(high)) = (up.at(*low), up.at(*high)) else { continue };
+                let (top, bottom) = (area.y(low.max(high)), area.y(low.min(high)));
+                svg.rect([area.left, top], [area.width, bottom - top], "fill=\"#000\" fill-opacity=\"0.07\"");
+            }
+        }
+    }
+}
+
+/// Draws a curve; where it ends, if it has any point.
+fn series(svg: &mut Svg, series: &Series, area: &Area, (across, up): (&Ruler, &Ruler)) -> Option<[f64; 2]> {
+    let colour = ink(series.colour);
+    let (mut d, mut pen, mut end) = (String::new(), None::<[f64; 2]>, None);
+    let mut places = vec![];
+    for [x, y] in &series.points {
+        let place = across.at(*x).zip(up.at(*y)).map(|(x, y)| [area.x(x), area.y(y)]);
+        let Some(at) = place else {
+            pen = None;
+            continue;
+        };
+        // A hundredth of a point of print cannot be seen; long records have many such steps.
+        match pen {
+            Some(from) if (from[0] - at[0]).abs() + (from[1] - at[1]).abs() < 0.02 => continue,
+            Some(from) => {
+                if series.stroke == Stroke::Step {
+                    let _ = write!(d, "L{}", point([at[0], from[1]]));
+                }
+                let _ = write!(d, "L{}", point(at));
+            }
+            None => {
+                let _ = write!(d, "M{}", point(at));
+            }
+        }
+        places.push(at);
+        end = Some(at);
+        pen = if across.apart(*x) { None } else { Some(at) };
+    }
+    stroke(svg, &d, series.stroke, &colour);
+    for at in places {
+        marker(svg, series.marker, at, &colour);
+    }
+    end
+}
+
+fn stroke(svg: &mut Svg, d: &str, stroke: Stroke, colour: &str) {
+    let dashes = match stroke {
+        Stroke::Solid | Stroke::Step => "",
+        Stroke::Dashed => " stroke-dasharray=\"3.6 1.8\"",
+        Stroke::Dotted => " stroke-dasharray=\"0.1 2.2\" stroke-linecap=\"round\"",
+        Stroke::None => return,
+    };
+    if d.contains(['L', 'H']) {
+        svg.path(
+            d,
+            &format!(
+                "fill=\"none\" stroke=\"{colour}\" stroke-width=\"1\" stroke-linejoin=\"round\"{dashes}"
+            ),
+        );
+    }
+}
+
+fn marker(svg: &mut Svg, marker: Marker, [x, y]: [f64; 2], colour: &str) {
+    let m = point([x, y]);
+    let (d, open) = match marker {
+        Marker::None => return,
+        Marker::Disc => (format!("M{m}m-1.6 0a1.6 1.6 0 1 0 3.2 0a1.6 1.6 0 1 0 -3.2 0Z"), false),
+        Marker::Square => (format!("M{m}m-1.5 -1.5h3v3h-3Z"), false),
+        Marker::Triangle => (format!("M{m}m0 -2l1.9 3.3h-3.8Z"), false),
+        Marker::Wedge => (format!("M{m}m0 2l1.9 -3.3h-3.8Z"), false),
+        Marker::Plus => (format!("M{m}m-2 0h4m-2 -2v4"), true),
+        Marker::Cross => (format!("M{m}m-1.5 -1.5l3 3m-3 0l3 -3"), true),
+        Marker::Diamond => (format!("M{m}m0 -3.4l3.4 3.4l-3.4 3.4l-3.4 -3.4Z"), true),
+    };
+    let paint = match (open, marker) {
+        (true, Marker::Diamond) => format!("fill=\"#fff\" stroke=\"{colour}\" stroke-width=\"1.1\""),
+        (true, _) => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1\""),
+        (false, _) => format!("fill=\"{colour}\""),
+    };
+    svg.path(&d, &paint);
+}
+
+/// Names right of the panel, level with where their curves end.
+fn names_at(svg: &mut Svg, all: &[Series], ends: &[Option<[f64; 2]>], area: &Area) {
+    let named: Vec<(&Series, [f64; 2])> = all
+        .iter()
+        .zip(ends)
+        .filter(|(s, _)| !s.name.is_empty())
+        .filter_map(|(s, end)| end.map(|end| (s, end)))
+        .collect();
+    let wanted: Vec<f64> = named.iter().map(|(_, end)| end[1]).collect();
+    let places = spread(&wanted, LINE - 0.8, [area.top, area.bottom()]);
+    for ((series, end), y) in named.iter().zip(places) {
+        let (colour, x) = (ink(series.colour), area.right() + 5.0);
+        if (y - end[1]).abs() > 1.5 {
+            let thin = format!("stroke=\"{colour}\" stroke-width=\"0.4\"");
+            svg.line([(end[0] + 2.0).min(area.right()), end[1]], [x - 0.8, y], &thin);
+        }
+        svg.text([x, y + 2.5], &series.name, Anchor::Start, &format!("fill=\"{colour}\""));
+    }
+}
