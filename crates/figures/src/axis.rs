@@ -67,7 +67,7 @@ impl Ruler {
             Scale::Linear => self.even(most),
             Scale::Log => self.decades(most),
         };
-        ticks.retain(|t| (-1e-9..=1.0 + 1e-9).contains(&t.at));
+        ticks.retain(|t| (self.apart - 1e-9..=1.0 + 1e-9).contains(&t.at));
         if self.apart > 0.0 {
             ticks.insert(0, Tick { at: 0.3 * APART, label: "0".to_owned() });
         }
@@ -199,6 +199,7 @@ mod tests {
         let axis = Axis { scale: Scale::Log, ..Axis::default() };
         let ruler = Ruler::new(&axis, [0.0, 0.1].into_iter(), true);
         assert!(ruler.apart(0.0) && ruler.at(0.0) < ruler.at(0.1));
+        assert!(ruler.ticks(4)[1..].iter().all(|t| t.at > CUT), "no tick where the axis is cut");
         assert_eq!(Ruler::new(&axis, [0.0, 0.1].into_iter(), false).at(0.0), None);
     }
 

@@ -12,7 +12,7 @@ const TITLE: f64 = 8.5;
 /// From one line of small text to the next.
 const LINE: f64 = 8.6;
 /// Over a panel: its label, and air.
-const HEAD: f64 = 15.5;
+const HEAD: f64 = 18.5;
 /// Under the last panel: ticks' labels and the axis' own.
 const FOOT: f64 = 23.0;
 const MARGIN: f64 = 4.0;
@@ -171,7 +171,8 @@ fn frame(svg: &mut Svg, area: &Area, across: &Ruler, ticks: &[Tick], last: bool)
 
 fn guides(svg: &mut Svg, panel: &Panel, area: &Area, (across, up): (&Ruler, &Ruler)) {
     let dashes = format!("stroke=\"{GREY}\" stroke-width=\"0.6\" stroke-dasharray=\"1.2 1.6\"");
-    let fill = format!("fill=\"{GREY}\"");
+    // A halo keeps names readable where curves pass under them.
+    let fill = format!("fill=\"{GREY}\" stroke=\"#fff\" stroke-width=\"2\" paint-order=\"stroke\"");
     for guide in &panel.guides {
         match guide {
             Guide::Upright(x, name) => {
@@ -185,7 +186,7 @@ fn guides(svg: &mut Svg, panel: &Panel, area: &Area, (across, up): (&Ruler, &Rul
             Guide::Level(y, name) => {
                 let Some(y) = up.at(*y).map(|at| area.y(at)) else { continue };
                 svg.line([area.left, y], [area.right(), y], &dashes);
-                svg.text([area.left + 2.0, y - 2.0], name, Anchor::Start, &fill);
+                svg.text([area.right(), y - 2.0], name, Anchor::End, &fill);
             }
             Guide::Band([low, high]) => {
                 let (Some(low), Some(high)) = (up.at(*low), up.at(*high)) else { continue };
@@ -261,7 +262,7 @@ fn marker(svg: &mut Svg, marker: Marker, [x, y]: [f64; 2], colour: &str) {
         Marker::Diamond => (format!("M{m}m0 -3.4l3.4 3.4l-3.4 3.4l-3.4 -3.4Z"), true),
     };
     let paint = match (open, marker) {
-        (true, Marker::Diamond) => format!("fill=\"#fff\" stroke=\"{colour}\" stroke-width=\"1.1\""),
+        (true, Marker::Diamond) => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.1\""),
         (true, _) => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1\""),
         (false, _) => format!("fill=\"{colour}\""),
     };

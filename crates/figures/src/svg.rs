@@ -95,7 +95,7 @@ fn escape(text: &str) -> String {
 }
 
 /// What share of a white sheet's light a colour on paper may give back at most.
-const LIGHTEST: f32 = 0.42;
+const LIGHTEST: f32 = 0.3;
 
 /// A colour as `#rrggbb`, dark enough for a thin line on paper.
 pub(crate) fn ink(colour: Rgb) -> String {
