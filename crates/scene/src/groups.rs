@@ -34,7 +34,7 @@ pub(crate) fn expand(
     let mut scatter = Scatter::new(keys, group.index, seed)?;
     for (place, spot) in group.spots(count)?.into_iter().enumerate().skip(1) {
         let followed = if spot.follows == 0 { leader.clone() } else { group.name(spot.follows) };
-        let role = Role::Follow(Follow {
+        let role = Role::Follow(Box::new(Follow {
             leader: followed,
             speed,
             distance: Channel::Constant(spot.distance),
@@ -42,7 +42,7 @@ pub(crate) fn expand(
             law,
             observer,
             sensing,
-        });
+        }));
         let pose = scatter.around(origin, spot.at);
         group.push(Robot { name: group.name(place), pose, number: 0, vehicle, role }, drafts);
     }

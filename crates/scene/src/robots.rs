@@ -87,7 +87,9 @@ fn role(
     let name = keys.name.as_ref()?;
     match (node.get("path"), node.get("leader")) {
         (Some(_), None) => lead(keys, node, vehicle, reading),
-        (None, Some(_)) => follow(keys, node, vehicle, defaults, reading).map(Role::Follow),
+        (None, Some(_)) => {
+            follow(keys, node, vehicle, defaults, reading).map(|follow| Role::Follow(Box::new(follow)))
+        }
         (Some(_), Some(leader)) => {
             let message = format!("`{}` has a `path` and a `leader`; a robot leads or follows", name.value);
             reading.note(leader.place, message);

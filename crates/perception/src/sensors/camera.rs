@@ -128,12 +128,10 @@ const MARGIN: (f64, f64) = (0.12, 12.0);
 /// Sides of regions are whole multiples of this, so that few sizes occur.
 const GRID: u32 = 16;
 
-impl CameraModel {
-    /// Standard deviation of a corner's coordinates as found in pictures, besides what its finder reports, pixels.
-    pub(super) fn corner_noise(&self) -> f64 {
-        0.02
-    }
+/// Standard deviation of a corner's coordinates as found in pictures, besides what its finder reports, pixels.
+pub(super) const CORNER_NOISE: f64 = 0.02;
 
+impl CameraModel {
     /// Takes the pictures of all looks at one instant and finds the leaders' tags in them.
     pub(super) fn see(
         &self,

@@ -296,7 +296,7 @@ impl Senses {
             }
             (Source::Camera, Some(seen)) => {
                 frame.region = seen.region;
-                self.locate(look, &seen.faces, self.camera.corner_noise(), &mut frame);
+                self.locate(look, &seen.faces, camera::CORNER_NOISE, &mut frame);
             }
             (Source::Camera | Source::Truth, _) => {}
         }

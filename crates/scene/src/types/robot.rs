@@ -33,7 +33,7 @@ pub enum Role {
         path: Path,
     },
     /// Keeps a place relative to another robot.
-    Follow(Follow),
+    Follow(Box<Follow>),
 }
 
 /// An edge of the formation, seen from its follower.
