@@ -11,7 +11,15 @@ use serde_json::json;
 use simulation::tune::{Trial, tune as search};
 
 pub(crate) fn tune(args: &TuneArgs) -> Outcome {
-    let Loaded { scene, .. } = load(&args.scene)?;
+    let Loaded { scene, simulation } = load(&args.scene)?;
+    if simulation.needs_eyes() {
+        let text = format!(
+            "{}: a hundred runs on pictures take too long to tune on; tune on calculated tags instead, which err alike: \
+             --set sensing.kind=geometric --set sensing.pixel_noise=0.05",
+            args.scene.scene.display()
+        );
+        return Err(Failure::Usage(text));
+    }
     let quiet = args.scene.quiet || args.scene.json;
     let what = format!("Tuning {}, at most {} runs", stem(&args.scene.scene), args.trials);
     let progress = Progress::begin(&what, args.trials, quiet);

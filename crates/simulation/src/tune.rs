@@ -83,6 +83,8 @@ impl Gains {
                 follow.law.beta = [self.beta; 2];
                 follow.law.slope = [self.slope; 2];
                 follow.observer.epsilon = [self.epsilon; 2];
+                // It is ε that is searched, with looks too.
+                follow.observer.adaptive = false;
             }
         }
     }
