@@ -25,6 +25,8 @@ pub(crate) enum Command {
     Film(FilmArgs),
     /// Search gains that fit a scene's vehicles, and print them
     Tune(TuneArgs),
+    /// Say where errors of following come from: the scene with better and worse sensing, side by side
+    Budget(BudgetArgs),
     /// Write what the cameras of a scene see, with the truth about every tag: a labelled set of pictures
     Dataset(DatasetArgs),
     /// Measure how well leaders are found and located in drawn pictures
@@ -152,6 +154,39 @@ pub(crate) struct TuneArgs {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct BudgetArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Folder for budget.svg, budget.json and budget.csv, with --epsilon for epsilon.svg and so on; it may hold others
+    #[arg(long, short, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Noises of a tag's corners to try, px
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        default_value = "0,0.02,0.05,0.1,0.2,0.5,1",
+        value_parser = pixels
+    )]
+    pub(crate) pixel_noise: Vec<f64>,
+    /// Compare observer constants ε instead, s, such as 0.001,0.003,0.01,0.03,0.1, with the one that follows from the
+    /// noise
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        conflicts_with = "pixel_noise",
+        value_parser = epsilon
+    )]
+    pub(crate) epsilon: Vec<f64>,
+    /// Leave out what needs pictures; with --epsilon, look by corners of tags instead
+    #[arg(long)]
+    pub(crate) no_camera: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct DatasetArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -213,6 +248,16 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     text.split_once(['x', 'X', '×'])
         .and_then(|(w, h)| Some([parse(w)?, parse(h)?]))
         .ok_or_else(|| "write width and height in pixels, such as 1280x720".to_owned())
+}
+
+fn pixels(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| (0.0..=50.0).contains(v));
+    value.ok_or_else(|| "write pixels from 0 to 50, such as 0,0.1,0.5".to_owned())
+}
+
+fn epsilon(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| (1e-6..=100.0).contains(v));
+    value.ok_or_else(|| "write seconds from 0.000001 to 100, such as 0.001,0.01,0.1".to_owned())
 }
 
 fn interval(text: &str) -> Result<f64, String> {

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod args;
+mod budget;
 mod capture;
 mod check;
 mod dataset;
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
                 | Command::Capture(_)
                 | Command::Film(_)
                 | Command::Tune(_)
+                | Command::Budget(_)
                 | Command::Dataset(_)
                 | Command::Accuracy(_)
                 | Command::Doctor(_)
@@ -52,6 +54,7 @@ fn main() -> ExitCode {
         Some(Command::Capture(args)) => capture::capture(&args),
         Some(Command::Film(args)) => film::film(&args),
         Some(Command::Tune(args)) => tune::tune(&args),
+        Some(Command::Budget(args)) => budget::budget(&args),
         Some(Command::Dataset(args)) => dataset::dataset(&args),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Command::Check(args)) => check::check(&args),

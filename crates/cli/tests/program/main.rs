@@ -1,6 +1,7 @@
 //! The program as its users meet it: every subcommand, through its command line.
 
 mod bad_input;
+mod budget;
 mod common;
 mod dataset;
 mod pictures;

@@ -1,0 +1,231 @@
+//! One run, and what it showed about every edge once it had settled.
+
+use serde::Serialize;
+use simulation::Simulation;
+use vocabulary::{EdgeState, Frame, Moment, Outcome, Sight, wrap};
+
+/// One edge of one run, from the time after which it counts as settled. Triples are distance, bearing, view angle in m and
+/// rad, pairs distance and bearing.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub(crate) struct Measured {
+    /// Root mean square error of the looks used; `None` where there were none.
+    pub(crate) looks: Option<[f64; 3]>,
+    /// The same of the distance as a share of the distance.
+    pub(crate) looks_relative: Option<f64>,
+    /// Root mean square error of what the law was told, while the leader was not lost; `None` where it always was.
+    pub(crate) told: Option<[f64; 3]>,
+    /// Root mean square tracking error.
+    pub(crate) tracking: [f64; 2],
+    /// Root mean square of the estimated rates minus the true ones, m/s and rad/s.
+    pub(crate) rate_error: [f64; 2],
+    /// Share of the samples at which a limit cut the command.
+    pub(crate) limited: f64,
+    /// Share of the looks that arrived in which the leader was recognised; `None` where there were none.
+    pub(crate) in_view: Option<f64>,
+    /// Looks that reached the follower, or were lost on the way.
+    pub(crate) taken: u64,
+    /// Looks that were not believed, or that two poses explained alike.
+    pub(crate) refused: u64,
+    /// Share of the samples at which the leader was lost, or had never been seen.
+    pub(crate) lost: f64,
+}
+
+/// Root mean squares under way.
+#[derive(Debug, Clone, Copy)]
+struct Squares<const N: usize> {
+    sums: [f64; N],
+    count: u64,
+}
+
+impl<const N: usize> Squares<N> {
+    const NONE: Self = Self { sums: [0.0; N], count: 0 };
+
+    fn add(&mut self, values: [f64; N]) {
+        for (sum, value) in self.sums.iter_mut().zip(values) {
+            *sum += value * value;
+        }
+        self.count += 1;
+    }
+
+    fn root(&self) -> Option<[f64; N]> {
+        (self.count > 0).then(|| self.sums.map(|s| (s / self.count as f64).sqrt()))
+    }
+}
+
+/// [`Measured`] under way.
+#[derive(Debug, Clone)]
+struct Gathering {
+    looks: Squares<3>,
+    relative: Squares<1>,
+    told: Squares<3>,
+    tracking: Squares<2>,
+    rates: Squares<2>,
+    /// The two samples before, for the true rate in the middle.
+    before: [Option<EdgeState>; 2],
+    samples: u64,
+    limited: u64,
+    lost: u64,
+    taken: u64,
+    arrived: u64,
+    seen: u64,
+    refused: u64,
+}
+
+impl Gathering {
+    const NONE: Self = Self {
+        looks: Squares::NONE,
+        relative: Squares::NONE,
+        told: Squares::NONE,
+        tracking: Squares::NONE,
+        rates: Squares::NONE,
+        before: [None; 2],
+        samples: 0,
+        limited: 0,
+        lost: 0,
+        taken: 0,
+        arrived: 0,
+        seen: 0,
+        refused: 0,
+    };
+
+    fn know(&mut self, edge: &EdgeState, period: f64) {
+        self.samples += 1;
+        self.limited += u64::from(edge.limited);
+        self.tracking.add(edge.error);
+        match edge.sight {
+            Sight::Waiting | Sight::Lost => self.lost += 1,
+            Sight::Truth | Sight::Tracking | Sight::Coasting => {
+                self.told.add(difference(&edge.seen, &edge.relative));
+            }
+        }
+        if let [Some(first), Some(middle)] = self.before {
+            let [distance, bearing, _] = difference(&edge.relative, &first.relative);
+            let rates = [distance, bearing].map(|d| d / (2.0 * period));
+            self.rates.add([middle.rates[0] - rates[0], middle.rates[1] - rates[1]]);
+        }
+        self.before = [self.before[1], Some(*edge)];
+    }
+
+    fn look(&mut self, frame: &Frame) {
+        self.taken += 1;
+        self.arrived += u64::from(frame.outcome != Outcome::Dropped);
+        self.seen += u64::from(!matches!(frame.outcome, Outcome::Dropped | Outcome::Missed));
+        self.refused += u64::from(matches!(frame.outcome, Outcome::Rejected | Outcome::Ambiguous));
+        if frame.outcome == Outcome::Used {
+            let off = difference(&frame.sighting.relative, &frame.truth);
+            self.looks.add(off);
+            self.relative.add([off[0] / frame.truth.distance.max(1e-9)]);
+        }
+    }
+
+    fn finish(&self) -> Measured {
+        let share = |part: u64, whole: u64| part as f64 / whole.max(1) as f64;
+        Measured {
+            looks: self.looks.root(),
+            looks_relative: self.relative.root().map(|[r]| r),
+            told: self.told.root(),
+            tracking: self.tracking.root().unwrap_or_default(),
+            rate_error: self.rates.root().unwrap_or_default(),
+            limited: share(self.limited, self.samples),
+            in_view: (self.arrived > 0).then(|| share(self.seen, self.arrived)),
+            taken: self.taken,
+            refused: self.refused,
+            lost: share(self.lost, self.samples),
+        }
+    }
+}
+
+fn difference(a: &vocabulary::Relative, b: &vocabulary::Relative) -> [f64; 3] {
+    [a.distance - b.distance, wrap(a.bearing - b.bearing), wrap(a.view_angle - b.view_angle)]
+}
+
+/// A run that has been measured.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub(crate) struct Run {
+    /// In the order of the edges.
+    pub(crate) edges: Vec<Measured>,
+    /// Contacts that began.
+    pub(crate) contacts: usize,
+    /// Time of the last sample, s.
+    pub(crate) duration: f64,
+}
+
+/// Steps between two looks at the clock.
+const STRIDE: u64 = 64;
+
+/// Runs a simulation to its end; `None` where `go_on`, told the number of steps done, says no.
+///
+/// # Errors
+/// The simulation's own fault.
+pub(crate) fn measure(
+    simulation: &mut Simulation,
+    settled_after: f64,
+    mut go_on: impl FnMut(u64) -> bool,
+) -> Result<Option<Run>, String> {
+    let period = simulation.period();
+    let mut edges = vec![Gathering::NONE; simulation.cast().edges.len()];
+    let (mut run, mut step, mut before) = (Run::default(), 0, f64::NEG_INFINITY);
+    while let Some(moment) = simulation.next_moment() {
+        take_in(&mut edges, moment, settled_after, period);
+        let time = moment.snapshot.time;
+        run.contacts += moment.contacts.iter().filter(|c| c.begin > before && c.begin <= time).count();
+        (run.duration, before) = (time, time);
+        step += 1;
+        if step % STRIDE == 0 && !go_on(step) {
+            return Ok(None);
+        }
+    }
+    if let Some(fault) = simulation.fault() {
+        return Err(fault.to_owned());
+    }
+    run.edges = edges.iter().map(Gathering::finish).collect();
+    Ok(Some(run))
+}
+
+fn take_in(edges: &mut [Gathering], moment: &Moment, settled_after: f64, period: f64) {
+    for frame in moment.frames.iter().filter(|f| f.sighting.stamp >= settled_after) {
+        if let Some(edge) = edges.get_mut(frame.edge) {
+            edge.look(frame);
+        }
+    }
+    if moment.snapshot.time >= settled_after {
+        for (gathering, edge) in edges.iter_mut().zip(&moment.edges) {
+            gathering.know(edge, period);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vocabulary::Relative;
+
+    #[test]
+    fn a_rate_is_held_against_the_motion_around_it() {
+        let mut gathering = Gathering::NONE;
+        for k in 0..5 {
+            let relative = Relative { distance: 2.0 + 0.03 * f64::from(k), ..Relative::default() };
+            let rates = [3.5, 0.0];
+            gathering.know(&EdgeState { relative, seen: relative, rates, ..EdgeState::default() }, 0.01);
+        }
+        let measured = gathering.finish();
+        assert!((measured.rate_error[0] - 0.5).abs() < 1e-9, "{measured:?}");
+        assert_eq!((measured.looks, measured.in_view, measured.told), (None, None, Some([0.0; 3])));
+    }
+
+    #[test]
+    fn only_looks_that_were_used_count_as_errors() {
+        let mut gathering = Gathering::NONE;
+        for (outcome, distance) in [(Outcome::Used, 2.2), (Outcome::Rejected, 9.0), (Outcome::Missed, 0.0)] {
+            let mut frame = Frame { outcome, ..Frame::default() };
+            frame.truth.distance = 2.0;
+            frame.sighting.relative.distance = distance;
+            gathering.look(&frame);
+        }
+        let measured = gathering.finish();
+        assert!((measured.looks.expect("one")[0] - 0.2).abs() < 1e-12);
+        assert!((measured.looks_relative.expect("one") - 0.1).abs() < 1e-12);
+        assert_eq!((measured.taken, measured.refused), (3, 1));
+        assert!((measured.in_view.expect("some") - 2.0 / 3.0).abs() < 1e-12);
+    }
+}

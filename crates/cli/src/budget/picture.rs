@@ -1,0 +1,164 @@
+//! A comparison as a figure a column wide.
+
+use super::Budget;
+use super::case::{Level, Observer};
+use super::measure::Measured;
+use figures::{Axis, Figure, Guide, Key, Marker, Panel, Rgb, Scale, Series, Stroke};
+
+/// One quantity of an edge.
+type Value<'a> = &'a dyn Fn(&Measured) -> Option<f64>;
+
+pub(crate) fn figure(budget: &Budget<'_>) -> Figure {
+    if budget.constants { constants(budget) } else { levels(budget) }
+}
+
+/// The followers' colours and names, by edge.
+fn followers(budget: &Budget<'_>) -> Vec<(Rgb, String)> {
+    let colours = rendering::robot_colours(&budget.cast);
+    let colour = |robot: usize| colours.get(robot).copied().unwrap_or_default();
+    let edges = budget.cast.edges.iter().enumerate();
+    edges.map(|(index, edge)| (colour(edge.follower), budget.edge(index)[1].to_owned())).collect()
+}
+
+/// Factor from rad to degrees.
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+/// Factor from m to mm.
+const MILLI: f64 = 1e3;
+
+fn axis(label: &str, scale: Scale) -> Axis {
+    Axis { label: label.to_owned(), scale, show: vec![] }
+}
+
+/// Errors of looks and of following over the noise of corners, with the camera among them.
+fn levels(budget: &Budget<'_>) -> Figure {
+    let mut panels = vec![
+        looks(budget, "Error of looks: distance (mm)", 0, MILLI),
+        looks(budget, "Error of looks: bearing (°)", 1, DEGREES),
+        looks(budget, "Error of looks: view angle (°)", 2, DEGREES),
+        tracking(budget, "Tracking error: distance (mm)", 0, MILLI),
+        tracking(budget, "Tracking error: bearing (°)", 1, DEGREES),
+    ];
+    // Colours are the same in all panels: one carries the names.
+    for panel in panels.iter_mut().skip(1) {
+        panel.series.iter_mut().for_each(|series| series.name.clear());
+    }
+    let mut keys = vec![
+        Key { name: "high-gain observer".to_owned(), ..Key::default() },
+        Key { name: "unscented filter".to_owned(), stroke: Stroke::Dashed, marker: Marker::None },
+    ];
+    if budget.run(Level::Camera, Observer::HighGain).is_some() {
+        keys.push(Key {
+            name: "camera, at the noise its looks stand for".to_owned(),
+            stroke: Stroke::None,
+            marker: Marker::Diamond,
+        });
+    }
+    Figure {
+        title: format!("{}: error budget, RMS", budget.scene.title),
+        axis: axis("noise of a tag's corners (px)", Scale::Log),
+        panels,
+        keys,
+        ..Figure::default()
+    }
+}
+
+/// A curve for every edge, and a diamond for its camera.
+fn looks(budget: &Budget<'_>, label: &str, channel: usize, factor: f64) -> Panel {
+    let value = |m: &Measured| Some(m.looks?[channel] * factor);
+    let series = followers(budget).into_iter().enumerate().flat_map(|(index, (colour, name))| {
+        let points = budget.curve(index, Observer::HighGain, value);
+        let curve = Series { name, colour, points, marker: Marker::of(index), ..Series::default() };
+        [Some(curve), camera(budget, index, colour, &value)].into_iter().flatten()
+    });
+    Panel { axis: axis(label, Scale::Log), series: series.collect(), guides: vec![] }
+}
+
+/// A curve for every edge and observer, a diamond for its camera, and the least that is possible.
+fn tracking(budget: &Budget<'_>, label: &str, channel: usize, factor: f64) -> Panel {
+    let value = |m: &Measured| Some(m.tracking[channel] * factor);
+    let series = followers(budget).into_iter().enumerate().flat_map(|(index, (colour, name))| {
+        let curve = |observer: Observer, stroke: Stroke, marker: Marker| Series {
+            colour,
+            points: budget.curve(index, observer, value),
+            marker,
+            stroke,
+            ..Series::default()
+        };
+        let unscented = curve(Observer::Unscented, Stroke::Dashed, Marker::None);
+        let high_gain = Series { name, ..curve(Observer::HighGain, Stroke::Solid, Marker::of(index)) };
+        [Some(unscented), Some(high_gain), camera(budget, index, colour, &value)].into_iter().flatten()
+    });
+    let series: Vec<Series> = series.collect();
+    let least = series.iter().flat_map(|s| &s.points).map(|p| p[1]).fold(f64::INFINITY, f64::min);
+    let truth = budget.run(Level::Truth, Observer::HighGain).map(|run| {
+        let mut all: Vec<f64> = run.edges.iter().filter_map(value).collect();
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() / 2).copied().unwrap_or_default()
+    });
+    // Where the truth is decades better, showing it would flatten everything else.
+    let near = truth.filter(|t| *t > least / 10.0);
+    let guides = near.map(|t| Guide::Level(t, "told the truth".to_owned())).into_iter().collect();
+    Panel { axis: axis(label, Scale::Log), series, guides }
+}
+
+/// The camera's value, at the noise of corners that the follower's looks by camera stand for.
+fn camera(budget: &Budget<'_>, index: usize, colour: Rgb, value: Value<'_>) -> Option<Series> {
+    let run = budget.run(Level::Camera, Observer::HighGain)?;
+    let (pixels, value) = (budget.camera_as_pixels(index).1?, value(run.edges.get(index)?)?);
+    let points = vec![[pixels, value]];
+    Some(Series { colour, points, stroke: Stroke::None, marker: Marker::Diamond, ..Series::default() })
+}
+
+/// What an observer constant does to following, to rates and to commands, with the constant that follows from the noise.
+fn constants(budget: &Budget<'_>) -> Figure {
+    let panel = |label: &str, scale: Scale, value: Value<'_>| {
+        let series = followers(budget).into_iter().enumerate().flat_map(|(index, (colour, name))| {
+            let at = |observer: Observer| {
+                let run = budget.runs.iter().find(|(case, _)| case.observer == observer);
+                value(run?.1.edges.get(index)?)
+            };
+            let points: Vec<[f64; 2]> = epsilons(budget)
+                .filter_map(|epsilon| Some([epsilon, at(Observer::Constant(Some(epsilon)))?]))
+                .collect();
+            let ends = [points.first(), points.last()].into_iter().flatten().map(|p| p[0]);
+            let level = at(Observer::Constant(None));
+            let adaptive = ends.filter_map(|x| Some([x, level?])).collect();
+            [
+                Series { colour, points: adaptive, stroke: Stroke::Dashed, ..Series::default() },
+                Series { name, colour, points, marker: Marker::of(index), ..Series::default() },
+            ]
+        });
+        let series = series.collect();
+        let show = if scale == Scale::Linear { vec![0.0] } else { vec![] };
+        Panel { axis: Axis { label: label.to_owned(), scale, show }, series, guides: vec![] }
+    };
+    let mut panels = vec![
+        panel("Tracking error: distance (mm)", Scale::Log, &|m| Some(m.tracking[0] * MILLI)),
+        panel("Tracking error: bearing (°)", Scale::Log, &|m| Some(m.tracking[1] * DEGREES)),
+        panel("Error of estimated rate: distance (mm/s)", Scale::Log, &|m| Some(m.rate_error[0] * MILLI)),
+        panel("Error of estimated rate: bearing (°/s)", Scale::Log, &|m| Some(m.rate_error[1] * DEGREES)),
+        panel("Samples with a limited command (%)", Scale::Linear, &|m| Some(m.limited * 100.0)),
+    ];
+    for panel in panels.iter_mut().skip(1) {
+        panel.series.iter_mut().for_each(|series| series.name.clear());
+    }
+    let by = budget.runs.first().map_or("", |(case, _)| case.level.word());
+    Figure {
+        title: format!("{}: observer constant, looks by {by}, RMS", budget.scene.title),
+        axis: axis("observer constant ε (s)", Scale::Log),
+        panels,
+        keys: vec![
+            Key { name: "ε the same throughout".to_owned(), ..Key::default() },
+            Key { name: "ε from the noise".to_owned(), stroke: Stroke::Dashed, marker: Marker::None },
+        ],
+        ..Figure::default()
+    }
+}
+
+/// The constants that were tried, in order.
+fn epsilons(budget: &Budget<'_>) -> impl Iterator<Item = f64> {
+    budget.runs.iter().filter_map(|(case, _)| match case.observer {
+        Observer::Constant(constant) => constant,
+        Observer::HighGain | Observer::Unscented => None,
+    })
+}
