@@ -70,13 +70,14 @@ pub(crate) fn draw(figure: &Figure) -> String {
         let last = index + 1 == figure.panels.len();
         svg.text([MARGIN, area.top - 5.0], &panel.axis.label, Anchor::Start, "");
         frame(&mut svg, &area, &across, &ticks[index], last);
-        guides(&mut svg, panel, &area, (&across, &rulers[index]));
+        guides(&mut svg, panel, &area, (&across, &rulers[index]), false);
         let ends: Vec<_> =
             panel.series.iter().map(|s| series(&mut svg, s, &area, (&across, &rulers[index]))).collect();
         if ends.iter().all(Option::is_none) {
             let middle = [area.x(0.5), area.y(0.5) + 2.5];
             svg.text(middle, "no data", Anchor::Middle, &format!("fill=\"{GREY}\""));
         }
+        guides(&mut svg, panel, &area, (&across, &rulers[index]), true);
         names_at(&mut svg, &panel.series, &ends, &area);
         top = area.bottom();
     }
@@ -169,7 +170,8 @@ fn frame(svg: &mut Svg, area: &Area, across: &Ruler, ticks: &[Tick], last: bool)
     }
 }
 
-fn guides(svg: &mut Svg, panel: &Panel, area: &Area, (across, up): (&Ruler, &Ruler)) {
+/// Lines and bands, which lie under the curves, or their names, which lie over them.
+fn guides(svg: &mut Svg, panel: &Panel, area: &Area, (across, up): (&Ruler, &Ruler), names: bool) {
     let dashes = format!("stroke=\"{GREY}\" stroke-width=\"0.6\" stroke-dasharray=\"1.2 1.6\"");
     // A halo keeps names readable where curves pass under them.
     let fill = format!("fill=\"{GREY}\" stroke=\"#fff\" stroke-width=\"2\" paint-order=\"stroke\"");
@@ -177,7 +179,10 @@ fn guides(svg: &mut Svg, panel: &Panel, area: &Area, (across, up): (&Ruler, &Rul
         match guide {
             Guide::Upright(x, name) => {
                 let Some(x) = across.at(*x).map(|at| area.x(at)) else { continue };
-                svg.line([x, area.top], [x, area.bottom()], &dashes);
+                if !names {
+                    svg.line([x, area.top], [x, area.bottom()], &dashes);
+                    continue;
+                }
                 let wide = width(name, SMALL);
                 let left = x + 2.0 + wide > area.right();
                 let anchor = if left { Anchor::End } else { Anchor::Start };
@@ -185,9 +190,13 @@ fn guides(svg: &mut Svg, panel: &Panel, area: &Area, (across, up): (&Ruler, &Rul
             }
             Guide::Level(y, name) => {
                 let Some(y) = up.at(*y).map(|at| area.y(at)) else { continue };
-                svg.line([area.left, y], [area.right(), y], &dashes);
-                svg.text([area.right(), y - 2.0], name, Anchor::End, &fill);
+                if names {
+                    svg.text([area.right(), y - 2.0], name, Anchor::End, &fill);
+                } else {
+                    svg.line([area.left, y], [area.right(), y], &dashes);
+                }
             }
+            Guide::Band(_) if names => {}
             Guide::Band([low, high]) => {
                 let (Some(low), Some(high)) = (up.at(*low), up.at(*high)) else { continue };
                 let (top, bottom) = (area.y(low.max(high)), area.y(low.min(high)));

@@ -66,7 +66,13 @@ fn levels(budget: &Budget<'_>) -> Figure {
 fn looks(budget: &Budget<'_>, label: &str, channel: usize, factor: f64) -> Panel {
     let value = |m: &Measured| Some(m.looks?[channel] * factor);
     let series = followers(budget).into_iter().enumerate().flat_map(|(index, (colour, name))| {
-        let points = budget.curve(index, Observer::HighGain, value);
+        let mut points = budget.curve(index, Observer::HighGain, value);
+        // Without noise and tilt only rounding errs: showing it would flatten everything else.
+        if let [[_, first], [_, second], ..] = points[..]
+            && first < 1e-3 * second
+        {
+            points.remove(0);
+        }
         let curve = Series { name, colour, points, marker: Marker::of(index), ..Series::default() };
         [Some(curve), camera(budget, index, colour, &value)].into_iter().flatten()
     });

@@ -7,7 +7,8 @@ use std::path::Path;
 
 /// A short run by corners of tags.
 fn short<'a>(scene: &'a str, more: &[&'a str]) -> Vec<&'a str> {
-    let args = ["budget", scene, "--no-camera", "--set", "time.duration=4", "--set", "expect.settled_after=2"];
+    let args =
+        ["budget", scene, "--no-camera", "--set", "time.duration=4", "--set", "expect.settled_after=2"];
     [&args[..], more].concat()
 }
 
@@ -46,7 +47,8 @@ fn the_table_has_every_level_and_the_folder_every_file() {
     let args = short(&scene, &["--pixel-noise", "0.05,0.5", "-o", "out"]);
     let (code, out, err) = told(&echelon(folder.path(), &args));
     assert_eq!(code, 0, "{err}");
-    for word in ["truth", "geometric 0.05 px", "geometric 0.5 px", "unscented", "→ follower-2", "no camera"] {
+    for word in ["truth", "geometric 0.05 px", "geometric 0.5 px", "unscented", "→ follower-2", "no camera"]
+    {
         assert!(out.contains(word), "`{word}` is not in\n{out}");
     }
     let names: Vec<String> = files(folder.path())
@@ -112,7 +114,8 @@ fn what_cannot_be_compared_is_refused() {
 fn a_place_that_cannot_be_written_is_said_before_the_runs() {
     let folder = tempfile::tempdir().expect("a folder");
     let scene = scene("vision-circle-three");
-    let (code, _, err) = told(&echelon(folder.path(), &["budget", &scene, "--no-camera", "-o", "/proc/nowhere/b"]));
+    let (code, _, err) =
+        told(&echelon(folder.path(), &["budget", &scene, "--no-camera", "-o", "/proc/nowhere/b"]));
     assert!(code == 3 && err.contains("/proc/nowhere/b"), "{err}");
     assert!(!Path::new("/proc/nowhere").exists());
 }
