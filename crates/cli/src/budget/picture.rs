@@ -3,7 +3,7 @@
 use super::Budget;
 use super::case::{Level, Observer};
 use super::measure::Measured;
-use figures::{Axis, Figure, Guide, Key, Marker, Panel, Rgb, Scale, Series, Stroke};
+use figures::{Axis, Figure, Key, Marker, Panel, Rgb, Scale, Series, Stroke};
 
 /// One quantity of an edge.
 type Value<'a> = &'a dyn Fn(&Measured) -> Option<f64>;
@@ -45,6 +45,7 @@ fn levels(budget: &Budget<'_>) -> Figure {
     let mut keys = vec![
         Key { name: "high-gain observer".to_owned(), ..Key::default() },
         Key { name: "unscented filter".to_owned(), stroke: Stroke::Dashed, marker: Marker::None },
+        Key { name: "told the truth".to_owned(), stroke: Stroke::Dotted, marker: Marker::None },
     ];
     if budget.run(Level::Camera, Observer::HighGain).is_some() {
         keys.push(Key {
@@ -69,7 +70,7 @@ fn looks(budget: &Budget<'_>, label: &str, channel: usize, factor: f64) -> Panel
         let mut points = budget.curve(index, Observer::HighGain, value);
         // Without noise and tilt only rounding errs: showing it would flatten everything else.
         if let [[_, first], [_, second], ..] = points[..]
-            && first < 1e-3 * second
+            && first < 0.05 * second
         {
             points.remove(0);
         }
@@ -94,17 +95,19 @@ fn tracking(budget: &Budget<'_>, label: &str, channel: usize, factor: f64) -> Pa
         let high_gain = Series { name, ..curve(Observer::HighGain, Stroke::Solid, Marker::of(index)) };
         [Some(unscented), Some(high_gain), camera(budget, index, colour, &value)].into_iter().flatten()
     });
-    let series: Vec<Series> = series.collect();
+    let mut series: Vec<Series> = series.collect();
     let least = series.iter().flat_map(|s| &s.points).map(|p| p[1]).fold(f64::INFINITY, f64::min);
-    let truth = budget.run(Level::Truth, Observer::HighGain).map(|run| {
-        let mut all: Vec<f64> = run.edges.iter().filter_map(value).collect();
-        all.sort_by(f64::total_cmp);
-        all.get(all.len() / 2).copied().unwrap_or_default()
-    });
-    // Where the truth is decades better, showing it would flatten everything else.
-    let near = truth.filter(|t| *t > least / 10.0);
-    let guides = near.map(|t| Guide::Level(t, "told the truth".to_owned())).into_iter().collect();
-    Panel { axis: axis(label, Scale::Log), series, guides }
+    let ends: Vec<f64> = budget.pixels().into_iter().filter(|p| *p > 0.0).collect();
+    let truth = budget.run(Level::Truth, Observer::HighGain);
+    for (index, (colour, _)) in followers(budget).into_iter().enumerate() {
+        let Some(level) = truth.and_then(|run| value(run.edges.get(index)?)) else { continue };
+        // Where the truth is far better, showing it would flatten everything else.
+        if level > least / 10.0 {
+            let points = [ends.first(), ends.last()].into_iter().flatten().map(|x| [*x, level]).collect();
+            series.push(Series { colour, points, stroke: Stroke::Dotted, ..Series::default() });
+        }
+    }
+    Panel { axis: axis(label, Scale::Log), series, guides: vec![] }
 }
 
 /// The camera's value, at the noise of corners that the follower's looks by camera stand for.
@@ -135,7 +138,7 @@ fn constants(budget: &Budget<'_>) -> Figure {
             ]
         });
         let series = series.collect();
-        let show = if scale == Scale::Linear { vec![0.0] } else { vec![] };
+        let show = if scale == Scale::Linear { vec![0.0, 5.0] } else { vec![] };
         Panel { axis: Axis { label: label.to_owned(), scale, show }, series, guides: vec![] }
     };
     let mut panels = vec![

@@ -69,7 +69,9 @@ fn the_table_has_every_level_and_the_folder_every_file() {
 fn observer_constants_are_compared() {
     let folder = tempfile::tempdir().expect("a folder");
     let scene = scene("vision-epsilon");
-    let args = short(&scene, &["--epsilon", "0.001,0.03", "-o", "."]);
+    let more =
+        ["--set", "time.duration=4", "--set", "sensing.pixel_noise=2", "--epsilon", "0.001,0.03", "-o", "."];
+    let args = [&["budget", &scene, "--no-camera"][..], &more].concat();
     let (code, out, err) = told(&echelon(folder.path(), &args));
     assert_eq!(code, 0, "{err}");
     for word in ["ε 0.001 s", "ε 0.03 s", "ε adaptive"] {
