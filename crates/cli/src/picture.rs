@@ -2,6 +2,7 @@
 
 use crate::args::{PictureArgs, SceneArgs};
 use crate::failure::Failure;
+use crate::print::note;
 use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, View};
 use vocabulary::Cast;
 
@@ -27,6 +28,14 @@ impl Studio {
         let size = args.size.unwrap_or(size);
         let mut style = Style::without(&args.without)?;
         style.detections = args.overlay || args.inset_camera.is_some();
+        let cameras = layout.views.iter().any(|view| matches!(view, View::Camera(_)));
+        if args.overlay && !cameras && args.inset_camera.is_none() {
+            note(
+                "--overlay shows in views through cameras only: add --view camera:ROBOT or --inset-camera ROBOT",
+            );
+        } else if style.detections && !cast.looks {
+            note("nobody looks in this scene, so there is nothing to overlay: try --set sensing.kind=camera");
+        }
         if let Some(robot) = &args.inset_camera {
             // The same words and the same mistakes as in a view.
             let view = Layout::parse(&format!("camera:{robot}"), &names)?;

@@ -112,7 +112,7 @@ impl HighGain {
         self.line_rate += trust[2] * rate * off[2];
     }
 
-    /// ε of a channel, s: as given, or the one at which noise and disturbance err alike, ε⁵ = 3σ²T/(32 δ²).
+    /// ε of a channel, s: as given, or the one at which what noise and disturbance do to the rates is least in sum, ε⁵ = 3σ²T/(32 δ²).
     fn epsilon(&self, law: &LookLaw, channel: usize, age: f64) -> f64 {
         if !law.adaptive {
             return law.observer.epsilon[channel.min(1)];

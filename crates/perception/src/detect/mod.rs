@@ -24,6 +24,9 @@ pub struct Tag {
     pub deviation: f64,
 }
 
+/// Corners keep this far from the edge of a picture, pixels.
+const EDGE: f64 = 1.0;
+
 /// Finds tags.
 pub trait Detector: Send {
     /// Puts the tags of a picture, however many, into `found`, which is emptied first; in an order that depends on
@@ -62,6 +65,9 @@ pub fn recognise_expected(
         tags.retain(|tag| shell.face_of(tag.id).is_some());
     }
     sharpen(picture, region, optics, &mut tags);
+    // What the edge of the picture cuts off was read by luck.
+    let last = [picture.width, picture.height].map(|n| f64::from(n) - 1.0);
+    tags.retain(|tag| tag.corners.iter().all(|c| (0..2).all(|k| c[k] > EDGE && c[k] < last[k] - EDGE)));
     for corner in tags.iter_mut().flat_map(|tag| &mut tag.corners) {
         *corner = [corner[0] + f64::from(region.x), corner[1] + f64::from(region.y)];
     }

@@ -27,6 +27,9 @@ const PIXELS: f64 = 1200.0;
 
 const ROUNDS: usize = 8;
 
+/// Standard deviation of corners that could not be sharpened, pixels.
+const GUESS: f64 = 1.5;
+
 /// Half a tag's side, cells.
 const HALF: f64 = 0.5 * TAG_CELLS as f64;
 
@@ -53,7 +56,7 @@ type Normal = SMatrix<f64, UNKNOWN, UNKNOWN>;
 type Row = SVector<f64, UNKNOWN>;
 
 /// Moves corners of `tags`, which are pixels of a `picture` of `region`, to where their code fits best. Tags whose fit
-/// comes to nothing stay as they are.
+/// comes to nothing stay where they are, their corners guesses.
 pub fn sharpen(picture: &Grey, region: Region, optics: &Optics, tags: &mut [Tag]) {
     if picture.values.len() != picture.width as usize * picture.height as usize {
         return;
@@ -61,8 +64,10 @@ pub fn sharpen(picture: &Grey, region: Region, optics: &Optics, tags: &mut [Tag]
     let view = View { picture, lens: &optics.lens, corner: [f64::from(region.x), f64::from(region.y)] };
     let blur = if optics.blur.is_finite() { optics.blur.clamp(0.0, 4.0) } else { 0.0 };
     for tag in tags {
-        if let Some((corners, deviation)) = fitted(&view, (blur * blur + PIXEL).sqrt(), tag) {
-            (tag.corners, tag.deviation) = (corners, deviation);
+        match fitted(&view, (blur * blur + PIXEL).sqrt(), tag) {
+            Some((corners, deviation)) => (tag.corners, tag.deviation) = (corners, deviation),
+            // Something stands in front of it, or it is hardly there: its corners are a guess.
+            None => tag.deviation = tag.deviation.max(GUESS),
         }
     }
 }

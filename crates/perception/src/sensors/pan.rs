@@ -10,7 +10,7 @@ pub(super) struct Pan {
     from: f64,
     /// At its end.
     to: f64,
-    /// Which way it sweeps.
+    /// Which way it would sweep: the way it turned last, for that way the leader went.
     sweep: f64,
 }
 
@@ -45,6 +45,9 @@ impl Pan {
         };
         let wanted = wanted.clamp(-camera.pan_max, camera.pan_max);
         self.to = self.from + (wanted - self.from).clamp(-most, most);
+        if (self.to - self.from).abs() > 1e-9 {
+            self.sweep = (self.to - self.from).signum();
+        }
     }
 }
 
