@@ -164,6 +164,7 @@ impl Case {
                 edges: graph.edges().to_vec(),
                 ..Cast::default()
             },
+            senses: None,
             observer_starts: vec![ObserverStart::Offset([0.0; 2]); self.edges.len()],
             stage: Stage { actors, props: vec![], terrain: None, step: 0.005 },
             stop_at_contact: false,
