@@ -4,8 +4,8 @@
 //! fit, colours of robots as in pictures, and for grey print a marker or a dash for everything that a colour tells.
 //! The same figure gives the same bytes. What is not a finite number leaves a gap; nothing here can fail.
 //!
-//! kuva 0.6 and plotters 0.3 were tried: neither sets names at the ends of curves, a zero on a logarithmic axis, or ticks
-//! at 0.1 that are not written `1e-1`, and what was left for them to do is less than the layer around them.
+//! A plotting library (kuva 0.6) sets no names at the ends of curves, no zero on a logarithmic axis, and ticks at 0.1 as
+//! `1e-1`: what would be left for it to do is less than the layer around it.
 
 mod axis;
 mod draw;

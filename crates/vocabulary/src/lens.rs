@@ -156,13 +156,11 @@ mod tests {
         let lens = Lens { distortion: [-0.3, 0.1, 2e-3, -1e-3, 0.02], ..Lens::pinhole(640, 480, 1.0) };
         let (at, h) = ([0.31, -0.22], 1e-6);
         let slope = lens.slope(at);
-        for k in 0..2 {
-            let moved = |s: f64| {
-                lens.distorted([at[0] + if k == 0 { s } else { 0.0 }, at[1] + if k == 1 { s } else { 0.0 }])
-            };
-            let (a, b) = (moved(h), moved(-h));
-            for row in 0..2 {
-                assert!((slope[row][k] - (a[row] - b[row]) / (2.0 * h)).abs() < 1e-8);
+        for (k, [dx, dy]) in [[h, 0.0], [0.0, h]].into_iter().enumerate() {
+            let moved = |sign: f64| lens.distorted([at[0] + sign * dx, at[1] + sign * dy]);
+            let (a, b) = (moved(1.0), moved(-1.0));
+            for (row, (a, b)) in slope.iter().zip(a.into_iter().zip(b)) {
+                assert!((row[k] - (a - b) / (2.0 * h)).abs() < 1e-8);
             }
         }
     }

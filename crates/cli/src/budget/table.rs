@@ -137,10 +137,10 @@ fn growth(budget: &Budget<'_>, index: usize) {
     }
 }
 
-fn tracking(
-    fit: &dyn Fn(Observer, &dyn Fn(&Measured) -> Option<f64>) -> Option<Growth>,
-    observer: Observer,
-) -> [Option<Growth>; 3] {
+/// How a measure of an observer's runs grows with the noise of the corners.
+type Fit<'a> = dyn Fn(Observer, &dyn Fn(&Measured) -> Option<f64>) -> Option<Growth> + 'a;
+
+fn tracking(fit: &Fit<'_>, observer: Observer) -> [Option<Growth>; 3] {
     [fit(observer, &|m| Some(m.tracking[0])), fit(observer, &|m| Some(m.tracking[1])), None]
 }
 

@@ -114,8 +114,8 @@ fn run(
                 (nearest_turn(after.bearing, before.bearing) - before.bearing) / T,
             ];
             let estimate = tracker.estimate(law);
-            for i in 0..2 {
-                shown.rates[i] += (estimate.rates[i] - rate[i]).powi(2);
+            for (sum, (seen, true_rate)) in shown.rates.iter_mut().zip(estimate.rates.iter().zip(rate)) {
+                *sum += (seen - true_rate).powi(2);
             }
             counted += 1;
         }

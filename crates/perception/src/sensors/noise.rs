@@ -70,12 +70,12 @@ mod tests {
             .collect();
         let mean = |f: &dyn Fn(usize) -> f64, n: usize| (0..n).map(f).sum::<f64>() / n as f64;
         let n = errors.len();
-        for k in 0..3 {
+        for (k, deviation) in model.deviation.into_iter().enumerate() {
             let centre = mean(&|i| errors[i][k], n);
             let spread = mean(&|i| (errors[i][k] - centre).powi(2), n);
             let next = mean(&|i| (errors[i][k] - centre) * (errors[i + 1][k] - centre), n - 1);
-            assert!((centre - model.bias[k]).abs() < 0.05 * model.deviation[k], "{k}: {centre}");
-            assert!((spread.sqrt() / model.deviation[k] - 1.0).abs() < 0.05, "{k}: {spread}");
+            assert!((centre - model.bias[k]).abs() < 0.05 * deviation, "{k}: {centre}");
+            assert!((spread.sqrt() / deviation - 1.0).abs() < 0.05, "{k}: {spread}");
             assert!((next / spread - (-0.5_f64).exp()).abs() < 0.05, "{k}: {}", next / spread);
         }
     }
