@@ -125,8 +125,11 @@ fn looks(metrics: &Metrics) {
         "of what the law was told",
         "gap"
     ));
-    let three =
-        |e: [f64; 3]| format!("{:>9.4} m {:>7.3}° {:>7.3}°", e[0], e[1].to_degrees(), e[2].to_degrees());
+    let three = |e: Option<[f64; 3]>| {
+        let told =
+            |e: [f64; 3]| format!("{:>9.4} m {:>7.3}° {:>7.3}°", e[0], e[1].to_degrees(), e[2].to_degrees());
+        e.map_or("none".to_owned(), told)
+    };
     for (edge, look) in looks().take(MOST_EDGES) {
         let name = format!("{} → {}", edge.leader, edge.follower);
         let (errors, told) = (three(look.rms_error), three(look.rms_estimate_error));

@@ -18,12 +18,14 @@ pub struct LookMetrics {
     pub missed: u64,
     /// Looks that never arrived.
     pub dropped: u64,
-    /// Share of the looks that arrived in which the leader was recognised.
+    /// Share of the looks that arrived in which the leader was recognised; 0 where none arrived.
     pub in_view: f64,
     /// Root mean square error of the looks used, [m, rad, rad]: distance, bearing, view angle.
-    pub rms_error: [f64; 3],
-    /// Root mean square error of what the law was told, [m, rad, rad], while the leader was not lost.
-    pub rms_estimate_error: [f64; 3],
+    /// `None` where none was used.
+    pub rms_error: Option<[f64; 3]>,
+    /// Root mean square error of what the law was told, [m, rad, rad], while the leader was not lost; `None` where it was
+    /// never told.
+    pub rms_estimate_error: Option<[f64; 3]>,
     /// Longest time without a look that corrected the estimate, s.
     pub longest_gap: f64,
     /// Time for which the leader was lost, s.
@@ -85,7 +87,8 @@ impl LookSums {
     /// The metrics so far; `None` for a follower that does not look.
     pub(crate) fn finish(&self) -> Option<LookMetrics> {
         let m = &self.metrics;
-        let root = |squares: [f64; 3], count: u64| squares.map(|s| (s / count.max(1) as f64).sqrt());
+        let root =
+            |squares: [f64; 3], count: u64| (count > 0).then(|| squares.map(|s| (s / count as f64).sqrt()));
         let arrived = m.taken - m.dropped;
         self.looked.then(|| LookMetrics {
             in_view: (arrived - m.missed) as f64 / arrived.max(1) as f64,
@@ -122,7 +125,9 @@ mod tests {
         let metrics = sums.finish().expect("it looked");
         assert_eq!((metrics.taken, metrics.used, metrics.dropped), (5, 2, 1));
         assert!((metrics.in_view - 0.75).abs() < 1e-12);
-        assert!((metrics.rms_error[0] - (0.01_f64 / 2.0).sqrt()).abs() < 1e-12);
+        let rms = metrics.rms_error.expect("some were used")[0];
+        assert!((rms - (0.01_f64 / 2.0).sqrt()).abs() < 1e-12);
+        assert_eq!(metrics.rms_estimate_error, None);
         assert_eq!((metrics.longest_gap, metrics.lost), (0.7, 0.01));
     }
 }

@@ -92,7 +92,12 @@ fn expect(part: &ExpectPart, time: &Time, reading: &mut Reading) -> Expect {
             reading.note(after.place, message);
         }
         (_, Some(after)) if expect.settled_after.is_some_and(|after| after >= time.duration) => {
-            let message = format!("`settled_after` must be before the end of the run at {} s", time.duration);
+            let message = format!(
+                "`settled_after` must be before the end of the run at {} s; for a shorter run set it too, as in --set \
+                 expect.settled_after={}",
+                time.duration,
+                0.5 * time.duration
+            );
             reading.note(after.place, message);
         }
         _ => {}

@@ -1,20 +1,21 @@
 //! What followers can and cannot see: shells, cameras and the looks that are possible.
 
 use crate::{
-    Channel, Follow, LawKind, Mode, Robot, Role, SensingKind, Vision,
+    Channel, Follow, LawKind, Mode, Robot, Role, Sensing, SensingKind, Vision,
     robots::Draft,
     text::{Found, Place, Reading, words::quoted},
     types::{SensingKind as Kind, TimePart, VisionPart},
 };
 use std::collections::HashMap;
-use vocabulary::{FACES, Lens, Mount, Pose, Shell, TAGS};
+use std::f64::consts::PI;
+use vocabulary::{FACES, Lens, Mount, Pose, Shell, TAGS, wrap};
 
 /// Robots whose shells the tag family can tell apart.
 const MOST_SHELLS: usize = TAGS / FACES;
 /// A tag is read up to this angle from its normal, rad.
-const STEEPEST: f64 = 65.0 / 180.0 * std::f64::consts::PI;
+const STEEPEST: f64 = 65.0 / 180.0 * PI;
 /// Pixels that a cell needs at least.
-const LEAST_CELL: f64 = 1.5;
+const LEAST_CELL: f64 = 1.75;
 
 impl Vision {
     /// The shell of a robot, its tags those of `number`; blank where the family has none.
@@ -90,6 +91,7 @@ pub(crate) fn check_sight(said: &Said<'_>, drafts: &[Draft], reading: &mut Readi
             continue;
         }
         check_law(said, follow, robot, name.place, reading);
+        check_hold(follow, robot, name.place, reading);
         let leader = robots.get(follow.leader.as_str()).copied();
         if let Some(leader) = leader.filter(|_| kind.needs_tags()) {
             if !inside {
@@ -119,6 +121,20 @@ fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Place, read
             robot.name
         );
         reading.note(mode.place, message);
+    }
+}
+
+/// Notes looks that come so late or so seldom that a leader is lost between any two of them.
+fn check_hold(follow: &Follow, robot: &Robot, place: Place, reading: &mut Reading) {
+    let Sensing { rate, latency, hold, .. } = follow.sensing;
+    if latency + 1.0 / rate >= hold {
+        let message = format!(
+            "`{}` would lose its leader between any two looks: they are up to {:.3} s old (`latency` and 1/`rate`), and `hold` is \
+             {hold} s; it must be longer",
+            robot.name,
+            latency + 1.0 / rate
+        );
+        reading.note(place, message);
     }
 }
 
@@ -192,18 +208,38 @@ fn check_visible(
         let slant = out / away;
         (slant > STEEPEST.cos()).then_some(lens.focal * shell.cell * slant.sqrt() / away)
     });
+    // Side by side and equally headed, as a formation is that has settled.
+    let pan = wrap(bearing - PI).abs() - 0.5 * said.vision.field_of_view;
+    if pan > said.vision.pan_max {
+        let message = format!(
+            "`{}` can never see its leader: at a bearing of {:.0} deg it is {:.0} deg off straight ahead, and the camera turns by \
+             `pan_max` of {:.0} deg",
+            robot.name,
+            bearing.to_degrees(),
+            wrap(bearing - PI).abs().to_degrees(),
+            said.vision.pan_max.to_degrees()
+        );
+        reading.note(place, message);
+        return;
+    }
     let largest = faces.fold(None, |most: Option<f64>, size| Some(most.map_or(size, |most| most.max(size))));
     let degrees = bearing.to_degrees();
     let message = match largest {
         None => format!(
             "`{}` can never see its leader: at a bearing of {degrees:.0} deg the shell of `{}` shows no tag within 65 deg of \
-             its normal; keep |bearing| above 30 deg",
+             its normal; keep |bearing| above 30 deg, and the camera away from the shell",
             robot.name, leader.name
         ),
         Some(pixels) if pixels < LEAST_CELL => format!(
             "`{}` can never see its leader: at {distance} m and {degrees:.0} deg a cell of a tag covers {pixels:.2} pixels, and \
              reading one takes {LEAST_CELL}; come nearer, or give more `resolution` or a larger `shell_scale`",
             robot.name
+        ),
+        Some(pixels) if 8.0 * pixels > f64::from(lens.width.min(lens.height)) => format!(
+            "`{}` can never see its leader: at {distance} m a tag covers {:.0} pixels, more than the picture has; go farther away, or \
+             give a wider `field_of_view`",
+            robot.name,
+            8.0 * pixels
         ),
         Some(_) => return,
     };

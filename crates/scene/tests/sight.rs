@@ -101,6 +101,21 @@ fn a_leader_that_can_never_be_seen_is_told_before_the_run() {
 }
 
 #[test]
+fn looks_that_lose_the_leader_between_them_are_refused() {
+    let late = text("[sensing]\nkind = \"camera\"\nlatency = 0.6\n", "", "-135 deg");
+    refused(&late, &["`b` would lose its leader", "0.633 s", "`hold` is 0.5 s"]);
+    refused(&text("[sensing]\nkind = \"noise\"\nrate = 1.0\n", "", "-135 deg"), &["`hold`"]);
+}
+
+#[test]
+fn a_leader_beyond_the_cameras_reach_is_told_before_the_run() {
+    let with = |line: &str| text(&format!("{CAMERA}[vision]\n{line}\n"), "", "-135 deg");
+    refused(&with("pan_max = \"10 deg\""), &["45 deg off straight ahead", "`pan_max` of 10 deg"]);
+    refused(&with("field_of_view = \"5 deg\""), &["more than the picture has", "`field_of_view`"]);
+    refused(&text(CAMERA, "", "-135 deg").replace("distance = 2.0", "distance = 6.5"), &["1.75"]);
+}
+
+#[test]
 fn there_are_tags_for_so_many_robots_only() {
     let crowd = |kind: &str| {
         format!(

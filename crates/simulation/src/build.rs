@@ -135,8 +135,9 @@ fn look_law(follow: &Follow, observer: formation::Observer) -> Option<LookLaw> {
     })
 }
 
-/// Tilt that is expected of bodies on springs or uneven ground, standard deviation, rad.
-const TILT: f64 = std::f64::consts::PI / 180.0;
+/// Tilt that is expected of bodies on springs or uneven ground, standard deviation, rad: a truck that brakes hard leans
+/// by twice that.
+const TILT: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
 /// The senses of all followers; `None` where all are told the truth.
 fn senses(

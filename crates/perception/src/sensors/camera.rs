@@ -203,12 +203,17 @@ impl CameraModel {
         }
         let mut sums: Vec<Vec<u32>> = vec![Vec::new(); looks.len()];
         for k in 0..SMEAR {
-            // Backwards from the instant of the look, which is the end of the exposure.
-            let ago = self.shutter * f64::from(k) / f64::from(SMEAR - 1);
+            // The instant of the look is the middle of the exposure.
+            let ago = self.shutter * (f64::from(k) / f64::from(SMEAR - 1) - 0.5);
             let into = first.snapshot.time - ago - before.time;
             let mut then = Snapshot::between(before, after, into / (after.time - before.time));
             for (robot, now) in then.robots.iter_mut().zip(&first.snapshot.robots) {
                 robot.camera_pan = now.camera_pan;
+            }
+            for look in looks {
+                if let Some(robot) = then.robots.get_mut(look.follower) {
+                    robot.camera_pan -= look.pan_rate * ago;
+                }
             }
             eyes.look(&then, &shots(&then), &mut pictures)?;
             pictures = checked(pictures, looks.len())?;

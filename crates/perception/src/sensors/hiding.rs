@@ -21,6 +21,7 @@ impl Senses {
             snapshot,
             expected: None,
             seen: false,
+            pan_rate: 0.0,
         };
         sightline::hidden(self, &look, from, to)
     }

@@ -118,6 +118,8 @@ pub(crate) struct Look<'a> {
     pub(crate) expected: Option<Relative>,
     /// Whether that can be relied on.
     pub(crate) seen: bool,
+    /// How fast the camera turns on its mast, rad/s.
+    pub(crate) pan_rate: f64,
 }
 
 /// Instants closer together than this are one, s.
@@ -210,6 +212,7 @@ impl Senses {
                     snapshot: &snapshot,
                     expected: beliefs[edge].relative,
                     seen: watch.edges[edge].seen && beliefs[edge].sight == Sight::Tracking,
+                    pan_rate: watch.edges[edge].pan.rate(after.time - before.time),
                 })
                 .collect();
             let pictures =

@@ -28,6 +28,11 @@ impl Pan {
         self.from + (self.to - self.from) * share
     }
 
+    /// How fast it turns in a period of `period` s, rad/s.
+    pub(super) fn rate(&self, period: f64) -> f64 {
+        if period > 0.0 { (self.to - self.from) / period } else { 0.0 }
+    }
+
     /// Turns for a period of `period` s, no faster and no farther than it can.
     pub(super) fn turn(&mut self, belief: &Belief, forward: f64, camera: &CameraModel, period: f64) {
         let most = camera.pan_rate * period;

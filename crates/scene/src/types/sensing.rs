@@ -42,7 +42,7 @@ settings! {
         /// Kind `geometric`: standard deviation of each coordinate of a tag's corner, pixels.
         pub pixel_noise: f64 = 0.1, number("px").from(0.0).up_to(50.0);
         /// Kinds `geometric` and `camera`: how far bodies are expected to tilt against each other, standard deviation; if
-        /// left out 0 for unicycles on level ground and 1 deg for all others.
+        /// left out 0 for unicycles on level ground and 2 deg for all others.
         pub tilt: Option<f64> = None, optional(angle_within(0.0, 0.5));
     }
 }
