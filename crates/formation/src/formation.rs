@@ -172,17 +172,24 @@ impl Formation {
             own_speed,
             leader: &leader,
         });
-        let commanded = limits.saturate(asked, own_speed);
-        let acceleration = limits.admissible(commanded.acceleration, seen.own_speed);
+        let too_close = seen.relative.distance < parameters.law.distance_min;
+        Decision { rates, too_close, ..Decision::of(asked, &set_point, seen.own_speed, limits) }
+    }
+}
+
+impl Decision {
+    /// What becomes of what is asked for at a speed, within limits.
+    fn of(asked: Command, set_point: &SetPoint, own_speed: f64, limits: &Limits) -> Self {
+        let commanded = limits.saturate(asked, own_speed.max(limits.speed_min));
+        let acceleration = limits.admissible(commanded.acceleration, own_speed);
         let applied = Command { acceleration, ..commanded };
-        Decision {
+        Self {
             set_point: [set_point.value[0], wrap(set_point.value[1])],
             asked,
             commanded,
             applied,
-            rates,
             limited: applied != asked,
-            too_close: seen.relative.distance < parameters.law.distance_min,
+            ..Self::default()
         }
     }
 }
@@ -193,17 +200,7 @@ fn without_leader(set_point: &SetPoint, seen: &Observation, limits: &Limits) -> 
     let braking = (limits.speed_min - seen.own_speed) / BRAKING;
     let asked =
         Command { acceleration: if seen.sight == Sight::Lost { braking } else { 0.0 }, turn_rate: 0.0 };
-    let commanded = limits.saturate(asked, seen.own_speed);
-    let acceleration = limits.admissible(commanded.acceleration, seen.own_speed);
-    let applied = Command { acceleration, ..commanded };
-    Decision {
-        set_point: [set_point.value[0], wrap(set_point.value[1])],
-        asked,
-        commanded,
-        applied,
-        limited: applied != asked,
-        ..Decision::default()
-    }
+    Decision::of(asked, set_point, seen.own_speed, limits)
 }
 
 /// Time constant with which a follower brakes that has lost its leader, s.
