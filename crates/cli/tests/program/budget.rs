@@ -69,8 +69,9 @@ fn the_table_has_every_level_and_the_folder_every_file() {
 fn observer_constants_are_compared() {
     let folder = tempfile::tempdir().expect("a folder");
     let scene = scene("vision-epsilon");
+    // Far more than the camera's, so that four seconds show it.
     let more =
-        ["--set", "time.duration=4", "--set", "sensing.pixel_noise=2", "--epsilon", "0.001,0.03", "-o", "."];
+        ["--set", "time.duration=4", "--set", "sensing.pixel_noise=1", "--epsilon", "0.001,0.03", "-o", "."];
     let args = [&["budget", &scene, "--no-camera"][..], &more].concat();
     let (code, out, err) = told(&echelon(folder.path(), &args));
     assert_eq!(code, 0, "{err}");
