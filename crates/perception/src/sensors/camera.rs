@@ -316,12 +316,14 @@ mod tests {
     fn regions_hold_what_is_expected_and_stay_in_the_picture() {
         let lens = Lens::default();
         let region = fitted(&lens, [[300.0, 200.0], [420.0, 260.0]]).expect("a region");
-        assert!(
-            region.x <= 256
-                && region.x + region.width >= 464
-                && region.y <= 156
-                && region.y + region.height >= 304
-        );
+        let margin = MARGIN.0 * 120.0 + MARGIN.1;
+        let ends = [(region.x, region.width, 300.0, 420.0), (region.y, region.height, 200.0, 260.0)];
+        for (first, length, low, high) in ends {
+            assert!(
+                f64::from(first) <= low - margin && f64::from(first + length) >= high + margin,
+                "{region:?}"
+            );
+        }
         assert!(region.width.is_multiple_of(GRID) && region.height.is_multiple_of(GRID));
         let cut = fitted(&lens, [[-80.0, 300.0], [60.0, 900.0]]).expect("a region");
         assert!(cut.x == 0 && cut.y + cut.height == lens.height);
