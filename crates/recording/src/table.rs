@@ -3,7 +3,7 @@
 //! A Parquet file is readable only once it is closed, so rows go into small parts, each closed as soon as it is
 //! full, and the parts become one file when the run ends.
 
-use crate::Error;
+use crate::{Error, columns};
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, RecordBatch, StringArray};
 use arrow_schema::{DataType, Field, Schema};
 use parquet::arrow::ArrowWriter;
@@ -58,84 +58,7 @@ impl TableKind {
 
     /// Names of the columns, with units.
     pub fn columns(self) -> &'static [&'static str] {
-        match self {
-            Self::Robots => &[
-                "time_s",
-                "robot",
-                "x_m",
-                "y_m",
-                "heading_rad",
-                "speed_m_s",
-                "acceleration_m_s2",
-                "turn_rate_rad_s",
-                "height_m",
-                "roll_rad",
-                "pitch_rad",
-                "steering_rad",
-                "condition",
-            ],
-            Self::Edges => &[
-                "time_s",
-                "leader",
-                "follower",
-                "distance_m",
-                "bearing_rad",
-                "view_angle_rad",
-                "set_distance_m",
-                "set_bearing_rad",
-                "error_distance_m",
-                "error_bearing_rad",
-                "asked_acceleration_m_s2",
-                "asked_turn_rate_rad_s",
-                "applied_acceleration_m_s2",
-                "applied_turn_rate_rad_s",
-                "rate_distance_m_s",
-                "rate_bearing_rad_s",
-                "seen_distance_m",
-                "seen_bearing_rad",
-                "seen_view_angle_rad",
-                "age_s",
-                "sight",
-                "limited",
-                "too_close",
-            ],
-            Self::Contacts => &[
-                "first",
-                "second",
-                "begin_s",
-                "end_s",
-                "x_m",
-                "y_m",
-                "z_m",
-                "normal_x",
-                "normal_y",
-                "normal_z",
-                "impulse_n_s",
-            ],
-            Self::Props => &["time_s", "prop", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"],
-            Self::Looks => &[
-                "leader",
-                "follower",
-                "outcome",
-                "stamp_s",
-                "arrival_s",
-                "faces",
-                "distance_m",
-                "bearing_rad",
-                "view_angle_rad",
-                "true_distance_m",
-                "true_bearing_rad",
-                "true_view_angle_rad",
-                "deviation_distance_m",
-                "deviation_bearing_rad",
-                "deviation_view_angle_rad",
-                "pan_rad",
-                "region_x_px",
-                "region_y_px",
-                "region_width_px",
-                "region_height_px",
-            ],
-        }
+        columns::of(self)
     }
 
     /// The tables that a run of `cast` has.

@@ -1,3 +1,5 @@
+//! What estimates from looks have to show, on a pair of exact unicycles.
+
 use super::*;
 use vocabulary::{Pose, nearest_turn};
 

@@ -1,6 +1,4 @@
 //! Pictures of a shell with tags, cast ray by ray: 8 by 8 of them to a pixel, in linear light.
-#![allow(dead_code, unreachable_pub, reason = "every user takes what it needs")]
-
 use perception::imaging::{Optics, Purpose, Sensor, Source, Stream, noise_stream};
 use perception::pose::Rig;
 use vocabulary::{Body, FACES, Grey, Lens, Mount, Pose, Region, Rigid, Shell, TAG_CELLS, tag_cell, wrap};
@@ -8,35 +6,35 @@ use vocabulary::{Body, FACES, Grey, Lens, Mount, Pose, Region, Rigid, Shell, TAG
 const RAYS: usize = 8;
 
 /// A leader to be looked at.
-pub struct Scene {
-    pub rig: Rig,
-    pub pose: Pose,
+pub(crate) struct Scene {
+    pub(crate) rig: Rig,
+    pub(crate) pose: Pose,
     /// Leader's body in the camera.
-    pub camera_from_body: Rigid,
+    pub(crate) camera_from_body: Rigid,
     /// Faces turned towards the camera by less than 65°, entirely in the picture.
-    pub visible: Vec<usize>,
+    pub(crate) visible: Vec<usize>,
     /// Light that falls on the faces.
     light: [f64; FACES],
     /// Edges and waves of the background.
     clutter: Vec<[f64; 5]>,
 }
 
-pub struct Scenes {
+pub(crate) struct Scenes {
     stream: Stream,
-    pub lens: Lens,
+    pub(crate) lens: Lens,
 }
 
 impl Scenes {
-    pub fn seeded(seed: u64) -> Self {
+    pub(crate) fn seeded(seed: u64) -> Self {
         Self { stream: noise_stream(seed, 0, 0, Purpose::Setup), lens: Lens::default() }
     }
 
-    pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.stream.uniform()
     }
 
     /// A leader `distance` m away with a heading under which some face shows, the camera turned towards it but for 6°.
-    pub fn next(&mut self, distance: f64) -> Scene {
+    pub(crate) fn next(&mut self, distance: f64) -> Scene {
         let bearing = self.uniform(-0.6, 0.6);
         let pan = bearing + self.uniform(-0.1, 0.1);
         // ψ from 30° to 180°, either side.
@@ -67,7 +65,7 @@ impl Scenes {
 }
 
 impl Scene {
-    pub fn new(rig: Rig, pose: Pose, light: [f64; FACES], clutter: Vec<[f64; 5]>) -> Self {
+    pub(crate) fn new(rig: Rig, pose: Pose, light: [f64; FACES], clutter: Vec<[f64; 5]>) -> Self {
         let body = Rigid::turned([pose.x, pose.y, 0.0], pose.heading, 0.0, 0.0);
         let camera_from_body = rig.body_from_camera.inverse().after(&body);
         let mut scene = Self { rig, pose, camera_from_body, visible: vec![], light, clutter };
@@ -85,7 +83,7 @@ impl Scene {
     }
 
     /// Where the corners of a face's tag are, pixels.
-    pub fn corners(&self, face: usize) -> Option<[[f64; 2]; 4]> {
+    pub(crate) fn corners(&self, face: usize) -> Option<[[f64; 2]; 4]> {
         let at =
             self.rig.shell.tag_corners(face).map(|c| self.rig.lens.project(self.camera_from_body.apply(c)));
         let [Some(a), Some(b), Some(c), Some(d)] = at else { return None };
@@ -93,7 +91,7 @@ impl Scene {
     }
 
     /// The part of the picture a tracker would look at: where the shell is, a fifth of its size around it.
-    pub fn region(&self) -> Region {
+    pub(crate) fn region(&self) -> Region {
         let [low, high] = self.extent();
         let more = 0.2 * (high[0] - low[0]).max(high[1] - low[1]) + 6.0;
         let size = [self.rig.lens.width, self.rig.lens.height];
@@ -129,7 +127,7 @@ impl Scene {
     }
 
     /// The ideal picture a sensor needs.
-    pub fn ideal(&self, source: &Source) -> Grey {
+    pub(crate) fn ideal(&self, source: &Source) -> Grey {
         let shell = &self.rig.shell;
         let frames: Vec<_> = (0..FACES)
             .map(|face| self.camera_from_body.after(&shell.body_from_face(face)).inverse())
@@ -185,7 +183,7 @@ impl Scene {
     }
 
     /// What a sensor makes of it.
-    pub fn picture(&self, sensor: &mut Sensor, region: Region, frame: u64) -> Grey {
+    pub(crate) fn picture(&self, sensor: &mut Sensor, region: Region, frame: u64) -> Grey {
         let ideal = self.ideal(&sensor.source(region));
         let mut picture = Grey::default();
         sensor.expose(&ideal, region, &mut noise_stream(1, 0, frame, Purpose::Pixels), &mut picture);
@@ -193,6 +191,6 @@ impl Scene {
     }
 }
 
-pub fn sensor(lens: Lens) -> Sensor {
+pub(crate) fn sensor(lens: Lens) -> Sensor {
     Sensor::new(Optics { lens, ..Optics::default() })
 }
