@@ -3,13 +3,12 @@
 //! `cargo bench -p rendering` prints medians; other work on the machine shows in them.
 
 #[path = "../tests/stage/course.rs"]
-#[allow(dead_code, reason = "shared with tests")]
+#[expect(dead_code, reason = "shared with tests")]
 mod course;
 #[path = "../tests/stage/sight.rs"]
-#[allow(dead_code, reason = "shared with tests")]
+#[expect(dead_code, reason = "shared with tests")]
 mod sight;
 #[path = "../tests/stage/mod.rs"]
-#[allow(dead_code, reason = "shared with tests")]
 mod stage;
 
 use course::{TRUCK, furnish};

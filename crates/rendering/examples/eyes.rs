@@ -2,13 +2,13 @@
 //! `still`. Every follower looks at its leader; the pictures stand side by side, and their times are told.
 
 #[path = "../tests/stage/course.rs"]
-#[allow(dead_code, reason = "shared with tests")]
+#[expect(dead_code, reason = "shared with tests")]
 mod course;
 #[path = "../tests/stage/sight.rs"]
-#[allow(dead_code, reason = "shared with tests")]
+#[expect(dead_code, reason = "shared with tests")]
 mod sight;
 #[path = "../tests/stage/mod.rs"]
-#[allow(dead_code, reason = "shared with tests")]
+#[expect(dead_code, reason = "shared with tests")]
 mod stage;
 
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded};

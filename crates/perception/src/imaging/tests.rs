@@ -1,3 +1,5 @@
+//! Light through glass, blur and noise, held against what it should be.
+
 use super::*;
 
 fn drawn(source: &Source, light: impl Fn(f64, f64) -> f64) -> Grey {

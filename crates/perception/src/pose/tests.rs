@@ -1,3 +1,5 @@
+//! Poses from exact and from noisy corners, against bounds and an oracle.
+
 use super::trial::{View, Views};
 use super::*;
 use proptest::prelude::*;
