@@ -170,7 +170,7 @@ fn cameras_without_anyone_to_draw_for_them_say_so() {
 /// The paper's claim, on pictures: the same digest twice, and a formation that closes up.
 #[test]
 fn the_loop_closes_on_pictures_and_does_so_alike_every_time() {
-    let scene = scene("vision-cars-circle-three", 2.5, SensingKind::Camera);
+    let scene = scene("vision-cars-circle-three", 6.0, SensingKind::Camera);
     let run = || {
         let mut run = start(&scene);
         let gpu = Gpu::open(&AdapterChoice::Auto).expect("an adapter, as for all pictures");
@@ -182,7 +182,7 @@ fn the_loop_closes_on_pictures_and_does_so_alike_every_time() {
     let first = play(run(), |moment| all.push(moment.clone()));
     assert_eq!(first, play(run(), |_| ()));
     let frames: Vec<_> = all.iter().flat_map(|m| &m.frames).collect();
-    assert!(frames.len() >= 146, "{}", frames.len());
+    assert!(frames.len() >= 356, "{}", frames.len());
     // In the first second both close up as fast as they can, and their cameras swing.
     let late: Vec<_> = frames.iter().filter(|frame| frame.sighting.stamp > 1.0).collect();
     let seen = late.iter().filter(|frame| frame.outcome.seen()).count();
