@@ -66,7 +66,10 @@ pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
     let mut timeline = Timeline::new(loaded.simulation, export.exposure.shutter);
     let mut frame = 0;
     while frame < frames && timeline.reach(frame as f64 * args.every)? {
-        export.take(&timeline, frame, frame as f64 * args.every)?;
+        let time = frame as f64 * args.every;
+        // Half of an exposure comes after its instant; at the end of the run robots are held where they are.
+        timeline.reach(time + 0.5 * export.exposure.shutter)?;
+        export.take(&timeline, frame, time)?;
         frame += 1;
         progress.at(frame);
         if interrupt::asked() {

@@ -342,13 +342,17 @@ fn bodies_of_all_sizes_are_in_the_picture() {
     for (body, scale) in [(TRUCK, 1.0), (ROVER, 1.0), (CAR, 10.0), (Body::default(), 1.0)] {
         let mut play = Play::new(3, Path::Eight);
         furnish(&mut play.cast, body, false, false);
+        // The shell on a car's roof hides much of its paint; it is bodies that are counted.
+        for member in play.cast.members.iter_mut().filter(|member| member.body.length > 1.2) {
+            member.shell = None;
+        }
         let mut moment = play.at(9.0);
         enlarge(&mut moment, scale);
         for view in [View::Snake, View::Top, View::Orbit, View::SnakeEye, View::Follow(1)] {
             let name = format!("{view:?}");
             let picture = snap(&play.cast, &moment, view, &Style::bare());
             let found = count(&picture, |[r, g, b]| r > g + 30 && g > b + 40);
-            assert!(found > 45, "{name} of {body:?}: {found}");
+            assert!(found > 60, "{name} of {body:?}: {found}");
         }
     }
 }

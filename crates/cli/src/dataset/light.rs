@@ -2,11 +2,9 @@
 
 use crate::dataset::timeline::Timeline;
 use crate::failure::Failure;
+use perception::imaging;
 use rendering::CameraEyes;
 use vocabulary::{Cast, Grey, Region, Shot, Snapshot};
-
-/// Instants over which a picture with a shutter gathers its light, as for cameras that steer by their pictures.
-const SMEAR: u32 = 6;
 
 /// A picture to be taken: of all a sensor needs for its whole frame.
 #[derive(Debug, Clone, Copy)]
@@ -26,7 +24,7 @@ pub(crate) struct Exposure {
     pub(crate) shutter: f64,
 }
 
-/// Ideal pictures of all that is `wanted` at the instant of `now`, the end of their exposure.
+/// Ideal pictures of all that is `wanted` at the instant of `now`, the middle of their exposure.
 pub(crate) fn gather(
     eyes: &mut CameraEyes,
     cast: &Cast,
@@ -34,35 +32,11 @@ pub(crate) fn gather(
     (timeline, now): (&Timeline, &Snapshot),
     wanted: &[Wanted],
 ) -> Result<Vec<Grey>, Failure> {
-    let mut pictures = Vec::new();
-    // At the start of the run nothing has moved yet.
-    let shutter = exposure.shutter.min(now.time);
-    if shutter <= 0.0 {
-        eyes.take(now, &shots(cast, exposure, now, wanted), &mut pictures)?;
-        return Ok(pictures);
-    }
-    let mut sums: Vec<Vec<u32>> = vec![Vec::new(); wanted.len()];
-    for k in 0..SMEAR {
-        let ago = shutter * f64::from(k) / f64::from(SMEAR - 1);
-        let mut then = timeline.at(now.time - ago).unwrap_or_else(|| now.clone());
-        // Where a camera points is known for the instant of the picture.
-        for (robot, now) in then.robots.iter_mut().zip(&now.robots) {
-            robot.camera_pan = now.camera_pan;
-        }
-        eyes.take(&then, &shots(cast, exposure, &then, wanted), &mut pictures)?;
-        for (sum, picture) in sums.iter_mut().zip(&pictures) {
-            sum.resize(picture.values.len(), 0);
-            for (total, value) in sum.iter_mut().zip(&picture.values) {
-                *total += u32::from(*value);
-            }
-        }
-    }
-    for (picture, sum) in pictures.iter_mut().zip(&sums) {
-        for (value, total) in picture.values.iter_mut().zip(sum) {
-            *value = ((total + SMEAR / 2) / SMEAR) as u8;
-        }
-    }
-    Ok(pictures)
+    imaging::gather(exposure.shutter, |off, pictures| {
+        let then = timeline.at(now.time + off).filter(|_| off != 0.0);
+        let then = then.as_ref().unwrap_or(now);
+        Ok(eyes.take(then, &shots(cast, exposure, then, wanted), pictures)?)
+    })
 }
 
 fn shots(cast: &Cast, exposure: &Exposure, snapshot: &Snapshot, wanted: &[Wanted]) -> Vec<Shot> {

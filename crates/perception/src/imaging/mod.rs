@@ -1,8 +1,10 @@
 //! What a sensor makes of an ideal picture: distortion, blur, noise, eight bits.
 
+mod exposure;
 mod glass;
 mod noise;
 
+pub use exposure::gather;
 pub use noise::{Purpose, Stream, noise_stream};
 
 use glass::{Glass, between};

@@ -2,7 +2,7 @@
 
 use super::{Look, Senses, all_faces, pan};
 use crate::detect::{Locus, recognise_expected};
-use crate::imaging::{Optics, Purpose, Sensor, noise_stream};
+use crate::imaging::{Optics, Purpose, Sensor, gather, noise_stream};
 use crate::pose::SeenFace;
 use vocabulary::{Eyes, FACES, Grey, Lens, Region, Rigid, Shot, Snapshot};
 
@@ -121,8 +121,6 @@ impl Bench {
     }
 }
 
-/// Instants over which a picture with a shutter gathers its light.
-const SMEAR: u32 = 6;
 /// What is looked at reaches this share of the shell's size beyond where it is expected, and this many pixels.
 const MARGIN: (f64, f64) = (0.12, 12.0);
 /// Sides of regions are whole multiples of this, so that few sizes occur.
@@ -196,40 +194,26 @@ impl CameraModel {
             looks.iter().zip(regions).map(shot).collect()
         };
         let Some(first) = looks.first() else { return Ok(Vec::new()) };
-        let mut pictures = Vec::new();
-        if self.shutter <= 0.0 || after.time <= before.time {
-            eyes.look(first.snapshot, &shots(first.snapshot), &mut pictures)?;
-            return checked(pictures, looks.len());
-        }
-        let mut sums: Vec<Vec<u32>> = vec![Vec::new(); looks.len()];
-        for k in 0..SMEAR {
-            // The instant of the look is the middle of the exposure.
-            let ago = self.shutter * (f64::from(k) / f64::from(SMEAR - 1) - 0.5);
-            let into = first.snapshot.time - ago - before.time;
-            let mut then = Snapshot::between(before, after, into / (after.time - before.time));
-            for (robot, now) in then.robots.iter_mut().zip(&first.snapshot.robots) {
+        let (now, period) = (first.snapshot, after.time - before.time);
+        // At the start of the run nothing has moved yet.
+        let shutter = if period > 0.0 { self.shutter } else { 0.0 };
+        gather(shutter, |off, pictures| {
+            if off == 0.0 {
+                eyes.look(now, &shots(now), pictures)?;
+                return checked(pictures, looks.len());
+            }
+            let mut then = Snapshot::between(before, after, (now.time + off - before.time) / period);
+            for (robot, now) in then.robots.iter_mut().zip(&now.robots) {
                 robot.camera_pan = now.camera_pan;
             }
             for look in looks {
                 if let Some(robot) = then.robots.get_mut(look.follower) {
-                    robot.camera_pan -= look.pan_rate * ago;
+                    robot.camera_pan += look.pan_rate * off;
                 }
             }
-            eyes.look(&then, &shots(&then), &mut pictures)?;
-            pictures = checked(pictures, looks.len())?;
-            for (sum, picture) in sums.iter_mut().zip(&pictures) {
-                sum.resize(picture.values.len(), 0);
-                for (total, value) in sum.iter_mut().zip(&picture.values) {
-                    *total += u32::from(*value);
-                }
-            }
-        }
-        for (picture, sum) in pictures.iter_mut().zip(&sums) {
-            for (value, total) in picture.values.iter_mut().zip(sum) {
-                *value = ((total + SMEAR / 2) / SMEAR) as u8;
-            }
-        }
-        Ok(pictures)
+            eyes.look(&then, &shots(&then), pictures)?;
+            checked(pictures, looks.len())
+        })
     }
 
     /// Where the leader is expected to be seen; the whole picture where that is not known.
@@ -243,9 +227,9 @@ impl CameraModel {
     }
 }
 
-fn checked(pictures: Vec<Grey>, wanted: usize) -> Result<Vec<Grey>, String> {
+fn checked(pictures: &[Grey], wanted: usize) -> Result<(), String> {
     if pictures.len() == wanted {
-        return Ok(pictures);
+        return Ok(());
     }
     Err(format!("{wanted} pictures were to be taken, and {} came", pictures.len()))
 }
