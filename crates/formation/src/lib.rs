@@ -7,8 +7,10 @@
 //! Read in the order of the data: [`graph`], [`relative`], [`set_point`], [`lead`], [`law`], [`observer`], [`looks`], and
 //! [`formation`], which puts them together.
 
+pub mod energy;
 pub mod formation;
 pub mod graph;
+pub mod holdable;
 pub mod law;
 pub mod lead;
 pub mod looks;

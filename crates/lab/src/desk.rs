@@ -1,0 +1,422 @@
+//! What the window knows: scene, past, present and what is selected. It decides what an action means, without a window.
+
+use crate::session::branches::{Change, script};
+use crate::session::draft::{Draft, Effect};
+use crate::session::forecast::Forecast;
+use crate::session::history::History;
+use crate::session::runner::{News, Order};
+use scene::{Follow, Role, Scene};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use vocabulary::Moment;
+
+/// What is selected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Choice {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// A robot, by its index.
+    Robot(usize),
+    /// An edge, by its index.
+    Edge(usize),
+}
+
+/// What clicks on the ground do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Tool {
+    /// Select, and drag set points.
+    #[default]
+    Hand,
+    /// Drag from a robot to the one that it shall follow.
+    Connect,
+    /// Place a pillar.
+    Pillar,
+}
+
+/// A branch as the window knows it.
+#[derive(Debug, Clone)]
+pub struct BranchFace {
+    /// What it is called.
+    pub name: String,
+    /// Branch and time at which it leaves its parent, s.
+    pub parent: Option<(usize, f64)>,
+    /// What was changed on it, from time 0 on.
+    pub changes: Vec<Change>,
+    /// The scene's text from a sample on.
+    texts: Vec<(u64, String)>,
+}
+
+/// A line of the log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// Simulated time, s.
+    pub time: f64,
+    /// What happened.
+    pub text: String,
+    /// Whether it is a fault.
+    pub fault: bool,
+}
+
+/// Lines of the log that are kept.
+const MOST_EVENTS: usize = 2000;
+
+/// What the window knows.
+pub struct Desk {
+    /// The scene under work; `None` where none could be opened.
+    pub draft: Option<Draft>,
+    /// Everything simulated.
+    pub history: Option<History>,
+    /// The branches, as in the history.
+    pub branches: Vec<BranchFace>,
+    /// The branch that is looked at, which is the one that goes on.
+    pub branch: usize,
+    /// The time that is looked at, s; `None` for the present.
+    pub cursor: Option<f64>,
+    /// Whether the run goes.
+    pub playing: bool,
+    /// Simulated seconds per second.
+    pub pace: f64,
+    /// What is selected.
+    pub choice: Choice,
+    /// What clicks do.
+    pub tool: Tool,
+    /// The newest forecast.
+    pub forecast: Option<Forecast>,
+    /// How far to look ahead, s.
+    pub ahead: f64,
+    /// Whether a change of a gain is for all followers.
+    pub for_all: bool,
+    /// Whether a set point's mirror image moves with it.
+    pub mirror: bool,
+    /// What happened.
+    pub log: Vec<Event>,
+    /// A message in place, until it is dismissed.
+    pub notice: Option<String>,
+    /// Text of the scene at time 0 of the run.
+    base: String,
+    /// For the thread of the run.
+    pub orders: Vec<Order>,
+    /// Whether an order waits for what is known of a run.
+    pub keep: Option<PathBuf>,
+}
+
+impl Desk {
+    /// An empty desk.
+    pub fn new() -> Self {
+        Self {
+            draft: None,
+            history: None,
+            branches: Vec::new(),
+            branch: 0,
+            cursor: None,
+            playing: true,
+            pace: 1.0,
+            choice: Choice::Nothing,
+            tool: Tool::Hand,
+            forecast: None,
+            ahead: 6.0,
+            for_all: true,
+            mirror: false,
+            log: Vec::new(),
+            notice: None,
+            base: String::new(),
+            orders: Vec::new(),
+            keep: None,
+        }
+    }
+
+    /// Opens a scene from its text; `path` is where it is saved, `home` where its files are looked for.
+    ///
+    /// # Errors
+    /// All that is wrong with the text; then the desk is as before.
+    pub fn open(&mut self, text: String, path: Option<PathBuf>, home: &Path) -> Result<(), String> {
+        self.draft = Some(Draft::new(text, path, home)?);
+        self.choice = Choice::Nothing;
+        self.restart(0.0);
+        Ok(())
+    }
+
+    /// The scene as it stands.
+    pub fn scene(&self) -> Option<&Arc<Scene>> {
+        self.draft.as_ref().map(Draft::scene)
+    }
+
+    /// Runs the scene as it stands from time 0, at once up to `until` s.
+    pub fn restart(&mut self, until: f64) {
+        let Some(draft) = &self.draft else { return };
+        draft.text().clone_into(&mut self.base);
+        self.orders.push(Order::Open { scene: Arc::clone(draft.scene()), gpu: None, until });
+        self.orders.push(Order::Ahead(self.ahead));
+        self.orders.push(Order::Play(self.playing));
+        self.cursor = None;
+    }
+
+    /// The moment that is looked at.
+    pub fn moment(&self) -> Option<Arc<Moment>> {
+        let history = self.history.as_ref()?;
+        match self.cursor {
+            Some(time) => history.at(self.branch, time),
+            None => history.head(self.branch).cloned(),
+        }
+    }
+
+    /// The time that is looked at, s.
+    pub fn time(&self) -> f64 {
+        self.cursor.unwrap_or_else(|| self.end())
+    }
+
+    /// The last time of the branch, s.
+    pub fn end(&self) -> f64 {
+        self.history.as_ref().map_or(0.0, |history| history.end(self.branch))
+    }
+
+    /// The follower of an edge: its index among the robots, its name, and how it follows.
+    pub fn follower(&self, edge: usize) -> Option<(usize, &str, &Follow)> {
+        let scene = self.scene()?;
+        let followers = scene.robots.iter().enumerate().filter_map(|(index, robot)| match &robot.role {
+            Role::Follow(follow) => Some((index, &*robot.name, &**follow)),
+            Role::Lead { .. } => None,
+        });
+        followers.into_iter().nth(edge)
+    }
+
+    /// The edge that is selected, or that of the robot that is.
+    pub fn chosen_edge(&self) -> Option<usize> {
+        match self.choice {
+            Choice::Edge(edge) => Some(edge),
+            Choice::Robot(robot) => self.edge_of(robot),
+            Choice::Nothing => None,
+        }
+    }
+
+    /// The edge on which a robot follows.
+    pub fn edge_of(&self, robot: usize) -> Option<usize> {
+        let cast = self.history.as_ref()?.cast();
+        cast.edges.iter().position(|edge| edge.follower == robot)
+    }
+
+    /// The robot that is selected, or the follower of the edge that is.
+    pub fn chosen_robot(&self) -> Option<usize> {
+        match self.choice {
+            Choice::Robot(robot) => Some(robot),
+            Choice::Edge(edge) => self.history.as_ref()?.cast().edges.get(edge).map(|edge| edge.follower),
+            Choice::Nothing => None,
+        }
+    }
+
+    /// Adds a line to the log.
+    pub fn note(&mut self, text: impl Into<String>) {
+        self.event(text.into(), false);
+    }
+
+    /// Adds a fault to the log and shows it.
+    pub fn fault(&mut self, text: impl Into<String>) {
+        let text = text.into();
+        self.notice = Some(text.clone());
+        self.event(text, true);
+    }
+
+    fn event(&mut self, text: String, fault: bool) {
+        let time = self.time();
+        // What goes on under a hand is one line.
+        let again = text.ends_with('…') && self.log.last().is_some_and(|last| last.text == text);
+        if !again {
+            self.log.push(Event { time, text, fault });
+        }
+        if self.log.len() > MOST_EVENTS {
+            self.log.remove(0);
+        }
+    }
+
+    /// Edits the scene, and lets the run take it.
+    pub fn edit(
+        &mut self,
+        what: &str,
+        edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
+    ) -> bool {
+        // In the past, an edit makes another future.
+        if self.cursor.is_some_and(|time| time < self.end() - 1e-9) {
+            self.fork();
+        }
+        let Some(draft) = &mut self.draft else { return false };
+        match draft.edit(what, edit) {
+            Ok(effect) => {
+                self.take(what, &effect);
+                true
+            }
+            Err(fault) => {
+                self.fault(fault);
+                false
+            }
+        }
+    }
+
+    /// Lets the run take what has become of the scene.
+    pub fn take(&mut self, what: &str, effect: &Effect) {
+        match effect {
+            Effect::None => {}
+            Effect::Retune => {
+                self.note(what);
+                if let Some(scene) = self.scene().cloned() {
+                    self.orders.push(Order::Change(scene));
+                }
+            }
+            Effect::Restart(_) => {
+                self.note(format!("{what} (the run begins anew)"));
+                let until = self.time();
+                self.restart(until);
+            }
+        }
+    }
+
+    /// Leaves the branch that is looked at, at the time that is looked at.
+    pub fn fork(&mut self) {
+        let Some(history) = &self.history else { return };
+        let sample = history.sample(self.time()) + 1;
+        let name = format!("branch {}", self.branches.len());
+        self.orders.push(Order::Fork { from: self.branch, sample, name });
+        // The scene is again what it was there.
+        let text = self.branches.get(self.branch).map(|branch| branch.text_at(sample, &self.base));
+        if let (Some(draft), Some(text)) = (&mut self.draft, text) {
+            // It was a scene before.
+            let _ = draft.replace("Go back", text);
+        }
+    }
+
+    /// Goes on with another branch.
+    pub fn switch(&mut self, branch: usize) {
+        if branch >= self.branches.len() || branch == self.branch {
+            return;
+        }
+        self.branch = branch;
+        self.cursor = None;
+        self.forecast = None;
+        self.orders.push(Order::Switch(branch));
+        let text = self.branches[branch].text_at(u64::MAX, &self.base);
+        if let Some(draft) = &mut self.draft {
+            let _ = draft.replace("Switch branch", text);
+        }
+    }
+
+    /// Looks at a time of the branch, s.
+    pub fn seek(&mut self, time: f64) {
+        let end = self.end();
+        if time >= end {
+            self.cursor = None;
+        } else {
+            self.pause();
+            self.cursor = Some(time.max(0.0));
+        }
+    }
+
+    /// Lets the run stand.
+    pub fn pause(&mut self) {
+        if self.playing {
+            self.playing = false;
+            self.orders.push(Order::Play(false));
+        }
+    }
+
+    /// Lets the run go, from the present.
+    pub fn play(&mut self) {
+        self.cursor = None;
+        self.playing = true;
+        self.orders.push(Order::Play(true));
+    }
+
+    /// The scene that runs as the branch that is looked at ran so far.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    pub fn script(&self) -> Result<String, String> {
+        let branch = self.branches.get(self.branch).ok_or("There is no run.")?;
+        let period = self.history.as_ref().map_or(0.01, History::period);
+        script(&self.base, &branch.changes, self.end().max(period))
+    }
+
+    /// Takes in what the thread of the run tells.
+    pub fn hear(&mut self, news: News) {
+        match news {
+            News::Opened { cast, period } => {
+                self.history = Some(History::new(cast, period));
+                self.branches = vec![BranchFace {
+                    name: "main".to_owned(),
+                    parent: None,
+                    changes: Vec::new(),
+                    texts: Vec::new(),
+                }];
+                (self.branch, self.cursor, self.forecast) = (0, None, None);
+                self.check_choice();
+            }
+            News::Moments(branch, moments) => {
+                if let Some(history) = &mut self.history {
+                    for moment in moments {
+                        history.push(branch, moment);
+                    }
+                }
+            }
+            News::Forked { branch, from, sample, name, changes } => {
+                self.forked(branch, (from, sample), name, changes);
+            }
+            News::Changed(branch, change) => self.changed(branch, change),
+            News::Told { .. } => {}
+            News::Stands(why) => {
+                self.playing = false;
+                if let Some(why) = why {
+                    self.fault(why);
+                }
+            }
+            News::Refused(why) => self.fault(why),
+        }
+    }
+
+    fn forked(&mut self, branch: usize, (from, sample): (usize, u64), name: String, changes: Vec<Change>) {
+        let Some(history) = &mut self.history else { return };
+        history.fork(from, sample);
+        let time = (sample as f64 - 1.0) * history.period();
+        let texts = self.branches.get(from).map_or_else(Vec::new, |b| b.texts.clone());
+        let texts = texts.into_iter().filter(|(at, _)| *at < sample).collect();
+        self.branches.truncate(branch);
+        self.branches.push(BranchFace { name: name.clone(), parent: Some((from, time)), changes, texts });
+        (self.branch, self.cursor) = (branch, None);
+        self.note(format!("{name} leaves {} here", self.branches[from].name));
+    }
+
+    fn changed(&mut self, branch: usize, change: Change) {
+        let text = self.draft.as_ref().map_or_else(String::new, |draft| draft.text().to_owned());
+        if let Some(face) = self.branches.get_mut(branch) {
+            face.texts.retain(|(sample, _)| *sample != change.sample);
+            face.texts.push((change.sample, text));
+            face.changes.retain(|before| before.sample != change.sample);
+            face.changes.push(change);
+        }
+    }
+
+    /// Nothing stays selected that is not there any more.
+    fn check_choice(&mut self) {
+        let Some(cast) = self.history.as_ref().map(|history| history.cast()) else { return };
+        let there = match self.choice {
+            Choice::Nothing => true,
+            Choice::Robot(robot) => robot < cast.members.len(),
+            Choice::Edge(edge) => edge < cast.edges.len(),
+        };
+        if !there || (self.choice == Choice::Nothing && !cast.edges.is_empty()) {
+            self.choice = if cast.edges.is_empty() { Choice::Nothing } else { Choice::Edge(0) };
+        }
+    }
+}
+
+impl Default for Desk {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl BranchFace {
+    /// The scene's text as it held before a sample.
+    fn text_at(&self, sample: u64, base: &str) -> String {
+        let last = self.texts.iter().filter(|(at, _)| *at < sample).max_by_key(|(at, _)| *at);
+        last.map_or_else(|| base.to_owned(), |(_, text)| text.clone())
+    }
+}

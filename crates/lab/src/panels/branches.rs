@@ -1,0 +1,44 @@
+//! The branches of the run: their names, their changes, and a line for each in time.
+
+use crate::action::Action;
+use crate::desk::Desk;
+use crate::tidy::fixed;
+use eframe::egui::{self, RichText, Ui, WidgetInfo, WidgetType};
+
+/// All branches.
+pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+    if ui.button("Branch here").on_hover_text("Leave this branch at the time you look at (B)").clicked() {
+        out.push(Action::Fork);
+    }
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        for (index, branch) in desk.branches.iter().enumerate() {
+            let chosen = index == desk.branch;
+            let response = ui.selectable_label(chosen, &branch.name);
+            response
+                .widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, chosen, &branch.name));
+            if response.clicked() {
+                out.push(Action::Branch(index));
+            }
+            response.context_menu(|ui| {
+                let id = ui.id().with(index);
+                let mut name: String =
+                    ui.data(|data| data.get_temp(id)).unwrap_or_else(|| branch.name.clone());
+                let edit = ui.text_edit_singleline(&mut name);
+                ui.data_mut(|data| data.insert_temp(id, name.clone()));
+                if edit.lost_focus() && !name.trim().is_empty() {
+                    out.push(Action::NameBranch(index, name.trim().to_owned()));
+                    ui.close();
+                }
+            });
+            if let Some((parent, time)) = branch.parent {
+                let from = desk.branches.get(parent).map_or("", |parent| &parent.name);
+                ui.weak(format!("leaves {from} at {} s", fixed(time, 2)));
+            }
+            let own = branch.parent.map_or(0.0, |(_, time)| time);
+            for change in branch.changes.iter().filter(|change| change.time >= own) {
+                let text = format!("{} s  {}", fixed(change.time, 2), change.set.join(", "));
+                ui.label(RichText::new(text).small().weak());
+            }
+        }
+    });
+}

@@ -1,0 +1,149 @@
+//! Rows with a symbol, a slider and a way back to the default.
+
+use super::{pair, tune};
+use crate::action::Action;
+use crate::symbols::Symbol;
+use eframe::egui::{self, Slider, Ui};
+
+/// How a slider goes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Range {
+    /// Least and largest value on the slider; more can be typed.
+    pub(crate) span: [f64; 2],
+    /// Least and largest value at all.
+    pub(crate) hard: [f64; 2],
+    /// Whether it goes by factors.
+    pub(crate) logarithmic: bool,
+}
+
+impl Range {
+    /// Steps of the same size.
+    pub(crate) const fn linear(low: f64, high: f64) -> Self {
+        Self { span: [low, high], hard: [low, f64::INFINITY], logarithmic: false }
+    }
+
+    /// Steps by the same factor.
+    pub(crate) const fn factors(low: f64, high: f64) -> Self {
+        Self { span: [low, high], hard: [f64::MIN_POSITIVE, f64::INFINITY], logarithmic: true }
+    }
+}
+
+/// A quantity of the scene behind a slider.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Row {
+    pub(crate) symbol: Symbol,
+    /// Its key, without the robot.
+    pub(crate) key: &'static str,
+    pub(crate) range: Range,
+    pub(crate) decimals: usize,
+}
+
+impl Row {
+    /// A row for one value; the default is shown beside the way back to it.
+    pub(crate) fn one(&self, ui: &mut Ui, value: f64, default: f64, out: &mut Vec<Action>) {
+        self.frame(ui, value != default, &self.text(default), out, |ui, out| {
+            let mut new = value;
+            let response = self.slider(ui, &mut new, self.symbol.name);
+            if response.changed() && new != value {
+                out.push(tune(self.symbol.name, self.key, crate::tidy::tidy(new)));
+            }
+            released(&response, out);
+        });
+    }
+
+    /// A row for a pair: one slider where both are the same and nobody wants them apart, else two.
+    pub(crate) fn two(
+        &self,
+        ui: &mut Ui,
+        value: [f64; 2],
+        default: [f64; 2],
+        apart: bool,
+        out: &mut Vec<Action>,
+    ) {
+        let shown = if default[0] == default[1] {
+            self.text(default[0])
+        } else {
+            format!("{}, {}", self.text(default[0]), self.text(default[1]))
+        };
+        self.frame(ui, value != default, &shown, out, |ui, out| {
+            if value[0] == value[1] && !apart {
+                let mut new = value[0];
+                let response = self.slider(ui, &mut new, self.symbol.name);
+                if response.changed() && new != value[0] {
+                    out.push(tune(self.symbol.name, self.key, pair([new; 2])));
+                }
+                return released(&response, out);
+            }
+            ui.vertical(|ui| {
+                for (channel, word) in ["of the distance", "of the bearing"].into_iter().enumerate() {
+                    let mut new = value;
+                    let response =
+                        self.slider(ui, &mut new[channel], &format!("{} {word}", self.symbol.name));
+                    if response.changed() && new != value {
+                        out.push(tune(self.symbol.name, self.key, pair(new)));
+                    }
+                    released(&response, out);
+                }
+            });
+        });
+    }
+
+    fn frame(
+        &self,
+        ui: &mut Ui,
+        differs: bool,
+        default: &str,
+        out: &mut Vec<Action>,
+        sliders: impl FnOnce(&mut Ui, &mut Vec<Action>),
+    ) {
+        ui.horizontal(|ui| {
+            ui.allocate_ui_with_layout(
+                egui::vec2(34.0, ui.spacing().interact_size.y),
+                egui::Layout::left_to_right(egui::Align::Center),
+                |ui| {
+                    ui.set_min_width(34.0);
+                    self.symbol.label(ui);
+                },
+            );
+            sliders(ui, out);
+            let back = ui.add_enabled(differs, egui::Button::new("⟲").frame(false));
+            let name = format!("Reset {}", self.symbol.name.to_lowercase());
+            back.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::Button, differs, name.clone())
+            });
+            if back.on_hover_text(format!("{name}: {default} {}", self.symbol.unit)).clicked() {
+                out.push(Action::Untune { what: name.clone(), key: self.key });
+            }
+        });
+    }
+
+    fn slider(&self, ui: &mut Ui, value: &mut f64, name: &str) -> egui::Response {
+        ui.spacing_mut().slider_width = (ui.available_width() - 118.0).clamp(60.0, 260.0);
+        let [low, high] = self.range.span;
+        let unit = if self.symbol.unit.contains(',') { "" } else { self.symbol.unit };
+        let suffix = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        let [least, most] = self.range.hard;
+        let mut slider = Slider::new(value, low.min(*value).max(least)..=high.max(*value).min(most))
+            .logarithmic(self.range.logarithmic)
+            .max_decimals(self.decimals)
+            .suffix(suffix)
+            .clamping(egui::SliderClamping::Edits);
+        if self.range.logarithmic {
+            slider = slider.smallest_positive(low.max(1e-9));
+        }
+        let response = ui.add(slider);
+        response.widget_info(|| egui::WidgetInfo::slider(true, *value, name));
+        response.on_hover_ui(|ui| self.symbol.tip(ui))
+    }
+
+    fn text(&self, value: f64) -> String {
+        crate::tidy::tidy(value)
+    }
+}
+
+/// Tells when a slider is let go.
+pub(crate) fn released(response: &egui::Response, out: &mut Vec<Action>) {
+    if response.drag_stopped() || response.lost_focus() {
+        out.push(Action::Rest);
+    }
+}

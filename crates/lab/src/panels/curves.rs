@@ -1,0 +1,104 @@
+//! Plots over time: one axis of time for all of them, one cursor, all branches.
+
+use super::{colour, nothing};
+use crate::action::Action;
+use crate::desk::Desk;
+use crate::quantities::{Quantity, bounds, curves};
+use crate::tidy::fixed;
+use eframe::egui::{self, Color32, Id, Stroke, Ui};
+use egui_plot::{HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, VLine};
+
+/// Points of a curve, at most.
+const MOST_POINTS: usize = 400;
+
+/// Plots of some quantities, one above the other.
+pub fn show(ui: &mut Ui, desk: &Desk, quantities: &[Quantity], out: &mut Vec<Action>) {
+    if desk.history.is_none() {
+        return nothing(ui, "No scene is open.");
+    }
+    let gap = ui.spacing().item_spacing.y;
+    let high = (ui.available_height() - gap * (quantities.len() - 1) as f32) / quantities.len() as f32;
+    for (row, quantity) in quantities.iter().enumerate() {
+        plot(ui, desk, *quantity, (high, row + 1 == quantities.len()), out);
+    }
+}
+
+fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool), out: &mut Vec<Action>) {
+    let end = desk.history.as_ref().map_or(0.0, |history| history.end(desk.branch));
+    let group = Id::new("time axis");
+    let logarithmic = quantity.logarithmic();
+    let weak = ui.visuals().weak_text_color();
+    let text = |value: f64| {
+        if logarithmic { format!("1e{}", fixed(value, 0)) } else { short(value) }
+    };
+    let plot = Plot::new(("plot", quantity.column()))
+        .height(high.max(30.0))
+        .show_axes([last, true])
+        .show_grid(true)
+        .link_axis(group, [true, false])
+        .link_cursor(group, [true, false])
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_drag([true, false])
+        .allow_zoom([true, false])
+        .set_margin_fraction(egui::vec2(0.01, 0.08))
+        .include_x(0.0)
+        .include_x(end.max(1.0))
+        .y_axis_min_width(40.0)
+        .y_axis_formatter(move |mark, _| text(mark.value))
+        .x_axis_formatter(|mark, _| format!("{} s", short(mark.value)))
+        .label_formatter(move |hover| {
+            let at: PlotPoint = hover.position();
+            let value = if logarithmic { format!("{:.1e}", 10_f64.powf(at.y)) } else { fixed(at.y, 3) };
+            Some(format!("{} s\n{value}", fixed(at.x, 2)))
+        });
+    let all = curves(desk, quantity, [0.0, f64::INFINITY], MOST_POINTS);
+    let colours: Vec<Color32> = all
+        .iter()
+        .map(|curve| curve.robot.map_or(ui.visuals().text_color(), |robot| colour(desk, robot, ui)))
+        .collect();
+    let cursor = ui.visuals().strong_text_color();
+    let chosen = desk.chosen_robot();
+    let response = plot.show(ui, |plot| {
+        for bound in bounds(desk, quantity) {
+            let near = all.iter().flat_map(|c| &c.points).any(|p| p[1].abs() > 0.4 * bound.abs());
+            // A bound that is far away would only flatten the curves.
+            if near {
+                plot.hline(HLine::new("bound", bound).color(weak).width(1.0).style(LineStyle::dashed_loose()));
+            }
+        }
+        for (curve, colour) in all.into_iter().zip(colours) {
+            let active = curve.branch == desk.branch;
+            let wide = match (active, chosen.is_some() && chosen == curve.robot) {
+                (true, true) => 2.2,
+                (true, false) => 1.4,
+                _ => 1.0,
+            };
+            let colour = if active { colour } else { colour.gamma_multiply(0.45) };
+            let style = if active { LineStyle::Solid } else { LineStyle::dashed_dense() };
+            let points = PlotPoints::from(curve.points);
+            plot.line(Line::new("", points).stroke(Stroke::new(wide, colour)).style(style));
+        }
+        plot.vline(VLine::new("now", desk.time()).color(cursor).width(1.0));
+        plot.pointer_coordinate()
+    });
+    // The quantity stands in the plot, where it takes no room.
+    let at = response.response.rect.right_top() + egui::vec2(-6.0, 2.0);
+    let font = egui::FontId::proportional(11.5);
+    ui.painter().text(at, egui::Align2::RIGHT_TOP, quantity.axis(), font, ui.visuals().text_color());
+    if response.response.clicked()
+        && let Some(point) = response.inner
+    {
+        out.push(Action::Seek(point.x.max(0.0)));
+    }
+}
+
+/// A number for an axis.
+fn short(value: f64) -> String {
+    let text = format!("{:.3}", value);
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    match text {
+        "-0" | "" => "0".to_owned(),
+        _ => text.replace('-', "−"),
+    }
+}

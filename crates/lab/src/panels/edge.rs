@@ -1,0 +1,114 @@
+//! The selected edge: its set point in numbers, and the shape of the whole formation.
+
+use super::nothing;
+use crate::action::Action;
+use crate::desk::Desk;
+use crate::symbols;
+use crate::tidy::fixed;
+use eframe::egui::{self, DragValue, RichText, Ui, WidgetInfo};
+use scene::Channel;
+
+/// The selected edge.
+pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+    let Some((edge, (_, name, follow))) = desk.chosen_edge().and_then(|e| Some((e, desk.follower(e)?))) else {
+        return nothing(ui, "Click a follower or its edge.");
+    };
+    ui.label(RichText::new(format!("{} → {name}", follow.leader)).strong());
+    let state = desk.moment().and_then(|moment| moment.edges.get(edge).copied());
+    let now = state.map_or([0.0; 2], |state| state.set_point);
+    let value = |channel: &Channel, now: f64| match channel {
+        Channel::Constant(value) => *value,
+        _ => now,
+    };
+    let (distance, bearing) = (value(&follow.distance, now[0]), value(&follow.bearing, now[1]));
+    let (mut new_distance, mut new_degrees) = (distance, bearing.to_degrees());
+    egui::Grid::new("set point").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
+        symbols::DISTANCE.label(ui);
+        let drag = DragValue::new(&mut new_distance).speed(0.02).range(0.05..=1000.0).max_decimals(3);
+        let response = ui.add(drag.min_decimals(2).suffix(" m"));
+        named(&response, new_distance, symbols::DISTANCE.name);
+        super::controls::released(&response, out);
+        ui.weak(state.map_or_else(String::new, |s| format!("is {} m", fixed(s.relative.distance, 3))));
+        ui.end_row();
+        symbols::BEARING.label(ui);
+        let drag = DragValue::new(&mut new_degrees).speed(0.5).range(-180.0..=180.0).max_decimals(2);
+        let response = ui.add(drag.min_decimals(1).suffix("°"));
+        named(&response, new_degrees, symbols::BEARING.name);
+        super::controls::released(&response, out);
+        ui.weak(
+            state.map_or_else(String::new, |s| format!("is {}°", fixed(s.relative.bearing.to_degrees(), 1))),
+        );
+        ui.end_row();
+    });
+    if new_distance != distance || (new_degrees - bearing.to_degrees()).abs() > 1e-9 {
+        out.push(Action::SetPoint { edge, distance: new_distance, bearing: new_degrees.to_radians() });
+    }
+    if !matches!((&follow.distance, &follow.bearing), (Channel::Constant(_), Channel::Constant(_))) {
+        ui.weak("It moves in time; what you set here stays.");
+    }
+    let mut mirror = desk.mirror;
+    let tip = "The follower on the other side of the same leader moves too";
+    if ui.checkbox(&mut mirror, "Mirror the other side").on_hover_text(tip).changed() {
+        out.push(Action::Mirror(mirror));
+    }
+    if let Some(state) = state {
+        ui.weak(format!(
+            "error {} m, {}°",
+            fixed(state.error[0], 3),
+            fixed(state.error[1].to_degrees(), 2)
+        ));
+        if state.limited {
+            ui.colored_label(ui.visuals().warn_fg_color, "a limit cuts the command");
+        }
+    }
+    shape(ui, out);
+    ahead(ui, desk, edge);
+}
+
+/// Scale and turn of the whole formation.
+fn shape(ui: &mut Ui, out: &mut Vec<Action>) {
+    ui.add_space(4.0);
+    ui.label(RichText::new("Whole formation").strong());
+    ui.horizontal_wrapped(|ui| {
+        for (text, scale, turn, tip) in [
+            ("−10 %", 1.0 / 1.1, 0.0, "All distances smaller (Ctrl −)"),
+            ("+10 %", 1.1, 0.0, "All distances larger (Ctrl +)"),
+            ("⟲ 5°", 1.0, 5.0, "All bearings to the left"),
+            ("⟳ 5°", 1.0, -5.0, "All bearings to the right"),
+        ] {
+            if ui.button(text).on_hover_text(tip).clicked() {
+                out.push(Action::Shape { scale, turn: f64::to_radians(turn) });
+                out.push(Action::Rest);
+            }
+        }
+    });
+}
+
+/// What the forecast says of the edge.
+fn ahead(ui: &mut Ui, desk: &Desk, edge: usize) {
+    let Some(forecast) = desk.forecast.as_ref().filter(|forecast| forecast.branch == desk.branch) else {
+        return;
+    };
+    ui.add_space(4.0);
+    let seconds = forecast.span[1] - forecast.span[0];
+    if let Some([distance, bearing]) = forecast.late_error.get(edge) {
+        ui.label(format!(
+            "in {} s: within {} m, {}°",
+            fixed(seconds, 0),
+            fixed(*distance, 3),
+            fixed(bearing.to_degrees(), 2)
+        ));
+    }
+    if let Some((time, things)) = &forecast.contact
+        && let Some(history) = &desk.history
+    {
+        let [a, b] = things.map(|thing| history.cast().name(thing).to_owned());
+        let text = format!("contact at {} s: {a} and {b}", fixed(*time, 1));
+        ui.colored_label(ui.visuals().error_fg_color, text);
+    }
+}
+
+fn named(response: &egui::Response, value: f64, name: &str) {
+    response.widget_info(|| WidgetInfo::drag_value(true, value));
+    response.widget_info(|| WidgetInfo::labeled(egui::WidgetType::DragValue, true, name));
+}

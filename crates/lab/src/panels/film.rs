@@ -1,0 +1,58 @@
+//! What is drawn, and pictures and films of it.
+
+use crate::action::Action;
+use crate::desk::Desk;
+use eframe::egui::{self, Slider, Ui, WidgetInfo};
+use rendering::Style;
+
+/// Elements that a person may want to switch, and what they are.
+const ELEMENTS: [(&str, &str); 10] = [
+    ("ribbons", "Ribbons where robots drove"),
+    ("ghosts", "Ghosts of past poses"),
+    ("set-points", "Rings at set points"),
+    ("edges", "Edges"),
+    ("labels", "Distances and bearings"),
+    ("names", "Names"),
+    ("grid", "Grid"),
+    ("inset", "Chart of errors"),
+    ("caption", "Title and law"),
+    ("shadows", "Shadows"),
+];
+
+/// Films, pictures and what they show.
+pub fn show(ui: &mut Ui, desk: &Desk, style: &Style, filming: Option<&str>, out: &mut Vec<Action>) {
+    ui.horizontal_wrapped(|ui| {
+        let text = if filming.is_some() { "■ End the film" } else { "● Film" };
+        if ui.button(text).on_hover_text("An MP4 of what is seen, every moment of it (F)").clicked() {
+            out.push(Action::Film);
+        }
+        if ui.button("Picture").on_hover_text("A PNG that remembers its settings (P)").clicked() {
+            out.push(Action::Picture);
+        }
+        if ui.button("Keep the run").on_hover_text("The run as a scene with its changes, and its tables").clicked()
+        {
+            out.push(Action::KeepRun);
+        }
+    });
+    if let Some(text) = filming {
+        ui.label(text);
+    }
+    ui.separator();
+    let mut ahead = desk.ahead;
+    ui.horizontal(|ui| {
+        ui.label("Look ahead");
+        let response = ui.add(Slider::new(&mut ahead, 0.0..=20.0).suffix(" s").max_decimals(0));
+        response.widget_info(|| WidgetInfo::slider(true, ahead, "Look ahead"));
+        if response.changed() {
+            out.push(Action::Ahead(ahead.round()));
+        }
+    });
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        for (name, text) in ELEMENTS {
+            let mut on = style.shows(name);
+            if ui.checkbox(&mut on, text).changed() {
+                out.push(Action::Element(name, on));
+            }
+        }
+    });
+}

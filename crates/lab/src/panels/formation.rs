@@ -1,0 +1,113 @@
+//! The tree of robots: who follows whom. Drag a robot onto the one that it shall follow.
+
+use super::{colour, nothing};
+use crate::action::Action;
+use crate::desk::{Choice, Desk, Tool};
+use eframe::egui::{self, RichText, Sense, Ui, WidgetInfo, WidgetType};
+use vocabulary::{Cast, Moment};
+
+/// Robots as a tree.
+pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+    let Some(cast) = desk.history.as_ref().map(|history| history.cast().clone()) else {
+        return nothing(ui, "No scene is open.");
+    };
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("+ Robot").on_hover_text("A robot that follows the selected one (Insert)").clicked() {
+            out.push(Action::AddRobot);
+        }
+        let connects = desk.tool == Tool::Connect;
+        let tip = "Drag in the view from a robot to the one that it shall follow (C)";
+        if ui.selectable_label(connects, "Connect").on_hover_text(tip).clicked() {
+            out.push(Action::Take(if connects { Tool::Hand } else { Tool::Connect }));
+        }
+    });
+    let moment = desk.moment();
+    let rows = order(&cast);
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        for (robot, depth) in rows {
+            row(ui, desk, (&cast, moment.as_deref()), (robot, depth), out);
+        }
+    });
+}
+
+/// Robots, each after the one it follows, with its depth.
+fn order(cast: &Cast) -> Vec<(usize, usize)> {
+    let mut rows = Vec::with_capacity(cast.members.len());
+    let mut open: Vec<(usize, usize)> =
+        (0..cast.members.len()).rev().filter(|k| cast.members[*k].leads).map(|k| (k, 0)).collect();
+    while let Some((robot, depth)) = open.pop() {
+        rows.push((robot, depth));
+        let followers = cast.edges.iter().rev().filter(|edge| edge.leader == robot);
+        open.extend(followers.map(|edge| (edge.follower, depth + 1)));
+    }
+    rows
+}
+
+fn row(
+    ui: &mut Ui,
+    desk: &Desk,
+    (cast, moment): (&Cast, Option<&Moment>),
+    (robot, depth): (usize, usize),
+    out: &mut Vec<Action>,
+) {
+    let name = &cast.members[robot].name;
+    let chosen = desk.chosen_robot() == Some(robot);
+    let response = ui
+        .horizontal(|ui| {
+            ui.add_space(14.0 * depth.min(8) as f32);
+            let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), Sense::hover());
+            ui.painter().circle_filled(rect.center(), 5.0, colour(desk, robot, ui));
+            let text = if chosen { RichText::new(name).strong() } else { RichText::new(name) };
+            let label = ui.add(egui::Button::selectable(chosen, text).sense(Sense::click_and_drag()));
+            if let Some(error) = desk.edge_of(robot).and_then(|edge| Some(moment?.edges.get(edge)?.error)) {
+                let size = error[0].hypot(error[1]);
+                let text = format!("{} m", crate::tidy::fixed(error[0], 2));
+                let weak = RichText::new(text).small();
+                let text = if size > 0.05 { weak.color(ui.visuals().warn_fg_color) } else { weak.weak() };
+                ui.label(text).on_hover_text("Error of the distance");
+            }
+            label
+        })
+        .inner;
+    response.widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, chosen, name));
+    response.dnd_set_drag_payload(robot);
+    if let Some(follower) = response.dnd_release_payload::<usize>()
+        && *follower != robot
+    {
+        out.push(Action::Connect { leader: robot, follower: *follower });
+    }
+    if response.dnd_hover_payload::<usize>().is_some_and(|follower| *follower != robot) {
+        let stroke = ui.visuals().selection.stroke;
+        ui.painter().rect_stroke(response.rect, 3.0, stroke, egui::StrokeKind::Inside);
+    }
+    if response.clicked() {
+        out.push(Action::Choose(Choice::Robot(robot)));
+    }
+    if response.double_clicked() {
+        out.push(Action::Follow(Some(robot)));
+    }
+    response.context_menu(|ui| menu(ui, name, robot, out));
+}
+
+fn menu(ui: &mut Ui, name: &str, robot: usize, out: &mut Vec<Action>) {
+    let id = ui.id().with("name");
+    let mut text: String = ui.data(|data| data.get_temp(id)).unwrap_or_else(|| name.to_owned());
+    let edit = ui.text_edit_singleline(&mut text);
+    ui.data_mut(|data| data.insert_temp(id, text.clone()));
+    if edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) && text.trim() != name {
+        out.push(Action::RenameRobot(name.to_owned(), text.trim().to_owned()));
+        ui.close();
+    }
+    if ui.button("Follow with the camera").clicked() {
+        out.push(Action::Follow(Some(robot)));
+        ui.close();
+    }
+    if ui.button("See through its camera").clicked() {
+        out.push(Action::View(format!("camera:{name}")));
+        ui.close();
+    }
+    if ui.button("Remove").clicked() {
+        out.push(Action::RemoveRobot(name.to_owned()));
+        ui.close();
+    }
+}

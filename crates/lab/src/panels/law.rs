@@ -1,0 +1,162 @@
+//! Law, gains and observer.
+
+use super::controls::{Range, Row};
+use super::{nothing, tune};
+use crate::action::Action;
+use crate::desk::Desk;
+use crate::symbols;
+use eframe::egui::{ComboBox, Ui, WidgetInfo, WidgetType};
+use scene::{Law, LawKind, Observer, ObserverKind, Switching, VehicleKind};
+
+const LAWS: [(LawKind, &str, &str, &str); 3] = [
+    (LawKind::FullState, "Full state feedback", "full-state", "Knows its leader's motion (eq 20)."),
+    (LawKind::RobustState, "Robust state feedback", "robust-state", "Knows the rates of ℓ and ψ (eq 22)."),
+    (LawKind::OutputFeedback, "Output feedback", "output-feedback", "Knows ℓ and ψ only (eq 42)."),
+];
+
+const GAIN: Row =
+    Row { symbol: symbols::GAIN, key: "law.k", range: Range::factors(0.1, 20.0), decimals: 3 };
+const ROBUST: Row =
+    Row { symbol: symbols::ROBUST, key: "law.beta", range: Range::linear(0.0, 20.0), decimals: 3 };
+const SLOPE: Row =
+    Row { symbol: symbols::SLOPE, key: "law.slope", range: Range::factors(1.0, 200.0), decimals: 2 };
+const EPSILON: Row =
+    Row { symbol: symbols::EPSILON, key: "observer.epsilon", range: Range::factors(1e-4, 1.0), decimals: 5 };
+const ALPHA_ONE: Row =
+    Row { symbol: symbols::ALPHA_ONE, key: "observer.alpha1", range: Range::factors(0.1, 10.0), decimals: 3 };
+const ALPHA_TWO: Row =
+    Row { symbol: symbols::ALPHA_TWO, key: "observer.alpha2", range: Range::factors(0.1, 10.0), decimals: 3 };
+
+/// The law of the follower that is selected.
+pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+    let Some((robot, name, follow)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge)) else {
+        return nothing(ui, "Nobody follows: there is no law to tune.");
+    };
+    scope(ui, desk, name, out);
+    let kind = vehicle(desk, robot);
+    let (law, default) = (&follow.law, Law::fitting(kind));
+    law_kind(ui, law, out);
+    let apart = ui.data(|data| data.get_temp(apart_id()).unwrap_or(false));
+    GAIN.two(ui, law.k, default.k, apart, out);
+    if law.kind != LawKind::FullState {
+        ROBUST.two(ui, law.beta, default.beta, apart, out);
+        switching(ui, law, out);
+        if law.switching == Switching::Tanh {
+            SLOPE.two(ui, law.slope, default.slope, apart, out);
+        }
+    }
+    let mut apart_now = apart;
+    if ui.checkbox(&mut apart_now, "Distance and bearing apart").changed() {
+        ui.data_mut(|data| data.insert_temp(apart_id(), apart_now));
+    }
+}
+
+/// The observer of the follower that is selected.
+pub fn observer(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+    let Some((robot, name, follow)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge)) else {
+        return nothing(ui, "Nobody follows: there is nothing to observe.");
+    };
+    let looks = follow.sensing.kind != scene::SensingKind::Truth;
+    if follow.law.kind != LawKind::OutputFeedback && !looks {
+        return nothing(ui, "This law is told the rates. Output feedback observes them.");
+    }
+    scope(ui, desk, name, out);
+    let (observer, default) = (&follow.observer, Observer::fitting(vehicle(desk, robot)));
+    if looks {
+        let mut adaptive = observer.adaptive;
+        if ui.checkbox(&mut adaptive, "ε follows from the noise of each look").changed() {
+            out.push(tune("Adaptive ε", "observer.adaptive", adaptive.to_string()));
+            out.push(Action::Rest);
+        }
+        if observer.kind == ObserverKind::Unscented {
+            ui.weak("Two unscented Kalman filters stand in for the observer.");
+        }
+    }
+    ui.add_enabled_ui(!(looks && observer.adaptive), |ui| {
+        EPSILON.two(ui, observer.epsilon, default.epsilon, false, out);
+    });
+    ALPHA_ONE.two(ui, observer.alpha1, default.alpha1, false, out);
+    ALPHA_TWO.two(ui, observer.alpha2, default.alpha2, false, out);
+    ui.weak(format!("Poles at {}", poles(observer)));
+    if ui.button("Disturb the observer").on_hover_text("Begin again at 0 and watch it peak like 1/ε").clicked() {
+        out.push(Action::Set {
+            what: "Observer starts 0.2 m and 10° off".to_owned(),
+            values: vec![("observer.start".to_owned(), "{ offset = [0.2, \"10 deg\"] }".to_owned())],
+        });
+        out.push(Action::Restart);
+    }
+}
+
+/// Where the observer's poles are, in words.
+fn poles(observer: &Observer) -> String {
+    let one = |k: usize| {
+        let [epsilon, a, b] = [observer.epsilon[k], observer.alpha1[k], observer.alpha2[k]];
+        let root = 0.25 * a * a - b;
+        let middle = -0.5 * a / epsilon;
+        if root < 0.0 {
+            format!("{} ± {}i 1/s", short(middle), short((-root).sqrt() / epsilon))
+        } else if root == 0.0 {
+            format!("{} 1/s, twice", short(middle))
+        } else {
+            let apart = root.sqrt() / epsilon;
+            format!("{} and {} 1/s", short(middle - apart), short(middle + apart))
+        }
+    };
+    let (a, b) = (one(0), one(1));
+    if a == b { a } else { format!("{a}; {b}") }
+}
+
+fn short(value: f64) -> String {
+    let digits = usize::from(value.abs() < 100.0);
+    crate::tidy::fixed(value, digits)
+}
+
+/// Whether changes are for all followers or for one.
+pub(crate) fn scope(ui: &mut Ui, desk: &Desk, name: &str, out: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        if ui.selectable_label(desk.for_all, "All followers").clicked() {
+            out.push(Action::ForAll(true));
+        }
+        if ui.selectable_label(!desk.for_all, format!("Only {name}")).clicked() {
+            out.push(Action::ForAll(false));
+        }
+    });
+    ui.add_space(2.0);
+}
+
+fn law_kind(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
+    let now = LAWS.iter().find(|(kind, ..)| *kind == law.kind).map_or("", |(_, name, ..)| name);
+    let combo = ComboBox::from_id_salt("law").selected_text(now).width(ui.available_width() - 8.0);
+    let response = combo.show_ui(ui, |ui| {
+        for (kind, name, word, tip) in LAWS {
+            if ui.selectable_label(kind == law.kind, name).on_hover_text(tip).clicked() && kind != law.kind {
+                out.push(tune("Law", "law.kind", format!("{word:?}")));
+                out.push(Action::Rest);
+            }
+        }
+    });
+    response.response.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Law"));
+}
+
+fn switching(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        for (kind, word, name, tip) in [
+            (Switching::Tanh, "tanh", "tanh", "β tanh(κ e), as in the paper's simulations"),
+            (Switching::Sign, "sign", "sign", "β sign(e), as in the theorems; it chatters when sampled"),
+        ] {
+            let label = ui.selectable_label(law.switching == kind, name).on_hover_text(tip);
+            if label.clicked() && law.switching != kind {
+                out.push(tune("Switching term", "law.switching", format!("{word:?}")));
+                out.push(Action::Rest);
+            }
+        }
+    });
+}
+
+pub(crate) fn vehicle(desk: &Desk, robot: usize) -> VehicleKind {
+    desk.scene().and_then(|scene| scene.robots.get(robot)).map_or(VehicleKind::Unicycle, |r| r.vehicle.kind)
+}
+
+fn apart_id() -> eframe::egui::Id {
+    eframe::egui::Id::new("gains apart")
+}

@@ -1,0 +1,29 @@
+//! What happened, newest last.
+
+use crate::action::Action;
+use crate::desk::Desk;
+use crate::tidy::fixed;
+use eframe::egui::{self, RichText, Ui};
+
+/// The log of events.
+pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+    if desk.log.is_empty() {
+        return super::nothing(ui, "Changes, branches and faults appear here.");
+    }
+    egui::ScrollArea::vertical().auto_shrink([false, false]).stick_to_bottom(true).show(ui, |ui| {
+        for event in &desk.log {
+            ui.horizontal_wrapped(|ui| {
+                let time = RichText::new(format!("{} s", fixed(event.time, 2))).monospace().weak();
+                if ui.link(time).on_hover_text("Look at this time").clicked() {
+                    out.push(Action::Seek(event.time));
+                }
+                let text = event.text.trim_end_matches('…');
+                if event.fault {
+                    ui.colored_label(ui.visuals().error_fg_color, text);
+                } else {
+                    ui.label(text);
+                }
+            });
+        }
+    });
+}

@@ -1,0 +1,177 @@
+//! Play, pace, time, and the line on which to go back and forth, with a row for each branch.
+
+use crate::action::Action;
+use crate::desk::Desk;
+use crate::tidy::fixed;
+use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInfo, WidgetType};
+
+/// Rows of branches that are shown, at most.
+const MOST_ROWS: usize = 5;
+
+/// The bar at the top.
+pub fn show(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        buttons(ui, desk, out);
+        ui.separator();
+        pace(ui, desk, out);
+        ui.separator();
+        let text = format!("t = {} s", fixed(desk.time(), 2));
+        ui.add_sized([92.0, 20.0], egui::Label::new(RichText::new(text).monospace()))
+            .on_hover_text("Simulated time that is seen");
+        let tail = 232.0;
+        let wide = (ui.available_width() - tail).max(60.0);
+        line(ui, desk, wide, out);
+        menus(ui, desk, filming, out);
+    });
+}
+
+fn buttons(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+    let (sign, name) = if desk.playing { ("⏸", "Pause") } else { ("▶", "Play") };
+    if icon(ui, sign, name).on_hover_text(format!("{name} (Space)")).clicked() {
+        out.push(Action::Toggle);
+    }
+    if icon(ui, "⏭", "Step").on_hover_text("One control sample (→)").clicked() {
+        out.push(Action::Step);
+    }
+    if icon(ui, "⏮", "Restart").on_hover_text("Begin again at 0 (Shift Home)").clicked() {
+        out.push(Action::Restart);
+    }
+}
+
+fn icon(ui: &mut Ui, sign: &str, name: &str) -> egui::Response {
+    let response = ui.add(egui::Button::new(RichText::new(sign).size(15.0)).min_size(egui::vec2(26.0, 24.0)));
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, name));
+    response
+}
+
+fn pace(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+    let mut pace = desk.pace;
+    ui.spacing_mut().slider_width = 84.0;
+    let slider = Slider::new(&mut pace, 0.1..=50.0)
+        .logarithmic(true)
+        .custom_formatter(|value, _| {
+            if value < 10.0 { format!("{value:.1}×") } else { format!("{value:.0}×") }
+        })
+        .custom_parser(|text| text.trim_end_matches(['×', 'x']).trim().parse().ok());
+    let response = ui.add(slider).on_hover_text("Simulated seconds per second (, and .); double click for 1×");
+    response.widget_info(|| WidgetInfo::slider(true, pace, "Pace"));
+    if response.double_clicked() {
+        out.push(Action::Pace(1.0));
+    } else if response.changed() {
+        // 1× is easy to find again.
+        out.push(Action::Pace(if (0.93..1.07).contains(&pace) { 1.0 } else { pace }));
+    }
+}
+
+/// The line of time. Every branch is a row of it; dragging looks at the past.
+fn line(ui: &mut Ui, desk: &Desk, wide: f32, out: &mut Vec<Action>) {
+    let rows = desk.branches.len().clamp(1, MOST_ROWS);
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(wide, 26.0), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::slider(true, desk.time(), "Time line"));
+    let span = span(desk);
+    let x_of = |time: f64| rect.left() + (time / span) as f32 * rect.width();
+    let painter = ui.painter_at(rect.expand(1.0));
+    let visuals = ui.visuals();
+    painter.rect_filled(rect, 4.0, visuals.extreme_bg_color);
+    let first = desk.branches.len().saturating_sub(rows);
+    let high = (rect.height() - 6.0) / rows as f32;
+    for (row, (index, branch)) in desk.branches.iter().enumerate().skip(first).enumerate() {
+        let y = rect.top() + 3.0 + (row as f32 + 0.5) * high;
+        let from = branch.parent.map_or(0.0, |(_, time)| time);
+        let end = desk.history.as_ref().map_or(0.0, |history| history.end(index));
+        let colour = branch_colour(index, desk.branch, visuals);
+        let half = (0.36 * high).clamp(1.0, 5.0);
+        let bar = egui::Rect::from_x_y_ranges(x_of(from)..=x_of(end).max(x_of(from) + 1.0), y - half..=y + half);
+        painter.rect_filled(bar, half.min(2.0), colour);
+        for change in branch.changes.iter().filter(|change| change.time >= from) {
+            let x = x_of(change.time);
+            painter.line_segment(
+                [egui::pos2(x, y - half), egui::pos2(x, y + half)],
+                Stroke::new(1.0, visuals.extreme_bg_color),
+            );
+        }
+    }
+    let x = x_of(desk.time());
+    painter.line_segment(
+        [egui::pos2(x, rect.top()), egui::pos2(x, rect.bottom())],
+        Stroke::new(2.0, visuals.strong_text_color()),
+    );
+    let under = |pos: egui::Pos2| f64::from(((pos.x - rect.left()) / rect.width()).clamp(0.0, 1.0)) * span;
+    if let Some(pos) = response.interact_pointer_pos()
+        && (response.dragged() || response.clicked())
+    {
+        out.push(Action::Seek(under(pos)));
+    }
+    if let Some(pos) = response.hover_pos() {
+        response.on_hover_text_at_pointer(format!("{} s: drag to look back", fixed(under(pos), 2)));
+    }
+}
+
+/// Seconds on the line: at least the scene's, and some more than there is.
+fn span(desk: &Desk) -> f64 {
+    let ends = (0..desk.branches.len()).filter_map(|k| Some(desk.history.as_ref()?.end(k)));
+    let end = ends.fold(0.0, f64::max);
+    let planned = desk.scene().map_or(1.0, |scene| scene.time.duration);
+    if end <= planned { planned } else { end * 1.02 }.max(1e-3)
+}
+
+/// Quiet for branches that are not looked at.
+pub(crate) fn branch_colour(index: usize, active: usize, visuals: &egui::Visuals) -> Color32 {
+    if index == active { visuals.selection.bg_fill } else { visuals.weak_text_color().gamma_multiply(0.6) }
+}
+
+fn menus(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
+    let record = RichText::new("● Film").color(if filming {
+        ui.visuals().error_fg_color
+    } else {
+        ui.visuals().text_color()
+    });
+    let tip = if filming { "End the film (F)" } else { "Film what is seen (F)" };
+    if ui.button(record).on_hover_text(tip).clicked() {
+        out.push(Action::Film);
+    }
+    if icon(ui, "📷", "Picture").on_hover_text("A PNG of what is seen (P)").clicked() {
+        out.push(Action::Picture);
+    }
+    if ui.button("☰ Scenes").on_hover_text("Open a scene (Ctrl O)").clicked() {
+        out.push(Action::Gallery);
+    }
+    ui.menu_button("⋮", |ui| {
+        let unsaved = desk.draft.as_ref().is_some_and(crate::session::draft::Draft::unsaved);
+        for (text, action, on) in [
+            ("Save scene   Ctrl S", Action::Save, unsaved),
+            ("Reload from disk   Ctrl R", Action::Reload, desk.draft.as_ref().is_some_and(|d| d.path.is_some())),
+            ("Undo   Ctrl Z", Action::Undo, desk.draft.as_ref().is_some_and(|d| d.undoes().is_some())),
+            ("Redo   Ctrl Y", Action::Redo, desk.draft.as_ref().is_some_and(|d| d.redoes().is_some())),
+            ("Keep the run", Action::KeepRun, true),
+            ("Curves as CSV", Action::CurvesCsv, true),
+            ("Curves as SVG", Action::CurvesSvg, true),
+            ("Light or dark   T", Action::Theme, true),
+            ("Shortcuts   ?", Action::Help, true),
+        ] {
+            if ui.add_enabled(on, egui::Button::new(text)).clicked() {
+                out.push(action);
+                ui.close();
+            }
+        }
+        ui.separator();
+        ui.menu_button("Panels", |ui| {
+            for name in crate::panes::NAMES {
+                if ui.button(*name).clicked() {
+                    out.push(Action::Panel(name));
+                    ui.close();
+                }
+            }
+        });
+        ui.menu_button("Size", |ui| {
+            for scale in [0.75, 1.0, 1.25, 1.5, 2.0, 3.0] {
+                if ui.button(format!("{:.0} %", scale * 100.0)).clicked() {
+                    out.push(Action::Scale(scale));
+                    ui.close();
+                }
+            }
+        });
+    })
+    .response
+    .widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, "More"));
+}

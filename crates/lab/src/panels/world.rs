@@ -1,0 +1,108 @@
+//! Limits of the vehicles, obstacles, and light.
+
+use super::controls::{Range, Row};
+use super::law::scope;
+use super::nothing;
+use crate::action::Action;
+use crate::desk::{Desk, Tool};
+use crate::symbols;
+use crate::tidy::tidy;
+use eframe::egui::{self, Slider, Ui, WidgetInfo};
+use scene::Vehicle;
+
+const SPEED_MIN: Row = Row {
+    symbol: symbols::SPEED_MIN,
+    key: "vehicle.speed_min",
+    range: Range { span: [0.01, 1.0], hard: [0.001, 100.0], logarithmic: true },
+    decimals: 3,
+};
+const SPEED_MAX: Row = Row {
+    symbol: symbols::SPEED_MAX,
+    key: "vehicle.speed_max",
+    range: Range::factors(0.5, 20.0),
+    decimals: 2,
+};
+const TURN_MAX: Row = Row {
+    symbol: symbols::TURN_MAX,
+    key: "vehicle.turn_rate_max",
+    range: Range::factors(0.2, 20.0),
+    decimals: 2,
+};
+const ACCELERATION_MAX: Row = Row {
+    symbol: symbols::ACCELERATION_MAX,
+    key: "vehicle.acceleration_max",
+    range: Range::factors(0.2, 50.0),
+    decimals: 2,
+};
+
+/// Limits of the follower that is selected.
+pub fn limits(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+    let Some((robot, name, _)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge)) else {
+        return nothing(ui, "Nobody follows.");
+    };
+    let Some(vehicle) = desk.scene().and_then(|scene| scene.robots.get(robot)).map(|r| r.vehicle) else {
+        return;
+    };
+    scope(ui, desk, name, out);
+    let default = Vehicle::of(vehicle.kind);
+    SPEED_MIN.one(ui, vehicle.speed_min, default.speed_min, out);
+    SPEED_MAX.one(ui, vehicle.speed_max, default.speed_max, out);
+    TURN_MAX.one(ui, vehicle.turn_rate_max, default.turn_rate_max, out);
+    if vehicle.acceleration_max.is_finite() {
+        ACCELERATION_MAX.one(ui, vehicle.acceleration_max, default.acceleration_max, out);
+    } else {
+        ui.horizontal(|ui| {
+            symbols::ACCELERATION_MAX.label(ui);
+            ui.weak("unbounded, as in the paper");
+            if ui.button("Bound it").clicked() {
+                let (what, value) = ("Largest acceleration".to_owned(), "4.0".to_owned());
+                out.push(Action::Tune { what, key: ACCELERATION_MAX.key, value });
+            }
+        });
+    }
+}
+
+/// Obstacles and light.
+pub fn surroundings(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+    let Some(scene) = desk.scene() else { return nothing(ui, "No scene is open.") };
+    ui.horizontal(|ui| {
+        let pillar = desk.tool == Tool::Pillar;
+        let tip = "Click on the ground to place a pillar (O)";
+        if ui.selectable_label(pillar, "+ Pillar").on_hover_text(tip).clicked() {
+            out.push(Action::Take(if pillar { Tool::Hand } else { Tool::Pillar }));
+        }
+        ui.weak(match scene.props.len() {
+            0 => "no obstacles".to_owned(),
+            1 => "1 obstacle".to_owned(),
+            count => format!("{count} obstacles"),
+        });
+    });
+    egui::ScrollArea::vertical().id_salt("props").max_height(110.0).show(ui, |ui| {
+        for prop in &scene.props {
+            ui.horizontal(|ui| {
+                ui.label(&prop.name);
+                if ui.small_button("×").on_hover_text(format!("Remove {}", prop.name)).clicked() {
+                    out.push(Action::RemoveProp(prop.name.clone()));
+                }
+            });
+        }
+    });
+    ui.separator();
+    let environment = &scene.environment;
+    for (name, key, value, span) in [
+        ("Sun's height", "environment.sun_elevation", environment.sun_elevation.to_degrees(), 5.0..=90.0),
+        ("Sun's direction", "environment.sun_azimuth", environment.sun_azimuth.to_degrees(), -180.0..=180.0),
+    ] {
+        let mut new = value;
+        ui.horizontal(|ui| {
+            ui.label(name);
+            let response = ui.add(Slider::new(&mut new, span).suffix("°").max_decimals(0));
+            response.widget_info(|| WidgetInfo::slider(true, new, name));
+            if response.changed() && (new - value).abs() > 0.25 {
+                let values = vec![(key.to_owned(), format!("\"{} deg\"", tidy(new.round())))];
+                out.push(Action::Set { what: format!("{name}…"), values });
+            }
+            super::controls::released(&response, out);
+        });
+    }
+}

@@ -1,0 +1,180 @@
+//! How panels share the window: a tree of tiles that a person rearranges, and that is remembered.
+
+use crate::action::Action;
+use crate::desk::Desk;
+use crate::panels;
+use crate::quantities::Quantity;
+use eframe::egui::{Ui, WidgetText};
+use egui_tiles::{Behavior, Linear, LinearDir, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
+use rendering::Style;
+use serde::{Deserialize, Serialize};
+
+/// One panel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Pane(usize);
+
+/// Names of the panels.
+pub const NAMES: &[&str] = &[
+    "View", "Formation", "Edge", "Law", "Observer", "Sensing", "Limits", "World", "Film", "Branches", "Log",
+    "Errors", "Commands", "Speeds", "Observer error", "Energy", "Room",
+];
+
+impl Pane {
+    /// By its name.
+    pub fn named(name: &str) -> Option<Self> {
+        NAMES.iter().position(|known| *known == name).map(Self)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        NAMES.get(self.0).copied().unwrap_or("")
+    }
+}
+
+/// The arrangement at first.
+pub fn arrangement() -> Tree<Pane> {
+    let mut tiles = Tiles::default();
+    let mut tabs = |names: &[&str]| {
+        let panes: Vec<_> =
+            names.iter().filter_map(|n| Pane::named(n)).map(|pane| tiles.insert_pane(pane)).collect();
+        tiles.insert_tab_tile(panes)
+    };
+    let view = tabs(&["View"]);
+    let (formation, edge) = (tabs(&["Formation"]), tabs(&["Edge", "Branches"]));
+    let (law, more) = (tabs(&["Law", "Observer", "Limits"]), tabs(&["Sensing", "World", "Film", "Log"]));
+    let plots = [
+        tabs(&["Errors"]),
+        tabs(&["Commands", "Speeds"]),
+        tabs(&["Observer error"]),
+        tabs(&["Energy", "Room"]),
+    ];
+    let left = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [formation, edge], 0.40));
+    let right = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [law, more], 0.48));
+    let mut middle = Linear::new(LinearDir::Horizontal, vec![left, view, right]);
+    middle.shares.set_share(left, 0.19);
+    middle.shares.set_share(view, 0.56);
+    middle.shares.set_share(right, 0.25);
+    let middle = tiles.insert_container(middle);
+    let plots = tiles.insert_horizontal_tile(plots.to_vec());
+    let root = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [middle, plots], 0.74));
+    Tree::new("panels", root, tiles)
+}
+
+/// Whether a tree from an earlier start can be used: the view is in it, and no panel twice.
+pub fn sound(tree: &Tree<Pane>) -> bool {
+    let count = |pane: Pane| {
+        tree.tiles.iter().filter(|(_, tile)| matches!(tile, Tile::Pane(p) if *p == pane)).count()
+    };
+    tree.root().is_some()
+        && (0..NAMES.len()).all(|k| count(Pane(k)) <= 1)
+        && count(Pane(0)) == 1
+        && tree.tiles.iter().all(|(_, tile)| !matches!(tile, Tile::Pane(pane) if pane.0 >= NAMES.len()))
+}
+
+/// Shows a panel that is hidden, hides one that is shown.
+pub fn toggle(tree: &mut Tree<Pane>, name: &str) {
+    let Some(pane) = Pane::named(name) else { return };
+    match tree.tiles.find_pane(&pane) {
+        Some(id) if pane.0 != 0 && tree.is_visible(id) => {
+            tree.remove_recursively(id);
+        }
+        Some(id) => tree.set_visible(id, true),
+        None => {
+            let id = tree.tiles.insert_pane(pane);
+            let tabs = tree.tiles.insert_tab_tile(vec![id]);
+            if let Some(root) = tree.root() {
+                tree.move_tile_to_container(tabs, root, usize::MAX, false);
+            }
+        }
+    }
+    tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == pane));
+}
+
+/// What draws the panels.
+pub struct Panels<'a> {
+    /// What they show.
+    pub desk: &'a Desk,
+    /// What is drawn in the view.
+    pub style: &'a Style,
+    /// How far a film is.
+    pub filming: Option<&'a str>,
+    /// Draws the 3D view.
+    pub view: &'a mut dyn FnMut(&mut Ui, &mut Vec<Action>),
+    /// The tile of the view.
+    pub view_tile: Option<TileId>,
+    /// What is asked for.
+    pub out: &'a mut Vec<Action>,
+}
+
+impl Behavior<Pane> for Panels<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _: TileId, pane: &mut Pane) -> UiResponse {
+        if pane.name() == "View" {
+            (self.view)(ui, self.out);
+            return UiResponse::None;
+        }
+        let frame = eframe::egui::Frame::new().inner_margin(6.0);
+        frame.show(ui, |ui| show(ui, *pane, self));
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
+        pane.name().into()
+    }
+
+    fn is_tab_closable(&self, tiles: &Tiles<Pane>, id: TileId) -> bool {
+        !matches!(tiles.get(id), Some(Tile::Pane(Pane(0))))
+    }
+
+    fn is_tab_bar_visible(&self, _: TileId, tabs: &egui_tiles::Tabs) -> bool {
+        // The view needs no name.
+        tabs.children.len() > 1 || !self.only_view(tabs)
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+
+    fn gap_width(&self, _: &eframe::egui::Style) -> f32 {
+        2.0
+    }
+
+    fn min_size(&self) -> f32 {
+        40.0
+    }
+}
+
+impl Panels<'_> {
+    fn only_view(&self, tabs: &egui_tiles::Tabs) -> bool {
+        tabs.children.len() == 1 && self.view_tile == tabs.active
+    }
+}
+
+fn show(ui: &mut Ui, pane: Pane, panels: &mut Panels<'_>) {
+    let (desk, out) = (panels.desk, &mut *panels.out);
+    match pane.name() {
+        "Formation" => panels::formation::show(ui, desk, out),
+        "Edge" => panels::edge::show(ui, desk, out),
+        "Law" => panels::law::show(ui, desk, out),
+        "Observer" => panels::law::observer(ui, desk, out),
+        "Sensing" => panels::sensing::show(ui, desk, out),
+        "Limits" => panels::world::limits(ui, desk, out),
+        "World" => panels::world::surroundings(ui, desk, out),
+        "Film" => panels::film::show(ui, desk, panels.style, panels.filming, out),
+        "Branches" => panels::branches::show(ui, desk, out),
+        "Log" => panels::log::show(ui, desk, out),
+        "Errors" => {
+            panels::curves::show(ui, desk, &[Quantity::DistanceError, Quantity::BearingError], out);
+        }
+        "Commands" => panels::curves::show(ui, desk, &[Quantity::Acceleration, Quantity::TurnRate], out),
+        "Speeds" => panels::curves::show(ui, desk, &[Quantity::Speed], out),
+        "Observer error" => {
+            let both = [Quantity::DistanceRateError, Quantity::BearingRateError];
+            panels::curves::show(ui, desk, &both, out);
+        }
+        "Energy" => {
+            panels::curves::show(ui, desk, &[Quantity::TrackingEnergy, Quantity::ObserverEnergy], out);
+        }
+        "Room" => panels::curves::show(ui, desk, &[Quantity::Clearance], out),
+        _ => {}
+    }
+}

@@ -1,0 +1,177 @@
+//! The scene as text that is being worked on: edits, undo, and what an edit means for the run.
+
+use scene::{Scene, SceneText};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Steps back that are kept.
+const MOST_STEPS: usize = 500;
+
+/// A scene file under work.
+pub struct Draft {
+    /// Where it is saved; `None` for one that never was.
+    pub path: Option<PathBuf>,
+    /// Names the scene in messages, and where its tables are looked for.
+    home: PathBuf,
+    text: String,
+    scene: Arc<Scene>,
+    saved: String,
+    undo: Vec<Step>,
+    redo: Vec<Step>,
+}
+
+/// A state to go back to.
+struct Step {
+    text: String,
+    scene: Arc<Scene>,
+    /// What was done from here on, for people.
+    what: String,
+}
+
+/// What an edit means for the run.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Effect {
+    /// Nothing has changed.
+    None,
+    /// The run can take it as it goes.
+    Retune,
+    /// The run has to begin anew, because of this.
+    Restart(String),
+}
+
+impl Draft {
+    /// A scene from its text; `path` is where it is saved.
+    ///
+    /// # Errors
+    /// All that is wrong with the text.
+    pub fn new(text: String, path: Option<PathBuf>, home: &Path) -> Result<Self, String> {
+        let home = path.clone().unwrap_or_else(|| home.to_owned());
+        let scene = Scene::parse(&text, &home, &[]).map_err(|faults| faults.to_string())?.scene;
+        let scene = Arc::new(scene);
+        Ok(Self { path, home, saved: text.clone(), text, scene, undo: Vec::new(), redo: Vec::new() })
+    }
+
+    /// The text as it stands.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The checked scene of the text.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// Where the scene comes from: its file, or the name it was opened under.
+    pub fn home(&self) -> &Path {
+        &self.home
+    }
+
+    /// Whether there is something to save.
+    pub fn unsaved(&self) -> bool {
+        self.text != self.saved
+    }
+
+    /// The text is on disk now, at `path`.
+    pub fn saved_to(&mut self, path: PathBuf) {
+        self.saved.clone_from(&self.text);
+        self.home.clone_from(&path);
+        self.path = Some(path);
+    }
+
+    /// Edits the text. Edits in a row with the same `what` that ends in `…` are one step back.
+    ///
+    /// # Errors
+    /// Why the edit cannot be, in words; then nothing has changed.
+    pub fn edit(
+        &mut self,
+        what: &str,
+        edit: impl FnOnce(&mut SceneText) -> Result<(), String>,
+    ) -> Result<Effect, String> {
+        let mut text = SceneText::parse(&self.text).map_err(|error| error.to_string())?;
+        edit(&mut text)?;
+        self.replace(what, text.text())
+    }
+
+    /// Puts another text in place.
+    ///
+    /// # Errors
+    /// All that is wrong with the text; then nothing has changed.
+    pub fn replace(&mut self, what: &str, text: String) -> Result<Effect, String> {
+        if text == self.text {
+            return Ok(Effect::None);
+        }
+        let scene = Scene::parse(&text, &self.home, &[]).map_err(|faults| faults.to_string())?.scene;
+        let effect = self.effect_of(&scene);
+        let before = Step {
+            text: std::mem::replace(&mut self.text, text),
+            scene: std::mem::replace(&mut self.scene, Arc::new(scene)),
+            what: what.to_owned(),
+        };
+        let goes_on = what.ends_with('…')
+            && self.redo.is_empty()
+            && self.undo.last().is_some_and(|last| last.what == what);
+        if !goes_on {
+            self.undo.push(before);
+            if self.undo.len() > MOST_STEPS {
+                self.undo.remove(0);
+            }
+        }
+        self.redo.clear();
+        Ok(effect)
+    }
+
+    /// Ends a row of edits: the next is a step of its own.
+    pub fn rest(&mut self) {
+        if let Some(last) = self.undo.last_mut()
+            && let Some(done) = last.what.strip_suffix('…')
+        {
+            last.what = done.to_owned();
+        }
+    }
+
+    /// One step back; what it was and what going back means.
+    pub fn undo(&mut self) -> Option<(String, Effect)> {
+        let step = self.undo.pop()?;
+        let (now, effect) = self.swap(step);
+        let what = now.what.clone();
+        self.redo.push(now);
+        Some((what, effect))
+    }
+
+    /// One step forward again.
+    pub fn redo(&mut self) -> Option<(String, Effect)> {
+        let step = self.redo.pop()?;
+        let (now, effect) = self.swap(step);
+        let what = now.what.clone();
+        self.undo.push(now);
+        Some((what, effect))
+    }
+
+    /// What undo would take back.
+    pub fn undoes(&self) -> Option<&str> {
+        self.undo.last().map(|step| step.what.trim_end_matches('…'))
+    }
+
+    /// What redo would do again.
+    pub fn redoes(&self) -> Option<&str> {
+        self.redo.last().map(|step| step.what.trim_end_matches('…'))
+    }
+
+    fn swap(&mut self, step: Step) -> (Step, Effect) {
+        let effect = if step.text == self.text { Effect::None } else { self.effect_of(&step.scene) };
+        let now = Step {
+            text: std::mem::replace(&mut self.text, step.text),
+            scene: std::mem::replace(&mut self.scene, step.scene),
+            what: step.what,
+        };
+        (now, effect)
+    }
+
+    fn effect_of(&self, scene: &Scene) -> Effect {
+        match self.scene.sets_to(scene) {
+            Ok(set) if set.is_empty() => Effect::None,
+            Ok(_) => Effect::Retune,
+            Err(standing) => Effect::Restart(standing.join(", ")),
+        }
+    }
+}

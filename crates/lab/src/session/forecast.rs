@@ -1,0 +1,239 @@
+//! What will come if nobody changes anything: a copy of the run, sent ahead on a thread of its own.
+
+use recording::clearance::Clearance;
+use simulation::Simulation;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{
+    Arc,
+    atomic::{AtomicUsize, Ordering::Relaxed},
+};
+use std::time::Instant;
+use vocabulary::{Moment, Pose, Thing};
+
+/// Points of a path, at most.
+const MOST_POINTS: usize = 160;
+/// Between two looks at how much room there is, s.
+const ROOM_EVERY: f64 = 0.1;
+/// Late share of the look in which the formation has to stand still to count as settled.
+const LATE: f64 = 0.1;
+
+/// The next seconds of a run.
+#[derive(Debug, Clone, Default)]
+pub struct Forecast {
+    /// The branch it is of.
+    pub branch: usize,
+    /// Where it begins and ends, s.
+    pub span: [f64; 2],
+    /// One path per robot.
+    pub paths: Vec<Vec<Place>>,
+    /// Speed, m/s, and turn rate, rad/s, of every robot at the places of its path.
+    pub motions: Vec<Vec<(f64, f64)>>,
+    /// Where every robot ends.
+    pub end: Vec<Pose>,
+    /// Largest |error| of every edge in the last tenth, [m, rad].
+    pub late_error: Vec<[f64; 2]>,
+    /// First contact ahead: s and the robots or props in it.
+    pub contact: Option<(f64, [Thing; 2])>,
+    /// First command that a limit cuts: s and edge.
+    pub limited: Option<(f64, usize)>,
+    /// How long it took to compute, s.
+    pub took: f64,
+    /// Copies sent ahead before this one.
+    pub number: usize,
+}
+
+/// A robot's place on its way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// m, world frame.
+    pub at: [f64; 2],
+    /// What is wrong there.
+    pub trouble: Trouble,
+}
+
+/// What is wrong with a place on the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Trouble {
+    /// Nothing.
+    None,
+    /// A limit cuts the command.
+    Limited,
+    /// The robot touches something.
+    Contact,
+}
+
+/// The thread that looks ahead. The newest question counts; older ones are dropped.
+pub struct Crystal {
+    questions: Sender<Question>,
+    open: Arc<AtomicUsize>,
+}
+
+struct Question {
+    branch: usize,
+    run: Simulation,
+    seconds: f64,
+    number: usize,
+}
+
+impl Crystal {
+    /// Starts the thread; forecasts come out of the receiver, and `wake` is called for each.
+    pub fn start(wake: impl Fn() + Send + 'static) -> (Self, Receiver<Forecast>) {
+        let (questions, inbox) = channel::<Question>();
+        let (outbox, forecasts) = channel();
+        let open = Arc::new(AtomicUsize::new(0));
+        let left = Arc::clone(&open);
+        let work = move || {
+            while let Ok(mut question) = inbox.recv() {
+                let mut taken = 1;
+                while let Ok(newer) = inbox.try_recv() {
+                    question = newer;
+                    taken += 1;
+                }
+                let newer = || left.load(Relaxed) > taken;
+                let forecast = ahead(question, &newer);
+                left.fetch_sub(taken, Relaxed);
+                if forecast.is_some_and(|forecast| outbox.send(forecast).is_err()) {
+                    return;
+                }
+                wake();
+            }
+        };
+        // Without a thread there are no forecasts, and all else goes on.
+        let _ = std::thread::Builder::new().name("ahead".to_owned()).spawn(work);
+        (Self { questions, open }, forecasts)
+    }
+
+    /// Whether a forecast is under way.
+    pub fn busy(&self) -> bool {
+        self.open.load(Relaxed) > 0
+    }
+
+    /// Sends a copy of a run ahead by `seconds`.
+    pub fn look(&self, branch: usize, run: Simulation, seconds: f64) {
+        static NUMBER: AtomicUsize = AtomicUsize::new(0);
+        self.open.fetch_add(1, Relaxed);
+        let number = NUMBER.fetch_add(1, Relaxed);
+        if self.questions.send(Question { branch, run, seconds, number }).is_err() {
+            self.open.fetch_sub(1, Relaxed);
+        }
+    }
+}
+
+/// Runs ahead; `None` where a newer question has come after a good part of the work.
+fn ahead(question: Question, newer: &dyn Fn() -> bool) -> Option<Forecast> {
+    let began = Instant::now();
+    let Question { branch, mut run, seconds, number } = question;
+    // Pictures for cameras cannot be drawn ahead: there a follower is told the truth.
+    run.trust();
+    let period = run.period();
+    let samples = (seconds / period).round().max(1.0) as u64;
+    let start = run.sample() as f64 * period;
+    let mut teller = Teller::new(&run, samples, [start, start + samples as f64 * period]);
+    for k in 0..samples {
+        let Some(moment) = run.next_moment() else { break };
+        teller.take(k, moment);
+        // What is half done is finished: under a stream of questions there would be no answer at all.
+        if k == samples / 4 && newer() && began.elapsed().as_millis() > 60 {
+            return None;
+        }
+    }
+    Some(Forecast { branch, number, took: began.elapsed().as_secs_f64(), ..teller.out })
+}
+
+/// Makes a forecast of moments.
+struct Teller {
+    out: Forecast,
+    stride: u64,
+    samples: u64,
+    room_every: u64,
+    clearance: Clearance,
+    edges: Vec<vocabulary::Edge>,
+    trouble: Vec<Trouble>,
+}
+
+impl Teller {
+    fn new(run: &Simulation, samples: u64, span: [f64; 2]) -> Self {
+        let cast = run.cast();
+        let robots = cast.members.len();
+        Self {
+            out: Forecast {
+                span,
+                paths: vec![Vec::new(); robots],
+                motions: vec![Vec::new(); robots],
+                late_error: vec![[0.0; 2]; cast.edges.len()],
+                ..Forecast::default()
+            },
+            stride: samples.div_ceil(MOST_POINTS as u64).max(1),
+            samples,
+            room_every: (ROOM_EVERY / run.period()).ceil().max(1.0) as u64,
+            clearance: Clearance::new(cast),
+            edges: cast.edges.clone(),
+            trouble: vec![Trouble::None; robots],
+        }
+    }
+
+    fn take(&mut self, k: u64, moment: &Moment) {
+        self.limits(moment);
+        self.contacts(k, moment);
+        self.errors(k, moment);
+        let poses = moment.snapshot.robots.iter().map(|robot| robot.motion.pose);
+        if k.is_multiple_of(self.stride) || k + 1 == self.samples {
+            for ((path, pose), trouble) in self.out.paths.iter_mut().zip(poses.clone()).zip(&mut self.trouble)
+            {
+                path.push(Place { at: [pose.x, pose.y], trouble: *trouble });
+                *trouble = Trouble::None;
+            }
+            for (motions, robot) in self.out.motions.iter_mut().zip(&moment.snapshot.robots) {
+                motions.push((robot.motion.speed, robot.motion.turn_rate));
+            }
+        }
+        if k + 1 == self.samples {
+            self.out.end = poses.collect();
+        }
+    }
+
+    fn limits(&mut self, moment: &Moment) {
+        for (index, (edge, state)) in self.edges.iter().zip(&moment.edges).enumerate() {
+            if state.limited {
+                self.trouble[edge.follower] = self.trouble[edge.follower].max(Trouble::Limited);
+                self.out.limited.get_or_insert((moment.snapshot.time, index));
+            }
+        }
+    }
+
+    /// Contacts of bodies with weight, and bodies of those without that run through each other.
+    fn contacts(&mut self, k: u64, moment: &Moment) {
+        let time = moment.snapshot.time;
+        let mut touch = |things: [Thing; 2]| {
+            for thing in things {
+                if let Thing::Robot(robot) = thing {
+                    self.trouble[robot] = Trouble::Contact;
+                }
+            }
+            self.out.contact.get_or_insert((time, things));
+        };
+        for contact in moment.contacts.iter().filter(|contact| contact.of_robot() && contact.open) {
+            touch(contact.things);
+        }
+        if k.is_multiple_of(self.room_every) {
+            self.clearance.push(&moment.snapshot);
+            let least = self.clearance.least().iter().enumerate();
+            for (robot, room) in least.filter_map(|(robot, room)| Some((robot, room.as_ref()?))) {
+                if room.clearance <= 0.0 && room.time == time {
+                    touch([Thing::Robot(robot), room.nearest]);
+                }
+            }
+        }
+    }
+
+    fn errors(&mut self, k: u64, moment: &Moment) {
+        if (k as f64) < (1.0 - LATE) * self.samples as f64 {
+            return;
+        }
+        for (late, state) in self.out.late_error.iter_mut().zip(&moment.edges) {
+            for (late, error) in late.iter_mut().zip(state.error) {
+                *late = late.max(error.abs());
+            }
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! Everything simulated so far, branch by branch, so that it can be looked at again: moments, trails, and curves.
+
+use recording::clearance::Clearance;
+use rendering::Trail;
+use std::sync::Arc;
+use vocabulary::{Cast, Moment};
+
+/// Memory that the moments of a branch may take, bytes.
+const MOST_BYTES: usize = 96 << 20;
+/// Moments of a branch, at most and at least, whatever their size.
+const MOST_MOMENTS: usize = 20_000;
+const LEAST_MOMENTS: usize = 600;
+/// Between two trails that are kept, s; doubles when there are too many.
+const TRAIL_EVERY: f64 = 2.0;
+const MOST_TRAILS: usize = 40;
+
+/// The past of all branches.
+pub struct History {
+    cast: Arc<Cast>,
+    period: f64,
+    past: Vec<Past>,
+    /// Measures room, before it has seen anything.
+    clearance: Option<Clearance>,
+    /// The trail that was asked for last, for the next question is near it.
+    shown: Option<(usize, Trail)>,
+}
+
+/// The past of a branch, that of its parent before it left included.
+#[derive(Clone)]
+struct Past {
+    moments: Vec<Arc<Moment>>,
+    /// Only every so many samples are kept.
+    stride: u64,
+    head: Option<Arc<Moment>>,
+    trail: Trail,
+    trails: Vec<Trail>,
+    trail_every: f64,
+    /// Least room between bodies over time: s, m.
+    rooms: Vec<[f64; 2]>,
+}
+
+/// Between two looks at how much room there is, s.
+const ROOM_EVERY: f64 = 0.1;
+/// In larger formations nobody measures the room of all to all while they drive.
+const MOST_ROBOTS_WITH_ROOM: usize = 30;
+/// Rooms that are kept.
+const MOST_ROOMS: usize = 20_000;
+
+impl History {
+    /// Of a run of `cast` with a control period in s.
+    pub fn new(cast: Arc<Cast>, period: f64) -> Self {
+        let past = Past {
+            moments: Vec::new(),
+            stride: 1,
+            head: None,
+            trail: Trail::new(&cast),
+            trails: Vec::new(),
+            trail_every: TRAIL_EVERY,
+            rooms: Vec::new(),
+        };
+        let clearance = (cast.members.len() <= MOST_ROBOTS_WITH_ROOM).then(|| Clearance::new(&cast));
+        Self { clearance, cast, period, past: vec![past], shown: None }
+    }
+
+    /// Who is on stage.
+    pub fn cast(&self) -> &Arc<Cast> {
+        &self.cast
+    }
+
+    /// Control period, s.
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// Number of branches.
+    pub fn branches(&self) -> usize {
+        self.past.len()
+    }
+
+    /// Takes in the next moment of a branch.
+    pub fn push(&mut self, branch: usize, moment: Moment) {
+        let sample = self.sample(moment.snapshot.time);
+        let most = self.most_moments();
+        if let Some(past) = self.past.get_mut(branch) {
+            if let Some(clearance) = &self.clearance {
+                past.measure(clearance, &moment);
+            }
+            past.push(sample, Arc::new(moment), most, self.period);
+        }
+    }
+
+    /// A branch that leaves `from` before `sample`.
+    pub fn fork(&mut self, from: usize, sample: u64) {
+        let until = (sample as f64 - 0.5) * self.period;
+        let Some(parent) = self.past.get(from) else { return };
+        let mut past = Past {
+            moments: parent.moments.iter().filter(|m| m.snapshot.time < until).cloned().collect(),
+            stride: parent.stride,
+            head: None,
+            trail: Trail::new(&self.cast),
+            trails: parent.trails.iter().filter(|t| t.time() < until).cloned().collect(),
+            trail_every: parent.trail_every,
+            rooms: parent.rooms.iter().filter(|[time, _]| *time < until).copied().collect(),
+        };
+        past.head = past.moments.last().cloned();
+        past.trail = past.trail_until(until, &self.cast);
+        self.past.push(past);
+    }
+
+    /// Control sample at a time, s.
+    pub fn sample(&self, time: f64) -> u64 {
+        (time / self.period).round().max(0.0) as u64
+    }
+
+    /// The last moment of a branch.
+    pub fn head(&self, branch: usize) -> Option<&Arc<Moment>> {
+        self.past.get(branch)?.head.as_ref()
+    }
+
+    /// Time of the last moment of a branch, s.
+    pub fn end(&self, branch: usize) -> f64 {
+        self.head(branch).map_or(0.0, |moment| moment.snapshot.time)
+    }
+
+    /// The moment of a branch at a time; between two that are kept, in between.
+    pub fn at(&self, branch: usize, time: f64) -> Option<Arc<Moment>> {
+        let past = self.past.get(branch)?;
+        let head = past.head.as_ref()?;
+        let eps = 1e-6 * self.period;
+        if time >= head.snapshot.time - eps {
+            return Some(Arc::clone(head));
+        }
+        let after = past.moments.partition_point(|m| m.snapshot.time <= time + eps);
+        let before = past.moments.get(after.saturating_sub(1))?;
+        let next = past.moments.get(after).unwrap_or(head);
+        let (a, b) = (before.snapshot.time, next.snapshot.time);
+        if past.stride == 1 || time - a < eps || b <= a {
+            return Some(Arc::clone(before));
+        }
+        Some(Arc::new(Moment::between(before, next, ((time - a) / (b - a)).clamp(0.0, 1.0))))
+    }
+
+    /// What a picture of a branch at a time needs to know of the past.
+    pub fn trail(&mut self, branch: usize, time: f64) -> Option<&Trail> {
+        let past = self.past.get(branch)?;
+        if past.head.as_ref().is_none_or(|head| time >= head.snapshot.time - 1e-9) {
+            return Some(&self.past[branch].trail);
+        }
+        let near = self.shown.take().filter(|(of, trail)| *of == branch && trail.time() <= time + 1e-9);
+        let fresh = past.trail_until(f64::NEG_INFINITY, &self.cast);
+        let kept = past.trails.iter().rev().find(|trail| trail.time() <= time);
+        let start = match (near, kept) {
+            (Some((_, near)), Some(kept)) if near.time() >= kept.time() => near,
+            (Some((_, near)), None) => near,
+            (_, Some(kept)) => kept.clone(),
+            (None, None) => fresh,
+        };
+        let trail = past.grow(start, time);
+        Some(&self.shown.insert((branch, trail)).1)
+    }
+
+    /// At most `most` moments of a branch between two times, s, evenly over all of it.
+    pub fn between(&self, branch: usize, [from, to]: [f64; 2], most: usize) -> Vec<&Moment> {
+        let Some(past) = self.past.get(branch) else { return Vec::new() };
+        let first = past.moments.partition_point(|m| m.snapshot.time < from).saturating_sub(1);
+        let last = (past.moments.partition_point(|m| m.snapshot.time <= to) + 1).min(past.moments.len());
+        let some = &past.moments[first.min(last)..last];
+        // Whole multiples of the step, so that curves do not tremble as they grow.
+        let step = some.len().div_ceil(most.max(1)).next_power_of_two();
+        let skip = first.next_multiple_of(step) - first;
+        let head = past.head.as_deref().filter(|head| head.snapshot.time <= to);
+        some.iter().skip(skip).step_by(step).map(|m| &**m).chain(head).collect()
+    }
+
+    /// Least room between bodies of a branch between two times: s, m.
+    pub fn rooms(&self, branch: usize, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
+        let Some(past) = self.past.get(branch) else { return Vec::new() };
+        past.rooms.iter().filter(|[time, _]| (from..=to).contains(time)).copied().collect()
+    }
+
+    fn most_moments(&self) -> usize {
+        let robots = self.cast.members.len() * size_of::<vocabulary::RobotState>();
+        let edges = self.cast.edges.len() * size_of::<vocabulary::EdgeState>();
+        let props = self.cast.props.len() * size_of::<vocabulary::Placement>();
+        (MOST_BYTES / (robots + edges + props + 200)).clamp(LEAST_MOMENTS, MOST_MOMENTS)
+    }
+}
+
+impl Past {
+    fn measure(&mut self, clearance: &Clearance, moment: &Moment) {
+        let time = moment.snapshot.time;
+        let due = self.rooms.last().is_none_or(|[last, _]| time >= last + ROOM_EVERY - 1e-9);
+        if !due || self.rooms.len() >= MOST_ROOMS {
+            return;
+        }
+        let mut clearance = clearance.clone();
+        clearance.push(&moment.snapshot);
+        let rooms = clearance.least().iter().flatten().map(|room| room.clearance);
+        let least = rooms.fold(f64::INFINITY, f64::min);
+        if least.is_finite() {
+            self.rooms.push([time, least]);
+        }
+    }
+
+    fn push(&mut self, sample: u64, moment: Arc<Moment>, most: usize, period: f64) {
+        self.trail.push(&moment);
+        let time = moment.snapshot.time;
+        if self.trails.last().map_or(0.0, Trail::time) + self.trail_every <= time + 1e-9 {
+            self.trails.push(self.trail.clone());
+            if self.trails.len() > MOST_TRAILS {
+                self.trail_every *= 2.0;
+                let mut kept = false;
+                self.trails.retain(|_| {
+                    kept = !kept;
+                    !kept
+                });
+            }
+        }
+        self.head = Some(Arc::clone(&moment));
+        if sample.is_multiple_of(self.stride) {
+            self.moments.push(moment);
+        }
+        if self.moments.len() > most {
+            self.stride *= 2;
+            let stride = self.stride;
+            self.moments.retain(|m| ((m.snapshot.time / period).round() as u64).is_multiple_of(stride));
+        }
+    }
+
+    /// The trail of everything up to a time.
+    fn trail_until(&self, time: f64, cast: &Cast) -> Trail {
+        let start = self.trails.iter().rev().find(|t| t.time() <= time);
+        self.grow(start.cloned().unwrap_or_else(|| Trail::new(cast)), time)
+    }
+
+    /// A trail with the moments after it, up to a time.
+    fn grow(&self, mut trail: Trail, time: f64) -> Trail {
+        let from = self.moments.partition_point(|m| m.snapshot.time <= trail.time());
+        for moment in self.moments.iter().skip(from).take_while(|m| m.snapshot.time <= time + 1e-9) {
+            trail.push(moment);
+        }
+        trail
+    }
+}

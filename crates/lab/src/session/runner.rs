@@ -1,0 +1,389 @@
+//! The thread on which the run goes. Orders come in, news go out; neither side waits for the other.
+
+use super::branches::{Branches, Change};
+use super::forecast::Crystal;
+use rendering::{CameraEyes, Gpu};
+use scene::Scene;
+use simulation::Simulation;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+use vocabulary::{Cast, Moment};
+
+/// What the window asks for.
+pub enum Order {
+    /// Another scene, from time 0; its run is brought to `until` s at once.
+    Open {
+        /// What to run.
+        scene: Arc<Scene>,
+        /// Draws for cameras on robots.
+        gpu: Option<Gpu>,
+        /// s.
+        until: f64,
+    },
+    /// Run on, or stand.
+    Play(bool),
+    /// Simulated seconds per second.
+    Pace(f64),
+    /// One sample, then stand.
+    Step,
+    /// The parameters of this scene hold from the next sample on.
+    Change(Arc<Scene>),
+    /// A new branch that leaves another before a sample, and goes on by itself.
+    Fork {
+        /// The branch that is left.
+        from: usize,
+        /// Where.
+        sample: u64,
+        /// What the new one is called.
+        name: String,
+    },
+    /// Go on with another branch.
+    Switch(usize),
+    /// How far to look ahead, s; 0 for not at all.
+    Ahead(f64),
+    /// What it takes to write the run of a branch down.
+    Tell(usize),
+}
+
+/// What the window is told.
+pub enum News {
+    /// A scene was opened.
+    Opened {
+        /// Who is on stage.
+        cast: Arc<Cast>,
+        /// Control period, s.
+        period: f64,
+    },
+    /// A branch was made and is the one that goes on.
+    Forked {
+        /// Its index.
+        branch: usize,
+        /// The branch it leaves.
+        from: usize,
+        /// The first sample that is its own.
+        sample: u64,
+        /// What it is called.
+        name: String,
+        /// Changes it shares with the branch it leaves.
+        changes: Vec<Change>,
+    },
+    /// Samples of a branch.
+    Moments(usize, Vec<Moment>),
+    /// Parameters of a branch were changed.
+    Changed(usize, Change),
+    /// All there is to know of a branch so far.
+    Told {
+        /// Its index.
+        branch: usize,
+        /// What was changed.
+        changes: Vec<Change>,
+        /// Samples so far.
+        samples: u64,
+        /// Their digest.
+        digest: String,
+    },
+    /// The run stands, and why, where it was not asked to.
+    Stands(Option<String>),
+    /// Something cannot be done.
+    Refused(String),
+}
+
+/// The thread and its channels.
+pub struct Runner {
+    orders: Option<Sender<Order>>,
+    news: Receiver<News>,
+    unread: Arc<AtomicUsize>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// Longest that samples are computed before orders are looked at, s.
+const STRETCH: Duration = Duration::from_millis(10);
+/// Batches that may wait for the window. A window that shows nothing for so long does not need the run to go on.
+const MOST_UNREAD: usize = 600;
+/// Between two looks ahead while the run goes, s.
+const LOOK_EVERY: Duration = Duration::from_millis(100);
+/// Between two batches of samples while the run goes, s.
+const BEAT: Duration = Duration::from_millis(12);
+
+impl Runner {
+    /// Starts the thread; `wake` is called whenever there is news.
+    pub fn start(crystal: Crystal, wake: impl Fn() + Send + 'static) -> Self {
+        let (orders, inbox) = channel();
+        let (outbox, news) = channel();
+        let unread = Arc::new(AtomicUsize::new(0));
+        let mut work = Work {
+            inbox,
+            outbox,
+            unread: Arc::clone(&unread),
+            wake: Box::new(wake),
+            branches: None,
+            active: 0,
+            playing: false,
+            pace: 1.0,
+            owed: 0.0,
+            crystal,
+            ahead: 0.0,
+            looked: None,
+        };
+        let thread = std::thread::Builder::new().name("run".to_owned()).spawn(move || work.work()).ok();
+        Self { orders: Some(orders), news, unread, thread }
+    }
+
+    /// Asks for something.
+    pub fn order(&self, order: Order) {
+        if let Some(orders) = &self.orders {
+            // The thread ends only with the window.
+            let _ = orders.send(order);
+        }
+    }
+
+    /// The next piece of news, if there is one.
+    pub fn news(&self) -> Option<News> {
+        let news = self.news.try_recv().ok()?;
+        self.unread.fetch_sub(1, Relaxed);
+        Some(news)
+    }
+}
+
+impl Drop for Runner {
+    fn drop(&mut self) {
+        self.orders = None;
+        if let Some(thread) = self.thread.take() {
+            // A panic over there has been printed already.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The state of the thread.
+struct Work {
+    inbox: Receiver<Order>,
+    outbox: Sender<News>,
+    unread: Arc<AtomicUsize>,
+    wake: Box<dyn Fn() + Send>,
+    branches: Option<Branches>,
+    active: usize,
+    playing: bool,
+    pace: f64,
+    /// Simulated time that is due, s.
+    owed: f64,
+    crystal: Crystal,
+    ahead: f64,
+    looked: Option<Instant>,
+}
+
+impl Work {
+    fn work(&mut self) {
+        let mut before = Instant::now();
+        loop {
+            let order = if self.playing {
+                match self.inbox.try_recv() {
+                    Ok(order) => Some(order),
+                    Err(TryRecvError::Empty) => None,
+                    Err(TryRecvError::Disconnected) => return,
+                }
+            } else {
+                match self.inbox.recv() {
+                    Ok(order) => Some(order),
+                    Err(_) => return,
+                }
+            };
+            if let Some(order) = order {
+                let stood = !self.playing;
+                self.follow(order);
+                if stood {
+                    before = Instant::now();
+                }
+                continue;
+            }
+            let now = Instant::now();
+            let passed = (now - before).as_secs_f64();
+            before = now;
+            // Where the run cannot keep up it is slower; it does not jump afterwards.
+            self.owed = (self.owed + passed * self.pace).min(0.1 * self.pace.max(1.0));
+            self.go_on();
+            match self.inbox.recv_timeout(BEAT.saturating_sub(now.elapsed())) {
+                Ok(order) => self.follow(order),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+        }
+    }
+
+    /// Samples that are due.
+    fn go_on(&mut self) {
+        if self.unread.load(Relaxed) > MOST_UNREAD {
+            return;
+        }
+        let began = Instant::now();
+        let mut moments = Vec::new();
+        let Some(branches) = &mut self.branches else { return };
+        let period = branches.list()[self.active].simulation().period();
+        let mut ended = false;
+        while self.owed >= period && began.elapsed() < STRETCH {
+            self.owed -= period;
+            match branches.advance(self.active) {
+                Some(moment) => moments.push(moment.clone()),
+                None => {
+                    ended = true;
+                    break;
+                }
+            }
+        }
+        self.report(moments);
+        if ended {
+            self.stand();
+        }
+        self.look_ahead(false);
+    }
+
+    fn stand(&mut self) {
+        self.playing = false;
+        let why = self.branches.as_ref().and_then(|branches| {
+            let simulation = branches.list()[self.active].simulation();
+            let touched = || simulation.stopped().then(|| "The run stops here: bodies touched.".to_owned());
+            simulation.fault().map(str::to_owned).or_else(touched)
+        });
+        self.tell(News::Stands(why));
+    }
+
+    fn report(&mut self, moments: Vec<Moment>) {
+        if !moments.is_empty() {
+            self.tell(News::Moments(self.active, moments));
+        }
+    }
+
+    fn tell(&self, news: News) {
+        self.unread.fetch_add(1, Relaxed);
+        // Where nobody listens any more, the inbox is closed too and the thread ends.
+        let _ = self.outbox.send(news);
+        (self.wake)();
+    }
+
+    fn follow(&mut self, order: Order) {
+        match order {
+            Order::Open { scene, gpu, until } => self.open(scene, gpu, until),
+            Order::Play(on) => {
+                self.playing = on && self.branches.is_some();
+                self.owed = 0.0;
+            }
+            Order::Pace(pace) => self.pace = pace,
+            Order::Step => {
+                self.playing = false;
+                self.step();
+            }
+            Order::Change(scene) => self.change(scene),
+            Order::Fork { from, sample, name } => self.fork(from, sample, name),
+            Order::Switch(branch) => {
+                if self.branches.as_ref().is_some_and(|branches| branch < branches.list().len()) {
+                    self.active = branch;
+                    self.look_ahead(true);
+                }
+            }
+            Order::Ahead(seconds) => {
+                self.ahead = seconds;
+                self.look_ahead(true);
+            }
+            Order::Tell(branch) => self.told(branch),
+        }
+    }
+
+    fn open(&mut self, scene: Arc<Scene>, gpu: Option<Gpu>, until: f64) {
+        let mut blind = None;
+        let opened = Branches::open(scene, |simulation| {
+            if simulation.needs_eyes() {
+                match gpu.as_ref().map(|gpu| CameraEyes::new(gpu, simulation.cast())) {
+                    Some(Ok(eyes)) => simulation.open_eyes(Box::new(eyes)),
+                    Some(Err(error)) => blind = Some(error.to_string()),
+                    None => blind = Some("There is no adapter to draw what cameras see.".to_owned()),
+                }
+            }
+        });
+        let branches = match opened {
+            Ok(branches) => branches,
+            Err(error) => return self.tell(News::Refused(error.to_string())),
+        };
+        if let Some(why) = blind {
+            return self.tell(News::Refused(why));
+        }
+        let simulation = branches.list()[0].simulation();
+        let (cast, period) = (Arc::new(simulation.cast().clone()), simulation.period());
+        self.active = 0;
+        self.owed = 0.0;
+        self.branches = Some(branches);
+        self.tell(News::Opened { cast, period });
+        self.catch_up(until);
+        self.look_ahead(true);
+    }
+
+    /// At least the first sample, and all up to `until` s, within a second of waiting.
+    fn catch_up(&mut self, until: f64) {
+        let began = Instant::now();
+        let Some(branches) = &mut self.branches else { return };
+        let mut moments = Vec::new();
+        while let Some(moment) = branches.advance(self.active) {
+            moments.push(moment.clone());
+            if moment.snapshot.time >= until || began.elapsed() > Duration::from_secs(1) {
+                break;
+            }
+        }
+        let ended = moments.is_empty();
+        self.report(moments);
+        if ended {
+            self.stand();
+        }
+    }
+
+    fn step(&mut self) {
+        let Some(branches) = &mut self.branches else { return };
+        match branches.advance(self.active).cloned() {
+            Some(moment) => self.report(vec![moment]),
+            None => self.stand(),
+        }
+        self.look_ahead(true);
+    }
+
+    fn change(&mut self, scene: Arc<Scene>) {
+        let Some(branches) = &mut self.branches else { return };
+        match branches.change(self.active, scene) {
+            Ok(Some(change)) => self.tell(News::Changed(self.active, change)),
+            Ok(None) => {}
+            Err(standing) => self.tell(News::Refused(format!("{standing} cannot change while a run goes"))),
+        }
+        self.look_ahead(true);
+    }
+
+    fn fork(&mut self, from: usize, sample: u64, name: String) {
+        let Some(branches) = &mut self.branches else { return };
+        let Some(branch) = branches.fork(from, sample, name.clone()) else { return };
+        let changes = branches.list()[branch].changes.clone();
+        self.active = branch;
+        self.owed = 0.0;
+        self.tell(News::Forked { branch, from, sample, name, changes });
+        self.look_ahead(true);
+    }
+
+    fn told(&mut self, branch: usize) {
+        let Some(made) = self.branches.as_ref().and_then(|branches| branches.list().get(branch)) else {
+            return;
+        };
+        let (changes, samples) = (made.changes.clone(), made.simulation().sample());
+        self.tell(News::Told { branch, changes, samples, digest: made.digest() });
+    }
+
+    /// Sends a copy of the run ahead: now, or when the last look is old enough and has come back.
+    fn look_ahead(&mut self, now: bool) {
+        let recent = self.looked.is_some_and(|at| at.elapsed() < LOOK_EVERY);
+        if self.ahead <= 0.0 || (!now && (recent || self.crystal.busy())) {
+            return;
+        }
+        if let Some(branches) = &self.branches {
+            let copy: Simulation = branches.list()[self.active].copy();
+            self.crystal.look(self.active, copy, self.ahead);
+            self.looked = Some(Instant::now());
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! What is drawn on the ground to explain: the future, handles, other branches, ground that cannot be held.
+
+use super::holding;
+use crate::desk::{Choice, Desk};
+use crate::session::forecast::{Forecast, Place, Trouble};
+use rendering::sketch::{Area, Arrow, Ghost, Ring, Sketch, Spot, Stroke};
+use std::sync::Arc;
+use vocabulary::{Cast, Moment};
+
+/// Where something is wrong ahead.
+const ALARM: [f32; 3] = [0.90, 0.16, 0.10];
+/// The accent of the window.
+pub const ACCENT: [f32; 3] = [0.25, 0.62, 1.0];
+/// Ground that cannot be held.
+const REFUSED: [f32; 3] = [0.72, 0.10, 0.08];
+/// Radius of the ring at a set point for a robot of the usual size, m.
+pub const RING: f64 = 0.25;
+
+/// What the hand does, as far as it is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Hand {
+    /// The edge whose set point is under the pointer.
+    pub over: Option<usize>,
+    /// The edge whose set point is dragged.
+    pub held: Option<usize>,
+    /// The robot under the pointer.
+    pub robot: Option<usize>,
+    /// A connection being drawn: from a robot to a place, m.
+    pub connecting: Option<(usize, [f64; 2])>,
+}
+
+/// The sketch of what is looked at.
+pub fn sketch(desk: &Desk, moment: &Moment, hand: &Hand) -> Sketch {
+    let mut sketch = Sketch::default();
+    let Some(history) = &desk.history else { return sketch };
+    let cast = Arc::clone(history.cast());
+    let colours = rendering::robot_colours(&cast);
+    if let Some(held) = hand.held {
+        refused(desk, held, moment, &mut sketch);
+    }
+    others(desk, &cast, &colours, &mut sketch);
+    let present = desk.cursor.is_none();
+    if let Some(forecast) = desk.forecast.as_ref().filter(|f| present && f.branch == desk.branch) {
+        future(forecast, &colours, &cast, &mut sketch);
+    }
+    handles(desk, &cast, (moment, &colours), hand, &mut sketch);
+    if let Some((robot, to)) = hand.connecting
+        && let Some(state) = moment.snapshot.robots.get(robot)
+    {
+        let from = [state.motion.pose.x, state.motion.pose.y];
+        sketch.arrows.push(Arrow { from, to, gaps: [0.3, 0.0], colour: ACCENT, alpha: 0.95 });
+    }
+    sketch
+}
+
+/// Ground that the follower of an edge cannot hold.
+fn refused(desk: &Desk, edge: usize, moment: &Moment, sketch: &mut Sketch) {
+    let Some((leader, field)) = holding::field(desk, edge, moment) else { return };
+    let half = 0.5 * (field.side - 1) as f64 * field.step;
+    let area = Area::field([-half; 2], field.step, field.side, &scaled(&field.alphas, 0.34), REFUSED, true);
+    // The field is the leader's; rows run ahead, columns to the left.
+    let turned = area.corners.into_iter().map(|spot| {
+        let [left, ahead] = spot.at;
+        Spot { at: leader.world_from_body(ahead, left), ..spot }
+    });
+    sketch.areas.push(Area { corners: turned.collect(), hatched: true });
+}
+
+fn scaled(alphas: &[f32], by: f32) -> Vec<f32> {
+    alphas.iter().map(|alpha| alpha * by).collect()
+}
+
+/// Paths of branches that are not looked at.
+fn others(desk: &Desk, cast: &Cast, colours: &[[f32; 3]], sketch: &mut Sketch) {
+    let Some(history) = &desk.history else { return };
+    for branch in (0..history.branches()).filter(|branch| *branch != desk.branch) {
+        let from = desk.branches.get(branch).and_then(|face| face.parent).map_or(0.0, |(_, time)| time);
+        // What is long past would cover the ground.
+        let from = from.max(desk.time() - 12.0);
+        let moments = history.between(branch, [from, desk.time() + 12.0], 160);
+        for robot in 0..cast.members.len() {
+            let spots = moments.iter().filter_map(|moment| {
+                let pose = moment.snapshot.robots.get(robot)?.motion.pose;
+                Some(Spot { at: [pose.x, pose.y], colour: light(colours[robot]), alpha: 0.55 })
+            });
+            sketch.strokes.push(Stroke { dashed: true, pixels: 1.6, ..Stroke::new(spots.collect()) });
+        }
+        if let Some(moment) = history.at(branch, desk.time()) {
+            let ghost = |(robot, state): (usize, &vocabulary::RobotState)| Ghost {
+                robot,
+                pose: state.motion.pose,
+                alpha: 0.22,
+            };
+            sketch.ghosts.extend(moment.snapshot.robots.iter().enumerate().map(ghost));
+        }
+    }
+}
+
+/// The next seconds, and where the formation will be.
+fn future(forecast: &Forecast, colours: &[[f32; 3]], cast: &Cast, sketch: &mut Sketch) {
+    for (robot, path) in forecast.paths.iter().enumerate() {
+        let colour = light(colours.get(robot).copied().unwrap_or([0.6; 3]));
+        let last = path.len().saturating_sub(1).max(1) as f32;
+        let spot = |(k, place): (usize, &Place)| {
+            let share = k as f32 / last;
+            let fade = 0.95 * (1.0 - 0.75 * share * share);
+            match place.trouble {
+                Trouble::None => Spot { at: place.at, colour, alpha: fade },
+                Trouble::Limited | Trouble::Contact => {
+                    Spot { at: place.at, colour: ALARM, alpha: fade.max(0.8) }
+                }
+            }
+        };
+        let spots = path.iter().enumerate().map(spot).collect();
+        let pixels = if path.iter().any(|p| p.trouble == Trouble::Contact) { 3.0 } else { 2.2 };
+        sketch.strokes.push(Stroke { pixels, ..Stroke::new(spots) });
+    }
+    // Where they stand in the end; in a crowd the paths say enough.
+    if cast.members.len() <= 30 {
+        let ghost = |(robot, pose): (usize, &vocabulary::Pose)| Ghost { robot, pose: *pose, alpha: 0.30 };
+        sketch.ghosts.extend(forecast.end.iter().enumerate().map(ghost));
+    }
+}
+
+/// Rings to grasp, and a ring under what is selected.
+fn handles(
+    desk: &Desk,
+    cast: &Cast,
+    (moment, colours): (&Moment, &[[f32; 3]]),
+    hand: &Hand,
+    sketch: &mut Sketch,
+) {
+    for (edge, at) in set_points(cast, moment).into_iter().enumerate() {
+        let Some(at) = at else { continue };
+        let follower = cast.edges[edge].follower;
+        let ring = Ring::new(at, RING * size(cast, follower), light(colours[follower]));
+        if hand.held == Some(edge) || desk.chosen_edge() == Some(edge) {
+            sketch.rings.push(ring.selected());
+        } else if hand.over == Some(edge) {
+            sketch.rings.push(ring.hovered());
+        }
+    }
+    let under = |robot: usize| {
+        let pose = moment.snapshot.robots.get(robot)?.motion.pose;
+        let body = cast.members.get(robot)?.body;
+        let at = pose.world_from_body(0.5 * body.wheelbase, 0.0);
+        Some(Ring { pixels: 2.0, ..Ring::new(at, 0.62 * body.length, ACCENT) })
+    };
+    if let Choice::Robot(robot) = desk.choice {
+        sketch.rings.extend(under(robot));
+    }
+    if let Some(robot) = hand.robot {
+        sketch.rings.extend(under(robot).map(|ring| Ring { alpha: 0.5, ..ring }));
+    }
+}
+
+/// Where on the ground each edge wants its follower, m.
+pub fn set_points(cast: &Cast, moment: &Moment) -> Vec<Option<[f64; 2]>> {
+    let place = |(edge, ends): (usize, &vocabulary::Edge)| {
+        let [distance, bearing] = moment.edges.get(edge)?.set_point;
+        let pose = moment.snapshot.robots.get(ends.leader)?.motion.pose;
+        let place = pose.world_from_body(distance * bearing.cos(), distance * bearing.sin());
+        place.iter().all(|x| x.is_finite()).then_some(place)
+    };
+    cast.edges.iter().enumerate().map(place).collect()
+}
+
+/// How many times as large as the usual robot one is.
+fn size(cast: &Cast, robot: usize) -> f64 {
+    cast.members.get(robot).map_or(1.0, |member| member.body.length / 0.42)
+}
+
+/// A colour that stands out from asphalt.
+fn light(colour: [f32; 3]) -> [f32; 3] {
+    if colour.iter().sum::<f32>() < 0.6 { [0.89, 0.70, 0.25] } else { colour.map(|c| 0.2 + 0.8 * c) }
+}
