@@ -3,6 +3,7 @@
 use crate::{
     Channel, Path,
     ground::{GroundForm, GroundKeys},
+    groups::{Member, MembersForm},
     names::{NameForm, POSE},
     path_form::PATH,
     patterns::{PatternForm, PatternKeys},
@@ -20,6 +21,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 pub(crate) const SCHEMA_VERSION: u64 = 1;
 /// Most robots of a scene.
 pub(crate) const MOST_ROBOTS: usize = 10_000;
+/// Most changes of a run.
+pub(crate) const MOST_CHANGES: usize = 10_000;
 /// Speed at the start.
 const SPEED: Number = number("m/s").from(0.0).up_to(100.0);
 
@@ -59,6 +62,8 @@ keys! {
         props: Vec<PropKeys> = list(PropForm, 0, MOST_PROPS), part;
         /// Props in well-known arrangements.
         patterns: Vec<PatternKeys> = list(PatternForm, 0, 200), part;
+        /// What changes while the run goes.
+        changes: Vec<ChangeKeys> = list(table::<ChangeKeys>(), 0, MOST_CHANGES), part;
         /// Light and air.
         environment: EnvironmentPart = table::<EnvironmentPart>(), part;
         /// How pictures look at the run.
@@ -139,6 +144,36 @@ keys! {
         observer: ObserverPart = table::<ObserverPart>(), part;
         /// What differs from the scene's `sensing`.
         sensing: SensingPart = SensingForm, part;
+        /// Robots of the group that differ from the others, by their names.
+        members: Vec<Member> = MembersForm, part;
+    }
+}
+
+keys! {
+    /// What is different about one robot of a group. Where it starts, and how fast, is up to the group.
+    struct MemberKeys {
+        /// Wanted distance from the robot it follows, m, in place of the shape's.
+        distance: Channel = DistanceForm, optional;
+        /// Wanted bearing, in place of the shape's.
+        bearing: Channel = BearingForm, optional;
+        /// What differs from the group's `vehicle`.
+        vehicle: VehiclePart = VehicleForm, optional;
+        /// What differs from the group's `law`.
+        law: LawPart = table::<LawPart>(), optional;
+        /// What differs from the group's `observer`.
+        observer: ObserverPart = table::<ObserverPart>(), optional;
+        /// What differs from the group's `sensing`.
+        sensing: SensingPart = SensingForm, optional;
+    }
+}
+
+keys! {
+    /// Something that is set anew while the run goes: set points, laws, observers and limits.
+    struct ChangeKeys {
+        /// It holds from the first control sample at or after this on, s.
+        at: f64 = number("s").from(0.0).up_to(1e5), required;
+        /// What is set, as after `--set`, on top of what earlier changes have set: "robots.follower-1.distance=1.5".
+        set: Vec<String> = list(text(10_000), 0, 10_000), required;
     }
 }
 

@@ -1,17 +1,57 @@
 //! Groups become robots.
 
 use crate::{
-    Channel, Follow, Law, Robot, Role, Vehicle,
-    document::{Follows, GroupKeys, MOST_ROBOTS},
+    Channel, Follow, Law, Observer, Robot, Role, Sensing, Vehicle,
+    document::{Follows, GroupKeys, MOST_ROBOTS, MemberKeys},
     graph::{Named, check_known},
     robots::{Defaults, Draft, check_distance, check_path, start_pose, start_speed},
-    text::{Found, Node, Part, Reading},
+    text::{
+        Form, Found, Keys, Node, Part, Reading, Value,
+        node::Entry,
+        table,
+        words::{did_you_mean, nearest},
+    },
+    types::VehiclePart,
+    vehicle::usual_kind,
 };
 use rand_chacha::{
     ChaCha8Rng,
     rand_core::{Rng, SeedableRng},
 };
+use serde_json::{Value as Json, json};
 use vocabulary::{Pose, wrap};
+
+/// What is different about one robot of a group.
+#[derive(Debug, Clone)]
+pub(crate) struct Member {
+    name: Found<String>,
+    keys: MemberKeys,
+}
+
+/// Robots of a group by their names.
+pub(crate) struct MembersForm;
+
+impl Form for MembersForm {
+    type Out = Vec<Member>;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Vec<Member>> {
+        let Value::Table(entries) = &node.value else {
+            reading.wrong(node, "a table of robots by their names");
+            return None;
+        };
+        let member = |entry: &Entry| {
+            let name = Found { place: entry.place, value: entry.key.clone() };
+            Some(Member { name, keys: table::<MemberKeys>().read(&entry.node, reading)? })
+        };
+        // All are read before giving up, so that every fault is told.
+        let members: Vec<_> = entries.iter().map(member).collect();
+        members.into_iter().collect()
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "object", "additionalProperties": table::<MemberKeys>().schema() })
+    }
+}
 
 /// Appends the robots of `group`; `None` after a note.
 pub(crate) fn expand(
@@ -23,30 +63,59 @@ pub(crate) fn expand(
 ) -> Option<()> {
     let keys = group.keys;
     let count = group.count(drafts.len(), reading)?;
-    let vehicle = defaults.vehicle(keys.vehicle.as_ref(), group.node.place, reading);
-    let speed = start_speed(keys.speed.as_ref(), &vehicle, reading);
-    let law = keys.law.as_ref()?.value.complete_with(&defaults.law, Law::fitting(vehicle.kind));
-    let observer = defaults.observer(&keys.observer.as_ref()?.value, &vehicle);
-    let sensing = defaults.sensing(&keys.sensing.as_ref()?.value);
+    group.check_members(reading);
+    let usual = group.outfit(None, defaults, reading)?;
+    let speed = start_speed(keys.speed.as_ref(), &usual.vehicle, reading);
     let spacing = keys.distance.as_ref()?;
-    check_distance(spacing.value, law.distance_min, spacing.place, reading);
-    let (leader, origin) = group.leader(&vehicle, drafts, reading)?;
+    check_distance(spacing.value, usual.law.distance_min, spacing.place, reading);
+    let (leader, origin) = group.leader(&usual.vehicle, defaults, drafts, reading)?;
     let mut scatter = Scatter::new(keys, group.index, seed)?;
     for (place, spot) in group.spots(count)?.into_iter().enumerate().skip(1) {
+        let name = group.name(place);
+        let member = group.member(&name).map(|member| &member.keys);
+        let (mut own, mut speed) = (usual, speed);
+        if member.is_some() {
+            own = group.outfit(member, defaults, reading)?;
+            speed = start_speed(keys.speed.as_ref(), &own.vehicle, reading);
+        }
+        let (distance, bearing) = spot.set_point(member);
+        if let Some(found) = member.and_then(|keys| keys.distance.as_ref()) {
+            check_distance(distance.least(), own.law.distance_min, found.place, reading);
+        }
+        let Outfit { vehicle, law, observer, sensing } = own;
         let followed = if spot.follows == 0 { leader.clone() } else { group.name(spot.follows) };
-        let role = Role::Follow(Box::new(Follow {
-            leader: followed,
-            speed,
-            distance: Channel::Constant(spot.distance),
-            bearing: Channel::Constant(spot.bearing),
-            law,
-            observer,
-            sensing,
-        }));
+        let follow = Follow { leader: followed, speed, distance, bearing, law, observer, sensing };
+        let role = Role::Follow(Box::new(follow));
         let pose = scatter.around(origin, spot.at);
-        group.push(Robot { name: group.name(place), pose, number: 0, vehicle, role }, drafts);
+        group.push(Robot { name, pose, number: 0, vehicle, role }, drafts);
     }
     Some(())
+}
+
+/// Names of the robots that the group at `node` makes.
+pub(crate) fn made_by(node: &Node) -> impl Iterator<Item = String> {
+    let start = node.get("name").and_then(Node::as_text).unwrap_or("robot").to_owned();
+    let count = match node.get("count").map(|count| &count.value) {
+        Some(Value::Integer(count)) => usize::try_from(*count).unwrap_or(0).min(MOST_ROBOTS),
+        _ => 0,
+    };
+    // The robot in place 1 is the group's own only if it has a path.
+    let first = if node.get("path").is_some() { 1 } else { 2 };
+    (first..=count).map(move |place| format!("{start}-{place}"))
+}
+
+/// Whether the group at `node` makes a robot called `name`.
+pub(crate) fn makes(node: &Node, name: &str) -> bool {
+    made_by(node).any(|made| made == name)
+}
+
+/// What a robot of a group is and does.
+#[derive(Clone, Copy)]
+struct Outfit {
+    vehicle: Vehicle,
+    law: Law,
+    observer: Observer,
+    sensing: Sensing,
 }
 
 /// A place in a group.
@@ -61,6 +130,19 @@ struct Spot {
     bearing: f64,
 }
 
+impl Spot {
+    /// Wanted distance and bearing there, of a robot of which `member` may say otherwise.
+    fn set_point(&self, member: Option<&MemberKeys>) -> (Channel, Channel) {
+        let said = |found: Option<&Found<Channel>>, value| {
+            found.map_or(Channel::Constant(value), |found| found.value.clone())
+        };
+        (
+            said(member.and_then(|keys| keys.distance.as_ref()), self.distance),
+            said(member.and_then(|keys| keys.bearing.as_ref()), self.bearing),
+        )
+    }
+}
+
 /// A group as it is written, and where.
 pub(crate) struct Group<'a> {
     pub(crate) keys: &'a GroupKeys,
@@ -69,6 +151,61 @@ pub(crate) struct Group<'a> {
 }
 
 impl Group<'_> {
+    /// What is different about the robot called `name`.
+    fn member(&self, name: &str) -> Option<&Member> {
+        self.keys.members.as_ref()?.value.iter().find(|member| member.name.value == name)
+    }
+
+    /// Notes members that the group does not have.
+    fn check_members(&self, reading: &mut Reading) {
+        for Member { name, .. } in self.keys.members.iter().flat_map(|members| &members.value) {
+            if !makes(self.node, &name.value) {
+                let names: Vec<_> = made_by(self.node).take(1000).collect();
+                let near = nearest(&name.value, names.iter().map(String::as_str));
+                let hint = near.map_or_else(String::new, did_you_mean);
+                let message = format!("this group makes no robot called `{}`{hint}", name.value);
+                reading.note(name.place, message);
+            }
+        }
+    }
+
+    /// What the robots of the group are and do, those of which `member` says something else.
+    fn outfit(
+        &self,
+        member: Option<&MemberKeys>,
+        defaults: &Defaults,
+        reading: &mut Reading,
+    ) -> Option<Outfit> {
+        let nothing = MemberKeys::default();
+        let (keys, own) = (self.keys, member.unwrap_or(&nothing));
+        let vehicle = self.vehicle(own.vehicle.as_ref(), defaults, reading)?;
+        let law = over(own.law.as_ref(), keys.law.as_ref()?);
+        let observer = over(own.observer.as_ref(), keys.observer.as_ref()?);
+        let sensing = over(own.sensing.as_ref(), keys.sensing.as_ref()?);
+        Some(Outfit {
+            vehicle,
+            law: law.complete_with(&defaults.law, Law::fitting(vehicle.kind)),
+            observer: defaults.observer(&observer, &vehicle),
+            sensing: defaults.sensing(&sensing),
+        })
+    }
+
+    /// The vehicle of a robot of the group that says `own` of it; one of another kind takes nothing from the group's.
+    fn vehicle(
+        &self,
+        own: Option<&Found<VehiclePart>>,
+        defaults: &Defaults,
+        reading: &mut Reading,
+    ) -> Option<Vehicle> {
+        let (group, place) = (self.keys.vehicle.as_ref()?, self.node.place);
+        let Some(own) = own else { return Some(defaults.vehicle(Some(group), place, reading)) };
+        let kind_of = |part: &VehiclePart| part.kind.as_ref().map(|found| found.value);
+        let usual = kind_of(&group.value).unwrap_or(usual_kind(&defaults.vehicle));
+        let same = kind_of(&own.value).is_none_or(|kind| kind == usual);
+        let value = if same { own.value.over(&group.value) } else { own.value.clone() };
+        Some(defaults.vehicle(Some(&Found { place: own.place, value }), place, reading))
+    }
+
     /// Number of places, if the shape and the scene, which has `before` robots already, can take them.
     fn count(&self, before: usize, reading: &mut Reading) -> Option<usize> {
         let (shape, count) = (self.keys.shape.as_ref()?.value, self.keys.count.as_ref()?);
@@ -113,10 +250,26 @@ impl Group<'_> {
         drafts.push(Draft { named: Named { name, leader: None }, number: None, robot: Some(robot) });
     }
 
+    /// The vehicle of the group's own leader, with notes on what is for robots that follow.
+    fn leading(
+        &self,
+        name: &str,
+        usual: &Vehicle,
+        defaults: &Defaults,
+        reading: &mut Reading,
+    ) -> Option<Vehicle> {
+        let Some(Member { keys, .. }) = self.member(name) else { return Some(*usual) };
+        for (key, place) in keys.places().into_iter().filter(|(key, _)| *key != "vehicle") {
+            reading.note(place, format!("`{key}` is for robots that follow, but `{name}` leads"));
+        }
+        self.vehicle(keys.vehicle.as_ref(), defaults, reading)
+    }
+
     /// Name and start pose of the robot in place 1, which is made if it is the group's own.
     fn leader(
         &self,
-        vehicle: &Vehicle,
+        usual: &Vehicle,
+        defaults: &Defaults,
         drafts: &mut Vec<Draft>,
         reading: &mut Reading,
     ) -> Option<(String, Pose)> {
@@ -124,13 +277,14 @@ impl Group<'_> {
         match (self.node.get("path"), self.node.get("leader")) {
             (Some(_), None) => {
                 let path = keys.path.as_ref()?;
-                check_path(path, vehicle, reading);
+                let name = self.name(0);
+                let vehicle = self.leading(&name, usual, defaults, reading)?;
+                check_path(path, &vehicle, reading);
                 let origin = Found { place: self.node.place, value: [0.0; 3] };
                 let given = keys.pose.as_ref().or(path.value.start().is_none().then_some(&origin));
                 let pose = start_pose(given, Some(&path.value), self.node.place, reading)?;
-                let name = self.name(0);
                 let role = Role::Lead { path: path.value.clone() };
-                self.push(Robot { name: name.clone(), pose, number: 0, vehicle: *vehicle, role }, drafts);
+                self.push(Robot { name: name.clone(), pose, number: 0, vehicle, role }, drafts);
                 Some((name, pose))
             }
             (None, Some(_)) => {
@@ -153,6 +307,11 @@ impl Group<'_> {
             }
         }
     }
+}
+
+/// What a robot says, else what its group says.
+fn over<P: Part + Clone>(own: Option<&Found<P>>, group: &Found<P>) -> P {
+    own.map_or_else(|| group.value.clone(), |own| own.value.over(&group.value))
 }
 
 /// Seeded disorder of start poses.

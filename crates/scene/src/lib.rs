@@ -4,8 +4,10 @@
 //! out a [`Scene`] in which every default is filled in. Nothing behind that door checks a scene again.
 //!
 //! text → tree with places (`text::node`) → overrides → keys (`document`) → robots (`robots`, `groups`), ground and props
-//! (`ground`, `props`) → everything held against everything (`resolve`) → [`Scene`].
+//! (`ground`, `props`) → everything held against everything (`resolve`) → what changes as the run goes (`changes`) →
+//! [`Scene`].
 
+mod changes;
 mod diagnostics;
 mod document;
 mod files;
@@ -24,6 +26,7 @@ mod props;
 mod relief;
 mod resolve;
 mod robots;
+mod sets;
 mod shape;
 mod sight;
 mod start;
@@ -36,7 +39,7 @@ pub use diagnostics::{Diagnostic, Diagnostics};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
 pub use types::{
-    Channel, Compensation, Environment, Expect, Film, Follow, Ground, Law, LawKind, Mode, Noise, Observer,
+    Change, Channel, Compensation, Environment, Expect, Film, Follow, Ground, Law, LawKind, Mode, Noise, Observer,
     ObserverKind, ObserverStart, OnContact, Patch, Path, Physics, Prop, PropMotion, Ramp, Relief, Robot,
     Role, Scene, Sensing, SensingKind, SpeedProfile, Switching, Time, Vehicle, VehicleKind, Views, Vision,
 };

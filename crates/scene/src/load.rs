@@ -2,6 +2,7 @@
 
 use crate::{
     Diagnostics, Override, Scene,
+    changes::changes,
     document::{Document, SCHEMA_VERSION},
     files::read_text,
     resolve::resolve,
@@ -73,7 +74,11 @@ fn check(text: &str, path: &Path, overrides: &[Override], reading: &mut Reading)
         change.apply(&mut root, reading);
     }
     let document = table::<Document>().read(&root, reading)?;
-    resolve(document, &root, reading)
+    let mut scene = resolve(document, &root, reading)?;
+    if reading.is_clean() {
+        scene.changes = changes(&root, &scene, reading);
+    }
+    Some(scene)
 }
 
 /// JSON Schema (2020-12) of scene files.

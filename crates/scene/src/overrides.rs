@@ -1,9 +1,12 @@
 //! Changes to a scene from the command line: `--set time.duration=5`.
 
-use crate::text::{
-    Node, Place, Reading, Value,
-    node::Entry,
-    words::{did_you_mean, nearest},
+use crate::{
+    groups::{made_by, makes},
+    text::{
+        Node, Place, Reading, Value,
+        node::Entry,
+        words::{did_you_mean, nearest},
+    },
 };
 use std::{fmt, str::FromStr};
 
@@ -39,6 +42,7 @@ impl fmt::Display for Override {
 }
 
 /// A part of a path and where it stands.
+#[derive(Clone, Copy)]
 struct Part<'a> {
     text: &'a str,
     place: Place,
@@ -48,17 +52,69 @@ impl Override {
     /// Puts the value where the path says; notes where there is no such place.
     pub(crate) fn apply(&self, root: &mut Node, reading: &mut Reading) {
         let source = reading.add_source("--set".to_owned(), &self.0);
+        self.apply_at(Origin { source, offset: 0, whole: None }, root, reading);
+    }
+
+    /// As [`Override::apply`], for text that stands somewhere else.
+    pub(crate) fn apply_at(&self, origin: Origin, root: &mut Node, reading: &mut Reading) {
+        let Origin { source, offset, whole } = origin;
         let (path, value) = self.0.split_once('=').unwrap_or((&self.0, ""));
         let indent = value.len() - value.trim_start().len();
-        let value = Node::parse_value(value.trim(), source, path.len() + 1 + indent);
-        let mut start = 0;
+        let mut value = Node::parse_value(value.trim(), source, offset + path.len() + 1 + indent);
+        if let Some(whole) = whole {
+            value.stand_at(whole);
+        }
+        let mut start = offset;
         let parts = path.split('.').map(|text| {
             let place = Place { source, start, end: start + text.len() };
             start += text.len() + 1;
-            Part { text: text.trim(), place }
+            Part { text: text.trim(), place: whole.unwrap_or(place) }
         });
-        put(root, &parts.collect::<Vec<_>>(), value, reading);
+        put_in_scene(root, &parts.collect::<Vec<_>>(), value, reading);
     }
+
+    /// The parts of its path.
+    pub(crate) fn path(&self) -> Vec<&str> {
+        let (path, _) = self.0.split_once('=').unwrap_or((&self.0, ""));
+        path.split('.').map(str::trim).collect()
+    }
+}
+
+/// Where the text of an override stands.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Origin {
+    pub(crate) source: usize,
+    /// Of its first character.
+    pub(crate) offset: usize,
+    /// Where all of it stands, if its characters cannot be told apart there.
+    pub(crate) whole: Option<Place>,
+}
+
+/// Puts `value` at `path`. Robots that a group makes are reached as if they stood in `robots`.
+fn put_in_scene(root: &mut Node, path: &[Part<'_>], value: Node, reading: &mut Reading) {
+    let [list, name, rest @ ..] = path else { return put(root, path, value, reading) };
+    let groups = root.items("groups");
+    if list.text != "robots" || groups.is_empty() || find(root.items("robots"), name.text).is_ok() {
+        return put(root, path, value, reading);
+    }
+    let Some(index) = groups.iter().position(|group| makes(group, name.text)) else {
+        reading.note(name.place, unknown_robot(root, name.text));
+        return;
+    };
+    let inside: Vec<_> =
+        [Part { text: "members", place: list.place }, *name].into_iter().chain(rest.iter().copied()).collect();
+    if let Some(group) = root.items_mut("groups").get_mut(index) {
+        put(group, &inside, value, reading);
+    }
+}
+
+/// That no robot is called `name`, with the nearest there is.
+fn unknown_robot(root: &Node, name: &str) -> String {
+    let written = root.items("robots").iter().filter_map(|robot| robot.get("name")?.as_text());
+    let made: Vec<String> = root.items("groups").iter().flat_map(|group| made_by(group).take(1000)).collect();
+    let names = written.chain(made.iter().map(String::as_str));
+    let hint = nearest(name, names).map_or_else(String::new, did_you_mean);
+    format!("there is no robot called `{name}`{hint}")
 }
 
 fn put(node: &mut Node, path: &[Part<'_>], value: Node, reading: &mut Reading) {
@@ -75,7 +131,7 @@ fn put(node: &mut Node, path: &[Part<'_>], value: Node, reading: &mut Reading) {
                 entries.len() - 1
             });
             if let Some(entry) = entries.get_mut(index) {
-                if entry.key == "vehicle" && !rest.is_empty() {
+                if ["vehicle", "sensing"].contains(&entry.key.as_str()) && !rest.is_empty() {
                     spell_out(&mut entry.node);
                 }
                 put(&mut entry.node, rest, value, reading);
@@ -94,12 +150,12 @@ fn put(node: &mut Node, path: &[Part<'_>], value: Node, reading: &mut Reading) {
     }
 }
 
-/// Makes a vehicle that is the word of its kind a table of that kind.
-fn spell_out(vehicle: &mut Node) {
-    if vehicle.as_text().is_some() {
-        let place = vehicle.place;
-        let kind = Entry { key: "kind".to_owned(), place, node: vehicle.clone() };
-        vehicle.value = Value::Table(vec![kind]);
+/// Makes what is the word of its kind a table of that kind.
+fn spell_out(thing: &mut Node) {
+    if thing.as_text().is_some() {
+        let place = thing.place;
+        let kind = Entry { key: "kind".to_owned(), place, node: thing.clone() };
+        thing.value = Value::Table(vec![kind]);
     }
 }
 

@@ -1,7 +1,7 @@
 //! From the keys of a file to the checked scene: parts put together and held against each other.
 
 use crate::{
-    Expect, Film, Mode, Prop, Scene, Time, Views,
+    Expect, Film, Mode, Prop, Robot, Scene, Time, Views,
     document::{Document, GroupKeys, RobotKeys},
     graph::{check_graph, check_known},
     ground::ground,
@@ -21,18 +21,10 @@ use std::collections::HashSet;
 /// The checked scene, or `None` after notes.
 pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) -> Option<Scene> {
     // Another version may mean anything.
-    document.schema?;
-    let seed = document.seed?.value;
+    document.schema.as_ref()?;
+    let seed = document.seed.as_ref()?.value;
+    let defaults = defaults(&document, reading)?;
     let physics = document.physics?.value;
-    let defaults = Defaults {
-        vehicle: document.vehicle?.value,
-        law: document.law?.value,
-        observer: document.observer?.value,
-        sensing: document.sensing?.value,
-        step: physics.complete(&PhysicsPart::default()).step,
-        step_place: physics.step.as_ref().map(|found| found.place),
-    };
-    check_meaning(&defaults.vehicle, usual_kind(&defaults.vehicle), reading);
     let time_part = document.time?.value;
     let time = time(&time_part, reading);
     let (robots, groups) = (document.robots?.value, document.groups?.value);
@@ -73,11 +65,40 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         props: props.into_iter().map(|placed| placed.value).collect(),
         vision,
         robots: drafts.into_iter().map(|draft| draft.robot).collect::<Option<_>>()?,
+        changes: vec![],
         environment: document.environment?.value.complete(&EnvironmentPart::default()),
         views,
         film,
         expect: expect(&document.expect?.value, &time, reading),
     })
+}
+
+/// What holds for every robot that says nothing else.
+fn defaults(document: &Document, reading: &mut Reading) -> Option<Defaults> {
+    let physics = &document.physics.as_ref()?.value;
+    let vehicle = document.vehicle.as_ref()?.value.clone();
+    check_meaning(&vehicle, usual_kind(&vehicle), reading);
+    Some(Defaults {
+        vehicle,
+        law: document.law.as_ref()?.value.clone(),
+        observer: document.observer.as_ref()?.value.clone(),
+        sensing: document.sensing.as_ref()?.value.clone(),
+        step: physics.complete(&PhysicsPart::default()).step,
+        step_place: physics.step.as_ref().map(|found| found.place),
+    })
+}
+
+/// The robots of a document alone, or `None` after notes: for what has changed since a scene was resolved.
+pub(crate) fn resolve_robots(document: &Document, root: &Node, reading: &mut Reading) -> Option<Vec<Robot>> {
+    let seed = document.seed.as_ref()?.value;
+    let defaults = defaults(document, reading)?;
+    let (robots, groups) = (&document.robots.as_ref()?.value, &document.groups.as_ref()?.value);
+    let mut drafts = drafts(robots, groups, root, seed, &defaults, reading);
+    number(&mut drafts, reading);
+    let (time, part) = (&document.time.as_ref()?.value, &document.vision.as_ref()?.value);
+    let vision = part.complete(&VisionPart::default());
+    check_sight(&Said { time, part, vision: &vision }, &drafts, reading);
+    drafts.into_iter().map(|draft| draft.robot).collect()
 }
 
 fn expect(part: &ExpectPart, time: &Time, reading: &mut Reading) -> Expect {

@@ -68,6 +68,9 @@ pub(crate) trait Part {
     /// What is said here, else what `base` says, else `default`.
     fn complete_with(&self, base: &Self, default: Self::Whole) -> Self::Whole;
 
+    /// What is said here, else what `base` says.
+    fn over(&self, base: &Self) -> Self;
+
     /// What is said here, else what `base` says, else the default.
     fn complete(&self, base: &Self) -> Self::Whole {
         self.complete_with(base, Self::Whole::default())
@@ -278,6 +281,10 @@ macro_rules! settings {
                         None => default.$key,
                     },
                 )+ }
+            }
+
+            fn over(&self, base: &Self) -> Self {
+                Self { $( $key: self.$key.clone().or_else(|| base.$key.clone()), )+ }
             }
         }
     };

@@ -93,6 +93,40 @@ impl Node {
         }
     }
 
+    /// The list `key`, if this is a table that has it.
+    pub(crate) fn items_mut(&mut self, key: &str) -> &mut [Self] {
+        let entry = match &mut self.value {
+            Value::Table(entries) => entries.iter_mut().find(|entry| entry.key == key),
+            _ => None,
+        };
+        match entry.map(|entry| &mut entry.node.value) {
+            Some(Value::List(items)) => items,
+            _ => &mut [],
+        }
+    }
+
+    /// Leaves out the lines of `keys`, if this is a table that has them.
+    pub(crate) fn leave_out(&mut self, keys: &[&str]) {
+        if let Value::Table(entries) = &mut self.value {
+            entries.retain(|entry| !keys.contains(&entry.key.as_str()));
+        }
+    }
+
+    /// Says of all of it that it stands at `place`.
+    pub(crate) fn stand_at(&mut self, place: Place) {
+        self.place = place;
+        match &mut self.value {
+            Value::List(items) => items.iter_mut().for_each(|item| item.stand_at(place)),
+            Value::Table(entries) => {
+                for entry in entries {
+                    entry.place = place;
+                    entry.node.stand_at(place);
+                }
+            }
+            _ => {}
+        }
+    }
+
     /// This as a number.
     pub(crate) fn as_number(&self) -> Option<f64> {
         match self.value {

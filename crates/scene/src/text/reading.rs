@@ -97,7 +97,23 @@ impl Reading {
         Diagnostics(self.notes.iter().map(|(place, message)| self.diagnostic(*place, message)).collect())
     }
 
-    fn shown(&self, place: Place) -> &str {
+    /// Number of notes so far.
+    pub(crate) fn notes(&self) -> usize {
+        self.notes.len()
+    }
+
+    /// Moves the notes from number `first` on that stand outside of `place` there, with `why` added.
+    pub(crate) fn gather(&mut self, first: usize, place: Place, why: &str) {
+        for (at, message) in self.notes.iter_mut().skip(first) {
+            if at.source != place.source || at.start < place.start || at.end > place.end {
+                *at = place;
+                message.push_str(why);
+            }
+        }
+    }
+
+    /// The text at a place.
+    pub(crate) fn shown(&self, place: Place) -> &str {
         self.sources.get(place.source).and_then(|s| s.text.get(place.start..place.end)).unwrap_or("")
     }
 

@@ -3,6 +3,7 @@
 //! Nothing here is partial: groups are robots, defaults are filled in, angles are radians in (−π, π], tables
 //! are read. No number is NaN and every one lies in the range its description names.
 
+mod change;
 mod expect;
 mod ground;
 mod law;
@@ -15,6 +16,7 @@ mod set_point;
 mod stage;
 mod vehicle;
 
+pub use change::Change;
 pub use expect::Expect;
 pub use ground::{Ground, Noise, Patch, Relief};
 pub use law::{Law, LawKind, Observer, ObserverKind, ObserverStart, Switching};
@@ -58,6 +60,9 @@ pub struct Scene {
     pub robots: Vec<Robot>,
     /// Solid things that are no robots, those of patterns after the others. Names are unique, among robots too.
     pub props: Vec<Prop>,
+    /// What changes while the run goes, in the order of time.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<Change>,
     /// Light and air.
     pub environment: Environment,
     /// How pictures look at the run.
@@ -72,5 +77,11 @@ impl Scene {
     /// Index of the robot called `name`.
     pub fn index_of(&self, name: &str) -> Option<usize> {
         self.robots.iter().position(|robot| robot.name == name)
+    }
+
+    /// Does `work` to every robot as it is at the start and as it is after every change.
+    pub fn for_every_robot(&mut self, mut work: impl FnMut(&mut Robot)) {
+        let later = self.changes.iter_mut().flat_map(|change| &mut change.then.robots);
+        self.robots.iter_mut().chain(later).for_each(&mut work);
     }
 }

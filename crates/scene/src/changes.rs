@@ -1,0 +1,194 @@
+//! Changes while a run goes: each is put on top of what held before, and the robots are resolved and checked again.
+
+use crate::{
+    Change, Override, Robot, Role, Scene,
+    document::{Document, MOST_ROBOTS},
+    overrides::Origin,
+    resolve::resolve_robots,
+    sets::{Difference, refusal},
+    text::{Form, Node, Place, Reading, Value, table},
+};
+
+/// Most robots times changes.
+const MOST_STATES: usize = 100 * MOST_ROBOTS;
+/// Parts of a scene that no robot depends on once it runs; left out of what is read again.
+const SETTLED: [&str; 8] =
+    ["ground", "props", "patterns", "changes", "environment", "views", "film", "expect"];
+/// Keys of a scene that cannot change while it runs.
+const FIXED: [&str; 15] = [
+    "schema",
+    "title",
+    "description",
+    "seed",
+    "time",
+    "physics",
+    "sensing",
+    "vision",
+    "ground",
+    "props",
+    "patterns",
+    "changes",
+    "environment",
+    "views",
+    "film",
+];
+/// Keys of a robot, a group or a member of one that cannot change while it runs.
+const FIXED_OF_ROBOTS: [&str; 12] = [
+    "name",
+    "pose",
+    "path",
+    "leader",
+    "speed",
+    "sensing",
+    "number",
+    "shape",
+    "count",
+    "follows",
+    "scatter",
+    "scatter_heading",
+];
+
+/// The changes that `root` has, in the order of time, each with the scene that holds after it; `scene` is the one at the
+/// start. Notes stand at the text of the change.
+pub(crate) fn changes(root: &Node, scene: &Scene, reading: &mut Reading) -> Vec<Change> {
+    let items = root.items("changes");
+    if items.len() * scene.robots.len() > MOST_STATES {
+        let message = format!(
+            "{} changes of {} robots are too many: at most {MOST_STATES} changes times robots",
+            items.len(),
+            scene.robots.len()
+        );
+        reading.note(items[0].place.first(), message);
+        return vec![];
+    }
+    let at = |item: &Node| item.get("at").and_then(Node::as_number).unwrap_or(0.0);
+    let mut ordered: Vec<_> = items.iter().map(|item| (at(item), item)).collect();
+    ordered.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut tree = of_robots(root);
+    let mut changes: Vec<Change> = Vec::with_capacity(items.len());
+    for (at, item) in ordered {
+        let before = changes.last().map_or(scene, |change| &change.then);
+        let mut next = tree.clone();
+        // A change at fault is left out, so that later ones are judged by themselves.
+        if let Some(change) = change(at, item, &mut next, before, reading) {
+            changes.push(change);
+            tree = next;
+        }
+        if reading.is_full() {
+            break;
+        }
+    }
+    changes
+}
+
+/// The tree without what robots do not depend on once they run, starts included.
+fn of_robots(root: &Node) -> Node {
+    let Value::Table(entries) = &root.value else { return root.clone() };
+    let kept = entries.iter().filter(|entry| !SETTLED.contains(&entry.key.as_str())).cloned();
+    let mut tree = Node { place: root.place, value: Value::Table(kept.collect()) };
+    for list in ["robots", "groups"] {
+        tree.items_mut(list).iter_mut().for_each(|item| item.leave_out(&["speed"]));
+    }
+    tree
+}
+
+/// One change on top of `before`, whose tree is `tree`; `None` after notes.
+fn change(at: f64, item: &Node, tree: &mut Node, before: &Scene, reading: &mut Reading) -> Option<Change> {
+    let first = reading.notes();
+    let place = item.get("set").map_or(item.place, |set| set.place);
+    let sets = overrides(item, reading);
+    for set in &sets {
+        set.put(tree, reading);
+    }
+    let robots = if reading.notes() == first { robots(tree, before, reading) } else { None };
+    // What is found elsewhere was right before this change.
+    reading.gather(first, place, &format!(", by the change at {at} s"));
+    let robots = robots.filter(|_| reading.notes() == first)?;
+    let mut found = Difference::default();
+    found.note_robots(&before.robots, &robots);
+    // One robot speaks for all.
+    if let Some(path) = found.obstacles.first() {
+        let key = path.rsplit('.').next().unwrap_or(path);
+        let set = sets.iter().find(|set| set.change.path().contains(&key));
+        reading.note(set.map_or(place, |set| set.place), refusal(path));
+    }
+    let then = Scene { robots, changes: vec![], ..shell(before) };
+    found.obstacles.is_empty().then(|| Change { at, set: found.sets, then: Box::new(then) })
+}
+
+/// A scene without its robots and changes.
+fn shell(scene: &Scene) -> Scene {
+    Scene {
+        title: scene.title.clone(),
+        description: scene.description.clone(),
+        ground: scene.ground.clone(),
+        props: scene.props.clone(),
+        robots: vec![],
+        changes: vec![],
+        views: scene.views.clone(),
+        film: scene.film.clone(),
+        ..*scene
+    }
+}
+
+/// The robots of a changed tree; where they start, and how fast, is past.
+fn robots(tree: &Node, before: &Scene, reading: &mut Reading) -> Option<Vec<Robot>> {
+    let document = table::<Document>().read(tree, reading)?;
+    let mut robots = resolve_robots(&document, tree, reading)?;
+    for (robot, before) in robots.iter_mut().zip(&before.robots) {
+        robot.pose = before.pose;
+        if let (Role::Follow(follow), Role::Follow(before)) = (&mut robot.role, &before.role) {
+            follow.speed = before.speed;
+        }
+    }
+    Some(robots)
+}
+
+/// An override in a file.
+struct Set {
+    change: Override,
+    origin: Origin,
+    place: Place,
+}
+
+/// What a change sets; notes what is no override.
+fn overrides(item: &Node, reading: &mut Reading) -> Vec<Set> {
+    let mut sets = vec![];
+    for node in item.items("set") {
+        let Some(text) = node.as_text() else { continue };
+        match text.parse::<Override>() {
+            Ok(change) => {
+                let place = node.place;
+                // Without escapes in it, every character has its place between the quotes.
+                let shown = reading.shown(place);
+                let plain = shown.len() == text.len() + 2 && shown.get(1..=text.len()) == Some(text);
+                let whole = (!plain).then_some(place);
+                let origin = Origin { source: place.source, offset: place.start + 1, whole };
+                sets.push(Set { change, origin, place });
+            }
+            Err(error) => reading.note(node.place, error.to_string()),
+        }
+    }
+    sets
+}
+
+impl Set {
+    fn put(&self, tree: &mut Node, reading: &mut Reading) {
+        let path = self.change.path();
+        if is_fixed(&path) {
+            reading.note(self.place, refusal(&path.join(".")));
+        } else {
+            self.change.apply_at(self.origin, tree, reading);
+        }
+    }
+}
+
+/// Whether what `path` leads to is known not to change.
+fn is_fixed(path: &[&str]) -> bool {
+    match path {
+        ["robots" | "groups"] | ["robots" | "groups", _] => true,
+        ["groups", _, "members", _, key, ..] | ["robots" | "groups", _, key, ..] => FIXED_OF_ROBOTS.contains(key),
+        [key, ..] => FIXED.contains(key) || *key == "expect",
+        [] => false,
+    }
+}

@@ -1,0 +1,151 @@
+//! What leads from one scene to another while a run goes, and what stands in the way.
+
+use crate::{Follow, Robot, Role, Scene, Vehicle};
+use serde::Serialize;
+use std::collections::BTreeSet;
+
+/// Limits of a vehicle, which hold from one moment to the next.
+const LIMITS: [&str; 4] = ["speed_min", "speed_max", "turn_rate_max", "acceleration_max"];
+/// What else the driver of a vehicle on wheels goes by; the others are of its body and tyres.
+const DRIVING: [&str; 10] = [
+    "steering_max",
+    "steering_rate",
+    "steering_lag",
+    "drive_force",
+    "drive_lag",
+    "brake_force",
+    "brake_lag",
+    "compensation",
+    "speed_gain",
+    "turn_gain",
+];
+
+/// What differs between two scenes.
+#[derive(Debug, Default)]
+pub(crate) struct Difference {
+    /// Overrides that lead from the one to the other.
+    pub(crate) sets: Vec<String>,
+    /// Paths of what cannot change while a run goes.
+    pub(crate) obstacles: Vec<String>,
+}
+
+/// That what is at `path` cannot change while a run goes.
+pub(crate) fn refusal(path: &str) -> String {
+    format!(
+        "`{path}` cannot change while a run goes; what can is `distance`, `bearing`, `law`, `observer` without its `start`, \
+         and the limits of a `vehicle`"
+    )
+}
+
+impl Scene {
+    /// What has to be set to come from this scene to `other` while a run goes, robot by robot in the words of `--set`:
+    /// `robots.follower-1.law.k=[3.0, 3.0]`. Changes that the scenes have themselves are left out of account.
+    ///
+    /// # Errors
+    /// One message for everything that differs and cannot change while a run goes.
+    pub fn sets_to(&self, other: &Self) -> Result<Vec<String>, Vec<String>> {
+        let mut found = Difference::default();
+        found.note_rest(self, other);
+        found.note_robots(&self.robots, &other.robots);
+        if found.obstacles.is_empty() {
+            Ok(found.sets)
+        } else {
+            Err(found.obstacles.iter().map(|path| refusal(path)).collect())
+        }
+    }
+}
+
+impl Difference {
+    /// All but robots and changes.
+    fn note_rest(&mut self, a: &Scene, b: &Scene) {
+        for (key, same) in [
+            ("title", a.title == b.title),
+            ("description", a.description == b.description),
+            ("seed", a.seed == b.seed),
+            ("time", a.time == b.time),
+            ("physics", a.physics == b.physics),
+            ("vision", a.vision == b.vision),
+            ("ground", a.ground == b.ground),
+            ("props", a.props == b.props),
+            ("environment", a.environment == b.environment),
+            ("views", a.views == b.views),
+            ("film", a.film == b.film),
+            ("expect", a.expect == b.expect),
+        ] {
+            self.refuse_unless(same, "", key);
+        }
+    }
+
+    /// What differs between robots, one by one.
+    pub(crate) fn note_robots(&mut self, before: &[Robot], after: &[Robot]) {
+        if !before.iter().map(|robot| &robot.name).eq(after.iter().map(|robot| &robot.name)) {
+            self.obstacles.push("robots".to_owned());
+            return;
+        }
+        for (a, b) in before.iter().zip(after).filter(|(a, b)| a != b) {
+            let at = format!("robots.{}.", a.name);
+            self.refuse_unless(a.pose == b.pose, &at, "pose");
+            self.refuse_unless(a.number == b.number, &at, "number");
+            self.note_table([&a.vehicle, &b.vehicle], &format!("{at}vehicle."), |key| may_vary(&a.vehicle, key));
+            match (&a.role, &b.role) {
+                (Role::Lead { path: a }, Role::Lead { path: b }) => self.refuse_unless(a == b, &at, "path"),
+                (Role::Follow(a_role), Role::Follow(b_role)) => {
+                    let slowest = a_role.speed == a.vehicle.speed_min && b_role.speed == b.vehicle.speed_min;
+                    self.refuse_unless(a_role.speed == b_role.speed || slowest, &at, "speed");
+                    self.note_follow(a_role, b_role, &at);
+                }
+                _ => self.obstacles.push(format!("{at}leader")),
+            }
+        }
+    }
+
+    fn note_follow(&mut self, a: &Follow, b: &Follow, at: &str) {
+        self.refuse_unless(a.leader == b.leader, at, "leader");
+        if a.distance != b.distance {
+            self.sets.push(format!("{at}distance={}", written(&b.distance)));
+        }
+        if a.bearing != b.bearing {
+            self.sets.push(format!("{at}bearing={}", written(&b.bearing)));
+        }
+        self.note_table([&a.law, &b.law], &format!("{at}law."), |_| true);
+        self.note_table([&a.observer, &b.observer], &format!("{at}observer."), |key| key != "start");
+        self.note_table([&a.sensing, &b.sensing], &format!("{at}sensing."), |_| false);
+    }
+
+    /// The keys in which two tables differ, those to be set of which `may` says so.
+    fn note_table<T: Serialize + PartialEq>(&mut self, pair: [&T; 2], at: &str, may: impl Fn(&str) -> bool) {
+        if pair[0] == pair[1] {
+            return;
+        }
+        // What has been read from TOML can be written as TOML.
+        let [a, b] = pair.map(|values| toml::Table::try_from(values).unwrap_or_default());
+        let keys: BTreeSet<_> = a.keys().chain(b.keys()).collect();
+        for key in keys.into_iter().filter(|key| a.get(*key) != b.get(*key)) {
+            match b.get(key).filter(|_| may(key)) {
+                Some(value) => self.sets.push(format!("{at}{key}={}", written(value))),
+                None => self.obstacles.push(format!("{at}{key}")),
+            }
+        }
+    }
+
+    fn refuse_unless(&mut self, same: bool, at: &str, key: &str) {
+        if !same {
+            self.obstacles.push(format!("{at}{key}"));
+        }
+    }
+}
+
+/// Whether a vehicle can go on with another value of `key`.
+fn may_vary(vehicle: &Vehicle, key: &str) -> bool {
+    LIMITS.contains(&key) || (vehicle.kind.has_wheels() && DRIVING.contains(&key))
+}
+
+/// A value as it stands behind `=`; words stand alone.
+fn written<T: Serialize>(value: &T) -> String {
+    match toml::Value::try_from(value) {
+        Ok(toml::Value::String(word)) => word,
+        Ok(value) => value.to_string(),
+        // What has been read from TOML can be written as TOML.
+        Err(_) => String::new(),
+    }
+}
