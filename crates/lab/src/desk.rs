@@ -5,7 +5,7 @@ use crate::session::draft::{Draft, Effect};
 use crate::session::forecast::Forecast;
 use crate::session::history::History;
 use crate::session::runner::{News, Order};
-use scene::{Follow, Role, Scene};
+use scene::{Channel, Follow, Role, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use vocabulary::Moment;
@@ -179,6 +179,17 @@ impl Desk {
             Role::Lead { .. } => None,
         });
         followers.into_iter().nth(edge)
+    }
+
+    /// The set point of an edge as it is wanted now, m and rad.
+    pub fn set_point(&self, edge: usize) -> Option<[f64; 2]> {
+        let (_, _, follow) = self.follower(edge)?;
+        let now = self.moment().and_then(|moment| Some(moment.edges.get(edge)?.set_point));
+        let value = |channel: &Channel, now: Option<f64>| match channel {
+            Channel::Constant(value) => Some(*value),
+            _ => now,
+        };
+        Some([value(&follow.distance, now.map(|n| n[0]))?, value(&follow.bearing, now.map(|n| n[1]))?])
     }
 
     /// The edge that is selected, or that of the robot that is.
