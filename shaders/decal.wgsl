@@ -64,6 +64,32 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     return covering(hazy(in, coverage(in.kind, in.shape, pixel)));
 }
 
+fn unit_share(at: f32, full: f32, pixel: f32) -> f32 {
+    let off = abs(fract(at) - 0.5) * 2.0;
+    return clamp((full - off) / max(2.0 * pixel, 1e-4) + 0.5, 0.0, 1.0);
+}
+
+// What is drawn to explain has forms of its own. 4: dashes, 5: stripes over a tint, 6: glow around a circle.
+@fragment
+fn sketch(in: Varying) -> @location(0) vec4<f32> {
+    let across = dpdx(in.shape);
+    let down = dpdy(in.shape);
+    let pixel = sqrt(across * across + down * down);
+    var cover = coverage(in.kind, in.shape, pixel);
+    if in.kind.x > 5.5 {
+        let near = max(1.0 - abs(length(in.shape) - in.kind.y) / (1.0 - in.kind.y), 0.0);
+        cover = near * near;
+    } else if in.kind.x > 4.5 {
+        // Stripes finer than pixels are a tint.
+        let clear = clamp(2.0 - 4.0 * pixel.x, 0.0, 1.0);
+        cover = mix(0.35, 1.0, mix(in.kind.y, unit_share(in.shape.x, in.kind.y, pixel.x), clear));
+    } else if in.kind.x > 3.5 {
+        let side = clamp((1.0 - abs(in.shape.x)) / max(pixel.x, 1e-4), 0.0, 1.0);
+        cover = side * unit_share(in.shape.y, in.kind.y, pixel.y);
+    }
+    return covering(hazy(in, cover));
+}
+
 // Apart from the others: processors would look at the shadow map for every decal.
 @fragment
 fn shadow(in: Varying) -> @location(0) vec4<f32> {

@@ -26,6 +26,8 @@ const NEAR: f64 = 0.05;
 const FAR: f64 = 600.0;
 /// Of an eye that the ground would hide, m.
 const LEAST_OVER_GROUND: f64 = 0.28;
+/// Of an eye that somebody has put somewhere, m.
+const LEAST_OVER_FLOOR: f64 = 0.06;
 
 /// How a view is composed: the numbers of the snake view, from looking at pictures.
 struct Composition {
@@ -59,12 +61,10 @@ impl Camera {
             View::Follow(robot) => follow(steady, snapshot, &cast.edges, *robot, aspect),
             View::Camera(robot) => return carried(snapshot, cast, *robot, aspect),
             View::Fixed { eye, target, field_of_view } => {
-                return Self::looking(
-                    DVec3::from_array(*eye),
-                    DVec3::from_array(*target),
-                    *field_of_view,
-                    aspect,
-                );
+                let [mut eye, target] = [eye, target].map(|place| DVec3::from_array(*place));
+                // Somebody has put it there: it stays, unless the floor is in the way.
+                eye.z = eye.z.max(floor.height(eye.truncate()) + LEAST_OVER_FLOOR);
+                return Self::looking(eye, target, *field_of_view, aspect);
             }
         };
         if !floor.is_plane() {

@@ -1,5 +1,6 @@
 //! Copies of the models for a moment: where bodies, wheels, cameras and ghosts stand.
 
+use crate::Ghost;
 use crate::camera::Camera;
 use crate::model::Build;
 use crate::paint::{Stage, flat};
@@ -47,6 +48,7 @@ pub(crate) fn crowd(stage: &Stage<'_>, fleet: &Fleet) -> Crowd {
     if stage.style.ghosts && stage.detail > 0.0 {
         ghosts(&mut crowd, stage, fleet);
     }
+    sketched(&mut crowd, stage, fleet);
     crowd
 }
 
@@ -161,6 +163,17 @@ fn ghosts(crowd: &mut Crowd, stage: &Stage<'_>, fleet: &Fleet) {
                 crowd.squads[fleet.of[index]].ghosts.push(look.instance(base, alpha));
             }
         }
+    }
+}
+
+/// The bodies of a sketch.
+fn sketched(crowd: &mut Crowd, stage: &Stage<'_>, fleet: &Fleet) {
+    for Ghost { robot, pose, alpha } in &stage.style.sketch.ghosts {
+        let finite = [pose.x, pose.y, pose.heading].iter().all(|x| x.is_finite());
+        let Some(member) = stage.cast.members.get(*robot).filter(|_| finite) else { continue };
+        let look = Look::new(member, *robot, stage.colours[*robot]);
+        let base = local_from_body(pose, &lying(stage, pose), stage.origin);
+        crowd.squads[fleet.of[*robot]].ghosts.push(look.instance(base, alpha.clamp(0.0, 1.0)));
     }
 }
 

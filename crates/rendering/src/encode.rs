@@ -45,7 +45,7 @@ pub(crate) struct Prepared {
     /// Which decks hide a robot in each view.
     pub(crate) veiled: Vec<Vec<bool>>,
     /// Corners of each view.
-    pub(crate) decals: Vec<[(Layer, Range<u32>); 4]>,
+    pub(crate) decals: Vec<[(Layer, Range<u32>); 5]>,
     /// Whether a view shows ghosts: near the ground they would veil what is behind them.
     pub(crate) ghosts: Vec<bool>,
     pub(crate) shapes: Shapes,

@@ -15,6 +15,8 @@ const MOST_HEIGHT: f64 = 1.0;
 pub(crate) struct Floor {
     pub(crate) terrain: Option<Arc<Terrain>>,
     pub(crate) decks: Vec<Deck>,
+    /// Lowest and highest of it, m.
+    range: [f64; 2],
 }
 
 /// The top of a prop that robots can drive on.
@@ -35,15 +37,30 @@ pub(crate) struct Deck {
 
 impl Floor {
     pub(crate) fn new(cast: &Cast) -> Self {
-        let mut floor = Self { terrain: cast.terrain.clone(), decks: Vec::new() };
+        let mut floor = Self { terrain: cast.terrain.clone(), ..Self::default() };
         let decks = cast.props.iter().enumerate().filter_map(|(k, prop)| Deck::new(k, prop, &floor));
         floor.decks = decks.collect();
+        let ground = floor.terrain.iter().flat_map(|terrain| terrain.heights.iter().copied());
+        let tops = floor.decks.iter().flat_map(|deck| deck.outline.map(|place| deck.height(place)));
+        let wider = |[low, high]: [f64; 2], z: f64| [low.min(z), high.max(z)];
+        floor.range = ground.chain(tops).filter(|z| z.is_finite()).fold([0.0; 2], wider);
         floor
     }
 
     /// Whether it is nothing but the plane z = 0.
     pub(crate) fn is_plane(&self) -> bool {
         self.terrain.is_none() && self.decks.is_empty()
+    }
+
+    /// Lowest and highest of it, m.
+    pub(crate) fn range(&self) -> [f64; 2] {
+        self.range
+    }
+
+    /// What is smaller than this is not told apart, m.
+    pub(crate) fn grain(&self) -> f64 {
+        let cell = self.terrain.as_ref().map_or(0.4, |terrain| terrain.cell);
+        0.25 * cell.clamp(0.02, 0.4)
     }
 
     /// Height of the ground itself, m.

@@ -63,7 +63,7 @@ pub(crate) fn paint(
     view: &View,
     camera: &Camera,
     height: f64,
-) -> [(Layer, Vec<Corner>); 4] {
+) -> [(Layer, Vec<Corner>); 5] {
     let laid = |onto: Onto, fill: &dyn Fn(&mut Painter<'_>)| {
         let mut painter = Painter::new(stage, camera, height);
         fill(&mut painter);
@@ -93,7 +93,14 @@ pub(crate) fn paint(
         over.append(&mut flashes.corners);
     }
     let lines = painted(&|painter| painter.lines(stage, view));
-    [(Layer::Paint, lines), (Layer::Shadow, shadows), (Layer::Paint, feet), (Layer::Over, over)]
+    let sketch = painted(&|painter| painter.sketch(&style.sketch, stage.size));
+    [
+        (Layer::Paint, lines),
+        (Layer::Sketch, sketch),
+        (Layer::Shadow, shadows),
+        (Layer::Paint, feet),
+        (Layer::Over, over),
+    ]
 }
 
 /// Shadows and the dark at the foot of things alone, for any number of cameras on robots.
@@ -203,7 +210,7 @@ impl Painter<'_> {
     }
 
     /// How long a metre along `direction` appears at `place`, pixels.
-    fn pixels_per_metre(&self, place: DVec2, direction: DVec2) -> f64 {
+    pub(crate) fn pixels_per_metre(&self, place: DVec2, direction: DVec2) -> f64 {
         let step = 0.05;
         let ends = [place, place + direction * step].map(|p| self.camera.project(self.on(p)));
         let [Some(a), Some(b)] = ends else { return 1e3 };
@@ -326,7 +333,7 @@ impl Painter<'_> {
     }
 
     /// An arrow, larger by `rim` m on all sides.
-    fn arrow(&mut self, [from, to]: [DVec2; 2], size: f64, rim: f64, colour: Rgb, alpha: f32) {
+    pub(crate) fn arrow(&mut self, [from, to]: [DVec2; 2], size: f64, rim: f64, colour: Rgb, alpha: f32) {
         let along = to - from;
         let ahead = along.normalize_or(DVec2::X);
         let across = ahead.perp();

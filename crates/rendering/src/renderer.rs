@@ -10,10 +10,11 @@ use crate::paint::{Stage, paint};
 use crate::palette::{Rgb, robot_colours};
 use crate::passes::Canvas;
 use crate::passes::decal::{Corner, Layer};
+use crate::pick::pick;
 use crate::props::props;
 use crate::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
 use crate::{
-    Error, Gpu, Layout, Style, Trail, View,
+    Error, Gpu, Layout, Picked, Sightline, Style, Trail, View,
     view::{Tile, corner},
 };
 use vocabulary::{Cast, Moment, Picture};
@@ -197,14 +198,7 @@ impl Renderer {
         self.check(moment)?;
         let height = self.size.1;
         let (views, tiles, upper) = self.views(layout, style);
-        let aspect = |tile: &Tile| f64::from(tile.width) / f64::from(tile.height);
-        let cameras: Vec<_> = views
-            .iter()
-            .zip(&tiles)
-            .map(|(view, tile)| {
-                Camera::of(view, &trail.steady, &moment.snapshot, (&self.cast, &self.floor), aspect(tile))
-            })
-            .collect();
+        let cameras = self.cameras(trail, moment, &views, &tiles);
         // Cameras on robots see nothing that is drawn to explain.
         let bare = Style { shadows: style.shadows, ..Style::bare() };
         let stage = Stage {
@@ -254,6 +248,44 @@ impl Renderer {
             Prepared { crowd, cameras, own, upper, props, tiles, veiled, decals, ghosts, shapes };
         self.passes.upload(&self.gpu, self.size, &frames, &mut prepared, &corners, &lines)?;
         Ok(prepared)
+    }
+
+    /// How each view of a picture is seen when it is drawn like this, in the order in which they are drawn: the small
+    /// picture of [`Style::picture_in_picture`], which lies over others, is the last.
+    ///
+    /// # Errors
+    /// [`Error::Cast`] for a moment of other robots.
+    pub fn sightlines(
+        &self,
+        trail: &Trail,
+        moment: &Moment,
+        layout: &Layout,
+        style: &Style,
+    ) -> Result<Vec<Sightline>, Error> {
+        self.check(moment)?;
+        let (views, tiles, _) = self.views(layout, style);
+        let cameras = self.cameras(trail, moment, &views, &tiles);
+        let seen = views.into_iter().zip(tiles).zip(cameras);
+        Ok(seen
+            .map(|((view, tile), camera)| Sightline::new(view, tile, camera, self.floor.clone()))
+            .collect())
+    }
+
+    /// What of a moment is under a pixel of one of its views, or within a few pixels of it: robots by how near they are,
+    /// then set points, then edges.
+    pub fn pick(&self, sightline: &Sightline, moment: &Moment, pixel: [f64; 2]) -> Vec<Picked> {
+        if self.check(moment).is_err() || !sightline.holds(pixel) {
+            return Vec::new();
+        }
+        pick(sightline, &self.cast, moment, pixel)
+    }
+
+    fn cameras(&self, trail: &Trail, moment: &Moment, views: &[View], tiles: &[Tile]) -> Vec<Camera> {
+        let aspect = |tile: &Tile| f64::from(tile.width) / f64::from(tile.height);
+        let camera = |(view, tile): (&View, &Tile)| {
+            Camera::of(view, &trail.steady, &moment.snapshot, (&self.cast, &self.floor), aspect(tile))
+        };
+        views.iter().zip(tiles).map(camera).collect()
     }
 
     /// The views of a picture with their tiles, and how many of them, the last, lie over others.

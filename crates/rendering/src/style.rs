@@ -1,6 +1,7 @@
 //! What is drawn besides ground, sky and robots, each element by a name that can be switched off.
 
 use crate::Error;
+use crate::Sketch;
 use crate::error::nearest;
 
 macro_rules! elements {
@@ -15,11 +16,19 @@ macro_rules! elements {
             pub detections: bool,
             /// The robot through whose camera a small picture in the corner is seen, by its index.
             pub picture_in_picture: Option<usize>,
+            /// What is drawn on the ground to explain; views through cameras do not show it.
+            pub sketch: Sketch,
         }
 
         impl Default for Style {
             fn default() -> Self {
-                Self { $($field: true,)* scale: 1.0, detections: false, picture_in_picture: None }
+                Self {
+                    $($field: true,)*
+                    scale: 1.0,
+                    detections: false,
+                    picture_in_picture: None,
+                    sketch: Sketch::default(),
+                }
             }
         }
 

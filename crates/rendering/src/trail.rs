@@ -149,7 +149,7 @@ fn slid(from: &Pose, to: &Pose) -> f32 {
 }
 
 /// How many times as large as the default body every robot is.
-fn sizes(cast: &Cast) -> f64 {
+pub(crate) fn sizes(cast: &Cast) -> f64 {
     cast.members.iter().map(|m| crate::model::size(&m.body)).fold(0.0, f64::max)
 }
 

@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::error::nearest;
+use std::f64::consts::FRAC_PI_2;
 
 /// A place to look from.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +28,60 @@ pub enum View {
         /// Vertical field of view, rad.
         field_of_view: f64,
     },
+}
+
+/// A camera in somebody's hand: it looks at a place from some way off and never leans.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FreeCamera {
+    /// What it looks at, m, world frame.
+    pub target: [f64; 3],
+    /// The way it looks, as on a compass: rad from x towards y.
+    pub heading: f64,
+    /// How far it looks down, rad: π/2 is straight down.
+    pub pitch: f64,
+    /// From the eye to the target, m.
+    pub distance: f64,
+    /// Vertical field of view, rad.
+    pub field_of_view: f64,
+}
+
+impl FreeCamera {
+    /// A field of view that suits most, rad.
+    pub const FIELD_OF_VIEW: f64 = 0.66;
+    /// Between which pitches a hand may turn it, rad: from nearly level to straight down.
+    pub const PITCHES: [f64; 2] = [0.05, FRAC_PI_2];
+    /// Between which distances a hand may move it, m: farther, nothing would be left of the robots.
+    pub const DISTANCES: [f64; 2] = [0.3, 400.0];
+
+    /// The view through it. Where the floor is in the way, the eye is drawn above it.
+    pub fn view(&self) -> View {
+        // Not quite straight down: what looks straight down has no heading.
+        let pitch = self.pitch.clamp(1e-6 - FRAC_PI_2, FRAC_PI_2 - 1e-6);
+        let away = [self.heading.cos() * pitch.cos(), self.heading.sin() * pitch.cos(), -pitch.sin()];
+        View::Fixed {
+            eye: std::array::from_fn(|k| self.target[k] - self.distance * away[k]),
+            target: self.target,
+            field_of_view: self.field_of_view,
+        }
+    }
+
+    /// Turned by a hand, rad, within [`Self::PITCHES`].
+    #[must_use]
+    pub fn turned(self, heading: f64, pitch: f64) -> Self {
+        let [low, high] = Self::PITCHES;
+        Self { heading: self.heading + heading, pitch: (self.pitch + pitch).clamp(low, high), ..self }
+    }
+
+    /// Moved nearer or farther by a factor, within [`Self::DISTANCES`]; `about` (m, world frame) stays where it appears.
+    #[must_use]
+    pub fn zoomed(self, factor: f64, about: Option<[f64; 3]>) -> Self {
+        let [low, high] = Self::DISTANCES;
+        let distance = (self.distance * factor).clamp(low, high);
+        let share = distance / self.distance;
+        let about = about.unwrap_or(self.target);
+        let target = std::array::from_fn(|k| about[k] + (self.target[k] - about[k]) * share);
+        Self { target, distance, ..self }
+    }
 }
 
 const PLAIN: [&str; 5] = ["snake", "snake-eye", "top", "orbit", "fixed"];
@@ -189,6 +244,24 @@ mod tests {
         assert!(error.is_usage());
         let text = error.to_string();
         assert!(text.contains("did you mean \"snake\"") && text.contains("follow:leader"), "{text}");
+    }
+
+    #[test]
+    fn a_free_camera_zooms_about_a_place_and_keeps_its_heading() {
+        let camera = FreeCamera {
+            target: [1.0, 2.0, 0.0],
+            heading: 2.0,
+            pitch: 0.5,
+            distance: 10.0,
+            field_of_view: FreeCamera::FIELD_OF_VIEW,
+        };
+        let near = camera.zoomed(0.5, Some([3.0, 2.0, 0.0]));
+        assert!(near.distance == 5.0 && near.target == [2.0, 2.0, 0.0]);
+        assert!(camera.zoomed(1e-9, None).distance == 0.3 && camera.zoomed(1e9, None).distance == 400.0);
+        let down = camera.turned(0.1, 9.0);
+        let View::Fixed { eye, target, .. } = down.view() else { panic!("no place") };
+        assert!((eye[2] - 10.0).abs() < 1e-9);
+        assert!(((target[1] - eye[1]).atan2(target[0] - eye[0]) - 2.1).abs() < 1e-6);
     }
 
     #[test]

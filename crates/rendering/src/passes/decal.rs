@@ -30,6 +30,12 @@ pub(crate) enum Form {
     SoftBox(f32),
     /// As dark as the shadow map says: for corners of [`Layer::Shadow`].
     Shadow,
+    /// A band along which dashes fill this share of every unit: for corners of [`Layer::Sketch`], as are the next.
+    Dashes(f32),
+    /// Stripes that fill this share of every unit.
+    Stripes(f32),
+    /// Light on both sides of a circle with this share of the radius.
+    Glow(f32),
 }
 
 /// What corners a view has, in the order in which they are drawn.
@@ -37,6 +43,8 @@ pub(crate) enum Form {
 pub(crate) enum Layer {
     /// Paint on the ground.
     Paint,
+    /// What somebody draws there to explain.
+    Sketch,
     /// Cast shadows over it.
     Shadow,
     /// What shows through the robots.
@@ -50,6 +58,9 @@ impl Form {
             Self::Ring(hole) => [1.0, hole],
             Self::Blob => [2.0, 0.0],
             Self::SoftBox(full) => [3.0, full],
+            Self::Dashes(full) => [4.0, full],
+            Self::Stripes(full) => [5.0, full],
+            Self::Glow(share) => [6.0, share],
         }
     }
 }
@@ -60,6 +71,8 @@ pub(crate) struct DecalPass {
     over: wgpu::RenderPipeline,
     /// On the floor: behind hills and decks there is nothing to see of it.
     paint: wgpu::RenderPipeline,
+    /// Apart from paint, which has fewer forms to tell apart; monochrome cameras see none.
+    sketch: Option<wgpu::RenderPipeline>,
     shadow: wgpu::RenderPipeline,
     corners: Stream,
 }
@@ -90,6 +103,8 @@ impl DecalPass {
         Self {
             over: recipe.build(device),
             paint: paint.build(device),
+            sketch: (!canvas.mono)
+                .then(|| Recipe { label: "sketch", entry: "sketch", ..paint }.build(device)),
             shadow: Recipe { label: "shadow decal", entry: shadow, ..paint }.build(device),
             corners: Stream::new(device, "decals", wgpu::BufferUsages::VERTEX),
         }
@@ -101,12 +116,14 @@ impl DecalPass {
 
     /// Draws corners of one view.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, corners: &std::ops::Range<u32>, layer: Layer) {
-        if !corners.is_empty() {
-            pass.set_pipeline(match layer {
-                Layer::Paint => &self.paint,
-                Layer::Shadow => &self.shadow,
-                Layer::Over => &self.over,
-            });
+        let pipeline = match layer {
+            Layer::Paint => Some(&self.paint),
+            Layer::Sketch => self.sketch.as_ref(),
+            Layer::Shadow => Some(&self.shadow),
+            Layer::Over => Some(&self.over),
+        };
+        if let (Some(pipeline), false) = (pipeline, corners.is_empty()) {
+            pass.set_pipeline(pipeline);
             pass.set_vertex_buffer(0, self.corners.slice());
             pass.draw(corners.clone(), 0..1);
         }
