@@ -98,7 +98,7 @@ impl History {
             stride: parent.stride,
             head: None,
             trail: Trail::new(&self.cast),
-            trails: parent.trails.iter().filter(|t| t.time() < until).cloned().collect(),
+            trails: parent.trails.iter().filter(|t| parent.before(t, until)).cloned().collect(),
             trail_every: parent.trail_every,
             rooms: parent.rooms.iter().filter(|[time, _]| *time < until).copied().collect(),
         };
@@ -140,23 +140,31 @@ impl History {
         Some(Arc::new(Moment::between(before, next, ((time - a) / (b - a)).clamp(0.0, 1.0))))
     }
 
-    /// What a picture of a branch at a time needs to know of the past.
-    pub fn trail(&mut self, branch: usize, time: f64) -> Option<&Trail> {
-        let past = self.past.get(branch)?;
-        if past.head.as_ref().is_none_or(|head| time >= head.snapshot.time - 1e-9) {
-            return Some(&self.past[branch].trail);
+    /// Makes the trail of a branch up to a time, for [`History::trail`].
+    pub fn prepare_trail(&mut self, branch: usize, time: f64) {
+        let Some(past) = self.past.get(branch) else { return };
+        if past.is_head(time) {
+            return;
         }
-        let near = self.shown.take().filter(|(of, trail)| *of == branch && trail.time() <= time + 1e-9);
-        let fresh = past.trail_until(f64::NEG_INFINITY, &self.cast);
-        let kept = past.trails.iter().rev().find(|trail| trail.time() <= time);
+        let near = self.shown.take().filter(|(of, trail)| *of == branch && past.before(trail, time));
+        let kept = past.trails.iter().rev().find(|trail| past.before(trail, time));
+        let since = |trail: &Trail| trail.time().unwrap_or(f64::NEG_INFINITY);
         let start = match (near, kept) {
-            (Some((_, near)), Some(kept)) if near.time() >= kept.time() => near,
-            (Some((_, near)), None) => near,
-            (_, Some(kept)) => kept.clone(),
-            (None, None) => fresh,
+            (Some((_, near)), Some(kept)) if since(&near) < since(kept) => kept.clone(),
+            (Some((_, near)), _) => near,
+            (None, Some(kept)) => kept.clone(),
+            (None, None) => Trail::new(&self.cast),
         };
-        let trail = past.grow(start, time);
-        Some(&self.shown.insert((branch, trail)).1)
+        self.shown = Some((branch, past.grow(start, time)));
+    }
+
+    /// What a picture of a branch at a time needs to know of the past: of the present, or of the time prepared last.
+    pub fn trail(&self, branch: usize, time: f64) -> Option<&Trail> {
+        let past = self.past.get(branch)?;
+        if past.is_head(time) {
+            return Some(&past.trail);
+        }
+        self.shown.as_ref().filter(|(of, _)| *of == branch).map(|(_, trail)| trail)
     }
 
     /// At most `most` moments of a branch between two times, s, evenly over all of it.
@@ -187,6 +195,15 @@ impl History {
 }
 
 impl Past {
+    fn is_head(&self, time: f64) -> bool {
+        self.head.as_ref().is_none_or(|head| time >= head.snapshot.time - 1e-9)
+    }
+
+    /// Whether a trail ends before a time.
+    fn before(&self, trail: &Trail, time: f64) -> bool {
+        trail.time().is_none_or(|end| end <= time + 1e-9)
+    }
+
     fn measure(&mut self, clearance: &Clearance, moment: &Moment) {
         let time = moment.snapshot.time;
         let due = self.rooms.last().is_none_or(|[last, _]| time >= last + ROOM_EVERY - 1e-9);
@@ -205,7 +222,7 @@ impl Past {
     fn push(&mut self, sample: u64, moment: Arc<Moment>, most: usize, period: f64) {
         self.trail.push(&moment);
         let time = moment.snapshot.time;
-        if self.trails.last().map_or(0.0, Trail::time) + self.trail_every <= time + 1e-9 {
+        if self.trails.last().and_then(Trail::time).unwrap_or(0.0) + self.trail_every <= time + 1e-9 {
             self.trails.push(self.trail.clone());
             if self.trails.len() > MOST_TRAILS {
                 self.trail_every *= 2.0;
@@ -229,13 +246,14 @@ impl Past {
 
     /// The trail of everything up to a time.
     fn trail_until(&self, time: f64, cast: &Cast) -> Trail {
-        let start = self.trails.iter().rev().find(|t| t.time() <= time);
+        let start = self.trails.iter().rev().find(|trail| self.before(trail, time));
         self.grow(start.cloned().unwrap_or_else(|| Trail::new(cast)), time)
     }
 
     /// A trail with the moments after it, up to a time.
     fn grow(&self, mut trail: Trail, time: f64) -> Trail {
-        let from = self.moments.partition_point(|m| m.snapshot.time <= trail.time());
+        let last = trail.time().unwrap_or(f64::NEG_INFINITY);
+        let from = self.moments.partition_point(|m| m.snapshot.time <= last);
         for moment in self.moments.iter().skip(from).take_while(|m| m.snapshot.time <= time + 1e-9) {
             trail.push(moment);
         }

@@ -130,7 +130,7 @@ impl Viewport {
     }
 
     /// The view in all the room there is.
-    pub fn show(&mut self, ui: &mut Ui, desk: &mut DeskView<'_>, out: &mut Vec<Action>) {
+    pub fn show(&mut self, ui: &mut Ui, desk: &DeskView<'_>, out: &mut Vec<Action>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, "3D view"));
         ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
@@ -156,7 +156,7 @@ impl Viewport {
 
     fn draw(
         &mut self,
-        desk: &mut DeskView<'_>,
+        desk: &DeskView<'_>,
         moment: &Arc<Moment>,
         size: (u32, u32),
         pixels: f64,
@@ -192,7 +192,7 @@ impl Viewport {
         if stage.shown.as_ref() == Some(&shown) {
             return Ok(());
         }
-        let Some(trail) = desk.trail.as_deref() else { return Ok(()) };
+        let Some(trail) = desk.trail else { return Ok(()) };
         stage.sight = stage.renderer.sightlines(trail, moment, &layout, &style)?.into_iter().next();
         let view = stage.texture.create_view(&wgpu::TextureViewDescriptor::default());
         stage.renderer.draw_into(&view, trail, moment, &layout, &style)?;
@@ -434,7 +434,7 @@ pub struct DeskView<'a> {
     /// What is looked at.
     pub moment: Option<Arc<Moment>>,
     /// The past of it.
-    pub trail: Option<Box<Trail>>,
+    pub trail: Option<&'a Trail>,
 }
 
 /// What a set point that is dragged to a place asks for.

@@ -1,0 +1,216 @@
+//! Pictures and films, drawn on a thread of their own so that the window never waits for them.
+
+use rendering::{Error, Film, FilmKind, Gpu, Layout, Renderer, Style, Trail, png};
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{
+    Arc,
+    atomic::{AtomicUsize, Ordering::Relaxed},
+};
+use std::thread::JoinHandle;
+use vocabulary::{Cast, Moment};
+
+/// Frames of a film a second.
+pub const RATE: f64 = 30.0;
+
+/// How something is seen.
+#[derive(Clone)]
+pub struct Shot {
+    /// What is drawn.
+    pub moment: Arc<Moment>,
+    /// From where.
+    pub layout: Layout,
+    /// And how.
+    pub style: Style,
+}
+
+/// What is asked of the studio.
+pub enum Job {
+    /// A picture.
+    Picture {
+        /// Its file.
+        path: PathBuf,
+        /// Who is on stage.
+        cast: Arc<Cast>,
+        /// Width and height, pixels.
+        size: (u32, u32),
+        /// The past.
+        trail: Box<Trail>,
+        /// What is seen.
+        shot: Box<Shot>,
+        /// What the file tells besides.
+        texts: Vec<(&'static str, String)>,
+    },
+    /// A film begins.
+    Begin {
+        /// Its file.
+        path: PathBuf,
+        /// Who is on stage.
+        cast: Arc<Cast>,
+        /// Width and height, pixels, even.
+        size: (u32, u32),
+        /// The past.
+        trail: Box<Trail>,
+    },
+    /// The past is another: somebody changed the branch.
+    Trail(Box<Trail>),
+    /// What has happened since the last frame.
+    Moments(Vec<Arc<Moment>>),
+    /// The next frame.
+    Frame(Box<Shot>),
+    /// The film ends.
+    End,
+}
+
+/// What the studio tells.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Told {
+    /// A file is complete.
+    Written(PathBuf),
+    /// A file could not be made, and why.
+    Failed(String),
+}
+
+/// The thread and its channels.
+pub struct Studio {
+    jobs: Option<Sender<Job>>,
+    told: Receiver<Told>,
+    waiting: Arc<AtomicUsize>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Studio {
+    /// Starts the thread; `wake` is called when it has something to tell.
+    pub fn start(gpu: Gpu, wake: impl Fn() + Send + 'static) -> Self {
+        let (jobs, inbox) = channel();
+        let (outbox, told) = channel();
+        let waiting = Arc::new(AtomicUsize::new(0));
+        let left = Arc::clone(&waiting);
+        let work = move || {
+            let mut work = Work { gpu, drawer: None, film: None };
+            while let Ok(job) = inbox.recv() {
+                let done = work.take(job);
+                left.fetch_sub(1, Relaxed);
+                let word = match done {
+                    Ok(None) => continue,
+                    Ok(Some(path)) => Told::Written(path),
+                    Err(error) => Told::Failed(error.to_string()),
+                };
+                // Where nobody listens any more, the last film is still finished.
+                let _ = outbox.send(word);
+                wake();
+            }
+            // The window was closed in the middle of a film: what there is of it is kept.
+            let _ = work.take(Job::End);
+        };
+        let thread = std::thread::Builder::new().name("studio".to_owned()).spawn(work).ok();
+        Self { jobs: Some(jobs), told, waiting, thread }
+    }
+
+    /// Asks for something.
+    pub fn ask(&self, job: Job) {
+        if let Some(jobs) = &self.jobs {
+            self.waiting.fetch_add(1, Relaxed);
+            let _ = jobs.send(job);
+        }
+    }
+
+    /// What it has to tell, if anything.
+    pub fn told(&self) -> Option<Told> {
+        self.told.try_recv().ok()
+    }
+
+    /// Jobs that wait.
+    pub fn waiting(&self) -> usize {
+        self.waiting.load(Relaxed)
+    }
+}
+
+impl Drop for Studio {
+    fn drop(&mut self) {
+        self.jobs = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The state of the thread.
+struct Work {
+    gpu: Gpu,
+    drawer: Option<(Arc<Cast>, Renderer)>,
+    film: Option<Reel>,
+}
+
+/// A film under way.
+struct Reel {
+    path: PathBuf,
+    film: Film,
+    cast: Arc<Cast>,
+    size: (u32, u32),
+    trail: Trail,
+}
+
+impl Work {
+    /// Does a job; the file that is complete with it.
+    fn take(&mut self, job: Job) -> Result<Option<PathBuf>, Error> {
+        match job {
+            Job::Picture { path, cast, size, trail, shot, texts } => {
+                let drawer = self.drawer(&cast, size)?;
+                let picture = drawer.draw(&trail, &shot.moment, &shot.layout, &shot.style)?;
+                let texts: Vec<(&str, &str)> = texts.iter().map(|(key, text)| (*key, &**text)).collect();
+                png::write(&path, &picture, &texts)?;
+                Ok(Some(path))
+            }
+            Job::Begin { path, cast, size, trail } => {
+                let film = Film::create(&path, FilmKind::of(&path), size.0, size.1, RATE)?;
+                self.film = Some(Reel { path, film, cast, size, trail: *trail });
+                Ok(None)
+            }
+            Job::Trail(trail) => {
+                if let Some(reel) = &mut self.film {
+                    reel.trail = *trail;
+                }
+                Ok(None)
+            }
+            Job::Moments(moments) => {
+                if let Some(reel) = &mut self.film {
+                    moments.iter().for_each(|moment| reel.trail.push(moment));
+                }
+                Ok(None)
+            }
+            Job::Frame(shot) => {
+                let done = self.frame(&shot);
+                if done.is_err() {
+                    // Nothing half is left: a film that is dropped removes its file.
+                    self.film = None;
+                }
+                done.map(|()| None)
+            }
+            Job::End => match self.film.take() {
+                Some(reel) if reel.film.frames() > 0 => reel.film.finish().map(|()| Some(reel.path)),
+                _ => Ok(None),
+            },
+        }
+    }
+
+    fn frame(&mut self, shot: &Shot) -> Result<(), Error> {
+        let Some(mut reel) = self.film.take() else { return Ok(()) };
+        let drawer = self.drawer(&reel.cast, reel.size)?;
+        let picture = drawer.draw(&reel.trail, &shot.moment, &shot.layout, &shot.style)?;
+        reel.film.push(picture)?;
+        self.film = Some(reel);
+        Ok(())
+    }
+
+    fn drawer(&mut self, cast: &Arc<Cast>, size: (u32, u32)) -> Result<&mut Renderer, Error> {
+        let fitting = self.drawer.take().filter(|(known, _)| Arc::ptr_eq(known, cast));
+        let drawer = match fitting {
+            Some(drawer) => drawer,
+            None => (Arc::clone(cast), Renderer::new(&self.gpu, cast, size.0, size.1, 4)?),
+        };
+        let (_, renderer) = self.drawer.insert(drawer);
+        renderer.resize(size.0, size.1)?;
+        Ok(renderer)
+    }
+}
