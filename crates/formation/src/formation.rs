@@ -22,7 +22,7 @@ pub struct EdgeLaw {
     pub set_point: SetPointCourse,
 }
 
-/// Parameters of a formation: they do not change as it runs.
+/// Parameters of a formation: they do not change as it runs but by [`Formation::adopt`].
 #[derive(Debug, Clone)]
 pub struct Formation {
     graph: Graph,
@@ -77,6 +77,13 @@ impl Formation {
     ) -> Self {
         debug_assert_eq!((edges.len(), limits.len()), (graph.edges().len(), graph.robots()));
         Self { graph, edges, limits, leads, period }
+    }
+
+    /// Goes on with other laws and limits, as many as before.
+    pub fn adopt(&mut self, edges: Vec<EdgeLaw>, limits: Vec<Limits>) {
+        debug_assert_eq!((edges.len(), limits.len()), (self.edges.len(), self.limits.len()));
+        self.edges = edges;
+        self.limits = limits;
     }
 
     /// The graph.

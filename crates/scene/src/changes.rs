@@ -187,7 +187,9 @@ impl Set {
 fn is_fixed(path: &[&str]) -> bool {
     match path {
         ["robots" | "groups"] | ["robots" | "groups", _] => true,
-        ["groups", _, "members", _, key, ..] | ["robots" | "groups", _, key, ..] => FIXED_OF_ROBOTS.contains(key),
+        ["groups", _, "members", _, key, ..] | ["robots" | "groups", _, key, ..] => {
+            FIXED_OF_ROBOTS.contains(key)
+        }
         [key, ..] => FIXED.contains(key) || *key == "expect",
         [] => false,
     }

@@ -101,8 +101,10 @@ fn put_in_scene(root: &mut Node, path: &[Part<'_>], value: Node, reading: &mut R
         reading.note(name.place, unknown_robot(root, name.text));
         return;
     };
-    let inside: Vec<_> =
-        [Part { text: "members", place: list.place }, *name].into_iter().chain(rest.iter().copied()).collect();
+    let inside: Vec<_> = [Part { text: "members", place: list.place }, *name]
+        .into_iter()
+        .chain(rest.iter().copied())
+        .collect();
     if let Some(group) = root.items_mut("groups").get_mut(index) {
         put(group, &inside, value, reading);
     }

@@ -86,7 +86,9 @@ impl Difference {
             let at = format!("robots.{}.", a.name);
             self.refuse_unless(a.pose == b.pose, &at, "pose");
             self.refuse_unless(a.number == b.number, &at, "number");
-            self.note_table([&a.vehicle, &b.vehicle], &format!("{at}vehicle."), |key| may_vary(&a.vehicle, key));
+            self.note_table([&a.vehicle, &b.vehicle], &format!("{at}vehicle."), |key| {
+                may_vary(&a.vehicle, key)
+            });
             match (&a.role, &b.role) {
                 (Role::Lead { path: a }, Role::Lead { path: b }) => self.refuse_unless(a == b, &at, "path"),
                 (Role::Follow(a_role), Role::Follow(b_role)) => {

@@ -86,7 +86,11 @@ fn faults_point_into_the_string_of_the_change() {
         ("\"law.k=-1\"", 15, "`k` must be"),
         ("\"law.k=3\", 'law.k'", 19, "path.to.key=value"),
         ("\"time.duration=3\"", 8, "`time.duration` cannot change while a run goes"),
-        ("\"robots.follower-1.pose=[0, 0, 0]\"", 8, "`robots.follower-1.pose` cannot change while a run goes"),
+        (
+            "\"robots.follower-1.pose=[0, 0, 0]\"",
+            8,
+            "`robots.follower-1.pose` cannot change while a run goes",
+        ),
         ("\"robots.follower-1.leader=leader\"", 8, "cannot change"),
         ("'law.k=3', \"vehicle.length=1\"", 19, "`robots.leader.vehicle.length` cannot change"),
         ("\"robots.follower-1={}\"", 8, "cannot change"),
@@ -186,7 +190,12 @@ fn overrides_and_changes_reach_robots_of_groups() {
 #[test]
 fn hundreds_of_changes_are_read_in_no_time() {
     let changes: String = (0..300)
-        .map(|k| change(&k.to_string(), &format!("\"robots.robot-{}.distance={}\"", 2 + k % 6, 2.0 + 0.001 * f64::from(k))))
+        .map(|k| {
+            change(
+                &k.to_string(),
+                &format!("\"robots.robot-{}.distance={}\"", 2 + k % 6, 2.0 + 0.001 * f64::from(k)),
+            )
+        })
         .collect();
     assert_eq!(load(&format!("{GROUP}{changes}")).changes.len(), 300);
 }

@@ -1,7 +1,8 @@
 //! A checked scene, turned into the parts that run it.
 
 use crate::error::{BuildError, EPSILON_MIN};
-use crate::stage::stage;
+use crate::regime::{Regime, Turn};
+use crate::stage::{handling, stage};
 use crate::step::{ObserverStart, Setup, Timing};
 use formation::{Course, EdgeLaw, Formation, Graph, LookLaw, Method, SetPointCourse};
 use perception::sensors::{CameraModel, NoiseModel, Senses, Sensor, Source};
@@ -64,7 +65,20 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
         stop_at_contact: scene.physics.on_contact != OnContact::Record,
         period: scene.time.period,
         duration: scene.time.duration,
+        changes: scene.changes.iter().map(turn).collect::<Result<_, _>>()?,
     })
+}
+
+/// What `change` puts in place.
+fn turn(change: &scene::Change) -> Result<Turn, BuildError> {
+    let robots = &change.then.robots;
+    let followers: Vec<(&str, &Follow)> = robots.iter().filter_map(follows).collect();
+    check_stiffness(&change.then, &followers)?;
+    let regime = Regime {
+        laws: followers.iter().map(|(_, follow)| edge_law(follow)).collect(),
+        handling: robots.iter().map(|robot| handling(&robot.vehicle)).collect(),
+    };
+    Ok(Turn { at: change.at, regime })
 }
 
 fn check_stiffness(scene: &Scene, followers: &[(&str, &Follow)]) -> Result<(), BuildError> {
@@ -248,6 +262,11 @@ pub fn caption(scene: &Scene) -> String {
         scene::Mode::Measured => format!("every {} ms, sampled measurement", short(scene.time.period * 1e3)),
     };
     parts.push(mode);
+    match scene.changes.len() {
+        0 => {}
+        1 => parts.push("1 change".to_owned()),
+        changes => parts.push(format!("{changes} changes")),
+    }
     parts.join(" · ")
 }
 

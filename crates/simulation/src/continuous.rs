@@ -31,10 +31,16 @@ struct State {
 
 impl Continuous {
     pub(crate) fn new(world: Unicycles, formation: &Formation) -> Self {
+        let mut system = Self { world, step: STEP_MAX, observations: Vec::new() };
+        system.keep_pace(formation);
+        system
+    }
+
+    /// Chooses the step for the observers of `formation`.
+    pub(crate) fn keep_pace(&mut self, formation: &Formation) {
         let observing = formation.laws().iter().filter(|e| e.law.kind == LawKind::OutputFeedback);
         let fastest = observing.flat_map(|e| e.observer.epsilon).fold(f64::INFINITY, f64::min);
-        let step = STEP_MAX.min(fastest / STEPS_PER_EPSILON);
-        Self { world, step, observations: Vec::new() }
+        self.step = STEP_MAX.min(fastest / STEPS_PER_EPSILON);
     }
 
     pub(crate) fn world(&self) -> &dyn World {

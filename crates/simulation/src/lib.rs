@@ -7,6 +7,7 @@ mod build;
 mod continuous;
 mod error;
 mod lookout;
+mod regime;
 mod stage;
 mod step;
 pub mod tune;
@@ -14,4 +15,5 @@ pub mod verdict;
 
 pub use build::{build, caption};
 pub use error::BuildError;
+pub use regime::{Regime, Turn};
 pub use step::{ObserverStart, Setup, Simulation, Timing};

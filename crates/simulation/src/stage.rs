@@ -7,7 +7,7 @@ use scene::{Compensation, Path, PropMotion, Role, Scene, SpeedProfile, VehicleKi
 use std::sync::Arc;
 use vocabulary::{Mobility, Placement, Pose, Profile, Prop};
 use world::wheeled::tyre::Tyre;
-use world::{Actor, Drivetrain, PropBody, Stage, Unicycle, Wheeled};
+use world::{Actor, Drivetrain, Handling, PropBody, Stage, Unicycle, Wheeled};
 
 /// All that is on stage.
 pub(crate) fn stage(scene: &Scene) -> Result<Stage, BuildError> {
@@ -30,10 +30,15 @@ fn actor(robot: &scene::Robot) -> Result<Actor, BuildError> {
         }
         Role::Follow(follow) => speed = follow.speed,
     }
-    let vehicle = &robot.vehicle;
-    let unicycle = Unicycle { pose, speed, limits: vehicle.limits(), body: vehicle.body(), lead };
-    let wheels = vehicle.kind.has_wheels().then(|| Arc::new(wheeled(vehicle)));
+    let Handling { limits, wheels } = handling(&robot.vehicle);
+    let unicycle = Unicycle { pose, speed, limits, body: robot.vehicle.body(), lead };
     Ok(Actor { robot: unicycle, wheels })
+}
+
+/// Limits and driver of a vehicle.
+pub(crate) fn handling(vehicle: &scene::Vehicle) -> Handling {
+    let wheels = vehicle.kind.has_wheels().then(|| Arc::new(wheeled(vehicle)));
+    Handling { limits: vehicle.limits(), wheels }
 }
 
 fn wheeled(vehicle: &scene::Vehicle) -> Wheeled {

@@ -2,8 +2,10 @@
 
 use crate::continuous::Continuous;
 use crate::lookout::Lookout;
+use crate::regime::{Regime, Turn, sample_at, wakes};
 use formation::{Estimate, Formation, FormationState, LawKind};
 use perception::sensors::Senses;
+use std::collections::VecDeque;
 use std::f64::consts::PI;
 use std::sync::Arc;
 use vocabulary::{Cast, Contact, EdgeState, Eyes, Frame, Moment, Observation, Relative, wrap};
@@ -41,6 +43,8 @@ pub struct Setup {
     pub period: f64,
     /// Length of the run, s.
     pub duration: f64,
+    /// What changes on the way, in the order of time.
+    pub changes: Vec<Turn>,
 }
 
 /// Where the observer of one edge starts, [m, rad].
@@ -69,6 +73,10 @@ pub struct Simulation {
     stop_at_contact: bool,
     stopped: bool,
     fault: Option<String>,
+    /// What is to change, and at which sample.
+    changes: VecDeque<(u64, Arc<Regime>)>,
+    /// What changes at the next sample.
+    adopted: Option<Arc<Regime>>,
 }
 
 /// What moves the robots: a world that is told commands to hold, or plant, law and observers as one system.
@@ -93,6 +101,7 @@ impl Simulation {
             edges: vec![EdgeState::default(); edges],
             ..Moment::default()
         };
+        let changes = pending(&setup.changes, setup.period);
         let lookout =
             setup.senses.map(|senses| Lookout::new(senses, setup.observer_starts.clone(), world.snapshot()));
         Self {
@@ -111,6 +120,8 @@ impl Simulation {
             stop_at_contact: setup.stop_at_contact,
             stopped: false,
             fault: None,
+            changes,
+            adopted: None,
         }
     }
 
@@ -123,8 +134,12 @@ impl Simulation {
             self.advance();
         }
         let time = self.sample as f64 * self.period;
+        let woken = self.change_over();
         let snapshot = self.plant.world().snapshot();
         perception::observe(snapshot, self.formation.edges(), &mut self.observations);
+        for edge in woken {
+            self.state.estimates[edge] = Estimate::at(&self.observations[edge].relative);
+        }
         if let Err(fault) = self.look(time) {
             self.fault = Some(fault);
             return None;
@@ -135,6 +150,26 @@ impl Simulation {
         self.stopped = self.stop_at_contact && self.moment.contacts.iter().any(Contact::of_robot);
         self.sample += 1;
         Some(&self.moment)
+    }
+
+    /// What changes at this sample takes hold; edges whose observers begin to run.
+    fn change_over(&mut self) -> Vec<usize> {
+        let mut woken = vec![];
+        while let Some((_, regime)) = self.changes.pop_front_if(|(sample, _)| *sample <= self.sample) {
+            self.take_over(&regime, &mut woken);
+        }
+        if let Some(regime) = self.adopted.take() {
+            self.take_over(&regime, &mut woken);
+        }
+        woken
+    }
+
+    fn take_over(&mut self, regime: &Regime, woken: &mut Vec<usize>) {
+        let pairs = self.formation.laws().iter().zip(&regime.laws).enumerate();
+        woken.extend(pairs.filter(|(_, (before, after))| wakes(before, after)).map(|(edge, _)| edge));
+        let limits = regime.handling.iter().map(|handling| handling.limits).collect();
+        self.formation.adopt(regime.laws.clone(), limits);
+        self.plant.adopt(regime, &self.formation);
     }
 
     /// Followers that are not told the truth look, and know what has arrived.
@@ -220,6 +255,35 @@ impl Simulation {
         }
     }
 
+    /// From the next sample on the laws, set points and limits of `setup` hold, until something else does. Poses, time,
+    /// motions of lead robots and what observers believe stay; changes that are to come stay too. `setup` is that of a
+    /// scene which this run's scene leads to while it goes, see [`scene::Scene::sets_to`]; any other is not taken.
+    pub fn adopt(&mut self, setup: &Setup) {
+        let fits = setup.formation.edges() == self.formation.edges()
+            && setup.cast.members.len() == self.cast.members.len();
+        debug_assert!(fits, "the setup of another formation");
+        if fits {
+            self.adopted = Some(Arc::new(Regime::of(setup)));
+        }
+    }
+
+    /// The changes of `setup` that are due at the next sample or later take the place of those that were to come.
+    pub fn reschedule(&mut self, setup: &Setup) {
+        self.changes = pending(&setup.changes, self.period);
+        self.changes.retain(|(sample, _)| *sample >= self.sample);
+    }
+
+    /// Number of the next control sample, from 0; its time is this times the period.
+    pub fn sample(&self) -> u64 {
+        self.sample
+    }
+
+    /// Goes on until `duration` s at least.
+    pub fn extend_to(&mut self, duration: f64) {
+        self.last_sample = self.last_sample.max(samples(duration, self.period));
+        self.cast.duration = self.cast.duration.max(duration);
+    }
+
     /// Adds to the rates an edge's observer estimates, [m/s, rad/s]: to watch it recover.
     pub fn disturb_observer(&mut self, edge: usize, by: [f64; 2]) {
         if let Some(estimate) = self.state.estimates.get_mut(edge) {
@@ -281,6 +345,8 @@ impl Simulation {
             frames: self.frames.clone(),
             moment: self.moment.clone(),
             fault: self.fault.clone(),
+            changes: self.changes.clone(),
+            adopted: self.adopted.clone(),
             ..*self
         }
     }
@@ -309,6 +375,14 @@ impl Plant {
         match timing {
             Timing::Continuous => Self::Continuous(Box::new(Continuous::new(world, formation))),
             Timing::Sampled | Timing::Measured => Self::Held(Box::new(world)),
+        }
+    }
+
+    /// Robots have the limits of `regime` from now on, and laws are those of `formation`.
+    fn adopt(&mut self, regime: &Regime, formation: &Formation) {
+        self.world_mut().adopt(&regime.handling);
+        if let Self::Continuous(system) = self {
+            system.keep_pace(formation);
         }
     }
 
@@ -351,6 +425,12 @@ fn first_estimate(seen: &Relative, start: ObserverStart) -> Estimate {
         ObserverStart::At(at) => at,
     };
     Estimate { output, rates: [0.0; 2] }
+}
+
+/// Changes by the samples at which they take hold.
+fn pending(changes: &[Turn], period: f64) -> VecDeque<(u64, Arc<Regime>)> {
+    let turn = |turn: &Turn| (sample_at(turn.at, period), Arc::new(turn.regime.clone()));
+    changes.iter().map(turn).collect()
 }
 
 /// Whole periods in the run; a period that misses the end by rounding only counts.

@@ -77,7 +77,7 @@ impl Gains {
     }
 
     fn give(self, scene: &mut Scene) {
-        for robot in &mut scene.robots {
+        scene.for_every_robot(|robot| {
             if let Role::Follow(follow) = &mut robot.role {
                 follow.law.k = [self.k; 2];
                 follow.law.beta = [self.beta; 2];
@@ -86,7 +86,7 @@ impl Gains {
                 // It is ε that is searched, with looks too.
                 follow.observer.adaptive = false;
             }
-        }
+        });
     }
 
     fn logarithms(self) -> [f64; 4] {

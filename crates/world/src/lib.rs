@@ -16,7 +16,17 @@ pub use physical::{Actor, Physical, PropBody, Stage};
 pub use unicycle::{Unicycle, Unicycles};
 pub use wheeled::{Drivetrain, Wheeled};
 
-use vocabulary::{Command, Contact, Passage, Snapshot};
+use std::sync::Arc;
+use vocabulary::{Command, Contact, Limits, Passage, Snapshot};
+
+/// What a robot can do, and how it is driven: what may change as it moves.
+#[derive(Debug, Clone)]
+pub struct Handling {
+    /// Bounds on speed, turn rate and acceleration.
+    pub limits: Limits,
+    /// Of one on wheels: the vehicle, of which driver and actuators count, and body, springs and tyres stay as they are.
+    pub wheels: Option<Arc<Wheeled>>,
+}
 
 /// A place where robots move.
 pub trait World: Passage + Send {
@@ -25,6 +35,10 @@ pub trait World: Passage + Send {
 
     /// What every robot shall do from now on, in the order of the snapshot: the only way in.
     fn apply(&mut self, commands: &[Command]);
+
+    /// What every robot can do from now on, in the order of the snapshot. A follower without mass that is too fast or too
+    /// slow for its limits has the nearest speed at once; one on wheels is driven there.
+    fn adopt(&mut self, handling: &[Handling]);
 
     /// Moves everything `duration` s on; positive.
     fn advance(&mut self, duration: f64);

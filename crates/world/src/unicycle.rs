@@ -4,7 +4,7 @@
 //! A lead robot follows a prescribed motion: its path is integrated by Gauss-Legendre quadrature, whose error at
 //! 1 m/s and 10 rad/s is below 1e-12 m per second.
 
-use crate::{World, arc, prescribed::prescribed, touch::Touches};
+use crate::{Handling, World, arc, prescribed::prescribed, touch::Touches};
 use std::sync::Arc;
 use vocabulary::{Body, Command, Contact, Limits, Motion, Passage, Pose, Profile, RobotState, Snapshot};
 
@@ -113,6 +113,15 @@ impl World for Unicycles {
                 Some(_) => command.acceleration,
                 None => robot.limits.admissible(command.acceleration, motion.speed),
             };
+        }
+    }
+
+    fn adopt(&mut self, handling: &[Handling]) {
+        for ((state, robot), now) in self.snapshot.robots.iter_mut().zip(&mut self.robots).zip(handling) {
+            robot.limits = now.limits;
+            if robot.lead.is_none() {
+                state.motion.speed = now.limits.clamp_speed(state.motion.speed);
+            }
         }
     }
 

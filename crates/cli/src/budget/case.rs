@@ -75,8 +75,8 @@ impl Case {
     /// The scene with everybody sensing and observing so.
     pub(crate) fn give(self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
-        for robot in &mut scene.robots {
-            let Role::Follow(follow) = &mut robot.role else { continue };
+        scene.for_every_robot(|robot| {
+            let Role::Follow(follow) = &mut robot.role else { return };
             match self.level {
                 Level::Truth => follow.sensing.kind = SensingKind::Truth,
                 Level::Pixels(pixels) => {
@@ -94,7 +94,7 @@ impl Case {
                 observer.adaptive = constant.is_none();
                 observer.epsilon = constant.map_or(observer.epsilon, |epsilon| [epsilon; 2]);
             }
-        }
+        });
         scene
     }
 

@@ -127,6 +127,11 @@ impl Tracker {
             self.anchor = Some((time, belief));
             return Outcome::Rejected;
         }
+        if !belief.is_of(law.method) {
+            // The method has changed since: it begins anew.
+            self.restart(law, look);
+            return Outcome::Used;
+        }
         let mut at_look = belief.clone();
         self.replay(law, &mut at_look, time, look.stamp);
         let age = (look.stamp - time).max(1e-6);
@@ -227,6 +232,13 @@ impl Tracker {
 }
 
 impl Belief {
+    fn is_of(&self, method: Method) -> bool {
+        match self {
+            Self::HighGain(_) => method == Method::HighGain,
+            Self::Unscented(_) => method == Method::Unscented,
+        }
+    }
+
     /// Carries it on over `duration` s of a stretch that began `since` s before.
     fn predict(&mut self, law: &LookLaw, own: Own, (since, duration): (f64, f64), coasting: bool) {
         let own = Own { speed: own.speed + own.acceleration * since, ..own };

@@ -122,11 +122,20 @@ impl Bodies {
             .angvel(spin)
             .additional_mass_properties(mass)
             .can_sleep(false)
-            // Only what can cross its own width in a few steps needs the swept test.
-            .ccd_enabled(vehicle.limits.speed_max * step > 0.02);
+            .ccd_enabled(needs_sweep(vehicle, step));
         let (body, shell) = (self.set.insert(body), shell(index, &vehicle.body, vehicle.clearance));
         self.colliders.insert_with_parent(shell, body, &mut self.set);
         body
+    }
+
+    /// Looks again at whether the body of `vehicle` needs the swept test.
+    pub(super) fn sweep(&mut self, body: RigidBodyHandle, vehicle: &Wheeled, step: f64) {
+        let needed = needs_sweep(vehicle, step);
+        if self.set.get(body).is_some_and(|body| body.is_ccd_enabled() != needed)
+            && let Some(body) = self.set.get_mut(body)
+        {
+            body.enable_ccd(needed);
+        }
     }
 
     /// A body without mass that goes where it is placed.
@@ -413,4 +422,9 @@ pub(super) fn attitude_on(heading: f64, surface: &Surface) -> Attitude {
     let (ahead, left) = (nx * cos + ny * sin, ny * cos - nx * sin);
     // The body's z axis comes out as the normal: (sin p cos r, −sin r, cos p cos r) in the heading's frame.
     Attitude { height: surface.height, roll: (-left).asin(), pitch: ahead.atan2(nz) }
+}
+
+/// Only what can cross its own width in a few steps needs the swept test.
+fn needs_sweep(vehicle: &Wheeled, step: f64) -> bool {
+    vehicle.limits.speed_max * step > 0.02
 }

@@ -75,6 +75,13 @@ impl Car {
         }
     }
 
+    /// Goes on with other limits and another driver; body, springs and tyres stay.
+    pub(super) fn adopt(&mut self, limits: Limits, vehicle: Arc<Wheeled>) {
+        self.driver.slowest = if self.leads { 0.0 } else { limits.speed_min };
+        self.pace = Pace::new(&vehicle, self.pace.step());
+        (self.limits, self.vehicle) = (limits, vehicle);
+    }
+
     /// Takes the command for the time to come; a lead robot chases its ideal.
     pub(super) fn take(&mut self, command: Command, ideal: &Motion, now: &Motion) {
         self.command = if self.leads {

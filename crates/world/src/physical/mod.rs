@@ -9,7 +9,7 @@ mod passage;
 mod watch;
 
 use crate::touch::{Touch, Touches};
-use crate::{Unicycle, Unicycles, Wheeled, World, prescribed::prescribed};
+use crate::{Handling, Unicycle, Unicycles, Wheeled, World, prescribed::prescribed};
 use bodies::Bodies;
 use car::{Car, Surroundings};
 use passage::Record;
@@ -169,6 +169,13 @@ impl Physical {
         }
     }
 
+    /// The motions of unicycles as they are now.
+    fn copy_unicycles(&mut self) {
+        for (index, _) in &self.unicycles {
+            self.snapshot.robots[*index].motion = self.ideals.snapshot().robots[*index].motion;
+        }
+    }
+
     fn find_touches(&mut self, time: f64) {
         let mut found: Vec<Touch> = self.bodies.touches();
         found.sort_by_key(|touch| touch.things);
@@ -206,11 +213,19 @@ impl World for Physical {
         &self.snapshot
     }
 
+    fn adopt(&mut self, handling: &[Handling]) {
+        self.ideals.adopt(handling);
+        self.copy_unicycles();
+        for car in &mut self.cars {
+            let Some(Handling { limits, wheels: Some(vehicle) }) = handling.get(car.index) else { continue };
+            car.adopt(*limits, vehicle.clone());
+            self.bodies.sweep(car.body, vehicle, self.step);
+        }
+    }
+
     fn apply(&mut self, commands: &[Command]) {
         self.ideals.apply(commands);
-        for (index, _) in &self.unicycles {
-            self.snapshot.robots[*index].motion = self.ideals.snapshot().robots[*index].motion;
-        }
+        self.copy_unicycles();
         for car in &mut self.cars {
             let ideal = &self.ideals.snapshot().robots[car.index].motion;
             car.take(commands[car.index], ideal, &self.snapshot.robots[car.index].motion);

@@ -1,0 +1,62 @@
+//! What a run goes by that may change on the way: laws, set points, limits. All else stays as it began.
+
+use crate::step::Setup;
+use formation::{EdgeLaw, LawKind};
+use world::Handling;
+
+/// What holds from one control sample on, until something else does.
+#[derive(Debug, Clone)]
+pub struct Regime {
+    /// Laws, observers and set points, per edge.
+    pub laws: Vec<EdgeLaw>,
+    /// Limits and drivers, per robot.
+    pub handling: Vec<Handling>,
+}
+
+/// A regime, and from when on it holds.
+#[derive(Debug, Clone)]
+pub struct Turn {
+    /// From the first control sample at or after this, s.
+    pub at: f64,
+    /// What holds from then on.
+    pub regime: Regime,
+}
+
+impl Regime {
+    /// What a run begins with.
+    pub fn of(setup: &Setup) -> Self {
+        let actors = setup.stage.actors.iter();
+        Self {
+            laws: setup.formation.laws().to_vec(),
+            handling: actors
+                .map(|actor| Handling { limits: actor.robot.limits, wheels: actor.wheels.clone() })
+                .collect(),
+        }
+    }
+}
+
+/// Whether an observer begins to run that was not needed before.
+pub(crate) fn wakes(before: &EdgeLaw, after: &EdgeLaw) -> bool {
+    let runs = |law: &EdgeLaw| law.law.kind == LawKind::OutputFeedback;
+    runs(after) && !runs(before) && after.looks.is_none()
+}
+
+/// The first control sample at or after `at` s; one that is missed by rounding only counts.
+pub(crate) fn sample_at(at: f64, period: f64) -> u64 {
+    (at / period * (1.0 - 1e-12) - 1e-9).ceil().max(0.0) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_that_is_a_sample_but_for_rounding_is_that_sample() {
+        for (at, period, sample) in
+            [(0.0, 0.01, 0), (0.29, 0.01, 29), (6.0, 0.01, 600), (0.1 + 0.2, 0.1, 3), (6.001, 0.01, 601)]
+        {
+            assert_eq!(sample_at(at, period), sample, "{at} s by {period} s");
+        }
+        assert!((0..100_000).all(|k| sample_at(k as f64 * 0.01, 0.01) == k));
+    }
+}
