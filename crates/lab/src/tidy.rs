@@ -7,6 +7,12 @@ pub fn tidy(value: f64) -> String {
     if !plain.contains(['.', 'e', 'n']) { format!("{plain}.0") } else { plain }
 }
 
+/// A number without a needless point.
+pub fn plain(value: f64) -> String {
+    let text = tidy(value);
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
 /// A number with a fixed number of decimals and a proper minus sign.
 pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");

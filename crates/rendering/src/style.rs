@@ -99,6 +99,12 @@ impl Style {
         style
     }
 
+    /// Whether an element is drawn; false where there is none of that name.
+    pub fn shows(&self, name: &str) -> bool {
+        // The one list of elements is that of the switches.
+        self.clone().switch(name).is_some_and(|on| *on)
+    }
+
     /// Switches one element.
     ///
     /// # Errors

@@ -8,6 +8,7 @@ mod continuous;
 mod error;
 mod lookout;
 mod regime;
+mod reins;
 mod stage;
 mod step;
 pub mod tune;

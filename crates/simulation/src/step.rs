@@ -58,29 +58,29 @@ pub enum ObserverStart {
 
 /// A run under way. The same setup gives the same moments, bit for bit.
 pub struct Simulation {
-    cast: Cast,
-    formation: Formation,
-    state: FormationState,
-    plant: Plant,
-    timing: Timing,
-    period: f64,
-    observations: Vec<Observation>,
-    lookout: Option<Lookout>,
-    frames: Vec<Frame>,
-    moment: Moment,
-    sample: u64,
-    last_sample: u64,
-    stop_at_contact: bool,
-    stopped: bool,
-    fault: Option<String>,
+    pub(crate) cast: Cast,
+    pub(crate) formation: Formation,
+    pub(crate) state: FormationState,
+    pub(crate) plant: Plant,
+    pub(crate) timing: Timing,
+    pub(crate) period: f64,
+    pub(crate) observations: Vec<Observation>,
+    pub(crate) lookout: Option<Lookout>,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) moment: Moment,
+    pub(crate) sample: u64,
+    pub(crate) last_sample: u64,
+    pub(crate) stop_at_contact: bool,
+    pub(crate) stopped: bool,
+    pub(crate) fault: Option<String>,
     /// What is to change, and at which sample.
-    changes: VecDeque<(u64, Arc<Regime>)>,
+    pub(crate) changes: VecDeque<(u64, Arc<Regime>)>,
     /// What changes at the next sample.
-    adopted: Option<Arc<Regime>>,
+    pub(crate) adopted: Option<Arc<Regime>>,
 }
 
 /// What moves the robots: a world that is told commands to hold, or plant, law and observers as one system.
-enum Plant {
+pub(crate) enum Plant {
     Held(Box<dyn World>),
     Continuous(Box<Continuous>),
 }
@@ -249,49 +249,10 @@ impl Simulation {
                 asked: decision.asked,
                 applied: decision.applied,
                 rates: decision.rates,
+                estimate: self.state.estimates[index].output,
                 limited: decision.limited,
                 too_close: decision.too_close,
             };
-        }
-    }
-
-    /// From the next sample on the laws, set points and limits of `setup` hold, until something else does. Poses, time,
-    /// motions of lead robots and what observers believe stay; changes that are to come stay too. `setup` is that of a
-    /// scene which this run's scene leads to while it goes, see [`scene::Scene::sets_to`]; any other is not taken.
-    pub fn adopt(&mut self, setup: &Setup) {
-        let fits = setup.formation.edges() == self.formation.edges()
-            && setup.cast.members.len() == self.cast.members.len();
-        debug_assert!(fits, "the setup of another formation");
-        if fits {
-            self.adopted = Some(Arc::new(Regime::of(setup)));
-        }
-    }
-
-    /// The changes of `setup` that are due at the next sample or later take the place of those that were to come.
-    pub fn reschedule(&mut self, setup: &Setup) {
-        self.changes = pending(&setup.changes, self.period);
-        self.changes.retain(|(sample, _)| *sample >= self.sample);
-    }
-
-    /// Number of the next control sample, from 0; its time is this times the period.
-    pub fn sample(&self) -> u64 {
-        self.sample
-    }
-
-    /// Goes on until `duration` s at least.
-    pub fn extend_to(&mut self, duration: f64) {
-        self.last_sample = self.last_sample.max(samples(duration, self.period));
-        self.cast.duration = self.cast.duration.max(duration);
-    }
-
-    /// Adds to the rates an edge's observer estimates, [m/s, rad/s]: to watch it recover.
-    pub fn disturb_observer(&mut self, edge: usize, by: [f64; 2]) {
-        if let Some(estimate) = self.state.estimates.get_mut(edge) {
-            estimate.rates[0] += by[0];
-            estimate.rates[1] += by[1];
-        }
-        if let Some(lookout) = &mut self.lookout {
-            lookout.disturb(edge, by);
         }
     }
 
@@ -332,25 +293,6 @@ impl Simulation {
         self.fault.as_deref()
     }
 
-    /// A copy of the whole run as it stands: it goes on to the same future, bit for bit.
-    #[must_use]
-    pub fn save(&self) -> Self {
-        Self {
-            cast: self.cast.clone(),
-            formation: self.formation.clone(),
-            state: self.state.clone(),
-            plant: self.plant.save(),
-            observations: self.observations.clone(),
-            lookout: self.lookout.clone(),
-            frames: self.frames.clone(),
-            moment: self.moment.clone(),
-            fault: self.fault.clone(),
-            changes: self.changes.clone(),
-            adopted: self.adopted.clone(),
-            ..*self
-        }
-    }
-
     /// Never: a run has at least its first sample.
     pub fn is_empty(&self) -> bool {
         false
@@ -386,7 +328,7 @@ impl Plant {
         }
     }
 
-    fn save(&self) -> Self {
+    pub(crate) fn save(&self) -> Self {
         match self {
             Self::Held(world) => Self::Held(world.save()),
             Self::Continuous(system) => Self::Continuous(system.clone()),
@@ -428,12 +370,12 @@ fn first_estimate(seen: &Relative, start: ObserverStart) -> Estimate {
 }
 
 /// Changes by the samples at which they take hold.
-fn pending(changes: &[Turn], period: f64) -> VecDeque<(u64, Arc<Regime>)> {
+pub(crate) fn pending(changes: &[Turn], period: f64) -> VecDeque<(u64, Arc<Regime>)> {
     let turn = |turn: &Turn| (sample_at(turn.at, period), Arc::new(turn.regime.clone()));
     changes.iter().map(turn).collect()
 }
 
 /// Whole periods in the run; a period that misses the end by rounding only counts.
-fn samples(duration: f64, period: f64) -> u64 {
+pub(crate) fn samples(duration: f64, period: f64) -> u64 {
     (duration / period * (1.0 + 1e-12) + 1e-9).floor() as u64
 }

@@ -23,6 +23,8 @@ pub struct EdgeState {
     pub applied: Command,
     /// Estimate of the rates of [distance, bearing] in [m/s, rad/s]; the observer's where one runs, else the truth.
     pub rates: [f64; 2],
+    /// Estimate of [distance in m, bearing in rad] that the observer corrects by (ŝ₁); where none runs it means nothing.
+    pub estimate: [f64; 2],
     /// Whether a limit (turn rate, speed, acceleration) cut the command.
     pub limited: bool,
     /// Whether the distance was below its minimum.

@@ -201,7 +201,7 @@ pub fn script(base: &str, changes: &[Change], duration: f64) -> Result<String, S
     for change in changes {
         let set: Vec<String> = change.set.iter().map(|set| format!("    {set:?},\n")).collect();
         let item = format!("at = {:?}\nset = [\n{}]\n", change.time, set.concat());
-        text.add_item("changes", &item).map_err(|error| error.to_string())?;
+        text.add_table("changes", &item).map_err(|error| error.to_string())?;
     }
     Ok(text.text())
 }

@@ -167,6 +167,14 @@ impl History {
         self.shown.as_ref().filter(|(of, _)| *of == branch).map(|(_, trail)| trail)
     }
 
+    /// Moments of a branch after one time and up to another, s.
+    pub fn since(&self, branch: usize, [after, until]: [f64; 2]) -> Vec<Arc<Moment>> {
+        let Some(past) = self.past.get(branch) else { return Vec::new() };
+        let first = past.moments.partition_point(|m| m.snapshot.time <= after + 1e-9);
+        let some = past.moments[first..].iter().take_while(|m| m.snapshot.time <= until + 1e-9);
+        some.cloned().collect()
+    }
+
     /// At most `most` moments of a branch between two times, s, evenly over all of it.
     pub fn between(&self, branch: usize, [from, to]: [f64; 2], most: usize) -> Vec<&Moment> {
         let Some(past) = self.past.get(branch) else { return Vec::new() };

@@ -1,0 +1,104 @@
+//! Opening the window, and closing it without losing anything.
+
+use crate::Error;
+use crate::app::Lab;
+use eframe::egui::ViewportBuilder;
+use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What the lab opens with.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// A scene file; a scene that comes with the program if there is none.
+    pub scene: Option<PathBuf>,
+    /// Changes to it, as `--set` has them.
+    pub set: Vec<scene::Override>,
+    /// Adapter to draw with: `auto`, a backend, or part of a name.
+    pub adapter: String,
+    /// Whether the run stands at first.
+    pub paused: bool,
+    /// Width and height of the window, points.
+    pub size: Option<[f32; 2]>,
+    /// Where figures of speed are printed when the window is closed.
+    pub timings: bool,
+}
+
+/// Name under which the window keeps its arrangement.
+pub(crate) const NAME: &str = "echelon-lab";
+
+/// Shows the window until it is closed.
+///
+/// # Errors
+/// [`Error::Window`] where there is no window system or no adapter, or where it was lost.
+pub fn open(options: Options) -> Result<(), Error> {
+    let size = options.size.unwrap_or([1280.0, 800.0]);
+    let viewport = ViewportBuilder::default()
+        .with_title("Echelon")
+        .with_app_id(NAME)
+        .with_inner_size(size)
+        .with_min_inner_size([320.0, 240.0])
+        .with_drag_and_drop(true);
+    let native = eframe::NativeOptions {
+        viewport,
+        wgpu_options: WgpuConfiguration { wgpu_setup: setup(&options.adapter), ..WgpuConfiguration::default() },
+        // A size that was asked for is not overruled by the last one.
+        persist_window: options.size.is_none(),
+        ..eframe::NativeOptions::default()
+    };
+    let fault = Arc::new(Mutex::new(None));
+    let lost = Arc::clone(&fault);
+    let made = eframe::run_native(
+        NAME,
+        native,
+        Box::new(move |context| {
+            let lab = Lab::new(context, options, lost)?;
+            Ok(Box::new(lab))
+        }),
+    );
+    let fault: Option<String> = fault.lock().unwrap_or_else(PoisonError::into_inner).take();
+    match (made, fault) {
+        (Ok(()), None) => Ok(()),
+        (_, Some(fault)) => Err(Error::Window(fault)),
+        (Err(error), None) => Err(Error::Window(explained(&error.to_string()))),
+    }
+}
+
+/// A device with what the pictures need, on the adapter that was asked for.
+fn setup(adapter: &str) -> WgpuSetup {
+    let mut new = WgpuSetupCreateNew::without_display_handle();
+    // Validation layers are for developers of drivers.
+    new.instance_descriptor.flags = wgpu::InstanceFlags::empty();
+    new.power_preference = wgpu::PowerPreference::HighPerformance;
+    new.device_descriptor = Arc::new(|adapter| wgpu::DeviceDescriptor {
+        label: Some("echelon lab"),
+        required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
+        memory_hints: wgpu::MemoryHints::MemoryUsage,
+        ..wgpu::DeviceDescriptor::default()
+    });
+    let wanted = adapter.to_lowercase();
+    if !wanted.is_empty() && wanted != "auto" {
+        new.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
+            let shows = |adapter: &&wgpu::Adapter| surface.is_none_or(|s| adapter.is_surface_supported(s));
+            let fits = |adapter: &&wgpu::Adapter| {
+                let info = adapter.get_info();
+                info.backend.to_str() == wanted || info.name.to_lowercase().contains(&wanted)
+            };
+            adapters
+                .iter()
+                .filter(shows)
+                .find(fits)
+                .cloned()
+                .ok_or_else(|| format!("no adapter for `{wanted}` can show a window; `echelon doctor` lists what there is"))
+        }));
+    }
+    WgpuSetup::CreateNew(new)
+}
+
+/// What a person can do where no window can be opened.
+fn explained(error: &str) -> String {
+    format!(
+        "the window cannot be opened: {error}. The lab needs a desktop (X11 or Wayland; Xvfb serves too) and an adapter, \
+         see `echelon doctor`; `echelon film` and `echelon capture` need neither"
+    )
+}
