@@ -10,6 +10,7 @@
 mod changes;
 mod diagnostics;
 mod document;
+mod edit;
 mod files;
 mod graph;
 mod ground;
@@ -36,6 +37,7 @@ mod types;
 mod vehicle;
 
 pub use diagnostics::{Diagnostic, Diagnostics};
+pub use edit::{EditError, SceneText};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
 pub use types::{

@@ -1,0 +1,99 @@
+//! Where paths lead in a text.
+
+use super::EditError;
+use crate::text::words::{did_you_mean, nearest};
+use toml_edit::{Item, Table};
+
+/// A part of a path that has been looked up.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Step {
+    /// Into a table.
+    Key(String),
+    /// Into a list.
+    Item(usize),
+}
+
+/// What the parts of `path` mean in the text; keys need not be there yet.
+pub(super) fn steps(root: &Table, path: &str) -> Result<Vec<Step>, EditError> {
+    let mut parts: Vec<String> = path.split('.').map(|part| part.trim().to_owned()).collect();
+    if parts.iter().any(String::is_empty) {
+        return Err(EditError::new(format!("`{path}` is no path: write it as law.k")));
+    }
+    if let [list, name, ..] = parts.as_slice()
+        && list == "robots"
+        && index_of(root, "robots", name).is_none()
+        && let Some(group) = made_by_group(root, name)
+    {
+        parts.splice(..1, ["groups".to_owned(), group.to_string(), "members".to_owned()]);
+    }
+    let mut steps: Vec<Step> = Vec::with_capacity(parts.len());
+    let mut at: Option<&Item> = None;
+    for part in parts {
+        let list = at.filter(|item| item.is_array_of_tables() || item.is_array());
+        if list.is_some() {
+            let Some(Step::Key(key)) = steps.last() else {
+                return Err(EditError::new(format!("`{path}` leads into a list of lists")));
+            };
+            let found = if steps.len() == 1 { index_of(root, key, &part) } else { part.parse().ok() };
+            let index = found.filter(|index| list.is_some_and(|list| list.get(*index).is_some()));
+            let index = index.ok_or_else(|| EditError::new(nothing_called(root, key, &part)))?;
+            at = at.and_then(|item| item.get(index));
+            steps.push(Step::Item(index));
+        } else {
+            at = if steps.is_empty() { root.get(&part) } else { at.and_then(|item| item.get(&part)) };
+            if steps.len() == 1 && steps == [Step::Key("robots".to_owned())] && at.is_none() {
+                return Err(EditError::new(nothing_called(root, "robots", &part)));
+            }
+            steps.push(Step::Key(part));
+        }
+    }
+    Ok(steps)
+}
+
+/// What the steps lead to.
+pub(super) fn item_at<'a>(root: &'a Item, steps: &[Step]) -> Option<&'a Item> {
+    steps.iter().try_fold(root, |item, step| match step {
+        Step::Key(key) => item.get(key),
+        Step::Item(index) => item.get(*index),
+    })
+}
+
+/// The items of a list.
+pub(super) fn items<'a>(root: &'a Table, list: &str) -> Vec<&'a Item> {
+    let Some(list) = root.get(list) else { return vec![] };
+    (0..).map_while(|index| list.get(index)).collect()
+}
+
+/// The names in a list.
+pub(super) fn names<'a>(root: &'a Table, list: &str) -> impl Iterator<Item = &'a str> {
+    items(root, list).into_iter().filter_map(|item| item.get("name")?.as_str())
+}
+
+/// Index of the item of a list with that name or number.
+fn index_of(root: &Table, list: &str, name: &str) -> Option<usize> {
+    let items = items(root, list);
+    let named = items.iter().position(|item| item.get("name").and_then(Item::as_str) == Some(name));
+    named.or_else(|| name.parse().ok().filter(|index| *index < items.len()))
+}
+
+/// Index of the group that makes a robot called `name`.
+pub(super) fn made_by_group(root: &Table, name: &str) -> Option<usize> {
+    items(root, "groups").iter().position(|group| made_by(group).any(|made| made == name))
+}
+
+fn made_by(group: &Item) -> impl Iterator<Item = String> {
+    let start = group.get("name").and_then(Item::as_str).unwrap_or("robot").to_owned();
+    let count = group.get("count").and_then(Item::as_integer).unwrap_or(0).clamp(0, 10_000);
+    let first = if group.get("path").is_some() { 1 } else { 2 };
+    (first..=count).map(move |place| format!("{start}-{place}"))
+}
+
+/// That `list` has nothing called `name`, with the nearest that it has.
+pub(super) fn nothing_called(root: &Table, list: &str, name: &str) -> String {
+    let mut known: Vec<String> = names(root, list).map(str::to_owned).collect();
+    if list == "robots" {
+        known.extend(items(root, "groups").into_iter().flat_map(|group| made_by(group).take(1000)));
+    }
+    let hint = nearest(name, known.iter().map(String::as_str)).map_or_else(String::new, did_you_mean);
+    format!("nothing in `{list}` is called `{name}`{hint}")
+}

@@ -1,0 +1,186 @@
+//! The text of a scene, edited in place: comments, order and layout stay as their writer left them.
+
+mod cut;
+mod find;
+mod merge;
+mod put;
+mod rename;
+
+use find::{Step, item_at, items, made_by_group, names, steps};
+use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
+
+/// The text of a scene that can be edited.
+///
+/// Paths are those of `--set`: `law.k`, `robots.follower-1.distance`, robots that groups make included. The text is not
+/// checked as a scene; [`crate::Scene::parse`] does that.
+#[derive(Debug, Clone)]
+pub struct SceneText {
+    document: DocumentMut,
+    /// Whether lines end as on Windows; the document knows no such ends.
+    carriage_returns: bool,
+}
+
+/// Why a text cannot be edited so.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct EditError(String);
+
+impl EditError {
+    fn new(message: impl Into<String>) -> Self {
+        Self(message.into())
+    }
+}
+
+impl SceneText {
+    /// Takes a text to edit.
+    ///
+    /// # Errors
+    /// What is not TOML about it.
+    pub fn parse(text: &str) -> Result<Self, EditError> {
+        let document = text.parse::<DocumentMut>();
+        let carriage_returns = text.contains("\r\n");
+        document
+            .map(|document| Self { document, carriage_returns })
+            .map_err(|error| EditError::new(error.to_string()))
+    }
+
+    /// The text as it is now.
+    pub fn text(&self) -> String {
+        let text = self.document.to_string();
+        if self.carriage_returns { text.replace('\n', "\r\n") } else { text }
+    }
+
+    /// The value at `path` as it is written there; `None` if nothing is written there.
+    pub fn get(&self, path: &str) -> Option<String> {
+        let steps = steps(self.document.as_table(), path).ok()?;
+        let value = item_at(self.document.as_item(), &steps)?.as_value()?;
+        Some(value.clone().decorated("", "").to_string())
+    }
+
+    /// Puts `value`, which is TOML, else text, at `path`. Where an angle was written in degrees, a number in rad is
+    /// written in degrees again, to 1e-6 deg.
+    ///
+    /// # Errors
+    /// Where the path leads nowhere, or a table or a list of tables would be lost.
+    pub fn set(&mut self, path: &str, value: &str) -> Result<(), EditError> {
+        let steps = steps(self.document.as_table(), path)?;
+        let value = value.trim();
+        let value = value.parse::<Value>().unwrap_or_else(|_| Value::from(value)).decorated("", "");
+        // Half an edit is none.
+        let mut edited = self.document.clone();
+        for key in self.superseded(&steps, &value) {
+            cut::cut(&mut edited, &[steps.as_slice(), &[Step::Key(key)]].concat())?;
+        }
+        put::put(edited.as_item_mut(), &steps, 0, value)?;
+        self.document = edited;
+        Ok(())
+    }
+
+    /// Takes out what is written at `path`, a value or a table; comment lines stay. Whether there was anything.
+    ///
+    /// # Errors
+    /// Where the path leads to a whole robot, prop or other item; see [`SceneText::remove_item`].
+    pub fn remove(&mut self, path: &str) -> Result<bool, EditError> {
+        let steps = steps(self.document.as_table(), path)?;
+        if item_at(self.document.as_item(), &steps).is_none_or(Item::is_none) {
+            return Ok(false);
+        }
+        cut::cut(&mut self.document, &steps)?;
+        Ok(true)
+    }
+
+    /// Adds a robot: the lines of its table without their head.
+    ///
+    /// # Errors
+    /// Where the lines are not TOML, or have no name or one that is taken.
+    pub fn add_robot(&mut self, lines: &str) -> Result<(), EditError> {
+        self.add_table("robots", lines)
+    }
+
+    /// Adds an item to a list of tables such as `props` or `changes`: the lines of its table without their head.
+    ///
+    /// # Errors
+    /// Where the lines are not TOML, or the list is none; of robots also where they have no name or one that is taken.
+    pub fn add_table(&mut self, list: &str, lines: &str) -> Result<(), EditError> {
+        let added = lines.parse::<DocumentMut>().map_err(|error| EditError::new(error.to_string()))?;
+        let mut table = Table::new();
+        for (key, item) in added.as_table() {
+            // Tables of their own would have their place among the heads of another text.
+            let value = item.clone().into_value().map_err(|_| EditError::new(format!("`{key}` is empty")))?;
+            table.insert(key, Item::Value(value.decorated(" ", "")));
+        }
+        if list == "robots" {
+            let name = table.get("name").and_then(Item::as_str);
+            self.check_free(name.ok_or_else(|| EditError::new("a robot needs a `name`"))?)?;
+        }
+        put::add(self.document.as_table_mut(), list, table)
+    }
+
+    /// Takes the item called or numbered `name` out of a list of tables, with the comment lines right above and in it.
+    ///
+    /// # Errors
+    /// Where there is none such, or a group makes it.
+    pub fn remove_item(&mut self, list: &str, name: &str) -> Result<(), EditError> {
+        self.check_own(list, name)?;
+        let steps = steps(self.document.as_table(), &format!("{list}.{name}"))?;
+        cut::cut_item(&mut self.document, &steps)
+    }
+
+    /// Calls a robot something else, wherever it is spoken of: by followers, groups, views and changes.
+    ///
+    /// # Errors
+    /// Where there is none called `old`, a group makes it, or `new` is taken or no name.
+    pub fn rename_robot(&mut self, old: &str, new: &str) -> Result<(), EditError> {
+        self.check_own("robots", old)?;
+        if old == new {
+            return Ok(());
+        }
+        self.check_free(new)?;
+        let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+        if !new.chars().all(fits) || !(1..=40).contains(&new.chars().count()) {
+            let text = format!("`{new}` is no name: 1 to 40 letters, digits, `-` and `_`");
+            return Err(EditError::new(text));
+        }
+        rename::rename(self.document.as_table_mut(), old, new);
+        Ok(())
+    }
+
+    /// Keys of the table with a head at the end of the steps that `value` in its place does not have.
+    fn superseded(&self, steps: &[Step], value: &Value) -> Vec<String> {
+        let Some(Item::Table(table)) = item_at(self.document.as_item(), steps) else { return vec![] };
+        let stays = |key: &str| match value {
+            Value::InlineTable(new) => new.contains_key(key),
+            // The word of a kind stands for a table of it.
+            Value::String(_) => key == "kind" || !put::has_kinds(steps.last()),
+            _ => true,
+        };
+        table.iter().map(|(key, _)| key).filter(|key| !stays(key)).map(str::to_owned).collect()
+    }
+
+    /// Refuses names that a robot has.
+    fn check_free(&self, name: &str) -> Result<(), EditError> {
+        let root = self.document.as_table();
+        let taken = names(root, "robots").any(|taken| taken == name) || made_by_group(root, name).is_some();
+        if taken { Err(EditError::new(format!("there is a robot called `{name}` already"))) } else { Ok(()) }
+    }
+
+    /// Refuses robots that groups make.
+    fn check_own(&self, list: &str, name: &str) -> Result<(), EditError> {
+        let root = self.document.as_table();
+        let written = names(root, list).any(|known| known == name);
+        if list == "robots" && !written && made_by_group(root, name).is_some() {
+            return Err(EditError::new(format!(
+                "`{name}` is made by a group: change the group's `count` or `name`, or what it is under `members`"
+            )));
+        }
+        let number = name.parse::<usize>().is_ok_and(|index| index < items(root, list).len());
+        if written || number { Ok(()) } else { Err(EditError::new(find::nothing_called(root, list, name))) }
+    }
+}
+
+/// An inline table of one key.
+fn table_of(key: &str, value: Value) -> InlineTable {
+    let mut table = InlineTable::new();
+    table.insert(key, value);
+    table
+}

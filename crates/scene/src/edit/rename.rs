@@ -1,0 +1,55 @@
+//! A robot's name, wherever it is spoken of.
+
+use super::merge::merge;
+use toml_edit::{Item, Table, Value};
+
+/// Calls the robot `old` `new` from now on.
+pub(super) fn rename(root: &mut Table, old: &str, new: &str) {
+    for (list, key) in [("robots", "name"), ("robots", "leader"), ("groups", "leader")] {
+        for_every_item(root, list, |item| {
+            item.get_mut(key).into_iter().for_each(|item| exchange(item, old, new));
+        });
+    }
+    for (table, key) in [("views", "default"), ("film", "view")] {
+        for start in ["follow:", "camera:"] {
+            let view = root.get_mut(table).and_then(|table| table.get_mut(key));
+            if let Some(view) = view {
+                exchange(view, &format!("{start}{old}"), &format!("{start}{new}"));
+            }
+        }
+    }
+    for_every_item(root, "changes", |item| {
+        let sets = item.get_mut("set").and_then(Item::as_array_mut);
+        for set in sets.into_iter().flat_map(|sets| sets.iter_mut()) {
+            if let Some(renamed) = set.as_str().and_then(|text| in_path(text, old, new)) {
+                merge(set, Value::from(renamed));
+            }
+        }
+    });
+}
+
+/// An override of the robot `old` as one of `new`.
+fn in_path(text: &str, old: &str, new: &str) -> Option<String> {
+    let (path, value) = text.split_once('=')?;
+    let mut parts = path.splitn(3, '.');
+    let (list, name, rest) = (parts.next()?, parts.next()?, parts.next()?);
+    (list.trim() == "robots" && name.trim() == old).then(|| format!("robots.{new}.{rest}={value}"))
+}
+
+fn for_every_item(root: &mut Table, list: &str, work: impl Fn(&mut Item)) {
+    let Some(list) = root.get_mut(list) else { return };
+    let mut index = 0;
+    while let Some(item) = list.get_mut(index) {
+        work(item);
+        index += 1;
+    }
+}
+
+/// Puts the text `new` where the text `old` stands.
+fn exchange(item: &mut Item, old: &str, new: &str) {
+    if let Item::Value(value) = item
+        && value.as_str() == Some(old)
+    {
+        merge(value, Value::from(new));
+    }
+}
