@@ -28,6 +28,14 @@ pub enum Error {
         /// Why.
         source: std::io::Error,
     },
+    /// A file could not be read, or is no picture.
+    #[error("cannot read {}: {source}", .path.display())]
+    Read {
+        /// Where.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
     /// An encoder refused a picture.
     #[error("encoding failed: {0}")]
     Encode(String),
@@ -122,6 +130,10 @@ impl Error {
 
     pub(crate) fn write(path: &Path, source: std::io::Error) -> Self {
         Self::Write { path: path.to_owned(), source }
+    }
+
+    pub(crate) fn read(path: &Path, source: std::io::Error) -> Self {
+        Self::Read { path: path.to_owned(), source }
     }
 }
 

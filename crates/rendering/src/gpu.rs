@@ -1,7 +1,7 @@
 //! Finding and opening a graphics adapter, with or without a display.
 
 use crate::Error;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use wgpu::{Adapter, AdapterInfo as Info, Backend, Backends, DeviceType, Instance};
 
 /// Which adapter to draw with.
@@ -61,7 +61,16 @@ pub struct Gpu {
     /// Its queue.
     pub queue: wgpu::Queue,
     info: AdapterInfo,
-    fault: Arc<Mutex<Option<String>>>,
+    fault: Arc<Mutex<Fault>>,
+}
+
+/// What a device has complained of.
+#[derive(Debug, Default)]
+struct Fault {
+    /// Since somebody asked last.
+    error: Option<String>,
+    /// For ever.
+    lost: Option<String>,
 }
 
 impl Gpu {
@@ -90,12 +99,19 @@ impl Gpu {
         Ok(Self::from_device(device, queue, &adapter.get_info()))
     }
 
-    /// Takes over a device that a window has opened.
+    /// Takes over a device that a window has opened, with any limits from those of WebGL 2 on. Once for each device: it
+    /// replaces what the device does about errors, by default to end the process, and every renderer on the device takes
+    /// this or a clone of it. Errors of others on that device surface in the next draw, too.
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue, info: &Info) -> Self {
-        let fault = Arc::new(Mutex::new(None));
+        let fault = Arc::new(Mutex::new(Fault::default()));
         let seen = Arc::clone(&fault);
-        // Errors of the device surface in the next draw instead of ending the process.
-        device.on_uncaptured_error(Arc::new(move |error| remember(&seen, &error.to_string())));
+        device.on_uncaptured_error(Arc::new(move |error| {
+            held(&seen).error.get_or_insert_with(|| error.to_string());
+        }));
+        let seen = Arc::clone(&fault);
+        device.set_device_lost_callback(move |_, why| {
+            held(&seen).lost.get_or_insert_with(|| format!("it was lost ({why})"));
+        });
         Self { device, queue, info: AdapterInfo::new(info), fault }
     }
 
@@ -109,16 +125,16 @@ impl Gpu {
         &self.info
     }
 
-    /// The error that the device reported since the last call, if any.
+    /// The error that the device reported since the last call, if any; a device that is lost says so every time.
     pub(crate) fn check(&self) -> Result<(), Error> {
-        let mut fault = self.fault.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        fault.take().map_or(Ok(()), |text| Err(Error::Device(text)))
+        let mut fault = held(&self.fault);
+        let error = fault.error.take();
+        fault.lost.clone().or(error).map_or(Ok(()), |text| Err(Error::Device(text)))
     }
 }
 
-fn remember(fault: &Mutex<Option<String>>, text: &str) {
-    let mut fault = fault.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    fault.get_or_insert_with(|| text.to_owned());
+fn held(fault: &Mutex<Fault>) -> MutexGuard<'_, Fault> {
+    fault.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn choose(choice: &AdapterChoice) -> Result<Adapter, Error> {

@@ -98,7 +98,7 @@ pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, tile: Tile) {
 /// The largest error so far, in shown units.
 fn largest(stage: &Stage<'_>, quantity: &Quantity) -> f32 {
     let now = stage.moment.edges.iter().map(|e| e.error[quantity.index] as f32);
-    let past = stage.trail.errors.entries.iter().flat_map(|(_, e)| e).map(|e| e[quantity.index]);
+    let past = stage.trail.errors.entries.iter().flat_map(|(_, e)| e.iter()).map(|e| e[quantity.index]);
     let sizes = past.chain(now).map(|e| e.abs() * quantity.factor).filter(|e| e.is_finite());
     sizes.fold(quantity.least, f32::max)
 }

@@ -146,10 +146,10 @@ impl Renderer {
         last.map(|(slot, submission)| self.offscreen[slot].read(&self.gpu, submission)).transpose()
     }
 
-    /// Draws a moment into a texture of the renderer's format and size, such as a window's.
+    /// Draws a moment into a texture of the renderer's format and size, such as a window's. It does not wait for the device.
     ///
     /// # Errors
-    /// As [`Renderer::draw`].
+    /// As [`Renderer::draw`]; where the texture does not fit, [`Error::Device`], and the next may be drawn.
     pub fn draw_into(
         &mut self,
         target: &wgpu::TextureView,
@@ -174,9 +174,12 @@ impl Renderer {
         style: &Style,
     ) -> Result<(usize, wgpu::SubmissionIndex), Error> {
         let slot = self.waiting.as_ref().map_or(0, |(busy, _)| 1 - busy);
+        if !matches!(self.canvas.format, TextureFormat::Rgba8Unorm | TextureFormat::Bgra8Unorm) {
+            return Err(Error::Device(format!("no picture can be read from {:?}", self.canvas.format)));
+        }
         let prepared = self.prepare(trail, moment, layout, style)?;
         while self.offscreen.len() <= slot {
-            self.offscreen.push(Offscreen::new(&self.gpu.device, self.size));
+            self.offscreen.push(Offscreen::new(&self.gpu.device, self.size, self.canvas.format));
         }
         let offscreen = &self.offscreen[slot];
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

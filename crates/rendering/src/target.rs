@@ -98,11 +98,14 @@ pub(crate) struct Offscreen {
     pub(crate) view: TextureView,
     buffer: wgpu::Buffer,
     pitch: u32,
+    /// Whether blue comes before red.
+    swapped: bool,
 }
 
 impl Offscreen {
-    pub(crate) fn new(device: &Device, (width, height): (u32, u32)) -> Self {
-        let texture = colour(device, (width, height), PICTURE_FORMAT, 1, TextureUsages::COPY_SRC);
+    /// Of a `format` with four bytes a pixel.
+    pub(crate) fn new(device: &Device, (width, height): (u32, u32), format: TextureFormat) -> Self {
+        let texture = colour(device, (width, height), format, 1, TextureUsages::COPY_SRC);
         let pitch = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("readback"),
@@ -110,7 +113,8 @@ impl Offscreen {
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Self { view: view(&texture), texture, buffer, pitch }
+        let swapped = format == TextureFormat::Bgra8Unorm;
+        Self { view: view(&texture), texture, buffer, pitch, swapped }
     }
 
     /// Copies the picture into the buffer once it is drawn.
@@ -134,6 +138,9 @@ impl Offscreen {
                 rgba.extend_from_slice(&line[..row]);
             }
         })?;
+        if self.swapped {
+            rgba.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
+        }
         Ok(Picture { width: size.width, height: size.height, rgba })
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::steady::Steady;
 use std::collections::VecDeque;
+use std::sync::Arc;
 use vocabulary::{Cast, Contact, Frame, Moment, Pose, wrap};
 
 /// How long a ribbon is, s.
@@ -18,13 +19,14 @@ const TOUCHES: usize = 256;
 /// A tyre that slides by less than this does not show it, rad; by the second it leaves all its rubber.
 const SLIDE: [f64; 2] = [0.052, 0.35];
 
-/// What a picture needs to know of the past. It depends on the pushed moments alone.
+/// What a picture needs to know of the past. It depends on the pushed moments alone. A copy shares what it remembers with
+/// the original, so that one may be kept every few seconds of a run, to go back to.
 #[derive(Debug, Clone)]
 pub struct Trail {
     pub(crate) steady: Steady,
     pub(crate) ribbons: VecDeque<Row>,
     pub(crate) ghosts: VecDeque<Row>,
-    pub(crate) marks: Thinning<Vec<Mark>>,
+    pub(crate) marks: Thinning<Arc<[Mark]>>,
     /// Contacts by their first sight, old to new.
     pub(crate) touches: VecDeque<Contact>,
     /// Contacts up to this number are known or forgotten.
@@ -34,8 +36,8 @@ pub struct Trail {
     slides: Vec<f32>,
     /// The last look of each edge.
     looks: Vec<Option<Frame>>,
-    pub(crate) errors: Thinning<Vec<[f32; 2]>>,
-    cast: Cast,
+    pub(crate) errors: Thinning<Arc<[[f32; 2]]>>,
+    cast: Arc<Cast>,
     spacing: f64,
 }
 
@@ -43,7 +45,7 @@ pub struct Trail {
 #[derive(Debug, Clone)]
 pub(crate) struct Row {
     pub(crate) time: f64,
-    pub(crate) poses: Vec<Pose>,
+    pub(crate) poses: Arc<[Pose]>,
 }
 
 /// Where a robot drove, and how much it slid there: 0 to 1.
@@ -70,9 +72,14 @@ impl Trail {
             slides: Vec::new(),
             looks: vec![None; cast.edges.len()],
             errors: Thinning::new(),
-            cast: cast.clone(),
+            cast: Arc::new(cast.clone()),
             spacing: RIBBON / points as f64,
         }
+    }
+
+    /// The time of the last moment that was taken in, s.
+    pub fn time(&self) -> Option<f64> {
+        self.steady.time()
     }
 
     /// Takes in the next moment; every control sample, or at least 30 a second.
@@ -85,7 +92,7 @@ impl Trail {
         }
         let goals: Vec<_> = set_points(&self.cast, moment).into_iter().flatten().collect();
         self.steady.push(moment, &goals);
-        let poses = || moment.snapshot.robots.iter().map(|r| r.motion.pose).collect::<Vec<_>>();
+        let poses = || moment.snapshot.robots.iter().map(|r| r.motion.pose).collect::<Arc<[Pose]>>();
         keep(&mut self.ribbons, time, self.spacing, RIBBON, poses);
         keep(&mut self.ghosts, time, GHOST_EVERY, RIBBON, poses);
         self.touch(&moment.contacts);
@@ -94,7 +101,7 @@ impl Trail {
                 *look = Some(*frame);
             }
         }
-        self.slide(poses());
+        self.slide(moment);
         let (before, slides) = (&self.before, &self.slides);
         let marks =
             || before.iter().zip(slides).map(|(pose, slide)| Mark { pose: *pose, slide: *slide }).collect();
@@ -131,12 +138,14 @@ impl Trail {
     }
 
     /// Compares where the robots went since the moment before with where they look.
-    fn slide(&mut self, poses: Vec<Pose>) {
-        self.slides.resize(poses.len(), 0.0);
-        for ((slide, from), to) in self.slides.iter_mut().zip(&self.before).zip(&poses) {
-            *slide = slide.max(slid(from, to));
+    fn slide(&mut self, moment: &Moment) {
+        let poses = || moment.snapshot.robots.iter().map(|r| r.motion.pose);
+        self.slides.resize(poses().len(), 0.0);
+        for ((slide, from), to) in self.slides.iter_mut().zip(&self.before).zip(poses()) {
+            *slide = slide.max(slid(from, &to));
         }
-        self.before = poses;
+        self.before.clear();
+        self.before.extend(poses());
     }
 }
 
@@ -171,7 +180,7 @@ pub(crate) fn set_points(cast: &Cast, moment: &Moment) -> Vec<Option<[f64; 2]>> 
     (0..cast.edges.len()).map(place).collect()
 }
 
-fn keep(rows: &mut VecDeque<Row>, time: f64, every: f64, span: f64, poses: impl Fn() -> Vec<Pose>) {
+fn keep(rows: &mut VecDeque<Row>, time: f64, every: f64, span: f64, poses: impl Fn() -> Arc<[Pose]>) {
     // Whole multiples of the spacing, so that what is kept does not hang on where the run began.
     let due =
         rows.back().is_none_or(|last| (time / every + 1e-9).floor() > (last.time / every + 1e-9).floor());
@@ -234,6 +243,28 @@ mod tests {
         assert!(trail.ghosts.len() <= 6);
         assert!(trail.marks.entries.len() <= CURVE_POINTS && trail.marks.entries.len() > CURVE_POINTS / 4);
         assert!(trail.marks.entries[0].0 == 0.0);
+    }
+
+    #[test]
+    fn a_copy_shares_what_is_remembered() {
+        let member = Member::new("a", true, vocabulary::Body::default());
+        let cast = Cast { members: vec![member; 7], ..Cast::default() };
+        let mut trail = Trail::new(&cast);
+        assert_eq!(trail.time(), None);
+        for k in 0..6_000 {
+            let robots = vec![RobotState::default(); 7];
+            let snapshot = Snapshot { time: f64::from(k) * 0.01, robots, ..Snapshot::default() };
+            trail.push(&Moment { snapshot, ..Moment::default() });
+        }
+        assert_eq!(trail.time(), Some(59.99));
+        let copy = trail.clone();
+        let shared = |k: usize| Arc::ptr_eq(&trail.marks.entries[k].1, &copy.marks.entries[k].1);
+        assert!((0..trail.marks.entries.len()).all(shared));
+        // What is its own, bytes.
+        let rows = copy.ribbons.len() + copy.ghosts.len();
+        let entries = copy.marks.entries.len() + copy.errors.entries.len();
+        let own = rows * size_of::<Row>() + entries * size_of::<(f64, Arc<[Mark]>)>();
+        assert!(own < 30_000, "{own}");
     }
 
     #[test]

@@ -9,7 +9,7 @@ use glyphon::{
 };
 use std::collections::HashMap;
 use std::sync::Arc;
-use wgpu::{Device, Queue};
+use wgpu::{Device, Queue, TextureFormat};
 
 /// Pictures after which a text that is not drawn any more is forgotten.
 const KEPT: u64 = 60;
@@ -43,6 +43,8 @@ pub(crate) struct TextPass {
     glyphs: SwashCache,
     shaped: HashMap<Key, Shaped>,
     viewport: Viewport,
+    cache: Cache,
+    format: TextureFormat,
     atlas: TextAtlas,
     renderer: TextRenderer,
     pictures: u64,
@@ -79,6 +81,13 @@ fn shape(fonts: &mut FontSystem, text: &str, size: f32, bold: bool) -> (Buffer, 
     (buffer, width)
 }
 
+/// An atlas without any glyph, and what draws from it.
+fn blank(device: &Device, queue: &Queue, cache: &Cache, format: TextureFormat) -> (TextAtlas, TextRenderer) {
+    let mut atlas = TextAtlas::with_color_mode(device, queue, cache, format, ColorMode::Web);
+    let renderer = TextRenderer::new(&mut atlas, device, wgpu::MultisampleState::default(), None);
+    (atlas, renderer)
+}
+
 /// Height of a line of text, pixels.
 pub(crate) fn line_height(size: f32) -> f32 {
     (size * 1.25).round()
@@ -87,13 +96,14 @@ pub(crate) fn line_height(size: f32) -> f32 {
 impl TextPass {
     pub(crate) fn new(device: &Device, queue: &Queue, canvas: Canvas) -> Self {
         let cache = Cache::new(device);
-        let mut atlas = TextAtlas::with_color_mode(device, queue, &cache, canvas.format, ColorMode::Web);
-        let renderer = TextRenderer::new(&mut atlas, device, wgpu::MultisampleState::default(), None);
+        let (atlas, renderer) = blank(device, queue, &cache, canvas.format);
         Self {
             fonts: fonts(),
             glyphs: SwashCache::new(),
             shaped: HashMap::new(),
             viewport: Viewport::new(device, &cache),
+            cache,
+            format: canvas.format,
             atlas,
             renderer,
             pictures: 0,
@@ -126,10 +136,20 @@ impl TextPass {
         self.pictures += 1;
         let now = self.pictures;
         self.shaped.retain(|_, shaped| now - shaped.used < KEPT);
-        if now.is_multiple_of(KEPT) {
-            self.atlas.trim();
-        }
         self.viewport.update(queue, Resolution { width: size[0], height: size[1] });
+        // What the picture before had may make room.
+        self.atlas.trim();
+        match self.place(device, queue, lines) {
+            // In hours of text of ever other sizes it is cut into pieces too small for anything.
+            Err(glyphon::PrepareError::AtlasFull) => {
+                (self.atlas, self.renderer) = blank(device, queue, &self.cache, self.format);
+                self.place(device, queue, lines)
+            }
+            placed => placed,
+        }
+    }
+
+    fn place(&mut self, device: &Device, queue: &Queue, lines: &[Line]) -> Result<(), glyphon::PrepareError> {
         let shaped = &self.shaped;
         let find = |line: &Line| shaped.get(&(line.text.clone(), line.size.to_bits(), line.bold));
         let mut areas = Vec::new();

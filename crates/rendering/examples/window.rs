@@ -1,0 +1,93 @@
+//! What a frame in a window costs: medians of pairs that take turns, so that other work on the machine shows in both.
+//! `window [ROBOTS BODY GROUND VIEW FRAMES]`, as for `still`.
+
+#[path = "../tests/stage/course.rs"]
+#[expect(dead_code, reason = "shared with tests")]
+mod course;
+#[path = "../tests/stage/mod.rs"]
+#[expect(dead_code, reason = "shared with tests")]
+mod stage;
+
+use course::{CAR, enlarge, furnish, grounded};
+use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail};
+use stage::{Path, Play};
+use std::time::{Duration, Instant};
+use vocabulary::{Body, Moment};
+
+fn median(mut times: Vec<Duration>) -> f64 {
+    times.sort();
+    times[times.len() / 2].as_secs_f64() * 1e3
+}
+
+fn texture(gpu: &Gpu, width: u32, height: u32) -> wgpu::TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn main() -> Result<(), rendering::Error> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let word = |k: usize, other: &str| words.get(k).cloned().unwrap_or_else(|| other.to_owned());
+    let robots = word(0, "7").parse().unwrap_or(7);
+    let (body, scale) = if word(1, "car") == "car" { (CAR, 10.0) } else { (Body::default(), 1.0) };
+    let ground = word(2, "flat");
+    let frames = word(4, "25").parse().unwrap_or(25);
+    let mut play = Play::new(robots, Path::named("eight"));
+    let (hills, props) = (matches!(&*ground, "hills" | "course"), matches!(&*ground, "props" | "course"));
+    furnish(&mut play.cast, body, hills, props);
+    let at = |time: f64| {
+        let mut moment = play.at(time);
+        enlarge(&mut moment, scale);
+        grounded(&play.cast, moment)
+    };
+    let mut trail = Trail::new(&play.cast);
+    let past: Vec<Moment> = (0..6_000).map(|k| at(0.01 * f64::from(k))).collect();
+    let start = Instant::now();
+    for moment in &past {
+        trail.push(moment);
+    }
+    println!("push: {:.2} µs", start.elapsed().as_secs_f64() * 1e6 / past.len() as f64);
+    let start = Instant::now();
+    let copies: Vec<_> = (0..100).map(|_| trail.clone()).collect();
+    println!("clone: {:.1} µs", start.elapsed().as_secs_f64() * 1e6 / copies.len() as f64);
+    let gpu = Gpu::open(&AdapterChoice::Auto)?;
+    let layout = Layout::parse(&word(3, "snake"), &[])?;
+    let moment = at(60.0);
+    let names = |list: &str| Style::without(&list.split(',').filter(|w| !w.is_empty()).collect::<Vec<_>>());
+    let styles = ["", "shadows", "ghosts", "ribbons,marks", "inset,caption,time,names,labels,grid"];
+    println!("{:>10} {:>7} {:>38} {:>8} {:>8}", "size", "samples", "without", "prepare", "frame");
+    for (width, height) in [(800, 560), (1280, 800)] {
+        for samples in [4, 1] {
+            let mut renderer = Renderer::new(&gpu, &play.cast, width, height, samples)?;
+            let view = texture(&gpu, width, height);
+            let mut times = vec![(Vec::new(), Vec::new()); styles.len()];
+            for _ in 0..frames {
+                for (list, (prepared, whole)) in styles.iter().zip(&mut times) {
+                    let style = names(list)?;
+                    let start = Instant::now();
+                    renderer.draw_into(&view, &trail, &moment, &layout, &style)?;
+                    prepared.push(start.elapsed());
+                    let waited = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+                    waited.map_err(|e| rendering::Error::Device(e.to_string()))?;
+                    whole.push(start.elapsed());
+                }
+            }
+            for (list, (prepared, whole)) in styles.iter().zip(times) {
+                println!(
+                    "{width:>5}x{height:<4} {samples:>7} {list:>38} {:>8.2} {:>8.2}",
+                    median(prepared),
+                    median(whole)
+                );
+            }
+        }
+    }
+    Ok(())
+}
