@@ -19,6 +19,8 @@ pub(crate) struct Program {
 pub(crate) enum Command {
     /// Simulate a scene, record it, and hold it against what it expects
     Run(RunArgs),
+    /// Open a window in which set points and gains are tuned while the scene runs
+    Lab(LabArgs),
     /// Draw pictures of a scene at given times
     Capture(CaptureArgs),
     /// Make a film of a scene
@@ -84,6 +86,28 @@ pub(crate) struct RunArgs {
     /// Record nothing, only simulate and judge
     #[arg(long, conflicts_with_all = ["out", "csv", "force"])]
     pub(crate) no_record: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LabArgs {
+    /// Scene file, or a picture that the lab has made; a scene that comes with the program if left out
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: Option<PathBuf>,
+    /// Change a value of the scene, as an edit that can be undone; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<Override>,
+    /// Adapter to draw with: vulkan, gl, or part of its name; fails where there is none such
+    #[arg(long, default_value = "auto")]
+    pub(crate) adapter: String,
+    /// Width and height of the window, such as 1280x800
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub(crate) size: Option<[u32; 2]>,
+    /// Stand at first instead of running
+    #[arg(long)]
+    pub(crate) paused: bool,
+    /// Print how fast the window was when it is closed
+    #[arg(long)]
+    pub(crate) timings: bool,
 }
 
 /// How pictures look.

@@ -11,6 +11,7 @@ mod eyes;
 mod failure;
 mod film;
 mod interrupt;
+mod lab;
 mod load;
 mod picture;
 mod playback;
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         Some(
             Command::Run(_)
                 | Command::Capture(_)
+                | Command::Lab(_)
                 | Command::Film(_)
                 | Command::Tune(_)
                 | Command::Budget(_)
@@ -51,6 +53,7 @@ fn main() -> ExitCode {
             Ok(())
         }
         Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Lab(args)) => lab::lab(args),
         Some(Command::Capture(args)) => capture::capture(&args),
         Some(Command::Film(args)) => film::film(&args),
         Some(Command::Tune(args)) => tune::tune(&args),

@@ -16,7 +16,7 @@ use crate::view::viewport::{DeskView, Viewport};
 use crate::watch::Watch;
 use crate::window::{NAME, Options};
 use eframe::egui::{self, Context, Ui};
-use egui_tiles::{Tile, Tree};
+use egui_tiles::Tree;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
@@ -92,7 +92,6 @@ impl Lab {
             let ctx = ctx.clone();
             move || ctx.request_repaint()
         };
-        tell_when_lost(&state.device, &lost, &ctx);
         let (crystal, forecasts) = Crystal::start(wake());
         let viewport = Viewport::new(state);
         let memory: Memory =
@@ -306,7 +305,7 @@ impl Lab {
     }
 
     fn ask_before_closing(&mut self, ctx: &Context, out: &mut Vec<Action>) {
-        egui::Modal::new(egui::Id::new("closing")).show(ctx, |ui| {
+        egui::Modal::new(egui::Id::unique("closing")).show(ctx, |ui| {
             ui.label("The scene has changes that are not saved.");
             ui.horizontal(|ui| {
                 if ui.button("Save and close").clicked() {
@@ -662,9 +661,13 @@ impl eframe::App for Lab {
         self.hear();
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         for file in dropped {
-            if let Some(path) = file.path {
-                self.open(&path);
-            }
+            self.open(file.path());
+        }
+        if let Some(why) = self.viewport.gpu().lost() {
+            let text = format!("the graphics device is gone: {why}; unsaved work is kept and offered at the next start");
+            *self.lost.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(text);
+            self.desk.draft = None;
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         let asked = ctx.input(|input| input.viewport().close_requested());
         let unsaved = self.desk.draft.as_ref().is_some_and(crate::session::draft::Draft::unsaved);
@@ -720,17 +723,4 @@ fn words_of(layout: &rendering::Layout, named: &str) -> String {
 
 fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned())
-}
-
-/// A device that is lost ends the window; unsaved work is on disk by then.
-fn tell_when_lost(device: &wgpu::Device, lost: &Arc<Mutex<Option<String>>>, ctx: &Context) {
-    let (lost, ctx) = (Arc::clone(lost), ctx.clone());
-    device.set_device_lost_callback(move |reason, text| {
-        if reason == wgpu::DeviceLostReason::Destroyed {
-            return;
-        }
-        let text = format!("the graphics device was lost ({text}); unsaved work is kept and offered at the next start");
-        *lost.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(text);
-        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
-    });
 }

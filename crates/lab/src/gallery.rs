@@ -110,7 +110,7 @@ impl Gallery {
                 response
             })
             .inner;
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, scene.name));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, scene.name));
         if response.on_hover_text(title(scene.text)).clicked() {
             out.push(Action::OpenShipped(scene.name));
         }

@@ -72,7 +72,7 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, out: &mut Vec<Action>) {
     }
     let period = desk.history.as_ref().map_or(0.01, |history| history.period());
     let mut take = |modifiers: Modifiers, key: Key, action: Action| {
-        if ctx.input_mut(|input| input.consume_key_exact(modifiers, key)) {
+        if ctx.input_mut(|input| input.consume_key(modifiers, key)) {
             out.push(action);
         }
     };

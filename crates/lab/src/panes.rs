@@ -57,7 +57,7 @@ pub fn arrangement() -> Tree<Pane> {
     let middle = tiles.insert_container(middle);
     let plots = tiles.insert_horizontal_tile(plots.to_vec());
     let root = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [middle, plots], 0.74));
-    Tree::new("panels", root, tiles)
+    Tree::new(eframe::egui::Id::unique("panels"), root, tiles)
 }
 
 /// Whether a tree from an earlier start can be used: the view is in it, and no panel twice.

@@ -125,6 +125,11 @@ impl Gpu {
         &self.info
     }
 
+    /// Why the device is gone, if it is.
+    pub fn lost(&self) -> Option<String> {
+        held(&self.fault).lost.clone()
+    }
+
     /// The error that the device reported since the last call, if any; a device that is lost says so every time.
     pub(crate) fn check(&self) -> Result<(), Error> {
         let mut fault = held(&self.fault);

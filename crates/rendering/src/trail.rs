@@ -112,11 +112,6 @@ impl Trail {
         self.errors.push(time, || moment.edges.iter().map(|e| error(&e.error)).collect());
     }
 
-    /// Time of the last moment that was taken in, s; `None` before the first.
-    pub fn time(&self) -> Option<f64> {
-        self.steady.time()
-    }
-
     /// The last look of an edge that arrived.
     pub(crate) fn look(&self, edge: usize) -> Option<&Frame> {
         self.looks.get(edge)?.as_ref()

@@ -35,6 +35,13 @@ impl FromStr for Override {
     }
 }
 
+impl Override {
+    /// The path, and the value as it is written.
+    pub fn parts(&self) -> (&str, &str) {
+        self.0.split_once('=').unwrap_or((&self.0, ""))
+    }
+}
+
 impl fmt::Display for Override {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)

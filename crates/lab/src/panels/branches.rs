@@ -3,7 +3,7 @@
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::tidy::fixed;
-use eframe::egui::{self, RichText, Ui, WidgetInfo, WidgetType};
+use eframe::egui::{self, RichText, Ui, WidgetInfo, Role};
 
 /// All branches.
 pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
@@ -15,12 +15,12 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
             let chosen = index == desk.branch;
             let response = ui.selectable_label(chosen, &branch.name);
             response
-                .widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, chosen, &branch.name));
+                .widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &branch.name));
             if response.clicked() {
                 out.push(Action::Branch(index));
             }
             response.context_menu(|ui| {
-                let id = ui.id().with(index);
+                let id = ui.scope_id().with(index);
                 let mut name: String =
                     ui.data(|data| data.get_temp(id)).unwrap_or_else(|| branch.name.clone());
                 let edit = ui.text_edit_singleline(&mut name);

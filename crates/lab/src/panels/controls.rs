@@ -109,7 +109,7 @@ impl Row {
             let back = ui.add_enabled(differs, egui::Button::new("⟲").frame(false));
             let name = format!("Reset {}", self.symbol.name.to_lowercase());
             back.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::WidgetType::Button, differs, name.clone())
+                egui::WidgetInfo::labeled(egui::Role::Button, differs, name.clone())
             });
             if back.on_hover_text(format!("{name}: {default} {}", self.symbol.unit)).clicked() {
                 out.push(Action::Untune { what: name.clone(), key: self.key });

@@ -6,7 +6,7 @@ use crate::desk::Desk;
 use crate::quantities::{Quantity, bounds, curves};
 use crate::tidy::fixed;
 use eframe::egui::{self, Color32, Id, Stroke, Ui};
-use egui_plot::{HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, VLine};
+use egui_plot::{HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, VLine};
 
 /// Points of a curve, at most.
 const MOST_POINTS: usize = 400;
@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, quantities: &[Quantity], out: &mut Vec<Act
 
 fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool), out: &mut Vec<Action>) {
     let end = desk.history.as_ref().map_or(0.0, |history| history.end(desk.branch));
-    let group = Id::new("time axis");
+    let group = Id::unique("time axis");
     let logarithmic = quantity.logarithmic();
     let weak = ui.visuals().weak_text_color();
     let text = |value: f64| {
@@ -48,7 +48,7 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
         .y_axis_formatter(move |mark, _| text(mark.value))
         .x_axis_formatter(|mark, _| format!("{} s", short(mark.value)))
         .label_formatter(move |hover| {
-            let at: PlotPoint = hover.position();
+            let (HoverPosition::NearDataPoint { position: at, .. } | HoverPosition::Elsewhere { position: at }) = hover;
             let value = if logarithmic { format!("{:.1e}", 10_f64.powf(at.y)) } else { fixed(at.y, 3) };
             Some(format!("{} s\n{value}", fixed(at.x, 2)))
         });

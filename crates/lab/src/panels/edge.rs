@@ -110,5 +110,5 @@ fn ahead(ui: &mut Ui, desk: &Desk, edge: usize) {
 
 fn named(response: &egui::Response, value: f64, name: &str) {
     response.widget_info(|| WidgetInfo::drag_value(true, value));
-    response.widget_info(|| WidgetInfo::labeled(egui::WidgetType::DragValue, true, name));
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, name));
 }

@@ -3,7 +3,7 @@
 use super::{colour, nothing};
 use crate::action::Action;
 use crate::desk::{Choice, Desk, Tool};
-use eframe::egui::{self, RichText, Sense, Ui, WidgetInfo, WidgetType};
+use eframe::egui::{self, RichText, Sense, Ui, WidgetInfo, Role};
 use vocabulary::{Cast, Moment};
 
 /// Robots as a tree.
@@ -69,7 +69,7 @@ fn row(
             label
         })
         .inner;
-    response.widget_info(|| WidgetInfo::selected(WidgetType::SelectableLabel, true, chosen, name));
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, name));
     response.dnd_set_drag_payload(robot);
     if let Some(follower) = response.dnd_release_payload::<usize>()
         && *follower != robot
@@ -90,7 +90,7 @@ fn row(
 }
 
 fn menu(ui: &mut Ui, name: &str, robot: usize, out: &mut Vec<Action>) {
-    let id = ui.id().with("name");
+    let id = ui.scope_id().with("name");
     let mut text: String = ui.data(|data| data.get_temp(id)).unwrap_or_else(|| name.to_owned());
     let edit = ui.text_edit_singleline(&mut text);
     ui.data_mut(|data| data.insert_temp(id, text.clone()));

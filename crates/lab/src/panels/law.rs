@@ -5,7 +5,7 @@ use super::{nothing, tune};
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::symbols;
-use eframe::egui::{ComboBox, Ui, WidgetInfo, WidgetType};
+use eframe::egui::{ComboBox, Ui, WidgetInfo, Role};
 use scene::{Law, LawKind, Observer, ObserverKind, Switching, VehicleKind};
 
 const LAWS: [(LawKind, &str, &str, &str); 3] = [
@@ -135,7 +135,7 @@ fn law_kind(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
             }
         }
     });
-    response.response.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Law"));
+    response.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Law"));
 }
 
 fn switching(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
@@ -158,5 +158,5 @@ pub(crate) fn vehicle(desk: &Desk, robot: usize) -> VehicleKind {
 }
 
 fn apart_id() -> eframe::egui::Id {
-    eframe::egui::Id::new("gains apart")
+    eframe::egui::Id::unique("gains apart")
 }

@@ -6,7 +6,7 @@ use super::{nothing, tune};
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::symbols;
-use eframe::egui::{ComboBox, Ui, WidgetInfo, WidgetType};
+use eframe::egui::{ComboBox, Ui, WidgetInfo, Role};
 use scene::{Sensing, SensingKind};
 use vocabulary::Sight;
 
@@ -83,5 +83,5 @@ fn kind(ui: &mut Ui, sensing: &Sensing, out: &mut Vec<Action>) {
             }
         }
     });
-    response.response.widget_info(|| WidgetInfo::labeled(WidgetType::ComboBox, true, "Sensing"));
+    response.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Sensing"));
 }

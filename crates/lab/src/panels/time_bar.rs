@@ -3,7 +3,7 @@
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::tidy::fixed;
-use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInfo, WidgetType};
+use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInfo, Role};
 
 /// Rows of branches that are shown, at most.
 const MOST_ROWS: usize = 5;
@@ -40,7 +40,7 @@ fn buttons(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
 
 fn icon(ui: &mut Ui, sign: &str, name: &str) -> egui::Response {
     let response = ui.add(egui::Button::new(RichText::new(sign).size(15.0)).min_size(egui::vec2(26.0, 24.0)));
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, name));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
     response
 }
 
@@ -173,5 +173,5 @@ fn menus(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
         });
     })
     .response
-    .widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, "More"));
+    .widget_info(|| WidgetInfo::labeled(Role::Button, true, "More"));
 }

@@ -44,7 +44,7 @@ pub fn limits(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         return;
     };
     scope(ui, desk, name, out);
-    let default = Vehicle::of(vehicle.kind);
+    let default = Vehicle::ready_made(vehicle.kind);
     SPEED_MIN.one(ui, vehicle.speed_min, default.speed_min, out);
     SPEED_MAX.one(ui, vehicle.speed_max, default.speed_max, out);
     TURN_MAX.one(ui, vehicle.turn_rate_max, default.turn_rate_max, out);

@@ -7,6 +7,7 @@
 use recording::Digest;
 use scene::Scene;
 use simulation::{BuildError, Simulation};
+use std::rc::Rc;
 use std::sync::Arc;
 use vocabulary::Moment;
 
@@ -14,6 +15,9 @@ use vocabulary::Moment;
 const MARK_EVERY: f64 = 1.0;
 /// Most saved states of a branch; when there are more, every second goes and their distance doubles.
 const MOST_MARKS: usize = 48;
+
+/// Longer than anybody looks, s.
+const FOR_EVER: f64 = 1e7;
 
 /// All branches of a run; the first is its trunk.
 pub struct Branches {
@@ -31,7 +35,7 @@ pub struct Branch {
     pub changes: Vec<Change>,
     simulation: Simulation,
     digest: Digest,
-    marks: Vec<Arc<Mark>>,
+    marks: Vec<Rc<Mark>>,
     mark_every: u64,
 }
 
@@ -62,9 +66,9 @@ impl Branches {
     pub fn open(scene: Arc<Scene>, ready: impl FnOnce(&mut Simulation)) -> Result<Self, BuildError> {
         let mut simulation = Simulation::new(simulation::build(&scene)?);
         // A laboratory runs on for as long as somebody looks.
-        simulation.run_on();
+        simulation.extend_to(FOR_EVER);
         ready(&mut simulation);
-        let mark = Arc::new(Mark { simulation: simulation.save(), digest: Digest::default() });
+        let mark = Rc::new(Mark { simulation: simulation.save(), digest: Digest::default() });
         let mark_every = (MARK_EVERY / simulation.period()).ceil().max(1.0) as u64;
         let trunk = Branch {
             name: "main".to_owned(),
@@ -120,7 +124,7 @@ impl Branch {
 
     fn mark(&mut self) {
         let mark = Mark { simulation: self.simulation.save(), digest: self.digest.clone() };
-        self.marks.push(Arc::new(mark));
+        self.marks.push(Rc::new(mark));
         if self.marks.len() > MOST_MARKS {
             self.mark_every *= 2;
             let every = self.mark_every;
@@ -136,7 +140,7 @@ impl Branch {
             self.changes.pop();
         }
         let before = self.changes.last().map_or(base, |last| &last.scene);
-        let set = before.sets_to(&scene).map_err(|standing| standing.join(", "))?;
+        let set = before.sets_to(&scene).map_err(|standing| standing.join("\n"))?;
         self.simulation.adopt(&setup);
         if set.is_empty() {
             return Ok(None);

@@ -124,7 +124,9 @@ fn ahead(question: Question, newer: &dyn Fn() -> bool) -> Option<Forecast> {
     let began = Instant::now();
     let Question { branch, mut run, seconds, number } = question;
     // Pictures for cameras cannot be drawn ahead: there a follower is told the truth.
-    run.trust();
+    if run.needs_eyes() {
+        run.trust();
+    }
     let period = run.period();
     let samples = (seconds / period).round().max(1.0) as u64;
     let start = run.sample() as f64 * period;

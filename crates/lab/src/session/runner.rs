@@ -114,21 +114,25 @@ impl Runner {
         let (orders, inbox) = channel();
         let (outbox, news) = channel();
         let unread = Arc::new(AtomicUsize::new(0));
-        let mut work = Work {
-            inbox,
-            outbox,
-            unread: Arc::clone(&unread),
-            wake: Box::new(wake),
-            branches: None,
-            active: 0,
-            playing: false,
-            pace: 1.0,
-            owed: 0.0,
-            crystal,
-            ahead: 0.0,
-            looked: None,
+        let count = Arc::clone(&unread);
+        let work = move || {
+            let mut work = Work {
+                inbox,
+                outbox,
+                unread: count,
+                wake: Box::new(wake),
+                branches: None,
+                active: 0,
+                playing: false,
+                pace: 1.0,
+                owed: 0.0,
+                crystal,
+                ahead: 0.0,
+                looked: None,
+            };
+            work.work();
         };
-        let thread = std::thread::Builder::new().name("run".to_owned()).spawn(move || work.work()).ok();
+        let thread = std::thread::Builder::new().name("run".to_owned()).spawn(work).ok();
         Self { orders: Some(orders), news, unread, thread }
     }
 
@@ -293,6 +297,7 @@ impl Work {
 
     fn open(&mut self, scene: Arc<Scene>, gpu: Option<Gpu>, until: f64) {
         let mut blind = None;
+        let planned = scene.time.duration;
         let opened = Branches::open(scene, |simulation| {
             if simulation.needs_eyes() {
                 match gpu.as_ref().map(|gpu| CameraEyes::new(gpu, simulation.cast())) {
@@ -310,7 +315,8 @@ impl Work {
             return self.tell(News::Refused(why));
         }
         let simulation = branches.list()[0].simulation();
-        let (cast, period) = (Arc::new(simulation.cast().clone()), simulation.period());
+        let cast = Cast { duration: planned, ..simulation.cast().clone() };
+        let (cast, period) = (Arc::new(cast), simulation.period());
         self.active = 0;
         self.owed = 0.0;
         self.branches = Some(branches);
@@ -351,7 +357,7 @@ impl Work {
         match branches.change(self.active, scene) {
             Ok(Some(change)) => self.tell(News::Changed(self.active, change)),
             Ok(None) => {}
-            Err(standing) => self.tell(News::Refused(format!("{standing} cannot change while a run goes"))),
+            Err(standing) => self.tell(News::Refused(standing)),
         }
         self.look_ahead(true);
     }

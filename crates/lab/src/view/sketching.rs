@@ -3,7 +3,7 @@
 use super::holding;
 use crate::desk::{Choice, Desk};
 use crate::session::forecast::{Forecast, Place, Trouble};
-use rendering::sketch::{Area, Arrow, Ghost, Ring, Sketch, Spot, Stroke};
+use rendering::{Area, Arrow, Ghost, Ring, Sketch, Spot, Stroke};
 use std::sync::Arc;
 use vocabulary::{Cast, Moment};
 

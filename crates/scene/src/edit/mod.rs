@@ -57,6 +57,12 @@ impl SceneText {
         Some(value.clone().decorated("", "").to_string())
     }
 
+    /// How many items a list of tables has.
+    pub fn count(&self, list: &str) -> usize {
+        let items = self.document.get(list);
+        items.map_or(0, |item| item.as_array_of_tables().map_or(0, toml_edit::ArrayOfTables::len))
+    }
+
     /// Puts `value`, which is TOML, else text, at `path`. Where an angle was written in degrees, a number in rad is
     /// written in degrees again, to 1e-6 deg.
     ///
