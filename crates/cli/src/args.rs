@@ -8,7 +8,8 @@ use std::path::PathBuf;
 /// Echelon, a 3D laboratory for vehicle formations.
 #[derive(Debug, Parser)]
 #[command(name = "echelon", version, about, max_term_width = 110)]
-#[command(after_help = "Exit codes: 0 done and expectations met, 1 an expectation of the scene failed, \
+#[command(after_help = "Exit codes: 0 done and expectations met, 1 an expectation of the scene failed or a \
+    replay differs, \
     2 wrong usage or a bad scene, 3 the machine (no adapter, disk full), 130 interrupted.")]
 pub(crate) struct Program {
     #[command(subcommand)]
@@ -19,6 +20,8 @@ pub(crate) struct Program {
 pub(crate) enum Command {
     /// Simulate a scene, record it, and hold it against what it expects
     Run(RunArgs),
+    /// Run a recorded run again, and say whether it comes out the same bit for bit
+    Replay(ReplayArgs),
     /// Open a window in which set points and gains are tuned while the scene runs
     Lab(LabArgs),
     /// Draw pictures of a scene at given times
@@ -86,6 +89,22 @@ pub(crate) struct RunArgs {
     /// Record nothing, only simulate and judge
     #[arg(long, conflicts_with_all = ["out", "csv", "force"])]
     pub(crate) no_record: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReplayArgs {
+    /// Folder of a run, such as runs/line-three-001
+    #[arg(value_name = "RUN_FOLDER")]
+    pub(crate) run: PathBuf,
+    /// Adapter to draw with where cameras on robots take pictures: vulkan, gl, or part of its name
+    #[arg(long, default_value = "auto")]
+    pub(crate) adapter: String,
+    /// Print the result as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print only what differs, and errors
+    #[arg(long, short, conflicts_with = "json")]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Debug, Args)]

@@ -18,6 +18,7 @@ mod playback;
 mod print;
 mod progress;
 mod quiet;
+mod replay;
 mod report;
 mod run;
 mod tune;
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         program.command,
         Some(
             Command::Run(_)
+                | Command::Replay(_)
                 | Command::Capture(_)
                 | Command::Lab(_)
                 | Command::Film(_)
@@ -53,6 +55,7 @@ fn main() -> ExitCode {
             Ok(())
         }
         Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Replay(args)) => replay::replay(&args),
         Some(Command::Lab(args)) => lab::lab(args),
         Some(Command::Capture(args)) => capture::capture(&args),
         Some(Command::Film(args)) => film::film(&args),

@@ -16,7 +16,7 @@ use std::time::Instant;
 pub(crate) const PROGRAM: &str = concat!("echelon ", env!("CARGO_PKG_VERSION"));
 
 /// Steps between two looks at the bar and at Ctrl-C.
-const STRIDE: u64 = 16;
+pub(crate) const STRIDE: u64 = 16;
 
 pub(crate) fn run(args: &RunArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;

@@ -5,4 +5,5 @@ mod budget;
 mod common;
 mod dataset;
 mod pictures;
+mod replay;
 mod runs;

@@ -1,0 +1,90 @@
+//! `echelon replay`: recorded runs come out the same again, and what differs is told.
+
+use crate::common::{echelon, scene, told};
+use recording::{Manifest, Status};
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Records a short run into a folder of its own.
+fn record(folder: &Path, name: &str) -> PathBuf {
+    let run = folder.join("run");
+    let out = run.display().to_string();
+    let args = ["run", &scene(name), "-q", "-o", &out, "--set", "time.duration=2", "--set", "expect={}"];
+    let (code, _, err) = told(&echelon(folder, &args));
+    assert_eq!(code, 0, "{err}");
+    run
+}
+
+fn edit(run: &Path, work: impl FnOnce(&mut Manifest)) {
+    let path = run.join("manifest.json");
+    let mut manifest: Manifest =
+        serde_json::from_str(&fs::read_to_string(&path).expect("a manifest")).expect("valid");
+    work(&mut manifest);
+    fs::write(&path, serde_json::to_string(&manifest).expect("JSON")).expect("written");
+}
+
+#[test]
+fn a_run_comes_out_the_same_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = record(folder.path(), "circle-three");
+    let (code, out, err) = told(&echelon(folder.path(), &["replay", "run"]));
+    assert_eq!(code, 0, "{out}{err}");
+    assert!(out.contains("201 samples, 2.00 s") && out.contains("same: bit for bit"), "{out}");
+    let (code, out, _) = told(&echelon(folder.path(), &["replay", "run", "--json"]));
+    let report: Value = serde_json::from_str(&out).expect("JSON only");
+    assert_eq!((code, &report["same"]), (0, &Value::Bool(true)));
+    assert_eq!(report["recorded"]["digest"], report["now"]["digest"]);
+    edit(&run, |manifest| manifest.program = "echelon 0.0.1".to_owned());
+    let (code, out, _) = told(&echelon(folder.path(), &["replay", "run"]));
+    assert!(code == 0 && out.contains("recorded by echelon 0.0.1"), "{out}");
+}
+
+#[test]
+fn what_differs_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = record(folder.path(), "circle-three");
+    let path = run.join("scene.toml");
+    let text = fs::read_to_string(&path).expect("a scene");
+    fs::write(&path, text.replacen("distance = 2.0", "distance = 2.1", 1)).expect("written");
+    let (code, out, _) = told(&echelon(folder.path(), &["replay", "run"]));
+    assert!(code == 1 && out.contains("DIFFERENT"), "{out}");
+    let (code, out, err) = told(&echelon(folder.path(), &["replay", "run", "-q"]));
+    assert!(code == 1 && out.is_empty() && err.contains("DIFFERENT"), "{out}{err}");
+    fs::write(&path, text.replacen("duration = 2.0", "duration = 1.0", 1)).expect("written");
+    let (code, out, _) = told(&echelon(folder.path(), &["replay", "run"]));
+    assert!(code == 1 && out.contains("201 samples were recorded, and it has 101 now"), "{out}");
+}
+
+/// An interrupted run is compared over the samples it has.
+#[test]
+fn an_interrupted_run_is_compared_as_far_as_it_went() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = record(folder.path(), "circle-three");
+    let path = run.join("scene.toml");
+    let text = fs::read_to_string(&path).expect("a scene");
+    fs::write(&path, text.replacen("duration = 2.0", "duration = 9.0", 1)).expect("written");
+    edit(&run, |manifest| manifest.status = Status::Interrupted);
+    let (code, out, err) = told(&echelon(folder.path(), &["replay", "run"]));
+    assert!(code == 0 && out.contains("interrupted") && out.contains("same"), "{out}{err}");
+    edit(&run, |manifest| manifest.digest = None);
+    let (code, _, err) = told(&echelon(folder.path(), &["replay", "run"]));
+    assert!(code == 2 && err.contains("no digest"), "{err}");
+}
+
+#[test]
+fn what_is_no_run_folder_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("notes.txt"), "mine").expect("written");
+    for path in [".", "nowhere", "notes.txt"] {
+        let (code, out, err) = told(&echelon(folder.path(), &["replay", path]));
+        assert!(code == 2 && out.is_empty() && err.contains("is no run folder"), "{err}");
+    }
+    fs::write(folder.path().join("manifest.json"), "{}").expect("written");
+    let (code, _, err) = told(&echelon(folder.path(), &["replay", "."]));
+    assert!(code == 2 && err.contains("no manifest of a run"), "{err}");
+    let run = record(folder.path(), "line-three");
+    fs::remove_file(run.join("scene.toml")).expect("removed");
+    let (code, _, err) = told(&echelon(folder.path(), &["replay", "run"]));
+    assert!(code == 2 && err.contains("scene.toml"), "{err}");
+}
