@@ -225,17 +225,32 @@ impl Painter<'_> {
             let (before, after) = (points[k.saturating_sub(1)].0, points[(k + 1).min(points.len() - 1)].0);
             (after - before).normalize_or(DVec2::X).perp()
         };
-        let edge = |k: usize, u: f32| {
-            // Wide enough to be seen from afar.
-            let pixel = self.pixel(points[k].0);
-            let half = half.max(least * self.stage_scale * pixel);
-            let place = points[k].0 + side(k) * (shift + half * f64::from(u));
-            self.corner(place, Form::Solid, [u, 0.0], colour, points[k].1)
-        };
+        // Wide enough to be seen from afar.
+        let width = |at: DVec3| half.max(least * self.stage_scale * self.pixel_at(at));
+        let uneven = !self.floor.is_plane();
         let mut added = Vec::with_capacity(6 * points.len());
-        for k in 1..points.len() {
-            let quad = [edge(k - 1, -1.0), edge(k - 1, 1.0), edge(k, 1.0), edge(k, -1.0)];
-            added.extend([0, 1, 2, 0, 2, 3].map(|c| quad[c]));
+        let mut before: Option<(DVec2, u8, f64)> = None;
+        for (k, (place, _)) in points.iter().enumerate() {
+            let on = self.on(*place);
+            let half = width(on);
+            let reach = shift.abs() + half;
+            // On hills it may rise into the picture between two points.
+            let step = before.map_or(0.0, |(from, ..)| if uneven { from.distance(*place) } else { 0.0 });
+            let beyond = self.camera.beyond(on, reach + step);
+            if let Some((.., other)) = before.filter(|(_, sides, _)| sides & beyond == 0) {
+                let edge = |k: usize, half: f64, u: f32| {
+                    let place = points[k].0 + side(k) * (shift + half * f64::from(u));
+                    self.corner(place, Form::Solid, [u, 0.0], colour, points[k].1)
+                };
+                let quad = [
+                    edge(k - 1, other, -1.0),
+                    edge(k - 1, other, 1.0),
+                    edge(k, half, 1.0),
+                    edge(k, half, -1.0),
+                ];
+                added.extend([0, 1, 2, 0, 2, 3].map(|c| quad[c]));
+            }
+            before = Some((*place, beyond, half));
         }
         self.corners.extend(added);
     }

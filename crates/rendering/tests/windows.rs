@@ -170,3 +170,26 @@ fn memory_stays_bounded_while_a_window_is_dragged() {
     }
     assert!(after[5] <= after[1] + 4_000_000, "{after:?}");
 }
+
+/// What stays on the device from picture to picture does not show.
+#[test]
+fn a_picture_does_not_hang_on_the_one_before() {
+    let gpu = foreign(Limits::default());
+    let play = Play::new(3, Path::Eight);
+    let trail = play.trail(3.0);
+    let style = Style::default();
+    let mut kept = Renderer::new(&gpu, &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+    // Still from another side, moved, failed and then drawn, and still again.
+    let small = target(&gpu, (32, 32), TextureFormat::Rgba8Unorm);
+    let small = small.create_view(&wgpu::TextureViewDescriptor::default());
+    for (time, view) in [(3.0, View::Snake), (3.0, View::Orbit), (3.4, View::Orbit), (3.4, View::Top)] {
+        let (moment, layout) = (play.at(time), Layout::single(view));
+        let fresh = Renderer::new(&gpu, &play.cast, SIZE.0, SIZE.1, 4)
+            .and_then(|mut renderer| renderer.draw(&trail, &moment, &layout, &style))
+            .unwrap();
+        assert!(kept.draw(&trail, &moment, &layout, &style).unwrap() == fresh);
+        assert!(kept.draw_into(&small, &trail, &play.at(1.0), &layout, &style).is_err());
+        assert!(kept.draw(&trail, &moment, &layout, &style).unwrap() == fresh);
+        assert!(kept.draw(&trail, &moment, &layout, &style).unwrap() == fresh);
+    }
+}
