@@ -5,6 +5,7 @@ use crate::drape::{Onto, lay};
 use crate::floor::Floor;
 use crate::palette::{self, Rgb};
 use crate::passes::decal::{Corner, Form, Layer};
+use crate::thin::thinned;
 use crate::trail::{RIBBON, Trail, set_points};
 use crate::{Style, View};
 use glam::{DVec2, DVec3};
@@ -16,6 +17,9 @@ const RIBBON_HALF: f64 = 0.03;
 pub(crate) const RING: f64 = 0.25;
 /// Position errors above this are shown by an arrow, m.
 const ARROW_ABOVE: f64 = 0.05;
+
+/// Lines of quick pictures are this near to where they belong, pixels.
+const UNSEEN: f64 = 0.4;
 
 const RUBBER: Rgb = [0.05, 0.05, 0.055];
 
@@ -55,6 +59,8 @@ pub(crate) struct Painter<'a> {
     pub(crate) stage_scale: f64,
     pub(crate) origin: DVec3,
     floor: &'a Floor,
+    /// Whether lines may have fewer points.
+    quick: bool,
 }
 
 /// All decals of one view on a tile `height` pixels high, layer by layer, in the order in which they are drawn.
@@ -125,6 +131,7 @@ impl<'a> Painter<'a> {
             stage_scale: stage.style.scale * (height / 720.0).clamp(0.6, 1.0),
             origin: stage.origin,
             floor: stage.floor,
+            quick: stage.style.interactive,
         }
     }
 }
@@ -221,6 +228,8 @@ impl Painter<'_> {
 
     /// A band through `points`, each with its opacity; half its width is `half` m, but `least` pixels.
     fn band(&mut self, points: &[(DVec2, f32)], half: f64, least: f64, shift: f64, colour: Rgb) {
+        let few = self.quick.then(|| thinned(points, |place| UNSEEN * self.pixel(place)));
+        let points = few.as_deref().unwrap_or(points);
         let side = |k: usize| {
             let (before, after) = (points[k.saturating_sub(1)].0, points[(k + 1).min(points.len() - 1)].0);
             (after - before).normalize_or(DVec2::X).perp()

@@ -193,3 +193,21 @@ fn a_picture_does_not_hang_on_the_one_before() {
         assert!(kept.draw(&trail, &moment, &layout, &style).unwrap() == fresh);
     }
 }
+
+#[test]
+fn quick_pictures_look_like_others() {
+    let gpu = foreign(Limits::default());
+    let play = Play::new(7, Path::Eight);
+    let mut renderer = Renderer::new(&gpu, &play.cast, 800, 560, 4).unwrap();
+    let (trail, moment) = (play.trail(40.0), play.at(40.0));
+    for view in [View::Snake, View::Orbit, View::Top] {
+        let mut draw = |interactive: bool| {
+            let style = Style { interactive, ..Style::default() };
+            renderer.draw(&trail, &moment, &Layout::single(view.clone()), &style).unwrap()
+        };
+        let (whole, quick) = (draw(false), draw(true));
+        let apart: Vec<_> = whole.rgba.iter().zip(&quick.rgba).map(|(a, b)| a.abs_diff(*b)).collect();
+        let far = apart.iter().filter(|d| **d > 48).count();
+        assert!(far * 2_000 < apart.len(), "{view:?}: {far} of {}", apart.len());
+    }
+}
