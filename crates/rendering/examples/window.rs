@@ -65,8 +65,16 @@ fn main() -> Result<(), rendering::Error> {
         let names: Vec<_> = list.split(',').filter(|w| !w.is_empty() && !w.starts_with('(')).collect();
         Ok(Style { interactive: list == "(interactive)", ..Style::without(&names)? })
     };
-    let styles =
-        ["", "(interactive)", "shadows", "ghosts", "ribbons,marks", "inset,caption,time,names,labels,grid"];
+    // Still: where nothing moved but the eye.
+    let styles = [
+        "",
+        "(still)",
+        "(interactive)",
+        "shadows",
+        "ghosts",
+        "ribbons,marks",
+        "inset,caption,time,names,labels,grid",
+    ];
     println!("{:>10} {:>7} {:>38} {:>8} {:>8}", "size", "samples", "without", "prepare", "frame");
     for (width, height) in [(800, 560), (1280, 800)] {
         for samples in [4, 1] {

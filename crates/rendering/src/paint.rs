@@ -1,7 +1,7 @@
 //! What lies on the ground in one view: contact patches, marks, ribbons, rings, arrows and edges.
 
 use crate::camera::Camera;
-use crate::drape::{Onto, lay};
+use crate::drape::{Eye, Onto, lay};
 use crate::floor::Floor;
 use crate::palette::{self, Rgb};
 use crate::passes::decal::{Corner, Form, Layer};
@@ -18,6 +18,8 @@ pub(crate) const RING: f64 = 0.25;
 /// Position errors above this are shown by an arrow, m.
 const ARROW_ABOVE: f64 = 0.05;
 
+/// How far it is to where the size of a pixel is looked up, m.
+pub(crate) const STEP: f64 = 0.05;
 /// Lines of quick pictures are this near to where they belong, pixels.
 const UNSEEN: f64 = 0.4;
 
@@ -161,7 +163,8 @@ impl Painter<'_> {
 
     /// The corners as they lie on the floor.
     fn laid(self, onto: Onto) -> Vec<Corner> {
-        let eye = self.camera.perspective.then_some(self.camera.eye);
+        let slack = if self.quick { 3.0 } else { 1.0 };
+        let eye = self.camera.perspective.then_some(Eye { at: self.camera.eye, slack });
         lay(self.corners, self.floor, onto, self.origin, eye)
     }
 
@@ -217,18 +220,22 @@ impl Painter<'_> {
     }
 
     /// How long a metre along `direction` appears at `place`, pixels.
-    pub(crate) fn pixels_per_metre(&self, place: DVec2, direction: DVec2) -> f64 {
-        let step = 0.05;
-        let ends = [place, place + direction * step].map(|p| self.camera.project(self.on(p)));
-        let [Some(a), Some(b)] = ends else { return 1e3 };
+    fn pixels_per_metre(&self, place: DVec2, direction: DVec2) -> f64 {
+        self.apart(place, direction).map_or(1e3, |apart| (apart.length() / STEP).max(1.0))
+    }
+
+    /// Where the end of a step of [`STEP`] along `direction` appears, from its start, pixels.
+    pub(crate) fn apart(&self, place: DVec2, direction: DVec2) -> Option<DVec2> {
+        let [a, b] = [place, place + direction * STEP].map(|p| self.camera.project(self.on(p)));
         let aspect = self.camera.half.x / self.camera.half.y;
-        let apart = (b - a) * DVec2::new(aspect, 1.0) * (0.5 * self.height);
-        (apart.length() / step).max(1.0)
+        Some((b? - a?) * DVec2::new(aspect, 1.0) * (0.5 * self.height))
     }
 
     /// A band through `points`, each with its opacity; half its width is `half` m, but `least` pixels.
     fn band(&mut self, points: &[(DVec2, f32)], half: f64, least: f64, shift: f64, colour: Rgb) {
-        let few = self.quick.then(|| thinned(points, |place| UNSEEN * self.pixel(place)));
+        // On hills they would be cut into the same pieces again.
+        let few = (self.quick && self.floor.is_plane())
+            .then(|| thinned(points, |place| UNSEEN * self.pixel(place)));
         let points = few.as_deref().unwrap_or(points);
         let side = |k: usize| {
             let (before, after) = (points[k.saturating_sub(1)].0, points[(k + 1).min(points.len() - 1)].0);

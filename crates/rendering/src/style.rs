@@ -18,8 +18,8 @@ macro_rules! elements {
             pub picture_in_picture: Option<usize>,
             /// What is drawn on the ground to explain; views through cameras do not show it.
             pub sketch: Sketch,
-            /// Quicker pictures, for a window: ribbons and tyre marks have fewer points, and are within half a pixel of
-            /// where they are in others.
+            /// Quicker pictures, for a window: ribbons and tyre marks have fewer points, within half a pixel of where they
+            /// are in others, and follow hills less closely.
             pub interactive: bool,
         }
 
