@@ -1,5 +1,5 @@
-//! What a sketch looks like: `sketch FILE VIEW ROBOTS PATH TIME WIDTH HEIGHT BODY GROUND`, all optional; BODY and GROUND
-//! as for `still`.
+//! What a sketch looks like: `sketch FILE VIEW ROBOTS PATH TIME WIDTH HEIGHT BODY GROUND QUICK`, all optional; BODY and
+//! GROUND as for `still`, QUICK is `interactive` for a picture as in a window.
 
 #[path = "../tests/stage/course.rs"]
 #[expect(dead_code, reason = "shared with tests")]
@@ -99,7 +99,8 @@ fn main() -> Result<(), rendering::Error> {
     let layout = Layout::parse(&word(1, "snake"), &names)?;
     let gpu = Gpu::open(&AdapterChoice::Auto)?;
     let mut renderer = Renderer::new(&gpu, &play.cast, number(5, 1280.0) as u32, number(6, 800.0) as u32, 4)?;
-    let style = Style { sketch: sketched(&play, &at, time, scale), ..Style::default() };
+    let interactive = word(9, "") == "interactive";
+    let style = Style { sketch: sketched(&play, &at, time, scale), interactive, ..Style::default() };
     let picture = renderer.draw(&trail, &at(time), &layout, &style)?;
     png::write(word(0, "sketch.png").as_ref(), &picture, &[("Adapter", &gpu.description())])
 }

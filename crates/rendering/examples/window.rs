@@ -39,7 +39,7 @@ fn main() -> Result<(), rendering::Error> {
     let robots = word(0, "7").parse().unwrap_or(7);
     let (body, scale) = if word(1, "car") == "car" { (CAR, 10.0) } else { (Body::default(), 1.0) };
     let ground = word(2, "flat");
-    let frames = word(4, "25").parse().unwrap_or(25);
+    let frames = word(4, "25").parse::<i32>().unwrap_or(25);
     let mut play = Play::new(robots, Path::named("eight"));
     let (hills, props) = (matches!(&*ground, "hills" | "course"), matches!(&*ground, "props" | "course"));
     furnish(&mut play.cast, body, hills, props);
@@ -58,11 +58,23 @@ fn main() -> Result<(), rendering::Error> {
     let start = Instant::now();
     let copies: Vec<_> = (0..100).map(|_| trail.clone()).collect();
     println!("clone: {:.1} µs", start.elapsed().as_secs_f64() * 1e6 / copies.len() as f64);
+    let mut now = 60.0;
     let gpu = Gpu::open(&AdapterChoice::Auto)?;
     let layout = Layout::parse(&word(3, "snake"), &[])?;
-    let moment = at(60.0);
-    let names = |list: &str| Style::without(&list.split(',').filter(|w| !w.is_empty()).collect::<Vec<_>>());
-    let styles = ["", "shadows", "ghosts", "ribbons,marks", "inset,caption,time,names,labels,grid"];
+    let styled = |list: &str| -> Result<Style, rendering::Error> {
+        let names: Vec<_> = list.split(',').filter(|w| !w.is_empty() && !w.starts_with('(')).collect();
+        Ok(Style { interactive: list == "(interactive)", ..Style::without(&names)? })
+    };
+    // Still: where nothing moved but the eye.
+    let styles = [
+        "",
+        "(still)",
+        "(interactive)",
+        "shadows",
+        "ghosts",
+        "ribbons,marks",
+        "inset,caption,time,names,labels,grid",
+    ];
     println!("{:>10} {:>7} {:>38} {:>8} {:>8}", "size", "samples", "without", "prepare", "frame");
     for (width, height) in [(800, 560), (1280, 800)] {
         for samples in [4, 1] {
@@ -71,7 +83,9 @@ fn main() -> Result<(), rendering::Error> {
             let mut times = vec![(Vec::new(), Vec::new()); styles.len()];
             for _ in 0..frames {
                 for (list, (prepared, whole)) in styles.iter().zip(&mut times) {
-                    let style = names(list)?;
+                    let style = styled(list)?;
+                    now += if *list == "(still)" { 0.0 } else { 0.01 };
+                    let moment = at(now);
                     let start = Instant::now();
                     renderer.draw_into(&view, &trail, &moment, &layout, &style)?;
                     prepared.push(start.elapsed());

@@ -134,6 +134,23 @@ impl Camera {
         }
     }
 
+    /// Beyond which sides of the picture, or behind the eye, a point is by more than `margin` m, a bit for each: what lies
+    /// between two points that share one is not in the picture.
+    pub(crate) fn beyond(&self, point: DVec3, margin: f64) -> u8 {
+        let p = self.view_from_world(point);
+        let depth = if self.perspective { p.z } else { 1.0 };
+        let side = |at: f64, half: f64, shift: f64| {
+            let edge = half * depth + margin * (1.0 + half + shift.abs());
+            let off = at - shift * depth;
+            [off > edge, -off > edge]
+        };
+        let [right, left] = side(p.x, self.half.x, self.shift.x);
+        let [up, down] = side(p.y, self.half.y, self.shift.y);
+        let behind = self.perspective && p.z < self.near - margin;
+        let bits = [right, left, up, down, behind].into_iter().enumerate();
+        bits.fold(0, |all, (k, bit)| all | u8::from(bit) << k)
+    }
+
     /// Metres per pixel at a world point, on a tile `height` pixels high.
     pub(crate) fn metres_per_pixel(&self, point: DVec3, height: f64) -> f64 {
         let depth = if self.perspective { self.view_from_world(point).z.max(self.near) } else { 1.0 };
@@ -304,6 +321,26 @@ mod tests {
         assert!((f64::from(clip.x / clip.w) - seen.x).abs() < 1e-5);
         assert!((f64::from(clip.y / clip.w) - seen.y).abs() < 1e-5);
         assert!(clip.z > 0.0 && clip.z < clip.w);
+    }
+
+    #[test]
+    fn what_is_between_points_beyond_a_side_is_not_seen() {
+        let level = Camera::looking(DVec3::new(0.0, 0.0, 1.0), DVec3::new(4.0, 1.0, 0.0), 0.7, 1.6);
+        for camera in [level, Camera { perspective: false, half: DVec2::new(3.0, 2.0), ..level }] {
+            let point = |k: usize| DVec3::new(((k * 7) % 23) as f64 - 9.0, ((k * 5) % 19) as f64 - 9.0, 0.0);
+            let (mut hidden, mut shown) = (0, 0);
+            for (a, b) in (0..400).map(|k| (point(k), point(k * 3 + 1))) {
+                let out = camera.beyond(a, 0.2) & camera.beyond(b, 0.2) != 0;
+                let seen = |share: f64| {
+                    camera.project(a.lerp(b, share)).is_some_and(|p| p.abs().max_element() < 1.0)
+                };
+                let any = (0..=50).any(|k| seen(f64::from(k) * 0.02));
+                assert!(!(out && any), "{a} {b}");
+                hidden += usize::from(out);
+                shown += usize::from(any);
+            }
+            assert!(hidden > 60 && shown > 20, "{hidden} {shown}");
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Sketches as paint on the ground.
 
-use crate::paint::Painter;
+use crate::paint::{Painter, STEP};
 use crate::palette::{self, Rgb};
 use crate::passes::decal::{Corner, Form};
 use crate::{Area, Arrow, Ring, Sketch, Spot, Stroke};
@@ -14,8 +14,7 @@ const STRIPE: (f64, f32) = (15.0, 0.28);
 const RIM: (f64, f32) = (2.2, 0.4);
 /// How far a glow reaches, pixels at scale 1.
 const GLOW: f64 = 16.0;
-/// A line that runs across a picture seen at a low angle is widened on the ground to this many times the width it has
-/// elsewhere, not more.
+/// A line seen at a low angle is widened on the ground to this many times the width it has elsewhere, not more.
 const WIDEST: f64 = 6.0;
 
 impl Painter<'_> {
@@ -75,8 +74,11 @@ impl Painter<'_> {
     /// Half the width of a line on the ground, m, with half a pixel more for its smooth edge.
     fn half_width(&self, at: DVec2, side: DVec2, stroke: &Stroke) -> f64 {
         let pixel = self.pixel(at);
-        // Lines across the picture are foreshortened.
-        let across = (1.0 / self.pixels_per_metre(at, side)).clamp(pixel, WIDEST * pixel);
+        // Foreshortened, what is across a line on the ground is aslant in the picture: only its part across counts there.
+        let (aside, ahead) = (self.apart(at, side), self.apart(at, -side.perp()));
+        let pixels = |(aside, ahead): (DVec2, DVec2)| aside.perp_dot(ahead.normalize_or(DVec2::X)).abs();
+        let across = aside.zip(ahead).map_or(pixel, |both| STEP / pixels(both).max(1e-9));
+        let across = across.clamp(pixel, WIDEST * pixel);
         (0.5 * stroke.metres).max(0.5 * stroke.pixels * self.stage_scale * across) + 0.5 * across
     }
 

@@ -15,13 +15,21 @@ pub(crate) enum Onto {
     Ground,
 }
 
+/// Where paint is looked at from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Eye {
+    pub(crate) at: DVec3,
+    /// How many times as far from the ground as need be it may lie: up to 3 stays within what the shader pulls it nearer.
+    pub(crate) slack: f64,
+}
+
 /// Lays triangles of corners, relative to `origin`, on the floor; `eye` as for [`drape`].
 pub(crate) fn lay(
     corners: Vec<Corner>,
     floor: &Floor,
     onto: Onto,
     origin: DVec3,
-    eye: Option<DVec3>,
+    eye: Option<Eye>,
 ) -> Vec<Corner> {
     let on_ground = match &floor.terrain {
         Some(terrain) => drape(&corners, terrain, origin, eye),
@@ -96,7 +104,7 @@ fn place(corner: &Corner, origin: DVec3) -> DVec2 {
 
 /// Lays triangles of corners, relative to `origin`, on the terrain; the farther from `eye` they are, the farther from
 /// it they may lie: the shader pulls them nearer by more.
-fn drape(corners: &[Corner], terrain: &Terrain, origin: DVec3, eye: Option<DVec3>) -> Vec<Corner> {
+fn drape(corners: &[Corner], terrain: &Terrain, origin: DVec3, eye: Option<Eye>) -> Vec<Corner> {
     let mut out = Vec::with_capacity(corners.len() * 2);
     for triangle in corners.chunks_exact(3) {
         let raised = [0, 1, 2].map(|k| lifted(triangle[k], terrain, origin));
@@ -124,11 +132,11 @@ fn cells(corner: &Corner, terrain: &Terrain, origin: DVec3) -> DVec2 {
 }
 
 /// Whether a triangle that was lifted by its corners lies in the ground all over.
-fn level(triangle: &[Corner; 3], terrain: &Terrain, origin: DVec3, eye: Option<DVec3>) -> bool {
+fn level(triangle: &[Corner; 3], terrain: &Terrain, origin: DVec3, eye: Option<Eye>) -> bool {
     let at = triangle.map(|corner| DVec3::from_array(corner.position.map(f64::from)) + origin);
     let size = (at[0].max(at[1]).max(at[2]) - at[0].min(at[1]).min(at[2])).truncate();
     let middle = (at[0] + at[1] + at[2]) / 3.0;
-    let bound = 0.003 + eye.map_or(0.0, |eye| 0.001 * eye.distance(middle));
+    let bound = eye.map_or(0.003, |eye| eye.slack * (0.003 + 0.001 * eye.at.distance(middle)));
     let off = |p: DVec3| (terrain.at(p.x, p.y).height - p.z).abs() < bound;
     let bends = || size.max_element() > 1.5 * terrain.cell && !plain(&at, bound, terrain);
     off(middle) && (0..3).all(|k| off((at[k] + at[(k + 1) % 3]) * 0.5)) && !bends()

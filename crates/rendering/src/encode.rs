@@ -30,6 +30,8 @@ pub(crate) struct Passes {
     pub(crate) world: World,
     overlay: OverlayPass,
     pub(crate) text: TextPass,
+    /// What the shadow map was drawn from: while nothing moves it stays.
+    shadowed: Option<Vec<u8>>,
 }
 
 /// What a picture consists of, once its data is on the device.
@@ -49,6 +51,8 @@ pub(crate) struct Prepared {
     /// Whether a view shows ghosts: near the ground they would veil what is behind them.
     pub(crate) ghosts: Vec<bool>,
     pub(crate) shapes: Shapes,
+    /// Whether the shadow map is as it should be.
+    pub(crate) shadowed: bool,
 }
 
 impl Prepared {
@@ -85,6 +89,7 @@ impl Passes {
             world: World::new(gpu, canvas, cast, (fleet, floor), (detail, side)),
             overlay: OverlayPass::new(&gpu.device, flat),
             text: TextPass::new(&gpu.device, &gpu.queue, flat),
+            shadowed: None,
         }
     }
 
@@ -103,7 +108,16 @@ impl Passes {
             (once(&mut prepared.crowd).chain(prepared.own.iter_mut().flatten()), once(&mut prepared.props));
         self.world.upload(gpu, frames, crowds, props, corners);
         self.overlay.fill(device, queue, [width as f32, height as f32], &prepared.shapes);
-        self.text.fill(device, queue, [width, height], lines).map_err(|e| Error::Device(e.to_string()))
+        self.text.fill(device, queue, [width, height], lines).map_err(|e| Error::Device(e.to_string()))?;
+        let casting = Some(casting(frames, prepared));
+        prepared.shadowed = self.shadowed == casting;
+        self.shadowed = casting;
+        Ok(())
+    }
+
+    /// After a picture failed nobody knows what is in the shadow map.
+    pub(crate) fn forget(&mut self) {
+        self.shadowed = None;
     }
 
     pub(crate) fn encode(
@@ -112,7 +126,9 @@ impl Passes {
         surface: Surface<'_>,
         prepared: &Prepared,
     ) -> Result<(), Error> {
-        self.world.encode_shadow(encoder, &prepared.crowd, &prepared.props);
+        if !prepared.shadowed {
+            self.world.encode_shadow(encoder, &prepared.crowd, &prepared.props);
+        }
         self.encode_world(encoder, surface, prepared);
         self.encode_overlay(encoder, surface.target, prepared)
     }
@@ -154,4 +170,15 @@ impl Passes {
         self.overlay.draw(&mut pass, &prepared.shapes);
         self.text.draw(&mut pass).map_err(|e| Error::Device(e.to_string()))
     }
+}
+
+/// All that a shadow map is drawn from.
+fn casting(frames: &[Frame], prepared: &Prepared) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    if let Some(frame) = frames.first() {
+        bytes.extend_from_slice(bytemuck::bytes_of(&frame.shadow_from_local));
+    }
+    prepared.crowd.solid().for_each(|copy| bytes.extend_from_slice(bytemuck::bytes_of(copy)));
+    prepared.props.all().for_each(|copy| bytes.extend_from_slice(bytemuck::bytes_of(copy)));
+    bytes
 }

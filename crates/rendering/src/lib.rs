@@ -53,6 +53,7 @@ mod sketch;
 mod steady;
 mod style;
 mod target;
+mod thin;
 mod trail;
 mod view;
 mod world;

@@ -1,10 +1,11 @@
 //! What lies on the ground in one view: contact patches, marks, ribbons, rings, arrows and edges.
 
 use crate::camera::Camera;
-use crate::drape::{Onto, lay};
+use crate::drape::{Eye, Onto, lay};
 use crate::floor::Floor;
 use crate::palette::{self, Rgb};
 use crate::passes::decal::{Corner, Form, Layer};
+use crate::thin::thinned;
 use crate::trail::{RIBBON, Trail, set_points};
 use crate::{Style, View};
 use glam::{DVec2, DVec3};
@@ -16,6 +17,11 @@ const RIBBON_HALF: f64 = 0.03;
 pub(crate) const RING: f64 = 0.25;
 /// Position errors above this are shown by an arrow, m.
 const ARROW_ABOVE: f64 = 0.05;
+
+/// How far it is to where the size of a pixel is looked up, m.
+pub(crate) const STEP: f64 = 0.05;
+/// Lines of quick pictures are this near to where they belong, pixels.
+const UNSEEN: f64 = 0.4;
 
 const RUBBER: Rgb = [0.05, 0.05, 0.055];
 
@@ -55,6 +61,8 @@ pub(crate) struct Painter<'a> {
     pub(crate) stage_scale: f64,
     pub(crate) origin: DVec3,
     floor: &'a Floor,
+    /// Whether lines may have fewer points.
+    quick: bool,
 }
 
 /// All decals of one view on a tile `height` pixels high, layer by layer, in the order in which they are drawn.
@@ -125,6 +133,7 @@ impl<'a> Painter<'a> {
             stage_scale: stage.style.scale * (height / 720.0).clamp(0.6, 1.0),
             origin: stage.origin,
             floor: stage.floor,
+            quick: stage.style.interactive,
         }
     }
 }
@@ -154,7 +163,8 @@ impl Painter<'_> {
 
     /// The corners as they lie on the floor.
     fn laid(self, onto: Onto) -> Vec<Corner> {
-        let eye = self.camera.perspective.then_some(self.camera.eye);
+        let slack = if self.quick { 3.0 } else { 1.0 };
+        let eye = self.camera.perspective.then_some(Eye { at: self.camera.eye, slack });
         lay(self.corners, self.floor, onto, self.origin, eye)
     }
 
@@ -210,32 +220,53 @@ impl Painter<'_> {
     }
 
     /// How long a metre along `direction` appears at `place`, pixels.
-    pub(crate) fn pixels_per_metre(&self, place: DVec2, direction: DVec2) -> f64 {
-        let step = 0.05;
-        let ends = [place, place + direction * step].map(|p| self.camera.project(self.on(p)));
-        let [Some(a), Some(b)] = ends else { return 1e3 };
+    fn pixels_per_metre(&self, place: DVec2, direction: DVec2) -> f64 {
+        self.apart(place, direction).map_or(1e3, |apart| (apart.length() / STEP).max(1.0))
+    }
+
+    /// Where the end of a step of [`STEP`] along `direction` appears, from its start, pixels.
+    pub(crate) fn apart(&self, place: DVec2, direction: DVec2) -> Option<DVec2> {
+        let [a, b] = [place, place + direction * STEP].map(|p| self.camera.project(self.on(p)));
         let aspect = self.camera.half.x / self.camera.half.y;
-        let apart = (b - a) * DVec2::new(aspect, 1.0) * (0.5 * self.height);
-        (apart.length() / step).max(1.0)
+        Some((b? - a?) * DVec2::new(aspect, 1.0) * (0.5 * self.height))
     }
 
     /// A band through `points`, each with its opacity; half its width is `half` m, but `least` pixels.
     fn band(&mut self, points: &[(DVec2, f32)], half: f64, least: f64, shift: f64, colour: Rgb) {
+        // On hills they would be cut into the same pieces again.
+        let few = (self.quick && self.floor.is_plane())
+            .then(|| thinned(points, |place| UNSEEN * self.pixel(place)));
+        let points = few.as_deref().unwrap_or(points);
         let side = |k: usize| {
             let (before, after) = (points[k.saturating_sub(1)].0, points[(k + 1).min(points.len() - 1)].0);
             (after - before).normalize_or(DVec2::X).perp()
         };
-        let edge = |k: usize, u: f32| {
-            // Wide enough to be seen from afar.
-            let pixel = self.pixel(points[k].0);
-            let half = half.max(least * self.stage_scale * pixel);
-            let place = points[k].0 + side(k) * (shift + half * f64::from(u));
-            self.corner(place, Form::Solid, [u, 0.0], colour, points[k].1)
-        };
+        // Wide enough to be seen from afar.
+        let width = |at: DVec3| half.max(least * self.stage_scale * self.pixel_at(at));
+        let uneven = !self.floor.is_plane();
         let mut added = Vec::with_capacity(6 * points.len());
-        for k in 1..points.len() {
-            let quad = [edge(k - 1, -1.0), edge(k - 1, 1.0), edge(k, 1.0), edge(k, -1.0)];
-            added.extend([0, 1, 2, 0, 2, 3].map(|c| quad[c]));
+        let mut before: Option<(DVec2, u8, f64)> = None;
+        for (k, (place, _)) in points.iter().enumerate() {
+            let on = self.on(*place);
+            let half = width(on);
+            let reach = shift.abs() + half;
+            // On hills it may rise into the picture between two points.
+            let step = before.map_or(0.0, |(from, ..)| if uneven { from.distance(*place) } else { 0.0 });
+            let beyond = self.camera.beyond(on, reach + step);
+            if let Some((.., other)) = before.filter(|(_, sides, _)| sides & beyond == 0) {
+                let edge = |k: usize, half: f64, u: f32| {
+                    let place = points[k].0 + side(k) * (shift + half * f64::from(u));
+                    self.corner(place, Form::Solid, [u, 0.0], colour, points[k].1)
+                };
+                let quad = [
+                    edge(k - 1, other, -1.0),
+                    edge(k - 1, other, 1.0),
+                    edge(k, half, 1.0),
+                    edge(k, half, -1.0),
+                ];
+                added.extend([0, 1, 2, 0, 2, 3].map(|c| quad[c]));
+            }
+            before = Some((*place, beyond, half));
         }
         self.corners.extend(added);
     }

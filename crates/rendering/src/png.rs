@@ -127,7 +127,8 @@ mod tests {
 
     #[test]
     fn texts_come_back() {
-        let scene: String = (0..6_000).map(|k| format!("\"k{k}\" = \u{03b2}\n")).collect();
+        let rows: Vec<_> = (0..6_000).map(|k| format!("\"k{k}\" = \u{03b2}")).collect();
+        let scene = rows.join("\n");
         let all = [("Adapter", "llvmpipe · 1 × 2"), ("Scene", scene.as_str()), ("Empty", "")];
         let bytes = encode(&picture(), &all).unwrap();
         assert!(scene.len() > 50_000 && bytes.len() < 30_000, "{} {}", scene.len(), bytes.len());

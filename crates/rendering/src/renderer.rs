@@ -158,12 +158,7 @@ impl Renderer {
         layout: &Layout,
         style: &Style,
     ) -> Result<wgpu::SubmissionIndex, Error> {
-        let prepared = self.prepare(trail, moment, layout, style)?;
-        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.passes.encode(&mut encoder, self.surface(target), &prepared)?;
-        let submission = self.gpu.queue.submit([encoder.finish()]);
-        self.gpu.check()?;
-        Ok(submission)
+        self.encoded((trail, moment), layout, style, target, None)
     }
 
     fn submit(
@@ -177,17 +172,36 @@ impl Renderer {
         if !matches!(self.canvas.format, TextureFormat::Rgba8Unorm | TextureFormat::Bgra8Unorm) {
             return Err(Error::Device(format!("no picture can be read from {:?}", self.canvas.format)));
         }
-        let prepared = self.prepare(trail, moment, layout, style)?;
         while self.offscreen.len() <= slot {
             self.offscreen.push(Offscreen::new(&self.gpu.device, self.size, self.canvas.format));
         }
-        let offscreen = &self.offscreen[slot];
-        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.passes.encode(&mut encoder, self.surface(&offscreen.view), &prepared)?;
-        offscreen.copy(&mut encoder);
-        let submission = self.gpu.queue.submit([encoder.finish()]);
-        self.gpu.check()?;
-        Ok((slot, submission))
+        let view = self.offscreen[slot].view.clone();
+        Ok((slot, self.encoded((trail, moment), layout, style, &view, Some(slot))?))
+    }
+
+    /// Draws a moment into a target and copies it to where it is read, if it is.
+    fn encoded(
+        &mut self,
+        (trail, moment): (&Trail, &Moment),
+        layout: &Layout,
+        style: &Style,
+        target: &wgpu::TextureView,
+        read: Option<usize>,
+    ) -> Result<wgpu::SubmissionIndex, Error> {
+        let drawn = self.prepare(trail, moment, layout, style).and_then(|prepared| {
+            let mut encoder =
+                self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            self.passes.encode(&mut encoder, self.surface(target), &prepared)?;
+            if let Some(slot) = read {
+                self.offscreen[slot].copy(&mut encoder);
+            }
+            let submission = self.gpu.queue.submit([encoder.finish()]);
+            self.gpu.check().map(|()| submission)
+        });
+        if drawn.is_err() {
+            self.passes.forget();
+        }
+        drawn
     }
 
     /// Computes what the picture consists of and brings it to the device.
@@ -247,8 +261,19 @@ impl Renderer {
         let (lines, shapes) = words(&mut self.passes.text, &stage, (&views, upper), &windows, height);
         let ghosts = views.iter().map(|view| !matches!(view, View::SnakeEye | View::Camera(_))).collect();
         let veiled = seen().map(|(view, camera)| veiled_decks(camera, &stage, view)).collect();
-        let mut prepared =
-            Prepared { crowd, cameras, own, upper, props, tiles, veiled, decals, ghosts, shapes };
+        let mut prepared = Prepared {
+            crowd,
+            cameras,
+            own,
+            upper,
+            props,
+            tiles,
+            veiled,
+            decals,
+            ghosts,
+            shapes,
+            shadowed: false,
+        };
         self.passes.upload(&self.gpu, self.size, &frames, &mut prepared, &corners, &lines)?;
         Ok(prepared)
     }

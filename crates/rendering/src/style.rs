@@ -18,6 +18,9 @@ macro_rules! elements {
             pub picture_in_picture: Option<usize>,
             /// What is drawn on the ground to explain; views through cameras do not show it.
             pub sketch: Sketch,
+            /// Quicker pictures, for a window: ribbons and tyre marks have fewer points, within half a pixel of where they
+            /// are in others, and follow hills less closely.
+            pub interactive: bool,
         }
 
         impl Default for Style {
@@ -28,6 +31,7 @@ macro_rules! elements {
                     detections: false,
                     picture_in_picture: None,
                     sketch: Sketch::default(),
+                    interactive: false,
                 }
             }
         }

@@ -102,6 +102,26 @@ fn a_stroke_fades_and_keeps_its_width_when_it_is_far() {
     assert!(excess(&picture, [-2.0, 1.5], 1, REDDER) > 100);
 }
 
+/// Seen at a low angle a line that runs aslant is as wide as any other.
+#[test]
+fn a_stroke_is_as_wide_aslant() {
+    let play = Play::new(1, Path::Straight);
+    let view = || View::Fixed { eye: [-8.0, 0.0, 2.2], target: [0.0, 0.0, 0.0], field_of_view: 0.5 };
+    for [from, to] in [[[-1.0, 1.5], [-1.0, -1.5]], [[0.5, 1.5], [-1.5, -1.5]], [[-1.5, 1.5], [0.5, -1.5]]] {
+        let spots = vec![spot(from, RED, 1.0), spot(to, RED, 1.0)];
+        let picture = draw(&play, view(), Sketch { strokes: vec![Stroke::new(spots)], ..Sketch::default() });
+        let red = |x: u32, y: u32| {
+            let [r, g, _] = picture.rgb(x, y).unwrap().map(i32::from);
+            r - g > 70
+        };
+        // All of them are nearly level in the picture.
+        let columns = (SIZE.0 * 2 / 5..SIZE.0 * 3 / 5).filter(|x| x.abs_diff(SIZE.0 / 2) > 20);
+        let wide: Vec<_> = columns.map(|x| (0..SIZE.1).filter(|y| red(x, *y)).count()).collect();
+        let mean = wide.iter().sum::<usize>() as f64 / wide.len() as f64;
+        assert!((1.4..3.2).contains(&mean), "{from:?}: {mean}");
+    }
+}
+
 #[test]
 fn what_is_not_finite_is_left_out() {
     let play = Play::new(3, Path::Straight);

@@ -170,3 +170,44 @@ fn memory_stays_bounded_while_a_window_is_dragged() {
     }
     assert!(after[5] <= after[1] + 4_000_000, "{after:?}");
 }
+
+/// What stays on the device from picture to picture does not show.
+#[test]
+fn a_picture_does_not_hang_on_the_one_before() {
+    let gpu = foreign(Limits::default());
+    let play = Play::new(3, Path::Eight);
+    let trail = play.trail(3.0);
+    let style = Style::default();
+    let mut kept = Renderer::new(&gpu, &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+    // Still from another side, moved, failed and then drawn, and still again.
+    let small = target(&gpu, (32, 32), TextureFormat::Rgba8Unorm);
+    let small = small.create_view(&wgpu::TextureViewDescriptor::default());
+    for (time, view) in [(3.0, View::Snake), (3.0, View::Orbit), (3.4, View::Orbit), (3.4, View::Top)] {
+        let (moment, layout) = (play.at(time), Layout::single(view));
+        let fresh = Renderer::new(&gpu, &play.cast, SIZE.0, SIZE.1, 4)
+            .and_then(|mut renderer| renderer.draw(&trail, &moment, &layout, &style))
+            .unwrap();
+        assert!(kept.draw(&trail, &moment, &layout, &style).unwrap() == fresh);
+        assert!(kept.draw_into(&small, &trail, &play.at(1.0), &layout, &style).is_err());
+        assert!(kept.draw(&trail, &moment, &layout, &style).unwrap() == fresh);
+        assert!(kept.draw(&trail, &moment, &layout, &style).unwrap() == fresh);
+    }
+}
+
+#[test]
+fn quick_pictures_look_like_others() {
+    let gpu = foreign(Limits::default());
+    let play = Play::new(7, Path::Eight);
+    let mut renderer = Renderer::new(&gpu, &play.cast, 800, 560, 4).unwrap();
+    let (trail, moment) = (play.trail(40.0), play.at(40.0));
+    for view in [View::Snake, View::Orbit, View::Top] {
+        let mut draw = |interactive: bool| {
+            let style = Style { interactive, ..Style::default() };
+            renderer.draw(&trail, &moment, &Layout::single(view.clone()), &style).unwrap()
+        };
+        let (whole, quick) = (draw(false), draw(true));
+        let apart: Vec<_> = whole.rgba.iter().zip(&quick.rgba).map(|(a, b)| a.abs_diff(*b)).collect();
+        let far = apart.iter().filter(|d| **d > 48).count();
+        assert!(far * 2_000 < apart.len(), "{view:?}: {far} of {}", apart.len());
+    }
+}

@@ -38,6 +38,13 @@ pub(crate) struct Copies {
     pub(crate) decks: Vec<(Look, Instance)>,
 }
 
+impl Copies {
+    /// In the order in which they lie on the device.
+    pub(crate) fn all(&self) -> impl Iterator<Item = &Instance> {
+        self.others.iter().flatten().chain(self.decks.iter().map(|(_, copy)| copy))
+    }
+}
+
 /// What is seen through where it stands before the robots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Veil {
@@ -121,8 +128,7 @@ impl PropPass {
         let mut all: Vec<Instance> = Vec::new();
         for copies in pictures {
             copies.first = all.len() as u32;
-            all.extend(copies.others.iter().flatten());
-            all.extend(copies.decks.iter().map(|(_, copy)| copy));
+            all.extend(copies.all());
         }
         self.instances.fill(device, queue, bytemuck::cast_slice(&all));
     }

@@ -38,8 +38,13 @@ pub(crate) struct Crowd {
 impl Crowd {
     /// In the order in which they lie on the device.
     fn copies(&self) -> impl Iterator<Item = &Instance> {
-        let solid = self.squads.iter().flat_map(|s| [&s.bodies, &s.wheels]).chain([&self.cameras]);
-        solid.chain(self.squads.iter().map(|s| &s.ghosts)).flatten()
+        self.solid().chain(self.squads.iter().flat_map(|s| &s.ghosts))
+    }
+
+    /// What casts shadows.
+    pub(crate) fn solid(&self) -> impl Iterator<Item = &Instance> {
+        let robots = self.squads.iter().flat_map(|s| [&s.bodies, &s.wheels]);
+        robots.chain([&self.cameras]).flatten()
     }
 }
 
