@@ -28,7 +28,7 @@ macro_rules! shipped {
 
 shipped![
     "circle-three", "line-three", "seven-v", "figure-eight-seven", "moving-set-point", "peaking", "hundred",
-    "cars-line-three", "cars-circle-three", "cars-seven-v", "cars-slalom", "cars-yard", "cars-ramp", "cars-rough",
+    "change-places", "cars-line-three", "cars-circle-three", "cars-seven-v", "cars-slalom", "cars-yard", "cars-ramp", "cars-rough",
     "cars-crash", "cars-mixed", "cars-full-size", "cars-limit-cycle", "cars-hundred", "vision-line-three",
     "vision-circle-three", "vision-cars-line-three", "vision-cars-circle-three", "vision-seven-v",
     "vision-occlusion", "vision-dropout", "vision-epsilon",
