@@ -120,6 +120,7 @@ impl Lab {
             print: options.timings,
         };
         lab.desk.playing = !options.paused;
+        lab.desk.aloud = options.timings;
         lab.open_first(&options);
         Ok(lab)
     }
@@ -217,7 +218,7 @@ impl Lab {
             let seen = DeskView {
                 desk,
                 cast: desk.history.as_ref().map_or(&empty, |history| history.cast()),
-                moment: desk.moment(),
+                moment: desk.shown(),
                 trail: desk.history.as_ref().and_then(|history| history.trail(branch, time)),
             };
             viewport.show(ui, &seen, out);
@@ -292,7 +293,9 @@ impl Lab {
             .open(&mut open)
             .collapsible(false)
             .resizable(false)
-            .anchor(egui::Align2::LEFT_BOTTOM, [270.0, -230.0])
+            .fixed_pos(self.viewport.rect.right_top() + egui::vec2(-12.0, 12.0))
+            .pivot(egui::Align2::RIGHT_TOP)
+            .default_width(300.0)
             .show(ctx, |ui| {
                 ui.label("1.  Drag the bright ring: the set point moves, and the thin lines show the future.");
                 ui.label("2.  Drag ε in the panel Observer, then press Shift Home, and watch it peak.");
@@ -371,8 +374,8 @@ impl Lab {
     }
 
     fn dismiss(&mut self) {
-        if self.shows.gallery || self.shows.help {
-            (self.shows.gallery, self.shows.help) = (false, false);
+        if self.shows.gallery || self.shows.help || self.shows.hints {
+            (self.shows.gallery, self.shows.help, self.shows.hints) = (false, false, false);
         } else if self.desk.notice.is_some() {
             self.desk.notice = None;
         } else if self.desk.tool != Tool::Hand {
@@ -705,7 +708,7 @@ impl eframe::App for Lab {
     fn on_exit(&mut self) {
         self.end_film();
         if self.print {
-            self.timings.print();
+            self.timings.print(&self.desk);
         }
     }
 }

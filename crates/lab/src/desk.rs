@@ -6,9 +6,10 @@ use crate::session::forecast::Forecast;
 use crate::session::history::History;
 use crate::session::runner::{News, Order};
 use scene::{Channel, Follow, Role, Scene};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::Moment;
+use vocabulary::{EdgeState, Moment, wrap};
 
 /// What is selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -93,6 +94,8 @@ pub struct Desk {
     pub log: Vec<Event>,
     /// A message in place, until it is dismissed.
     pub notice: Option<String>,
+    /// Whether what happens is printed, too.
+    pub aloud: bool,
     /// Text of the scene at time 0 of the run.
     base: String,
     /// For the thread of the run.
@@ -119,6 +122,7 @@ impl Desk {
             for_all: true,
             mirror: false,
             log: Vec::new(),
+            aloud: false,
             notice: None,
             base: String::new(),
             orders: Vec::new(),
@@ -159,6 +163,26 @@ impl Desk {
             Some(time) => history.at(self.branch, time),
             None => history.head(self.branch).cloned(),
         }
+    }
+
+    /// The moment that is looked at, with set points as they are wanted now: a run that stands shows what a hand moves.
+    pub fn shown(&self) -> Option<Arc<Moment>> {
+        let moment = self.moment()?;
+        if self.cursor.is_some() || self.playing {
+            return Some(moment);
+        }
+        let wanted: Vec<Option<[f64; 2]>> = (0..moment.edges.len()).map(|edge| self.set_point(edge)).collect();
+        let stale = |(state, wanted): (&EdgeState, &Option<[f64; 2]>)| wanted.is_some_and(|w| w != state.set_point);
+        if !moment.edges.iter().zip(&wanted).any(stale) {
+            return Some(moment);
+        }
+        let mut moment = Moment::clone(&moment);
+        for (state, wanted) in moment.edges.iter_mut().zip(wanted) {
+            state.set_point = wanted.unwrap_or(state.set_point);
+            let [distance, bearing] = state.set_point;
+            state.error = [distance - state.relative.distance, wrap(bearing - state.relative.bearing)];
+        }
+        Some(Arc::new(moment))
     }
 
     /// The time that is looked at, s.
@@ -230,6 +254,11 @@ impl Desk {
 
     fn event(&mut self, text: String, fault: bool) {
         let time = self.time();
+        if self.aloud {
+            let kind = if fault { "fault" } else { "log" };
+            // Where nobody reads any more, the window goes on.
+            let _ = writeln!(std::io::stdout(), "{kind} {time:.2} s: {text}");
+        }
         // What goes on under a hand is one line.
         let again = text.ends_with('…') && self.log.last().is_some_and(|last| last.text == text);
         if !again {

@@ -58,7 +58,7 @@ pub const LIST: &[(&str, &[Shortcut])] = &[
             Shortcut { keys: "Ctrl O", what: "scenes" },
             Shortcut { keys: "Ctrl R", what: "read the file again" },
             Shortcut { keys: "Ctrl Z  Ctrl Y", what: "undo, redo" },
-            Shortcut { keys: "P  F", what: "picture, film" },
+            Shortcut { keys: "P  F  K", what: "picture, film, keep the run" },
             Shortcut { keys: "?", what: "this page" },
         ],
     ),
@@ -103,6 +103,7 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, out: &mut Vec<Action>) {
     take(none, Key::T, Action::Theme);
     take(none, Key::P, Action::Picture);
     take(none, Key::F, Action::Film);
+    take(none, Key::K, Action::KeepRun);
     take(none, Key::F1, Action::Help);
     if let Some(edge) = desk.chosen_edge() {
         for (key, by) in [(Key::W, [-0.1, 0.0]), (Key::S, [0.1, 0.0]), (Key::A, [0.0, 5.0]), (Key::D, [0.0, -5.0])]

@@ -7,6 +7,15 @@ const ACCENT: [Color32; 2] = [Color32::from_rgb(0x3d, 0x8b, 0xe0), Color32::from
 
 /// Sets the looks of both themes.
 pub fn dress(ctx: &egui::Context) {
+    // The face of the pictures, before those that come with the library.
+    let mut fonts = egui::FontDefinitions::default();
+    fonts.font_data.insert("Inter".to_owned(), egui::FontData::from_static(rendering::FONT).into());
+    for family in [FontFamily::Proportional, FontFamily::Monospace] {
+        let names = fonts.families.entry(family.clone()).or_default();
+        let at = if family == FontFamily::Proportional { 0 } else { names.len() };
+        names.insert(at, "Inter".to_owned());
+    }
+    ctx.set_fonts(fonts);
     for theme in [Theme::Dark, Theme::Light] {
         ctx.set_visuals_of(theme, visuals(theme));
         ctx.style_mut_of(theme, |style| {

@@ -1,6 +1,7 @@
 //! How fast the window is: measured while it is used, printed when it is closed.
 
 use crate::action::Action;
+use crate::desk::Desk;
 use crate::session::forecast::Forecast;
 use std::time::{Duration, Instant};
 
@@ -53,7 +54,7 @@ impl Timing {
         }
     }
 
-    pub(crate) fn print(&self) {
+    pub(crate) fn print(&self, desk: &Desk) {
         use std::io::Write;
         let mut out = std::io::stdout();
         for (name, values) in [
@@ -71,5 +72,6 @@ impl Timing {
             }
         }
         let _ = writeln!(out, "3D pictures: {}", self.pictures);
+        let _ = writeln!(out, "branches: {}, t = {:.2} s", desk.branches.len(), desk.time());
     }
 }

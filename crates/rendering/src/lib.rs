@@ -63,6 +63,7 @@ pub use eyes::CameraEyes;
 pub use film::{Film, FilmKind};
 pub use gpu::{AdapterChoice, AdapterInfo, Gpu, adapters};
 pub use palette::robot_colours;
+pub use passes::text::FONT;
 pub use pick::Picked;
 pub use renderer::Renderer;
 pub use sightline::Sightline;

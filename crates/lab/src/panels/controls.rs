@@ -106,7 +106,7 @@ impl Row {
                 },
             );
             sliders(ui, out);
-            let back = ui.add_enabled(differs, egui::Button::new("⟲").frame(false));
+            let back = ui.add_enabled(differs, egui::Button::new("↺").frame(false));
             let name = format!("Reset {}", self.symbol.name.to_lowercase());
             back.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::Role::Button, differs, name.clone())

@@ -3,7 +3,7 @@
 use super::{colour, nothing};
 use crate::action::Action;
 use crate::desk::Desk;
-use crate::quantities::{Quantity, bounds, curves};
+use crate::quantities::{Curve, Quantity, bounds, curves};
 use crate::tidy::fixed;
 use eframe::egui::{self, Color32, Id, Stroke, Ui};
 use egui_plot::{HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, VLine};
@@ -41,6 +41,7 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
         .allow_boxed_zoom(false)
         .allow_drag([true, false])
         .allow_zoom([true, false])
+        .grid_color(weak.gamma_multiply(0.35))
         .set_margin_fraction(egui::vec2(0.01, 0.08))
         .include_x(0.0)
         .include_x(end.max(1.0))
@@ -59,7 +60,9 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
         .collect();
     let cursor = ui.visuals().strong_text_color();
     let chosen = desk.chosen_robot();
+    let span = span(&all, quantity);
     let response = plot.show(ui, |plot| {
+        plot.set_plot_bounds_y(span[0]..=span[1]);
         for bound in bounds(desk, quantity) {
             let near = all.iter().flat_map(|c| &c.points).any(|p| p[1].abs() > 0.4 * bound.abs());
             // A bound that is far away would only flatten the curves.
@@ -85,12 +88,33 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
     // The quantity stands in the plot, where it takes no room.
     let at = response.response.rect.right_top() + egui::vec2(-6.0, 2.0);
     let font = egui::FontId::proportional(11.5);
-    ui.painter().text(at, egui::Align2::RIGHT_TOP, quantity.axis(), font, ui.visuals().text_color());
+    let galley = ui.painter().layout_no_wrap(quantity.axis().to_owned(), font, ui.visuals().text_color());
+    let place = egui::Align2::RIGHT_TOP.anchor_size(at, galley.size());
+    ui.painter().rect_filled(place.expand(2.0), 2.0, ui.visuals().extreme_bg_color.gamma_multiply(0.8));
+    ui.painter().galley(place.min, galley, ui.visuals().text_color());
     if response.response.clicked()
         && let Some(point) = response.inner
     {
         out.push(Action::Seek(point.x.max(0.0)));
     }
+}
+
+/// Share of the values, at either end, that may lie beside the plot: spikes of a sample would flatten all else.
+const SPIKES: f64 = 0.015;
+
+/// What a plot shows of its values.
+fn span(curves: &[Curve], quantity: Quantity) -> [f64; 2] {
+    let mut values: Vec<f64> = curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]).collect();
+    values.sort_by(f64::total_cmp);
+    let (Some(low), Some(high)) = (values.first(), values.last()) else { return [-1.0, 1.0] };
+    let spiky = !matches!(quantity, Quantity::DistanceError | Quantity::BearingError | Quantity::Clearance);
+    let beside = if spiky { (SPIKES * values.len() as f64) as usize } else { 0 };
+    let low = values.get(beside).unwrap_or(low);
+    let high = values.get(values.len() - 1 - beside).unwrap_or(high);
+    let (low, high) = if quantity.logarithmic() { (*low, *high) } else { (low.min(0.0), high.max(0.0)) };
+    // What is at rest is shown at rest.
+    let room = 0.1 * (high - low).max(0.02);
+    [low - room, high + room]
 }
 
 /// A number for an axis.

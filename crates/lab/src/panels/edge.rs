@@ -73,8 +73,8 @@ fn shape(ui: &mut Ui, out: &mut Vec<Action>) {
         for (text, scale, turn, tip) in [
             ("−10 %", 1.0 / 1.1, 0.0, "All distances smaller (Ctrl −)"),
             ("+10 %", 1.1, 0.0, "All distances larger (Ctrl +)"),
-            ("⟲ 5°", 1.0, 5.0, "All bearings to the left"),
-            ("⟳ 5°", 1.0, -5.0, "All bearings to the right"),
+            ("↺ 5°", 1.0, 5.0, "All bearings to the left"),
+            ("↻ 5°", 1.0, -5.0, "All bearings to the right"),
         ] {
             if ui.button(text).on_hover_text(tip).clicked() {
                 out.push(Action::Shape { scale, turn: f64::to_radians(turn) });

@@ -6,6 +6,7 @@ pub mod curves;
 pub mod edge;
 pub mod film;
 pub mod formation;
+mod icons;
 pub mod law;
 pub mod log;
 pub mod sensing;

@@ -1,9 +1,10 @@
 //! Play, pace, time, and the line on which to go back and forth, with a row for each branch.
 
+use super::icons::{Icon, button};
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::tidy::fixed;
-use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInfo, Role};
+use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInfo};
 
 /// Rows of branches that are shown, at most.
 const MOST_ROWS: usize = 5;
@@ -18,7 +19,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
         let text = format!("t = {} s", fixed(desk.time(), 2));
         ui.add_sized([92.0, 20.0], egui::Label::new(RichText::new(text).monospace()))
             .on_hover_text("Simulated time that is seen");
-        let tail = 232.0;
+        let tail = 214.0;
         let wide = (ui.available_width() - tail).max(60.0);
         line(ui, desk, wide, out);
         menus(ui, desk, filming, out);
@@ -26,22 +27,17 @@ pub fn show(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
 }
 
 fn buttons(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let (sign, name) = if desk.playing { ("⏸", "Pause") } else { ("▶", "Play") };
-    if icon(ui, sign, name).on_hover_text(format!("{name} (Space)")).clicked() {
+    let (icon, name) = if desk.playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
+    if button(ui, icon, "", name, None).on_hover_text(format!("{name} (Space)")).clicked() {
         out.push(Action::Toggle);
     }
-    if icon(ui, "⏭", "Step").on_hover_text("One control sample (→)").clicked() {
+    if button(ui, Icon::Step, "", "Step", None).on_hover_text("One control sample (→)").clicked() {
         out.push(Action::Step);
     }
-    if icon(ui, "⏮", "Restart").on_hover_text("Begin again at 0 (Shift Home)").clicked() {
+    let tip = "Begin again at 0 (Shift Home)";
+    if button(ui, Icon::Restart, "", "Restart", None).on_hover_text(tip).clicked() {
         out.push(Action::Restart);
     }
-}
-
-fn icon(ui: &mut Ui, sign: &str, name: &str) -> egui::Response {
-    let response = ui.add(egui::Button::new(RichText::new(sign).size(15.0)).min_size(egui::vec2(26.0, 24.0)));
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
-    response
 }
 
 fn pace(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
@@ -121,29 +117,29 @@ pub(crate) fn branch_colour(index: usize, active: usize, visuals: &egui::Visuals
 }
 
 fn menus(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
-    let record = RichText::new("● Film").color(if filming {
-        ui.visuals().error_fg_color
+    let (icon, tip, colour) = if filming {
+        (Icon::Stop, "End the film (F)", Some(ui.visuals().error_fg_color))
     } else {
-        ui.visuals().text_color()
-    });
-    let tip = if filming { "End the film (F)" } else { "Film what is seen (F)" };
-    if ui.button(record).on_hover_text(tip).clicked() {
+        (Icon::Record, "Film what is seen (F)", None)
+    };
+    if button(ui, icon, "Film", "Film", colour).on_hover_text(tip).clicked() {
         out.push(Action::Film);
     }
-    if icon(ui, "📷", "Picture").on_hover_text("A PNG of what is seen (P)").clicked() {
+    if button(ui, Icon::Camera, "", "Picture", None).on_hover_text("A PNG of what is seen (P)").clicked() {
         out.push(Action::Picture);
     }
-    if ui.button("☰ Scenes").on_hover_text("Open a scene (Ctrl O)").clicked() {
+    if button(ui, Icon::Menu, "Scenes", "Scenes", None).on_hover_text("Open a scene (Ctrl O)").clicked() {
         out.push(Action::Gallery);
     }
-    ui.menu_button("⋮", |ui| {
+    let more = button(ui, Icon::More, "", "More", None);
+    egui::Popup::menu(&more).show(|ui| {
         let unsaved = desk.draft.as_ref().is_some_and(crate::session::draft::Draft::unsaved);
         for (text, action, on) in [
             ("Save scene   Ctrl S", Action::Save, unsaved),
             ("Reload from disk   Ctrl R", Action::Reload, desk.draft.as_ref().is_some_and(|d| d.path.is_some())),
             ("Undo   Ctrl Z", Action::Undo, desk.draft.as_ref().is_some_and(|d| d.undoes().is_some())),
             ("Redo   Ctrl Y", Action::Redo, desk.draft.as_ref().is_some_and(|d| d.redoes().is_some())),
-            ("Keep the run", Action::KeepRun, true),
+            ("Keep the run   K", Action::KeepRun, true),
             ("Curves as CSV", Action::CurvesCsv, true),
             ("Curves as SVG", Action::CurvesSvg, true),
             ("Light or dark   T", Action::Theme, true),
@@ -171,7 +167,5 @@ fn menus(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
                 }
             }
         });
-    })
-    .response
-    .widget_info(|| WidgetInfo::labeled(Role::Button, true, "More"));
+    });
 }

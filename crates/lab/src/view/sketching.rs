@@ -99,7 +99,8 @@ fn others(desk: &Desk, cast: &Cast, colours: &[[f32; 3]], sketch: &mut Sketch) {
 /// The next seconds, and where the formation will be.
 fn future(forecast: &Forecast, colours: &[[f32; 3]], cast: &Cast, sketch: &mut Sketch) {
     for (robot, path) in forecast.paths.iter().enumerate() {
-        let colour = light(colours.get(robot).copied().unwrap_or([0.6; 3]));
+        // Paler than the ribbons, which are the past.
+        let colour = light(colours.get(robot).copied().unwrap_or([0.6; 3])).map(|c| 0.4 + 0.6 * c);
         let last = path.len().saturating_sub(1).max(1) as f32;
         let spot = |(k, place): (usize, &Place)| {
             let share = k as f32 / last;
@@ -133,7 +134,7 @@ fn handles(
     for (edge, at) in set_points(cast, moment).into_iter().enumerate() {
         let Some(at) = at else { continue };
         let follower = cast.edges[edge].follower;
-        let ring = Ring::new(at, RING * size(cast, follower), light(colours[follower]));
+        let ring = Ring { least: 12.0, ..Ring::new(at, RING * size(cast, follower), light(colours[follower])) };
         if hand.held == Some(edge) || desk.chosen_edge() == Some(edge) {
             sketch.rings.push(ring.selected());
         } else if hand.over == Some(edge) {

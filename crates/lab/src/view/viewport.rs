@@ -36,6 +36,8 @@ pub struct Viewport {
     pub fault: Option<String>,
     /// Pictures drawn so far.
     pub pictures: u64,
+    /// Where it is in the window, points.
+    pub rect: Rect,
 }
 
 /// What draws the robots of one run.
@@ -52,8 +54,9 @@ struct Stage {
 /// What a picture was made of: where nothing of it has changed, it stands.
 #[derive(PartialEq)]
 struct Shown {
-    moment: usize,
+    branch: usize,
     time: f64,
+    goals: Vec<[f64; 2]>,
     layout: Layout,
     style: Style,
     size: (u32, u32),
@@ -87,6 +90,7 @@ impl Viewport {
             samples,
             fault: None,
             pictures: 0,
+            rect: Rect::ZERO,
         }
     }
 
@@ -134,6 +138,7 @@ impl Viewport {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "3D view"));
         ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+        self.rect = rect;
         let Some(moment) = desk.moment.clone() else {
             let text = desk.desk.notice.as_deref().unwrap_or("Open a scene: Ctrl O, or drop a file here.");
             return centred(ui, rect, text);
@@ -183,8 +188,9 @@ impl Viewport {
             stage.shown = None;
         }
         let shown = Shown {
-            moment: Arc::as_ptr(moment) as usize,
+            branch: desk.desk.branch,
             time: moment.snapshot.time,
+            goals: moment.edges.iter().map(|edge| edge.set_point).collect(),
             layout: layout.clone(),
             style: style.clone(),
             size,

@@ -56,8 +56,11 @@ impl std::fmt::Debug for TextPass {
     }
 }
 
+/// Inter, medium: the face of everything that is written.
+pub const FONT: &[u8] = include_bytes!("../../fonts/Inter-Medium.otf");
+
 fn fonts() -> FontSystem {
-    let medium: &'static [u8] = include_bytes!("../../fonts/Inter-Medium.otf");
+    let medium: &'static [u8] = FONT;
     let bold: &'static [u8] = include_bytes!("../../fonts/Inter-SemiBold.otf");
     let mut database = fontdb::Database::new();
     // Only what is embedded, so that a picture looks the same on every machine.
