@@ -129,6 +129,8 @@ pub enum Action {
     Picture,
     /// Begin or end a film.
     Film,
+    /// Film from a view called this; `None` is what is seen.
+    FilmFrom(Option<String>),
     /// Write the curves as CSV.
     CurvesCsv,
     /// Write the curves as SVG.

@@ -17,6 +17,7 @@ use crate::watch::Watch;
 use crate::window::{NAME, Options};
 use eframe::egui::{self, Context, Ui};
 use egui_tiles::Tree;
+use rendering::{Layout, Sketch, Style};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
@@ -460,6 +461,10 @@ impl Lab {
         // A scene that came with the program is saved beside where one works.
         let own = || free(Path::new("."), &stem(draft.home()), "toml");
         let path = path.or_else(|| draft.path.clone()).unwrap_or_else(own);
+        if path.exists() && draft.path.as_ref() != Some(&path) {
+            let text = format!("{} is there already: choose another name, or remove it first", path.display());
+            return self.desk.fault(text);
+        }
         match recording::write_whole(&path, draft.text().as_bytes()) {
             Ok(()) => {
                 draft.saved_to(path.clone());
@@ -588,6 +593,16 @@ impl Lab {
         })
     }
 
+    /// What a film shows now: what is seen, or the view that was chosen for it, without what only the hand needs.
+    fn film_shot(&self, moment: &Arc<vocabulary::Moment>) -> Option<Shot> {
+        let shot = self.shot(moment, (1280, 720))?;
+        let Some(view) = &self.desk.film_from else { return Some(shot) };
+        let cast = self.desk.history.as_ref()?.cast();
+        let names: Vec<String> = cast.members.iter().map(|member| member.name.clone()).collect();
+        let style = Style { sketch: Sketch::default(), inset: true, ..shot.style };
+        Some(Shot { layout: Layout::parse(view, &names).unwrap_or(shot.layout), style, ..shot })
+    }
+
     fn picture(&mut self) {
         let size = (1920, 1080);
         let (Some(moment), Some(history)) = (self.desk.moment(), &self.desk.history) else { return };
@@ -646,7 +661,7 @@ impl Lab {
             let Some(moment) = history.at(film.branch, film.next) else { break };
             jobs.push(Job::Moments(history.since(film.branch, [film.sent, film.next])));
             film.sent = film.next;
-            if let Some(shot) = self.shot(&moment, (1280, 720)) {
+            if let Some(shot) = self.film_shot(&moment) {
                 jobs.push(Job::Frame(Box::new(shot)));
                 film.frames += 1;
             }
@@ -691,6 +706,9 @@ impl eframe::App for Lab {
         self.send();
         if !self.desk.orders.is_empty() || ui.ctx().input(|input| input.pointer.any_down()) {
             ui.ctx().request_repaint();
+        }
+        if self.viewport.rough() && !self.desk.playing {
+            ui.ctx().request_repaint_after(Duration::from_millis(150));
         }
         self.timings.frame(began.elapsed(), frame.info().cpu_usage, self.viewport.pictures);
     }

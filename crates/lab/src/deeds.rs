@@ -49,6 +49,7 @@ impl Desk {
             Action::Choose(choice) => self.choice = *choice,
             Action::ForAll(all) => self.for_all = *all,
             Action::Mirror(on) => self.mirror = *on,
+            Action::FilmFrom(view) => self.film_from.clone_from(view),
             Action::Take(tool) => self.tool = if self.tool == *tool { Tool::Hand } else { *tool },
             Action::Ahead(seconds) => {
                 self.ahead = seconds.clamp(0.0, 60.0);

@@ -90,6 +90,8 @@ pub struct Desk {
     pub for_all: bool,
     /// Whether a set point's mirror image moves with it.
     pub mirror: bool,
+    /// The view that films are taken from; `None` is what is seen.
+    pub film_from: Option<String>,
     /// What happened.
     pub log: Vec<Event>,
     /// A message in place, until it is dismissed.
@@ -121,6 +123,7 @@ impl Desk {
             ahead: 6.0,
             for_all: true,
             mirror: false,
+            film_from: None,
             log: Vec::new(),
             aloud: false,
             notice: None,
@@ -296,6 +299,12 @@ impl Desk {
     pub fn take(&mut self, what: &str, effect: &Effect) {
         match effect {
             Effect::None => {}
+            Effect::Dress => {
+                self.note(what);
+                if let (Some(scene), Some(history)) = (self.draft.as_ref().map(Draft::scene), &mut self.history) {
+                    history.dress(scene);
+                }
+            }
             Effect::Retune => {
                 self.note(what);
                 if let Some(scene) = self.scene().cloned() {

@@ -37,6 +37,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, style: &Style, filming: Option<&str>, out:
     if let Some(text) = filming {
         ui.label(text);
     }
+    from(ui, desk, out);
     ui.separator();
     let mut ahead = desk.ahead;
     ui.horizontal(|ui| {
@@ -56,3 +57,30 @@ pub fn show(ui: &mut Ui, desk: &Desk, style: &Style, filming: Option<&str>, out:
         }
     });
 }
+
+/// The view that films are taken from.
+fn from(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+    let names = desk.history.as_ref().map(|history| history.cast().members.iter().map(|m| m.name.clone()));
+    let robots: Vec<String> = names.map(Iterator::collect).unwrap_or_default();
+    let now = desk.film_from.as_deref().unwrap_or(SEEN);
+    ui.horizontal(|ui| {
+        ui.label("Film from");
+        let combo = egui::ComboBox::from_id_salt("film from").selected_text(now);
+        let response = combo.show_ui(ui, |ui| {
+            if ui.selectable_label(desk.film_from.is_none(), SEEN).clicked() {
+                out.push(Action::FilmFrom(None));
+            }
+            let plain = ["snake", "snake-eye", "top", "orbit", "snake+top"].map(str::to_owned).into_iter();
+            let bound = robots.iter().flat_map(|name| [format!("follow:{name}"), format!("camera:{name}")]);
+            for view in plain.chain(bound.take(40)) {
+                if ui.selectable_label(desk.film_from.as_ref() == Some(&view), &view).clicked() {
+                    out.push(Action::FilmFrom(Some(view)));
+                }
+            }
+        });
+        response.response.widget_info(|| WidgetInfo::labeled(egui::Role::ComboBox, true, "Film from"));
+    });
+}
+
+/// What is filmed if nothing else is chosen.
+const SEEN: &str = "what is seen";

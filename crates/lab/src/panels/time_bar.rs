@@ -151,6 +151,7 @@ fn menus(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
             }
         }
         ui.separator();
+        ui.menu_button("Save as", |ui| save_as(ui, out));
         ui.menu_button("Panels", |ui| {
             for name in crate::panes::NAMES {
                 if ui.button(*name).clicked() {
@@ -168,4 +169,20 @@ fn menus(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
             }
         });
     });
+}
+
+/// A path to save the scene to.
+fn save_as(ui: &mut Ui, out: &mut Vec<Action>) {
+    let id = egui::Id::unique("save as");
+    let mut path: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let edit = ui.add(egui::TextEdit::singleline(&mut path).hint_text("path/to/scene.toml").desired_width(240.0));
+    let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+    ui.data_mut(|data| data.insert_temp(id, path.clone()));
+    let path = path.trim();
+    if (ui.add_enabled(!path.is_empty(), egui::Button::new("Save")).clicked() || entered) && !path.is_empty() {
+        let path = std::path::PathBuf::from(path);
+        let path = if path.extension().is_none() { path.with_extension("toml") } else { path };
+        out.push(Action::SaveAs(path));
+        ui.close();
+    }
 }

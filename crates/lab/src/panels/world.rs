@@ -93,16 +93,22 @@ pub fn surroundings(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         ("Sun's height", "environment.sun_elevation", environment.sun_elevation.to_degrees(), 5.0..=90.0),
         ("Sun's direction", "environment.sun_azimuth", environment.sun_azimuth.to_degrees(), -180.0..=180.0),
     ] {
-        let mut new = value;
         ui.horizontal(|ui| {
             ui.label(name);
+            // The light changes when the slider is let go.
+            let id = ui.scope_id().with(key);
+            let mut new: f64 = ui.data(|data| data.get_temp(id)).unwrap_or(value);
             let response = ui.add(Slider::new(&mut new, span).suffix("°").max_decimals(0));
             response.widget_info(|| WidgetInfo::slider(true, new, name));
-            if response.changed() && (new - value).abs() > 0.25 {
-                let values = vec![(key.to_owned(), format!("\"{} deg\"", tidy(new.round())))];
-                out.push(Action::Set { what: format!("{name}…"), values });
+            if response.dragged() {
+                ui.data_mut(|data| data.insert_temp(id, new));
+            } else {
+                ui.data_mut(|data| data.remove::<f64>(id));
+                if (response.drag_stopped() || response.changed()) && (new - value).abs() > 0.25 {
+                    let values = vec![(key.to_owned(), format!("\"{} deg\"", tidy(new.round())))];
+                    out.push(Action::Set { what: name.to_owned(), values });
+                }
             }
-            super::controls::released(&response, out);
         });
     }
 }

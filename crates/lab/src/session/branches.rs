@@ -5,7 +5,7 @@
 //! asked for, which is the same run bit for bit.
 
 use recording::Digest;
-use scene::Scene;
+use scene::{Override, Scene, SceneText};
 use simulation::{BuildError, Simulation};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -46,8 +46,10 @@ pub struct Change {
     pub sample: u64,
     /// s.
     pub time: f64,
-    /// The scene with these parameters.
+    /// The scene with these parameters, as it is written.
     pub scene: Arc<Scene>,
+    /// The scene with these parameters, and with what its own script had changed until then.
+    pub held: Arc<Scene>,
     /// What is different from before, as overrides.
     pub set: Vec<String>,
 }
@@ -135,19 +137,35 @@ impl Branch {
     /// Takes the parameters of `scene`; what of them is new. Changes before the same sample become one.
     fn change(&mut self, base: &Arc<Scene>, scene: Arc<Scene>) -> Result<Option<Change>, String> {
         let sample = self.simulation.sample();
-        let setup = simulation::build(&scene).map_err(|error| error.to_string())?;
+        let time = sample as f64 * self.simulation.period();
+        let earlier = self.changes.iter().rfind(|change| change.sample < sample);
+        let before = earlier.map_or(base, |change| &change.scene);
+        let set = before.sets_to(&scene).map_err(|standing| standing.join("\n"))?;
+        let held = match earlier {
+            None if base.changes.is_empty() => Arc::clone(&scene),
+            None => with(scripted(base, time), &set)?,
+            Some(_) if base.changes.is_empty() => Arc::clone(&scene),
+            Some(change) => with(&change.held, &set)?,
+        };
+        let change = Change { sample, time, scene, held, set };
+        self.take(&change)?;
         if self.changes.last().is_some_and(|last| last.sample == sample) {
             self.changes.pop();
         }
-        let before = self.changes.last().map_or(base, |last| &last.scene);
-        let set = before.sets_to(&scene).map_err(|standing| standing.join("\n"))?;
-        self.simulation.adopt(&setup);
-        if set.is_empty() {
+        if change.set.is_empty() {
             return Ok(None);
         }
-        let change = Change { sample, time: sample as f64 * self.simulation.period(), scene, set };
         self.changes.push(change.clone());
         Ok(Some(change))
+    }
+
+    /// Lets a change hold from the next sample on. Where a hand takes over, a scene's own script ends.
+    fn take(&mut self, change: &Change) -> Result<(), String> {
+        let scene = Scene { changes: Vec::new(), ..Scene::clone(&change.held) };
+        let setup = simulation::build(&scene).map_err(|error| error.to_string())?;
+        self.simulation.adopt(&setup);
+        self.simulation.reschedule(&setup);
+        Ok(())
     }
 
     fn fork(&self, parent: (usize, u64), name: String) -> Self {
@@ -155,28 +173,26 @@ impl Branch {
         let marks: Vec<_> = self.marks.iter().filter(|m| m.simulation.sample() <= until).cloned().collect();
         let changes: Vec<_> = self.changes.iter().filter(|c| c.sample < until).cloned().collect();
         // The mark at time 0 is always there.
-        let start = marks.last().unwrap_or(&self.marks[0]);
-        let (mut simulation, mut digest) = (start.simulation.save(), start.digest.clone());
-        while simulation.sample() < until {
-            let sample = simulation.sample();
-            for change in changes.iter().filter(|c| c.sample == sample) {
-                // It was built once, when it was made.
-                if let Ok(setup) = simulation::build(&change.scene) {
-                    simulation.adopt(&setup);
-                }
-            }
-            let Some(moment) = simulation.next_moment() else { break };
-            digest.push(moment);
-        }
-        Self {
+        let start = Rc::clone(marks.last().unwrap_or(&self.marks[0]));
+        let mut branch = Self {
             name,
             parent: Some(parent),
-            changes,
-            simulation,
-            digest,
+            changes: Vec::new(),
+            simulation: start.simulation.save(),
+            digest: start.digest.clone(),
             marks,
             mark_every: self.mark_every,
+        };
+        while branch.simulation.sample() < until {
+            let sample = branch.simulation.sample();
+            if let Some(change) = changes.iter().find(|change| change.sample == sample) {
+                // It was built before, when it was made.
+                let _ = branch.take(change);
+            }
+            let Some(moment) = branch.simulation.next_moment() else { break };
+            branch.digest.push(moment);
         }
+        Self { changes, ..branch }
     }
 
     /// Digest of all samples so far.
@@ -195,17 +211,41 @@ impl Branch {
     }
 }
 
+/// The scene as its own script has made it by `time` s.
+fn scripted(base: &Arc<Scene>, time: f64) -> &Scene {
+    let due = base.changes.iter().rfind(|change| change.at <= time + 1e-9);
+    due.map_or(base, |change| &change.then)
+}
+
+/// A scene with overrides.
+fn with(scene: &Scene, set: &[String]) -> Result<Arc<Scene>, String> {
+    let set: Vec<Override> = set.iter().filter_map(|set| set.parse().ok()).collect();
+    let scene = Scene { changes: Vec::new(), ..scene.clone() };
+    let loaded = Scene::parse(&scene.to_toml(), "scene.toml", &set).map_err(|faults| faults.to_string())?;
+    Ok(Arc::new(loaded.scene))
+}
+
 /// The text of a scene that runs as a branch ran: `base` with the branch's changes, for `duration` s.
 ///
 /// # Errors
 /// Why the text cannot be edited, in words.
 pub fn script(base: &str, changes: &[Change], duration: f64) -> Result<String, String> {
-    let mut text = scene::SceneText::parse(base).map_err(|error| error.to_string())?;
-    text.set("time.duration", &format!("{duration:?}")).map_err(|error| error.to_string())?;
+    let fault = |error: scene::EditError| error.to_string();
+    let mut text = SceneText::parse(base).map_err(fault)?;
+    text.set("time.duration", &format!("{duration:?}")).map_err(fault)?;
+    if let Some(first) = changes.first() {
+        // From there on the hand held, not the script.
+        for item in (0..text.count("changes")).rev() {
+            let at = text.get(&format!("changes.{item}.at")).and_then(|at| at.parse::<f64>().ok());
+            if at.is_some_and(|at| at > first.time + 1e-9) {
+                text.remove_item("changes", &item.to_string()).map_err(fault)?;
+            }
+        }
+    }
     for change in changes {
         let set: Vec<String> = change.set.iter().map(|set| format!("    {set:?},\n")).collect();
         let item = format!("at = {:?}\nset = [\n{}]\n", change.time, set.concat());
-        text.add_table("changes", &item).map_err(|error| error.to_string())?;
+        text.add_table("changes", &item).map_err(fault)?;
     }
     Ok(text.text())
 }

@@ -35,6 +35,8 @@ pub enum Effect {
     None,
     /// The run can take it as it goes.
     Retune,
+    /// The run is the same, and looks different: light, title, views.
+    Dress,
     /// The run has to begin anew, because of this.
     Restart(String),
 }
@@ -168,8 +170,21 @@ impl Draft {
     }
 
     fn effect_of(&self, scene: &Scene) -> Effect {
-        match self.scene.sets_to(scene) {
-            Ok(set) if set.is_empty() => Effect::None,
+        let dressed = Scene {
+            title: scene.title.clone(),
+            description: scene.description.clone(),
+            environment: scene.environment,
+            views: scene.views.clone(),
+            film: scene.film.clone(),
+            expect: scene.expect.clone(),
+            ..Scene::clone(&self.scene)
+        };
+        match dressed.sets_to(scene) {
+            Ok(_) if dressed.changes != scene.changes => Effect::Restart("its changes are others".to_owned()),
+            Ok(set) if set.is_empty() && dressed == *self.scene => Effect::None,
+            Ok(set) if set.is_empty() => Effect::Dress,
+            // Both at once come from a file that was edited elsewhere.
+            Ok(_) if dressed != *self.scene => Effect::Restart("the scene is another".to_owned()),
             Ok(_) => Effect::Retune,
             Err(standing) => Effect::Restart(standing.join(", ")),
         }

@@ -67,6 +67,16 @@ impl History {
         &self.cast
     }
 
+    /// The same run in another light, under another title.
+    pub fn dress(&mut self, scene: &scene::Scene) {
+        let light = vocabulary::Light {
+            sun_elevation: scene.environment.sun_elevation,
+            sun_azimuth: scene.environment.sun_azimuth,
+            haze_from: scene.environment.haze_from,
+        };
+        self.cast = Arc::new(Cast { light, title: scene.title.clone(), ..Cast::clone(&self.cast) });
+    }
+
     /// Control period, s.
     pub fn period(&self) -> f64 {
         self.period

@@ -46,9 +46,34 @@ struct Stage {
     renderer: Renderer,
     texture: wgpu::Texture,
     id: TextureId,
-    /// What was drawn last.
-    shown: Option<Shown>,
+    /// Draws what stands still with more samples, where the first draws with one.
+    finer: Option<Renderer>,
+    /// What was drawn last, and whether as well as can be.
+    shown: Option<(Shown, bool)>,
     sight: Option<Sightline>,
+}
+
+impl Stage {
+    /// Draws with all samples.
+    fn fine(
+        &mut self,
+        gpu: &Gpu,
+        trail: &Trail,
+        moment: &Moment,
+        (layout, style): (&Layout, &Style),
+    ) -> Result<(), Error> {
+        let (width, height) = self.renderer.size();
+        let finer = match self.finer.take() {
+            Some(mut finer) => {
+                finer.resize(width, height)?;
+                finer
+            }
+            None => Renderer::with_format(gpu, &self.cast, width, height, 4, wgpu::TextureFormat::Rgba8Unorm)?,
+        };
+        let finer = self.finer.insert(finer);
+        let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        finer.draw_into(&view, trail, moment, layout, style).map(drop)
+    }
 }
 
 /// What a picture was made of: where nothing of it has changed, it stands.
@@ -170,7 +195,7 @@ impl Viewport {
         // Text keeps its size on small views, and grows with the density of the screen.
         let scale = (0.92 * pixels).clamp(0.5, 6.0);
         let layout = self.layout(&cast, moment);
-        let style = self.dressed(desk.desk, moment, scale);
+        let style = Style { interactive: true, ..self.dressed(desk.desk, moment, scale) };
         if self.stage.as_ref().is_none_or(|stage| !Arc::ptr_eq(&stage.cast, &cast)) {
             self.set_stage(&cast, size)?;
         }
@@ -195,14 +220,23 @@ impl Viewport {
             style: style.clone(),
             size,
         };
-        if stage.shown.as_ref() == Some(&shown) {
-            return Ok(());
-        }
         let Some(trail) = desk.trail else { return Ok(()) };
+        match &stage.shown {
+            Some((last, true)) if *last == shown => return Ok(()),
+            Some((last, false)) if *last == shown => {
+                // Nothing moves any more: there is time for a better picture.
+                let fine = Style { interactive: false, ..style };
+                stage.fine(&self.gpu, trail, moment, (&layout, &fine))?;
+                stage.shown = Some((shown, true));
+                self.pictures += 1;
+                return Ok(());
+            }
+            _ => {}
+        }
         stage.sight = stage.renderer.sightlines(trail, moment, &layout, &style)?.into_iter().next();
         let view = stage.texture.create_view(&wgpu::TextureViewDescriptor::default());
         stage.renderer.draw_into(&view, trail, moment, &layout, &style)?;
-        stage.shown = Some(shown);
+        stage.shown = Some((shown, self.samples > 1));
         self.fault = None;
         self.pictures += 1;
         Ok(())
@@ -220,8 +254,14 @@ impl Viewport {
         let id = drawer.register_native_texture(&self.state.device, &view, wgpu::FilterMode::Nearest);
         drop(drawer);
         self.stage =
-            Some(Stage { cast: Arc::clone(cast), renderer, texture, id, shown: None, sight: None });
+            Some(Stage { cast: Arc::clone(cast), renderer, texture, id, finer: None, shown: None, sight: None });
         Ok(())
+    }
+
+    /// Whether what is seen could be drawn better when nothing moves.
+    pub fn rough(&self) -> bool {
+        let shown = self.stage.as_ref().and_then(|stage| stage.shown.as_ref());
+        self.fault.is_none() && shown.is_some_and(|(_, fine)| !fine)
     }
 
     /// Everything the pointer does in the view.
