@@ -1,5 +1,6 @@
 //! The window itself: it hears news, shows panels, and does what is asked for.
 
+use crate::Error;
 use crate::action::Action;
 use crate::desk::{Choice, Desk, Tool};
 use crate::gallery::{self, Gallery};
@@ -20,7 +21,7 @@ use egui_tiles::Tree;
 use rendering::{Layout, Sketch, Style};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Scenes opened before that are remembered.
@@ -46,7 +47,7 @@ pub(crate) struct Lab {
     film: Option<Filming>,
     words: (Sender<Result<String, String>>, Receiver<Result<String, String>>),
     ctx: Context,
-    lost: Arc<Mutex<Option<String>>>,
+    ended: Arc<Mutex<Option<Error>>>,
     timings: crate::timing::Timing,
     print: bool,
 }
@@ -84,7 +85,7 @@ impl Lab {
     pub(crate) fn new(
         context: &eframe::CreationContext<'_>,
         options: Options,
-        lost: Arc<Mutex<Option<String>>>,
+        ended: Arc<Mutex<Option<Error>>>,
     ) -> Result<Self, String> {
         let state = context.wgpu_render_state.as_ref().ok_or("there is no graphics device")?;
         let ctx = context.egui_ctx.clone();
@@ -112,11 +113,11 @@ impl Lab {
             kept: WorkKept::new(folder.as_deref()),
             kept_at: Instant::now(),
             left: folder.as_deref().and_then(|folder| left(folder, alive)),
-            watch: Watch::start(wake()),
+            watch: Watch::start(wake(), options.stop),
             film: None,
             words: channel(),
             ctx: ctx.clone(),
-            lost,
+            ended,
             timings: crate::timing::Timing::default(),
             print: options.timings,
         };
@@ -356,6 +357,7 @@ impl Lab {
             Action::Recover => self.recover(),
             Action::Forget => self.forget(),
             Action::Picture => self.picture(),
+            Action::WindowPicture => self.window_picture(),
             Action::Film if self.film.is_some() => self.end_film(),
             Action::Film => self.begin_film(),
             Action::KeepRun => self.desk.orders.push(Order::Tell(self.desk.branch)),
@@ -622,6 +624,36 @@ impl Lab {
         self.studio.ask(Job::Picture { path, cast, size, trail: Box::new(trail), shot: Box::new(shot), texts });
     }
 
+    /// Writes a picture of the whole window.
+    fn window_picture(&mut self) {
+        let path = free(Path::new("."), &format!("{}-window", self.name()), "png");
+        let (sender, ctx) = (self.words.0.clone(), self.ctx.clone());
+        self.ctx.request_screenshot(move |image| {
+            let [width, height] = image.size.map(|side| side as u32);
+            let rgba = image.pixels.iter().flat_map(egui::Color32::to_array).collect();
+            let picture = vocabulary::Picture { width, height, rgba };
+            let texts = [("Software", concat!("echelon ", env!("CARGO_PKG_VERSION")))];
+            let written = rendering::png::write(&path, &picture, &texts);
+            // A window that is closed does not wait for it.
+            let _ = sender.send(match written {
+                Ok(()) => Ok(format!("Written: {}", path.display())),
+                Err(error) => Err(error.to_string()),
+            });
+            ctx.request_repaint();
+        });
+    }
+
+    /// Somebody ended the program from outside: unsaved work is put on disk and offered at the next start.
+    fn interrupted(&mut self, ctx: &Context) {
+        if let Some(draft) = self.desk.draft.take().filter(|draft| draft.unsaved())
+            && let Err(why) = self.kept.keep(draft.text(), draft.path.as_deref())
+        {
+            self.desk.fault(why);
+        }
+        *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(Error::Interrupted);
+        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+    }
+
     fn begin_film(&mut self) {
         let time = self.desk.end();
         let branch = self.desk.branch;
@@ -683,9 +715,12 @@ impl eframe::App for Lab {
         }
         if let Some(why) = self.viewport.gpu().lost() {
             let text = format!("the graphics device is gone: {why}; unsaved work is kept and offered at the next start");
-            *self.lost.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(text);
+            *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(Error::Window(text));
             self.desk.draft = None;
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        if self.watch.stopped() {
+            return self.interrupted(ctx);
         }
         let asked = ctx.input(|input| input.viewport().close_requested());
         let unsaved = self.desk.draft.as_ref().is_some_and(crate::session::draft::Draft::unsaved);

@@ -59,6 +59,7 @@ pub const LIST: &[(&str, &[Shortcut])] = &[
             Shortcut { keys: "Ctrl R", what: "read the file again" },
             Shortcut { keys: "Ctrl Z  Ctrl Y", what: "undo, redo" },
             Shortcut { keys: "P  F  K", what: "picture, film, keep the run" },
+            Shortcut { keys: "Ctrl P", what: "picture of the whole window" },
             Shortcut { keys: "?", what: "this page" },
         ],
     ),
@@ -134,6 +135,7 @@ fn commands(ctx: &egui::Context, out: &mut Vec<Action>) {
     take(Key::S, Action::Save);
     take(Key::O, Action::Gallery);
     take(Key::R, Action::Reload);
+    take(Key::P, Action::WindowPicture);
     take(Key::Y, Action::Redo);
     take(Key::Z, Action::Undo);
     take(Key::Minus, Action::Shape { scale: 1.0 / 1.1, turn: 0.0 });

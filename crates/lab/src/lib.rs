@@ -34,4 +34,7 @@ pub enum Error {
     /// There is no window system, no adapter, or it was lost.
     #[error("{0}")]
     Window(String),
+    /// The program was told to end.
+    #[error("unsaved work is offered at the next start")]
+    Interrupted,
 }

@@ -20,8 +20,10 @@ pub struct Options {
     pub paused: bool,
     /// Width and height of the window, points.
     pub size: Option<[f32; 2]>,
-    /// Where figures of speed are printed when the window is closed.
+    /// Whether what happens is printed, and figures of speed when the window is closed.
     pub timings: bool,
+    /// Asked again and again; the window closes when it says so.
+    pub stop: Option<fn() -> bool>,
 }
 
 /// Name under which the window keeps its arrangement.
@@ -46,20 +48,20 @@ pub fn open(options: Options) -> Result<(), Error> {
         persist_window: options.size.is_none(),
         ..eframe::NativeOptions::default()
     };
-    let fault = Arc::new(Mutex::new(None));
-    let lost = Arc::clone(&fault);
+    let ended = Arc::new(Mutex::new(None));
+    let why = Arc::clone(&ended);
     let made = eframe::run_native(
         NAME,
         native,
         Box::new(move |context| {
-            let lab = Lab::new(context, options, lost)?;
+            let lab = Lab::new(context, options, why)?;
             Ok(Box::new(lab))
         }),
     );
-    let fault: Option<String> = fault.lock().unwrap_or_else(PoisonError::into_inner).take();
-    match (made, fault) {
+    let ended: Option<Error> = ended.lock().unwrap_or_else(PoisonError::into_inner).take();
+    match (made, ended) {
         (Ok(()), None) => Ok(()),
-        (_, Some(fault)) => Err(Error::Window(fault)),
+        (_, Some(why)) => Err(why),
         (Err(error), None) => Err(Error::Window(explained(&error.to_string()))),
     }
 }
