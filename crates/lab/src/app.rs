@@ -592,6 +592,7 @@ impl Lab {
             moment: Arc::clone(moment),
             layout: self.viewport.layout(cast, moment),
             style: self.viewport.dressed(&self.desk, moment, scale),
+            words: self.desk.words(),
         })
     }
 

@@ -159,6 +159,11 @@ impl Desk {
         self.cursor = None;
     }
 
+    /// Title and caption of pictures: those of the scene as it stands.
+    pub fn words(&self) -> [String; 2] {
+        self.scene().map_or_else(Default::default, |scene| [scene.title.clone(), simulation::caption(scene)])
+    }
+
     /// The moment that is looked at.
     pub fn moment(&self) -> Option<Arc<Moment>> {
         let history = self.history.as_ref()?;

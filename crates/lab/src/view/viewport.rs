@@ -58,9 +58,9 @@ impl Stage {
     fn fine(
         &mut self,
         gpu: &Gpu,
-        trail: &Trail,
-        moment: &Moment,
+        (trail, moment): (&Trail, &Moment),
         (layout, style): (&Layout, &Style),
+        [title, caption]: &[String; 2],
     ) -> Result<(), Error> {
         let (width, height) = self.renderer.size();
         let finer = match self.finer.take() {
@@ -71,6 +71,7 @@ impl Stage {
             None => Renderer::with_format(gpu, &self.cast, width, height, 4, wgpu::TextureFormat::Rgba8Unorm)?,
         };
         let finer = self.finer.insert(finer);
+        finer.retitle(title, caption);
         let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
         finer.draw_into(&view, trail, moment, layout, style).map(drop)
     }
@@ -80,6 +81,7 @@ impl Stage {
 #[derive(PartialEq)]
 struct Shown {
     branch: usize,
+    words: [String; 2],
     time: f64,
     goals: Vec<[f64; 2]>,
     layout: Layout,
@@ -214,6 +216,7 @@ impl Viewport {
         }
         let shown = Shown {
             branch: desk.desk.branch,
+            words: desk.desk.words(),
             time: moment.snapshot.time,
             goals: moment.edges.iter().map(|edge| edge.set_point).collect(),
             layout: layout.clone(),
@@ -226,13 +229,15 @@ impl Viewport {
             Some((last, false)) if *last == shown => {
                 // Nothing moves any more: there is time for a better picture.
                 let fine = Style { interactive: false, ..style };
-                stage.fine(&self.gpu, trail, moment, (&layout, &fine))?;
+                stage.fine(&self.gpu, (trail, moment), (&layout, &fine), &shown.words)?;
                 stage.shown = Some((shown, true));
                 self.pictures += 1;
                 return Ok(());
             }
             _ => {}
         }
+        let [title, caption] = &shown.words;
+        stage.renderer.retitle(title, caption);
         stage.sight = stage.renderer.sightlines(trail, moment, &layout, &style)?.into_iter().next();
         let view = stage.texture.create_view(&wgpu::TextureViewDescriptor::default());
         stage.renderer.draw_into(&view, trail, moment, &layout, &style)?;
