@@ -225,8 +225,14 @@ impl Lab {
             };
             viewport.show(ui, &seen, out);
         };
-        let mut panels =
-            Panels { desk, style: &style, filming: filming.as_deref(), view: &mut view, view_tile, out: &mut out };
+        let mut panels = Panels {
+            desk,
+            style: &style,
+            filming: filming.as_deref(),
+            view: &mut view,
+            view_tile,
+            out: &mut out,
+        };
         let frame = egui::Frame::new().fill(ui.visuals().panel_fill);
         let tree = &mut self.tree;
         egui::CentralPanel::default().frame(frame).show(ui, |ui| tree.ui(&mut panels, ui));
@@ -237,7 +243,8 @@ impl Lab {
     /// Lines under the bar: faults, and work that a crash has left.
     fn notices(&mut self, ui: &mut Ui, out: &mut Vec<Action>) {
         if let Some(left) = &self.left {
-            let name = left.path.as_ref().map_or_else(|| "a scene".to_owned(), |path| path.display().to_string());
+            let name =
+                left.path.as_ref().map_or_else(|| "a scene".to_owned(), |path| path.display().to_string());
             egui::Panel::top("left").show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     ui.label(format!("Unsaved work on {name} was left when Echelon ended last time."));
@@ -269,16 +276,22 @@ impl Lab {
     fn over(&mut self, ctx: &Context, out: &mut Vec<Action>) {
         let mut open = self.shows.gallery;
         if open {
-            egui::Window::new("Scenes").open(&mut open).collapsible(false).default_width(780.0).show(ctx, |ui| {
-                self.gallery.show(ui, &self.recent, out);
-            });
+            egui::Window::new("Scenes").open(&mut open).collapsible(false).default_width(780.0).show(
+                ctx,
+                |ui| {
+                    self.gallery.show(ui, &self.recent, out);
+                },
+            );
             self.shows.gallery &= open;
         }
         let mut open = self.shows.help;
         if open {
-            egui::Window::new("Shortcuts").open(&mut open).collapsible(false).resizable(false).show(ctx, |ui| {
-                crate::keys::page(ui);
-            });
+            egui::Window::new("Shortcuts").open(&mut open).collapsible(false).resizable(false).show(
+                ctx,
+                |ui| {
+                    crate::keys::page(ui);
+                },
+            );
             self.shows.help &= open;
         }
         if self.shows.hints {
@@ -299,7 +312,9 @@ impl Lab {
             .pivot(egui::Align2::RIGHT_TOP)
             .default_width(300.0)
             .show(ctx, |ui| {
-                ui.label("1.  Drag the bright ring: the set point moves, and the thin lines show the future.");
+                ui.label(
+                    "1.  Drag the bright ring: the set point moves, and the thin lines show the future.",
+                );
                 ui.label("2.  Drag ε in the panel Observer, then press Shift Home, and watch it peak.");
                 ui.label("3.  Drag back on the line of time, change a gain, and play: a branch.");
                 if ui.button("Got it").clicked() {
@@ -418,7 +433,8 @@ impl Lab {
             Ok(()) => {
                 self.desk.notice = None;
                 self.shows.gallery = false;
-                let view = self.desk.scene().map_or_else(|| "snake".to_owned(), |scene| scene.views.default.clone());
+                let view =
+                    self.desk.scene().map_or_else(|| "snake".to_owned(), |scene| scene.views.default.clone());
                 self.viewport.look(&view);
                 self.viewport.style.picture_in_picture = None;
                 self.watch.look_at(path);
@@ -464,7 +480,8 @@ impl Lab {
         let own = || free(Path::new("."), &stem(draft.home()), "toml");
         let path = path.or_else(|| draft.path.clone()).unwrap_or_else(own);
         if path.exists() && draft.path.as_ref() != Some(&path) {
-            let text = format!("{} is there already: choose another name, or remove it first", path.display());
+            let text =
+                format!("{} is there already: choose another name, or remove it first", path.display());
             return self.desk.fault(text);
         }
         match recording::write_whole(&path, draft.text().as_bytes()) {
@@ -613,7 +630,8 @@ impl Lab {
         let Some(trail) = history.trail(self.desk.branch, time).cloned() else { return };
         let (cast, Some(shot)) = (Arc::clone(history.cast()), self.shot(&moment, size)) else { return };
         let path = free(Path::new("."), &self.name(), "png");
-        let home = self.desk.draft.as_ref().map_or_else(String::new, |draft| draft.home().display().to_string());
+        let home =
+            self.desk.draft.as_ref().map_or_else(String::new, |draft| draft.home().display().to_string());
         let texts = vec![
             ("Software", concat!("echelon ", env!("CARGO_PKG_VERSION")).to_owned()),
             ("Scene", self.desk.script().unwrap_or_default()),
@@ -622,7 +640,14 @@ impl Lab {
             ("View", words_of(&shot.layout, &self.viewport.view)),
             ("Adapter", self.viewport.gpu().description()),
         ];
-        self.studio.ask(Job::Picture { path, cast, size, trail: Box::new(trail), shot: Box::new(shot), texts });
+        self.studio.ask(Job::Picture {
+            path,
+            cast,
+            size,
+            trail: Box::new(trail),
+            shot: Box::new(shot),
+            texts,
+        });
     }
 
     /// Writes a picture of the whole window.
@@ -715,7 +740,9 @@ impl eframe::App for Lab {
             self.open(file.path());
         }
         if let Some(why) = self.viewport.gpu().lost() {
-            let text = format!("the graphics device is gone: {why}; unsaved work is kept and offered at the next start");
+            let text = format!(
+                "the graphics device is gone: {why}; unsaved work is kept and offered at the next start"
+            );
             *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(Error::Window(text));
             self.desk.draft = None;
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);

@@ -179,8 +179,10 @@ impl Desk {
         if self.cursor.is_some() || self.playing {
             return Some(moment);
         }
-        let wanted: Vec<Option<[f64; 2]>> = (0..moment.edges.len()).map(|edge| self.set_point(edge)).collect();
-        let stale = |(state, wanted): (&EdgeState, &Option<[f64; 2]>)| wanted.is_some_and(|w| w != state.set_point);
+        let wanted: Vec<Option<[f64; 2]>> =
+            (0..moment.edges.len()).map(|edge| self.set_point(edge)).collect();
+        let stale =
+            |(state, wanted): (&EdgeState, &Option<[f64; 2]>)| wanted.is_some_and(|w| w != state.set_point);
         if !moment.edges.iter().zip(&wanted).any(stale) {
             return Some(moment);
         }
@@ -306,7 +308,9 @@ impl Desk {
             Effect::None => {}
             Effect::Dress => {
                 self.note(what);
-                if let (Some(scene), Some(history)) = (self.draft.as_ref().map(Draft::scene), &mut self.history) {
+                if let (Some(scene), Some(history)) =
+                    (self.draft.as_ref().map(Draft::scene), &mut self.history)
+                {
                     history.dress(scene);
                 }
             }

@@ -46,7 +46,10 @@ pub const LIST: &[(&str, &[Shortcut])] = &[
             Shortcut { keys: "G", what: "follow the selected robot" },
             Shortcut { keys: "I", what: "its camera in the corner" },
             Shortcut { keys: "Drag", what: "turn; with the right button move; wheel to zoom" },
-            Shortcut { keys: "Drag a ring", what: "set point, in steps of 0.1 m and 5°; Shift without steps" },
+            Shortcut {
+                keys: "Drag a ring",
+                what: "set point, in steps of 0.1 m and 5°; Shift without steps",
+            },
             Shortcut { keys: "Ctrl drag a ring", what: "whole formation" },
             Shortcut { keys: "T", what: "light or dark" },
         ],
@@ -98,7 +101,9 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, out: &mut Vec<Action>) {
     take(none, Key::C, Action::Take(Tool::Connect));
     take(none, Key::O, Action::Take(Tool::Pillar));
     take(none, Key::Escape, Action::Dismiss);
-    for (key, view) in [(Key::Num1, "snake"), (Key::Num2, "snake-eye"), (Key::Num3, "top"), (Key::Num4, "orbit")] {
+    for (key, view) in
+        [(Key::Num1, "snake"), (Key::Num2, "snake-eye"), (Key::Num3, "top"), (Key::Num4, "orbit")]
+    {
         take(none, key, Action::View(view.to_owned()));
     }
     take(none, Key::T, Action::Theme);
@@ -107,7 +112,8 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, out: &mut Vec<Action>) {
     take(none, Key::K, Action::KeepRun);
     take(none, Key::F1, Action::Help);
     if let Some(edge) = desk.chosen_edge() {
-        for (key, by) in [(Key::W, [-0.1, 0.0]), (Key::S, [0.1, 0.0]), (Key::A, [0.0, 5.0]), (Key::D, [0.0, -5.0])]
+        for (key, by) in
+            [(Key::W, [-0.1, 0.0]), (Key::S, [0.1, 0.0]), (Key::A, [0.0, 5.0]), (Key::D, [0.0, -5.0])]
         {
             if let Some(action) = nudged(desk, edge, by) {
                 take(none, key, action);

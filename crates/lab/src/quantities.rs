@@ -116,17 +116,14 @@ pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> V
         let moments = history.between(branch, [from, span[1]], most);
         for (edge, ends) in history.cast().edges.iter().enumerate() {
             let Some((_, _, follow)) = desk.follower(edge) else { continue };
-            let point = |m: &&Moment| {
-                Some([m.snapshot.time, value(quantity, m, (edge, *ends), (scene, follow))?])
-            };
+            let point =
+                |m: &&Moment| Some([m.snapshot.time, value(quantity, m, (edge, *ends), (scene, follow))?]);
             let points = moments.iter().filter_map(point).collect();
             all.push(Curve { branch, robot: Some(ends.follower), points });
         }
         if quantity == Quantity::Speed {
             for (robot, _) in history.cast().members.iter().enumerate().filter(|(_, member)| member.leads) {
-                let speed = |m: &&Moment| {
-                    Some([m.snapshot.time, m.snapshot.robots.get(robot)?.motion.speed])
-                };
+                let speed = |m: &&Moment| Some([m.snapshot.time, m.snapshot.robots.get(robot)?.motion.speed]);
                 all.push(Curve {
                     branch,
                     robot: Some(robot),
@@ -206,7 +203,11 @@ pub fn bounds(desk: &Desk, quantity: Quantity) -> Vec<f64> {
 pub fn csv(desk: &Desk) -> String {
     let mut text = String::from("branch,robot,quantity,time_s,value\n");
     let quoted = |name: &str| {
-        if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+        if name.contains([',', '"', '\n']) {
+            format!("\"{}\"", name.replace('"', "\"\""))
+        } else {
+            name.to_owned()
+        }
     };
     for quantity in Quantity::ALL {
         for curve in curves(desk, quantity, [0.0, f64::INFINITY], usize::MAX) {

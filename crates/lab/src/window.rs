@@ -43,7 +43,10 @@ pub fn open(options: Options) -> Result<(), Error> {
         .with_drag_and_drop(true);
     let native = eframe::NativeOptions {
         viewport,
-        wgpu_options: WgpuConfiguration { wgpu_setup: setup(&options.adapter), ..WgpuConfiguration::default() },
+        wgpu_options: WgpuConfiguration {
+            wgpu_setup: setup(&options.adapter),
+            ..WgpuConfiguration::default()
+        },
         // A size that was asked for is not overruled by the last one.
         persist_window: options.size.is_none(),
         ..eframe::NativeOptions::default()
@@ -86,12 +89,9 @@ fn setup(adapter: &str) -> WgpuSetup {
                 let info = adapter.get_info();
                 info.backend.to_str() == wanted || info.name.to_lowercase().contains(&wanted)
             };
-            adapters
-                .iter()
-                .filter(shows)
-                .find(fits)
-                .cloned()
-                .ok_or_else(|| format!("no adapter for `{wanted}` can show a window; `echelon doctor` lists what there is"))
+            adapters.iter().filter(shows).find(fits).cloned().ok_or_else(|| {
+                format!("no adapter for `{wanted}` can show a window; `echelon doctor` lists what there is")
+            })
         }));
     }
     WgpuSetup::CreateNew(new)

@@ -49,7 +49,8 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
         .y_axis_formatter(move |mark, _| text(mark.value))
         .x_axis_formatter(|mark, _| format!("{} s", short(mark.value)))
         .label_formatter(move |hover| {
-            let (HoverPosition::NearDataPoint { position: at, .. } | HoverPosition::Elsewhere { position: at }) = hover;
+            let (HoverPosition::NearDataPoint { position: at, .. }
+            | HoverPosition::Elsewhere { position: at }) = hover;
             let value = if logarithmic { format!("{:.1e}", 10_f64.powf(at.y)) } else { fixed(at.y, 3) };
             Some(format!("{} s\n{value}", fixed(at.x, 2)))
         });
@@ -67,7 +68,9 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
             let near = all.iter().flat_map(|c| &c.points).any(|p| p[1].abs() > 0.4 * bound.abs());
             // A bound that is far away would only flatten the curves.
             if near {
-                plot.hline(HLine::new("bound", bound).color(weak).width(1.0).style(LineStyle::dashed_loose()));
+                plot.hline(
+                    HLine::new("bound", bound).color(weak).width(1.0).style(LineStyle::dashed_loose()),
+                );
             }
         }
         for (curve, colour) in all.into_iter().zip(colours) {

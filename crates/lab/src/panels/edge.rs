@@ -10,7 +10,8 @@ use scene::Channel;
 
 /// The selected edge.
 pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let Some((edge, (_, name, follow))) = desk.chosen_edge().and_then(|e| Some((e, desk.follower(e)?))) else {
+    let Some((edge, (_, name, follow))) = desk.chosen_edge().and_then(|e| Some((e, desk.follower(e)?)))
+    else {
         return nothing(ui, "Click a follower or its edge.");
     };
     ui.label(RichText::new(format!("{} → {name}", follow.leader)).strong());
@@ -52,11 +53,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         out.push(Action::Mirror(mirror));
     }
     if let Some(state) = state {
-        ui.weak(format!(
-            "error {} m, {}°",
-            fixed(state.error[0], 3),
-            fixed(state.error[1].to_degrees(), 2)
-        ));
+        ui.weak(format!("error {} m, {}°", fixed(state.error[0], 3), fixed(state.error[1].to_degrees(), 2)));
         if state.limited {
             ui.colored_label(ui.visuals().warn_fg_color, "a limit cuts the command");
         }

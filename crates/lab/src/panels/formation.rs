@@ -3,7 +3,7 @@
 use super::{colour, nothing};
 use crate::action::Action;
 use crate::desk::{Choice, Desk, Tool};
-use eframe::egui::{self, RichText, Sense, Ui, WidgetInfo, Role};
+use eframe::egui::{self, RichText, Role, Sense, Ui, WidgetInfo};
 use vocabulary::{Cast, Moment};
 
 /// Robots as a tree.

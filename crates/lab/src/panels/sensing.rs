@@ -6,7 +6,7 @@ use super::{nothing, tune};
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::symbols;
-use eframe::egui::{ComboBox, Ui, WidgetInfo, Role};
+use eframe::egui::{ComboBox, Role, Ui, WidgetInfo};
 use scene::{Sensing, SensingKind};
 use vocabulary::Sight;
 

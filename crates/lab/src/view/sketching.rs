@@ -134,7 +134,8 @@ fn handles(
     for (edge, at) in set_points(cast, moment).into_iter().enumerate() {
         let Some(at) = at else { continue };
         let follower = cast.edges[edge].follower;
-        let ring = Ring { least: 12.0, ..Ring::new(at, RING * size(cast, follower), light(colours[follower])) };
+        let ring =
+            Ring { least: 12.0, ..Ring::new(at, RING * size(cast, follower), light(colours[follower])) };
         if hand.held == Some(edge) || desk.chosen_edge() == Some(edge) {
             sketch.rings.push(ring.selected());
         } else if hand.over == Some(edge) {

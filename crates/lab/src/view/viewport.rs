@@ -68,7 +68,9 @@ impl Stage {
                 finer.resize(width, height)?;
                 finer
             }
-            None => Renderer::with_format(gpu, &self.cast, width, height, 4, wgpu::TextureFormat::Rgba8Unorm)?,
+            None => {
+                Renderer::with_format(gpu, &self.cast, width, height, 4, wgpu::TextureFormat::Rgba8Unorm)?
+            }
         };
         let finer = self.finer.insert(finer);
         finer.retitle(title, caption);
@@ -172,12 +174,17 @@ impl Viewport {
         };
         self.under_hand(ui, &response, (desk.desk, &moment), rect, out);
         let pixels = ui.pixels_per_point();
-        let size = [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(SIZES[0], SIZES[1]));
+        let size =
+            [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(SIZES[0], SIZES[1]));
         if let Err(error) = self.draw(desk, &moment, (size[0], size[1]), f64::from(pixels)) {
             self.fault = Some(error.to_string());
         }
         if let Some(fault) = &self.fault {
-            return centred(ui, rect, &format!("The view cannot be drawn: {fault}\nYour scene and its run are kept."));
+            return centred(
+                ui,
+                rect,
+                &format!("The view cannot be drawn: {fault}\nYour scene and its run are kept."),
+            );
         }
         if let Some(stage) = &self.stage {
             let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
@@ -258,8 +265,15 @@ impl Viewport {
         }
         let id = drawer.register_native_texture(&self.state.device, &view, wgpu::FilterMode::Nearest);
         drop(drawer);
-        self.stage =
-            Some(Stage { cast: Arc::clone(cast), renderer, texture, id, finer: None, shown: None, sight: None });
+        self.stage = Some(Stage {
+            cast: Arc::clone(cast),
+            renderer,
+            texture,
+            id,
+            finer: None,
+            shown: None,
+            sight: None,
+        });
         Ok(())
     }
 
@@ -339,7 +353,8 @@ impl Viewport {
             (away < grasp.max(0.8 * radius)).then_some((away, edge))
         });
         // The set point that is selected comes before those that it lies under.
-        let first = |(away, edge): &(f64, usize)| if desk.chosen_edge() == Some(*edge) { 0.5 * away } else { *away };
+        let first =
+            |(away, edge): &(f64, usize)| if desk.chosen_edge() == Some(*edge) { 0.5 * away } else { *away };
         if desk.tool == Tool::Hand {
             self.hand.over = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
         }
