@@ -5,8 +5,8 @@
 //! asked for, which is the same run bit for bit.
 
 use recording::Digest;
-use scene::Scene;
-use simulation::{BuildError, Simulation};
+use scene::{Scene, SceneText};
+use simulation::{BuildError, Setup, Simulation};
 use std::rc::Rc;
 use std::sync::Arc;
 use vocabulary::Moment;
@@ -92,7 +92,8 @@ impl Branches {
         self.list.get_mut(branch)?.advance()
     }
 
-    /// Lets the parameters of `scene` hold from the next sample of a branch on.
+    /// Lets the parameters of `scene` hold from the next sample of a branch on. A change that takes back what was changed
+    /// at the same sample sets nothing.
     ///
     /// # Errors
     /// What of the scene cannot change while a run goes, in words.
@@ -106,7 +107,7 @@ impl Branches {
 
     /// A new branch that leaves `from` before control sample `sample`; its index.
     pub fn fork(&mut self, from: usize, sample: u64, name: String) -> Option<usize> {
-        let branch = self.list.get(from)?.fork((from, sample), name);
+        let branch = self.list.get(from)?.fork(&self.scene, (from, sample), name);
         self.list.push(branch);
         Some(self.list.len() - 1)
     }
@@ -133,37 +134,45 @@ impl Branch {
     }
 
     /// Takes the parameters of `scene`; what of them is new. Changes before the same sample become one.
-    fn change(&mut self, base: &Arc<Scene>, scene: Arc<Scene>) -> Result<Option<Change>, String> {
+    fn change(&mut self, base: &Scene, scene: Arc<Scene>) -> Result<Option<Change>, String> {
         let sample = self.simulation.sample();
         let setup = simulation::build(&scene).map_err(|error| error.to_string())?;
-        if self.changes.last().is_some_and(|last| last.sample == sample) {
-            self.changes.pop();
-        }
-        let before = self.changes.last().map_or(base, |last| &last.scene);
+        let earlier = self.changes.partition_point(|change| change.sample < sample);
+        let again = earlier < self.changes.len();
+        let before = self.changes[..earlier].last().map_or(base, |last| &last.scene);
         let set = before.sets_to(&scene).map_err(|standing| standing.join("\n"))?;
-        self.simulation.adopt(&setup);
-        if set.is_empty() {
-            return Ok(None);
-        }
         let change = Change { sample, time: sample as f64 * self.simulation.period(), scene, set };
-        self.changes.push(change.clone());
-        Ok(Some(change))
+        let mut changes = self.changes[..earlier].to_vec();
+        if !change.set.is_empty() {
+            changes.push(change.clone());
+        }
+        if base.changes.is_empty() {
+            self.simulation.adopt(&setup);
+        } else {
+            self.simulation.reschedule(&planned(base, &changes)?);
+        }
+        self.changes = changes;
+        Ok((again || !change.set.is_empty()).then_some(change))
     }
 
-    fn fork(&self, parent: (usize, u64), name: String) -> Self {
+    fn fork(&self, base: &Scene, parent: (usize, u64), name: String) -> Self {
         let until = parent.1;
         let marks: Vec<_> = self.marks.iter().filter(|m| m.simulation.sample() <= until).cloned().collect();
         let changes: Vec<_> = self.changes.iter().filter(|c| c.sample < until).cloned().collect();
         // The mark at time 0 is always there.
         let start = marks.last().unwrap_or(&self.marks[0]);
         let (mut simulation, mut digest) = (start.simulation.save(), start.digest.clone());
+        // What was built once, when it was made, can be built again.
+        if !base.changes.is_empty()
+            && let Ok(setup) = planned(base, &changes)
+        {
+            simulation.reschedule(&setup);
+        }
         while simulation.sample() < until {
             let sample = simulation.sample();
-            for change in changes.iter().filter(|c| c.sample == sample) {
-                // It was built once, when it was made.
-                if let Ok(setup) = simulation::build(&change.scene) {
-                    simulation.adopt(&setup);
-                }
+            let due = changes.iter().filter(|change| change.sample == sample && base.changes.is_empty());
+            for setup in due.filter_map(|change| simulation::build(&change.scene).ok()) {
+                simulation.adopt(&setup);
             }
             let Some(moment) = simulation.next_moment() else { break };
             digest.push(moment);
@@ -195,16 +204,33 @@ impl Branch {
     }
 }
 
-/// The text of a scene that runs as a branch ran: `base` with the branch's changes, for `duration` s.
+/// The run of a scene that has changes of its own, with those of a branch among them: whichever is later holds.
+fn planned(base: &Scene, changes: &[Change]) -> Result<Setup, String> {
+    let last = changes.last().map_or(0.0, |change| change.time);
+    let text = script(&base.to_toml(), &base.changes, changes, base.time.duration.max(last + base.time.period))?;
+    let scene = Scene::parse(&text, "", &[]).map_err(|faults| faults.to_string())?.scene;
+    simulation::build(&scene).map_err(|error| error.to_string())
+}
+
+/// The text of a scene that runs as a branch ran: `base`, which has changes `own`, with the branch's changes, for
+/// `duration` s.
 ///
 /// # Errors
 /// Why the text cannot be edited, in words.
-pub fn script(base: &str, changes: &[Change], duration: f64) -> Result<String, String> {
-    let mut text = scene::SceneText::parse(base).map_err(|error| error.to_string())?;
+pub fn script(base: &str, own: &[scene::Change], changes: &[Change], duration: f64) -> Result<String, String> {
+    let mut text = SceneText::parse(base).map_err(|error| error.to_string())?;
     text.set("time.duration", &format!("{duration:?}")).map_err(|error| error.to_string())?;
-    for change in changes {
-        let set: Vec<String> = change.set.iter().map(|set| format!("    {set:?},\n")).collect();
-        let item = format!("at = {:?}\nset = [\n{}]\n", change.time, set.concat());
+    // Robot by robot, so that what is set for all of them does not give way to what was set for one before.
+    if !own.is_empty() {
+        while text.count("changes") > 0 {
+            text.remove_item("changes", "0").map_err(|error| error.to_string())?;
+        }
+        text.remove("changes").map_err(|error| error.to_string())?;
+    }
+    let own = own.iter().filter(|change| change.at <= duration).map(|change| (change.at, &change.set));
+    for (at, set) in own.chain(changes.iter().map(|change| (change.time, &change.set))) {
+        let set: Vec<String> = set.iter().map(|set| format!("    {set:?},\n")).collect();
+        let item = format!("at = {at:?}\nset = [\n{}]\n", set.concat());
         text.add_table("changes", &item).map_err(|error| error.to_string())?;
     }
     Ok(text.text())
