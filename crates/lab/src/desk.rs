@@ -100,6 +100,8 @@ pub struct Desk {
     pub aloud: bool,
     /// Text of the scene at time 0 of the run.
     base: String,
+    /// Changes that this text has itself.
+    own: Vec<scene::Change>,
     /// For the thread of the run.
     pub orders: Vec<Order>,
     /// Whether an order waits for what is known of a run.
@@ -128,6 +130,7 @@ impl Desk {
             aloud: false,
             notice: None,
             base: String::new(),
+            own: Vec::new(),
             orders: Vec::new(),
             keep: None,
         }
@@ -153,6 +156,7 @@ impl Desk {
     pub fn restart(&mut self, until: f64) {
         let Some(draft) = &self.draft else { return };
         draft.text().clone_into(&mut self.base);
+        self.own.clone_from(&draft.scene().changes);
         self.orders.push(Order::Open { scene: Arc::clone(draft.scene()), gpu: None, until });
         self.orders.push(Order::Ahead(self.ahead));
         self.orders.push(Order::Play(self.playing));
@@ -390,7 +394,7 @@ impl Desk {
     pub fn script(&self) -> Result<String, String> {
         let branch = self.branches.get(self.branch).ok_or("There is no run.")?;
         let period = self.history.as_ref().map_or(0.01, History::period);
-        script(&self.base, &branch.changes, self.end().max(period))
+        script(&self.base, &self.own, &branch.changes, self.end().max(period))
     }
 
     /// Takes in what the thread of the run tells.
