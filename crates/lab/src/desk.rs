@@ -1,5 +1,6 @@
 //! What the window knows: scene, past, present and what is selected. It decides what an action means, without a window.
 
+use crate::past::Past;
 use crate::session::branches::{Change, script};
 use crate::session::draft::{Draft, Effect};
 use crate::session::forecast::Forecast;
@@ -163,9 +164,17 @@ impl Desk {
         self.cursor = None;
     }
 
+    /// The scene with what its own changes have made of it by the time that is looked at.
+    pub fn scene_now(&self) -> Option<&Scene> {
+        let (scene, time) = (self.scene()?, self.time());
+        let due = scene.changes.iter().rfind(|change| change.at <= time + 1e-9);
+        Some(due.map_or(scene, |change| &change.then))
+    }
+
     /// Title and caption of pictures: those of the scene as it stands.
     pub fn words(&self) -> [String; 2] {
-        self.scene().map_or_else(Default::default, |scene| [scene.title.clone(), simulation::caption(scene)])
+        self.scene_now()
+            .map_or_else(Default::default, |scene| [scene.title.clone(), simulation::caption(scene)])
     }
 
     /// The moment that is looked at.
@@ -211,7 +220,7 @@ impl Desk {
 
     /// The follower of an edge: its index among the robots, its name, and how it follows.
     pub fn follower(&self, edge: usize) -> Option<(usize, &str, &Follow)> {
-        let scene = self.scene()?;
+        let scene = self.scene_now()?;
         let followers = scene.robots.iter().enumerate().filter_map(|(index, robot)| match &robot.role {
             Role::Follow(follow) => Some((index, &*robot.name, &**follow)),
             Role::Lead { .. } => None,
@@ -293,7 +302,13 @@ impl Desk {
         if self.cursor.is_some_and(|time| time < self.end() - 1e-9) {
             self.fork();
         }
+        let time = self.time();
         let Some(draft) = &mut self.draft else { return false };
+        let past = Past::of(draft.scene(), time);
+        let edit = |text: &mut scene::SceneText| {
+            past.settle(text)?;
+            edit(text)
+        };
         match draft.edit(what, edit) {
             Ok(effect) => {
                 self.take(what, &effect);
@@ -368,7 +383,9 @@ impl Desk {
             self.cursor = None;
         } else {
             self.pause();
-            self.cursor = Some(time.max(0.0));
+            // Between two samples there is nothing to see.
+            let period = self.history.as_ref().map_or(0.01, History::period);
+            self.cursor = Some((time.max(0.0) / period).round() * period);
         }
     }
 

@@ -68,5 +68,5 @@ pub fn free(folder: &Path, stem: &str, ending: &str) -> PathBuf {
         let dot = if ending.is_empty() { "" } else { "." };
         folder.join(format!("{stem}-{number:03}{dot}{ending}"))
     };
-    (1..).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
+    (1..=u32::MAX).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
 }

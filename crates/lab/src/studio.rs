@@ -178,7 +178,9 @@ impl Work {
             }
             Job::Moments(moments) => {
                 if let Some(reel) = &mut self.film {
-                    moments.iter().for_each(|moment| reel.trail.push(moment));
+                    for moment in &moments {
+                        reel.trail.push(moment);
+                    }
                 }
                 Ok(None)
             }

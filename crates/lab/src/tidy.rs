@@ -4,7 +4,7 @@
 pub fn tidy(value: f64) -> String {
     let short = format!("{value:.4e}").parse::<f64>().unwrap_or(value);
     let plain = short.to_string();
-    if !plain.contains(['.', 'e', 'n']) { format!("{plain}.0") } else { plain }
+    if plain.contains(['.', 'e', 'n']) { plain } else { format!("{plain}.0") }
 }
 
 /// A number without a needless point.

@@ -10,15 +10,18 @@ use std::time::{Duration, SystemTime};
 const EVERY: Duration = Duration::from_millis(400);
 
 /// Looks at one file again and again, on a thread of its own.
-pub struct Watch {
-    seen: Arc<Mutex<Option<(PathBuf, Option<SystemTime>)>>>,
+pub(crate) struct Watch {
+    seen: Arc<Mutex<Seen>>,
     changed: Arc<AtomicBool>,
     stopped: Arc<AtomicBool>,
 }
 
+/// The file, and when it was written last.
+type Seen = Option<(PathBuf, Option<SystemTime>)>;
+
 impl Watch {
     /// Starts the thread; `wake` is called when the file has changed, or when `stop` says that the program shall end.
-    pub fn start(wake: impl Fn() + Send + 'static, stop: Option<fn() -> bool>) -> Self {
+    pub(crate) fn start(wake: impl Fn() + Send + 'static, stop: Option<fn() -> bool>) -> Self {
         let seen = Arc::new(Mutex::new(None));
         let changed = Arc::new(AtomicBool::new(false));
         let stopped = Arc::new(AtomicBool::new(false));
@@ -43,7 +46,7 @@ impl Watch {
     }
 
     /// Looks at this file from now on, as it is now.
-    pub fn look_at(&self, path: Option<PathBuf>) {
+    pub(crate) fn look_at(&self, path: Option<PathBuf>) {
         let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         *seen = path.map(|path| {
             let time = written(&path);
@@ -53,12 +56,12 @@ impl Watch {
     }
 
     /// Whether the program shall end.
-    pub fn stopped(&self) -> bool {
+    pub(crate) fn stopped(&self) -> bool {
         self.stopped.load(Relaxed)
     }
 
     /// Whether the file has changed since the last question.
-    pub fn changed(&self) -> bool {
+    pub(crate) fn changed(&self) -> bool {
         self.changed.swap(false, Relaxed)
     }
 }
@@ -67,7 +70,7 @@ fn written(path: &PathBuf) -> Option<SystemTime> {
     fs::metadata(path).and_then(|meta| meta.modified()).ok()
 }
 
-fn changes(watched: &Mutex<Option<(PathBuf, Option<SystemTime>)>>) -> bool {
+fn changes(watched: &Mutex<Seen>) -> bool {
     let mut seen = watched.lock().unwrap_or_else(PoisonError::into_inner);
     let Some((path, before)) = &mut *seen else { return false };
     let now = written(path);

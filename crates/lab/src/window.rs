@@ -57,7 +57,7 @@ pub fn open(options: Options) -> Result<(), Error> {
         NAME,
         native,
         Box::new(move |context| {
-            let lab = Lab::new(context, options, why)?;
+            let lab = Lab::new(context, &options, why)?;
             Ok(Box::new(lab))
         }),
     );
@@ -99,8 +99,16 @@ fn setup(adapter: &str) -> WgpuSetup {
 
 /// What a person can do where no window can be opened.
 fn explained(error: &str) -> String {
+    let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let displayed = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().any(set);
+    let why = if cfg!(target_os = "linux") && !displayed {
+        "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)"
+    } else {
+        // Libraries put their own names and places in front.
+        error.rsplit("failed: ").next().unwrap_or(error).trim_end_matches('.')
+    };
     format!(
-        "the window cannot be opened: {error}. The lab needs a desktop (X11 or Wayland; Xvfb serves too) and an adapter, \
-         see `echelon doctor`; `echelon film` and `echelon capture` need neither"
+        "the window cannot be opened: {why}. The lab needs a desktop (X11 or Wayland; Xvfb serves too) and an adapter, see \
+         `echelon doctor`; `echelon film` and `echelon capture` need neither"
     )
 }

@@ -1,7 +1,7 @@
 //! Law, gains and observer.
 
 use super::controls::{Range, Row};
-use super::{nothing, tune};
+use super::{nobody, nothing, tune};
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::symbols;
@@ -30,7 +30,7 @@ const ALPHA_TWO: Row =
 pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     let Some((robot, name, follow)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge))
     else {
-        return nothing(ui, "Nobody follows: there is no law to tune.");
+        return nobody(ui, desk, "Nobody follows: there is no law to tune.");
     };
     scope(ui, desk, name, out);
     let kind = vehicle(desk, robot);
@@ -55,7 +55,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
 pub fn observer(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     let Some((robot, name, follow)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge))
     else {
-        return nothing(ui, "Nobody follows: there is nothing to observe.");
+        return nobody(ui, desk, "Nobody follows: there is nothing to observe.");
     };
     let looks = follow.sensing.kind != scene::SensingKind::Truth;
     if follow.law.kind != LawKind::OutputFeedback && !looks {
@@ -159,7 +159,9 @@ fn switching(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
 }
 
 pub(crate) fn vehicle(desk: &Desk, robot: usize) -> VehicleKind {
-    desk.scene().and_then(|scene| scene.robots.get(robot)).map_or(VehicleKind::Unicycle, |r| r.vehicle.kind)
+    desk.scene_now()
+        .and_then(|scene| scene.robots.get(robot))
+        .map_or(VehicleKind::Unicycle, |r| r.vehicle.kind)
 }
 
 fn apart_id() -> eframe::egui::Id {

@@ -27,7 +27,8 @@ pub fn show(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
 }
 
 fn buttons(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let (icon, name) = if desk.playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
+    let (icon, name) =
+        if desk.playing && desk.history.is_some() { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
     if button(ui, icon, "", name, None).on_hover_text(format!("{name} (Space)")).clicked() {
         out.push(Action::Toggle);
     }

@@ -177,15 +177,7 @@ impl Branch {
             let Some(moment) = simulation.next_moment() else { break };
             digest.push(moment);
         }
-        Self {
-            name,
-            parent: Some(parent),
-            changes,
-            simulation,
-            digest,
-            marks,
-            mark_every: self.mark_every,
-        }
+        Self { name, parent: Some(parent), changes, simulation, digest, marks, mark_every: self.mark_every }
     }
 
     /// Digest of all samples so far.
@@ -207,7 +199,8 @@ impl Branch {
 /// The run of a scene that has changes of its own, with those of a branch among them: whichever is later holds.
 fn planned(base: &Scene, changes: &[Change]) -> Result<Setup, String> {
     let last = changes.last().map_or(0.0, |change| change.time);
-    let text = script(&base.to_toml(), &base.changes, changes, base.time.duration.max(last + base.time.period))?;
+    let text =
+        script(&base.to_toml(), &base.changes, changes, base.time.duration.max(last + base.time.period))?;
     let scene = Scene::parse(&text, "", &[]).map_err(|faults| faults.to_string())?.scene;
     simulation::build(&scene).map_err(|error| error.to_string())
 }
@@ -217,7 +210,12 @@ fn planned(base: &Scene, changes: &[Change]) -> Result<Setup, String> {
 ///
 /// # Errors
 /// Why the text cannot be edited, in words.
-pub fn script(base: &str, own: &[scene::Change], changes: &[Change], duration: f64) -> Result<String, String> {
+pub fn script(
+    base: &str,
+    own: &[scene::Change],
+    changes: &[Change],
+    duration: f64,
+) -> Result<String, String> {
     let mut text = SceneText::parse(base).map_err(|error| error.to_string())?;
     text.set("time.duration", &format!("{duration:?}")).map_err(|error| error.to_string())?;
     // Robot by robot, so that what is set for all of them does not give way to what was set for one before.

@@ -197,7 +197,8 @@ impl Teller {
 
     fn places(&mut self, moment: &Moment) {
         let paths = self.out.paths.iter_mut().zip(&mut self.out.motions);
-        for ((path, motions), (robot, trouble)) in paths.zip(moment.snapshot.robots.iter().zip(&mut self.trouble))
+        for ((path, motions), (robot, trouble)) in
+            paths.zip(moment.snapshot.robots.iter().zip(&mut self.trouble))
         {
             let motion = robot.motion;
             path.push(Place { at: [motion.pose.x, motion.pose.y], trouble: std::mem::take(trouble) });

@@ -64,7 +64,7 @@ pub fn field(desk: &Desk, edge: usize, moment: &Moment) -> Option<(Pose, Field)>
     let cast = history.cast();
     let ends = *cast.edges.get(edge)?;
     let (robot, _, follow) = desk.follower(edge)?;
-    let scene = desk.scene()?;
+    let scene = desk.scene_now()?;
     let vehicle = &scene.robots.get(robot)?.vehicle;
     let leader = moment.snapshot.robots.get(ends.leader)?;
     let looks = follow.sensing.kind != scene::SensingKind::Truth;

@@ -106,7 +106,8 @@ fn going_back_and_running_on_is_the_same_run() {
 
 #[test]
 fn going_back_in_a_long_run_is_exact_though_few_states_are_kept() {
-    let text = with(THREE, &[("time.period", "0.05"), ("observer.epsilon", "0.1"), ("time.mode", "measured")]);
+    let text =
+        with(THREE, &[("time.period", "0.05"), ("observer.epsilon", "0.1"), ("time.mode", "measured")]);
     let mut hand = Hand::new(&text);
     let end = 2500;
     hand.to(end);

@@ -51,7 +51,11 @@ fn the_past_is_what_it_was() {
         assert_eq!((then.end(0), then.sample(at)), (at, sample as u64));
     }
     let [a, b] = [100, 101].map(|sample| time(&moments[sample]));
-    assert_eq!(*back.at(0, 0.5 * (a + b)).expect("a moment"), moments[100], "between samples: the one before");
+    assert_eq!(
+        *back.at(0, 0.5 * (a + b)).expect("a moment"),
+        moments[100],
+        "between samples: the one before"
+    );
     assert_eq!(*back.at(0, 1e9).expect("a moment"), moments[1299], "after the end: the end");
     assert_eq!(*back.at(0, -1.0).expect("a moment"), moments[0], "before the start: the start");
 }
@@ -87,7 +91,9 @@ fn branches_share_the_past_and_not_the_future() {
     history.prepare_trail(7, at);
     history.push(7, moments[0].clone());
     history.fork(7, 3);
-    assert!(history.at(7, at).is_none() && history.since(7, [0.0, 9.0]).is_empty() && history.branches() == 2);
+    assert!(
+        history.at(7, at).is_none() && history.since(7, [0.0, 9.0]).is_empty() && history.branches() == 2
+    );
 }
 
 #[test]
@@ -106,7 +112,10 @@ fn room_is_measured_ten_times_a_second() {
     let rooms = history.rooms(0, [1.0, 3.0]);
     assert!((20..=21).contains(&rooms.len()), "{}", rooms.len());
     // Bodies of 0.42 m by 0.24 m, the middles 1.4 to 2 m apart.
-    assert!(rooms.iter().all(|[time, room]| (1.0..=3.0).contains(time) && (0.8..2.0).contains(room)), "{rooms:?}");
+    assert!(
+        rooms.iter().all(|[time, room]| (1.0..=3.0).contains(time) && (0.8..2.0).contains(room)),
+        "{rooms:?}"
+    );
 }
 
 /// A run of `count` samples in which nothing has to be computed.
