@@ -8,8 +8,10 @@ use crate::tidy::fixed;
 use eframe::egui::{self, Color32, Id, Stroke, Ui};
 use egui_plot::{HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, VLine};
 
-/// Points of a curve, at most.
+/// Points of a curve, at most, before what is straight is left out.
 const MOST_POINTS: usize = 400;
+/// How far a curve may be off, points of the screen.
+const OFF: f64 = 0.35;
 
 /// Plots of some quantities, one above the other.
 pub fn show(ui: &mut Ui, desk: &Desk, quantities: &[Quantity], out: &mut Vec<Action>) {
@@ -40,6 +42,7 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
         .height(high.max(30.0))
         .show_axes([last, true])
         .show_grid(true)
+        .show_background(false)
         .link_axis(group, [true, false])
         .link_cursor(group, [true, false])
         .allow_scroll(false)
@@ -68,6 +71,7 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
     let cursor = ui.visuals().strong_text_color();
     let chosen = desk.chosen_robot();
     let span = span(&all, quantity);
+    let off = OFF * (span[1] - span[0]) / f64::from(high.max(30.0));
     let response = plot.show(ui, |plot| {
         plot.set_plot_bounds_y(span[0]..=span[1]);
         for bound in bounds(desk, quantity) {
@@ -88,7 +92,7 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
             };
             let colour = if active { colour } else { colour.gamma_multiply(0.45) };
             let style = if active { LineStyle::Solid } else { LineStyle::dashed_dense() };
-            let points = PlotPoints::from(curve.points);
+            let points = PlotPoints::from(straightened(&curve.points, off));
             plot.line(Line::new("", points).stroke(Stroke::new(wide, colour)).style(style));
         }
         plot.vline(VLine::new("now", desk.time()).color(cursor).width(1.0));
@@ -110,6 +114,32 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
 
 /// Share of the values, at either end, that may lie beside the plot: spikes of a sample would flatten all else.
 const SPIKES: f64 = 0.015;
+
+/// A curve without the points that lie on a straight line between others, give or take `off`: what is at rest costs
+/// nothing to draw.
+fn straightened(points: &[[f64; 2]], off: f64) -> Vec<[f64; 2]> {
+    let (Some(first), Some(last)) = (points.first(), points.last()) else { return Vec::new() };
+    let mut kept = vec![*first];
+    // Slopes from the last point kept that pass all points since within `off`.
+    let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+    let mut before = *first;
+    for point in &points[1..] {
+        let [x, y] = kept[kept.len() - 1];
+        let along = (point[0] - x).max(f64::MIN_POSITIVE);
+        let slope = (point[1] - y) / along;
+        if slope < low || slope > high {
+            kept.push(before);
+            let along = (point[0] - before[0]).max(f64::MIN_POSITIVE);
+            (low, high) = ((point[1] - off - before[1]) / along, (point[1] + off - before[1]) / along);
+        } else {
+            low = low.max((point[1] - off - y) / along);
+            high = high.min((point[1] + off - y) / along);
+        }
+        before = *point;
+    }
+    kept.push(*last);
+    kept
+}
 
 /// What a plot shows of its values.
 fn span(curves: &[Curve], quantity: Quantity) -> [f64; 2] {
@@ -133,5 +163,26 @@ fn short(value: f64) -> String {
     match text {
         "-0" | "" => "0".to_owned(),
         _ => text.replace('-', "−"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn straight_curves_keep_their_ends_and_bent_ones_their_shape() {
+        let line: Vec<[f64; 2]> = (0..100).map(|k| [f64::from(k), 2.0 * f64::from(k)]).collect();
+        assert_eq!(straightened(&line, 0.01).len(), 2);
+        let wave: Vec<[f64; 2]> = (0..200).map(|k| [f64::from(k), (f64::from(k) * 0.1).sin()]).collect();
+        let kept = straightened(&wave, 0.02);
+        assert!(kept.len() < 100, "{}", kept.len());
+        for point in &wave {
+            let after = kept.iter().position(|p| p[0] >= point[0]).expect("the end is kept");
+            let (a, b) = (kept[after.saturating_sub(1)], kept[after]);
+            let share = if b[0] > a[0] { (point[0] - a[0]) / (b[0] - a[0]) } else { 0.0 };
+            assert!((a[1] + share * (b[1] - a[1]) - point[1]).abs() < 0.05, "at {}", point[0]);
+        }
+        assert!(straightened(&[], 0.1).is_empty());
     }
 }
