@@ -94,6 +94,22 @@ impl Draft {
         self.replace(what, text.text())
     }
 
+    /// Another text with an edit, which is not put in place.
+    ///
+    /// # Errors
+    /// Why the edit cannot be, in words.
+    pub fn edited(
+        &self,
+        text: &str,
+        edit: impl FnOnce(&mut SceneText) -> Result<(), String>,
+    ) -> Result<String, String> {
+        let mut text = SceneText::parse(text).map_err(|error| error.to_string())?;
+        edit(&mut text)?;
+        let text = text.text();
+        Scene::parse(&text, &self.home, &[]).map_err(|faults| faults.to_string())?;
+        Ok(text)
+    }
+
     /// Puts another text in place.
     ///
     /// # Errors
@@ -181,11 +197,19 @@ impl Draft {
             expect: scene.expect,
             ..Scene::clone(&self.scene)
         };
+        let redressed = dressed != Scene { changes: scene.changes.clone(), ..Scene::clone(&self.scene) };
+        // What was past may have become what is, and what is to come depends on what is. Else changes are as they were.
+        let [before, after] = [&self.scene.changes, &scene.changes];
+        let left = &before[before.len().saturating_sub(after.len())..];
+        let times = |changes: &[scene::Change]| changes.iter().map(|change| change.at).collect::<Vec<_>>();
+        let others = || Effect::Restart("its changes are others".to_owned());
         match dressed.sets_to(scene) {
-            Ok(set) if set.is_empty() && dressed == *self.scene => Effect::None,
+            Ok(_) if times(left) != times(after) => others(),
+            Ok(set) if set.is_empty() && left != after.as_slice() => others(),
+            Ok(set) if set.is_empty() && !redressed => Effect::None,
             Ok(set) if set.is_empty() => Effect::Dress,
             // Both at once come from a file that was edited elsewhere.
-            Ok(_) if dressed != *self.scene => Effect::Restart("the scene is another".to_owned()),
+            Ok(_) if redressed => Effect::Restart("the scene is another".to_owned()),
             Ok(_) => Effect::Retune,
             Err(standing) => Effect::Restart(standing.join(", ")),
         }
