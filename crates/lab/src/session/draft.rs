@@ -106,8 +106,15 @@ impl Draft {
         let mut text = SceneText::parse(text).map_err(|error| error.to_string())?;
         edit(&mut text)?;
         let text = text.text();
-        Scene::parse(&text, &self.home, &[]).map_err(|faults| faults.to_string())?;
+        self.check(&text)?;
         Ok(text)
+    }
+
+    /// The scene of a text, if it can run.
+    fn check(&self, text: &str) -> Result<Scene, String> {
+        let scene = Scene::parse(text, &self.home, &[]).map_err(|faults| faults.to_string())?.scene;
+        simulation::build(&scene).map_err(|error| error.to_string())?;
+        Ok(scene)
     }
 
     /// Puts another text in place.
@@ -118,7 +125,7 @@ impl Draft {
         if text == self.text {
             return Ok(Effect::None);
         }
-        let scene = Scene::parse(&text, &self.home, &[]).map_err(|faults| faults.to_string())?.scene;
+        let scene = self.check(&text)?;
         let effect = self.effect_of(&scene);
         let before = Step {
             text: std::mem::replace(&mut self.text, text),
