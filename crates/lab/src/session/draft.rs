@@ -111,7 +111,10 @@ impl Draft {
     }
 
     /// The scene of a text, if it can run.
-    fn check(&self, text: &str) -> Result<Scene, String> {
+    ///
+    /// # Errors
+    /// All that is wrong with the text.
+    pub fn check(&self, text: &str) -> Result<Scene, String> {
         let scene = Scene::parse(text, &self.home, &[]).map_err(|faults| faults.to_string())?.scene;
         simulation::build(&scene).map_err(|error| error.to_string())?;
         Ok(scene)
@@ -208,11 +211,13 @@ impl Draft {
         // What was past may have become what is, and what is to come depends on what is. Else changes are as they were.
         let [before, after] = [&self.scene.changes, &scene.changes];
         let left = &before[before.len().saturating_sub(after.len())..];
-        let times = |changes: &[scene::Change]| changes.iter().map(|change| change.at).collect::<Vec<_>>();
-        let others = || Effect::Restart("its changes are others".to_owned());
+        let same = |(a, b): (&scene::Change, &scene::Change)| (a.at, &a.set) == (b.at, &b.set);
+        let timed = left.iter().map(|change| change.at).eq(after.iter().map(|change| change.at));
+        let scripted = left.iter().zip(after).all(same);
         match dressed.sets_to(scene) {
-            Ok(_) if times(left) != times(after) => others(),
-            Ok(set) if set.is_empty() && left != after.as_slice() => others(),
+            Ok(set) if !timed || (set.is_empty() && !scripted) => {
+                Effect::Restart("its changes are others".to_owned())
+            }
             Ok(set) if set.is_empty() && !redressed => Effect::None,
             Ok(set) if set.is_empty() => Effect::Dress,
             // Both at once come from a file that was edited elsewhere.

@@ -310,7 +310,7 @@ fn a_robot_that_is_followed_stays() {
 fn what_cannot_be_changes_nothing_and_is_said_once() {
     let cases = [
         (tune("law.k", "-1.0"), "`k` must be"),
-        (tune("observer.epsilon", "1e-9"), ""),
+        (tune("observer.epsilon", "1e-9"), "sampled"),
         (set("time.period", "0.0"), "period"),
         (set("robots.nobody.distance", "2.0"), "nobody"),
         (Action::RenameRobot("left".to_owned(), "right".to_owned()), "right"),
@@ -320,9 +320,10 @@ fn what_cannot_be_changes_nothing_and_is_said_once() {
         (Action::RemoveProp("nothing".to_owned()), "nothing"),
         (Action::Reset { what: "x".to_owned(), paths: vec!["robots.nobody.law.k".to_owned()] }, "nobody"),
     ];
+    let continuous = with(THREE, &[("time.mode", "continuous"), ("observer.epsilon", "0.02")]);
     for past in [false, true] {
         for (action, word) in &cases {
-            let mut desk = desk(THREE, 30);
+            let mut desk = desk(&continuous, 30);
             if past {
                 desk.act(&Action::Seek(0.1));
             }
@@ -331,7 +332,7 @@ fn what_cannot_be_changes_nothing_and_is_said_once() {
             assert!(notice.contains(word) && notice.lines().count() <= 8, "{action:?}: {notice}");
             let faults = desk.log.iter().filter(|event| event.fault).count();
             assert_eq!((faults, desk.log.len()), (1, 1), "{action:?}: {:?}", desk.log);
-            assert_eq!(text(&desk), THREE, "{action:?}");
+            assert_eq!(text(&desk), continuous, "{action:?}");
             assert_eq!(orders(&desk), [""; 0], "{action:?}, in the past: {past}");
             assert!(desk.draft.as_ref().is_some_and(|draft| draft.undoes().is_none()), "{action:?}");
         }
@@ -483,8 +484,17 @@ fn a_scene_with_changes_of_its_own_is_tuned_as_it_goes() {
     rig.steps(20);
     let told = rig.told(0);
     assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
+    // What is past has become what is, and what is to come still comes.
+    rig.steps(620);
+    rig.act(&[tune("law.beta", "3.0"), Action::Rest]);
+    assert_eq!((rig.desk.branches[0].changes.len(), rig.desk.scene().expect("a scene").changes.len()), (2, 2));
+    rig.steps(20);
+    let told = rig.told(0);
+    assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
+    rig.act(&[set("title", "\"Another title\"")]);
+    assert_eq!(rig.desk.branches[0].changes.len(), 2, "another title is the same run");
     // Other changes of its own are another run.
-    let text = rig.text().replace("at = 6.0", "at = 5.0");
+    let text = rig.text().replace("at = 21.0", "at = 20.0");
     let effect = rig.desk.draft.as_mut().map(|draft| draft.replace("Script", text));
     assert!(matches!(effect, Some(Ok(lab::session::draft::Effect::Restart(_)))), "{effect:?}");
 }
