@@ -10,6 +10,7 @@ mod app;
 pub mod deeds;
 pub mod desk;
 mod files;
+pub mod futures;
 pub mod gallery;
 pub mod keep;
 pub mod kept;

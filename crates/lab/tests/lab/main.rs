@@ -3,6 +3,8 @@
 
 mod branches;
 mod common;
+mod deeds;
+mod draft;
 mod forecast;
 mod history;
 mod pacing;
