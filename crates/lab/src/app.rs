@@ -213,7 +213,15 @@ impl Lab {
             out: &mut out,
         };
         let tree = &mut self.tree;
-        egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| tree.ui(&mut panels, ui));
+        egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| {
+            let room = ui.available_size();
+            // In a window as small as a hand there is room for the view alone.
+            if room.x < LEAST.x || room.y < LEAST.y {
+                (panels.view)(ui, panels.out);
+            } else {
+                tree.ui(&mut panels, ui);
+            }
+        });
         self.windows(ui.ctx(), &mut out);
         out
     }
@@ -290,7 +298,11 @@ impl Lab {
 }
 
 /// The window is cleared in the colour of panels; to paint it once more costs as much as the robots on a processor.
-pub(crate) const BARE: egui::Frame = egui::Frame { inner_margin: egui::Margin::symmetric(6, 2), ..egui::Frame::NONE };
+pub(crate) const BARE: egui::Frame =
+    egui::Frame { inner_margin: egui::Margin::symmetric(6, 2), ..egui::Frame::NONE };
+
+/// Room for panels, points.
+const LEAST: egui::Vec2 = egui::vec2(560.0, 340.0);
 
 impl eframe::App for Lab {
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {

@@ -135,7 +135,13 @@ impl Desk {
         script(&self.base, &self.own, &branch.changes, self.end().max(period))
     }
 
-    pub(crate) fn forked(&mut self, branch: usize, (from, sample): (usize, u64), name: String, changes: Vec<Change>) {
+    pub(crate) fn forked(
+        &mut self,
+        branch: usize,
+        (from, sample): (usize, u64),
+        name: String,
+        changes: Vec<Change>,
+    ) {
         let Some(history) = &mut self.history else { return };
         history.fork(from, sample);
         let time = (sample as f64 - 1.0) * history.period();

@@ -75,7 +75,7 @@ impl Lab {
         if !open {
             self.over = Over::Nothing;
         }
-        if self.hints {
+        if self.hints && self.viewport.rect.width() > 460.0 {
             self.show_hints(ctx);
         }
     }

@@ -13,15 +13,22 @@ const MOST_ROWS: usize = 5;
 pub fn show(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         buttons(ui, desk, out);
-        ui.separator();
-        pace(ui, desk, out);
-        ui.separator();
+        if ui.available_width() > 420.0 {
+            ui.separator();
+            pace(ui, desk, out);
+            ui.separator();
+        }
         let text = format!("t = {} s", fixed(desk.time(), 2));
         ui.add_sized([92.0, 20.0], egui::Label::new(RichText::new(text).monospace()))
             .on_hover_text("Simulated time that is seen");
         let tail = 214.0;
-        let wide = (ui.available_width() - tail).max(60.0);
-        line(ui, desk, wide, out);
+        // Where there is little room, the line of time comes first.
+        let narrow = ui.available_width() < tail + 60.0;
+        let wide = if narrow { ui.available_width() - 4.0 } else { ui.available_width() - tail };
+        line(ui, desk, wide.max(30.0), out);
+        if narrow {
+            return;
+        }
         menus(ui, desk, filming, out);
     });
 }

@@ -50,7 +50,8 @@ impl Hand {
     fn check_script(&self, what: &str) {
         let branch = &self.all.list()[self.branch];
         let duration = (self.sample() - 1) as f64 * branch.simulation().period();
-        let text = script(&self.base, &scene(&self.base).changes, &branch.changes, duration).expect("a script");
+        let text =
+            script(&self.base, &scene(&self.base).changes, &branch.changes, duration).expect("a script");
         assert_eq!(run(&text), (self.sample(), self.digest()), "{what}\n{text}");
     }
 }

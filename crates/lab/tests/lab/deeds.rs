@@ -74,9 +74,18 @@ fn point(edge: usize, distance: f64, degrees: f64) -> Action {
 fn deeds() -> Vec<(Action, String, Vec<&'static str>, &'static [&'static str])> {
     let three = || THREE.to_owned();
     let own = || with(THREE, &[("robots.left.law.k", "7.0")]);
-    let pillar = || format!("{THREE}\n[[props]]\nname = \"post\"\nshape = \"cylinder\"\nradius = 0.1\nheight = 0.5\npose = [5.0, 5.0, 0.0]\n");
+    let pillar = || {
+        format!(
+            "{THREE}\n[[props]]\nname = \"post\"\nshape = \"cylinder\"\nradius = 0.1\nheight = 0.5\npose = [5.0, 5.0, 0.0]\n"
+        )
+    };
     vec![
-        (point(0, 1.5, 120.0), three(), vec!["distance = 1.5 # from the leader", "bearing = \"120 deg\""], RETUNE),
+        (
+            point(0, 1.5, 120.0),
+            three(),
+            vec!["distance = 1.5 # from the leader", "bearing = \"120 deg\""],
+            RETUNE,
+        ),
         (Action::Shape { scale: 1.1, turn: 0.0 }, three(), vec!["distance = 2.2 # from the leader"], RETUNE),
         (tune("law.k", "4.0"), three(), vec!["k = 4.0 # not too stiff"], RETUNE),
         (tune("law.k", "4.0"), own(), vec!["k = 4.0 # not too stiff"], RETUNE),
@@ -85,7 +94,12 @@ fn deeds() -> Vec<(Action, String, Vec<&'static str>, &'static [&'static str])> 
         (tune("vehicle.speed_max", "1.5"), three(), vec!["speed_max = 1.5"], RETUNE),
         (tune("sensing.kind", "\"noise\""), three(), vec!["\"noise\""], RESTART),
         (untune("law.beta"), three(), vec!["k = 3.0 # not too stiff"], RETUNE),
-        (set("robots.left.pose", "[-3.0, 1.0, 0.0]"), three(), vec!["[-3.0, 1.0, 0.0] # where it starts"], RESTART),
+        (
+            set("robots.left.pose", "[-3.0, 1.0, 0.0]"),
+            three(),
+            vec!["[-3.0, 1.0, 0.0] # where it starts"],
+            RESTART,
+        ),
         (
             Action::Reset { what: "Less".to_owned(), paths: vec!["law.k".to_owned(), "law.beta".to_owned()] },
             three(),
@@ -95,8 +109,18 @@ fn deeds() -> Vec<(Action, String, Vec<&'static str>, &'static [&'static str])> 
         (Action::Connect { leader: 1, follower: 2 }, three(), vec!["leader = \"left\""], RESTART),
         (Action::AddRobot, three(), vec!["name = \"follower-1\"", "leader = \"left\""], RESTART),
         (Action::RemoveRobot("right".to_owned()), three(), vec!["# To the left."], RESTART),
-        (Action::RenameRobot("leader".to_owned(), "boss".to_owned()), three(), vec!["leader = \"boss\""], RESTART),
-        (Action::AddProp("pillar", [3.0, -2.5]), three(), vec!["name = \"pillar-1\"", "[3.0, -2.5, 0.0]"], RESTART),
+        (
+            Action::RenameRobot("leader".to_owned(), "boss".to_owned()),
+            three(),
+            vec!["leader = \"boss\""],
+            RESTART,
+        ),
+        (
+            Action::AddProp("pillar", [3.0, -2.5]),
+            three(),
+            vec!["name = \"pillar-1\"", "[3.0, -2.5, 0.0]"],
+            RESTART,
+        ),
         (Action::RemoveProp("post".to_owned()), pillar(), vec!["name = \"right\""], RESTART),
     ]
 }
@@ -195,7 +219,10 @@ fn the_whole_formation_is_scaled_and_turned() {
     for (edge, [distance, bearing]) in before.into_iter().enumerate() {
         let [d, b] = desk.set_point(edge).expect("a set point");
         let turned = vocabulary::wrap(bearing + f64::to_radians(50.0));
-        assert!((d - 1.5 * distance).abs() < 1e-3 && vocabulary::wrap(b - turned).abs() < 1e-4, "edge {edge}");
+        assert!(
+            (d - 1.5 * distance).abs() < 1e-3 && vocabulary::wrap(b - turned).abs() < 1e-4,
+            "edge {edge}"
+        );
     }
     assert_eq!(orders(&desk), RETUNE, "one change for all of them");
 }
@@ -259,17 +286,20 @@ fn a_lead_robot_becomes_a_follower_where_it_is() {
     desk.act(&Action::Connect { leader: 0, follower: 3 });
     assert_eq!(desk.notice, None);
     let now = desk.moment().expect("a moment");
-    let relative = vocabulary::Relative::between(
-        now.snapshot.robots[0].motion.pose,
-        now.snapshot.robots[3].motion.pose,
-    );
+    let relative =
+        vocabulary::Relative::between(now.snapshot.robots[0].motion.pose, now.snapshot.robots[3].motion.pose);
     let [distance, bearing] = desk.set_point(2).expect("a set point");
     assert!((distance - relative.distance).abs() <= 0.026, "{distance} m, is {} m", relative.distance);
     assert!((bearing - relative.bearing).abs() < 0.01);
     let after = text(&desk);
-    assert!(after.contains("name = \"second\" # on its own") && !after.contains("path = { kind = \"constant\""));
+    assert!(
+        after.contains("name = \"second\" # on its own") && !after.contains("path = { kind = \"constant\"")
+    );
     assert_eq!(orders(&desk), RESTART);
-    assert!(matches!(&desk.orders[0], Order::Open { until, .. } if *until == desk.end()), "at once to where it was");
+    assert!(
+        matches!(&desk.orders[0], Order::Open { until, .. } if *until == desk.end()),
+        "at once to where it was"
+    );
 }
 
 #[test]
@@ -436,8 +466,7 @@ fn edits_that_the_run_takes_one_by_one_are_remembered_one_by_one() {
             Some(Order::Change(scene)) => scene,
             _ => panic!("no change"),
         };
-        let mut branches =
-            lab::session::branches::Branches::open(self::scene(THREE), |_| ()).expect("a run");
+        let mut branches = lab::session::branches::Branches::open(self::scene(THREE), |_| ()).expect("a run");
         let change = branches.change(0, scene).expect("a change").expect("something new");
         let time = sample as f64 * 0.01;
         changes.push(lab::session::branches::Change { sample, time, ..change });
@@ -487,7 +516,10 @@ fn a_scene_with_changes_of_its_own_is_tuned_as_it_goes() {
     // What is past has become what is, and what is to come still comes.
     rig.steps(620);
     rig.act(&[tune("law.beta", "3.0"), Action::Rest]);
-    assert_eq!((rig.desk.branches[0].changes.len(), rig.desk.scene().expect("a scene").changes.len()), (2, 2));
+    assert_eq!(
+        (rig.desk.branches[0].changes.len(), rig.desk.scene().expect("a scene").changes.len()),
+        (2, 2)
+    );
     rig.steps(20);
     let told = rig.told(0);
     assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
@@ -508,7 +540,10 @@ fn the_run_is_led_by_hand() {
     assert!(!desk.playing && matches!(desk.orders.pop(), Some(Order::Play(false))));
     assert_eq!((desk.cursor, desk.time()), (Some(0.2), 0.2));
     desk.act(&Action::Step);
-    assert!((desk.time() - 0.21).abs() < 1e-12 && desk.orders.is_empty(), "a step in the past asks for nothing");
+    assert!(
+        (desk.time() - 0.21).abs() < 1e-12 && desk.orders.is_empty(),
+        "a step in the past asks for nothing"
+    );
     desk.act(&Action::Back(0.1));
     assert!((desk.time() - 0.11).abs() < 1e-12);
     desk.act(&Action::Back(7.0));
@@ -540,7 +575,11 @@ fn the_run_is_led_by_hand() {
 #[test]
 fn what_is_selected_is_there() {
     let mut rig = Rig::new(THREE);
-    assert_eq!((rig.desk.choice, rig.desk.chosen_robot()), (Choice::Edge(0), Some(1)), "an edge, to begin with");
+    assert_eq!(
+        (rig.desk.choice, rig.desk.chosen_robot()),
+        (Choice::Edge(0), Some(1)),
+        "an edge, to begin with"
+    );
     rig.act(&[Action::Choose(Choice::Robot(2))]);
     assert_eq!(rig.desk.chosen_edge(), Some(1));
     rig.act(&[Action::RemoveRobot("right".to_owned())]);

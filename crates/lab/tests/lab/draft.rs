@@ -96,7 +96,10 @@ fn an_edit_means_what_it_means_for_the_run() {
     for (path, value) in [("seed", "8"), ("time.period", "0.02"), ("robots.left.pose", "[-3.0, 1.0, 0.0]")] {
         let effect = set(&mut draft, "Start", path, value);
         let last = path.split('.').next_back().expect("a key");
-        assert!(matches!(&effect, Ok(Effect::Restart(why)) if why.contains(last) || why.contains("time")), "{effect:?}");
+        assert!(
+            matches!(&effect, Ok(Effect::Restart(why)) if why.contains(last) || why.contains("time")),
+            "{effect:?}"
+        );
     }
 }
 
