@@ -7,5 +7,5 @@ mod deeds;
 mod draft;
 mod forecast;
 mod history;
-mod panels;
 mod pacing;
+mod panels;

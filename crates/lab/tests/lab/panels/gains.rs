@@ -1,6 +1,6 @@
 //! Law, observer, sensing and limits: rows of a symbol, a slider and a way back.
 
-use super::{assert_says, asked, click, drag, enter, panel, texts, tip, value};
+use super::{asked, assert_says, click, drag, enter, panel, texts, tip, value};
 use crate::common::{THREE, desk, with};
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -27,7 +27,11 @@ fn tuned(actions: &[Action], key: &str) -> f64 {
 }
 
 /// Every slider of a panel shows its value, can be dragged and set, and goes back; every symbol explains itself.
-fn check_rows(desk: impl Fn() -> Desk, show: fn(&mut eframe::egui::Ui, &Desk, &mut Vec<Action>), rows: &[(symbols::Symbol, &'static str, f64, f64)]) {
+fn check_rows(
+    desk: impl Fn() -> Desk,
+    show: fn(&mut eframe::egui::Ui, &Desk, &mut Vec<Action>),
+    rows: &[(symbols::Symbol, &'static str, f64, f64)],
+) {
     for (symbol, key, now, next) in rows {
         let mut panel = panel(desk(), show);
         let name = symbol.name;
@@ -45,7 +49,13 @@ fn check_rows(desk: impl Fn() -> Desk, show: fn(&mut eframe::egui::Ui, &Desk, &m
         let untuned = Action::Untune { what: back, key };
         assert!(actions.is_empty() || actions == [untuned.clone()], "{actions:?}");
         // Where the value is the default there is no way back.
-        assert_eq!(actions == [untuned], !panel.get_by_role_and_label(Role::Button, &format!("Reset {}", name.to_lowercase())).accesskit_node().is_disabled());
+        assert_eq!(
+            actions == [untuned],
+            !panel
+                .get_by_role_and_label(Role::Button, &format!("Reset {}", name.to_lowercase()))
+                .accesskit_node()
+                .is_disabled()
+        );
         let tip = tip(&mut panel, symbol.sign).join("\n");
         for part in [name, symbol.equation, symbol.growing, symbol.unit] {
             assert!(tip.contains(part), "{name}: `{part}` is not in `{tip}`");
@@ -145,7 +155,9 @@ fn the_observer_is_shown_tuned_and_explained() {
     // s² + 3 s + 1 at ε = 0.02 s: (−3 ± √5) / 0.04.
     assert_says(&panel, &["Poles at −131 and −19.1 1/s"]);
     let actions = click(&mut panel, Role::Button, "Disturb the observer");
-    assert!(matches!(&actions[..], [Action::Set { values, .. }, Action::Restart] if values[0].0 == "observer.start"));
+    assert!(
+        matches!(&actions[..], [Action::Set { values, .. }, Action::Restart] if values[0].0 == "observer.start")
+    );
     let told = with(THREE, &[("law.kind", "full-state")]);
     assert_says(&self::panel(desk(&told, 5), law::observer), &["This law is told the rates."]);
     let looking = with(THREE, &[("sensing", "{ kind = \"noise\" }")]);
@@ -156,7 +168,13 @@ fn the_observer_is_shown_tuned_and_explained() {
 
 #[test]
 fn sensing_is_shown_tuned_and_explained() {
-    let text = with(THREE, &[("sensing", "{ kind = \"noise\", rate = 20.0, latency = 0.05, drop = 0.2, distance_noise = 0.01 }")]);
+    let text = with(
+        THREE,
+        &[(
+            "sensing",
+            "{ kind = \"noise\", rate = 20.0, latency = 0.05, drop = 0.2, distance_noise = 0.01 }",
+        )],
+    );
     check_rows(
         || desk(&text, 30),
         sensing::show,
@@ -169,11 +187,7 @@ fn sensing_is_shown_tuned_and_explained() {
     );
     assert_says(&panel(desk(&text, 60), sensing::show), &["left ", "last look", "ms ago"]);
     let tags = with(THREE, &[("sensing", "{ kind = \"geometric\", pixel_noise = 0.3 }")]);
-    check_rows(
-        || desk(&tags, 5),
-        sensing::show,
-        &[(symbols::PIXEL_NOISE, "sensing.pixel_noise", 0.3, 0.5)],
-    );
+    check_rows(|| desk(&tags, 5), sensing::show, &[(symbols::PIXEL_NOISE, "sensing.pixel_noise", 0.3, 0.5)]);
     let mut panel = panel(desk(THREE, 5), sensing::show);
     assert!(panel.query_by_role_and_label(Role::Slider, "Latency").is_none(), "the truth has none");
     click(&mut panel, Role::ComboBox, "Sensing");

@@ -1,8 +1,8 @@
 //! Panels without a window: what they show, by what names it is found, and what hands on them ask for.
 
 mod gains;
-mod seeing;
 mod places;
+mod seeing;
 mod time;
 
 use eframe::egui::{self, Event, Ui, accesskit::Role};
@@ -147,9 +147,12 @@ fn panels_without_a_scene_say_so() {
         ("sensing", Box::new(lab::panels::sensing::show)),
         ("limits", Box::new(lab::panels::world::limits)),
         ("world", Box::new(lab::panels::world::surroundings)),
-        ("curves", Box::new(|ui, desk, out| {
-            lab::panels::curves::show(ui, desk, &[lab::quantities::Quantity::Speed], out);
-        })),
+        (
+            "curves",
+            Box::new(|ui, desk, out| {
+                lab::panels::curves::show(ui, desk, &[lab::quantities::Quantity::Speed], out);
+            }),
+        ),
     ];
     for (name, show) in shows {
         let panel = panel(Desk::new(), show);

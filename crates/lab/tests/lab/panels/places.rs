@@ -1,6 +1,6 @@
 //! The tree of robots, the edge that is selected, branches and the log.
 
-use super::{assert_says, asked, click, enter, panel, says, texts, tip, value};
+use super::{asked, assert_says, click, enter, panel, says, texts, tip, value};
 use crate::common::{Rig, THREE, desk, with};
 use eframe::egui::{self, Key, Modifiers, accesskit::Role};
 use egui_kittest::kittest::Queryable;
@@ -37,7 +37,8 @@ fn robots_are_selected_and_made_in_the_tree() {
 #[test]
 fn a_robot_dropped_on_another_follows_it() {
     let mut panel = panel(desk(THREE, 5), formation::show);
-    let [from, to] = ["right", "left"].map(|name| panel.get_by_role_and_label(Role::Button, name).rect().center());
+    let [from, to] =
+        ["right", "left"].map(|name| panel.get_by_role_and_label(Role::Button, name).rect().center());
     for drop in [to, from] {
         panel.drag_at(from);
         panel.run();
@@ -47,7 +48,8 @@ fn a_robot_dropped_on_another_follows_it() {
         panel.run();
         panel.drop_at(drop);
         let actions = asked(&mut panel);
-        let connects: Vec<_> = actions.iter().filter(|action| matches!(action, Action::Connect { .. })).collect();
+        let connects: Vec<_> =
+            actions.iter().filter(|action| matches!(action, Action::Connect { .. })).collect();
         if drop == to {
             assert_eq!(connects, [&Action::Connect { leader: 1, follower: 2 }]);
         } else {
@@ -106,7 +108,9 @@ fn an_edge_shows_what_is_wanted_and_what_is() {
 /// The set points that are asked for.
 fn points(actions: &[Action]) -> Vec<(usize, f64, f64)> {
     let point = |action: &Action| match action {
-        Action::SetPoint { edge, distance, bearing } => Some((*edge, *distance, bearing.to_degrees().round())),
+        Action::SetPoint { edge, distance, bearing } => {
+            Some((*edge, *distance, bearing.to_degrees().round()))
+        }
         _ => None,
     };
     actions.iter().filter_map(point).collect()
@@ -137,12 +141,9 @@ fn set_points_are_typed_and_dragged() {
 fn the_formation_is_mirrored_scaled_and_turned() {
     let mut panel = panel(desk(THREE, 5), edge::show);
     assert_eq!(click(&mut panel, Role::CheckBox, "Mirror the other side"), [Action::Mirror(true)]);
-    for (name, wanted) in [
-        ("+10 %", (1.1, 0.0)),
-        ("−10 %", (1.0 / 1.1, 0.0)),
-        ("↺ 5°", (1.0, 5.0)),
-        ("↻ 5°", (1.0, -5.0)),
-    ] {
+    for (name, wanted) in
+        [("+10 %", (1.1, 0.0)), ("−10 %", (1.0 / 1.1, 0.0)), ("↺ 5°", (1.0, 5.0)), ("↻ 5°", (1.0, -5.0))]
+    {
         let actions = click(&mut panel, Role::Button, name);
         let [Action::Shape { scale, turn }, Action::Rest] = &actions[..] else { panic!("{actions:?}") };
         assert_eq!((*scale, turn.to_degrees().round()), wanted, "{name}");

@@ -17,9 +17,7 @@ fn film(filming: Option<&'static str>) -> Panel {
 #[test]
 fn pictures_and_films_are_asked_for() {
     let mut panel = film(None);
-    for (name, action) in
-        [("Picture", Action::Picture), ("Keep the run", Action::KeepRun)]
-    {
+    for (name, action) in [("Picture", Action::Picture), ("Keep the run", Action::KeepRun)] {
         assert_eq!(click(&mut panel, Role::Button, name), [action], "{name}");
     }
     panel.get_by_role_and_label(Role::Button, "● Film").click();
@@ -49,9 +47,14 @@ fn the_look_ahead_is_set() {
 #[test]
 fn elements_are_switched_by_words() {
     let style = Style::default();
-    for (text, name) in [("Ribbons where robots drove", "ribbons"), ("Names", "names"), ("Shadows", "shadows")] {
+    for (text, name) in
+        [("Ribbons where robots drove", "ribbons"), ("Names", "names"), ("Shadows", "shadows")]
+    {
         let mut panel = film(None);
-        assert_eq!(click(&mut panel, Role::CheckBox, text), [Action::Element(name_of(name), !style.shows(name))]);
+        assert_eq!(
+            click(&mut panel, Role::CheckBox, text),
+            [Action::Element(name_of(name), !style.shows(name))]
+        );
     }
 }
 

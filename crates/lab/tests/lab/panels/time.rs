@@ -96,7 +96,8 @@ fn more_is_in_a_menu() {
     }
     // What cannot be done cannot be pressed.
     let words = ["Save scene", "Reload from disk", "Undo", "Redo"];
-    let disabled = |bar: &Panel| words.map(|word| bar.get_by_label_contains(word).accesskit_node().is_disabled());
+    let disabled =
+        |bar: &Panel| words.map(|word| bar.get_by_label_contains(word).accesskit_node().is_disabled());
     assert_eq!(disabled(&open(desk(THREE, 5))), [true; 4]);
     let mut desk = desk(THREE, 5);
     desk.act(&Action::Tune { what: "Gain".to_owned(), key: "law.k", value: "5.0".to_owned() });
@@ -177,7 +178,8 @@ fn curves_are_those_of_the_run() {
     let last = rows.iter().rfind(|row| row.starts_with("branch 1,right,bearing_error_deg,")).expect("a row");
     let degrees: f64 = last.rsplit(',').next().and_then(|value| value.parse().ok()).expect("a value");
     assert!((degrees - moment.edges[1].error[1].to_degrees()).abs() < 1e-9);
-    let mut twice: Vec<&str> = rows.iter().filter_map(|row| row.rsplit_once(',').map(|(key, _)| key)).collect();
+    let mut twice: Vec<&str> =
+        rows.iter().filter_map(|row| row.rsplit_once(',').map(|(key, _)| key)).collect();
     let count = twice.len();
     twice.dedup();
     assert_eq!(twice.len(), count, "no row twice");
