@@ -15,7 +15,7 @@ pub mod gallery;
 pub mod keep;
 pub mod kept;
 pub mod keys;
-mod look;
+pub mod look;
 mod over;
 pub mod panels;
 pub mod panes;

@@ -8,3 +8,4 @@ mod draft;
 mod forecast;
 mod history;
 mod pacing;
+mod panels;
