@@ -92,8 +92,7 @@ impl Gallery {
             });
         }
         ui.add_space(6.0);
-        let high = (ui.ctx().content_rect().height() - 220.0).max(120.0);
-        egui::ScrollArea::vertical().max_height(high).auto_shrink([false, true]).show(ui, |ui| {
+        egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
             let columns = ((ui.available_width() + 8.0) / (THUMBNAIL.x + 12.0)).floor().max(1.0) as usize;
             egui::Grid::new("scenes").num_columns(columns).spacing([10.0, 12.0]).show(ui, |ui| {
                 for (index, scene) in SHIPPED.iter().enumerate() {

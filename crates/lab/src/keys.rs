@@ -191,8 +191,7 @@ fn faster(pace: f64) -> f64 {
 
 /// The page of shortcuts.
 pub fn page(ui: &mut egui::Ui) {
-    let high = (ui.ctx().content_rect().height() - 90.0).max(80.0);
-    egui::ScrollArea::vertical().max_height(high).show(ui, |ui| {
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         ui.horizontal_top(|ui| {
             let wide = ui.ctx().content_rect().width() > 900.0;
             let halves = if wide { vec![&LIST[..2], &LIST[2..]] } else { vec![LIST] };

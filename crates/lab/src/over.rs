@@ -39,7 +39,7 @@ impl Lab {
         if let Some(notice) = self.desk.notice.clone() {
             egui::Panel::top("notice").frame(BARE).show(ui, |ui| {
                 ui.horizontal_top(|ui| {
-                    if ui.button("×").on_hover_text("Dismiss (Esc)").clicked() {
+                    if ui.button("Dismiss").on_hover_text("Esc").clicked() {
                         out.push(Action::Dismiss);
                     }
                     let colour = ui.visuals().error_fg_color;
@@ -60,15 +60,17 @@ impl Lab {
             let middle = ctx.content_rect().center();
             egui::Window::new(name).collapsible(false).pivot(egui::Align2::CENTER_CENTER).default_pos(middle)
         };
+        let room = ctx.content_rect().size();
+        let large = egui::vec2((room.x - 60.0).min(1000.0), room.y - 110.0);
         match self.over {
             Over::Nothing => {}
             Over::Gallery => {
-                window("Scenes").open(&mut open).default_width(780.0).show(ctx, |ui| {
+                window("Scenes").open(&mut open).default_size(large).show(ctx, |ui| {
                     self.gallery.show(ui, &self.recent, out);
                 });
             }
             Over::Help => {
-                window("Shortcuts").open(&mut open).resizable(false).show(ctx, crate::keys::page);
+                window("Shortcuts").open(&mut open).default_size(large).show(ctx, crate::keys::page);
             }
             Over::Closing => self.ask_before_closing(ctx, out),
         }

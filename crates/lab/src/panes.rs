@@ -128,7 +128,13 @@ impl Behavior<Pane> for Panels<'_> {
             return UiResponse::None;
         }
         let frame = eframe::egui::Frame::new().inner_margin(6.0);
-        frame.show(ui, |ui| show(ui, *pane, self));
+        frame.show(ui, |ui| {
+            // What is too wide for a narrow panel can still be reached.
+            eframe::egui::ScrollArea::horizontal()
+                .id_salt(pane.name())
+                .auto_shrink([false, false])
+                .show(ui, |ui| show(ui, *pane, self));
+        });
         UiResponse::None
     }
 

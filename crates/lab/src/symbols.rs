@@ -59,7 +59,7 @@ symbols! {
         "The estimate follows more closely; cameras cost more.";
     LATENCY = "τ", "Latency", "s", "a look is put in at its own time, and what has passed since is run again",
         "The follower knows later what its leader does; high gains begin to swing.";
-    DROPS = "p", "Lost looks", "share", "a look arrives with probability 1 − p",
+    DROPS = "p", "Lost looks", "", "a look arrives with probability 1 − p",
         "The estimate coasts more often.";
     DISTANCE_NOISE = "σ_ℓ", "Noise of the distance", "m", "ℓ + σ_ℓ·n",
         "Rates are estimated worse, the more the smaller ε is.";

@@ -6,7 +6,7 @@ use crate::desk::Desk;
 use crate::quantities::{Curve, Quantity, bounds, curves};
 use crate::tidy::fixed;
 use eframe::egui::{self, Color32, Id, Stroke, Ui};
-use egui_plot::{GridMark, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, VLine};
+use egui_plot::{GridMark, HLine, HoverPosition, LineStyle, Plot, PlotPoint, VLine};
 
 /// Points of a curve, at most, before what is straight is left out.
 const MOST_POINTS: usize = 400;
@@ -26,7 +26,10 @@ pub fn show(ui: &mut Ui, desk: &Desk, quantities: &[Quantity], out: &mut Vec<Act
 }
 
 fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool), out: &mut Vec<Action>) {
-    let end = desk.history.as_ref().map_or(0.0, |history| history.end(desk.branch));
+    let end = desk
+        .history
+        .as_ref()
+        .map_or(0.0, |history| (0..history.branches()).map(|branch| history.end(branch)).fold(0.0, f64::max));
     let group = Id::unique("time axis");
     let logarithmic = quantity.logarithmic();
     let weak = ui.visuals().weak_text_color();
@@ -86,21 +89,31 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
                 );
             }
         }
-        for (curve, colour) in all.into_iter().zip(colours) {
-            let active = curve.branch == desk.branch;
-            let wide = match (active, chosen.is_some() && chosen == curve.robot) {
-                (true, true) => 2.2,
-                (true, false) => 1.4,
-                _ => 1.0,
-            };
-            let colour = if active { colour } else { colour.gamma_multiply(0.45) };
-            let style = if active { LineStyle::Solid } else { LineStyle::dashed_dense() };
-            let points = PlotPoints::from(straightened(&curve.points, span, off));
-            plot.line(Line::new("", points).stroke(Stroke::new(wide, colour)).style(style));
-        }
         plot.vline(VLine::new("now", desk.time()).color(cursor).width(1.0));
         plot.pointer_coordinate()
     });
+    let transform = response.transform;
+    let painter = ui.painter_at(*transform.frame());
+    for (curve, colour) in all.iter().zip(colours) {
+        let active = curve.branch == desk.branch;
+        let wide = match (active, chosen.is_some() && chosen == curve.robot) {
+            (true, true) => 2.2,
+            (true, false) => 1.4,
+            _ => 1.0,
+        };
+        let colour = if active { colour } else { colour.gamma_multiply(0.5) };
+        let on_screen = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
+        let points: Vec<_> = straightened(&curve.points, span, off).into_iter().map(on_screen).collect();
+        // Piece by piece: a path that turns back on itself is drawn with filled corners.
+        if active {
+            let pieces = points
+                .windows(2)
+                .map(|ends| egui::Shape::line_segment([ends[0], ends[1]], Stroke::new(wide, colour)));
+            painter.extend(pieces);
+        } else {
+            painter.extend(egui::Shape::dashed_line(&points, Stroke::new(wide, colour), 5.0, 4.0));
+        }
+    }
     // The quantity stands in the plot, where it takes no room.
     let at = response.response.rect.right_top() + egui::vec2(-6.0, 2.0);
     let font = egui::FontId::proportional(11.5);
@@ -147,7 +160,10 @@ fn straightened(points: &[[f64; 2]], [low, high]: [f64; 2], off: f64) -> Vec<[f6
     // Slopes from the last point kept that pass all points since within `off`.
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
     let mut before = *first;
-    for point in &points[1..] {
+    for point in points[1..].iter().filter(|point| point[0].is_finite()) {
+        if point[0] <= before[0] {
+            continue;
+        }
         let [x, y] = kept[kept.len() - 1];
         let along = (point[0] - x).max(f64::MIN_POSITIVE);
         let slope = (point[1] - y) / along;

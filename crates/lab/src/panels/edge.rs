@@ -15,7 +15,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         return nobody(ui, desk, "Click a follower or its edge.");
     };
     ui.label(RichText::new(format!("{} → {name}", follow.leader)).strong());
-    let state = desk.moment().and_then(|moment| moment.edges.get(edge).copied());
+    let state = desk.shown().and_then(|moment| moment.edges.get(edge).copied());
     let now = state.map_or([0.0; 2], |state| state.set_point);
     let value = |channel: &Channel, now: f64| match channel {
         Channel::Constant(value) => *value,

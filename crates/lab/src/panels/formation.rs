@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
             out.push(Action::Take(if connects { Tool::Hand } else { Tool::Connect }));
         }
     });
-    let moment = desk.moment();
+    let moment = desk.shown();
     let rows = order(&cast);
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         for (robot, depth) in rows {

@@ -78,7 +78,9 @@ pub fn observer(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     });
     ALPHA_ONE.two(ui, observer.alpha1, default.alpha1, false, out);
     ALPHA_TWO.two(ui, observer.alpha2, default.alpha2, false, out);
-    ui.weak(format!("Poles at {}", poles(observer)));
+    if !(looks && observer.adaptive) {
+        ui.weak(format!("Poles at {}", poles(observer)));
+    }
     if ui
         .button("Disturb the observer")
         .on_hover_text("Begin again at 0 and watch it peak like 1/ε")

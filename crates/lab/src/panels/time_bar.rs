@@ -25,12 +25,12 @@ pub fn show(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
         let tail = 214.0;
         // Where there is little room, the line of time comes first.
         let narrow = ui.available_width() < tail + 60.0;
-        let wide = if narrow { ui.available_width() - 4.0 } else { ui.available_width() - tail };
+        let wide = ui.available_width() - if narrow { 40.0 } else { tail };
         line(ui, desk, wide.max(30.0), out);
-        if narrow {
-            return;
+        if !narrow {
+            buttons_of_work(ui, filming, out);
         }
-        menus(ui, desk, filming, out);
+        menu(ui, desk, out);
     });
 }
 
@@ -129,7 +129,8 @@ pub(crate) fn branch_colour(index: usize, active: usize, visuals: &egui::Visuals
     if index == active { visuals.selection.bg_fill } else { visuals.weak_text_color().gamma_multiply(0.6) }
 }
 
-fn menus(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
+/// Film, picture, scenes.
+fn buttons_of_work(ui: &mut Ui, filming: bool, out: &mut Vec<Action>) {
     let (icon, tip, colour) = if filming {
         (Icon::Stop, "End the film (F)", Some(ui.visuals().error_fg_color))
     } else {
@@ -144,12 +145,19 @@ fn menus(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
     if button(ui, Icon::Menu, "Scenes", "Scenes", None).on_hover_text("Open a scene (Ctrl O)").clicked() {
         out.push(Action::Gallery);
     }
+}
+
+/// Everything else.
+fn menu(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     let more = button(ui, Icon::More, "", "More", None);
     // Items close the menu themselves; a click into its field does not.
     let stays = egui::PopupCloseBehavior::CloseOnClickOutside;
     egui::Popup::menu(&more).close_behavior(stays).show(|ui| {
         let unsaved = desk.draft.as_ref().is_some_and(crate::session::draft::Draft::unsaved);
         for (text, action, on) in [
+            ("Scenes   Ctrl O", Action::Gallery, true),
+            ("Film   F", Action::Film, true),
+            ("Picture   P", Action::Picture, true),
             ("Save scene   Ctrl S", Action::Save, unsaved),
             (
                 "Reload from disk   Ctrl R",
