@@ -124,7 +124,7 @@ pub(crate) struct LabArgs {
     /// Stand at first instead of running
     #[arg(long)]
     pub(crate) paused: bool,
-    /// Print how fast the window was when it is closed
+    /// Print what happens, and how fast the window was when it is closed
     #[arg(long)]
     pub(crate) timings: bool,
 }

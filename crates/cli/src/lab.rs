@@ -3,6 +3,7 @@
 use crate::Outcome;
 use crate::args::LabArgs;
 use crate::failure::Failure;
+use crate::interrupt;
 
 pub(crate) fn lab(args: LabArgs) -> Outcome {
     let options = lab::Options {
@@ -12,6 +13,10 @@ pub(crate) fn lab(args: LabArgs) -> Outcome {
         paused: args.paused,
         size: args.size.map(|size| size.map(|side| side as f32)),
         timings: args.timings,
+        stop: Some(interrupt::asked),
     };
-    lab::open(options).map_err(|error| Failure::Machine(error.to_string()))
+    lab::open(options).map_err(|error| match error {
+        lab::Error::Window(text) => Failure::Machine(text),
+        lab::Error::Interrupted => Failure::Interrupted(error.to_string()),
+    })
 }

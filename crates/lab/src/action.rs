@@ -127,6 +127,8 @@ pub enum Action {
     KeepRun,
     /// A PNG of what is seen.
     Picture,
+    /// A PNG of the whole window.
+    WindowPicture,
     /// Begin or end a film.
     Film,
     /// Film from a view called this; `None` is what is seen.

@@ -200,11 +200,13 @@ impl Desk {
     fn twin(&self, edge: usize, [distance, bearing]: [f64; 2]) -> Option<usize> {
         let cast = self.history.as_ref()?.cast();
         let leader = cast.edges.get(edge)?.leader;
-        (0..cast.edges.len()).filter(|other| *other != edge && cast.edges[*other].leader == leader).find(|other| {
-            self.set_point(*other).is_some_and(|[d, b]| {
-                (d - distance).abs() < ALIKE[0] && wrap(b + bearing).abs() < ALIKE[1]
-            })
-        })
+        (0..cast.edges.len()).filter(|other| *other != edge && cast.edges[*other].leader == leader).find(
+            |other| {
+                self.set_point(*other).is_some_and(|[d, b]| {
+                    (d - distance).abs() < ALIKE[0] && wrap(b + bearing).abs() < ALIKE[1]
+                })
+            },
+        )
     }
 
     fn reshape(&mut self, scale: f64, turn: f64) {
@@ -227,7 +229,9 @@ impl Desk {
     /// Lets one robot follow another, from where it is now.
     fn connect(&mut self, leader: usize, follower: usize) {
         let Some(scene) = self.scene().cloned() else { return };
-        let (Some(ahead), Some(behind)) = (scene.robots.get(leader), scene.robots.get(follower)) else { return };
+        let (Some(ahead), Some(behind)) = (scene.robots.get(leader), scene.robots.get(follower)) else {
+            return;
+        };
         if let Some(circle) = circle(&scene, leader, follower) {
             return self.fault(format!(
                 "{} cannot follow {}: it would follow itself, {circle}",
@@ -294,7 +298,8 @@ impl Desk {
         let left: Vec<&str> = scene.robots.iter().filter(follows).map(|robot| &*robot.name).collect();
         if !left.is_empty() {
             let (them, verb) = (left.join(", "), if left.len() == 1 { "follows" } else { "follow" });
-            return self.fault(format!("{name} stays: {them} {verb} it. Connect {them} to another robot first."));
+            return self
+                .fault(format!("{name} stays: {them} {verb} it. Connect {them} to another robot first."));
         }
         self.edit(&format!("Without {name}"), |text| {
             text.remove_item("robots", name).map_err(|error| error.to_string())

@@ -1,5 +1,6 @@
 //! What the window knows: scene, past, present and what is selected. It decides what an action means, without a window.
 
+use crate::past::Past;
 use crate::session::branches::{Change, script};
 use crate::session::draft::{Draft, Effect};
 use crate::session::forecast::Forecast;
@@ -100,6 +101,8 @@ pub struct Desk {
     pub aloud: bool,
     /// Text of the scene at time 0 of the run.
     base: String,
+    /// Changes that this text has itself.
+    own: Vec<scene::Change>,
     /// For the thread of the run.
     pub orders: Vec<Order>,
     /// Whether an order waits for what is known of a run.
@@ -128,6 +131,7 @@ impl Desk {
             aloud: false,
             notice: None,
             base: String::new(),
+            own: Vec::new(),
             orders: Vec::new(),
             keep: None,
         }
@@ -153,10 +157,24 @@ impl Desk {
     pub fn restart(&mut self, until: f64) {
         let Some(draft) = &self.draft else { return };
         draft.text().clone_into(&mut self.base);
+        self.own.clone_from(&draft.scene().changes);
         self.orders.push(Order::Open { scene: Arc::clone(draft.scene()), gpu: None, until });
         self.orders.push(Order::Ahead(self.ahead));
         self.orders.push(Order::Play(self.playing));
         self.cursor = None;
+    }
+
+    /// The scene with what its own changes have made of it by the time that is looked at.
+    pub fn scene_now(&self) -> Option<&Scene> {
+        let (scene, time) = (self.scene()?, self.time());
+        let due = scene.changes.iter().rfind(|change| change.at <= time + 1e-9);
+        Some(due.map_or(scene, |change| &change.then))
+    }
+
+    /// Title and caption of pictures: those of the scene as it stands.
+    pub fn words(&self) -> [String; 2] {
+        self.scene_now()
+            .map_or_else(Default::default, |scene| [scene.title.clone(), simulation::caption(scene)])
     }
 
     /// The moment that is looked at.
@@ -174,8 +192,10 @@ impl Desk {
         if self.cursor.is_some() || self.playing {
             return Some(moment);
         }
-        let wanted: Vec<Option<[f64; 2]>> = (0..moment.edges.len()).map(|edge| self.set_point(edge)).collect();
-        let stale = |(state, wanted): (&EdgeState, &Option<[f64; 2]>)| wanted.is_some_and(|w| w != state.set_point);
+        let wanted: Vec<Option<[f64; 2]>> =
+            (0..moment.edges.len()).map(|edge| self.set_point(edge)).collect();
+        let stale =
+            |(state, wanted): (&EdgeState, &Option<[f64; 2]>)| wanted.is_some_and(|w| w != state.set_point);
         if !moment.edges.iter().zip(&wanted).any(stale) {
             return Some(moment);
         }
@@ -200,7 +220,7 @@ impl Desk {
 
     /// The follower of an edge: its index among the robots, its name, and how it follows.
     pub fn follower(&self, edge: usize) -> Option<(usize, &str, &Follow)> {
-        let scene = self.scene()?;
+        let scene = self.scene_now()?;
         let followers = scene.robots.iter().enumerate().filter_map(|(index, robot)| match &robot.role {
             Role::Follow(follow) => Some((index, &*robot.name, &**follow)),
             Role::Lead { .. } => None,
@@ -282,7 +302,13 @@ impl Desk {
         if self.cursor.is_some_and(|time| time < self.end() - 1e-9) {
             self.fork();
         }
+        let time = self.time();
         let Some(draft) = &mut self.draft else { return false };
+        let past = Past::of(draft.scene(), time);
+        let edit = |text: &mut scene::SceneText| {
+            past.settle(text)?;
+            edit(text)
+        };
         match draft.edit(what, edit) {
             Ok(effect) => {
                 self.take(what, &effect);
@@ -301,7 +327,9 @@ impl Desk {
             Effect::None => {}
             Effect::Dress => {
                 self.note(what);
-                if let (Some(scene), Some(history)) = (self.draft.as_ref().map(Draft::scene), &mut self.history) {
+                if let (Some(scene), Some(history)) =
+                    (self.draft.as_ref().map(Draft::scene), &mut self.history)
+                {
                     history.dress(scene);
                 }
             }
@@ -355,7 +383,9 @@ impl Desk {
             self.cursor = None;
         } else {
             self.pause();
-            self.cursor = Some(time.max(0.0));
+            // Between two samples there is nothing to see.
+            let period = self.history.as_ref().map_or(0.01, History::period);
+            self.cursor = Some((time.max(0.0) / period).round() * period);
         }
     }
 
@@ -381,7 +411,7 @@ impl Desk {
     pub fn script(&self) -> Result<String, String> {
         let branch = self.branches.get(self.branch).ok_or("There is no run.")?;
         let period = self.history.as_ref().map_or(0.01, History::period);
-        script(&self.base, &branch.changes, self.end().max(period))
+        script(&self.base, &self.own, &branch.changes, self.end().max(period))
     }
 
     /// Takes in what the thread of the run tells.

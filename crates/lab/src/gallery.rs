@@ -27,11 +27,34 @@ macro_rules! shipped {
 }
 
 shipped![
-    "circle-three", "line-three", "seven-v", "figure-eight-seven", "moving-set-point", "peaking", "hundred",
-    "change-places", "cars-line-three", "cars-circle-three", "cars-seven-v", "cars-slalom", "cars-yard", "cars-ramp", "cars-rough",
-    "cars-crash", "cars-mixed", "cars-full-size", "cars-limit-cycle", "cars-hundred", "vision-line-three",
-    "vision-circle-three", "vision-cars-line-three", "vision-cars-circle-three", "vision-seven-v",
-    "vision-occlusion", "vision-dropout", "vision-epsilon",
+    "circle-three",
+    "line-three",
+    "seven-v",
+    "figure-eight-seven",
+    "moving-set-point",
+    "peaking",
+    "hundred",
+    "change-places",
+    "cars-line-three",
+    "cars-circle-three",
+    "cars-seven-v",
+    "cars-slalom",
+    "cars-yard",
+    "cars-ramp",
+    "cars-rough",
+    "cars-crash",
+    "cars-mixed",
+    "cars-full-size",
+    "cars-limit-cycle",
+    "cars-hundred",
+    "vision-line-three",
+    "vision-circle-three",
+    "vision-cars-line-three",
+    "vision-cars-circle-three",
+    "vision-seven-v",
+    "vision-occlusion",
+    "vision-dropout",
+    "vision-epsilon",
 ];
 
 /// The scene that the lab opens with when none is named.
@@ -60,7 +83,8 @@ impl Gallery {
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new("Opened before").strong());
                 for path in recent {
-                    let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+                    let name =
+                        path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
                     if ui.link(name).on_hover_text(path.display().to_string()).clicked() {
                         out.push(Action::Open(path.clone()));
                     }
@@ -86,7 +110,8 @@ impl Gallery {
     fn own(&mut self, ui: &mut Ui, out: &mut Vec<Action>) {
         ui.horizontal(|ui| {
             ui.label("File");
-            let edit = egui::TextEdit::singleline(&mut self.path).hint_text("path of a scene, or drop one here");
+            let edit =
+                egui::TextEdit::singleline(&mut self.path).hint_text("path of a scene, or drop one here");
             let edit = ui.add(edit.desired_width(360.0));
             let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             let open = ui.add_enabled(!self.path.trim().is_empty(), egui::Button::new("Open"));
@@ -98,7 +123,8 @@ impl Gallery {
 
     fn tile(&mut self, ui: &mut Ui, scene: &'static Shipped, out: &mut Vec<Action>) {
         let texture = self.textures.entry(scene.name).or_insert_with(|| {
-            let image = decode(scene.thumbnail).unwrap_or_else(|| egui::ColorImage::filled([1, 1], egui::Color32::GRAY));
+            let image = decode(scene.thumbnail)
+                .unwrap_or_else(|| egui::ColorImage::filled([1, 1], egui::Color32::GRAY));
             ui.ctx().load_texture(scene.name, image, egui::TextureOptions::LINEAR)
         });
         let response = ui

@@ -19,7 +19,13 @@ pub struct Seen {
 ///
 /// # Errors
 /// Why it could not be written, in words.
-pub fn keep(text: &str, home: &Path, folder: &Path, seen: &Seen, gpu: Option<&Gpu>) -> Result<String, String> {
+pub fn keep(
+    text: &str,
+    home: &Path,
+    folder: &Path,
+    seen: &Seen,
+    gpu: Option<&Gpu>,
+) -> Result<String, String> {
     let scene = Scene::parse(text, home, &[]).map_err(|faults| faults.to_string())?.scene;
     let setup = simulation::build(&scene).map_err(|error| error.to_string())?;
     let mut run = Simulation::new(setup);
@@ -49,7 +55,10 @@ pub fn keep(text: &str, home: &Path, folder: &Path, seen: &Seen, gpu: Option<&Gp
     if (manifest.samples, &*digest) == (seen.samples, &*seen.digest) {
         Ok(format!("The run is in {place}: {} samples, digest {digest}, as seen here", manifest.samples))
     } else {
-        Err(format!("{place} holds {} samples with digest {digest}, not what was seen here", manifest.samples))
+        Err(format!(
+            "{place} holds {} samples with digest {digest}, not what was seen here",
+            manifest.samples
+        ))
     }
 }
 
@@ -59,5 +68,5 @@ pub fn free(folder: &Path, stem: &str, ending: &str) -> PathBuf {
         let dot = if ending.is_empty() { "" } else { "." };
         folder.join(format!("{stem}-{number:03}{dot}{ending}"))
     };
-    (1..).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
+    (1..=u32::MAX).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
 }

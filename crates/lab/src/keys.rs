@@ -2,6 +2,7 @@
 
 use crate::action::Action;
 use crate::desk::{Choice, Desk, Tool};
+use crate::session::history::History;
 use eframe::egui::{self, Key, KeyboardShortcut, Modifiers};
 use std::f64::consts::PI;
 
@@ -46,7 +47,10 @@ pub const LIST: &[(&str, &[Shortcut])] = &[
             Shortcut { keys: "G", what: "follow the selected robot" },
             Shortcut { keys: "I", what: "its camera in the corner" },
             Shortcut { keys: "Drag", what: "turn; with the right button move; wheel to zoom" },
-            Shortcut { keys: "Drag a ring", what: "set point, in steps of 0.1 m and 5°; Shift without steps" },
+            Shortcut {
+                keys: "Drag a ring",
+                what: "set point, in steps of 0.1 m and 5°; Shift without steps",
+            },
             Shortcut { keys: "Ctrl drag a ring", what: "whole formation" },
             Shortcut { keys: "T", what: "light or dark" },
         ],
@@ -59,6 +63,7 @@ pub const LIST: &[(&str, &[Shortcut])] = &[
             Shortcut { keys: "Ctrl R", what: "read the file again" },
             Shortcut { keys: "Ctrl Z  Ctrl Y", what: "undo, redo" },
             Shortcut { keys: "P  F  K", what: "picture, film, keep the run" },
+            Shortcut { keys: "Ctrl P", what: "picture of the whole window" },
             Shortcut { keys: "?", what: "this page" },
         ],
     ),
@@ -70,7 +75,8 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, out: &mut Vec<Action>) {
     if ctx.egui_wants_keyboard_input() {
         return;
     }
-    let period = desk.history.as_ref().map_or(0.01, |history| history.period());
+    nudges(ctx, desk, out);
+    let period = desk.history.as_ref().map_or(0.01, History::period);
     let mut take = |modifiers: Modifiers, key: Key, action: Action| {
         if ctx.input_mut(|input| input.consume_key(modifiers, key)) {
             out.push(action);
@@ -97,7 +103,9 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, out: &mut Vec<Action>) {
     take(none, Key::C, Action::Take(Tool::Connect));
     take(none, Key::O, Action::Take(Tool::Pillar));
     take(none, Key::Escape, Action::Dismiss);
-    for (key, view) in [(Key::Num1, "snake"), (Key::Num2, "snake-eye"), (Key::Num3, "top"), (Key::Num4, "orbit")] {
+    for (key, view) in
+        [(Key::Num1, "snake"), (Key::Num2, "snake-eye"), (Key::Num3, "top"), (Key::Num4, "orbit")]
+    {
         take(none, key, Action::View(view.to_owned()));
     }
     take(none, Key::T, Action::Theme);
@@ -105,14 +113,6 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, out: &mut Vec<Action>) {
     take(none, Key::F, Action::Film);
     take(none, Key::K, Action::KeepRun);
     take(none, Key::F1, Action::Help);
-    if let Some(edge) = desk.chosen_edge() {
-        for (key, by) in [(Key::W, [-0.1, 0.0]), (Key::S, [0.1, 0.0]), (Key::A, [0.0, 5.0]), (Key::D, [0.0, -5.0])]
-        {
-            if let Some(action) = nudged(desk, edge, by) {
-                take(none, key, action);
-            }
-        }
-    }
     if let Some((robot, name)) = chosen(desk) {
         take(none, Key::Num5, Action::View(format!("camera:{name}")));
         take(none, Key::G, Action::Follow(Some(robot)));
@@ -121,6 +121,20 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, out: &mut Vec<Action>) {
     }
     if ctx.input(|input| input.events.iter().any(|e| matches!(e, egui::Event::Text(text) if text == "?"))) {
         out.push(Action::Help);
+    }
+}
+
+/// Keys that move the selected set point.
+fn nudges(ctx: &egui::Context, desk: &Desk, out: &mut Vec<Action>) {
+    if let Some(edge) = desk.chosen_edge() {
+        // Every press of a frame counts, and all of them are one move.
+        let times =
+            |key: Key| ctx.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as f64;
+        let metres = 0.1 * (times(Key::S) - times(Key::W));
+        let degrees = 5.0 * (times(Key::A) - times(Key::D));
+        if metres != 0.0 || degrees != 0.0 {
+            out.extend(nudged(desk, edge, [metres, degrees]));
+        }
     }
 }
 
@@ -134,6 +148,7 @@ fn commands(ctx: &egui::Context, out: &mut Vec<Action>) {
     take(Key::S, Action::Save);
     take(Key::O, Action::Gallery);
     take(Key::R, Action::Reload);
+    take(Key::P, Action::WindowPicture);
     take(Key::Y, Action::Redo);
     take(Key::Z, Action::Undo);
     take(Key::Minus, Action::Shape { scale: 1.0 / 1.1, turn: 0.0 });
@@ -176,18 +191,29 @@ fn faster(pace: f64) -> f64 {
 
 /// The page of shortcuts.
 pub fn page(ui: &mut egui::Ui) {
-    ui.set_max_width(620.0);
-    for (head, shortcuts) in LIST {
-        ui.add_space(4.0);
-        ui.label(egui::RichText::new(*head).strong());
-        egui::Grid::new(*head).num_columns(2).spacing([18.0, 3.0]).show(ui, |ui| {
-            for shortcut in *shortcuts {
-                ui.monospace(shortcut.keys);
-                ui.label(shortcut.what);
-                ui.end_row();
+    let high = (ui.ctx().content_rect().height() - 90.0).max(80.0);
+    egui::ScrollArea::vertical().max_height(high).show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            let wide = ui.ctx().content_rect().width() > 900.0;
+            let halves = if wide { vec![&LIST[..2], &LIST[2..]] } else { vec![LIST] };
+            for half in halves {
+                ui.vertical(|ui| half.iter().for_each(|(head, shortcuts)| part(ui, head, shortcuts)));
+                ui.add_space(16.0);
             }
         });
-    }
+    });
+}
+
+fn part(ui: &mut egui::Ui, head: &str, shortcuts: &[Shortcut]) {
+    ui.add_space(4.0);
+    ui.label(egui::RichText::new(head).strong());
+    egui::Grid::new(head).num_columns(2).spacing([16.0, 3.0]).show(ui, |ui| {
+        for shortcut in shortcuts {
+            ui.label(egui::RichText::new(shortcut.keys).color(ui.visuals().hyperlink_color));
+            ui.add(egui::Label::new(shortcut.what).wrap_mode(egui::TextWrapMode::Extend));
+            ui.end_row();
+        }
+    });
 }
 
 #[cfg(test)]

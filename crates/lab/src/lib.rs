@@ -9,20 +9,24 @@ pub mod action;
 mod app;
 pub mod deeds;
 pub mod desk;
-mod gallery;
-mod keep;
-mod kept;
+mod files;
+pub mod gallery;
+pub mod keep;
+pub mod kept;
 pub mod keys;
 mod look;
+mod over;
 pub mod panels;
 pub mod panes;
+mod past;
 pub mod quantities;
 pub mod session;
-mod studio;
-mod timing;
+mod shots;
+pub mod studio;
 pub mod symbols;
 pub mod tidy;
-mod view;
+mod timing;
+pub mod view;
 mod watch;
 mod window;
 
@@ -34,4 +38,7 @@ pub enum Error {
     /// There is no window system, no adapter, or it was lost.
     #[error("{0}")]
     Window(String),
+    /// The program was told to end.
+    #[error("unsaved work is offered at the next start")]
+    Interrupted,
 }

@@ -15,8 +15,23 @@ pub struct Pane(usize);
 
 /// Names of the panels.
 pub const NAMES: &[&str] = &[
-    "View", "Formation", "Edge", "Law", "Observer", "Sensing", "Limits", "World", "Film", "Branches", "Log",
-    "Errors", "Commands", "Speeds", "Observer error", "Energy", "Room",
+    "View",
+    "Formation",
+    "Edge",
+    "Law",
+    "Observer",
+    "Sensing",
+    "Limits",
+    "World",
+    "Film",
+    "Branches",
+    "Log",
+    "Errors",
+    "Commands",
+    "Speeds",
+    "Observer error",
+    "Energy",
+    "Room",
 ];
 
 impl Pane {

@@ -1,9 +1,11 @@
 //! Curves over time: what is plotted and what is exported, made of moments in one place.
 
 use crate::desk::Desk;
+use crate::session::history::History;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
 use formation::relative::Geometry;
 use scene::{Follow, LawKind, Scene};
+use std::fmt::Write;
 use vocabulary::{Edge, EdgeState, Moment, Snapshot};
 
 /// What a plot shows.
@@ -100,7 +102,7 @@ const FLOOR: f64 = 1e-18;
 
 /// The curves of a quantity in a span of time, of all branches, the one that is looked at last.
 pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> Vec<Curve> {
-    let (Some(history), Some(scene)) = (&desk.history, desk.scene()) else { return Vec::new() };
+    let (Some(history), Some(scene)) = (&desk.history, desk.scene_now()) else { return Vec::new() };
     let mut order: Vec<usize> = (0..history.branches()).filter(|b| *b != desk.branch).collect();
     order.push(desk.branch);
     let mut all = Vec::new();
@@ -116,17 +118,14 @@ pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> V
         let moments = history.between(branch, [from, span[1]], most);
         for (edge, ends) in history.cast().edges.iter().enumerate() {
             let Some((_, _, follow)) = desk.follower(edge) else { continue };
-            let point = |m: &&Moment| {
-                Some([m.snapshot.time, value(quantity, m, (edge, *ends), (scene, follow))?])
-            };
+            let point =
+                |m: &&Moment| Some([m.snapshot.time, value(quantity, m, (edge, *ends), (scene, follow))?]);
             let points = moments.iter().filter_map(point).collect();
             all.push(Curve { branch, robot: Some(ends.follower), points });
         }
         if quantity == Quantity::Speed {
             for (robot, _) in history.cast().members.iter().enumerate().filter(|(_, member)| member.leads) {
-                let speed = |m: &&Moment| {
-                    Some([m.snapshot.time, m.snapshot.robots.get(robot)?.motion.speed])
-                };
+                let speed = |m: &&Moment| Some([m.snapshot.time, m.snapshot.robots.get(robot)?.motion.speed]);
                 all.push(Curve {
                     branch,
                     robot: Some(robot),
@@ -188,7 +187,7 @@ fn true_rates(snapshot: &Snapshot, edge: Edge, state: &EdgeState, distance_min: 
 /// Bounds of a quantity, of the follower that is selected, for grey lines.
 pub fn bounds(desk: &Desk, quantity: Quantity) -> Vec<f64> {
     let robot = desk.chosen_robot().or_else(|| desk.follower(0).map(|(robot, ..)| robot));
-    let vehicle = robot.and_then(|robot| Some(desk.scene()?.robots.get(robot)?.vehicle));
+    let vehicle = robot.and_then(|robot| Some(desk.scene_now()?.robots.get(robot)?.vehicle));
     let Some(vehicle) = vehicle else { return Vec::new() };
     let both = |most: f64| vec![-most, most];
     let mut bounds = match quantity {
@@ -206,16 +205,21 @@ pub fn bounds(desk: &Desk, quantity: Quantity) -> Vec<f64> {
 pub fn csv(desk: &Desk) -> String {
     let mut text = String::from("branch,robot,quantity,time_s,value\n");
     let quoted = |name: &str| {
-        if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+        if name.contains([',', '"', '\n']) {
+            format!("\"{}\"", name.replace('"', "\"\""))
+        } else {
+            name.to_owned()
+        }
     };
     for quantity in Quantity::ALL {
         for curve in curves(desk, quantity, [0.0, f64::INFINITY], usize::MAX) {
             let branch = desk.branches.get(curve.branch).map_or("", |b| &b.name);
-            let cast = desk.history.as_ref().map(|history| history.cast());
+            let cast = desk.history.as_ref().map(History::cast);
             let robot = curve.robot.and_then(|robot| cast?.members.get(robot)).map_or("", |m| &m.name);
             let head = format!("{},{},{}", quoted(branch), quoted(robot), quantity.column());
             for [time, value] in curve.points {
-                text.push_str(&format!("{head},{time:.6},{value:e}\n"));
+                // Writing to a text cannot fail.
+                let _ = writeln!(text, "{head},{time:.6},{value:e}");
             }
         }
     }

@@ -22,6 +22,8 @@ pub struct Shot {
     pub layout: Layout,
     /// And how.
     pub style: Style,
+    /// Title and caption.
+    pub words: [String; 2],
 }
 
 /// What is asked of the studio.
@@ -157,6 +159,7 @@ impl Work {
         match job {
             Job::Picture { path, cast, size, trail, shot, texts } => {
                 let drawer = self.drawer(&cast, size)?;
+                drawer.retitle(&shot.words[0], &shot.words[1]);
                 let picture = drawer.draw(&trail, &shot.moment, &shot.layout, &shot.style)?;
                 let texts: Vec<(&str, &str)> = texts.iter().map(|(key, text)| (*key, &**text)).collect();
                 png::write(&path, &picture, &texts)?;
@@ -175,7 +178,9 @@ impl Work {
             }
             Job::Moments(moments) => {
                 if let Some(reel) = &mut self.film {
-                    moments.iter().for_each(|moment| reel.trail.push(moment));
+                    for moment in &moments {
+                        reel.trail.push(moment);
+                    }
                 }
                 Ok(None)
             }
@@ -197,6 +202,7 @@ impl Work {
     fn frame(&mut self, shot: &Shot) -> Result<(), Error> {
         let Some(mut reel) = self.film.take() else { return Ok(()) };
         let drawer = self.drawer(&reel.cast, reel.size)?;
+        drawer.retitle(&shot.words[0], &shot.words[1]);
         let picture = drawer.draw(&reel.trail, &shot.moment, &shot.layout, &shot.style)?;
         reel.film.push(picture)?;
         self.film = Some(reel);

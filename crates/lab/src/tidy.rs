@@ -4,7 +4,7 @@
 pub fn tidy(value: f64) -> String {
     let short = format!("{value:.4e}").parse::<f64>().unwrap_or(value);
     let plain = short.to_string();
-    if !plain.contains(['.', 'e', 'n']) { format!("{plain}.0") } else { plain }
+    if plain.contains(['.', 'e', 'n']) { plain } else { format!("{plain}.0") }
 }
 
 /// A number without a needless point.
@@ -34,7 +34,8 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let cases = [(5.0, "5.0"), (0.1 + 0.2, "0.3"), (1.234_567, "1.2346"), (0.001, "0.001"), (-2.5, "-2.5")];
+        let cases =
+            [(5.0, "5.0"), (0.1 + 0.2, "0.3"), (1.234_567, "1.2346"), (0.001, "0.001"), (-2.5, "-2.5")];
         for (value, text) in cases {
             assert_eq!(tidy(value), text);
         }

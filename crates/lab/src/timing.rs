@@ -65,10 +65,12 @@ impl Timing {
         ] {
             let mut sorted = values.clone();
             sorted.sort_by(f32::total_cmp);
-            let at = |share: f32| sorted.get(((sorted.len() as f32 - 1.0) * share).max(0.0) as usize).copied();
+            let at =
+                |share: f32| sorted.get(((sorted.len() as f32 - 1.0) * share).max(0.0) as usize).copied();
             if let (Some(middle), Some(late)) = (at(0.5), at(0.95)) {
                 // A closed pipe loses figures only.
-                let _ = writeln!(out, "{name}: median {middle:.1} ms, 95 % {late:.1} ms, {} times", sorted.len());
+                let _ =
+                    writeln!(out, "{name}: median {middle:.1} ms, 95 % {late:.1} ms, {} times", sorted.len());
             }
         }
         let _ = writeln!(out, "3D pictures: {}", self.pictures);

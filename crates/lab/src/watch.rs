@@ -1,4 +1,4 @@
-//! Notices when the scene's file changes on disk.
+//! Notices when the scene's file changes on disk, and when the program is told to end.
 
 use std::fs;
 use std::path::PathBuf;
@@ -7,20 +7,25 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
 
 /// Between two looks at the file.
-const EVERY: Duration = Duration::from_millis(800);
+const EVERY: Duration = Duration::from_millis(400);
 
 /// Looks at one file again and again, on a thread of its own.
-pub struct Watch {
-    seen: Arc<Mutex<Option<(PathBuf, Option<SystemTime>)>>>,
+pub(crate) struct Watch {
+    seen: Arc<Mutex<Seen>>,
     changed: Arc<AtomicBool>,
+    stopped: Arc<AtomicBool>,
 }
 
+/// The file, and when it was written last.
+type Seen = Option<(PathBuf, Option<SystemTime>)>;
+
 impl Watch {
-    /// Starts the thread; `wake` is called when the file has changed.
-    pub fn start(wake: impl Fn() + Send + 'static) -> Self {
+    /// Starts the thread; `wake` is called when the file has changed, or when `stop` says that the program shall end.
+    pub(crate) fn start(wake: impl Fn() + Send + 'static, stop: Option<fn() -> bool>) -> Self {
         let seen = Arc::new(Mutex::new(None));
         let changed = Arc::new(AtomicBool::new(false));
-        let (watched, flag) = (Arc::downgrade(&seen), Arc::clone(&changed));
+        let stopped = Arc::new(AtomicBool::new(false));
+        let (watched, flag, end) = (Arc::downgrade(&seen), Arc::clone(&changed), Arc::clone(&stopped));
         let work = move || {
             while let Some(watched) = watched.upgrade() {
                 if changes(&watched) {
@@ -28,16 +33,20 @@ impl Watch {
                     wake();
                 }
                 drop(watched);
+                if stop.is_some_and(|stop| stop()) {
+                    end.store(true, Relaxed);
+                    wake();
+                }
                 std::thread::sleep(EVERY);
             }
         };
         // Without it the file is read again by hand.
         let _ = std::thread::Builder::new().name("watch".to_owned()).spawn(work);
-        Self { seen, changed }
+        Self { seen, changed, stopped }
     }
 
     /// Looks at this file from now on, as it is now.
-    pub fn look_at(&self, path: Option<PathBuf>) {
+    pub(crate) fn look_at(&self, path: Option<PathBuf>) {
         let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         *seen = path.map(|path| {
             let time = written(&path);
@@ -46,8 +55,13 @@ impl Watch {
         self.changed.store(false, Relaxed);
     }
 
+    /// Whether the program shall end.
+    pub(crate) fn stopped(&self) -> bool {
+        self.stopped.load(Relaxed)
+    }
+
     /// Whether the file has changed since the last question.
-    pub fn changed(&self) -> bool {
+    pub(crate) fn changed(&self) -> bool {
         self.changed.swap(false, Relaxed)
     }
 }
@@ -56,7 +70,7 @@ fn written(path: &PathBuf) -> Option<SystemTime> {
     fs::metadata(path).and_then(|meta| meta.modified()).ok()
 }
 
-fn changes(watched: &Mutex<Option<(PathBuf, Option<SystemTime>)>>) -> bool {
+fn changes(watched: &Mutex<Seen>) -> bool {
     let mut seen = watched.lock().unwrap_or_else(PoisonError::into_inner);
     let Some((path, before)) = &mut *seen else { return false };
     let now = written(path);

@@ -20,8 +20,10 @@ pub struct Options {
     pub paused: bool,
     /// Width and height of the window, points.
     pub size: Option<[f32; 2]>,
-    /// Where figures of speed are printed when the window is closed.
+    /// Whether what happens is printed, and figures of speed when the window is closed.
     pub timings: bool,
+    /// Asked again and again; the window closes when it says so.
+    pub stop: Option<fn() -> bool>,
 }
 
 /// Name under which the window keeps its arrangement.
@@ -41,25 +43,28 @@ pub fn open(options: Options) -> Result<(), Error> {
         .with_drag_and_drop(true);
     let native = eframe::NativeOptions {
         viewport,
-        wgpu_options: WgpuConfiguration { wgpu_setup: setup(&options.adapter), ..WgpuConfiguration::default() },
+        wgpu_options: WgpuConfiguration {
+            wgpu_setup: setup(&options.adapter),
+            ..WgpuConfiguration::default()
+        },
         // A size that was asked for is not overruled by the last one.
         persist_window: options.size.is_none(),
         ..eframe::NativeOptions::default()
     };
-    let fault = Arc::new(Mutex::new(None));
-    let lost = Arc::clone(&fault);
+    let ended = Arc::new(Mutex::new(None));
+    let why = Arc::clone(&ended);
     let made = eframe::run_native(
         NAME,
         native,
         Box::new(move |context| {
-            let lab = Lab::new(context, options, lost)?;
+            let lab = Lab::new(context, &options, why)?;
             Ok(Box::new(lab))
         }),
     );
-    let fault: Option<String> = fault.lock().unwrap_or_else(PoisonError::into_inner).take();
-    match (made, fault) {
+    let ended: Option<Error> = ended.lock().unwrap_or_else(PoisonError::into_inner).take();
+    match (made, ended) {
         (Ok(()), None) => Ok(()),
-        (_, Some(fault)) => Err(Error::Window(fault)),
+        (_, Some(why)) => Err(why),
         (Err(error), None) => Err(Error::Window(explained(&error.to_string()))),
     }
 }
@@ -84,12 +89,9 @@ fn setup(adapter: &str) -> WgpuSetup {
                 let info = adapter.get_info();
                 info.backend.to_str() == wanted || info.name.to_lowercase().contains(&wanted)
             };
-            adapters
-                .iter()
-                .filter(shows)
-                .find(fits)
-                .cloned()
-                .ok_or_else(|| format!("no adapter for `{wanted}` can show a window; `echelon doctor` lists what there is"))
+            adapters.iter().filter(shows).find(fits).cloned().ok_or_else(|| {
+                format!("no adapter for `{wanted}` can show a window; `echelon doctor` lists what there is")
+            })
         }));
     }
     WgpuSetup::CreateNew(new)
@@ -97,8 +99,16 @@ fn setup(adapter: &str) -> WgpuSetup {
 
 /// What a person can do where no window can be opened.
 fn explained(error: &str) -> String {
+    let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let displayed = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].into_iter().any(set);
+    let why = if cfg!(target_os = "linux") && !displayed {
+        "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)"
+    } else {
+        // Libraries put their own names and places in front.
+        error.rsplit("failed: ").next().unwrap_or(error).trim_end_matches('.')
+    };
     format!(
-        "the window cannot be opened: {error}. The lab needs a desktop (X11 or Wayland; Xvfb serves too) and an adapter, \
-         see `echelon doctor`; `echelon film` and `echelon capture` need neither"
+        "the window cannot be opened: {why}. The lab needs a desktop (X11 or Wayland; Xvfb serves too) and an adapter, see \
+         `echelon doctor`; `echelon film` and `echelon capture` need neither"
     )
 }

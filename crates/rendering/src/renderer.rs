@@ -89,6 +89,12 @@ impl Renderer {
         self.size
     }
 
+    /// Changes title and caption, as where gains are tuned while a run goes.
+    pub fn retitle(&mut self, title: &str, caption: &str) {
+        title.clone_into(&mut self.cast.title);
+        caption.clone_into(&mut self.cast.caption);
+    }
+
     /// Changes the size of the pictures.
     ///
     /// # Errors

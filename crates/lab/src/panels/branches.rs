@@ -3,7 +3,7 @@
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::tidy::fixed;
-use eframe::egui::{self, RichText, Ui, WidgetInfo, Role};
+use eframe::egui::{self, RichText, Role, Ui, WidgetInfo};
 
 /// All branches.
 pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
@@ -14,8 +14,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         for (index, branch) in desk.branches.iter().enumerate() {
             let chosen = index == desk.branch;
             let response = ui.selectable_label(chosen, &branch.name);
-            response
-                .widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &branch.name));
+            response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &branch.name));
             if response.clicked() {
                 out.push(Action::Branch(index));
             }

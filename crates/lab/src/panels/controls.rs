@@ -108,9 +108,7 @@ impl Row {
             sliders(ui, out);
             let back = ui.add_enabled(differs, egui::Button::new("↺").frame(false));
             let name = format!("Reset {}", self.symbol.name.to_lowercase());
-            back.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::Role::Button, differs, name.clone())
-            });
+            back.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, differs, name.clone()));
             if back.on_hover_text(format!("{name}: {default} {}", self.symbol.unit)).clicked() {
                 out.push(Action::Untune { what: name.clone(), key: self.key });
             }

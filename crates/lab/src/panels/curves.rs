@@ -29,7 +29,12 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
     let logarithmic = quantity.logarithmic();
     let weak = ui.visuals().weak_text_color();
     let text = |value: f64| {
-        if logarithmic { format!("1e{}", fixed(value, 0)) } else { short(value) }
+        match logarithmic {
+            // Decades only: between them a label would be one of its neighbours'.
+            true if (value - value.round()).abs() > 0.01 => String::new(),
+            true => format!("1e{}", fixed(value, 0)),
+            false => short(value),
+        }
     };
     let plot = Plot::new(("plot", quantity.column()))
         .height(high.max(30.0))
@@ -46,10 +51,12 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
         .include_x(0.0)
         .include_x(end.max(1.0))
         .y_axis_min_width(40.0)
+        .grid_spacing(14.0..=60.0)
         .y_axis_formatter(move |mark, _| text(mark.value))
         .x_axis_formatter(|mark, _| format!("{} s", short(mark.value)))
         .label_formatter(move |hover| {
-            let (HoverPosition::NearDataPoint { position: at, .. } | HoverPosition::Elsewhere { position: at }) = hover;
+            let (HoverPosition::NearDataPoint { position: at, .. }
+            | HoverPosition::Elsewhere { position: at }) = hover;
             let value = if logarithmic { format!("{:.1e}", 10_f64.powf(at.y)) } else { fixed(at.y, 3) };
             Some(format!("{} s\n{value}", fixed(at.x, 2)))
         });
@@ -67,7 +74,9 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
             let near = all.iter().flat_map(|c| &c.points).any(|p| p[1].abs() > 0.4 * bound.abs());
             // A bound that is far away would only flatten the curves.
             if near {
-                plot.hline(HLine::new("bound", bound).color(weak).width(1.0).style(LineStyle::dashed_loose()));
+                plot.hline(
+                    HLine::new("bound", bound).color(weak).width(1.0).style(LineStyle::dashed_loose()),
+                );
             }
         }
         for (curve, colour) in all.into_iter().zip(colours) {

@@ -1,6 +1,6 @@
 //! The selected edge: its set point in numbers, and the shape of the whole formation.
 
-use super::nothing;
+use super::nobody;
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::symbols;
@@ -10,8 +10,9 @@ use scene::Channel;
 
 /// The selected edge.
 pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let Some((edge, (_, name, follow))) = desk.chosen_edge().and_then(|e| Some((e, desk.follower(e)?))) else {
-        return nothing(ui, "Click a follower or its edge.");
+    let Some((edge, (_, name, follow))) = desk.chosen_edge().and_then(|e| Some((e, desk.follower(e)?)))
+    else {
+        return nobody(ui, desk, "Click a follower or its edge.");
     };
     ui.label(RichText::new(format!("{} → {name}", follow.leader)).strong());
     let state = desk.moment().and_then(|moment| moment.edges.get(edge).copied());
@@ -25,14 +26,16 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     egui::Grid::new("set point").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
         symbols::DISTANCE.label(ui);
         let drag = DragValue::new(&mut new_distance).speed(0.02).range(0.05..=1000.0).max_decimals(3);
-        let response = ui.add(drag.min_decimals(2).suffix(" m"));
+        let response =
+            ui.add(drag.custom_formatter(|value, _| format!("{} m", fixed(value, 2))).custom_parser(number));
         named(&response, new_distance, symbols::DISTANCE.name);
         super::controls::released(&response, out);
         ui.weak(state.map_or_else(String::new, |s| format!("is {} m", fixed(s.relative.distance, 3))));
         ui.end_row();
         symbols::BEARING.label(ui);
         let drag = DragValue::new(&mut new_degrees).speed(0.5).range(-180.0..=180.0).max_decimals(2);
-        let response = ui.add(drag.min_decimals(1).suffix("°"));
+        let response =
+            ui.add(drag.custom_formatter(|value, _| format!("{}°", fixed(value, 1))).custom_parser(number));
         named(&response, new_degrees, symbols::BEARING.name);
         super::controls::released(&response, out);
         ui.weak(
@@ -52,11 +55,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         out.push(Action::Mirror(mirror));
     }
     if let Some(state) = state {
-        ui.weak(format!(
-            "error {} m, {}°",
-            fixed(state.error[0], 3),
-            fixed(state.error[1].to_degrees(), 2)
-        ));
+        ui.weak(format!("error {} m, {}°", fixed(state.error[0], 3), fixed(state.error[1].to_degrees(), 2)));
         if state.limited {
             ui.colored_label(ui.visuals().warn_fg_color, "a limit cuts the command");
         }
@@ -111,4 +110,9 @@ fn ahead(ui: &mut Ui, desk: &Desk, edge: usize) {
 fn named(response: &egui::Response, value: f64, name: &str) {
     response.widget_info(|| WidgetInfo::drag_value(true, value));
     response.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, name));
+}
+
+/// A number as people type it, with its unit or without.
+fn number(text: &str) -> Option<f64> {
+    text.trim().trim_end_matches(['m', '°']).trim().replace('−', "-").replace(',', ".").parse().ok()
 }

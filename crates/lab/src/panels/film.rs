@@ -29,7 +29,10 @@ pub fn show(ui: &mut Ui, desk: &Desk, style: &Style, filming: Option<&str>, out:
         if ui.button("Picture").on_hover_text("A PNG that remembers its settings (P)").clicked() {
             out.push(Action::Picture);
         }
-        if ui.button("Keep the run").on_hover_text("The run as a scene with its changes, and its tables").clicked()
+        if ui
+            .button("Keep the run")
+            .on_hover_text("The run as a scene with its changes, and its tables")
+            .clicked()
         {
             out.push(Action::KeepRun);
         }

@@ -3,7 +3,7 @@
 use super::{colour, nothing};
 use crate::action::Action;
 use crate::desk::{Choice, Desk, Tool};
-use eframe::egui::{self, RichText, Sense, Ui, WidgetInfo, Role};
+use eframe::egui::{self, RichText, Role, Sense, Ui, WidgetInfo};
 use vocabulary::{Cast, Moment};
 
 /// Robots as a tree.
@@ -57,7 +57,8 @@ fn row(
             ui.add_space(14.0 * depth.min(8) as f32);
             let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), Sense::hover());
             ui.painter().circle_filled(rect.center(), 5.0, colour(desk, robot, ui));
-            let text = if chosen { RichText::new(name).strong() } else { RichText::new(name) };
+            let text =
+                if chosen { RichText::new(name).color(egui::Color32::WHITE) } else { RichText::new(name) };
             let label = ui.add(egui::Button::selectable(chosen, text).sense(Sense::click_and_drag()));
             if let Some(error) = desk.edge_of(robot).and_then(|edge| Some(moment?.edges.get(edge)?.error)) {
                 let size = error[0].hypot(error[1]);

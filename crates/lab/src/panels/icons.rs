@@ -26,10 +26,15 @@ pub(crate) enum Icon {
 }
 
 /// A button with a drawing, and a text beside it where there is one.
-pub(crate) fn button(ui: &mut Ui, icon: Icon, text: &str, name: &str, colour: Option<Color32>) -> egui::Response {
+pub(crate) fn button(
+    ui: &mut Ui,
+    icon: Icon,
+    text: &str,
+    name: &str,
+    colour: Option<Color32>,
+) -> egui::Response {
     let font = egui::TextStyle::Button.resolve(ui.style());
-    let galley =
-        ui.painter().layout_no_wrap(text.to_owned(), font, colour.unwrap_or(Color32::PLACEHOLDER));
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, colour.unwrap_or(Color32::PLACEHOLDER));
     let side = 14.0;
     let gap = if text.is_empty() { 0.0 } else { 6.0 };
     let size = Vec2::new(12.0 + side + gap + galley.size().x, 24.0);
@@ -38,7 +43,8 @@ pub(crate) fn button(ui: &mut Ui, icon: Icon, text: &str, name: &str, colour: Op
     let visuals = ui.style().interact(&response);
     ui.painter().rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
     let colour = colour.unwrap_or(visuals.text_color());
-    let place = Rect::from_center_size(Pos2::new(rect.left() + 6.0 + 0.5 * side, rect.center().y), Vec2::splat(side));
+    let place =
+        Rect::from_center_size(Pos2::new(rect.left() + 6.0 + 0.5 * side, rect.center().y), Vec2::splat(side));
     ui.painter().extend(shapes(icon, place, colour));
     let at = Pos2::new(place.right() + gap, rect.center().y - 0.5 * galley.size().y);
     ui.painter().galley(at, galley, colour);

@@ -1,11 +1,11 @@
 //! Law, gains and observer.
 
 use super::controls::{Range, Row};
-use super::{nothing, tune};
+use super::{nobody, nothing, tune};
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::symbols;
-use eframe::egui::{ComboBox, Ui, WidgetInfo, Role};
+use eframe::egui::{ComboBox, Role, Ui, WidgetInfo};
 use scene::{Law, LawKind, Observer, ObserverKind, Switching, VehicleKind};
 
 const LAWS: [(LawKind, &str, &str, &str); 3] = [
@@ -14,8 +14,7 @@ const LAWS: [(LawKind, &str, &str, &str); 3] = [
     (LawKind::OutputFeedback, "Output feedback", "output-feedback", "Knows ℓ and ψ only (eq 42)."),
 ];
 
-const GAIN: Row =
-    Row { symbol: symbols::GAIN, key: "law.k", range: Range::factors(0.1, 20.0), decimals: 3 };
+const GAIN: Row = Row { symbol: symbols::GAIN, key: "law.k", range: Range::factors(0.1, 20.0), decimals: 3 };
 const ROBUST: Row =
     Row { symbol: symbols::ROBUST, key: "law.beta", range: Range::linear(0.0, 20.0), decimals: 3 };
 const SLOPE: Row =
@@ -29,8 +28,9 @@ const ALPHA_TWO: Row =
 
 /// The law of the follower that is selected.
 pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let Some((robot, name, follow)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge)) else {
-        return nothing(ui, "Nobody follows: there is no law to tune.");
+    let Some((robot, name, follow)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge))
+    else {
+        return nobody(ui, desk, "Nobody follows: there is no law to tune.");
     };
     scope(ui, desk, name, out);
     let kind = vehicle(desk, robot);
@@ -53,8 +53,9 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
 
 /// The observer of the follower that is selected.
 pub fn observer(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let Some((robot, name, follow)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge)) else {
-        return nothing(ui, "Nobody follows: there is nothing to observe.");
+    let Some((robot, name, follow)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge))
+    else {
+        return nobody(ui, desk, "Nobody follows: there is nothing to observe.");
     };
     let looks = follow.sensing.kind != scene::SensingKind::Truth;
     if follow.law.kind != LawKind::OutputFeedback && !looks {
@@ -78,7 +79,11 @@ pub fn observer(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     ALPHA_ONE.two(ui, observer.alpha1, default.alpha1, false, out);
     ALPHA_TWO.two(ui, observer.alpha2, default.alpha2, false, out);
     ui.weak(format!("Poles at {}", poles(observer)));
-    if ui.button("Disturb the observer").on_hover_text("Begin again at 0 and watch it peak like 1/ε").clicked() {
+    if ui
+        .button("Disturb the observer")
+        .on_hover_text("Begin again at 0 and watch it peak like 1/ε")
+        .clicked()
+    {
         out.push(Action::Set {
             what: "Observer starts 0.2 m and 10° off".to_owned(),
             values: vec![("observer.start".to_owned(), "{ offset = [0.2, \"10 deg\"] }".to_owned())],
@@ -154,7 +159,9 @@ fn switching(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
 }
 
 pub(crate) fn vehicle(desk: &Desk, robot: usize) -> VehicleKind {
-    desk.scene().and_then(|scene| scene.robots.get(robot)).map_or(VehicleKind::Unicycle, |r| r.vehicle.kind)
+    desk.scene_now()
+        .and_then(|scene| scene.robots.get(robot))
+        .map_or(VehicleKind::Unicycle, |r| r.vehicle.kind)
 }
 
 fn apart_id() -> eframe::egui::Id {

@@ -23,14 +23,19 @@ pub(crate) fn nothing(ui: &mut Ui, why: &str) {
     ui.weak(why);
 }
 
+/// Says that there is nothing to show: no scene, or because of this.
+pub(crate) fn nobody(ui: &mut Ui, desk: &Desk, why: &str) {
+    nothing(ui, if desk.scene().is_none() { "No scene is open." } else { why });
+}
+
 /// The colour of a robot on light and dark ground.
 pub(crate) fn colour(desk: &Desk, robot: usize, ui: &Ui) -> Color32 {
     let Some(history) = &desk.history else { return Color32::GRAY };
     let colours = rendering::robot_colours(history.cast());
     let leads = history.cast().members.get(robot).is_some_and(|member| member.leads);
     if leads && ui.visuals().dark_mode {
-        // Near-black would be lost; this is the stripe on its roof.
-        return Color32::from_rgb(0xe3, 0xb3, 0x41);
+        // Near-black would be lost, and the gold of its stripe is too near to the first follower's orange.
+        return Color32::from_rgb(0xe6, 0xe2, 0xd6);
     }
     let [r, g, b] = colours.get(robot).copied().unwrap_or([0.5; 3]).map(|c| (c * 255.0).round() as u8);
     let colour = Color32::from_rgb(r, g, b);

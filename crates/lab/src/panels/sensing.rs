@@ -2,11 +2,11 @@
 
 use super::controls::{Range, Row};
 use super::law::scope;
-use super::{nothing, tune};
+use super::{nobody, tune};
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::symbols;
-use eframe::egui::{ComboBox, Ui, WidgetInfo, Role};
+use eframe::egui::{ComboBox, Role, Ui, WidgetInfo};
 use scene::{Sensing, SensingKind};
 use vocabulary::Sight;
 
@@ -41,7 +41,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     let Some((edge, (_, name, follow))) =
         desk.chosen_edge().or(Some(0)).and_then(|edge| Some((edge, desk.follower(edge)?)))
     else {
-        return nothing(ui, "Nobody follows: nobody has to see.");
+        return nobody(ui, desk, "Nobody follows: nobody has to see.");
     };
     scope(ui, desk, name, out);
     let (sensing, default) = (&follow.sensing, Sensing::default());

@@ -27,7 +27,8 @@ pub fn show(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
 }
 
 fn buttons(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let (icon, name) = if desk.playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
+    let (icon, name) =
+        if desk.playing && desk.history.is_some() { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
     if button(ui, icon, "", name, None).on_hover_text(format!("{name} (Space)")).clicked() {
         out.push(Action::Toggle);
     }
@@ -45,11 +46,14 @@ fn pace(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     ui.spacing_mut().slider_width = 84.0;
     let slider = Slider::new(&mut pace, 0.1..=50.0)
         .logarithmic(true)
-        .custom_formatter(|value, _| {
-            if value < 10.0 { format!("{value:.1}×") } else { format!("{value:.0}×") }
-        })
+        .custom_formatter(
+            |value, _| {
+                if value < 10.0 { format!("{value:.1}×") } else { format!("{value:.0}×") }
+            },
+        )
         .custom_parser(|text| text.trim_end_matches(['×', 'x']).trim().parse().ok());
-    let response = ui.add(slider).on_hover_text("Simulated seconds per second (, and .); double click for 1×");
+    let response =
+        ui.add(slider).on_hover_text("Simulated seconds per second (, and .); double click for 1×");
     response.widget_info(|| WidgetInfo::slider(true, pace, "Pace"));
     if response.double_clicked() {
         out.push(Action::Pace(1.0));
@@ -77,7 +81,8 @@ fn line(ui: &mut Ui, desk: &Desk, wide: f32, out: &mut Vec<Action>) {
         let end = desk.history.as_ref().map_or(0.0, |history| history.end(index));
         let colour = branch_colour(index, desk.branch, visuals);
         let half = (0.36 * high).clamp(1.0, 5.0);
-        let bar = egui::Rect::from_x_y_ranges(x_of(from)..=x_of(end).max(x_of(from) + 1.0), y - half..=y + half);
+        let bar =
+            egui::Rect::from_x_y_ranges(x_of(from)..=x_of(end).max(x_of(from) + 1.0), y - half..=y + half);
         painter.rect_filled(bar, half.min(2.0), colour);
         for change in branch.changes.iter().filter(|change| change.time >= from) {
             let x = x_of(change.time);
@@ -136,7 +141,11 @@ fn menus(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
         let unsaved = desk.draft.as_ref().is_some_and(crate::session::draft::Draft::unsaved);
         for (text, action, on) in [
             ("Save scene   Ctrl S", Action::Save, unsaved),
-            ("Reload from disk   Ctrl R", Action::Reload, desk.draft.as_ref().is_some_and(|d| d.path.is_some())),
+            (
+                "Reload from disk   Ctrl R",
+                Action::Reload,
+                desk.draft.as_ref().is_some_and(|d| d.path.is_some()),
+            ),
             ("Undo   Ctrl Z", Action::Undo, desk.draft.as_ref().is_some_and(|d| d.undoes().is_some())),
             ("Redo   Ctrl Y", Action::Redo, desk.draft.as_ref().is_some_and(|d| d.redoes().is_some())),
             ("Keep the run   K", Action::KeepRun, true),
@@ -175,11 +184,13 @@ fn menus(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
 fn save_as(ui: &mut Ui, out: &mut Vec<Action>) {
     let id = egui::Id::unique("save as");
     let mut path: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-    let edit = ui.add(egui::TextEdit::singleline(&mut path).hint_text("path/to/scene.toml").desired_width(240.0));
+    let edit =
+        ui.add(egui::TextEdit::singleline(&mut path).hint_text("path/to/scene.toml").desired_width(240.0));
     let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
     ui.data_mut(|data| data.insert_temp(id, path.clone()));
     let path = path.trim();
-    if (ui.add_enabled(!path.is_empty(), egui::Button::new("Save")).clicked() || entered) && !path.is_empty() {
+    if (ui.add_enabled(!path.is_empty(), egui::Button::new("Save")).clicked() || entered) && !path.is_empty()
+    {
         let path = std::path::PathBuf::from(path);
         let path = if path.extension().is_none() { path.with_extension("toml") } else { path };
         out.push(Action::SaveAs(path));

@@ -2,7 +2,7 @@
 
 use super::controls::{Range, Row};
 use super::law::scope;
-use super::nothing;
+use super::{nobody, nothing};
 use crate::action::Action;
 use crate::desk::{Desk, Tool};
 use crate::symbols;
@@ -38,9 +38,9 @@ const ACCELERATION_MAX: Row = Row {
 /// Limits of the follower that is selected.
 pub fn limits(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     let Some((robot, name, _)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge)) else {
-        return nothing(ui, "Nobody follows.");
+        return nobody(ui, desk, "Nobody follows.");
     };
-    let Some(vehicle) = desk.scene().and_then(|scene| scene.robots.get(robot)).map(|r| r.vehicle) else {
+    let Some(vehicle) = desk.scene_now().and_then(|scene| scene.robots.get(robot)).map(|r| r.vehicle) else {
         return;
     };
     scope(ui, desk, name, out);

@@ -5,8 +5,8 @@
 //! asked for, which is the same run bit for bit.
 
 use recording::Digest;
-use scene::{Override, Scene, SceneText};
-use simulation::{BuildError, Simulation};
+use scene::{Scene, SceneText};
+use simulation::{BuildError, Setup, Simulation};
 use std::rc::Rc;
 use std::sync::Arc;
 use vocabulary::Moment;
@@ -46,10 +46,8 @@ pub struct Change {
     pub sample: u64,
     /// s.
     pub time: f64,
-    /// The scene with these parameters, as it is written.
+    /// The scene with these parameters.
     pub scene: Arc<Scene>,
-    /// The scene with these parameters, and with what its own script had changed until then.
-    pub held: Arc<Scene>,
     /// What is different from before, as overrides.
     pub set: Vec<String>,
 }
@@ -94,7 +92,8 @@ impl Branches {
         self.list.get_mut(branch)?.advance()
     }
 
-    /// Lets the parameters of `scene` hold from the next sample of a branch on.
+    /// Lets the parameters of `scene` hold from the next sample of a branch on. A change that takes back what was changed
+    /// at the same sample sets nothing.
     ///
     /// # Errors
     /// What of the scene cannot change while a run goes, in words.
@@ -108,7 +107,7 @@ impl Branches {
 
     /// A new branch that leaves `from` before control sample `sample`; its index.
     pub fn fork(&mut self, from: usize, sample: u64, name: String) -> Option<usize> {
-        let branch = self.list.get(from)?.fork((from, sample), name);
+        let branch = self.list.get(from)?.fork(&self.scene, (from, sample), name);
         self.list.push(branch);
         Some(self.list.len() - 1)
     }
@@ -135,64 +134,50 @@ impl Branch {
     }
 
     /// Takes the parameters of `scene`; what of them is new. Changes before the same sample become one.
-    fn change(&mut self, base: &Arc<Scene>, scene: Arc<Scene>) -> Result<Option<Change>, String> {
+    fn change(&mut self, base: &Scene, scene: Arc<Scene>) -> Result<Option<Change>, String> {
         let sample = self.simulation.sample();
-        let time = sample as f64 * self.simulation.period();
-        let earlier = self.changes.iter().rfind(|change| change.sample < sample);
-        let before = earlier.map_or(base, |change| &change.scene);
-        let set = before.sets_to(&scene).map_err(|standing| standing.join("\n"))?;
-        let held = match earlier {
-            None if base.changes.is_empty() => Arc::clone(&scene),
-            None => with(scripted(base, time), &set)?,
-            Some(_) if base.changes.is_empty() => Arc::clone(&scene),
-            Some(change) => with(&change.held, &set)?,
-        };
-        let change = Change { sample, time, scene, held, set };
-        self.take(&change)?;
-        if self.changes.last().is_some_and(|last| last.sample == sample) {
-            self.changes.pop();
-        }
-        if change.set.is_empty() {
-            return Ok(None);
-        }
-        self.changes.push(change.clone());
-        Ok(Some(change))
-    }
-
-    /// Lets a change hold from the next sample on. Where a hand takes over, a scene's own script ends.
-    fn take(&mut self, change: &Change) -> Result<(), String> {
-        let scene = Scene { changes: Vec::new(), ..Scene::clone(&change.held) };
         let setup = simulation::build(&scene).map_err(|error| error.to_string())?;
-        self.simulation.adopt(&setup);
-        self.simulation.reschedule(&setup);
-        Ok(())
+        let earlier = self.changes.partition_point(|change| change.sample < sample);
+        let again = earlier < self.changes.len();
+        let before = self.changes[..earlier].last().map_or(base, |last| &last.scene);
+        let set = before.sets_to(&scene).map_err(|standing| standing.join("\n"))?;
+        let change = Change { sample, time: sample as f64 * self.simulation.period(), scene, set };
+        let mut changes = self.changes[..earlier].to_vec();
+        if !change.set.is_empty() {
+            changes.push(change.clone());
+        }
+        if base.changes.is_empty() {
+            self.simulation.adopt(&setup);
+        } else {
+            self.simulation.reschedule(&planned(base, &changes)?);
+        }
+        self.changes = changes;
+        Ok((again || !change.set.is_empty()).then_some(change))
     }
 
-    fn fork(&self, parent: (usize, u64), name: String) -> Self {
+    fn fork(&self, base: &Scene, parent: (usize, u64), name: String) -> Self {
         let until = parent.1;
         let marks: Vec<_> = self.marks.iter().filter(|m| m.simulation.sample() <= until).cloned().collect();
         let changes: Vec<_> = self.changes.iter().filter(|c| c.sample < until).cloned().collect();
         // The mark at time 0 is always there.
-        let start = Rc::clone(marks.last().unwrap_or(&self.marks[0]));
-        let mut branch = Self {
-            name,
-            parent: Some(parent),
-            changes: Vec::new(),
-            simulation: start.simulation.save(),
-            digest: start.digest.clone(),
-            marks,
-            mark_every: self.mark_every,
-        };
-        while branch.simulation.sample() < until {
-            let sample = branch.simulation.sample();
-            if let Some(change) = changes.iter().find(|change| change.sample == sample) {
-                // It was built before, when it was made.
-                let _ = branch.take(change);
-            }
-            let Some(moment) = branch.simulation.next_moment() else { break };
-            branch.digest.push(moment);
+        let start = marks.last().unwrap_or(&self.marks[0]);
+        let (mut simulation, mut digest) = (start.simulation.save(), start.digest.clone());
+        // What was built once, when it was made, can be built again.
+        if !base.changes.is_empty()
+            && let Ok(setup) = planned(base, &changes)
+        {
+            simulation.reschedule(&setup);
         }
-        Self { changes, ..branch }
+        while simulation.sample() < until {
+            let sample = simulation.sample();
+            let due = changes.iter().filter(|change| change.sample == sample && base.changes.is_empty());
+            for setup in due.filter_map(|change| simulation::build(&change.scene).ok()) {
+                simulation.adopt(&setup);
+            }
+            let Some(moment) = simulation.next_moment() else { break };
+            digest.push(moment);
+        }
+        Self { name, parent: Some(parent), changes, simulation, digest, marks, mark_every: self.mark_every }
     }
 
     /// Digest of all samples so far.
@@ -211,41 +196,40 @@ impl Branch {
     }
 }
 
-/// The scene as its own script has made it by `time` s.
-fn scripted(base: &Arc<Scene>, time: f64) -> &Scene {
-    let due = base.changes.iter().rfind(|change| change.at <= time + 1e-9);
-    due.map_or(base, |change| &change.then)
+/// The run of a scene that has changes of its own, with those of a branch among them: whichever is later holds.
+fn planned(base: &Scene, changes: &[Change]) -> Result<Setup, String> {
+    let last = changes.last().map_or(0.0, |change| change.time);
+    let text =
+        script(&base.to_toml(), &base.changes, changes, base.time.duration.max(last + base.time.period))?;
+    let scene = Scene::parse(&text, "", &[]).map_err(|faults| faults.to_string())?.scene;
+    simulation::build(&scene).map_err(|error| error.to_string())
 }
 
-/// A scene with overrides.
-fn with(scene: &Scene, set: &[String]) -> Result<Arc<Scene>, String> {
-    let set: Vec<Override> = set.iter().filter_map(|set| set.parse().ok()).collect();
-    let scene = Scene { changes: Vec::new(), ..scene.clone() };
-    let loaded = Scene::parse(&scene.to_toml(), "scene.toml", &set).map_err(|faults| faults.to_string())?;
-    Ok(Arc::new(loaded.scene))
-}
-
-/// The text of a scene that runs as a branch ran: `base` with the branch's changes, for `duration` s.
+/// The text of a scene that runs as a branch ran: `base`, which has changes `own`, with the branch's changes, for
+/// `duration` s.
 ///
 /// # Errors
 /// Why the text cannot be edited, in words.
-pub fn script(base: &str, changes: &[Change], duration: f64) -> Result<String, String> {
-    let fault = |error: scene::EditError| error.to_string();
-    let mut text = SceneText::parse(base).map_err(fault)?;
-    text.set("time.duration", &format!("{duration:?}")).map_err(fault)?;
-    if let Some(first) = changes.first() {
-        // From there on the hand held, not the script.
-        for item in (0..text.count("changes")).rev() {
-            let at = text.get(&format!("changes.{item}.at")).and_then(|at| at.parse::<f64>().ok());
-            if at.is_some_and(|at| at > first.time + 1e-9) {
-                text.remove_item("changes", &item.to_string()).map_err(fault)?;
-            }
+pub fn script(
+    base: &str,
+    own: &[scene::Change],
+    changes: &[Change],
+    duration: f64,
+) -> Result<String, String> {
+    let mut text = SceneText::parse(base).map_err(|error| error.to_string())?;
+    text.set("time.duration", &format!("{duration:?}")).map_err(|error| error.to_string())?;
+    // Robot by robot, so that what is set for all of them does not give way to what was set for one before.
+    if !own.is_empty() {
+        while text.count("changes") > 0 {
+            text.remove_item("changes", "0").map_err(|error| error.to_string())?;
         }
+        text.remove("changes").map_err(|error| error.to_string())?;
     }
-    for change in changes {
-        let set: Vec<String> = change.set.iter().map(|set| format!("    {set:?},\n")).collect();
-        let item = format!("at = {:?}\nset = [\n{}]\n", change.time, set.concat());
-        text.add_table("changes", &item).map_err(fault)?;
+    let own = own.iter().filter(|change| change.at <= duration).map(|change| (change.at, &change.set));
+    for (at, set) in own.chain(changes.iter().map(|change| (change.time, &change.set))) {
+        let set: Vec<String> = set.iter().map(|set| format!("    {set:?},\n")).collect();
+        let item = format!("at = {at:?}\nset = [\n{}]\n", set.concat());
+        text.add_table("changes", &item).map_err(|error| error.to_string())?;
     }
     Ok(text.text())
 }

@@ -171,16 +171,17 @@ impl Draft {
 
     fn effect_of(&self, scene: &Scene) -> Effect {
         let dressed = Scene {
+            // What was past may have become what is.
+            changes: scene.changes.clone(),
             title: scene.title.clone(),
             description: scene.description.clone(),
             environment: scene.environment,
             views: scene.views.clone(),
             film: scene.film.clone(),
-            expect: scene.expect.clone(),
+            expect: scene.expect,
             ..Scene::clone(&self.scene)
         };
         match dressed.sets_to(scene) {
-            Ok(_) if dressed.changes != scene.changes => Effect::Restart("its changes are others".to_owned()),
             Ok(set) if set.is_empty() && dressed == *self.scene => Effect::None,
             Ok(set) if set.is_empty() => Effect::Dress,
             // Both at once come from a file that was edited elsewhere.

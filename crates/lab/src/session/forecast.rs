@@ -52,9 +52,10 @@ pub struct Place {
 }
 
 /// What is wrong with a place on the way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum Trouble {
     /// Nothing.
+    #[default]
     None,
     /// A limit cuts the command.
     Limited,
@@ -132,7 +133,10 @@ fn ahead(question: Question, newer: &dyn Fn() -> bool) -> Option<Forecast> {
     let start = run.sample() as f64 * period;
     let mut teller = Teller::new(&run, samples, [start, start + samples as f64 * period]);
     for k in 0..samples {
-        let Some(moment) = run.next_moment() else { break };
+        let Some(moment) = run.next_moment() else {
+            teller.end(run.moment());
+            break;
+        };
         teller.take(k, moment);
         // What is half done is finished: under a stream of questions there would be no answer at all.
         if k == samples / 4 && newer() && began.elapsed().as_millis() > 60 {
@@ -178,19 +182,27 @@ impl Teller {
         self.limits(moment);
         self.contacts(k, moment);
         self.errors(k, moment);
-        let poses = moment.snapshot.robots.iter().map(|robot| robot.motion.pose);
-        if k.is_multiple_of(self.stride) || k + 1 == self.samples {
-            for ((path, pose), trouble) in self.out.paths.iter_mut().zip(poses.clone()).zip(&mut self.trouble)
-            {
-                path.push(Place { at: [pose.x, pose.y], trouble: *trouble });
-                *trouble = Trouble::None;
-            }
-            for (motions, robot) in self.out.motions.iter_mut().zip(&moment.snapshot.robots) {
-                motions.push((robot.motion.speed, robot.motion.turn_rate));
-            }
-        }
         if k + 1 == self.samples {
-            self.out.end = poses.collect();
+            self.end(moment);
+        } else if k.is_multiple_of(self.stride) {
+            self.places(moment);
+        }
+    }
+
+    /// The last moment, be it because the run stops there.
+    fn end(&mut self, moment: &Moment) {
+        self.places(moment);
+        self.out.end = moment.snapshot.robots.iter().map(|robot| robot.motion.pose).collect();
+    }
+
+    fn places(&mut self, moment: &Moment) {
+        let paths = self.out.paths.iter_mut().zip(&mut self.out.motions);
+        for ((path, motions), (robot, trouble)) in
+            paths.zip(moment.snapshot.robots.iter().zip(&mut self.trouble))
+        {
+            let motion = robot.motion;
+            path.push(Place { at: [motion.pose.x, motion.pose.y], trouble: std::mem::take(trouble) });
+            motions.push((motion.speed, motion.turn_rate));
         }
     }
 

@@ -92,6 +92,10 @@ impl History {
         let sample = self.sample(moment.snapshot.time);
         let most = self.most_moments();
         if let Some(past) = self.past.get_mut(branch) {
+            // A branch is told where it begins; it may know already.
+            if past.is_known(&moment) {
+                return;
+            }
             if let Some(clearance) = &self.clearance {
                 past.measure(clearance, &moment);
             }
@@ -194,8 +198,11 @@ impl History {
         // Whole multiples of the step, so that curves do not tremble as they grow.
         let step = some.len().div_ceil(most.max(1)).next_power_of_two();
         let skip = first.next_multiple_of(step) - first;
+        let mut moments: Vec<&Moment> = some.iter().skip(skip).step_by(step).map(|m| &**m).collect();
         let head = past.head.as_deref().filter(|head| head.snapshot.time <= to);
-        some.iter().skip(skip).step_by(step).map(|m| &**m).chain(head).collect()
+        let last = moments.last().map_or(f64::NEG_INFINITY, |moment| moment.snapshot.time);
+        moments.extend(head.filter(|head| head.snapshot.time > last));
+        moments
     }
 
     /// Least room between bodies of a branch between two times: s, m.
@@ -215,6 +222,10 @@ impl History {
 impl Past {
     fn is_head(&self, time: f64) -> bool {
         self.head.as_ref().is_none_or(|head| time >= head.snapshot.time - 1e-9)
+    }
+
+    fn is_known(&self, moment: &Moment) -> bool {
+        self.head.as_ref().is_some_and(|head| moment.snapshot.time <= head.snapshot.time)
     }
 
     /// Whether a trail ends before a time.

@@ -72,7 +72,7 @@ pub enum News {
     },
     /// Samples of a branch.
     Moments(usize, Vec<Moment>),
-    /// Parameters of a branch were changed.
+    /// Parameters of a branch were changed, or, where nothing is set, are as before again.
     Changed(usize, Change),
     /// All there is to know of a branch so far.
     Told {
@@ -365,10 +365,14 @@ impl Work {
     fn fork(&mut self, from: usize, sample: u64, name: String) {
         let Some(branches) = &mut self.branches else { return };
         let Some(branch) = branches.fork(from, sample, name.clone()) else { return };
-        let changes = branches.list()[branch].changes.clone();
+        let made = &branches.list()[branch];
+        let changes = made.changes.clone();
+        // Of a long past the window does not keep every sample.
+        let here = (made.simulation().sample() > 0).then(|| made.simulation().moment().clone());
         self.active = branch;
         self.owed = 0.0;
         self.tell(News::Forked { branch, from, sample, name, changes });
+        self.report(here.into_iter().collect());
         self.look_ahead(true);
     }
 

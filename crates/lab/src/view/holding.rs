@@ -44,8 +44,10 @@ impl Wanted {
 
     fn refuses_at(&self, place: [f64; 2], (speed, turn_rate): (f64, f64)) -> bool {
         let why = unholdable(place, (speed, turn_rate), &self.limits, self.distance_min);
-        if matches!(why, Some(Unholdable::TooClose | Unholdable::TooFast | Unholdable::TooSlow | Unholdable::TooTight))
-        {
+        if matches!(
+            why,
+            Some(Unholdable::TooClose | Unholdable::TooFast | Unholdable::TooSlow | Unholdable::TooTight)
+        ) {
             return true;
         }
         let Some([far, pan]) = self.sight else { return false };
@@ -62,7 +64,7 @@ pub fn field(desk: &Desk, edge: usize, moment: &Moment) -> Option<(Pose, Field)>
     let cast = history.cast();
     let ends = *cast.edges.get(edge)?;
     let (robot, _, follow) = desk.follower(edge)?;
-    let scene = desk.scene()?;
+    let scene = desk.scene_now()?;
     let vehicle = &scene.robots.get(robot)?.vehicle;
     let leader = moment.snapshot.robots.get(ends.leader)?;
     let looks = follow.sensing.kind != scene::SensingKind::Truth;
@@ -84,7 +86,8 @@ pub fn field(desk: &Desk, edge: usize, moment: &Moment) -> Option<(Pose, Field)>
         sight: looks.then_some([far, scene.vision.pan_max + half_picture]),
         others: places.chain([([0.0; 2], reach)]).collect(),
     };
-    let motions = motions(desk.forecast.as_ref(), ends.leader, (leader.motion.speed, leader.motion.turn_rate));
+    let motions =
+        motions(desk.forecast.as_ref(), ends.leader, (leader.motion.speed, leader.motion.turn_rate));
     Some((leader.motion.pose, shade(&wanted, &motions)))
 }
 

@@ -38,7 +38,7 @@ pub fn sketch(desk: &Desk, moment: &Moment, hand: &Hand) -> Sketch {
     if let Some(held) = hand.held {
         refused(desk, held, moment, &mut sketch);
     }
-    others(desk, &cast, &colours, &mut sketch);
+    others(desk, &colours, &mut sketch);
     let present = desk.cursor.is_none();
     if let Some(forecast) = desk.forecast.as_ref().filter(|f| present && f.branch == desk.branch) {
         future(forecast, &colours, &cast, &mut sketch);
@@ -71,17 +71,17 @@ fn scaled(alphas: &[f32], by: f32) -> Vec<f32> {
 }
 
 /// Paths of branches that are not looked at.
-fn others(desk: &Desk, cast: &Cast, colours: &[[f32; 3]], sketch: &mut Sketch) {
+fn others(desk: &Desk, colours: &[[f32; 3]], sketch: &mut Sketch) {
     let Some(history) = &desk.history else { return };
     for branch in (0..history.branches()).filter(|branch| *branch != desk.branch) {
         let from = desk.branches.get(branch).and_then(|face| face.parent).map_or(0.0, |(_, time)| time);
         // What is long past would cover the ground.
         let from = from.max(desk.time() - 12.0);
         let moments = history.between(branch, [from, desk.time() + 12.0], 160);
-        for robot in 0..cast.members.len() {
+        for (robot, colour) in colours.iter().enumerate() {
             let spots = moments.iter().filter_map(|moment| {
                 let pose = moment.snapshot.robots.get(robot)?.motion.pose;
-                Some(Spot { at: [pose.x, pose.y], colour: light(colours[robot]), alpha: 0.55 })
+                Some(Spot { at: [pose.x, pose.y], colour: light(*colour), alpha: 0.55 })
             });
             sketch.strokes.push(Stroke { dashed: true, pixels: 1.6, ..Stroke::new(spots.collect()) });
         }
@@ -134,7 +134,8 @@ fn handles(
     for (edge, at) in set_points(cast, moment).into_iter().enumerate() {
         let Some(at) = at else { continue };
         let follower = cast.edges[edge].follower;
-        let ring = Ring { least: 12.0, ..Ring::new(at, RING * size(cast, follower), light(colours[follower])) };
+        let ring =
+            Ring { least: 12.0, ..Ring::new(at, RING * size(cast, follower), light(colours[follower])) };
         if hand.held == Some(edge) || desk.chosen_edge() == Some(edge) {
             sketch.rings.push(ring.selected());
         } else if hand.over == Some(edge) {
@@ -173,5 +174,5 @@ fn size(cast: &Cast, robot: usize) -> f64 {
 
 /// A colour that stands out from asphalt.
 fn light(colour: [f32; 3]) -> [f32; 3] {
-    if colour.iter().sum::<f32>() < 0.6 { [0.89, 0.70, 0.25] } else { colour.map(|c| 0.2 + 0.8 * c) }
+    if colour.iter().sum::<f32>() < 0.6 { [0.90, 0.88, 0.84] } else { colour.map(|c| 0.2 + 0.8 * c) }
 }

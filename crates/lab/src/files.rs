@@ -1,0 +1,217 @@
+//! Scenes from and to disk: open, save, read again, recover, and runs that are kept.
+
+use crate::app::Lab;
+use crate::gallery;
+use crate::keep::{Seen, free, keep};
+use crate::over::Over;
+use crate::session::draft::Draft;
+use eframe::egui;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Scenes opened before that are remembered.
+const MOST_RECENT: usize = 8;
+/// Between two times that unsaved work is put on disk.
+const KEEP_EVERY: Duration = Duration::from_secs(1);
+
+impl Lab {
+    pub(crate) fn open(&mut self, path: &Path) {
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+            return self.open_picture(path);
+        }
+        match std::fs::read_to_string(path) {
+            Ok(text) => {
+                if self.take_scene(text, Some(path.to_owned()), path) {
+                    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+                    self.recent.retain(|known| *known != path);
+                    self.recent.insert(0, path);
+                    self.recent.truncate(MOST_RECENT);
+                }
+            }
+            Err(error) => self.desk.fault(format!("{} cannot be read: {error}", path.display())),
+        }
+    }
+
+    pub(crate) fn open_shipped(&mut self, name: &str) {
+        if let Some(shipped) = gallery::shipped(name) {
+            self.take_scene(shipped.text.to_owned(), None, Path::new(&format!("{name}.toml")));
+        }
+    }
+
+    /// A scene in place of the one that is open; where it cannot be opened, that one stays.
+    pub(crate) fn take_scene(&mut self, text: String, path: Option<PathBuf>, home: &Path) -> bool {
+        self.end_film();
+        match self.desk.open(text, path.clone(), home) {
+            Ok(()) => {
+                self.desk.notice = None;
+                self.over = Over::Nothing;
+                let view =
+                    self.desk.scene().map_or_else(|| "snake".to_owned(), |scene| scene.views.default.clone());
+                self.viewport.look(&view);
+                self.viewport.style.picture_in_picture = None;
+                self.watch.look_at(path);
+                let title = self.desk.scene().map_or_else(String::new, |scene| scene.title.clone());
+                self.ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{title} — Echelon")));
+                true
+            }
+            Err(faults) => {
+                self.desk.fault(faults);
+                false
+            }
+        }
+    }
+
+    /// A picture brings back the scene, the time and the view that made it.
+    pub(crate) fn open_picture(&mut self, path: &Path) {
+        let texts = match rendering::png::read_texts(path) {
+            Ok(texts) => texts,
+            Err(error) => return self.desk.fault(error.to_string()),
+        };
+        let of = |key: &str| texts.iter().find(|(known, _)| known == key).map(|(_, text)| text.clone());
+        let Some(scene) = of("Scene") else {
+            return self.desk.fault(format!("{} was not made by the lab: it holds no scene", path.display()));
+        };
+        let home = of("Home").map_or_else(|| path.to_owned(), PathBuf::from);
+        if !self.take_scene(scene, None, &home) {
+            return;
+        }
+        if let Some(time) = of("Time").and_then(|time| time.parse::<f64>().ok()).filter(|t| t.is_finite()) {
+            self.desk.playing = false;
+            self.desk.orders.clear();
+            self.desk.restart(time);
+        }
+        if let Some(view) = of("View") {
+            self.viewport.look(&view);
+        }
+        self.desk.note(format!("As in {}", path.display()));
+    }
+
+    pub(crate) fn save(&mut self, path: Option<PathBuf>) {
+        let Some(draft) = &mut self.desk.draft else { return };
+        // A scene that came with the program is saved beside where one works.
+        let own = || free(Path::new("."), &stem(draft.home()), "toml");
+        let path = path.or_else(|| draft.path.clone()).unwrap_or_else(own);
+        if path.exists() && draft.path.as_ref() != Some(&path) {
+            let text =
+                format!("{} is there already: choose another name, or remove it first", path.display());
+            return self.desk.fault(text);
+        }
+        match recording::write_whole(&path, draft.text().as_bytes()) {
+            Ok(()) => {
+                draft.saved_to(path.clone());
+                self.kept.done();
+                self.watch.look_at(Some(path.clone()));
+                self.desk.note(format!("Saved: {}", path.display()));
+            }
+            Err(error) => self.desk.fault(error.to_string()),
+        }
+    }
+
+    pub(crate) fn reload(&mut self) {
+        let Some(path) = self.desk.draft.as_ref().and_then(|draft| draft.path.clone()) else { return };
+        match std::fs::read_to_string(&path) {
+            Ok(text) => self.take_text("Read again from disk", text),
+            Err(error) => self.desk.fault(format!("{} cannot be read: {error}", path.display())),
+        }
+    }
+
+    pub(crate) fn take_text(&mut self, what: &str, text: String) {
+        let Some(draft) = &mut self.desk.draft else { return };
+        match draft.replace(what, text) {
+            Ok(effect) => {
+                if let Some(path) = draft.path.clone() {
+                    draft.saved_to(path);
+                }
+                self.desk.notice = None;
+                self.desk.take(what, &effect);
+            }
+            Err(faults) => self.desk.fault(faults),
+        }
+    }
+
+    pub(crate) fn changed_on_disk(&mut self) {
+        if self.desk.draft.as_ref().is_some_and(Draft::unsaved) {
+            let text = "The file has changed on disk, and there are changes here: Ctrl R takes the file, Ctrl S keeps yours.";
+            self.desk.fault(text);
+        } else {
+            self.reload();
+        }
+    }
+
+    pub(crate) fn recover(&mut self) {
+        let Some(left) = self.left.take() else { return };
+        let home = left.path.clone().unwrap_or_else(|| PathBuf::from("scene.toml"));
+        let saved = left.path.as_ref().and_then(|path| std::fs::read_to_string(path).ok());
+        let text = saved.unwrap_or_else(|| left.text.clone());
+        if self.take_scene(text, left.path.clone(), &home) {
+            // The work is an edit of what is on disk, so that it can be undone.
+            if let Some(draft) = &mut self.desk.draft {
+                match draft.replace("Work from before", left.text.clone()) {
+                    Ok(_) => self.desk.restart(0.0),
+                    Err(faults) => return self.desk.fault(faults),
+                }
+            }
+            let _ = std::fs::remove_file(&left.file);
+        }
+    }
+
+    pub(crate) fn forget(&mut self) {
+        if let Some(left) = self.left.take() {
+            let _ = std::fs::remove_file(left.file);
+        }
+    }
+
+    pub(crate) fn write_curves(&mut self, ending: &str, text: &str) {
+        let path = free(Path::new("."), &self.name(), ending);
+        match recording::write_whole(&path, text.as_bytes()) {
+            Ok(()) => self.desk.note(format!("Written: {}", path.display())),
+            Err(error) => self.desk.fault(error.to_string()),
+        }
+    }
+
+    pub(crate) fn keep_run(&mut self, branch: usize, seen: Seen) {
+        if branch != self.desk.branch {
+            return;
+        }
+        let text = match self.desk.script() {
+            Ok(text) => text,
+            Err(why) => return self.desk.fault(why),
+        };
+        let home = self.desk.draft.as_ref().map_or_else(PathBuf::new, |draft| draft.home().to_owned());
+        let folder = free(Path::new("runs"), &format!("{}-lab", self.name()), "");
+        let (sender, gpu, ctx) = (self.words.0.clone(), self.viewport.gpu().clone(), self.ctx.clone());
+        self.desk.note("The run is being written down");
+        let work = move || {
+            let word = keep(&text, &home, &folder, &seen, Some(&gpu));
+            // A window that is closed does not wait for it.
+            let _ = sender.send(word);
+            ctx.request_repaint();
+        };
+        if let Err(error) = std::thread::Builder::new().name("keep".to_owned()).spawn(work) {
+            self.desk.fault(error.to_string());
+        }
+    }
+
+    pub(crate) fn keep_work(&mut self) {
+        let Some(draft) = &self.desk.draft else { return };
+        if !draft.unsaved() {
+            return self.kept.done();
+        }
+        let wait = KEEP_EVERY.saturating_sub(self.kept_at.elapsed());
+        if !wait.is_zero() {
+            return self.ctx.request_repaint_after(wait);
+        }
+        self.kept_at = Instant::now();
+        if let Err(why) = self.kept.keep(draft.text(), draft.path.as_deref()) {
+            self.desk.fault(why);
+        }
+    }
+
+    pub(crate) fn name(&self) -> String {
+        self.desk.draft.as_ref().map_or_else(|| "scene".to_owned(), |draft| stem(draft.home()))
+    }
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}

@@ -1,0 +1,158 @@
+//! Pictures and films of what is seen.
+
+use crate::app::Lab;
+use crate::keep::free;
+use crate::studio::{Job, RATE, Shot};
+use eframe::egui;
+use rendering::{Layout, Sketch, Style};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A film under way.
+pub(crate) struct Filming {
+    path: PathBuf,
+    /// Time of the next frame, s, and the branch.
+    next: f64,
+    branch: usize,
+    /// Moments up to this time have been sent, s.
+    sent: f64,
+    frames: u64,
+}
+
+impl Filming {
+    /// How far it is, in words.
+    pub(crate) fn words(&self, waiting: usize) -> String {
+        format!("{}: {} frames, {waiting} waiting", self.path.display(), self.frames)
+    }
+}
+
+impl Lab {
+    /// What is seen now, for a picture `size` large.
+    pub(crate) fn shot(&self, moment: &Arc<vocabulary::Moment>, size: (u32, u32)) -> Option<Shot> {
+        let cast = self.desk.history.as_ref()?.cast();
+        let scale = (f64::from(size.1) / 720.0).max(0.5);
+        Some(Shot {
+            moment: Arc::clone(moment),
+            layout: self.viewport.layout(cast, moment),
+            style: self.viewport.dressed(&self.desk, moment, scale),
+            words: self.desk.words(),
+        })
+    }
+
+    /// What a film shows now: what is seen, or the view that was chosen for it, without what only the hand needs.
+    pub(crate) fn film_shot(&self, moment: &Arc<vocabulary::Moment>) -> Option<Shot> {
+        let shot = self.shot(moment, (1280, 720))?;
+        let Some(view) = &self.desk.film_from else { return Some(shot) };
+        let cast = self.desk.history.as_ref()?.cast();
+        let names: Vec<String> = cast.members.iter().map(|member| member.name.clone()).collect();
+        let style = Style { sketch: Sketch::default(), inset: true, ..shot.style };
+        Some(Shot { layout: Layout::parse(view, &names).unwrap_or(shot.layout), style, ..shot })
+    }
+
+    pub(crate) fn picture(&mut self) {
+        let size = (1920, 1080);
+        let (Some(moment), Some(history)) = (self.desk.moment(), &self.desk.history) else { return };
+        let time = self.desk.time();
+        let Some(trail) = history.trail(self.desk.branch, time).cloned() else { return };
+        let (cast, Some(shot)) = (Arc::clone(history.cast()), self.shot(&moment, size)) else { return };
+        let path = free(Path::new("."), &self.name(), "png");
+        let home =
+            self.desk.draft.as_ref().map_or_else(String::new, |draft| draft.home().display().to_string());
+        let texts = vec![
+            ("Software", concat!("echelon ", env!("CARGO_PKG_VERSION")).to_owned()),
+            ("Scene", self.desk.script().unwrap_or_default()),
+            ("Home", home),
+            ("Time", format!("{time:?}")),
+            ("View", words_of(&shot.layout, &self.viewport.view)),
+            ("Adapter", self.viewport.gpu().description()),
+        ];
+        self.studio.ask(Job::Picture {
+            path,
+            cast,
+            size,
+            trail: Box::new(trail),
+            shot: Box::new(shot),
+            texts,
+        });
+    }
+
+    /// Writes a picture of the whole window.
+    pub(crate) fn window_picture(&mut self) {
+        let path = free(Path::new("."), &format!("{}-window", self.name()), "png");
+        let (sender, ctx) = (self.words.0.clone(), self.ctx.clone());
+        self.ctx.request_screenshot(move |image| {
+            let [width, height] = image.size.map(|side| side as u32);
+            let rgba = image.pixels.iter().flat_map(egui::Color32::to_array).collect();
+            let picture = vocabulary::Picture { width, height, rgba };
+            let texts = [("Software", concat!("echelon ", env!("CARGO_PKG_VERSION")))];
+            let written = rendering::png::write(&path, &picture, &texts);
+            // A window that is closed does not wait for it.
+            let _ = sender.send(match written {
+                Ok(()) => Ok(format!("Written: {}", path.display())),
+                Err(error) => Err(error.to_string()),
+            });
+            ctx.request_repaint();
+        });
+    }
+    pub(crate) fn begin_film(&mut self) {
+        let time = self.desk.end();
+        let branch = self.desk.branch;
+        let Some(history) = &self.desk.history else { return };
+        let Some(trail) = history.trail(branch, time).cloned() else { return };
+        let cast = Arc::clone(history.cast());
+        let path = free(Path::new("."), &self.name(), "mp4");
+        self.studio.ask(Job::Begin { path: path.clone(), cast, size: (1280, 720), trail: Box::new(trail) });
+        self.desk.note(format!("Filming to {}", path.display()));
+        self.film = Some(Filming { path, next: time, branch, sent: time, frames: 0 });
+    }
+
+    pub(crate) fn end_film(&mut self) {
+        if let Some(film) = self.film.take() {
+            if film.frames == 0 {
+                self.desk.note("Nothing was filmed: the run stood still");
+            }
+            self.studio.ask(Job::End);
+        }
+    }
+
+    /// Frames of a film that are due, at even steps of simulated time whatever the window's pace.
+    pub(crate) fn film_on(&mut self) {
+        let Some(mut film) = self.film.take() else { return };
+        let Some(history) = &self.desk.history else { return };
+        if film.branch != self.desk.branch {
+            film.branch = self.desk.branch;
+            let time = history.end(film.branch);
+            (film.next, film.sent) = (time, time);
+            if let Some(trail) = history.trail(film.branch, time).cloned() {
+                self.studio.ask(Job::Trail(Box::new(trail)));
+            }
+        }
+        let end = history.end(film.branch);
+        let mut jobs = Vec::new();
+        while film.next <= end + 1e-9 {
+            let Some(moment) = history.at(film.branch, film.next) else { break };
+            jobs.push(Job::Moments(history.since(film.branch, [film.sent, film.next])));
+            film.sent = film.next;
+            if let Some(shot) = self.film_shot(&moment) {
+                jobs.push(Job::Frame(Box::new(shot)));
+                film.frames += 1;
+            }
+            film.next += self.desk.pace / RATE;
+        }
+        for job in jobs {
+            self.studio.ask(job);
+        }
+        self.film = Some(film);
+    }
+}
+
+/// Where a picture was taken from, in the words of `--view`.
+fn words_of(layout: &rendering::Layout, named: &str) -> String {
+    match layout.views.first() {
+        Some(rendering::View::Fixed { eye, target, field_of_view }) => {
+            let numbers = eye.iter().chain(target).map(|x| format!("{x:.4}")).collect::<Vec<_>>().join(",");
+            format!("fixed:{numbers},{:.3}", field_of_view.to_degrees().clamp(5.0, 120.0))
+        }
+        _ => named.to_owned(),
+    }
+}

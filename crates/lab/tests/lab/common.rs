@@ -1,0 +1,181 @@
+//! Scenes to test with, and a desk with a run behind it.
+
+use lab::action::Action;
+use lab::desk::Desk;
+use lab::session::branches::Change;
+use lab::session::forecast::Crystal;
+use lab::session::runner::{News, Order, Runner};
+use scene::{Scene, SceneText};
+use simulation::Simulation;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
+use vocabulary::Cast;
+
+/// Three robots, with comments that edits have to keep.
+pub(crate) const THREE: &str = "\
+# Head of the file.
+schema = 1
+title = \"Three\" # the title
+seed = 7
+
+[time]
+duration = 9.0
+period = 0.01
+
+[law]
+# Gains of all.
+k = 3.0 # not too stiff
+beta = 2.0
+
+# Who leads.
+[[robots]]
+name = \"leader\"
+pose = [0.0, 0.0, 0.0]
+path = { kind = \"circle\", speed = 1.0, turn_rate = 0.3 }
+
+# To the left.
+[[robots]]
+name = \"left\"
+pose = [-2.0, 1.0, 0.0] # where it starts
+speed = 0.8
+leader = \"leader\"
+distance = 2.0 # from the leader
+bearing = \"135 deg\"
+
+# To the right.
+[[robots]]
+name = \"right\"
+pose = [-2.0, -1.0, 0.0]
+speed = 0.8
+leader = \"leader\"
+distance = 2.0
+bearing = \"-135 deg\"
+";
+
+/// A checked scene.
+pub(crate) fn scene(text: &str) -> Arc<Scene> {
+    let loaded = Scene::parse(text, "t.toml", &[]).unwrap_or_else(|faults| panic!("{faults}\n{text}"));
+    Arc::new(loaded.scene)
+}
+
+/// A text with other values.
+pub(crate) fn with(text: &str, sets: &[(&str, &str)]) -> String {
+    let mut text = SceneText::parse(text).expect("TOML");
+    for (path, value) in sets {
+        text.set(path, value).expect("a place for the value");
+    }
+    text.text()
+}
+
+/// A desk on which `samples` samples of a scene have arrived, and the run they are of.
+pub(crate) fn desk(text: &str, samples: usize) -> Desk {
+    let mut desk = Desk::new();
+    desk.playing = false;
+    desk.open(text.to_owned(), None, Path::new("t.toml")).expect("a scene");
+    let scene = Arc::clone(desk.scene().expect("a scene"));
+    let mut run = Simulation::new(simulation::build(&scene).expect("a run"));
+    run.extend_to(1e6);
+    let cast = Cast { duration: scene.time.duration, ..run.cast().clone() };
+    let period = run.period();
+    desk.hear(News::Opened { cast: Arc::new(cast), period });
+    let moments = (0..samples).map(|_| run.next_moment().expect("a moment").clone()).collect();
+    desk.hear(News::Moments(0, moments));
+    desk.orders.clear();
+    desk
+}
+
+/// A desk and the thread that runs what it asks for; nothing goes on but by orders.
+pub(crate) struct Rig {
+    pub(crate) desk: Desk,
+    pub(crate) runner: Runner,
+    wakes: Receiver<()>,
+}
+
+/// What is known of a branch.
+pub(crate) struct Told {
+    pub(crate) changes: Vec<Change>,
+    pub(crate) samples: u64,
+    pub(crate) digest: String,
+}
+
+impl Rig {
+    /// A scene that stands after its first sample.
+    pub(crate) fn new(text: &str) -> Self {
+        let (wake, wakes) = channel();
+        let (crystal, _) = Crystal::start(|| ());
+        let runner = Runner::start(crystal, move || wake.send(()).unwrap_or(()));
+        let mut desk = Desk::new();
+        (desk.playing, desk.ahead) = (false, 0.0);
+        desk.open(text.to_owned(), None, Path::new("t.toml")).expect("a scene");
+        let mut rig = Self { desk, runner, wakes };
+        rig.settle();
+        rig
+    }
+
+    /// The next piece of news.
+    pub(crate) fn next(&mut self) -> News {
+        loop {
+            if let Some(news) = self.runner.news() {
+                return news;
+            }
+            self.wakes.recv_timeout(Duration::from_secs(60)).expect("news");
+        }
+    }
+
+    /// Sends what the desk has ordered, without waiting for what comes of it.
+    pub(crate) fn send(&mut self) {
+        for order in self.desk.orders.drain(..) {
+            self.runner.order(order);
+        }
+    }
+
+    /// Lets everything that is ordered be done, and the desk hear of it.
+    pub(crate) fn settle(&mut self) {
+        self.told(0);
+    }
+
+    /// What is known of a branch when everything that is ordered is done.
+    pub(crate) fn told(&mut self, branch: usize) -> Told {
+        self.send();
+        self.runner.order(Order::Tell(branch));
+        loop {
+            match self.next() {
+                News::Told { changes, samples, digest, .. } => return Told { changes, samples, digest },
+                news => self.desk.hear(news),
+            }
+        }
+    }
+
+    /// Does things, one after the other, each when the one before is done.
+    pub(crate) fn act(&mut self, actions: &[Action]) {
+        for action in actions {
+            assert!(self.desk.act(action), "{action:?} is not the desk's");
+            self.settle();
+        }
+    }
+
+    /// Samples of the branch that goes on.
+    pub(crate) fn steps(&mut self, samples: usize) {
+        for _ in 0..samples {
+            self.runner.order(Order::Step);
+        }
+        self.settle();
+    }
+
+    /// The text on the desk.
+    pub(crate) fn text(&self) -> &str {
+        self.desk.draft.as_ref().expect("a draft").text()
+    }
+}
+
+/// Number and digest of the samples of a scene.
+pub(crate) fn run(text: &str) -> (u64, String) {
+    let mut run = Simulation::new(simulation::build(&scene(text)).expect("a run"));
+    let mut digest = recording::Digest::default();
+    while let Some(moment) = run.next_moment() {
+        digest.push(moment);
+    }
+    (run.sample(), digest.text())
+}

@@ -1,0 +1,140 @@
+//! What will come if nobody changes anything is what comes, and trouble on the way is seen before it is met.
+
+use crate::common::{THREE, scene, with};
+use lab::session::forecast::{Crystal, Forecast, Trouble};
+use simulation::Simulation;
+use std::time::Duration;
+use vocabulary::{Relative, Thing};
+
+/// A run of a scene, `samples` samples old.
+fn run(text: &str, samples: u64) -> Simulation {
+    let mut run = Simulation::new(simulation::build(&scene(text)).expect("a run"));
+    run.extend_to(1e6);
+    while run.sample() < samples {
+        run.next_moment().expect("a moment");
+    }
+    run
+}
+
+fn ahead(run: &Simulation, seconds: f64) -> Forecast {
+    let (crystal, forecasts) = Crystal::start(|| ());
+    crystal.look(3, run.save(), seconds);
+    let forecast = forecasts.recv_timeout(Duration::from_secs(60)).expect("a forecast");
+    assert_eq!(forecast.branch, 3);
+    forecast
+}
+
+/// The worst on the way of a robot.
+fn worst(forecast: &Forecast, robot: usize) -> Trouble {
+    forecast.paths[robot].iter().map(|place| place.trouble).max().expect("a path")
+}
+
+#[test]
+fn a_settled_formation_ends_at_its_set_points() {
+    let run = run(include_str!("../../../../scenes/line-three.toml"), 500);
+    let forecast = ahead(&run, 4.0);
+    let edges = &run.cast().edges;
+    for ((edge, late), moment) in edges.iter().zip(&forecast.late_error).zip(&run.moment().edges) {
+        assert!(late[0] < 0.0036 && late[1] < 1e-4, "{late:?}");
+        let end = Relative::between(forecast.end[edge.leader], forecast.end[edge.follower]);
+        assert!((end.distance - moment.set_point[0]).abs() < 0.0036, "{end:?}");
+        assert!((end.bearing - moment.set_point[1]).abs() < 1e-4, "{end:?}");
+    }
+    assert_eq!((forecast.contact, forecast.limited), (None, None));
+    assert!((0..3).all(|robot| worst(&forecast, robot) == Trouble::None));
+}
+
+#[test]
+fn what_is_foreseen_is_what_comes() {
+    let noisy = with(THREE, &[("sensing", "{ kind = \"noise\", latency = 0.05 }")]);
+    let cars = with(THREE, &[("vehicle", "car")]);
+    for (text, seconds) in [(THREE, 3.0), (&noisy, 1.0), (&cars, 2.0), (THREE, 0.004)] {
+        let mut run = run(text, 120);
+        let forecast = ahead(&run, seconds);
+        let (samples, period) = ((seconds / 0.01_f64).round().max(1.0) as u64, run.period());
+        assert_eq!(forecast.span, [120.0 * period, (120 + samples) as f64 * period]);
+        let mut there = vec![];
+        let mut late = vec![[0.0_f64; 2]; 2];
+        for k in 0..samples {
+            let moment = run.next_moment().expect("a moment");
+            there.push(moment.clone());
+            if k as f64 >= 0.9 * samples as f64 {
+                for (late, state) in late.iter_mut().zip(&moment.edges) {
+                    *late = [late[0].max(state.error[0].abs()), late[1].max(state.error[1].abs())];
+                }
+            }
+        }
+        assert_eq!(forecast.late_error, late);
+        let last = &there[there.len() - 1].snapshot.robots;
+        assert_eq!(forecast.end, last.iter().map(|robot| robot.motion.pose).collect::<Vec<_>>());
+        for (robot, (path, motions)) in forecast.paths.iter().zip(&forecast.motions).enumerate() {
+            assert!((1..=161).contains(&path.len()) && path.len() == motions.len(), "{} places", path.len());
+            let mut way = there.iter().map(|moment| moment.snapshot.robots[robot].motion);
+            for (place, motion) in path.iter().zip(motions) {
+                let found = way.find(|real| {
+                    [real.pose.x, real.pose.y] == place.at && (real.speed, real.turn_rate) == *motion
+                });
+                assert!(found.is_some(), "robot {robot} never comes to {place:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_contact_is_seen_before_it_is_made() {
+    let crash = include_str!("../../../../scenes/cars-crash.toml");
+    for (what, text) in [
+        ("bodies with weight", crash.to_owned()),
+        ("a run that stops there", with(crash, &[("physics.on_contact", "stop")])),
+        ("bodies without weight", with(crash, &[("vehicle", "unicycle")])),
+    ] {
+        let run = run(&text, 20);
+        let forecast = ahead(&run, 2.5);
+        let (time, things) = forecast.contact.expect("a contact");
+        // 5 m apart at 3 m/s, less half a vehicle at either end.
+        assert!((1.2..1.75).contains(&time), "{what}: at {time} s");
+        assert_eq!(things.iter().filter(|thing| matches!(thing, Thing::Robot(_))).count(), 2, "{what}");
+        for robot in 0..2 {
+            assert_eq!(worst(&forecast, robot), Trouble::Contact, "{what}: robot {robot}");
+            assert_eq!(forecast.paths[robot][0].trouble, Trouble::None, "{what}: not here and now");
+        }
+        assert_eq!(forecast.end.len(), 2, "{what}: everybody is somewhere in the end");
+        assert!(ahead(&run, 0.5).contact.is_none(), "{what}: not so soon");
+    }
+}
+
+#[test]
+fn a_limit_is_seen_before_it_cuts() {
+    let slow = with(THREE, &[("robots.left.vehicle.speed_max", "0.85")]);
+    let forecast = ahead(&run(&slow, 100), 3.0);
+    let (time, edge) = forecast.limited.expect("a limit");
+    assert!((1.0..4.0).contains(&time) && edge == 0, "{time} s, edge {edge}");
+    assert_eq!((worst(&forecast, 1), worst(&forecast, 2)), (Trouble::Limited, Trouble::None));
+    assert!(forecast.late_error[0][0] > 0.1, "it is not there in time: {:?}", forecast.late_error[0]);
+}
+
+#[test]
+fn who_sees_by_pictures_is_told_the_truth_ahead() {
+    let text = include_str!("../../../../scenes/vision-line-three.toml");
+    let blind = run(text, 0);
+    assert!(blind.needs_eyes());
+    let forecast = ahead(&blind, 2.0);
+    assert_eq!(forecast.end.len(), 3);
+    assert!(forecast.late_error.iter().all(|late| late[0] < 1.0), "{:?}", forecast.late_error);
+}
+
+#[test]
+fn the_newest_question_is_answered() {
+    let (crystal, forecasts) = Crystal::start(|| ());
+    let run = run(THREE, 10);
+    for branch in 0..20 {
+        crystal.look(branch, run.save(), 1.0);
+    }
+    let mut last = None;
+    while last != Some(19) {
+        let forecast = forecasts.recv_timeout(Duration::from_secs(60)).expect("a forecast");
+        assert!(last < Some(forecast.branch), "in the order of the questions");
+        last = Some(forecast.branch);
+    }
+    assert!(forecasts.try_recv().is_err(), "one answer each, at most");
+}

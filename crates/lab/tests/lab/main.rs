@@ -1,0 +1,8 @@
+//! The lab without its window: what runs, what is kept of it, what actions mean, and what panels show. One program, for
+//! linking takes longer than testing.
+
+mod branches;
+mod common;
+mod forecast;
+mod history;
+mod pacing;
