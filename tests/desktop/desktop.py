@@ -285,22 +285,34 @@ class Test:
         return f"2 m, −135° to 2.5 m, −120°; {100 * moved:.1f} % of the pixels ahead are others; view {box}"
 
     def flicks(self):
-        """Everything between two frames of the window, as slow machines have it."""
+        """Much between two frames of the window, as it is on slow machines."""
         lab = self.lab
         box = self.view()
         distance, bearing = self.set_point(self.kept() or self.scene.read_text())
-        (x, y), (u, v) = self.set_point_at(box, distance, float(bearing.split()[0])), self.set_point_at(box, 2.2, -130.0)
-        middle = [(x + u) / 2, (y + v) / 2]
-        lab.screen.move(round(x), round(y))
+        first, last = self.set_point_at(box, distance, float(bearing.split()[0])), self.set_point_at(box, 2.2, -130.0)
+        middle = [(a + b) / 2 for a, b in zip(first, last)]
+        places = [tuple(map(round, place)) for place in (first, middle, last)]
+        lab.screen.move(*places[0])
         lab.still()
-        words = ["mousedown", 1, "mousemove", *map(round, middle), "mousemove", round(u), round(v), "sleep", 0.01]
+        words = ["mousedown", 1, "sleep", 0.2, "mousemove", *places[1], "sleep", 0.3, "mousemove", *places[2]]
         lab.screen.xdotool(*words, "mouseup", 1, "mousemove", *AWAY)
         lab.hears(r"^log .*Set point of follower-1", 10)
         lab.still(1.2)
         self.see("flicked")
         now = self.set_point(self.kept())
         check(now == (2.2, "-130 deg"), f"let go at 2.2 m, −130°, but it says {now}")
-        return "where the button was released"
+        return "the set point is where the button was released"
+
+    def types(self):
+        lab = self.lab
+        _, before = self.set_point(self.kept())
+        lab.screen.xdotool("key", "--delay", 4, "a", "a", "a")
+        lab.hears(r"^log .*Set point of follower-1", 10)
+        lab.still(1.2)
+        _, after = self.set_point(self.kept())
+        turned = float(after.split()[0]) - float(before.split()[0])
+        check(turned == 15.0, f"three times 5° are {turned}°")
+        return "three presses, 15°"
 
     def branches(self):
         lab = self.lab
@@ -358,6 +370,7 @@ class Test:
     def takes_picture(self):
         lab = self.lab
         at = lab.time()
+        self.seen = lab.still()
         lab.key("p")
         name = lab.hears(r"^log .*Written: (.*\.png)", 60).group(1)
         self.picture = self.folder / name
@@ -454,7 +467,9 @@ class Test:
         check(told.startswith("log") and "As in" in told, told)
         look = lab.still()
         self.see("picture-opened")
-        check(look.colours() > 2000, "nothing is drawn")
+        left, top, right, bottom = self.view()
+        differs = look.differs(self.seen, (left, top + 100, right, bottom), 60)
+        check(differs < 0.02, f"{100 * differs:.1f} % of the view are others than when the picture was taken")
         lab.close()
         wait("the end, or the question", lambda: lab.process.poll() is not None or self.asked(look), 30)
         if lab.process.poll() is None:
@@ -463,7 +478,7 @@ class Test:
         said = re.search(r"t = ([\d.]+) s", lab.out.read_text())
         taken = float(self.texts["Time"])
         check(said and abs(float(said.group(1)) - taken) < 0.011, f"it was taken at {taken} s and stands at {said and said.group(1)} s")
-        return f"at t = {taken} s again"
+        return f"at t = {taken} s again; {100 * differs:.1f} % of the view are others"
 
     def asked(self, before):
         """Whether a question lies over the window: all that is behind it has become darker."""
@@ -532,6 +547,13 @@ class Test:
         check(code == 0, f"exit code {code}: {lab.err.read_text()}")
         return told.split(": ", 1)[1]
 
+    def is_interrupted(self):
+        lab = Lab(self, self.scene.name, "--paused")
+        lab.process.send_signal(signal.SIGINT)
+        code = lab.ended(20)
+        check(code == 130, f"exit code {code}: {lab.err.read_text()}")
+        return "exit code 130"
+
     def refuses(self):
         lines = []
         for words, environment in (
@@ -591,8 +613,10 @@ def main():
         test.step("Opening the picture", test.opens_picture)
         test.step("Killing the window, starting again", test.crashes)
         test.step("Dragging faster than the window draws", test.flicks)
+        test.step("Typing faster than the window draws", test.types)
         test.step("Closing in the middle of a film", test.closes_in_a_film)
         test.step("Opening a broken scene", test.shows_faults)
+        test.step("Ctrl C in the terminal", test.is_interrupted)
         test.step("Starting where there is no screen, and no such adapter", test.refuses)
     finally:
         if test.lab and test.lab.process.poll() is None:
