@@ -163,14 +163,17 @@ class Screen:
     def click(self, x, y):
         self.xdotool("mousemove", x, y, "sleep", 0.1, "mousedown", 1, "sleep", 0.05, "mouseup", 1)
 
-    def drag(self, places, pause=0.06):
-        """Presses at the first place, moves through the others, and lets go at the last."""
+    def drag(self, places, until, pause=0.06):
+        """Presses at the first place, moves through the others, and lets go at the last once `until` returns."""
         (x, y), *others = places
-        words = ["mousemove", x, y, "sleep", 0.15, "mousedown", 1, "sleep", pause]
+        words = ["mousemove", x, y, "sleep", 0.3, "mousedown", 1, "sleep", pause]
         for x, y in others:
             words += ["mousemove", x, y, "sleep", pause]
-        # Long enough for a slow window to see the last place before the button is up.
-        self.xdotool(*words, "sleep", 0.6, "mouseup", 1)
+        self.xdotool(*words)
+        try:
+            until()
+        finally:
+            self.xdotool("mouseup", 1)
 
     def ask_to_close(self, window):
         """What a window manager sends when somebody clicks ×; Debian's xdotool cannot."""
