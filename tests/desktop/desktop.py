@@ -172,6 +172,12 @@ class Test:
         self.scene.write_text(self.shipped)
         self.windows, self.lab, self.failed, self.pictures, self.play_sign = 0, None, [], 0, b""
 
+    def echelons(self, *words, environment=None):
+        """The program, run to its end."""
+        environment = environment or self.environment
+        command = [self.echelon, *words]
+        return subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, text=True, timeout=60)
+
     def step(self, what, do):
         began = time.monotonic()
         print(f"{what}…", flush=True)
@@ -217,7 +223,9 @@ class Test:
     def idles(self):
         lab = self.lab
         lab.still(1.0)
-        spent = lambda: sum(map(int, Path(f"/proc/{lab.process.pid}/stat").read_text().rsplit(")", 1)[1].split()[11:13]))
+        stat = Path(f"/proc/{lab.process.pid}/stat")
+        # What stands behind the name: the time spent in the program, and for it.
+        spent = lambda: sum(map(int, stat.read_text().rsplit(")", 1)[1].split()[11:13]))
         before, began = spent(), time.monotonic()
         time.sleep(3)
         share = (spent() - before) / os.sysconf("SC_CLK_TCK") / (time.monotonic() - began)
@@ -297,7 +305,8 @@ class Test:
         lab = self.lab
         box = self.view()
         distance, bearing = self.set_point(self.kept() or self.scene.read_text())
-        first, last = self.set_point_at(box, distance, float(bearing.split()[0])), self.set_point_at(box, 2.2, -130.0)
+        first = self.set_point_at(box, distance, float(bearing.split()[0]))
+        last = self.set_point_at(box, 2.2, -130.0)
         middle = [(a + b) / 2 for a, b in zip(first, last)]
         places = [tuple(map(round, place)) for place in (first, middle, last)]
         lab.screen.move(*places[0])
@@ -329,7 +338,7 @@ class Test:
         now = lab.time()
         _, y, left, right = lab.line_of_time()
         x_of = lambda t: round(left + t / DURATION * (right - left))
-        until = lambda: wait("the mark at 0.8 s", lambda: abs(lab.time() - 0.8) < 0.08, 20)
+        until = lambda: wait("the mark at 0.8 s", lambda: abs(lab.time() - 0.8) < 0.12, 20)
         lab.screen.drag([(x_of(t), y + 10) for t in (now, 1.2, 0.9, 0.8)], until)
         lab.still(0.3)
         lab.screen.move(*AWAY)
@@ -337,7 +346,7 @@ class Test:
         self.see("in-the-past")
         lab.key("b")
         at = float(lab.hears(r"^log ([\d.]+) s: branch 1 leaves main").group(1))
-        check(abs(at - 0.8) < 0.08, f"the branch leaves at {at} s, not at 0.8 s")
+        check(abs(at - 0.8) < 0.12, f"the branch leaves at {at} s, not at 0.8 s")
         # The first slider of the laws: a bar in the accent that is not as high as a button.
         rails = [p for p in self.screen.look().plates(ACCENT, (960, 60, 1280, 320), 6) if p[3] - p[1] <= 10]
         check(rails, "there is no slider")
@@ -367,7 +376,8 @@ class Test:
     def reloads(self):
         lab = self.lab
         before = self.scene.read_text()
-        self.scene.write_text(before.replace('distance = 2.0\nbearing = "135 deg"', 'distance = 2.4\nbearing = "150 deg"'))
+        two = ['distance = 2.0\nbearing = "135 deg"', 'distance = 2.4\nbearing = "150 deg"']
+        self.scene.write_text(before.replace(*two))
         check(self.scene.read_text() != before, "nothing to change in the file")
         lab.hears(r"^log .*Read again from disk", 15)
         lab.still()
@@ -388,9 +398,10 @@ class Test:
         check(abs(taken - at) < 0.06, f"its time is {taken} s, that on screen {at:.2f} s")
         scene = tomllib.loads(self.texts["Scene"])
         check(scene.get("changes"), "its scene has no changes")
-        view = [float(x) for x in self.texts["View"].removeprefix("fixed:").split(",")] if ":" in self.texts["View"] else []
-        near = all(abs(a - b) < 1e-3 for a, b in zip(view, EYE))
-        check(self.texts["View"] == "fixed" or near, f"its view is {self.texts['View']}")
+        kind, _, numbers = self.texts["View"].partition(":")
+        eye = [float(x) for x in numbers.split(",")[:3]]
+        near = len(eye) == 3 and all(abs(a - b) < 1e-3 for a, b in zip(eye, EYE))
+        check(kind == "fixed" and near, f"its view is {self.texts['View']}")
         return f"{name}: t = {taken} s, {len(scene['changes'])} changes, view {self.texts['View']}"
 
     def films(self):
@@ -406,20 +417,22 @@ class Test:
 
     def judge_film(self, path, seconds=None):
         shutil.copy(path, self.artefacts / path.name)
-        words = ["-v", "error", "-select_streams", "v", "-show_entries", "stream=codec_name,width,height,avg_frame_rate"]
-        probe = ["ffprobe", *words, "-show_entries", "packet=pts_time", "-of", "json", str(path)]
+        entries = "stream=codec_name,width,height,avg_frame_rate:packet=pts_time"
+        probe = ["ffprobe", "-v", "error", "-select_streams", "v", "-show_entries", entries, "-of", "json", str(path)]
         told = json.loads(subprocess.run(probe, check=True, capture_output=True, timeout=30).stdout)
         stream = told["streams"][0]
         check(stream["codec_name"] == "h264", f"it is {stream['codec_name']}")
         stamps = sorted(float(packet["pts_time"]) for packet in told["packets"])
         steps = [b - a for a, b in zip(stamps, stamps[1:])]
-        check(steps and max(steps) - min(steps) < 2e-3, f"frames are {min(steps, default=0)} to {max(steps, default=0)} s apart")
+        shortest, longest = min(steps, default=0.0), max(steps, default=1.0)
+        check(longest - shortest < 2e-3, f"frames are {shortest} to {longest} s apart")
         check(stream["avg_frame_rate"] == "30/1", f"it has {stream['avg_frame_rate']} frames a second")
         lasts = len(stamps) / 30
         if seconds is not None:
             check(len(stamps) > 30, f"it has {len(stamps)} frames only")
             check(abs(lasts - seconds) < 0.15, f"it lasts {lasts:.2f} s, {seconds:.2f} s were simulated")
-        decode = subprocess.run(["ffmpeg", "-v", "error", "-i", str(path), "-f", "null", "-"], capture_output=True, text=True, timeout=60)
+        play = ["ffmpeg", "-v", "error", "-i", str(path), "-f", "null", "-"]
+        decode = subprocess.run(play, capture_output=True, text=True, timeout=60)
         check(decode.returncode == 0 and not decode.stderr, f"it does not play: {decode.stderr}")
         return f"{path.name}: h264, {stream['width']} × {stream['height']}, {len(stamps)} frames, {lasts:.2f} s"
 
@@ -430,9 +443,7 @@ class Test:
         folder = self.folder / "runs" / told.group(2)
         check(told.group(1) == "log", told.group(0))
         check(folder.name == "circle-lab-001" and folder.is_dir(), f"it is in {folder}")
-        replay = subprocess.run(
-            [self.echelon, "replay", str(folder)], cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=60
-        )
+        replay = self.echelons("replay", str(folder))
         check(replay.returncode == 0, f"replay ends with {replay.returncode}: {replay.stdout}{replay.stderr}")
         check(told.group(4) in replay.stdout + replay.stderr, f"another digest: {replay.stdout}")
         scene = tomllib.loads((folder / "scene.toml").read_text())
@@ -479,7 +490,8 @@ class Test:
             raise Failed("it asks about unsaved changes, though nobody has changed anything")
         said = re.search(r"t = ([\d.]+) s", lab.out.read_text())
         taken = float(self.texts["Time"])
-        check(said and abs(float(said.group(1)) - taken) < 0.011, f"it was taken at {taken} s and stands at {said and said.group(1)} s")
+        stands = float(said.group(1)) if said else math.nan
+        check(abs(stands - taken) < 0.011, f"it was taken at {taken} s and stands at {stands} s")
         return f"at t = {taken} s again; {100 * differs:.1f} % of the view are others"
 
     def asked(self, before):
@@ -560,9 +572,7 @@ class Test:
             ([self.scene.name], self.bare),
             ([self.scene.name, "--adapter", "no such adapter"], self.environment),
         ):
-            done = subprocess.run(
-                [self.echelon, "lab", *words], cwd=self.folder, env=environment, capture_output=True, text=True, timeout=60
-            )
+            done = self.echelons("lab", *words, environment=environment)
             said = (done.stdout + done.stderr).strip()
             check(done.returncode == 3, f"exit code {done.returncode}: {said}")
             check(said and "\n" not in said and "panick" not in said, f"not one line: {said}")
@@ -594,7 +604,8 @@ def texts(path):
 def main():
     began = time.monotonic()
     echelon, artefacts = sys.argv[1], Path(sys.argv[2]).resolve()
-    for old in artefacts.glob("*.*"):
+    # Nothing but what an earlier run has left.
+    for old in artefacts.glob("[0-9][0-9]-*.png"):
         old.unlink()
     work = Path(tempfile.mkdtemp(prefix="echelon-desktop-"))
     test = Test(echelon, artefacts, work)
@@ -627,7 +638,8 @@ def main():
             shutil.copy(log, artefacts)
         shutil.rmtree(work, ignore_errors=True)
     verdict = "the window does what it should" if not test.failed else f"FAILED: {', '.join(test.failed)}"
-    print(f"\nworked in the window for {time.monotonic() - began:.0f} s: {verdict}; pictures of it are in {artefacts}")
+    print(f"\nworked in the window for {time.monotonic() - began:.0f} s: {verdict}")
+    print(f"pictures of it are in {artefacts}")
     sys.exit(bool(test.failed))
 
 

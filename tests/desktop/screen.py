@@ -57,11 +57,8 @@ class Picture:
         mine, theirs = self.crop(box), other.crop(box)
         if mine == theirs:
             return 0.0
-        count = 0
-        for i in range(0, len(mine), 4):
-            if mine[i : i + 3] != theirs[i : i + 3] and max(abs(a - b) for a, b in zip(mine[i : i + 3], theirs[i : i + 3])) > by:
-                count += 1
-        return count / (len(mine) // 4)
+        apart = lambda i: max(abs(a - b) for a, b in zip(mine[i : i + 3], theirs[i : i + 3])) > by
+        return sum(apart(i) for i in range(0, len(mine), 4)) / (len(mine) // 4)
 
     def runs(self, colour, box, least=8):
         """Where a row holds at least so many pixels of a colour one after the other: (y, x0, x1)."""
@@ -118,7 +115,8 @@ class Screen:
     def __init__(self, folder):
         folder.mkdir(parents=True)
         read, write = os.pipe()
-        command = ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24", "-fbdir", str(folder), "-nolisten", "tcp", "-noreset"]
+        screen = ["-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24", "-fbdir", str(folder)]
+        command = ["Xvfb", "-displayfd", str(write), *screen, "-nolisten", "tcp", "-noreset"]
         with open(folder / "xvfb.log", "wb") as log:
             self.server = subprocess.Popen(command, pass_fds=[write], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
         os.close(write)
