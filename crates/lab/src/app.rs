@@ -16,6 +16,7 @@ use crate::session::forecast::{Crystal, Forecast};
 use crate::session::runner::{News, Order, Runner};
 use crate::shots::Filming;
 use crate::studio::{Studio, Told};
+use crate::timing::Timing;
 use crate::view::viewport::{DeskView, Viewport};
 use crate::watch::Watch;
 use crate::window::{NAME, Options};
@@ -46,7 +47,7 @@ pub(crate) struct Lab {
     pub(crate) words: (Sender<Word>, Receiver<Word>),
     pub(crate) ctx: Context,
     pub(crate) ended: Arc<Mutex<Option<Error>>>,
-    pub(crate) timings: crate::timing::Timing,
+    pub(crate) timings: Timing,
     pub(crate) print: bool,
 }
 
@@ -66,7 +67,7 @@ impl Lab {
     pub(crate) fn new(
         context: &eframe::CreationContext<'_>,
         options: &Options,
-        ended: Arc<Mutex<Option<Error>>>,
+        (began, ended): (Instant, Arc<Mutex<Option<Error>>>),
     ) -> Result<Self, String> {
         let state = context.wgpu_render_state.as_ref().ok_or("there is no graphics device")?;
         let ctx = context.egui_ctx.clone();
@@ -100,7 +101,7 @@ impl Lab {
             words: channel(),
             ctx: ctx.clone(),
             ended,
-            timings: crate::timing::Timing::default(),
+            timings: Timing::since(began),
             print: options.timings,
         };
         lab.desk.playing = !options.paused;
@@ -183,7 +184,7 @@ impl Lab {
             history.prepare_trail(branch, time);
         }
         let filming = self.film.as_ref().map(|film| film.words(self.studio.waiting()));
-        egui::Panel::top("time").show(ui, |ui| {
+        egui::Panel::top("time").frame(BARE).show(ui, |ui| {
             ui.add_space(3.0);
             time_bar::show(ui, &self.desk, filming.is_some(), &mut out);
             ui.add_space(3.0);
@@ -211,9 +212,16 @@ impl Lab {
             view_tile,
             out: &mut out,
         };
-        let frame = egui::Frame::new().fill(ui.visuals().panel_fill);
         let tree = &mut self.tree;
-        egui::CentralPanel::default().frame(frame).show(ui, |ui| tree.ui(&mut panels, ui));
+        egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| {
+            let room = ui.available_size();
+            // In a window as small as a hand there is room for the view alone.
+            if room.x < LEAST.x || room.y < LEAST.y {
+                (panels.view)(ui, panels.out);
+            } else {
+                tree.ui(&mut panels, ui);
+            }
+        });
         self.windows(ui.ctx(), &mut out);
         out
     }
@@ -289,7 +297,18 @@ impl Lab {
     }
 }
 
+/// The window is cleared in the colour of panels; to paint it once more costs as much as the robots on a processor.
+pub(crate) const BARE: egui::Frame =
+    egui::Frame { inner_margin: egui::Margin::symmetric(6, 2), ..egui::Frame::NONE };
+
+/// Room for panels, points.
+const LEAST: egui::Vec2 = egui::vec2(560.0, 340.0);
+
 impl eframe::App for Lab {
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+
     fn logic(&mut self, ctx: &Context, _: &mut eframe::Frame) {
         self.hear();
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());

@@ -1,8 +1,7 @@
 //! What the window knows: scene, past, present and what is selected. It decides what an action means, without a window.
 
-use crate::past::Past;
-use crate::session::branches::{Change, script};
-use crate::session::draft::{Draft, Effect};
+use crate::futures::BranchFace;
+use crate::session::draft::Draft;
 use crate::session::forecast::Forecast;
 use crate::session::history::History;
 use crate::session::runner::{News, Order};
@@ -34,19 +33,6 @@ pub enum Tool {
     Connect,
     /// Place a pillar.
     Pillar,
-}
-
-/// A branch as the window knows it.
-#[derive(Debug, Clone)]
-pub struct BranchFace {
-    /// What it is called.
-    pub name: String,
-    /// Branch and time at which it leaves its parent, s.
-    pub parent: Option<(usize, f64)>,
-    /// What was changed on it, from time 0 on.
-    pub changes: Vec<Change>,
-    /// The scene's text from a sample on.
-    texts: Vec<(u64, String)>,
 }
 
 /// A line of the log.
@@ -100,9 +86,13 @@ pub struct Desk {
     /// Whether what happens is printed, too.
     pub aloud: bool,
     /// Text of the scene at time 0 of the run.
-    base: String,
+    pub(crate) base: String,
+    /// Branches that are asked for and not there yet.
+    pub(crate) forks: usize,
+    /// Scenes that the run was told to take, with their texts.
+    pub(crate) sent: Vec<(Arc<Scene>, String)>,
     /// Changes that this text has itself.
-    own: Vec<scene::Change>,
+    pub(crate) own: Vec<scene::Change>,
     /// For the thread of the run.
     pub orders: Vec<Order>,
     /// Whether an order waits for what is known of a run.
@@ -131,6 +121,8 @@ impl Desk {
             aloud: false,
             notice: None,
             base: String::new(),
+            forks: 0,
+            sent: Vec::new(),
             own: Vec::new(),
             orders: Vec::new(),
             keep: None,
@@ -292,90 +284,6 @@ impl Desk {
         }
     }
 
-    /// Edits the scene, and lets the run take it.
-    pub fn edit(
-        &mut self,
-        what: &str,
-        edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
-    ) -> bool {
-        // In the past, an edit makes another future.
-        if self.cursor.is_some_and(|time| time < self.end() - 1e-9) {
-            self.fork();
-        }
-        let time = self.time();
-        let Some(draft) = &mut self.draft else { return false };
-        let past = Past::of(draft.scene(), time);
-        let edit = |text: &mut scene::SceneText| {
-            past.settle(text)?;
-            edit(text)
-        };
-        match draft.edit(what, edit) {
-            Ok(effect) => {
-                self.take(what, &effect);
-                true
-            }
-            Err(fault) => {
-                self.fault(fault);
-                false
-            }
-        }
-    }
-
-    /// Lets the run take what has become of the scene.
-    pub fn take(&mut self, what: &str, effect: &Effect) {
-        match effect {
-            Effect::None => {}
-            Effect::Dress => {
-                self.note(what);
-                if let (Some(scene), Some(history)) =
-                    (self.draft.as_ref().map(Draft::scene), &mut self.history)
-                {
-                    history.dress(scene);
-                }
-            }
-            Effect::Retune => {
-                self.note(what);
-                if let Some(scene) = self.scene().cloned() {
-                    self.orders.push(Order::Change(scene));
-                }
-            }
-            Effect::Restart(_) => {
-                self.note(format!("{what} (the run begins anew)"));
-                let until = self.time();
-                self.restart(until);
-            }
-        }
-    }
-
-    /// Leaves the branch that is looked at, at the time that is looked at.
-    pub fn fork(&mut self) {
-        let Some(history) = &self.history else { return };
-        let sample = history.sample(self.time()) + 1;
-        let name = format!("branch {}", self.branches.len());
-        self.orders.push(Order::Fork { from: self.branch, sample, name });
-        // The scene is again what it was there.
-        let text = self.branches.get(self.branch).map(|branch| branch.text_at(sample, &self.base));
-        if let (Some(draft), Some(text)) = (&mut self.draft, text) {
-            // It was a scene before.
-            let _ = draft.replace("Go back", text);
-        }
-    }
-
-    /// Goes on with another branch.
-    pub fn switch(&mut self, branch: usize) {
-        if branch >= self.branches.len() || branch == self.branch {
-            return;
-        }
-        self.branch = branch;
-        self.cursor = None;
-        self.forecast = None;
-        self.orders.push(Order::Switch(branch));
-        let text = self.branches[branch].text_at(u64::MAX, &self.base);
-        if let Some(draft) = &mut self.draft {
-            let _ = draft.replace("Switch branch", text);
-        }
-    }
-
     /// Looks at a time of the branch, s.
     pub fn seek(&mut self, time: f64) {
         let end = self.end();
@@ -404,28 +312,13 @@ impl Desk {
         self.orders.push(Order::Play(true));
     }
 
-    /// The scene that runs as the branch that is looked at ran so far.
-    ///
-    /// # Errors
-    /// Why there is none, in words.
-    pub fn script(&self) -> Result<String, String> {
-        let branch = self.branches.get(self.branch).ok_or("There is no run.")?;
-        let period = self.history.as_ref().map_or(0.01, History::period);
-        script(&self.base, &self.own, &branch.changes, self.end().max(period))
-    }
-
     /// Takes in what the thread of the run tells.
     pub fn hear(&mut self, news: News) {
         match news {
             News::Opened { cast, period } => {
                 self.history = Some(History::new(cast, period));
-                self.branches = vec![BranchFace {
-                    name: "main".to_owned(),
-                    parent: None,
-                    changes: Vec::new(),
-                    texts: Vec::new(),
-                }];
-                (self.branch, self.cursor, self.forecast) = (0, None, None);
+                self.branches = vec![BranchFace::trunk()];
+                (self.branch, self.cursor, self.forecast, self.forks) = (0, None, None, 0);
                 self.check_choice();
             }
             News::Moments(branch, moments) => {
@@ -450,28 +343,6 @@ impl Desk {
         }
     }
 
-    fn forked(&mut self, branch: usize, (from, sample): (usize, u64), name: String, changes: Vec<Change>) {
-        let Some(history) = &mut self.history else { return };
-        history.fork(from, sample);
-        let time = (sample as f64 - 1.0) * history.period();
-        let texts = self.branches.get(from).map_or_else(Vec::new, |b| b.texts.clone());
-        let texts = texts.into_iter().filter(|(at, _)| *at < sample).collect();
-        self.branches.truncate(branch);
-        self.branches.push(BranchFace { name: name.clone(), parent: Some((from, time)), changes, texts });
-        (self.branch, self.cursor) = (branch, None);
-        self.note(format!("{name} leaves {} here", self.branches[from].name));
-    }
-
-    fn changed(&mut self, branch: usize, change: Change) {
-        let text = self.draft.as_ref().map_or_else(String::new, |draft| draft.text().to_owned());
-        if let Some(face) = self.branches.get_mut(branch) {
-            face.texts.retain(|(sample, _)| *sample != change.sample);
-            face.texts.push((change.sample, text));
-            face.changes.retain(|before| before.sample != change.sample);
-            face.changes.push(change);
-        }
-    }
-
     /// Nothing stays selected that is not there any more.
     fn check_choice(&mut self) {
         let Some(cast) = self.history.as_ref().map(|history| history.cast()) else { return };
@@ -489,13 +360,5 @@ impl Desk {
 impl Default for Desk {
     fn default() -> Self {
         Self::new()
-    }
-}
-
-impl BranchFace {
-    /// The scene's text as it held before a sample.
-    fn text_at(&self, sample: u64, base: &str) -> String {
-        let last = self.texts.iter().filter(|(at, _)| *at < sample).max_by_key(|(at, _)| *at);
-        last.map_or_else(|| base.to_owned(), |(_, text)| text.clone())
     }
 }

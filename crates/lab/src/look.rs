@@ -6,7 +6,7 @@ use eframe::egui::{self, Color32, CornerRadius, FontFamily, FontId, Stroke, Text
 const ACCENT: [Color32; 2] = [Color32::from_rgb(0x3d, 0x8b, 0xe0), Color32::from_rgb(0x1f, 0x6f, 0xc8)];
 
 /// Sets the looks of both themes.
-pub(crate) fn dress(ctx: &egui::Context) {
+pub fn dress(ctx: &egui::Context) {
     // The face of the pictures, before those that come with the library.
     let mut fonts = egui::FontDefinitions::default();
     fonts.font_data.insert("Inter".to_owned(), egui::FontData::from_static(rendering::FONT).into());

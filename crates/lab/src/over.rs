@@ -1,7 +1,7 @@
 //! What lies over the panels: notices, the menu of scenes, shortcuts, hints, questions.
 
 use crate::action::Action;
-use crate::app::Lab;
+use crate::app::{BARE, Lab};
 use eframe::egui::{self, Context, Ui};
 
 /// What lies over the view.
@@ -24,7 +24,7 @@ impl Lab {
         if let Some(left) = &self.left {
             let name =
                 left.path.as_ref().map_or_else(|| "a scene".to_owned(), |path| path.display().to_string());
-            egui::Panel::top("left").show(ui, |ui| {
+            egui::Panel::top("left").frame(BARE).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     ui.label(format!("Unsaved work on {name} was left when Echelon ended last time."));
                     if ui.button("Go on with it").clicked() {
@@ -37,7 +37,7 @@ impl Lab {
             });
         }
         if let Some(notice) = self.desk.notice.clone() {
-            egui::Panel::top("notice").show(ui, |ui| {
+            egui::Panel::top("notice").frame(BARE).show(ui, |ui| {
                 ui.horizontal_top(|ui| {
                     if ui.button("×").on_hover_text("Dismiss (Esc)").clicked() {
                         out.push(Action::Dismiss);
@@ -75,7 +75,7 @@ impl Lab {
         if !open {
             self.over = Over::Nothing;
         }
-        if self.hints {
+        if self.hints && self.viewport.rect.width() > 460.0 {
             self.show_hints(ctx);
         }
     }

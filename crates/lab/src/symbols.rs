@@ -49,7 +49,7 @@ symbols! {
         "The observer follows faster, and swings once α₁² < 4 α₂.";
     SPEED_MIN = "v_min", "Slowest speed", "m/s", "det g = v/ℓ: the laws are singular at rest",
         "Followers cannot slow down as much, on the inside of a bend for example.";
-    SPEED_MAX = "v_max", "Fastest speed", "m/s", "v ∈ [v_min, v_max], the sat{} of eq 42",
+    SPEED_MAX = "v_max", "Fastest speed", "m/s", "v_min ≤ v ≤ v_max, the sat{} of eq 42",
         "Followers can catch up faster, and hold places farther outside in a bend.";
     TURN_MAX = "ω_max", "Fastest turn", "rad/s", "|ω| ≤ ω_max, the sat{} of eq 42",
         "Commands are cut less often.";

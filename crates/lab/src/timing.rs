@@ -8,7 +8,9 @@ use std::time::{Duration, Instant};
 /// Figures of the speed of a window.
 #[derive(Debug, Default)]
 pub(crate) struct Timing {
+    /// When the window was asked for, and how long until its first 3D picture was on its way.
     started: Option<Instant>,
+    first: Option<Duration>,
     /// Time spent in a frame, ms.
     frames: Vec<f32>,
     /// Between the starts of frames, ms.
@@ -25,9 +27,16 @@ pub(crate) struct Timing {
 const MOST: usize = 100_000;
 
 impl Timing {
+    /// For a window that was asked for at `began`.
+    pub(crate) fn since(began: Instant) -> Self {
+        Self { started: Some(began), ..Self::default() }
+    }
+
     pub(crate) fn frame(&mut self, spent: Duration, whole: Option<f32>, pictures: u64) {
         let now = Instant::now();
-        self.started.get_or_insert(now);
+        if pictures > 0 && self.first.is_none() {
+            self.first = self.started.map(|started| now - started);
+        }
         if self.frames.len() < MOST {
             let spent = whole.map_or(spent.as_secs_f32(), |whole| whole.max(spent.as_secs_f32()));
             self.frames.push(1e3 * spent);
@@ -57,6 +66,10 @@ impl Timing {
     pub(crate) fn print(&self, desk: &Desk) {
         use std::io::Write;
         let mut out = std::io::stdout();
+        if let Some(first) = self.first {
+            // A closed pipe loses figures only.
+            let _ = writeln!(out, "first 3D picture after {:.2} s", first.as_secs_f64());
+        }
         for (name, values) in [
             ("work in a frame", &self.frames),
             ("from frame to frame", &self.between),

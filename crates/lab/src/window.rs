@@ -6,6 +6,7 @@ use eframe::egui::ViewportBuilder;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 /// What the lab opens with.
 #[derive(Debug, Clone, Default)]
@@ -34,6 +35,7 @@ pub(crate) const NAME: &str = "echelon-lab";
 /// # Errors
 /// [`Error::Window`] where there is no window system or no adapter, or where it was lost.
 pub fn open(options: Options) -> Result<(), Error> {
+    let began = Instant::now();
     let size = options.size.unwrap_or([1280.0, 800.0]);
     let viewport = ViewportBuilder::default()
         .with_title("Echelon")
@@ -49,6 +51,8 @@ pub fn open(options: Options) -> Result<(), Error> {
         },
         // A size that was asked for is not overruled by the last one.
         persist_window: options.size.is_none(),
+        // It would cost as much as the rest on a processor that draws.
+        dithering: false,
         ..eframe::NativeOptions::default()
     };
     let ended = Arc::new(Mutex::new(None));
@@ -57,7 +61,7 @@ pub fn open(options: Options) -> Result<(), Error> {
         NAME,
         native,
         Box::new(move |context| {
-            let lab = Lab::new(context, &options, why)?;
+            let lab = Lab::new(context, &options, (began, why))?;
             Ok(Box::new(lab))
         }),
     );

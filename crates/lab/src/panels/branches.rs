@@ -1,5 +1,6 @@
 //! The branches of the run: their names, their changes, and a line for each in time.
 
+use super::naming;
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::tidy::fixed;
@@ -18,17 +19,9 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
             if response.clicked() {
                 out.push(Action::Branch(index));
             }
-            response.context_menu(|ui| {
-                let id = ui.scope_id().with(index);
-                let mut name: String =
-                    ui.data(|data| data.get_temp(id)).unwrap_or_else(|| branch.name.clone());
-                let edit = ui.text_edit_singleline(&mut name);
-                ui.data_mut(|data| data.insert_temp(id, name.clone()));
-                if edit.lost_focus() && !name.trim().is_empty() {
-                    out.push(Action::NameBranch(index, name.trim().to_owned()));
-                    ui.close();
-                }
-            });
+            if let Some(name) = naming(&response, &branch.name, |_| ()) {
+                out.push(Action::NameBranch(index, name));
+            }
             if let Some((parent, time)) = branch.parent {
                 let from = desk.branches.get(parent).map_or("", |parent| &parent.name);
                 ui.weak(format!("leaves {from} at {} s", fixed(time, 2)));

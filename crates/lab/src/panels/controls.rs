@@ -121,15 +121,20 @@ impl Row {
         let unit = if self.symbol.unit.contains(',') { "" } else { self.symbol.unit };
         let suffix = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         let [least, most] = self.range.hard;
+        let before = *value;
         let mut slider = Slider::new(value, low.min(*value).max(least)..=high.max(*value).min(most))
             .logarithmic(self.range.logarithmic)
             .max_decimals(self.decimals)
             .suffix(suffix)
-            .clamping(egui::SliderClamping::Edits);
+            // Beyond the slider, numbers can be typed.
+            .clamping(egui::SliderClamping::Never);
         if self.range.logarithmic {
             slider = slider.smallest_positive(low.max(1e-9));
         }
         let response = ui.add(slider);
+        if *value != before {
+            *value = value.clamp(least, most);
+        }
         response.widget_info(|| egui::WidgetInfo::slider(true, *value, name));
         response.on_hover_ui(|ui| self.symbol.tip(ui))
     }

@@ -81,7 +81,7 @@ fn from(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
                 }
             }
         });
-        response.response.widget_info(|| WidgetInfo::labeled(egui::Role::ComboBox, true, "Film from"));
+        super::chosen(&response.response, "Film from", now);
     });
 }
 

@@ -1,6 +1,6 @@
 //! The tree of robots: who follows whom. Drag a robot onto the one that it shall follow.
 
-use super::{colour, nothing};
+use super::{colour, naming, nothing};
 use crate::action::Action;
 use crate::desk::{Choice, Desk, Tool};
 use eframe::egui::{self, RichText, Role, Sense, Ui, WidgetInfo};
@@ -87,18 +87,12 @@ fn row(
     if response.double_clicked() {
         out.push(Action::Follow(Some(robot)));
     }
-    response.context_menu(|ui| menu(ui, name, robot, out));
+    if let Some(new) = naming(&response, name, |ui| menu(ui, name, robot, out)) {
+        out.push(Action::RenameRobot(name.clone(), new));
+    }
 }
 
 fn menu(ui: &mut Ui, name: &str, robot: usize, out: &mut Vec<Action>) {
-    let id = ui.scope_id().with("name");
-    let mut text: String = ui.data(|data| data.get_temp(id)).unwrap_or_else(|| name.to_owned());
-    let edit = ui.text_edit_singleline(&mut text);
-    ui.data_mut(|data| data.insert_temp(id, text.clone()));
-    if edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) && text.trim() != name {
-        out.push(Action::RenameRobot(name.to_owned(), text.trim().to_owned()));
-        ui.close();
-    }
     if ui.button("Follow with the camera").clicked() {
         out.push(Action::Follow(Some(robot)));
         ui.close();

@@ -1,11 +1,11 @@
 //! Law, gains and observer.
 
 use super::controls::{Range, Row};
-use super::{nobody, nothing, tune};
+use super::{chosen, nobody, nothing, tune};
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::symbols;
-use eframe::egui::{ComboBox, Role, Ui, WidgetInfo};
+use eframe::egui::{ComboBox, Ui};
 use scene::{Law, LawKind, Observer, ObserverKind, Switching, VehicleKind};
 
 const LAWS: [(LawKind, &str, &str, &str); 3] = [
@@ -140,7 +140,7 @@ fn law_kind(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
             }
         }
     });
-    response.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Law"));
+    chosen(&response.response, "Law", now);
 }
 
 fn switching(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {

@@ -16,11 +16,42 @@ pub mod world;
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::tidy::tidy;
-use eframe::egui::{Color32, Ui};
+use eframe::egui::{self, Color32, Popup, PopupCloseBehavior, Response, TextEdit, Ui};
 
 /// Says that there is nothing to show, and why.
 pub(crate) fn nothing(ui: &mut Ui, why: &str) {
     ui.weak(why);
+}
+
+/// A menu with a field for a name on top; the name once it is entered.
+pub(crate) fn naming(response: &Response, name: &str, more: impl FnOnce(&mut Ui)) -> Option<String> {
+    let id = response.id.with("name");
+    // What was typed the last time is forgotten.
+    if response.secondary_clicked() {
+        response.ctx.data_mut(|data| data.remove::<String>(id));
+    }
+    // A click into the field does not close the menu.
+    let menu = Popup::context_menu(response).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let entered = menu.show(|ui| {
+        let mut text: String = ui.data(|data| data.get_temp(id)).unwrap_or_else(|| name.to_owned());
+        let edit = ui.add(TextEdit::singleline(&mut text).hint_text("new name"));
+        let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+        ui.data_mut(|data| data.insert_temp(id, text.clone()));
+        if entered {
+            ui.close();
+        }
+        more(ui);
+        entered.then(|| text.trim().to_owned())
+    });
+    entered?.inner.filter(|text| !text.is_empty() && text != name)
+}
+
+/// What a box to choose from is called, and what is chosen.
+pub(crate) fn chosen(response: &Response, name: &str, now: &str) {
+    response.widget_info(|| egui::WidgetInfo {
+        current_text_value: Some(now.to_owned()),
+        ..egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name)
+    });
 }
 
 /// Says that there is nothing to show: no scene, or because of this.

@@ -2,11 +2,11 @@
 
 use super::controls::{Range, Row};
 use super::law::scope;
-use super::{nobody, tune};
+use super::{chosen, nobody, tune};
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::symbols;
-use eframe::egui::{ComboBox, Role, Ui, WidgetInfo};
+use eframe::egui::{ComboBox, Ui};
 use scene::{Sensing, SensingKind};
 use vocabulary::Sight;
 
@@ -83,5 +83,5 @@ fn kind(ui: &mut Ui, sensing: &Sensing, out: &mut Vec<Action>) {
             }
         }
     });
-    response.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Sensing"));
+    chosen(&response.response, "Sensing", now);
 }

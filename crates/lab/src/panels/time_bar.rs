@@ -4,6 +4,7 @@ use super::icons::{Icon, button};
 use crate::action::Action;
 use crate::desk::Desk;
 use crate::tidy::fixed;
+use eframe::egui::containers::menu::{MenuConfig, SubMenuButton};
 use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInfo};
 
 /// Rows of branches that are shown, at most.
@@ -13,15 +14,22 @@ const MOST_ROWS: usize = 5;
 pub fn show(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         buttons(ui, desk, out);
-        ui.separator();
-        pace(ui, desk, out);
-        ui.separator();
+        if ui.available_width() > 420.0 {
+            ui.separator();
+            pace(ui, desk, out);
+            ui.separator();
+        }
         let text = format!("t = {} s", fixed(desk.time(), 2));
         ui.add_sized([92.0, 20.0], egui::Label::new(RichText::new(text).monospace()))
             .on_hover_text("Simulated time that is seen");
         let tail = 214.0;
-        let wide = (ui.available_width() - tail).max(60.0);
-        line(ui, desk, wide, out);
+        // Where there is little room, the line of time comes first.
+        let narrow = ui.available_width() < tail + 60.0;
+        let wide = if narrow { ui.available_width() - 4.0 } else { ui.available_width() - tail };
+        line(ui, desk, wide.max(30.0), out);
+        if narrow {
+            return;
+        }
         menus(ui, desk, filming, out);
     });
 }
@@ -137,7 +145,9 @@ fn menus(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
         out.push(Action::Gallery);
     }
     let more = button(ui, Icon::More, "", "More", None);
-    egui::Popup::menu(&more).show(|ui| {
+    // Items close the menu themselves; a click into its field does not.
+    let stays = egui::PopupCloseBehavior::CloseOnClickOutside;
+    egui::Popup::menu(&more).close_behavior(stays).show(|ui| {
         let unsaved = desk.draft.as_ref().is_some_and(crate::session::draft::Draft::unsaved);
         for (text, action, on) in [
             ("Save scene   Ctrl S", Action::Save, unsaved),
@@ -160,7 +170,8 @@ fn menus(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
             }
         }
         ui.separator();
-        ui.menu_button("Save as", |ui| save_as(ui, out));
+        let config = MenuConfig::new().close_behavior(stays);
+        SubMenuButton::new("Save as").config(config).ui(ui, |ui| save_as(ui, out));
         ui.menu_button("Panels", |ui| {
             for name in crate::panes::NAMES {
                 if ui.button(*name).clicked() {

@@ -81,7 +81,10 @@ pub fn surroundings(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         for prop in &scene.props {
             ui.horizontal(|ui| {
                 ui.label(&prop.name);
-                if ui.small_button("×").on_hover_text(format!("Remove {}", prop.name)).clicked() {
+                let remove = format!("Remove {}", prop.name);
+                let button = ui.small_button("×").on_hover_text(&remove);
+                button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &remove));
+                if button.clicked() {
                     out.push(Action::RemoveProp(prop.name.clone()));
                 }
             });

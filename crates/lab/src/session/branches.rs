@@ -217,6 +217,11 @@ pub fn script(
     duration: f64,
 ) -> Result<String, String> {
     let mut text = SceneText::parse(base).map_err(|error| error.to_string())?;
+    // What is expected is expected of the whole run, as it was written.
+    let whole = text.get("time.duration").and_then(|whole| whole.parse::<f64>().ok());
+    if !changes.is_empty() || whole.is_none_or(|whole| duration < whole) {
+        text.remove("expect").map_err(|error| error.to_string())?;
+    }
     text.set("time.duration", &format!("{duration:?}")).map_err(|error| error.to_string())?;
     // Robot by robot, so that what is set for all of them does not give way to what was set for one before.
     if !own.is_empty() {

@@ -94,6 +94,32 @@ impl Draft {
         self.replace(what, text.text())
     }
 
+    /// Another text with an edit, which is not put in place.
+    ///
+    /// # Errors
+    /// Why the edit cannot be, in words.
+    pub fn edited(
+        &self,
+        text: &str,
+        edit: impl FnOnce(&mut SceneText) -> Result<(), String>,
+    ) -> Result<String, String> {
+        let mut text = SceneText::parse(text).map_err(|error| error.to_string())?;
+        edit(&mut text)?;
+        let text = text.text();
+        self.check(&text)?;
+        Ok(text)
+    }
+
+    /// The scene of a text, if it can run.
+    ///
+    /// # Errors
+    /// All that is wrong with the text.
+    pub fn check(&self, text: &str) -> Result<Scene, String> {
+        let scene = Scene::parse(text, &self.home, &[]).map_err(|faults| faults.to_string())?.scene;
+        simulation::build(&scene).map_err(|error| error.to_string())?;
+        Ok(scene)
+    }
+
     /// Puts another text in place.
     ///
     /// # Errors
@@ -102,7 +128,7 @@ impl Draft {
         if text == self.text {
             return Ok(Effect::None);
         }
-        let scene = Scene::parse(&text, &self.home, &[]).map_err(|faults| faults.to_string())?.scene;
+        let scene = self.check(&text)?;
         let effect = self.effect_of(&scene);
         let before = Step {
             text: std::mem::replace(&mut self.text, text),
@@ -181,11 +207,21 @@ impl Draft {
             expect: scene.expect,
             ..Scene::clone(&self.scene)
         };
+        let redressed = dressed != Scene { changes: scene.changes.clone(), ..Scene::clone(&self.scene) };
+        // What was past may have become what is, and what is to come depends on what is. Else changes are as they were.
+        let [before, after] = [&self.scene.changes, &scene.changes];
+        let left = &before[before.len().saturating_sub(after.len())..];
+        let same = |(a, b): (&scene::Change, &scene::Change)| (a.at, &a.set) == (b.at, &b.set);
+        let timed = left.iter().map(|change| change.at).eq(after.iter().map(|change| change.at));
+        let scripted = left.iter().zip(after).all(same);
         match dressed.sets_to(scene) {
-            Ok(set) if set.is_empty() && dressed == *self.scene => Effect::None,
+            Ok(set) if !timed || (set.is_empty() && !scripted) => {
+                Effect::Restart("its changes are others".to_owned())
+            }
+            Ok(set) if set.is_empty() && !redressed => Effect::None,
             Ok(set) if set.is_empty() => Effect::Dress,
             // Both at once come from a file that was edited elsewhere.
-            Ok(_) if dressed != *self.scene => Effect::Restart("the scene is another".to_owned()),
+            Ok(_) if redressed => Effect::Restart("the scene is another".to_owned()),
             Ok(_) => Effect::Retune,
             Err(standing) => Effect::Restart(standing.join(", ")),
         }

@@ -154,7 +154,6 @@ impl Viewport {
     pub fn show(&mut self, ui: &mut Ui, desk: &DeskView<'_>, out: &mut Vec<Action>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "3D view"));
-        ui.painter().rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
         self.rect = rect;
         let Some(moment) = desk.moment.clone() else {
             return centred(ui, rect, "Open a scene: Ctrl O, or drop a file here.");

@@ -50,7 +50,8 @@ impl Hand {
     fn check_script(&self, what: &str) {
         let branch = &self.all.list()[self.branch];
         let duration = (self.sample() - 1) as f64 * branch.simulation().period();
-        let text = script(&self.base, &branch.changes, duration).expect("a script");
+        let text =
+            script(&self.base, &scene(&self.base).changes, &branch.changes, duration).expect("a script");
         assert_eq!(run(&text), (self.sample(), self.digest()), "{what}\n{text}");
     }
 }
@@ -133,6 +134,8 @@ fn a_run_with_changes_is_that_of_the_scene_with_changes() {
         ("limits", &[("vehicle.speed_max", "1.4"), ("vehicle.turn_rate_max", "2.0")]),
     ];
     let plain = with(THREE, &[("observer.epsilon", "0.05")]);
+    // Who looks for himself is not told the rates.
+    let looking: Set<'_> = ("the slope", &[("law.slope", "12.0")]);
     for (way, sets_of_way) in [
         ("sampled", vec![]),
         ("measured", vec![("time.mode", "measured")]),
@@ -146,6 +149,7 @@ fn a_run_with_changes_is_that_of_the_scene_with_changes() {
             hand.to(20 + 23 * number as u64);
             assert_ne!(hand.digest(), before);
             before = hand.digest();
+            let (what, sets) = if way == "noise" && *what == "the law" { &looking } else { &(*what, *sets) };
             hand.set(sets);
             hand.to(hand.sample() + 17);
             hand.check_script(&format!("{way}: {what}"));
@@ -249,4 +253,22 @@ fn changes_by_hand_and_changes_of_the_scene_add_up() {
         hand.to(220);
         assert_eq!(hand.digest(), hand.all.list()[0].digest(), "by hand at {when}, in a branch");
     }
+}
+
+/// Tuning that is taken back leaves a scene's own changes as they were.
+#[test]
+fn what_is_taken_back_is_as_if_it_had_not_been() {
+    let plain = own_changes();
+    let mut untouched = Hand::new(&plain);
+    untouched.to(220);
+    let mut hand = Hand::new(&plain);
+    for sample in [40, 80, 120] {
+        hand.to(sample);
+        hand.set(&[("law.k", "7.0"), ("robots.right.distance", "1.5")]);
+        hand.set(&[("law.k", "3.0 "), ("robots.right.distance", "2.0")]);
+        assert!(hand.all.list()[0].changes.is_empty(), "at {sample}");
+    }
+    hand.to(220);
+    assert_eq!(hand.digest(), untouched.digest());
+    hand.check_script("untouched");
 }

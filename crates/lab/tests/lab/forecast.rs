@@ -105,12 +105,16 @@ fn a_contact_is_seen_before_it_is_made() {
 
 #[test]
 fn a_limit_is_seen_before_it_cuts() {
-    let slow = with(THREE, &[("robots.left.vehicle.speed_max", "0.85")]);
-    let forecast = ahead(&run(&slow, 100), 3.0);
+    // A follower that has settled is sent elsewhere at 6 s, at a jump.
+    let line = include_str!("../../../../scenes/line-three.toml");
+    let text = format!("{line}\n[[changes]]\nat = 6.0\nset = [\"robots.follower-1.distance=4.0\"]\n");
+    let run = run(&text, 500);
+    let forecast = ahead(&run, 1.5);
     let (time, edge) = forecast.limited.expect("a limit");
-    assert!((1.0..4.0).contains(&time) && edge == 0, "{time} s, edge {edge}");
+    assert!((6.0..6.2).contains(&time) && edge == 0, "{time} s, edge {edge}");
     assert_eq!((worst(&forecast, 1), worst(&forecast, 2)), (Trouble::Limited, Trouble::None));
     assert!(forecast.late_error[0][0] > 0.1, "it is not there in time: {:?}", forecast.late_error[0]);
+    assert!(ahead(&run, 0.9).limited.is_none(), "not so soon");
 }
 
 #[test]

@@ -70,6 +70,9 @@ fn branches_share_the_past_and_not_the_future() {
         moments[..=450].iter().for_each(|moment| then.push(0, moment.clone()));
         all_of(then.trail(0, 1e9))
     });
+    // Where it begins it is told once more.
+    history.push(1, moments[450].clone());
+    assert_eq!(history.since(1, [4.485, 9.0]).len(), 2);
     for sample in [0, 3, 449, 450] {
         let [one, other] = [0, 1].map(|branch| history.at(branch, time(&moments[sample])).expect("a moment"));
         assert!(Arc::ptr_eq(&one, &other), "sample {sample} is kept once");

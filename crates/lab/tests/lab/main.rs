@@ -3,6 +3,9 @@
 
 mod branches;
 mod common;
+mod deeds;
+mod draft;
 mod forecast;
 mod history;
 mod pacing;
+mod panels;

@@ -59,7 +59,7 @@ fn pace_does_not_matter() {
             assert_eq!((strides.samples, &strides.digest), (120, &steps.digest), "at paces {paces:?}");
             assert_eq!(strides.changes[0].sample, 60);
         }
-        let script = script(text, &steps.changes, 1.19).expect("a script");
+        let script = script(text, &[], &steps.changes, 1.19).expect("a script");
         assert_eq!(run(&script), (120, steps.digest));
     }
 }

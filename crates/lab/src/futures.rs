@@ -1,0 +1,184 @@
+//! Edits and the run: what an edit makes of it, and the branches that edits in the past begin.
+
+use crate::desk::Desk;
+use crate::past::Past;
+use crate::session::branches::{Change, script};
+use crate::session::draft::{Draft, Effect};
+use crate::session::history::History;
+use crate::session::runner::Order;
+use std::sync::Arc;
+
+/// A branch as the window knows it.
+#[derive(Debug, Clone)]
+pub struct BranchFace {
+    /// What it is called.
+    pub name: String,
+    /// Branch and time at which it leaves its parent, s.
+    pub parent: Option<(usize, f64)>,
+    /// What was changed on it, from time 0 on.
+    pub changes: Vec<Change>,
+    /// The scene's text from a sample on.
+    texts: Vec<(u64, String)>,
+}
+
+impl Desk {
+    /// Edits the scene, and lets the run take it.
+    pub fn edit(
+        &mut self,
+        what: &str,
+        edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
+    ) -> bool {
+        let past = self.forks == 0 && self.cursor.is_some_and(|time| time < self.end() - 1e-9);
+        let time = self.time();
+        let done = match &mut self.draft {
+            Some(draft) if !past => {
+                let settled = Past::of(draft.scene(), time);
+                draft.edit(what, |text| settled.settle(text).and_then(|()| edit(text)))
+            }
+            Some(_) => self.edit_past(what, edit),
+            None => return false,
+        };
+        match done {
+            Ok(effect) => self.take(what, &effect),
+            Err(fault) => {
+                self.fault(fault);
+                return false;
+            }
+        }
+        true
+    }
+
+    /// In the past, an edit makes another future; one that cannot be makes none.
+    fn edit_past(
+        &mut self,
+        what: &str,
+        edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
+    ) -> Result<Effect, String> {
+        let (Some((_, there)), Some(draft)) = (self.there(), &self.draft) else { return Ok(Effect::None) };
+        let settled = Past::of(&draft.check(&there)?, self.time());
+        let text = draft.edited(&there, |text| settled.settle(text).and_then(|()| edit(text)))?;
+        if text == there {
+            return Ok(Effect::None);
+        }
+        self.fork();
+        self.draft.as_mut().map_or(Ok(Effect::None), |draft| draft.replace(what, text))
+    }
+
+    /// Lets the run take what has become of the scene.
+    pub fn take(&mut self, what: &str, effect: &Effect) {
+        match effect {
+            Effect::None => {}
+            Effect::Dress => {
+                self.note(what);
+                if let (Some(scene), Some(history)) =
+                    (self.draft.as_ref().map(Draft::scene), &mut self.history)
+                {
+                    history.dress(scene);
+                }
+            }
+            Effect::Retune => {
+                self.note(what);
+                if let Some(draft) = &self.draft {
+                    self.sent.push((Arc::clone(draft.scene()), draft.text().to_owned()));
+                    self.orders.push(Order::Change(Arc::clone(draft.scene())));
+                }
+            }
+            Effect::Restart(_) => {
+                self.note(format!("{what} (the run begins anew)"));
+                let until = self.time();
+                self.restart(until);
+            }
+        }
+    }
+
+    /// Leaves the branch that is looked at, at the time that is looked at.
+    pub fn fork(&mut self) {
+        let Some((sample, text)) = self.there() else { return };
+        let name = format!("branch {}", self.branches.len() + self.forks);
+        self.orders.push(Order::Fork { from: self.branch, sample, name });
+        self.forks += 1;
+        // The scene is again what it was there.
+        if let Some(draft) = &mut self.draft {
+            // It was a scene before.
+            let _ = draft.replace("Go back", text);
+        }
+    }
+
+    /// The sample after the time that is looked at, and the text of the scene there.
+    fn there(&self) -> Option<(u64, String)> {
+        let sample = self.history.as_ref()?.sample(self.time()) + 1;
+        Some((sample, self.branches.get(self.branch)?.text_at(sample, &self.base)))
+    }
+
+    /// Goes on with another branch.
+    pub fn switch(&mut self, branch: usize) {
+        if branch >= self.branches.len() || branch == self.branch {
+            return;
+        }
+        self.branch = branch;
+        self.cursor = None;
+        self.forecast = None;
+        self.orders.push(Order::Switch(branch));
+        let text = self.branches[branch].text_at(u64::MAX, &self.base);
+        if let Some(draft) = &mut self.draft {
+            let _ = draft.replace("Switch branch", text);
+        }
+    }
+
+    /// The scene that runs as the branch that is looked at ran so far.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    pub fn script(&self) -> Result<String, String> {
+        let branch = self.branches.get(self.branch).ok_or("There is no run.")?;
+        let period = self.history.as_ref().map_or(0.01, History::period);
+        script(&self.base, &self.own, &branch.changes, self.end().max(period))
+    }
+
+    pub(crate) fn forked(
+        &mut self,
+        branch: usize,
+        (from, sample): (usize, u64),
+        name: String,
+        changes: Vec<Change>,
+    ) {
+        let Some(history) = &mut self.history else { return };
+        history.fork(from, sample);
+        let time = (sample as f64 - 1.0) * history.period();
+        let texts = self.branches.get(from).map_or_else(Vec::new, |b| b.texts.clone());
+        let texts = texts.into_iter().filter(|(at, _)| *at < sample).collect();
+        self.branches.truncate(branch);
+        self.forks = self.forks.saturating_sub(1);
+        self.branches.push(BranchFace { name: name.clone(), parent: Some((from, time)), changes, texts });
+        (self.branch, self.cursor) = (branch, None);
+        self.note(format!("{name} leaves {} here", self.branches[from].name));
+    }
+
+    pub(crate) fn changed(&mut self, branch: usize, change: Change) {
+        // The draft may have gone on since.
+        let sent = self.sent.iter().position(|(scene, _)| Arc::ptr_eq(scene, &change.scene));
+        let sent = sent.and_then(|sent| self.sent.drain(..=sent).next_back());
+        let text = sent.map(|(_, text)| text).or_else(|| Some(self.draft.as_ref()?.text().to_owned()));
+        if let Some(face) = self.branches.get_mut(branch) {
+            face.texts.retain(|(sample, _)| *sample != change.sample);
+            face.texts.extend(text.map(|text| (change.sample, text)));
+            face.changes.retain(|before| before.sample != change.sample);
+            if !change.set.is_empty() {
+                face.changes.push(change);
+            }
+        }
+    }
+}
+
+impl BranchFace {
+    /// The first.
+    pub(crate) fn trunk() -> Self {
+        Self { name: "main".to_owned(), parent: None, changes: Vec::new(), texts: Vec::new() }
+    }
+
+    /// The scene's text as it held before a sample.
+    fn text_at(&self, sample: u64, base: &str) -> String {
+        let last = self.texts.iter().filter(|(at, _)| *at < sample).max_by_key(|(at, _)| *at);
+        last.map_or_else(|| base.to_owned(), |(_, text)| text.clone())
+    }
+}

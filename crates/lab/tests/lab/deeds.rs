@@ -1,0 +1,589 @@
+//! What actions mean: for the text, which keeps its comments, for undo, and for the run, which goes on where it can.
+
+use crate::common::{Rig, THREE, desk, run, scene, with};
+use lab::action::Action;
+use lab::desk::{Choice, Desk, Tool};
+use lab::session::runner::{News, Order};
+
+/// Two groups, and one robot that has gains of its own.
+const GROUPS: &str = "\
+schema = 1
+title = \"Groups\"
+[time]
+duration = 5.0
+[[robots]]
+name = \"leader\"
+pose = [0.0, 0.0, 0.0]
+path = { kind = \"constant\", speed = 1.0 }
+[[groups]]
+name = \"wing\"
+shape = \"v\"
+count = 4
+leader = \"leader\"
+distance = 2.0
+law = { k = 4.0, beta = 1.0 } # of the wing
+[[robots]]
+name = \"own\"
+pose = [-9.0, 0.0, 0.0]
+leader = \"leader\"
+distance = 9.0
+bearing = \"180 deg\"
+law = { k = 2.5 }
+";
+
+fn text(desk: &Desk) -> String {
+    desk.draft.as_ref().expect("a draft").text().to_owned()
+}
+
+/// What the run is asked for.
+fn orders(desk: &Desk) -> Vec<&'static str> {
+    let word = |order: &Order| match order {
+        Order::Open { .. } => "open",
+        Order::Play(_) => "play",
+        Order::Pace(_) => "pace",
+        Order::Step => "step",
+        Order::Change(_) => "change",
+        Order::Fork { .. } => "fork",
+        Order::Switch(_) => "switch",
+        Order::Ahead(_) => "ahead",
+        Order::Tell(_) => "tell",
+    };
+    desk.orders.iter().map(word).collect()
+}
+
+const RETUNE: &[&str] = &["change"];
+const RESTART: &[&str] = &["open", "ahead", "play"];
+
+fn tune(key: &'static str, value: &str) -> Action {
+    Action::Tune { what: "Gain…".to_owned(), key, value: value.to_owned() }
+}
+
+fn untune(key: &'static str) -> Action {
+    Action::Untune { what: "Reset gain".to_owned(), key }
+}
+
+fn set(path: &str, value: &str) -> Action {
+    Action::Set { what: "Value".to_owned(), values: vec![(path.to_owned(), value.to_owned())] }
+}
+
+fn point(edge: usize, distance: f64, degrees: f64) -> Action {
+    Action::SetPoint { edge, distance, bearing: degrees.to_radians() }
+}
+
+/// Every action on the scene: what is done, what it is done to, what it writes, and what the run is asked for.
+fn deeds() -> Vec<(Action, String, Vec<&'static str>, &'static [&'static str])> {
+    let three = || THREE.to_owned();
+    let own = || with(THREE, &[("robots.left.law.k", "7.0")]);
+    let pillar = || {
+        format!(
+            "{THREE}\n[[props]]\nname = \"post\"\nshape = \"cylinder\"\nradius = 0.1\nheight = 0.5\npose = [5.0, 5.0, 0.0]\n"
+        )
+    };
+    vec![
+        (
+            point(0, 1.5, 120.0),
+            three(),
+            vec!["distance = 1.5 # from the leader", "bearing = \"120 deg\""],
+            RETUNE,
+        ),
+        (Action::Shape { scale: 1.1, turn: 0.0 }, three(), vec!["distance = 2.2 # from the leader"], RETUNE),
+        (tune("law.k", "4.0"), three(), vec!["k = 4.0 # not too stiff"], RETUNE),
+        (tune("law.k", "4.0"), own(), vec!["k = 4.0 # not too stiff"], RETUNE),
+        (tune("observer.epsilon", "0.02"), three(), vec!["epsilon = 0.02"], RETUNE),
+        (tune("law.kind", "\"robust-state\""), three(), vec!["kind = \"robust-state\""], RETUNE),
+        (tune("vehicle.speed_max", "1.5"), three(), vec!["speed_max = 1.5"], RETUNE),
+        (tune("sensing.kind", "\"noise\""), three(), vec!["\"noise\""], RESTART),
+        (untune("law.beta"), three(), vec!["k = 3.0 # not too stiff"], RETUNE),
+        (
+            set("robots.left.pose", "[-3.0, 1.0, 0.0]"),
+            three(),
+            vec!["[-3.0, 1.0, 0.0] # where it starts"],
+            RESTART,
+        ),
+        (
+            Action::Reset { what: "Less".to_owned(), paths: vec!["law.k".to_owned(), "law.beta".to_owned()] },
+            three(),
+            vec!["# Gains of all."],
+            RETUNE,
+        ),
+        (Action::Connect { leader: 1, follower: 2 }, three(), vec!["leader = \"left\""], RESTART),
+        (Action::AddRobot, three(), vec!["name = \"follower-1\"", "leader = \"left\""], RESTART),
+        (Action::RemoveRobot("right".to_owned()), three(), vec!["# To the left."], RESTART),
+        (
+            Action::RenameRobot("leader".to_owned(), "boss".to_owned()),
+            three(),
+            vec!["leader = \"boss\""],
+            RESTART,
+        ),
+        (
+            Action::AddProp("pillar", [3.0, -2.5]),
+            three(),
+            vec!["name = \"pillar-1\"", "[3.0, -2.5, 0.0]"],
+            RESTART,
+        ),
+        (Action::RemoveProp("post".to_owned()), pillar(), vec!["name = \"right\""], RESTART),
+    ]
+}
+
+#[test]
+fn every_deed_is_written_is_told_and_can_be_undone() {
+    for (action, before, written, told) in deeds() {
+        let mut desk = desk(&before, 30);
+        let comments = |text: &str| text.matches("# ").count();
+        assert!(desk.act(&action), "{action:?}");
+        assert_eq!(desk.notice, None, "{action:?}");
+        let after = text(&desk);
+        for part in &written {
+            assert!(after.contains(part), "{action:?}: `{part}` is not in\n{after}");
+        }
+        // With a robot the lines right above it go.
+        let gone = usize::from(matches!(action, Action::RemoveRobot(_)));
+        assert!(comments(&after) + gone + 1 >= comments(&before), "{action:?} loses comments:\n{after}");
+        assert_eq!(orders(&desk), told, "{action:?}");
+        assert!(desk.draft.as_ref().is_some_and(|draft| draft.unsaved() && draft.redoes().is_none()));
+        for _ in 0..2 {
+            desk.orders.clear();
+            assert!(desk.act(&Action::Undo));
+            assert_eq!(text(&desk), before, "{action:?} undone");
+            assert_eq!(orders(&desk), told, "{action:?} undone");
+            assert!(desk.draft.as_ref().is_some_and(|draft| !draft.unsaved() && draft.undoes().is_none()));
+            desk.orders.clear();
+            assert!(desk.act(&Action::Redo));
+            assert_eq!(text(&desk), after, "{action:?} done again");
+            assert_eq!(orders(&desk), told, "{action:?} done again");
+        }
+    }
+}
+
+#[test]
+fn undo_with_nothing_to_undo_does_nothing() {
+    let mut desk = desk(THREE, 3);
+    desk.act(&Action::Undo);
+    desk.act(&Action::Redo);
+    assert!(text(&desk) == THREE && desk.orders.is_empty() && desk.log.is_empty());
+}
+
+#[test]
+fn set_points_move_alone_or_with_their_mirror_image() {
+    let mut desk = desk(THREE, 3);
+    desk.act(&point(0, 1.5, 120.0));
+    assert_eq!(desk.set_point(0).map(|[d, b]| (d, b.to_degrees().round())), Some((1.5, 120.0)));
+    assert_eq!(desk.set_point(1).map(|[d, b]| (d, b.to_degrees().round())), Some((2.0, -135.0)));
+    desk.act(&Action::Undo);
+    desk.act(&Action::Mirror(true));
+    for degrees in [130.0, 120.0, 110.0] {
+        desk.act(&point(0, 1.5, degrees));
+    }
+    for (edge, degrees) in [(0, 110.0), (1, -110.0)] {
+        let [distance, bearing] = desk.set_point(edge).expect("a set point");
+        assert_eq!((distance, bearing.to_degrees().round()), (1.5, degrees));
+    }
+    desk.act(&Action::Undo);
+    assert_eq!(text(&desk), THREE, "one hand, one step");
+    // Who has no mirror image moves alone.
+    desk.act(&Action::Mirror(false));
+    desk.act(&point(0, 1.0, 100.0));
+    desk.act(&Action::Mirror(true));
+    desk.act(&point(1, 3.0, -90.0));
+    assert_eq!(desk.set_point(0).map(|[d, _]| d), Some(1.0));
+    // Nobody comes closer than the law allows.
+    desk.act(&point(1, 0.0, -90.0));
+    let least = desk.follower(1).map(|(_, _, follow)| follow.law.distance_min);
+    assert_eq!(desk.set_point(1).map(|[d, _]| d), least);
+    assert_eq!(desk.notice, None);
+    // 180° is written one way only.
+    desk.act(&point(1, 3.0, -180.0));
+    assert!(text(&desk).contains("bearing = \"180 deg\""), "{}", text(&desk));
+    desk.act(&point(9, 3.0, 0.0));
+    assert_eq!(desk.notice, None);
+}
+
+#[test]
+fn a_set_point_that_moves_in_time_stays_where_it_is_put() {
+    let mut desk = desk(include_str!("../../../../scenes/moving-set-point.toml"), 60);
+    let [distance, _] = desk.set_point(0).expect("a set point");
+    assert!((distance - 2.0).abs() > 0.01, "it has moved");
+    desk.act(&point(0, 2.5, -120.0));
+    assert_eq!(desk.notice, None);
+    assert!(text(&desk).contains("distance = 2.5\nbearing = \"-120 deg\""), "{}", text(&desk));
+    assert_eq!(desk.set_point(0).map(|[d, _]| d), Some(2.5));
+    assert_eq!(orders(&desk), RETUNE);
+}
+
+#[test]
+fn the_whole_formation_is_scaled_and_turned() {
+    let mut desk = desk(include_str!("../../../../scenes/seven-v.toml"), 3);
+    let before: Vec<_> = (0..6).map(|edge| desk.set_point(edge).expect("a set point")).collect();
+    desk.act(&Action::Shape { scale: 1.5, turn: f64::to_radians(50.0) });
+    assert_eq!(desk.notice, None);
+    for (edge, [distance, bearing]) in before.into_iter().enumerate() {
+        let [d, b] = desk.set_point(edge).expect("a set point");
+        let turned = vocabulary::wrap(bearing + f64::to_radians(50.0));
+        assert!(
+            (d - 1.5 * distance).abs() < 1e-3 && vocabulary::wrap(b - turned).abs() < 1e-4,
+            "edge {edge}"
+        );
+    }
+    assert_eq!(orders(&desk), RETUNE, "one change for all of them");
+}
+
+/// K of the distance of every follower.
+fn gains(desk: &Desk) -> Vec<f64> {
+    (0..).map_while(|edge| desk.follower(edge).map(|(_, _, follow)| follow.law.k[0])).collect()
+}
+
+#[test]
+fn gains_are_tuned_for_all_or_for_one() {
+    let mut desk = desk(GROUPS, 3);
+    // Robots come before those that groups make.
+    assert_eq!(gains(&desk), [2.5, 4.0, 4.0, 4.0]);
+    desk.act(&Action::ForAll(false));
+    desk.act(&Action::Choose(Choice::Edge(2)));
+    desk.act(&tune("law.k", "6.0"));
+    assert_eq!(gains(&desk), [2.5, 4.0, 6.0, 4.0], "{}", text(&desk));
+    let (robot, ..) = desk.follower(0).expect("a follower");
+    desk.act(&Action::Choose(Choice::Robot(robot)));
+    desk.act(&tune("law.k", "[1.0, 2.0]"));
+    assert_eq!(gains(&desk), [1.0, 4.0, 6.0, 4.0]);
+    desk.act(&untune("law.k"));
+    let usual = gains(&desk)[0];
+    assert!(usual != 1.0 && usual != 2.5, "its default");
+    desk.act(&Action::ForAll(true));
+    desk.act(&tune("law.k", "3.5"));
+    assert_eq!(gains(&desk), [3.5; 4], "{}", text(&desk));
+    assert!(text(&desk).contains("beta = 1.0"), "what was not tuned stays:\n{}", text(&desk));
+    desk.act(&untune("law.k"));
+    assert_eq!(gains(&desk), [usual; 4]);
+    assert_eq!(desk.notice, None);
+    // The log tells whose gain it was, and to what it went.
+    let log: Vec<&str> = desk.log.iter().map(|event| &*event.text).collect();
+    assert!(log.iter().any(|text| text.contains("of own")), "{log:?}");
+    assert!(log.contains(&"Reset gain of all: its default"), "{log:?}");
+}
+
+#[test]
+fn nobody_follows_in_a_circle() {
+    let mut desk = desk(include_str!("../../../../scenes/seven-v.toml"), 3);
+    let before = text(&desk);
+    for (leader, follower, circle) in [
+        (5, 1, "robot-2 → robot-6 → robot-4 → robot-2"),
+        (3, 3, "robot-4 → robot-4"),
+        (6, 0, "robot-1 → robot-7 → robot-5 → robot-3 → robot-1"),
+    ] {
+        desk.act(&Action::Connect { leader, follower });
+        let notice = desk.notice.take().expect("a notice");
+        assert!(notice.contains(circle), "{notice}");
+        assert!(text(&desk) == before && desk.orders.is_empty());
+    }
+    desk.act(&Action::Connect { leader: 99, follower: 1 });
+    assert!(desk.notice.is_none() && desk.orders.is_empty());
+}
+
+#[test]
+fn a_lead_robot_becomes_a_follower_where_it_is() {
+    let second = "\n[[robots]]\nname = \"second\" # on its own\npose = [3.0, 4.0, 0.0]\npath = { kind = \"constant\", speed = 1.0 }\n";
+    let mut desk = desk(&format!("{THREE}{second}"), 40);
+    desk.act(&Action::Connect { leader: 0, follower: 3 });
+    assert_eq!(desk.notice, None);
+    let now = desk.moment().expect("a moment");
+    let relative =
+        vocabulary::Relative::between(now.snapshot.robots[0].motion.pose, now.snapshot.robots[3].motion.pose);
+    let [distance, bearing] = desk.set_point(2).expect("a set point");
+    assert!((distance - relative.distance).abs() <= 0.026, "{distance} m, is {} m", relative.distance);
+    assert!((bearing - relative.bearing).abs() < 0.01);
+    let after = text(&desk);
+    assert!(
+        after.contains("name = \"second\" # on its own") && !after.contains("path = { kind = \"constant\"")
+    );
+    assert_eq!(orders(&desk), RESTART);
+    assert!(
+        matches!(&desk.orders[0], Order::Open { until, .. } if *until == desk.end()),
+        "at once to where it was"
+    );
+}
+
+#[test]
+fn robots_are_added_where_there_is_room() {
+    let mut rig = Rig::new(THREE);
+    rig.act(&[Action::Choose(Choice::Robot(0)), Action::AddRobot]);
+    assert_eq!(rig.desk.choice, Choice::Robot(3), "the new one is selected");
+    rig.act(&[Action::Choose(Choice::Robot(0)), Action::AddRobot, Action::AddRobot]);
+    assert_eq!(rig.desk.notice, None);
+    let scene = rig.desk.scene().expect("a scene").clone();
+    let names: Vec<&str> = scene.robots.iter().map(|robot| &*robot.name).collect();
+    assert_eq!(names, ["leader", "left", "right", "follower-1", "follower-2", "follower-3"]);
+    for (k, a) in scene.robots.iter().enumerate() {
+        for b in &scene.robots[..k] {
+            let apart = (a.pose.x - b.pose.x).hypot(a.pose.y - b.pose.y);
+            assert!(apart >= 1.0, "{} and {} are {apart} m apart", a.name, b.name);
+        }
+    }
+    assert!(matches!(&scene.robots[5].role, scene::Role::Follow(follow) if follow.leader == "follower-2"));
+    assert_eq!(rig.desk.history.as_ref().expect("a run").cast().members.len(), 6);
+}
+
+#[test]
+fn a_robot_that_is_followed_stays() {
+    let mut desk = desk(include_str!("../../../../scenes/seven-v.toml"), 3);
+    let before = text(&desk);
+    for (name, followers) in [("robot-2", "robot-4 follows it"), ("robot-1", "robot-2, robot-3 follow it")] {
+        desk.act(&Action::RemoveRobot(name.to_owned()));
+        let notice = desk.notice.take().expect("a notice");
+        assert!(notice.starts_with(&format!("{name} stays")) && notice.contains(followers), "{notice}");
+        assert!(text(&desk) == before && desk.orders.is_empty());
+    }
+    desk.act(&Action::RemoveRobot("robot-6".to_owned()));
+    assert!(!text(&desk).contains("robot-6") && desk.notice.is_none());
+}
+
+#[test]
+fn what_cannot_be_changes_nothing_and_is_said_once() {
+    let cases = [
+        (tune("law.k", "-1.0"), "`k` must be"),
+        (tune("observer.epsilon", "1e-9"), "sampled"),
+        (set("time.period", "0.0"), "period"),
+        (set("robots.nobody.distance", "2.0"), "nobody"),
+        (Action::RenameRobot("left".to_owned(), "right".to_owned()), "right"),
+        (Action::RenameRobot("left".to_owned(), "no name!".to_owned()), "no name!"),
+        (Action::RenameRobot("nobody".to_owned(), "x".to_owned()), "nobody"),
+        (Action::RemoveRobot("nobody".to_owned()), "nobody"),
+        (Action::RemoveProp("nothing".to_owned()), "nothing"),
+        (Action::Reset { what: "x".to_owned(), paths: vec!["robots.nobody.law.k".to_owned()] }, "nobody"),
+    ];
+    let continuous = with(THREE, &[("time.mode", "continuous"), ("observer.epsilon", "0.02")]);
+    for past in [false, true] {
+        for (action, word) in &cases {
+            let mut desk = desk(&continuous, 30);
+            if past {
+                desk.act(&Action::Seek(0.1));
+            }
+            desk.act(action);
+            let notice = desk.notice.clone().unwrap_or_else(|| panic!("{action:?} is no fault"));
+            assert!(notice.contains(word) && notice.lines().count() <= 8, "{action:?}: {notice}");
+            let faults = desk.log.iter().filter(|event| event.fault).count();
+            assert_eq!((faults, desk.log.len()), (1, 1), "{action:?}: {:?}", desk.log);
+            assert_eq!(text(&desk), continuous, "{action:?}");
+            assert_eq!(orders(&desk), [""; 0], "{action:?}, in the past: {past}");
+            assert!(desk.draft.as_ref().is_some_and(|draft| draft.undoes().is_none()), "{action:?}");
+        }
+    }
+}
+
+#[test]
+fn a_deed_that_changes_nothing_is_none() {
+    for past in [false, true] {
+        let mut desk = desk(THREE, 30);
+        if past {
+            desk.act(&Action::Seek(0.1));
+        }
+        for action in [
+            tune("law.k", "3.0"),
+            Action::RenameRobot("left".to_owned(), "left".to_owned()),
+            untune("law.slope"),
+            Action::Reset { what: "x".to_owned(), paths: vec!["law.slope".to_owned()] },
+        ] {
+            desk.act(&action);
+            assert!(text(&desk) == THREE && desk.orders.is_empty() && desk.log.is_empty(), "{action:?}");
+        }
+    }
+}
+
+#[test]
+fn an_edit_in_the_past_makes_another_future() {
+    let mut rig = Rig::new(THREE);
+    rig.steps(99);
+    let trunk = rig.told(0);
+    rig.act(&[Action::Seek(0.4), tune("law.k", "6.0"), Action::Rest]);
+    assert_eq!((rig.desk.branches.len(), rig.desk.branch, rig.desk.cursor), (2, 1, None));
+    assert_eq!(rig.desk.branches[1].parent, Some((0, 0.4)));
+    assert_eq!(rig.desk.end(), 0.4, "it goes on from where one looked");
+    rig.steps(59);
+    let told = rig.told(1);
+    assert_eq!((told.samples, told.changes.len()), (100, 1));
+    assert_ne!(told.digest, trunk.digest);
+    assert_eq!(run(&rig.desk.script().expect("a script")), (100, told.digest));
+    assert_eq!(rig.told(0).digest, trunk.digest);
+    // Back on the trunk the text is the trunk's.
+    rig.act(&[Action::Branch(0)]);
+    assert_eq!((rig.text(), rig.desk.branch), (THREE, 0));
+    rig.act(&[Action::Branch(1)]);
+    assert!(rig.text().contains("k = 6.0 # not too stiff"));
+    assert_eq!(gains(&rig.desk), [6.0; 2]);
+}
+
+#[test]
+fn a_drag_in_the_past_makes_one_branch_however_long_the_run_takes_for_it() {
+    let mut rig = Rig::new(THREE);
+    rig.steps(99);
+    rig.act(&[Action::Seek(0.4)]);
+    for step in 1..=8 {
+        // Nobody has heard of the branch yet.
+        rig.desk.act(&point(0, 2.0 - 0.05 * f64::from(step), 135.0));
+        rig.send();
+    }
+    rig.desk.act(&Action::Rest);
+    rig.settle();
+    assert_eq!((rig.desk.branches.len(), rig.desk.branch), (2, 1));
+    assert_eq!(rig.desk.set_point(0).map(|[d, _]| d), Some(1.6));
+    rig.steps(20);
+    let told = rig.told(1);
+    assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
+    // The next look back makes the next branch.
+    rig.act(&[Action::Seek(0.2), tune("law.k", "5.0")]);
+    assert_eq!((rig.desk.branches.len(), rig.desk.branches[2].parent), (3, Some((1, 0.2))));
+    assert_eq!(rig.desk.set_point(0).map(|[d, _]| d), Some(2.0), "before the drag it was not dragged");
+}
+
+#[test]
+fn going_back_brings_the_text_that_held_there() {
+    let mut rig = Rig::new(THREE);
+    let mut texts = vec![THREE.to_owned()];
+    for (k, gain) in ["4.0", "5.0", "6.0"].into_iter().enumerate() {
+        rig.steps(20);
+        // One more edit is on its way before the run has taken the one before.
+        rig.desk.act(&tune("law.beta", &format!("1.{k}")));
+        rig.send();
+        rig.desk.act(&tune("law.k", gain));
+        rig.settle();
+        texts.push(rig.text().to_owned());
+    }
+    rig.steps(20);
+    // Changes hold from 0.21, 0.41, 0.61 s on.
+    for (time, text) in [(0.1, 0), (0.2, 0), (0.21, 1), (0.4, 1), (0.5, 2), (0.61, 3), (0.7, 3)] {
+        rig.act(&[Action::Branch(0), Action::Seek(time), Action::Fork]);
+        assert_eq!(rig.text(), texts[text], "at {time} s");
+        assert_eq!(rig.desk.branches[rig.desk.branch].changes.len(), text, "at {time} s");
+    }
+}
+
+#[test]
+fn edits_that_the_run_takes_one_by_one_are_remembered_one_by_one() {
+    let mut desk = desk(THREE, 60);
+    let mut changes = vec![];
+    for (sample, gain) in [(60, "4.0"), (61, "5.0")] {
+        desk.act(&tune("law.k", gain));
+        let scene = match desk.orders.pop() {
+            Some(Order::Change(scene)) => scene,
+            _ => panic!("no change"),
+        };
+        let mut branches = lab::session::branches::Branches::open(self::scene(THREE), |_| ()).expect("a run");
+        let change = branches.change(0, scene).expect("a change").expect("something new");
+        let time = sample as f64 * 0.01;
+        changes.push(lab::session::branches::Change { sample, time, ..change });
+    }
+    // The window hears of both when both are made.
+    for change in changes {
+        desk.hear(News::Changed(0, change));
+    }
+    desk.act(&Action::Fork);
+    let at = |desk: &Desk| gains(desk)[0];
+    assert_eq!(at(&desk), 3.0, "before both");
+    let moments = {
+        let mut run = simulation::Simulation::new(simulation::build(&self::scene(THREE)).expect("a run"));
+        (0..62).map(|_| run.next_moment().expect("a moment").clone()).collect::<Vec<_>>()
+    };
+    desk.hear(News::Moments(0, moments[60..].to_vec()));
+    desk.act(&Action::Seek(0.6));
+    desk.act(&Action::Fork);
+    assert_eq!(at(&desk), 4.0, "between them");
+}
+
+#[test]
+fn there_and_back_while_the_run_stands_is_no_change() {
+    let mut rig = Rig::new(THREE);
+    rig.steps(30);
+    rig.act(&[tune("law.k", "5.0"), Action::Rest]);
+    assert_eq!(rig.desk.branches[0].changes.len(), 1);
+    rig.act(&[Action::Undo]);
+    assert!(rig.desk.branches[0].changes.is_empty());
+    rig.steps(30);
+    let told = rig.told(0);
+    assert!(told.changes.is_empty());
+    let script = rig.desk.script().expect("a script");
+    assert!(!script.contains("changes"), "{script}");
+    assert_eq!(run(&script), (told.samples, told.digest));
+}
+
+#[test]
+fn a_scene_with_changes_of_its_own_is_tuned_as_it_goes() {
+    let mut rig = Rig::new(include_str!("../../../../scenes/change-places.toml"));
+    rig.steps(20);
+    rig.act(&[point(0, 2.2, -120.0), tune("law.k", "6.0"), Action::Rest]);
+    assert_eq!((rig.desk.end(), rig.desk.branches[0].changes.len()), (0.2, 1), "{:?}", rig.desk.log);
+    rig.steps(20);
+    let told = rig.told(0);
+    assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
+    // What is past has become what is, and what is to come still comes.
+    rig.steps(620);
+    rig.act(&[tune("law.beta", "3.0"), Action::Rest]);
+    assert_eq!(
+        (rig.desk.branches[0].changes.len(), rig.desk.scene().expect("a scene").changes.len()),
+        (2, 2)
+    );
+    rig.steps(20);
+    let told = rig.told(0);
+    assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
+    rig.act(&[set("title", "\"Another title\"")]);
+    assert_eq!(rig.desk.branches[0].changes.len(), 2, "another title is the same run");
+    // Other changes of its own are another run.
+    let text = rig.text().replace("at = 21.0", "at = 20.0");
+    let effect = rig.desk.draft.as_mut().map(|draft| draft.replace("Script", text));
+    assert!(matches!(effect, Some(Ok(lab::session::draft::Effect::Restart(_)))), "{effect:?}");
+}
+
+#[test]
+fn the_run_is_led_by_hand() {
+    let mut desk = desk(THREE, 50);
+    desk.act(&Action::Toggle);
+    assert!(desk.playing && matches!(desk.orders.pop(), Some(Order::Play(true))));
+    desk.act(&Action::Seek(0.2));
+    assert!(!desk.playing && matches!(desk.orders.pop(), Some(Order::Play(false))));
+    assert_eq!((desk.cursor, desk.time()), (Some(0.2), 0.2));
+    desk.act(&Action::Step);
+    assert!(
+        (desk.time() - 0.21).abs() < 1e-12 && desk.orders.is_empty(),
+        "a step in the past asks for nothing"
+    );
+    desk.act(&Action::Back(0.1));
+    assert!((desk.time() - 0.11).abs() < 1e-12);
+    desk.act(&Action::Back(7.0));
+    assert_eq!(desk.time(), 0.0);
+    desk.act(&Action::Present);
+    assert_eq!((desk.cursor, desk.time()), (None, 0.49));
+    desk.act(&Action::Step);
+    assert_eq!(orders(&desk), ["step"]);
+    desk.act(&Action::Seek(99.0));
+    assert_eq!(desk.cursor, None);
+    for (asked, got) in [(0.001, 0.1), (2.0, 2.0), (999.0, 50.0)] {
+        desk.act(&Action::Pace(asked));
+        assert_eq!(desk.pace, got);
+    }
+    desk.act(&Action::Ahead(0.0));
+    assert!(desk.ahead == 0.0 && desk.forecast.is_none());
+    desk.act(&Action::Take(Tool::Pillar));
+    assert_eq!(desk.tool, Tool::Pillar);
+    desk.act(&Action::Take(Tool::Pillar));
+    assert_eq!(desk.tool, Tool::Hand, "taken twice is put down");
+    desk.act(&Action::NameBranch(0, "trunk".to_owned()));
+    assert_eq!(desk.branches[0].name, "trunk");
+    desk.orders.clear();
+    desk.act(&Action::Restart);
+    assert_eq!(orders(&desk), RESTART);
+    assert!(!desk.act(&Action::Save), "files are the window's");
+}
+
+#[test]
+fn what_is_selected_is_there() {
+    let mut rig = Rig::new(THREE);
+    assert_eq!(
+        (rig.desk.choice, rig.desk.chosen_robot()),
+        (Choice::Edge(0), Some(1)),
+        "an edge, to begin with"
+    );
+    rig.act(&[Action::Choose(Choice::Robot(2))]);
+    assert_eq!(rig.desk.chosen_edge(), Some(1));
+    rig.act(&[Action::RemoveRobot("right".to_owned())]);
+    assert_eq!(rig.desk.choice, Choice::Edge(0), "nobody selects who is gone");
+    rig.act(&[Action::Choose(Choice::Robot(0))]);
+    assert_eq!((rig.desk.chosen_edge(), rig.desk.chosen_robot()), (None, Some(0)));
+}
