@@ -3,6 +3,7 @@
 use crate::common::{Rig, THREE, desk, run, scene};
 use crate::deeds::{gains, point, set, tune};
 use lab::action::Action;
+use lab::desk::Desk;
 use lab::session::branches::{Branches, Change};
 use lab::session::draft::Effect;
 use lab::session::runner::{News, Order};
