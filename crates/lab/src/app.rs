@@ -105,7 +105,7 @@ impl Lab {
             print: options.timings,
         };
         lab.desk.playing = !options.paused;
-        lab.desk.aloud = options.timings;
+        lab.desk.aloud = options.timings.then(std::io::stdout);
         lab.open_first(options);
         Ok(lab)
     }

@@ -101,15 +101,12 @@ impl Desk {
     }
 
     fn step(&mut self) {
-        match (self.cursor, &self.history) {
-            (Some(time), Some(history)) => {
-                let next = time + history.period();
-                self.seek(next);
-            }
-            _ => {
-                self.playing = false;
-                self.orders.push(Order::Step);
-            }
+        if let (Some(time), Some(history)) = (self.cursor, &self.history) {
+            let next = time + history.period();
+            self.seek(next);
+        } else {
+            self.playing = false;
+            self.orders.push(Order::Step);
         }
     }
 
@@ -264,7 +261,9 @@ impl Desk {
         let Some(scene) = self.scene().cloned() else { return };
         let chosen = self.chosen_robot().filter(|robot| *robot < scene.robots.len()).unwrap_or(0);
         let Some(leader) = scene.robots.get(chosen) else { return };
-        let name = (1..).map(|n| format!("follower-{n}")).find(|name| scene.index_of(name).is_none());
+        let name = (1..=scene.robots.len() + 1)
+            .map(|n| format!("follower-{n}"))
+            .find(|name| scene.index_of(name).is_none());
         let free = |place: &&[f64; 2]| {
             let [x, y] = seen_from(leader.pose, **place);
             let near = |robot: &scene::Robot| (robot.pose.x - x).hypot(robot.pose.y - y) < 1.0;
@@ -309,7 +308,8 @@ impl Desk {
     fn add_prop(&mut self, kind: &str, [x, y]: [f64; 2]) {
         let Some(scene) = self.scene().cloned() else { return };
         let taken = |name: &String| scene.props.iter().any(|prop| prop.name == *name);
-        let name = (1..).map(|n| format!("{kind}-{n}")).find(|name| !taken(name)).unwrap_or_default();
+        let name = (1..=scene.props.len() + 1).map(|n| format!("{kind}-{n}")).find(|name| !taken(name));
+        let name = name.unwrap_or_default();
         let lines = format!(
             "name = {name:?}\nshape = \"cylinder\"\nradius = 0.15\nheight = 0.6\npose = [{}, {}, 0.0]\n",
             tidy(x),

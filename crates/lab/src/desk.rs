@@ -83,8 +83,8 @@ pub struct Desk {
     pub log: Vec<Event>,
     /// A message in place, until it is dismissed.
     pub notice: Option<String>,
-    /// Whether what happens is printed, too.
-    pub aloud: bool,
+    /// Where what happens is printed, too.
+    pub aloud: Option<std::io::Stdout>,
     /// Text of the scene at time 0 of the run.
     pub(crate) base: String,
     /// Branches that are asked for and not there yet.
@@ -118,7 +118,7 @@ impl Desk {
             mirror: false,
             film_from: None,
             log: Vec::new(),
-            aloud: false,
+            aloud: None,
             notice: None,
             base: String::new(),
             forks: 0,
@@ -269,10 +269,10 @@ impl Desk {
 
     fn event(&mut self, text: String, fault: bool) {
         let time = self.time();
-        if self.aloud {
+        if let Some(out) = &mut self.aloud {
             let kind = if fault { "fault" } else { "log" };
             // Where nobody reads any more, the window goes on.
-            let _ = writeln!(std::io::stdout(), "{kind} {time:.2} s: {text}");
+            let _ = writeln!(out, "{kind} {time:.2} s: {text}");
         }
         // What goes on under a hand is one line.
         let again = text.ends_with('…') && self.log.last().is_some_and(|last| last.text == text);
@@ -331,7 +331,7 @@ impl Desk {
             News::Forked { branch, from, sample, name, changes } => {
                 self.forked(branch, (from, sample), name, changes);
             }
-            News::Changed(branch, change) => self.changed(branch, change),
+            News::Changed(branch, change) => self.changed(branch, &change),
             News::Told { .. } => {}
             News::Stands(why) => {
                 self.playing = false;
@@ -345,7 +345,7 @@ impl Desk {
 
     /// Nothing stays selected that is not there any more.
     fn check_choice(&mut self) {
-        let Some(cast) = self.history.as_ref().map(|history| history.cast()) else { return };
+        let Some(cast) = self.history.as_ref().map(History::cast) else { return };
         let there = match self.choice {
             Choice::Nothing => true,
             Choice::Robot(robot) => robot < cast.members.len(),

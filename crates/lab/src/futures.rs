@@ -149,12 +149,14 @@ impl Desk {
         let texts = texts.into_iter().filter(|(at, _)| *at < sample).collect();
         self.branches.truncate(branch);
         self.forks = self.forks.saturating_sub(1);
-        self.branches.push(BranchFace { name: name.clone(), parent: Some((from, time)), changes, texts });
+        let left = self.branches.get(from).map_or("", |branch| &branch.name);
+        let what = format!("{name} leaves {left} here");
+        self.branches.push(BranchFace { name, parent: Some((from, time)), changes, texts });
         (self.branch, self.cursor) = (branch, None);
-        self.note(format!("{name} leaves {} here", self.branches[from].name));
+        self.note(what);
     }
 
-    pub(crate) fn changed(&mut self, branch: usize, change: Change) {
+    pub(crate) fn changed(&mut self, branch: usize, change: &Change) {
         // The draft may have gone on since.
         let sent = self.sent.iter().position(|(scene, _)| Arc::ptr_eq(scene, &change.scene));
         let sent = sent.and_then(|sent| self.sent.drain(..=sent).next_back());
@@ -164,7 +166,7 @@ impl Desk {
             face.texts.extend(text.map(|text| (change.sample, text)));
             face.changes.retain(|before| before.sample != change.sample);
             if !change.set.is_empty() {
-                face.changes.push(change);
+                face.changes.push(change.clone());
             }
         }
     }

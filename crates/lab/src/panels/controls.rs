@@ -3,6 +3,7 @@
 use super::{pair, tune};
 use crate::action::Action;
 use crate::symbols::Symbol;
+use crate::tidy::tidy;
 use eframe::egui::{self, Slider, Ui};
 
 /// How a slider goes.
@@ -41,11 +42,11 @@ pub(crate) struct Row {
 impl Row {
     /// A row for one value; the default is shown beside the way back to it.
     pub(crate) fn one(&self, ui: &mut Ui, value: f64, default: f64, out: &mut Vec<Action>) {
-        self.frame(ui, value != default, &self.text(default), out, |ui, out| {
+        self.frame(ui, value != default, &tidy(default), out, |ui, out| {
             let mut new = value;
             let response = self.slider(ui, &mut new, self.symbol.name);
             if response.changed() && new != value {
-                out.push(tune(self.symbol.name, self.key, crate::tidy::tidy(new)));
+                out.push(tune(self.symbol.name, self.key, tidy(new)));
             }
             released(&response, out);
         });
@@ -61,9 +62,9 @@ impl Row {
         out: &mut Vec<Action>,
     ) {
         let shown = if default[0] == default[1] {
-            self.text(default[0])
+            tidy(default[0])
         } else {
-            format!("{}, {}", self.text(default[0]), self.text(default[1]))
+            format!("{}, {}", tidy(default[0]), tidy(default[1]))
         };
         self.frame(ui, value != default, &shown, out, |ui, out| {
             if value[0] == value[1] && !apart {
@@ -137,10 +138,6 @@ impl Row {
         }
         response.widget_info(|| egui::WidgetInfo::slider(true, *value, name));
         response.on_hover_ui(|ui| self.symbol.tip(ui))
-    }
-
-    fn text(&self, value: f64) -> String {
-        crate::tidy::tidy(value)
     }
 }
 

@@ -198,7 +198,7 @@ fn span(curves: &[Curve], quantity: Quantity) -> [f64; 2] {
 
 /// A number for an axis.
 fn short(value: f64) -> String {
-    let text = format!("{:.3}", value);
+    let text = format!("{value:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     match text {
         "-0" | "" => "0".to_owned(),

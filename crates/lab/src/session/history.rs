@@ -112,7 +112,7 @@ impl History {
             stride: parent.stride,
             head: None,
             trail: Trail::new(&self.cast),
-            trails: parent.trails.iter().filter(|t| parent.before(t, until)).cloned().collect(),
+            trails: parent.trails.iter().filter(|t| before(t, until)).cloned().collect(),
             trail_every: parent.trail_every,
             rooms: parent.rooms.iter().filter(|[time, _]| *time < until).copied().collect(),
         };
@@ -160,8 +160,8 @@ impl History {
         if past.is_head(time) {
             return;
         }
-        let near = self.shown.take().filter(|(of, trail)| *of == branch && past.before(trail, time));
-        let kept = past.trails.iter().rev().find(|trail| past.before(trail, time));
+        let near = self.shown.take().filter(|(of, trail)| *of == branch && before(trail, time));
+        let kept = past.trails.iter().rev().find(|trail| before(trail, time));
         let since = |trail: &Trail| trail.time().unwrap_or(f64::NEG_INFINITY);
         let start = match (near, kept) {
             (Some((_, near)), Some(kept)) if since(&near) < since(kept) => kept.clone(),
@@ -228,11 +228,6 @@ impl Past {
         self.head.as_ref().is_some_and(|head| moment.snapshot.time <= head.snapshot.time)
     }
 
-    /// Whether a trail ends before a time.
-    fn before(&self, trail: &Trail, time: f64) -> bool {
-        trail.time().is_none_or(|end| end <= time + 1e-9)
-    }
-
     fn measure(&mut self, clearance: &Clearance, moment: &Moment) {
         let time = moment.snapshot.time;
         let due = self.rooms.last().is_none_or(|[last, _]| time >= last + ROOM_EVERY - 1e-9);
@@ -275,7 +270,7 @@ impl Past {
 
     /// The trail of everything up to a time.
     fn trail_until(&self, time: f64, cast: &Cast) -> Trail {
-        let start = self.trails.iter().rev().find(|trail| self.before(trail, time));
+        let start = self.trails.iter().rev().find(|trail| before(trail, time));
         self.grow(start.cloned().unwrap_or_else(|| Trail::new(cast)), time)
     }
 
@@ -288,4 +283,9 @@ impl Past {
         }
         trail
     }
+}
+
+/// Whether a trail ends before a time.
+fn before(trail: &Trail, time: f64) -> bool {
+    trail.time().is_none_or(|end| end <= time + 1e-9)
 }

@@ -229,13 +229,11 @@ impl Work {
         let mut ended = false;
         while self.owed >= period && began.elapsed() < STRETCH {
             self.owed -= period;
-            match branches.advance(self.active) {
-                Some(moment) => moments.push(moment.clone()),
-                None => {
-                    ended = true;
-                    break;
-                }
-            }
+            let Some(moment) = branches.advance(self.active) else {
+                ended = true;
+                break;
+            };
+            moments.push(moment.clone());
         }
         self.report(moments);
         if ended {
@@ -269,7 +267,7 @@ impl Work {
 
     fn follow(&mut self, order: Order) {
         match order {
-            Order::Open { scene, gpu, until } => self.open(scene, gpu, until),
+            Order::Open { scene, gpu, until } => self.open(scene, gpu.as_ref(), until),
             Order::Play(on) => {
                 self.playing = on && self.branches.is_some();
                 self.owed = 0.0;
@@ -295,12 +293,12 @@ impl Work {
         }
     }
 
-    fn open(&mut self, scene: Arc<Scene>, gpu: Option<Gpu>, until: f64) {
+    fn open(&mut self, scene: Arc<Scene>, gpu: Option<&Gpu>, until: f64) {
         let mut blind = None;
         let planned = scene.time.duration;
         let opened = Branches::open(scene, |simulation| {
             if simulation.needs_eyes() {
-                match gpu.as_ref().map(|gpu| CameraEyes::new(gpu, simulation.cast())) {
+                match gpu.map(|gpu| CameraEyes::new(gpu, simulation.cast())) {
                     Some(Ok(eyes)) => simulation.open_eyes(Box::new(eyes)),
                     Some(Err(error)) => blind = Some(error.to_string()),
                     None => blind = Some("There is no adapter to draw what cameras see.".to_owned()),

@@ -120,7 +120,7 @@ impl Rig {
             if let Some(news) = self.runner.news() {
                 return news;
             }
-            self.wakes.recv_timeout(Duration::from_secs(60)).expect("news");
+            self.wakes.recv_timeout(Duration::from_mins(1)).expect("news");
         }
     }
 

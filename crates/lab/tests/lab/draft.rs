@@ -16,7 +16,7 @@ fn set(draft: &mut Draft, what: &str, path: &str, value: &str) -> Result<Effect,
 fn what_goes_on_under_a_hand_is_one_step() {
     let mut draft = draft();
     for k in 1..30 {
-        let effect = set(&mut draft, "Gain…", "law.k", &format!("{}.5", k));
+        let effect = set(&mut draft, "Gain…", "law.k", &format!("{k}.5"));
         assert_eq!(effect, Ok(Effect::Retune));
     }
     assert_eq!(draft.undoes(), Some("Gain"));

@@ -19,7 +19,7 @@ fn run(text: &str, samples: u64) -> Simulation {
 fn ahead(run: &Simulation, seconds: f64) -> Forecast {
     let (crystal, forecasts) = Crystal::start(|| ());
     crystal.look(3, run.save(), seconds);
-    let forecast = forecasts.recv_timeout(Duration::from_secs(60)).expect("a forecast");
+    let forecast = forecasts.recv_timeout(Duration::from_mins(1)).expect("a forecast");
     assert_eq!(forecast.branch, 3);
     forecast
 }
@@ -136,7 +136,7 @@ fn the_newest_question_is_answered() {
     }
     let mut last = None;
     while last != Some(19) {
-        let forecast = forecasts.recv_timeout(Duration::from_secs(60)).expect("a forecast");
+        let forecast = forecasts.recv_timeout(Duration::from_mins(1)).expect("a forecast");
         assert!(last < Some(forecast.branch), "in the order of the questions");
         last = Some(forecast.branch);
     }

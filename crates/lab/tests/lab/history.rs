@@ -143,9 +143,9 @@ fn hours_fit_into_memory() {
     assert!(steps.iter().all(|step| (step - steps[0]).abs() < 1e-6), "they are evenly far apart");
     assert_eq!(time(&kept[0]), 0.0);
     // In between, robots are in between; the present is exact.
-    for sample in [0, 1, 4_321, 77_777, 99_998, 99_999] {
-        let x = history.at(0, sample as f64 * 0.01).expect("a moment").snapshot.robots[0].motion.pose.x;
-        assert!((x - sample as f64).abs() < 1e-6, "{x} at sample {sample}");
+    for sample in [0.0, 1.0, 4_321.0, 77_777.0, 99_998.0, 99_999.0] {
+        let x = history.at(0, sample * 0.01).expect("a moment").snapshot.robots[0].motion.pose.x;
+        assert!((x - sample).abs() < 1e-6, "{x} at sample {sample}");
     }
     assert_eq!(**history.head(0).expect("a moment"), last);
     history.prepare_trail(0, 500.0);

@@ -6,6 +6,7 @@ mod common;
 mod deeds;
 mod draft;
 mod forecast;
+mod futures;
 mod history;
 mod pacing;
 mod panels;

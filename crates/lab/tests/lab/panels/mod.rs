@@ -17,6 +17,9 @@ pub(crate) struct Bench {
     pub(crate) out: Vec<Action>,
 }
 
+/// What draws a panel.
+type Show = dyn Fn(&mut Ui, &Desk, &mut Vec<Action>);
+
 pub(crate) type Panel = Harness<'static, Bench>;
 
 /// A panel as the window shows it. Every frame is looked through for letters without a face and widgets without a name.
@@ -139,7 +142,7 @@ fn every_letter_has_a_face() {
 #[test]
 fn panels_without_a_scene_say_so() {
     let style = rendering::Style::default();
-    let shows: [(&str, Box<dyn Fn(&mut Ui, &Desk, &mut Vec<Action>)>); 8] = [
+    let shows: [(&str, Box<Show>); 8] = [
         ("formation", Box::new(lab::panels::formation::show)),
         ("edge", Box::new(lab::panels::edge::show)),
         ("law", Box::new(lab::panels::law::show)),

@@ -1,0 +1,150 @@
+//! Edits while the run goes, and in its past: branches, the text that holds on each, and the scene that runs alike.
+
+use crate::common::{Rig, THREE, desk, run, scene};
+use crate::deeds::{gains, point, set, tune};
+use lab::action::Action;
+use lab::desk::Desk;
+use lab::session::branches::{Branches, Change};
+use lab::session::draft::Effect;
+use lab::session::runner::{News, Order};
+use simulation::Simulation;
+
+#[test]
+fn an_edit_in_the_past_makes_another_future() {
+    let mut rig = Rig::new(THREE);
+    rig.steps(99);
+    let trunk = rig.told(0);
+    rig.act(&[Action::Seek(0.4), tune("law.k", "6.0"), Action::Rest]);
+    assert_eq!((rig.desk.branches.len(), rig.desk.branch, rig.desk.cursor), (2, 1, None));
+    assert_eq!(rig.desk.branches[1].parent, Some((0, 0.4)));
+    assert_eq!(rig.desk.end(), 0.4, "it goes on from where one looked");
+    rig.steps(59);
+    let told = rig.told(1);
+    assert_eq!((told.samples, told.changes.len()), (100, 1));
+    assert_ne!(told.digest, trunk.digest);
+    assert_eq!(run(&rig.desk.script().expect("a script")), (100, told.digest));
+    assert_eq!(rig.told(0).digest, trunk.digest);
+    // Back on the trunk the text is the trunk's.
+    rig.act(&[Action::Branch(0)]);
+    assert_eq!((rig.text(), rig.desk.branch), (THREE, 0));
+    rig.act(&[Action::Branch(1)]);
+    assert!(rig.text().contains("k = 6.0 # not too stiff"));
+    assert_eq!(gains(&rig.desk), [6.0; 2]);
+}
+
+#[test]
+fn a_drag_in_the_past_makes_one_branch_however_long_the_run_takes_for_it() {
+    let mut rig = Rig::new(THREE);
+    rig.steps(99);
+    rig.act(&[Action::Seek(0.4)]);
+    for step in 1..=8 {
+        // Nobody has heard of the branch yet.
+        rig.desk.act(&point(0, 2.0 - 0.05 * f64::from(step), 135.0));
+        rig.send();
+    }
+    rig.desk.act(&Action::Rest);
+    rig.settle();
+    assert_eq!((rig.desk.branches.len(), rig.desk.branch), (2, 1));
+    assert_eq!(rig.desk.set_point(0).map(|[d, _]| d), Some(1.6));
+    rig.steps(20);
+    let told = rig.told(1);
+    assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
+    // The next look back makes the next branch.
+    rig.act(&[Action::Seek(0.2), tune("law.k", "5.0")]);
+    assert_eq!((rig.desk.branches.len(), rig.desk.branches[2].parent), (3, Some((1, 0.2))));
+    assert_eq!(rig.desk.set_point(0).map(|[d, _]| d), Some(2.0), "before the drag it was not dragged");
+}
+
+#[test]
+fn going_back_brings_the_text_that_held_there() {
+    let mut rig = Rig::new(THREE);
+    let mut texts = vec![THREE.to_owned()];
+    for (k, gain) in ["4.0", "5.0", "6.0"].into_iter().enumerate() {
+        rig.steps(20);
+        // One more edit is on its way before the run has taken the one before.
+        rig.desk.act(&tune("law.beta", &format!("1.{k}")));
+        rig.send();
+        rig.desk.act(&tune("law.k", gain));
+        rig.settle();
+        texts.push(rig.text().to_owned());
+    }
+    rig.steps(20);
+    // Changes hold from 0.21, 0.41, 0.61 s on.
+    for (time, text) in [(0.1, 0), (0.2, 0), (0.21, 1), (0.4, 1), (0.5, 2), (0.61, 3), (0.7, 3)] {
+        rig.act(&[Action::Branch(0), Action::Seek(time), Action::Fork]);
+        assert_eq!(rig.text(), texts[text], "at {time} s");
+        assert_eq!(rig.desk.branches[rig.desk.branch].changes.len(), text, "at {time} s");
+    }
+}
+
+#[test]
+fn edits_that_the_run_takes_one_by_one_are_remembered_one_by_one() {
+    let mut desk = desk(THREE, 60);
+    let mut changes = vec![];
+    for (sample, gain) in [(60, "4.0"), (61, "5.0")] {
+        desk.act(&tune("law.k", gain));
+        let Some(Order::Change(changed)) = desk.orders.pop() else { panic!("no change") };
+        let mut branches = Branches::open(scene(THREE), |_| ()).expect("a run");
+        let change = branches.change(0, changed).expect("a change").expect("something new");
+        let time = sample as f64 * 0.01;
+        changes.push(Change { sample, time, ..change });
+    }
+    // The window hears of both when both are made.
+    for change in changes {
+        desk.hear(News::Changed(0, change));
+    }
+    desk.act(&Action::Fork);
+    let at = |desk: &Desk| gains(desk)[0];
+    assert_eq!(at(&desk), 3.0, "before both");
+    let moments = {
+        let mut run = Simulation::new(simulation::build(&scene(THREE)).expect("a run"));
+        (0..62).map(|_| run.next_moment().expect("a moment").clone()).collect::<Vec<_>>()
+    };
+    desk.hear(News::Moments(0, moments[60..].to_vec()));
+    desk.act(&Action::Seek(0.6));
+    desk.act(&Action::Fork);
+    assert_eq!(at(&desk), 4.0, "between them");
+}
+
+#[test]
+fn there_and_back_while_the_run_stands_is_no_change() {
+    let mut rig = Rig::new(THREE);
+    rig.steps(30);
+    rig.act(&[tune("law.k", "5.0"), Action::Rest]);
+    assert_eq!(rig.desk.branches[0].changes.len(), 1);
+    rig.act(&[Action::Undo]);
+    assert!(rig.desk.branches[0].changes.is_empty());
+    rig.steps(30);
+    let told = rig.told(0);
+    assert!(told.changes.is_empty());
+    let script = rig.desk.script().expect("a script");
+    assert!(!script.contains("changes"), "{script}");
+    assert_eq!(run(&script), (told.samples, told.digest));
+}
+
+#[test]
+fn a_scene_with_changes_of_its_own_is_tuned_as_it_goes() {
+    let mut rig = Rig::new(include_str!("../../../../scenes/change-places.toml"));
+    rig.steps(20);
+    rig.act(&[point(0, 2.2, -120.0), tune("law.k", "6.0"), Action::Rest]);
+    assert_eq!((rig.desk.end(), rig.desk.branches[0].changes.len()), (0.2, 1), "{:?}", rig.desk.log);
+    rig.steps(20);
+    let told = rig.told(0);
+    assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
+    // What is past has become what is, and what is to come still comes.
+    rig.steps(620);
+    rig.act(&[tune("law.beta", "3.0"), Action::Rest]);
+    assert_eq!(
+        (rig.desk.branches[0].changes.len(), rig.desk.scene().expect("a scene").changes.len()),
+        (2, 2)
+    );
+    rig.steps(20);
+    let told = rig.told(0);
+    assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
+    rig.act(&[set("title", "\"Another title\"")]);
+    assert_eq!(rig.desk.branches[0].changes.len(), 2, "another title is the same run");
+    // Other changes of its own are another run.
+    let text = rig.text().replace("at = 21.0", "at = 20.0");
+    let effect = rig.desk.draft.as_mut().map(|draft| draft.replace("Script", text));
+    assert!(matches!(effect, Some(Ok(Effect::Restart(_)))), "{effect:?}");
+}
