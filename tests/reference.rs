@@ -158,6 +158,7 @@ impl Case {
         let actors = self.robots.iter().enumerate().map(actor).collect();
         let member = |(index, name): (usize, &String)| Member::new(name.clone(), index == 0, Body::default());
         Ok(Setup {
+            changes: vec![],
             cast: Cast {
                 duration: self.duration,
                 members: names.iter().enumerate().map(member).collect(),

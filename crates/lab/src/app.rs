@@ -132,6 +132,11 @@ impl Lab {
                 News::Told { branch, changes: _, samples, digest } => {
                     self.keep_run(branch, Seen { samples, digest });
                 }
+                News::Opened { .. } => {
+                    // Another run, or the same from the start: a film goes forward only.
+                    self.end_film();
+                    self.desk.hear(news);
+                }
                 news => self.desk.hear(news),
             }
         }

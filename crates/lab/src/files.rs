@@ -100,6 +100,7 @@ impl Lab {
             Ok(()) => {
                 draft.saved_to(path.clone());
                 self.kept.done();
+                self.desk.notice = None;
                 self.watch.look_at(Some(path.clone()));
                 self.desk.note(format!("Saved: {}", path.display()));
             }

@@ -103,7 +103,8 @@ impl Lab {
         let path = free(Path::new("."), &self.name(), "mp4");
         self.studio.ask(Job::Begin { path: path.clone(), cast, size: (1280, 720), trail: Box::new(trail) });
         self.desk.note(format!("Filming to {}", path.display()));
-        self.film = Some(Filming { path, next: time, branch, sent: time, frames: 0 });
+        let next = time + self.desk.pace / RATE;
+        self.film = Some(Filming { path, next, branch, sent: time, frames: 0 });
     }
 
     pub(crate) fn end_film(&mut self) {

@@ -201,6 +201,10 @@ fn report(words: &mut Words<'_>, tile: Tile, leader: &str, frame: &Frame, row: &
         let y = tile.y as f32 + tile.height as f32 - words.scaled(30.0 + 16.0 * *row);
         let size =
             if words.width(&text, 12.0, bold) > tile.width as f32 - words.scaled(20.0) { 9.0 } else { 12.0 };
+        // In a picture that is smaller still it would run out of it.
+        if words.width(&text, size, bold) > tile.width as f32 - words.scaled(12.0) {
+            return;
+        }
         words.write(text, [left, y], size, bold, ink);
         *row += 1.0;
     };
