@@ -109,6 +109,7 @@ fn links_lead_somewhere() {
         let links: Vec<&str> = text.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
         assert!(!links.is_empty(), "{page} has no links");
         for link in links.iter().filter(|l| !l.starts_with("http")) {
+            let link = link.split('#').next().unwrap_or(link);
             let target = root().join(page).with_file_name("").join(link);
             assert!(target.exists(), "{page} points at {link}");
         }
