@@ -51,6 +51,37 @@ fn a_hand_that_lets_go_ends_the_step() {
 }
 
 #[test]
+fn a_hand_on_what_was_before_is_a_step_of_its_own() {
+    let mut draft = draft();
+    set(&mut draft, "Gain…", "law.k", "4.0").expect("an edit");
+    let first = draft.text().to_owned();
+    set(&mut draft, "Beta…", "law.beta", "3.0").expect("an edit");
+    draft.undo();
+    set(&mut draft, "Gain…", "law.k", "5.0").expect("an edit");
+    draft.undo();
+    assert_eq!(draft.text(), first);
+}
+
+#[test]
+fn other_changes_of_a_scene_are_another_run() {
+    let scripted = |k: &str, at: &str, set: &str| {
+        format!("{}\n[[changes]]\nat = {at}\nset = [\"{set}\"]\n", with(THREE, &[("law.k", k)]))
+    };
+    let effect = |text: String| {
+        let before = scripted("3.0", "2.0", "law.beta=5");
+        Draft::new(before, None, Path::new("t.toml")).expect("a scene").replace("File", text)
+    };
+    assert_eq!(effect(scripted("4.0", "2.0", "law.beta=5")), Ok(Effect::Retune));
+    for other in [
+        scripted("3.0", "2.5", "law.beta=5"),
+        scripted("3.0", "2.0", "law.beta=6"),
+        scripted("4.0", "2.5", "law.beta=5"),
+    ] {
+        assert!(matches!(effect(other.clone()), Ok(Effect::Restart(_))), "{other}");
+    }
+}
+
+#[test]
 fn a_new_edit_forgets_what_could_be_done_again() {
     let mut draft = draft();
     set(&mut draft, "Gain…", "law.k", "4.0").expect("an edit");

@@ -126,6 +126,9 @@ fn there_and_back_while_the_run_stands_is_no_change() {
 fn a_scene_with_changes_of_its_own_is_tuned_as_it_goes() {
     let mut rig = Rig::new(include_str!("../../../../scenes/change-places.toml"));
     rig.steps(20);
+    // What is expected is expected of the whole run.
+    let told = rig.told(0);
+    assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
     rig.act(&[point(0, 2.2, -120.0), tune("law.k", "6.0"), Action::Rest]);
     assert_eq!((rig.desk.end(), rig.desk.branches[0].changes.len()), (0.2, 1), "{:?}", rig.desk.log);
     rig.steps(20);

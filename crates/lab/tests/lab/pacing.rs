@@ -65,6 +65,20 @@ fn pace_does_not_matter() {
 }
 
 #[test]
+fn a_branch_is_told_where_it_begins() {
+    let mut rig = Rig::new(THREE);
+    rig.steps(50);
+    rig.runner.order(Order::Fork { from: 0, sample: 37, name: "back".to_owned() });
+    let News::Forked { branch: 1, from: 0, sample: 37, name, changes } = rig.next() else {
+        panic!("no branch")
+    };
+    assert!(name == "back" && changes.is_empty());
+    let News::Moments(1, moments) = rig.next() else { panic!("no moment") };
+    let history = rig.desk.history.as_ref().expect("a history");
+    assert_eq!(moments, [vocabulary::Moment::clone(&history.at(0, 0.36).expect("a moment"))]);
+}
+
+#[test]
 fn looking_ahead_does_not_matter() {
     let digest = |ahead: f64| {
         let mut rig = Rig::new(THREE);

@@ -134,6 +134,17 @@ fn the_law_is_chosen_by_name() {
     let law = panel.get_by_role_and_label(Role::ComboBox, "Law");
     assert_eq!(law.value().as_deref(), Some("Full state feedback"));
     assert!(panel.query_by_label("Robust gain").is_none(), "it has no β: {:?}", texts(&panel));
+    // One after the other, and each is what it is called.
+    for name in ["Robust state feedback", "Output feedback", "Full state feedback"] {
+        click(&mut panel, Role::ComboBox, "Law");
+        for action in click(&mut panel, Role::Button, name) {
+            assert!(panel.state_mut().desk.act(&action));
+        }
+        panel.run();
+        assert_eq!(panel.state().desk.notice, None, "{name}");
+        let law = panel.get_by_role_and_label(Role::ComboBox, "Law");
+        assert_eq!(law.value().as_deref(), Some(name));
+    }
     let mut panel = self::panel(desk(THREE, 5), law::show);
     assert_eq!(values(&click(&mut panel, Role::Button, "sign"), "law.switching"), ["\"sign\""]);
     assert!(click(&mut panel, Role::Button, "tanh").is_empty(), "it is so already");
@@ -190,9 +201,19 @@ fn sensing_is_shown_tuned_and_explained() {
     check_rows(|| desk(&tags, 5), sensing::show, &[(symbols::PIXEL_NOISE, "sensing.pixel_noise", 0.3, 0.5)]);
     let mut panel = panel(desk(THREE, 5), sensing::show);
     assert!(panel.query_by_role_and_label(Role::Slider, "Latency").is_none(), "the truth has none");
-    click(&mut panel, Role::ComboBox, "Sensing");
-    let actions = click(&mut panel, Role::Button, "Camera");
-    assert_eq!(values(&actions, "sensing.kind"), ["\"camera\""]);
+    for (name, kind) in [("Camera", "camera"), ("Noise", "noise"), ("Tags", "geometric"), ("Truth", "truth")]
+    {
+        click(&mut panel, Role::ComboBox, "Sensing");
+        let actions = click(&mut panel, Role::Button, name);
+        assert_eq!(values(&actions, "sensing.kind"), [format!("{kind:?}")]);
+        for action in actions {
+            assert!(panel.state_mut().desk.act(&action));
+        }
+        panel.run();
+        assert_eq!(panel.state().desk.notice, None, "{name}");
+        let sensing = panel.get_by_role_and_label(Role::ComboBox, "Sensing");
+        assert_eq!(sensing.value().as_deref(), Some(name));
+    }
 }
 
 #[test]
