@@ -22,6 +22,7 @@ use crate::watch::Watch;
 use crate::window::{NAME, Options};
 use eframe::egui::{self, Context, Ui};
 use egui_tiles::Tree;
+use std::io::Write;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -38,6 +39,9 @@ pub(crate) struct Lab {
     pub(crate) gallery: Gallery,
     pub(crate) over: Over,
     pub(crate) hints: bool,
+    title: String,
+    /// What waits for an answer about unsaved work.
+    pub(crate) next: Option<Action>,
     pub(crate) recent: Vec<PathBuf>,
     pub(crate) kept: WorkKept,
     pub(crate) kept_at: Instant,
@@ -92,6 +96,8 @@ impl Lab {
             gallery: Gallery::default(),
             over: Over::Nothing,
             hints: !memory.hints_seen,
+            title: String::new(),
+            next: None,
             recent: memory.recent,
             kept: WorkKept::new(folder.as_deref()),
             kept_at: Instant::now(),
@@ -104,6 +110,10 @@ impl Lab {
             timings: Timing::since(began),
             print: options.timings,
         };
+        if let Some([width, height]) = options.size {
+            // A size that was asked for comes before the one that is remembered.
+            ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(egui::vec2(width, height)));
+        }
         lab.desk.playing = !options.paused;
         lab.desk.aloud = options.timings.then(std::io::stdout);
         lab.open_first(options);
@@ -183,7 +193,7 @@ impl Lab {
 
     fn show(&mut self, ui: &mut Ui) -> Vec<Action> {
         let mut out = Vec::new();
-        crate::keys::pressed(ui.ctx(), &self.desk, &mut out);
+        crate::keys::pressed(ui.ctx(), &self.desk, self.over != Over::Nothing, &mut out);
         let (branch, time) = (self.desk.branch, self.desk.time());
         if let Some(history) = &mut self.desk.history {
             history.prepare_trail(branch, time);
@@ -247,6 +257,10 @@ impl Lab {
                 // The names are the panel's own.
                 let _ = self.viewport.style.set(name, on);
             }
+            Action::Open(_) | Action::OpenShipped(_) if self.unsaved() => {
+                self.next = Some(action);
+                self.over = Over::Leaving;
+            }
             Action::Open(path) => self.open(&path),
             Action::OpenShipped(name) => self.open_shipped(name),
             Action::Save => self.save(None),
@@ -271,6 +285,19 @@ impl Lab {
             Action::Gallery => self.toggle(Over::Gallery),
             Action::Dismiss => self.dismiss(),
             _ => {}
+        }
+    }
+
+    pub(crate) fn unsaved(&self) -> bool {
+        self.desk.draft.as_ref().is_some_and(Draft::unsaved)
+    }
+
+    /// The window is called as its scene.
+    fn name_window(&mut self, ctx: &Context) {
+        let title = self.desk.scene().map_or_else(String::new, |scene| scene.title.clone());
+        if title != self.title {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{title} — Echelon")));
+            self.title = title;
         }
     }
 
@@ -318,7 +345,7 @@ impl eframe::App for Lab {
         self.hear();
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         for file in dropped {
-            self.open(file.path());
+            self.act(Action::Open(file.path().to_owned()));
         }
         if let Some(why) = self.viewport.gpu().lost() {
             let text = format!(
@@ -331,9 +358,9 @@ impl eframe::App for Lab {
         if self.watch.stopped() {
             return self.interrupted(ctx);
         }
+        self.name_window(ctx);
         let asked = ctx.input(|input| input.viewport().close_requested());
-        let unsaved = self.desk.draft.as_ref().is_some_and(Draft::unsaved);
-        if asked && unsaved {
+        if asked && self.unsaved() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.over = Over::Closing;
         }
@@ -369,6 +396,11 @@ impl eframe::App for Lab {
 
     fn on_exit(&mut self) {
         self.end_film();
+        if self.studio.waiting() > 1 {
+            // Where nobody reads it, the film is finished all the same.
+            let _ =
+                writeln!(std::io::stderr(), "finishing the film: {} frames to draw", self.studio.waiting());
+        }
         if self.print {
             self.timings.print(&self.desk);
         }

@@ -1,7 +1,7 @@
 //! What actions mean for the scene and its run. Files, pictures and the window itself are the window's.
 
 use crate::action::Action;
-use crate::desk::{Choice, Desk, Tool};
+use crate::desk::{Desk, Tool};
 use crate::session::branches::Change;
 use crate::session::runner::Order;
 use crate::tidy::{fixed, tidy};
@@ -83,9 +83,12 @@ impl Desk {
             Action::RemoveRobot(name) => self.remove_robot(name),
             Action::RenameRobot(old, new) => {
                 let (old, new) = (old.clone(), new.clone());
-                self.edit(&format!("{old} is called {new}"), |text| {
+                let done = self.edit(&format!("{old} is called {new}"), |text| {
                     text.rename_robot(&old, &new).map_err(|error| error.to_string())
                 });
+                if done && self.chosen.as_ref() == Some(&old) {
+                    self.chosen = Some(new);
+                }
             }
             Action::AddProp(kind, place) => self.add_prop(kind, *place),
             Action::RemoveProp(name) => {
@@ -194,7 +197,7 @@ impl Desk {
     }
 
     /// The edge on the other side of the same leader.
-    fn twin(&self, edge: usize, [distance, bearing]: [f64; 2]) -> Option<usize> {
+    pub(crate) fn twin(&self, edge: usize, [distance, bearing]: [f64; 2]) -> Option<usize> {
         let cast = self.history.as_ref()?.cast();
         let leader = cast.edges.get(edge)?.leader;
         (0..cast.edges.len()).filter(|other| *other != edge && cast.edges[*other].leader == leader).find(
@@ -286,8 +289,7 @@ impl Desk {
         if self.edit(&format!("{name} follows {}", leader.name), |text| {
             text.add_robot(&lines).map_err(|error| error.to_string())
         }) {
-            let index = self.scene().and_then(|scene| scene.index_of(&name));
-            self.choice = index.map_or(self.choice, Choice::Robot);
+            self.chosen = Some(name);
         }
     }
 
@@ -321,9 +323,23 @@ impl Desk {
     }
 }
 
-/// Changes of a branch, in the words of the log.
+/// A change in few words: what holds for several robots is said once.
 pub fn words(change: &Change) -> String {
-    change.set.join(", ")
+    let mut said: Vec<(String, Vec<&str>)> = Vec::new();
+    for set in &change.set {
+        let (robot, what) =
+            set.strip_prefix("robots.").and_then(|rest| rest.split_once('.')).unwrap_or(("", set));
+        let what = what.replace('=', " = ");
+        match said.iter_mut().find(|(known, _)| *known == what) {
+            Some((_, robots)) => robots.push(robot),
+            None => said.push((what, vec![robot])),
+        }
+    }
+    let one = |(what, robots): (String, Vec<&str>)| match robots.as_slice() {
+        [robot] => format!("{robot} {what}"),
+        many => format!("{what} of {} robots", many.len()),
+    };
+    said.into_iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
 /// Takes a key out; one that is not there is out already.

@@ -91,6 +91,10 @@ pub struct Desk {
     pub(crate) forks: usize,
     /// Scenes that the run was told to take, with their texts.
     pub(crate) sent: Vec<(Arc<Scene>, String)>,
+    /// The scene of this text.
+    first: Option<Arc<Scene>>,
+    /// The robot that is selected, by its name, while a run begins anew.
+    pub(crate) chosen: Option<String>,
     /// Changes that this text has itself.
     pub(crate) own: Vec<scene::Change>,
     /// For the thread of the run.
@@ -123,6 +127,8 @@ impl Desk {
             base: String::new(),
             forks: 0,
             sent: Vec::new(),
+            first: None,
+            chosen: None,
             own: Vec::new(),
             orders: Vec::new(),
             keep: None,
@@ -149,6 +155,8 @@ impl Desk {
     pub fn restart(&mut self, until: f64) {
         let Some(draft) = &self.draft else { return };
         draft.text().clone_into(&mut self.base);
+        self.first = Some(Arc::clone(draft.scene()));
+        self.chosen = self.chosen_name();
         self.own.clone_from(&draft.scene().changes);
         self.orders.push(Order::Open { scene: Arc::clone(draft.scene()), gpu: None, until });
         self.orders.push(Order::Ahead(self.ahead));
@@ -156,9 +164,22 @@ impl Desk {
         self.cursor = None;
     }
 
+    /// The scene as it was written by the time that is looked at.
+    fn held(&self) -> Option<&Scene> {
+        let Some(time) = self.cursor else { return self.scene().map(|scene| &**scene) };
+        let changes = self.branches.get(self.branch).map_or(&[][..], |branch| &branch.changes);
+        let last = changes.iter().rfind(|change| change.time <= time + 1e-9);
+        last.map(|change| &*change.scene).or(self.first.as_deref())
+    }
+
+    fn chosen_name(&self) -> Option<String> {
+        let robot = self.chosen_robot()?;
+        Some(self.history.as_ref()?.cast().members.get(robot)?.name.clone())
+    }
+
     /// The scene with what its own changes have made of it by the time that is looked at.
     pub fn scene_now(&self) -> Option<&Scene> {
-        let (scene, time) = (self.scene()?, self.time());
+        let (scene, time) = (self.held()?, self.time());
         let due = scene.changes.iter().rfind(|change| change.at <= time + 1e-9);
         Some(due.map_or(scene, |change| &change.then))
     }
@@ -343,17 +364,18 @@ impl Desk {
         }
     }
 
-    /// Nothing stays selected that is not there any more.
+    /// What was selected stays so by its name; what is not there any more is not.
     fn check_choice(&mut self) {
         let Some(cast) = self.history.as_ref().map(History::cast) else { return };
-        let there = match self.choice {
-            Choice::Nothing => true,
-            Choice::Robot(robot) => robot < cast.members.len(),
-            Choice::Edge(edge) => edge < cast.edges.len(),
+        let named = |name: &String| cast.members.iter().position(|member| member.name == *name);
+        let robot = self.chosen.as_ref().and_then(named);
+        let edge = robot.and_then(|robot| cast.edges.iter().position(|edge| edge.follower == robot));
+        self.choice = match (robot, edge, self.choice) {
+            (Some(_), Some(edge), Choice::Edge(_)) => Choice::Edge(edge),
+            (Some(robot), ..) => Choice::Robot(robot),
+            (None, ..) if self.chosen.is_none() && !cast.edges.is_empty() => Choice::Edge(0),
+            _ => Choice::Nothing,
         };
-        if !there || (self.choice == Choice::Nothing && !cast.edges.is_empty()) {
-            self.choice = if cast.edges.is_empty() { Choice::Nothing } else { Choice::Edge(0) };
-        }
     }
 }
 

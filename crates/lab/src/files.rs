@@ -5,7 +5,6 @@ use crate::gallery;
 use crate::keep::{Seen, free, keep};
 use crate::over::Over;
 use crate::session::draft::Draft;
-use eframe::egui;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -50,8 +49,6 @@ impl Lab {
                 self.viewport.look(&view);
                 self.viewport.style.picture_in_picture = None;
                 self.watch.look_at(path);
-                let title = self.desk.scene().map_or_else(String::new, |scene| scene.title.clone());
-                self.ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{title} — Echelon")));
                 true
             }
             Err(faults) => {

@@ -100,7 +100,7 @@ impl Desk {
         // The scene is again what it was there.
         if let Some(draft) = &mut self.draft {
             // It was a scene before.
-            let _ = draft.replace("Go back", text);
+            let _ = draft.turn_to(text);
         }
     }
 
@@ -121,7 +121,7 @@ impl Desk {
         self.orders.push(Order::Switch(branch));
         let text = self.branches[branch].text_at(u64::MAX, &self.base);
         if let Some(draft) = &mut self.draft {
-            let _ = draft.replace("Switch branch", text);
+            let _ = draft.turn_to(text);
         }
     }
 

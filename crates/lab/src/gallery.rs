@@ -113,6 +113,9 @@ impl Gallery {
                 egui::TextEdit::singleline(&mut self.path).hint_text("path of a scene, or drop one here");
             let edit = ui.add(edit.desired_width(360.0));
             let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            if !entered {
+                crate::panels::take_focus(&edit, ui);
+            }
             let open = ui.add_enabled(!self.path.trim().is_empty(), egui::Button::new("Open"));
             if (entered || open.clicked()) && !self.path.trim().is_empty() {
                 out.push(Action::Open(Path::new(self.path.trim()).to_owned()));

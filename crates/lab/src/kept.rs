@@ -79,7 +79,13 @@ pub fn left(folder: &Path, alive: impl Fn(u32) -> bool) -> Option<Left> {
 
 /// Whether a process runs, as far as that can be told.
 pub fn alive(process: u32) -> bool {
-    process == std::process::id() || Path::new("/proc").join(process.to_string()).exists()
+    // One that has ended and is not yet buried has nothing to say any more.
+    let state = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    let dead = state
+        .rsplit(')')
+        .next()
+        .is_none_or(|rest| rest.trim().is_empty() || rest.trim().starts_with(['Z', 'X']));
+    process == std::process::id() || !dead
 }
 
 #[cfg(test)]

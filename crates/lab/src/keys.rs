@@ -69,10 +69,14 @@ pub const LIST: &[(&str, &[Shortcut])] = &[
     ),
 ];
 
-/// What keys ask for in this frame; nothing while a text is written.
-pub fn pressed(ctx: &egui::Context, desk: &Desk, out: &mut Vec<Action>) {
+/// What keys ask for in this frame; nothing while a text is written, and nothing behind a menu or, where the view is
+/// `covered`, a window.
+pub fn pressed(ctx: &egui::Context, desk: &Desk, covered: bool, out: &mut Vec<Action>) {
     commands(ctx, out);
-    if ctx.egui_wants_keyboard_input() {
+    if covered && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
+        out.push(Action::Dismiss);
+    }
+    if ctx.egui_wants_keyboard_input() || covered || egui::Popup::is_any_open(ctx) {
         return;
     }
     nudges(ctx, desk, out);
@@ -191,7 +195,8 @@ fn faster(pace: f64) -> f64 {
 
 /// The page of shortcuts.
 pub fn page(ui: &mut egui::Ui) {
-    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+    let high = (ui.ctx().content_rect().height() - 90.0).max(80.0);
+    egui::ScrollArea::vertical().max_height(high).show(ui, |ui| {
         ui.horizontal_top(|ui| {
             let wide = ui.ctx().content_rect().width() > 900.0;
             let halves = if wide { vec![&LIST[..2], &LIST[2..]] } else { vec![LIST] };

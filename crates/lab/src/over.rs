@@ -16,10 +16,12 @@ pub(crate) enum Over {
     Help,
     /// The question before unsaved work is closed.
     Closing,
+    /// The question before another scene takes the place of unsaved work.
+    Leaving,
 }
 
 impl Lab {
-    /// Lines under the bar: faults, and work that a crash has left.
+    /// A line under the bar: work that a crash has left.
     pub(crate) fn notices(&mut self, ui: &mut Ui, out: &mut Vec<Action>) {
         if let Some(left) = &self.left {
             let name =
@@ -36,21 +38,30 @@ impl Lab {
                 });
             });
         }
-        if let Some(notice) = self.desk.notice.clone() {
-            egui::Panel::top("notice").frame(BARE).show(ui, |ui| {
-                ui.horizontal_top(|ui| {
+    }
+
+    /// What went wrong, over the view, so that nothing moves under the pointer.
+    fn show_notice(&self, ctx: &Context, out: &mut Vec<Action>) {
+        let Some(notice) = self.desk.notice.clone() else { return };
+        let view = self.viewport.rect;
+        let wide = (view.width() - 40.0).clamp(260.0, 760.0);
+        egui::Area::new(egui::Id::unique("notice"))
+            .order(egui::Order::Foreground)
+            .fixed_pos(view.center_top() + egui::vec2(0.0, 12.0))
+            .pivot(egui::Align2::CENTER_TOP)
+            .show(ctx, |ui| {
+                egui::Frame::popup(ui.style()).show(ui, |ui| {
+                    ui.set_width(wide);
+                    let colour = ui.visuals().error_fg_color;
+                    egui::ScrollArea::vertical().max_height(180.0).show(ui, |ui| {
+                        let text = egui::RichText::new(notice).color(colour).monospace();
+                        ui.add(egui::Label::new(text).wrap());
+                    });
                     if ui.button("Dismiss").on_hover_text("Esc").clicked() {
                         out.push(Action::Dismiss);
                     }
-                    let colour = ui.visuals().error_fg_color;
-                    egui::ScrollArea::vertical().max_height(140.0).show(ui, |ui| {
-                        ui.add(
-                            egui::Label::new(egui::RichText::new(notice).color(colour).monospace()).wrap(),
-                        );
-                    });
                 });
             });
-        }
     }
 
     /// Windows over the view.
@@ -70,13 +81,19 @@ impl Lab {
                 });
             }
             Over::Help => {
-                window("Shortcuts").open(&mut open).default_size(large).show(ctx, crate::keys::page);
+                window("Shortcuts")
+                    .open(&mut open)
+                    .resizable(false)
+                    .default_height(large.y)
+                    .show(ctx, crate::keys::page);
             }
             Over::Closing => self.ask_before_closing(ctx, out),
+            Over::Leaving => self.ask_before_leaving(ctx, out),
         }
         if !open {
             self.over = Over::Nothing;
         }
+        self.show_notice(ctx, out);
         if self.hints && self.viewport.rect.width() > 460.0 {
             self.show_hints(ctx);
         }
@@ -121,6 +138,31 @@ impl Lab {
                 }
                 if ui.button("Stay").clicked() {
                     self.over = Over::Nothing;
+                }
+            });
+        });
+    }
+
+    fn ask_before_leaving(&mut self, ctx: &Context, out: &mut Vec<Action>) {
+        egui::Modal::new(egui::Id::unique("leaving")).show(ctx, |ui| {
+            ui.label("The scene has changes that are not saved.");
+            ui.horizontal(|ui| {
+                let (save, go) =
+                    (ui.button("Save and open").clicked(), ui.button("Open without saving").clicked());
+                let stay = ui.button("Stay").clicked();
+                if save || go || stay {
+                    self.over = Over::Nothing;
+                    let next = self.next.take();
+                    if save {
+                        out.push(Action::Save);
+                    }
+                    if go && let Some(draft) = &mut self.desk.draft {
+                        draft.abandon();
+                    }
+                    if !stay {
+                        // Where saving failed, the question comes again.
+                        out.extend(next);
+                    }
                 }
             });
         });

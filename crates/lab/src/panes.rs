@@ -63,7 +63,7 @@ pub fn arrangement() -> Tree<Pane> {
         tabs(&["Observer error"]),
         tabs(&["Energy", "Room"]),
     ];
-    let left = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [formation, edge], 0.40));
+    let left = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [formation, edge], 0.46));
     let right = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [law, more], 0.48));
     let mut middle = Linear::new(LinearDir::Horizontal, vec![left, view, right]);
     middle.shares.set_share(left, 0.19);

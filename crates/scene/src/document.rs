@@ -152,6 +152,8 @@ keys! {
 keys! {
     /// What is different about one robot of a group. Where it starts, and how fast, is up to the group.
     struct MemberKeys {
+        /// Name of the robot that it follows, in place of the shape's.
+        leader: String = NameForm::WHOLE, optional;
         /// Wanted distance from the robot it follows, m, in place of the shape's.
         distance: Channel = DistanceForm, optional;
         /// Wanted bearing, in place of the shape's.

@@ -83,11 +83,13 @@ pub(crate) fn expand(
             check_distance(distance.least(), own.law.distance_min, found.place, reading);
         }
         let Outfit { vehicle, law, observer, sensing } = own;
-        let followed = if spot.follows == 0 { leader.clone() } else { group.name(spot.follows) };
+        let told = member.and_then(|keys| keys.leader.clone());
+        let usual = || if spot.follows == 0 { leader.clone() } else { group.name(spot.follows) };
+        let followed = told.as_ref().map_or_else(usual, |told| told.value.clone());
         let follow = Follow { leader: followed, speed, distance, bearing, law, observer, sensing };
         let role = Role::Follow(Box::new(follow));
         let pose = scatter.around(origin, spot.at);
-        group.push(Robot { name, pose, number: 0, vehicle, role }, drafts);
+        group.push(Robot { name, pose, number: 0, vehicle, role }, told, drafts);
     }
     Some(())
 }
@@ -243,11 +245,11 @@ impl Group<'_> {
         format!("{}-{}", self.keys.name.as_ref().map_or("robot", |name| &name.value), place + 1)
     }
 
-    fn push(&self, robot: Robot, drafts: &mut Vec<Draft>) {
+    fn push(&self, robot: Robot, leader: Option<Found<String>>, drafts: &mut Vec<Draft>) {
         let place = self.keys.name.as_ref().map_or(self.node.place, |name| name.place);
         let name = Some(Found { place, value: robot.name.clone() });
-        // Leaders inside the group exist, and the one outside has been looked up.
-        drafts.push(Draft { named: Named { name, leader: None }, number: None, robot: Some(robot) });
+        // Leaders that the shape gives exist, and the one outside has been looked up; one that is written has not.
+        drafts.push(Draft { named: Named { name, leader }, number: None, robot: Some(robot) });
     }
 
     /// The vehicle of the group's own leader, with notes on what is for robots that follow.
@@ -284,7 +286,7 @@ impl Group<'_> {
                 let given = keys.pose.as_ref().or(path.value.start().is_none().then_some(&origin));
                 let pose = start_pose(given, Some(&path.value), self.node.place, reading)?;
                 let role = Role::Lead { path: path.value.clone() };
-                self.push(Robot { name: name.clone(), pose, number: 0, vehicle, role }, drafts);
+                self.push(Robot { name: name.clone(), pose, number: 0, vehicle, role }, None, drafts);
                 Some((name, pose))
             }
             (None, Some(_)) => {

@@ -199,3 +199,13 @@ fn hundreds_of_changes_are_read_in_no_time() {
         .collect();
     assert_eq!(load(&format!("{GROUP}{changes}")).changes.len(), 300);
 }
+
+#[test]
+fn one_robot_of_a_group_may_follow_another() {
+    let scene =
+        load(&format!("{GROUP}[groups.members.robot-5]\nleader = \"robot-1\"\nbearing = \"180 deg\"\n"));
+    assert_eq!(follow(&scene.robots[4]).leader, "robot-1");
+    assert_eq!(follow(&scene.robots[6]).leader, "robot-5");
+    let unknown = fault(&format!("{GROUP}[groups.members.robot-5]\nleader = \"robot-l\"\n"));
+    assert!(unknown.to_string().contains("there is no robot called `robot-l`"), "{unknown}");
+}

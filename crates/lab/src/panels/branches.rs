@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
             }
             let own = branch.parent.map_or(0.0, |(_, time)| time);
             for change in branch.changes.iter().filter(|change| change.time >= own) {
-                let text = format!("{} s  {}", fixed(change.time, 2), change.set.join(", "));
+                let text = format!("{} s  {}", fixed(change.time, 2), crate::deeds::words(change));
                 ui.label(RichText::new(text).small().weak());
             }
         }

@@ -117,7 +117,11 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
     // The quantity stands in the plot, where it takes no room.
     let at = response.response.rect.right_top() + egui::vec2(-6.0, 2.0);
     let font = egui::FontId::proportional(11.5);
-    let galley = ui.painter().layout_no_wrap(quantity.axis().to_owned(), font, ui.visuals().text_color());
+    let mut words = quantity.axis().to_owned();
+    if let Some(peak) = peak(&all, span) {
+        words = format!("{words}   peak {}", short(peak));
+    }
+    let galley = ui.painter().layout_no_wrap(words, font, ui.visuals().text_color());
     let place = egui::Align2::RIGHT_TOP.anchor_size(at, galley.size());
     ui.painter().rect_filled(place.expand(2.0), 2.0, ui.visuals().extreme_bg_color.gamma_multiply(0.8));
     ui.painter().galley(place.min, galley, ui.visuals().text_color());
@@ -126,6 +130,12 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
     {
         out.push(Action::Seek(point.x.max(0.0)));
     }
+}
+
+/// The largest value that lies beside the plot, if any does.
+fn peak(curves: &[Curve], [low, high]: [f64; 2]) -> Option<f64> {
+    let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]);
+    values.filter(|value| *value < low || *value > high).max_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
 
 /// Marks of an axis at round values, about so many, and not nearer than `least`.

@@ -54,6 +54,9 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     if ui.checkbox(&mut mirror, "Mirror the other side").on_hover_text(tip).changed() {
         out.push(Action::Mirror(mirror));
     }
+    if desk.mirror && desk.set_point(edge).is_some_and(|place| desk.twin(edge, place).is_none()) {
+        ui.weak("Nobody stands at its mirror image.");
+    }
     if let Some(state) = state {
         ui.weak(format!("error {} m, {}°", fixed(state.error[0], 3), fixed(state.error[1].to_degrees(), 2)));
         if state.limited {

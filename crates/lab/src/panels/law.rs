@@ -46,7 +46,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         }
     }
     let mut apart_now = apart;
-    if ui.checkbox(&mut apart_now, "Distance and bearing apart").changed() {
+    if ui.checkbox(&mut apart_now, "Distance and bearing apart").on_hover_text(APART).changed() {
         ui.data_mut(|data| data.insert_temp(apart_id(), apart_now));
     }
 }
@@ -82,8 +82,8 @@ pub fn observer(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         ui.weak(format!("Poles at {}", poles(observer)));
     }
     if ui
-        .button("Disturb the observer")
-        .on_hover_text("Begin again at 0 and watch it peak like 1/ε")
+        .button("Disturb it and begin again")
+        .on_hover_text("It starts 0.2 m and 10° off, and peaks like 1/ε")
         .clicked()
     {
         out.push(Action::Set {
@@ -169,3 +169,5 @@ pub(crate) fn vehicle(desk: &Desk, robot: usize) -> VehicleKind {
 fn apart_id() -> eframe::egui::Id {
     eframe::egui::Id::unique("gains apart")
 }
+
+const APART: &str = "A slider for each channel: K = diag(k₁, k₂), and so on";

@@ -39,6 +39,8 @@ pub(crate) fn naming(response: &Response, name: &str, more: impl FnOnce(&mut Ui)
         ui.data_mut(|data| data.insert_temp(id, text.clone()));
         if entered {
             ui.close();
+        } else {
+            take_focus(&edit, ui);
         }
         more(ui);
         entered.then(|| text.trim().to_owned())
@@ -52,6 +54,13 @@ pub(crate) fn chosen(response: &Response, name: &str, now: &str) {
         current_text_value: Some(now.to_owned()),
         ..egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name)
     });
+}
+
+/// Lets a field have the keyboard if nothing else has it: what is typed into an open menu is text.
+pub(crate) fn take_focus(field: &Response, ui: &Ui) {
+    if ui.memory(|memory| memory.focused().is_none()) {
+        field.request_focus();
+    }
 }
 
 /// Says that there is nothing to show: no scene, or because of this.

@@ -207,6 +207,9 @@ fn save_as(ui: &mut Ui, out: &mut Vec<Action>) {
         ui.add(egui::TextEdit::singleline(&mut path).hint_text("path/to/scene.toml").desired_width(240.0));
     let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
     ui.data_mut(|data| data.insert_temp(id, path.clone()));
+    if !entered {
+        super::take_focus(&edit, ui);
+    }
     let path = path.trim();
     if (ui.add_enabled(!path.is_empty(), egui::Button::new("Save")).clicked() || entered) && !path.is_empty()
     {

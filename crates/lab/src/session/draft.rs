@@ -148,6 +148,22 @@ impl Draft {
         Ok(effect)
     }
 
+    /// Goes to the text of another branch: what was done on this one cannot be undone there.
+    ///
+    /// # Errors
+    /// All that is wrong with the text; then nothing has changed.
+    pub fn turn_to(&mut self, text: String) -> Result<(), String> {
+        self.replace("", text)?;
+        self.undo.clear();
+        self.redo.clear();
+        Ok(())
+    }
+
+    /// What is not saved need not be.
+    pub fn abandon(&mut self) {
+        self.saved.clone_from(&self.text);
+    }
+
     /// Ends a row of edits: the next is a step of its own.
     pub fn rest(&mut self) {
         if let Some(last) = self.undo.last_mut()

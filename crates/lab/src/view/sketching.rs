@@ -135,7 +135,7 @@ fn handles(
         let Some(at) = at else { continue };
         let follower = cast.edges[edge].follower;
         let ring =
-            Ring { least: 12.0, ..Ring::new(at, RING * size(cast, follower), light(colours[follower])) };
+            Ring { least: 17.0, ..Ring::new(at, RING * size(cast, follower), light(colours[follower])) };
         if hand.held == Some(edge) || desk.chosen_edge() == Some(edge) {
             sketch.rings.push(ring.selected());
         } else if hand.over == Some(edge) {

@@ -440,7 +440,7 @@ fn what_is_selected_is_there() {
     rig.act(&[Action::Choose(Choice::Robot(2))]);
     assert_eq!(rig.desk.chosen_edge(), Some(1));
     rig.act(&[Action::RemoveRobot("right".to_owned())]);
-    assert_eq!(rig.desk.choice, Choice::Edge(0), "nobody selects who is gone");
+    assert_eq!(rig.desk.choice, Choice::Nothing, "nobody selects who is gone");
     rig.act(&[Action::Choose(Choice::Robot(0))]);
     assert_eq!((rig.desk.chosen_edge(), rig.desk.chosen_robot()), (None, Some(0)));
 }

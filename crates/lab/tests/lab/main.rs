@@ -10,3 +10,4 @@ mod futures;
 mod history;
 mod pacing;
 mod panels;
+mod staying;

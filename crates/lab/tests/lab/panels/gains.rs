@@ -165,7 +165,7 @@ fn the_observer_is_shown_tuned_and_explained() {
     let mut panel = panel(desk(&text, 5), law::observer);
     // s² + 3 s + 1 at ε = 0.02 s: (−3 ± √5) / 0.04.
     assert_says(&panel, &["Poles at −131 and −19.1 1/s"]);
-    let actions = click(&mut panel, Role::Button, "Disturb the observer");
+    let actions = click(&mut panel, Role::Button, "Disturb it and begin again");
     assert!(
         matches!(&actions[..], [Action::Set { values, .. }, Action::Restart] if values[0].0 == "observer.start")
     );

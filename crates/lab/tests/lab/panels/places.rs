@@ -180,7 +180,7 @@ fn branches_are_shown_with_their_changes() {
     rig.act(&[Action::Seek(0.2), gain]);
     rig.steps(10);
     let mut panel = panel(rig.desk, branches::show);
-    assert_says(&panel, &["main", "branch 1", "leaves main at 0.20 s", "robots.left.law.k=[5.0, 5.0]"]);
+    assert_says(&panel, &["main", "branch 1", "leaves main at 0.20 s", "law.k = [5.0, 5.0] of 2 robots"]);
     assert_eq!(click(&mut panel, Role::Button, "main"), [Action::Branch(0)]);
     assert_eq!(click(&mut panel, Role::Button, "Branch here"), [Action::Fork]);
     panel.get_by_role_and_label(Role::Button, "branch 1").click_secondary();
