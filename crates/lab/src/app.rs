@@ -125,6 +125,10 @@ impl Lab {
             Some(path) => self.open(path),
             None => self.open_shipped(gallery::FIRST),
         }
+        if let Some(fault) = self.desk.notice.as_ref().filter(|_| self.desk.draft.is_none()) {
+            // Whoever started it from a terminal looks there first.
+            let _ = writeln!(std::io::stderr(), "error: {fault}");
+        }
         if !options.set.is_empty() && self.desk.draft.is_some() {
             let set = options.set.clone();
             self.desk.edit("Changes of the command line", |text| {

@@ -329,7 +329,7 @@ pub fn words(change: &Change) -> String {
     for set in &change.set {
         let (robot, what) =
             set.strip_prefix("robots.").and_then(|rest| rest.split_once('.')).unwrap_or(("", set));
-        let what = what.replace('=', " = ");
+        let what = what.split_once('=').map_or_else(|| what.to_owned(), |(key, value)| said_of(key, value));
         match said.iter_mut().find(|(known, _)| *known == what) {
             Some((_, robots)) => robots.push(robot),
             None => said.push((what, vec![robot])),
@@ -340,6 +340,15 @@ pub fn words(change: &Change) -> String {
         many => format!("{what} of {} robots", many.len()),
     };
     said.into_iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// A value as people say it: angles in degrees, numbers short.
+fn said_of(key: &str, value: &str) -> String {
+    match value.parse::<f64>() {
+        Ok(angle) if key == "bearing" => format!("bearing = {}°", fixed(angle.to_degrees(), 1)),
+        Ok(number) => format!("{key} = {}", crate::tidy::plain(number)),
+        Err(_) => format!("{key} = {value}"),
+    }
 }
 
 /// Takes a key out; one that is not there is out already.

@@ -104,7 +104,7 @@ const STRETCH: Duration = Duration::from_millis(10);
 /// Batches that may wait for the window. A window that shows nothing for so long does not need the run to go on.
 const MOST_UNREAD: usize = 600;
 /// Between two looks ahead while the run goes, s.
-const LOOK_EVERY: Duration = Duration::from_millis(200);
+const LOOK_EVERY: Duration = Duration::from_millis(300);
 /// Between two batches of samples while the run goes, s.
 const BEAT: Duration = Duration::from_millis(12);
 
