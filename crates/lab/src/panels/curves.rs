@@ -118,8 +118,9 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
     let at = response.response.rect.right_top() + egui::vec2(-6.0, 2.0);
     let font = egui::FontId::proportional(11.5);
     let mut words = quantity.axis().to_owned();
-    if let Some(peak) = peak(&all, span) {
-        words = format!("{words}   peak {}", short(peak));
+    if let Some(peak) = peak(&all, span).filter(|_| !logarithmic) {
+        let decimals = if peak.abs() < 10.0 { 2 } else { usize::from(peak.abs() < 100.0) };
+        words = format!("{words}   peak {}", fixed(peak, decimals));
     }
     let galley = ui.painter().layout_no_wrap(words, font, ui.visuals().text_color());
     let place = egui::Align2::RIGHT_TOP.anchor_size(at, galley.size());
