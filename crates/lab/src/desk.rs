@@ -99,8 +99,6 @@ pub struct Desk {
     pub(crate) own: Vec<scene::Change>,
     /// For the thread of the run.
     pub orders: Vec<Order>,
-    /// Whether an order waits for what is known of a run.
-    pub keep: Option<PathBuf>,
 }
 
 impl Desk {
@@ -131,7 +129,6 @@ impl Desk {
             chosen: None,
             own: Vec::new(),
             orders: Vec::new(),
-            keep: None,
         }
     }
 

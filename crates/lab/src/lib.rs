@@ -40,6 +40,6 @@ pub enum Error {
     #[error("{0}")]
     Window(String),
     /// The program was told to end.
-    #[error("unsaved work is offered at the next start")]
+    #[error("the window is closed; what was not saved is offered at the next start")]
     Interrupted,
 }

@@ -4,7 +4,7 @@ use crate::desk::Desk;
 use crate::session::history::History;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
 use formation::relative::Geometry;
-use scene::{Follow, LawKind, Scene};
+use scene::{Follow, LawKind};
 use std::fmt::Write;
 use vocabulary::{Edge, EdgeState, Moment, Snapshot};
 
@@ -102,7 +102,7 @@ const FLOOR: f64 = 1e-18;
 
 /// The curves of a quantity in a span of time, of all branches, the one that is looked at last.
 pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> Vec<Curve> {
-    let (Some(history), Some(scene)) = (&desk.history, desk.scene_now()) else { return Vec::new() };
+    let Some(history) = &desk.history else { return Vec::new() };
     let mut order: Vec<usize> = (0..history.branches()).filter(|b| *b != desk.branch).collect();
     order.push(desk.branch);
     let mut all = Vec::new();
@@ -118,8 +118,7 @@ pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> V
         let moments = history.between(branch, [from, span[1]], most);
         for (edge, ends) in history.cast().edges.iter().enumerate() {
             let Some((_, _, follow)) = desk.follower(edge) else { continue };
-            let point =
-                |m: &&Moment| Some([m.snapshot.time, value(quantity, m, (edge, *ends), (scene, follow))?]);
+            let point = |m: &&Moment| Some([m.snapshot.time, value(quantity, m, (edge, *ends), follow)?]);
             let points = moments.iter().filter_map(point).collect();
             all.push(Curve { branch, robot: Some(ends.follower), points });
         }
@@ -138,12 +137,7 @@ pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> V
 }
 
 /// A quantity of an edge at a moment; `None` where there is none.
-fn value(
-    quantity: Quantity,
-    moment: &Moment,
-    (index, edge): (usize, Edge),
-    (_scene, follow): (&Scene, &Follow),
-) -> Option<f64> {
+fn value(quantity: Quantity, moment: &Moment, (index, edge): (usize, Edge), follow: &Follow) -> Option<f64> {
     let state = moment.edges.get(index)?;
     let rates = || true_rates(&moment.snapshot, edge, state, follow.law.distance_min);
     let observes = follow.law.kind == LawKind::OutputFeedback;

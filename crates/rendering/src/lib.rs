@@ -69,5 +69,5 @@ pub use renderer::Renderer;
 pub use sightline::Sightline;
 pub use sketch::{Area, Arrow, Ghost, Ring, Sketch, Spot, Stroke};
 pub use style::Style;
-pub use trail::Trail;
+pub use trail::{Trail, set_points};
 pub use view::{FreeCamera, Layout, Tile, View};

@@ -163,7 +163,7 @@ pub(crate) fn sizes(cast: &Cast) -> f64 {
 }
 
 /// Where on the ground each edge wants its follower, m.
-pub(crate) fn set_points(cast: &Cast, moment: &Moment) -> Vec<Option<[f64; 2]>> {
+pub fn set_points(cast: &Cast, moment: &Moment) -> Vec<Option<[f64; 2]>> {
     let place = |k: usize| {
         let state = moment.edges.get(k)?;
         let leader = moment.snapshot.robots.get(cast.edges.get(k)?.leader)?;

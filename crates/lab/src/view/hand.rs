@@ -1,13 +1,12 @@
 //! The pointer in the view: what it is over, what it drags, what a click means.
 
 use super::camera::HeldCamera;
-use super::sketching::set_points;
 use super::viewport::Viewport;
 use crate::action::Action;
 use crate::desk::{Choice, Desk, Tool};
 use crate::tidy::snap;
 use eframe::egui::{self, Pos2, Rect, Ui, Vec2};
-use rendering::{Picked, Sightline};
+use rendering::{Picked, Sightline, set_points};
 use std::sync::Arc;
 use vocabulary::{Moment, wrap};
 

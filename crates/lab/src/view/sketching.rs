@@ -3,7 +3,7 @@
 use super::holding;
 use crate::desk::{Choice, Desk};
 use crate::session::forecast::{Forecast, Place, Trouble};
-use rendering::{Area, Arrow, Ghost, Ring, Sketch, Spot, Stroke};
+use rendering::{Area, Arrow, Ghost, Ring, Sketch, Spot, Stroke, set_points};
 use std::sync::Arc;
 use vocabulary::{Cast, Moment};
 
@@ -154,17 +154,6 @@ fn handles(
     if let Some(robot) = hand.robot {
         sketch.rings.extend(under(robot).map(|ring| Ring { alpha: 0.5, ..ring }));
     }
-}
-
-/// Where on the ground each edge wants its follower, m.
-pub fn set_points(cast: &Cast, moment: &Moment) -> Vec<Option<[f64; 2]>> {
-    let place = |(edge, ends): (usize, &vocabulary::Edge)| {
-        let [distance, bearing] = moment.edges.get(edge)?.set_point;
-        let pose = moment.snapshot.robots.get(ends.leader)?.motion.pose;
-        let place = pose.world_from_body(distance * bearing.cos(), distance * bearing.sin());
-        place.iter().all(|x| x.is_finite()).then_some(place)
-    };
-    cast.edges.iter().enumerate().map(place).collect()
 }
 
 /// How many times as large as the usual robot one is.
