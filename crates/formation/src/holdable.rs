@@ -3,7 +3,7 @@
 //! A follower that keeps its place in the leader's frame moves like a point of a rigid body. With the leader at v and ω,
 //! the place [x, y] moves at (v − ω y, ω x) in the leader's frame and turns with ω.
 
-use vocabulary::Limits;
+use vocabulary::{Drive, Limits};
 
 /// Why a place cannot be held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +16,8 @@ pub enum Unholdable {
     TooFast,
     /// It would have to turn tighter than it can.
     TooTight,
+    /// It would have to speed up or brake harder than it can.
+    TooHard,
 }
 
 /// What stands against a follower with `limits` at `place`, [forward, left] of its leader in m, which drives at `speed`
@@ -26,24 +28,52 @@ pub fn unholdable(
     limits: &Limits,
     distance_min: f64,
 ) -> Option<Unholdable> {
+    unholdable_now(place, &Drive { speed, turn_rate, ..Drive::default() }, limits, distance_min)
+}
+
+/// As [`unholdable`], of a leader that is about to drive or turn faster or slower.
+pub fn unholdable_now(
+    place: [f64; 2],
+    leader: &Drive,
+    limits: &Limits,
+    distance_min: f64,
+) -> Option<Unholdable> {
     let [x, y] = place;
     if x.hypot(y) < distance_min {
         return Some(Unholdable::TooClose);
     }
-    let ahead = speed - turn_rate * y;
-    let needed = ahead.hypot(turn_rate * x);
-    // A leader at rest is followed at rest, as near as the limits allow.
-    if needed < limits.speed_min && speed > limits.speed_min {
+    let (needed, moving) = (held(place, leader), leader.speed > limits.speed_min);
+    // A leader at rest is followed at rest, as near as the limits allow; followers drive forward only, and where the
+    // place moves backwards they would have to turn round.
+    if moving && (needed.speed < limits.speed_min || leader.speed - leader.turn_rate * y < 0.0) {
         return Some(Unholdable::TooSlow);
     }
-    // Followers drive forward only: where the place moves backwards they would have to turn round.
-    if ahead < 0.0 && speed > limits.speed_min {
-        return Some(Unholdable::TooSlow);
-    }
-    if needed > limits.speed_max {
+    if needed.speed > limits.speed_max {
         return Some(Unholdable::TooFast);
     }
-    (turn_rate.abs() > limits.turn_rate_at(needed.max(limits.speed_min))).then_some(Unholdable::TooTight)
+    if needed.turn_rate.abs() > limits.turn_rate_at(needed.speed.max(limits.speed_min)) {
+        return Some(Unholdable::TooTight);
+    }
+    (needed.acceleration.abs() > limits.acceleration_max).then_some(Unholdable::TooHard)
+}
+
+/// How a follower moves that keeps its `place`, [forward, left] of its leader in m. The change of its turn rate is the
+/// leader's: exact while the leader turns steadily.
+pub fn held(place: [f64; 2], leader: &Drive) -> Drive {
+    let [x, y] = place;
+    let (ahead, aside) = (leader.speed - leader.turn_rate * y, leader.turn_rate * x);
+    let speed = ahead.hypot(aside);
+    if speed <= f64::EPSILON {
+        return Drive { speed, acceleration: 0.0, ..*leader };
+    }
+    let slope = [leader.acceleration - leader.turn_acceleration * y, leader.turn_acceleration * x];
+    Drive {
+        speed,
+        acceleration: (ahead * slope[0] + aside * slope[1]) / speed,
+        // The place's direction turns in the leader's frame, too.
+        turn_rate: leader.turn_rate + (ahead * slope[1] - aside * slope[0]) / (speed * speed),
+        turn_acceleration: leader.turn_acceleration,
+    }
 }
 
 #[cfg(test)]
@@ -73,5 +103,51 @@ mod tests {
         let car = Limits { curvature_max: 1.0 / 0.6, ..Limits::PAPER };
         assert_eq!(unholdable([-0.3, 2.5], (1.0, 0.35), &car, 0.1), Some(Unholdable::TooTight));
         assert_eq!(unholdable([-0.3, -1.0], (1.0, 0.35), &car, 0.1), None);
+    }
+
+    /// Speed, turn rate and acceleration of a place, by finite differences of where it is.
+    #[test]
+    fn a_place_behind_a_leader_that_changes_its_mind_moves_as_it_is_said_to() {
+        let place = [-1.2, 0.8];
+        let leader = Drive { speed: 1.0, acceleration: 0.4, turn_rate: 0.3, turn_acceleration: -0.5 };
+        // The leader's pose by the same midpoint rule as a fine integration.
+        let at = |t: f64| {
+            let steps = 2000;
+            let h = t / f64::from(steps);
+            let (mut x, mut y) = (0.0, 0.0);
+            let heading = |s: f64| leader.turn_rate * s + leader.turn_acceleration * s * s / 2.0;
+            for k in 0..steps {
+                let s = (f64::from(k) + 0.5) * h;
+                let v = leader.speed + leader.acceleration * s;
+                (x, y) = (x + v * heading(s).cos() * h, y + v * heading(s).sin() * h);
+            }
+            let (sin, cos) = heading(t).sin_cos();
+            [x + place[0] * cos - place[1] * sin, y + place[0] * sin + place[1] * cos]
+        };
+        let h = 1e-3;
+        let velocity = |t: f64| {
+            let (a, b) = (at(t - h), at(t + h));
+            [(b[0] - a[0]) / (2.0 * h), (b[1] - a[1]) / (2.0 * h)]
+        };
+        let polar = |t: f64| {
+            let [x, y] = velocity(t);
+            [x.hypot(y), y.atan2(x)]
+        };
+        let (before, now, after) = (polar(-h), polar(0.0), polar(h));
+        let [speed, acceleration, turn_rate] =
+            [now[0], (after[0] - before[0]) / (2.0 * h), (after[1] - before[1]) / (2.0 * h)];
+        let just = |share: f64| Limits {
+            speed_max: 9.0,
+            acceleration_max: share * acceleration.abs(),
+            turn_rate_max: 11.5,
+            ..Limits::PAPER
+        };
+        let judge = |limits: Limits| unholdable_now(place, &leader, &limits, 0.1);
+        assert_eq!(judge(just(1.001)), None);
+        assert_eq!(judge(just(0.999)), Some(Unholdable::TooHard));
+        let tight = |share: f64| Limits { turn_rate_max: share * turn_rate.abs(), ..just(2.0) };
+        assert_eq!((judge(tight(1.001)), judge(tight(0.999))), (None, Some(Unholdable::TooTight)));
+        let fast = |share: f64| Limits { speed_max: share * speed, ..just(2.0) };
+        assert_eq!((judge(fast(1.001)), judge(fast(0.999))), (None, Some(Unholdable::TooFast)));
     }
 }

@@ -7,6 +7,7 @@
 //! Read in the order of the data: [`graph`], [`relative`], [`set_point`], [`lead`], [`law`], [`observer`], [`looks`], and
 //! [`formation`], which puts them together.
 
+pub mod certificate;
 pub mod energy;
 pub mod formation;
 pub mod graph;

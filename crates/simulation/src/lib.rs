@@ -4,6 +4,7 @@
 //! control sample; [`verdict`] holds what was measured against what the scene expects.
 
 mod build;
+pub mod certify;
 mod continuous;
 mod error;
 mod lookout;

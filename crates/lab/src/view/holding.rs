@@ -2,7 +2,7 @@
 
 use crate::desk::Desk;
 use crate::session::forecast::Forecast;
-use formation::holdable::{Unholdable, unholdable};
+use formation::holdable::unholdable;
 use vocabulary::{Limits, Moment, Pose};
 
 /// Side of a square of the field, m, and squares on a side.
@@ -44,10 +44,7 @@ impl Wanted {
 
     fn refuses_at(&self, place: [f64; 2], (speed, turn_rate): (f64, f64)) -> bool {
         let why = unholdable(place, (speed, turn_rate), &self.limits, self.distance_min);
-        if matches!(
-            why,
-            Some(Unholdable::TooClose | Unholdable::TooFast | Unholdable::TooSlow | Unholdable::TooTight)
-        ) {
+        if why.is_some() {
             return true;
         }
         let Some([far, pan]) = self.sight else { return false };

@@ -1,0 +1,252 @@
+//! What one edge went through, sample by sample, in the quantities of the theorems.
+
+use super::boundary::BoundaryLayer;
+use crate::law::{Law, LawKind, Switching};
+use crate::observer::{Estimate, Observer};
+use crate::relative::Geometry;
+use nalgebra::Vector2;
+use vocabulary::{Drive, Relative, SetPoint, wrap};
+
+/// One edge at one control sample, as it truly was.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Instant {
+    /// s.
+    pub time: f64,
+    /// Relative position.
+    pub relative: Relative,
+    /// v_j, m/s, above zero.
+    pub follower_speed: f64,
+    /// The leader's motion.
+    pub leader: Drive,
+    /// s^d and its derivatives.
+    pub set_point: SetPoint,
+    /// e, [m, rad], bearing wrapped.
+    pub error: [f64; 2],
+    /// The observer's state where one runs.
+    pub estimate: Option<Estimate>,
+    /// Whether a bound cut the command.
+    pub limited: bool,
+    /// Whether the speed stood at its bound.
+    pub at_speed_bound: bool,
+    /// Whether the distance was below ℓ_min.
+    pub too_close: bool,
+}
+
+/// The quantities of the theorems at one sample.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Row {
+    /// s.
+    pub time: f64,
+    /// ‖e‖, of metres and radians together as in the paper.
+    pub error: f64,
+    /// ‖de/dt‖.
+    pub error_rate: f64,
+    /// ‖r‖ with r = de/dt + K e (eq 18).
+    pub filtered: f64,
+    /// ‖g_v V_i‖, m/s² and rad/s².
+    pub effect: f64,
+    /// ‖d(g_v V_i)/dt‖: the larger of the slopes before and after the sample.
+    pub effect_rate: f64,
+    /// β − ‖g_v V_i‖ − ‖d(g_v V_i)/dt‖/k₁₂ (Lemma 4.1).
+    pub margin: f64,
+    /// P (eq 28).
+    pub p: f64,
+    /// V = ½ rᵀr + P (eq 29).
+    pub v: f64,
+    /// ‖η‖ (eqs 33-34); zero where no observer runs.
+    pub observer_error: f64,
+    /// W = ηᵀP₀η (eq 39).
+    pub w: f64,
+    /// ‖g_s‖.
+    pub rate_gain: f64,
+    /// Whether a bound cut the command.
+    pub limited: bool,
+    /// Whether the speed stood at its bound.
+    pub at_speed_bound: bool,
+    /// Whether the distance was below ℓ_min.
+    pub too_close: bool,
+}
+
+/// Goes along with one edge; its law and observer stay the same.
+#[derive(Debug, Clone)]
+pub struct Witness {
+    law: Law,
+    observer: Observer,
+    layer: Option<BoundaryLayer>,
+    rows: Vec<Row>,
+    last: Option<Sums>,
+    first_error: [f64; 2],
+    initial: f64,
+    settled_effect: [f64; 2],
+}
+
+/// What the integrals of P need of the sample before.
+#[derive(Debug, Clone, Copy)]
+struct Sums {
+    time: f64,
+    error: Vector2<f64>,
+    effect: Vector2<f64>,
+    /// (K e)ᵀ(g_v V_i − ū).
+    integrand: f64,
+    /// ∫ L, from the first sample on.
+    integral: f64,
+}
+
+impl Witness {
+    /// Before the first sample.
+    pub fn new(law: Law, observer: Observer) -> Self {
+        Self {
+            law,
+            observer,
+            layer: BoundaryLayer::of(&observer),
+            rows: Vec::new(),
+            last: None,
+            first_error: [0.0; 2],
+            initial: 0.0,
+            settled_effect: [0.0; 2],
+        }
+    }
+
+    /// The law it goes along with.
+    pub fn law(&self) -> &Law {
+        &self.law
+    }
+
+    /// The observer it goes along with; only output feedback uses it.
+    pub fn observer(&self) -> &Observer {
+        &self.observer
+    }
+
+    /// The boundary layer of the observer; `None` where it is not stable.
+    pub fn layer(&self) -> Option<&BoundaryLayer> {
+        self.layer.as_ref()
+    }
+
+    /// All samples so far.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// ζ_b (eq 26).
+    pub fn initial(&self) -> f64 {
+        self.initial
+    }
+
+    /// e at the first sample, [m, rad].
+    pub fn first_error(&self) -> [f64; 2] {
+        self.first_error
+    }
+
+    /// g_v V_i at the last sample, [m/s², rad/s²].
+    pub fn last_effect(&self) -> [f64; 2] {
+        self.settled_effect
+    }
+
+    /// Takes in the next sample.
+    pub fn push(&mut self, now: &Instant) {
+        let geometry = Geometry::new(&now.relative, self.law.distance_min);
+        let rates = geometry.rates(now.follower_speed, now.leader.speed, now.leader.turn_rate);
+        let error = Vector2::from(now.error);
+        let error_rate = Vector2::from(now.set_point.rate) - rates;
+        let gain = Vector2::from(self.law.gain);
+        let filtered = error_rate + gain.component_mul(&error);
+        let effect = geometry.leader_effect(now.follower_speed, &now.leader);
+        let integrand = gain.component_mul(&error).dot(&(effect - self.robust_term(now.error)));
+        let sums = self.integrate(now.time, error, effect, integrand);
+        let p = self.initial - sums.integral;
+        let eta = self.observer_error(now, &rates);
+        let slope = self.last.map_or(0.0, |last| {
+            let step = sums.time - last.time;
+            if step > 0.0 { (effect - last.effect).norm() / step } else { 0.0 }
+        });
+        // The slope to this sample counts for the one before, too.
+        if let Some(before) = self.rows.last_mut() {
+            before.effect_rate = before.effect_rate.max(slope);
+            before.margin = margin(&self.law, before);
+        }
+        let mut row = Row {
+            time: now.time,
+            error: error.norm(),
+            error_rate: error_rate.norm(),
+            filtered: filtered.norm(),
+            effect: effect.norm(),
+            effect_rate: slope,
+            margin: 0.0,
+            p,
+            v: 0.5 * filtered.norm_squared() + p,
+            observer_error: eta.iter().map(|x| x * x).sum::<f64>().sqrt(),
+            w: self.layer.map_or(0.0, |layer| layer.energy(&eta)),
+            rate_gain: geometry.rate_column(now.follower_speed).norm(),
+            limited: now.limited,
+            at_speed_bound: now.at_speed_bound,
+            too_close: now.too_close,
+        };
+        row.margin = margin(&self.law, &row);
+        self.rows.push(row);
+        self.last = Some(sums);
+        self.settled_effect = effect.into();
+    }
+
+    /// ∫ L dτ with L = rᵀ(g_v V_i − ū) (eq 25), r = de/dt + K e: the part with de/dt as a Stieltjes sum and, for ū, in
+    /// closed form, so that steps of the sign do no harm; the rest by trapezoids.
+    fn integrate(&mut self, time: f64, error: Vector2<f64>, effect: Vector2<f64>, integrand: f64) -> Sums {
+        let Some(last) = self.last else {
+            self.first_error = error.into();
+            self.initial = self.potential(&error) - error.dot(&effect);
+            return Sums { time, error, effect, integrand, integral: 0.0 };
+        };
+        // The bearing's error is wrapped: where it jumps by a turn, it did not move.
+        let mut moved = error - last.error;
+        moved.y = wrap(moved.y);
+        let potential = self.potential(&error) - self.potential(&last.error);
+        let integral = last.integral + moved.dot(&(effect + last.effect)) / 2.0 - potential
+            + (time - last.time) * (integrand + last.integrand) / 2.0;
+        Sums { time, error, effect, integrand, integral }
+    }
+
+    fn robust_term(&self, error: [f64; 2]) -> Vector2<f64> {
+        match self.law.kind {
+            LawKind::FullState => Vector2::zeros(),
+            LawKind::RobustState | LawKind::OutputFeedback => self.law.robust_term(error),
+        }
+    }
+
+    /// ∫ ūᵀ de from e = 0: β‖e‖₁ for the sign, (β/slope) ln cosh(slope e) for tanh.
+    fn potential(&self, error: &Vector2<f64>) -> f64 {
+        if self.law.kind == LawKind::FullState {
+            return 0.0;
+        }
+        let channel = |i: usize| {
+            let e = error[i].abs();
+            self.law.robust_gain[i]
+                * match self.law.switching {
+                    Switching::Sign => e,
+                    Switching::Tanh(slope) => log_cosh(slope[i] * e) / slope[i],
+                }
+        };
+        channel(0) + channel(1)
+    }
+
+    /// η = [(s − ŝ₁)/ε, ds/dt − ŝ₂] (eqs 33-34).
+    fn observer_error(&self, now: &Instant, rates: &Vector2<f64>) -> [f64; 4] {
+        let Some(estimate) = now.estimate else { return [0.0; 4] };
+        let epsilon = self.observer.epsilon;
+        [
+            (now.relative.distance - estimate.output[0]) / epsilon[0],
+            wrap(now.relative.bearing - estimate.output[1]) / epsilon[1],
+            rates.x - estimate.rates[0],
+            rates.y - estimate.rates[1],
+        ]
+    }
+}
+
+/// ln cosh x for x ≥ 0, without overflow.
+fn log_cosh(x: f64) -> f64 {
+    x + (-2.0 * x).exp().ln_1p() - std::f64::consts::LN_2
+}
+
+/// β − ‖g_v V_i‖ − ‖d(g_v V_i)/dt‖/k₁₂ (Lemma 4.1), β the smaller of the two.
+fn margin(law: &Law, row: &Row) -> f64 {
+    let [k, beta] = [law.gain, law.robust_gain].map(|pair| pair[0].min(pair[1]));
+    beta - row.effect - row.effect_rate / k
+}

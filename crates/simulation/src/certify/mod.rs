@@ -1,0 +1,11 @@
+//! Certificates of runs: what the theorems say of every edge, and what lies beyond them.
+//!
+//! An [`Examiner`] goes along with a run. [`sensitivity`] runs a scene again with every gain a little larger and smaller;
+//! [`reach`] says which set points followers can hold; [`chain`] how disturbances go down a chain.
+
+pub mod chain;
+mod examiner;
+pub mod reach;
+pub mod sensitivity;
+
+pub use examiner::{Certificate, Examiner};
