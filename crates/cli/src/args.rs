@@ -1,5 +1,6 @@
 //! Subcommands and flags.
 
+use crate::certify::CertifyArgs;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use scene::Override;
@@ -32,6 +33,8 @@ pub(crate) enum Command {
     Tune(TuneArgs),
     /// Say where errors of following come from: the scene with better and worse sensing, side by side
     Budget(BudgetArgs),
+    /// Say what the paper's theorems promise for a scene's run, and whether their premises are met
+    Certify(CertifyArgs),
     /// Write what the cameras of a scene see, with the truth about every tag: a labelled set of pictures
     Dataset(DatasetArgs),
     /// Measure how well leaders are found and located in drawn pictures

@@ -4,6 +4,7 @@ mod accuracy;
 mod args;
 mod budget;
 mod capture;
+mod certify;
 mod check;
 mod dataset;
 mod doctor;
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
                 | Command::Film(_)
                 | Command::Tune(_)
                 | Command::Budget(_)
+                | Command::Certify(_)
                 | Command::Dataset(_)
                 | Command::Accuracy(_)
                 | Command::Doctor(_)
@@ -61,6 +63,7 @@ fn main() -> ExitCode {
         Some(Command::Film(args)) => film::film(&args),
         Some(Command::Tune(args)) => tune::tune(&args),
         Some(Command::Budget(args)) => budget::budget(&args),
+        Some(Command::Certify(args)) => certify::certify(&args),
         Some(Command::Dataset(args)) => dataset::dataset(&args),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Command::Check(args)) => check::check(&args),

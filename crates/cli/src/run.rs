@@ -7,7 +7,8 @@ use crate::interrupt;
 use crate::load::{Loaded, load, stem};
 use crate::progress::Progress;
 use crate::report::{self, Report};
-use recording::{Digest, Judging, Metrics, MetricsBuilder, Recorder, RunOptions, Status};
+use recording::{CertificateMetrics, Digest, Judging, Metrics, MetricsBuilder, Recorder, RunOptions, Status};
+use simulation::certify::Examiner;
 use simulation::verdict::verdict;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -35,11 +36,13 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     let progress = Progress::begin(&what, steps, args.scene.quiet || args.scene.json);
     let began = Instant::now();
     let mut step = 0;
+    let mut examiner = Examiner::new(&scene, &simulation);
     while let Some(moment) = simulation.next_moment() {
         if let Err(error) = sink.push(moment) {
             sink.abandon();
             return Err(error.into());
         }
+        examiner.push(&simulation);
         step += 1;
         if step % STRIDE == 0 {
             progress.at(step);
@@ -59,7 +62,9 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
         false if simulation.stopped() => Status::Stopped,
         false => Status::Interrupted,
     };
-    let (metrics, digest) = sink.finish(status)?;
+    let certificates = examiner.finish(&simulation);
+    let certificates = certificates.iter().map(|c| c.metrics(simulation.cast())).collect();
+    let (metrics, digest) = sink.finish(status, certificates)?;
     if status == Status::Interrupted {
         let place = folder.map_or_else(String::new, |f| format!(", recorded in {}", f.display()));
         return Err(Failure::Interrupted(format!(
@@ -137,13 +142,18 @@ impl Sink {
         }
     }
 
-    fn finish(self, status: Status) -> Result<(Metrics, String), recording::Error> {
+    fn finish(
+        self,
+        status: Status,
+        certificates: Vec<CertificateMetrics>,
+    ) -> Result<(Metrics, String), recording::Error> {
         match self {
-            Self::Record(recorder) => {
+            Self::Record(mut recorder) => {
+                recorder.certify(certificates);
                 let (manifest, metrics) = recorder.finish(status)?;
                 Ok((metrics, manifest.digest.unwrap_or_default()))
             }
-            Self::Judge(judge) => Ok((judge.0.finish(), judge.1.text())),
+            Self::Judge(judge) => Ok((Metrics { certificates, ..judge.0.finish() }, judge.1.text())),
         }
     }
 }

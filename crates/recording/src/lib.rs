@@ -10,6 +10,7 @@
 //! Rows reach the disk as the run goes, in parts that are each complete, so a run that is cut short leaves what it
 //! had; its manifest then says `running` or `interrupted`, never `complete`.
 
+mod certificates;
 pub mod clearance;
 mod columns;
 mod contacts;
@@ -22,6 +23,7 @@ mod metrics;
 mod run;
 mod table;
 
+pub use certificates::{CertificateMetrics, StatementMetrics};
 pub use contacts::ContactMetrics;
 pub use digest::Digest;
 pub use error::Error;

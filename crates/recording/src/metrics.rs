@@ -1,5 +1,6 @@
 //! Errors, effort and clearance of a run, gathered as it goes.
 
+use crate::certificates::CertificateMetrics;
 use crate::clearance::Clearance;
 use crate::contacts::{ContactLog, ContactMetrics};
 use crate::looks::{LookMetrics, LookSums};
@@ -29,6 +30,9 @@ pub struct Metrics {
     pub first_contacts: Vec<ContactMetrics>,
     /// |error| under which an edge counts as settled, [m, rad].
     pub settling_band: [f64; 2],
+    /// What the theorems say of every edge, where somebody has looked.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub certificates: Vec<CertificateMetrics>,
 }
 
 /// One robot over a run.
@@ -202,6 +206,7 @@ impl MetricsBuilder {
             contact_impulse_max: self.contacts.largest(),
             first_contacts: self.contacts.first(&self.cast),
             settling_band: self.judging.settling_band,
+            certificates: vec![],
         }
     }
 

@@ -2,7 +2,9 @@
 
 use crate::manifest::FORMAT;
 use crate::table::{TableKind, TableWriter};
-use crate::{Digest, Error, Judging, Manifest, Metrics, MetricsBuilder, Status, write_whole};
+use crate::{
+    CertificateMetrics, Digest, Error, Judging, Manifest, Metrics, MetricsBuilder, Status, write_whole,
+};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -36,6 +38,7 @@ pub struct Recorder {
     manifest: Manifest,
     tables: Vec<TableWriter>,
     metrics: MetricsBuilder,
+    certificates: Vec<CertificateMetrics>,
     digest: Digest,
 }
 
@@ -66,6 +69,7 @@ impl Recorder {
             cast: cast.clone(),
             tables: TableKind::of(cast).into_iter().map(writer).collect::<Result<_, _>>()?,
             metrics: MetricsBuilder::new(cast, options.judging),
+            certificates: Vec::new(),
             digest: Digest::default(),
             manifest: first_manifest(cast, options),
         };
@@ -87,6 +91,11 @@ impl Recorder {
         Ok(())
     }
 
+    /// What the theorems say of the run, for its metrics.
+    pub fn certify(&mut self, certificates: Vec<CertificateMetrics>) {
+        self.certificates = certificates;
+    }
+
     /// Closes the tables and writes metrics and manifest.
     ///
     /// # Errors
@@ -97,7 +106,8 @@ impl Recorder {
             table.push(&self.cast, &last)?;
             table.finish()?;
         }
-        let metrics = self.metrics.finish();
+        let metrics =
+            Metrics { certificates: std::mem::take(&mut self.certificates), ..self.metrics.finish() };
         write_json(&self.folder.join("metrics.json"), &metrics)?;
         self.manifest.status = status;
         self.manifest.digest = Some(self.digest.text());

@@ -1,8 +1,9 @@
 //! The constants of section 4.3 for one run: σ_s to T_ε, and the ultimate bound (eqs 44-53).
 //!
 //! The paper takes maxima over compact sets it leaves open; here they are taken over what the run went through, so that
-//! the constants speak about this run. Two places need a choice. D_c is the smallest set {V ≤ c} that holds the run, and
-//! μ is ‖r‖ where the run touches its border. Eq 51 prints ‖r‖² ≤ 2 L₁ε; from eq 44 follows dV/dt ≤ −½k₁₂‖r‖² where
+//! the constants speak about this run. Two places need a choice. D_c is the smallest ball ‖r‖ ≤ μ that holds the run, P
+//! left aside, and at least the one in which everything ends: the proof needs no more of it than dV/dt ≤ 0 on its
+//! border. Eq 51 prints ‖r‖² ≤ 2 L₁ε; from eq 44 follows dV/dt ≤ −½k₁₂‖r‖² where
 //! ‖r‖ ≥ 2 L₁ε, and this is what is used.
 
 use super::witness::{Row, Witness};
@@ -24,7 +25,7 @@ pub struct Constants {
     pub rho: f64,
     /// σ₁ √(ρ/λ_min(P₀)).
     pub l1: f64,
-    /// ‖r‖ where V is largest.
+    /// Largest ‖r‖, at least 2 L₁ε: the border of D_c.
     pub mu: f64,
     /// min(1/(4 σ_s ‖P₀‖), μ/L₁), s: the largest ε for which the proof finds an invariant set.
     pub epsilon_1: f64,
@@ -66,8 +67,8 @@ impl Constants {
         let sigma_1 = (sigma_s + 2.0 * k_most) / k_least;
         let rho = 16.0 * sigma_v.powi(2) * norm.powi(3);
         let l1 = sigma_1 * (rho / least).sqrt();
-        let highest = rows.iter().max_by(|a, b| a.v.total_cmp(&b.v))?;
-        let mu = highest.filtered;
+        // A run that stays inside the ball of eq 51 needs no larger one.
+        let mu = largest(|row| row.filtered).max(2.0 * l1 * epsilon);
         let c3 = epsilon * first.observer_error;
         let (mu_1, mu_2) = (1.0 / (2.0 * norm), c3 * c3 * norm);
         let trap = rho * epsilon.powi(2);

@@ -87,6 +87,17 @@ pub enum Outcome {
     PremiseNotMet,
 }
 
+impl Outcome {
+    /// One word for it, for machines.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Violated(_) => "violated",
+            Self::PremiseNotMet => "premise-not-met",
+        }
+    }
+}
+
 /// A statement held against a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {

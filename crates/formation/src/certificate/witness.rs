@@ -192,7 +192,10 @@ impl Witness {
     fn integrate(&mut self, time: f64, error: Vector2<f64>, effect: Vector2<f64>, integrand: f64) -> Sums {
         let Some(last) = self.last else {
             self.first_error = error.into();
-            self.initial = self.potential(&error) - error.dot(&effect);
+            let beta = self.law.robust_gain;
+            let robust = self.law.kind != LawKind::FullState;
+            let start = if robust { beta[0] * error.x.abs() + beta[1] * error.y.abs() } else { 0.0 };
+            self.initial = start - error.dot(&effect);
             return Sums { time, error, effect, integrand, integral: 0.0 };
         };
         // The bearing's error is wrapped: where it jumps by a turn, it did not move.

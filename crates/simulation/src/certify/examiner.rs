@@ -2,11 +2,12 @@
 
 use crate::step::{Simulation, Timing};
 use formation::certificate::{
-    Circumstances, Constants, Finding, Instant, Outcome, Statement, Witness, certify,
+    Circumstances, Constants, Finding, Instant, Outcome, Premise, Statement, Witness, certify,
 };
 use formation::{EdgeLaw, Estimate, LawKind, SetPointCourse, Switching};
+use recording::{CertificateMetrics, StatementMetrics};
 use scene::Scene;
-use vocabulary::{Drive, Edge, Moment};
+use vocabulary::{Cast, Drive, Edge, Moment, Thing};
 
 /// A change of a held command below this is rounding, m/s² or rad/s.
 const STEADY: f64 = 1e-9;
@@ -35,6 +36,31 @@ impl Certificate {
     /// The finding about a statement.
     pub fn finding(&self, statement: Statement) -> Option<&Finding> {
         self.findings.iter().find(|finding| finding.statement == statement)
+    }
+
+    /// The certificate as `metrics.json` holds it.
+    pub fn metrics(&self, cast: &Cast) -> CertificateMetrics {
+        let name = |robot: usize| cast.name(Thing::Robot(robot)).to_owned();
+        let (leader, follower) =
+            cast.edges.get(self.edge).map_or((0, 0), |edge| (edge.leader, edge.follower));
+        let statement = |finding: &Finding| StatementMetrics {
+            statement: finding.statement.name().to_owned(),
+            source: finding.statement.source().to_owned(),
+            outcome: finding.outcome().name().to_owned(),
+            against_from: finding.against.map(|spell| spell.first),
+            against_to: finding.against.map(|spell| spell.last),
+            margin: finding.margin.filter(|margin| margin.is_finite()),
+            unmet: finding.unmet.iter().map(Premise::words).collect(),
+        };
+        let finite = |value: f64| Some(value).filter(|v| v.is_finite());
+        CertificateMetrics {
+            leader: name(leader),
+            follower: name(follower),
+            span: self.span,
+            statements: self.findings.iter().map(statement).collect(),
+            ultimate_error: self.constants.and_then(|c| finite(c.error)),
+            epsilon_1: self.constants.and_then(|c| finite(c.epsilon_1)),
+        }
     }
 
     /// Whether every statement holds or is not claimed.

@@ -9,3 +9,7 @@ pub mod reach;
 pub mod sensitivity;
 
 pub use examiner::{Certificate, Examiner};
+pub use formation::certificate::chain::NotLinear;
+pub use formation::certificate::discretisation::{Channel, Discretisation, LongestPeriod};
+pub use formation::certificate::{Constants, Finding, Outcome, Premise, Row, Statement};
+pub use formation::holdable::Unholdable;

@@ -1,0 +1,123 @@
+//! `echelon certify`: what the theorems say of a scene's run, edge by edge, and what lies beyond them.
+
+mod beyond;
+mod files;
+mod pictures;
+mod text;
+
+use crate::args::SceneArgs;
+use crate::failure::Failure;
+use crate::load::{Loaded, load, stem};
+use crate::print::json;
+use crate::progress::Progress;
+use crate::run::STRIDE;
+use crate::{Outcome, interrupt};
+use beyond::Beyond;
+use clap::Args;
+use scene::Scene;
+use simulation::certify::{self, Certificate, Examiner};
+use std::path::PathBuf;
+use std::time::Instant;
+use vocabulary::{Cast, Thing};
+
+#[derive(Debug, Args)]
+pub(crate) struct CertifyArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Folder for certificate.json, the numbers as certificate.csv, and figures; it may hold others
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Wanted bound on the tracking error at the end (m and rad together, as in the paper): tells the largest ε that the
+    /// proof promises it for
+    #[arg(long, value_name = "BOUND", value_parser = bound)]
+    bound: Option<f64>,
+    /// Leave out what is beyond the paper: sensitivities, set points that can be held, stability over ε and period, chains
+    #[arg(long)]
+    paper_only: bool,
+    /// Run the scene for every gain also where its runs are long: vehicles on wheels, many robots
+    #[arg(long, conflicts_with = "paper_only")]
+    sensitivity: bool,
+    /// Exit with 1 unless every statement holds
+    #[arg(long)]
+    strict: bool,
+}
+
+fn bound(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| (1e-9..=1e3).contains(v));
+    value.ok_or_else(|| "write a number from 1e-9 to 1000, such as 0.01".to_owned())
+}
+
+/// All that is known of a scene.
+pub(crate) struct Report<'a> {
+    scene: &'a Scene,
+    cast: Cast,
+    certificates: Vec<Certificate>,
+    beyond: Option<Beyond>,
+    bound: Option<f64>,
+    wall: f64,
+}
+
+impl Report<'_> {
+    /// "leader → follower".
+    fn edge(&self, index: usize) -> String {
+        let name = |robot: usize| self.cast.name(Thing::Robot(robot));
+        self.cast
+            .edges
+            .get(index)
+            .map_or_else(String::new, |e| format!("{} → {}", name(e.leader), name(e.follower)))
+    }
+
+    /// Name of the robot that follows on an edge.
+    fn follower(&self, index: usize) -> &str {
+        self.cast.edges.get(index).map_or("", |edge| self.cast.name(Thing::Robot(edge.follower)))
+    }
+
+    /// Whether every statement of every edge holds.
+    fn holds(&self) -> bool {
+        let holds = |finding: &certify::Finding| finding.outcome() == certify::Outcome::Holds;
+        self.certificates.iter().all(|certificate| certificate.findings.iter().all(holds))
+    }
+}
+
+pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
+    let began = Instant::now();
+    let mut loaded = load(&args.scene)?;
+    loaded.open_eyes(None, &args.scene)?;
+    let Loaded { scene, mut simulation } = loaded;
+    let quiet = args.scene.quiet || args.scene.json;
+    if simulation.cast().edges.is_empty() {
+        let text =
+            format!("{}: nobody follows anybody, so there is nothing to certify", args.scene.scene.display());
+        return Err(Failure::Usage(text));
+    }
+    let what = format!("Certifying {}, {} s", stem(&args.scene.scene), scene.time.duration);
+    let progress = Progress::begin(&what, simulation.len(), quiet);
+    let mut examiner = Examiner::new(&scene, &simulation);
+    let mut step = 0;
+    while simulation.next_moment().is_some() {
+        examiner.push(&simulation);
+        step += 1;
+        if step % STRIDE == 0 {
+            progress.at(step);
+            if interrupt::asked() {
+                return Err(Failure::Interrupted("nothing was certified".into()));
+            }
+        }
+    }
+    if let Some(fault) = simulation.fault() {
+        return Err(Failure::Machine(fault.to_owned()));
+    }
+    progress.end();
+    let certificates = examiner.finish(&simulation);
+    let beyond = (!args.paper_only).then(|| beyond::look(&scene, args.sensitivity, quiet)).transpose()?;
+    let cast = simulation.cast().clone();
+    let mut report = Report { scene: &scene, cast, certificates, beyond, bound: args.bound, wall: 0.0 };
+    report.wall = began.elapsed().as_secs_f64();
+    let written = args.out.as_deref().map(|folder| files::write(folder, &report)).transpose()?;
+    if args.scene.json {
+        json(&files::as_json(&report));
+    } else if !args.scene.quiet {
+        text::tell(&report, &written.unwrap_or_default());
+    }
+    if args.strict && !report.holds() { Err(Failure::Expectation) } else { Ok(()) }
+}

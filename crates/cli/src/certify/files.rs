@@ -1,0 +1,167 @@
+//! A certificate as files: JSON, the quantities of the theorems over time as a table, and figures.
+
+use super::Report;
+use super::beyond::Beyond;
+use super::pictures;
+use super::text::reason;
+use crate::failure::Failure;
+use recording::write_whole;
+use serde_json::{Value, json};
+use simulation::certify::chain::LENGTHS;
+use simulation::certify::{Certificate, Constants, LongestPeriod};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// Writes everything into `folder`; what was there under the same names is replaced.
+pub(super) fn write(folder: &Path, report: &Report<'_>) -> Result<Vec<PathBuf>, Failure> {
+    if folder.is_file() {
+        let text = format!("{} is a file; -o names a folder for the certificate", folder.display());
+        return Err(Failure::Usage(text));
+    }
+    let refused = |e| Failure::Machine(format!("cannot create {}: {e}", folder.display()));
+    std::fs::create_dir_all(folder).map_err(refused)?;
+    let mut texts =
+        vec![("certificate.json", format!("{:#}\n", as_json(report))), ("certificate.csv", table(report))];
+    texts.extend(pictures::figures(report));
+    let mut written = vec![];
+    for (name, text) in texts {
+        let path = folder.join(name);
+        write_whole(&path, text.as_bytes())?;
+        written.push(path);
+    }
+    Ok(written)
+}
+
+/// Every number, SI units.
+pub(super) fn as_json(report: &Report<'_>) -> Value {
+    let edges: Vec<Value> = report.certificates.iter().map(|c| edge(report, c)).collect();
+    json!({
+        "title": report.scene.title,
+        "law": simulation::caption(report.scene),
+        "edges": edges,
+        "beyond": report.beyond.as_ref().map(|beyond| beyond_json(report, beyond)),
+        "wall_seconds": report.wall,
+    })
+}
+
+fn edge(report: &Report<'_>, certificate: &Certificate) -> Value {
+    let mut value = serde_json::to_value(certificate.metrics(&report.cast)).unwrap_or_default();
+    if let Some(map) = value.as_object_mut() {
+        let witness = &certificate.witness;
+        map.insert("zeta_b".to_owned(), json!(witness.initial()));
+        map.insert("final_error".to_owned(), json!(certificate.final_error));
+        map.insert("error_left_by_tanh".to_owned(), json!(certificate.smoothing));
+        map.insert("p0".to_owned(), json!(witness.layer().map(|l| rows(&l.matrix))));
+        map.insert("constants".to_owned(), json!(certificate.constants.map(|c| constants(&c, report.bound))));
+    }
+    value
+}
+
+fn rows(matrix: &impl std::ops::Index<(usize, usize), Output = f64>) -> Vec<Vec<f64>> {
+    (0..4).map(|i| (0..4).map(|j| matrix[(i, j)]).collect()).collect()
+}
+
+fn constants(c: &Constants, bound: Option<f64>) -> Value {
+    json!({
+        "lambda_min_p0": c.least, "norm_p0": c.norm, "sigma_s": c.sigma_s, "sigma_v": c.sigma_v,
+        "sigma_1": c.sigma_1, "rho": c.rho, "l1": c.l1, "mu": c.mu, "epsilon": c.epsilon,
+        "epsilon_1": c.epsilon_1, "c3": c.c3, "mu_1": c.mu_1, "mu_2": c.mu_2, "t_epsilon": c.t_epsilon,
+        "trap": c.trap, "ultimate_filtered_error": c.filtered, "ultimate_error": c.error,
+        "delta_0": c.delta_0,
+        "wanted": bound.map(|b| json!({ "error": b, "epsilon_most": c.epsilon_for(b) })),
+    })
+}
+
+fn beyond_json(report: &Report<'_>, beyond: &Beyond) -> Value {
+    let sensitivity = match &beyond.sensitivities {
+        Err(why) => json!({ "left_out": why }),
+        Ok(found) => {
+            let gains = found.gains.iter().map(|g| json!({ "gain": g.gain.symbol(), "edges": g.edges }));
+            json!({ "settled_error": found.settled, "gains": gains.collect::<Vec<_>>() })
+        }
+    };
+    let reach = beyond.reach.iter().map(|reach| {
+        let rays = reach.rays.iter().map(|ray| {
+            json!({ "bearing": ray.bearing, "distance": ray.distance, "end": ray.end.map(reason) })
+        });
+        json!({
+            "edge": report.edge(reach.edge), "set_point": reach.set_point, "refused": reach.refused.map(reason),
+            "looked_to": reach.far, "rays": rays.collect::<Vec<_>>(),
+        })
+    });
+    let chart = beyond.chart.as_ref().map(|chart| {
+        let borders = chart.borders.iter().map(|(how, border)| {
+            let longest = border.iter().map(|longest| match longest {
+                LongestPeriod::Below => json!(0.0),
+                LongestPeriod::At(period) => json!(period),
+                LongestPeriod::Beyond => Value::Null,
+            });
+            json!({
+                "discretisation": how.name(),
+                "longest_period": longest.collect::<Vec<_>>(),
+                "growth": chart.channel.growth(*how, chart.epsilon, chart.period),
+                "reported_rate": chart.channel.reported_rate(*how, chart.epsilon, chart.period),
+            })
+        });
+        json!({
+            "follower": chart.follower, "epsilon": chart.epsilon, "period": chart.period,
+            "epsilons": chart.epsilons, "borders": borders.collect::<Vec<_>>(),
+        })
+    });
+    let chain = beyond.chain.iter().map(|gain| {
+        let curve = gain.curve.iter().map(|p| {
+            json!({
+                "frequency": p.frequency, "own_leader": p.own_leader, "lead": p.lead, "growth": p.growth,
+                "chains": p.lengths,
+            })
+        });
+        json!({
+            "edge": report.edge(gain.edge), "depth": gain.depth, "stable": gain.stable,
+            "curve": curve.collect::<Vec<_>>(),
+        })
+    });
+    json!({
+        "sensitivity": sensitivity,
+        "reach": reach.collect::<Vec<_>>(),
+        "stability": chart,
+        "chain": { "lengths": LENGTHS, "edges": chain.collect::<Vec<_>>() },
+    })
+}
+
+/// A row for every edge and sample.
+fn table(report: &Report<'_>) -> String {
+    let mut text = String::from(
+        "leader,follower,time_s,error,error_rate,filtered_error,leader_effect,leader_effect_rate,beta_margin,p,v,\
+         observer_error,w\n",
+    );
+    for certificate in &report.certificates {
+        let edge = certificate.metrics(&report.cast);
+        let quoted = |name: &str| {
+            if name.contains([',', '"']) {
+                format!("\"{}\"", name.replace('"', "\"\""))
+            } else {
+                name.to_owned()
+            }
+        };
+        let head = format!("{},{}", quoted(&edge.leader), quoted(&edge.follower));
+        for r in certificate.witness.rows() {
+            // Writing to a text cannot fail.
+            let _ = writeln!(
+                text,
+                "{head},{},{},{},{},{},{},{},{},{},{},{}",
+                r.time,
+                r.error,
+                r.error_rate,
+                r.filtered,
+                r.effect,
+                r.effect_rate,
+                r.margin,
+                r.p,
+                r.v,
+                r.observer_error,
+                r.w
+            );
+        }
+    }
+    text
+}

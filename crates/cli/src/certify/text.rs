@@ -1,0 +1,335 @@
+//! A certificate for people.
+
+use super::Report;
+use super::beyond::{Beyond, Chart};
+use crate::print::say;
+use simulation::certify::chain::{LENGTHS, Point};
+use simulation::certify::{
+    Certificate, Constants, Discretisation, Finding, LongestPeriod, NotLinear, Outcome, Statement, Unholdable,
+};
+use std::path::PathBuf;
+
+/// Edges that are told statement by statement; the others have a line each.
+const IN_FULL: usize = 2;
+/// Edges that have a line.
+const MOST_EDGES: usize = 12;
+
+pub(super) fn tell(report: &Report<'_>, written: &[PathBuf]) {
+    say(&format!("{}\n{}", report.scene.title, simulation::caption(report.scene)));
+    for certificate in report.certificates.iter().take(IN_FULL) {
+        edge(report, certificate);
+    }
+    others(report);
+    if let Some(beyond) = &report.beyond {
+        say("\nBeyond the paper");
+        sensitivities(report, beyond);
+        reach(report, beyond);
+        if let Some(chart) = &beyond.chart {
+            stability(chart);
+        }
+        chain(report, beyond);
+    }
+    say(&format!("\ncertified in {:.2} s", report.wall));
+    for path in written {
+        say(&format!("{}", path.display()));
+    }
+}
+
+fn edge(report: &Report<'_>, certificate: &Certificate) {
+    let [from, to] = certificate.span;
+    say(&format!("\n{}, {from:.2} to {to:.2} s", report.edge(certificate.edge)));
+    for finding in &certificate.findings {
+        statement(finding);
+    }
+    let witness = &certificate.witness;
+    if let Some(last) = witness.rows().last() {
+        say(&format!(
+            "  at the end     ‖gᵥVᵢ‖ {}, margin of β {}, ζ_b {}, P {}, V {}, W {}",
+            short(last.effect),
+            short(last.margin),
+            short(witness.initial()),
+            short(last.p),
+            short(last.v),
+            short(last.w)
+        ));
+    }
+    let error = |e: [f64; 2]| format!("{} mm {}°", short(1e3 * e[0]), short(e[1].to_degrees()));
+    let smoothing = certificate
+        .smoothing
+        .map_or_else(String::new, |e| format!("; tanh in place of sign alone leaves {}", error(e)));
+    say(&format!("  error          {}{smoothing}", error(certificate.final_error)));
+    if let Some(constants) = &certificate.constants {
+        numbers(constants, report.bound);
+    }
+}
+
+/// A line for every edge that is not told in full.
+fn others(report: &Report<'_>) {
+    let rest = || report.certificates.iter().skip(IN_FULL);
+    if rest().next().is_none() {
+        return;
+    }
+    let heads = Statement::ALL.map(Statement::source);
+    let head: String = heads.iter().map(|source| format!("  {source:>13}")).collect();
+    say(&format!("\n{:28}{head}", ""));
+    for certificate in rest().take(MOST_EDGES) {
+        let cells: String = certificate.findings.iter().map(|f| format!("  {:>13}", cell(f))).collect();
+        say(&format!("{:28}{cells}", clip(&report.edge(certificate.edge), 28)));
+    }
+    let more = rest().count().saturating_sub(MOST_EDGES);
+    if more > 0 {
+        say(&format!("… and {more} more; all of them with --json or -o DIR"));
+    }
+    say(
+        "✓ holds, ✗ violated from this time on, – premise not met; then by the numbers (✓) or (✗), or nothing to say",
+    );
+}
+
+fn cell(finding: &Finding) -> String {
+    match (finding.outcome(), finding.against, finding.margin) {
+        (Outcome::Holds, ..) => "✓".to_owned(),
+        (Outcome::Violated(at), ..) => format!("✗ {at:.2} s"),
+        (Outcome::PremiseNotMet, Some(spell), _) => format!("– (✗ {:.2} s)", spell.first),
+        (Outcome::PremiseNotMet, None, Some(_)) => "– (✓)".to_owned(),
+        (Outcome::PremiseNotMet, None, None) => "–".to_owned(),
+    }
+}
+
+fn statement(finding: &Finding) {
+    let margin =
+        finding.margin.map_or_else(String::new, |margin| format!(", least margin {}", short(margin)));
+    let when = finding.against.map_or_else(String::new, |spell| {
+        if spell.share >= 1.0 {
+            "throughout".to_owned()
+        } else if spell.first == spell.last {
+            format!("at {:.2} s", spell.first)
+        } else {
+            format!("from {:.2} to {:.2} s", spell.first, spell.last)
+        }
+    });
+    let outcome = match finding.outcome() {
+        Outcome::Holds => format!("holds{margin}"),
+        Outcome::Violated(_) => format!("violated {when}{margin}"),
+        Outcome::PremiseNotMet => "premise not met".to_owned(),
+    };
+    say(&format!("  {:<14} {:<32} {outcome}", finding.statement.source(), finding.statement.words()));
+    if finding.outcome() == Outcome::PremiseNotMet {
+        let reasons: Vec<String> = finding.unmet.iter().map(simulation::certify::Premise::words).collect();
+        for line in wrapped(&reasons, 84) {
+            say(&format!("{:51}{line}", ""));
+        }
+        match (finding.margin, when.is_empty()) {
+            (None, _) => {}
+            (Some(_), true) => say(&format!("{:51}by the numbers it is so all the same", "")),
+            (Some(_), false) => say(&format!("{:51}by the numbers it is not so {when}", "")),
+        }
+    }
+}
+
+/// Words joined by semicolons, in lines.
+fn wrapped(words: &[String], width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for (k, word) in words.iter().enumerate() {
+        let word = if k + 1 < words.len() { format!("{word};") } else { word.clone() };
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + word.chars().count() < width => {
+                line.push(' ');
+                line.push_str(&word);
+            }
+            _ => lines.push(word),
+        }
+    }
+    lines
+}
+
+fn numbers(c: &Constants, bound: Option<f64>) {
+    say(&format!(
+        "  constants      σ_s {}, σ_v {}, ‖P₀‖ {}, λ_min {}, ρ {}, σ₁ {}, L₁ {}, μ {}, μ₁ {}, μ₂ {}, c₃ {}",
+        short(c.sigma_s),
+        short(c.sigma_v),
+        short(c.norm),
+        short(c.least),
+        short(c.rho),
+        short(c.sigma_1),
+        short(c.l1),
+        short(c.mu),
+        short(c.mu_1),
+        short(c.mu_2),
+        short(c.c3)
+    ));
+    say(&format!(
+        "  for ε = {} s  ε₁ {} s, T_ε {} s; in the end ‖r‖ ≤ {}, ‖e‖ ≤ {}, δ₀ {}",
+        short(c.epsilon),
+        short(c.epsilon_1),
+        short(c.t_epsilon),
+        short(c.filtered),
+        short(c.error),
+        short(c.delta_0)
+    ));
+    if let Some(bound) = bound {
+        say(&format!(
+            "                 ‖e‖ ≤ {} in the end is promised for ε up to {} s",
+            short(bound),
+            short(c.epsilon_for(bound))
+        ));
+    }
+}
+
+fn sensitivities(report: &Report<'_>, beyond: &Beyond) {
+    let found = match &beyond.sensitivities {
+        Ok(found) => found,
+        Err(why) => return say(&format!("  sensitivity of the settled error: {why}")),
+    };
+    say("  sensitivity of the settled error (last fifth of the run): % more for 1 % more gain on all edges");
+    let edges = report.cast.edges.len().min(MOST_EDGES);
+    let head: String = (0..edges).map(|e| format!("  {:>21}", clip(report.follower(e), 21))).collect();
+    say(&format!("    {:14}{head}", ""));
+    let settled = found.settled.iter().take(edges);
+    let settled: String =
+        settled.map(|e| format!("  {:>9} mm {:>8}°", short(1e3 * e[0]), short(e[1].to_degrees()))).collect();
+    say(&format!("    {:14}{settled}", "settled error"));
+    for gain in &found.gains {
+        let cell = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:+.2}"));
+        let row: String = gain
+            .edges
+            .iter()
+            .take(edges)
+            .map(|e| format!("  {:>12} {:>8}", cell(e[0]), cell(e[1])))
+            .collect();
+        say(&format!("    {:14}{row}", gain.gain.symbol()));
+    }
+}
+
+fn reach(report: &Report<'_>, beyond: &Beyond) {
+    say("  set points that can be held while leaders drive their paths, limits on speed and turning kept");
+    for reach in beyond.reach.iter().take(MOST_EDGES) {
+        let [distance, bearing] = reach.set_point;
+        let degrees = bearing.to_degrees();
+        let near = reach.rays.iter().min_by(|a, b| {
+            let off = |ray: &simulation::certify::reach::Ray| vocabulary::wrap(ray.bearing - bearing).abs();
+            off(a).total_cmp(&off(b))
+        });
+        let along = near.map_or_else(String::new, |ray| match ray.end {
+            None => format!("{degrees:.0}°: to {:.1} m and beyond", ray.distance),
+            Some(why) => format!("{degrees:.0}°: to {:.2} m, then {}", ray.distance, reason(why)),
+        });
+        let own = reach
+            .refused
+            .map_or_else(|| "can be held".to_owned(), |why| format!("CANNOT be held: {}", reason(why)));
+        say(&format!("    {:<28} {distance:.2} m at {degrees:.0}° {own}; {along}", report.edge(reach.edge)));
+    }
+    if simulation::certify::reach::moving(report.scene) {
+        say("    set points of this scene move; these are the ones at the start");
+    }
+}
+
+pub(super) fn reason(why: Unholdable) -> &'static str {
+    match why {
+        Unholdable::TooClose => "nearer than the law allows",
+        Unholdable::TooSlow => "slower than it can drive",
+        Unholdable::TooFast => "faster than it can drive",
+        Unholdable::TooTight => "tighter than it can turn",
+        Unholdable::TooHard => "harder than it can speed up or brake",
+    }
+}
+
+fn stability(chart: &Chart) {
+    let at = chart.channel;
+    say(&format!(
+        "  sampled stability of {}, linear about its set point, at ε = {} s and {} ms",
+        chart.follower,
+        short(chart.epsilon),
+        short(1e3 * chart.period)
+    ));
+    for how in Discretisation::ALL {
+        let growth = at.growth(how, chart.epsilon, chart.period);
+        let stable = if growth < 1.0 { "stable" } else { "UNSTABLE" };
+        let longest = match at.longest_period(how, chart.epsilon, super::beyond::PERIODS) {
+            LongestPeriod::At(period) => format!("up to {} ms", short(1e3 * period)),
+            LongestPeriod::Below => "at none from 0.1 ms on".to_owned(),
+            LongestPeriod::Beyond => "up to 1 s and beyond".to_owned(),
+        };
+        let rate = at.reported_rate(how, chart.epsilon, chart.period);
+        let rate = rate.map_or("–".to_owned(), |share| format!("{:.1} %", 100.0 * share));
+        say(&format!(
+            "    {:<30} {stable:<9} {:>9} per period, stable {longest}; reports {rate} of a constant rate",
+            how.words(),
+            if growth < 10.0 { format!("×{growth:.3}") } else { format!("×{growth:.0}") }
+        ));
+    }
+}
+
+fn chain(report: &Report<'_>, beyond: &Beyond) {
+    say(
+        "  chains: distance error per deviation of the lead robot's speed, largest over frequency (linear, no limits)",
+    );
+    for gain in beyond.chain.iter().take(MOST_EDGES) {
+        let name = report.edge(gain.edge);
+        if let Some(why) = gain.missing {
+            let why = match why {
+                NotLinear::Sign => "the sign has no slope: inside β nothing is passed on",
+                NotLinear::NoSteadyMotion => "no steady motion to linearise about",
+            };
+            say(&format!("    {name:<28} {why}"));
+            continue;
+        }
+        let (Some(own), Some(lead), Some(growth)) =
+            (gain.peak(|p| p.own_leader), gain.peak(|p| p.lead), gain.peak(|p| p.growth))
+        else {
+            continue;
+        };
+        let followers = if gain.depth == 1 { "follower" } else { "followers" };
+        say(&format!(
+            "    {name:<28} {} mm per cm/s of its leader at {} rad/s; {} mm per cm/s of the lead, {} {followers} on",
+            short(10.0 * own.0),
+            short(own.1),
+            short(10.0 * lead.0),
+            gain.depth
+        ));
+        let slow = gain.curve.iter().min_by(|a, b| {
+            let off = |p: &Point| (p.frequency / SLOW).ln().abs();
+            off(a).total_cmp(&off(b))
+        });
+        let lengths: Vec<String> = LENGTHS
+            .iter()
+            .enumerate()
+            .filter_map(|(k, n)| Some(format!("{n}: {}", millimetres(10.0 * slow?.lengths[k]))))
+            .collect();
+        say(&format!(
+            "    {:<28} in chains of its like, slowly (at {SLOW} rad/s), {} per cm/s",
+            "",
+            lengths.join(", ")
+        ));
+        say(&format!(
+            "    {:<28} from follower to follower at most ×{}, at {} rad/s",
+            "",
+            short(growth.0),
+            short(growth.1)
+        ));
+    }
+}
+
+/// A frequency at which formations are led, rad/s.
+const SLOW: f64 = 0.2;
+
+/// What is beyond a kilometre is beyond every limit, too.
+fn millimetres(value: f64) -> String {
+    if value < 1e6 { format!("{} mm", short(value)) } else { "beyond limits".to_owned() }
+}
+
+fn clip(text: &str, most: usize) -> String {
+    text.chars().take(most).collect()
+}
+
+/// Three significant digits.
+pub(super) fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return if value == 0.0 { "0".to_owned() } else { "∞".to_owned() };
+    }
+    let size = value.abs();
+    if !(1e-4..1e6).contains(&size) {
+        return format!("{value:.2e}");
+    }
+    let digits = (2 - size.log10().floor() as i32).max(0) as usize;
+    format!("{value:.digits$}")
+}
