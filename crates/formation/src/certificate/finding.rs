@@ -262,6 +262,7 @@ impl View<'_> {
         let beta =
             || self.throughout(|row| row.margin).0.map(|spell| Premise::RobustGain { at: spell.first });
         let saturated = || self.spell(|row| row.limited).map(Premise::Saturated);
+        let chatter = || self.spell(|row| row.chatters).map(Premise::Chatter);
         let at_bound = || self.spell(|row| row.at_speed_bound).map(Premise::SpeedBound);
         let close = || self.spell(|row| row.too_close).map(Premise::TooClose);
         let held = c.held.map(Premise::Held);
@@ -273,7 +274,18 @@ impl View<'_> {
             Statement::RobustGain => vec![rough],
             Statement::NonNegative => vec![smoothed, rough, beta()],
             Statement::TrackingDecrease => {
-                vec![smoothed, saturated(), at_bound(), close(), rough, beta(), held, looks, wheels]
+                vec![
+                    smoothed,
+                    chatter(),
+                    saturated(),
+                    at_bound(),
+                    close(),
+                    rough,
+                    beta(),
+                    held,
+                    looks,
+                    wheels,
+                ]
             }
             Statement::Epsilon => vec![rough],
             Statement::ObserverDecrease | Statement::Trapped => {
@@ -282,6 +294,7 @@ impl View<'_> {
             Statement::UltimateBound => {
                 vec![
                     smoothed,
+                    chatter(),
                     saturated(),
                     at_bound(),
                     close(),

@@ -20,6 +20,8 @@ pub enum Premise {
     NoObserver,
     /// β tanh(slope e) stands in for β sign(e).
     Smoothed,
+    /// The sign switched from sample to sample, faster than a run in steps follows.
+    Chatter(Spell),
     /// A bound cut the command.
     Saturated(Spell),
     /// The speed stood at its bound.
@@ -67,6 +69,7 @@ impl Premise {
             Self::FullState => "the law is told its leader's motion and has no robust term".to_owned(),
             Self::NoObserver => "the law has no observer".to_owned(),
             Self::Smoothed => "tanh instead of sign".to_owned(),
+            Self::Chatter(when) => spell("the sign switches faster than steps follow", when),
             Self::Saturated(when) => spell("saturation active", when),
             Self::SpeedBound(when) => spell("v at its bound", when),
             Self::LeaderNotSmooth { at } => format!("leader not smooth at {at:.2} s"),
@@ -86,6 +89,7 @@ impl Premise {
             Self::FullState => "full-state",
             Self::NoObserver => "no-observer",
             Self::Smoothed => "tanh",
+            Self::Chatter(_) => "chatter",
             Self::Saturated(_) => "saturated",
             Self::SpeedBound(_) => "speed-bound",
             Self::LeaderNotSmooth { .. } => "leader-not-smooth",

@@ -65,6 +65,8 @@ pub struct Row {
     pub at_speed_bound: bool,
     /// Whether the distance was below ℓ_min.
     pub too_close: bool,
+    /// Whether a sign in the law switched back since a few samples.
+    pub chatters: bool,
 }
 
 /// Goes along with one edge; its law and observer stay the same.
@@ -78,7 +80,12 @@ pub struct Witness {
     first_error: [f64; 2],
     initial: f64,
     settled_effect: [f64; 2],
+    /// Index of the sample at which the sign of each error switched last.
+    switched: [Option<usize>; 2],
 }
+
+/// A sign that switches back within so many samples switches faster than steps follow.
+const FEW: usize = 4;
 
 /// What the integrals of P need of the sample before.
 #[derive(Debug, Clone, Copy)]
@@ -104,6 +111,7 @@ impl Witness {
             first_error: [0.0; 2],
             initial: 0.0,
             settled_effect: [0.0; 2],
+            switched: [None; 2],
         }
     }
 
@@ -154,6 +162,7 @@ impl Witness {
         let integrand = gain.component_mul(&error).dot(&(effect - self.robust_term(now.error)));
         let sums = self.integrate(now.time, error, effect, integrand);
         let p = self.initial - sums.integral;
+        let chatters = self.chatters(&error);
         let eta = self.observer_error(now, &rates);
         let slope = self.last.map_or(0.0, |last| {
             let step = sums.time - last.time;
@@ -180,6 +189,7 @@ impl Witness {
             limited: now.limited,
             at_speed_bound: now.at_speed_bound,
             too_close: now.too_close,
+            chatters,
         };
         row.margin = margin(&self.law, &row);
         self.rows.push(row);
@@ -205,6 +215,21 @@ impl Witness {
         let integral = last.integral + moved.dot(&(effect + last.effect)) / 2.0 - potential
             + (time - last.time) * (integrand + last.integrand) / 2.0;
         Sums { time, error, effect, integrand, integral }
+    }
+
+    /// Whether the law's sign of an error switches, not for the first time within a few samples.
+    fn chatters(&mut self, error: &Vector2<f64>) -> bool {
+        let sign = self.law.kind != LawKind::FullState && self.law.switching == Switching::Sign;
+        let Some(last) = self.last.filter(|_| sign) else { return false };
+        let now = self.rows.len();
+        let mut again = false;
+        for i in 0..2 {
+            if last.error[i] * error[i] < 0.0 {
+                again |= self.switched[i].is_some_and(|before| now - before <= FEW);
+                self.switched[i] = Some(now);
+            }
+        }
+        again
     }
 
     fn robust_term(&self, error: [f64; 2]) -> Vector2<f64> {
