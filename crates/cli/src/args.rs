@@ -1,6 +1,7 @@
 //! Subcommands and flags.
 
 use crate::certify::CertifyArgs;
+use crate::film::Preset;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use scene::Override;
@@ -188,6 +189,12 @@ pub(crate) struct FilmArgs {
     /// Encode with the ffmpeg on PATH instead of the built-in encoder
     #[arg(long)]
     pub(crate) ffmpeg: bool,
+    /// Measures, cards and, where the scene has no storyboard, shots for a purpose
+    #[arg(long, value_enum, conflicts_with = "view")]
+    pub(crate) preset: Option<Preset>,
+    /// Begin anew where the same film was interrupted, instead of going on
+    #[arg(long)]
+    pub(crate) fresh: bool,
 }
 
 #[derive(Debug, Args)]

@@ -44,8 +44,11 @@ impl Studio {
                 _ => None,
             });
         }
-        // Text that suits 720 lines suits no poster: it grows with the picture, and never below its size there.
-        style.scale = args.scale.unwrap_or_else(|| (f64::from(size[1]) / 720.0).max(1.0));
+        // Text that suits 720 lines suits no poster: it grows with the picture, and never below its size there. What is
+        // higher than wide is looked at on a phone.
+        let [width, height] = size.map(f64::from);
+        let grown = if height > width { width / 640.0 } else { height / 720.0 };
+        style.scale = args.scale.unwrap_or_else(|| grown.max(1.0));
         let gpu = Gpu::open(&AdapterChoice::from(&*scene.adapter))?;
         let renderer = Renderer::new(&gpu, cast, size[0], size[1], args.samples)?;
         Ok(Self { gpu, renderer, layout, style, size })

@@ -2,9 +2,13 @@
 
 use crate::failure::Failure;
 use crate::interrupt;
+use recording::{Judging, Metrics, MetricsBuilder};
 use rendering::Trail;
 use simulation::Simulation;
-use vocabulary::Moment;
+use vocabulary::{Cast, Moment};
+
+/// What nothing is judged by.
+const NOTHING: Judging = Judging { settling_band: [0.0; 2], settled_after: 0.0 };
 
 /// A simulation that is asked for growing times.
 pub(crate) struct Playback {
@@ -12,6 +16,7 @@ pub(crate) struct Playback {
     trail: Trail,
     before: Moment,
     after: Moment,
+    metrics: Option<Box<MetricsBuilder>>,
 }
 
 impl Playback {
@@ -20,7 +25,23 @@ impl Playback {
         let mut trail = Trail::new(simulation.cast());
         let first = simulation.next_moment().cloned().unwrap_or_default();
         trail.push(&first);
-        Self { simulation, trail, before: first.clone(), after: first }
+        Self { simulation, trail, before: first.clone(), after: first, metrics: None }
+    }
+
+    /// Measures what goes by, from the first moment on.
+    pub(crate) fn measured(mut self, mut metrics: MetricsBuilder) -> Self {
+        metrics.push(&self.after);
+        self.metrics = Some(Box::new(metrics));
+        self
+    }
+
+    /// What was measured so far.
+    pub(crate) fn metrics(&self) -> impl FnOnce() -> Metrics + '_ {
+        || {
+            self.metrics
+                .as_ref()
+                .map_or_else(|| MetricsBuilder::new(&Cast::default(), NOTHING).finish(), |m| m.finish())
+        }
     }
 
     /// The moment at `time` s, not before the last one asked for; the last moment of the run after its end; an
@@ -34,6 +55,9 @@ impl Playback {
             };
             self.after.clone_from(moment);
             self.trail.push(&self.after);
+            if let Some(metrics) = &mut self.metrics {
+                metrics.push(&self.after);
+            }
         }
         let (from, to) = (self.before.snapshot.time, self.after.snapshot.time);
         let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };

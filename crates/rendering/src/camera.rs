@@ -3,6 +3,7 @@
 use crate::View;
 use crate::carried::carried;
 use crate::floor::Floor;
+use crate::glide::between;
 use crate::steady::{Extent, Steady};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
 use vocabulary::{Cast, Edge, Snapshot};
@@ -65,6 +66,11 @@ impl Camera {
                 // Somebody has put it there: it stays, unless the floor is in the way.
                 eye.z = eye.z.max(floor.height(eye.truncate()) + LEAST_OVER_FLOOR);
                 return Self::looking(eye, target, *field_of_view, aspect);
+            }
+            View::Between(from, to, share) => {
+                let [from, to] =
+                    [from, to].map(|view| Self::of(view, steady, snapshot, (cast, floor), aspect));
+                return between(&from, &to, *share, steady);
             }
         };
         if !floor.is_plane() {

@@ -11,6 +11,7 @@ use crate::passes::ground::TILE;
 use crate::passes::overlay::Shapes;
 use crate::passes::shadow::{ShadowPass, SunView, sun_view};
 use crate::passes::text::{Line, TextPass};
+use crate::show::show;
 use glam::{DVec2, DVec3};
 use vocabulary::{Cast, Light, Member, Moment, RobotState};
 
@@ -154,9 +155,10 @@ pub(crate) fn words(
     stage: &Stage<'_>,
     (views, upper): (&[View], usize),
     windows: &[Window<'_>],
-    height: u32,
+    size: (u32, u32),
 ) -> (Vec<Line>, Shapes) {
     let mut words = Words::new(text, stage.style.scale);
+    let left = stage.style.show.left_over(size);
     let (lower, over) = windows.split_at(windows.len() - upper);
     for window in over {
         words.framed(window.tile);
@@ -164,14 +166,16 @@ pub(crate) fn words(
     let carried = |view: &View| matches!(view, View::Camera(_));
     let sky = windows.first().map_or(0.0, |w| 0.5 * (1.0 - w.camera.horizon()) * f64::from(w.tile.height));
     let only_cameras = views.iter().all(carried);
-    caption(&mut words, stage, height, (sky as f32, !only_cameras));
+    caption(&mut words, stage, left.1, (sky as f32, !only_cameras));
     // In a quarter of a picture it would cover a whole view.
-    let charted = stage.style.inset && !views.first().is_some_and(carried);
+    let plotted = !stage.style.show.plots.is_empty();
+    let charted = stage.style.inset && !plotted && !views.first().is_some_and(carried);
     if let (true, [first] | [first, _]) = (charted, lower) {
         inset(&mut words, stage, first.tile);
     }
     for (view, window) in views.iter().zip(windows) {
         view_words(&mut words, stage, *window, view);
     }
+    show(&mut words, &stage.style.show, stage.colours, (left, size));
     (words.lines, words.shapes)
 }

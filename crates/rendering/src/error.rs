@@ -39,6 +39,9 @@ pub enum Error {
     /// An encoder refused a picture.
     #[error("encoding failed: {0}")]
     Encode(String),
+    /// Another program writes the same film.
+    #[error("another program is making {} just now; wait for it, or choose another file with -o", .0.display())]
+    Busy(PathBuf),
     /// ffmpeg was asked for and is not there.
     #[error(
         "ffmpeg was not found on PATH; install it (`apt-get install ffmpeg`) or write an .mp4 with the built-in encoder"
@@ -117,6 +120,7 @@ impl Error {
         matches!(
             self,
             Self::View { .. }
+                | Self::Busy(_)
                 | Self::TooManyViews(_)
                 | Self::Element { .. }
                 | Self::Size { .. }

@@ -219,7 +219,6 @@ impl Renderer {
         style: &Style,
     ) -> Result<Prepared, Error> {
         self.check(moment)?;
-        let height = self.size.1;
         let (views, tiles, upper) = self.views(layout, style);
         let cameras = self.cameras(trail, moment, &views, &tiles);
         // Cameras on robots see nothing that is drawn to explain.
@@ -264,7 +263,7 @@ impl Renderer {
         }
         let windows: Vec<_> =
             cameras.iter().zip(&tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
-        let (lines, shapes) = words(&mut self.passes.text, &stage, (&views, upper), &windows, height);
+        let (lines, shapes) = words(&mut self.passes.text, &stage, (&views, upper), &windows, self.size);
         let ghosts = views.iter().map(|view| !matches!(view, View::SnakeEye | View::Camera(_))).collect();
         let veiled = seen().map(|(view, camera)| veiled_decks(camera, &stage, view)).collect();
         let mut prepared = Prepared {
@@ -325,7 +324,8 @@ impl Renderer {
     /// The views of a picture with their tiles, and how many of them, the last, lie over others.
     fn views(&self, layout: &Layout, style: &Style) -> (Vec<View>, Vec<Tile>, usize) {
         let mut views = layout.views.clone();
-        let mut tiles = layout.tiles(self.size.0, self.size.1);
+        let (width, height) = style.show.left_over(self.size);
+        let mut tiles = layout.tiles(width, height);
         let member =
             style.picture_in_picture.and_then(|robot| self.cast.members.get(robot).map(|m| (robot, m)));
         let (Some((robot, member)), Some(first)) = (member, tiles.first()) else { return (views, tiles, 0) };

@@ -1,8 +1,8 @@
 //! What is drawn besides ground, sky and robots, each element by a name that can be switched off.
 
 use crate::Error;
-use crate::Sketch;
 use crate::error::nearest;
+use crate::{Show, Sketch};
 
 macro_rules! elements {
     ($($(#[$doc:meta])* $field:ident = $name:literal,)*) => {
@@ -18,6 +18,8 @@ macro_rules! elements {
             pub picture_in_picture: Option<usize>,
             /// What is drawn on the ground to explain; views through cameras do not show it.
             pub sketch: Sketch,
+            /// What films add: cards, a line, plots.
+            pub show: Show,
             /// Quicker pictures, for a window: ribbons and tyre marks have fewer points, within half a pixel of where they
             /// are in others, and follow hills less closely.
             pub interactive: bool,
@@ -31,6 +33,7 @@ macro_rules! elements {
                     detections: false,
                     picture_in_picture: None,
                     sketch: Sketch::default(),
+                    show: Show::default(),
                     interactive: false,
                 }
             }

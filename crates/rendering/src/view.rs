@@ -28,6 +28,8 @@ pub enum View {
         /// Vertical field of view, rad.
         field_of_view: f64,
     },
+    /// On the way from one view to another, at a share of it from 0 to 1; neither is through a camera on a robot.
+    Between(Box<View>, Box<View>, f64),
 }
 
 /// A camera in somebody's hand: it looks at a place from some way off and never leans.
@@ -185,10 +187,12 @@ impl Layout {
         Ok(Self { views })
     }
 
-    /// The tile of each view in a picture of `width` by `height`: side by side for two, else two by two.
+    /// The tile of each view in a picture of `width` by `height`: side by side for two, or one above the other where it is
+    /// higher than wide; else two by two.
     pub fn tiles(&self, width: u32, height: u32) -> Vec<Tile> {
-        let columns = if self.views.len() > 1 { 2 } else { 1 };
-        let rows = if self.views.len() > 2 { 2 } else { 1 };
+        let upright = self.views.len() == 2 && height > width;
+        let columns = if self.views.len() > 1 && !upright { 2 } else { 1 };
+        let rows = if self.views.len() > 2 || upright { 2 } else { 1 };
         let cut = |k: u32, parts: u32, whole: u32| k * whole / parts;
         let tile = |k: u32| {
             // The third of three takes the whole lower row.
@@ -262,6 +266,14 @@ mod tests {
         let View::Fixed { eye, target, .. } = down.view() else { panic!("no place") };
         assert!((eye[2] - 10.0).abs() < 1e-9);
         assert!(((target[1] - eye[1]).atan2(target[0] - eye[0]) - 2.1).abs() < 1e-6);
+    }
+
+    #[test]
+    fn two_views_lie_above_each_other_in_a_high_picture() {
+        let layout = Layout { views: vec![View::Snake, View::Top] };
+        let places = |w, h| layout.tiles(w, h).iter().map(|t| [t.x, t.y]).collect::<Vec<_>>();
+        assert_eq!(places(1280, 720), [[0, 0], [640, 0]]);
+        assert_eq!(places(720, 1280), [[0, 0], [0, 640]]);
     }
 
     #[test]

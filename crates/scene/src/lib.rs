@@ -42,7 +42,7 @@ pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
 pub use types::{
     Change, Channel, Compensation, Environment, Expect, Film, Follow, Ground, Law, LawKind, Mode, Noise,
-    Observer, ObserverKind, ObserverStart, OnContact, Patch, Path, Physics, Prop, PropMotion, Ramp, Relief,
-    Robot, Role, Scene, Sensing, SensingKind, SpeedProfile, Switching, Time, Vehicle, VehicleKind, Views,
-    Vision,
+    Observer, ObserverKind, ObserverStart, OnContact, Patch, Path, Physics, Plot, Prop, PropMotion, Ramp,
+    Relief, Robot, Role, Scene, Sensing, SensingKind, Shot, SpeedProfile, Switching, Time, Vehicle,
+    VehicleKind, Views, Vision,
 };

@@ -1,7 +1,7 @@
 //! From the keys of a file to the checked scene: parts put together and held against each other.
 
 use crate::{
-    Expect, Film, Mode, Prop, Robot, Scene, Time, Views,
+    Expect, Film, Mode, Prop, Robot, Scene, Shot, Time, Views,
     document::{Document, GroupKeys, RobotKeys},
     graph::{check_graph, check_known},
     ground::ground,
@@ -54,7 +54,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         check_start(robots, &props, ground, reading);
     }
     let views = views(&document.views?.value, &drafts, reading);
-    let film = film(&document.film?.value, &drafts, reading);
+    let film = film(&document.film?.value, time.duration, &drafts, reading);
     Some(Scene {
         title: document.title?.value,
         description: document.description?.value,
@@ -213,13 +213,48 @@ fn views(part: &ViewsPart, drafts: &[Draft], reading: &mut Reading) -> Views {
     part.complete(&ViewsPart::default())
 }
 
-fn film(part: &FilmPart, drafts: &[Draft], reading: &mut Reading) -> Film {
+fn film(part: &FilmPart, duration: f64, drafts: &[Draft], reading: &mut Reading) -> Film {
     let view = part.view.as_ref().and_then(|found| Some((found.place, found.value.as_deref()?)));
     check_view(view, drafts, reading);
     if let Some(size) = part.size.as_ref().filter(|size| size.value.iter().any(|side| side % 2 == 1)) {
         reading.note(size.place, "`size` must be even both ways, as video needs it");
     }
-    part.complete(&FilmPart::default())
+    let mut film = part.complete(&FilmPart::default());
+    if let Some(place) = part.shots.as_ref().map(|found| found.place) {
+        shots(&mut film.shots, (place, duration), drafts, reading);
+    }
+    film
+}
+
+/// Gives every shot its beginning and end.
+fn shots(shots: &mut [Shot], (place, duration): (Place, f64), drafts: &[Draft], reading: &mut Reading) {
+    let begins: Vec<Option<f64>> = shots.iter().map(|shot| shot.from).collect();
+    let mut now = 0.0;
+    for (k, shot) in shots.iter_mut().enumerate() {
+        let from = shot.from.unwrap_or(now);
+        let to = shot.to.or(begins.get(k + 1).copied().flatten()).unwrap_or(duration);
+        let name = format!("shot {} of the film", k + 1);
+        if from < now {
+            let message = format!("{name} begins at {from} s, before the one before it ends, at {now} s");
+            reading.note(place, message);
+        }
+        // A run ends at its last sample, which rounding may put a little before its duration.
+        if to > duration * (1.0 + 1e-9) {
+            let message = format!(
+                "{name} ends at {to} s, beyond the end of the run at {duration} s: end it earlier, or leave the \
+                 storyboard out with --set film.shots=[]"
+            );
+            reading.note(place, message);
+        } else if to <= from {
+            let message = format!("{name} has no length: it begins at {from} s and ends at {to} s");
+            reading.note(place, message);
+        }
+        for part in shot.view.iter().flat_map(|view| view.split('+')) {
+            check_view(Some((place, part.trim())), drafts, reading);
+        }
+        (shot.from, shot.to) = (Some(from), Some(to));
+        now = to;
+    }
 }
 
 /// Notes a view of a robot which is not there.

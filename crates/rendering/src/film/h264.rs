@@ -1,5 +1,6 @@
-//! H.264 by the built-in encoder. Frames go to a temporary file as they come, so that memory stays flat.
+//! H.264 by the built-in encoder. Frames go to a file as they come, so that memory stays flat.
 
+use super::kept::Kept;
 use super::{Format, Sink, mp4};
 use crate::Error;
 use crate::partial::Partial;
@@ -16,39 +17,92 @@ use vocabulary::Picture;
 
 /// Encoder, frames so far, and where they are.
 pub(super) struct H264 {
-    encoder: Encoder,
+    encoder: Option<Encoder>,
     planes: Planes,
     format: Format,
-    samples: BufWriter<File>,
+    store: Store,
     goal: PathBuf,
     track: mp4::Track,
 }
 
+/// Where frames wait for the end of the film.
+enum Store {
+    /// In a file without a name, so that nothing is left of it however the program ends.
+    Hidden(BufWriter<File>),
+    /// In files from which a later program can go on.
+    Kept(Box<Kept>),
+}
+
+/// Seconds of a group of frames: playing can start at each, and so can going on with a film.
+const GROUP: f64 = 2.0;
+
 impl H264 {
     pub(super) fn create(path: &Path, format: Format) -> Result<Self, Error> {
-        let config = EncoderConfig::new()
-            .max_frame_rate(FrameRate::from_hz(format.rate as f32))
-            .rate_control_mode(RateControlMode::Off)
-            .usage_type(UsageType::CameraVideoRealTime)
-            .complexity(Complexity::Low)
-            .intra_frame_period(IntraFramePeriod::from_num_frames((2.0 * format.rate).round() as u32))
-            // The scene is steady and the quality constant: analysing pictures first would only cost time.
-            .scene_change_detect(false)
-            .background_detection(false)
-            .adaptive_quantization(false)
-            .skip_frames(false)
-            .num_threads(1)
-            .vui(VuiConfig::bt601());
-        let encoder =
-            Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|e| refused(&e))?;
-        // Without a name, so that nothing is left of it however the program ends.
         let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let file = tempfile::tempfile_in(folder).map_err(|e| Error::write(path, e))?;
-        let samples = BufWriter::with_capacity(1 << 18, file);
-        let planes = Planes::new(format.width as usize, format.height as usize);
+        let store = Store::Hidden(BufWriter::with_capacity(1 << 18, file));
         let track = mp4::Track::new(format.width, format.height, format.rate);
-        Ok(Self { encoder, planes, format, samples, goal: path.to_owned(), track })
+        Ok(Self::with(path, format, store, track))
     }
+
+    /// Goes on with a film that was made of the same; how many frames there are.
+    pub(super) fn resume(path: &Path, format: Format, made_of: &str) -> Result<(Self, u64), Error> {
+        let Format { width, height, rate } = format;
+        let made_of = format!("{width}x{height} {rate} {made_of}");
+        let kept = Kept::open(path, &made_of, group(&format))?;
+        let track = mp4::Track::new(width, height, rate).going_on(&kept.found);
+        let frames = kept.found.sizes.len() as u64;
+        Ok((Self::with(path, format, Store::Kept(Box::new(kept)), track), frames))
+    }
+
+    fn with(path: &Path, format: Format, store: Store, track: mp4::Track) -> Self {
+        let planes = Planes::new(format.width as usize, format.height as usize);
+        Self { encoder: None, planes, format, store, goal: path.to_owned(), track }
+    }
+
+    /// Writes the film as far as it is.
+    fn write(&mut self) -> Result<(), Error> {
+        let goal = &self.goal;
+        let failed = |e: std::io::Error| Error::write(goal, e);
+        let film = Partial::new(goal);
+        let mut out = BufWriter::new(File::create(&film.path).map_err(failed)?);
+        out.write_all(&self.track.head()).map_err(failed)?;
+        match &mut self.store {
+            Store::Hidden(samples) => {
+                samples.flush().map_err(failed)?;
+                let mut file = samples.get_ref();
+                file.rewind().map_err(failed)?;
+                std::io::copy(&mut file, &mut out).map_err(failed)?;
+            }
+            Store::Kept(kept) => {
+                std::io::copy(&mut kept.read_all()?, &mut out).map_err(failed)?;
+            }
+        }
+        out.flush().map_err(failed)?;
+        film.rename()
+    }
+}
+
+fn group(format: &Format) -> usize {
+    (GROUP * format.rate).round().max(1.0) as usize
+}
+
+fn encoder(format: &Format) -> Result<Encoder, Error> {
+    let config = EncoderConfig::new()
+        .max_frame_rate(FrameRate::from_hz(format.rate as f32))
+        .rate_control_mode(RateControlMode::Off)
+        .usage_type(UsageType::CameraVideoRealTime)
+        .complexity(Complexity::Low)
+        // One group, one encoder.
+        .intra_frame_period(IntraFramePeriod::from_num_frames(group(format) as u32))
+        // The scene is steady and the quality constant: analysing pictures first would only cost time.
+        .scene_change_detect(false)
+        .background_detection(false)
+        .adaptive_quantization(false)
+        .skip_frames(false)
+        .num_threads(1)
+        .vui(VuiConfig::bt601());
+    Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|e| refused(&e))
 }
 
 fn refused(error: &openh264::Error) -> Error {
@@ -57,10 +111,18 @@ fn refused(error: &openh264::Error) -> Error {
 
 impl Sink for H264 {
     fn add(&mut self, picture: &Picture) -> Result<(), Error> {
+        let number = self.track.frames();
+        // The first of a group is encoded as if it were the first of all, so that a film can go on there.
+        if number.is_multiple_of(group(&self.format)) {
+            self.encoder = None;
+        }
+        let encoder = match &mut self.encoder {
+            Some(encoder) => encoder,
+            none => none.insert(encoder(&self.format)?),
+        };
         self.planes.fill(&picture.rgba);
-        let millis = self.track.frames() as f64 * 1000.0 / self.format.rate;
-        let stream = self
-            .encoder
+        let millis = (number % group(&self.format)) as f64 * 1000.0 / self.format.rate;
+        let stream = encoder
             .encode_at(&self.planes.slices(), Timestamp::from_millis(millis.round() as u64))
             .map_err(|e| refused(&e))?;
         let key = matches!(stream.frame_type(), FrameType::IDR | FrameType::I);
@@ -68,20 +130,29 @@ impl Sink for H264 {
         if frame.is_empty() {
             return Err(Error::Encode("H.264: the encoder skipped a picture".into()));
         }
-        self.samples.write_all(&frame).map_err(|e| Error::write(&self.goal, e))
+        match &mut self.store {
+            Store::Hidden(samples) => samples.write_all(&frame).map_err(|e| Error::write(&self.goal, e)),
+            Store::Kept(kept) => {
+                if number == 0 {
+                    kept.parameters(self.track.parameters())?;
+                }
+                kept.add(&frame, key)?;
+                let last = (number + 1).is_multiple_of(group(&self.format));
+                if last { kept.close_group() } else { Ok(()) }
+            }
+        }
     }
 
-    fn finish(self: Box<Self>) -> Result<(), Error> {
-        let Self { samples, goal, track, .. } = *self;
-        let failed = |e: std::io::Error| Error::write(&goal, e);
-        let mut samples = samples.into_inner().map_err(|e| failed(e.into_error()))?;
-        samples.rewind().map_err(failed)?;
-        let film = Partial::new(&goal);
-        let mut out = BufWriter::new(File::create(&film.path).map_err(failed)?);
-        out.write_all(&track.head()).map_err(failed)?;
-        std::io::copy(&mut samples, &mut out).map_err(failed)?;
-        out.flush().map_err(failed)?;
-        film.rename()
+    fn pause(mut self: Box<Self>) -> Result<(), Error> {
+        self.write()
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<(), Error> {
+        self.write()?;
+        if let Store::Kept(kept) = self.store {
+            kept.remove();
+        }
+        Ok(())
     }
 }
 

@@ -3,6 +3,7 @@
 mod animation;
 mod ffmpeg;
 mod h264;
+mod kept;
 mod mp4;
 mod sequence;
 
@@ -51,10 +52,15 @@ struct Format {
 trait Sink: Send {
     fn add(&mut self, picture: &Picture) -> Result<(), Error>;
     fn finish(self: Box<Self>) -> Result<(), Error>;
+    /// As `finish`, but a later program may go on, where that can be.
+    fn pause(self: Box<Self>) -> Result<(), Error> {
+        self.finish()
+    }
 }
 
 enum Message {
     Frame(Picture),
+    Pause,
     End,
 }
 
@@ -85,12 +91,33 @@ impl Film {
             FilmKind::PngSequence => Box::new(sequence::Sequence::create(path)?),
             FilmKind::Ffmpeg => Box::new(ffmpeg::Ffmpeg::create(path, format)?),
         };
+        Self::begin(path, format, sink, 0)
+    }
+
+    /// Goes on with an .mp4 of `rate` frames a second that was interrupted, or begins it; and how many frames there are
+    /// already. `made_of` is a line that is the same only for the same film.
+    ///
+    /// # Errors
+    /// As [`Film::create`]; [`Error::Busy`] where another program is making the film.
+    pub fn resume(
+        path: &Path,
+        (width, height): (u32, u32),
+        rate: f64,
+        made_of: &str,
+    ) -> Result<(Self, u64), Error> {
+        let format = Format { width, height, rate };
+        check(FilmKind::Mp4, &format)?;
+        let (sink, frames) = h264::H264::resume(path, format, made_of)?;
+        Ok((Self::begin(path, format, Box::new(sink), frames)?, frames))
+    }
+
+    fn begin(path: &Path, format: Format, sink: Box<dyn Sink>, frames: u64) -> Result<Self, Error> {
         let (sender, receiver) = sync_channel(WAITING);
         let thread = std::thread::Builder::new()
             .name("film".into())
             .spawn(move || work(sink, &receiver))
             .map_err(|e| Error::write(path, e))?;
-        Ok(Self { sender: Some(sender), thread: Some(thread), format, frames: 0 })
+        Ok(Self { sender: Some(sender), thread: Some(thread), format, frames })
     }
 
     /// Adds the next picture; waits while the encoder is behind.
@@ -107,7 +134,7 @@ impl Film {
         Ok(())
     }
 
-    /// Frames pushed so far.
+    /// Frames so far.
     pub fn frames(&self) -> u64 {
         self.frames
     }
@@ -116,11 +143,23 @@ impl Film {
     ///
     /// # Errors
     /// Whatever stopped the encoder, or [`Error::Encode`] for a film without pictures.
-    pub fn finish(mut self) -> Result<(), Error> {
+    pub fn finish(self) -> Result<(), Error> {
+        self.end(Message::End)
+    }
+
+    /// Completes the file as far as it is; [`Film::resume`] can go on from there.
+    ///
+    /// # Errors
+    /// As [`Film::finish`].
+    pub fn pause(self) -> Result<(), Error> {
+        self.end(Message::Pause)
+    }
+
+    fn end(mut self, message: Message) -> Result<(), Error> {
         if self.frames == 0 {
             return Err(Error::Encode("a film needs at least one picture".into()));
         }
-        self.send(Message::End)?;
+        self.send(message)?;
         self.join()
     }
 
@@ -155,6 +194,7 @@ fn work(mut sink: Box<dyn Sink>, receiver: &Receiver<Message>) -> Result<(), Err
     loop {
         match receiver.recv() {
             Ok(Message::Frame(picture)) => sink.add(&picture)?,
+            Ok(Message::Pause) => return sink.pause(),
             Ok(Message::End) => return sink.finish(),
             // Abandoned: the sink cleans up.
             Err(_) => return Ok(()),

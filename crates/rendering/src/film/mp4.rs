@@ -26,6 +26,23 @@ impl Track {
         Self { width, height, clock, sizes: vec![], keys: vec![], sequence: vec![], picture: vec![] }
     }
 
+    /// With frames that are there already.
+    pub(super) fn going_on(mut self, found: &super::kept::Found) -> Self {
+        [self.sequence, self.picture] = found.parameters.clone();
+        for (size, key) in &found.sizes {
+            self.sizes.push(*size);
+            if *key {
+                self.keys.push(self.sizes.len() as u32);
+            }
+        }
+        self
+    }
+
+    /// Sequence and picture parameters of the encoder.
+    pub(super) fn parameters(&self) -> [&[u8]; 2] {
+        [&self.sequence, &self.picture]
+    }
+
     pub(super) fn frames(&self) -> usize {
         self.sizes.len()
     }

@@ -18,6 +18,15 @@ pub(super) fn rename(root: &mut Table, old: &str, new: &str) {
             }
         }
     }
+    if let Some(film) = root.get_mut("film").and_then(Item::as_table_mut) {
+        for_every_item(film, "shots", |item| {
+            if let Some(Item::Value(view)) = item.get_mut("view")
+                && let Some(renamed) = view.as_str().and_then(|text| in_views(text, old, new))
+            {
+                merge(view, Value::from(renamed));
+            }
+        });
+    }
     for_every_item(root, "changes", |item| {
         let sets = item.get_mut("set").and_then(Item::as_array_mut);
         for set in sets.into_iter().flat_map(|sets| sets.iter_mut()) {
@@ -26,6 +35,18 @@ pub(super) fn rename(root: &mut Table, old: &str, new: &str) {
             }
         }
     });
+}
+
+/// Views of the robot `old` as those of `new`.
+fn in_views(text: &str, old: &str, new: &str) -> Option<String> {
+    let view = |part: &str| {
+        let of = |start: &str| {
+            part.trim().strip_prefix(start).filter(|name| *name == old).map(|_| start.to_owned())
+        };
+        of("follow:").or_else(|| of("camera:")).map_or_else(|| part.to_owned(), |start| start + new)
+    };
+    let renamed = text.split('+').map(view).collect::<Vec<_>>().join("+");
+    (renamed != text).then_some(renamed)
 }
 
 /// An override of the robot `old` as one of `new`.

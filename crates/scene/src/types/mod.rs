@@ -5,6 +5,7 @@
 
 mod change;
 mod expect;
+mod film;
 mod ground;
 mod law;
 mod path;
@@ -18,6 +19,7 @@ mod vehicle;
 
 pub use change::Change;
 pub use expect::Expect;
+pub use film::{Film, Plot, Shot};
 pub use ground::{Ground, Noise, Patch, Relief};
 pub use law::{Law, LawKind, Observer, ObserverKind, ObserverStart, Switching};
 pub use path::{Path, SpeedProfile};
@@ -26,15 +28,16 @@ pub use robot::{Follow, Robot, Role};
 pub use run::{Mode, OnContact, Physics, Time};
 pub use sensing::{Sensing, SensingKind, Vision};
 pub use set_point::{Channel, Ramp};
-pub use stage::{Environment, Film, Views};
+pub use stage::{Environment, Views};
 pub use vehicle::{Compensation, Vehicle, VehicleKind};
 
 pub(crate) use expect::ExpectPart;
+pub(crate) use film::FilmPart;
 pub(crate) use law::{LawPart, ObserverPart};
 pub(crate) use run::{PhysicsPart, TimePart};
 pub(crate) use sensing::{SensingForm, SensingPart, VisionPart};
 pub(crate) use set_point::{BearingForm, DistanceForm};
-pub(crate) use stage::{EnvironmentPart, FilmPart, ROBOT_VIEWS, ViewsPart};
+pub(crate) use stage::{EnvironmentPart, ROBOT_VIEWS, ViewsPart};
 pub(crate) use vehicle::VehiclePart;
 
 use serde::Serialize;

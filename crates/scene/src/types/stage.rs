@@ -1,8 +1,6 @@
 //! What pictures need beyond the robots.
 
-use crate::text::{
-    Form, Node, Reading, angle, angle_within, couple, integer, number, optional, settings, words::not_a_word,
-};
+use crate::text::{Form, Node, Reading, angle, angle_within, number, settings, words::not_a_word};
 use serde_json::{Value as Json, json};
 use std::f64::consts::{FRAC_PI_2, PI};
 use vocabulary::Light;
@@ -29,25 +27,13 @@ settings! {
     }
 }
 
-settings! {
-    /// How a film is made when the command line does not say.
-    pub struct Film from FilmPart {
-        /// View; the scene's default view if left out.
-        pub view: Option<String> = None, optional(ViewForm);
-        /// Frames a second of simulation time.
-        pub fps: u32 = 30, integer::<u32>(1, 240);
-        /// [width, height] in pixels, both even.
-        pub size: [u32; 2] = [1280, 720], couple(integer::<u32>(16, 8192), integer::<u32>(16, 8192));
-    }
-}
-
 /// Views that need no robot's name.
 const VIEWS: [&str; 5] = ["snake", "snake-eye", "top", "orbit", "fixed"];
 /// What stands before the name of a robot in the views that go with one.
 pub(crate) const ROBOT_VIEWS: [&str; 2] = ["follow:", "camera:"];
 
 /// The name of a view.
-struct ViewForm;
+pub(super) struct ViewForm;
 
 impl Form for ViewForm {
     type Out = String;

@@ -1,0 +1,74 @@
+//! What is plotted beside the view: quantities of edges, collected frame by frame.
+
+use rendering::{Curve, Plot as Shown};
+use scene::Plot;
+use vocabulary::{Cast, Edge, Moment};
+
+/// Everything that may be plotted, so far.
+pub(super) struct Plots {
+    edges: Vec<Edge>,
+    duration: f64,
+    /// Per quantity and edge: [time, value].
+    curves: Vec<Vec<Vec<[f64; 2]>>>,
+}
+
+const ALL: [Plot; 6] = [
+    Plot::DistanceError,
+    Plot::BearingError,
+    Plot::Speed,
+    Plot::TurnRate,
+    Plot::Acceleration,
+    Plot::Distance,
+];
+
+impl Plots {
+    pub(super) fn new(cast: &Cast, duration: f64) -> Self {
+        Self { edges: cast.edges.clone(), duration, curves: vec![vec![vec![]; cast.edges.len()]; ALL.len()] }
+    }
+
+    /// Takes in the moment of a frame.
+    pub(super) fn record(&mut self, moment: &Moment) {
+        let time = moment.snapshot.time;
+        for (quantity, curves) in ALL.into_iter().zip(&mut self.curves) {
+            for ((index, edge), curve) in self.edges.iter().enumerate().zip(curves) {
+                // While a card stands, so does the time.
+                if curve.last().is_none_or(|last| time > last[0]) {
+                    curve.push([time, value(quantity, moment, index, *edge).unwrap_or(f64::NAN)]);
+                }
+            }
+        }
+    }
+
+    /// The plots of some quantities.
+    pub(super) fn shown(&self, plots: &[Plot]) -> Vec<Shown> {
+        plots.iter().filter_map(|plot| self.one(*plot)).collect()
+    }
+
+    fn one(&self, plot: Plot) -> Option<Shown> {
+        let index = ALL.iter().position(|other| *other == plot)?;
+        let (label, least, centred) = match plot {
+            Plot::DistanceError => ("distance error (m)", 0.02, true),
+            Plot::BearingError => ("bearing error (°)", 1.0, true),
+            Plot::Speed => ("speed (m/s)", 0.2, false),
+            Plot::TurnRate => ("turn rate (rad/s)", 0.2, true),
+            Plot::Acceleration => ("acceleration (m/s²)", 0.5, true),
+            Plot::Distance => ("distance (m)", 0.2, false),
+        };
+        let curves = self.edges.iter().zip(&self.curves[index]);
+        let curves = curves.map(|(edge, points)| Curve { robot: edge.follower, points: points.clone() });
+        let span = [0.0, self.duration];
+        Some(Shown { label: label.to_owned(), span, least, centred, curves: curves.collect() })
+    }
+}
+
+fn value(plot: Plot, moment: &Moment, index: usize, edge: Edge) -> Option<f64> {
+    let state = moment.edges.get(index)?;
+    Some(match plot {
+        Plot::DistanceError => state.error[0],
+        Plot::BearingError => state.error[1].to_degrees(),
+        Plot::Speed => moment.snapshot.robots.get(edge.follower)?.motion.speed,
+        Plot::TurnRate => state.applied.turn_rate,
+        Plot::Acceleration => state.applied.acceleration,
+        Plot::Distance => state.relative.distance,
+    })
+}

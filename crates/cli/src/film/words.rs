@@ -1,0 +1,115 @@
+//! Words of films: cards, and the line at the bottom.
+
+use super::board::Frame;
+use recording::{EdgeMetrics, Metrics};
+use rendering::{Card, Line};
+use scene::Scene;
+use vocabulary::{Cast, Moment, Thing};
+
+/// Set points that are told one by one.
+const MOST_SET_POINTS: usize = 4;
+
+/// The card over a frame, if there is one.
+pub(super) fn card(
+    frame: &Frame<'_>,
+    scene: &Scene,
+    cast: &Cast,
+    metrics: impl FnOnce() -> Metrics,
+) -> Option<Card> {
+    let [title, end] = frame.cards;
+    if title > 0.0 {
+        let about = scene.description.split_whitespace().collect::<Vec<_>>().join(" ");
+        let mut rows = wrapped(&about, 76);
+        rows.truncate(3);
+        rows.push(cast.caption.clone());
+        return Some(Card { title: scene.title.clone(), rows, opacity: title });
+    }
+    (end > 0.0).then(|| Card { title: scene.title.clone(), rows: results(&metrics()), opacity: end })
+}
+
+/// What the run showed, in a few rows.
+fn results(metrics: &Metrics) -> Vec<String> {
+    let mut rows = Vec::new();
+    let worst = |value: fn(&EdgeMetrics) -> f64| metrics.edges.iter().map(value).fold(0.0, f64::max);
+    if !metrics.edges.is_empty() {
+        let followers = metrics.edges.len();
+        let who =
+            if followers == 1 { "its follower".to_owned() } else { format!("each of {followers} followers") };
+        rows.push(format!(
+            "errors of {who} at the end: at most {:.1} mm and {:.2}°",
+            1e3 * worst(|edge| edge.final_error[0].abs()),
+            worst(|edge| edge.final_error[1].abs()).to_degrees()
+        ));
+        let settled: Option<f64> = metrics
+            .edges
+            .iter()
+            .map(|edge| edge.settling_time)
+            .try_fold(0.0, |most: f64, t| Some(most.max(t?)));
+        if let Some(time) = settled {
+            let [distance, bearing] = metrics.settling_band;
+            rows.push(format!(
+                "within {:.0} mm and {:.1}° from {time:.2} s on",
+                1e3 * distance,
+                bearing.to_degrees()
+            ));
+        }
+    }
+    if let Some(clearance) = metrics.clearance_min {
+        rows.push(format!("least clearance {clearance:.2} m"));
+    }
+    rows.push(match metrics.contacts {
+        0 => "no contact".to_owned(),
+        1 => "one contact".to_owned(),
+        many => format!("{many} contacts"),
+    });
+    rows
+}
+
+/// The line at the bottom of a frame, if there is one.
+pub(super) fn line(frame: &Frame<'_>, cast: &Cast, moment: &Moment) -> Option<Line> {
+    let mut rows = Vec::new();
+    if !frame.line.is_empty() {
+        rows.push(frame.line.to_owned());
+    }
+    if frame.set_points {
+        rows.extend(set_points(cast, moment));
+    }
+    (!rows.is_empty() && frame.line_opacity > 0.0).then_some(Line { rows, opacity: frame.line_opacity })
+}
+
+/// Where the followers should be, now.
+fn set_points(cast: &Cast, moment: &Moment) -> Vec<String> {
+    let one = |(edge, state): (&vocabulary::Edge, &vocabulary::EdgeState)| {
+        let [distance, bearing] = state.set_point;
+        let degrees = format!("{:.0}", bearing.to_degrees()).replace('-', "\u{2212}");
+        format!("{}  {distance:.2} m  {degrees}°", cast.name(Thing::Robot(edge.follower)))
+    };
+    let all: Vec<String> = cast.edges.iter().zip(&moment.edges).map(one).collect();
+    let more = all.len().saturating_sub(MOST_SET_POINTS);
+    let mut rows: Vec<String> = all
+        .iter()
+        .take(MOST_SET_POINTS)
+        .collect::<Vec<_>>()
+        .chunks(2)
+        .map(|pair| pair.iter().map(|text| text.as_str()).collect::<Vec<_>>().join("   ·   "))
+        .collect();
+    if let (true, Some(last)) = (more > 0, rows.last_mut()) {
+        last.push_str(&format!("   ·   and {more} more"));
+    }
+    rows
+}
+
+/// A text in lines of at most `width` letters.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}

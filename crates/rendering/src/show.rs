@@ -1,0 +1,292 @@
+//! What films add to pictures: cards, a line at the bottom, plots beside the view.
+
+use crate::labels::{Ink, Words};
+use crate::palette::{self, Rgb};
+use glam::Vec2;
+
+/// What is shown over and beside the views of a picture.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Show {
+    /// Large words over a darkened picture.
+    pub card: Option<Card>,
+    /// Words at the bottom of the views.
+    pub line: Option<Line>,
+    /// Plots beside the views, or below them where the picture is higher than wide; from top to bottom.
+    pub plots: Vec<Plot>,
+}
+
+/// Large words over a darkened picture.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Card {
+    /// The first row, large.
+    pub title: String,
+    /// The rows below it.
+    pub rows: Vec<String>,
+    /// 0 is not there, 1 is all there.
+    pub opacity: f64,
+}
+
+/// Words at the bottom of the views.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Line {
+    /// Rows, the first uppermost.
+    pub rows: Vec<String>,
+    /// 0 is not there, 1 is all there.
+    pub opacity: f64,
+}
+
+/// Curves over time.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Plot {
+    /// Quantity and unit.
+    pub label: String,
+    /// Time from its left to its right end, s.
+    pub span: [f64; 2],
+    /// The smallest range that is shown, in the unit of the values: below, noise would fill the plot.
+    pub least: f64,
+    /// Whether zero stands in the middle.
+    pub centred: bool,
+    /// The curves.
+    pub curves: Vec<Curve>,
+}
+
+/// A curve of one robot.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Curve {
+    /// Its robot, by its index: the curve has its colour.
+    pub robot: usize,
+    /// [time in s, value], in the order of time.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Share of the picture's width, or of its height where it is higher than wide, that plots take.
+const BESIDE: f64 = 0.30;
+const BELOW: f64 = 0.34;
+
+impl Show {
+    /// Width and height that are left for the views of a picture, pixels; even, as they were.
+    pub(crate) fn left_over(&self, (width, height): (u32, u32)) -> (u32, u32) {
+        let keep = |side: u32, share: f64| ((f64::from(side) * (1.0 - share)).round() as u32 & !1).max(16);
+        match (self.plots.is_empty(), height > width) {
+            (true, _) => (width, height),
+            (false, false) => (keep(width, BESIDE), height),
+            (false, true) => (width, keep(height, BELOW)),
+        }
+    }
+}
+
+/// Plots and line, in front of the views, and the card in front of all.
+pub(crate) fn show(
+    words: &mut Words<'_>,
+    show: &Show,
+    colours: &[Rgb],
+    (views, picture): ((u32, u32), (u32, u32)),
+) {
+    let [width, height] = [picture.0 as f32, picture.1 as f32];
+    if !show.plots.is_empty() {
+        let (right, bottom) = (views.0 as f32, views.1 as f32);
+        let area = if views.0 < picture.0 {
+            [right, 0.0, width - right, height]
+        } else {
+            [0.0, bottom, width, height - bottom]
+        };
+        plots(words, &show.plots, colours, area);
+    }
+    if let Some(said) = show.line.as_ref().filter(|line| line.opacity > 0.0) {
+        line(words, said, [views.0 as f32, views.1 as f32]);
+    }
+    if let Some(shown) = show.card.as_ref().filter(|card| card.opacity > 0.0) {
+        card(words, shown, [width, height]);
+    }
+}
+
+fn plots(words: &mut Words<'_>, plots: &[Plot], colours: &[Rgb], [x, y, width, height]: [f32; 4]) {
+    let [red, green, blue] = palette::PAPER;
+    words.shapes.panel([x, y, width, height], 0.0, [red, green, blue, 1.0]);
+    let margin = words.scaled(20.0);
+    let each = (height - margin) / plots.len() as f32;
+    for (k, plot) in plots.iter().enumerate() {
+        let area = [x + margin, y + margin + each * k as f32, width - 2.0 * margin, each - margin];
+        one_plot(words, plot, colours, area, k + 1 == plots.len());
+    }
+}
+
+fn one_plot(
+    words: &mut Words<'_>,
+    plot: &Plot,
+    colours: &[Rgb],
+    [x, y, width, height]: [f32; 4],
+    timed: bool,
+) {
+    let row = words.scaled(22.0);
+    words.write(plot.label.clone(), [x, y + 0.4 * row], 14.0, true, Ink::ON_PANEL);
+    let range = range(plot);
+    let ticks = ticks(range);
+    let texts: Vec<(f64, String)> = ticks.iter().map(|t| (*t, number(*t, range))).collect();
+    let mut wide = 0.0_f32;
+    for (_, text) in &texts {
+        wide = wide.max(words.width(text, 12.0, false));
+    }
+    let (left, right) = (x + wide + words.scaled(8.0), x + width);
+    let (top, bottom) = (y + row + words.scaled(4.0), y + height - if timed { row } else { 0.3 * row });
+    let span = (plot.span[1] - plot.span[0]).max(1e-9);
+    let across = |time: f64| left + ((time - plot.span[0]) / span).clamp(0.0, 1.0) as f32 * (right - left);
+    let up = |value: f64| {
+        bottom - ((value - range[0]) / (range[1] - range[0])).clamp(0.0, 1.0) as f32 * (bottom - top)
+    };
+    let thin = words.scaled(1.0);
+    let ink = |alpha: f32| [palette::INK[0], palette::INK[1], palette::INK[2], alpha];
+    for (value, text) in texts {
+        let level = up(value).round() + 0.5;
+        let alpha = if value == 0.0 { 0.5 } else { 0.13 };
+        words.shapes.line(Vec2::new(left, level), Vec2::new(right, level), thin, ink(alpha));
+        let width = words.width(&text, 12.0, false);
+        words.write(text, [left - width - words.scaled(6.0), level], 12.0, false, Ink::ON_PANEL);
+    }
+    if timed {
+        let under = bottom + 0.6 * row;
+        let ends = [(plot.span[0], 0.0), (plot.span[1], 1.0)];
+        for (time, share) in ends {
+            let text = format!("{} s", (time * 10.0).round() / 10.0);
+            let width = words.width(&text, 12.0, false);
+            words.write(text, [across(time) - share * width, under], 12.0, false, Ink::ON_PANEL);
+        }
+    }
+    let wide = words.scaled(if plot.curves.len() > 12 { 1.2 } else { 2.2 });
+    for curve in &plot.curves {
+        let [r, g, b] = colours.get(curve.robot).copied().unwrap_or(palette::INK);
+        // A little darker than on the ground: the panel is bright.
+        let colour = [r * 0.86, g * 0.86, b * 0.86, 0.95];
+        let mut before: Option<Vec2> = None;
+        for [time, value] in curve.points.iter().filter(|p| p[1].is_finite()) {
+            let at = Vec2::new(across(*time), up(*value));
+            // Steps below a pixel would only cost time.
+            if before.is_some_and(|b| b.distance(at) <= 0.9) {
+                continue;
+            }
+            if let Some(from) = before {
+                words.shapes.line(from, at, wide, colour);
+            }
+            before = Some(at);
+        }
+        if let Some(end) = before {
+            let dot = words.scaled(3.5);
+            words.shapes.panel([end.x - dot, end.y - dot, 2.0 * dot, 2.0 * dot], dot, colour);
+        }
+    }
+}
+
+/// The range that a plot shows: round, over all its values.
+fn range(plot: &Plot) -> [f64; 2] {
+    let values = plot.curves.iter().flat_map(|c| &c.points).map(|p| p[1]).filter(|v| v.is_finite());
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+    if plot.centred || low > high {
+        let most = if low > high { plot.least } else { low.abs().max(high.abs()).max(plot.least) };
+        let most = round_up(most);
+        return [-most, most];
+    }
+    let middle = f64::midpoint(low, high);
+    let half = (0.55 * (high - low)).max(0.5 * plot.least);
+    let step = round_up(half) / 2.0;
+    [((middle - half) / step).floor() * step, ((middle + half) / step).ceil() * step]
+}
+
+/// A round number not below `most`.
+fn round_up(most: f64) -> f64 {
+    let power = 10_f64.powf(most.log10().floor());
+    [1.0, 2.0, 5.0, 10.0].into_iter().map(|n| n * power).find(|n| *n >= most * 0.999).unwrap_or(most)
+}
+
+fn ticks([low, high]: [f64; 2]) -> Vec<f64> {
+    let step = round_up((high - low) / 4.5);
+    let first = (low / step).ceil() as i64;
+    let last = (high / step * (1.0 + 1e-12)).floor() as i64;
+    (first..=last).take(12).map(|k| k as f64 * step).collect()
+}
+
+/// A tick in as many digits as the range needs.
+fn number(value: f64, [low, high]: [f64; 2]) -> String {
+    let digits = (1.0 - (high - low).log10().floor()).clamp(0.0, 6.0) as usize;
+    let text = format!("{value:.digits$}");
+    let text =
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text };
+    if text == "-0" { "0".to_owned() } else { text.replace('-', "\u{2212}") }
+}
+
+fn line(words: &mut Words<'_>, said: &Line, [width, height]: [f32; 2]) {
+    let alpha = said.opacity as f32;
+    let mut size = 17.0_f32;
+    let most = said.rows.iter().map(|row| words.width(row, size, true)).fold(1.0_f32, f32::max);
+    size *= (0.9 * width / most).min(1.0);
+    let wide = most.min(0.9 * width);
+    let row = words.scaled(1.45 * size);
+    let pad = words.scaled(12.0);
+    let high = row * said.rows.len() as f32 + pad;
+    // Clear of the clock in the corner.
+    let bottom = height - words.scaled(62.0);
+    let place = [0.5 * (width - wide) - pad, bottom - high, wide + 2.0 * pad, high];
+    let [r, g, b] = palette::INK;
+    let radius = words.scaled(8.0);
+    words.shapes.panel(place, radius, [r, g, b, 0.72 * alpha]);
+    for (k, text) in said.rows.iter().enumerate() {
+        let own = words.width(text, size, true);
+        let at = [0.5 * (width - own), bottom - high + 0.5 * pad + row * (k as f32 + 0.5)];
+        let ink = Ink { halo: (0.0, palette::INK), ..Ink::LIGHT };
+        words.write(text.clone(), at, size, true, ink.faded(alpha));
+    }
+}
+
+fn card(words: &mut Words<'_>, shown: &Card, [width, height]: [f32; 2]) {
+    let alpha = shown.opacity as f32;
+    let [r, g, b] = palette::INK;
+    // What is written below the card is not to be read through it.
+    for said in &mut words.lines {
+        said.alpha *= 1.0 - 0.96 * alpha;
+    }
+    words.shapes.panel([0.0, 0.0, width, height], 0.0, [r, g, b, 0.78 * alpha]);
+    let most = 0.86 * width;
+    let mut large = 40.0_f32;
+    large *= (most / words.width(&shown.title, large, true).max(1.0)).min(1.0);
+    let mut small = 20.0_f32;
+    let widest = shown.rows.iter().map(|row| words.width(row, small, false)).fold(1.0_f32, f32::max);
+    small *= (most / widest).min(1.0);
+    let (first, each) = (words.scaled(1.9 * large), words.scaled(1.65 * small));
+    let mut down = 0.46 * height - 0.5 * (first + each * shown.rows.len() as f32) + 0.5 * first;
+    let light = Ink { halo: (0.0, palette::INK), ..Ink::LIGHT };
+    let rows = shown.rows.iter().map(|row| (row, small, false));
+    for (text, size, bold) in std::iter::once((&shown.title, large, true)).chain(rows) {
+        let own = words.width(text, size, bold);
+        words.write(text.clone(), [0.5 * (width - own), down], size, bold, light.faded(alpha));
+        down += if bold { 0.5 * first + 0.5 * each } else { each };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plots_take_a_side_and_leave_even_sizes() {
+        let show = Show { plots: vec![Plot::default()], ..Show::default() };
+        assert_eq!(Show::default().left_over((1280, 720)), (1280, 720));
+        assert_eq!(show.left_over((1280, 720)), (896, 720));
+        let (width, height) = show.left_over((1080, 1920));
+        assert!(width == 1080 && height % 2 == 0 && height < 1300);
+    }
+
+    #[test]
+    fn ranges_are_round_and_hold_every_value() {
+        let plot = |values: &[f64], centred: bool| Plot {
+            centred,
+            least: 0.02,
+            curves: vec![Curve { robot: 0, points: values.iter().map(|v| [0.0, *v]).collect() }],
+            ..Plot::default()
+        };
+        assert_eq!(range(&plot(&[0.001, -0.003], true)), [-0.02, 0.02]);
+        assert_eq!(range(&plot(&[0.3, -0.1], true)), [-0.5, 0.5]);
+        let [low, high] = range(&plot(&[0.72, 1.49], false));
+        assert!(low <= 0.72 && high >= 1.49 && high - low < 2.0, "{low} {high}");
+        assert_eq!(number(-0.5, [-0.5, 0.5]), "\u{2212}0.5");
+        assert_eq!(ticks([0.0, 2.0]), [0.0, 0.5, 1.0, 1.5, 2.0]);
+    }
+}

@@ -1,0 +1,118 @@
+//! How a film is made: measures, cards, and the storyboard.
+
+use super::stage::ViewForm;
+use crate::text::{
+    Form, Node, Part, Reading, Value, couple, flag, integer, list, number, optional, settings, table, text,
+    words,
+};
+use serde_json::{Value as Json, json};
+
+/// Longest card, s.
+const CARD: f64 = 60.0;
+/// Most shots of a storyboard.
+const MOST_SHOTS: usize = 200;
+
+settings! {
+    /// How a film is made when the command line does not say.
+    pub struct Film from FilmPart {
+        /// View; the scene's default view if left out.
+        pub view: Option<String> = None, optional(ViewForm);
+        /// Frames a second.
+        pub fps: u32 = 30, integer::<u32>(1, 240);
+        /// [width, height] in pixels, both even.
+        pub size: [u32; 2] = [1280, 720], couple(integer::<u32>(16, 8192), integer::<u32>(16, 8192));
+        /// How long a card with the title stands before the run, s; 0 for none.
+        pub title: f64 = 0.0, number("s").from(0.0).up_to(CARD);
+        /// How long a card with what the run showed stands after it, s; 0 for none.
+        pub end: f64 = 0.0, number("s").from(0.0).up_to(CARD);
+        /// The storyboard: shots in the order of time. Without any the film is one shot of the whole run.
+        pub shots: Vec<Shot> = vec![], list(ShotForm, 0, MOST_SHOTS);
+    }
+}
+
+settings! {
+    /// One shot of a film.
+    pub struct Shot from ShotPart {
+        /// When it begins, s of the run; where the shot before ends if left out. What lies between is skipped.
+        pub from: Option<f64> = None, optional(number("s").from(0.0).up_to(1e5));
+        /// When it ends, s of the run; where the next begins, or with the run, if left out.
+        pub to: Option<f64> = None, optional(number("s").from(0.0).up_to(1e5));
+        /// View as for pictures; several joined by '+' split the picture. The one before if left out.
+        pub view: Option<String> = None, optional(LayoutForm);
+        /// Seconds of the run in a second of the film: below 1 is slow motion.
+        pub speed: f64 = 1.0, number("").from(0.01).up_to(100.0);
+        /// How long the camera moves from the view before to this one, s of the film; 0 cuts. Split pictures and cameras on
+        /// robots are cut to.
+        pub glide: f64 = 1.5, number("s").from(0.0).up_to(CARD);
+        /// A line at the bottom of the picture.
+        pub line: String = String::new(), text(200);
+        /// Whether the set points stand in that line.
+        pub set_points: bool = false, flag();
+        /// What is plotted beside the view as the run goes, at most four.
+        pub plots: Vec<Plot> = vec![], list(Plot::form(), 0, 4);
+        /// Elements of pictures to leave out, such as "labels", "inset", "ghosts".
+        pub without: Vec<String> = vec![], list(text(40), 0, 40);
+    }
+}
+
+words! {
+    /// What is plotted beside a view.
+    pub enum Plot {
+        /// Error of the distance, m.
+        DistanceError = "distance-error",
+        /// Error of the bearing, degrees.
+        BearingError = "bearing-error",
+        /// Forward speed, m/s.
+        Speed = "speed",
+        /// Turn rate that was applied, rad/s.
+        TurnRate = "turn-rate",
+        /// Acceleration that was applied, m/s².
+        Acceleration = "acceleration",
+        /// Distance between leader and follower, m.
+        Distance = "distance",
+    }
+}
+
+/// A shot.
+struct ShotForm;
+
+impl Form for ShotForm {
+    type Out = Shot;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Shot> {
+        table::<ShotPart>().read(node, reading).map(|part| part.complete(&ShotPart::default()))
+    }
+
+    fn schema(&self) -> Json {
+        table::<ShotPart>().schema()
+    }
+}
+
+/// One to four views joined by '+'.
+struct LayoutForm;
+
+impl Form for LayoutForm {
+    type Out = String;
+
+    fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
+        let Some(text) = node.as_text() else {
+            reading.wrong(node, "views joined by '+', such as \"snake+top\"");
+            return None;
+        };
+        let parts: Vec<&str> = text.split('+').collect();
+        if parts.len() > 4 {
+            reading
+                .note(node.place, format!("{} views are too many for one picture: at most 4", parts.len()));
+            return None;
+        }
+        let known = parts.iter().all(|part| {
+            let part = Node { place: node.place, value: Value::Text(part.trim().to_owned()) };
+            ViewForm.read(&part, reading).is_some()
+        });
+        known.then(|| text.to_owned())
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "string", "description": "views joined by '+'" })
+    }
+}
