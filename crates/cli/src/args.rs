@@ -2,6 +2,7 @@
 
 use crate::certify::CertifyArgs;
 use crate::film::Preset;
+use crate::stills::StillsArgs;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use scene::Override;
@@ -30,6 +31,8 @@ pub(crate) enum Command {
     Capture(CaptureArgs),
     /// Make a film of a scene
     Film(FilmArgs),
+    /// Draw a run on one sheet of pictures, and all of it in one picture as under a stroboscope
+    Stills(StillsArgs),
     /// Search gains that fit a scene's vehicles, and print them
     Tune(TuneArgs),
     /// Say where errors of following come from: the scene with better and worse sensing, side by side

@@ -22,6 +22,7 @@ mod quiet;
 mod replay;
 mod report;
 mod run;
+mod stills;
 mod tune;
 mod welcome;
 
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
                 | Command::Tune(_)
                 | Command::Budget(_)
                 | Command::Certify(_)
+                | Command::Stills(_)
                 | Command::Dataset(_)
                 | Command::Accuracy(_)
                 | Command::Doctor(_)
@@ -63,6 +65,7 @@ fn main() -> ExitCode {
         Some(Command::Film(args)) => film::film(&args),
         Some(Command::Tune(args)) => tune::tune(&args),
         Some(Command::Budget(args)) => budget::budget(&args),
+        Some(Command::Stills(args)) => stills::stills(&args),
         Some(Command::Certify(args)) => certify::certify(&args),
         Some(Command::Dataset(args)) => dataset::dataset(&args),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
