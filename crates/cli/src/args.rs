@@ -1,6 +1,7 @@
 //! Subcommands and flags.
 
 use crate::certify::CertifyArgs;
+use crate::compare::CompareArgs;
 use crate::film::Preset;
 use crate::stills::StillsArgs;
 use clap::{Args, Parser, Subcommand};
@@ -33,6 +34,8 @@ pub(crate) enum Command {
     Film(FilmArgs),
     /// Draw a run on one sheet of pictures, and all of it in one picture as under a stroboscope
     Stills(StillsArgs),
+    /// Compare pictures, or folders of pictures, as eyes would, and show where they differ
+    Compare(CompareArgs),
     /// Search gains that fit a scene's vehicles, and print them
     Tune(TuneArgs),
     /// Say where errors of following come from: the scene with better and worse sensing, side by side
@@ -93,6 +96,9 @@ pub(crate) struct RunArgs {
     /// Replace an earlier run in the folder
     #[arg(long)]
     pub(crate) force: bool,
+    /// Also write what became of the scene's expectations as JUnit XML, which CI systems read
+    #[arg(long, value_name = "FILE")]
+    pub(crate) junit: Option<PathBuf>,
     /// Record nothing, only simulate and judge
     #[arg(long, conflicts_with_all = ["out", "csv", "force"])]
     pub(crate) no_record: bool,

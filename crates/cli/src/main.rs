@@ -6,12 +6,14 @@ mod budget;
 mod capture;
 mod certify;
 mod check;
+mod compare;
 mod dataset;
 mod doctor;
 mod eyes;
 mod failure;
 mod film;
 mod interrupt;
+mod junit;
 mod lab;
 mod load;
 mod picture;
@@ -66,6 +68,7 @@ fn main() -> ExitCode {
         Some(Command::Tune(args)) => tune::tune(&args),
         Some(Command::Budget(args)) => budget::budget(&args),
         Some(Command::Stills(args)) => stills::stills(&args),
+        Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Certify(args)) => certify::certify(&args),
         Some(Command::Dataset(args)) => dataset::dataset(&args),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),

@@ -4,6 +4,7 @@ use crate::Outcome;
 use crate::args::RunArgs;
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::junit::{self, Case};
 use crate::load::{Loaded, load, stem};
 use crate::progress::Progress;
 use crate::report::{self, Report};
@@ -74,6 +75,9 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     }
     let findings = verdict(&scene, &metrics, status == Status::Complete);
     let met = findings.iter().all(|f| f.met);
+    if let Some(path) = &args.junit {
+        junit::write(path, &stem(&args.scene.scene), &findings.iter().map(Case::of).collect::<Vec<_>>())?;
+    }
     let report = Report {
         scene: &scene,
         metrics: &metrics,

@@ -1,0 +1,301 @@
+//! `echelon compare`: do pictures look alike? For frames in CI against those that somebody has looked at.
+
+use crate::Outcome;
+use crate::failure::Failure;
+use crate::junit::{self, Case};
+use crate::print::{json, say};
+use clap::Args;
+use image::{Rgb, RgbImage};
+use image_compare::rgb_hybrid_compare;
+use serde_json::json;
+use std::collections::BTreeSet;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use vocabulary::Picture;
+
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    /// Picture (.png) as it should be, or a folder of such
+    #[arg(value_name = "WANTED")]
+    wanted: PathBuf,
+    /// Picture as it is, or a folder; pictures in folders are paired by their names
+    #[arg(value_name = "FOUND")]
+    found: PathBuf,
+    /// Likeness, 0 to 1, that every part of a picture has to have
+    #[arg(long, value_name = "LIKENESS", default_value_t = 0.9, value_parser = likeness)]
+    threshold: f64,
+    /// Folder for pictures of the differences: wanted, found, and where they differ
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Also write the result as JUnit XML, which CI systems read
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+    /// Print only what differs
+    #[arg(long, short, conflicts_with = "json")]
+    quiet: bool,
+}
+
+fn likeness(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| (0.0..=1.0).contains(v));
+    value.ok_or_else(|| "write a number from 0, anything, to 1, every pixel the same".to_owned())
+}
+
+/// Side of the parts that are judged one by one, pixels: what is wrong in one place does not drown in what is right
+/// elsewhere.
+const PART: u32 = 32;
+/// Largest picture that is read, pixels.
+const MOST_PIXELS: u64 = 200_000_000;
+
+/// Two pictures of one name.
+struct Pair {
+    name: String,
+    found: Result<Likeness, String>,
+}
+
+/// How alike two pictures are.
+struct Likeness {
+    /// Of the whole.
+    whole: f64,
+    /// Of the part that is least alike, and where its upper left corner is, pixels.
+    least: f64,
+    place: [u32; 2],
+    /// Share of the pixels that are not the same.
+    other: f64,
+}
+
+impl Pair {
+    fn passes(&self, threshold: f64) -> bool {
+        self.found.as_ref().is_ok_and(|likeness| likeness.least >= threshold)
+    }
+
+    fn words(&self) -> String {
+        match &self.found {
+            Err(why) => why.clone(),
+            Ok(l) if l.other == 0.0 => "the same".to_owned(),
+            Ok(l) => format!(
+                "likeness {:.4}, least {:.4} around pixel ({}, {}), {:.2} % of the pixels differ",
+                l.whole,
+                l.least,
+                l.place[0] + PART / 2,
+                l.place[1] + PART / 2,
+                100.0 * l.other
+            ),
+        }
+    }
+}
+
+pub(crate) fn compare(args: &CompareArgs) -> Outcome {
+    let pairs = pairs(args)?;
+    let mut compared = Vec::with_capacity(pairs.len());
+    for (name, wanted, found) in pairs {
+        let likeness = match (wanted, found) {
+            (Some(wanted), Some(found)) => look(&wanted, &found, &name, args)?,
+            (Some(_), None) => Err(format!("is not in {}", args.found.display())),
+            (None, _) => Err(format!("is not in {}", args.wanted.display())),
+        };
+        compared.push(Pair { name, found: likeness });
+    }
+    let failed = compared.iter().filter(|pair| !pair.passes(args.threshold)).count();
+    if let Some(path) = &args.junit {
+        let case = |pair: &Pair| Case {
+            name: pair.name.clone(),
+            failure: (!pair.passes(args.threshold)).then(|| pair.words()),
+        };
+        junit::write(path, "pictures", &compared.iter().map(case).collect::<Vec<_>>())?;
+    }
+    if args.json {
+        let pair = |pair: &Pair| {
+            let l = pair.found.as_ref().ok();
+            json!({
+                "name": pair.name, "passes": pair.passes(args.threshold), "fault": pair.found.as_ref().err(),
+                "likeness": l.map(|l| l.whole), "least": l.map(|l| l.least), "at": l.map(|l| l.place),
+                "pixels_differ": l.map(|l| l.other),
+            })
+        };
+        let pairs: Vec<_> = compared.iter().map(pair).collect();
+        json(&json!({ "threshold": args.threshold, "failed": failed, "pictures": pairs }));
+    } else {
+        for pair in compared.iter().filter(|pair| !args.quiet || !pair.passes(args.threshold)) {
+            let mark = if pair.passes(args.threshold) { "✓" } else { "✗" };
+            say(&format!("{mark} {}: {}", pair.name, pair.words()));
+        }
+        if failed > 0 || !args.quiet {
+            let all = compared.len();
+            say(&format!(
+                "{} of {all} pictures alike, every part by {} at least",
+                all - failed,
+                args.threshold
+            ));
+        }
+    }
+    if failed == 0 { Ok(()) } else { Err(Failure::Expectation) }
+}
+
+/// A name, and the files on both sides that have it.
+type Named = (String, Option<PathBuf>, Option<PathBuf>);
+
+fn pairs(args: &CompareArgs) -> Result<Vec<Named>, Failure> {
+    let (wanted, found) = (&args.wanted, &args.found);
+    match (wanted.is_dir(), found.is_dir()) {
+        (false, false) => {
+            let name = found.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+            Ok(vec![(name, Some(wanted.clone()), Some(found.clone()))])
+        }
+        (true, true) => {
+            let (left, right) = (names(wanted)?, names(found)?);
+            if left.is_empty() && right.is_empty() {
+                let text = format!("neither {} nor {} holds a .png", wanted.display(), found.display());
+                return Err(Failure::Usage(text));
+            }
+            let file = |names: &BTreeSet<OsString>, folder: &Path, name: &OsString| {
+                names.contains(name).then(|| folder.join(name))
+            };
+            let named = |name: &OsString| {
+                (name.to_string_lossy().into_owned(), file(&left, wanted, name), file(&right, found, name))
+            };
+            Ok(left.union(&right).map(named).collect())
+        }
+        (folder, _) => {
+            let (one, other) = if folder { (wanted, found) } else { (found, wanted) };
+            let what = if other.exists() { "is none" } else { "is not there" };
+            let text = format!(
+                "{} is a folder and {} {what}: give two pictures or two folders",
+                one.display(),
+                other.display()
+            );
+            Err(Failure::Usage(text))
+        }
+    }
+}
+
+/// Names of the pictures in a folder.
+fn names(folder: &Path) -> Result<BTreeSet<OsString>, Failure> {
+    let refused = |e| Failure::Usage(format!("cannot read {}: {e}", folder.display()));
+    let files = std::fs::read_dir(folder).map_err(refused)?.flatten().map(|entry| entry.path());
+    let pictures = files
+        .filter(|path| path.is_file() && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")));
+    Ok(pictures.filter_map(|path| path.file_name().map(OsString::from)).collect())
+}
+
+fn read(path: &Path) -> Result<RgbImage, Failure> {
+    let refused = |e: &dyn std::fmt::Display| Failure::Usage(format!("cannot read {}: {e}", path.display()));
+    let reader = image::ImageReader::open(path).map_err(|e| refused(&e))?;
+    let mut reader = reader.with_guessed_format().map_err(|e| refused(&e))?;
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(4 * MOST_PIXELS);
+    reader.limits(limits);
+    Ok(reader.decode().map_err(|e| refused(&e))?.into_rgb8())
+}
+
+fn look(
+    wanted: &Path,
+    found: &Path,
+    name: &str,
+    args: &CompareArgs,
+) -> Result<Result<Likeness, String>, Failure> {
+    let (a, b) = (read(wanted)?, read(found)?);
+    if a.dimensions() != b.dimensions() {
+        let [(w, h), (v, g)] = [a.dimensions(), b.dimensions()];
+        return Ok(Err(format!("is {v}×{g} pixels, wanted {w}×{h}")));
+    }
+    let compared = rgb_hybrid_compare(&a, &b)
+        .map_err(|e| Failure::Machine(format!("cannot compare {}: {e}", found.display())))?;
+    let map = compared.image.to_color_map().into_rgb8();
+    let likeness = likeness_of(&a, &b, compared.score, &map);
+    if let Some(folder) = args.out.as_ref().filter(|_| likeness.other > 0.0) {
+        let refused = |e| Failure::Machine(format!("cannot create {}: {e}", folder.display()));
+        std::fs::create_dir_all(folder).map_err(refused)?;
+        let path = folder.join(Path::new(name).with_extension("difference.png"));
+        rendering::png::write(&path, &side_by_side(&a, &b, &map), &[("Software", crate::run::PROGRAM)])?;
+    }
+    Ok(Ok(likeness))
+}
+
+/// Likeness of a pixel, 0 to 1: that of its worst channel, brightness and colours; `map` has their unlikeness.
+fn at(map: &RgbImage, x: u32, y: u32) -> f64 {
+    1.0 - f64::from(map.get_pixel(x, y).0.into_iter().fold(0, u8::max)) / 255.0
+}
+
+fn likeness_of(a: &RgbImage, b: &RgbImage, whole: f64, map: &RgbImage) -> Likeness {
+    let (width, height) = a.dimensions();
+    let mut least = (1.0, [0, 0]);
+    for top in (0..height).step_by(PART as usize) {
+        for left in (0..width).step_by(PART as usize) {
+            let (right, bottom) = ((left + PART).min(width), (top + PART).min(height));
+            let pixels = (top..bottom).flat_map(|y| (left..right).map(move |x| (x, y)));
+            let sum: f64 = pixels.map(|(x, y)| at(map, x, y)).sum();
+            let mean = sum / (f64::from(right - left) * f64::from(bottom - top));
+            if mean < least.0 {
+                least = (mean, [left, top]);
+            }
+        }
+    }
+    let other = a.pixels().zip(b.pixels()).filter(|(p, q)| p != q).count() as f64;
+    Likeness { whole, least: least.0, place: least.1, other: other / (f64::from(width) * f64::from(height)) }
+}
+
+/// Wanted, found, and where they differ: red on what was wanted, faintly.
+fn side_by_side(a: &RgbImage, b: &RgbImage, map: &RgbImage) -> Picture {
+    let (width, height) = a.dimensions();
+    let mut rgba = Vec::with_capacity(12 * width as usize * height as usize);
+    for y in 0..height {
+        for image in [a, b] {
+            for x in 0..width {
+                let Rgb([r, g, b]) = *image.get_pixel(x, y);
+                rgba.extend([r, g, b, 255]);
+            }
+        }
+        for x in 0..width {
+            let grey = a.get_pixel(x, y).0.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
+            let faint = 200.0 + 0.2 * grey;
+            // Small differences are to be seen as well.
+            let off = (1.0 - at(map, x, y)).clamp(0.0, 1.0).sqrt();
+            let mix = |to: f64| (faint + (to - faint) * off) as u8;
+            rgba.extend([mix(200.0), mix(20.0), mix(20.0), 255]);
+        }
+    }
+    Picture { width: 3 * width, height, rgba }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(mark: Option<u32>) -> RgbImage {
+        RgbImage::from_fn(160, 96, |x, y| {
+            let ground = 120 + ((x * 7 + y * 13) % 9) as u8;
+            match mark {
+                Some(at) if x.abs_diff(at) < 8 && y.abs_diff(50) < 8 => Rgb([220, 60, 20]),
+                _ => Rgb([ground; 3]),
+            }
+        })
+    }
+
+    fn likeness(a: &RgbImage, b: &RgbImage) -> Likeness {
+        let compared = rgb_hybrid_compare(a, b).expect("compared");
+        likeness_of(a, b, compared.score, &compared.image.to_color_map().into_rgb8())
+    }
+
+    #[test]
+    fn the_same_is_alike_and_a_little_noise_nearly() {
+        let a = picture(Some(40));
+        let same = likeness(&a, &a);
+        assert!(same.least > 0.9999 && same.other == 0.0);
+        let mut noisy = a.clone();
+        noisy.pixels_mut().step_by(700).for_each(|p| p.0[1] = p.0[1].saturating_add(3));
+        let near = likeness(&a, &noisy);
+        assert!(near.least > 0.95 && near.other > 0.0, "{}", near.least);
+    }
+
+    #[test]
+    fn what_is_missing_in_one_place_is_found_there() {
+        let found = likeness(&picture(Some(40)), &picture(None));
+        assert!(found.least < 0.8 && found.whole > found.least, "{}", found.least);
+        assert!(found.place[0] <= 40 && found.place[0] + PART > 30, "{:?}", found.place);
+        let shown = side_by_side(&picture(Some(40)), &picture(None), &picture(None));
+        assert_eq!((shown.width, shown.height), (480, 96));
+    }
+}
