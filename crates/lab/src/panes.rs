@@ -32,6 +32,7 @@ pub const NAMES: &[&str] = &[
     "Observer error",
     "Energy",
     "Room",
+    "Certificates",
 ];
 
 impl Pane {
@@ -61,7 +62,7 @@ pub fn arrangement() -> Tree<Pane> {
         tabs(&["Errors"]),
         tabs(&["Commands", "Speeds"]),
         tabs(&["Observer error"]),
-        tabs(&["Energy", "Room"]),
+        tabs(&["Energy", "Certificates", "Room"]),
     ];
     let left = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [formation, edge], 0.46));
     let right = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [law, more], 0.48));
@@ -195,6 +196,7 @@ fn show(ui: &mut Ui, pane: Pane, panels: &mut Panels<'_>) {
         "Energy" => {
             panels::curves::show(ui, desk, &[Quantity::TrackingEnergy, Quantity::ObserverEnergy], out);
         }
+        "Certificates" => panels::certificates::show(ui, desk, out),
         "Room" => panels::curves::show(ui, desk, &[Quantity::Clearance], out),
         _ => {}
     }

@@ -5,6 +5,7 @@ use crate::session::history::History;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
 use formation::relative::Geometry;
 use scene::{Follow, LawKind};
+use simulation::certify::{Row, rows};
 use std::fmt::Write;
 use vocabulary::{Edge, EdgeState, Moment, Snapshot};
 
@@ -31,11 +32,15 @@ pub enum Quantity {
     ObserverEnergy,
     /// Least room between bodies, m.
     Clearance,
+    /// By how much β is above what Lemma 4.1 asks for, m/s².
+    RobustMargin,
+    /// V of eq 29: ½‖r‖² and P.
+    Lyapunov,
 }
 
 impl Quantity {
     /// All of them, in the order of the panels.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::DistanceError,
         Self::BearingError,
         Self::Acceleration,
@@ -46,6 +51,8 @@ impl Quantity {
         Self::TrackingEnergy,
         Self::ObserverEnergy,
         Self::Clearance,
+        Self::RobustMargin,
+        Self::Lyapunov,
     ];
 
     /// For an axis: symbol and unit.
@@ -61,6 +68,8 @@ impl Quantity {
             Self::TrackingEnergy => "½‖r‖²",
             Self::ObserverEnergy => "W",
             Self::Clearance => "room (m)",
+            Self::RobustMargin => "margin of β (m/s²)",
+            Self::Lyapunov => "V (eq 29)",
         }
     }
 
@@ -77,6 +86,8 @@ impl Quantity {
             Self::TrackingEnergy => "log10_tracking_energy",
             Self::ObserverEnergy => "log10_observer_energy",
             Self::Clearance => "clearance_m",
+            Self::RobustMargin => "beta_margin_m_s2",
+            Self::Lyapunov => "lyapunov_v",
         }
     }
 
@@ -99,6 +110,8 @@ pub struct Curve {
 
 /// The smallest energy that is shown: rounding is below it.
 const FLOOR: f64 = 1e-18;
+/// The least margin of β that is shown, m/s².
+const LEAST_MARGIN: f64 = -20.0;
 
 /// The curves of a quantity in a span of time, of all branches, the one that is looked at last.
 pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> Vec<Curve> {
@@ -118,6 +131,10 @@ pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> V
         let moments = history.between(branch, [from, span[1]], most);
         for (edge, ends) in history.cast().edges.iter().enumerate() {
             let Some((_, _, follow)) = desk.follower(edge) else { continue };
+            if let Some(points) = certified(quantity, &moments, (edge, *ends), follow) {
+                all.push(Curve { branch, robot: Some(ends.follower), points });
+                continue;
+            }
             let point = |m: &&Moment| Some([m.snapshot.time, value(quantity, m, (edge, *ends), follow)?]);
             let points = moments.iter().filter_map(point).collect();
             all.push(Curve { branch, robot: Some(ends.follower), points });
@@ -134,6 +151,23 @@ pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> V
         }
     }
     all
+}
+
+/// Quantities that go by how a run came to be: they need all moments. `None` for others.
+fn certified(
+    quantity: Quantity,
+    moments: &[&Moment],
+    edge: (usize, Edge),
+    follow: &Follow,
+) -> Option<Vec<[f64; 2]>> {
+    let value: fn(&Row) -> f64 = match quantity {
+        // What the first samples ask for would flatten all that follows.
+        Quantity::RobustMargin => |row| row.margin.max(LEAST_MARGIN),
+        Quantity::Lyapunov => |row| row.v,
+        _ => return None,
+    };
+    let rows = if follow.law.kind == LawKind::FullState { vec![] } else { rows(moments, edge, follow) };
+    Some(rows.iter().map(|row| [row.time, value(row)]).filter(|p| p[1].is_finite()).collect())
 }
 
 /// A quantity of an edge at a moment; `None` where there is none.
@@ -165,7 +199,9 @@ fn value(quantity: Quantity, moment: &Moment, (index, edge): (usize, Edge), foll
             };
             observer_energy(&error).max(FLOOR).log10()
         }
-        Quantity::ObserverEnergy | Quantity::Clearance => return None,
+        Quantity::ObserverEnergy | Quantity::Clearance | Quantity::RobustMargin | Quantity::Lyapunov => {
+            return None;
+        }
     };
     value.is_finite().then_some(value)
 }
@@ -188,7 +224,7 @@ pub fn bounds(desk: &Desk, quantity: Quantity) -> Vec<f64> {
         Quantity::Acceleration => both(vehicle.acceleration_max),
         Quantity::TurnRate => both(vehicle.turn_rate_max),
         Quantity::Speed => vec![vehicle.speed_min, vehicle.speed_max],
-        Quantity::Clearance => vec![0.0],
+        Quantity::Clearance | Quantity::RobustMargin => vec![0.0],
         _ => Vec::new(),
     };
     bounds.retain(|bound| bound.is_finite());

@@ -101,7 +101,7 @@ fn follows(robot: &scene::Robot) -> Option<(&str, &Follow)> {
     }
 }
 
-fn edge_law(follow: &Follow) -> EdgeLaw {
+pub(crate) fn edge_law(follow: &Follow) -> EdgeLaw {
     let (law, observer) = (&follow.law, observer(follow));
     EdgeLaw {
         law: formation::Law {

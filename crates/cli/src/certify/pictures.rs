@@ -95,7 +95,7 @@ fn stability(report: &Report<'_>, chart: &Chart) -> Figure {
             LongestPeriod::Below => None,
         });
         Series {
-            name: how.words().to_owned(),
+            name: ["continuous", "straight line", "held", "Runge-Kutta 4", "Euler"][k % 5].to_owned(),
             colour: COLOURS[k % COLOURS.len()],
             stroke: [Stroke::Solid, Stroke::Dashed, Stroke::Dotted][k % 3],
             points: points.collect(),
@@ -123,15 +123,21 @@ fn stability(report: &Report<'_>, chart: &Chart) -> Figure {
 fn reach(report: &Report<'_>, beyond: &Beyond) -> Figure {
     let colours = colours(report);
     let mut series = vec![];
-    for (k, reach) in beyond.reach.iter().take(MOST_EDGES).enumerate() {
+    let shown = || beyond.reach.iter().take(MOST_EDGES);
+    for (k, reach) in shown().enumerate() {
         let colour = colours.get(reach.edge).copied().unwrap_or([0.3; 3]);
-        series.push(Series {
-            name: report.follower(reach.edge).to_owned(),
-            colour,
-            stroke: if k % 2 == 0 { Stroke::Solid } else { Stroke::Dashed },
-            points: reach.rays.iter().map(|ray| [ray.bearing.to_degrees(), ray.distance]).collect(),
-            ..Series::default()
-        });
+        // Followers of one leader can hold the same: one curve for all of them.
+        let like = || shown().filter(|other| other.rays == reach.rays);
+        if like().next().is_some_and(|first| first.edge == reach.edge) {
+            let alone = like().count() == 1;
+            series.push(Series {
+                name: if alone { report.follower(reach.edge).to_owned() } else { "all".to_owned() },
+                colour: if alone { colour } else { [0.2; 3] },
+                stroke: if k % 2 == 0 { Stroke::Solid } else { Stroke::Dashed },
+                points: reach.rays.iter().map(|ray| [ray.bearing.to_degrees(), ray.distance]).collect(),
+                ..Series::default()
+            });
+        }
         let [distance, bearing] = reach.set_point;
         series.push(Series {
             colour,

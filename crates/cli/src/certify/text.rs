@@ -296,7 +296,7 @@ fn chain(report: &Report<'_>, beyond: &Beyond) {
             .filter_map(|(k, n)| Some(format!("{n}: {}", millimetres(10.0 * slow?.lengths[k]))))
             .collect();
         say(&format!(
-            "    {:<28} in chains of its like, slowly (at {SLOW} rad/s), {} per cm/s",
+            "    {:<28} in chains of its like, per cm/s at {SLOW} rad/s, error of follower {}",
             "",
             lengths.join(", ")
         ));
@@ -312,9 +312,9 @@ fn chain(report: &Report<'_>, beyond: &Beyond) {
 /// A frequency at which formations are led, rad/s.
 const SLOW: f64 = 0.2;
 
-/// What is beyond a kilometre is beyond every limit, too.
+/// What is beyond a metre is beyond the limits that are left out here, too.
 fn millimetres(value: f64) -> String {
-    if value < 1e6 { format!("{} mm", short(value)) } else { "beyond limits".to_owned() }
+    if value < 1e3 { format!("{} mm", short(value)) } else { "over 1 m".to_owned() }
 }
 
 fn clip(text: &str, most: usize) -> String {
@@ -323,10 +323,14 @@ fn clip(text: &str, most: usize) -> String {
 
 /// Three significant digits.
 pub(super) fn short(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 { "0".to_owned() } else { "∞".to_owned() };
+    if !value.is_finite() {
+        return "∞".to_owned();
     }
     let size = value.abs();
+    // What is left of a zero by rounding.
+    if size < 1e-12 {
+        return "0".to_owned();
+    }
     if !(1e-4..1e6).contains(&size) {
         return format!("{value:.2e}");
     }

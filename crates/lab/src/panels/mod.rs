@@ -1,6 +1,7 @@
 //! Panels: each shows part of the desk and tells what a person asks for. None of them changes anything by itself.
 
 pub mod branches;
+pub mod certificates;
 pub mod controls;
 pub mod curves;
 pub mod edge;

@@ -5,6 +5,7 @@
 
 pub mod chain;
 mod examiner;
+mod past;
 pub mod reach;
 pub mod sensitivity;
 
@@ -13,3 +14,4 @@ pub use formation::certificate::chain::NotLinear;
 pub use formation::certificate::discretisation::{Channel, Discretisation, LongestPeriod};
 pub use formation::certificate::{Constants, Finding, Outcome, Premise, Row, Statement};
 pub use formation::holdable::Unholdable;
+pub use past::{rows, so_far};

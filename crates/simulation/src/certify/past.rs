@@ -1,0 +1,76 @@
+//! The quantities of the theorems of a run that is over, or of what is kept of it: from moments alone.
+
+use crate::build::edge_law;
+use formation::certificate::{Circumstances, Finding, Instant, Row, Witness, certify};
+use formation::{Estimate, LawKind};
+use scene::{Follow, Mode, Role, Scene, SensingKind};
+use vocabulary::{Drive, Edge, Moment, Motion, SetPoint, wrap};
+
+/// What the theorems say of edge number `index` along `moments`, so far, and the quantities they speak of.
+pub fn so_far(
+    moments: &[&Moment],
+    (index, edge): (usize, Edge),
+    follow: &Follow,
+    scene: &Scene,
+) -> (Vec<Finding>, Vec<Row>) {
+    let witness = witness(moments, (index, edge), follow);
+    let wheels = |robot: usize| scene.robots.get(robot).is_some_and(|robot| robot.vehicle.kind.has_wheels());
+    let leads = scene.robots.get(edge.leader).is_none_or(|robot| matches!(robot.role, Role::Lead { .. }));
+    let held = scene.time.mode != Mode::Continuous;
+    let first = moments.first().map(|moment| moment.snapshot.time);
+    let circumstances = Circumstances {
+        held: held.then_some(scene.time.period),
+        sampled_measurement: scene.time.mode == Mode::Measured,
+        looks: follow.sensing.kind != SensingKind::Truth,
+        wheels: wheels(edge.leader) || wheels(edge.follower),
+        // A leader that follows is told its commands period by period.
+        rough_leader: first.filter(|_| held && !leads),
+    };
+    (certify(&witness, &circumstances), witness.rows().to_vec())
+}
+
+/// The quantities of edge number `index` along `moments`, which may be thinned; its law is that of `follow`. Rates of set
+/// points and of turn rates are differences from moment to moment.
+pub fn rows(moments: &[&Moment], (index, edge): (usize, Edge), follow: &Follow) -> Vec<Row> {
+    witness(moments, (index, edge), follow).rows().to_vec()
+}
+
+fn witness(moments: &[&Moment], (index, edge): (usize, Edge), follow: &Follow) -> Witness {
+    let law = edge_law(follow);
+    let mut witness = Witness::new(law.law, law.observer);
+    let observes = law.law.kind == LawKind::OutputFeedback;
+    let mut before: Option<(f64, Motion, [f64; 2])> = None;
+    for moment in moments {
+        let robots = &moment.snapshot.robots;
+        let (Some(state), Some(leader), Some(follower)) =
+            (moment.edges.get(index), robots.get(edge.leader), robots.get(edge.follower))
+        else {
+            continue;
+        };
+        let (time, motion, value) = (moment.snapshot.time, leader.motion, state.set_point);
+        let (turned, moved) = before.map_or((0.0, [0.0; 2]), |(then, last, point)| {
+            let step = (time - then).max(1e-9);
+            let moved = [value[0] - point[0], wrap(value[1] - point[1])].map(|d| d / step);
+            ((motion.turn_rate - last.turn_rate) / step, moved)
+        });
+        before = Some((time, motion, value));
+        witness.push(&Instant {
+            time,
+            relative: state.relative,
+            follower_speed: follower.motion.speed.max(1e-6),
+            leader: Drive {
+                speed: motion.speed,
+                acceleration: motion.acceleration,
+                turn_rate: motion.turn_rate,
+                turn_acceleration: turned,
+            },
+            set_point: SetPoint { value, rate: moved, acceleration: [0.0; 2] },
+            error: state.error,
+            estimate: observes.then_some(Estimate { output: state.estimate, rates: state.rates }),
+            limited: state.limited,
+            at_speed_bound: false,
+            too_close: state.too_close,
+        });
+    }
+    witness
+}
