@@ -155,3 +155,59 @@ fn a_png_keeps_its_words() {
     let error = rendering::png::write(Path::new("/nowhere/a.png"), &picture(40, 30, 2), &[]).unwrap_err();
     assert!(!error.is_usage());
 }
+
+/// The first `to` frames of a film that another program may go on with; how many were there.
+fn kept(path: &Path, made_of: &str, to: u32) -> (Film, u64) {
+    let (mut film, done) = Film::resume(path, (128, 96), 10.0, made_of).unwrap();
+    for k in done as u32..to {
+        film.push(picture(128, 96, k)).unwrap();
+    }
+    (film, done)
+}
+
+#[test]
+fn an_interrupted_film_goes_on_and_is_the_same_in_the_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    film(&path("whole.mp4"), FilmKind::Mp4, 70, 10.0).unwrap();
+    let whole = std::fs::read(path("whole.mp4")).unwrap();
+
+    // A program that is killed leaves whole groups of two seconds.
+    drop(kept(&path("a.mp4"), "the same", 47).0);
+    assert!(!path("a.mp4").exists());
+    let (second, done) = kept(&path("a.mp4"), "the same", 70);
+    assert_eq!(done, 40);
+    second.finish().unwrap();
+    assert!(std::fs::read(path("a.mp4")).unwrap() == whole, "the film differs");
+
+    // One that is asked to stop leaves a film, too.
+    kept(&path("b.mp4"), "the same", 25).0.pause().unwrap();
+    let paused = std::fs::read(path("b.mp4")).unwrap();
+    assert_eq!(
+        find(&paused, &[b"moov", b"trak", b"mdia", b"minf", b"stbl", b"stsz"]).map(|b| word(b, 8)),
+        Some(25)
+    );
+    let (second, done) = kept(&path("b.mp4"), "the same", 70);
+    assert_eq!(done, 20);
+    second.finish().unwrap();
+    assert!(std::fs::read(path("b.mp4")).unwrap() == whole, "the film differs");
+    let mut left = leftovers(folder.path());
+    left.sort();
+    assert_eq!(left, ["a.mp4", "b.mp4", "whole.mp4"]);
+}
+
+#[test]
+fn a_film_of_something_else_begins_anew_and_two_programs_keep_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mp4");
+    drop(kept(&path, "one", 30).0);
+    let (other, done) = kept(&path, "another", 5);
+    assert_eq!(done, 0);
+    assert!(matches!(Film::resume(&path, (128, 96), 10.0, "another"), Err(Error::Busy(_))));
+    drop(other);
+    // Less than a group is nothing to go on with.
+    assert_eq!(leftovers(folder.path()), Vec::<String>::new());
+    // What is no journal is none of ours.
+    std::fs::write(folder.path().join(".a.mp4.journal"), [0xff, 0xfe, 0, 1]).unwrap();
+    assert_eq!(kept(&path, "one", 5).1, 0);
+}

@@ -88,7 +88,7 @@ fn over_time(report: &Report<'_>) -> Figure {
 fn stability(report: &Report<'_>, chart: &Chart) -> Figure {
     const COLOURS: [Rgb; 5] =
         [[0.0, 0.45, 0.70], [0.0, 0.62, 0.45], [0.90, 0.62, 0.0], [0.80, 0.47, 0.65], [0.84, 0.37, 0.0]];
-    let series = chart.borders.iter().enumerate().map(|(k, (how, border))| {
+    let series = chart.borders.iter().enumerate().map(|(k, (_, border))| {
         let points = chart.epsilons.iter().zip(border).filter_map(|(epsilon, longest)| match longest {
             LongestPeriod::At(period) => Some([*epsilon, 1e3 * period]),
             LongestPeriod::Beyond => Some([*epsilon, 1e3 * PERIODS[1]]),

@@ -2,8 +2,11 @@
 
 mod bad_input;
 mod budget;
+mod certify;
+mod ci;
 mod common;
 mod dataset;
+mod films;
 mod pictures;
 mod replay;
 mod runs;
