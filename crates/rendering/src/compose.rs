@@ -11,7 +11,7 @@ use crate::passes::ground::TILE;
 use crate::passes::overlay::Shapes;
 use crate::passes::shadow::{ShadowPass, SunView, sun_view};
 use crate::passes::text::{Line, TextPass};
-use crate::show::show;
+use crate::show::{make_room, show};
 use glam::{DVec2, DVec3};
 use vocabulary::{Cast, Light, Member, Moment, RobotState};
 
@@ -159,6 +159,7 @@ pub(crate) fn words(
 ) -> (Vec<Line>, Shapes) {
     let mut words = Words::new(text, stage.style.scale);
     let left = stage.style.show.left_over(size);
+    make_room(&mut words, &stage.style.show, left);
     let (lower, over) = windows.split_at(windows.len() - upper);
     for window in over {
         words.framed(window.tile);
@@ -166,7 +167,7 @@ pub(crate) fn words(
     let carried = |view: &View| matches!(view, View::Camera(_));
     let sky = windows.first().map_or(0.0, |w| 0.5 * (1.0 - w.camera.horizon()) * f64::from(w.tile.height));
     let only_cameras = views.iter().all(carried);
-    caption(&mut words, stage, left.1, (sky as f32, !only_cameras));
+    caption(&mut words, stage, left, (sky as f32, !only_cameras));
     // In a quarter of a picture it would cover a whole view.
     let plotted = !stage.style.show.plots.is_empty();
     let charted = stage.style.inset && !plotted && !views.first().is_some_and(carried);

@@ -67,6 +67,9 @@ impl Axes {
 /// Draws the panel and both charts over one time axis.
 pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, tile: Tile) {
     let Some(panel) = place(words, tile).filter(|_| !stage.cast.edges.is_empty()) else { return };
+    if !words.is_free(&panel) {
+        return;
+    }
     words.reserve(panel);
     let radius = words.scaled(7.0);
     words.shapes.panel(panel, radius, [0.98, 0.98, 0.97, 0.86]);

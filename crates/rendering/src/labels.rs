@@ -69,6 +69,11 @@ impl<'a> Words<'a> {
         self.taken.push(area);
     }
 
+    /// Whether nothing has been put where `area` is.
+    pub(crate) fn is_free(&self, area: &Box4) -> bool {
+        !self.taken.iter().any(|other| overlap(area, other))
+    }
+
     /// A thin frame around a tile, from which words keep away.
     pub(crate) fn framed(&mut self, tile: Tile) {
         let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
@@ -155,7 +160,12 @@ fn overlap(a: &Box4, b: &Box4) -> bool {
 
 /// Title, law and time, at the corners of the whole picture; `sky` is how far down the sky reaches, pixels,
 /// and without a title a picture has no words of its own.
-pub(crate) fn caption(words: &mut Words<'_>, stage: &Stage<'_>, height: u32, (sky, titled): (f32, bool)) {
+pub(crate) fn caption(
+    words: &mut Words<'_>,
+    stage: &Stage<'_>,
+    (wide, height): (u32, u32),
+    (sky, titled): (f32, bool),
+) {
     let margin = words.scaled(MARGIN);
     let cast = stage.cast;
     if stage.style.caption && titled {
@@ -163,6 +173,9 @@ pub(crate) fn caption(words: &mut Words<'_>, stage: &Stage<'_>, height: u32, (sk
         for (text, size, bold, down) in rows {
             if !text.is_empty() {
                 let middle = margin + words.scaled(down);
+                let most = (wide as f32 - 2.0 * margin).max(1.0);
+                // Where it is too long for the picture, in smaller letters.
+                let size = size * (most / words.width(text, size, bold)).clamp(0.5, 1.0);
                 let width = words.width(text, size, bold);
                 let half = words.scaled(0.7 * size);
                 // Dark on sky and haze, light on the ground.

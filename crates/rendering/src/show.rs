@@ -121,7 +121,9 @@ fn one_plot(
     let row = words.scaled(22.0);
     words.write(plot.label.clone(), [x, y + 0.4 * row], 14.0, true, Ink::ON_PANEL);
     let range = range(plot);
-    let ticks = ticks(range);
+    // A number has to have room above and below it.
+    let rows = ((height - 2.0 * row) / words.scaled(26.0)).clamp(1.0, 4.5);
+    let ticks = ticks(range, f64::from(rows));
     let texts: Vec<(f64, String)> = ticks.iter().map(|t| (*t, number(*t, range))).collect();
     let mut wide = 0.0_f32;
     for (_, text) in &texts {
@@ -197,8 +199,8 @@ fn round_up(most: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|n| n * power).find(|n| *n >= most * 0.999).unwrap_or(most)
 }
 
-fn ticks([low, high]: [f64; 2]) -> Vec<f64> {
-    let step = round_up((high - low) / 4.5);
+fn ticks([low, high]: [f64; 2], rows: f64) -> Vec<f64> {
+    let step = round_up((high - low) / rows);
     let first = (low / step).ceil() as i64;
     let last = (high / step * (1.0 + 1e-12)).floor() as i64;
     (first..=last).take(12).map(|k| k as f64 * step).collect()
@@ -213,24 +215,35 @@ fn number(value: f64, [low, high]: [f64; 2]) -> String {
     if text == "-0" { "0".to_owned() } else { text.replace('-', "\u{2212}") }
 }
 
-fn line(words: &mut Words<'_>, said: &Line, [width, height]: [f32; 2]) {
-    let alpha = said.opacity as f32;
+/// Where a line at the bottom is, and the size of its letters.
+fn line_place(words: &mut Words<'_>, said: &Line, [width, height]: [f32; 2]) -> ([f32; 4], f32) {
     let mut size = 17.0_f32;
     let most = said.rows.iter().map(|row| words.width(row, size, true)).fold(1.0_f32, f32::max);
     size *= (0.9 * width / most).min(1.0);
-    let wide = most.min(0.9 * width);
-    let row = words.scaled(1.45 * size);
-    let pad = words.scaled(12.0);
-    let high = row * said.rows.len() as f32 + pad;
+    let (wide, pad) = (most.min(0.9 * width), words.scaled(12.0));
+    let high = words.scaled(1.45 * size) * said.rows.len() as f32 + pad;
     // Clear of the clock in the corner.
     let bottom = height - words.scaled(62.0);
-    let place = [0.5 * (width - wide) - pad, bottom - high, wide + 2.0 * pad, high];
+    ([0.5 * (width - wide) - pad, bottom - high, wide + 2.0 * pad, high], size)
+}
+
+/// Keeps other words away from where the line at the bottom will be.
+pub(crate) fn make_room(words: &mut Words<'_>, show: &Show, views: (u32, u32)) {
+    if let Some(said) = show.line.as_ref().filter(|line| line.opacity > 0.0) {
+        let (place, _) = line_place(words, said, [views.0 as f32, views.1 as f32]);
+        words.reserve(place);
+    }
+}
+
+fn line(words: &mut Words<'_>, said: &Line, views: [f32; 2]) {
+    let alpha = said.opacity as f32;
+    let (place, size) = line_place(words, said, views);
     let [r, g, b] = palette::INK;
-    let radius = words.scaled(8.0);
+    let (radius, row, pad) = (words.scaled(8.0), words.scaled(1.45 * size), words.scaled(12.0));
     words.shapes.panel(place, radius, [r, g, b, 0.72 * alpha]);
     for (k, text) in said.rows.iter().enumerate() {
         let own = words.width(text, size, true);
-        let at = [0.5 * (width - own), bottom - high + 0.5 * pad + row * (k as f32 + 0.5)];
+        let at = [0.5 * (views[0] - own), place[1] + 0.5 * pad + row * (k as f32 + 0.5)];
         let ink = Ink { halo: (0.0, palette::INK), ..Ink::LIGHT };
         words.write(text.clone(), at, size, true, ink.faded(alpha));
     }
@@ -287,6 +300,7 @@ mod tests {
         let [low, high] = range(&plot(&[0.72, 1.49], false));
         assert!(low <= 0.72 && high >= 1.49 && high - low < 2.0, "{low} {high}");
         assert_eq!(number(-0.5, [-0.5, 0.5]), "\u{2212}0.5");
-        assert_eq!(ticks([0.0, 2.0]), [0.0, 0.5, 1.0, 1.5, 2.0]);
+        assert_eq!(ticks([0.0, 2.0], 4.5), [0.0, 0.5, 1.0, 1.5, 2.0]);
+        assert_eq!(ticks([-10.0, 10.0], 2.0), [-10.0, 0.0, 10.0]);
     }
 }

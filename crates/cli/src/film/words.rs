@@ -33,8 +33,7 @@ fn results(metrics: &Metrics) -> Vec<String> {
     let worst = |value: fn(&EdgeMetrics) -> f64| metrics.edges.iter().map(value).fold(0.0, f64::max);
     if !metrics.edges.is_empty() {
         let followers = metrics.edges.len();
-        let who =
-            if followers == 1 { "its follower".to_owned() } else { format!("each of {followers} followers") };
+        let who = if followers == 1 { "the follower".to_owned() } else { format!("{followers} followers") };
         rows.push(format!(
             "errors of {who} at the end: at most {:.1} mm and {:.2}°",
             1e3 * worst(|edge| edge.final_error[0].abs()),
