@@ -64,6 +64,8 @@ struct Likeness {
     place: [u32; 2],
     /// Share of the pixels that are not the same.
     other: f64,
+    /// What drew the wanted and the found one, where the files say so and it was not the same.
+    adapters: Option<[String; 2]>,
 }
 
 impl Pair {
@@ -75,14 +77,19 @@ impl Pair {
         match &self.found {
             Err(why) => why.clone(),
             Ok(l) if l.other == 0.0 => "the same".to_owned(),
-            Ok(l) => format!(
-                "likeness {:.4}, least {:.4} around pixel ({}, {}), {:.2} % of the pixels differ",
-                l.whole,
-                l.least,
-                l.place[0] + PART / 2,
-                l.place[1] + PART / 2,
-                100.0 * l.other
-            ),
+            Ok(l) => {
+                let by = l.adapters.as_ref().map_or_else(String::new, |[wanted, found]| {
+                    format!("; drawn with {found}, wanted as with {wanted}")
+                });
+                format!(
+                    "likeness {:.4}, least {:.4} around pixel ({}, {}), {:.2} % of the pixels differ{by}",
+                    l.whole,
+                    l.least,
+                    l.place[0] + PART / 2,
+                    l.place[1] + PART / 2,
+                    100.0 * l.other
+                )
+            }
         }
     }
 }
@@ -204,7 +211,8 @@ fn look(
     let compared = rgb_hybrid_compare(&a, &b)
         .map_err(|e| Failure::Machine(format!("cannot compare {}: {e}", found.display())))?;
     let map = compared.image.to_color_map().into_rgb8();
-    let likeness = likeness_of(&a, &b, compared.score, &map);
+    let likeness =
+        Likeness { adapters: adapters(wanted, found), ..likeness_of(&a, &b, compared.score, &map) };
     if let Some(folder) = args.out.as_ref().filter(|_| likeness.other > 0.0) {
         let refused = |e| Failure::Machine(format!("cannot create {}: {e}", folder.display()));
         std::fs::create_dir_all(folder).map_err(refused)?;
@@ -212,6 +220,16 @@ fn look(
         rendering::png::write(&path, &side_by_side(&a, &b, &map), &[("Software", crate::run::PROGRAM)])?;
     }
     Ok(Ok(likeness))
+}
+
+/// What drew two pictures, where their files say so and it was not the same.
+fn adapters(wanted: &Path, found: &Path) -> Option<[String; 2]> {
+    let drawn = |path: &Path| {
+        let texts = rendering::png::read_texts(path).ok()?;
+        texts.into_iter().find(|(key, _)| key == "Adapter").map(|(_, adapter)| adapter)
+    };
+    let both = [drawn(wanted)?, drawn(found)?];
+    (both[0] != both[1]).then_some(both)
 }
 
 /// Likeness of a pixel, 0 to 1: that of its worst channel, brightness and colours; `map` has their unlikeness.
@@ -234,7 +252,13 @@ fn likeness_of(a: &RgbImage, b: &RgbImage, whole: f64, map: &RgbImage) -> Likene
         }
     }
     let other = a.pixels().zip(b.pixels()).filter(|(p, q)| p != q).count() as f64;
-    Likeness { whole, least: least.0, place: least.1, other: other / (f64::from(width) * f64::from(height)) }
+    Likeness {
+        whole,
+        least: least.0,
+        place: least.1,
+        other: other / (f64::from(width) * f64::from(height)),
+        adapters: None,
+    }
 }
 
 /// Wanted, found, and where they differ: red on what was wanted, faintly.
