@@ -173,16 +173,21 @@ fn an_epsilon_above_what_the_proof_takes_is_told() {
     assert!(unmet(&certificate, Statement::UltimateBound).contains(&"epsilon"));
 }
 
+fn robot(name: &str, leader: &str, x: f64, y: f64) -> String {
+    format!(
+        "[[robots]]\nname = \"{name}\"\npose = [{x}, {y}, 0.0]\nspeed = 1.0\nleader = \"{leader}\"\n\
+         distance = 2.0\nbearing = \"-135 deg\"\n"
+    )
+}
+
 /// A third robot follows the second.
 fn chain_of(followers: usize) -> String {
     let mut text = IDEAL.to_owned();
     let mut before = "follower".to_owned();
     for k in 1..followers {
-        let (x, y) = (-1.5142 - 1.4142 * k as f64, -1.4142 * (k + 1) as f64);
-        text.push_str(&format!(
-            "[[robots]]\nname = \"f{k}\"\npose = [{x}, {y}, 0.0]\nspeed = 1.0\nleader = \"{before}\"\n\
-             distance = 2.0\nbearing = \"-135 deg\"\n"
-        ));
+        let step = 2.0_f64.sqrt();
+        let (x, y) = (-0.1 - step * (k + 1) as f64, -step * (k + 1) as f64);
+        text += &robot(&format!("f{k}"), &before, x, y);
         before = format!("f{k}");
     }
     text

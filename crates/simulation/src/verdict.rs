@@ -273,6 +273,7 @@ mod tests {
             clearance_min_time: Some(1.0),
             clearance_min_robots: Some(["ann".into(), "bob".into()]),
             settling_band: [0.05, 0.05],
+            certificates: vec![],
             contacts: 2,
             contact_impulse_max: 3.0,
             robots: vec![RobotMetrics {

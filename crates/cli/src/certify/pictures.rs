@@ -8,6 +8,8 @@ use simulation::certify::{LongestPeriod, Row};
 
 /// Curves that are shown, at most.
 const MOST_EDGES: usize = 6;
+/// How light the curves of chains are, short ones first.
+const GREYS: [f32; LENGTHS.len()] = [0.0, 0.25, 0.4, 0.55];
 /// Points of a curve, at most.
 const MOST_POINTS: usize = 400;
 
@@ -166,7 +168,6 @@ fn chain(report: &Report<'_>, beyond: &Beyond) -> Figure {
     let Some(gain) = beyond.chain.iter().find(|gain| !gain.curve.is_empty()) else {
         return Figure::default();
     };
-    const GREYS: [f32; LENGTHS.len()] = [0.0, 0.25, 0.4, 0.55];
     let lengths = LENGTHS.iter().enumerate().map(|(k, followers)| Series {
         name: if *followers == 1 { "1 follower".to_owned() } else { followers.to_string() },
         colour: [GREYS[k], 0.35 + 0.3 * GREYS[k], 0.7],

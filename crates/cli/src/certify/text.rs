@@ -70,10 +70,10 @@ fn others(report: &Report<'_>) {
         return;
     }
     let heads = Statement::ALL.map(Statement::source);
-    let head: String = heads.iter().map(|source| format!("  {source:>13}")).collect();
+    let head = row(heads.iter().map(|source| format!("  {source:>13}")));
     say(&format!("\n{:28}{head}", ""));
     for certificate in rest().take(MOST_EDGES) {
-        let cells: String = certificate.findings.iter().map(|f| format!("  {:>13}", cell(f))).collect();
+        let cells = row(certificate.findings.iter().map(|f| format!("  {:>13}", cell(f))));
         say(&format!("{:28}{cells}", clip(&report.edge(certificate.edge), 28)));
     }
     let more = rest().count().saturating_sub(MOST_EDGES);
@@ -83,6 +83,11 @@ fn others(report: &Report<'_>) {
     say(
         "✓ holds, ✗ violated from this time on, – premise not met; then by the numbers (✓) or (✗), or nothing to say",
     );
+}
+
+/// Cells side by side.
+fn row(cells: impl Iterator<Item = String>) -> String {
+    cells.collect::<Vec<_>>().concat()
 }
 
 fn cell(finding: &Finding) -> String {
@@ -182,20 +187,16 @@ fn sensitivities(report: &Report<'_>, beyond: &Beyond) {
     };
     say("  sensitivity of the settled error (last fifth of the run): % more for 1 % more gain on all edges");
     let edges = report.cast.edges.len().min(MOST_EDGES);
-    let head: String = (0..edges).map(|e| format!("  {:>21}", clip(report.follower(e), 21))).collect();
+    let head = row((0..edges).map(|e| format!("  {:>21}", clip(report.follower(e), 21))));
     say(&format!("    {:14}{head}", ""));
     let settled = found.settled.iter().take(edges);
-    let settled: String =
-        settled.map(|e| format!("  {:>9} mm {:>8}°", short(1e3 * e[0]), short(e[1].to_degrees()))).collect();
+    let settled =
+        row(settled.map(|e| format!("  {:>9} mm {:>8}°", short(1e3 * e[0]), short(e[1].to_degrees()))));
     say(&format!("    {:14}{settled}", "settled error"));
     for gain in &found.gains {
         let cell = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:+.2}"));
-        let row: String = gain
-            .edges
-            .iter()
-            .take(edges)
-            .map(|e| format!("  {:>12} {:>8}", cell(e[0]), cell(e[1])))
-            .collect();
+        let cells = gain.edges.iter().take(edges);
+        let row = row(cells.map(|e| format!("  {:>12} {:>8}", cell(e[0]), cell(e[1]))));
         say(&format!("    {:14}{row}", gain.gain.symbol()));
     }
 }

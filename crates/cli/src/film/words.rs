@@ -93,7 +93,7 @@ fn set_points(cast: &Cast, moment: &Moment) -> Vec<String> {
         .map(|pair| pair.iter().map(|text| text.as_str()).collect::<Vec<_>>().join("   ·   "))
         .collect();
     if let (true, Some(last)) = (more > 0, rows.last_mut()) {
-        last.push_str(&format!("   ·   and {more} more"));
+        *last = format!("{last}   ·   and {more} more");
     }
     rows
 }

@@ -271,7 +271,7 @@ impl View<'_> {
         let samples = c.sampled_measurement.then_some(Premise::SampledMeasurement);
         let epsilon = || self.constants.filter(|k| k.epsilon > k.epsilon_1).map(|_| Premise::Epsilon);
         let list: Vec<Option<Premise>> = match statement {
-            Statement::RobustGain => vec![rough],
+            Statement::RobustGain | Statement::Epsilon => vec![rough],
             Statement::NonNegative => vec![smoothed, rough, beta()],
             Statement::TrackingDecrease => {
                 vec![
@@ -287,7 +287,6 @@ impl View<'_> {
                     wheels,
                 ]
             }
-            Statement::Epsilon => vec![rough],
             Statement::ObserverDecrease | Statement::Trapped => {
                 vec![close(), rough, samples, looks, wheels, epsilon()]
             }

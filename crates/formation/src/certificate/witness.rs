@@ -34,6 +34,7 @@ pub struct Instant {
 
 /// The quantities of the theorems at one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a premise of its own, none excludes another")]
 pub struct Row {
     /// s.
     pub time: f64,

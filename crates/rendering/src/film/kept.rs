@@ -117,7 +117,8 @@ fn line(size: u32, key: bool) -> String {
 }
 
 fn parameter_line(parameters: [&[u8]; 2]) -> String {
-    let hex = |bytes: &[u8]| bytes.iter().map(|b| format!("{b:02x}")).collect::<String>();
+    let digit = |nibble: u8| char::from_digit(u32::from(nibble), 16).unwrap_or('0');
+    let hex = |bytes: &[u8]| bytes.iter().flat_map(|b| [digit(b >> 4), digit(b & 15)]).collect::<String>();
     format!("p {} {}\n", hex(parameters[0]), hex(parameters[1]))
 }
 
@@ -153,7 +154,7 @@ fn read(text: &str, made_of: &str, group: usize, length: u64) -> Option<Found> {
 
 fn bytes(hex: &str) -> Option<Vec<u8>> {
     let digits: Vec<u32> = hex.chars().map(|c| c.to_digit(16)).collect::<Option<_>>()?;
-    (digits.len() % 2 == 0).then(|| digits.chunks_exact(2).map(|d| (16 * d[0] + d[1]) as u8).collect())
+    digits.len().is_multiple_of(2).then(|| digits.chunks_exact(2).map(|d| (16 * d[0] + d[1]) as u8).collect())
 }
 
 #[cfg(test)]
