@@ -9,6 +9,7 @@ mod dataset;
 mod doctor;
 mod eyes;
 mod failure;
+mod figures;
 mod film;
 mod interrupt;
 mod lab;
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
                 | Command::Tune(_)
                 | Command::Budget(_)
                 | Command::Dataset(_)
+                | Command::Figures(_)
                 | Command::Accuracy(_)
                 | Command::Doctor(_)
         )
@@ -62,6 +64,7 @@ fn main() -> ExitCode {
         Some(Command::Tune(args)) => tune::tune(&args),
         Some(Command::Budget(args)) => budget::budget(&args),
         Some(Command::Dataset(args)) => dataset::dataset(&args),
+        Some(Command::Figures(args)) => figures::figures(&args),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Schema) => {

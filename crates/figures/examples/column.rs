@@ -13,8 +13,7 @@ fn main() {
             let name = if named { format!("follower-{}", k + 1) } else { String::new() };
             let points = noises.iter().map(|x| [*x, error(*x)]).collect();
             let mark = vec![[0.07, error(0.09)]];
-            let curve =
-                Series { name, colour: *colour, marker: Marker::of(k), points, ..Series::default() };
+            let curve = Series { name, colour: *colour, marker: Marker::of(k), points, ..Series::default() };
             let mark = Series {
                 colour: *colour,
                 marker: Marker::Diamond,
@@ -34,7 +33,11 @@ fn main() {
     let key = |name: &str, stroke, marker| Key { name: name.to_owned(), stroke, marker, colour: None };
     let figure = Figure {
         title: "Three trucks that see, on a circle: error budget, RMS".to_owned(),
-        axis: Axis { label: "noise of a tag's corners (px)".to_owned(), scale: Scale::Log, ..Axis::default() },
+        axis: Axis {
+            label: "noise of a tag's corners (px)".to_owned(),
+            scale: Scale::Log,
+            ..Axis::default()
+        },
         panels: vec![
             panel("Error of looks: distance (mm)", 12.0, true),
             panel("Error of looks: bearing (°)", 0.2, false),

@@ -14,6 +14,8 @@ pub(crate) const TITLE: f64 = 8.5;
 const LINE: f64 = 8.6;
 /// Over a panel: its label, and air.
 const HEAD: f64 = 18.5;
+/// What of it is not needed over a first panel with nothing above.
+pub(crate) const BARE: f64 = 6.5;
 /// Under the last panel: ticks' labels and the axis' own.
 const FOOT: f64 = 23.0;
 pub(crate) const MARGIN: f64 = 4.0;
@@ -60,7 +62,8 @@ pub(crate) fn draw(figure: &Figure) -> String {
     let columns = columns(figure, left, along);
 
     let mut svg = Svg::new();
-    let mut top = MARGIN;
+    // Without a title, the first panel's label is the first line.
+    let mut top = if figure.title.is_empty() && figure.keys.is_empty() { MARGIN - BARE } else { MARGIN };
     for line in wrapped(&figure.title, (sheet - 2.0 * MARGIN) / TITLE) {
         top += TITLE + 1.0;
         svg.text([MARGIN, top], &line, Anchor::Start, &format!("font-size=\"{TITLE}\" font-weight=\"600\""));
@@ -96,7 +99,7 @@ pub(crate) fn draw(figure: &Figure) -> String {
 
 /// Share of a panel for its magnified part, and the gap to the rest, points.
 const MAGNIFIED: f64 = 0.4;
-const GAP: f64 = 9.0;
+const GAP: f64 = 17.0;
 
 /// The horizontal axes beside each other, each with its left end and its width.
 fn columns(figure: &Figure, left: f64, along: f64) -> Vec<(Ruler, f64, f64)> {
@@ -267,7 +270,11 @@ fn series(svg: &mut Svg, series: &Series, area: &Area, (across, up): (&Ruler, &R
             run.push([at[0], from[1]]);
         }
         run.push(at);
-        if at[0] > edges[0] - 0.1 && at[0] < edges[2] + 0.1 && at[1] > edges[1] - 0.1 && at[1] < edges[3] + 0.1 {
+        if at[0] > edges[0] - 0.1
+            && at[0] < edges[2] + 0.1
+            && at[1] > edges[1] - 0.1
+            && at[1] < edges[3] + 0.1
+        {
             shown.push(at);
         }
         if across.apart(*x) {
@@ -293,12 +300,7 @@ pub(crate) fn stroke(svg: &mut Svg, d: &str, stroke: Stroke, colour: &str, faint
     };
     let width = if faint { "stroke-width=\"0.4\" stroke-opacity=\"0.45\"" } else { "stroke-width=\"1\"" };
     if d.contains(['L', 'H']) {
-        svg.path(
-            d,
-            &format!(
-                "fill=\"none\" stroke=\"{colour}\" {width} stroke-linejoin=\"round\"{dashes}"
-            ),
-        );
+        svg.path(d, &format!("fill=\"none\" stroke=\"{colour}\" {width} stroke-linejoin=\"round\"{dashes}"));
     }
 }
 

@@ -1,7 +1,7 @@
 //! What lies on a plane, drawn to one scale in both directions: ways, bodies, graphs.
 
 use crate::axis::{Ruler, Tick};
-use crate::draw::{GREY, MARGIN, SMALL, TICK, TITLE, stroke, wrapped};
+use crate::draw::{BARE, GREY, MARGIN, SMALL, TICK, TITLE, stroke, wrapped};
 use crate::svg::{Anchor, Svg, ink, point, width};
 use crate::trim::thinned;
 use crate::{Axis, Rgb, Stroke};
@@ -109,8 +109,8 @@ pub struct Plan {
     pub width: f64,
     /// Largest height of the map itself, mm: what is higher is drawn smaller.
     pub height: f64,
-    /// Left free around everything, points of print.
-    pub margin: f64,
+    /// Left free around everything, [left and right, above and below], points of print.
+    pub margin: [f64; 2],
 }
 
 impl Default for Plan {
@@ -125,7 +125,7 @@ impl Default for Plan {
             notes: vec![],
             width: 85.0,
             height: 85.0,
-            margin: 6.0,
+            margin: [6.0; 2],
         }
     }
 }
@@ -162,23 +162,23 @@ impl Plan {
         }
         let (left, foot) = if self.axes.is_some() { (24.0, 23.0) } else { (MARGIN, MARGIN) };
         top += if self.axes.is_some() { 16.0 } else { 3.0 };
+        if self.title.is_empty() && self.axes.is_some() {
+            top -= BARE;
+        }
         let [low, high] = self.extent();
-        let room = [sheet - left - MARGIN - 2.0 * self.margin, most - 2.0 * self.margin];
+        let [aside, over] = self.margin;
+        let room = [sheet - left - MARGIN - 2.0 * aside, most - 2.0 * over];
         let span = [(high[0] - low[0]).max(1e-9), (high[1] - low[1]).max(1e-9)];
         let scale = (room[0] / span[0]).min(room[1] / span[1]);
         let free = 0.5 * (room[0] - scale * span[0]).max(0.0);
-        let inner = if self.axes.is_some() { self.margin } else { self.margin + free };
-        let projection = Projection {
-            corner: [low[0], high[1]],
-            scale,
-            origin: [left + inner, top + self.margin],
-        };
-        let height = scale * span[1] + 2.0 * self.margin;
+        let inner = if self.axes.is_some() { aside } else { aside + free };
+        let projection = Projection { corner: [low[0], high[1]], scale, origin: [left + inner, top + over] };
+        let height = scale * span[1] + 2.0 * over;
         if let Some(names) = &self.axes {
             // Axes end where the frame does; a map that is higher than wide leaves paper free to its right.
-            let wide = scale * span[0] + 2.0 * self.margin;
-            let by = self.margin / scale;
-            let ends = [[low[0] - by, high[0] + by], [low[1] - by, high[1] + by]];
+            let wide = scale * span[0] + 2.0 * aside;
+            let [x, y] = [aside / scale, over / scale];
+            let ends = [[low[0] - x, high[0] + x], [low[1] - y, high[1] + y]];
             frame(&mut svg, names, ends, [left, top, wide, height]);
         }
         self.draw(&mut svg, &projection);
@@ -256,7 +256,9 @@ fn arrow(svg: &mut Svg, arrow: &Arrow, on: &Projection) {
         return;
     }
     let u = [d[0] / long, d[1] / long];
-    let at = |along: f64, aside: f64| [from[0] + along * u[0] - aside * u[1], from[1] + along * u[1] + aside * u[0]];
+    let at = |along: f64, aside: f64| {
+        [from[0] + along * u[0] - aside * u[1], from[1] + along * u[1] + aside * u[0]]
+    };
     let (tip, colour) = (long - arrow.free, ink(arrow.colour));
     let head = HEAD.min(0.5 * (tip - arrow.free));
     let line = format!("stroke=\"{colour}\" stroke-width=\"0.9\" fill=\"none\"");

@@ -31,9 +31,7 @@ fn segment(a: [f64; 2], b: [f64; 2], edges: [f64; 4]) -> Option<[[f64; 2]; 2]> {
     }
     let at = |share: f64| [a[0] + share * d[0], a[1] + share * d[1]];
     // Ends that are inside stay what they are, so that parts join.
-    (first <= last).then(|| {
-        [if first > 0.0 { at(first) } else { a }, if last < 1.0 { at(last) } else { b }]
-    })
+    (first <= last).then(|| [if first > 0.0 { at(first) } else { a }, if last < 1.0 { at(last) } else { b }])
 }
 
 /// The points without which the polyline would be off by more than `most` (Douglas and Peucker 1973).
@@ -69,10 +67,7 @@ mod tests {
     fn a_curve_is_cut_where_it_leaves_and_where_it_comes_back() {
         let curve = [[-1.0, 0.5], [0.5, 0.5], [0.5, 3.0], [0.75, 3.0], [0.75, 0.25]];
         let parts = within(&curve, [0.0, 0.0, 1.0, 1.0]);
-        assert_eq!(
-            parts,
-            [vec![[0.0, 0.5], [0.5, 0.5], [0.5, 1.0]], vec![[0.75, 1.0], [0.75, 0.25]]]
-        );
+        assert_eq!(parts, [vec![[0.0, 0.5], [0.5, 0.5], [0.5, 1.0]], vec![[0.75, 1.0], [0.75, 0.25]]]);
         assert!(within(&[[2.0, 2.0], [3.0, 2.0]], [0.0, 0.0, 1.0, 1.0]).is_empty());
     }
 

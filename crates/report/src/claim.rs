@@ -71,7 +71,12 @@ impl Claim {
     }
 
     /// No value is larger than `limit`.
-    pub fn at_most(about: (&str, &str), of: (&str, &'static str), values: &[(&str, f64)], limit: f64) -> Self {
+    pub fn at_most(
+        about: (&str, &str),
+        of: (&str, &'static str),
+        values: &[(&str, f64)],
+        limit: f64,
+    ) -> Self {
         let holds = values.iter().all(|(_, value)| *value <= limit);
         Self::new(about, of, values, (format!("at most {}", quantity(limit, of.1)), holds))
     }
@@ -127,11 +132,12 @@ fn each<'a>(runs: &Compared<'a>, value: impl Fn(&Trace) -> Option<f64>) -> Vec<(
 pub fn knowing_less_costs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<Claim> {
     let claim = "Without knowing its leader's motion, the follower spends more on control (output feedback against full \
                  state).";
-    let ends: Vec<_> = runs.first().into_iter().chain(runs.last().filter(|_| runs.len() > 1)).copied().collect();
+    let ends: Vec<_> =
+        runs.first().into_iter().chain(runs.last().filter(|_| runs.len() > 1)).copied().collect();
     let applied = |channel: usize| each(&ends, |run| Some(run.efforts.get(edge)?.applied[channel]));
     vec![
         Claim::rises((figure, claim), ("∫|dv/dt| dt", "m/s"), &applied(0)),
-        Claim::rises((figure, claim), ("∫|ω| dt", "rad"), &applied(1)),
+        Claim::rises((figure, claim), ("∫|ω| dt", "rad in all"), &applied(1)),
     ]
 }
 
@@ -159,8 +165,12 @@ pub fn faster_observers_cost(figure: &str, runs: &Compared<'_>, edge: usize) -> 
     let over = |what: &str| format!("{what}, first {}", quantity(until, "s"));
     vec![
         Claim::rises((figure, claim), (&over("peak |dv/dt| asked for"), "m/s²"), &of(&|e| e.peak_asked[0])),
-        Claim::rises((figure, claim), (&over("∫|dv/dt asked for| dt"), "m/s"), &of(&|e| e.transient_asked[0])),
-        Claim::rises((figure, claim), (&over("∫|ω| dt"), "rad"), &of(&|e| e.transient_applied[1])),
+        Claim::rises(
+            (figure, claim),
+            (&over("∫|dv/dt asked for| dt"), "m/s"),
+            &of(&|e| e.transient_asked[0]),
+        ),
+        Claim::rises((figure, claim), (&over("∫|ω| dt"), "rad in all"), &of(&|e| e.transient_applied[1])),
     ]
 }
 
@@ -191,7 +201,9 @@ mod tests {
         let swapped = [("b", 1.0), ("a", 2.0), ("c", 0.5)];
         assert!(!Claim::falls(ABOUT, ("x", "m"), &swapped).holds);
         let level = [("a", 1.0), ("b", 1.0 + 1e-13)];
-        assert!(!Claim::falls(ABOUT, ("x", "m"), &level).holds && !Claim::rises(ABOUT, ("x", "m"), &level).holds);
+        assert!(
+            !Claim::falls(ABOUT, ("x", "m"), &level).holds && !Claim::rises(ABOUT, ("x", "m"), &level).holds
+        );
     }
 
     #[test]

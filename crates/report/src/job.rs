@@ -79,10 +79,13 @@ impl Case {
 
 fn job(case: Case, scene: &Scene, variant: Variant, transient: f64) -> Job {
     let scene = variant.give(scene);
-    let law = of(&scene).map_or_else(|| "no followers".to_owned(), |(kind, epsilon)| match kind {
-        LawKind::OutputFeedback => format!("{}, ε = {}", short(kind), plain(epsilon)),
-        _ => short(kind).to_owned(),
-    });
+    let law = of(&scene).map_or_else(
+        || "no followers".to_owned(),
+        |(kind, epsilon)| match kind {
+            LawKind::OutputFeedback => format!("{}, ε = {}", short(kind), plain(epsilon)),
+            _ => short(kind).to_owned(),
+        },
+    );
     let name = if variant == Variant::default() { "as written".to_owned() } else { law };
     Job { case, variant, name: format!("{}{name}", case.word()), scene, transient }
 }

@@ -23,7 +23,8 @@ mod variant;
 mod words;
 
 pub use claim::{
-    Claim, Compared, Value, faster_observers_cost, faster_observers_err_less, knowing_less_costs, knowing_less_errs,
+    Claim, Compared, Value, faster_observers_cost, faster_observers_err_less, knowing_less_costs,
+    knowing_less_errs,
 };
 pub use effort::Effort;
 pub use item::{Film, Item, Report, Table};

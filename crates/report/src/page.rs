@@ -53,7 +53,11 @@ fn verdicts(html: &mut String, report: &Report) {
     let holds = all - fail;
     let _ = writeln!(html, "<section>\n<h2>What holds</h2>\n<p><b>{holds} of {all}</b> statements hold.</p>");
     if fail > 0 {
-        let _ = writeln!(html, "<p class=\"no\">{fail} {} not:</p>\n<ul class=\"claims\">", if fail == 1 { "does" } else { "do" });
+        let _ = writeln!(
+            html,
+            "<p class=\"no\">{fail} {} not:</p>\n<ul class=\"claims\">",
+            if fail == 1 { "does" } else { "do" }
+        );
         for (index, item) in report.items.iter().enumerate() {
             for each in item.claims.iter().filter(|c| !c.holds) {
                 claim(html, each, Some(&name(item, index)));
@@ -116,7 +120,11 @@ fn films(html: &mut String, report: &Report) {
 }
 
 fn table(html: &mut String, table: &Table) {
-    let _ = writeln!(html, "<section class=\"table\">\n<table>\n<caption>{}</caption>\n<thead><tr>", escape(&table.caption));
+    let _ = writeln!(
+        html,
+        "<section class=\"table\">\n<table>\n<caption>{}</caption>\n<thead><tr>",
+        escape(&table.caption)
+    );
     table.head.iter().for_each(|cell| {
         let _ = write!(html, "<th>{}</th>", escape(cell));
     });
@@ -164,7 +172,9 @@ mod tests {
         assert!(html.contains("<b>1 of 2</b>") && html.contains("class=\"no\""));
         let (first, figure) = (html.find("not so").expect("told"), html.find("<figure").expect("a figure"));
         assert!(first < figure);
-        assert!(html.contains("Figure 7") && html.contains("a &lt; b &amp; c") && html.contains("One &amp; all"));
+        assert!(
+            html.contains("Figure 7") && html.contains("a &lt; b &amp; c") && html.contains("One &amp; all")
+        );
     }
 
     #[test]

@@ -72,8 +72,10 @@ fn case_items(runs: &[Ran], case: Case, first: u32, words: &str) -> Vec<Item> {
 /// Trajectories, with the claim that the formation is taken up.
 pub(crate) fn ways(stem: &str, run: &Trace, words: &str) -> Item {
     let (drawn, factor) = trajectories(run);
-    let size = if factor == 1.0 { String::new() } else { format!(", drawn {factor} times as large as they are") };
-    let caption = format!("Trajectories, {words}: robots at marked times{size}, thin lines from leaders to followers.");
+    let size =
+        if factor == 1.0 { String::new() } else { format!(", drawn {factor} times as large as they are") };
+    let caption =
+        format!("Trajectories, {words}: robots at marked times{size}, thin lines from leaders to followers.");
     drawn.item(stem, caption).with(takes_up(stem, run))
 }
 

@@ -83,7 +83,8 @@ fn with_density(mut png: Vec<u8>, dpi: f32) -> Vec<u8> {
     let metre = ((dpi / 0.0254).round() as u32).to_be_bytes();
     let body: Vec<u8> = b"pHYs".iter().chain(&metre).chain(&metre).chain(&[1]).copied().collect();
     let length = (body.len() as u32 - 4).to_be_bytes();
-    let chunk: Vec<u8> = length.into_iter().chain(body.iter().copied()).chain(crc(&body).to_be_bytes()).collect();
+    let chunk: Vec<u8> =
+        length.into_iter().chain(body.iter().copied()).chain(crc(&body).to_be_bytes()).collect();
     if png.len() > HEAD {
         png.splice(HEAD..HEAD, chunk);
     }

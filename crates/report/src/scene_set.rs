@@ -88,11 +88,13 @@ fn comparisons(scene: &Scene, runs: &[Ran], report: &mut Report) {
     match constants_apart(scene) {
         Some(why) => report.left_out.push(format!("Observer constants ε compared: {why}.")),
         None => {
-            let named = |e: f64| Some((format!("ε = {}", plain(e)), find(runs, Case::Own, Variant::epsilon(e))?));
+            let named =
+                |e: f64| Some((format!("ε = {}", plain(e)), find(runs, Case::Own, Variant::epsilon(e))?));
             let names: Vec<(String, &Trace)> = constants(scene).into_iter().filter_map(named).collect();
             let all: Vec<(&str, &Trace)> = names.iter().map(|(name, run)| (name.as_str(), *run)).collect();
             let about = Comparison { runs: &all, edge: 0, start, of: &scene.title };
-            let items = [about.constants_inputs("constants-inputs"), about.constants_errors("constants-errors")];
+            let items =
+                [about.constants_inputs("constants-inputs"), about.constants_errors("constants-errors")];
             report.items.extend(items);
         }
     }

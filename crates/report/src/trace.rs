@@ -5,7 +5,7 @@ use figures::Rgb;
 use recording::{Digest, Judging, Metrics, MetricsBuilder};
 use scene::Scene;
 use simulation::Simulation;
-use vocabulary::{Cast, Command, Edge, Moment, Motion};
+use vocabulary::{Cast, Command, Edge, Moment, Motion, wrap};
 
 /// One edge at one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -18,7 +18,7 @@ pub struct EdgeRow {
     pub applied: Command,
     /// Rates of [distance, bearing] as the law knew them, [m/s, rad/s].
     pub estimated: [f64; 2],
-    /// The true ones (eqs 6-7).
+    /// The true ones: of unicycles by eqs 6-7, on wheels by differences.
     pub rates: [f64; 2],
     /// Wanted [distance in m, bearing in rad].
     pub set_point: [f64; 2],
@@ -119,10 +119,7 @@ impl Tracer {
     ) -> Self {
         let cast = simulation.cast().clone();
         let (robots, edges) = (cast.members.len(), cast.edges.len());
-        let judging = Judging {
-            settling_band: scene.expect.settling_band,
-            settled_after: late_from(scene),
-        };
+        let judging = Judging { settling_band: scene.expect.settling_band, settled_after: late_from(scene) };
         let metrics = MetricsBuilder::new(&cast, judging);
         Self {
             every: (simulation.len() * robots as u64).div_ceil(MOST_ROWS).max(1),
@@ -183,13 +180,34 @@ impl Tracer {
         self.trace.metrics = self.metrics.finish();
         self.trace.efforts = self.efforts.iter().map(EffortSums::finish).collect();
         self.trace.digest = self.digest.text();
+        // Wheels slip sideways, and what a heading and a speed say is not all of the motion.
+        if self.trace.scene.robots.iter().any(|robot| robot.vehicle.kind.has_wheels()) {
+            let times = &self.trace.times;
+            self.trace.edges.iter_mut().for_each(|rows| differences(times, rows));
+        }
         self.trace
     }
 }
 
+/// Puts central differences in the place of the true rates.
+fn differences(times: &[f64], rows: &mut [EdgeRow]) {
+    let last = rows.len().saturating_sub(1);
+    let slope = |k: usize| {
+        let (a, b) = (k.saturating_sub(1), (k + 1).min(last));
+        let step = (times[b] - times[a]).max(1e-12);
+        let place = |row: &EdgeRow, channel: usize| row.set_point[channel] - row.error[channel];
+        let [distance, bearing] = [0, 1].map(|channel| place(&rows[b], channel) - place(&rows[a], channel));
+        [distance / step, wrap(bearing) / step]
+    };
+    let slopes: Vec<[f64; 2]> = (0..rows.len().min(times.len())).map(slope).collect();
+    rows.iter_mut().zip(slopes).for_each(|(row, slope)| row.rates = slope);
+}
+
 /// Rates of distance and bearing of a follower from how both move (eqs 6-7), [m/s, rad/s].
 fn rates(edge: Edge, motion: impl Fn(usize) -> Option<Motion>) -> [f64; 2] {
-    let (Some(leader), Some(follower)) = (motion(edge.leader), motion(edge.follower)) else { return [0.0; 2] };
+    let (Some(leader), Some(follower)) = (motion(edge.leader), motion(edge.follower)) else {
+        return [0.0; 2];
+    };
     let velocity = |m: &Motion| [m.speed * m.pose.heading.cos(), m.speed * m.pose.heading.sin()];
     let (v, w) = (velocity(&follower), velocity(&leader));
     let apart = [follower.pose.x - leader.pose.x, follower.pose.y - leader.pose.y];
@@ -208,6 +226,17 @@ mod tests {
     use vocabulary::{Pose, Relative};
 
     #[test]
+    fn differences_pass_the_turn_of_a_bearing() {
+        let times = [0.0, 0.1, 0.2];
+        let row = |error: [f64; 2]| EdgeRow { error, ..EdgeRow::default() };
+        let mut rows = [row([-1.0, -3.1]), row([-1.1, 3.13]), row([-1.2, 3.03])];
+        differences(&times, &mut rows);
+        let found = rows[1].rates;
+        let wanted = std::f64::consts::TAU - 6.13;
+        assert!((found[0] - 1.0).abs() < 1e-12 && (found[1] - wanted / 0.2).abs() < 1e-9, "{found:?}");
+    }
+
+    #[test]
     fn rates_are_the_derivatives_of_distance_and_bearing() {
         let start = [
             Motion { pose: Pose::new(1.0, 2.0, 0.4), speed: 1.1, turn_rate: 0.3, ..Motion::default() },
@@ -223,7 +252,8 @@ mod tests {
         };
         let step = 1e-5;
         let (before, after) = (at(-step), at(step));
-        let slope = [after.distance - before.distance, after.bearing - before.bearing].map(|d| d / (2.0 * step));
+        let slope =
+            [after.distance - before.distance, after.bearing - before.bearing].map(|d| d / (2.0 * step));
         let found = rates(Edge { leader: 0, follower: 1 }, |k| Some(start[k]));
         assert!((0..2).all(|k| (slope[k] - found[k]).abs() < 1e-8), "{slope:?} {found:?}");
     }

@@ -19,7 +19,8 @@ pub(crate) fn digits(value: f64) -> String {
     }
     let decade = value.abs().log10().floor();
     // Rounding may carry into the next decade: 9.996 is 10.0.
-    let decade = if (value.abs() / 10_f64.powf(decade) * 100.0).round() >= 1000.0 { decade + 1.0 } else { decade };
+    let decade =
+        if (value.abs() / 10_f64.powf(decade) * 100.0).round() >= 1000.0 { decade + 1.0 } else { decade };
     if (-3.0..6.0).contains(&decade) {
         let decimals = (2.0 - decade).max(0.0) as usize;
         return format!("{value:.decimals$}").replace('-', "−");

@@ -4,6 +4,7 @@ mod bad_input;
 mod budget;
 mod common;
 mod dataset;
+mod figures;
 mod pictures;
 mod replay;
 mod runs;

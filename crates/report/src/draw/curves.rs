@@ -3,7 +3,7 @@
 use super::{COMPARED, Drawn, NAMED, stroke, table};
 use crate::trace::{EdgeRow, Trace};
 use crate::words::round;
-use figures::{Axis, Figure, Guide, Panel, Rgb, Scale, Series, Stroke};
+use figures::{Axis, Figure, Guide, Key, Panel, Rgb, Scale, Series, Stroke};
 use vocabulary::Limits;
 
 /// One edge of one run, as it is drawn.
@@ -25,8 +25,8 @@ impl<'a> Curve<'a> {
             run,
             edge,
             colour: COMPARED[(k + 3 - runs.len().min(3)) % COMPARED.len()],
-            // The last, which is the one that matters, lies on top and is solid.
-            stroke: stroke(runs.len() - 1 - k),
+            // Where curves coincide, dashes over a solid line show both.
+            stroke: BY_RANK[(k + 3 - runs.len().min(3)) % BY_RANK.len()],
             faint: false,
         };
         runs.iter().enumerate().map(curve).collect()
@@ -84,6 +84,9 @@ impl<'a> Curve<'a> {
     }
 }
 
+/// Strokes of what is compared, from the bottom to the top.
+const BY_RANK: [Stroke; 3] = [Stroke::DashDotted, Stroke::Solid, Stroke::Dashed];
+
 fn points(times: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
     times.iter().zip(values).map(|(t, v)| [*t, *v]).collect()
 }
@@ -122,9 +125,18 @@ impl Magnify {
     }
 }
 
-fn figure(panels: Vec<Panel>, zoom: Option<[f64; 2]>, height: f64) -> Figure {
+/// Panels over time. Two columns leave no room for names beside them: those stand above.
+fn figure(mut panels: Vec<Panel>, zoom: Option<[f64; 2]>) -> Figure {
     let axis = Axis { label: "time (s)".to_owned(), ..Axis::default() };
-    Figure { axis, panels, zoom, height, ..Figure::default() }
+    let mut keys = vec![];
+    for series in panels.iter_mut().filter(|_| zoom.is_some()).flat_map(|panel| &mut panel.series) {
+        let name = std::mem::take(&mut series.name);
+        if !name.is_empty() {
+            let (stroke, colour) = (series.stroke, Some(series.colour));
+            keys.push(Key { name, stroke, colour, ..Key::default() });
+        }
+    }
+    Figure { axis, panels, keys, zoom, height: 21.0, ..Figure::default() }
 }
 
 fn panel(label: &str, series: Vec<Series>) -> Panel {
@@ -139,7 +151,8 @@ pub(crate) fn inputs(curves: &[Curve<'_>], magnify: Magnify) -> Drawn {
     for curve in curves {
         let times = &curve.run.times;
         let (v, a) = (curve.speeds(), curve.column(|row| row.asked.acceleration));
-        let (b, w) = (curve.column(|row| row.applied.acceleration), curve.column(|row| row.applied.turn_rate));
+        let (b, w) =
+            (curve.column(|row| row.applied.acceleration), curve.column(|row| row.applied.turn_rate));
         speed.push(curve.series(true, points(times, &v)));
         asked.push(curve.series(false, held(times, &a)));
         turn.push(curve.series(false, held(times, &w)));
@@ -156,7 +169,7 @@ pub(crate) fn inputs(curves: &[Curve<'_>], magnify: Magnify) -> Drawn {
     let mut turn = panel("turn rate ω (rad/s)", turn);
     bound(&mut turn, [-limits.turn_rate_max, limits.turn_rate_max], [None, None]);
     let panels = vec![speed, panel("dv/dt asked for (m/s²)", asked), turn];
-    let svg = figure(panels, magnify.part(curves), 21.0).svg();
+    let svg = figure(panels, magnify.part(curves)).svg();
     Drawn { svg, csv: table(times(curves), &columns) }
 }
 
@@ -173,7 +186,8 @@ fn bound(panel: &mut Panel, [low, high]: [f64; 2], end: [Option<f64>; 2]) {
         return;
     }
     let span = (most - least).max(1e-6 * most.abs()).max(1e-9);
-    let (reached_high, reached_low) = (most > high - 0.05 * span, least < low + 0.05 * span && end[0].is_none());
+    let (reached_high, reached_low) =
+        (most > high - 0.05 * span, least < low + 0.05 * span && end[0].is_none());
     let bottom = end[0].unwrap_or(least - if reached_low { 0.12 } else { 0.06 } * span);
     let top = end[1].unwrap_or(most + if reached_high { 0.12 } else { 0.06 } * span);
     panel.axis.range = Some([bottom, top]);
@@ -220,36 +234,24 @@ pub(crate) fn errors(curves: &[Curve<'_>], magnify: Magnify) -> Drawn {
     let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
     let ends = [least.clamp(NORMS[0], 0.1) * 0.7, most.clamp(0.01, NORMS[1]) * 1.4];
     norm.axis.range = Some(ends);
-    let panels = vec![
-        zero(panel("distance error (m)", distance)),
-        zero(panel("bearing error (°)", bearing)),
-        norm,
-    ];
-    let svg = figure(panels, magnify.part(curves), 21.0).svg();
+    let panels =
+        vec![zero(panel("distance error (m)", distance)), zero(panel("bearing error (°)", bearing)), norm];
+    let svg = figure(panels, magnify.part(curves)).svg();
     Drawn { svg, csv: table(times(curves), &columns) }
 }
 
 /// True and estimated rates of an edge, and how far they are apart.
 pub(crate) fn observer(run: &Trace, edge: usize, magnify: Magnify) -> Drawn {
-    let base = Curve {
-        name: "true".to_owned(),
-        run,
-        edge,
-        colour: [0.12; 3],
-        stroke: Stroke::Solid,
-        faint: false,
-    };
-    let estimated = Curve {
-        name: "estimated".to_owned(),
-        colour: COMPARED[0],
-        stroke: Stroke::Dashed,
-        ..base.clone()
-    };
+    let base =
+        Curve { name: "true".to_owned(), run, edge, colour: [0.12; 3], stroke: Stroke::Solid, faint: false };
+    let estimated =
+        Curve { name: "estimated".to_owned(), colour: COMPARED[0], stroke: Stroke::Dashed, ..base.clone() };
     let mut columns = vec![];
     let mut panels = vec![];
-    for (channel, label, factor, unit) in
-        [(0, "d\u{2113}/dt (m/s)", 1.0, "distance_m_s"), (1, "dψ/dt (°/s)", 180.0 / std::f64::consts::PI, "bearing_rad_s")]
-    {
+    for (channel, label, factor, unit) in [
+        (0, "d\u{2113}/dt (m/s)", 1.0, "distance_m_s"),
+        (1, "dψ/dt (°/s)", 180.0 / std::f64::consts::PI, "bearing_rad_s"),
+    ] {
         let truth = base.column(|row| row.rates[channel]);
         let guess = base.column(|row| row.estimated[channel]);
         let scaled = |values: &[f64]| values.iter().map(|v| v * factor).collect::<Vec<_>>();
@@ -266,12 +268,13 @@ pub(crate) fn observer(run: &Trace, edge: usize, magnify: Magnify) -> Drawn {
         a.hypot(b).max(1e-30)
     };
     let sizes = base.column(apart);
-    let mut error = panel("error of the estimate, m/s and rad/s", vec![base.series(false, points(&run.times, &sizes))]);
+    let mut error =
+        panel("error of the estimate, m/s and rad/s", vec![base.series(false, points(&run.times, &sizes))]);
     error.axis.scale = Scale::Log;
     let most = sizes.iter().copied().fold(0.01, f64::max);
     error.axis.range = Some([1e-6 * most, 1.5 * most]);
     panels.push(error);
     columns.push(("error_norm".to_owned(), sizes));
-    let svg = figure(panels, magnify.part(&[base]), 21.0).svg();
+    let svg = figure(panels, magnify.part(&[base])).svg();
     Drawn { svg, csv: table(&run.times, &columns) }
 }

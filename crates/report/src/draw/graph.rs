@@ -64,7 +64,8 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
         16..40 => (4.0, false),
         _ => (2.2, false),
     };
-    let mut plan = Plan { margin: if labels { 16.0 } else { 8.0 }, height: 75.0, ..Plan::default() };
+    let mut plan =
+        Plan { margin: if labels { [54.0, 12.0] } else { [8.0; 2] }, height: 75.0, ..Plan::default() };
     let middle = page.iter().map(|p| p[0]).sum::<f64>() / count.max(1) as f64;
     let mut csv = String::from("leader,follower,distance_m,bearing_rad,bearing_deg\n");
     for (index, edge) in run.cast.edges.iter().enumerate() {
@@ -84,21 +85,48 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
         plan.arrows.push(Arrow { from: *from, to: *to, free: radius + 1.2, colour: [0.35; 3] });
         if labels {
             let at = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
-            let degrees = format!("{:.0}°", bearing.to_degrees()).replace('-', "−");
+            let degrees = format!("{:+.0}°", bearing.to_degrees()).replace('-', "−");
             let side = if at[0] > middle { Side::Right } else { Side::Left };
-            plan.notes.push(Note { at, text: format!("{distance:.2} m, {degrees}"), side, off: 5.0, colour: None });
+            plan.notes.push(Note {
+                at,
+                text: format!("{distance:.2} m, {degrees}"),
+                side,
+                off: 5.0,
+                colour: None,
+            });
         }
     }
+    let signs = signs(run);
     for (robot, member) in run.cast.members.iter().enumerate() {
         let Some(at) = page.get(robot).copied() else { continue };
-        let number = run.scene.robots.get(robot).map_or(robot + 1, |r| r.number);
         plan.nodes.push(Node {
             at,
-            name: if labels { number.to_string() } else { String::new() },
+            name: if labels { signs[robot].clone() } else { String::new() },
             radius,
             colour: run.colours.get(robot).copied().unwrap_or_default(),
             filled: member.leads,
         });
     }
     Drawn { svg: plan.svg(), csv }
+}
+
+/// A sign for every robot: the number its name ends with, or the name's first letter; its shell's number where those
+/// are not all different.
+fn signs(run: &Trace) -> Vec<String> {
+    let sign = |name: &str| {
+        let digits = name.len() - name.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+        match &name[name.len() - digits..] {
+            "" => name.chars().next().map_or_else(String::new, |c| c.to_uppercase().collect()),
+            number => number.to_owned(),
+        }
+    };
+    let signs: Vec<String> = run.cast.members.iter().map(|member| sign(&member.name)).collect();
+    let mut different = signs.clone();
+    different.sort();
+    different.dedup();
+    if different.len() == signs.len() {
+        return signs;
+    }
+    let number = |robot: usize| run.scene.robots.get(robot).map_or(robot, |r| r.number).to_string();
+    (0..signs.len()).map(number).collect()
 }

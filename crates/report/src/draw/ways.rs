@@ -17,7 +17,7 @@ pub(crate) fn trajectories(run: &Trace) -> (Drawn, f64) {
     let mut plan = Plan {
         axes: Some(["x (m)".to_owned(), "y (m)".to_owned()]),
         height: 90.0,
-        margin: 9.0,
+        margin: [9.0; 2],
         ..Plan::default()
     };
     for (robot, motions) in run.robots.iter().enumerate() {
@@ -29,42 +29,43 @@ pub(crate) fn trajectories(run: &Trace) -> (Drawn, f64) {
             faint: crowd && !leads,
         });
     }
-    let factor = enlargement(run, &plan);
+    let scale = scale(&plan);
+    let factor = enlargement(run, scale);
     let times = marked(run.times.last().copied().unwrap_or(0.0), crowd);
     for time in &times {
         mark(run, *time, factor, &mut plan);
     }
     if !crowd {
-        times.iter().for_each(|time| clock(run, *time, factor, &mut plan));
+        times.iter().for_each(|time| clock(run, *time, factor * scale * POINTS, &mut plan));
     }
-    names(run, &times, &mut plan);
+    names(run, &times, (scale, factor), &mut plan);
     let columns = run.robots.iter().zip(&run.cast.members).flat_map(|(motions, member)| {
         let column = |what: &str, value: fn(&vocabulary::Motion) -> f64| {
             (format!("{} {what}", member.name), motions.iter().map(value).collect())
         };
-        [
-            column("x_m", |m| m.pose.x),
-            column("y_m", |m| m.pose.y),
-            column("heading_rad", |m| m.pose.heading),
-        ]
+        [column("x_m", |m| m.pose.x), column("y_m", |m| m.pose.y), column("heading_rad", |m| m.pose.heading)]
     });
     let columns: Vec<(String, Vec<f64>)> = columns.collect();
     (Drawn { svg: plan.svg(), csv: table(&run.times, &columns) }, factor)
 }
 
-/// How much larger than they are robots have to be drawn to be seen, in steps.
-fn enlargement(run: &Trace, plan: &Plan) -> f64 {
+/// About how long a metre is on paper, mm.
+fn scale(plan: &Plan) -> f64 {
     let places = || plan.tracks.iter().flat_map(|t| &t.points);
     let span = |axis: usize| {
         let (low, high) =
             places().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p[axis]), b.max(p[axis])));
         if high > low { high - low } else { 1.0 }
     };
-    let millimetres = (plan.width - 16.0) / span(0).max(span(1));
+    (plan.width - 16.0) / span(0).max(span(1))
+}
+
+/// How much larger than they are robots have to be drawn to be seen, in steps.
+fn enlargement(run: &Trace, scale: f64) -> f64 {
     let length = run.cast.members.iter().map(|m| m.body.length).fold(0.0, f64::max).max(1e-3);
     // In a crowd, larger ones would lie over each other.
     let most = if run.cast.members.len() > CROWD { 2.0 } else { 4.0 };
-    [1.0, 1.5, 2.0, 3.0, 4.0].into_iter().find(|f| f * length * millimetres >= LEAST).unwrap_or(most).min(most)
+    [1.0, 1.5, 2.0, 3.0, 4.0].into_iter().find(|f| f * length * scale >= LEAST).unwrap_or(most).min(most)
 }
 
 fn marked(end: f64, crowd: bool) -> Vec<f64> {
@@ -105,9 +106,8 @@ fn outline(pose: Pose, body: &Body, factor: f64) -> Vec<[f64; 2]> {
     let nose = front - 0.45 * body.length;
     let (sin, cos) = pose.heading.sin_cos();
     let corners = [[back, -half], [nose, -half], [front, 0.0], [nose, half], [back, half]];
-    let at = |[x, y]: [f64; 2]| {
-        [pose.x + factor * (x * cos - y * sin), pose.y + factor * (x * sin + y * cos)]
-    };
+    let at =
+        |[x, y]: [f64; 2]| [pose.x + factor * (x * cos - y * sin), pose.y + factor * (x * sin + y * cos)];
     corners.map(at).to_vec()
 }
 
@@ -134,16 +134,28 @@ fn beside(pose: Pose, aside: f64) -> Side {
     }
 }
 
+/// From the middle of a body to words beside it, points of print; `magnified` are points for a metre of the body.
+fn clear(pose: Pose, body: &Body, side: Side, magnified: f64) -> f64 {
+    let (sin, cos) = (pose.heading.sin().abs(), pose.heading.cos().abs());
+    let (along, across) = match side {
+        Side::Above | Side::Below => (sin, cos),
+        Side::Left | Side::Right => (cos, sin),
+    };
+    0.5 * magnified * (body.length * along + body.width * across) + 2.2
+}
+
+/// Points of print in a millimetre.
+const POINTS: f64 = 72.0 / 25.4;
+
 /// The time beside the guide, outside of its turn.
-fn clock(run: &Trace, time: f64, factor: f64, plan: &mut Plan) {
-    let Some(motion) = run.robots.get(guide(run)).and_then(|m| m.get(run.sample_at(time))) else { return };
+fn clock(run: &Trace, time: f64, magnified: f64, plan: &mut Plan) {
+    let robot = guide(run);
+    let Some(motion) = run.robots.get(robot).and_then(|m| m.get(run.sample_at(time))) else { return };
     let text = if time == 0.0 { "t = 0".to_owned() } else { format!("{} s", plain(time)) };
     let side = beside(motion.pose, -turn(run));
-    let body = run.cast.members.get(guide(run)).map_or_else(Body::default, |m| m.body);
-    let (sin, cos) = motion.pose.heading.sin_cos();
-    let ahead = 0.5 * factor * body.wheelbase;
-    let at = [motion.pose.x + ahead * cos, motion.pose.y + ahead * sin];
-    plan.notes.push(Note { at, text, side, off: 4.5, colour: None });
+    let body = run.cast.members.get(robot).map_or_else(Body::default, |m| m.body);
+    let off = clear(motion.pose, &body, side, magnified);
+    plan.notes.push(Note { at: [motion.pose.x, motion.pose.y], text, side, off, colour: None });
 }
 
 /// A time without digits that are none.
@@ -152,8 +164,12 @@ fn plain(time: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// Names beside ways, halfway between two marked times, on the inside of the turn.
-fn names(run: &Trace, times: &[f64], plan: &mut Plan) {
+/// So far from the guide's way names do not meet the times beside it, mm.
+const FREE: f64 = 9.0;
+
+/// Names beside ways, halfway between two marked times, on the inside of the turn; on the outside where the guide's
+/// times would be in the way.
+fn names(run: &Trace, times: &[f64], (scale, factor): (f64, f64), plan: &mut Plan) {
     let few = run.cast.members.len() < NAMED;
     let end = run.times.last().copied().unwrap_or(0.0);
     let middle = times.len() / 2;
@@ -161,13 +177,22 @@ fn names(run: &Trace, times: &[f64], plan: &mut Plan) {
         Some((a, b)) if times.len() > 3 => 0.5 * (a + b),
         _ => 0.6 * end,
     };
+    let sample = run.sample_at(at);
+    let pose = |robot: usize| run.robots.get(robot).and_then(|m| m.get(sample)).map(|m| m.pose);
+    let Some(first) = pose(guide(run)) else { return };
     for (robot, member) in run.cast.members.iter().enumerate().filter(|(_, m)| few || m.leads) {
-        let Some(motion) = run.robots.get(robot).and_then(|m| m.get(run.sample_at(at))) else { continue };
+        let Some(pose) = pose(robot) else { continue };
+        let (sin, cos) = first.heading.sin_cos();
+        let inward = turn(run) * ((pose.y - first.y) * cos - (pose.x - first.x) * sin) * scale;
+        let outside = robot != guide(run) && inward < 0.0 && inward > -FREE;
+        let side = beside(pose, if outside { -turn(run) } else { turn(run) });
+        // Outlines are not here, but a word may be longer than the way between two of them.
+        let off = 0.5 * member.body.width * factor * scale * POINTS + 2.2;
         plan.notes.push(Note {
-            at: [motion.pose.x, motion.pose.y],
+            at: [pose.x, pose.y],
             text: member.name.clone(),
-            side: beside(motion.pose, turn(run)),
-            off: 3.0,
+            side,
+            off,
             colour: run.colours.get(robot).copied(),
         });
     }
