@@ -150,7 +150,7 @@ pub(crate) fn wrapped(text: &str, em: f64) -> Vec<String> {
 }
 
 /// What strokes and markers stand for, in rows; where they end.
-fn keys(svg: &mut Svg, keys: &[Key], [left, top]: [f64; 2], sheet: f64) -> f64 {
+pub(crate) fn keys(svg: &mut Svg, keys: &[Key], [left, top]: [f64; 2], sheet: f64) -> f64 {
     const SAMPLE: f64 = 16.0;
     let (mut x, mut y) = (left, top + if keys.is_empty() { 0.0 } else { LINE + 1.5 });
     for key in keys {

@@ -1,10 +1,10 @@
 //! What lies on a plane, drawn to one scale in both directions: ways, bodies, graphs.
 
 use crate::axis::{Ruler, Tick};
-use crate::draw::{BARE, GREY, MARGIN, SMALL, TICK, TITLE, stroke, wrapped};
+use crate::draw::{BARE, GREY, MARGIN, SMALL, TICK, TITLE, keys, stroke, wrapped};
 use crate::svg::{Anchor, Svg, ink, point, width};
 use crate::trim::thinned;
-use crate::{Axis, Rgb, Stroke};
+use crate::{Axis, Key, Rgb, Stroke};
 use std::fmt::Write;
 
 /// A way over the plane.
@@ -105,6 +105,8 @@ pub struct Plan {
     pub nodes: Vec<Node>,
     /// Words over everything.
     pub notes: Vec<Note>,
+    /// What strokes stand for, over the map.
+    pub keys: Vec<Key>,
     /// Width, mm: 85 is a column.
     pub width: f64,
     /// Largest height of the map itself, mm: what is higher is drawn smaller.
@@ -123,6 +125,7 @@ impl Default for Plan {
             arrows: vec![],
             nodes: vec![],
             notes: vec![],
+            keys: vec![],
             width: 85.0,
             height: 85.0,
             margin: [6.0; 2],
@@ -160,9 +163,10 @@ impl Plan {
             let bold = format!("font-size=\"{TITLE}\" font-weight=\"600\"");
             svg.text([MARGIN, top], &line, Anchor::Start, &bold);
         }
+        top = keys(&mut svg, &self.keys, [MARGIN, top], sheet);
         let (left, foot) = if self.axes.is_some() { (24.0, 23.0) } else { (MARGIN, MARGIN) };
         top += if self.axes.is_some() { 16.0 } else { 3.0 };
-        if self.title.is_empty() && self.axes.is_some() {
+        if self.title.is_empty() && self.keys.is_empty() && self.axes.is_some() {
             top -= BARE;
         }
         let [low, high] = self.extent();
@@ -294,7 +298,7 @@ fn frame(svg: &mut Svg, names: &[String; 2], ends: [[f64; 2]; 2], [left, top, wi
         svg.line([x, bottom], [x, bottom + TICK], thin);
         svg.text([x, bottom + TICK + 7.5], &tick.label, Anchor::Middle, "");
     }
-    for tick in ticks(ends[1], (high / 14.0).max(2.0)) {
+    for tick in ticks(ends[1], (high / 13.0).max(3.0)) {
         let y = bottom - tick.at * high;
         svg.line([left, y], [left + wide, y], faint);
         svg.line([left - TICK, y], [left, y], thin);

@@ -44,8 +44,18 @@ impl<'a> Curve<'a> {
                 name: if named(edge) { run.follower(edge).to_owned() } else { String::new() },
                 run,
                 edge,
-                colour: if named(edge) { run.colour(edge) } else { [0.5; 3] },
-                stroke: if few { stroke(edge) } else { Stroke::Solid },
+                colour: match (few, Some(edge) == first) {
+                    (true, _) => run.colour(edge),
+                    // In a crowd colours come again and again.
+                    (false, true) => COMPARED[0],
+                    (false, false) if named(edge) => COMPARED[2],
+                    (false, false) => [0.5; 3],
+                },
+                stroke: match (few, Some(edge) == first) {
+                    (true, _) => stroke(edge),
+                    (false, true) => Stroke::Dashed,
+                    (false, false) => Stroke::Solid,
+                },
                 faint: !named(edge),
             })
             .collect();

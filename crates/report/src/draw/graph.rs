@@ -59,13 +59,13 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
     let page: Vec<[f64; 2]> = places.iter().map(|[x, y]| [-y, *x]).collect();
     let count = run.cast.members.len();
     let (radius, labels) = match count {
-        0..NAMED => (9.0, true),
-        NAMED..16 => (7.0, true),
+        0..NAMED => (6.5, true),
+        NAMED..16 => (5.5, true),
         16..40 => (4.0, false),
         _ => (2.2, false),
     };
     let mut plan =
-        Plan { margin: if labels { [54.0, 12.0] } else { [8.0; 2] }, height: 75.0, ..Plan::default() };
+        Plan { margin: if labels { [46.0, 9.0] } else { [8.0; 2] }, height: 75.0, ..Plan::default() };
     let middle = page.iter().map(|p| p[0]).sum::<f64>() / count.max(1) as f64;
     let mut csv = String::from("leader,follower,distance_m,bearing_rad,bearing_deg\n");
     for (index, edge) in run.cast.edges.iter().enumerate() {
@@ -91,7 +91,7 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
                 at,
                 text: format!("{distance:.2} m, {degrees}"),
                 side,
-                off: 5.0,
+                off: 6.0,
                 colour: None,
             });
         }

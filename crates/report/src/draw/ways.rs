@@ -3,7 +3,7 @@
 use super::{Drawn, NAMED, stroke, table};
 use crate::trace::Trace;
 use crate::words::{digits, round};
-use figures::{Note, Outline, Plan, Side, Stroke, Track};
+use figures::{Key, Note, Outline, Plan, Side, Stroke, Track};
 use vocabulary::{Body, Pose};
 
 /// Robots from which on no outlines between start and end are drawn.
@@ -30,8 +30,8 @@ pub(crate) fn trajectories(run: &Trace) -> (Drawn, f64) {
         });
     }
     let scale = scale(&plan);
-    let factor = enlargement(run, scale);
     let times = marked(run.times.last().copied().unwrap_or(0.0), crowd);
+    let factor = enlargement(run, scale, &times);
     for time in &times {
         mark(run, *time, factor, &mut plan);
     }
@@ -60,12 +60,24 @@ fn scale(plan: &Plan) -> f64 {
     (plan.width - 16.0) / span(0).max(span(1))
 }
 
-/// How much larger than they are robots have to be drawn to be seen, in steps.
-fn enlargement(run: &Trace, scale: f64) -> f64 {
+/// How much larger than they are robots have to be drawn to be seen, in steps, and may be without lying over each other.
+fn enlargement(run: &Trace, scale: f64, times: &[f64]) -> f64 {
     let length = run.cast.members.iter().map(|m| m.body.length).fold(0.0, f64::max).max(1e-3);
-    // In a crowd, larger ones would lie over each other.
+    let free = times.iter().map(|time| nearest(run, run.sample_at(*time))).fold(f64::INFINITY, f64::min);
     let most = if run.cast.members.len() > CROWD { 2.0 } else { 4.0 };
+    let fits = [4.0, 3.0, 2.0, 1.5].into_iter().find(|f| *f <= most && f * length <= 0.75 * free);
+    let most = fits.unwrap_or(1.0);
     [1.0, 1.5, 2.0, 3.0, 4.0].into_iter().find(|f| f * length * scale >= LEAST).unwrap_or(most).min(most)
+}
+
+/// Least distance of two robots, m.
+fn nearest(run: &Trace, sample: usize) -> f64 {
+    let poses: Vec<Pose> = run.robots.iter().filter_map(|m| Some(m.get(sample)?.pose)).collect();
+    let from = |(k, a): (usize, &Pose)| {
+        let apart = poses[k + 1..].iter().map(|b| (a.x - b.x).hypot(a.y - b.y));
+        apart.fold(f64::INFINITY, f64::min)
+    };
+    poses.iter().enumerate().map(from).fold(f64::INFINITY, f64::min)
 }
 
 fn marked(end: f64, crowd: bool) -> Vec<f64> {
@@ -180,6 +192,7 @@ fn names(run: &Trace, times: &[f64], (scale, factor): (f64, f64), plan: &mut Pla
     let sample = run.sample_at(at);
     let pose = |robot: usize| run.robots.get(robot).and_then(|m| m.get(sample)).map(|m| m.pose);
     let Some(first) = pose(guide(run)) else { return };
+    let mut notes: Vec<Note> = vec![];
     for (robot, member) in run.cast.members.iter().enumerate().filter(|(_, m)| few || m.leads) {
         let Some(pose) = pose(robot) else { continue };
         let (sin, cos) = first.heading.sin_cos();
@@ -188,12 +201,30 @@ fn names(run: &Trace, times: &[f64], (scale, factor): (f64, f64), plan: &mut Pla
         let side = beside(pose, if outside { -turn(run) } else { turn(run) });
         // Outlines are not here, but a word may be longer than the way between two of them.
         let off = 0.5 * member.body.width * factor * scale * POINTS + 2.2;
-        plan.notes.push(Note {
-            at: [pose.x, pose.y],
-            text: member.name.clone(),
-            side,
-            off,
-            colour: run.colours.get(robot).copied(),
-        });
+        let colour = run.colours.get(robot).copied();
+        notes.push(Note { at: [pose.x, pose.y], text: member.name.clone(), side, off, colour });
     }
+    if !meet(&notes, scale) {
+        plan.notes.extend(notes);
+        return;
+    }
+    // One behind the other there is no room beside the ways.
+    let strokes = plan.tracks.iter().map(|track| track.stroke);
+    plan.keys = notes
+        .into_iter()
+        .zip(strokes)
+        .map(|(note, stroke)| Key { name: note.text, stroke, colour: note.colour, ..Key::default() })
+        .collect();
+}
+
+/// Whether names are so close that one would cover another.
+fn meet(notes: &[Note], scale: f64) -> bool {
+    /// A word and a line of text, mm.
+    const WORD: [f64; 2] = [15.0, 3.2];
+    let side = |note: &Note| if matches!(note.side, Side::Above | Side::Right) { 1.0 } else { -1.0 };
+    let close = |a: &Note, b: &Note| {
+        let apart = [0, 1].map(|k| (a.at[k] - b.at[k]).abs() * scale);
+        apart[0] < WORD[0] && apart[1] < WORD[1] && side(a) * side(b) > 0.0
+    };
+    notes.iter().enumerate().any(|(k, a)| notes[k + 1..].iter().any(|b| close(a, b)))
 }
