@@ -38,8 +38,7 @@ fn table(text: &str) -> Table {
 }
 
 fn golden(name: &str) -> Table {
-    let path =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("reference/golden").join(name).with_extension("csv");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("reference/golden").join(format!("{name}.csv"));
     table(&std::fs::read_to_string(path).expect("a golden file"))
 }
 
