@@ -263,7 +263,7 @@ fn series(svg: &mut Svg, series: &Series, area: &Area, (across, up): (&Ruler, &R
         };
         // A hundredth of a point of print cannot be seen; long records have many such steps.
         let near = |from: &&[f64; 2]| (from[0] - at[0]).abs() + (from[1] - at[1]).abs() < 0.02;
-        if run.last().filter(near).is_some() {
+        if run.last().is_some_and(|from| near(&from)) {
             continue;
         }
         if let Some(from) = run.last().filter(|_| series.stroke == Stroke::Step).copied() {

@@ -25,9 +25,9 @@ pub fn page(report: &Report, font: &[u8]) -> String {
     report.tables.iter().for_each(|each| table(&mut html, each));
     if !report.left_out.is_empty() {
         html.push_str("<section>\n<h2>Left out</h2>\n<ul>\n");
-        report.left_out.iter().for_each(|text| {
+        for text in &report.left_out {
             let _ = writeln!(html, "<li>{}</li>", escape(text));
-        });
+        }
         html.push_str("</ul>\n</section>\n");
     }
     html.push_str("</main>\n<footer>\n<dl>\n");
@@ -125,15 +125,15 @@ fn table(html: &mut String, table: &Table) {
         "<section class=\"table\">\n<table>\n<caption>{}</caption>\n<thead><tr>",
         escape(&table.caption)
     );
-    table.head.iter().for_each(|cell| {
+    for cell in &table.head {
         let _ = write!(html, "<th>{}</th>", escape(cell));
-    });
+    }
     html.push_str("</tr></thead>\n<tbody>\n");
     for row in &table.rows {
         html.push_str("<tr>");
-        row.iter().for_each(|cell| {
+        for cell in row {
             let _ = write!(html, "<td>{}</td>", escape(cell));
-        });
+        }
         html.push_str("</tr>\n");
     }
     html.push_str("</tbody>\n</table>\n</section>\n");

@@ -37,7 +37,9 @@ impl Press {
     /// With these fonts (OpenType) and no others.
     pub fn new(fonts: &[&'static [u8]]) -> Self {
         let mut all = usvg::fontdb::Database::new();
-        fonts.iter().for_each(|font| all.load_font_data(font.to_vec()));
+        for font in fonts {
+            all.load_font_data(font.to_vec());
+        }
         Self(Arc::new(all))
     }
 

@@ -76,27 +76,23 @@ fn observed(run: &Trace) -> Option<Item> {
 
 fn comparisons(scene: &Scene, runs: &[Ran], report: &mut Report) {
     let start = round(scene.time.duration / 30.0);
-    match laws_apart(scene) {
-        Some(why) => report.left_out.push(format!("The three laws compared: {why}.")),
-        None => {
-            let all = LAWS.iter().filter_map(|k| Some((short(*k), find(runs, Case::Own, Variant::law(*k))?)));
-            let all: Vec<(&str, &Trace)> = all.collect();
-            let about = Comparison { runs: &all, edge: 0, start, of: &scene.title };
-            report.items.extend([about.laws_inputs("laws-inputs"), about.laws_errors("laws-errors")]);
-        }
+    if let Some(why) = laws_apart(scene) {
+        report.left_out.push(format!("The three laws compared: {why}."));
+    } else {
+        let all = LAWS.iter().filter_map(|k| Some((short(*k), find(runs, Case::Own, Variant::law(*k))?)));
+        let all: Vec<(&str, &Trace)> = all.collect();
+        let about = Comparison { runs: &all, edge: 0, start, of: &scene.title };
+        report.items.extend([about.laws_inputs("laws-inputs"), about.laws_errors("laws-errors")]);
     }
-    match constants_apart(scene) {
-        Some(why) => report.left_out.push(format!("Observer constants ε compared: {why}.")),
-        None => {
-            let named =
-                |e: f64| Some((format!("ε = {}", plain(e)), find(runs, Case::Own, Variant::epsilon(e))?));
-            let names: Vec<(String, &Trace)> = constants(scene).into_iter().filter_map(named).collect();
-            let all: Vec<(&str, &Trace)> = names.iter().map(|(name, run)| (name.as_str(), *run)).collect();
-            let about = Comparison { runs: &all, edge: 0, start, of: &scene.title };
-            let items =
-                [about.constants_inputs("constants-inputs"), about.constants_errors("constants-errors")];
-            report.items.extend(items);
-        }
+    if let Some(why) = constants_apart(scene) {
+        report.left_out.push(format!("Observer constants ε compared: {why}."));
+    } else {
+        let named = |e: f64| Some((format!("ε = {}", plain(e)), find(runs, Case::Own, Variant::epsilon(e))?));
+        let names: Vec<(String, &Trace)> = constants(scene).into_iter().filter_map(named).collect();
+        let all: Vec<(&str, &Trace)> = names.iter().map(|(name, run)| (name.as_str(), *run)).collect();
+        let about = Comparison { runs: &all, edge: 0, start, of: &scene.title };
+        let items = [about.constants_inputs("constants-inputs"), about.constants_errors("constants-errors")];
+        report.items.extend(items);
     }
 }
 

@@ -44,10 +44,10 @@ pub(crate) fn table(times: &[f64], columns: &[(String, Vec<f64>)]) -> String {
     let most = (CELLS / (columns.len() + 1)).clamp(100, ROWS);
     let every = times.len().div_ceil(most).max(1);
     let mut csv = String::from("time_s");
-    columns.iter().for_each(|(name, _)| {
+    for (name, _) in columns {
         csv.push(',');
         csv.push_str(&quoted(name));
-    });
+    }
     csv.push('\n');
     for (row, time) in times.iter().enumerate().step_by(every) {
         csv.push_str(&number(*time));
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn numbers_keep_nine_digits() {
-        let told = [0.0, 1.5, -0.236_067_977_499_79, 1234.567_891_234, 3.9e-14, 2e12].map(number);
+        let told = [0.0, 1.5, -0.236_067_977_499_79, 1_234.567_891_234, 3.9e-14, 2e12].map(number);
         assert_eq!(told, ["0", "1.5", "-0.236067977", "1234.56789", "3.90000000e-14", "2.00000000e12"]);
     }
 

@@ -36,7 +36,9 @@ pub(crate) fn trajectories(run: &Trace) -> (Drawn, f64) {
         mark(run, *time, factor, &mut plan);
     }
     if !crowd {
-        times.iter().for_each(|time| clock(run, *time, factor * scale * POINTS, &mut plan));
+        for time in &times {
+            clock(run, *time, factor * scale * POINTS, &mut plan);
+        }
     }
     names(run, &times, (scale, factor), &mut plan);
     let columns = run.robots.iter().zip(&run.cast.members).flat_map(|(motions, member)| {
