@@ -29,7 +29,7 @@ fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// Whom each crate may use among our own; everybody else may not.
-const ARROWS: [(&str, &[&str]); 11] = [
+const ARROWS: [(&str, &[&str]); 12] = [
     ("vocabulary", &[]),
     ("scene", &["vocabulary"]),
     ("formation", &["vocabulary"]),
@@ -39,18 +39,34 @@ const ARROWS: [(&str, &[&str]); 11] = [
     ("rendering", &["vocabulary"]),
     ("figures", &[]),
     ("simulation", &["vocabulary", "scene", "formation", "world", "perception", "recording"]),
+    ("report", &["vocabulary", "scene", "simulation", "recording", "figures"]),
     ("lab", &["vocabulary", "scene", "formation", "simulation", "recording", "rendering", "figures"]),
-    ("cli", &["vocabulary", "scene", "perception", "simulation", "recording", "rendering", "figures", "lab"]),
+    (
+        "cli",
+        &[
+            "vocabulary",
+            "scene",
+            "perception",
+            "simulation",
+            "recording",
+            "rendering",
+            "figures",
+            "report",
+            "lab",
+        ],
+    ),
 ];
 
 /// Heavy crates and the only members that may name them.
-const LEAVES: [(&str, &[&str]); 6] = [
+const LEAVES: [(&str, &[&str]); 8] = [
     ("wgpu", &["rendering", "lab"]),
     ("eframe", &["lab"]),
     ("parquet", &["recording"]),
     ("clap", &["cli"]),
     ("openh264", &["rendering"]),
     ("rapier3d-f64", &["world"]),
+    ("resvg", &["report"]),
+    ("svg2pdf", &["report"]),
 ];
 
 #[test]

@@ -44,6 +44,8 @@ pub(crate) enum Command {
     Certify(CertifyArgs),
     /// Write what the cameras of a scene see, with the truth about every tag: a labelled set of pictures
     Dataset(DatasetArgs),
+    /// Make figures for print of the paper's runs or of a scene, and say whether they show what is claimed
+    Figures(crate::figures::FiguresArgs),
     /// Measure how well leaders are found and located in drawn pictures
     Accuracy(AccuracyArgs),
     /// Read scenes and say what is wrong with them, without running

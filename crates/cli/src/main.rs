@@ -11,6 +11,7 @@ mod dataset;
 mod doctor;
 mod eyes;
 mod failure;
+mod figures;
 mod film;
 mod interrupt;
 mod junit;
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
                 | Command::Certify(_)
                 | Command::Stills(_)
                 | Command::Dataset(_)
+                | Command::Figures(_)
                 | Command::Accuracy(_)
                 | Command::Doctor(_)
         )
@@ -71,6 +73,7 @@ fn main() -> ExitCode {
         Some(Command::Compare(args)) => compare::compare(&args),
         Some(Command::Certify(args)) => certify::certify(&args),
         Some(Command::Dataset(args)) => dataset::dataset(&args),
+        Some(Command::Figures(args)) => figures::figures(&args),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Schema) => {

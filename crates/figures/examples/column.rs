@@ -13,8 +13,7 @@ fn main() {
             let name = if named { format!("follower-{}", k + 1) } else { String::new() };
             let points = noises.iter().map(|x| [*x, error(*x)]).collect();
             let mark = vec![[0.07, error(0.09)]];
-            let curve =
-                Series { name, colour: *colour, marker: Marker::of(k), points, stroke: Stroke::Solid };
+            let curve = Series { name, colour: *colour, marker: Marker::of(k), points, ..Series::default() };
             let mark = Series {
                 colour: *colour,
                 marker: Marker::Diamond,
@@ -24,17 +23,21 @@ fn main() {
             };
             [curve, mark]
         });
-        let axis = Axis { label: label.to_owned(), scale: Scale::Log, show: vec![] };
+        let axis = Axis { label: label.to_owned(), scale: Scale::Log, ..Axis::default() };
         Panel {
             axis,
             series: series.collect(),
             guides: vec![Guide::Level(0.03 * slope, "told the truth".to_owned())],
         }
     };
-    let key = |name: &str, stroke, marker| Key { name: name.to_owned(), stroke, marker };
+    let key = |name: &str, stroke, marker| Key { name: name.to_owned(), stroke, marker, colour: None };
     let figure = Figure {
         title: "Three trucks that see, on a circle: error budget, RMS".to_owned(),
-        axis: Axis { label: "noise of a tag's corners (px)".to_owned(), scale: Scale::Log, show: vec![] },
+        axis: Axis {
+            label: "noise of a tag's corners (px)".to_owned(),
+            scale: Scale::Log,
+            ..Axis::default()
+        },
         panels: vec![
             panel("Error of looks: distance (mm)", 12.0, true),
             panel("Error of looks: bearing (°)", 0.2, false),

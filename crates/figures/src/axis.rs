@@ -33,7 +33,12 @@ impl Ruler {
         let log = axis.scale == Scale::Log;
         let taken = all.iter().copied().filter(|v| !log || *v > 0.0).map(|v| if log { v.log10() } else { v });
         let (low, high) = taken.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
-        let ends = if low > high { [0.0, 1.0] } else { widened(low, high, log, across) };
+        let asked = axis.range.map(|ends| if log { ends.map(f64::log10) } else { ends });
+        let ends = match asked.filter(|[low, high]| low < high && (high - low).is_finite()) {
+            Some(ends) => ends,
+            None if low > high => [0.0, 1.0],
+            None => widened(low, high, log, across),
+        };
         let zero = across && log && all.iter().any(|v| *v <= 0.0);
         Self { scale: axis.scale, ends, apart: if zero { APART } else { 0.0 } }
     }

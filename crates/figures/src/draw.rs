@@ -3,21 +3,24 @@
 use crate::axis::{CUT, Ruler, Tick};
 use crate::place::spread;
 use crate::svg::{Anchor, Svg, ink, point, width};
-use crate::{Figure, Guide, Key, Marker, Panel, Series, Stroke};
+use crate::trim::{thinned, within};
+use crate::{Axis, Figure, Guide, Key, Marker, Panel, Series, Stroke};
 use std::fmt::Write;
 
 /// Sizes of text, points of print.
-const SMALL: f64 = 7.0;
-const TITLE: f64 = 8.5;
+pub(crate) const SMALL: f64 = 7.0;
+pub(crate) const TITLE: f64 = 8.5;
 /// From one line of small text to the next.
 const LINE: f64 = 8.6;
 /// Over a panel: its label, and air.
 const HEAD: f64 = 18.5;
+/// What of it is not needed over a first panel with nothing above.
+pub(crate) const BARE: f64 = 6.5;
 /// Under the last panel: ticks' labels and the axis' own.
 const FOOT: f64 = 23.0;
-const MARGIN: f64 = 4.0;
-const TICK: f64 = 2.6;
-const GREY: &str = "#6b6f76";
+pub(crate) const MARGIN: f64 = 4.0;
+pub(crate) const TICK: f64 = 2.6;
+pub(crate) const GREY: &str = "#6b6f76";
 
 /// A panel's place on the sheet.
 struct Area {
@@ -48,7 +51,6 @@ impl Area {
 pub(crate) fn draw(figure: &Figure) -> String {
     let points = |mm: f64| if mm.is_finite() { mm.clamp(5.0, 2000.0) } else { 85.0 } * 72.0 / 25.4;
     let (sheet, height) = (points(figure.width), points(figure.height));
-    let across = Ruler::new(&figure.axis, figure.panels.iter().flat_map(abscissae), true);
     let rulers: Vec<Ruler> = figure.panels.iter().map(|p| Ruler::new(&p.axis, ordinates(p), false)).collect();
     let most = ((height / 11.0) as usize).max(2);
     let ticks: Vec<Vec<Tick>> = rulers.iter().map(|r| r.ticks(most)).collect();
@@ -57,32 +59,62 @@ pub(crate) fn draw(figure: &Figure) -> String {
     let named = figure.panels.iter().flat_map(|p| &p.series).filter(|s| !s.name.is_empty());
     let names = named.map(|s| width(&s.name, SMALL) + 6.0).fold(6.0, f64::max).min(0.35 * sheet);
     let along = (sheet - left - names - MARGIN).max(20.0);
+    let columns = columns(figure, left, along);
 
     let mut svg = Svg::new();
-    let mut top = MARGIN;
+    // Without a title, the first panel's label is the first line.
+    let mut top = if figure.title.is_empty() && figure.keys.is_empty() { MARGIN - BARE } else { MARGIN };
     for line in wrapped(&figure.title, (sheet - 2.0 * MARGIN) / TITLE) {
         top += TITLE + 1.0;
         svg.text([MARGIN, top], &line, Anchor::Start, &format!("font-size=\"{TITLE}\" font-weight=\"600\""));
     }
     top = keys(&mut svg, &figure.keys, [left.min(MARGIN), top], sheet);
     for (index, panel) in figure.panels.iter().enumerate() {
-        let area = Area { left, top: top + HEAD, width: along, height };
         let last = index + 1 == figure.panels.len();
-        svg.text([MARGIN, area.top - 5.0], &panel.axis.label, Anchor::Start, "");
-        frame(&mut svg, &area, &across, &ticks[index], last);
-        guides(&mut svg, panel, &area, (&across, &rulers[index]), false);
-        let ends: Vec<_> =
-            panel.series.iter().map(|s| series(&mut svg, s, &area, (&across, &rulers[index]))).collect();
-        if ends.iter().all(Option::is_none) {
-            let middle = [area.x(0.5), area.y(0.5) + 2.5];
-            svg.text(middle, "no data", Anchor::Middle, &format!("fill=\"{GREY}\""));
+        top += HEAD;
+        svg.text([MARGIN, top - 5.0], &panel.axis.label, Anchor::Start, "");
+        for (number, (across, left, width)) in columns.iter().enumerate() {
+            let area = Area { left: *left, top, width: *width, height };
+            let (rulers, outermost) = ((across, &rulers[index]), number + 1 == columns.len());
+            if let Some(zoom) = figure.zoom.filter(|_| outermost) {
+                shade(&mut svg, &area, across, zoom);
+            }
+            frame(&mut svg, &area, across, &ticks[index], (last, number == 0));
+            guides(&mut svg, panel, &area, rulers, false);
+            let ends: Vec<_> = panel.series.iter().map(|s| series(&mut svg, s, &area, rulers)).collect();
+            if ends.iter().all(Option::is_none) {
+                let middle = [area.x(0.5), area.y(0.5) + 2.5];
+                svg.text(middle, "no data", Anchor::Middle, &format!("fill=\"{GREY}\""));
+            }
+            if outermost {
+                guides(&mut svg, panel, &area, rulers, true);
+                names_at(&mut svg, &panel.series, &ends, &area);
+            }
         }
-        guides(&mut svg, panel, &area, (&across, &rulers[index]), true);
-        names_at(&mut svg, &panel.series, &ends, &area);
-        top = area.bottom();
+        top += height;
     }
     svg.text([left + 0.5 * along, top + FOOT - 4.0], &figure.axis.label, Anchor::Middle, "");
     svg.finish(&figure.title, [sheet, top + FOOT])
+}
+
+/// Share of a panel for its magnified part, and the gap to the rest, points.
+const MAGNIFIED: f64 = 0.4;
+const GAP: f64 = 17.0;
+
+/// The horizontal axes beside each other, each with its left end and its width.
+fn columns(figure: &Figure, left: f64, along: f64) -> Vec<(Ruler, f64, f64)> {
+    let across = Ruler::new(&figure.axis, figure.panels.iter().flat_map(abscissae), true);
+    let Some(zoom) = figure.zoom else { return vec![(across, left, along)] };
+    let axis = Axis { range: Some(zoom), ..figure.axis.clone() };
+    let first = MAGNIFIED * (along - GAP);
+    let magnified = Ruler::new(&axis, std::iter::empty(), true);
+    vec![(magnified, left, first), (across, left + first + GAP, along - GAP - first)]
+}
+
+/// The part of the axis that is magnified elsewhere.
+fn shade(svg: &mut Svg, area: &Area, across: &Ruler, zoom: [f64; 2]) {
+    let [from, to] = zoom.map(|x| across.at(x).map_or(0.0, |at| area.x(at.clamp(0.0, 1.0))));
+    svg.rect([from, area.top], [to - from, area.height], "fill=\"#0072b2\" fill-opacity=\"0.12\"");
 }
 
 fn abscissae(panel: &Panel) -> impl Iterator<Item = f64> {
@@ -103,7 +135,7 @@ fn ordinates(panel: &Panel) -> impl Iterator<Item = f64> {
 }
 
 /// A text in lines of at most about `em` times its size.
-fn wrapped(text: &str, em: f64) -> Vec<String> {
+pub(crate) fn wrapped(text: &str, em: f64) -> Vec<String> {
     let mut lines: Vec<String> = vec![];
     for word in text.split_whitespace() {
         match lines.last_mut() {
@@ -118,7 +150,7 @@ fn wrapped(text: &str, em: f64) -> Vec<String> {
 }
 
 /// What strokes and markers stand for, in rows; where they end.
-fn keys(svg: &mut Svg, keys: &[Key], [left, top]: [f64; 2], sheet: f64) -> f64 {
+pub(crate) fn keys(svg: &mut Svg, keys: &[Key], [left, top]: [f64; 2], sheet: f64) -> f64 {
     const SAMPLE: f64 = 16.0;
     let (mut x, mut y) = (left, top + if keys.is_empty() { 0.0 } else { LINE + 1.5 });
     for key in keys {
@@ -127,8 +159,9 @@ fn keys(svg: &mut Svg, keys: &[Key], [left, top]: [f64; 2], sheet: f64) -> f64 {
             (x, y) = (left, y + LINE);
         }
         let at = y - 2.5;
-        stroke(svg, &format!("M{}H{:.2}", point([x, at]), x + SAMPLE), key.stroke, GREY);
-        marker(svg, key.marker, [x + 0.5 * SAMPLE, at], GREY);
+        let colour = key.colour.map_or_else(|| GREY.to_owned(), ink);
+        stroke(svg, &format!("M{}H{:.2}", point([x, at]), x + SAMPLE), key.stroke, &colour, false);
+        marker(svg, key.marker, [x + 0.5 * SAMPLE, at], &colour);
         svg.text([x + SAMPLE + 3.0, y], &key.name, Anchor::Start, "");
         x += wide;
     }
@@ -136,14 +169,16 @@ fn keys(svg: &mut Svg, keys: &[Key], [left, top]: [f64; 2], sheet: f64) -> f64 {
 }
 
 /// Axes, ticks, and faint lines across from the labelled ones.
-fn frame(svg: &mut Svg, area: &Area, across: &Ruler, ticks: &[Tick], last: bool) {
+fn frame(svg: &mut Svg, area: &Area, across: &Ruler, ticks: &[Tick], (last, first): (bool, bool)) {
     let thin = "stroke=\"#1e1e22\" stroke-width=\"0.5\" fill=\"none\"";
     for tick in ticks {
         let y = area.y(tick.at);
         let long = if tick.label.is_empty() { 0.5 * TICK } else { TICK };
         if !tick.label.is_empty() {
             svg.line([area.left, y], [area.right(), y], "stroke=\"#e3e4e6\" stroke-width=\"0.4\"");
-            svg.text([area.left - TICK - 2.0, y + 2.5], &tick.label, Anchor::End, "");
+            if first {
+                svg.text([area.left - TICK - 2.0, y + 2.5], &tick.label, Anchor::End, "");
+            }
         }
         svg.line([area.left - long, y], [area.left, y], thin);
     }
@@ -206,55 +241,66 @@ fn guides(svg: &mut Svg, panel: &Panel, area: &Area, (across, up): (&Ruler, &Rul
     }
 }
 
-/// Draws a curve; where it ends, if it has any point.
+/// Draws a curve; where it ends, if any of it is to be seen.
 fn series(svg: &mut Svg, series: &Series, area: &Area, (across, up): (&Ruler, &Ruler)) -> Option<[f64; 2]> {
     let colour = ink(series.colour);
-    let (mut d, mut pen, mut end) = (String::new(), None::<[f64; 2]>, None);
-    let mut places = vec![];
+    let edges = [area.left, area.top, area.right(), area.bottom()];
+    let (mut d, mut end, mut run, mut shown) = (String::new(), None, vec![], vec![]);
+    let mut finish = |run: &mut Vec<[f64; 2]>| {
+        for part in within(run, edges) {
+            let part = if series.marker == Marker::None { thinned(&part, 0.03) } else { part };
+            part.iter().enumerate().for_each(|(k, p)| {
+                let _ = write!(d, "{}{}", if k == 0 { 'M' } else { 'L' }, point(*p));
+            });
+            end = part.last().copied().or(end);
+        }
+        run.clear();
+    };
     for [x, y] in &series.points {
-        let place = across.at(*x).zip(up.at(*y)).map(|(x, y)| [area.x(x), area.y(y)]);
-        let Some(at) = place else {
-            pen = None;
+        let Some(at) = across.at(*x).zip(up.at(*y)).map(|(x, y)| [area.x(x), area.y(y)]) else {
+            finish(&mut run);
             continue;
         };
         // A hundredth of a point of print cannot be seen; long records have many such steps.
-        match pen {
-            Some(from) if (from[0] - at[0]).abs() + (from[1] - at[1]).abs() < 0.02 => continue,
-            Some(from) => {
-                if series.stroke == Stroke::Step {
-                    let _ = write!(d, "L{}", point([at[0], from[1]]));
-                }
-                let _ = write!(d, "L{}", point(at));
-            }
-            None => {
-                let _ = write!(d, "M{}", point(at));
-            }
+        let near = |from: &&[f64; 2]| (from[0] - at[0]).abs() + (from[1] - at[1]).abs() < 0.02;
+        if run.last().is_some_and(|from| near(&from)) {
+            continue;
         }
-        places.push(at);
-        end = Some(at);
-        pen = if across.apart(*x) { None } else { Some(at) };
+        if let Some(from) = run.last().filter(|_| series.stroke == Stroke::Step).copied() {
+            run.push([at[0], from[1]]);
+        }
+        run.push(at);
+        if at[0] > edges[0] - 0.1
+            && at[0] < edges[2] + 0.1
+            && at[1] > edges[1] - 0.1
+            && at[1] < edges[3] + 0.1
+        {
+            shown.push(at);
+        }
+        if across.apart(*x) {
+            finish(&mut run);
+        }
     }
-    stroke(svg, &d, series.stroke, &colour);
-    for at in places {
-        marker(svg, series.marker, at, &colour);
+    finish(&mut run);
+    stroke(svg, &d, series.stroke, &colour, series.faint);
+    for at in &shown {
+        marker(svg, series.marker, *at, &colour);
     }
-    end
+    end.or(shown.last().copied())
 }
 
-fn stroke(svg: &mut Svg, d: &str, stroke: Stroke, colour: &str) {
+/// Draws a path in one of the strokes.
+pub(crate) fn stroke(svg: &mut Svg, d: &str, stroke: Stroke, colour: &str, faint: bool) {
     let dashes = match stroke {
         Stroke::Solid | Stroke::Step => "",
         Stroke::Dashed => " stroke-dasharray=\"3.6 1.8\"",
         Stroke::Dotted => " stroke-dasharray=\"0.1 2.2\" stroke-linecap=\"round\"",
+        Stroke::DashDotted => " stroke-dasharray=\"4.5 1.8 0.8 1.8\"",
         Stroke::None => return,
     };
+    let width = if faint { "stroke-width=\"0.4\" stroke-opacity=\"0.45\"" } else { "stroke-width=\"1\"" };
     if d.contains(['L', 'H']) {
-        svg.path(
-            d,
-            &format!(
-                "fill=\"none\" stroke=\"{colour}\" stroke-width=\"1\" stroke-linejoin=\"round\"{dashes}"
-            ),
-        );
+        svg.path(d, &format!("fill=\"none\" stroke=\"{colour}\" {width} stroke-linejoin=\"round\"{dashes}"));
     }
 }
 

@@ -10,8 +10,11 @@
 mod axis;
 mod draw;
 mod place;
+mod plan;
 mod svg;
+mod trim;
 
+pub use plan::{Arrow, Node, Note, Outline, Plan, Side, Track};
 pub use svg::Rgb;
 
 /// How values lie along an axis.
@@ -34,6 +37,8 @@ pub struct Axis {
     pub scale: Scale,
     /// Values that are shown whether or not a curve reaches them, such as 0.
     pub show: Vec<f64>,
+    /// Its ends, lower first, where values shall not set them; curves are cut there.
+    pub range: Option<[f64; 2]>,
 }
 
 /// What stands at every point of a curve.
@@ -77,6 +82,8 @@ pub enum Stroke {
     Dashed,
     /// By dots.
     Dotted,
+    /// By dashes and dots in turn.
+    DashDotted,
     /// Each value holds until the next.
     Step,
     /// Not at all.
@@ -94,6 +101,8 @@ pub struct Series {
     pub stroke: Stroke,
     /// What stands at its points.
     pub marker: Marker,
+    /// Thin and pale: one of a crowd.
+    pub faint: bool,
     /// [x, y] in the units of the axes.
     pub points: Vec<[f64; 2]>,
 }
@@ -129,6 +138,8 @@ pub struct Key {
     pub stroke: Stroke,
     /// The marker.
     pub marker: Marker,
+    /// Its colour; grey if it stands for curves of several colours.
+    pub colour: Option<Rgb>,
 }
 
 /// Panels one above the other on one horizontal axis.
@@ -146,6 +157,8 @@ pub struct Figure {
     pub width: f64,
     /// Height of a panel, mm.
     pub height: f64,
+    /// Part of the horizontal axis that every panel shows a second time, magnified, to the left.
+    pub zoom: Option<[f64; 2]>,
 }
 
 impl Default for Figure {
@@ -157,6 +170,7 @@ impl Default for Figure {
             keys: vec![],
             width: 85.0,
             height: 22.0,
+            zoom: None,
         }
     }
 }

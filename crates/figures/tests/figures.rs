@@ -25,7 +25,7 @@ fn figure(points: &[[f64; 2]], scale: Scale) -> Figure {
         title: "Looks \"and\" errors".into(),
         axis: axis("pixel noise (px)", scale),
         panels: vec![panel("distance (mm)"), panel("bearing (°)")],
-        keys: vec![Key { name: "high-gain".into(), stroke: Stroke::Solid, marker: Marker::None }],
+        keys: vec![Key { name: "high-gain".into(), ..Key::default() }],
         ..Figure::default()
     }
 }

@@ -26,7 +26,7 @@ const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 const MILLI: f64 = 1e3;
 
 fn axis(label: &str, scale: Scale) -> Axis {
-    Axis { label: label.to_owned(), scale, show: vec![] }
+    Axis { label: label.to_owned(), scale, ..Axis::default() }
 }
 
 /// Errors of looks and of following over the noise of corners, with the camera among them.
@@ -44,14 +44,15 @@ fn levels(budget: &Budget<'_>) -> Figure {
     }
     let mut keys = vec![
         Key { name: "high-gain observer".to_owned(), ..Key::default() },
-        Key { name: "unscented filter".to_owned(), stroke: Stroke::Dashed, marker: Marker::None },
-        Key { name: "told the truth".to_owned(), stroke: Stroke::Dotted, marker: Marker::None },
+        Key { name: "unscented filter".to_owned(), stroke: Stroke::Dashed, ..Key::default() },
+        Key { name: "told the truth".to_owned(), stroke: Stroke::Dotted, ..Key::default() },
     ];
     if budget.run(Level::Camera, Observer::HighGain).is_some() {
         keys.push(Key {
             name: "camera, at the noise its looks stand for".to_owned(),
             stroke: Stroke::None,
             marker: Marker::Diamond,
+            colour: None,
         });
     }
     Figure {
@@ -139,7 +140,7 @@ fn constants(budget: &Budget<'_>) -> Figure {
         });
         let series = series.collect();
         let show = if scale == Scale::Linear { vec![0.0, 5.0] } else { vec![] };
-        Panel { axis: Axis { label: label.to_owned(), scale, show }, series, guides: vec![] }
+        Panel { axis: Axis { label: label.to_owned(), scale, show, range: None }, series, guides: vec![] }
     };
     let mut panels = vec![
         panel("Tracking error: distance (mm)", Scale::Log, &|m| Some(m.tracking[0] * MILLI)),
@@ -158,7 +159,7 @@ fn constants(budget: &Budget<'_>) -> Figure {
         panels,
         keys: vec![
             Key { name: "ε the same throughout".to_owned(), ..Key::default() },
-            Key { name: "ε from the noise".to_owned(), stroke: Stroke::Dashed, marker: Marker::None },
+            Key { name: "ε from the noise".to_owned(), stroke: Stroke::Dashed, ..Key::default() },
         ],
         ..Figure::default()
     }

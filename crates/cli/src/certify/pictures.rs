@@ -35,7 +35,7 @@ fn colours(report: &Report<'_>) -> Vec<Rgb> {
 }
 
 fn axis(label: &str, scale: Scale) -> Axis {
-    Axis { label: label.to_owned(), scale, show: vec![] }
+    Axis { label: label.to_owned(), scale, ..Axis::default() }
 }
 
 /// The margin of β, P and V, and W with its trap.
@@ -111,6 +111,7 @@ fn stability(report: &Report<'_>, chart: &Chart) -> Figure {
         stroke: Stroke::None,
         marker: Marker::Diamond,
         points: vec![[chart.epsilon, 1e3 * chart.period]],
+        ..Series::default()
     });
     Figure {
         title: format!("{}: stable below the curves", report.scene.title),
@@ -157,7 +158,12 @@ fn reach(report: &Report<'_>, beyond: &Beyond) -> Figure {
             series,
             guides: vec![],
         }],
-        keys: vec![Key { name: "set point".to_owned(), stroke: Stroke::None, marker: Marker::Diamond }],
+        keys: vec![Key {
+            name: "set point".to_owned(),
+            stroke: Stroke::None,
+            marker: Marker::Diamond,
+            ..Key::default()
+        }],
         height: 50.0,
         ..Figure::default()
     }

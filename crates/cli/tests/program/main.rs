@@ -6,6 +6,7 @@ mod certify;
 mod ci;
 mod common;
 mod dataset;
+mod figures;
 mod films;
 mod pictures;
 mod replay;

@@ -1,0 +1,223 @@
+//! `echelon figures`: the paper's evidence, or that of any scene, made anew: figures for print, the numbers behind them, a
+//! report in one file, and for every sentence about a figure whether it is so.
+
+mod drawn;
+mod folder;
+mod meter;
+mod tell;
+
+use crate::Outcome;
+use crate::failure::Failure;
+use crate::load::stem;
+use crate::print::note;
+use crate::run::PROGRAM;
+use crate::{eyes, interrupt};
+use clap::Args;
+use folder::Folder;
+use meter::Meter;
+use rendering::{AdapterChoice, Gpu};
+use report::{Case, Job, Press, Ran, Report, Tracer};
+use scene::{Override, Scene};
+use simulation::Simulation;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Figures for print, with what they show and whether it is so. Without a scene, those of the paper.
+#[derive(Debug, Args)]
+pub(crate) struct FiguresArgs {
+    /// Scene file; if left out, the paper's two cases and its seven robots, which come with the program
+    #[arg(value_name = "SCENE")]
+    scene: Option<PathBuf>,
+    /// Folder for figures (SVG, PNG, PDF, CSV), films, claims.json and report.html
+    #[arg(long, short, value_name = "DIR")]
+    out: PathBuf,
+    /// Change a value of the scene, such as time.duration=5; may be repeated
+    #[arg(long, value_name = "KEY=VALUE", requires = "scene")]
+    set: Vec<Override>,
+    /// Seed in place of the scene's
+    #[arg(long, requires = "scene")]
+    seed: Option<u64>,
+    /// Replace an earlier set of figures in the folder
+    #[arg(long)]
+    force: bool,
+    /// Leave out what has to be drawn: snake views and films
+    #[arg(long)]
+    no_pictures: bool,
+    /// Adapter to draw with: vulkan, gl, or part of its name; fails where there is none such
+    #[arg(long, default_value = "auto")]
+    adapter: String,
+    /// Print claims and files as JSON
+    #[arg(long)]
+    json: bool,
+    /// Print errors only
+    #[arg(long, short, conflicts_with = "json")]
+    quiet: bool,
+}
+
+/// What figures are of.
+struct Subject {
+    /// Of a scene of somebody's own: it, and its file's name.
+    own: Option<(Scene, String)>,
+    jobs: Vec<Job>,
+}
+
+pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
+    let began = Instant::now();
+    let subject = subject(args)?;
+    let (gpu, without) = adapter(args)?;
+    if let Some(why) = without.as_ref().filter(|_| !args.no_pictures) {
+        note(why);
+    }
+    let mut simulations = vec![];
+    for job in &subject.jobs {
+        simulations.push(ready(job, gpu.as_ref(), &args.adapter)?);
+    }
+    let shows: Vec<drawn::Show> = gpu.as_ref().map_or_else(Vec::new, |_| drawn::shows(&subject));
+    let mut folder = Folder::create(&args.out, args.force)?;
+    let mut meter = Meter::begin(args, &subject, &simulations, &shows);
+    let made = make(args, &subject, simulations, (gpu.as_ref(), shows.as_slice()), &mut folder, &mut meter);
+    drop(meter);
+    match made {
+        Ok((mut report, runs)) => {
+            report.left_out.extend(without.map(|why| format!("Snake views and films: {why}.")));
+            report.versions = versions(gpu.as_ref());
+            folder.write("report.html", report::page(&report, rendering::FONT).as_bytes())?;
+            folder.close("complete", Some((&report, runs.as_slice())))?;
+            tell::tell(args, &report, &runs, (&folder, began.elapsed().as_secs_f64()));
+            Ok(())
+        }
+        Err(failure) => {
+            let status = if matches!(failure, Failure::Interrupted(_)) { "interrupted" } else { "failed" };
+            // The first failure is the one to tell.
+            let _ = folder.close(status, None);
+            Err(failure)
+        }
+    }
+}
+
+fn subject(args: &FiguresArgs) -> Result<Subject, Failure> {
+    let Some(path) = &args.scene else {
+        let jobs = report::paper_jobs().map_err(|errors| Failure::Usage(errors.to_string()))?;
+        return Ok(Subject { own: None, jobs });
+    };
+    let mut overrides = args.set.clone();
+    if let Some(seed) = args.seed {
+        let seed = format!("seed={seed}").parse();
+        overrides.push(seed.map_err(|e: scene::OverrideError| Failure::Usage(e.to_string()))?);
+    }
+    let loaded = Scene::load(path, &overrides).map_err(|errors| Failure::Usage(errors.to_string()))?;
+    Ok(Subject { jobs: report::scene_jobs(&loaded.scene), own: Some((loaded.scene, stem(path))) })
+}
+
+/// An adapter to draw with, or why there is none.
+fn adapter(args: &FiguresArgs) -> Result<(Option<Gpu>, Option<String>), Failure> {
+    if args.no_pictures {
+        return Ok((None, Some("--no-pictures was given".to_owned())));
+    }
+    match Gpu::open(&AdapterChoice::from(args.adapter.as_str())) {
+        Ok(gpu) => Ok((Some(gpu), None)),
+        // One that was asked for by name has to be there.
+        Err(error) if args.adapter != "auto" => Err(error.into()),
+        Err(error) => Ok((None, Some(format!("there is nothing to draw with ({error})")))),
+    }
+}
+
+/// A run before its first step.
+fn ready(job: &Job, gpu: Option<&Gpu>, adapter: &str) -> Result<Simulation, Failure> {
+    let setup =
+        simulation::build(&job.scene).map_err(|error| Failure::Usage(format!("{}: {error}", job.name)))?;
+    let mut simulation = Simulation::new(setup);
+    eyes::open(&mut simulation, gpu, adapter)?;
+    Ok(simulation)
+}
+
+/// Runs, draws and writes everything but the report.
+fn make(
+    args: &FiguresArgs,
+    subject: &Subject,
+    simulations: Vec<Simulation>,
+    (gpu, shows): (Option<&Gpu>, &[drawn::Show]),
+    folder: &mut Folder,
+    meter: &mut Meter,
+) -> Result<(Report, Vec<Ran>), Failure> {
+    let mut runs = vec![];
+    for (job, simulation) in subject.jobs.iter().zip(simulations) {
+        runs.push(run(job, simulation, meter)?);
+    }
+    let mut report = match &subject.own {
+        None => report::paper(&runs),
+        Some((scene, _)) => report::of_scene(scene, &runs),
+    };
+    if let Some(gpu) = gpu {
+        for show in shows {
+            drawn::draw(show, gpu, &args.adapter, &runs, (&mut *folder, &mut *meter), &mut report)?;
+        }
+    }
+    let press = Press::new(&[rendering::FONT]);
+    let printed = |error: report::PressError| Failure::Machine(error.to_string());
+    for item in &report.items {
+        stop(meter)?;
+        folder.write(&format!("{}.svg", item.stem), item.svg.as_bytes())?;
+        folder.write(&format!("{}.csv", item.stem), item.csv.as_bytes())?;
+        let png = item.picture.clone().map_or_else(|| press.png(&item.svg, DPI).map_err(printed), Ok)?;
+        folder.write(&format!("{}.png", item.stem), &png)?;
+        folder.write(&format!("{}.pdf", item.stem), &press.pdf(&item.svg).map_err(printed)?)?;
+        meter.sheet();
+    }
+    Ok((report, runs))
+}
+
+/// Pixels an inch of figures.
+const DPI: f32 = 300.0;
+
+fn run(job: &Job, mut simulation: Simulation, meter: &mut Meter) -> Result<Ran, Failure> {
+    let colours = rendering::robot_colours(simulation.cast());
+    let mut tracer = Tracer::new(job.name.clone(), &job.scene, &simulation, &colours, job.transient);
+    while let Some(moment) = simulation.next_moment() {
+        tracer.push(moment);
+        meter.sample();
+        stop(meter)?;
+    }
+    if let Some(fault) = simulation.fault() {
+        return Err(Failure::Machine(fault.to_owned()));
+    }
+    Ok(Ran { case: job.case, variant: job.variant, trace: tracer.finish() })
+}
+
+/// Fails where the program has been asked to stop.
+fn stop(meter: &Meter) -> Outcome {
+    if !interrupt::asked() {
+        return Ok(());
+    }
+    Err(Failure::Interrupted(format!("{}; there is no report yet", meter.so_far())))
+}
+
+/// What made the figures.
+fn versions(gpu: Option<&Gpu>) -> Vec<[String; 2]> {
+    let commit = option_env!("ECHELON_COMMIT").unwrap_or("unknown");
+    let drawn = gpu.map_or_else(|| "none".to_owned(), Gpu::description);
+    [("made with", PROGRAM), ("commit", commit), ("pictures drawn with", &*drawn)]
+        .map(|(name, value)| [name.to_owned(), value.to_owned()])
+        .to_vec()
+}
+
+impl Subject {
+    /// The scenes that are filmed: case, file name, and the job that runs it as it is written.
+    fn filmed(&self) -> Vec<(Case, &str, &Job)> {
+        let as_written = |case: Case| {
+            // The paper's films are those of its own ε, which is the scenes'.
+            let mut of = self.jobs.iter().filter(move |job| job.case == case);
+            if case == Case::Own { of.next() } else { of.last() }
+        };
+        let name = |case: Case| match case {
+            Case::Line => "line",
+            Case::Circle => "circle",
+            Case::Seven => "seven",
+            Case::Own => "film",
+        };
+        [Case::Line, Case::Circle, Case::Seven, Case::Own]
+            .into_iter()
+            .filter_map(|case| Some((case, name(case), as_written(case)?)))
+            .collect()
+    }
+}

@@ -1,0 +1,148 @@
+//! What has to be drawn: a snake view for print, and a short film, both from one pass through a run.
+
+use super::folder::Folder;
+use super::meter::Meter;
+use super::{Subject, ready, stop};
+use crate::failure::Failure;
+use crate::playback::Playback;
+use crate::run::PROGRAM;
+use rendering::{FilmKind, Gpu, Layout, Renderer, Style, png};
+use report::{Case, Film, Job, Ran, Report, Shot, add_picture, find};
+use vocabulary::Cast;
+
+/// A run to draw.
+pub(super) struct Show {
+    case: Case,
+    /// File name of the film, without its ending.
+    name: String,
+    job: Job,
+    /// File name of the picture without its ending, and its time, s.
+    shot: Option<(String, f64)>,
+}
+
+/// 170 mm, two columns, at 300 dots an inch.
+const PICTURE: [u32; 2] = [2008, 1130];
+/// Text of a picture: seven points of print.
+const PICTURE_TEXT: f64 = 2.1;
+const FILM: [u32; 2] = [640, 360];
+/// Frames a second of film.
+const RATE: f64 = 20.0;
+/// About as long as films get, s.
+const LENGTH: f64 = 8.0;
+
+impl Show {
+    fn duration(&self) -> f64 {
+        self.job.scene.time.duration
+    }
+
+    /// Times real time, at which it is shown.
+    fn speed(&self) -> f64 {
+        let least = self.duration() / LENGTH;
+        if least <= 1.0 { 1.0 } else { least.ceil() }
+    }
+
+    /// Frames of its film.
+    pub(super) fn frames(&self) -> u64 {
+        ((self.duration() * RATE / self.speed()).round() as u64).max(1)
+    }
+}
+
+/// What is drawn of a subject.
+pub(super) fn shows(subject: &Subject) -> Vec<Show> {
+    let show = |(case, name, job): (Case, &str, &Job)| {
+        let stem = match case {
+            Case::Line => None,
+            Case::Circle => Some("figure-13"),
+            Case::Seven => Some("figure-14"),
+            Case::Own => Some("snake"),
+        };
+        let time = if case == Case::Own { 0.8 } else { 0.6 } * job.scene.time.duration;
+        let shot = stem.map(|stem| (stem.to_owned(), time));
+        Show { case, name: name.to_owned(), job: job.clone(), shot }
+    };
+    subject.filmed().into_iter().map(show).collect()
+}
+
+/// Draws one run: its film into the folder, its picture into the report.
+pub(super) fn draw(
+    show: &Show,
+    gpu: &Gpu,
+    adapter: &str,
+    runs: &[Ran],
+    (folder, meter): (&mut Folder, &mut Meter),
+    report: &mut Report,
+) -> Result<(), Failure> {
+    let simulation = ready(&show.job, Some(gpu), adapter)?;
+    let cast = simulation.cast().clone();
+    let layout = layout(show, &cast)?;
+    let style = Style::without(&["caption", "inset", "labels"])?;
+    let mut renderer = Renderer::new(gpu, &cast, FILM[0], FILM[1], 4)?;
+    let file = format!("{}.mp4", show.name);
+    let path = folder.place(&file);
+    let mut film = rendering::Film::create(&path, FilmKind::Mp4, FILM[0], FILM[1], RATE)?;
+    let mut playback = Playback::new(simulation);
+    let mut shot = show.shot.as_ref();
+    for frame in 0..show.frames() {
+        let time = frame as f64 * show.speed() / RATE;
+        if let Some((stem, at)) = shot.filter(|(_, at)| *at <= time) {
+            picture(show, (stem.as_str(), *at), (gpu, &cast, &layout), &mut playback, runs, report)?;
+            shot = None;
+        }
+        let moment = playback.at(time);
+        playback.check()?;
+        stop(meter)?;
+        let ready = renderer.draw_next(playback.trail(), &moment, &layout, &style)?;
+        ready.map_or(Ok(()), |picture| film.push(picture))?;
+        meter.frame();
+    }
+    if let Some(picture) = renderer.finish()? {
+        film.push(picture)?;
+    }
+    film.finish()?;
+    let mp4 =
+        std::fs::read(&path).map_err(|e| Failure::Machine(format!("cannot read {}: {e}", path.display())))?;
+    let speed = show.speed();
+    let fast = if speed > 1.0 { format!(", {speed} times as fast as it is") } else { String::new() };
+    report.films.push(Film { file, caption: format!("{}{fast}.", cast.title), mp4 });
+    Ok(())
+}
+
+/// The view of the scene; the paper's is the snake's.
+fn layout(show: &Show, cast: &Cast) -> Result<Layout, Failure> {
+    let names: Vec<String> = cast.members.iter().map(|m| m.name.clone()).collect();
+    let view = if show.case == Case::Own { show.job.scene.views.default.as_str() } else { "snake" };
+    Ok(Layout::parse(view, &names)?)
+}
+
+fn picture(
+    show: &Show,
+    (stem, time): (&str, f64),
+    (gpu, cast, layout): (&Gpu, &Cast, &Layout),
+    playback: &mut Playback,
+    runs: &[Ran],
+    report: &mut Report,
+) -> Result<(), Failure> {
+    let Some(trace) = find(runs, show.case, show.job.variant) else { return Ok(()) };
+    let mut style = Style::without(&["caption", "inset", "time"])?;
+    style.scale = PICTURE_TEXT;
+    let mut renderer = Renderer::new(gpu, cast, PICTURE[0], PICTURE[1], 4)?;
+    let moment = playback.at(time);
+    playback.check()?;
+    let picture = renderer.draw(playback.trail(), &moment, layout, &style)?;
+    let (at, adapter) = (format!("{time}"), gpu.description());
+    let texts = [("Software", PROGRAM), ("Title", &*cast.title), ("Time", &*at), ("Adapter", &*adapter)];
+    let view =
+        if show.job.scene.views.default == "snake" || show.case != Case::Own { "Snake view" } else { "View" };
+    let shot = Shot {
+        stem: stem.to_owned(),
+        caption: format!(
+            "{view}: {}, at {time:.1} s. Ribbons are where the robots drove, rings where the followers should be.",
+            cast.title
+        ),
+        png: png::encode(&picture, &texts)?,
+        size: PICTURE,
+        time,
+    };
+    add_picture(report, shot, trace);
+    Ok(())
+}

@@ -1,0 +1,154 @@
+//! The folder of a set of figures: refused where it holds other things, every file in it whole or not there.
+
+use crate::failure::Failure;
+use crate::run::PROGRAM;
+use recording::{Error, write_whole};
+use report::{Ran, Report};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The file that says whose folder it is, and what is in it.
+const MARK: &str = "claims.json";
+/// Version of that file.
+const FORMAT: u32 = 1;
+
+/// A folder that is being filled.
+pub(super) struct Folder {
+    path: PathBuf,
+    files: Vec<String>,
+}
+
+impl Folder {
+    /// Makes the folder; with `force`, removes an earlier set of figures from it, and nothing else.
+    pub(super) fn create(path: &Path, force: bool) -> Result<Self, Failure> {
+        if path.is_file() {
+            let text = format!("{} is a file; --out names a folder for the figures", path.display());
+            return Err(Failure::Usage(text));
+        }
+        clear(path, force)?;
+        fs::create_dir_all(path).map_err(|e| refused("create", path, &e))?;
+        let folder = Self { path: path.to_owned(), files: vec![] };
+        folder.close("running", None)?;
+        Ok(folder)
+    }
+
+    /// Writes a file.
+    pub(super) fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+        write_whole(&self.path.join(name), bytes)?;
+        self.files.push(name.to_owned());
+        Ok(())
+    }
+
+    /// A place for a file that writes itself.
+    pub(super) fn place(&mut self, name: &str) -> PathBuf {
+        self.files.push(name.to_owned());
+        self.path.join(name)
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes down how it ended, what is in the folder, and what came out.
+    pub(super) fn close(&self, status: &str, came: Option<(&Report, &[Ran])>) -> Result<(), Failure> {
+        let mut value = json!({
+            "format": FORMAT,
+            "program": PROGRAM,
+            "commit": option_env!("ECHELON_COMMIT"),
+            "status": status,
+            "files": self.files,
+        });
+        if let (Some((report, runs)), Some(all)) = (came, value.as_object_mut()) {
+            all.extend(found(report, runs));
+        }
+        Ok(write_whole(&self.path.join(MARK), format!("{value:#}\n").as_bytes())?)
+    }
+}
+
+/// Claims, runs, what was left out.
+pub(super) fn found(report: &Report, runs: &[Ran]) -> serde_json::Map<String, Value> {
+    let claims: Vec<_> = report.claims().collect();
+    let run = |ran: &Ran| {
+        let trace = &ran.trace;
+        json!({
+            "name": trace.name,
+            "title": trace.cast.title,
+            "seed": trace.scene.seed,
+            "digest": trace.digest,
+            "settled_from": trace.late_from(),
+            "metrics": trace.metrics,
+            "efforts": trace.efforts,
+        })
+    };
+    let mut all = serde_json::Map::new();
+    all.insert("title".to_owned(), json!(report.title));
+    all.insert("versions".to_owned(), json!(report.versions));
+    all.insert("holding".to_owned(), json!(claims.iter().filter(|claim| claim.holds).count()));
+    all.insert("claims".to_owned(), json!(claims));
+    all.insert("left_out".to_owned(), json!(report.left_out));
+    all.insert("runs".to_owned(), runs.iter().map(run).collect());
+    all
+}
+
+fn refused(action: &str, path: &Path, error: &std::io::Error) -> Failure {
+    Failure::Machine(format!("cannot {action} {}: {error}", path.display()))
+}
+
+fn clear(folder: &Path, force: bool) -> Result<(), Failure> {
+    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
+    if entries.flatten().next().is_none() {
+        return Ok(());
+    }
+    let occupied = |what| Err(Error::Occupied { path: folder.to_owned(), what }.into());
+    let mark = fs::read_to_string(folder.join(MARK)).ok();
+    let Some(files) = mark.and_then(|text| ours(&text)) else { return occupied("holds other files") };
+    if !force {
+        return occupied("already holds figures");
+    }
+    for path in files.iter().map(|name| folder.join(name)).filter(|path| path.is_file()) {
+        fs::remove_file(&path).map_err(|e| refused("remove", &path, &e))?;
+    }
+    Ok(())
+}
+
+/// The files that an earlier set has left, if it is one; names that lead elsewhere are none of its.
+fn ours(text: &str) -> Option<Vec<String>> {
+    let value: Value = serde_json::from_str(text).ok()?;
+    value.get("program")?.as_str()?;
+    let names = value.get("files")?.as_array()?.iter().filter_map(Value::as_str);
+    let plain = |name: &&str| Path::new(name).file_name().is_some_and(|file| file == *name);
+    Some(names.filter(plain).map(str::to_owned).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_an_earlier_set_is_replaced() {
+        let root = tempfile::tempdir().expect("a folder");
+        let path = root.path().join("figures");
+        let mut folder = Folder::create(&path, false).expect("new");
+        folder.write("old.svg", b"old").expect("written");
+        folder.close("complete", None).expect("closed");
+        fs::write(path.join("notes.txt"), "mine").expect("written");
+        let told = |force| match Folder::create(&path, force) {
+            Err(Failure::Usage(text)) => text,
+            _ => String::new(),
+        };
+        assert!(told(false).contains("--force"));
+        drop(Folder::create(&path, true).expect("replaced"));
+        assert!(path.join("notes.txt").exists() && !path.join("old.svg").exists());
+        fs::remove_file(path.join(MARK)).expect("removed");
+        assert!(told(true).contains("other files"));
+    }
+
+    #[test]
+    fn names_that_lead_elsewhere_are_left_alone() {
+        let text =
+            "{\"program\": \"echelon\", \"files\": [\"a.svg\", \"../b\", \"/etc/c\", \"..\", \"d/e\", 7]}";
+        assert_eq!(ours(text).expect("a list"), ["a.svg"]);
+        assert!(ours("{\"files\": []}").is_none() && ours("not JSON").is_none());
+    }
+}

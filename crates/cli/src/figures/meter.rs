@@ -1,0 +1,67 @@
+//! How far the whole job is: samples, frames and sheets on one bar.
+
+use super::drawn::Show;
+use super::{FiguresArgs, Subject};
+use crate::progress::Progress;
+use simulation::Simulation;
+
+/// What a frame of a film and a printed sheet weigh in samples of a few robots.
+const FRAME: u64 = 120;
+const SHEET: u64 = 300;
+/// Sheets, about.
+const SHEETS: u64 = 14;
+/// Samples between two looks at the bar.
+const STRIDE: u64 = 64;
+
+/// The bar, and what has been done.
+pub(super) struct Meter {
+    progress: Progress,
+    done: u64,
+    samples: u64,
+    frames: u64,
+    sheets: u64,
+}
+
+impl Meter {
+    pub(super) fn begin(args: &FiguresArgs, subject: &Subject, runs: &[Simulation], shows: &[Show]) -> Self {
+        let frames: u64 = shows.iter().map(Show::frames).sum();
+        let samples: u64 = runs.iter().map(Simulation::len).sum();
+        let of = subject.own.as_ref().map_or("the paper", |(_, name)| name.as_str());
+        let films = if shows.is_empty() { String::new() } else { format!(", {} films", shows.len()) };
+        let films = if shows.len() == 1 { ", a film".to_owned() } else { films };
+        let plural = if runs.len() == 1 { "run" } else { "runs" };
+        let what = format!("Figures of {of}: {} {plural}{films}", runs.len());
+        let all = samples + FRAME * frames + SHEET * SHEETS;
+        let progress = Progress::begin(&what, all, args.quiet || args.json);
+        Self { progress, done: 0, samples: 0, frames: 0, sheets: 0 }
+    }
+
+    pub(super) fn sample(&mut self) {
+        self.samples += 1;
+        self.done += 1;
+        if self.samples.is_multiple_of(STRIDE) {
+            self.progress.at(self.done);
+        }
+    }
+
+    pub(super) fn frame(&mut self) {
+        self.frames += 1;
+        self.done += FRAME;
+        self.progress.at(self.done);
+    }
+
+    pub(super) fn sheet(&mut self) {
+        self.sheets += 1;
+        self.done += SHEET;
+        self.progress.at(self.done);
+    }
+
+    /// What has been done, in words.
+    pub(super) fn so_far(&self) -> String {
+        match (self.frames, self.sheets) {
+            (0, 0) => format!("after {} samples of the runs", self.samples),
+            (frames, 0) => format!("after all runs and {frames} frames"),
+            (_, sheets) => format!("after all runs, with {sheets} figures written"),
+        }
+    }
+}

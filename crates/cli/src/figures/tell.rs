@@ -1,0 +1,42 @@
+//! What the command prints: what was made, and above all what is not so.
+
+use super::FiguresArgs;
+use super::folder::{Folder, found};
+use crate::print::{json, say};
+use report::{Ran, Report};
+use serde_json::json;
+
+pub(super) fn tell(args: &FiguresArgs, report: &Report, runs: &[Ran], (folder, wall): (&Folder, f64)) {
+    if args.json {
+        let mut value = serde_json::Value::Object(found(report, runs));
+        if let Some(all) = value.as_object_mut() {
+            all.insert("folder".to_owned(), json!(folder.path().display().to_string()));
+            all.insert("wall_seconds".to_owned(), json!(wall));
+        }
+        return json(&value);
+    }
+    if args.quiet {
+        return;
+    }
+    let (claims, holding) = (report.claims().count(), report.claims().filter(|c| c.holds).count());
+    if claims > 0 {
+        say(&format!("{holding} of {claims} statements about the figures hold"));
+    }
+    for claim in report.claims().filter(|claim| !claim.holds) {
+        say(&format!("NOT SO  {}: {}", claim.figure, claim.claim));
+        let found = claim.found();
+        let colon = if found.is_empty() { "" } else { ": " };
+        say(&format!("        {}{colon}{found}", claim.quantity));
+    }
+    for text in &report.left_out {
+        say(&format!("left out: {text}"));
+    }
+    let films = match report.films.len() {
+        0 => String::new(),
+        1 => ", a film".to_owned(),
+        count => format!(", {count} films"),
+    };
+    let runs = if runs.len() == 1 { "a run".to_owned() } else { format!("{} runs", runs.len()) };
+    say(&format!("{} figures{films} and a report of {runs}, in {wall:.1} s", report.items.len()));
+    say(&folder.path().join("report.html").display().to_string());
+}

@@ -1,0 +1,216 @@
+//! What a figure is said to show, held against what the runs showed. Nothing here is asserted: a claim is made of measured
+//! values, and its verdict follows from them.
+
+use crate::trace::Trace;
+use crate::words::quantity;
+use serde::Serialize;
+
+/// A measured value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Value {
+    /// Of what.
+    pub name: String,
+    /// SI.
+    pub value: f64,
+    /// Its unit; empty where it has none.
+    pub unit: &'static str,
+}
+
+/// One sentence about a figure and what became of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Claim {
+    /// Which figure is to show it.
+    pub figure: String,
+    /// What should be seen.
+    pub claim: String,
+    /// What the numbers are.
+    pub quantity: String,
+    /// The numbers, in the order of the claim.
+    pub values: Vec<Value>,
+    /// What they have to do.
+    pub wanted: String,
+    /// Whether they do.
+    pub holds: bool,
+}
+
+/// Differences below this share are rounding.
+const ROUNDING: f64 = 1e-9;
+
+impl Claim {
+    fn new(
+        (figure, claim): (&str, &str),
+        (quantity, unit): (&str, &'static str),
+        values: &[(&str, f64)],
+        (wanted, holds): (String, bool),
+    ) -> Self {
+        let value = |(name, value): &(&str, f64)| Value { name: (*name).to_owned(), value: *value, unit };
+        // A run that broke off has nothing to show for a claim.
+        let measured = !values.is_empty() && values.iter().all(|(_, value)| value.is_finite());
+        Self {
+            figure: figure.to_owned(),
+            claim: claim.to_owned(),
+            quantity: quantity.to_owned(),
+            values: values.iter().map(value).collect(),
+            wanted,
+            holds: holds && measured,
+        }
+    }
+
+    /// Every value is larger than the one before.
+    pub fn rises(about: (&str, &str), of: (&str, &'static str), values: &[(&str, f64)]) -> Self {
+        let up = |w: &[(&str, f64)]| w[1].1 - w[0].1 > ROUNDING * w[0].1.abs();
+        let holds = values.len() > 1 && values.windows(2).all(up);
+        Self::new(about, of, values, ("rises from each to the next".to_owned(), holds))
+    }
+
+    /// Every value is smaller than the one before.
+    pub fn falls(about: (&str, &str), of: (&str, &'static str), values: &[(&str, f64)]) -> Self {
+        let down = |w: &[(&str, f64)]| w[0].1 - w[1].1 > ROUNDING * w[0].1.abs();
+        let holds = values.len() > 1 && values.windows(2).all(down);
+        Self::new(about, of, values, ("falls from each to the next".to_owned(), holds))
+    }
+
+    /// No value is larger than `limit`.
+    pub fn at_most(
+        about: (&str, &str),
+        of: (&str, &'static str),
+        values: &[(&str, f64)],
+        limit: f64,
+    ) -> Self {
+        let holds = values.iter().all(|(_, value)| *value <= limit);
+        Self::new(about, of, values, (format!("at most {}", quantity(limit, of.1)), holds))
+    }
+
+    /// The numbers in words: `OFB 3.47 mm, RSFB 3.40 mm`.
+    pub fn found(&self) -> String {
+        let each = self.values.iter().map(|v| format!("{} {}", v.name, quantity(v.value, v.unit)));
+        each.collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// The formation is taken up: every follower ends within the band of its scene, and stays there.
+pub(crate) fn takes_up(figure: &str, run: &Trace) -> Vec<Claim> {
+    let claim = "The controller drives each robot to the desired distance and bearing.";
+    let band = run.metrics.settling_band;
+    let values = |channel: usize| {
+        let edges = run.metrics.edges.iter();
+        worst(edges.map(|e| (e.follower.as_str(), e.late_peak_error[channel])).collect())
+    };
+    let quantity = format!("largest error from {} on", quantity(run.late_from(), "s"));
+    vec![
+        Claim::at_most((figure, claim), (&format!("{quantity}, distance"), "m"), &values(0), band[0]),
+        Claim::at_most((figure, claim), (&format!("{quantity}, bearing"), "rad"), &values(1), band[1]),
+    ]
+}
+
+/// Values that a claim lists one by one; of more, the largest.
+const LISTED: usize = 6;
+
+fn worst(mut values: Vec<(&str, f64)>) -> Vec<(&str, f64)> {
+    if values.len() > LISTED {
+        values.sort_by(|a, b| b.1.total_cmp(&a.1));
+        values.truncate(LISTED);
+    }
+    values
+}
+
+/// Nobody touches anybody.
+pub(crate) fn no_contact(figure: &str, run: &Trace) -> Claim {
+    let claim = "The formation drives without contact.";
+    Claim::at_most((figure, claim), ("contacts", ""), &[("contacts", run.metrics.contacts as f64)], 0.0)
+}
+
+/// Runs of one scene with their short names, in the order of a comparison.
+pub type Compared<'a> = [(&'a str, &'a Trace)];
+
+fn each<'a>(runs: &Compared<'a>, value: impl Fn(&Trace) -> Option<f64>) -> Vec<(&'a str, f64)> {
+    runs.iter().map(|(name, run)| (*name, value(run).unwrap_or(f64::NAN))).collect()
+}
+
+/// The less a law knows, the more its commands cost: the laws from the one that knows most, the first and the last
+/// compared.
+pub fn knowing_less_costs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<Claim> {
+    let claim = "Without knowing its leader's motion, the follower spends more on control (output feedback against full \
+                 state).";
+    let ends: Vec<_> =
+        runs.first().into_iter().chain(runs.last().filter(|_| runs.len() > 1)).copied().collect();
+    let applied = |channel: usize| each(&ends, |run| Some(run.efforts.get(edge)?.applied[channel]));
+    vec![
+        Claim::rises((figure, claim), ("∫|dv/dt| dt", "m/s"), &applied(0)),
+        Claim::rises((figure, claim), ("∫|ω| dt", "rad in all"), &applied(1)),
+    ]
+}
+
+/// The less a law knows, the larger the error that stays; and that of output feedback is small all the same.
+pub fn knowing_less_errs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<Claim> {
+    let claim = "The less a law knows, the larger the error that stays.";
+    let settled = each(runs, |run| run.settled(edge));
+    let mut claims = vec![Claim::rises((figure, claim), ("settled ‖e‖", ""), &settled)];
+    if let Some(last) = settled.last() {
+        let claim = "The behaviour under output feedback is quite satisfactory.";
+        let band = runs.last().map_or(0.0, |(_, run)| {
+            let [distance, bearing] = run.metrics.settling_band;
+            distance.hypot(bearing)
+        });
+        claims.push(Claim::at_most((figure, claim), ("settled ‖e‖", ""), &[*last], band));
+    }
+    claims
+}
+
+/// As ε falls, commands grow while the observer has not settled. `runs` go from the largest ε to the smallest.
+pub fn faster_observers_cost(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<Claim> {
+    let claim = "As ε decreases, the control effort of the transient increases.";
+    let of = |value: &dyn Fn(&crate::Effort) -> f64| each(runs, |run| run.efforts.get(edge).map(value));
+    let until = runs.first().and_then(|(_, run)| run.efforts.get(edge)).map_or(0.0, |e| e.transient);
+    let over = |what: &str| format!("{what}, first {}", quantity(until, "s"));
+    vec![
+        Claim::rises((figure, claim), (&over("peak |dv/dt| asked for"), "m/s²"), &of(&|e| e.peak_asked[0])),
+        Claim::rises(
+            (figure, claim),
+            (&over("∫|dv/dt asked for| dt"), "m/s"),
+            &of(&|e| e.transient_asked[0]),
+        ),
+        Claim::rises((figure, claim), (&over("∫|ω| dt"), "rad in all"), &of(&|e| e.transient_applied[1])),
+    ]
+}
+
+/// As ε falls, errors fall: those that stay, and those of the whole run. `runs` go from the largest ε to the smallest.
+pub fn faster_observers_err_less(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<Claim> {
+    let claim = "As ε decreases, tracking errors decrease.";
+    vec![
+        Claim::falls((figure, claim), ("settled ‖e‖", ""), &each(runs, |run| run.settled(edge))),
+        Claim::falls(
+            (figure, claim),
+            ("(∫‖e‖² dt)^½ over the run", "s^½"),
+            &each(runs, |run| run.over_the_run(edge)),
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ABOUT: (&str, &str) = ("7", "it falls");
+
+    #[test]
+    fn what_falls_falls_and_what_rises_does_not() {
+        let falling = [("a", 2.0), ("b", 1.0), ("c", 0.5)];
+        assert!(Claim::falls(ABOUT, ("x", "m"), &falling).holds);
+        assert!(!Claim::rises(ABOUT, ("x", "m"), &falling).holds);
+        let swapped = [("b", 1.0), ("a", 2.0), ("c", 0.5)];
+        assert!(!Claim::falls(ABOUT, ("x", "m"), &swapped).holds);
+        let level = [("a", 1.0), ("b", 1.0 + 1e-13)];
+        assert!(
+            !Claim::falls(ABOUT, ("x", "m"), &level).holds && !Claim::rises(ABOUT, ("x", "m"), &level).holds
+        );
+    }
+
+    #[test]
+    fn what_was_not_measured_is_not_so() {
+        assert!(!Claim::at_most(ABOUT, ("x", "m"), &[("a", f64::NAN)], 1.0).holds);
+        assert!(!Claim::at_most(ABOUT, ("x", "m"), &[], 1.0).holds);
+        assert!(!Claim::falls(ABOUT, ("x", "m"), &[("a", 1.0)]).holds);
+        assert!(Claim::at_most(ABOUT, ("x", "m"), &[("a", 1.0)], 1.0).holds);
+    }
+}

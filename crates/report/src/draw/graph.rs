@@ -1,0 +1,132 @@
+//! The formation graph: who follows whom, laid out from the set points themselves.
+
+use super::{Drawn, NAMED, number, quoted};
+use crate::trace::Trace;
+use figures::{Arrow, Node, Note, Plan, Side};
+use std::fmt::Write;
+
+/// Places of all robots at a sample if every follower stood at its set point with its leader's heading, in the first
+/// leader's frame: x forward, y left, m.
+pub(crate) fn places(run: &Trace, sample: usize) -> Vec<[f64; 2]> {
+    let pose = |robot: usize| run.robots.get(robot).and_then(|m| m.get(sample)).map(|m| m.pose);
+    let first = run.cast.members.iter().position(|m| m.leads).unwrap_or(0);
+    let origin = pose(first).unwrap_or_default();
+    let (sin, cos) = origin.heading.sin_cos();
+    let mut places: Vec<Option<[f64; 2]>> = run
+        .cast
+        .members
+        .iter()
+        .enumerate()
+        .map(|(robot, member)| {
+            let pose = pose(robot).filter(|_| member.leads)?;
+            let d = [pose.x - origin.x, pose.y - origin.y];
+            Some([d[0] * cos + d[1] * sin, d[1] * cos - d[0] * sin])
+        })
+        .collect();
+    // A formation is a forest: every round places the followers of those placed before.
+    for _ in 0..run.cast.members.len() {
+        for (index, edge) in run.cast.edges.iter().enumerate() {
+            let leader = places.get(edge.leader).copied().flatten();
+            let row = run.edges.get(index).and_then(|rows| rows.get(sample));
+            if let (Some([x, y]), Some(row), Some(place)) = (leader, row, places.get_mut(edge.follower)) {
+                let [distance, bearing] = row.set_point;
+                *place = Some([x + distance * bearing.cos(), y + distance * bearing.sin()]);
+            }
+        }
+    }
+    places.into_iter().map(Option::unwrap_or_default).collect()
+}
+
+/// Largest distance of a robot from where the set points want it, at a sample, in the first leader's frame, m.
+pub(crate) fn farthest(run: &Trace, sample: usize) -> Option<f64> {
+    let pose = |robot: usize| run.robots.get(robot).and_then(|m| m.get(sample)).map(|m| m.pose);
+    let origin = pose(run.cast.members.iter().position(|m| m.leads).unwrap_or(0))?;
+    let (sin, cos) = origin.heading.sin_cos();
+    let off = |(robot, place): (usize, &[f64; 2])| {
+        let pose = pose(robot)?;
+        let d = [pose.x - origin.x, pose.y - origin.y];
+        Some((d[0] * cos + d[1] * sin - place[0]).hypot(d[1] * cos - d[0] * sin - place[1]))
+    };
+    let places = places(run, sample);
+    places.iter().enumerate().map(off).try_fold(0.0, |most: f64, off| off.map(|off| most.max(off)))
+}
+
+/// Nodes, directed edges, and set points on edges, at a time.
+pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
+    let sample = run.sample_at(time);
+    let places = places(run, sample);
+    // The page is looked at along the leader's heading: forward is up.
+    let page: Vec<[f64; 2]> = places.iter().map(|[x, y]| [-y, *x]).collect();
+    let count = run.cast.members.len();
+    let (radius, labels) = match count {
+        0..NAMED => (6.5, true),
+        NAMED..16 => (5.5, true),
+        16..40 => (4.0, false),
+        _ => (2.2, false),
+    };
+    let mut plan =
+        Plan { margin: if labels { [46.0, 9.0] } else { [8.0; 2] }, height: 75.0, ..Plan::default() };
+    let middle = page.iter().map(|p| p[0]).sum::<f64>() / count.max(1) as f64;
+    let mut csv = String::from("leader,follower,distance_m,bearing_rad,bearing_deg\n");
+    for (index, edge) in run.cast.edges.iter().enumerate() {
+        let Some(row) = run.edges.get(index).and_then(|rows| rows.get(sample)) else { continue };
+        let [distance, bearing] = row.set_point;
+        let name = |robot: usize| run.cast.members.get(robot).map_or("", |m| m.name.as_str());
+        let _ = writeln!(
+            csv,
+            "{},{},{},{},{}",
+            quoted(name(edge.leader)),
+            quoted(name(edge.follower)),
+            number(distance),
+            number(bearing),
+            number(bearing.to_degrees())
+        );
+        let (Some(from), Some(to)) = (page.get(edge.leader), page.get(edge.follower)) else { continue };
+        plan.arrows.push(Arrow { from: *from, to: *to, free: radius + 1.2, colour: [0.35; 3] });
+        if labels {
+            let at = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
+            let degrees = format!("{:+.0}°", bearing.to_degrees()).replace('-', "−");
+            let side = if at[0] > middle { Side::Right } else { Side::Left };
+            plan.notes.push(Note {
+                at,
+                text: format!("{distance:.2} m, {degrees}"),
+                side,
+                off: 6.0,
+                colour: None,
+            });
+        }
+    }
+    let signs = signs(run);
+    for (robot, member) in run.cast.members.iter().enumerate() {
+        let Some(at) = page.get(robot).copied() else { continue };
+        plan.nodes.push(Node {
+            at,
+            name: if labels { signs[robot].clone() } else { String::new() },
+            radius,
+            colour: run.colours.get(robot).copied().unwrap_or_default(),
+            filled: member.leads,
+        });
+    }
+    Drawn { svg: plan.svg(), csv }
+}
+
+/// A sign for every robot: the number its name ends with, or the name's first letter; its shell's number where those
+/// are not all different.
+fn signs(run: &Trace) -> Vec<String> {
+    let sign = |name: &str| {
+        let digits = name.len() - name.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+        match &name[name.len() - digits..] {
+            "" => name.chars().next().map_or_else(String::new, |c| c.to_uppercase().collect()),
+            number => number.to_owned(),
+        }
+    };
+    let signs: Vec<String> = run.cast.members.iter().map(|member| sign(&member.name)).collect();
+    let mut different = signs.clone();
+    different.sort();
+    different.dedup();
+    if different.len() == signs.len() {
+        return signs;
+    }
+    let number = |robot: usize| run.scene.robots.get(robot).map_or(robot, |r| r.number).to_string();
+    (0..signs.len()).map(number).collect()
+}

@@ -1,0 +1,109 @@
+//! The numbers of all runs, side by side.
+
+use crate::item::Table;
+use crate::job::{Case, Ran, find};
+use crate::paper::constants;
+use crate::trace::Trace;
+use crate::variant::Variant;
+use crate::words::{digits, quantity};
+use scene::LawKind;
+
+fn words(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}
+
+/// One follower under all laws and observer constants.
+pub(crate) fn laws(runs: &[Ran], cases: &[Case], edge: usize) -> Table {
+    let laws = [LawKind::FullState, LawKind::RobustState].map(Variant::law);
+    let variants: Vec<Variant> = laws.into_iter().chain(constants()).collect();
+    let traces = cases.iter().flat_map(|case| variants.iter().filter_map(|v| find(runs, *case, *v)));
+    let transient = runs.first().and_then(|ran| ran.trace.efforts.get(edge)).map_or(0.0, |e| e.transient);
+    let first = format!("first {}", quantity(transient, "s"));
+    Table {
+        caption: format!(
+            "Follower 1 under every law and observer constant. Settled: root mean square over the last fifth of the run. \
+             Settles: time from which the error stays within the band of the scene. Asked for: before limits, over the {first}."
+        ),
+        head: vec![
+            "run".to_owned(),
+            "settled distance error".to_owned(),
+            "settled bearing error".to_owned(),
+            "(∫‖e‖² dt)^½".to_owned(),
+            "settles".to_owned(),
+            "peak |dv/dt| asked for".to_owned(),
+            "∫|dv/dt| dt".to_owned(),
+            "∫|ω| dt".to_owned(),
+        ],
+        rows: traces.filter_map(|trace| law_row(trace, edge)).collect(),
+    }
+}
+
+fn law_row(trace: &Trace, edge: usize) -> Option<Vec<String>> {
+    let (metrics, effort) = (trace.metrics.edges.get(edge)?, trace.efforts.get(edge)?);
+    Some(vec![
+        trace.name.clone(),
+        quantity(metrics.late_rms_error[0], "m"),
+        quantity(metrics.late_rms_error[1], "rad"),
+        trace.over_the_run(edge).map_or_else(String::new, digits),
+        metrics.settling_time.map_or_else(|| "never".to_owned(), |t| quantity(t, "s")),
+        quantity(effort.peak_asked[0], "m/s²"),
+        quantity(effort.applied[0], "m/s"),
+        // Turned in all, not an angle that is small.
+        format!("{} rad", digits(effort.applied[1])),
+    ])
+}
+
+/// Edges that a table lists one by one.
+const LISTED: usize = 24;
+
+/// All edges of a run; of many, those whose errors stay largest.
+pub(crate) fn edges(run: &Trace) -> Table {
+    let mut order: Vec<usize> = (0..run.cast.edges.len()).collect();
+    if order.len() > LISTED {
+        order.sort_by(|a, b| run.settled(*b).unwrap_or(0.0).total_cmp(&run.settled(*a).unwrap_or(0.0)));
+        order.truncate(LISTED);
+    }
+    let row = |edge: usize| {
+        let (metrics, effort) = (run.metrics.edges.get(edge)?, run.efforts.get(edge)?);
+        Some(vec![
+            format!("{} → {}", metrics.leader, metrics.follower),
+            quantity(metrics.final_error[0], "m"),
+            quantity(metrics.final_error[1], "rad"),
+            metrics.settling_time.map_or_else(|| "never".to_owned(), |t| quantity(t, "s")),
+            quantity(effort.peak_asked[0], "m/s²"),
+            quantity(effort.applied[0], "m/s"),
+            format!("{} rad", digits(effort.applied[1])),
+        ])
+    };
+    Table {
+        caption: if run.cast.edges.len() > LISTED {
+            format!("The {LISTED} of {} edges whose errors stay largest.", run.cast.edges.len())
+        } else {
+            "All edges.".to_owned()
+        },
+        head: words(&[
+            "edge",
+            "final distance error",
+            "final bearing error",
+            "settles",
+            "peak |dv/dt| asked for",
+            "∫|dv/dt| dt",
+            "∫|ω| dt",
+        ]),
+        rows: order.into_iter().filter_map(row).collect(),
+    }
+}
+
+/// Which runs these were, to the last bit.
+pub(crate) fn digests(runs: &[Ran]) -> Table {
+    let row = |ran: &Ran| {
+        let trace = &ran.trace;
+        let (length, seed) = (quantity(trace.metrics.duration, "s"), trace.scene.seed.to_string());
+        vec![trace.name.clone(), length, seed, trace.digest.clone()]
+    };
+    Table {
+        caption: "Digest of every run: the same scene, seed and build give the same one.".to_owned(),
+        head: words(&["run", "length", "seed", "digest"]),
+        rows: runs.iter().map(row).collect(),
+    }
+}

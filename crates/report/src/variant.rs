@@ -1,0 +1,103 @@
+//! A scene with another law or another observer constant for all its followers: what comparisons are made of.
+
+use scene::{LawKind, Mode, Role, Scene, SensingKind, VehicleKind};
+
+/// What differs from the scene as it is written.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Variant {
+    /// The law of every follower.
+    pub law: Option<LawKind>,
+    /// ε of every observer, s.
+    pub epsilon: Option<f64>,
+}
+
+impl Variant {
+    /// Another law.
+    pub fn law(kind: LawKind) -> Self {
+        Self { law: Some(kind), ..Self::default() }
+    }
+
+    /// Output feedback with an observer constant, s.
+    pub fn epsilon(epsilon: f64) -> Self {
+        Self { law: Some(LawKind::OutputFeedback), epsilon: Some(epsilon) }
+    }
+
+    /// The scene so changed, with what changes on its way.
+    pub fn give(self, scene: &Scene) -> Scene {
+        let mut scene = scene.clone();
+        scene.for_every_robot(|robot| {
+            let Role::Follow(follow) = &mut robot.role else { return };
+            follow.law.kind = self.law.unwrap_or(follow.law.kind);
+            if let Some(epsilon) = self.epsilon {
+                follow.observer.epsilon = [epsilon; 2];
+                follow.observer.adaptive = false;
+            }
+        });
+        scene
+    }
+}
+
+/// A law in four letters, as papers have it.
+pub(crate) fn short(kind: LawKind) -> &'static str {
+    match kind {
+        LawKind::FullState => "FSFB",
+        LawKind::RobustState => "RSFB",
+        LawKind::OutputFeedback => "OFB",
+    }
+}
+
+/// The three laws, from the one that has to know most.
+pub(crate) const LAWS: [LawKind; 3] = [LawKind::FullState, LawKind::RobustState, LawKind::OutputFeedback];
+
+/// Law and ε, s, of the scene's first follower.
+pub(crate) fn of(scene: &Scene) -> Option<(LawKind, f64)> {
+    scene.robots.iter().find_map(|robot| match &robot.role {
+        Role::Follow(follow) => Some((follow.law.kind, follow.observer.epsilon[0])),
+        Role::Lead { .. } => None,
+    })
+}
+
+/// Robots from which on comparisons would take longer than they tell.
+const MANY: usize = 30;
+
+/// Why the three laws cannot be compared on a scene, if they cannot.
+pub(crate) fn laws_apart(scene: &Scene) -> Option<&'static str> {
+    let truth = |robot: &scene::Robot| match &robot.role {
+        Role::Follow(follow) => follow.sensing.kind == SensingKind::Truth,
+        Role::Lead { .. } => true,
+    };
+    if scene.robots.iter().all(|robot| matches!(robot.role, Role::Lead { .. })) {
+        Some("nobody follows")
+    } else if !scene.robots.iter().all(truth) {
+        Some("followers look, and two of the laws have to be told more than looks tell")
+    } else if scene.robots.iter().any(|robot| robot.vehicle.kind != VehicleKind::Unicycle) {
+        Some("gains on wheels are found for output feedback, and would not fit the other laws")
+    } else if scene.robots.len() > MANY {
+        Some("there are too many robots to run the scene over and over")
+    } else {
+        None
+    }
+}
+
+/// Why observer constants cannot be compared on a scene, if they cannot.
+pub(crate) fn constants_apart(scene: &Scene) -> Option<&'static str> {
+    let followers = || {
+        scene.robots.iter().filter_map(|robot| match &robot.role {
+            Role::Follow(follow) => Some(follow),
+            Role::Lead { .. } => None,
+        })
+    };
+    if !followers().any(|follow| follow.law.kind == LawKind::OutputFeedback) {
+        Some("no observer runs")
+    } else if followers().any(|follow| follow.sensing.kind == SensingKind::Camera) {
+        Some("drawing for cameras over and over takes minutes: `echelon budget --epsilon` does it")
+    } else if followers().any(|follow| follow.sensing.kind != SensingKind::Truth) {
+        Some("ε follows from the noise of looks: `echelon budget --epsilon` compares")
+    } else if scene.time.mode == Mode::Continuous {
+        Some("continuous time takes steps of an eighth of ε, and small ones do not come to an end")
+    } else if scene.robots.len() > MANY {
+        Some("there are too many robots to run the scene over and over")
+    } else {
+        None
+    }
+}
