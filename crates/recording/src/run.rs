@@ -1,5 +1,6 @@
 //! Writing a run folder while the run goes.
 
+use crate::log::{self, Pipe, Roll};
 use crate::manifest::FORMAT;
 use crate::table::{TableKind, TableWriter};
 use crate::{Digest, Error, Judging, Manifest, Metrics, MetricsBuilder, Status, write_whole};
@@ -13,6 +14,10 @@ use vocabulary::{Cast, Moment};
 pub struct RunOptions {
     /// Also write tables as CSV.
     pub csv: bool,
+    /// Leave out the log.
+    pub no_log: bool,
+    /// Where pictures of cameras come from, for the log; nowhere by default.
+    pub roll: Roll,
     /// Replace a run that is there already.
     pub force: bool,
     /// The resolved scene, as text.
@@ -35,12 +40,13 @@ pub struct Recorder {
     cast: Cast,
     manifest: Manifest,
     tables: Vec<TableWriter>,
+    log: Option<Pipe>,
     metrics: MetricsBuilder,
     digest: Digest,
 }
 
 /// What a run folder may contain that we wrote ourselves and may replace.
-const OURS: [&str; 5] = ["manifest.json", "scene.toml", "metrics.json", "tables", "frames"];
+const OURS: [&str; 6] = ["manifest.json", "scene.toml", "metrics.json", "tables", "frames", log::FILE];
 
 impl Recorder {
     /// Makes `folder` and writes what is known before the run.
@@ -61,13 +67,22 @@ impl Recorder {
         })?;
         write_whole(&folder.join("scene.toml"), options.scene.as_bytes())?;
         let writer = |kind| TableWriter::create(&tables, kind, options.csv);
+        let manifest = first_manifest(cast, &options);
+        let log = match options.no_log {
+            true => None,
+            false => {
+                let (path, known) = (folder.join(log::FILE), (cast, &*options.scene));
+                Some(Pipe::create(&path, known, &manifest, options.roll.clone())?)
+            }
+        };
         let recorder = Self {
             folder: folder.to_owned(),
             cast: cast.clone(),
             tables: TableKind::of(cast).into_iter().map(writer).collect::<Result<_, _>>()?,
             metrics: MetricsBuilder::new(cast, options.judging),
             digest: Digest::default(),
-            manifest: first_manifest(cast, options),
+            log,
+            manifest,
         };
         recorder.write_manifest()?;
         Ok(recorder)
@@ -83,6 +98,7 @@ impl Recorder {
         for table in &mut self.tables {
             table.push(&self.cast, moment)?;
         }
+        self.log.as_mut().map_or(Ok(()), |log| log.push(moment))?;
         self.manifest.samples += 1;
         Ok(())
     }
@@ -101,6 +117,7 @@ impl Recorder {
         write_json(&self.folder.join("metrics.json"), &metrics)?;
         self.manifest.status = status;
         self.manifest.digest = Some(self.digest.text());
+        self.log.take().map_or(Ok(()), |log| log.finish(&self.manifest))?;
         self.write_manifest()?;
         Ok((self.manifest, metrics))
     }
@@ -109,6 +126,7 @@ impl Recorder {
     pub fn abandon(mut self) {
         self.manifest.status = Status::Interrupted;
         // The disk has just refused: if it refuses again, the error before is the one to tell.
+        let _ = self.log.take().map_or(Ok(()), |log| log.finish(&self.manifest));
         let _ = self.write_manifest();
     }
 
@@ -117,12 +135,12 @@ impl Recorder {
     }
 }
 
-fn first_manifest(cast: &Cast, options: RunOptions) -> Manifest {
+fn first_manifest(cast: &Cast, options: &RunOptions) -> Manifest {
     let name = |robot: usize| cast.members[robot].name.clone();
     Manifest {
         format: FORMAT,
-        program: options.program,
-        commit: options.commit,
+        program: options.program.clone(),
+        commit: options.commit.clone(),
         title: cast.title.clone(),
         seed: options.seed,
         period: options.period,
@@ -191,6 +209,8 @@ mod tests {
     fn options(force: bool) -> RunOptions {
         RunOptions {
             csv: true,
+            no_log: false,
+            roll: Roll::default(),
             force,
             scene: "schema = 1\n".into(),
             program: "test".into(),
