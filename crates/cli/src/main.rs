@@ -6,6 +6,7 @@ mod budget;
 mod capture;
 mod check;
 mod dataset;
+mod diff;
 mod doctor;
 mod eyes;
 mod failure;
@@ -18,6 +19,7 @@ mod playback;
 mod print;
 mod progress;
 mod quiet;
+mod recorded;
 mod replay;
 mod report;
 mod run;
@@ -56,6 +58,7 @@ fn main() -> ExitCode {
         }
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Replay(args)) => replay::replay(&args),
+        Some(Command::Diff(args)) => diff::diff(&args),
         Some(Command::Lab(args)) => lab::lab(args),
         Some(Command::Capture(args)) => capture::capture(&args),
         Some(Command::Film(args)) => film::film(&args),

@@ -1,6 +1,6 @@
 //! What stills and films share: adapter, size, views and style.
 
-use crate::args::{PictureArgs, SceneArgs};
+use crate::args::PictureArgs;
 use crate::failure::Failure;
 use crate::print::note;
 use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, View};
@@ -18,7 +18,7 @@ pub(crate) struct Studio {
 impl Studio {
     /// Checks the words first and opens the adapter last, since that takes longest.
     pub(crate) fn open(
-        (scene, args): (&SceneArgs, &PictureArgs),
+        (adapter, args): (&str, &PictureArgs),
         cast: &Cast,
         view: &str,
         size: [u32; 2],
@@ -46,7 +46,7 @@ impl Studio {
         }
         // Text that suits 720 lines suits no poster: it grows with the picture, and never below its size there.
         style.scale = args.scale.unwrap_or_else(|| (f64::from(size[1]) / 720.0).max(1.0));
-        let gpu = Gpu::open(&AdapterChoice::from(&*scene.adapter))?;
+        let gpu = Gpu::open(&AdapterChoice::from(adapter))?;
         let renderer = Renderer::new(&gpu, cast, size[0], size[1], args.samples)?;
         Ok(Self { gpu, renderer, layout, style, size })
     }

@@ -2,11 +2,13 @@
 
 use crate::Outcome;
 use crate::args::RunArgs;
+use crate::eyes;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::load::{Loaded, load, stem};
 use crate::progress::Progress;
 use crate::report::{self, Report};
+use recording::log::Roll;
 use recording::{Digest, Judging, Metrics, MetricsBuilder, Recorder, RunOptions, Status};
 use simulation::verdict::verdict;
 use std::path::{Path, PathBuf};
@@ -20,11 +22,13 @@ pub(crate) const STRIDE: u64 = 16;
 
 pub(crate) fn run(args: &RunArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;
-    let drawn = loaded.open_eyes(None, &args.scene)?;
+    let roll = Roll::default();
+    let logs = !args.no_record && !args.no_log;
+    let drawn = eyes::open(&mut loaded.simulation, None, &args.scene.adapter, logs.then_some(&roll))?;
     let Loaded { scene, mut simulation } = loaded;
     let folder = if args.no_record { None } else { Some(folder(args)?) };
     let mut sink = match &folder {
-        Some(folder) => Sink::record(folder, args, &scene, &simulation)?,
+        Some(folder) => Sink::record(folder, args, &scene, &simulation, roll)?,
         None => Sink::Judge(Box::new((
             MetricsBuilder::new(simulation.cast(), judging(&scene)),
             Digest::default(),
@@ -106,9 +110,12 @@ impl Sink {
         args: &RunArgs,
         scene: &scene::Scene,
         simulation: &simulation::Simulation,
+        roll: Roll,
     ) -> Result<Self, Failure> {
         let options = RunOptions {
             csv: args.csv,
+            no_log: args.no_log,
+            roll,
             force: args.force,
             scene: scene.to_toml(),
             program: PROGRAM.to_owned(),

@@ -1,7 +1,7 @@
 //! Colours: the robots' own, and those of ink and paper. Names of colours are sRGB, shading is linear.
 
 pub use vocabulary::colours::robot_colours;
-pub(crate) use vocabulary::colours::{LEAD, Rgb, hex};
+pub(crate) use vocabulary::colours::{Rgb, hex};
 
 /// The stripe on robots that follow nobody.
 pub(crate) const GOLD: Rgb = hex(0x00e3_b341);

@@ -39,6 +39,8 @@ pub(super) struct Drawing {
     frames: Vec<[String; 3]>,
     next: f64,
     next_ribbon: f64,
+    /// When ribbons were drawn last.
+    drawn: f64,
     /// Where the robots were, and when.
     past: VecDeque<(f64, Vec<Point3>)>,
     buffer: Vec<u8>,
@@ -84,6 +86,7 @@ impl Drawing {
             frames: vec![],
             next: 0.0,
             next_ribbon: 0.0,
+            drawn: 0.0,
             past: VecDeque::new(),
             buffer: vec![],
             colours,
@@ -113,7 +116,10 @@ impl Drawing {
             return Ok(());
         }
         let crowd = (self.cast.members.len() as f64 / FEW as f64).max(1.0);
-        self.next = (stamp.time + crowd / RATE).max(self.next + crowd / RATE).min(stamp.time + 2.0 * crowd / RATE);
+        self.next += crowd / RATE;
+        if self.next <= stamp.time {
+            self.next = stamp.time + crowd / RATE;
+        }
         let transforms = self.transforms(stamp, moment);
         for (channel, (transform, frame)) in self.poses.iter().zip(transforms.iter().zip(&self.frames)) {
             debug_assert_eq!(transform.child_frame_id, frame[0]);
@@ -139,6 +145,7 @@ impl Drawing {
             .collect();
         if stamp.time >= self.next_ribbon - 1e-6 {
             self.next_ribbon = stamp.time + crowd.min(3.0);
+            self.drawn = stamp.time;
             put(self.ribbons, stamp, &self.draw_ribbons(stamp, &now), to)?;
         }
         put(self.formation, stamp, &self.lines(stamp, moment, &now), to)?;
@@ -213,10 +220,11 @@ impl Drawing {
             };
             edges.points.extend([edge.leader, edge.follower].into_iter().filter_map(middle));
         }
-        let tails = self.past.iter().rev().take_while(|(time, _)| *time > self.next_ribbon - 4.0);
-        let recent: Vec<_> = tails.map(|(_, points)| points).collect();
+        let first = self.past.partition_point(|(time, _)| *time < self.drawn).saturating_sub(1);
+        let now = now.to_vec();
+        let recent = || self.past.iter().skip(first).map(|(_, points)| points).chain([&now]);
         let mut entities = vec![entity(stamp, "edges", vec![edges])];
-        let strips = (0..now.len()).map(|robot| self.strip(robot, recent.iter().rev().copied().chain([&now.to_vec()])));
+        let strips = (0..now.len()).map(|robot| self.strip(robot, recent()));
         entities.push(entity(stamp, "tails", strips.collect()));
         SceneUpdate { deletions: vec![], entities }
     }
