@@ -59,7 +59,14 @@ def main():
     if cast is None:
         sys.exit(f"{log} is no log of Echelon")
     curves = [rrb.TimeSeriesView(name=name, origin=f"/curves/{field}") for name, field in CURVES.items()]
-    space = rrb.Spatial3DView(name=cast.title, origin="/", contents=["/bodies/**", "/paths/**", "/tf", "/world"])
+    lead = next((member.name for member in cast.members if member.leads), cast.members[0].name)
+    space = rrb.Spatial3DView(
+        name=cast.title,
+        origin="/",
+        contents=["/bodies/**", "/paths/**", "/tf", "/world"],
+        background=(232, 236, 241),
+        eye_controls=rrb.EyeControls3D(kind=rrb.Eye3DKind.Orbital, tracking_entity=f"/bodies/{lead}"),
+    )
     left = [space] + [rrb.Spatial2DView(name=camera, origin=camera) for camera in cameras[:1]]
     blueprint = rrb.Blueprint(
         rrb.Horizontal(rrb.Vertical(*left), rrb.Vertical(*curves), column_shares=[3, 2]), collapse_panels=True

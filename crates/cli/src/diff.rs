@@ -90,7 +90,8 @@ pub(crate) fn diff(args: &DiffArgs) -> Outcome {
 }
 
 fn told(robots: &[String], edges: &[[String; 2]]) -> String {
-    let edges: Vec<String> = edges.iter().map(|[leader, follower]| format!("{leader} → {follower}")).collect();
+    let edges: Vec<String> =
+        edges.iter().map(|[leader, follower]| format!("{leader} → {follower}")).collect();
     format!("{} robots: {}; {} edges: {}", robots.len(), robots.join(", "), edges.len(), edges.join(", "))
 }
 
@@ -170,7 +171,8 @@ impl Diff {
             Some(found) => moments(found, self.same(), &self.names),
             None if self.casts.is_some() => say("DIFFERENT"),
             None => {
-                let verdict = if self.same() { "same: by their digests" } else { "DIFFERENT: by their digests" };
+                let verdict =
+                    if self.same() { "same: by their digests" } else { "DIFFERENT: by their digests" };
                 say(&format!("{verdict}; there are not two logs to look into"));
             }
         }
@@ -241,7 +243,8 @@ fn moments(found: &Comparison, same: bool, names: &[String; 2]) {
     }
     for peak in &found.peaks {
         let (name, unit) = unit(peak.quantity);
-        let most = if peak.most.is_finite() { format!("{:.3e} {unit}", peak.most) } else { "other".to_owned() };
+        let most =
+            if peak.most.is_finite() { format!("{:.3e} {unit}", peak.most) } else { "other".to_owned() };
         say(&format!("  {name:<22} {most:<18} {} at {:.3} s", peak.of, peak.time));
     }
 }

@@ -148,8 +148,7 @@ fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
         .map_err(|error| Failure::Usage(format!("{}: {error}", run.scene.0.display())))?;
     let mut simulation = Simulation::new(setup);
     eyes::open(&mut simulation, None, &args.adapter, None)?;
-    let progress =
-        Progress::begin(&format!("Replaying {}", scene.title), simulation.len(), quiet);
+    let progress = Progress::begin(&format!("Replaying {}", scene.title), simulation.len(), quiet);
     let cut = matches!(manifest.status, Status::Interrupted | Status::Running);
     let most = if cut { manifest.samples } else { u64::MAX };
     let (samples, digest) = run_again(&mut simulation, most, &progress)?;

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use vocabulary::{
-    Body, Cast, Condition, Contact, Edge, EdgeState, Frame, Member, Mobility, Moment, Outcome, Placement, Prop,
-    RobotState, Shell, Sight, Snapshot, Solid, Terrain, Thing,
+    Body, Cast, Condition, Contact, Edge, EdgeState, Frame, Member, Mobility, Moment, Outcome, Placement,
+    Prop, RobotState, Shell, Sight, Snapshot, Solid, Terrain, Thing,
 };
 
 /// Numbers without rule, special ones among them (SplitMix64).
@@ -26,7 +26,8 @@ impl Numbers {
     }
 
     fn next(&mut self) -> f64 {
-        const SPECIAL: [f64; 6] = [0.0, -0.0, f64::INFINITY, f64::NEG_INFINITY, f64::MIN_POSITIVE / 3.0, f64::MAX];
+        const SPECIAL: [f64; 6] =
+            [0.0, -0.0, f64::INFINITY, f64::NEG_INFINITY, f64::MIN_POSITIVE / 3.0, f64::MAX];
         match self.below(8) {
             0 => SPECIAL[self.below(6)],
             _ => f64::from_bits(self.whole() & !(1 << 62)),
@@ -39,7 +40,10 @@ impl Numbers {
 }
 
 fn cast() -> Cast {
-    let member = |name: &str, leads| Member { shell: Some(Shell::PAPER.tagged(3)), ..Member::new(name, leads, Body::default()) };
+    let member = |name: &str, leads| Member {
+        shell: Some(Shell::PAPER.tagged(3)),
+        ..Member::new(name, leads, Body::default())
+    };
     let solids = [
         Solid::Block { size: [1.0, 0.5, 0.3] },
         Solid::Wedge { size: [2.0, 1.0, 0.2] },
@@ -57,11 +61,22 @@ fn cast() -> Cast {
         title: "a title — with signs".into(),
         caption: "K = 5".into(),
         duration: 30.0,
-        members: vec![member("ann", true), Member { shell: None, ..member("bob", false) }, member("cy", false)],
+        members: vec![
+            member("ann", true),
+            Member { shell: None, ..member("bob", false) },
+            member("cy", false),
+        ],
         edges: vec![Edge { leader: 0, follower: 1 }, Edge { leader: 1, follower: 2 }],
         looks: true,
         props: solids.into_iter().enumerate().map(prop).collect(),
-        terrain: Some(Arc::new(Terrain { origin: [-1.0, 2.0], cell: 0.5, columns: 4, rows: 3, heights, grip: vec![] })),
+        terrain: Some(Arc::new(Terrain {
+            origin: [-1.0, 2.0],
+            cell: 0.5,
+            columns: 4,
+            rows: 3,
+            heights,
+            grip: vec![],
+        })),
         ..Cast::default()
     }
 }
@@ -81,13 +96,15 @@ fn moment(cast: &Cast, k: u32, n: &mut Numbers) -> Moment {
     });
     let robots = robots.collect();
     let edge = |n: &mut Numbers| {
-        let mut edge = EdgeState { set_point: n.many(), error: n.many(), rates: n.many(), ..EdgeState::default() };
+        let mut edge =
+            EdgeState { set_point: n.many(), error: n.many(), rates: n.many(), ..EdgeState::default() };
         [edge.relative.distance, edge.relative.bearing, edge.relative.view_angle] = n.many();
         [edge.seen.distance, edge.seen.bearing, edge.seen.view_angle, edge.age] = n.many();
         [edge.asked.acceleration, edge.asked.turn_rate] = n.many();
         [edge.applied.acceleration, edge.applied.turn_rate] = n.many();
         edge.estimate = n.many();
-        edge.sight = [Sight::Truth, Sight::Waiting, Sight::Tracking, Sight::Coasting, Sight::Lost][n.below(5)];
+        edge.sight =
+            [Sight::Truth, Sight::Waiting, Sight::Tracking, Sight::Coasting, Sight::Lost][n.below(5)];
         (edge.limited, edge.too_close) = (n.below(2) == 1, n.below(2) == 1);
         edge
     };
@@ -107,7 +124,8 @@ fn moment(cast: &Cast, k: u32, n: &mut Numbers) -> Moment {
         frame.sighting.deviation = n.many();
         [frame.sighting.relative.distance, frame.truth.bearing] = n.many();
         frame.outcome =
-            [Outcome::Used, Outcome::Rejected, Outcome::Ambiguous, Outcome::Missed, Outcome::Dropped][n.below(5)];
+            [Outcome::Used, Outcome::Rejected, Outcome::Ambiguous, Outcome::Missed, Outcome::Dropped]
+                [n.below(5)];
         for tag in &mut frame.tags {
             *tag = (n.below(2) == 1).then(|| std::array::from_fn(|_| n.many()));
         }
@@ -187,7 +205,9 @@ fn any_time_is_found_without_reading_what_lies_before() {
     let folder = tempfile::tempdir().expect("a folder");
     let (moments, _) = record(folder.path(), 450, Status::Complete);
     let log = Log::open(&folder.path().join(FILE)).expect("a log");
-    for (time, want) in [(-1.0, 0), (0.0, 0), (0.015, 1), (0.995, 99), (1.0, 99), (2.5, 249), (3.997, 399), (99.0, 449)] {
+    for (time, want) in
+        [(-1.0, 0), (0.0, 0), (0.015, 1), (0.995, 99), (1.0, 99), (2.5, 249), (3.997, 399), (99.0, 449)]
+    {
         let at = log.at(time).expect("sound").expect("a moment");
         assert!(same(&at, &moments[want]), "{time} s gives {}", at.snapshot.time);
         let on: Vec<Moment> = log.moments_from(time).map(|moment| moment.expect("sound")).collect();
@@ -273,7 +293,9 @@ fn what_is_no_log_of_ours_says_what_it_is_instead() {
         let mut writer = mcap::Writer::new(fs::File::create(&path).expect("a file")).expect("a writer");
         if !metadata.is_empty() {
             let metadata = metadata.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
-            writer.write_metadata(&mcap::write::Metadata { name: "echelon".into(), metadata }).expect("written");
+            writer
+                .write_metadata(&mcap::write::Metadata { name: "echelon".into(), metadata })
+                .expect("written");
         }
         writer.finish().expect("finished");
     };
@@ -290,7 +312,8 @@ fn the_first_difference_is_named() {
     let folders = [tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder")];
     let (mut moments, _) = record(folders[0].path(), 150, Status::Complete);
     moments[120].edges[1].applied.turn_rate = 0.5;
-    moments[130].edges[1].applied.turn_rate = f64::from_bits(moments[130].edges[1].applied.turn_rate.to_bits() ^ 1);
+    moments[130].edges[1].applied.turn_rate =
+        f64::from_bits(moments[130].edges[1].applied.turn_rate.to_bits() ^ 1);
     moments.pop();
     let mut recorder = Recorder::create(folders[1].path(), &cast(), options()).expect("a recorder");
     moments.iter().for_each(|moment| recorder.push(moment).expect("recorded"));

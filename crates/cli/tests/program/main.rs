@@ -4,6 +4,7 @@ mod bad_input;
 mod budget;
 mod common;
 mod dataset;
+mod logs;
 mod pictures;
 mod replay;
 mod runs;

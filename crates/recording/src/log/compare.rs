@@ -188,7 +188,11 @@ fn quantities(moment: &Moment, cast: &Cast) -> Vec<Quantity> {
     let mut moment = moment.clone();
     all.add("time_s", Value::Number(moment.snapshot.time));
     let name = |robot: usize| cast.members.get(robot).map_or("?", |member| &*member.name);
-    let pair = |edge: usize| cast.edges.get(edge).map_or_else(String::new, |e| format!("{} → {}", name(e.leader), name(e.follower)));
+    let pair = |edge: usize| {
+        cast.edges
+            .get(edge)
+            .map_or_else(String::new, |e| format!("{} → {}", name(e.leader), name(e.follower)))
+    };
     for (index, robot) in moment.snapshot.robots.iter_mut().enumerate() {
         all.collect(1, format!("robot {}", name(index)), robot);
     }

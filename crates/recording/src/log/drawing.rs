@@ -9,8 +9,8 @@ use super::writer::{Channels, Stamp};
 use crate::Error;
 use foxglove::Encode;
 use foxglove::messages::{
-    CameraCalibration, Color, CompressedImage, FrameTransform, FrameTransforms, LinePrimitive, Point3, PoseInFrame,
-    Quaternion, SceneEntity, SceneUpdate, Timestamp, Vector3, line_primitive::Type,
+    CameraCalibration, Color, CompressedImage, FrameTransform, FrameTransforms, LinePrimitive, Point3,
+    PoseInFrame, Quaternion, SceneEntity, SceneUpdate, Timestamp, Vector3, line_primitive::Type,
 };
 use std::collections::VecDeque;
 use vocabulary::colours::robot_colours;
@@ -76,7 +76,12 @@ impl Drawing {
         let colours: Vec<Color> =
             robot_colours(cast).into_iter().map(|rgb| solids::colour(rgb, 1.0)).collect();
         let stage = channel::<SceneUpdate>("/stage", to)?;
-        put(stage, Stamp::default(), &SceneUpdate { deletions: vec![], entities: solids::entities(cast, &colours) }, to)?;
+        put(
+            stage,
+            Stamp::default(),
+            &SceneUpdate { deletions: vec![], entities: solids::entities(cast, &colours) },
+            to,
+        )?;
         let mut drawing = Self {
             tf: channel::<FrameTransforms>("/tf", to)?,
             formation: channel::<SceneUpdate>("/scene", to)?,
@@ -171,15 +176,20 @@ impl Drawing {
         };
         let Snapshot { robots, props, .. } = &moment.snapshot;
         let seen = robots.iter().zip(&self.frames);
-        let mut all: Vec<FrameTransform> =
-            seen.map(|(robot, [name, ..])| transform(solids::WORLD, name, &robot.world_from_body())).collect();
+        let mut all: Vec<FrameTransform> = seen
+            .map(|(robot, [name, ..])| transform(solids::WORLD, name, &robot.world_from_body()))
+            .collect();
         for (index, (robot, member)) in robots.iter().zip(&self.cast.members).enumerate() {
-            if let (Some(Some(_)), Some([name, camera, _])) = (self.cameras.get(index), self.frames.get(index)) {
+            if let (Some(Some(_)), Some([name, camera, _])) =
+                (self.cameras.get(index), self.frames.get(index))
+            {
                 all.push(transform(name, camera, &member.mount.body_from_camera(robot.camera_pan)));
             }
         }
         for (edge, state) in self.cast.edges.iter().zip(&moment.edges) {
-            let (Some(leader), Some([_, _, goal])) = (robots.get(edge.leader), self.frames.get(edge.follower)) else {
+            let (Some(leader), Some([_, _, goal])) =
+                (robots.get(edge.leader), self.frames.get(edge.follower))
+            else {
                 continue;
             };
             let [distance, bearing] = state.set_point;
@@ -249,7 +259,8 @@ impl Drawing {
     /// Writes a picture of a camera, with what is needed to measure in it.
     pub(super) fn photo(&mut self, photo: &Photo, to: &mut Channels) -> Result<(), Error> {
         let Some(Some([calibration, image])) = self.cameras.get(photo.robot) else { return Ok(()) };
-        let (Some(member), Some([_, frame, _])) = (self.cast.members.get(photo.robot), self.frames.get(photo.robot))
+        let (Some(member), Some([_, frame, _])) =
+            (self.cast.members.get(photo.robot), self.frames.get(photo.robot))
         else {
             return Ok(());
         };
@@ -297,7 +308,7 @@ fn vector([x, y, z]: [f64; 3]) -> Vector3 {
     Vector3 { x, y, z }
 }
 
-/// The turn of a frame as a unit quaternion, after Shepperd.
+/// The turn of a frame as a unit quaternion, by the largest of its squares.
 fn quaternion(frame: &Rigid) -> Quaternion {
     let [[a, b, c], [d, e, f], [g, h, i]] = frame.rotation;
     let trace = a + e + i;

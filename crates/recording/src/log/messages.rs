@@ -24,7 +24,11 @@ impl Record for RobotState {
         f.number("height_m", &mut attitude.height)?;
         f.number("roll_rad", &mut attitude.roll)?;
         f.number("pitch_rad", &mut attitude.pitch)?;
-        f.choice("condition", &mut self.condition, &words([Able, Overturned, Stuck, Fallen], Condition::name))?;
+        f.choice(
+            "condition",
+            &mut self.condition,
+            &words([Able, Overturned, Stuck, Fallen], Condition::name),
+        )?;
         f.number("camera_pan_rad", &mut self.camera_pan)?;
         let mut rotation = self.wheels.map(|wheel| wheel.rotation);
         let mut steering = self.wheels.map(|wheel| wheel.steering);
@@ -106,7 +110,8 @@ impl Record for Frame {
             *side = u32::try_from(pixels).ok()?;
         }
         // Which faces were seen, a bit each, and eight coordinates for each of them.
-        let mut faces = self.tags.iter().enumerate().fold(0, |bits, (k, t)| bits | u64::from(t.is_some()) << k);
+        let mut faces =
+            self.tags.iter().enumerate().fold(0, |bits, (k, t)| bits | u64::from(t.is_some()) << k);
         let mut corners: Vec<f64> = self.tags.iter().flatten().flatten().flatten().copied().collect();
         f.count("seen_faces_bits", &mut faces)?;
         f.series("corners_px", &mut corners)?;

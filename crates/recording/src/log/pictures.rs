@@ -47,14 +47,18 @@ impl Eyes for Through {
         self.eyes.look(snapshot, shots, pictures)?;
         self.next.resize(snapshot.robots.len(), 0.0);
         for (shot, picture) in shots.iter().zip(&*pictures) {
-            let Some(next) = self.next.get_mut(shot.robot).filter(|next| snapshot.time >= **next - 1e-9) else {
+            let Some(next) = self.next.get_mut(shot.robot).filter(|next| snapshot.time >= **next - 1e-9)
+            else {
                 continue;
             };
             *next = snapshot.time + 1.0 / RATE;
             let photo = Photo {
                 time: snapshot.time,
                 robot: shot.robot,
-                centre: [shot.centre[0] - f64::from(shot.region.x), shot.centre[1] - f64::from(shot.region.y)],
+                centre: [
+                    shot.centre[0] - f64::from(shot.region.x),
+                    shot.centre[1] - f64::from(shot.region.y),
+                ],
                 picture: picture.clone(),
             };
             self.roll.0.lock().unwrap_or_else(PoisonError::into_inner).push(photo);
@@ -70,10 +74,13 @@ impl Photo {
         let (across, down) = (lens.width as usize, lens.height as usize);
         let mut pixels = vec![0; across.checked_mul(down)?];
         let corner = [0, 1].map(|k| (lens.centre[k] - self.centre[k]).round() as i64);
-        let bright: Vec<u8> = (0..=255_u8).map(|v| (255.0 * (f64::from(v) / 255.0).powf(1.0 / 2.2)) as u8).collect();
+        let bright: Vec<u8> =
+            (0..=255_u8).map(|v| (255.0 * (f64::from(v) / 255.0).powf(1.0 / 2.2)) as u8).collect();
         let width = self.picture.width as usize;
         for (row, line) in self.picture.values.chunks_exact(width.max(1)).enumerate() {
-            let Some(y) = usize::try_from(corner[1] + row as i64).ok().filter(|y| *y < down) else { continue };
+            let Some(y) = usize::try_from(corner[1] + row as i64).ok().filter(|y| *y < down) else {
+                continue;
+            };
             for (column, value) in line.iter().enumerate() {
                 if let Some(x) = usize::try_from(corner[0] + column as i64).ok().filter(|x| *x < across) {
                     pixels[y * across + x] = bright[usize::from(*value)];

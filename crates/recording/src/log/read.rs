@@ -69,7 +69,9 @@ impl Log {
         let wrong = |message: &str| Error::Log { path: path.to_owned(), message: message.to_owned() };
         let outline = Outline::of(&mut file, path)?;
         let Some(format) = outline.format else {
-            return Err(wrong("is an MCAP file, but no log of Echelon, or was cut off at its very beginning"));
+            return Err(wrong(
+                "is an MCAP file, but no log of Echelon, or was cut off at its very beginning",
+            ));
         };
         if format != FORMAT.to_string() {
             let message = format!("is a log of layout {format}; this program reads layout {FORMAT}");
@@ -94,7 +96,8 @@ impl Log {
 
     /// Reads channels and cast, and how far the run came where nobody wrote that down.
     fn with_first_chunk(mut self) -> Result<Self, Error> {
-        let broken = |message: &str| Error::Log { path: self.inside.path.clone(), message: message.to_owned() };
+        let broken =
+            |message: &str| Error::Log { path: self.inside.path.clone(), message: message.to_owned() };
         let Some(first) = self.inside.chunks.first().copied() else {
             return Err(broken("was cut off before the run began: it names no robots"));
         };
@@ -108,10 +111,13 @@ impl Log {
                 }
                 Chunked::Channel(channel) => {
                     let index = channel.metadata.get("index").and_then(|text| text.parse().ok());
-                    let kind = schemas.get(&channel.schema_id).zip(index).and_then(|(n, k)| Channel::of(n, k));
+                    let kind =
+                        schemas.get(&channel.schema_id).zip(index).and_then(|(n, k)| Channel::of(n, k));
                     channels.extend(kind.map(|kind| (channel.id, kind)));
                 }
-                Chunked::Message { header, data } if matches!(channels.get(&header.channel_id), Some(Channel::Cast)) => {
+                Chunked::Message { header, data }
+                    if matches!(channels.get(&header.channel_id), Some(Channel::Cast)) =>
+                {
                     cast = record::read::<Stage>(&data).map(|stage| stage.0);
                 }
                 _ => {}
@@ -221,7 +227,10 @@ impl Log {
         };
         // lz4 makes at most 255 bytes of one: a header that says more is not to be believed.
         if header.uncompressed_size > 256 * (data.len() as u64 + 64) {
-            return Err(damaged(mcap::McapError::BadChunkLength { header: header.uncompressed_size, available: 0 }));
+            return Err(damaged(mcap::McapError::BadChunkLength {
+                header: header.uncompressed_size,
+                available: 0,
+            }));
         }
         let reader = mcap::read::ChunkReader::new(header, &data).map_err(damaged)?;
         reader.map(|record| record.map(Chunked::into_owned)).collect::<Result<_, _>>().map_err(damaged)
@@ -357,7 +366,8 @@ impl Moments {
         for item in self.log.records(chunk)? {
             let Chunked::Message { header, data } = item else { continue };
             let Some(channel) = self.log.inside.channels.get(&header.channel_id) else { continue };
-            let closed = take(*channel, &data, &mut moment, &mut props).ok_or_else(|| self.damaged(&header))?;
+            let closed =
+                take(*channel, &data, &mut moment, &mut props).ok_or_else(|| self.damaged(&header))?;
             if closed {
                 moment.snapshot.props.clone_from(&props);
                 self.ready.push_back(std::mem::take(&mut moment));

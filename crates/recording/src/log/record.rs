@@ -5,8 +5,8 @@
 
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{
-    DescriptorProto, EnumDescriptorProto, EnumValueDescriptorProto, FieldDescriptorProto, FileDescriptorProto,
-    FileDescriptorSet,
+    DescriptorProto, EnumDescriptorProto, EnumValueDescriptorProto, FieldDescriptorProto,
+    FileDescriptorProto, FileDescriptorSet,
 };
 
 /// What has fields.
@@ -373,7 +373,8 @@ impl Fields for Description {
     ) -> Option<()> {
         // Names of values share the scope of their message: two fields of the same words have one enum.
         let words: Vec<&str> = all.iter().map(|(_, word)| *word).collect();
-        let same = |known: &&EnumDescriptorProto| known.value.iter().map(|v| v.name()).eq(words.iter().copied());
+        let same =
+            |known: &&EnumDescriptorProto| known.value.iter().map(|v| v.name()).eq(words.iter().copied());
         let kind = match self.message.enum_type.iter().find(same) {
             Some(known) => known.name().to_owned(),
             None => self.enumerate(name, &words),

@@ -52,7 +52,12 @@ pub(super) fn entities(cast: &Cast, colours: &[Color]) -> Vec<SceneEntity> {
 }
 
 fn locked(frame: &str) -> SceneEntity {
-    SceneEntity { frame_id: frame.to_owned(), id: frame.to_owned(), frame_locked: true, ..SceneEntity::default() }
+    SceneEntity {
+        frame_id: frame.to_owned(),
+        id: frame.to_owned(),
+        frame_locked: true,
+        ..SceneEntity::default()
+    }
 }
 
 /// A body as boxes: hull and cabin, so that front and back are plain, on four wheels, its name above.
@@ -154,9 +159,15 @@ fn ground(land: &Terrain) -> SceneEntity {
         }
     }
     let wide = columns.len() as u32;
-    let cells = (0..rows.len() as u32 - 1).flat_map(|row| (0..wide - 1).map(move |column| row * wide + column));
+    let cells =
+        (0..rows.len() as u32 - 1).flat_map(|row| (0..wide - 1).map(move |column| row * wide + column));
     let indices = cells.flat_map(|k| [k, k + 1, k + wide + 1, k, k + wide + 1, k + wide]).collect();
-    let surface =
-        TriangleListPrimitive { pose: pose(0.0, 0.0, 0.0), points, color: Some(EARTH), colors: vec![], indices };
+    let surface = TriangleListPrimitive {
+        pose: pose(0.0, 0.0, 0.0),
+        points,
+        color: Some(EARTH),
+        colors: vec![],
+        indices,
+    };
     SceneEntity { id: "ground".to_owned(), triangles: vec![surface], ..locked(WORLD) }
 }
