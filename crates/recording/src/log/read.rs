@@ -104,7 +104,7 @@ impl Log {
         let mut channels = HashMap::new();
         let mut schemas = HashMap::new();
         let mut cast = None;
-        for item in self.records(first)? {
+        for item in records(&self.unpack(first)?) {
             match item {
                 Chunked::Schema { header, .. } => {
                     schemas.insert(header.id, header.name);
@@ -139,15 +139,15 @@ impl Log {
     /// Samples up to the end of the last chunk that can be read.
     fn samples(&self) -> u64 {
         for chunk in self.inside.chunks.iter().rev() {
-            let Ok(records) = self.records(*chunk) else { continue };
-            let number = |item: &Chunked<'static>| match item {
+            let Ok(bytes) = self.unpack(*chunk) else { continue };
+            let number = |item: Chunked<'_>| match item {
                 Chunked::Message { header, data } => match self.inside.channels.get(&header.channel_id) {
-                    Some(Channel::Sample) => record::read::<Sample>(data).map(|sample| sample.number),
+                    Some(Channel::Sample) => record::read::<Sample>(&data).map(|sample| sample.number),
                     _ => None,
                 },
                 _ => None,
             };
-            if let Some(last) = records.iter().rev().find_map(number) {
+            if let Some(last) = records(&bytes).filter_map(number).last() {
                 return last + 1;
             }
         }
@@ -214,27 +214,43 @@ impl Log {
         Moments { log: self.clone(), next, ready: VecDeque::new(), from: f64::NEG_INFINITY, fault: None }
     }
 
-    /// What is in a chunk, unpacked.
-    fn records(&self, chunk: Chunk) -> Result<Vec<Chunked<'static>>, Error> {
+    /// The records of a chunk, unpacked and checked.
+    fn unpack(&self, chunk: Chunk) -> Result<Vec<u8>, Error> {
         let path = &self.inside.path;
-        let damaged = |error: mcap::McapError| Error::Log {
+        let damaged = |why: &dyn std::fmt::Display| Error::Log {
             path: path.clone(),
-            message: format!("is damaged {:.2} s into the run: {error}", chunk.begin as f64 * 1e-9),
+            message: format!("is damaged {:.2} s into the run: {why}", chunk.begin as f64 * 1e-9),
         };
         let body = body(&mut &*self.file, chunk.start, chunk.length).map_err(Error::io("read", path))?;
-        let Chunked::Chunk { header, data } = mcap::parse_record(op::CHUNK, &body).map_err(damaged)? else {
-            return Ok(vec![]);
+        let record = mcap::parse_record(op::CHUNK, &body).map_err(|error| damaged(&error))?;
+        let Chunked::Chunk { header, data } = record else { return Ok(vec![]) };
+        let mut bytes = Vec::new();
+        // One byte more than is promised is enough to see that the promise is broken.
+        let most = header.uncompressed_size.min(LONGEST) + 1;
+        let unpacked = match &*header.compression {
+            "" => (&*data).take(most).read_to_end(&mut bytes),
+            "lz4" => lz4::Decoder::new(&*data).and_then(|lz4| lz4.take(most).read_to_end(&mut bytes)),
+            other => return Err(damaged(&format!("it is compressed by {other}, which no log of ours is"))),
         };
-        // lz4 makes at most 255 bytes of one: a header that says more is not to be believed.
-        if header.uncompressed_size > 256 * (data.len() as u64 + 64) {
-            return Err(damaged(mcap::McapError::BadChunkLength {
-                header: header.uncompressed_size,
-                available: 0,
-            }));
+        unpacked.map_err(|error| damaged(&error))?;
+        let whole = bytes.len() as u64 == header.uncompressed_size;
+        if !whole || (header.uncompressed_crc != 0 && crc32fast::hash(&bytes) != header.uncompressed_crc) {
+            return Err(damaged(&"its checksum does not fit"));
         }
-        let reader = mcap::read::ChunkReader::new(header, &data).map_err(damaged)?;
-        reader.map(|record| record.map(Chunked::into_owned)).collect::<Result<_, _>>().map_err(damaged)
+        Ok(bytes)
     }
+}
+
+/// The records of an unpacked chunk.
+fn records(mut bytes: &[u8]) -> impl Iterator<Item = Chunked<'_>> {
+    std::iter::from_fn(move || {
+        let (head, rest) = bytes.split_at_checked(9)?;
+        let (code, length) = head.split_first()?;
+        let length = usize::try_from(u64::from_le_bytes(length.try_into().ok()?)).ok()?;
+        let (body, rest) = rest.split_at_checked(length)?;
+        bytes = rest;
+        mcap::parse_record(*code, body).ok()
+    })
 }
 
 impl Channel {
@@ -363,7 +379,8 @@ impl Moments {
     fn unpack(&mut self, chunk: Chunk) -> Result<(), Error> {
         let mut moment = Moment::default();
         let mut props: Vec<Placement> = vec![];
-        for item in self.log.records(chunk)? {
+        let bytes = self.log.unpack(chunk)?;
+        for item in records(&bytes) {
             let Chunked::Message { header, data } = item else { continue };
             let Some(channel) = self.log.inside.channels.get(&header.channel_id) else { continue };
             let closed =
