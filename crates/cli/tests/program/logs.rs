@@ -84,9 +84,12 @@ fn runs_that_differ_are_told_apart() {
     assert!(code == 0 && out.contains("same: bit for bit, 201 samples"), "{out}{err}");
     let (code, out, _) = diff(&["a", "c"]);
     assert_eq!(code, 1);
-    for words in
-        ["robots.follower-1", "distance: 2.0 | 2.5", "first at 0.000 s, sample 0", "edge leader → follower-1"]
-    {
+    for words in [
+        "robots.follower-1",
+        "distance: 2.0 | 2.5",
+        "first at 0.000 s, sample 0: set distance of edge leader → follower-1",
+        "edge leader → follower-1",
+    ] {
         assert!(out.contains(words), "`{words}` is missing:\n{out}");
     }
     assert!(!out.contains("follower-2"), "it goes its way:\n{out}");

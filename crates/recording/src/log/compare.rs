@@ -46,7 +46,7 @@ pub struct Comparison {
     pub first: Option<Difference>,
     /// Samples that differ.
     pub differing: u64,
-    /// Largest difference of every quantity that differs anywhere, in the order of the tables.
+    /// Largest difference of every quantity that differs anywhere, by edges, robots, props, contacts, looks.
     pub peaks: Vec<Peak>,
 }
 
@@ -111,7 +111,7 @@ fn bits(moment: &mut Moment, out: &mut Vec<u8>) {
     }
 }
 
-/// The order of tables, then that of fields.
+/// The order of kinds, then that of fields.
 type Place = (usize, usize);
 
 impl Comparison {
@@ -182,7 +182,7 @@ impl Quantity {
     }
 }
 
-/// All quantities of a moment, by robot, edge, prop, contact and look.
+/// All quantities of a moment, by edge, robot, prop, contact and look.
 fn quantities(moment: &Moment, cast: &Cast) -> Vec<Quantity> {
     let mut all = Collector { of: "sample".to_owned(), table: 0, field: 0, found: vec![] };
     let mut moment = moment.clone();
@@ -193,11 +193,12 @@ fn quantities(moment: &Moment, cast: &Cast) -> Vec<Quantity> {
             .get(edge)
             .map_or_else(String::new, |e| format!("{} → {}", name(e.leader), name(e.follower)))
     };
-    for (index, robot) in moment.snapshot.robots.iter_mut().enumerate() {
-        all.collect(1, format!("robot {}", name(index)), robot);
-    }
+    // What a follower wanted stands before what became of it.
     for (index, edge) in moment.edges.iter_mut().enumerate() {
-        all.collect(2, format!("edge {}", pair(index)), edge);
+        all.collect(1, format!("edge {}", pair(index)), edge);
+    }
+    for (index, robot) in moment.snapshot.robots.iter_mut().enumerate() {
+        all.collect(2, format!("robot {}", name(index)), robot);
     }
     for (index, prop) in moment.snapshot.props.iter_mut().enumerate() {
         all.collect(3, format!("prop {}", cast.props.get(index).map_or("?", |prop| &prop.name)), prop);

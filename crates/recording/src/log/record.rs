@@ -105,7 +105,8 @@ impl Fields for Writer<'_> {
     }
 
     fn numbers(&mut self, _: &'static str, values: &mut [f64]) -> Option<()> {
-        self.bytes(values.iter().map(|value| value.to_le_bytes()))
+        let count = if values.iter().all(|value| value.to_bits() == 0) { 0 } else { values.len() };
+        self.bytes(values[..count].iter().map(|value| value.to_le_bytes()))
     }
 
     fn series(&mut self, _: &'static str, values: &mut Vec<f64>) -> Option<()> {
@@ -221,11 +222,14 @@ impl Fields for Reader<'_> {
 
     fn numbers(&mut self, _: &'static str, values: &mut [f64]) -> Option<()> {
         let found = numbers_of(self.bytes()?)?;
-        if found.len() != values.len() {
+        if found.len() == 0 {
+            values.fill(0.0);
+        } else if found.len() == values.len() {
+            for (value, found) in values.iter_mut().zip(found) {
+                *value = found;
+            }
+        } else {
             return None;
-        }
-        for (value, found) in values.iter_mut().zip(found) {
-            *value = found;
         }
         Some(())
     }
