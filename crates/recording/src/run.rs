@@ -68,12 +68,11 @@ impl Recorder {
         write_whole(&folder.join("scene.toml"), options.scene.as_bytes())?;
         let writer = |kind| TableWriter::create(&tables, kind, options.csv);
         let manifest = first_manifest(cast, &options);
-        let log = match options.no_log {
-            true => None,
-            false => {
-                let (path, known) = (folder.join(log::FILE), (cast, &*options.scene));
-                Some(Pipe::create(&path, known, &manifest, options.roll.clone())?)
-            }
+        let log = if options.no_log {
+            None
+        } else {
+            let (path, known) = (folder.join(log::FILE), (cast, &*options.scene));
+            Some(Pipe::create(&path, known, &manifest, options.roll)?)
         };
         let recorder = Self {
             folder: folder.to_owned(),

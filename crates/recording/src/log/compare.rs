@@ -99,9 +99,15 @@ pub fn compare(
 fn bits(moment: &mut Moment, out: &mut Vec<u8>) {
     out.clear();
     out.extend(moment.snapshot.time.to_le_bytes());
-    moment.snapshot.robots.iter_mut().for_each(|robot| record::write(robot, out));
-    moment.edges.iter_mut().for_each(|edge| record::write(edge, out));
-    moment.snapshot.props.iter_mut().for_each(|prop| record::write(prop, out));
+    for robot in &mut moment.snapshot.robots {
+        record::write(robot, out);
+    }
+    for edge in &mut moment.edges {
+        record::write(edge, out);
+    }
+    for prop in &mut moment.snapshot.props {
+        record::write(prop, out);
+    }
     for contact in &moment.contacts {
         record::write(&mut Touch { contact: *contact, ..Touch::default() }, out);
     }
@@ -228,36 +234,43 @@ impl Collector {
         let _ = record.list(self);
     }
 
-    fn add(&mut self, name: &'static str, value: Value) -> Option<()> {
+    fn add(&mut self, name: &'static str, value: Value) {
         self.found.push(Quantity { of: self.of.clone(), name, place: (self.table, self.field), value });
         self.field += 1;
-        Some(())
     }
 }
 
 impl Fields for Collector {
     fn number(&mut self, name: &'static str, value: &mut f64) -> Option<()> {
-        self.add(name, Value::Number(*value))
+        self.add(name, Value::Number(*value));
+        Some(())
     }
 
     fn numbers(&mut self, name: &'static str, values: &mut [f64]) -> Option<()> {
-        values.iter().try_for_each(|value| self.add(name, Value::Number(*value)))
+        for value in values {
+            self.add(name, Value::Number(*value));
+        }
+        Some(())
     }
 
     fn series(&mut self, name: &'static str, values: &mut Vec<f64>) -> Option<()> {
-        self.add(name, Value::Word(format!("{values:?}")))
+        self.add(name, Value::Word(format!("{values:?}")));
+        Some(())
     }
 
     fn count(&mut self, name: &'static str, value: &mut u64) -> Option<()> {
-        self.add(name, Value::Number(*value as f64))
+        self.add(name, Value::Number(*value as f64));
+        Some(())
     }
 
     fn flag(&mut self, name: &'static str, value: &mut bool) -> Option<()> {
-        self.add(name, Value::Word(value.to_string()))
+        self.add(name, Value::Word(value.to_string()));
+        Some(())
     }
 
     fn text(&mut self, name: &'static str, value: &mut String) -> Option<()> {
-        self.add(name, Value::Word(value.clone()))
+        self.add(name, Value::Word(value.clone()));
+        Some(())
     }
 
     fn choice<T: Copy + PartialEq>(
@@ -267,7 +280,8 @@ impl Fields for Collector {
         all: &[(T, &'static str)],
     ) -> Option<()> {
         let word = all.iter().find(|(one, _)| one == value).map_or("?", |(_, word)| word);
-        self.add(name, Value::Word(word.to_owned()))
+        self.add(name, Value::Word(word.to_owned()));
+        Some(())
     }
 
     fn each<T: Record + Default>(&mut self, _: &'static str, _: &mut Vec<T>) -> Option<()> {

@@ -102,12 +102,11 @@ impl Drawing {
             drawing.poses.push(channel::<PoseInFrame>(&format!("/{frame}/pose"), to)?);
             let looks = cast.looks && cast.edges.iter().any(|edge| edge.follower == index);
             let camera = format!("{frame}/camera");
-            drawing.cameras.push(match looks {
-                true => Some([
-                    channel::<CameraCalibration>(&format!("/{camera}/calibration"), to)?,
-                    channel::<CompressedImage>(&format!("/{camera}/image"), to)?,
-                ]),
-                false => None,
+            drawing.cameras.push(if looks {
+                let calibration = channel::<CameraCalibration>(&format!("/{camera}/calibration"), to)?;
+                Some([calibration, channel::<CompressedImage>(&format!("/{camera}/image"), to)?])
+            } else {
+                None
             });
             let goal = format!("{frame}/set-point");
             drawing.frames.push([frame, camera, goal]);

@@ -21,9 +21,12 @@ struct Batch {
     photos: Vec<Photo>,
 }
 
+/// What the thread ends with.
+type Written = Result<Writer, Error>;
+
 /// Hands moments to the thread that writes them.
 pub(crate) struct Pipe {
-    work: Option<(SyncSender<Batch>, JoinHandle<Result<Writer, Error>>)>,
+    work: Option<(SyncSender<Batch>, JoinHandle<Written>)>,
     batch: Vec<Moment>,
     /// Batches come back empty, so that their memory is used again.
     used: Receiver<Vec<Moment>>,

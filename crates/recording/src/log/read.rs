@@ -181,14 +181,14 @@ impl Log {
 
     /// All moments in the order of time.
     pub fn moments(&self) -> Moments {
-        self.from_chunk(0)
+        self.after_chunks(0)
     }
 
     /// The moments at and after `time` s: what lies before is skipped, not read.
     pub fn moments_from(&self, time: f64) -> Moments {
         let begun = |chunk: &Chunk| chunk.begin as f64 * 1e-9 <= time + 1e-9;
         // The first chunk holds no moments; a stamp is rounded, so the chunk before may end with the one asked for.
-        let mut moments = self.from_chunk(self.inside.chunks.partition_point(begun).saturating_sub(2));
+        let mut moments = self.after_chunks(self.inside.chunks.partition_point(begun).saturating_sub(2));
         moments.from = time;
         moments
     }
@@ -200,7 +200,7 @@ impl Log {
     pub fn at(&self, time: f64) -> Result<Option<Moment>, Error> {
         let begun = |chunk: &Chunk| chunk.begin as f64 * 1e-9 <= time + 1e-9;
         let mut last = None;
-        for moment in self.from_chunk(self.inside.chunks.partition_point(begun).saturating_sub(2)) {
+        for moment in self.after_chunks(self.inside.chunks.partition_point(begun).saturating_sub(2)) {
             let moment = moment?;
             if moment.snapshot.time > time && last.is_some() {
                 break;
@@ -210,7 +210,7 @@ impl Log {
         Ok(last)
     }
 
-    fn from_chunk(&self, next: usize) -> Moments {
+    fn after_chunks(&self, next: usize) -> Moments {
         Moments { log: self.clone(), next, ready: VecDeque::new(), from: f64::NEG_INFINITY, fault: None }
     }
 

@@ -72,16 +72,15 @@ impl Writer<'_> {
         put_varint(self.out, u64::from(self.field << 3 | wire));
     }
 
-    fn varint(&mut self, value: u64) -> Option<()> {
+    fn varint(&mut self, value: u64) {
         self.field += 1;
         if value != 0 {
             self.tag(VARINT);
             put_varint(self.out, value);
         }
-        Some(())
     }
 
-    fn bytes(&mut self, bytes: impl ExactSizeIterator<Item = [u8; 8]>) -> Option<()> {
+    fn bytes(&mut self, bytes: impl ExactSizeIterator<Item = [u8; 8]>) {
         self.field += 1;
         if bytes.len() > 0 {
             self.tag(BYTES);
@@ -90,7 +89,6 @@ impl Writer<'_> {
                 self.out.extend_from_slice(&value);
             }
         }
-        Some(())
     }
 }
 
@@ -106,19 +104,23 @@ impl Fields for Writer<'_> {
 
     fn numbers(&mut self, _: &'static str, values: &mut [f64]) -> Option<()> {
         let count = if values.iter().all(|value| value.to_bits() == 0) { 0 } else { values.len() };
-        self.bytes(values[..count].iter().map(|value| value.to_le_bytes()))
+        self.bytes(values[..count].iter().map(|value| value.to_le_bytes()));
+        Some(())
     }
 
     fn series(&mut self, _: &'static str, values: &mut Vec<f64>) -> Option<()> {
-        self.bytes(values.iter().map(|value| value.to_le_bytes()))
+        self.bytes(values.iter().map(|value| value.to_le_bytes()));
+        Some(())
     }
 
     fn count(&mut self, _: &'static str, value: &mut u64) -> Option<()> {
-        self.varint(*value)
+        self.varint(*value);
+        Some(())
     }
 
     fn flag(&mut self, _: &'static str, value: &mut bool) -> Option<()> {
-        self.varint(u64::from(*value))
+        self.varint(u64::from(*value));
+        Some(())
     }
 
     fn text(&mut self, _: &'static str, value: &mut String) -> Option<()> {
@@ -137,7 +139,8 @@ impl Fields for Writer<'_> {
         value: &mut T,
         all: &[(T, &'static str)],
     ) -> Option<()> {
-        self.varint(all.iter().position(|(one, _)| one == value).unwrap_or(0) as u64)
+        self.varint(all.iter().position(|(one, _)| one == value).unwrap_or(0) as u64);
+        Some(())
     }
 
     fn each<T: Record + Default>(&mut self, _: &'static str, values: &mut Vec<T>) -> Option<()> {
@@ -329,7 +332,7 @@ impl Description {
         kind
     }
 
-    fn add(&mut self, name: &str, kind: Type, label: Label, of: Option<String>) -> Option<()> {
+    fn add(&mut self, name: &str, kind: Type, label: Label, of: Option<String>) {
         let number = self.message.field.len() as i32 + 1;
         self.message.field.push(FieldDescriptorProto {
             name: Some(name.to_owned()),
@@ -340,33 +343,38 @@ impl Description {
             json_name: Some(name.to_owned()),
             ..FieldDescriptorProto::default()
         });
-        Some(())
     }
 }
 
 impl Fields for Description {
     fn number(&mut self, name: &'static str, _: &mut f64) -> Option<()> {
-        self.add(name, Type::Double, Label::Optional, None)
+        self.add(name, Type::Double, Label::Optional, None);
+        Some(())
     }
 
     fn numbers(&mut self, name: &'static str, _: &mut [f64]) -> Option<()> {
-        self.add(name, Type::Double, Label::Repeated, None)
+        self.add(name, Type::Double, Label::Repeated, None);
+        Some(())
     }
 
     fn series(&mut self, name: &'static str, _: &mut Vec<f64>) -> Option<()> {
-        self.add(name, Type::Double, Label::Repeated, None)
+        self.add(name, Type::Double, Label::Repeated, None);
+        Some(())
     }
 
     fn count(&mut self, name: &'static str, _: &mut u64) -> Option<()> {
-        self.add(name, Type::Uint64, Label::Optional, None)
+        self.add(name, Type::Uint64, Label::Optional, None);
+        Some(())
     }
 
     fn flag(&mut self, name: &'static str, _: &mut bool) -> Option<()> {
-        self.add(name, Type::Bool, Label::Optional, None)
+        self.add(name, Type::Bool, Label::Optional, None);
+        Some(())
     }
 
     fn text(&mut self, name: &'static str, _: &mut String) -> Option<()> {
-        self.add(name, Type::String, Label::Optional, None)
+        self.add(name, Type::String, Label::Optional, None);
+        Some(())
     }
 
     fn choice<T: Copy + PartialEq>(
@@ -377,18 +385,21 @@ impl Fields for Description {
     ) -> Option<()> {
         // Names of values share the scope of their message: two fields of the same words have one enum.
         let words: Vec<&str> = all.iter().map(|(_, word)| *word).collect();
-        let same =
-            |known: &&EnumDescriptorProto| known.value.iter().map(|v| v.name()).eq(words.iter().copied());
+        let same = |known: &&EnumDescriptorProto| {
+            known.value.iter().map(EnumValueDescriptorProto::name).eq(words.iter().copied())
+        };
         let kind = match self.message.enum_type.iter().find(same) {
             Some(known) => known.name().to_owned(),
             None => self.enumerate(name, &words),
         };
         let owner = self.message.name().to_owned();
-        self.add(name, Type::Enum, Label::Optional, Some(format!(".{PACKAGE}.{owner}.{kind}")))
+        self.add(name, Type::Enum, Label::Optional, Some(format!(".{PACKAGE}.{owner}.{kind}")));
+        Some(())
     }
 
     fn each<T: Record + Default>(&mut self, name: &'static str, _: &mut Vec<T>) -> Option<()> {
         self.others.extend(describe::<T>());
-        self.add(name, Type::Message, Label::Repeated, Some(format!(".{PACKAGE}.{}", T::NAME)))
+        self.add(name, Type::Message, Label::Repeated, Some(format!(".{PACKAGE}.{}", T::NAME)));
+        Some(())
     }
 }

@@ -32,11 +32,11 @@ pub(super) fn colour([r, g, b]: [f32; 3], a: f64) -> Color {
     Color { r: f64::from(r), g: f64::from(g), b: f64::from(b), a }
 }
 
-fn pose(x: f64, y: f64, z: f64) -> Option<Pose> {
-    Some(Pose {
+fn pose(x: f64, y: f64, z: f64) -> Pose {
+    Pose {
         position: Some(Vector3 { x, y, z }),
         orientation: Some(Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 1.0 }),
-    })
+    }
 }
 
 /// Everything that is drawn once.
@@ -64,7 +64,7 @@ fn locked(frame: &str) -> SceneEntity {
 fn robot(member: &Member, colour: Color) -> SceneEntity {
     let body = &member.body;
     let cube = |x: f64, y: f64, z: f64, size: [f64; 3], color: Color| CubePrimitive {
-        pose: pose(x, y, z),
+        pose: Some(pose(x, y, z)),
         size: Some(Vector3 { x: size[0], y: size[1], z: size[2] }),
         color: Some(color),
     };
@@ -79,7 +79,7 @@ fn robot(member: &Member, colour: Color) -> SceneEntity {
     };
     let wheels = [(0.0, 1.0), (0.0, -1.0), (body.wheelbase, 1.0), (body.wheelbase, -1.0)];
     let name = TextPrimitive {
-        pose: pose(middle, 0.0, h + 0.6 * l),
+        pose: Some(pose(middle, 0.0, h + 0.6 * l)),
         billboard: true,
         font_size: 13.0,
         scale_invariant: true,
@@ -163,7 +163,7 @@ fn ground(land: &Terrain) -> SceneEntity {
         (0..rows.len() as u32 - 1).flat_map(|row| (0..wide - 1).map(move |column| row * wide + column));
     let indices = cells.flat_map(|k| [k, k + 1, k + wide + 1, k, k + wide + 1, k + wide]).collect();
     let surface = TriangleListPrimitive {
-        pose: pose(0.0, 0.0, 0.0),
+        pose: Some(pose(0.0, 0.0, 0.0)),
         points,
         color: Some(EARTH),
         colors: vec![],
