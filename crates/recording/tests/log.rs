@@ -134,9 +134,12 @@ fn moment(cast: &Cast, k: u32, n: &mut Numbers) -> Moment {
         frame
     };
     // Some props stand for a while.
-    let props = cast.props.iter().enumerate().map(|(i, prop)| match i % 2 == 0 || k.is_multiple_of(7) {
-        true => prop.placement,
-        false => Placement { position: n.many(), rotation: n.many() },
+    let props = cast.props.iter().enumerate().map(|(i, prop)| {
+        if i % 2 == 0 || k.is_multiple_of(7) {
+            prop.placement
+        } else {
+            Placement { position: n.many(), rotation: n.many() }
+        }
     });
     Moment {
         snapshot: Snapshot { time: f64::from(k) * 0.01 + 1e-13, robots, props: props.collect() },
@@ -196,7 +199,9 @@ fn everything_comes_back_bit_for_bit() {
         assert!(same(a, b), "{a:?}\n{b:?}");
     }
     let mut digest = Digest::default();
-    back.iter().for_each(|moment| digest.push(moment));
+    for moment in &back {
+        digest.push(moment);
+    }
     assert_eq!(Some(digest.text()), manifest.digest);
 }
 
@@ -316,7 +321,9 @@ fn the_first_difference_is_named() {
         f64::from_bits(moments[130].edges[1].applied.turn_rate.to_bits() ^ 1);
     moments.pop();
     let mut recorder = Recorder::create(folders[1].path(), &cast(), options()).expect("a recorder");
-    moments.iter().for_each(|moment| recorder.push(moment).expect("recorded"));
+    for moment in &moments {
+        recorder.push(moment).expect("recorded");
+    }
     recorder.finish(Status::Interrupted).expect("finished");
     let [a, b] = folders.each_ref().map(|folder| Log::open(&folder.path().join(FILE)).expect("a log"));
     let found = compare([&a, &b], 0.0, |_| true).expect("sound");
