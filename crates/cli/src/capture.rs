@@ -52,16 +52,16 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
         settings: &scene.film,
         view: &scene.views.default,
     };
-    draw(job, |gpu| {
+    draw(&job, |gpu| {
         loaded.open_eyes(Some(gpu), &args.scene)?;
         Ok(Source::Run(Box::new(loaded.simulation)))
     })
 }
 
 /// Draws pictures of what `source` tells; it may use the adapter that draws.
-pub(crate) fn draw(job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
+pub(crate) fn draw(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
     let times = times(job.at, job.duration)?;
-    let Job { cast, name, .. } = &job;
+    let Job { cast, name, .. } = job;
     let mut studio = Studio::open((job.adapter, job.picture), cast, job.view, job.settings.size)?;
     let source = source(&studio.gpu)?;
     std::fs::create_dir_all(job.out)

@@ -21,7 +21,7 @@ pub(crate) struct DiffArgs {
     /// The one to hold against it
     #[arg(value_name = "B")]
     b: PathBuf,
-    /// Numbers that differ by no more than this, in their units, count as the same
+    /// Numbers that differ by no more than this, in their units, count as the same; words and flags always count
     #[arg(long, value_name = "NUMBER", default_value_t = 0.0, value_parser = tolerance)]
     tolerance: f64,
     /// Print the result as JSON
@@ -159,7 +159,7 @@ impl Diff {
             say(&format!("other robots or edges\n  {a}: {left}\n  {b}: {right}"));
         }
         if !self.keys.is_empty() {
-            say(&format!("{} of the scene differ:", counted(self.keys.len(), "key")));
+            say(&format!("{} the scene:", differing(self.keys.len())));
             for (key, [left, right]) in self.keys.iter().take(20) {
                 say(&format!("  {key}: {left} | {right}"));
             }
@@ -214,8 +214,8 @@ impl Diff {
     }
 }
 
-fn counted(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+fn differing(count: usize) -> String {
+    if count == 1 { "1 key differs in".to_owned() } else { format!("{count} keys differ in") }
 }
 
 /// What became of the moments.

@@ -54,16 +54,16 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
         settings: &scene.film,
         view: &scene.views.default,
     };
-    shoot(job, |gpu| {
+    shoot(&job, |gpu| {
         loaded.open_eyes(Some(gpu), &args.scene)?;
         Ok(Source::Run(Box::new(loaded.simulation)))
     })
 }
 
 /// Makes the film of what `source` tells; it may use the adapter that draws.
-pub(crate) fn shoot(job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
+pub(crate) fn shoot(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
     let began = Instant::now();
-    let Job { path, name, cast, settings, .. } = &job;
+    let Job { path, name, cast, settings, .. } = job;
     let kind = if job.ffmpeg { FilmKind::Ffmpeg } else { FilmKind::of(path) };
     // An animation stores every pixel that changes, and on moving ground all do.
     let (size, fps) = if kind == FilmKind::Gif { ([480, 270], 10) } else { (settings.size, settings.fps) };

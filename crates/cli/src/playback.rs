@@ -37,13 +37,14 @@ impl Playback {
     /// Takes the next moment; whether there was one.
     fn step(&mut self) -> bool {
         match &mut self.source {
-            Source::Run(simulation) => match simulation.next_moment() {
-                Some(moment) => self.after.clone_from(moment),
-                None => {
+            Source::Run(simulation) => {
+                if let Some(moment) = simulation.next_moment() {
+                    self.after.clone_from(moment);
+                } else {
                     self.fault = simulation.fault().map(|fault| Failure::Machine(fault.to_owned()));
                     return false;
                 }
-            },
+            }
             Source::Log(moments) => match moments.next() {
                 Some(Ok(moment)) => self.after = moment,
                 Some(Err(error)) => {

@@ -99,7 +99,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
             settings: &settings,
             view: &view,
         };
-        return film::shoot(job, |_| source());
+        return film::shoot(&job, |_| source());
     }
     let job = capture::Job {
         picture: &args.picture,
@@ -115,7 +115,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
         settings: &settings,
         view: &view,
     };
-    capture::draw(job, |_| source())
+    capture::draw(&job, |_| source())
 }
 
 /// The folder's name, or that of the file where it says more than that it is a log.

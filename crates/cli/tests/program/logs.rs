@@ -99,8 +99,11 @@ fn runs_that_differ_are_told_apart() {
         (code, &report["same"], &report["moments"]["first"]["unit"]),
         (1, &Value::Bool(false), &"m".into())
     );
-    let (code, _, _) = diff(&["a", "c", "--tolerance", "100", "-q"]);
-    assert_eq!(code, 0);
+    record(folder.path(), "f", "circle-three", &["--set", "robots.follower-1.distance=2.0000000001"]);
+    let (code, _, _) = diff(&["a", "f", "-q"]);
+    assert_eq!(code, 1);
+    let (code, out, _) = diff(&["a", "f", "--tolerance", "0.001"]);
+    assert_eq!(code, 0, "{out}");
     let (code, out, _) = diff(&["a", "d"]);
     assert!(code == 1 && out.contains("other robots or edges"), "{out}");
     let (code, out, _) = diff(&["a", "e"]);

@@ -247,7 +247,9 @@ impl Fields for Collector {
     }
 
     fn numbers(&mut self, name: &'static str, values: &mut [f64]) -> Option<()> {
+        let field = self.field;
         for value in values {
+            self.field = field;
             self.add(name, Value::Number(*value));
         }
         Some(())
