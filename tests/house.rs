@@ -62,6 +62,8 @@ const LEAVES: [(&str, &[&str]); 8] = [
     ("wgpu", &["rendering", "lab"]),
     ("eframe", &["lab"]),
     ("parquet", &["recording"]),
+    ("mcap", &["recording"]),
+    ("foxglove", &["recording"]),
     ("clap", &["cli"]),
     ("openh264", &["rendering"]),
     ("rapier3d-f64", &["world"]),

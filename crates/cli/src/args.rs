@@ -2,7 +2,9 @@
 
 use crate::certify::CertifyArgs;
 use crate::compare::CompareArgs;
+use crate::diff::DiffArgs;
 use crate::film::Preset;
+use crate::replay::ReplayArgs;
 use crate::stills::StillsArgs;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
@@ -13,7 +15,7 @@ use std::path::PathBuf;
 #[derive(Debug, Parser)]
 #[command(name = "echelon", version, about, max_term_width = 110)]
 #[command(after_help = "Exit codes: 0 done and expectations met, 1 an expectation of the scene failed or a \
-    replay differs, \
+    replay or another run differs, \
     2 wrong usage or a bad scene, 3 the machine (no adapter, disk full), 130 interrupted.")]
 pub(crate) struct Program {
     #[command(subcommand)]
@@ -24,8 +26,10 @@ pub(crate) struct Program {
 pub(crate) enum Command {
     /// Simulate a scene, record it, and hold it against what it expects
     Run(RunArgs),
-    /// Run a recorded run again, and say whether it comes out the same bit for bit
+    /// Run a recorded run again, and say whether it comes out the same bit for bit; or draw it as it was recorded
     Replay(ReplayArgs),
+    /// Say whether two recorded runs are the same bit for bit, and where they part
+    Diff(DiffArgs),
     /// Open a window in which set points and gains are tuned while the scene runs
     Lab(LabArgs),
     /// Draw pictures of a scene at given times
@@ -86,6 +90,7 @@ pub(crate) struct SceneArgs {
 }
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -95,6 +100,9 @@ pub(crate) struct RunArgs {
     /// Also write the tables as CSV
     #[arg(long)]
     pub(crate) csv: bool,
+    /// Leave out log.mcap, which other tools open and replays are drawn from
+    #[arg(long)]
+    pub(crate) no_log: bool,
     /// Replace an earlier run in the folder
     #[arg(long)]
     pub(crate) force: bool,
@@ -102,24 +110,8 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) junit: Option<PathBuf>,
     /// Record nothing, only simulate and judge
-    #[arg(long, conflicts_with_all = ["out", "csv", "force"])]
+    #[arg(long, conflicts_with_all = ["out", "csv", "force", "no_log"])]
     pub(crate) no_record: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct ReplayArgs {
-    /// Folder of a run, such as runs/line-three-001
-    #[arg(value_name = "RUN_FOLDER")]
-    pub(crate) run: PathBuf,
-    /// Adapter to draw with where cameras on robots take pictures: vulkan, gl, or part of its name
-    #[arg(long, default_value = "auto")]
-    pub(crate) adapter: String,
-    /// Print the result as JSON
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Print only what differs, and errors
-    #[arg(long, short, conflicts_with = "json")]
-    pub(crate) quiet: bool,
 }
 
 #[derive(Debug, Args)]

@@ -115,7 +115,7 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
     let progress = Progress::begin(&what, each.saturating_mul(cases.len() as u64), silent);
     for (index, case) in cases.iter().enumerate() {
         let mut simulation = Simulation::new(case.build(&scene)?);
-        eyes::open(&mut simulation, gpu.as_ref(), &args.scene.adapter)?;
+        eyes::open(&mut simulation, gpu.as_ref(), &args.scene.adapter, None)?;
         let go_on = |step: u64| {
             progress.at(index as u64 * each + step);
             !interrupt::asked()

@@ -1,6 +1,7 @@
 //! Eyes for the robots' cameras, and how long they take.
 
 use crate::failure::Failure;
+use recording::log::Roll;
 use rendering::{AdapterChoice, CameraEyes, Gpu};
 use simulation::Simulation;
 use std::sync::Arc;
@@ -42,7 +43,13 @@ impl Eyes for Timed {
 }
 
 /// Gives the cameras of a run someone to draw for them, where they take pictures: `gpu`, or the adapter called `adapter`.
-pub(crate) fn open(simulation: &mut Simulation, gpu: Option<&Gpu>, adapter: &str) -> Result<Drawn, Failure> {
+/// Some of the pictures are left on `roll`.
+pub(crate) fn open(
+    simulation: &mut Simulation,
+    gpu: Option<&Gpu>,
+    adapter: &str,
+    roll: Option<&Roll>,
+) -> Result<Drawn, Failure> {
     let drawn = Drawn::default();
     if !simulation.needs_eyes() {
         return Ok(drawn);
@@ -50,7 +57,11 @@ pub(crate) fn open(simulation: &mut Simulation, gpu: Option<&Gpu>, adapter: &str
     let opened = if gpu.is_none() { Some(Gpu::open(&AdapterChoice::from(adapter))?) } else { None };
     if let Some(gpu) = gpu.or(opened.as_ref()) {
         let eyes = CameraEyes::new(gpu, simulation.cast())?;
-        simulation.open_eyes(Box::new(Timed { eyes, drawn: drawn.clone() }));
+        let eyes: Box<dyn Eyes> = Box::new(Timed { eyes, drawn: drawn.clone() });
+        simulation.open_eyes(match roll {
+            Some(roll) => roll.through(eyes),
+            None => eyes,
+        });
     }
     Ok(drawn)
 }

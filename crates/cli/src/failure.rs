@@ -47,7 +47,7 @@ impl From<rendering::Error> for Failure {
 impl From<recording::Error> for Failure {
     fn from(error: recording::Error) -> Self {
         let text = error.to_string();
-        if matches!(error, recording::Error::Occupied { .. }) {
+        if matches!(error, recording::Error::Occupied { .. } | recording::Error::Log { .. }) {
             Self::Usage(text)
         } else {
             Self::Machine(text)

@@ -127,7 +127,7 @@ fn ready(job: &Job, gpu: Option<&Gpu>, adapter: &str) -> Result<Simulation, Fail
     let setup =
         simulation::build(&job.scene).map_err(|error| Failure::Usage(format!("{}: {error}", job.name)))?;
     let mut simulation = Simulation::new(setup);
-    eyes::open(&mut simulation, gpu, adapter)?;
+    eyes::open(&mut simulation, gpu, adapter, None)?;
     Ok(simulation)
 }
 

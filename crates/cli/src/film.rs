@@ -6,63 +6,117 @@ mod preset;
 mod words;
 
 use crate::Outcome;
-use crate::args::FilmArgs;
+use crate::args::{FilmArgs, PictureArgs};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::load::{load, stem};
 use crate::picture::Studio;
-use crate::playback::Playback;
+use crate::playback::{Playback, Source};
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use board::Board;
 use plots::Plots;
 pub(crate) use preset::Preset;
 use recording::{Judging, MetricsBuilder};
-use rendering::{Film, FilmKind, Show};
-use scene::Scene;
+use rendering::{Film, FilmKind, Gpu, Show};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
+use vocabulary::Cast;
+
+/// What a film is made of.
+pub(crate) struct Job<'a> {
+    pub(crate) picture: &'a PictureArgs,
+    pub(crate) adapter: &'a str,
+    /// The film file.
+    pub(crate) path: PathBuf,
+    pub(crate) ffmpeg: bool,
+    /// Frames a second, where asked for.
+    pub(crate) fps: Option<f64>,
+    pub(crate) preset: Option<Preset>,
+    /// Begin anew where the same film was interrupted.
+    pub(crate) fresh: bool,
+    pub(crate) quiet: bool,
+    pub(crate) json: bool,
+    /// Of the scene or the recorded run.
+    pub(crate) name: String,
+    pub(crate) cast: Cast,
+    /// What the scene is about.
+    pub(crate) description: String,
+    /// s.
+    pub(crate) duration: f64,
+    pub(crate) settings: scene::Film,
+    /// In place of the film's own, which the scene may leave out.
+    pub(crate) view: &'a str,
+    pub(crate) judging: Judging,
+    /// What is the same only for the same run.
+    pub(crate) run: String,
+}
 
 pub(crate) fn film(args: &FilmArgs) -> Outcome {
-    let began = Instant::now();
     let mut loaded = load(&args.scene)?;
-    let scene = loaded.scene.clone();
-    let mut settings = scene.film.clone();
     let name = stem(&args.scene.scene);
-    let path = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.mp4")));
-    let kind = if args.ffmpeg { FilmKind::Ffmpeg } else { FilmKind::of(&path) };
+    let scene = loaded.scene.clone();
+    let job = Job {
+        picture: &args.picture,
+        adapter: &args.scene.adapter,
+        path: args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.mp4"))),
+        ffmpeg: args.ffmpeg,
+        fps: args.fps,
+        preset: args.preset,
+        fresh: args.fresh,
+        quiet: args.scene.quiet,
+        json: args.scene.json,
+        name,
+        cast: loaded.simulation.cast().clone(),
+        description: scene.description.clone(),
+        duration: scene.time.duration,
+        settings: scene.film.clone(),
+        view: &scene.views.default,
+        judging: Judging {
+            settling_band: scene.expect.settling_band,
+            settled_after: scene.expect.settled_after.unwrap_or(0.0),
+        },
+        run: scene.to_toml(),
+    };
+    shoot(job, |gpu| {
+        loaded.open_eyes(Some(gpu), &args.scene)?;
+        Ok(Source::Run(Box::new(loaded.simulation)))
+    })
+}
+
+/// Makes the film of what `source` tells; it may use the adapter that draws.
+pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
+    let began = Instant::now();
+    let kind = if job.ffmpeg { FilmKind::Ffmpeg } else { FilmKind::of(&job.path) };
     // An animation stores every pixel that changes, and on moving ground all do.
     if kind == FilmKind::Gif {
-        (settings.size, settings.fps) = ([480, 270], 10);
+        (job.settings.size, job.settings.fps) = ([480, 270], 10);
     }
-    if let Some(preset) = args.preset {
-        preset.apply(&mut settings, &scene);
+    if let Some(preset) = job.preset {
+        preset.apply(&mut job.settings, job.duration);
     }
-    let rate = args.fps.unwrap_or(f64::from(settings.fps));
+    let Job { path, name, cast, settings, .. } = &job;
+    let rate = job.fps.unwrap_or(f64::from(settings.fps));
     if !(1.0..=240.0).contains(&rate) {
         return Err(rendering::Error::FrameRate(rate).into());
     }
-    let view = settings.view.as_deref().unwrap_or(&scene.views.default);
-    let cast = loaded.simulation.cast().clone();
+    let view = settings.view.as_deref().unwrap_or(job.view);
     let names: Vec<String> = cast.members.iter().map(|m| m.name.clone()).collect();
     // Whoever names a view wants that one, from beginning to end.
-    let whole = args.picture.view.as_deref();
-    let board = Board::new(&settings, (whole, view), scene.time.duration, &names)?;
+    let board = Board::new(settings, (job.picture.view.as_deref(), view), job.duration, &names)?;
     let frames = board.frames(rate);
-    let mut studio = Studio::open((&args.scene, &args.picture), &cast, view, settings.size)?;
-    loaded.open_eyes(Some(&studio.gpu), &args.scene)?;
-    let (mut film, done) = begin(&path, kind, &studio, rate, args, &scene)?;
+    let mut studio = Studio::open((job.adapter, job.picture), cast, view, settings.size)?;
+    let source = source(&studio.gpu)?;
+    let (mut film, done) = begin(&job, kind, &studio, rate)?;
 
     let what = format!("Filming {name}, {frames} frames, to {}", path.display());
-    let progress = Progress::begin(&what, frames, args.scene.quiet);
-    if done > 0 && !args.scene.quiet {
+    let progress = Progress::begin(&what, frames, job.quiet);
+    if done > 0 && !job.quiet {
         note(&format!("going on after {:.2} s that are there from an interrupted film", done as f64 / rate));
     }
-    let settled_after = scene.expect.settled_after.unwrap_or(0.0);
-    let judging = Judging { settling_band: scene.expect.settling_band, settled_after };
-    let mut playback = Playback::new(loaded.simulation).measured(MetricsBuilder::new(&cast, judging));
-    let mut plots = Plots::new(&cast, scene.time.duration);
+    let mut playback = Playback::new(cast, source).measured(MetricsBuilder::new(cast, job.judging));
+    let mut plots = Plots::new(cast, job.duration);
     let plain = studio.style.clone();
     let mut shot = 0;
     while shot < frames && !interrupt::asked() {
@@ -76,8 +130,8 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
                 style.set(element, false)?;
             }
             style.show = Show {
-                card: words::card(&frame, &scene, &cast, playback.metrics()),
-                line: words::line(&frame, &cast, &moment),
+                card: words::card(&frame, &job.description, cast, || playback.metrics()),
+                line: words::line(&frame, cast, &moment),
                 plots: plots.shown(frame.plots),
             };
             let ready = studio.renderer.draw_next(playback.trail(), &moment, &frame.layout, &style)?;
@@ -104,12 +158,12 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
     progress.end();
     let seconds = began.elapsed().as_secs_f64();
     let adapter = studio.gpu.description();
-    if args.scene.json {
+    if job.json {
         json(&json!({
             "file": path.display().to_string(), "frames": frames, "fps": rate, "size": studio.size,
             "adapter": adapter, "wall_seconds": seconds, "frames_found": done,
         }));
-    } else if !args.scene.quiet {
+    } else if !job.quiet {
         let length = frames as f64 / rate;
         let [width, height] = studio.size;
         say(&format!(
@@ -122,28 +176,20 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
 }
 
 /// A film to write, and how many frames of it are there.
-fn begin(
-    path: &Path,
-    kind: FilmKind,
-    studio: &Studio,
-    rate: f64,
-    args: &FilmArgs,
-    scene: &Scene,
-) -> Result<(Film, u64), Failure> {
+fn begin(job: &Job<'_>, kind: FilmKind, studio: &Studio, rate: f64) -> Result<(Film, u64), Failure> {
     let [width, height] = studio.size;
     if kind != FilmKind::Mp4 {
-        return Ok((Film::create(path, kind, width, height, rate)?, 0));
+        return Ok((Film::create(&job.path, kind, width, height, rate)?, 0));
     }
-    // The same film is made of the same scene, by the same program on the same adapter, with the same words.
+    // The same film is made of the same run, by the same program on the same adapter, with the same words.
     let mut whole = xxhash_rust::xxh3::Xxh3::new();
     let program = (crate::run::PROGRAM, option_env!("ECHELON_COMMIT"), studio.gpu.description());
-    whole.update(format!("{program:?}{:?}{:?}{:?}", studio.layout, studio.style, args.picture).as_bytes());
-    whole.update(format!("{:?}{}", args.preset, scene.to_toml()).as_bytes());
-    let fresh = if args.fresh { "fresh " } else { "" };
+    whole.update(format!("{program:?}{:?}{:?}{:?}", studio.layout, studio.style, job.picture).as_bytes());
+    whole.update(format!("{:?}{:?}{}", job.preset, job.settings, job.run).as_bytes());
     let made_of = format!("{:032x}", whole.digest128());
-    if args.fresh {
-        // A journal of another film is begun anew.
-        drop(Film::resume(path, (width, height), rate, &format!("{fresh}{made_of}"))?);
+    if job.fresh {
+        // What belongs to another film is begun anew.
+        drop(Film::resume(&job.path, (width, height), rate, &format!("not {made_of}"))?);
     }
-    Ok(Film::resume(path, (width, height), rate, &made_of)?)
+    Ok(Film::resume(&job.path, (width, height), rate, &made_of)?)
 }

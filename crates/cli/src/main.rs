@@ -8,6 +8,7 @@ mod certify;
 mod check;
 mod compare;
 mod dataset;
+mod diff;
 mod doctor;
 mod eyes;
 mod failure;
@@ -22,10 +23,11 @@ mod playback;
 mod print;
 mod progress;
 mod quiet;
+mod recorded;
 mod replay;
-mod report;
 mod run;
 mod stills;
+mod summary;
 mod tune;
 mod welcome;
 
@@ -64,6 +66,7 @@ fn main() -> ExitCode {
         }
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Replay(args)) => replay::replay(&args),
+        Some(Command::Diff(args)) => diff::diff(&args),
         Some(Command::Lab(args)) => lab::lab(args),
         Some(Command::Capture(args)) => capture::capture(&args),
         Some(Command::Film(args)) => film::film(&args),

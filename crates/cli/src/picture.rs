@@ -1,6 +1,6 @@
 //! What stills and films share: adapter, size, views and style.
 
-use crate::args::{PictureArgs, SceneArgs};
+use crate::args::PictureArgs;
 use crate::failure::Failure;
 use crate::print::note;
 use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, View};
@@ -18,7 +18,7 @@ pub(crate) struct Studio {
 impl Studio {
     /// Checks the words first and opens the adapter last, since that takes longest.
     pub(crate) fn open(
-        (scene, args): (&SceneArgs, &PictureArgs),
+        (adapter, args): (&str, &PictureArgs),
         cast: &Cast,
         view: &str,
         size: [u32; 2],
@@ -49,7 +49,7 @@ impl Studio {
         let [width, height] = size.map(f64::from);
         let grown = if height > width { width / 640.0 } else { height / 720.0 };
         style.scale = args.scale.unwrap_or_else(|| grown.max(1.0));
-        let gpu = Gpu::open(&AdapterChoice::from(&*scene.adapter))?;
+        let gpu = Gpu::open(&AdapterChoice::from(adapter))?;
         let renderer = Renderer::new(&gpu, cast, size[0], size[1], args.samples)?;
         Ok(Self { gpu, renderer, layout, style, size })
     }

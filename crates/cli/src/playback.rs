@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::interrupt;
+use recording::log::Moments;
 use recording::{Judging, Metrics, MetricsBuilder};
 use rendering::Trail;
 use simulation::Simulation;
@@ -10,9 +11,18 @@ use vocabulary::{Cast, Moment};
 /// What nothing is judged by.
 const NOTHING: Judging = Judging { settling_band: [0.0; 2], settled_after: 0.0 };
 
-/// A simulation that is asked for growing times.
+/// Where moments come from.
+pub(crate) enum Source {
+    /// They are made.
+    Run(Box<Simulation>),
+    /// They were recorded.
+    Log(Box<Moments>),
+}
+
+/// A source that is asked for growing times.
 pub(crate) struct Playback {
-    simulation: Simulation,
+    source: Source,
+    fault: Option<Failure>,
     trail: Trail,
     before: Moment,
     after: Moment,
@@ -20,12 +30,14 @@ pub(crate) struct Playback {
 }
 
 impl Playback {
-    /// At time 0.
-    pub(crate) fn new(mut simulation: Simulation) -> Self {
-        let mut trail = Trail::new(simulation.cast());
-        let first = simulation.next_moment().cloned().unwrap_or_default();
-        trail.push(&first);
-        Self { simulation, trail, before: first.clone(), after: first, metrics: None }
+    /// At time 0 of a run by `cast`.
+    pub(crate) fn new(cast: &Cast, source: Source) -> Self {
+        let (before, after) = (Moment::default(), Moment::default());
+        let mut playback =
+            Self { source, fault: None, trail: Trail::new(cast), before, after, metrics: None };
+        playback.step();
+        playback.before.clone_from(&playback.after);
+        playback
     }
 
     /// Measures what goes by, from the first moment on.
@@ -36,12 +48,36 @@ impl Playback {
     }
 
     /// What was measured so far.
-    pub(crate) fn metrics(&self) -> impl FnOnce() -> Metrics + '_ {
-        || {
-            self.metrics
-                .as_ref()
-                .map_or_else(|| MetricsBuilder::new(&Cast::default(), NOTHING).finish(), |m| m.finish())
+    pub(crate) fn metrics(&self) -> Metrics {
+        let nothing = || MetricsBuilder::new(&Cast::default(), NOTHING).finish();
+        self.metrics.as_ref().map_or_else(nothing, |metrics| metrics.finish())
+    }
+
+    /// Takes the next moment; whether there was one.
+    fn step(&mut self) -> bool {
+        match &mut self.source {
+            Source::Run(simulation) => {
+                if let Some(moment) = simulation.next_moment() {
+                    self.after.clone_from(moment);
+                } else {
+                    self.fault = simulation.fault().map(|fault| Failure::Machine(fault.to_owned()));
+                    return false;
+                }
+            }
+            Source::Log(moments) => match moments.next() {
+                Some(Ok(moment)) => self.after = moment,
+                Some(Err(error)) => {
+                    self.fault = Some(error.into());
+                    return false;
+                }
+                None => return false,
+            },
         }
+        self.trail.push(&self.after);
+        if let Some(metrics) = &mut self.metrics {
+            metrics.push(&self.after);
+        }
+        true
     }
 
     /// The moment at `time` s, not before the last one asked for; the last moment of the run after its end; an
@@ -49,14 +85,9 @@ impl Playback {
     pub(crate) fn at(&mut self, time: f64) -> Moment {
         while self.after.snapshot.time < time && !interrupt::asked() {
             std::mem::swap(&mut self.before, &mut self.after);
-            let Some(moment) = self.simulation.next_moment() else {
+            if !self.step() {
                 std::mem::swap(&mut self.before, &mut self.after);
                 break;
-            };
-            self.after.clone_from(moment);
-            self.trail.push(&self.after);
-            if let Some(metrics) = &mut self.metrics {
-                metrics.push(&self.after);
             }
         }
         let (from, to) = (self.before.snapshot.time, self.after.snapshot.time);
@@ -64,9 +95,9 @@ impl Playback {
         Moment::between(&self.before, &self.after, share)
     }
 
-    /// Fails where the cameras on robots could not take their pictures.
-    pub(crate) fn check(&self) -> Result<(), Failure> {
-        self.simulation.fault().map_or(Ok(()), |fault| Err(Failure::Machine(fault.to_owned())))
+    /// Fails where the cameras on robots could not take their pictures, or the recording is damaged.
+    pub(crate) fn check(&mut self) -> Result<(), Failure> {
+        self.fault.take().map_or(Ok(()), Err)
     }
 
     /// What has been.

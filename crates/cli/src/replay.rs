@@ -1,25 +1,64 @@
 //! `echelon replay`: does a recorded run come out the same again?
 
 use crate::Outcome;
-use crate::args::ReplayArgs;
-use crate::eyes;
+use crate::args::PictureArgs;
 use crate::failure::Failure;
-use crate::interrupt;
-use crate::load::load_file;
+use crate::playback::Source;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
+use crate::recorded::Recorded;
 use crate::run::{PROGRAM, STRIDE};
-use recording::{Digest, Manifest, Status};
+use crate::{capture, eyes, film, interrupt};
+use clap::Args;
+use recording::{Digest, Judging, Manifest, Status};
+use scene::Scene;
 use serde_json::json;
 use simulation::Simulation;
-use std::io::ErrorKind;
-use std::path::Path;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(crate) struct ReplayArgs {
+    /// Folder of a run, such as runs/line-three-001, or a log.mcap alone
+    #[arg(value_name = "RUN")]
+    run: PathBuf,
+    /// Make a film of what was recorded, without simulating
+    #[arg(long, value_name = "FILE", conflicts_with = "capture")]
+    film: Option<PathBuf>,
+    /// Draw pictures of what was recorded at these times in s, such as 0,5,15, without simulating
+    #[arg(long, value_name = "TIMES", value_delimiter = ',', allow_negative_numbers = true)]
+    capture: Vec<f64>,
+    /// Folder for the pictures; it may hold others
+    #[arg(long, short, value_name = "DIR", default_value = ".", requires = "capture")]
+    out: PathBuf,
+    /// Frames a second of simulation time
+    #[arg(long, requires = "film")]
+    fps: Option<f64>,
+    /// Encode with the ffmpeg on PATH instead of the built-in encoder
+    #[arg(long, requires = "film")]
+    ffmpeg: bool,
+    /// Measures, cards and, where the scene has no storyboard, shots for a purpose
+    #[arg(long, value_enum, requires = "film", conflicts_with = "view")]
+    preset: Option<film::Preset>,
+    #[command(flatten)]
+    picture: PictureArgs,
+    /// Adapter to draw with, pictures of cameras on robots included: vulkan, gl, or part of its name
+    #[arg(long, default_value = "auto")]
+    adapter: String,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+    /// Print only what differs, and errors
+    #[arg(long, short, conflicts_with = "json")]
+    quiet: bool,
+}
 
 /// A run as it was recorded and as it came out again.
 struct Replay {
     manifest: Manifest,
     /// Of the run as it was recorded.
     recorded: String,
+    /// Of the moments in its log, where there is one.
+    log: Option<String>,
     /// Of the run as it is now.
     digest: String,
     samples: u64,
@@ -28,23 +67,109 @@ struct Replay {
 }
 
 pub(crate) fn replay(args: &ReplayArgs) -> Outcome {
-    let manifest = read_manifest(&args.run)?;
-    let recorded = manifest.digest.clone().ok_or_else(|| {
-        Failure::Usage(format!(
-            "{} has no digest to compare with: the run is under way, or was cut off by the machine",
-            args.run.display()
-        ))
-    })?;
-    let (scene, setup) = load_file(&args.run.join("scene.toml"), &[])?;
+    let run = Recorded::open(&args.run)?;
+    if args.film.is_some() || !args.capture.is_empty() { draw(args, run) } else { verify(args, &run) }
+}
+
+/// Draws what was recorded.
+fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
+    // Pictures need no more of a scene than its taste; that of another program may not be readable here.
+    let scene = run.scene().ok();
+    let mut settings = scene.as_ref().map_or_else(scene::Film::default, |scene| scene.film.clone());
+    let view = scene.as_ref().map_or_else(|| scene::Views::default().default, |s| s.views.default.clone());
+    let description = scene.as_ref().map_or_else(String::new, |scene| scene.description.clone());
+    let expect = scene.as_ref().map_or_else(scene::Expect::default, |scene| scene.expect);
+    let samples = run.manifest.samples;
+    let name = name(&args.run);
+    let log = run.log()?;
+    let cast = log.cast().clone();
+    let mut duration = cast.duration;
+    if log.manifest().status != Status::Complete {
+        duration = duration.min(samples.saturating_sub(1) as f64 * log.manifest().period);
+        // A storyboard goes with the whole run.
+        settings.shots.clear();
+    }
+    let source = || Ok(Source::Log(Box::new(log.moments())));
+    if let Some(path) = &args.film {
+        let job = film::Job {
+            picture: &args.picture,
+            adapter: &args.adapter,
+            path: path.clone(),
+            ffmpeg: args.ffmpeg,
+            fps: args.fps,
+            preset: args.preset,
+            fresh: false,
+            quiet: args.quiet,
+            json: args.json,
+            name,
+            cast,
+            description,
+            duration,
+            settings,
+            view: &view,
+            judging: Judging {
+                settling_band: expect.settling_band,
+                settled_after: expect.settled_after.unwrap_or(0.0),
+            },
+            run: format!("{:?}", log.manifest()),
+        };
+        return film::shoot(job, |_| source());
+    }
+    let job = capture::Job {
+        picture: &args.picture,
+        adapter: &args.adapter,
+        out: &args.out,
+        at: &args.capture,
+        quiet: args.quiet,
+        json: args.json,
+        of: &args.run,
+        name,
+        cast,
+        duration,
+        settings: &settings,
+        view: &view,
+    };
+    capture::draw(&job, |_| source())
+}
+
+/// The folder's name, or that of the file where it says more than that it is a log.
+fn name(run: &std::path::Path) -> String {
+    let whole = std::fs::canonicalize(run).unwrap_or_else(|_| run.to_owned());
+    let folder = if run.ends_with(recording::log::FILE) { whole.parent().unwrap_or(&whole) } else { &whole };
+    crate::load::stem(folder)
+}
+
+/// Runs the scene again.
+fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
+    let quiet = args.quiet || args.json;
+    let mut manifest = run.manifest.clone();
+    let logged = run.logged(quiet)?;
+    let recorded = match (&manifest.digest, &logged) {
+        (Some(digest), _) => digest.clone(),
+        (None, Some((samples, digest))) => {
+            manifest.samples = *samples;
+            digest.clone()
+        }
+        (None, None) => {
+            return Err(Failure::Usage(format!(
+                "{} has no digest and no log to compare with: the run is under way, or was cut off by the machine",
+                args.run.display()
+            )));
+        }
+    };
+    let scene: Scene = run.scene()?;
+    let setup = simulation::build(&scene)
+        .map_err(|error| Failure::Usage(format!("{}: {error}", run.scene.0.display())))?;
     let mut simulation = Simulation::new(setup);
-    eyes::open(&mut simulation, None, &args.adapter)?;
-    let progress =
-        Progress::begin(&format!("Replaying {}", scene.title), simulation.len(), args.quiet || args.json);
-    let most = if manifest.status == Status::Interrupted { manifest.samples } else { u64::MAX };
-    let (samples, digest) = run(&mut simulation, most, &progress)?;
+    eyes::open(&mut simulation, None, &args.adapter, None)?;
+    let progress = Progress::begin(&format!("Replaying {}", scene.title), simulation.len(), quiet);
+    let cut = matches!(manifest.status, Status::Interrupted | Status::Running);
+    let most = if cut { manifest.samples } else { u64::MAX };
+    let (samples, digest) = run_again(&mut simulation, most, &progress)?;
     progress.end();
     let sees = simulation.needs_eyes();
-    let replay = Replay { manifest, recorded, digest, samples, sees };
+    let log = logged.map(|(_, digest)| digest);
+    let replay = Replay { manifest, recorded, log, digest, samples, sees };
     if args.json {
         replay.as_json();
     } else if !args.quiet {
@@ -55,23 +180,8 @@ pub(crate) fn replay(args: &ReplayArgs) -> Outcome {
     if replay.same() { Ok(()) } else { Err(Failure::Expectation) }
 }
 
-/// The manifest of the run in `folder`.
-fn read_manifest(folder: &Path) -> Result<Manifest, Failure> {
-    let path = folder.join("manifest.json");
-    let text = std::fs::read_to_string(&path).map_err(|error| match error.kind() {
-        ErrorKind::NotFound | ErrorKind::NotADirectory => Failure::Usage(format!(
-            "{} is no run folder: it has no manifest.json; `echelon run` leaves folders such as runs/line-three-001",
-            folder.display()
-        )),
-        ErrorKind::InvalidData => Failure::Usage(format!("{} is no manifest: it is not text", path.display())),
-        _ => Failure::Machine(format!("cannot read {}: {error}", path.display())),
-    })?;
-    serde_json::from_str(&text)
-        .map_err(|error| Failure::Usage(format!("{} is no manifest of a run: {error}", path.display())))
-}
-
 /// Runs `most` samples at most; how many there were, and their digest.
-fn run(simulation: &mut Simulation, most: u64, progress: &Progress) -> Result<(u64, String), Failure> {
+fn run_again(simulation: &mut Simulation, most: u64, progress: &Progress) -> Result<(u64, String), Failure> {
     let (mut digest, mut samples) = (Digest::default(), 0);
     while samples < most {
         let Some(moment) = simulation.next_moment() else { break };
@@ -92,7 +202,11 @@ fn run(simulation: &mut Simulation, most: u64, progress: &Progress) -> Result<(u
 
 impl Replay {
     fn same(&self) -> bool {
-        self.digest == self.recorded && self.samples == self.manifest.samples
+        self.digest == self.recorded && self.samples == self.manifest.samples && self.log_agrees()
+    }
+
+    fn log_agrees(&self) -> bool {
+        self.log.as_ref().is_none_or(|log| *log == self.recorded)
     }
 
     /// What made the run, if that is not this program.
@@ -111,6 +225,9 @@ impl Replay {
         if self.samples != samples {
             return format!("DIFFERENT: {samples} samples were recorded, and it has {} now", self.samples);
         }
+        if self.digest == self.recorded && !self.log_agrees() {
+            return "DIFFERENT: the run comes out the same, but its log holds another".to_owned();
+        }
         let why = if self.other_program().is_some() {
             "another program need not come to the same bits"
         } else if self.sees {
@@ -126,7 +243,8 @@ impl Replay {
         let ended = match status {
             Status::Interrupted => ", interrupted",
             Status::Stopped => ", stopped where bodies touched",
-            Status::Running | Status::Complete => "",
+            Status::Running => ", cut off or under way",
+            Status::Complete => "",
         };
         let duration = samples.saturating_sub(1) as f64 * period;
         say(&format!("{title}\n{samples} samples, {duration:.2} s{ended}"));
@@ -143,6 +261,7 @@ impl Replay {
             "status": self.manifest.status,
             "recorded": {
                 "digest": self.recorded,
+                "log_digest": self.log,
                 "samples": self.manifest.samples,
                 "program": self.manifest.program,
                 "commit": self.manifest.commit,

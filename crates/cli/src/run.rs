@@ -2,12 +2,14 @@
 
 use crate::Outcome;
 use crate::args::RunArgs;
+use crate::eyes;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::junit::{self, Case};
 use crate::load::{Loaded, load, stem};
 use crate::progress::Progress;
-use crate::report::{self, Report};
+use crate::summary::{self, Summary};
+use recording::log::Roll;
 use recording::{CertificateMetrics, Digest, Judging, Metrics, MetricsBuilder, Recorder, RunOptions, Status};
 use simulation::certify::Examiner;
 use simulation::verdict::verdict;
@@ -22,11 +24,13 @@ pub(crate) const STRIDE: u64 = 16;
 
 pub(crate) fn run(args: &RunArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;
-    let drawn = loaded.open_eyes(None, &args.scene)?;
+    let roll = Roll::default();
+    let logs = !args.no_record && !args.no_log;
+    let drawn = eyes::open(&mut loaded.simulation, None, &args.scene.adapter, logs.then_some(&roll))?;
     let Loaded { scene, mut simulation } = loaded;
     let folder = if args.no_record { None } else { Some(folder(args)?) };
     let mut sink = match &folder {
-        Some(folder) => Sink::record(folder, args, &scene, &simulation)?,
+        Some(folder) => Sink::record(folder, args, &scene, &simulation, roll)?,
         None => Sink::Judge(Box::new((
             MetricsBuilder::new(simulation.cast(), judging(&scene)),
             Digest::default(),
@@ -78,7 +82,7 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     if let Some(path) = &args.junit {
         junit::write(path, &stem(&args.scene.scene), &findings.iter().map(Case::of).collect::<Vec<_>>())?;
     }
-    let report = Report {
+    let summary = Summary {
         scene: &scene,
         metrics: &metrics,
         findings: &findings,
@@ -89,11 +93,11 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
         steps: step,
     };
     if args.scene.json {
-        report::as_json(&report);
+        summary::as_json(&summary);
     } else if !args.scene.quiet {
-        report::as_text(&report);
+        summary::as_text(&summary);
     } else if !met {
-        report::failures(&report);
+        summary::failures(&summary);
     }
     if met { Ok(()) } else { Err(Failure::Expectation) }
 }
@@ -115,9 +119,12 @@ impl Sink {
         args: &RunArgs,
         scene: &scene::Scene,
         simulation: &simulation::Simulation,
+        roll: Roll,
     ) -> Result<Self, Failure> {
         let options = RunOptions {
             csv: args.csv,
+            no_log: args.no_log,
+            roll,
             force: args.force,
             scene: scene.to_toml(),
             program: PROGRAM.to_owned(),

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::load::{load, stem};
 use crate::picture::Studio;
-use crate::playback::Playback;
+use crate::playback::{Playback, Source};
 use crate::print::{json, say};
 use crate::progress::Progress;
 use clap::Args;
@@ -48,7 +48,7 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     let tile = args.picture.size.unwrap_or(TILE);
     let large = args.picture.size.unwrap_or(STROBE);
     let view = loaded.scene.views.default.clone();
-    let mut small = Studio::open((&args.scene, &args.picture), &cast, &view, tile)?;
+    let mut small = Studio::open((&args.scene.adapter, &args.picture), &cast, &view, tile)?;
     loaded.open_eyes(Some(&small.gpu), &args.scene)?;
     let duration = loaded.scene.time.duration;
     let refused = |e| Failure::Machine(format!("cannot create {}: {e}", args.out.display()));
@@ -57,7 +57,7 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     // Both are drawn from the same moments.
     let steps = u64::from(2 * args.count);
     let progress = Progress::begin(&format!("Drawing stills of {name}"), steps, quiet);
-    let mut playback = Playback::new(loaded.simulation);
+    let mut playback = Playback::new(&cast, Source::Run(Box::new(loaded.simulation)));
     let (mut moments, mut tiles): (Vec<Moment>, Vec<Picture>) = (Vec::new(), Vec::new());
     for k in 0..args.count {
         let moment = playback.at(duration * f64::from(k) / f64::from(args.count - 1));

@@ -1,5 +1,6 @@
 //! A run of the lab, written down: run again from its scene and its changes, with tables and digest.
 
+use recording::log::Roll;
 use recording::{Judging, Recorder, RunOptions, Status};
 use rendering::{CameraEyes, Gpu};
 use scene::Scene;
@@ -29,14 +30,17 @@ pub fn keep(
     let scene = Scene::parse(text, home, &[]).map_err(|faults| faults.to_string())?.scene;
     let setup = simulation::build(&scene).map_err(|error| error.to_string())?;
     let mut run = Simulation::new(setup);
+    let roll = Roll::default();
     if run.needs_eyes() {
         let gpu = gpu.ok_or("there is no adapter to draw what cameras see")?;
         let eyes = CameraEyes::new(gpu, run.cast()).map_err(|error| error.to_string())?;
-        run.open_eyes(Box::new(eyes));
+        run.open_eyes(roll.through(Box::new(eyes)));
     }
     let settled_after = scene.expect.settled_after.unwrap_or(0.5 * scene.time.duration);
     let options = RunOptions {
         csv: false,
+        no_log: false,
+        roll,
         force: false,
         scene: scene.to_toml(),
         program: concat!("echelon ", env!("CARGO_PKG_VERSION")).to_owned(),

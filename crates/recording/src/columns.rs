@@ -83,3 +83,23 @@ pub(crate) fn of(kind: TableKind) -> &'static [&'static str] {
         ],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `docs/formats.md` has the columns that there are, in their order.
+    #[test]
+    fn the_documentation_names_every_column() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/formats.md");
+        let text = std::fs::read_to_string(path).expect("the page");
+        for kind in
+            [TableKind::Robots, TableKind::Edges, TableKind::Contacts, TableKind::Props, TableKind::Looks]
+        {
+            let start = text.find(&format!("**`{}`**", kind.name())).expect("a paragraph");
+            let paragraph = text[start..].split("\n\n").next().expect("an end");
+            let named: Vec<&str> = paragraph.split('`').skip(3).step_by(2).collect();
+            assert_eq!(named, of(kind), "{}", kind.name());
+        }
+    }
+}

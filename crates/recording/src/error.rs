@@ -24,6 +24,14 @@ pub enum Error {
         /// What it holds.
         what: &'static str,
     },
+    /// A log is none, is of another layout, or is damaged.
+    #[error("{} {message}", path.display())]
+    Log {
+        /// The file.
+        path: PathBuf,
+        /// What it is instead.
+        message: String,
+    },
     /// A table could not be encoded or decoded.
     #[error("{}: {message}", path.display())]
     Table {

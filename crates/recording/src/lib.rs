@@ -4,6 +4,7 @@
 //! manifest.json     what ran, how it ended, the digest of its trajectory
 //! scene.toml        the scene with every default written out
 //! metrics.json      errors, effort, clearance, contacts
+//! log.mcap          all of it in one file, for other tools and for redrawing: see [`log`]
 //! tables/           robots, edges, contacts and, where any can move, props as .parquet; also .csv where asked for
 //! ```
 //!
@@ -17,6 +18,7 @@ mod contacts;
 mod digest;
 mod error;
 mod file;
+pub mod log;
 mod looks;
 mod manifest;
 mod metrics;

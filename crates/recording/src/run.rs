@@ -1,5 +1,6 @@
 //! Writing a run folder while the run goes.
 
+use crate::log::{self, Pipe, Roll};
 use crate::manifest::FORMAT;
 use crate::table::{TableKind, TableWriter};
 use crate::{
@@ -15,6 +16,10 @@ use vocabulary::{Cast, Moment};
 pub struct RunOptions {
     /// Also write tables as CSV.
     pub csv: bool,
+    /// Leave out the log.
+    pub no_log: bool,
+    /// Where pictures of cameras come from, for the log; nowhere by default.
+    pub roll: Roll,
     /// Replace a run that is there already.
     pub force: bool,
     /// The resolved scene, as text.
@@ -37,13 +42,14 @@ pub struct Recorder {
     cast: Cast,
     manifest: Manifest,
     tables: Vec<TableWriter>,
+    log: Option<Pipe>,
     metrics: MetricsBuilder,
     certificates: Vec<CertificateMetrics>,
     digest: Digest,
 }
 
 /// What a run folder may contain that we wrote ourselves and may replace.
-const OURS: [&str; 5] = ["manifest.json", "scene.toml", "metrics.json", "tables", "frames"];
+const OURS: [&str; 6] = ["manifest.json", "scene.toml", "metrics.json", "tables", "frames", log::FILE];
 
 impl Recorder {
     /// Makes `folder` and writes what is known before the run.
@@ -64,6 +70,13 @@ impl Recorder {
         })?;
         write_whole(&folder.join("scene.toml"), options.scene.as_bytes())?;
         let writer = |kind| TableWriter::create(&tables, kind, options.csv);
+        let manifest = first_manifest(cast, &options);
+        let log = if options.no_log {
+            None
+        } else {
+            let (path, known) = (folder.join(log::FILE), (cast, &*options.scene));
+            Some(Pipe::create(&path, known, &manifest, options.roll)?)
+        };
         let recorder = Self {
             folder: folder.to_owned(),
             cast: cast.clone(),
@@ -71,7 +84,8 @@ impl Recorder {
             metrics: MetricsBuilder::new(cast, options.judging),
             certificates: Vec::new(),
             digest: Digest::default(),
-            manifest: first_manifest(cast, options),
+            log,
+            manifest,
         };
         recorder.write_manifest()?;
         Ok(recorder)
@@ -87,6 +101,7 @@ impl Recorder {
         for table in &mut self.tables {
             table.push(&self.cast, moment)?;
         }
+        self.log.as_mut().map_or(Ok(()), |log| log.push(moment))?;
         self.manifest.samples += 1;
         Ok(())
     }
@@ -111,6 +126,7 @@ impl Recorder {
         write_json(&self.folder.join("metrics.json"), &metrics)?;
         self.manifest.status = status;
         self.manifest.digest = Some(self.digest.text());
+        self.log.take().map_or(Ok(()), |log| log.finish(&self.manifest))?;
         self.write_manifest()?;
         Ok((self.manifest, metrics))
     }
@@ -119,6 +135,7 @@ impl Recorder {
     pub fn abandon(mut self) {
         self.manifest.status = Status::Interrupted;
         // The disk has just refused: if it refuses again, the error before is the one to tell.
+        let _ = self.log.take().map_or(Ok(()), |log| log.finish(&self.manifest));
         let _ = self.write_manifest();
     }
 
@@ -127,12 +144,12 @@ impl Recorder {
     }
 }
 
-fn first_manifest(cast: &Cast, options: RunOptions) -> Manifest {
+fn first_manifest(cast: &Cast, options: &RunOptions) -> Manifest {
     let name = |robot: usize| cast.members[robot].name.clone();
     Manifest {
         format: FORMAT,
-        program: options.program,
-        commit: options.commit,
+        program: options.program.clone(),
+        commit: options.commit.clone(),
         title: cast.title.clone(),
         seed: options.seed,
         period: options.period,
@@ -201,6 +218,8 @@ mod tests {
     fn options(force: bool) -> RunOptions {
         RunOptions {
             csv: true,
+            no_log: false,
+            roll: Roll::default(),
             force,
             scene: "schema = 1\n".into(),
             program: "test".into(),

@@ -403,7 +403,7 @@ mod tests {
         let stage = Stage {
             cast: &cast,
             floor: &Floor::new(&cast),
-            colours: &[palette::LEAD],
+            colours: &[vocabulary::colours::LEAD],
             trail: &trail,
             moment: &moment,
             style: &style,

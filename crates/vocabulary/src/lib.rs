@@ -6,6 +6,7 @@
 mod angle;
 mod cast;
 mod codes;
+pub mod colours;
 mod command;
 mod contact;
 mod edge;

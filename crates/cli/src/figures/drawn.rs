@@ -4,7 +4,7 @@ use super::folder::Folder;
 use super::meter::Meter;
 use super::{Subject, ready, stop};
 use crate::failure::Failure;
-use crate::playback::Playback;
+use crate::playback::{Playback, Source};
 use crate::run::PROGRAM;
 use rendering::{FilmKind, Gpu, Layout, Renderer, Style, png};
 use report::{Case, Film, Job, Ran, Report, Shot, add_picture, find};
@@ -80,7 +80,7 @@ pub(super) fn draw(
     let file = format!("{}.mp4", show.name);
     let path = folder.place(&file);
     let mut film = rendering::Film::create(&path, FilmKind::Mp4, FILM[0], FILM[1], RATE)?;
-    let mut playback = Playback::new(simulation);
+    let mut playback = Playback::new(&cast, Source::Run(Box::new(simulation)));
     let mut shot = show.shot.as_ref();
     for frame in 0..show.frames() {
         let time = frame as f64 * show.speed() / RATE;

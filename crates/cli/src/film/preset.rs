@@ -1,7 +1,7 @@
 //! Ready-made ways to film a scene, for those who have no storyboard.
 
 use clap::ValueEnum;
-use scene::{Film, Plot, Scene, Shot};
+use scene::{Film, Plot, Shot};
 
 /// What a film is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -15,9 +15,8 @@ pub(crate) enum Preset {
 }
 
 impl Preset {
-    /// Sets measures and cards; and the shots where the scene has no storyboard.
-    pub(crate) fn apply(self, film: &mut Film, scene: &Scene) {
-        let duration = scene.time.duration;
+    /// Sets measures and cards; and, where the scene has no storyboard, the shots of a run of `duration` s.
+    pub(crate) fn apply(self, film: &mut Film, duration: f64) {
         let (size, cards, most) = match self {
             Self::Talk => ([1920, 1080], [2.5, 4.0], 45.0),
             Self::Paper => ([1280, 720], [0.0, 0.0], 60.0),

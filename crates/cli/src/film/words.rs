@@ -3,7 +3,6 @@
 use super::board::Frame;
 use recording::{EdgeMetrics, Metrics};
 use rendering::{Card, Line};
-use scene::Scene;
 use vocabulary::{Cast, Moment, Thing};
 
 /// Set points that are told one by one.
@@ -12,19 +11,19 @@ const MOST_SET_POINTS: usize = 4;
 /// The card over a frame, if there is one.
 pub(super) fn card(
     frame: &Frame<'_>,
-    scene: &Scene,
+    description: &str,
     cast: &Cast,
     metrics: impl FnOnce() -> Metrics,
 ) -> Option<Card> {
     let [title, end] = frame.cards;
     if title > 0.0 {
-        let about = scene.description.split_whitespace().collect::<Vec<_>>().join(" ");
+        let about = description.split_whitespace().collect::<Vec<_>>().join(" ");
         let mut rows = wrapped(&about, 76);
         rows.truncate(3);
         rows.push(cast.caption.clone());
-        return Some(Card { title: scene.title.clone(), rows, opacity: title });
+        return Some(Card { title: cast.title.clone(), rows, opacity: title });
     }
-    (end > 0.0).then(|| Card { title: scene.title.clone(), rows: results(&metrics()), opacity: end })
+    (end > 0.0).then(|| Card { title: cast.title.clone(), rows: results(&metrics()), opacity: end })
 }
 
 /// What the run showed, in a few rows.

@@ -8,6 +8,7 @@ mod common;
 mod dataset;
 mod figures;
 mod films;
+mod logs;
 mod pictures;
 mod replay;
 mod runs;

@@ -67,24 +67,33 @@ fn an_interrupted_run_is_compared_as_far_as_it_went() {
     edit(&run, |manifest| manifest.status = Status::Interrupted);
     let (code, out, err) = told(&echelon(folder.path(), &["replay", "run"]));
     assert!(code == 0 && out.contains("interrupted") && out.contains("same"), "{out}{err}");
-    edit(&run, |manifest| manifest.digest = None);
+    // Of a run that was killed the log tells.
+    edit(&run, |manifest| (manifest.digest, manifest.status, manifest.samples) = (None, Status::Running, 0));
+    let (code, out, err) = told(&echelon(folder.path(), &["replay", "run"]));
+    assert!(code == 0 && out.contains("201 samples") && out.contains("cut off"), "{out}{err}");
+    fs::remove_file(run.join("log.mcap")).expect("removed");
     let (code, _, err) = told(&echelon(folder.path(), &["replay", "run"]));
-    assert!(code == 2 && err.contains("no digest"), "{err}");
+    assert!(code == 2 && err.contains("no digest and no log"), "{err}");
 }
 
 #[test]
 fn what_is_no_run_folder_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("notes.txt"), "mine").expect("written");
-    for path in [".", "nowhere", "notes.txt"] {
+    for (path, why) in
+        [(".", "is no run folder"), ("nowhere", "is no run folder"), ("notes.txt", "is no log")]
+    {
         let (code, out, err) = told(&echelon(folder.path(), &["replay", path]));
-        assert!(code == 2 && out.is_empty() && err.contains("is no run folder"), "{err}");
+        assert!(code == 2 && out.is_empty() && err.contains(why), "{err}");
     }
     fs::write(folder.path().join("manifest.json"), "{}").expect("written");
     let (code, _, err) = told(&echelon(folder.path(), &["replay", "."]));
     assert!(code == 2 && err.contains("no manifest of a run"), "{err}");
     let run = record(folder.path(), "line-three");
     fs::remove_file(run.join("scene.toml")).expect("removed");
+    let (code, _, err) = told(&echelon(folder.path(), &["replay", "run"]));
+    assert_eq!(code, 0, "the log knows the scene: {err}");
+    fs::remove_file(run.join("log.mcap")).expect("removed");
     let (code, _, err) = told(&echelon(folder.path(), &["replay", "run"]));
     assert!(code == 2 && err.contains("scene.toml"), "{err}");
 }

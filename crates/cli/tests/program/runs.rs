@@ -50,6 +50,7 @@ fn a_run_leaves_a_folder_that_runs_again_to_the_same_digest() {
     let names: Vec<String> =
         files(&run).iter().map(|p| p.strip_prefix(&run).expect("inside").display().to_string()).collect();
     let expected = [
+        "log.mcap",
         "manifest.json",
         "metrics.json",
         "scene.toml",

@@ -9,7 +9,7 @@ use simulation::verdict::Finding;
 use std::path::PathBuf;
 
 /// A run that reached its end.
-pub(crate) struct Report<'a> {
+pub(crate) struct Summary<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) metrics: &'a Metrics,
     pub(crate) findings: &'a [Finding],
@@ -22,11 +22,11 @@ pub(crate) struct Report<'a> {
     pub(crate) steps: u64,
 }
 
-/// Edges a report lists one by one.
+/// Edges a summary lists one by one.
 const MOST_EDGES: usize = 12;
 
-pub(crate) fn as_text(report: &Report<'_>) {
-    let Report { scene, metrics, .. } = report;
+pub(crate) fn as_text(summary: &Summary<'_>) {
+    let Summary { scene, metrics, .. } = summary;
     say(&format!("{}\n{}\n", scene.title, simulation::caption(scene)));
     edges(metrics);
     if let (Some(clearance), Some(time), Some([a, b])) =
@@ -36,25 +36,25 @@ pub(crate) fn as_text(report: &Report<'_>) {
     }
     looks(metrics);
     contacts(metrics);
-    let speed = metrics.duration / report.wall.max(1e-9);
+    let speed = metrics.duration / summary.wall.max(1e-9);
     let speed = if speed < 10.0 { format!("{speed:.2}") } else { format!("{speed:.0}") };
-    say(&format!("{:.2} s in {} steps, {speed} times real time", metrics.duration, report.steps));
-    if report.drawn.pictures() > 0 {
-        let (pictures, seconds) = (report.drawn.pictures(), report.drawn.seconds());
+    say(&format!("{:.2} s in {} steps, {speed} times real time", metrics.duration, summary.steps));
+    if summary.drawn.pictures() > 0 {
+        let (pictures, seconds) = (summary.drawn.pictures(), summary.drawn.seconds());
         say(&format!(
             "{pictures} pictures of cameras, drawn in {seconds:.1} s of {:.1} s, {:.2} ms each",
-            report.wall,
+            summary.wall,
             seconds / pictures as f64 * 1e3
         ));
     }
-    say(&format!("digest {}", report.digest));
-    if let Some(folder) = &report.folder {
+    say(&format!("digest {}", summary.digest));
+    if let Some(folder) = &summary.folder {
         say(&format!("recorded in {}", folder.display()));
     }
-    expectations(report);
+    expectations(summary);
 }
 
-/// Contacts, and robots in trouble, that a report lists one by one.
+/// Contacts, and robots in trouble, that a summary lists one by one.
 const MOST_CONTACTS: usize = 6;
 
 fn contacts(metrics: &Metrics) {
@@ -150,37 +150,37 @@ fn looks(metrics: &Metrics) {
     );
 }
 
-fn expectations(report: &Report<'_>) {
-    if report.findings.is_empty() {
+fn expectations(summary: &Summary<'_>) {
+    if summary.findings.is_empty() {
         return;
     }
     say("\nexpectations");
-    for finding in report.findings {
+    for finding in summary.findings {
         let mark = if finding.met { "met   " } else { "FAILED" };
         say(&format!("  {mark} {:22} {}, found {}", finding.key, finding.wanted, finding.found));
     }
 }
 
 /// The expectations that failed, on standard error.
-pub(crate) fn failures(report: &Report<'_>) {
-    for finding in report.findings.iter().filter(|f| !f.met) {
+pub(crate) fn failures(summary: &Summary<'_>) {
+    for finding in summary.findings.iter().filter(|f| !f.met) {
         note(&format!("expectation failed: {} {}, found {}", finding.key, finding.wanted, finding.found));
     }
 }
 
-pub(crate) fn as_json(report: &Report<'_>) {
+pub(crate) fn as_json(summary: &Summary<'_>) {
     let finding = |f: &Finding| json!({ "key": f.key, "wanted": f.wanted, "found": f.found, "met": f.met });
     json(&json!({
-        "title": report.scene.title,
-        "seed": report.scene.seed,
-        "steps": report.steps,
-        "wall_seconds": report.wall,
-        "camera_pictures": report.drawn.pictures(),
-        "camera_seconds": report.drawn.seconds(),
-        "digest": report.digest,
-        "folder": report.folder.as_ref().map(|f| f.display().to_string()),
-        "metrics": report.metrics,
-        "expectations": report.findings.iter().map(finding).collect::<Vec<_>>(),
-        "met": report.findings.iter().all(|f| f.met),
+        "title": summary.scene.title,
+        "seed": summary.scene.seed,
+        "steps": summary.steps,
+        "wall_seconds": summary.wall,
+        "camera_pictures": summary.drawn.pictures(),
+        "camera_seconds": summary.drawn.seconds(),
+        "digest": summary.digest,
+        "folder": summary.folder.as_ref().map(|f| f.display().to_string()),
+        "metrics": summary.metrics,
+        "expectations": summary.findings.iter().map(finding).collect::<Vec<_>>(),
+        "met": summary.findings.iter().all(|f| f.met),
     }));
 }

@@ -1,0 +1,250 @@
+//! `echelon diff`: are two recorded runs the same, and where do they part?
+
+use crate::Outcome;
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::print::{json, say};
+use crate::progress::Progress;
+use crate::recorded::Recorded;
+use crate::run::STRIDE;
+use clap::Args;
+use recording::log::{Comparison, compare};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(crate) struct DiffArgs {
+    /// A run folder or a log.mcap
+    #[arg(value_name = "A")]
+    a: PathBuf,
+    /// The one to hold against it
+    #[arg(value_name = "B")]
+    b: PathBuf,
+    /// Numbers that differ by no more than this, in their units, count as the same; words and flags always count
+    #[arg(long, value_name = "NUMBER", default_value_t = 0.0, value_parser = tolerance)]
+    tolerance: f64,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+    /// Print errors only: the exit code tells
+    #[arg(long, short, conflicts_with = "json")]
+    quiet: bool,
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| *v >= 0.0 && v.is_finite());
+    value.ok_or_else(|| "write a number from 0 on, such as 1e-9".to_owned())
+}
+
+/// What two runs have and have not in common.
+struct Diff {
+    names: [String; 2],
+    /// Keys of the resolved scenes that differ, with both values.
+    keys: Vec<(String, [String; 2])>,
+    /// Robots and edges, where they are not the same.
+    casts: Option<[String; 2]>,
+    digests: [Option<String>; 2],
+    /// Of the moments, where both have logs and the same robots.
+    moments: Option<Comparison>,
+}
+
+pub(crate) fn diff(args: &DiffArgs) -> Outcome {
+    let [a, b] = [Recorded::open(&args.a)?, Recorded::open(&args.b)?];
+    let names = [&a, &b].map(|run| run.path.display().to_string());
+    let who = [&a, &b].map(|run| (run.manifest.robots.clone(), run.manifest.edges.clone()));
+    let casts = (who[0] != who[1]).then(|| who.map(|(robots, edges)| told(&robots, &edges)));
+    let keys = keys(&a, &b);
+    let digests = [&a, &b].map(|run| run.manifest.digest.clone());
+    let moments = match (a.moments(), b.moments()) {
+        (Some(left), Some(right)) if casts.is_none() => {
+            let steps = a.manifest.samples.max(b.manifest.samples);
+            let what = format!("Comparing {} with {}", names[0], names[1]);
+            let progress = Progress::begin(&what, steps, args.quiet || args.json);
+            let found = compare([left, right], args.tolerance, |sample| {
+                if sample % STRIDE == 0 {
+                    progress.at(sample);
+                }
+                !interrupt::asked()
+            })?;
+            progress.end();
+            if interrupt::asked() {
+                return Err(Failure::Interrupted(format!("after {} samples", found.samples)));
+            }
+            Some(found)
+        }
+        _ => None,
+    };
+    // Without logs, digests tell whether, but not where.
+    if moments.is_none() && casts.is_none() && (digests[0].is_none() || digests[1].is_none()) {
+        a.log()?;
+        b.log()?;
+    }
+    let diff = Diff { names, keys, casts, digests, moments };
+    if args.json {
+        diff.as_json();
+    } else if !args.quiet {
+        diff.as_text();
+    }
+    if diff.same() { Ok(()) } else { Err(Failure::Expectation) }
+}
+
+fn told(robots: &[String], edges: &[[String; 2]]) -> String {
+    let edges: Vec<String> =
+        edges.iter().map(|[leader, follower]| format!("{leader} → {follower}")).collect();
+    format!("{} robots: {}; {} edges: {}", robots.len(), robots.join(", "), edges.len(), edges.join(", "))
+}
+
+/// Keys of the resolved scenes that differ; one that cannot be read here is compared as a whole.
+fn keys(a: &Recorded, b: &Recorded) -> Vec<(String, [String; 2])> {
+    if a.scene.1 == b.scene.1 {
+        return vec![];
+    }
+    let trees = [a, b].map(|run| run.scene().ok().and_then(|scene| serde_json::to_value(scene).ok()));
+    let [Some(left), Some(right)] = trees else {
+        return vec![("scene.toml".to_owned(), ["one text".to_owned(), "another".to_owned()])];
+    };
+    let mut leaves: BTreeMap<String, [Option<String>; 2]> = BTreeMap::new();
+    for (side, tree) in [left, right].iter().enumerate() {
+        flatten(String::new(), tree, &mut |key, value| leaves.entry(key).or_default()[side] = Some(value));
+    }
+    let text = |value: Option<String>| value.unwrap_or_else(|| "not there".to_owned());
+    leaves.into_iter().filter(|(_, [a, b])| a != b).map(|(key, pair)| (key, pair.map(text))).collect()
+}
+
+/// Leaves of a tree by path; things with names by their names, as `--set` has it.
+fn flatten(key: String, tree: &Value, put: &mut impl FnMut(String, String)) {
+    let below = |part: &str| if key.is_empty() { part.to_owned() } else { format!("{key}.{part}") };
+    match tree {
+        Value::Object(table) => table.iter().for_each(|(part, value)| flatten(below(part), value, put)),
+        Value::Array(list) if list.iter().any(Value::is_object) => {
+            for (index, value) in list.iter().enumerate() {
+                let name = value.get("name").and_then(Value::as_str);
+                flatten(below(&name.map_or_else(|| index.to_string(), str::to_owned)), value, put);
+            }
+        }
+        leaf => put(key, leaf.to_string()),
+    }
+}
+
+/// A field's name without its unit, and the unit.
+fn unit(field: &str) -> (String, &'static str) {
+    let units = [
+        ("_rad_s", "rad/s"),
+        ("_m_s2", "m/s²"),
+        ("_m_s", "m/s"),
+        ("_n_s", "N s"),
+        ("_rad", "rad"),
+        ("_px", "px"),
+        ("_m", "m"),
+        ("_s", "s"),
+    ];
+    let found = units.iter().find_map(|(end, unit)| field.strip_suffix(end).map(|name| (name, *unit)));
+    let (name, unit) = found.unwrap_or((field, ""));
+    (name.replace('_', " "), unit)
+}
+
+impl Diff {
+    fn same(&self) -> bool {
+        self.casts.is_none()
+            && match &self.moments {
+                Some(found) => found.same(),
+                None => self.digests[0].is_some() && self.digests[0] == self.digests[1],
+            }
+    }
+
+    fn as_text(&self) {
+        let [a, b] = &self.names;
+        if let Some([left, right]) = &self.casts {
+            say(&format!("other robots or edges\n  {a}: {left}\n  {b}: {right}"));
+        }
+        if !self.keys.is_empty() {
+            say(&format!("{} the scene:", differing(self.keys.len())));
+            for (key, [left, right]) in self.keys.iter().take(20) {
+                say(&format!("  {key}: {left} | {right}"));
+            }
+            if self.keys.len() > 20 {
+                say(&format!("  and {} more; --json tells all", self.keys.len() - 20));
+            }
+        }
+        match &self.moments {
+            Some(found) => moments(found, self.same(), &self.names),
+            None if self.casts.is_some() => say("DIFFERENT"),
+            None => {
+                let verdict =
+                    if self.same() { "same: by their digests" } else { "DIFFERENT: by their digests" };
+                say(&format!("{verdict}; there are not two logs to look into"));
+            }
+        }
+    }
+
+    fn as_json(&self) {
+        let pair = |[a, b]: &[String; 2]| json!({ "a": a, "b": b });
+        let keys = self.keys.iter().map(|(key, [a, b])| json!({ "key": key, "a": a, "b": b }));
+        let finite = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
+        let moments = self.moments.as_ref().map(|found| {
+            let first = found.first.as_ref().map(|first| {
+                let (name, unit) = unit(first.quantity);
+                json!({
+                    "sample": first.sample, "time": first.time, "of": first.of, "quantity": name, "unit": unit,
+                    "field": first.quantity, "a": first.values[0], "b": first.values[1],
+                })
+            });
+            let largest = found.peaks.iter().map(|peak| {
+                let (name, unit) = unit(peak.quantity);
+                json!({
+                    "quantity": name, "unit": unit, "field": peak.quantity, "difference": finite(peak.most),
+                    "of": peak.of, "time": peak.time,
+                })
+            });
+            json!({
+                "samples": found.samples, "differing": found.differing,
+                "more": { "a": found.more[0], "b": found.more[1] },
+                "first": first, "largest": largest.collect::<Vec<_>>(),
+            })
+        });
+        json(&json!({
+            "same": self.same(),
+            "runs": pair(&self.names),
+            "casts": self.casts.as_ref().map(pair),
+            "scene": keys.collect::<Vec<_>>(),
+            "digests": { "a": self.digests[0], "b": self.digests[1] },
+            "moments": moments,
+        }));
+    }
+}
+
+fn differing(count: usize) -> String {
+    if count == 1 { "1 key differs in".to_owned() } else { format!("{count} keys differ in") }
+}
+
+/// What became of the moments.
+fn moments(found: &Comparison, same: bool, names: &[String; 2]) {
+    if same {
+        let exact = if found.peaks.is_empty() && found.differing == 0 { "same: bit for bit" } else { "same" };
+        say(&format!("{exact}, {} samples", found.samples));
+        return;
+    }
+    say(&format!("DIFFERENT in {} of {} samples", found.differing, found.samples));
+    for (more, name) in found.more.iter().zip(names).filter(|(more, _)| **more > 0) {
+        say(&format!("{name} goes on for {more} samples more"));
+    }
+    if let Some(first) = &found.first {
+        let (name, unit) = unit(first.quantity);
+        let [a, b] = &first.values;
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        say(&format!(
+            "first at {:.3} s, sample {}: {name} of {}\n  {a}{unit}\n  {b}{unit}",
+            first.time, first.sample, first.of
+        ));
+    }
+    if !found.peaks.is_empty() {
+        say("largest difference of each quantity");
+    }
+    for peak in &found.peaks {
+        let (name, unit) = unit(peak.quantity);
+        let most =
+            if peak.most.is_finite() { format!("{:.3e} {unit}", peak.most) } else { "other".to_owned() };
+        say(&format!("  {name:<22} {most:<18} {} at {:.3} s", peak.of, peak.time));
+    }
+}

@@ -1,0 +1,115 @@
+//! Opens what a run has left: its folder, or its log alone.
+
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::progress::Progress;
+use crate::run::STRIDE;
+use recording::log::{self, Log};
+use recording::{Digest, Manifest};
+use scene::Scene;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// A recorded run.
+pub(crate) struct Recorded {
+    /// As it was asked for.
+    pub(crate) path: PathBuf,
+    pub(crate) manifest: Manifest,
+    /// The resolved scene, as text, and where it stands.
+    pub(crate) scene: (PathBuf, String),
+    log: Result<Log, Failure>,
+}
+
+impl Recorded {
+    /// Opens a run folder or a log.
+    pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
+        if path.is_file() && !path.ends_with("manifest.json") {
+            let log = Log::open(path)?;
+            return Ok(Self::of_log(path, log));
+        }
+        let inside = path.join(log::FILE);
+        let log = match Log::open(&inside) {
+            Err(_) if !inside.exists() => Err(Failure::Usage(format!(
+                "{} has no {}: what happened in it is not recorded moment by moment; `echelon run {}` makes it anew",
+                path.display(),
+                log::FILE,
+                path.join("scene.toml").display()
+            ))),
+            opened => opened.map_err(Failure::from),
+        };
+        let manifest = match (read_manifest(path), log) {
+            (Ok(manifest), log) => (manifest, log),
+            (Err(_), Ok(log)) => return Ok(Self::of_log(path, log)),
+            (Err(failure), Err(_)) => return Err(failure),
+        };
+        let (mut manifest, log) = manifest;
+        if let (None, Ok(log)) = (&manifest.digest, &log) {
+            manifest.samples = log.manifest().samples;
+        }
+        let place = path.join("scene.toml");
+        let text = match (std::fs::read_to_string(&place), &log) {
+            (Ok(text), _) => text,
+            (Err(_), Ok(log)) => log.scene().to_owned(),
+            (Err(error), Err(_)) => {
+                return Err(Failure::Usage(format!("cannot read {}: {error}", place.display())));
+            }
+        };
+        Ok(Self { path: path.to_owned(), manifest, scene: (place, text), log })
+    }
+
+    fn of_log(path: &Path, log: Log) -> Self {
+        let scene = (path.to_owned(), log.scene().to_owned());
+        Self { path: path.to_owned(), manifest: log.manifest().clone(), scene, log: Ok(log) }
+    }
+
+    /// Its moments; fails where they are not there.
+    pub(crate) fn log(self) -> Result<Log, Failure> {
+        self.log
+    }
+
+    /// Its moments, where they are there.
+    pub(crate) fn moments(&self) -> Option<&Log> {
+        self.log.as_ref().ok()
+    }
+
+    /// Its scene, checked.
+    pub(crate) fn scene(&self) -> Result<Scene, Failure> {
+        let (place, text) = &self.scene;
+        let loaded = Scene::parse(text, place, &[]).map_err(|errors| Failure::Usage(errors.to_string()))?;
+        Ok(loaded.scene)
+    }
+
+    /// Samples and digest of the moments in its log, where it has one.
+    pub(crate) fn logged(&self, quiet: bool) -> Result<Option<(u64, String)>, Failure> {
+        let Some(log) = self.moments() else { return Ok(None) };
+        let steps = self.manifest.samples;
+        let progress = Progress::begin(&format!("Reading {}", log.path().display()), steps, quiet);
+        let (mut digest, mut samples) = (Digest::default(), 0);
+        for moment in log.moments() {
+            digest.push(&moment?);
+            samples += 1;
+            if samples % STRIDE == 0 {
+                progress.at(samples);
+                if interrupt::asked() {
+                    return Err(Failure::Interrupted(format!("after {samples} samples")));
+                }
+            }
+        }
+        Ok(Some((samples, digest.text())))
+    }
+}
+
+/// The manifest of the run in `folder`.
+fn read_manifest(folder: &Path) -> Result<Manifest, Failure> {
+    let path = folder.join("manifest.json");
+    let text = std::fs::read_to_string(&path).map_err(|error| match error.kind() {
+        ErrorKind::NotFound | ErrorKind::NotADirectory => Failure::Usage(format!(
+            "{} is no run folder: it has no manifest.json; `echelon run` leaves folders such as runs/line-three-001",
+            folder.display()
+        )),
+        ErrorKind::InvalidData => Failure::Usage(format!("{} is no manifest: it is not text", path.display())),
+        _ => Failure::Machine(format!("cannot read {}: {error}", path.display())),
+    })?;
+    serde_json::from_str(&text)
+        .map_err(|error| Failure::Usage(format!("{} is no manifest of a run: {error}", path.display())))
+}

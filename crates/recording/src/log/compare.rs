@@ -1,0 +1,293 @@
+//! Holds two logs against each other, moment by moment and bit by bit.
+
+use super::messages::Touch;
+use super::read::Log;
+use super::record::{self, Fields, Record};
+use crate::Error;
+use std::collections::BTreeMap;
+use vocabulary::{Cast, Moment, wrap};
+
+/// One quantity of one robot or edge at one sample, as two logs have it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Difference {
+    /// Sample, counted from 0.
+    pub sample: u64,
+    /// s.
+    pub time: f64,
+    /// Whose it is, such as `robot bob` or `edge ann → bob`.
+    pub of: String,
+    /// Name of the field, its unit at the end, as in the tables.
+    pub quantity: &'static str,
+    /// As the logs have it.
+    pub values: [String; 2],
+}
+
+/// The largest difference of a quantity over a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Peak {
+    /// Name of the field, its unit at the end.
+    pub quantity: &'static str,
+    /// Largest magnitude; of words and flags, infinite.
+    pub most: f64,
+    /// Whose it was.
+    pub of: String,
+    /// When, s.
+    pub time: f64,
+}
+
+/// What came of a comparison.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Comparison {
+    /// Samples that both have.
+    pub samples: u64,
+    /// Samples that only one of them has: of the first, of the second.
+    pub more: [u64; 2],
+    /// The first quantity that differs.
+    pub first: Option<Difference>,
+    /// Samples that differ.
+    pub differing: u64,
+    /// Largest difference of every quantity that differs anywhere, by edges, robots, props, contacts, looks.
+    pub peaks: Vec<Peak>,
+}
+
+impl Comparison {
+    /// Whether both are the same, bit for bit.
+    pub fn same(&self) -> bool {
+        self.differing == 0 && self.more == [0, 0]
+    }
+}
+
+/// Compares the moments of two logs whose casts have the same robots and edges; a difference of numbers of at most
+/// `tolerance` is none. `tick` hears of every sample and says whether to go on.
+///
+/// # Errors
+/// [`Error::Log`] where one of them is damaged.
+pub fn compare(
+    [a, b]: [&Log; 2],
+    tolerance: f64,
+    mut tick: impl FnMut(u64) -> bool,
+) -> Result<Comparison, Error> {
+    let (mut left, mut right) = (a.moments(), b.moments());
+    let mut result = Comparison::default();
+    let mut peaks = BTreeMap::new();
+    let mut bytes = [vec![], vec![]];
+    loop {
+        match (left.next().transpose()?, right.next().transpose()?) {
+            (None, None) => break,
+            (Some(_), None) => result.more[0] += 1,
+            (None, Some(_)) => result.more[1] += 1,
+            (Some(p), Some(q)) => {
+                let mut pair = [p, q];
+                for (moment, bytes) in pair.iter_mut().zip(&mut bytes) {
+                    bits(moment, bytes);
+                }
+                if bytes[0] != bytes[1] {
+                    result.note(a.cast(), &pair, tolerance, &mut peaks);
+                }
+                result.samples += 1;
+            }
+        }
+        if !tick(result.samples) {
+            break;
+        }
+    }
+    result.peaks = peaks.into_values().collect();
+    Ok(result)
+}
+
+/// All of a moment as bytes.
+fn bits(moment: &mut Moment, out: &mut Vec<u8>) {
+    out.clear();
+    out.extend(moment.snapshot.time.to_le_bytes());
+    for robot in &mut moment.snapshot.robots {
+        record::write(robot, out);
+    }
+    for edge in &mut moment.edges {
+        record::write(edge, out);
+    }
+    for prop in &mut moment.snapshot.props {
+        record::write(prop, out);
+    }
+    for contact in &moment.contacts {
+        record::write(&mut Touch { contact: *contact, ..Touch::default() }, out);
+    }
+    for frame in &mut moment.frames {
+        out.extend(frame.edge.to_le_bytes());
+        record::write(frame, out);
+    }
+}
+
+/// The order of kinds, then that of fields.
+type Place = (usize, usize);
+
+impl Comparison {
+    fn note(&mut self, cast: &Cast, pair: &[Moment; 2], tolerance: f64, peaks: &mut BTreeMap<Place, Peak>) {
+        let time = pair[0].snapshot.time;
+        let [a, b] = [0, 1].map(|k| quantities(&pair[k], cast));
+        let before = self.first.is_some();
+        let mut differs = false;
+        let found = a.iter().map(Some).chain(std::iter::repeat(None));
+        let other = b.iter().map(Some).chain(std::iter::repeat(None));
+        for (p, q) in found.zip(other).take(a.len().max(b.len())) {
+            let Some(one) = p.or(q) else { break };
+            let Some(difference) = apart(p, q).filter(|difference| *difference > tolerance) else { continue };
+            differs = true;
+            let peak = Peak { quantity: one.name, most: difference, of: one.of.clone(), time };
+            let known = peaks.entry(one.place).or_insert_with(|| peak.clone());
+            if difference > known.most {
+                *known = peak;
+            }
+            if !before && self.first.is_none() {
+                let text = |q: Option<&Quantity>| q.map_or_else(|| "not there".to_owned(), Quantity::text);
+                self.first = Some(Difference {
+                    sample: self.samples,
+                    time,
+                    of: one.of.clone(),
+                    quantity: one.name,
+                    values: [text(p), text(q)],
+                });
+            }
+        }
+        self.differing += u64::from(differs);
+    }
+}
+
+/// How far two are apart; `None` where they are the same bit for bit.
+fn apart(a: Option<&Quantity>, b: Option<&Quantity>) -> Option<f64> {
+    let (Some(a), Some(b)) = (a, b) else { return Some(f64::INFINITY) };
+    match (&a.value, &b.value) {
+        (Value::Number(p), Value::Number(q)) if p.to_bits() == q.to_bits() => None,
+        (Value::Number(p), Value::Number(q)) => {
+            let angle = a.name.ends_with("_rad");
+            let difference = if angle { wrap(p - q) } else { p - q }.abs();
+            Some(if difference.is_nan() { f64::INFINITY } else { difference })
+        }
+        (p, q) => (p != q || a.of != b.of).then_some(f64::INFINITY),
+    }
+}
+
+#[derive(Debug, PartialEq)]
+enum Value {
+    Number(f64),
+    Word(String),
+}
+
+struct Quantity {
+    of: String,
+    name: &'static str,
+    place: Place,
+    value: Value,
+}
+
+impl Quantity {
+    fn text(&self) -> String {
+        match &self.value {
+            Value::Number(number) => number.to_string(),
+            Value::Word(word) => word.clone(),
+        }
+    }
+}
+
+/// All quantities of a moment, by edge, robot, prop, contact and look.
+fn quantities(moment: &Moment, cast: &Cast) -> Vec<Quantity> {
+    let mut all = Collector { of: "sample".to_owned(), table: 0, field: 0, found: vec![] };
+    let mut moment = moment.clone();
+    all.add("time_s", Value::Number(moment.snapshot.time));
+    let name = |robot: usize| cast.members.get(robot).map_or("?", |member| &*member.name);
+    let pair = |edge: usize| {
+        cast.edges
+            .get(edge)
+            .map_or_else(String::new, |e| format!("{} → {}", name(e.leader), name(e.follower)))
+    };
+    // What a follower wanted stands before what became of it.
+    for (index, edge) in moment.edges.iter_mut().enumerate() {
+        all.collect(1, format!("edge {}", pair(index)), edge);
+    }
+    for (index, robot) in moment.snapshot.robots.iter_mut().enumerate() {
+        all.collect(2, format!("robot {}", name(index)), robot);
+    }
+    for (index, prop) in moment.snapshot.props.iter_mut().enumerate() {
+        all.collect(3, format!("prop {}", cast.props.get(index).map_or("?", |prop| &prop.name)), prop);
+    }
+    for contact in &moment.contacts {
+        let [first, second] = contact.things.map(|thing| cast.name(thing).to_owned());
+        let of = format!("contact of {first} and {second}");
+        all.collect(4, of, &mut Touch { contact: *contact, names: [first, second] });
+    }
+    for frame in &mut moment.frames {
+        all.collect(5, format!("look of {}", pair(frame.edge)), frame);
+    }
+    all.found
+}
+
+struct Collector {
+    of: String,
+    table: usize,
+    field: usize,
+    found: Vec<Quantity>,
+}
+
+impl Collector {
+    fn collect<T: Record>(&mut self, table: usize, of: String, record: &mut T) {
+        (self.of, self.table, self.field) = (of, table, 0);
+        // What collects never refuses.
+        let _ = record.list(self);
+    }
+
+    fn add(&mut self, name: &'static str, value: Value) {
+        self.found.push(Quantity { of: self.of.clone(), name, place: (self.table, self.field), value });
+        self.field += 1;
+    }
+}
+
+impl Fields for Collector {
+    fn number(&mut self, name: &'static str, value: &mut f64) -> Option<()> {
+        self.add(name, Value::Number(*value));
+        Some(())
+    }
+
+    fn numbers(&mut self, name: &'static str, values: &mut [f64]) -> Option<()> {
+        let field = self.field;
+        for value in values {
+            self.field = field;
+            self.add(name, Value::Number(*value));
+        }
+        Some(())
+    }
+
+    fn series(&mut self, name: &'static str, values: &mut Vec<f64>) -> Option<()> {
+        self.add(name, Value::Word(format!("{values:?}")));
+        Some(())
+    }
+
+    fn count(&mut self, name: &'static str, value: &mut u64) -> Option<()> {
+        self.add(name, Value::Number(*value as f64));
+        Some(())
+    }
+
+    fn flag(&mut self, name: &'static str, value: &mut bool) -> Option<()> {
+        self.add(name, Value::Word(value.to_string()));
+        Some(())
+    }
+
+    fn text(&mut self, name: &'static str, value: &mut String) -> Option<()> {
+        self.add(name, Value::Word(value.clone()));
+        Some(())
+    }
+
+    fn choice<T: Copy + PartialEq>(
+        &mut self,
+        name: &'static str,
+        value: &mut T,
+        all: &[(T, &'static str)],
+    ) -> Option<()> {
+        let word = all.iter().find(|(one, _)| one == value).map_or("?", |(_, word)| word);
+        self.add(name, Value::Word(word.to_owned()));
+        Some(())
+    }
+
+    fn each<T: Record + Default>(&mut self, _: &'static str, _: &mut Vec<T>) -> Option<()> {
+        // No message of a moment holds others.
+        Some(())
+    }
+}

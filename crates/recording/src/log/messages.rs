@@ -1,0 +1,246 @@
+//! What a moment is made of, as messages: names and units of fields are those of the tables.
+
+use super::record::{Fields, Record};
+use vocabulary::{
+    Condition, Contact, EdgeState, FACES, Frame, Outcome, Placement, Relative, RobotState, Sight, Thing,
+};
+
+fn words<T: Copy, const N: usize>(all: [T; N], name: impl Fn(T) -> &'static str) -> [(T, &'static str); N] {
+    all.map(|one| (one, name(one)))
+}
+
+impl Record for RobotState {
+    const NAME: &'static str = "RobotState";
+
+    fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
+        use Condition::{Able, Fallen, Overturned, Stuck};
+        let (motion, attitude) = (&mut self.motion, &mut self.attitude);
+        f.number("x_m", &mut motion.pose.x)?;
+        f.number("y_m", &mut motion.pose.y)?;
+        f.number("heading_rad", &mut motion.pose.heading)?;
+        f.number("speed_m_s", &mut motion.speed)?;
+        f.number("acceleration_m_s2", &mut motion.acceleration)?;
+        f.number("turn_rate_rad_s", &mut motion.turn_rate)?;
+        f.number("height_m", &mut attitude.height)?;
+        f.number("roll_rad", &mut attitude.roll)?;
+        f.number("pitch_rad", &mut attitude.pitch)?;
+        f.choice(
+            "condition",
+            &mut self.condition,
+            &words([Able, Overturned, Stuck, Fallen], Condition::name),
+        )?;
+        f.number("camera_pan_rad", &mut self.camera_pan)?;
+        let mut rotation = self.wheels.map(|wheel| wheel.rotation);
+        let mut steering = self.wheels.map(|wheel| wheel.steering);
+        let mut compression = self.wheels.map(|wheel| wheel.compression);
+        f.numbers("wheel_rotation_rad", &mut rotation)?;
+        f.numbers("wheel_steering_rad", &mut steering)?;
+        f.numbers("wheel_compression_m", &mut compression)?;
+        for (k, wheel) in self.wheels.iter_mut().enumerate() {
+            (wheel.rotation, wheel.steering, wheel.compression) = (rotation[k], steering[k], compression[k]);
+        }
+        Some(())
+    }
+}
+
+impl Record for EdgeState {
+    const NAME: &'static str = "EdgeState";
+
+    fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
+        use Sight::{Coasting, Lost, Tracking, Truth, Waiting};
+        let Relative { distance, bearing, view_angle } = &mut self.relative;
+        f.number("distance_m", distance)?;
+        f.number("bearing_rad", bearing)?;
+        f.number("view_angle_rad", view_angle)?;
+        f.number("set_distance_m", &mut self.set_point[0])?;
+        f.number("set_bearing_rad", &mut self.set_point[1])?;
+        f.number("error_distance_m", &mut self.error[0])?;
+        f.number("error_bearing_rad", &mut self.error[1])?;
+        f.number("asked_acceleration_m_s2", &mut self.asked.acceleration)?;
+        f.number("asked_turn_rate_rad_s", &mut self.asked.turn_rate)?;
+        f.number("applied_acceleration_m_s2", &mut self.applied.acceleration)?;
+        f.number("applied_turn_rate_rad_s", &mut self.applied.turn_rate)?;
+        f.number("rate_distance_m_s", &mut self.rates[0])?;
+        f.number("rate_bearing_rad_s", &mut self.rates[1])?;
+        f.number("estimate_distance_m", &mut self.estimate[0])?;
+        f.number("estimate_bearing_rad", &mut self.estimate[1])?;
+        let Relative { distance, bearing, view_angle } = &mut self.seen;
+        f.number("seen_distance_m", distance)?;
+        f.number("seen_bearing_rad", bearing)?;
+        f.number("seen_view_angle_rad", view_angle)?;
+        f.number("age_s", &mut self.age)?;
+        f.choice("sight", &mut self.sight, &words([Truth, Waiting, Tracking, Coasting, Lost], Sight::name))?;
+        f.flag("limited", &mut self.limited)?;
+        f.flag("too_close", &mut self.too_close)
+    }
+}
+
+/// One look of an edge: its index is that of its channel.
+impl Record for Frame {
+    const NAME: &'static str = "Look";
+
+    fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
+        use Outcome::{Ambiguous, Dropped, Missed, Rejected, Used};
+        let outcomes = words([Used, Rejected, Ambiguous, Missed, Dropped], Outcome::name);
+        let look = &mut self.sighting;
+        f.choice("outcome", &mut self.outcome, &outcomes)?;
+        f.number("stamp_s", &mut look.stamp)?;
+        f.number("arrival_s", &mut self.arrival)?;
+        let Relative { distance, bearing, view_angle } = &mut look.relative;
+        f.number("distance_m", distance)?;
+        f.number("bearing_rad", bearing)?;
+        f.number("view_angle_rad", view_angle)?;
+        let Relative { distance, bearing, view_angle } = &mut self.truth;
+        f.number("true_distance_m", distance)?;
+        f.number("true_bearing_rad", bearing)?;
+        f.number("true_view_angle_rad", view_angle)?;
+        f.number("deviation_distance_m", &mut look.deviation[0])?;
+        f.number("deviation_bearing_rad", &mut look.deviation[1])?;
+        f.number("deviation_view_angle_rad", &mut look.deviation[2])?;
+        f.number("pan_rad", &mut self.pan)?;
+        let region = &mut self.region;
+        for (name, side) in [
+            ("region_x_px", &mut region.x),
+            ("region_y_px", &mut region.y),
+            ("region_width_px", &mut region.width),
+            ("region_height_px", &mut region.height),
+        ] {
+            let mut pixels = u64::from(*side);
+            f.count(name, &mut pixels)?;
+            *side = u32::try_from(pixels).ok()?;
+        }
+        // Which faces were seen, a bit each, and eight coordinates for each of them.
+        let mut faces =
+            self.tags.iter().enumerate().fold(0, |bits, (k, t)| bits | u64::from(t.is_some()) << k);
+        let mut corners: Vec<f64> = self.tags.iter().flatten().flatten().flatten().copied().collect();
+        f.count("seen_faces_bits", &mut faces)?;
+        f.series("corners_px", &mut corners)?;
+        let mut corners = corners.into_iter();
+        for (face, tag) in self.tags.iter_mut().enumerate().take(FACES) {
+            *tag = None;
+            if faces & 1 << face != 0 {
+                let mut quad = [[0.0; 2]; 4];
+                for value in quad.iter_mut().flatten() {
+                    *value = corners.next().unwrap_or_default();
+                }
+                *tag = Some(quad);
+            }
+        }
+        Some(())
+    }
+}
+
+/// Where a prop is.
+impl Record for Placement {
+    const NAME: &'static str = "PropState";
+
+    fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
+        let [x, y, z] = &mut self.position;
+        f.number("x_m", x)?;
+        f.number("y_m", y)?;
+        f.number("z_m", z)?;
+        let [x, y, z, w] = &mut self.rotation;
+        f.number("qx", x)?;
+        f.number("qy", y)?;
+        f.number("qz", z)?;
+        f.number("qw", w)
+    }
+}
+
+/// A contact and the names of who takes part.
+pub(super) struct Touch {
+    pub(super) contact: Contact,
+    pub(super) names: [String; 2],
+}
+
+impl Default for Touch {
+    fn default() -> Self {
+        let contact = Contact {
+            number: 0,
+            things: [Thing::Ground; 2],
+            begin: 0.0,
+            end: 0.0,
+            open: false,
+            place: [0.0; 3],
+            normal: [0.0; 3],
+            impulse: 0.0,
+        };
+        Self { contact, names: Default::default() }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Ground,
+    Robot,
+    Prop,
+}
+
+const KINDS: [(Kind, &str); 3] = [(Kind::Ground, "ground"), (Kind::Robot, "robot"), (Kind::Prop, "prop")];
+
+fn thing<F: Fields>(f: &mut F, names: [&'static str; 2], thing: &mut Thing) -> Option<()> {
+    let (mut kind, mut index) = match *thing {
+        Thing::Ground => (Kind::Ground, 0),
+        Thing::Robot(index) => (Kind::Robot, index as u64),
+        Thing::Prop(index) => (Kind::Prop, index as u64),
+    };
+    f.choice(names[0], &mut kind, &KINDS)?;
+    f.count(names[1], &mut index)?;
+    let index = usize::try_from(index).ok()?;
+    *thing = match kind {
+        Kind::Ground => Thing::Ground,
+        Kind::Robot => Thing::Robot(index),
+        Kind::Prop => Thing::Prop(index),
+    };
+    Some(())
+}
+
+impl Record for Touch {
+    const NAME: &'static str = "Contact";
+
+    fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
+        let Self { contact: c, names: [first, second] } = self;
+        f.text("first", first)?;
+        f.text("second", second)?;
+        f.number("begin_s", &mut c.begin)?;
+        f.number("end_s", &mut c.end)?;
+        let ([x, y, z], [nx, ny, nz]) = (&mut c.place, &mut c.normal);
+        f.number("x_m", x)?;
+        f.number("y_m", y)?;
+        f.number("z_m", z)?;
+        f.number("normal_x", nx)?;
+        f.number("normal_y", ny)?;
+        f.number("normal_z", nz)?;
+        f.number("impulse_n_s", &mut c.impulse)?;
+        f.flag("open", &mut c.open)?;
+        f.count("number", &mut c.number)?;
+        thing(f, ["first_kind", "first_index"], &mut c.things[0])?;
+        thing(f, ["second_kind", "second_index"], &mut c.things[1])
+    }
+}
+
+/// Closes a moment: all messages before it that carry its sequence number belong to it, and nothing is missing.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Sample {
+    pub(super) number: u64,
+    pub(super) time: f64,
+    pub(super) robots: u64,
+    pub(super) edges: u64,
+    pub(super) props: u64,
+    pub(super) contacts: u64,
+    pub(super) looks: u64,
+}
+
+impl Record for Sample {
+    const NAME: &'static str = "Sample";
+
+    fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
+        f.count("number", &mut self.number)?;
+        f.number("time_s", &mut self.time)?;
+        f.count("robots", &mut self.robots)?;
+        f.count("edges", &mut self.edges)?;
+        f.count("props", &mut self.props)?;
+        f.count("contacts", &mut self.contacts)?;
+        f.count("looks", &mut self.looks)
+    }
+}

@@ -1,0 +1,69 @@
+//! `log.mcap`: a whole run in one file that other tools open, and that comes back bit for bit.
+//!
+//! ```text
+//! metadata    "echelon": version of this layout, program
+//! attachments scene.toml, manifest.json (as before the run; once more at its end, with digest and status)
+//! chunk       schemas, channels, the cast, what stands still
+//! chunks      about a simulated second each, compressed each by itself: moments, drawings, pictures
+//! summary     indexes and statistics, where the run came to its end
+//! ```
+//!
+//! A chunk reaches the file whole, so a run that is killed can be read up to its last one. Moments are written as
+//! messages of our own ([`messages`]); drawings are Foxglove's schemas, made of the moments and never read back.
+
+mod compare;
+mod drawing;
+mod messages;
+mod pictures;
+mod pipe;
+mod read;
+mod record;
+mod solids;
+mod stage;
+mod writer;
+
+pub use compare::{Comparison, Difference, Peak, compare};
+pub use pictures::{Photo, Roll};
+pub(crate) use pipe::Pipe;
+pub use read::{Log, Moments};
+
+use vocabulary::{Cast, Edge, Member, Prop};
+
+/// Name of the file in a run folder.
+pub const FILE: &str = "log.mcap";
+
+/// The layout this program writes and reads.
+const FORMAT: u32 = 1;
+
+/// Name of the metadata that makes an MCAP file a log of ours.
+const NAME: &str = "echelon";
+
+/// Names of topics.
+struct Topics;
+
+impl Topics {
+    const CAST: &str = "/cast";
+    const CONTACTS: &str = "/contacts";
+    const SAMPLES: &str = "/samples";
+
+    fn robot(member: &Member) -> String {
+        format!("/robot/{}/state", member.name)
+    }
+
+    fn edge(cast: &Cast, edge: Edge) -> String {
+        format!("/edge/{}/state", Self::pair(cast, edge))
+    }
+
+    fn looks(cast: &Cast, edge: Edge) -> String {
+        format!("/edge/{}/looks", Self::pair(cast, edge))
+    }
+
+    fn pair(cast: &Cast, edge: Edge) -> String {
+        let name = |robot: usize| cast.members.get(robot).map_or("", |member| &*member.name);
+        format!("{}/{}", name(edge.leader), name(edge.follower))
+    }
+
+    fn prop(prop: &Prop) -> String {
+        format!("/prop/{}/state", prop.name)
+    }
+}

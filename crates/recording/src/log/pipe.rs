@@ -1,0 +1,119 @@
+//! A log on a thread of its own: the run hands over moments in batches and goes on.
+
+use super::pictures::{Photo, Roll};
+use super::writer::Writer;
+use crate::{Error, Manifest};
+use std::path::Path;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::JoinHandle;
+use vocabulary::{Cast, Moment};
+
+/// A batch, and so a chunk, is about this long, s.
+const SPAN: f64 = 1.0;
+/// Robots and edges of all moments of a batch, at most: some two megabytes.
+const MOST: usize = 8192;
+/// Batches that wait to be written, at most.
+const WAITING: usize = 4;
+
+/// Moments of a stretch of time, and what cameras saw in it.
+struct Batch {
+    moments: Vec<Moment>,
+    photos: Vec<Photo>,
+}
+
+/// What the thread ends with.
+type Written = Result<Writer, Error>;
+
+/// Hands moments to the thread that writes them.
+pub(crate) struct Pipe {
+    work: Option<(SyncSender<Batch>, JoinHandle<Written>)>,
+    batch: Vec<Moment>,
+    /// Batches come back empty, so that their memory is used again.
+    used: Receiver<Vec<Moment>>,
+    spare: Vec<Moment>,
+    weight: usize,
+    roll: Roll,
+}
+
+impl Pipe {
+    /// Writes what is known before the run, and waits for moments.
+    pub(crate) fn create(
+        path: &Path,
+        (cast, scene): (&Cast, &str),
+        manifest: &Manifest,
+        roll: Roll,
+    ) -> Result<Self, Error> {
+        let mut writer = Writer::create(path, cast, scene, manifest)?;
+        let (sender, receiver) = sync_channel::<Batch>(WAITING);
+        let (back, used) = sync_channel(WAITING);
+        let write = move || {
+            for mut batch in receiver {
+                writer.push(&mut batch.moments, &batch.photos)?;
+                // Where nobody waits for it, it is dropped.
+                let _ = back.try_send(batch.moments);
+            }
+            Ok(writer)
+        };
+        let thread = std::thread::Builder::new().name("log".to_owned()).spawn(write);
+        let thread = thread.map_err(Error::io("start a thread for", path))?;
+        let work = Some((sender, thread));
+        Ok(Self { work, batch: vec![], used, spare: vec![], weight: 0, roll })
+    }
+
+    /// Takes a moment; waits where many batches are on their way.
+    pub(crate) fn push(&mut self, moment: &Moment) -> Result<(), Error> {
+        self.weight += 1 + moment.snapshot.robots.len() + moment.edges.len();
+        let own = match self.spare.pop() {
+            Some(mut spare) => {
+                copy(&mut spare, moment);
+                spare
+            }
+            None => moment.clone(),
+        };
+        self.batch.push(own);
+        let began = self.batch.first().map_or(0.0, |first| first.snapshot.time);
+        // The half keeps a sum of periods from falling just short.
+        let period = (moment.snapshot.time - began) / (self.batch.len() - 1).max(1) as f64;
+        let long = moment.snapshot.time - began > SPAN - 1.5 * period;
+        if long && self.batch.len() > 1 || self.weight >= MOST { self.send() } else { Ok(()) }
+    }
+
+    fn send(&mut self) -> Result<(), Error> {
+        self.weight = 0;
+        let moments = std::mem::take(&mut self.batch);
+        while let Ok(used) = self.used.try_recv() {
+            self.spare.extend(used);
+        }
+        let Some((sender, _)) = &self.work else { return Ok(()) };
+        if sender.send(Batch { moments, photos: self.roll.take() }).is_err() {
+            // The thread has ended, which it does by an error only.
+            self.join()?;
+        }
+        Ok(())
+    }
+
+    fn join(&mut self) -> Result<Option<Writer>, Error> {
+        let Some((sender, thread)) = self.work.take() else { return Ok(None) };
+        drop(sender);
+        match thread.join() {
+            Ok(result) => result.map(Some),
+            Err(_) => Err(Error::Log { path: super::FILE.into(), message: "its thread failed".to_owned() }),
+        }
+    }
+
+    /// Writes what is still on its way, and then `manifest`.
+    pub(crate) fn finish(mut self, manifest: &Manifest) -> Result<(), Error> {
+        self.send()?;
+        self.join()?.map_or(Ok(()), |writer| writer.finish(manifest))
+    }
+}
+
+/// Copies into memory that is there.
+fn copy(to: &mut Moment, from: &Moment) {
+    to.snapshot.time = from.snapshot.time;
+    to.snapshot.robots.clone_from(&from.snapshot.robots);
+    to.snapshot.props.clone_from(&from.snapshot.props);
+    to.edges.clone_from(&from.edges);
+    to.contacts.clone_from(&from.contacts);
+    to.frames.clone_from(&from.frames);
+}

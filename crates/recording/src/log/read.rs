@@ -1,0 +1,439 @@
+//! Reads a log back: what is known of the run, and its moments in order or from a time on.
+//!
+//! Whole records are looked for from the beginning, so a log that was cut off reads like any other, up to its last chunk.
+
+use super::messages::{Sample, Touch};
+use super::record::{self, Record};
+use super::stage::{Stage, sound};
+use super::{FORMAT, NAME};
+use crate::{Error, Manifest, Status};
+use mcap::records::{MessageHeader, Record as Chunked, op};
+use std::collections::{HashMap, VecDeque};
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use vocabulary::{Cast, EdgeState, Frame, Moment, Placement, RobotState};
+
+/// A recorded run. A copy shares everything with the original.
+#[derive(Debug, Clone)]
+pub struct Log {
+    file: Arc<File>,
+    inside: Arc<Inside>,
+}
+
+#[derive(Debug)]
+struct Inside {
+    path: PathBuf,
+    manifest: Manifest,
+    scene: String,
+    cast: Cast,
+    channels: HashMap<u16, Channel>,
+    chunks: Vec<Chunk>,
+    whole: bool,
+}
+
+/// What a channel's messages are.
+#[derive(Debug, Clone, Copy)]
+enum Channel {
+    Robot(usize),
+    Edge(usize),
+    Prop(usize),
+    Look(usize),
+    Contact,
+    Sample,
+    Cast,
+}
+
+/// A chunk of messages.
+#[derive(Debug, Clone, Copy)]
+struct Chunk {
+    /// Of its content in the file.
+    start: u64,
+    length: u64,
+    /// Time of its first message, ns.
+    begin: u64,
+}
+
+/// More than this no record of ours is long, bytes.
+const LONGEST: u64 = 1 << 30;
+
+impl Log {
+    /// Opens the log at `path`.
+    ///
+    /// # Errors
+    /// [`Error::Log`] where the file is no log of this program's layout, or was cut off before its first chunk ended;
+    /// [`Error::Io`] where it cannot be read.
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let mut file = File::open(path).map_err(Error::io("open", path))?;
+        let wrong = |message: &str| Error::Log { path: path.to_owned(), message: message.to_owned() };
+        let outline = Outline::of(&mut file, path)?;
+        let Some(format) = outline.format else {
+            return Err(wrong(
+                "is an MCAP file, but no log of Echelon, or was cut off at its very beginning",
+            ));
+        };
+        if format != FORMAT.to_string() {
+            let message = format!("is a log of layout {format}; this program reads layout {FORMAT}");
+            return Err(wrong(&message));
+        }
+        let Some((manifest, scene)) = outline.manifest.zip(outline.scene) else {
+            return Err(wrong("was cut off before the run began: its scene or its manifest is missing"));
+        };
+        let manifest = serde_json::from_str(&manifest)
+            .map_err(|error| wrong(&format!("holds a manifest that cannot be read: {error}")))?;
+        let inside = Inside {
+            path: path.to_owned(),
+            manifest,
+            scene,
+            cast: Cast::default(),
+            channels: HashMap::new(),
+            chunks: outline.chunks,
+            whole: outline.whole,
+        };
+        Self { file: Arc::new(file), inside: Arc::new(inside) }.with_first_chunk()
+    }
+
+    /// Reads channels and cast, and how far the run came where nobody wrote that down.
+    fn with_first_chunk(mut self) -> Result<Self, Error> {
+        let broken =
+            |message: &str| Error::Log { path: self.inside.path.clone(), message: message.to_owned() };
+        let Some(first) = self.inside.chunks.first().copied() else {
+            return Err(broken("was cut off before the run began: it names no robots"));
+        };
+        let mut channels = HashMap::new();
+        let mut schemas = HashMap::new();
+        let mut cast = None;
+        for item in records(&self.unpack(first)?) {
+            match item {
+                Chunked::Schema { header, .. } => {
+                    schemas.insert(header.id, header.name);
+                }
+                Chunked::Channel(channel) => {
+                    let index = channel.metadata.get("index").and_then(|text| text.parse().ok());
+                    let kind =
+                        schemas.get(&channel.schema_id).zip(index).and_then(|(n, k)| Channel::of(n, k));
+                    channels.extend(kind.map(|kind| (channel.id, kind)));
+                }
+                Chunked::Message { header, data }
+                    if matches!(channels.get(&header.channel_id), Some(Channel::Cast)) =>
+                {
+                    cast = record::read::<Stage>(&data).map(|stage| stage.0);
+                }
+                _ => {}
+            }
+        }
+        let cast = cast.filter(sound).ok_or_else(|| broken("holds a cast that cannot be read"))?;
+        let lost = || Error::Log { path: PathBuf::new(), message: String::new() };
+        let inside = Arc::get_mut(&mut self.inside).ok_or_else(lost)?;
+        (inside.channels, inside.cast) = (channels, cast);
+        if inside.manifest.status == Status::Running {
+            let samples = self.samples();
+            if let Some(inside) = Arc::get_mut(&mut self.inside) {
+                inside.manifest.samples = samples;
+            }
+        }
+        Ok(self)
+    }
+
+    /// Samples up to the end of the last chunk that can be read.
+    fn samples(&self) -> u64 {
+        for chunk in self.inside.chunks.iter().rev() {
+            let Ok(bytes) = self.unpack(*chunk) else { continue };
+            let number = |item: Chunked<'_>| match item {
+                Chunked::Message { header, data } => match self.inside.channels.get(&header.channel_id) {
+                    Some(Channel::Sample) => record::read::<Sample>(&data).map(|sample| sample.number),
+                    _ => None,
+                },
+                _ => None,
+            };
+            if let Some(last) = records(&bytes).filter_map(number).last() {
+                return last + 1;
+            }
+        }
+        0
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.inside.path
+    }
+
+    /// What ran and how it ended; of a run that was cut off, `running`, with the samples that can be read.
+    pub fn manifest(&self) -> &Manifest {
+        &self.inside.manifest
+    }
+
+    /// The resolved scene, as text.
+    pub fn scene(&self) -> &str {
+        &self.inside.scene
+    }
+
+    /// Robots, edges, props, ground.
+    pub fn cast(&self) -> &Cast {
+        &self.inside.cast
+    }
+
+    /// Whether the file came to its end; else it was cut off, or is still being written.
+    pub fn whole(&self) -> bool {
+        self.inside.whole
+    }
+
+    /// All moments in the order of time.
+    pub fn moments(&self) -> Moments {
+        self.after_chunks(0)
+    }
+
+    /// The moments at and after `time` s: what lies before is skipped, not read.
+    pub fn moments_from(&self, time: f64) -> Moments {
+        let begun = |chunk: &Chunk| chunk.begin as f64 * 1e-9 <= time + 1e-9;
+        // The first chunk holds no moments; a stamp is rounded, so the chunk before may end with the one asked for.
+        let mut moments = self.after_chunks(self.inside.chunks.partition_point(begun).saturating_sub(2));
+        moments.from = time;
+        moments
+    }
+
+    /// The last moment at or before `time` s; the first one if there is none before.
+    ///
+    /// # Errors
+    /// [`Error::Log`] where the file is damaged there.
+    pub fn at(&self, time: f64) -> Result<Option<Moment>, Error> {
+        let begun = |chunk: &Chunk| chunk.begin as f64 * 1e-9 <= time + 1e-9;
+        let mut last = None;
+        for moment in self.after_chunks(self.inside.chunks.partition_point(begun).saturating_sub(2)) {
+            let moment = moment?;
+            if moment.snapshot.time > time && last.is_some() {
+                break;
+            }
+            last = Some(moment);
+        }
+        Ok(last)
+    }
+
+    fn after_chunks(&self, next: usize) -> Moments {
+        Moments { log: self.clone(), next, ready: VecDeque::new(), from: f64::NEG_INFINITY, fault: None }
+    }
+
+    /// The records of a chunk, unpacked and checked.
+    fn unpack(&self, chunk: Chunk) -> Result<Vec<u8>, Error> {
+        let path = &self.inside.path;
+        let damaged = |why: &dyn std::fmt::Display| Error::Log {
+            path: path.clone(),
+            message: format!("is damaged {:.2} s into the run: {why}", chunk.begin as f64 * 1e-9),
+        };
+        let body = body(&mut &*self.file, chunk.start, chunk.length).map_err(Error::io("read", path))?;
+        let record = mcap::parse_record(op::CHUNK, &body).map_err(|error| damaged(&error))?;
+        let Chunked::Chunk { header, data } = record else { return Ok(vec![]) };
+        let mut bytes = Vec::new();
+        // One byte more than is promised is enough to see that the promise is broken.
+        let most = header.uncompressed_size.min(LONGEST) + 1;
+        let unpacked = match &*header.compression {
+            "" => (&*data).take(most).read_to_end(&mut bytes),
+            "lz4" => lz4::Decoder::new(&*data).and_then(|lz4| lz4.take(most).read_to_end(&mut bytes)),
+            other => return Err(damaged(&format!("it is compressed by {other}, which no log of ours is"))),
+        };
+        unpacked.map_err(|error| damaged(&error))?;
+        let whole = bytes.len() as u64 == header.uncompressed_size;
+        if !whole || (header.uncompressed_crc != 0 && crc32fast::hash(&bytes) != header.uncompressed_crc) {
+            return Err(damaged(&"its checksum does not fit"));
+        }
+        Ok(bytes)
+    }
+}
+
+/// The records of an unpacked chunk.
+fn records(mut bytes: &[u8]) -> impl Iterator<Item = Chunked<'_>> {
+    std::iter::from_fn(move || {
+        let (head, rest) = bytes.split_at_checked(9)?;
+        let (code, length) = head.split_first()?;
+        let length = usize::try_from(u64::from_le_bytes(length.try_into().ok()?)).ok()?;
+        let (body, rest) = rest.split_at_checked(length)?;
+        bytes = rest;
+        mcap::parse_record(*code, body).ok()
+    })
+}
+
+impl Channel {
+    fn of(schema: &str, index: usize) -> Option<Self> {
+        match schema.strip_prefix(record::PACKAGE)?.strip_prefix('.')? {
+            RobotState::NAME => Some(Self::Robot(index)),
+            EdgeState::NAME => Some(Self::Edge(index)),
+            Placement::NAME => Some(Self::Prop(index)),
+            Frame::NAME => Some(Self::Look(index)),
+            Touch::NAME => Some(Self::Contact),
+            Sample::NAME => Some(Self::Sample),
+            Stage::NAME => Some(Self::Cast),
+            _ => None,
+        }
+    }
+}
+
+fn body(file: &mut &File, start: u64, length: u64) -> std::io::Result<Vec<u8>> {
+    file.seek(SeekFrom::Start(start))?;
+    let mut bytes = Vec::new();
+    file.take(length.min(LONGEST)).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// What stands outside the chunks, and where those are.
+#[derive(Default)]
+struct Outline {
+    format: Option<String>,
+    manifest: Option<String>,
+    scene: Option<String>,
+    chunks: Vec<Chunk>,
+    whole: bool,
+}
+
+impl Outline {
+    fn of(file: &mut File, path: &Path) -> Result<Self, Error> {
+        let io = |source| Error::io("read", path)(source);
+        let about = file.metadata().map_err(io)?;
+        let mut magic = [0; 8];
+        if about.is_dir() || file.read_exact(&mut magic).is_err() || magic != *mcap::MAGIC {
+            let message = "is no log: it does not begin as MCAP files do".to_owned();
+            return Err(Error::Log { path: path.to_owned(), message });
+        }
+        let mut outline = Self::default();
+        let (mut at, end) = (mcap::MAGIC.len() as u64, about.len());
+        let mut reader = &*file;
+        while at + 9 <= end {
+            let head = body(&mut reader, at, 9).map_err(io)?;
+            let Some((code, length)) = head.split_first() else { break };
+            let Ok(length) = length.try_into().map(u64::from_le_bytes) else { break };
+            let start = at + 9;
+            // A record that reaches beyond the file was being written when the run was cut off.
+            if length > end - start {
+                break;
+            }
+            match *code {
+                op::CHUNK if length >= 16 => {
+                    let head = body(&mut reader, start, 8).map_err(io)?;
+                    let begin = head.try_into().map_or(0, u64::from_le_bytes);
+                    outline.chunks.push(Chunk { start, length, begin });
+                }
+                op::METADATA | op::ATTACHMENT if length < LONGEST => {
+                    let bytes = body(&mut reader, start, length).map_err(io)?;
+                    outline.note(mcap::parse_record(*code, &bytes).ok());
+                }
+                op::DATA_END => outline.whole = true,
+                _ => {}
+            }
+            at = start + length;
+        }
+        Ok(outline)
+    }
+
+    fn note(&mut self, item: Option<Chunked<'_>>) {
+        match item {
+            Some(Chunked::Metadata(metadata)) if metadata.name == NAME => {
+                self.format = metadata.metadata.get("format").cloned();
+            }
+            Some(Chunked::Attachment { header, data, .. }) => {
+                let text = String::from_utf8(data.into_owned()).ok();
+                match &*header.name {
+                    "manifest.json" => self.manifest = text.or(self.manifest.take()),
+                    "scene.toml" => self.scene = text,
+                    _ => {}
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Moments of a log, a chunk in memory at a time. After an error there are no more.
+#[derive(Debug)]
+pub struct Moments {
+    log: Log,
+    next: usize,
+    ready: VecDeque<Moment>,
+    from: f64,
+    fault: Option<Error>,
+}
+
+impl Iterator for Moments {
+    type Item = Result<Moment, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(moment) = self.ready.pop_front() {
+                if moment.snapshot.time >= self.from {
+                    return Some(Ok(moment));
+                }
+                continue;
+            }
+            if let Some(fault) = self.fault.take() {
+                self.next = usize::MAX;
+                return Some(Err(fault));
+            }
+            let chunk = self.log.inside.chunks.get(self.next)?;
+            self.next += 1;
+            // What came whole before the damage is still told.
+            self.fault = self.unpack(*chunk).err();
+        }
+    }
+}
+
+impl Moments {
+    fn unpack(&mut self, chunk: Chunk) -> Result<(), Error> {
+        let mut moment = Moment::default();
+        let mut props: Vec<Placement> = vec![];
+        let bytes = self.log.unpack(chunk)?;
+        for item in records(&bytes) {
+            let Chunked::Message { header, data } = item else { continue };
+            let Some(channel) = self.log.inside.channels.get(&header.channel_id) else { continue };
+            let closed =
+                take(*channel, &data, &mut moment, &mut props).ok_or_else(|| self.damaged(&header))?;
+            if closed {
+                moment.snapshot.props.clone_from(&props);
+                self.ready.push_back(std::mem::take(&mut moment));
+            }
+        }
+        Ok(())
+    }
+
+    fn damaged(&self, header: &MessageHeader) -> Error {
+        let time = header.log_time as f64 * 1e-9;
+        Error::Log {
+            path: self.log.inside.path.clone(),
+            message: format!("is damaged at {time:.3} s: a message makes no sense"),
+        }
+    }
+}
+
+/// Takes a message into `moment`; whether that closes it. `None` where the message makes no sense there.
+fn take(channel: Channel, data: &[u8], moment: &mut Moment, props: &mut Vec<Placement>) -> Option<bool> {
+    match channel {
+        Channel::Robot(index) => {
+            let robots = &mut moment.snapshot.robots;
+            (robots.len() == index).then_some(())?;
+            robots.push(record::read(data)?);
+        }
+        Channel::Edge(index) => {
+            (moment.edges.len() == index).then_some(())?;
+            moment.edges.push(record::read(data)?);
+        }
+        Channel::Prop(index) => {
+            let place = record::read(data)?;
+            if index == props.len() { props.push(place) } else { *props.get_mut(index)? = place }
+        }
+        Channel::Look(index) => moment.frames.push(Frame { edge: index, ..record::read(data)? }),
+        Channel::Contact => moment.contacts.push(record::read::<Touch>(data)?.contact),
+        Channel::Sample => {
+            let sample: Sample = record::read(data)?;
+            moment.snapshot.time = sample.time;
+            let counts = [
+                (sample.robots, moment.snapshot.robots.len()),
+                (sample.edges, moment.edges.len()),
+                (sample.props, props.len()),
+                (sample.contacts, moment.contacts.len()),
+                (sample.looks, moment.frames.len()),
+            ];
+            counts.iter().all(|(told, found)| *told == *found as u64).then_some(())?;
+            return Some(true);
+        }
+        Channel::Cast => {}
+    }
+    Some(false)
+}

@@ -1,0 +1,243 @@
+//! Writes the file: what is known before the run, a chunk after every batch of moments, what is known after it.
+
+use super::drawing::Drawing;
+use super::messages::{Sample, Touch};
+use super::pictures::Photo;
+use super::record::{self, Record};
+use super::stage::Stage;
+use super::{FORMAT, Topics};
+use crate::{Error, Manifest};
+use mcap::records::{MessageHeader, Metadata};
+use mcap::{Attachment, Compression, WriteOptions};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use vocabulary::{Cast, EdgeState, Frame, Moment, Placement, RobotState};
+
+/// Where a message goes: its channel, which sample it belongs to and when that was.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Stamp {
+    pub(super) number: u64,
+    pub(super) time: f64,
+}
+
+impl Stamp {
+    /// Nanoseconds since the start of the run.
+    pub(super) fn nanoseconds(self) -> u64 {
+        (self.time * 1e9).round() as u64
+    }
+}
+
+/// An open file, and the channels that were added to it.
+pub(super) struct Channels {
+    file: mcap::Writer<BufWriter<File>>,
+    path: PathBuf,
+    buffer: Vec<u8>,
+}
+
+impl Channels {
+    fn fault(&self) -> impl FnOnce(mcap::McapError) -> Error + use<> {
+        let path = self.path.clone();
+        move |error| match error {
+            mcap::McapError::Io(source) => Error::io("write", &path)(source),
+            other => Error::table(&path)(other),
+        }
+    }
+
+    /// A channel for messages of the schema with this name and descriptor.
+    pub(super) fn add(&mut self, topic: &str, name: &str, schema: &[u8], index: usize) -> Result<u16, Error> {
+        let about = BTreeMap::from([("index".to_owned(), index.to_string())]);
+        let added = self.file.add_schema(name, "protobuf", schema);
+        added.and_then(|id| self.file.add_channel(id, topic, "protobuf", &about)).map_err(self.fault())
+    }
+
+    fn add_own<T: Record + Default>(&mut self, topic: &str, index: usize) -> Result<u16, Error> {
+        let (name, schema) = record::schema::<T>();
+        self.add(topic, &name, &schema, index)
+    }
+
+    /// Writes the message that `fill` makes.
+    pub(super) fn put(
+        &mut self,
+        channel: u16,
+        stamp: Stamp,
+        fill: impl FnOnce(&mut Vec<u8>),
+    ) -> Result<(), Error> {
+        self.buffer.clear();
+        fill(&mut self.buffer);
+        let time = stamp.nanoseconds();
+        let sequence = stamp.number as u32;
+        let header = MessageHeader { channel_id: channel, sequence, log_time: time, publish_time: time };
+        self.file.write_to_known_channel(&header, &self.buffer).map_err(self.fault())
+    }
+
+    fn put_own<T: Record>(&mut self, channel: u16, stamp: Stamp, record: &mut T) -> Result<(), Error> {
+        self.put(channel, stamp, |out| record::write(record, out))
+    }
+
+    fn attach(&mut self, name: &str, media_type: &str, text: &str) -> Result<(), Error> {
+        let attachment = Attachment {
+            log_time: 0,
+            create_time: 0,
+            name: name.to_owned(),
+            media_type: media_type.to_owned(),
+            data: Cow::Borrowed(text.as_bytes()),
+        };
+        self.file.attach(&attachment).map_err(self.fault())
+    }
+
+    /// Closes the chunk and hands it to the system.
+    fn flush(&mut self) -> Result<(), Error> {
+        self.file.flush().map_err(self.fault())
+    }
+}
+
+/// Writes a log.
+pub(super) struct Writer {
+    to: Channels,
+    cast: Cast,
+    drawing: Drawing,
+    robots: Vec<u16>,
+    edges: Vec<u16>,
+    looks: Vec<u16>,
+    props: Vec<u16>,
+    contacts: u16,
+    samples: u16,
+    number: u64,
+    /// Where props were when they were last written in this chunk.
+    placed: Vec<Placement>,
+}
+
+impl Writer {
+    /// Writes what is known before the run.
+    pub(super) fn create(path: &Path, cast: &Cast, scene: &str, manifest: &Manifest) -> Result<Self, Error> {
+        let file = File::create(path).map_err(Error::io("create", path))?;
+        let options = WriteOptions::new()
+            .compression(Some(Compression::Lz4))
+            .library(manifest.program.clone())
+            // Chunks end between two samples, by `flush`, and reach the file whole.
+            .chunk_size(None)
+            .disable_seeking(true);
+        let file = options.create(BufWriter::with_capacity(1 << 16, file)).map_err(Error::table(path))?;
+        let mut to = Channels { file, path: path.to_owned(), buffer: Vec::new() };
+        let about = [("format", FORMAT.to_string()), ("program", manifest.program.clone())];
+        let metadata = about.map(|(key, value)| (key.to_owned(), value)).into();
+        to.file
+            .write_metadata(&Metadata { name: super::NAME.to_owned(), metadata })
+            .map_err(Error::table(path))?;
+        to.attach("scene.toml", "application/toml", scene)?;
+        to.attach("manifest.json", "application/json", &text(manifest, path)?)?;
+        let stage = to.add_own::<Stage>(Topics::CAST, 0)?;
+        to.put_own(stage, Stamp::default(), &mut Stage(cast.clone()))?;
+        let mut writer = Self {
+            drawing: Drawing::begin(cast, &mut to)?,
+            robots: vec![],
+            edges: vec![],
+            looks: vec![],
+            props: vec![],
+            contacts: to.add_own::<Touch>(Topics::CONTACTS, 0)?,
+            samples: to.add_own::<Sample>(Topics::SAMPLES, 0)?,
+            number: 0,
+            placed: vec![],
+            cast: cast.clone(),
+            to,
+        };
+        writer.add_channels()?;
+        writer.to.flush()?;
+        Ok(writer)
+    }
+
+    fn add_channels(&mut self) -> Result<(), Error> {
+        let Self { to, cast, .. } = self;
+        for (index, member) in cast.members.iter().enumerate() {
+            self.robots.push(to.add_own::<RobotState>(&Topics::robot(member), index)?);
+        }
+        for (index, edge) in cast.edges.iter().enumerate() {
+            self.edges.push(to.add_own::<EdgeState>(&Topics::edge(cast, *edge), index)?);
+            if cast.looks {
+                self.looks.push(to.add_own::<Frame>(&Topics::looks(cast, *edge), index)?);
+            }
+        }
+        for (index, prop) in cast.props.iter().enumerate() {
+            self.props.push(to.add_own::<Placement>(&Topics::prop(prop), index)?);
+        }
+        Ok(())
+    }
+
+    /// Writes moments, and what cameras saw on the way, as one chunk.
+    pub(super) fn push(&mut self, moments: &mut [Moment], photos: &[Photo]) -> Result<(), Error> {
+        self.placed.clear();
+        let mut photos = photos.iter().peekable();
+        for moment in moments {
+            while let Some(photo) = photos.next_if(|photo| photo.time <= moment.snapshot.time) {
+                self.drawing.photo(photo, &mut self.to)?;
+            }
+            self.moment(moment)?;
+        }
+        for photo in photos {
+            self.drawing.photo(photo, &mut self.to)?;
+        }
+        self.to.flush()
+    }
+
+    fn moment(&mut self, moment: &mut Moment) -> Result<(), Error> {
+        let stamp = Stamp { number: self.number, time: moment.snapshot.time };
+        let to = &mut self.to;
+        self.drawing.moment(stamp, moment, to)?;
+        for (channel, robot) in self.robots.iter().zip(&mut moment.snapshot.robots) {
+            to.put_own(*channel, stamp, robot)?;
+        }
+        for (channel, edge) in self.edges.iter().zip(&mut moment.edges) {
+            to.put_own(*channel, stamp, edge)?;
+        }
+        for (index, (channel, prop)) in self.props.iter().zip(&mut moment.snapshot.props).enumerate() {
+            match self.placed.get_mut(index) {
+                Some(placed) if same(placed, prop) => continue,
+                Some(placed) => *placed = *prop,
+                None => self.placed.push(*prop),
+            }
+            to.put_own(*channel, stamp, prop)?;
+        }
+        for contact in &moment.contacts {
+            let names = contact.things.map(|thing| self.cast.name(thing).to_owned());
+            to.put_own(self.contacts, stamp, &mut Touch { contact: *contact, names })?;
+        }
+        for frame in &mut moment.frames {
+            if let Some(channel) = self.looks.get(frame.edge) {
+                to.put_own(*channel, stamp, frame)?;
+            }
+        }
+        let mut sample = Sample {
+            number: self.number,
+            time: moment.snapshot.time,
+            robots: moment.snapshot.robots.len() as u64,
+            edges: moment.edges.len() as u64,
+            props: moment.snapshot.props.len() as u64,
+            contacts: moment.contacts.len() as u64,
+            looks: moment.frames.len() as u64,
+        };
+        self.number += 1;
+        to.put_own(self.samples, stamp, &mut sample)
+    }
+
+    /// Writes what is known after the run, and the indexes.
+    pub(super) fn finish(mut self, manifest: &Manifest) -> Result<(), Error> {
+        let text = text(manifest, &self.to.path)?;
+        self.to.attach("manifest.json", "application/json", &text)?;
+        self.to.file.finish().map_err(self.to.fault())?;
+        let path = self.to.path.clone();
+        let mut file = self.to.file.into_inner();
+        std::io::Write::flush(&mut file).map_err(Error::io("write", &path))
+    }
+}
+
+fn same(a: &Placement, b: &Placement) -> bool {
+    let bits = |p: &Placement| (p.position.map(f64::to_bits), p.rotation.map(f64::to_bits));
+    bits(a) == bits(b)
+}
+
+fn text(manifest: &Manifest, path: &Path) -> Result<String, Error> {
+    serde_json::to_string_pretty(manifest).map_err(Error::table(path))
+}
