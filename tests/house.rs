@@ -58,7 +58,7 @@ const ARROWS: [(&str, &[&str]); 12] = [
 ];
 
 /// Heavy crates and the only members that may name them.
-const LEAVES: [(&str, &[&str]); 8] = [
+const LEAVES: [(&str, &[&str]); 10] = [
     ("wgpu", &["rendering", "lab"]),
     ("eframe", &["lab"]),
     ("parquet", &["recording"]),

@@ -24,6 +24,7 @@ use std::time::Instant;
 
 /// Figures for print, with what they show and whether it is so. Without a scene, those of the paper.
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub(crate) struct FiguresArgs {
     /// Scene file; if left out, the paper's two cases and its seven robots, which come with the program
     #[arg(value_name = "SCENE")]
@@ -207,7 +208,7 @@ impl Subject {
         let as_written = |case: Case| {
             // The paper's films are those of its own ε, which is the scenes'.
             let mut of = self.jobs.iter().filter(move |job| job.case == case);
-            if case == Case::Own { of.next() } else { of.last() }
+            if case == Case::Own { of.next() } else { of.next_back() }
         };
         let name = |case: Case| match case {
             Case::Line => "line",

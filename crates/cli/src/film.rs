@@ -25,6 +25,7 @@ use std::time::Instant;
 use vocabulary::Cast;
 
 /// What a film is made of.
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub(crate) struct Job<'a> {
     pub(crate) picture: &'a PictureArgs,
     pub(crate) adapter: &'a str,
