@@ -10,6 +10,10 @@ pub(crate) fn check(args: &CheckArgs) -> Outcome {
     let mut problems = Vec::new();
     for path in &args.scenes {
         match load_file(path, &args.set) {
+            Ok((scene, _)) if scene.film.beyond(scene.time.duration).is_some() => {
+                let beyond = scene.film.beyond(scene.time.duration).unwrap_or_default();
+                problems.push(format!("{}: {beyond}", path.display()));
+            }
             Ok((scene, setup)) if args.resolved => {
                 say(&format!("# {}: {} robots", path.display(), setup.cast.members.len()));
                 say(&scene.to_toml());

@@ -159,7 +159,7 @@ pub(crate) fn words(
 ) -> (Vec<Line>, Shapes) {
     let mut words = Words::new(text, stage.style.scale);
     let left = stage.style.show.left_over(size);
-    make_room(&mut words, &stage.style.show, left);
+    let line = make_room(&mut words, &stage.style.show, left);
     let (lower, over) = windows.split_at(windows.len() - upper);
     for window in over {
         words.framed(window.tile);
@@ -172,7 +172,7 @@ pub(crate) fn words(
     let plotted = !stage.style.show.plots.is_empty();
     let charted = stage.style.inset && !plotted && !views.first().is_some_and(carried);
     if let (true, [first] | [first, _]) = (charted, lower) {
-        inset(&mut words, stage, first.tile);
+        inset(&mut words, stage, first.tile, line);
     }
     for (view, window) in views.iter().zip(windows) {
         view_words(&mut words, stage, *window, view);

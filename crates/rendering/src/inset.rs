@@ -1,6 +1,6 @@
 //! The charts in the corner: distance and bearing error of each edge over the whole run so far.
 
-use crate::labels::{Ink, Words};
+use crate::labels::{Ink, Words, overlap};
 use crate::paint::Stage;
 use crate::view::Tile;
 use glam::Vec2;
@@ -64,10 +64,11 @@ impl Axes {
     }
 }
 
-/// Draws the panel and both charts over one time axis.
-pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, tile: Tile) {
+/// Draws the panel and both charts over one time axis; not over the `line` at the bottom.
+pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, tile: Tile, line: Option<[f32; 4]>) {
     let Some(panel) = place(words, tile).filter(|_| !stage.cast.edges.is_empty()) else { return };
-    if !words.is_free(&panel) {
+    // What a film says is worth more.
+    if line.is_some_and(|line| overlap(&panel, &line)) {
         return;
     }
     words.reserve(panel);

@@ -69,11 +69,6 @@ impl<'a> Words<'a> {
         self.taken.push(area);
     }
 
-    /// Whether nothing has been put where `area` is.
-    pub(crate) fn is_free(&self, area: &Box4) -> bool {
-        !self.taken.iter().any(|other| overlap(area, other))
-    }
-
     /// A thin frame around a tile, from which words keep away.
     pub(crate) fn framed(&mut self, tile: Tile) {
         let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
@@ -154,7 +149,7 @@ fn inside(area: &Box4, tile: &Tile) -> bool {
         && area[1] + area[3] < top + tile.height as f32 - 2.0
 }
 
-fn overlap(a: &Box4, b: &Box4) -> bool {
+pub(crate) fn overlap(a: &Box4, b: &Box4) -> bool {
     a[0] < b[0] + b[2] && b[0] < a[0] + a[2] && a[1] < b[1] + b[3] && b[1] < a[1] + a[3]
 }
 

@@ -227,12 +227,12 @@ fn line_place(words: &mut Words<'_>, said: &Line, [width, height]: [f32; 2]) -> 
     ([0.5 * (width - wide) - pad, bottom - high, wide + 2.0 * pad, high], size)
 }
 
-/// Keeps other words away from where the line at the bottom will be.
-pub(crate) fn make_room(words: &mut Words<'_>, show: &Show, views: (u32, u32)) {
-    if let Some(said) = show.line.as_ref().filter(|line| line.opacity > 0.0) {
-        let (place, _) = line_place(words, said, [views.0 as f32, views.1 as f32]);
-        words.reserve(place);
-    }
+/// Keeps other words away from where the line at the bottom will be, and says where that is.
+pub(crate) fn make_room(words: &mut Words<'_>, show: &Show, views: (u32, u32)) -> Option<[f32; 4]> {
+    let said = show.line.as_ref().filter(|line| line.opacity > 0.0)?;
+    let (place, _) = line_place(words, said, [views.0 as f32, views.1 as f32]);
+    words.reserve(place);
+    Some(place)
 }
 
 fn line(words: &mut Words<'_>, said: &Line, views: [f32; 2]) {

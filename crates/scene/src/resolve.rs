@@ -226,26 +226,19 @@ fn film(part: &FilmPart, duration: f64, drafts: &[Draft], reading: &mut Reading)
     film
 }
 
-/// Gives every shot its beginning and end.
+/// Gives every shot its beginning and end. Whether the run is long enough matters once it is filmed: [`Film::beyond`].
 fn shots(shots: &mut [Shot], (place, duration): (Place, f64), drafts: &[Draft], reading: &mut Reading) {
     let begins: Vec<Option<f64>> = shots.iter().map(|shot| shot.from).collect();
     let mut now = 0.0;
     for (k, shot) in shots.iter_mut().enumerate() {
         let from = shot.from.unwrap_or(now);
-        let to = shot.to.or(begins.get(k + 1).copied().flatten()).unwrap_or(duration);
+        let said = shot.to.or(begins.get(k + 1).copied().flatten());
+        let to = said.unwrap_or(duration.max(from));
         let name = format!("shot {} of the film", k + 1);
         if from < now {
             let message = format!("{name} begins at {from} s, before the one before it ends, at {now} s");
             reading.note(place, message);
-        }
-        // A run ends at its last sample, which rounding may put a little before its duration.
-        if to > duration * (1.0 + 1e-9) {
-            let message = format!(
-                "{name} ends at {to} s, beyond the end of the run at {duration} s: end it earlier, or leave the \
-                 storyboard out with --set film.shots=[]"
-            );
-            reading.note(place, message);
-        } else if to <= from {
+        } else if said.is_some_and(|to| to <= from) {
             let message = format!("{name} has no length: it begins at {from} s and ends at {to} s");
             reading.note(place, message);
         }

@@ -53,6 +53,9 @@ impl Board {
             let shot = Shot { to: Some(duration), ..Shot::default() };
             return Ok(Self { cuts: vec![Cut::new(shot, view, names)?], title: 0.0, end: 0.0 });
         }
+        if let Some(beyond) = film.beyond(duration) {
+            return Err(Failure::Usage(beyond));
+        }
         let shots = match film.shots.as_slice() {
             [] => vec![Shot { to: Some(duration), ..Shot::default() }],
             shots => shots.to_vec(),

@@ -45,7 +45,7 @@ fn a_storyboard_is_followed_and_the_same_film_is_the_same_file() {
 fn a_storyboard_that_does_not_fit_its_run_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
     for (film, wanted) in [
-        ("[[film.shots]]\nto = 3.0\n", "beyond the end of the run at 2 s"),
+        ("[[film.shots]]\nto = 3.0\n", "is beyond the end of the run at 2 s"),
         ("[[film.shots]]\nto = 1.0\n[[film.shots]]\nfrom = 0.5\nto = 2.0\n", "before the one before it ends"),
         ("[[film.shots]]\nfrom = 1.0\nto = 1.0\n", "has no length"),
         ("[[film.shots]]\nview = \"camera:c\"\n", "there is no robot called `c`"),
@@ -62,6 +62,10 @@ fn a_storyboard_that_does_not_fit_its_run_is_told() {
         told(&echelon(folder.path(), &["film", "two.toml", "--size", "64x36", "-o", "f.mp4"]));
     assert!(code == 2 && err.contains("did you mean \"ribbons\""), "{err}");
     assert!(!folder.path().join("f.mp4").exists());
+    // A run is not a film.
+    write_scene(folder.path(), "[[film.shots]]\nto = 3.0\n");
+    assert_eq!(told(&echelon(folder.path(), &["run", "two.toml", "--no-record", "-q"])).0, 0);
+    assert_eq!(told(&echelon(folder.path(), &["check", "two.toml"])).0, 2);
     // The way out that the message names.
     write_scene(folder.path(), BOARD);
     let shorter =

@@ -73,6 +73,25 @@ words! {
     }
 }
 
+impl Film {
+    /// What of the storyboard is beyond the end of a run of `duration` s, in words; `None` where all of it is in the run.
+    pub fn beyond(&self, duration: f64) -> Option<String> {
+        // A run ends at its last sample, which rounding may put a little before its duration.
+        let end = duration * (1.0 + 1e-9);
+        let late = |shot: &Shot| {
+            shot.to.is_some_and(|to| to > end) || shot.from.is_some_and(|from| from >= duration)
+        };
+        let (index, shot) = self.shots.iter().enumerate().find(|(_, shot)| late(shot))?;
+        Some(format!(
+            "shot {} of the film, from {} to {} s, is beyond the end of the run at {duration} s: end it earlier, or \
+             leave the storyboard out with --set film.shots=[]",
+            index + 1,
+            shot.from.unwrap_or(0.0),
+            shot.to.unwrap_or(duration)
+        ))
+    }
+}
+
 /// A shot.
 struct ShotForm;
 
