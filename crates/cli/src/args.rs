@@ -116,7 +116,8 @@ pub(crate) struct RunArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct LabArgs {
-    /// Scene file, or a picture that the lab has made; a scene that comes with the program if left out
+    /// Scene file, a run folder or log.mcap to look through, or a picture that the lab has made; a scene that comes with the
+    /// program if left out
     #[arg(value_name = "SCENE")]
     pub(crate) scene: Option<PathBuf>,
     /// Change a value of the scene, as an edit that can be undone; may be repeated

@@ -275,7 +275,11 @@ impl Lab {
             Action::Picture => self.picture(),
             Action::WindowPicture => self.window_picture(),
             Action::Film if self.film.is_some() => self.end_film(),
+            Action::Film if self.desk.recorded => {
+                self.desk.fault("A recorded run is filmed by: echelon replay RUN --film FILE");
+            }
             Action::Film => self.begin_film(),
+            Action::KeepRun if self.desk.recorded => self.desk.fault("This run is recorded already"),
             Action::KeepRun => self.desk.orders.push(Order::Tell(self.desk.branch)),
             Action::CurvesCsv => self.write_curves("csv", &quantities::csv(&self.desk)),
             Action::CurvesSvg => self.write_curves("svg", &quantities::svg(&self.desk)),
@@ -347,6 +351,10 @@ impl eframe::App for Lab {
 
     fn logic(&mut self, ctx: &Context, _: &mut eframe::Frame) {
         self.hear();
+        let passed = ctx.input(|input| f64::from(input.stable_dt.min(0.1)));
+        if self.desk.roll(passed) {
+            ctx.request_repaint();
+        }
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         for file in dropped {
             self.act(Action::Open(file.path().to_owned()));

@@ -22,6 +22,27 @@ const PLACES: [[f64; 2]; 8] = [
 /// Mirror images may be this far apart, m and rad.
 const ALIKE: [f64; 2] = [0.05, 0.09];
 
+/// Whether an action asks for another scene.
+fn changes_the_scene(action: &Action) -> bool {
+    matches!(
+        action,
+        Action::Tune { .. }
+            | Action::Untune { .. }
+            | Action::Set { .. }
+            | Action::Reset { .. }
+            | Action::SetPoint { .. }
+            | Action::Shape { .. }
+            | Action::Connect { .. }
+            | Action::AddRobot
+            | Action::RemoveRobot(_)
+            | Action::RenameRobot(..)
+            | Action::AddProp(..)
+            | Action::RemoveProp(_)
+            | Action::Undo
+            | Action::Redo
+    )
+}
+
 impl Desk {
     /// Does what can be done without files and without a window; whether that was all.
     pub fn act(&mut self, action: &Action) -> bool {
@@ -37,6 +58,9 @@ impl Desk {
             Action::Seek(time) => self.seek(*time),
             Action::Present => self.cursor = None,
             Action::Branch(branch) => self.switch(*branch),
+            Action::Fork if self.recorded => {
+                self.fault("A recorded run has no branches: change something, and its scene runs anew");
+            }
             Action::Fork => {
                 self.rest();
                 self.fork();
@@ -67,6 +91,9 @@ impl Desk {
 
     /// Does what changes the scene; whether that was it.
     fn edit_scene(&mut self, action: &Action) -> bool {
+        if changes_the_scene(action) {
+            self.leave_recording();
+        }
         match action {
             Action::Tune { what, key, value } => self.tune(what, key, Some(value)),
             Action::Untune { what, key } => self.tune(what, key, None),
@@ -104,6 +131,9 @@ impl Desk {
     }
 
     fn step(&mut self) {
+        if self.recorded && self.cursor.is_none() {
+            return;
+        }
         if let (Some(time), Some(history)) = (self.cursor, &self.history) {
             let next = time + history.period();
             self.seek(next);

@@ -5,6 +5,7 @@ use crate::session::draft::Draft;
 use crate::session::forecast::Forecast;
 use crate::session::history::History;
 use crate::session::runner::{News, Order};
+use recording::log::Log;
 use scene::{Channel, Follow, Role, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -63,6 +64,8 @@ pub struct Desk {
     pub cursor: Option<f64>,
     /// Whether the run goes.
     pub playing: bool,
+    /// Whether the past was recorded earlier, and there is no run behind it.
+    pub recorded: bool,
     /// Simulated seconds per second.
     pub pace: f64,
     /// What is selected.
@@ -111,6 +114,7 @@ impl Desk {
             branch: 0,
             cursor: None,
             playing: true,
+            recorded: false,
             pace: 1.0,
             choice: Choice::Nothing,
             tool: Tool::Hand,
@@ -148,17 +152,56 @@ impl Desk {
         self.draft.as_ref().map(Draft::scene)
     }
 
+    /// Opens a run that was recorded, to look through it; its files are looked for at `home`.
+    ///
+    /// # Errors
+    /// All that is wrong with its scene; then the desk is as before.
+    pub fn open_recorded(&mut self, log: Log, home: &Path) -> Result<(), String> {
+        self.draft = Some(Draft::new(log.scene().to_owned(), None, home)?);
+        self.choice = Choice::Nothing;
+        self.begin();
+        (self.recorded, self.playing) = (true, false);
+        self.orders.push(Order::Recorded(Box::new(log)));
+        Ok(())
+    }
+
     /// Runs the scene as it stands from time 0, at once up to `until` s.
     pub fn restart(&mut self, until: f64) {
+        self.begin();
+        self.recorded = false;
+        let Some(draft) = &self.draft else { return };
+        self.orders.push(Order::Open { scene: Arc::clone(draft.scene()), gpu: None, until });
+        self.orders.push(Order::Ahead(self.ahead));
+        self.orders.push(Order::Play(self.playing));
+    }
+
+    fn begin(&mut self) {
         let Some(draft) = &self.draft else { return };
         draft.text().clone_into(&mut self.base);
         self.first = Some(Arc::clone(draft.scene()));
         self.chosen = self.chosen_name();
         self.own.clone_from(&draft.scene().changes);
-        self.orders.push(Order::Open { scene: Arc::clone(draft.scene()), gpu: None, until });
-        self.orders.push(Order::Ahead(self.ahead));
-        self.orders.push(Order::Play(self.playing));
         self.cursor = None;
+    }
+
+    /// Runs the scene of a recorded run anew, up to the time that is looked at.
+    pub(crate) fn leave_recording(&mut self) {
+        if self.recorded {
+            let until = self.time();
+            self.restart(until);
+            self.note("The scene runs anew from here on: what was recorded cannot be changed");
+        }
+    }
+
+    /// Goes on through a recorded run, `seconds` of the clock; whether it goes on after that.
+    pub fn roll(&mut self, seconds: f64) -> bool {
+        if !self.recorded || !self.playing {
+            return false;
+        }
+        let time = self.time() + seconds * self.pace;
+        self.playing = time < self.end();
+        self.cursor = self.playing.then_some(time);
+        self.playing
     }
 
     /// The scene as it was written by the time that is looked at.
@@ -325,8 +368,13 @@ impl Desk {
 
     /// Lets the run go, from the present.
     pub fn play(&mut self) {
-        self.cursor = None;
         self.playing = true;
+        if self.recorded {
+            // From its end it begins anew.
+            self.cursor = self.cursor.or(Some(0.0));
+            return;
+        }
+        self.cursor = None;
         self.orders.push(Order::Play(true));
     }
 
@@ -337,6 +385,7 @@ impl Desk {
                 self.history = Some(History::new(cast, period));
                 self.branches = vec![BranchFace::trunk()];
                 (self.branch, self.cursor, self.forecast, self.forks) = (0, None, None, 0);
+                self.cursor = self.recorded.then_some(0.0);
                 self.check_choice();
             }
             News::Moments(branch, moments) => {

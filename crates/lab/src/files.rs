@@ -18,6 +18,10 @@ impl Lab {
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
             return self.open_picture(path);
         }
+        let log = if path.is_dir() { path.join(recording::log::FILE) } else { path.to_owned() };
+        if path.is_dir() || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
+            return self.open_recorded(&log);
+        }
         match std::fs::read_to_string(path) {
             Ok(text) => {
                 if self.take_scene(text, Some(path.to_owned()), path) {
@@ -28,6 +32,26 @@ impl Lab {
                 }
             }
             Err(error) => self.desk.fault(format!("{} cannot be read: {error}", path.display())),
+        }
+    }
+
+    /// A run that was recorded, to look through.
+    fn open_recorded(&mut self, path: &Path) {
+        let log = match recording::log::Log::open(path) {
+            Ok(log) => log,
+            Err(error) => return self.desk.fault(error.to_string()),
+        };
+        self.end_film();
+        // Beside the log lies what its scene was read from, if anything.
+        match self.desk.open_recorded(log, &path.with_file_name("scene.toml")) {
+            Ok(()) => {
+                self.desk.notice = None;
+                self.over = Over::Nothing;
+                self.viewport.look("snake");
+                self.watch.look_at(None);
+                self.desk.note(format!("As recorded in {}", path.display()));
+            }
+            Err(faults) => self.desk.fault(faults),
         }
     }
 

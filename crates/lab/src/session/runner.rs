@@ -2,6 +2,7 @@
 
 use super::branches::{Branches, Change};
 use super::forecast::Crystal;
+use recording::log::Log;
 use rendering::{CameraEyes, Gpu};
 use scene::Scene;
 use simulation::Simulation;
@@ -23,6 +24,8 @@ pub enum Order {
         /// s.
         until: f64,
     },
+    /// A run that was recorded: all of it is told at once, and nothing goes on.
+    Recorded(Box<Log>),
     /// Run on, or stand.
     Play(bool),
     /// Simulated seconds per second.
@@ -103,6 +106,8 @@ pub struct Runner {
 const STRETCH: Duration = Duration::from_millis(10);
 /// Batches that may wait for the window. A window that shows nothing for so long does not need the run to go on.
 const MOST_UNREAD: usize = 600;
+/// Samples of a recorded run that are told together.
+const BATCH: usize = 200;
 /// Between two looks ahead while the run goes, s.
 const LOOK_EVERY: Duration = Duration::from_millis(300);
 /// Between two batches of samples while the run goes, s.
@@ -268,6 +273,7 @@ impl Work {
     fn follow(&mut self, order: Order) {
         match order {
             Order::Open { scene, gpu, until } => self.open(scene, gpu.as_ref(), until),
+            Order::Recorded(log) => self.look_through(&log),
             Order::Play(on) => {
                 self.playing = on && self.branches.is_some();
                 self.owed = 0.0;
@@ -321,6 +327,27 @@ impl Work {
         self.tell(News::Opened { cast, period });
         self.catch_up(until);
         self.look_ahead(true);
+    }
+
+    /// Tells what was recorded.
+    fn look_through(&mut self, log: &Log) {
+        (self.branches, self.active, self.playing) = (None, 0, false);
+        let (cast, period) = (Arc::new(log.cast().clone()), log.manifest().period);
+        self.tell(News::Opened { cast, period });
+        let mut batch = Vec::new();
+        for moment in log.moments() {
+            match moment {
+                Ok(moment) => batch.push(moment),
+                Err(error) => {
+                    self.report(std::mem::take(&mut batch));
+                    return self.tell(News::Refused(error.to_string()));
+                }
+            }
+            if batch.len() == BATCH {
+                self.report(std::mem::take(&mut batch));
+            }
+        }
+        self.report(batch);
     }
 
     /// At least the first sample, and all up to `until` s, within a second of waiting.

@@ -39,6 +39,7 @@ fn text(desk: &Desk) -> String {
 fn orders(desk: &Desk) -> Vec<&'static str> {
     let word = |order: &Order| match order {
         Order::Open { .. } => "open",
+        Order::Recorded(_) => "recorded",
         Order::Play(_) => "play",
         Order::Pace(_) => "pace",
         Order::Step => "step",

@@ -10,4 +10,5 @@ mod futures;
 mod history;
 mod pacing;
 mod panels;
+mod recorded;
 mod staying;
