@@ -12,7 +12,8 @@ from collections import defaultdict
 
 import rerun as rr
 import rerun.blueprint as rrb
-from mcap.reader import make_reader
+from mcap.exceptions import EndOfFile
+from mcap.reader import NonSeekingReader
 from mcap_protobuf.decoder import DecoderFactory
 
 CURVES = {
@@ -35,12 +36,22 @@ def colours(members):
             followers += 1
 
 
+def whole(reader):
+    """All messages, up to where a log was cut off."""
+    try:
+        for _, channel, message, decoded in reader.iter_decoded_messages(log_time_order=False):
+            yield channel, message, decoded
+    except EndOfFile:
+        pass
+
+
 def read(path):
     """The cast, the states of each edge with their times in ns, and the path of each robot."""
     cast, edges, paths, cameras = None, defaultdict(list), defaultdict(list), set()
     with open(path, "rb") as file:
-        reader = make_reader(file, decoder_factories=[DecoderFactory()])
-        for _, channel, message, decoded in reader.iter_decoded_messages():
+        # One that does not seek also reads a log that was cut off.
+        reader = NonSeekingReader(file, decoder_factories=[DecoderFactory()])
+        for channel, message, decoded in whole(reader):
             topic = channel.topic
             if topic == "/cast":
                 cast = decoded

@@ -15,7 +15,8 @@ Names keep to the rules of ROS: `-` becomes `_`. Frames keep their names.
 import math
 import sys
 
-from mcap.reader import make_reader
+from mcap.exceptions import EndOfFile
+from mcap.reader import NonSeekingReader
 from mcap_protobuf.decoder import DecoderFactory
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
@@ -133,9 +134,12 @@ def main():
         return None
 
     connections = {}
-    reader = make_reader(open(log, "rb"), decoder_factories=[DecoderFactory()])
+    # One that does not seek also reads a log that was cut off.
+    reader = NonSeekingReader(open(log, "rb"), decoder_factories=[DecoderFactory()])
+    if Path(bag).exists():
+        sys.exit(f"{bag} is there already: choose another name, or remove it first")
     with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-        for _, channel, message, decoded in reader.iter_decoded_messages():
+        for channel, message, decoded in whole(reader):
             made = message_of(channel.topic, message.log_time, decoded)
             if made is None:
                 continue
@@ -146,6 +150,15 @@ def main():
             writer.write(connections[topic], message.log_time, store.serialize_cdr(out, kind))
     for topic, connection in sorted(connections.items()):
         print(topic, connection.msgtype)
+
+
+def whole(reader):
+    """All messages, up to where a log was cut off."""
+    try:
+        for _, channel, message, decoded in reader.iter_decoded_messages(log_time_order=False):
+            yield channel, message, decoded
+    except EndOfFile:
+        pass
 
 
 if __name__ == "__main__":

@@ -116,7 +116,7 @@ fn decimals(times: &[f64]) -> usize {
 fn times(asked: &[f64], duration: f64) -> Result<Vec<f64>, Failure> {
     if let Some(bad) = asked.iter().find(|t| !(0.0..=duration).contains(*t)) {
         return Err(Failure::Usage(format!(
-            "--at {bad}: times are from 0 to {duration} s, the length of the run"
+            "{bad} s is no time of the run: times are from 0 to {duration} s"
         )));
     }
     let mut times = if asked.is_empty() { vec![duration] } else { asked.to_vec() };

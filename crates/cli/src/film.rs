@@ -52,6 +52,13 @@ pub(crate) struct Job<'a> {
     pub(crate) judging: Judging,
     /// What is the same only for the same run.
     pub(crate) run: String,
+    /// Law and gains in one line, and from when on, s; in the order of time.
+    pub(crate) captions: Vec<(f64, String)>,
+}
+
+/// What the laws of a scene become as its run goes.
+pub(crate) fn captions(scene: &scene::Scene) -> Vec<(f64, String)> {
+    scene.changes.iter().map(|change| (change.at, simulation::caption(&change.then))).collect()
 }
 
 pub(crate) fn film(args: &FilmArgs) -> Outcome {
@@ -79,6 +86,7 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
             settled_after: scene.expect.settled_after.unwrap_or(0.0),
         },
         run: scene.to_toml(),
+        captions: captions(&scene),
     };
     shoot(job, |gpu| {
         loaded.open_eyes(Some(gpu), &args.scene)?;
@@ -135,6 +143,9 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
                 line: words::line(&frame, cast, &moment),
                 plots: plots.shown(frame.plots),
             };
+            if let Some((_, caption)) = job.captions.iter().rfind(|(at, _)| *at <= moment.snapshot.time) {
+                studio.renderer.retitle(&cast.title, caption);
+            }
             let ready = studio.renderer.draw_next(playback.trail(), &moment, &frame.layout, &style)?;
             ready.map_or(Ok(()), |picture| film.push(picture))?;
         }

@@ -95,6 +95,11 @@ impl Recorded {
                 }
             }
         }
+        if samples == 0 {
+            let text =
+                format!("{} holds no sample: it was cut off before its first chunk", log.path().display());
+            return Err(Failure::Usage(text));
+        }
         Ok(Some((samples, digest.text())))
     }
 }

@@ -10,6 +10,7 @@ use crate::recorded::Recorded;
 use crate::run::{PROGRAM, STRIDE};
 use crate::{capture, eyes, film, interrupt};
 use clap::Args;
+use recording::log::Log;
 use recording::{Digest, Judging, Manifest, Status};
 use scene::Scene;
 use serde_json::json;
@@ -62,6 +63,8 @@ struct Replay {
     /// Of the run as it is now.
     digest: String,
     samples: u64,
+    /// When the moments of the log and those of the run first differ, in anything at all, s.
+    apart: Option<f64>,
     /// Whether cameras on robots took pictures.
     sees: bool,
 }
@@ -112,6 +115,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
                 settled_after: expect.settled_after.unwrap_or(0.0),
             },
             run: format!("{:?}", log.manifest()),
+            captions: scene.as_ref().map_or_else(Vec::new, film::captions),
         };
         return film::shoot(job, |_| source());
     }
@@ -165,11 +169,11 @@ fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
     let progress = Progress::begin(&format!("Replaying {}", scene.title), simulation.len(), quiet);
     let cut = matches!(manifest.status, Status::Interrupted | Status::Running);
     let most = if cut { manifest.samples } else { u64::MAX };
-    let (samples, digest) = run_again(&mut simulation, most, &progress)?;
+    let (samples, digest, apart) = run_again(&mut simulation, most, run.moments(), &progress)?;
     progress.end();
     let sees = simulation.needs_eyes();
     let log = logged.map(|(_, digest)| digest);
-    let replay = Replay { manifest, recorded, log, digest, samples, sees };
+    let replay = Replay { manifest, recorded, log, digest, samples, apart, sees };
     if args.json {
         replay.as_json();
     } else if !args.quiet {
@@ -180,12 +184,25 @@ fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
     if replay.same() { Ok(()) } else { Err(Failure::Expectation) }
 }
 
-/// Runs `most` samples at most; how many there were, and their digest.
-fn run_again(simulation: &mut Simulation, most: u64, progress: &Progress) -> Result<(u64, String), Failure> {
-    let (mut digest, mut samples) = (Digest::default(), 0);
+/// Runs `most` samples at most; how many there were, their digest, and when they first differ from those of `log`, s.
+fn run_again(
+    simulation: &mut Simulation,
+    most: u64,
+    log: Option<&Log>,
+    progress: &Progress,
+) -> Result<(u64, String, Option<f64>), Failure> {
+    let (mut digest, mut samples, mut apart) = (Digest::default(), 0, None);
+    let mut logged = log.map(Log::moments);
     while samples < most {
         let Some(moment) = simulation.next_moment() else { break };
         digest.push(moment);
+        // The digest is that of motions and commands; this is everything.
+        if let (None, Some(logged)) = (apart, &mut logged)
+            && let Some(then) = logged.next().transpose()?
+            && then != *moment
+        {
+            apart = Some(moment.snapshot.time);
+        }
         samples += 1;
         if samples % STRIDE == 0 {
             progress.at(samples);
@@ -196,7 +213,7 @@ fn run_again(simulation: &mut Simulation, most: u64, progress: &Progress) -> Res
     }
     match simulation.fault() {
         Some(fault) => Err(Failure::Machine(fault.to_owned())),
-        None => Ok((samples, digest.text())),
+        None => Ok((samples, digest.text(), apart)),
     }
 }
 
@@ -206,7 +223,7 @@ impl Replay {
     }
 
     fn log_agrees(&self) -> bool {
-        self.log.as_ref().is_none_or(|log| *log == self.recorded)
+        self.apart.is_none() && self.log.as_ref().is_none_or(|log| *log == self.recorded)
     }
 
     /// What made the run, if that is not this program.
@@ -226,7 +243,8 @@ impl Replay {
             return format!("DIFFERENT: {samples} samples were recorded, and it has {} now", self.samples);
         }
         if self.digest == self.recorded && !self.log_agrees() {
-            return "DIFFERENT: the run comes out the same, but its log holds another".to_owned();
+            let when = self.apart.map_or_else(String::new, |time| format!(", from {time:.2} s on"));
+            return format!("DIFFERENT: the run comes out the same, but its log holds another{when}");
         }
         let why = if self.other_program().is_some() {
             "another program need not come to the same bits"

@@ -51,6 +51,7 @@ pub struct Event {
 const MOST_EVENTS: usize = 2000;
 
 /// What the window knows.
+#[expect(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
 pub struct Desk {
     /// The scene under work; `None` where none could be opened.
     pub draft: Option<Draft>,

@@ -17,7 +17,7 @@ pub enum Error {
         source: std::io::Error,
     },
     /// The folder holds something already.
-    #[error("{} {what}: choose another folder with --out, or give --force to replace it", path.display())]
+    #[error("{} {what}: choose another folder with --out{}", path.display(), advice(what))]
     Occupied {
         /// The folder.
         path: PathBuf,
@@ -56,5 +56,14 @@ impl Error {
             path,
             message: error.to_string().trim_start_matches("External: ").to_owned(),
         }
+    }
+}
+
+/// What else can be done about a folder that holds something: only what is ours is replaced.
+fn advice(what: &str) -> &'static str {
+    if what.contains("other files") || what.contains("being written") {
+        ""
+    } else {
+        ", or give --force to replace it"
     }
 }

@@ -10,6 +10,11 @@ use std::path::Path;
 /// # Errors
 /// [`Error::Io`] when the folder is not writable or full; nothing is left behind then.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    // A link stays, and what it points at is written; what is no file, such as a pipe or a device, takes it as it comes.
+    let path = &fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if path.exists() && !path.is_file() {
+        return fs::write(path, bytes).map_err(Error::io("write", path));
+    }
     let draft = path.with_extension("tmp");
     let written = fs::File::create(&draft).and_then(|mut file| {
         file.write_all(bytes)?;
@@ -36,6 +41,20 @@ mod tests {
             assert_eq!(fs::read_to_string(&path).expect("read"), text);
         }
         assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_stay_links_and_devices_devices() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (file, link) = (folder.path().join("a.json"), folder.path().join("link.json"));
+        fs::write(&file, "old").expect("written");
+        std::os::unix::fs::symlink(&file, &link).expect("linked");
+        write_whole(&link, b"new").expect("written");
+        assert!(link.is_symlink() && fs::read_to_string(&file).expect("read") == "new");
+        write_whole(Path::new("/dev/null"), b"gone").expect("written");
+        assert!(!Path::new("/dev/null").is_file());
+        assert!(!Path::new("/dev/full").exists() || write_whole(Path::new("/dev/full"), b"x").is_err());
     }
 
     #[test]

@@ -136,7 +136,11 @@ impl Recorder {
         self.manifest.status = Status::Interrupted;
         // The disk has just refused: if it refuses again, the error before is the one to tell.
         let _ = self.log.take().map_or(Ok(()), |log| log.finish(&self.manifest));
-        let _ = self.write_manifest();
+        if self.write_manifest().is_err() {
+            // Where there is no room for a file beside it, the old one is overwritten: it has its room already.
+            let _ = serde_json::to_string_pretty(&self.manifest)
+                .map(|text| fs::write(self.folder.join("manifest.json"), text));
+        }
     }
 
     fn write_manifest(&self) -> Result<(), Error> {

@@ -12,6 +12,8 @@ pub(crate) struct Partial {
 
 impl Partial {
     pub(crate) fn new(goal: &Path) -> Self {
+        // A link stays, and what it points at is replaced.
+        let goal = &std::fs::canonicalize(goal).unwrap_or_else(|_| goal.to_owned());
         let part = |text: Option<&std::ffi::OsStr>| text.unwrap_or_default().to_string_lossy().into_owned();
         let (stem, ending) = (part(goal.file_stem()), part(goal.extension()));
         // The ending stays, since programs go by it.
@@ -22,7 +24,14 @@ impl Partial {
 
     /// Gives it its name.
     pub(crate) fn rename(self) -> Result<(), Error> {
-        std::fs::rename(&self.path, &self.goal).map_err(|e| Error::write(&self.goal, e))
+        // What is no file and no folder, such as a pipe or a device, takes it as it comes.
+        let special = self.goal.exists() && !self.goal.is_file() && !self.goal.is_dir();
+        let done = if special {
+            std::fs::read(&self.path).and_then(|bytes| std::fs::write(&self.goal, bytes))
+        } else {
+            std::fs::rename(&self.path, &self.goal)
+        };
+        done.map_err(|e| Error::write(&self.goal, e))
     }
 }
 

@@ -23,6 +23,14 @@ pub(super) fn write(folder: &Path, report: &Report<'_>) -> Result<Vec<PathBuf>, 
     let mut texts =
         vec![("certificate.json", format!("{:#}\n", as_json(report))), ("certificate.csv", table(report))];
     texts.extend(pictures::figures(report));
+    // What an earlier certificate has left is not to be taken for this one's.
+    for name in ["certificate.svg", "stability.svg", "reach.svg", "chain.svg"] {
+        let path = folder.join(name);
+        if path.is_file() && !texts.iter().any(|(other, _)| *other == name) {
+            std::fs::remove_file(&path)
+                .map_err(|e| Failure::Machine(format!("cannot remove {}: {e}", path.display())))?;
+        }
+    }
     let mut written = vec![];
     for (name, text) in texts {
         let path = folder.join(name);
@@ -68,7 +76,7 @@ fn constants(c: &Constants, bound: Option<f64>) -> Value {
         "epsilon_1": c.epsilon_1, "c3": c.c3, "mu_1": c.mu_1, "mu_2": c.mu_2, "t_epsilon": c.t_epsilon,
         "trap": c.trap, "ultimate_filtered_error": c.filtered, "ultimate_error": c.error,
         "delta_0": c.delta_0,
-        "wanted": bound.map(|b| json!({ "error": b, "epsilon_most": c.epsilon_for(b) })),
+        "wanted": bound.map(|b| json!({ "error": b, "epsilon_most": c.epsilon_for(b), "if": "the premises of eqs 51-53 are met" })),
     })
 }
 

@@ -114,9 +114,13 @@ fn stability(report: &Report<'_>, chart: &Chart) -> Figure {
         ..Series::default()
     });
     Figure {
-        title: format!("{}: stable below the curves", report.scene.title),
+        title: format!("{}: stability", report.scene.title),
         axis: axis("observer constant ε (s)", Scale::Log),
-        panels: vec![Panel { axis: axis("longest stable period (ms)", Scale::Log), series, guides: vec![] }],
+        panels: vec![Panel {
+            axis: axis("stable below: longest period (ms)", Scale::Log),
+            series,
+            guides: vec![],
+        }],
         height: 60.0,
         ..Figure::default()
     }
@@ -151,10 +155,14 @@ fn reach(report: &Report<'_>, beyond: &Beyond) -> Figure {
         });
     }
     Figure {
-        title: format!("{}: set points that can be held", report.scene.title),
+        title: format!("{}: reach", report.scene.title),
         axis: Axis { label: "bearing (°)".to_owned(), show: vec![-180.0, 180.0], ..Axis::default() },
         panels: vec![Panel {
-            axis: Axis { label: "distance up to which (m)".to_owned(), show: vec![0.0], ..Axis::default() },
+            axis: Axis {
+                label: "distances below can be held (m)".to_owned(),
+                show: vec![0.0],
+                ..Axis::default()
+            },
             series,
             guides: vec![],
         }],
@@ -178,7 +186,8 @@ fn chain(report: &Report<'_>, beyond: &Beyond) -> Figure {
         name: if *followers == 1 { "1 follower".to_owned() } else { followers.to_string() },
         colour: [GREYS[k], 0.35 + 0.3 * GREYS[k], 0.7],
         stroke: [Stroke::Solid, Stroke::Dashed, Stroke::Dotted, Stroke::Solid][k],
-        points: gain.curve.iter().map(|p| [p.frequency, (1e3 * p.lengths[k]).max(1e-6)]).collect(),
+        // Beyond a kilometre no limit is kept any more.
+        points: gain.curve.iter().map(|p| [p.frequency, 1e3 * p.lengths[k]]).filter(|p| p[1] < 1e6).collect(),
         ..Series::default()
     });
     let growth = Series {
@@ -187,7 +196,7 @@ fn chain(report: &Report<'_>, beyond: &Beyond) -> Figure {
         ..Series::default()
     };
     Figure {
-        title: format!("{}: {} in a chain of its like", report.scene.title, report.follower(gain.edge)),
+        title: format!("{} in a chain of its like", report.follower(gain.edge)),
         axis: axis("frequency of the lead robot's speed (rad/s)", Scale::Log),
         panels: vec![
             Panel {

@@ -59,7 +59,10 @@ fn edge(report: &Report<'_>, certificate: &Certificate) {
         .map_or_else(String::new, |e| format!("; tanh in place of sign alone leaves {}", error(e)));
     say(&format!("  error          {}{smoothing}", error(certificate.final_error)));
     if let Some(constants) = &certificate.constants {
-        numbers(constants, report.bound);
+        let met = certificate
+            .finding(Statement::UltimateBound)
+            .is_some_and(|finding| finding.outcome() != Outcome::PremiseNotMet);
+        numbers(constants, report.bound, met);
     }
 }
 
@@ -71,10 +74,12 @@ fn others(report: &Report<'_>) {
     }
     let heads = Statement::ALL.map(Statement::source);
     let head = row(heads.iter().map(|source| format!("  {source:>13}")));
-    say(&format!("\n{:28}{head}", ""));
+    say(&format!("\n{:40}{head}", "the others, in short"));
     for certificate in rest().take(MOST_EDGES) {
         let cells = row(certificate.findings.iter().map(|f| format!("  {:>13}", cell(f))));
-        say(&format!("{:28}{cells}", clip(&report.edge(certificate.edge), 28)));
+        let [from, to] = certificate.span;
+        let name = format!("{} {from:.1}–{to:.1} s", clip(&report.edge(certificate.edge), 26));
+        say(&format!("{name:40}{cells}"));
     }
     let more = rest().count().saturating_sub(MOST_EDGES);
     if more > 0 {
@@ -147,7 +152,7 @@ fn wrapped(words: &[String], width: usize) -> Vec<String> {
     lines
 }
 
-fn numbers(c: &Constants, bound: Option<f64>) {
+fn numbers(c: &Constants, bound: Option<f64>, met: bool) {
     say(&format!(
         "  constants      σ_s {}, σ_v {}, ‖P₀‖ {}, λ_min {}, ρ {}, σ₁ {}, L₁ {}, μ {}, μ₁ {}, μ₂ {}, c₃ {}",
         short(c.sigma_s),
@@ -163,18 +168,20 @@ fn numbers(c: &Constants, bound: Option<f64>) {
         short(c.c3)
     ));
     say(&format!(
-        "  for ε = {} s  ε₁ {} s, T_ε {} s; in the end ‖r‖ ≤ {}, ‖e‖ ≤ {}, δ₀ {}",
+        "  for ε = {} s  ε₁ {} s, T_ε {} s; in the end ‖r‖ ≤ {}, ‖e‖ ≤ {}, δ₀ {}{}",
         short(c.epsilon),
         short(c.epsilon_1),
         short(c.t_epsilon),
         short(c.filtered),
         short(c.error),
-        short(c.delta_0)
+        short(c.delta_0),
+        if met { "" } else { ", if the premises were met" }
     ));
     if let Some(bound) = bound {
         say(&format!(
-            "                 ‖e‖ ≤ {} in the end is promised for ε up to {} s",
+            "                 ‖e‖ ≤ {} in the end {} promised for ε up to {} s",
             short(bound),
+            if met { "is" } else { "would be" },
             short(c.epsilon_for(bound))
         ));
     }

@@ -216,7 +216,7 @@ fn near(law: &Law, set_point: &SetPoint, leader: &Drive) -> Option<State> {
     None
 }
 
-/// What a smoothed robust term leaves of the error: k² e + β tanh(slope e) = `effect`, by bisection; [m] or [rad].
+/// What a smoothed robust term leaves of the error: k² e + β tanh(slope e) = `effect`, by bisection; m or rad.
 ///
 /// For the sign it is zero while |effect| < β, and (|effect| − β)/k² beyond.
 pub fn residual(law: &Law, channel: usize, effect: f64) -> f64 {

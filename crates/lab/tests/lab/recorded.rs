@@ -52,7 +52,9 @@ fn a_recorded_run_is_all_there_and_stands_where_one_looks() {
     let mut digest = recording::Digest::default();
     let history = rig.desk.history.as_ref().expect("a past");
     let all = history.between(0, [0.0, 20.0], usize::MAX);
-    all.iter().for_each(|moment| digest.push(moment));
+    for moment in &all {
+        digest.push(moment);
+    }
     assert_eq!((all.len() as u64, digest.text()), run(THREE));
     assert!(rig.desk.act(&Action::Seek(4.5)));
     assert_eq!(rig.desk.moment().expect("a moment").snapshot.time, 4.5);

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A chunk reaches the file whole, so a run that is killed can be read up to its last one. Moments are written as
-//! messages of our own ([`messages`]); drawings are Foxglove's schemas, made of the moments and never read back.
+//! messages of our own (`messages`); drawings are Foxglove's schemas, made of the moments and never read back.
 
 mod compare;
 mod drawing;
