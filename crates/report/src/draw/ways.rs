@@ -178,6 +178,8 @@ fn plain(time: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
+/// From where a word begins to its middle, points of print.
+const HALF_A_LINE: f64 = 3.5;
 /// So far from the guide's way names do not meet the times beside it, mm.
 const FREE: f64 = 9.0;
 
@@ -194,7 +196,7 @@ fn names(run: &Trace, times: &[f64], (scale, factor): (f64, f64), plan: &mut Pla
     let sample = run.sample_at(at);
     let pose = |robot: usize| run.robots.get(robot).and_then(|m| m.get(sample)).map(|m| m.pose);
     let Some(first) = pose(guide(run)) else { return };
-    let mut notes: Vec<Note> = vec![];
+    let (mut notes, mut astray): (Vec<Note>, bool) = (vec![], false);
     for (robot, member) in run.cast.members.iter().enumerate().filter(|(_, m)| few || m.leads) {
         let Some(pose) = pose(robot) else { continue };
         let (sin, cos) = first.heading.sin_cos();
@@ -204,9 +206,22 @@ fn names(run: &Trace, times: &[f64], (scale, factor): (f64, f64), plan: &mut Pla
         // Outlines are not here, but a word may be longer than the way between two of them.
         let off = 0.5 * member.body.width * factor * scale * POINTS + 2.2;
         let colour = run.colours.get(robot).copied();
+        // A name that stands nearer to another robot than to its own would be read as that one's.
+        let away = (off + HALF_A_LINE) / (scale * POINTS);
+        let [dx, dy] = match side {
+            Side::Right => [away, 0.0],
+            Side::Left => [-away, 0.0],
+            Side::Above => [0.0, away],
+            Side::Below => [0.0, -away],
+        };
+        let distance = |other: Pose| (pose.x + dx - other.x).hypot(pose.y + dy - other.y);
+        astray |= (0..run.cast.members.len())
+            .filter(|other| *other != robot)
+            .filter_map(|other| run.robots.get(other)?.get(sample))
+            .any(|other| distance(other.pose) < dx.hypot(dy));
         notes.push(Note { at: [pose.x, pose.y], text: member.name.clone(), side, off, colour });
     }
-    if !meet(&notes, scale) {
+    if !astray && !meet(&notes, scale) {
         plan.notes.extend(notes);
         return;
     }
