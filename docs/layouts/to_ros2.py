@@ -13,6 +13,7 @@ Names keep to the rules of ROS: `-` becomes `_`. Frames keep their names.
 """
 
 import math
+from pathlib import Path
 import sys
 
 from mcap.exceptions import EndOfFile
