@@ -17,11 +17,11 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for finding in &findings {
             let mark = match finding.outcome() {
-                Outcome::Holds => "✔",
-                Outcome::Violated(_) => "✖",
+                Outcome::Holds => "✓",
+                Outcome::Violated(_) => "✗",
                 Outcome::PremiseNotMet => "–",
             };
-            let text = RichText::new(format!("{mark} {}", finding.statement.words())).small();
+            let text = RichText::new(format!("{mark} {}", finding.statement.source())).small();
             ui.label(text).on_hover_text(words(finding));
         }
     });
