@@ -29,22 +29,24 @@ fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// Whom each crate may use among our own; everybody else may not.
-const ARROWS: [(&str, &[&str]); 12] = [
+const ARROWS: [(&str, &[&str]); 13] = [
     ("vocabulary", &[]),
+    ("output", &[]),
     ("scene", &["vocabulary"]),
     ("formation", &["vocabulary"]),
     ("world", &["vocabulary"]),
     ("perception", &["vocabulary"]),
-    ("recording", &["vocabulary"]),
-    ("rendering", &["vocabulary"]),
+    ("recording", &["vocabulary", "output"]),
+    ("rendering", &["vocabulary", "output"]),
     ("figures", &[]),
     ("simulation", &["vocabulary", "scene", "formation", "world", "perception", "recording"]),
     ("report", &["vocabulary", "scene", "simulation", "recording", "figures"]),
-    ("lab", &["vocabulary", "scene", "formation", "simulation", "recording", "rendering", "figures"]),
+    ("lab", &["vocabulary", "output", "scene", "formation", "simulation", "recording", "rendering", "figures"]),
     (
         "cli",
         &[
             "vocabulary",
+            "output",
             "scene",
             "perception",
             "simulation",

@@ -24,6 +24,7 @@ const LEADERS: u64 = 12;
 
 pub(crate) fn accuracy(args: &AccuracyArgs) -> Outcome {
     let began = Instant::now();
+    interrupt::watch();
     let gpu = Gpu::open(&AdapterChoice::from(args.adapter.as_str()))?;
     let what = format!("Locating a leader in {} poses", args.poses);
     let progress = Progress::begin(&what, args.poses, args.json);

@@ -47,10 +47,18 @@ impl From<rendering::Error> for Failure {
 impl From<recording::Error> for Failure {
     fn from(error: recording::Error) -> Self {
         let text = error.to_string();
-        if matches!(error, recording::Error::Occupied { .. } | recording::Error::Log { .. }) {
-            Self::Usage(text)
-        } else {
-            Self::Machine(text)
-        }
+        let usage = match &error {
+            recording::Error::Output(error) => error.is_usage(),
+            recording::Error::Log { .. } => true,
+            recording::Error::Table { .. } => false,
+        };
+        if usage { Self::Usage(text) } else { Self::Machine(text) }
+    }
+}
+
+impl From<output::Error> for Failure {
+    fn from(error: output::Error) -> Self {
+        let text = error.to_string();
+        if error.is_usage() { Self::Usage(text) } else { Self::Machine(text) }
     }
 }

@@ -65,6 +65,7 @@ struct Subject {
 pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
     let began = Instant::now();
     let subject = subject(args)?;
+    interrupt::watch();
     let (gpu, without) = adapter(args)?;
     if let Some(why) = without.as_ref().filter(|_| !args.no_pictures) {
         note(why);

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
-use recording::write_whole;
+use output::write_whole;
 use simulation::verdict::Finding;
 use std::path::Path;
 

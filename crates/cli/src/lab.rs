@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 
 pub(crate) fn lab(args: LabArgs) -> Outcome {
+    interrupt::watch();
     let options = lab::Options {
         scene: args.scene,
         set: args.set,

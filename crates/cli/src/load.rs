@@ -3,6 +3,7 @@
 use crate::args::SceneArgs;
 use crate::eyes::{self, Drawn};
 use crate::failure::Failure;
+use crate::interrupt;
 use rendering::Gpu;
 use scene::{Override, Scene};
 use simulation::{Setup, Simulation};
@@ -21,6 +22,7 @@ pub(crate) fn load(args: &SceneArgs) -> Result<Loaded, Failure> {
         overrides.push(parse_seed(seed)?);
     }
     let (scene, setup) = load_file(&args.scene, &overrides)?;
+    interrupt::watch();
     Ok(Loaded { scene, simulation: Simulation::new(setup) })
 }
 

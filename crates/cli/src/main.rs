@@ -58,7 +58,6 @@ fn main() -> ExitCode {
     ) {
         quiet::restart_if_needed();
     }
-    interrupt::watch();
     let outcome = match program.command {
         None => {
             welcome::welcome();

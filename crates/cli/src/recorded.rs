@@ -23,6 +23,12 @@ pub(crate) struct Recorded {
 impl Recorded {
     /// Opens a run folder or a log.
     pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
+        let opened = Self::read(path)?;
+        interrupt::watch();
+        Ok(opened)
+    }
+
+    fn read(path: &Path) -> Result<Self, Failure> {
         if path.is_file() && !path.ends_with("manifest.json") {
             let log = Log::open(path)?;
             return Ok(Self::of_log(path, log));

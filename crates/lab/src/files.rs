@@ -117,7 +117,7 @@ impl Lab {
                 format!("{} is there already: choose another name, or remove it first", path.display());
             return self.desk.fault(text);
         }
-        match recording::write_whole(&path, draft.text().as_bytes()) {
+        match output::write_whole(&path, draft.text().as_bytes()) {
             Ok(()) => {
                 draft.saved_to(path.clone());
                 self.kept.done();
@@ -185,7 +185,7 @@ impl Lab {
 
     pub(crate) fn write_curves(&mut self, ending: &str, text: &str) {
         let path = free(Path::new("."), &self.name(), ending);
-        match recording::write_whole(&path, text.as_bytes()) {
+        match output::write_whole(&path, text.as_bytes()) {
             Ok(()) => self.desk.note(format!("Written: {}", path.display())),
             Err(error) => self.desk.fault(error.to_string()),
         }

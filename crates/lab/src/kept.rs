@@ -45,7 +45,7 @@ impl WorkKept {
         if let Some(folder) = file.parent() {
             fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
         }
-        recording::write_whole(file, format!("{HEAD}{place}\n{text}").as_bytes())
+        output::write_whole(file, format!("{HEAD}{place}\n{text}").as_bytes())
             .map_err(|error| format!("unsaved work cannot be kept: {error}"))
     }
 

@@ -3,11 +3,9 @@
 use crate::log::{self, Pipe, Roll};
 use crate::manifest::FORMAT;
 use crate::table::{TableKind, TableWriter};
-use crate::{
-    CertificateMetrics, Digest, Error, Judging, Manifest, Metrics, MetricsBuilder, Status, write_whole,
-};
+use crate::{CertificateMetrics, Digest, Error, Judging, Manifest, Metrics, MetricsBuilder, Status};
+use output::{Claim, write_whole};
 use std::fs;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use vocabulary::{Cast, Moment};
 
@@ -46,6 +44,8 @@ pub struct Recorder {
     metrics: MetricsBuilder,
     certificates: Vec<CertificateMetrics>,
     digest: Digest,
+    /// Last, so that it is given up when all files are closed.
+    _claim: Claim,
 }
 
 /// What a run folder may contain that we wrote ourselves and may replace.
@@ -55,19 +55,15 @@ impl Recorder {
     /// Makes `folder` and writes what is known before the run.
     ///
     /// # Errors
-    /// [`Error::Occupied`] when the folder holds a run (unless `force`) or anything else; [`Error::Io`] when it
-    /// cannot be written.
+    /// [`Error::Output`] where the folder holds a run (unless `force`) or anything else, where another run is being written
+    /// there, and where it cannot be written.
     pub fn create(folder: &Path, cast: &Cast, options: RunOptions) -> Result<Self, Error> {
-        clear(folder, options.force)?;
-        fs::create_dir_all(folder).map_err(Error::io("create", folder))?;
+        let ours = |folder: &Path| {
+            folder.join("manifest.json").exists().then(|| OURS.map(str::to_owned).to_vec())
+        };
+        let claim = Claim::new(folder, "a run", options.force, ours)?;
         let tables = folder.join("tables");
-        // Only one of several programs makes this folder; the others find it made.
-        fs::create_dir(&tables).map_err(|source| match source.kind() {
-            ErrorKind::AlreadyExists => {
-                Error::Occupied { path: folder.to_owned(), what: "is being written by another run" }
-            }
-            _ => Error::io("create", &tables)(source),
-        })?;
+        fs::create_dir(&tables).map_err(Error::io("create", &tables))?;
         write_whole(&folder.join("scene.toml"), options.scene.as_bytes())?;
         let writer = |kind| TableWriter::create(&tables, kind, options.csv);
         let manifest = first_manifest(cast, &options);
@@ -86,6 +82,7 @@ impl Recorder {
             digest: Digest::default(),
             log,
             manifest,
+            _claim: claim,
         };
         recorder.write_manifest()?;
         Ok(recorder)
@@ -169,29 +166,7 @@ fn first_manifest(cast: &Cast, options: &RunOptions) -> Manifest {
 fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), Error> {
     let mut text = serde_json::to_string_pretty(value).map_err(Error::table(path))?;
     text.push('\n');
-    write_whole(path, text.as_bytes())
-}
-
-/// Refuses a folder that holds anything; with `force`, removes an earlier run from it, and nothing else.
-fn clear(folder: &Path, force: bool) -> Result<(), Error> {
-    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
-    let names: Vec<_> = entries.filter_map(|e| e.ok().map(|e| e.file_name())).collect();
-    if names.is_empty() {
-        return Ok(());
-    }
-    let occupied = |what| Err(Error::Occupied { path: folder.to_owned(), what });
-    if !names.iter().any(|n| n == "manifest.json") {
-        return occupied("holds other files");
-    }
-    if !force {
-        return occupied("already holds a run");
-    }
-    for name in names.iter().filter(|n| OURS.iter().any(|ours| *n == ours)) {
-        let path = folder.join(name);
-        let removed = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
-        removed.map_err(Error::io("remove", &path))?;
-    }
-    Ok(())
+    Ok(write_whole(path, text.as_bytes())?)
 }
 
 #[cfg(test)]
@@ -290,12 +265,17 @@ mod tests {
     }
 
     #[test]
-    fn two_runs_at_once_do_not_share_a_folder() {
+    fn a_folder_that_a_run_is_writing_is_nobody_elses() {
         let folder = tempfile::tempdir().expect("a folder");
-        let run = folder.path().join("run");
-        fs::create_dir_all(run.join("tables")).expect("another run has just begun");
-        let refused = Recorder::create(&run, &cast(), options(false)).err().expect("refused");
-        assert!(matches!(refused, Error::Occupied { .. }), "{refused}");
+        let live = record(folder.path(), 10);
+        for force in [false, true] {
+            let refused = Recorder::create(folder.path(), &cast(), options(force)).err().expect("refused");
+            assert!(refused.to_string().contains("another program"), "{refused}");
+        }
+        let (written, _) = live.finish(Status::Complete).expect("undisturbed");
+        assert_eq!((manifest(folder.path()), written.samples), (written.clone(), 10));
+        // Once it has ended it may be replaced.
+        drop(Recorder::create(folder.path(), &cast(), options(true)).expect("replaced"));
     }
 
     #[test]

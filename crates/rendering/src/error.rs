@@ -21,13 +21,8 @@ pub enum Error {
     #[error("the graphics device failed: {0}")]
     Device(String),
     /// A file could not be written.
-    #[error("cannot write {}: {source}", .path.display())]
-    Write {
-        /// Where.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Output(#[from] output::Error),
     /// A file could not be read, or is no picture.
     #[error("cannot read {}: {source}", .path.display())]
     Read {
@@ -117,6 +112,9 @@ pub enum Error {
 impl Error {
     /// Whether other words on the command line would mend it; otherwise the machine is to blame.
     pub fn is_usage(&self) -> bool {
+        if let Self::Output(error) = self {
+            return error.is_usage();
+        }
         matches!(
             self,
             Self::View { .. }
@@ -133,7 +131,7 @@ impl Error {
     }
 
     pub(crate) fn write(path: &Path, source: std::io::Error) -> Self {
-        Self::Write { path: path.to_owned(), source }
+        output::Error::io("write", path)(source).into()
     }
 
     pub(crate) fn read(path: &Path, source: std::io::Error) -> Self {

@@ -42,7 +42,6 @@ mod labels;
 mod model;
 mod paint;
 mod palette;
-mod partial;
 mod passes;
 mod pick;
 pub mod png;

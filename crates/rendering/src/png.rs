@@ -1,7 +1,7 @@
 //! Pictures to PNG files, whole or not at all, and the texts of such files back.
 
 use crate::Error;
-use crate::partial::Partial;
+use output::Draft;
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Cursor, Seek, Write};
 use std::path::Path;
@@ -17,21 +17,20 @@ const MOST_SIDE: u32 = 65_536;
 /// Writes `picture` with text `metadata` (key, value) beside `path` and renames it when it is complete.
 ///
 /// # Errors
-/// [`Error::Write`] where the file cannot be written.
+/// [`Error::Output`] where the file cannot be written.
 pub fn write(path: &Path, picture: &Picture, metadata: &[(&str, &str)]) -> Result<(), Error> {
-    let partial = Partial::new(path);
-    write_file(&partial.path, path, picture, metadata)?;
-    partial.rename()
+    let mut draft = Draft::new(path)?;
+    write_into(draft.file(), path, picture, metadata)?;
+    Ok(draft.keep()?)
 }
 
-/// Writes a file at `place`; errors speak of `shown`.
-pub(crate) fn write_file(
-    place: &Path,
+/// Writes into `file`; errors speak of `shown`.
+pub(crate) fn write_into(
+    file: impl Write,
     shown: &Path,
     picture: &Picture,
     metadata: &[(&str, &str)],
 ) -> Result<(), Error> {
-    let file = File::create(place).map_err(|e| Error::write(shown, e))?;
     let mut buffered = BufWriter::new(file);
     encode_into(&mut buffered, picture, metadata).map_err(|e| match e {
         png::EncodingError::IoError(source) => Error::write(shown, source),

@@ -5,7 +5,7 @@ use super::case::Observer;
 use super::picture;
 use super::scaling::Growth;
 use crate::failure::Failure;
-use recording::write_whole;
+use output::write_whole;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@ use super::beyond::Beyond;
 use super::pictures;
 use super::text::reason;
 use crate::failure::Failure;
-use recording::write_whole;
+use output::write_whole;
 use serde_json::{Value, json};
 use simulation::certify::chain::LENGTHS;
 use simulation::certify::{Certificate, Constants, LongestPeriod};

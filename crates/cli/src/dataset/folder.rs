@@ -1,7 +1,7 @@
 //! The folder of a data set: refused where it holds other things, every file in it whole or not there.
 
 use crate::failure::Failure;
-use recording::{Error, write_whole};
+use output::{Claim, write_whole};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,25 +13,26 @@ const OURS: [&str; 3] = ["dataset.json", "coco.json", PICTURES];
 const PICTURES: &str = "pictures";
 
 /// A folder that is being filled.
-pub(crate) struct Folder(PathBuf);
+pub(crate) struct Folder {
+    path: PathBuf,
+    _claim: Claim,
+}
 
 impl Folder {
     /// Makes the folder; with `force`, removes an earlier data set from it, and nothing else.
     pub(crate) fn create(path: &Path, force: bool) -> Result<Self, Failure> {
-        if path.is_file() {
-            let text = format!("{} is a file; --out names a folder for the data set", path.display());
-            return Err(Failure::Usage(text));
-        }
-        clear(path, force)?;
+        let ours = |folder: &Path| folder.join(OURS[0]).exists().then(|| OURS.map(str::to_owned).to_vec());
+        let claim = Claim::new(path, "a data set", force, ours)?;
         let pictures = path.join(PICTURES);
-        fs::create_dir_all(&pictures).map_err(|e| refused("create", &pictures, &e))?;
-        Ok(Self(path.to_owned()))
+        fs::create_dir_all(&pictures)
+            .map_err(|e| Failure::Machine(format!("cannot create {}: {e}", pictures.display())))?;
+        Ok(Self { path: path.to_owned(), _claim: claim })
     }
 
     /// Writes a picture and returns its name within the folder.
     pub(crate) fn picture(&self, name: &str, picture: &Grey) -> Result<String, Failure> {
         let name = format!("{PICTURES}/{name}.png");
-        let path = self.0.join(&name);
+        let path = self.path.join(&name);
         let bytes = encoded(picture)
             .map_err(|e| Failure::Machine(format!("cannot write {}: {e}", path.display())))?;
         write_whole(&path, &bytes)?;
@@ -40,33 +41,8 @@ impl Folder {
 
     /// Writes a text file.
     pub(crate) fn json(&self, name: &str, value: &Value) -> Result<(), Failure> {
-        Ok(write_whole(&self.0.join(name), format!("{value:#}\n").as_bytes())?)
+        Ok(write_whole(&self.path.join(name), format!("{value:#}\n").as_bytes())?)
     }
-}
-
-fn refused(action: &str, path: &Path, error: &std::io::Error) -> Failure {
-    Failure::Machine(format!("cannot {action} {}: {error}", path.display()))
-}
-
-fn clear(folder: &Path, force: bool) -> Result<(), Failure> {
-    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
-    let names: Vec<_> = entries.filter_map(|e| e.ok().map(|e| e.file_name())).collect();
-    if names.is_empty() {
-        return Ok(());
-    }
-    let occupied = |what| Err(Error::Occupied { path: folder.to_owned(), what }.into());
-    if !names.iter().any(|name| name == OURS[0]) {
-        return occupied("holds other files");
-    }
-    if !force {
-        return occupied("already holds a data set");
-    }
-    for name in names.iter().filter(|name| OURS.iter().any(|ours| *name == ours)) {
-        let path = folder.join(name);
-        let removed = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
-        removed.map_err(|e| refused("remove", &path, &e))?;
-    }
-    Ok(())
 }
 
 /// A PNG file of 8 bits grey. The values are the sensor's, linear in light, and the file says so.

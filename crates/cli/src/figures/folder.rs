@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::run::PROGRAM;
-use recording::{Error, write_whole};
+use output::{Claim, write_whole};
 use report::{Ran, Report};
 use serde_json::{Value, json};
 use std::fs;
@@ -17,18 +17,15 @@ const FORMAT: u32 = 1;
 pub(super) struct Folder {
     path: PathBuf,
     files: Vec<String>,
+    _claim: Claim,
 }
 
 impl Folder {
     /// Makes the folder; with `force`, removes an earlier set of figures from it, and nothing else.
     pub(super) fn create(path: &Path, force: bool) -> Result<Self, Failure> {
-        if path.is_file() {
-            let text = format!("{} is a file; --out names a folder for the figures", path.display());
-            return Err(Failure::Usage(text));
-        }
-        clear(path, force)?;
-        fs::create_dir_all(path).map_err(|e| refused("create", path, &e))?;
-        let folder = Self { path: path.to_owned(), files: vec![] };
+        let earlier = |folder: &Path| ours(&fs::read_to_string(folder.join(MARK)).ok()?);
+        let claim = Claim::new(path, "figures", force, earlier)?;
+        let folder = Self { path: path.to_owned(), files: vec![], _claim: claim };
         folder.close("running", None)?;
         Ok(folder)
     }
@@ -89,27 +86,6 @@ pub(super) fn found(report: &Report, runs: &[Ran]) -> serde_json::Map<String, Va
     all.insert("left_out".to_owned(), json!(report.left_out));
     all.insert("runs".to_owned(), runs.iter().map(run).collect());
     all
-}
-
-fn refused(action: &str, path: &Path, error: &std::io::Error) -> Failure {
-    Failure::Machine(format!("cannot {action} {}: {error}", path.display()))
-}
-
-fn clear(folder: &Path, force: bool) -> Result<(), Failure> {
-    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
-    if entries.flatten().next().is_none() {
-        return Ok(());
-    }
-    let occupied = |what| Err(Error::Occupied { path: folder.to_owned(), what }.into());
-    let mark = fs::read_to_string(folder.join(MARK)).ok();
-    let Some(files) = mark.and_then(|text| ours(&text)) else { return occupied("holds other files") };
-    if !force {
-        return occupied("already holds figures");
-    }
-    for path in files.iter().map(|name| folder.join(name)).filter(|path| path.is_file()) {
-        fs::remove_file(&path).map_err(|e| refused("remove", &path, &e))?;
-    }
-    Ok(())
 }
 
 /// The files that an earlier set has left, if it is one; names that lead elsewhere are none of its.

@@ -63,7 +63,7 @@ impl Log {
     ///
     /// # Errors
     /// [`Error::Log`] where the file is no log of this program's layout, or was cut off before its first chunk ended;
-    /// [`Error::Io`] where it cannot be read.
+    /// [`Error::Output`] where it cannot be read.
     pub fn open(path: &Path) -> Result<Self, Error> {
         let mut file = File::open(path).map_err(Error::io("open", path))?;
         let wrong = |message: &str| Error::Log { path: path.to_owned(), message: message.to_owned() };

@@ -2,7 +2,7 @@
 
 use super::{Format, Sink};
 use crate::Error;
-use crate::partial::Partial;
+use output::Draft;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -14,15 +14,15 @@ const SPEED: i32 = 12;
 /// The encoder and its file.
 pub(super) struct Animation {
     encoder: gif::Encoder<BufWriter<File>>,
-    file: Partial,
+    file: Draft,
     rate: f64,
     count: u32,
 }
 
 impl Animation {
     pub(super) fn create(path: &Path, format: Format) -> Result<Self, Error> {
-        let file = Partial::new(path);
-        let out = BufWriter::new(File::create(&file.path).map_err(|e| Error::write(path, e))?);
+        let mut file = Draft::new(path)?;
+        let out = BufWriter::new(file.file().try_clone().map_err(|e| Error::write(path, e))?);
         let failed = |e| failed(&file, e);
         let mut encoder =
             gif::Encoder::new(out, format.width as u16, format.height as u16, &[]).map_err(failed)?;
@@ -36,9 +36,9 @@ impl Animation {
     }
 }
 
-fn failed(file: &Partial, error: gif::EncodingError) -> Error {
+fn failed(file: &Draft, error: gif::EncodingError) -> Error {
     match error {
-        gif::EncodingError::Io(source) => Error::write(&file.goal, source),
+        gif::EncodingError::Io(source) => Error::write(file.goal(), source),
         other => Error::Encode(other.to_string()),
     }
 }
@@ -56,7 +56,7 @@ impl Sink for Animation {
     fn finish(self: Box<Self>) -> Result<(), Error> {
         let Self { encoder, file, .. } = *self;
         let mut out = encoder.into_inner().map_err(|e| failed(&file, e))?;
-        out.flush().map_err(|e| Error::write(&file.goal, e))?;
-        file.rename()
+        out.flush().map_err(|e| Error::write(file.goal(), e))?;
+        Ok(file.keep()?)
     }
 }

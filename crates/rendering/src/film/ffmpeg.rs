@@ -2,7 +2,7 @@
 
 use super::{Format, Sink};
 use crate::Error;
-use crate::partial::Partial;
+use output::Draft;
 use std::ffi::{OsStr, OsString};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
@@ -15,17 +15,16 @@ pub(super) struct Ffmpeg {
     child: Child,
     /// What it says about failures; read aside, lest a full pipe stop it.
     words: Option<JoinHandle<String>>,
-    file: Option<Partial>,
+    file: Option<Draft>,
 }
 
 impl Ffmpeg {
     pub(super) fn create(path: &Path, format: Format) -> Result<Self, Error> {
         let program = find(std::env::var_os("PATH").as_deref())?;
-        let file = Partial::new(path);
         // ffmpeg would report an unwritable folder only after the first picture.
-        std::fs::File::create(&file.path).map_err(|e| Error::write(path, e))?;
+        let file = Draft::new(path)?;
         let mut child = Command::new(program)
-            .args(arguments(format, &file.path))
+            .args(arguments(format, file.path()))
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
@@ -61,7 +60,7 @@ impl Sink for Ffmpeg {
         self.child.stdin = None;
         let status = self.child.wait().map_err(|e| Error::Encode(format!("ffmpeg: {e}")))?;
         match self.file.take() {
-            Some(file) if status.success() => file.rename(),
+            Some(file) if status.success() => Ok(file.keep()?),
             _ => Err(self.failure()),
         }
     }

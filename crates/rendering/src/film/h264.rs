@@ -3,7 +3,7 @@
 use super::kept::Kept;
 use super::{Format, Sink, mp4};
 use crate::Error;
-use crate::partial::Partial;
+use output::Draft;
 use openh264::encoder::{
     Complexity, Encoder, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, RateControlMode, UsageType,
     VuiConfig,
@@ -64,8 +64,8 @@ impl H264 {
     fn write(&mut self) -> Result<(), Error> {
         let goal = &self.goal;
         let failed = |e: std::io::Error| Error::write(goal, e);
-        let film = Partial::new(goal);
-        let mut out = BufWriter::new(File::create(&film.path).map_err(failed)?);
+        let mut film = Draft::new(goal)?;
+        let mut out = BufWriter::new(film.file());
         out.write_all(&self.track.head()).map_err(failed)?;
         match &mut self.store {
             Store::Hidden(samples) => {
@@ -79,7 +79,8 @@ impl H264 {
             }
         }
         out.flush().map_err(failed)?;
-        film.rename()
+        drop(out);
+        Ok(film.keep()?)
     }
 }
 

@@ -81,7 +81,7 @@ impl Film {
     ///
     /// # Errors
     /// [`Error::OddSize`], [`Error::Size`] or [`Error::FrameRate`] for what the kind cannot hold,
-    /// [`Error::Write`] where the file cannot be written, [`Error::NoFfmpeg`] where that is asked for and absent.
+    /// [`Error::Output`] where the file cannot be written, [`Error::NoFfmpeg`] where that is asked for and absent.
     pub fn create(path: &Path, kind: FilmKind, width: u32, height: u32, rate: f64) -> Result<Self, Error> {
         let format = Format { width, height, rate };
         check(kind, &format)?;

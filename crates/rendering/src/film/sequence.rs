@@ -1,14 +1,15 @@
 //! A folder of numbered pictures.
 
 use super::Sink;
-use crate::partial::Partial;
 use crate::{Error, png};
+use output::DraftFolder;
+use std::fs::File;
 use std::path::Path;
 use vocabulary::Picture;
 
 /// The folder under its temporary name.
 pub(super) struct Sequence {
-    folder: Partial,
+    folder: DraftFolder,
     count: u32,
 }
 
@@ -19,9 +20,7 @@ impl Sequence {
             let full = std::io::Error::new(std::io::ErrorKind::DirectoryNotEmpty, "the folder is not empty");
             return Err(Error::write(path, full));
         }
-        let folder = Partial::new(path);
-        std::fs::create_dir(&folder.path).map_err(|e| Error::write(path, e))?;
-        Ok(Self { folder, count: 0 })
+        Ok(Self { folder: DraftFolder::new(path)?, count: 0 })
     }
 }
 
@@ -29,11 +28,12 @@ impl Sink for Sequence {
     fn add(&mut self, picture: &Picture) -> Result<(), Error> {
         let name = format!("frame-{:05}.png", self.count);
         self.count += 1;
-        let shown = self.folder.goal.join(&name);
-        png::write_file(&self.folder.path.join(&name), &shown, picture, &[])
+        let shown = self.folder.goal().join(&name);
+        let file = File::create(self.folder.path().join(name)).map_err(|e| Error::write(&shown, e))?;
+        png::write_into(file, &shown, picture, &[])
     }
 
     fn finish(self: Box<Self>) -> Result<(), Error> {
-        self.folder.rename()
+        Ok(self.folder.keep()?)
     }
 }

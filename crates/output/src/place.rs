@@ -1,0 +1,156 @@
+//! Looks at where something will be written, before the work begins.
+
+use crate::draft::{folder_of, followed};
+use crate::{Draft, Error};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A place that can be written. Folders that were made for it go away with it where they stayed empty.
+#[derive(Debug)]
+#[must_use = "folders that were made are removed when it is dropped"]
+pub struct Place {
+    /// The innermost first.
+    made: Vec<PathBuf>,
+}
+
+impl Place {
+    /// Looks whether a file can be written at `path`, and makes the folder for it.
+    ///
+    /// # Errors
+    /// [`Error::Place`] for what is a folder or a device; [`Error::Io`] where it cannot be written.
+    pub fn file(path: &Path) -> Result<Self, Error> {
+        named(path)?;
+        let text = path.as_os_str().as_encoded_bytes();
+        if path.is_dir() || text.last().is_some_and(|last| std::path::is_separator(char::from(*last))) {
+            return Err(Error::place(path, "is a folder: name a file"));
+        }
+        let goal = followed(path);
+        if let Ok(about) = fs::metadata(&goal) {
+            if is_device(&about) {
+                return Err(Error::place(path, "is a device: name a file"));
+            }
+            if !about.is_file() {
+                return Ok(Self { made: vec![] });
+            }
+            // One that its owner protects is left alone, though the folder would let it be replaced.
+            fs::OpenOptions::new().append(true).open(&goal).map_err(Error::io("write", path))?;
+        }
+        let place = Self::made(folder_of(&goal))?;
+        drop(Draft::new(&goal)?);
+        Ok(place)
+    }
+
+    /// Looks whether files can be written into the folder `path`, and makes it.
+    ///
+    /// # Errors
+    /// [`Error::Place`] for what is no folder; [`Error::Io`] where it cannot be written.
+    pub fn folder(path: &Path) -> Result<Self, Error> {
+        named(path)?;
+        if path.exists() && !path.is_dir() {
+            return Err(Error::place(path, "is no folder: name one"));
+        }
+        let place = Self::made(&followed(path))?;
+        match Draft::new(&path.join("output")) {
+            Err(Error::Io { source, .. }) => Err(Error::io("write into", path)(source)),
+            Err(other) => Err(other),
+            Ok(_) => Ok(place),
+        }
+    }
+
+    /// Looks whether a folder can be made at `path`, and makes those around it.
+    ///
+    /// # Errors
+    /// As [`Place::folder`].
+    pub fn new_folder(path: &Path) -> Result<Self, Error> {
+        named(path)?;
+        if path.exists() {
+            return Self::folder(path);
+        }
+        let place = Self::made(folder_of(path))?;
+        drop(Draft::new(path)?);
+        Ok(place)
+    }
+
+    /// Makes `folder` and those around it.
+    fn made(folder: &Path) -> Result<Self, Error> {
+        let missing = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.exists());
+        let place = Self { made: missing.map(Path::to_owned).collect() };
+        fs::create_dir_all(folder).map_err(Error::io("create", folder))?;
+        Ok(place)
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        for folder in &self.made {
+            // One that holds something stays.
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
+/// Refuses what names nothing.
+fn named(path: &Path) -> Result<(), Error> {
+    match path.as_os_str().as_encoded_bytes() {
+        b"" => Err(Error::place(path, "(nothing) is no place to write to: name one")),
+        b"-" => Err(Error::place(path, "would be standard output, which only text goes to: name a file or folder")),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(unix)]
+fn is_device(about: &fs::Metadata) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    let kind = about.file_type();
+    kind.is_char_device() || kind.is_block_device() || kind.is_socket()
+}
+
+#[cfg(not(unix))]
+fn is_device(about: &fs::Metadata) -> bool {
+    !about.is_file()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_are_made_and_go_away_where_nothing_came() {
+        let root = tempfile::tempdir().expect("a folder");
+        let deep = root.path().join("a/b/report.xml");
+        drop(Place::file(&deep).expect("a place"));
+        assert!(!root.path().join("a").exists());
+        let place = Place::file(&deep).expect("a place");
+        fs::write(&deep, "x").expect("written");
+        drop(place);
+        assert!(deep.exists());
+        drop(Place::folder(&root.path().join("c/d")).expect("a place"));
+        drop(Place::new_folder(&root.path().join("c/d")).expect("a place"));
+        assert!(!root.path().join("c").exists());
+        assert_eq!(fs::read_dir(root.path()).expect("listed").count(), 1);
+    }
+
+    #[test]
+    fn what_is_no_place_is_refused_with_what_helps() {
+        let root = tempfile::tempdir().expect("a folder");
+        let file = root.path().join("file");
+        fs::write(&file, "x").expect("written");
+        let told = |place: Result<Place, Error>| {
+            let error = place.expect_err("refused");
+            assert!(error.is_usage(), "{error}");
+            error.to_string()
+        };
+        assert!(told(Place::file(root.path())).contains("is a folder"));
+        assert!(told(Place::file(&root.path().join("new/"))).contains("is a folder"));
+        assert!(told(Place::folder(&file)).contains("is no folder"));
+        assert!(told(Place::file(Path::new("-"))).contains("standard output"));
+        assert!(told(Place::folder(Path::new("-"))).contains("standard output"));
+        assert!(told(Place::file(Path::new(""))).contains("name one"));
+        if cfg!(unix) {
+            assert!(told(Place::file(Path::new("/dev/null"))).contains("device"));
+        }
+        // Below a file there is no folder, and that is no other word's fault.
+        assert!(!Place::file(&file.join("below.xml")).expect_err("refused").is_usage());
+        assert_eq!(fs::read_to_string(&file).expect("untouched"), "x");
+    }
+}
