@@ -54,6 +54,8 @@ pub(crate) enum Command {
     Accuracy(AccuracyArgs),
     /// Read scenes and say what is wrong with them, without running
     Check(CheckArgs),
+    /// List the scenes that come with the program, or print one to start from
+    Scenes(crate::scenes::ScenesArgs),
     /// Print the JSON Schema of scene files
     Schema,
     /// Say which adapters, drivers and encoders this machine has, and what is missing
@@ -68,7 +70,7 @@ pub(crate) enum Command {
 /// What every subcommand on a scene takes.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArgs {
-    /// Scene file
+    /// Scene file, or the name of a scene that comes with the program, such as circle-three: `echelon scenes` lists them
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
     /// Change a value of the scene, such as time.duration=5 or robots.follower-1.distance=1.5; may be repeated
@@ -116,8 +118,8 @@ pub(crate) struct RunArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct LabArgs {
-    /// Scene file, a run folder or log.mcap to look through, or a picture that the lab has made; a scene that comes with the
-    /// program if left out
+    /// Scene file or the name of a scene that comes with the program, a run folder or log.mcap to look through, or a picture
+    /// that the lab has made; a shipped scene if left out
     #[arg(value_name = "SCENE")]
     pub(crate) scene: Option<PathBuf>,
     /// Change a value of the scene, as an edit that can be undone; may be repeated
@@ -282,7 +284,7 @@ pub(crate) struct AccuracyArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
-    /// Scene files
+    /// Scene files, or names of scenes that come with the program
     #[arg(value_name = "SCENE", required = true)]
     pub(crate) scenes: Vec<PathBuf>,
     /// Change a value of every scene

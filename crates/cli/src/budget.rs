@@ -18,6 +18,7 @@ use crate::progress::Progress;
 use crate::{eyes, interrupt};
 use case::{Case, Level, Observer};
 use measure::{Run, measure};
+use output::Place;
 use rendering::{AdapterChoice, Gpu};
 use scene::Scene;
 use simulation::Simulation;
@@ -37,6 +38,8 @@ pub(crate) struct Budget<'a> {
     pub(crate) adapter: Option<String>,
     /// Why there are no pictures of cameras, where there are none.
     pub(crate) without_camera: Option<String>,
+    /// Whether all runs were made.
+    pub(crate) complete: bool,
 }
 
 impl Budget<'_> {
@@ -89,10 +92,7 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
     let Loaded { scene, simulation } = load(&args.scene)?;
     case::check(&scene)?;
     let folder = args.out.as_deref();
-    if let Some(folder) = folder {
-        std::fs::create_dir_all(folder)
-            .map_err(|e| Failure::Machine(format!("cannot create {}: {e}", folder.display())))?;
-    }
+    let _place = folder.map(Place::folder).transpose()?;
     let silent = args.scene.quiet || args.scene.json;
     let (gpu, without_camera) = camera(args)?;
     if let Some(why) = without_camera.as_ref().filter(|_| !args.no_camera) {
@@ -109,6 +109,7 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
         runs: vec![],
         adapter: gpu.as_ref().map(Gpu::description),
         without_camera,
+        complete: false,
     };
     let each = simulation.len();
     let what = format!("{} runs of {}, {} s each", cases.len(), stem(&args.scene.scene), scene.time.duration);
@@ -126,8 +127,9 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
         }
     }
     progress.end();
+    budget.complete = budget.runs.len() == cases.len();
     finish(&budget, folder, args)?;
-    if budget.runs.len() < cases.len() {
+    if !budget.complete {
         let done = format!("after {} of {} runs; they are printed", budget.runs.len(), cases.len());
         return Err(Failure::Interrupted(done));
     }

@@ -6,9 +6,10 @@ use crate::failure::Failure;
 use crate::load::{load, stem};
 use crate::picture::Studio;
 use crate::playback::{Playback, Source};
-use crate::print::{json, say};
+use crate::print::{json, note, say};
 use crate::progress::Progress;
-use crate::{interrupt, run};
+use crate::{interrupt, run, times};
+use output::Place;
 use rendering::{Gpu, png};
 use serde_json::json;
 use std::path::Path;
@@ -60,27 +61,31 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
 
 /// Draws pictures of what `source` tells; it may use the adapter that draws.
 pub(crate) fn draw(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
-    let times = times(job.at, job.duration)?;
+    let times = times::within(job.at, job.duration)?;
+    let _place = Place::folder(job.out)?;
     let Job { cast, name, .. } = job;
     let mut studio = Studio::open((job.adapter, job.picture), cast, job.view, job.settings.size)?;
     let source = source(&studio.gpu)?;
-    std::fs::create_dir_all(job.out)
-        .map_err(|e| Failure::Machine(format!("cannot create {}: {e}", job.out.display())))?;
     let adapter = studio.gpu.description();
     let mut playback = Playback::new(cast, source);
     let what = format!("Drawing {} pictures of {name}", times.len());
     let progress = Progress::begin(&what, times.len() as u64, job.quiet || times.len() < 4);
-    let decimals = decimals(&times);
-    let width = decimals + 4;
-    let mut files = Vec::new();
+    let (mut files, mut shown) = (Vec::new(), Vec::new());
     for (count, time) in times.iter().enumerate() {
         let moment = playback.at(*time);
         if interrupt::asked() {
             return Err(Failure::Interrupted(format!("{count} of {} pictures are written", times.len())));
         }
         playback.check()?;
+        // A run that ended early has no later times: the picture is that of its end, once, and is called so.
+        let (end, early) = (moment.snapshot.time, moment.snapshot.time < time - 1e-9);
+        let time = if early { end } else { *time };
+        if early {
+            let end = times::shown(end);
+            note(&format!("the run ended at {end} s: a picture shows its end, later times have none"));
+        }
         let picture = studio.renderer.draw(playback.trail(), &moment, &studio.layout, &studio.style)?;
-        let path = job.out.join(format!("{name}-{time:0width$.decimals$}.png"));
+        let path = job.out.join(format!("{name}-{}.png", times::in_names(time)));
         let time_text = time.to_string();
         let scene_text = job.of.display().to_string();
         let metadata = [
@@ -91,36 +96,19 @@ pub(crate) fn draw(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Fa
         ];
         png::write(&path, &picture, &metadata)?;
         files.push(path.display().to_string());
+        shown.push(time);
         progress.at(count as u64 + 1);
+        if early {
+            break;
+        }
     }
     progress.end();
     if job.json {
-        json(&json!({ "files": files, "times": times, "size": studio.size, "adapter": adapter }));
+        json(&json!({ "files": files, "times": shown, "size": studio.size, "adapter": adapter }));
     } else if !job.quiet {
         for file in &files {
             say(file);
         }
     }
     Ok(())
-}
-
-/// Digits after the point that file names need: milliseconds, or as many as tell all times apart.
-fn decimals(times: &[f64]) -> usize {
-    let apart = |digits: usize| {
-        times.windows(2).all(|t| format!("{:.digits$}", t[0]) != format!("{:.digits$}", t[1]))
-    };
-    (3..17).find(|digits| apart(*digits)).unwrap_or(17)
-}
-
-/// The times asked for, checked and in order, each once; the end of the run if none.
-fn times(asked: &[f64], duration: f64) -> Result<Vec<f64>, Failure> {
-    if let Some(bad) = asked.iter().find(|t| !(0.0..=duration).contains(*t)) {
-        return Err(Failure::Usage(format!(
-            "{bad} s is no time of the run: times are from 0 to {duration} s"
-        )));
-    }
-    let mut times = if asked.is_empty() { vec![duration] } else { asked.to_vec() };
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    Ok(times)
 }

@@ -14,6 +14,7 @@ use crate::run::STRIDE;
 use crate::{Outcome, interrupt};
 use beyond::Beyond;
 use clap::Args;
+use output::Place;
 use scene::Scene;
 use simulation::certify::{Certificate, Examiner};
 use std::path::PathBuf;
@@ -81,6 +82,7 @@ impl Report<'_> {
 pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     let began = Instant::now();
     let mut loaded = load(&args.scene)?;
+    let _place = args.out.as_deref().map(Place::folder).transpose()?;
     loaded.open_eyes(None, &args.scene)?;
     let Loaded { scene, mut simulation } = loaded;
     let quiet = args.scene.quiet || args.scene.json;

@@ -2,11 +2,12 @@
 
 use crate::Outcome;
 use crate::failure::Failure;
-use crate::junit::{self, Case};
+use crate::junit::{self, Came, Case};
 use crate::print::{json, say};
 use clap::Args;
 use image::{Rgb, RgbImage};
 use image_compare::rgb_hybrid_compare;
+use output::Place;
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -96,6 +97,8 @@ impl Pair {
 
 pub(crate) fn compare(args: &CompareArgs) -> Outcome {
     let pairs = pairs(args)?;
+    let _report = args.junit.as_deref().map(Place::file).transpose()?;
+    let _place = args.out.as_deref().map(Place::folder).transpose()?;
     let mut compared = Vec::with_capacity(pairs.len());
     for (name, wanted, found) in pairs {
         let likeness = match (wanted, found) {
@@ -106,13 +109,6 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
         compared.push(Pair { name, found: likeness });
     }
     let failed = compared.iter().filter(|pair| !pair.passes(args.threshold)).count();
-    if let Some(path) = &args.junit {
-        let case = |pair: &Pair| Case {
-            name: pair.name.clone(),
-            failure: (!pair.passes(args.threshold)).then(|| pair.words()),
-        };
-        junit::write(path, "pictures", &compared.iter().map(case).collect::<Vec<_>>())?;
-    }
     if args.json {
         let pair = |pair: &Pair| {
             let l = pair.found.as_ref().ok();
@@ -137,6 +133,14 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
                 args.threshold
             ));
         }
+    }
+    // What came out is told, whatever becomes of a file.
+    if let Some(path) = &args.junit {
+        let case = |pair: &Pair| Case {
+            name: pair.name.clone(),
+            came: if pair.passes(args.threshold) { Came::Fine } else { Came::Failed(pair.words()) },
+        };
+        junit::write(path, "pictures", &compared.iter().map(case).collect::<Vec<_>>())?;
     }
     if failed == 0 { Ok(()) } else { Err(Failure::Expectation) }
 }

@@ -1,5 +1,6 @@
 //! What can end a subcommand early, and the exit code it ends with.
 
+use crate::print::harmless;
 use std::io::Write;
 
 /// Why the program does not end with 0.
@@ -33,7 +34,7 @@ impl Failure {
             Self::Interrupted(text) => format!("interrupted: {text}"),
         };
         // Nobody is left to tell if standard error is closed.
-        let _ = writeln!(std::io::stderr(), "{message}");
+        let _ = writeln!(std::io::stderr(), "{}", harmless(&message));
     }
 }
 

@@ -26,7 +26,7 @@ use std::time::Instant;
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub(crate) struct FiguresArgs {
-    /// Scene file; if left out, the paper's two cases and its seven robots, which come with the program
+    /// Scene file or the name of one that comes with the program; if left out, the paper's two cases and its seven robots, which come with the program
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Folder for figures (SVG, PNG, PDF, CSV), films, claims.json and report.html

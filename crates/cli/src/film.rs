@@ -17,6 +17,7 @@ use crate::progress::Progress;
 use board::Board;
 use plots::Plots;
 pub(crate) use preset::Preset;
+use output::Place;
 use recording::{Judging, MetricsBuilder};
 use rendering::{Film, FilmKind, Gpu, Show};
 use serde_json::json;
@@ -105,6 +106,10 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     if let Some(preset) = job.preset {
         preset.apply(&mut job.settings, job.duration);
     }
+    let _place = match kind {
+        FilmKind::PngSequence => Place::new_folder(&job.path)?,
+        _ => Place::file(&job.path)?,
+    };
     let Job { path, name, cast, settings, .. } = &job;
     let rate = job.fps.unwrap_or(f64::from(settings.fps));
     if !(1.0..=240.0).contains(&rate) {

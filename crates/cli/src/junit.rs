@@ -1,8 +1,8 @@
 //! Results as JUnit XML, which CI systems read.
 
 use crate::failure::Failure;
-use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use output::write_whole;
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use simulation::verdict::Finding;
 use std::path::Path;
 
@@ -10,29 +10,47 @@ use std::path::Path;
 pub(crate) struct Case {
     /// What was checked.
     pub(crate) name: String,
-    /// What was wanted and what was found instead; `None` where it is as it should be.
-    pub(crate) failure: Option<String>,
+    pub(crate) came: Came,
+}
+
+/// What came of a check.
+pub(crate) enum Came {
+    /// It is as it should be.
+    Fine,
+    /// What was wanted, and what was found instead.
+    Failed(String),
+    /// Why it could not be checked at all.
+    Broken(String),
 }
 
 impl Case {
     /// An expectation of a scene.
     pub(crate) fn of(finding: &Finding) -> Self {
-        let failure = (!finding.met).then(|| format!("wanted {}, found {}", finding.wanted, finding.found));
-        Self { name: format!("{}: {}", finding.key, finding.wanted), failure }
+        let came = match finding.met {
+            true => Came::Fine,
+            false => Came::Failed(format!("wanted {}, found {}", finding.wanted, finding.found)),
+        };
+        Self { name: format!("{}: {}", finding.key, finding.wanted), came }
     }
 }
 
 /// Writes `cases` of the suite called `name` to `path`.
 pub(crate) fn write(path: &Path, name: &str, cases: &[Case]) -> Result<(), Failure> {
-    let mut suite = TestSuite::new(name);
+    let name = allowed(name);
+    let mut suite = TestSuite::new(name.as_str());
     for case in cases {
-        let status = case.failure.as_ref().map_or_else(TestCaseStatus::success, |text| {
-            let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-            status.set_message(text.as_str());
+        let not = |kind, text: &String| {
+            let mut status = TestCaseStatus::non_success(kind);
+            status.set_message(allowed(text));
             status
-        });
-        let mut written = TestCase::new(case.name.as_str(), status);
-        written.set_classname(name);
+        };
+        let status = match &case.came {
+            Came::Fine => TestCaseStatus::success(),
+            Came::Failed(text) => not(NonSuccessKind::Failure, text),
+            Came::Broken(text) => not(NonSuccessKind::Error, text),
+        };
+        let mut written = TestCase::new(allowed(&case.name), status);
+        written.set_classname(name.as_str());
         suite.add_test_case(written);
     }
     let mut report = Report::new("echelon");
@@ -40,6 +58,12 @@ pub(crate) fn write(path: &Path, name: &str, cases: &[Case]) -> Result<(), Failu
     let text =
         report.to_string().map_err(|e| Failure::Machine(format!("cannot write {}: {e}", path.display())))?;
     Ok(write_whole(path, text.as_bytes())?)
+}
+
+/// Text with what XML does not allow, though escaped, made visible: names of files may hold anything.
+fn allowed(text: &str) -> String {
+    let fits = |c: char| matches!(c, '\t' | '\n' | '\r' | ' '..='\u{fffd}' | '\u{10000}'..);
+    text.chars().map(|c| if fits(c) && !matches!(c, '\u{7f}'..='\u{9f}') { c } else { '\u{fffd}' }).collect()
 }
 
 #[cfg(test)]
@@ -52,12 +76,25 @@ mod tests {
         let path = folder.path().join("report.xml");
         let case = |name: &str, failure: Option<&str>| Case {
             name: name.into(),
-            failure: failure.map(str::to_owned),
+            came: failure.map_or(Came::Fine, |text| Came::Failed(text.to_owned())),
         };
         write(&path, "line", &[case("fine", None), case("a < b", Some("wanted ≤ 1 m, found 2 m & more"))])
             .expect("written");
         let text = std::fs::read_to_string(&path).expect("text");
         assert!(text.contains("tests=\"2\"") && text.contains("failures=\"1\""), "{text}");
         assert!(text.contains("a &lt; b") && text.contains("2 m &amp; more"), "{text}");
+    }
+
+    /// U+FFFE in a file's name made a report that no reader takes.
+    #[test]
+    fn what_xml_does_not_allow_is_made_visible() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("report.xml");
+        let broken = Case { name: "a\u{fffe}b\u{1b}[31mc".into(), came: Came::Broken("\u{ffff}\0 no".into()) };
+        write(&path, "x\u{fffe}.toml", &[broken]).expect("written");
+        let text = std::fs::read_to_string(&path).expect("text");
+        assert!(text.contains("errors=\"1\"") && text.contains("a\u{fffd}b\u{fffd}[31mc"), "{text}");
+        let fits = |c: char| c >= ' ' && c != '\u{fffe}' && c != '\u{ffff}' || c == '\n';
+        assert!(text.chars().all(fits), "{text:?}");
     }
 }

@@ -26,8 +26,10 @@ mod quiet;
 mod recorded;
 mod replay;
 mod run;
+mod scenes;
 mod stills;
 mod summary;
+mod times;
 mod tune;
 mod welcome;
 
@@ -78,6 +80,7 @@ fn main() -> ExitCode {
         Some(Command::Figures(args)) => figures::figures(&args),
         Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Command::Check(args)) => check::check(&args),
+        Some(Command::Scenes(args)) => scenes::scenes(&args),
         Some(Command::Schema) => {
             print::schema();
             Ok(())

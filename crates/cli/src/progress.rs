@@ -1,6 +1,6 @@
 //! A bar with the time left on a terminal; elsewhere a line at the start of long jobs and one every ten seconds.
 
-use crate::print::note;
+use crate::print::{harmless, note};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::cell::Cell;
 use std::io::IsTerminal;
@@ -28,7 +28,7 @@ impl Progress {
             note(&format!("{what} …"));
             return Self(Shown::Lines { steps, told: Cell::new(Instant::now()) });
         }
-        let bar = ProgressBar::new(steps).with_message(what.to_owned());
+        let bar = ProgressBar::new(steps).with_message(harmless(what).into_owned());
         if let Ok(style) = ProgressStyle::with_template("{msg} [{bar:30}] {percent:>3} %  {eta} left") {
             bar.set_style(style.progress_chars("━╸─"));
         }

@@ -5,12 +5,15 @@ use crate::args::RunArgs;
 use crate::eyes;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::junit::{self, Case};
+use crate::junit::{self, Came, Case};
 use crate::load::{Loaded, load, stem};
 use crate::progress::Progress;
 use crate::summary::{self, Summary};
+use output::Place;
 use recording::log::Roll;
-use recording::{CertificateMetrics, Digest, Judging, Metrics, MetricsBuilder, Recorder, RunOptions, Status};
+use recording::{
+    CertificateMetrics, Digest, Finished, Judging, Metrics, MetricsBuilder, Recorder, RunOptions, Status,
+};
 use simulation::certify::Examiner;
 use simulation::verdict::verdict;
 use std::path::{Path, PathBuf};
@@ -23,7 +26,8 @@ pub(crate) const PROGRAM: &str = concat!("echelon ", env!("CARGO_PKG_VERSION"));
 pub(crate) const STRIDE: u64 = 16;
 
 pub(crate) fn run(args: &RunArgs) -> Outcome {
-    let mut loaded = load(&args.scene)?;
+    let _report = args.junit.as_deref().map(Place::file).transpose()?;
+    let mut loaded = load(&args.scene).or_else(|failure| unreadable(args, failure))?;
     let roll = Roll::default();
     let logs = !args.no_record && !args.no_log;
     let drawn = eyes::open(&mut loaded.simulation, None, &args.scene.adapter, logs.then_some(&roll))?;
@@ -69,8 +73,9 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     };
     let certificates = examiner.finish(&simulation);
     let certificates = certificates.iter().map(|c| c.metrics(simulation.cast())).collect();
-    let (metrics, digest) = sink.finish(status, certificates)?;
+    let (metrics, digest, written) = sink.finish(status, certificates);
     if status == Status::Interrupted {
+        written?;
         let place = folder.map_or_else(String::new, |f| format!(", recorded in {}", f.display()));
         return Err(Failure::Interrupted(format!(
             "{:.2} of {} s{place}",
@@ -79,9 +84,6 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     }
     let findings = verdict(&scene, &metrics, status == Status::Complete);
     let met = findings.iter().all(|f| f.met);
-    if let Some(path) = &args.junit {
-        junit::write(path, &stem(&args.scene.scene), &findings.iter().map(Case::of).collect::<Vec<_>>())?;
-    }
     let summary = Summary {
         scene: &scene,
         metrics: &metrics,
@@ -99,7 +101,23 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     } else if !met {
         summary::failures(&summary);
     }
+    // What came out is told, whatever becomes of a file.
+    written?;
+    if let Some(path) = &args.junit {
+        junit::write(path, &stem(&args.scene.scene), &findings.iter().map(Case::of).collect::<Vec<_>>())?;
+    }
     if met { Ok(()) } else { Err(Failure::Expectation) }
+}
+
+/// A scene that cannot be read is a result, too, where results are asked for as a file.
+fn unreadable(args: &RunArgs, failure: Failure) -> Result<Loaded, Failure> {
+    if let (Some(path), Failure::Usage(text)) = (&args.junit, &failure) {
+        let case = Case { name: "the scene can be read".to_owned(), came: Came::Broken(text.clone()) };
+        if let Err(other) = junit::write(path, &stem(&args.scene.scene), &[case]) {
+            other.tell();
+        }
+    }
+    Err(failure)
 }
 
 fn judging(scene: &scene::Scene) -> Judging {
@@ -153,18 +171,21 @@ impl Sink {
         }
     }
 
+    /// Metrics, digest, and whether what was to be written is.
     fn finish(
         self,
         status: Status,
         certificates: Vec<CertificateMetrics>,
-    ) -> Result<(Metrics, String), recording::Error> {
+    ) -> (Metrics, String, Result<(), recording::Error>) {
         match self {
             Self::Record(mut recorder) => {
                 recorder.certify(certificates);
-                let (manifest, metrics) = recorder.finish(status)?;
-                Ok((metrics, manifest.digest.unwrap_or_default()))
+                let Finished { metrics, digest, written } = recorder.conclude(status);
+                (metrics, digest, written.map(drop))
             }
-            Self::Judge(judge) => Ok((Metrics { certificates, ..judge.0.finish() }, judge.1.text())),
+            Self::Judge(judge) => {
+                (Metrics { certificates, ..judge.0.finish() }, judge.1.text(), Ok(()))
+            }
         }
     }
 }
@@ -172,10 +193,6 @@ impl Sink {
 /// The folder asked for, or the next free runs/NAME-001, made at once so that runs started together get one each.
 fn folder(args: &RunArgs) -> Result<PathBuf, Failure> {
     if let Some(folder) = &args.out {
-        if folder.is_file() {
-            let text = format!("{} is a file; --out names a folder for the run", folder.display());
-            return Err(Failure::Usage(text));
-        }
         return Ok(folder.clone());
     }
     let stem = stem(&args.scene.scene);

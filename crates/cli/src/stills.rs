@@ -12,6 +12,7 @@ use crate::playback::{Playback, Source};
 use crate::print::{json, say};
 use crate::progress::Progress;
 use clap::Args;
+use output::Place;
 use rendering::{Layout, Style};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -42,6 +43,7 @@ const GAP: u32 = 8;
 
 pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;
+    let _place = Place::folder(&args.out)?;
     let cast = loaded.simulation.cast().clone();
     let name = stem(&args.scene.scene);
     let quiet = args.scene.quiet || args.scene.json;
@@ -51,8 +53,6 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     let mut small = Studio::open((&args.scene.adapter, &args.picture), &cast, &view, tile)?;
     loaded.open_eyes(Some(&small.gpu), &args.scene)?;
     let duration = loaded.scene.time.duration;
-    let refused = |e| Failure::Machine(format!("cannot create {}: {e}", args.out.display()));
-    std::fs::create_dir_all(&args.out).map_err(refused)?;
 
     // Both are drawn from the same moments.
     let steps = u64::from(2 * args.count);

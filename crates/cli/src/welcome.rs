@@ -5,14 +5,18 @@ use crate::print::say;
 const TEXT: &str = "Echelon, a 3D laboratory for vehicle formations
 
 A first film, and what the run showed:
-  echelon film scenes/circle-three.toml -o film.mp4
-  echelon run scenes/circle-three.toml
+  echelon film circle-three -o film.mp4
+  echelon run circle-three
 
 Pictures at 0, 5 and 15 s, from behind and from above:
-  echelon capture scenes/seven-v.toml --at 0,5,15 --view snake+top -o pictures
+  echelon capture seven-v --at 0,5,15 --view snake+top -o pictures
 
 Change something:
-  echelon run scenes/circle-three.toml --set law.k=3 --set observer.epsilon=0.1
+  echelon run circle-three --set law.k=3 --set observer.epsilon=0.1
+
+All scenes that come with the program, and one to start from:
+  echelon scenes
+  echelon scenes circle-three > mine.toml
 
 More: `echelon --help`, `echelon film --help`, `echelon doctor` if drawing does not work.";
 

@@ -1,7 +1,6 @@
 //! Scenes from and to disk: open, save, read again, recover, and runs that are kept.
 
 use crate::app::Lab;
-use crate::gallery;
 use crate::keep::{Seen, free, keep};
 use crate::over::Over;
 use crate::session::draft::Draft;
@@ -21,6 +20,9 @@ impl Lab {
         let log = if path.is_dir() { path.join(recording::log::FILE) } else { path.to_owned() };
         if path.is_dir() || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
             return self.open_recorded(&log);
+        }
+        if let Some(shipped) = path.to_str().and_then(scene::shipped).filter(|_| !path.exists()) {
+            return self.open_shipped(shipped.name);
         }
         match std::fs::read_to_string(path) {
             Ok(text) => {
@@ -56,7 +58,7 @@ impl Lab {
     }
 
     pub(crate) fn open_shipped(&mut self, name: &str) {
-        if let Some(shipped) = gallery::shipped(name) {
+        if let Some(shipped) = scene::shipped(name) {
             self.take_scene(shipped.text.to_owned(), None, Path::new(&format!("{name}.toml")));
         }
     }

@@ -2,31 +2,18 @@
 
 use crate::action::Action;
 use eframe::egui::{self, RichText, TextureHandle, Ui};
+use scene::{SHIPPED, Shipped};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A scene that comes with the program.
-pub struct Shipped {
-    /// Its file name without the ending.
-    pub name: &'static str,
-    /// Its text.
-    pub text: &'static str,
-    /// A PNG of it.
-    pub thumbnail: &'static [u8],
-}
-
-macro_rules! shipped {
+macro_rules! thumbnails {
     ($($name:literal),* $(,)?) => {
-        /// All of them, the simplest first.
-        pub const SHIPPED: &[Shipped] = &[$(Shipped {
-            name: $name,
-            text: include_str!(concat!("../../../scenes/", $name, ".toml")),
-            thumbnail: include_bytes!(concat!("../thumbnails/", $name, ".png")),
-        }),*];
+        [$(($name, include_bytes!(concat!("../thumbnails/", $name, ".png")) as &[u8])),*]
     };
 }
 
-shipped![
+/// PNG pictures of the scenes that come with the program, by name.
+const THUMBNAILS: &[(&str, &[u8])] = &thumbnails![
     "circle-three",
     "line-three",
     "seven-v",
@@ -57,13 +44,14 @@ shipped![
     "vision-epsilon",
 ];
 
+/// The picture of a shipped scene.
+fn thumbnail(name: &str) -> Option<egui::ColorImage> {
+    let (_, bytes) = THUMBNAILS.iter().find(|(known, _)| *known == name)?;
+    decode(bytes)
+}
+
 /// The scene that the lab opens with when none is named.
 pub const FIRST: &str = "figure-eight-seven";
-
-/// A shipped scene by its name.
-pub fn shipped(name: &str) -> Option<&'static Shipped> {
-    SHIPPED.iter().find(|shipped| shipped.name == name)
-}
 
 /// The menu of scenes.
 #[derive(Default)]
@@ -125,7 +113,7 @@ impl Gallery {
 
     fn tile(&mut self, ui: &mut Ui, scene: &'static Shipped, out: &mut Vec<Action>) {
         let texture = self.textures.entry(scene.name).or_insert_with(|| {
-            let image = decode(scene.thumbnail)
+            let image = thumbnail(scene.name)
                 .unwrap_or_else(|| egui::ColorImage::filled([1, 1], egui::Color32::GRAY));
             ui.ctx().load_texture(scene.name, image, egui::TextureOptions::LINEAR)
         });
@@ -139,16 +127,10 @@ impl Gallery {
             })
             .inner;
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, scene.name));
-        if response.on_hover_text(title(scene.text)).clicked() {
+        if response.on_hover_text(scene.title()).clicked() {
             out.push(Action::OpenShipped(scene.name));
         }
     }
-}
-
-/// The title in a scene's text.
-fn title(text: &str) -> &str {
-    let line = text.lines().find_map(|line| line.strip_prefix("title"));
-    line.and_then(|rest| rest.split('"').nth(1)).unwrap_or("")
 }
 
 fn decode(bytes: &[u8]) -> Option<egui::ColorImage> {
@@ -172,20 +154,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_scene_of_the_folder_is_in_the_menu_and_every_thumbnail_can_be_shown() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-        let files = std::fs::read_dir(folder).expect("scenes").flatten();
-        let mut names: Vec<String> = files
-            .filter_map(|f| f.path().file_stem().map(|stem| stem.to_string_lossy().into_owned()))
-            .collect();
-        names.sort();
-        let mut shown: Vec<&str> = SHIPPED.iter().map(|shipped| shipped.name).collect();
-        shown.sort_unstable();
-        assert_eq!(names, shown);
+    fn every_shipped_scene_has_a_thumbnail_that_can_be_shown() {
         for scene in SHIPPED {
-            assert!(decode(scene.thumbnail).is_some(), "{}", scene.name);
-            assert!(!title(scene.text).is_empty(), "{}", scene.name);
+            assert!(thumbnail(scene.name).is_some(), "{}", scene.name);
         }
-        assert!(shipped(FIRST).is_some());
+        assert!(scene::shipped(FIRST).is_some());
     }
 }

@@ -1,6 +1,7 @@
 //! One folder, one program that fills it.
 
 use crate::Error;
+use crate::place::named;
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
@@ -28,6 +29,7 @@ impl Claim {
         force: bool,
         ours: impl FnOnce(&Path) -> Option<Vec<String>>,
     ) -> Result<Self, Error> {
+        named(folder)?;
         if folder.exists() && !folder.is_dir() {
             return Err(Error::place(folder, "is no folder: name one"));
         }

@@ -90,7 +90,7 @@ impl Drop for Place {
 }
 
 /// Refuses what names nothing.
-fn named(path: &Path) -> Result<(), Error> {
+pub(crate) fn named(path: &Path) -> Result<(), Error> {
     match path.as_os_str().as_encoded_bytes() {
         b"" => Err(Error::place(path, "(nothing) is no place to write to: name one")),
         b"-" => Err(Error::place(path, "would be standard output, which only text goes to: name a file or folder")),

@@ -31,5 +31,5 @@ pub use error::Error;
 pub use looks::LookMetrics;
 pub use manifest::{Manifest, Status};
 pub use metrics::{EdgeMetrics, Judging, Metrics, MetricsBuilder, RobotMetrics};
-pub use run::{Recorder, RunOptions};
+pub use run::{Finished, Recorder, RunOptions};
 pub use table::{Column, TableKind, read_table};

@@ -48,6 +48,17 @@ pub struct Recorder {
     _claim: Claim,
 }
 
+/// What came of a run.
+#[derive(Debug)]
+pub struct Finished {
+    /// Errors, effort, clearance, contacts, certificates.
+    pub metrics: Metrics,
+    /// Of its trajectory.
+    pub digest: String,
+    /// What was written down of it, or why it was not.
+    pub written: Result<Manifest, Error>,
+}
+
 /// What a run folder may contain that we wrote ourselves and may replace.
 const OURS: [&str; 6] = ["manifest.json", "scene.toml", "metrics.json", "tables", "frames", log::FILE];
 
@@ -112,20 +123,31 @@ impl Recorder {
     ///
     /// # Errors
     /// [`Error`] when the disk does not take it.
-    pub fn finish(mut self, status: Status) -> Result<(Manifest, Metrics), Error> {
+    pub fn finish(self, status: Status) -> Result<(Manifest, Metrics), Error> {
+        let Finished { metrics, written, .. } = self.conclude(status);
+        Ok((written?, metrics))
+    }
+
+    /// As [`Recorder::finish`]; what came out is told, whether or not the disk takes it.
+    pub fn conclude(mut self, status: Status) -> Finished {
         let last = Moment { contacts: self.metrics.close_contacts(), ..Moment::default() };
-        for table in &mut self.tables {
-            table.push(&self.cast, &last)?;
-            table.finish()?;
-        }
         let metrics =
             Metrics { certificates: std::mem::take(&mut self.certificates), ..self.metrics.finish() };
-        write_json(&self.folder.join("metrics.json"), &metrics)?;
+        let digest = self.digest.text();
         self.manifest.status = status;
-        self.manifest.digest = Some(self.digest.text());
+        self.manifest.digest = Some(digest.clone());
+        let written = self.close(&last, &metrics);
+        Finished { metrics, digest, written: written.map(|()| self.manifest) }
+    }
+
+    fn close(&mut self, last: &Moment, metrics: &Metrics) -> Result<(), Error> {
+        for table in &mut self.tables {
+            table.push(&self.cast, last)?;
+            table.finish()?;
+        }
+        write_json(&self.folder.join("metrics.json"), metrics)?;
         self.log.take().map_or(Ok(()), |log| log.finish(&self.manifest))?;
-        self.write_manifest()?;
-        Ok((self.manifest, metrics))
+        self.write_manifest()
     }
 
     /// Marks the run as interrupted after its disk refused a moment; tables keep the parts that were closed.

@@ -3,7 +3,7 @@
 use crate::trace::Trace;
 use crate::variant::{LAWS, Variant, constants_apart, laws_apart, of, short};
 use crate::words::quantity;
-use scene::{Diagnostics, LawKind, Scene};
+use scene::{Diagnostics, LawKind, Scene, shipped};
 
 /// Which scene a run belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,12 +58,9 @@ pub(crate) const COMPARED: [f64; 2] = [0.1, 0.001];
 /// thousandth (e⁻¹⁰ (1 + 10), a double pole at −1/ε).
 const SETTLED: f64 = 10.0;
 
-/// The scenes of the paper's figures, by file name and text.
-const SCENES: [(Case, &str, &str); 3] = [
-    (Case::Line, "line-three.toml", include_str!("../../../scenes/line-three.toml")),
-    (Case::Circle, "circle-three.toml", include_str!("../../../scenes/circle-three.toml")),
-    (Case::Seven, "seven-v.toml", include_str!("../../../scenes/seven-v.toml")),
-];
+/// The shipped scenes of the paper's figures, by name.
+const SCENES: [(Case, &str); 3] =
+    [(Case::Line, "line-three"), (Case::Circle, "circle-three"), (Case::Seven, "seven-v")];
 
 impl Case {
     /// One word for it in the names of runs.
@@ -102,8 +99,8 @@ pub(crate) fn plain(epsilon: f64) -> String {
 /// Never for scenes as they are shipped; what is wrong with them otherwise.
 pub fn paper_jobs() -> Result<Vec<Job>, Diagnostics> {
     let mut jobs = vec![];
-    for (case, name, text) in SCENES {
-        let scene = Scene::parse(text, name, &[])?.scene;
+    for (case, name) in SCENES {
+        let scene = Scene::parse(shipped(name).map_or("", |shipped| shipped.text), name, &[])?.scene;
         if case == Case::Seven {
             jobs.push(job(case, &scene, Variant::epsilon(COMPARED[1]), SETTLED * COMPARED[0]));
             continue;

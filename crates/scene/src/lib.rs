@@ -29,6 +29,7 @@ mod resolve;
 mod robots;
 mod sets;
 mod shape;
+mod shipped;
 mod sight;
 mod start;
 mod table_file;
@@ -40,6 +41,7 @@ pub use diagnostics::{Diagnostic, Diagnostics};
 pub use edit::{EditError, SceneText};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
+pub use shipped::{SHIPPED, Shipped, nearest_shipped, shipped};
 pub use types::{
     Change, Channel, Compensation, Environment, Expect, Film, Follow, Ground, Law, LawKind, Mode, Noise,
     Observer, ObserverKind, ObserverStart, OnContact, Patch, Path, Physics, Plot, Prop, PropMotion, Ramp,

@@ -6,6 +6,7 @@ use crate::{
     document::{Document, SCHEMA_VERSION},
     files::read_text,
     resolve::resolve,
+    shipped::{Shipped, nearest_shipped, shipped},
     text::{Form, Node, Reading, table},
 };
 use serde::Serialize;
@@ -22,13 +23,17 @@ pub struct Loaded {
 }
 
 impl Scene {
-    /// Reads and checks the scene file at `path`, with `overrides` applied before checking.
+    /// Reads and checks the scene file at `path`, or the shipped scene of that name where there is no such file, with `overrides` applied before checking.
     ///
     /// # Errors
     /// Everything that is wrong with the file, the overrides and the tables the file names.
     pub fn load(path: impl AsRef<Path>, overrides: &[Override]) -> Result<Loaded, Diagnostics> {
         let path = path.as_ref();
-        let text = read_text(path).map_err(|fault| Diagnostics::whole_file(path, fault))?;
+        if let Some(shipped) = named(path) {
+            return Self::parse(shipped.text, path, overrides);
+        }
+        let text = read_text(path)
+            .map_err(|fault| Diagnostics::whole_file(path, fault + &suggestion(path)))?;
         Self::parse(&text, path, overrides)
     }
 
@@ -64,6 +69,20 @@ impl Scene {
         }
         // A checked scene holds nothing that TOML cannot write, as the round trips of the tests show.
         toml::to_string(&File { schema: SCHEMA_VERSION, scene: self }).unwrap_or_default()
+    }
+}
+
+/// The shipped scene that a path names, where there is no file.
+fn named(path: &Path) -> Option<&'static Shipped> {
+    path.to_str().and_then(shipped).filter(|_| !path.exists())
+}
+
+/// What to say of a file that is not there where a shipped scene may be meant.
+fn suggestion(path: &Path) -> String {
+    let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    match nearest_shipped(&stem).filter(|_| !path.exists()) {
+        Some(name) => format!(" (did you mean `{name}`, which comes with the program?)"),
+        None => String::new(),
     }
 }
 

@@ -64,6 +64,7 @@ pub(crate) fn as_json(budget: &Budget<'_>) -> Value {
         })
     });
     let mut value = json!({
+        "status": if budget.complete { "complete" } else { "interrupted" },
         "title": budget.scene.title,
         "seed": budget.scene.seed,
         "settled_after": budget.settled_after,

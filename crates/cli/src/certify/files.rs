@@ -14,12 +14,6 @@ use std::path::{Path, PathBuf};
 
 /// Writes everything into `folder`; what was there under the same names is replaced.
 pub(super) fn write(folder: &Path, report: &Report<'_>) -> Result<Vec<PathBuf>, Failure> {
-    if folder.is_file() {
-        let text = format!("{} is a file; -o names a folder for the certificate", folder.display());
-        return Err(Failure::Usage(text));
-    }
-    let refused = |e| Failure::Machine(format!("cannot create {}: {e}", folder.display()));
-    std::fs::create_dir_all(folder).map_err(refused)?;
     let mut texts =
         vec![("certificate.json", format!("{:#}\n", as_json(report))), ("certificate.csv", table(report))];
     texts.extend(pictures::figures(report));

@@ -49,12 +49,14 @@ impl Folder {
 
     /// Writes down how it ended, what is in the folder, and what came out.
     pub(super) fn close(&self, status: &str, came: Option<(&Report, &[Ran])>) -> Result<(), Failure> {
+        // A place that was kept for a film which was never finished is no file.
+        let there: Vec<&String> = self.files.iter().filter(|name| self.path.join(name).exists()).collect();
         let mut value = json!({
             "format": FORMAT,
             "program": PROGRAM,
             "commit": option_env!("ECHELON_COMMIT"),
             "status": status,
-            "files": self.files,
+            "files": there,
         });
         if let (Some((report, runs)), Some(all)) = (came, value.as_object_mut()) {
             all.extend(found(report, runs));

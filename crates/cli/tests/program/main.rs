@@ -9,6 +9,9 @@ mod dataset;
 mod figures;
 mod films;
 mod logs;
+mod outputs;
 mod pictures;
 mod replay;
 mod runs;
+#[cfg(unix)]
+mod signals;

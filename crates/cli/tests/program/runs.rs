@@ -218,7 +218,7 @@ fn the_scene_of_the_readme_runs() {
 fn alone_it_prints_a_helpful_start() {
     let folder = tempfile::tempdir().expect("a folder");
     let (code, out, _) = told(&echelon(folder.path(), &[]));
-    assert!(code == 0 && out.contains("echelon film scenes/circle-three.toml"), "{out}");
+    assert!(code == 0 && out.contains("echelon film circle-three"), "{out}");
 }
 
 /// A head-on collision: recorded, or the end of the run, or its failure.

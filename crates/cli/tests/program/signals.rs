@@ -1,0 +1,95 @@
+//! What signals do: end a run tidily, end what waits at once, and nothing where they were ignored from the start.
+
+use crate::common::{command, scene, told};
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_echelon");
+
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill").args([name, &child.id().to_string()]).status().expect("kill runs");
+    assert!(sent.success());
+}
+
+/// Waits until `path` is there.
+fn wait_for(path: &Path) {
+    for _ in 0..1000 {
+        if path.exists() {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    panic!("{} did not appear", path.display());
+}
+
+/// Whether a child has ended by itself within a few seconds; it is killed otherwise.
+fn ends(child: &mut Child) -> bool {
+    for _ in 0..200 {
+        if child.try_wait().expect("asked").is_some() {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    child.kill().expect("killed");
+    child.wait().expect("ended");
+    false
+}
+
+/// `nohup`, and `&` in a plain shell: what was ignored at the start stays ignored, what was not is heeded.
+#[test]
+fn ignored_signals_stay_ignored() {
+    for (ignored, ends_by) in [("HUP", "-TERM"), ("INT", "-TERM"), ("TERM", "-INT")] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let line = scene("line-three");
+        let script = format!("trap '' {ignored}; exec \"$0\" run \"$1\" -o run --set time.duration=20000");
+        let mut child = Command::new("sh")
+            .args(["-c", &script, PROGRAM, &line])
+            .current_dir(folder.path())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("started");
+        wait_for(&folder.path().join("run/tables/edges.parts/000001.parquet"));
+        signal(&child, &format!("-{ignored}"));
+        // Rows go on coming.
+        wait_for(&folder.path().join("run/tables/edges.parts/000004.parquet"));
+        assert!(child.try_wait().expect("asked").is_none(), "{ignored} ended it");
+        signal(&child, ends_by);
+        assert!(ends(&mut child), "{ends_by} did not end it");
+        let manifest = fs::read_to_string(folder.path().join("run/manifest.json")).expect("a manifest");
+        assert!(manifest.contains("interrupted"), "{manifest}");
+    }
+}
+
+/// A pipe that nobody writes to is waited for, and the wait can be ended.
+#[test]
+fn who_waits_for_a_pipe_is_not_deaf() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pipe = folder.path().join("pipe.toml");
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo runs").success());
+    for (subcommand, name) in [("check", "-TERM"), ("check", "-INT"), ("run", "-HUP"), ("diff", "-TERM")] {
+        let args = [subcommand, "pipe.toml", "pipe.toml"];
+        let args = if subcommand == "run" { &args[..2] } else { &args[..] };
+        let mut child = command(folder.path(), args).stderr(Stdio::null()).spawn().expect("started");
+        std::thread::sleep(Duration::from_millis(300));
+        signal(&child, name);
+        assert!(ends(&mut child), "{subcommand} is deaf to {name}");
+    }
+}
+
+/// The second signal ends a program that does not come to ask for the first.
+#[test]
+fn a_second_signal_ends_it_at_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut child = command(folder.path(), &["run", &scene("line-three"), "-o", "run", "--set", "time.duration=20000"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("started");
+    wait_for(&folder.path().join("run/tables/edges.parts/000001.parquet"));
+    signal(&child, "-INT");
+    signal(&child, "-INT");
+    assert!(ends(&mut child));
+    let (code, _, _) = told(&child.wait_with_output().expect("ended"));
+    assert_eq!(code, 130);
+}
