@@ -9,7 +9,8 @@
 /edge/L/F/error      geometry_msgs/msg/Vector3Stamped   x distance in m, y bearing in rad: set point minus truth
 /robot/NAME/camera/image/compressed, …/camera_info      pictures, where cameras took any
 
-Names keep to the rules of ROS: `-` becomes `_`. Frames keep their names.
+Names in topics keep to the rules of ROS, one for each robot: the log's metadata `ros2` says which stands for whom. Frames
+keep their names.
 """
 
 import math
@@ -18,6 +19,8 @@ import sys
 
 from mcap.exceptions import EndOfFile
 from mcap.reader import NonSeekingReader
+from mcap.records import Metadata, Schema
+from mcap.stream_reader import StreamReader
 from mcap_protobuf.decoder import DecoderFactory
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
@@ -134,6 +137,11 @@ def main():
             return f"/edge/{parts[2]}/{parts[3]}/error", error(time, decoded)
         return None
 
+    legal = names(log)
+
+    def legally(topic):
+        return "/".join(legal.get(part, part) for part in topic.split("/"))
+
     connections = {}
     # One that does not seek also reads a log that was cut off.
     reader = NonSeekingReader(open(log, "rb"), decoder_factories=[DecoderFactory()])
@@ -145,12 +153,23 @@ def main():
             if made is None:
                 continue
             topic, out = made
-            topic, kind = topic.replace("-", "_"), out.__msgtype__
+            topic, kind = legally(topic), out.__msgtype__
             if topic not in connections:
                 connections[topic] = writer.add_connection(topic, kind, typestore=store)
             writer.write(connections[topic], message.log_time, store.serialize_cdr(out, kind))
     for topic, connection in sorted(connections.items()):
         print(topic, connection.msgtype)
+
+
+def names(log):
+    """Names of robots and props as ROS 2 takes them."""
+    with open(log, "rb") as file:
+        for record in StreamReader(file).records:
+            if isinstance(record, Metadata) and record.name == "ros2":
+                return record.metadata
+            if isinstance(record, Schema):
+                break
+    return {}
 
 
 def whole(reader):

@@ -146,6 +146,22 @@ def ros2(run, messages, work):
     check(f"{run.name}: transforms in ROS 2", counts["/tf"] == len(messages["/tf"]) > 10)
 
 
+def ros2_names(run, work):
+    """Topics are legal and one to one where names are neither."""
+    from rosbags.highlevel import AnyReader
+
+    bag = work / f"{run.name}-bag"
+    subprocess.run(["rm", "-rf", str(bag)], check=True)
+    code, text = command(sys.executable, "docs/layouts/to_ros2.py", str(run / "log.mcap"), str(bag))
+    check(f"{run.name}: to_ros2.py", code == 0)
+    with AnyReader([bag]) as reader:
+        topics = sorted(connection.topic for connection in reader.connections)
+    odometry = [topic for topic in topics if topic.endswith("/odom")]
+    check(f"{run.name}: {odometry}", odometry == ["/robot/n0/odom", "/robot/r_1/odom", "/robot/r_1_2/odom"])
+    legal = re.compile(r"(/[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*)+")
+    check(f"{run.name}: topics are legal", all(legal.fullmatch(topic) for topic in topics))
+
+
 def main():
     work, echelon = pathlib.Path(sys.argv[1]), sys.argv[2]
     logs = {name: decoded(work / name / "log.mcap") for name in ["told", "yard", "seen"]}
@@ -161,6 +177,7 @@ def main():
     rerun(work / "seen", work)
     ros2(work / "told", logs["told"], work)
     ros2(work / "seen", logs["seen"], work)
+    ros2_names(work / "names", work)
     if failures:
         sys.exit(f"{failures} checks failed")
 

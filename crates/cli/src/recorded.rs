@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::print::note;
 use crate::progress::Progress;
 use crate::run::STRIDE;
 use recording::log::{self, Log};
@@ -24,6 +25,9 @@ impl Recorded {
     /// Opens a run folder or a log.
     pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
         let opened = Self::read(path)?;
+        if let Some(remark) = opened.moments().and_then(Log::remark) {
+            note(&format!("{} {remark}", path.display()));
+        }
         interrupt::watch();
         Ok(opened)
     }
@@ -81,6 +85,10 @@ impl Recorded {
     /// Its scene, checked.
     pub(crate) fn scene(&self) -> Result<Scene, Failure> {
         let (place, text) = &self.scene;
+        if text.is_empty() {
+            let text = format!("{} holds no scene: it can be drawn and compared, not run again", place.display());
+            return Err(Failure::Usage(text));
+        }
         let loaded = Scene::parse(text, place, &[]).map_err(|errors| Failure::Usage(errors.to_string()))?;
         Ok(loaded.scene)
     }

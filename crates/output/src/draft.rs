@@ -17,6 +17,14 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     draft.keep()
 }
 
+/// A file without a name, for what is needed for a while; gone when it is closed, or when the program ends.
+///
+/// # Errors
+/// [`Error::Io`] where the folder for such files is not writable.
+pub fn scratch() -> Result<File, Error> {
+    tempfile::tempfile().map_err(|e| Error::io("write into", &std::env::temp_dir())(e))
+}
+
 /// A file under a name that no other file has; removed unless it is kept.
 ///
 /// What is a link stays one, and its target is replaced. A file that is replaced leaves its mode and owner. What is no file,

@@ -10,6 +10,6 @@ mod error;
 mod place;
 
 pub use claim::Claim;
-pub use draft::{Draft, DraftFolder, write_whole};
+pub use draft::{Draft, DraftFolder, scratch, write_whole};
 pub use error::Error;
 pub use place::Place;

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! metadata    "echelon": version of this layout, program
+//! metadata    "ros2": names of robots and props as ROS 2 takes them in topics
 //! attachments scene.toml, manifest.json (as before the run; once more at its end, with digest and status)
 //! chunk       schemas, channels, the cast, what stands still
 //! chunks      about a simulated second each, compressed each by itself: moments, drawings, pictures
@@ -10,14 +11,18 @@
 //!
 //! A chunk reaches the file whole, so a run that is killed can be read up to its last one. Moments are written as
 //! messages of our own (`messages`); drawings are Foxglove's schemas, made of the moments and never read back.
+//!
+//! What another program wrote anew is put together again (`import`).
 
 mod compare;
 mod drawing;
+mod import;
 mod messages;
 mod pictures;
 mod pipe;
 mod read;
 mod record;
+mod ros;
 mod solids;
 mod stage;
 mod writer;
@@ -37,6 +42,9 @@ const FORMAT: u32 = 1;
 
 /// Name of the metadata that makes an MCAP file a log of ours.
 const NAME: &str = "echelon";
+
+/// What our files name as the library that wrote them, before its version.
+const OURS: &str = "echelon ";
 
 /// Names of topics.
 struct Topics;

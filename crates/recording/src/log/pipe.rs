@@ -3,6 +3,7 @@
 use super::pictures::{Photo, Roll};
 use super::writer::Writer;
 use crate::{Error, Manifest};
+use std::fs::File;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
@@ -43,7 +44,8 @@ impl Pipe {
         manifest: &Manifest,
         roll: Roll,
     ) -> Result<Self, Error> {
-        let mut writer = Writer::create(path, cast, scene, manifest)?;
+        let file = File::create(path).map_err(Error::io("create", path))?;
+        let mut writer = Writer::create((file, path), cast, (scene, manifest), true)?;
         let (sender, receiver) = sync_channel::<Batch>(WAITING);
         let (back, used) = sync_channel(WAITING);
         let write = move || {

@@ -2,10 +2,11 @@
 //!
 //! Whole records are looked for from the beginning, so a log that was cut off reads like any other, up to its last chunk.
 
+use super::import::{Imported, import};
 use super::messages::{Sample, Touch};
 use super::record::{self, Record};
 use super::stage::{Stage, sound};
-use super::{FORMAT, NAME};
+use super::{FORMAT, NAME, OURS};
 use crate::{Error, Manifest, Status};
 use mcap::records::{MessageHeader, Record as Chunked, op};
 use std::collections::{HashMap, VecDeque};
@@ -31,11 +32,13 @@ struct Inside {
     channels: HashMap<u16, Channel>,
     chunks: Vec<Chunk>,
     whole: bool,
+    /// What another program did with the file, if one did.
+    remark: Option<String>,
 }
 
 /// What a channel's messages are.
 #[derive(Debug, Clone, Copy)]
-enum Channel {
+pub(super) enum Channel {
     Robot(usize),
     Edge(usize),
     Prop(usize),
@@ -56,7 +59,7 @@ struct Chunk {
 }
 
 /// More than this no record of ours is long, bytes.
-const LONGEST: u64 = 1 << 30;
+pub(super) const LONGEST: u64 = 1 << 30;
 
 impl Log {
     /// Opens the log at `path`.
@@ -66,8 +69,18 @@ impl Log {
     /// [`Error::Output`] where it cannot be read.
     pub fn open(path: &Path) -> Result<Self, Error> {
         let mut file = File::open(path).map_err(Error::io("open", path))?;
-        let wrong = |message: &str| Error::Log { path: path.to_owned(), message: message.to_owned() };
         let outline = Outline::of(&mut file, path)?;
+        if outline.foreign {
+            let Imported { mut file, remark } = import(&file, path)?;
+            let outline = Outline::of(&mut file, path)?;
+            return Self::of_ours(file, path, outline, Some(remark));
+        }
+        Self::of_ours(file, path, outline, None)
+    }
+
+    /// Opens a file that is laid as ours are.
+    fn of_ours(file: File, path: &Path, outline: Outline, remark: Option<String>) -> Result<Self, Error> {
+        let wrong = |message: &str| Error::Log { path: path.to_owned(), message: message.to_owned() };
         let Some(format) = outline.format else {
             return Err(wrong(
                 "is an MCAP file, but no log of Echelon, or was cut off at its very beginning",
@@ -90,6 +103,7 @@ impl Log {
             channels: HashMap::new(),
             chunks: outline.chunks,
             whole: outline.whole,
+            remark,
         };
         Self { file: Arc::new(file), inside: Arc::new(inside) }.with_first_chunk()
     }
@@ -164,9 +178,14 @@ impl Log {
         &self.inside.manifest
     }
 
-    /// The resolved scene, as text.
+    /// The resolved scene, as text; empty where another program left it out.
     pub fn scene(&self) -> &str {
         &self.inside.scene
+    }
+
+    /// Where another program wrote the file anew: what it did, and what it left out.
+    pub fn remark(&self) -> Option<&str> {
+        self.inside.remark.as_deref()
     }
 
     /// Robots, edges, props, ground.
@@ -254,7 +273,7 @@ fn records(mut bytes: &[u8]) -> impl Iterator<Item = Chunked<'_>> {
 }
 
 impl Channel {
-    fn of(schema: &str, index: usize) -> Option<Self> {
+    pub(super) fn of(schema: &str, index: usize) -> Option<Self> {
         match schema.strip_prefix(record::PACKAGE)?.strip_prefix('.')? {
             RobotState::NAME => Some(Self::Robot(index)),
             EdgeState::NAME => Some(Self::Edge(index)),
@@ -283,6 +302,8 @@ struct Outline {
     scene: Option<String>,
     chunks: Vec<Chunk>,
     whole: bool,
+    /// Another program wrote it: nothing can be said of how it is laid.
+    foreign: bool,
 }
 
 impl Outline {
@@ -290,6 +311,7 @@ impl Outline {
         let io = |source| Error::io("read", path)(source);
         let about = file.metadata().map_err(io)?;
         let mut magic = [0; 8];
+        file.rewind().map_err(io)?;
         if about.is_dir() || file.read_exact(&mut magic).is_err() || magic != *mcap::MAGIC {
             let message = "is no log: it does not begin as MCAP files do".to_owned();
             return Err(Error::Log { path: path.to_owned(), message });
@@ -308,10 +330,19 @@ impl Outline {
             }
             match *code {
                 op::CHUNK if length >= 16 => {
-                    let head = body(&mut reader, start, 8).map_err(io)?;
-                    let begin = head.try_into().map_or(0, u64::from_le_bytes);
+                    // Begin, end, size, checksum, and the name of the compression after its length.
+                    let head = body(&mut reader, start, 36).map_err(io)?;
+                    let begin = head.first_chunk().map_or(0, |begin| u64::from_le_bytes(*begin));
+                    outline.foreign |= head.get(28..).is_some_and(|name| name.starts_with(&[4, 0, 0, 0, b'z']));
                     outline.chunks.push(Chunk { start, length, begin });
                 }
+                op::HEADER if length < LONGEST => {
+                    let bytes = body(&mut reader, start, length).map_err(io)?;
+                    if let Ok(Chunked::Header(header)) = mcap::parse_record(*code, &bytes) {
+                        outline.foreign = !header.library.starts_with(OURS);
+                    }
+                }
+                op::MESSAGE => outline.foreign = true,
                 op::METADATA | op::ATTACHMENT if length < LONGEST => {
                     let bytes = body(&mut reader, start, length).map_err(io)?;
                     outline.note(mcap::parse_record(*code, &bytes).ok());

@@ -5,7 +5,7 @@ use super::messages::{Sample, Touch};
 use super::pictures::Photo;
 use super::record::{self, Record};
 use super::stage::Stage;
-use super::{FORMAT, Topics};
+use super::{FORMAT, OURS, Topics, ros};
 use crate::{Error, Manifest};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, Compression, WriteOptions};
@@ -98,7 +98,7 @@ impl Channels {
 pub(super) struct Writer {
     to: Channels,
     cast: Cast,
-    drawing: Drawing,
+    drawing: Option<Drawing>,
     robots: Vec<u16>,
     edges: Vec<u16>,
     looks: Vec<u16>,
@@ -111,12 +111,16 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// Writes what is known before the run.
-    pub(super) fn create(path: &Path, cast: &Cast, scene: &str, manifest: &Manifest) -> Result<Self, Error> {
-        let file = File::create(path).map_err(Error::io("create", path))?;
+    /// Writes what is known before the run into `file`; errors speak of `path`. Without drawings, where nobody will look.
+    pub(super) fn create(
+        (file, path): (File, &Path),
+        cast: &Cast,
+        (scene, manifest): (&str, &Manifest),
+        drawn: bool,
+    ) -> Result<Self, Error> {
         let options = WriteOptions::new()
             .compression(Some(Compression::Lz4))
-            .library(manifest.program.clone())
+            .library(format!("{OURS}{}", env!("CARGO_PKG_VERSION")))
             // Chunks end between two samples, by `flush`, and reach the file whole.
             .chunk_size(None)
             .disable_seeking(true);
@@ -127,12 +131,16 @@ impl Writer {
         to.file
             .write_metadata(&Metadata { name: super::NAME.to_owned(), metadata })
             .map_err(Error::table(path))?;
+        let names = cast.members.iter().map(|m| &*m.name).chain(cast.props.iter().map(|p| &*p.name));
+        to.file
+            .write_metadata(&Metadata { name: "ros2".to_owned(), metadata: ros::legal(names) })
+            .map_err(Error::table(path))?;
         to.attach("scene.toml", "application/toml", scene)?;
         to.attach("manifest.json", "application/json", &text(manifest, path)?)?;
         let stage = to.add_own::<Stage>(Topics::CAST, 0)?;
         to.put_own(stage, Stamp::default(), &mut Stage(cast.clone()))?;
         let mut writer = Self {
-            drawing: Drawing::begin(cast, &mut to)?,
+            drawing: if drawn { Some(Drawing::begin(cast, &mut to)?) } else { None },
             robots: vec![],
             edges: vec![],
             looks: vec![],
@@ -172,20 +180,22 @@ impl Writer {
         let mut photos = photos.iter().peekable();
         for moment in moments {
             while let Some(photo) = photos.next_if(|photo| photo.time <= moment.snapshot.time) {
-                self.drawing.photo(photo, &mut self.to)?;
+                self.photo(photo)?;
             }
             self.moment(moment)?;
         }
-        for photo in photos {
-            self.drawing.photo(photo, &mut self.to)?;
-        }
+        photos.try_for_each(|photo| self.photo(photo))?;
         self.to.flush()
+    }
+
+    fn photo(&mut self, photo: &Photo) -> Result<(), Error> {
+        self.drawing.as_mut().map_or(Ok(()), |drawing| drawing.photo(photo, &mut self.to))
     }
 
     fn moment(&mut self, moment: &mut Moment) -> Result<(), Error> {
         let stamp = Stamp { number: self.number, time: moment.snapshot.time };
         let to = &mut self.to;
-        self.drawing.moment(stamp, moment, to)?;
+        self.drawing.as_mut().map_or(Ok(()), |drawing| drawing.moment(stamp, moment, to))?;
         for (channel, robot) in self.robots.iter().zip(&mut moment.snapshot.robots) {
             to.put_own(*channel, stamp, robot)?;
         }

@@ -1,0 +1,325 @@
+//! A log that another program wrote anew: sorted, filtered, compressed otherwise, its chunks laid anew.
+//!
+//! Our own reader relies on how our own writer lays a file. What others write is put together again, sample by sample, into a
+//! log of ours in a file without a name, and read from there: a moment that comes back is the moment that was recorded, bit
+//! for bit, or is not there.
+
+use super::messages::{Sample, Touch};
+use super::read::{Channel, LONGEST};
+use super::record;
+use super::stage::{Stage, sound};
+use super::writer::Writer;
+use super::{FORMAT, NAME, Topics};
+use crate::manifest;
+use crate::{Error, Manifest, Status};
+use mcap::records::{MessageHeader, Record as Item};
+use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use std::collections::{BTreeMap, HashMap};
+use std::fs::File;
+use std::io::{BufReader, Read, Seek};
+use std::path::Path;
+use vocabulary::{Cast, Contact, EdgeState, Frame, Moment, Placement, RobotState};
+
+/// A log of ours, and what the foreign one has and lacks.
+pub(super) struct Imported {
+    pub(super) file: File,
+    pub(super) remark: String,
+}
+
+/// What a foreign log holds besides its moments.
+#[derive(Default)]
+struct About {
+    library: String,
+    format: Option<String>,
+    manifest: Option<String>,
+    scene: Option<String>,
+    cast: Option<Cast>,
+    channels: HashMap<u16, Channel>,
+    /// Samples, and the times of the first two, s.
+    samples: u64,
+    times: [f64; 2],
+    /// Whether messages come in the order of time.
+    in_order: bool,
+}
+
+/// Moments that are written at once.
+const BATCH: usize = 64;
+
+/// Puts the log in `file` together again; errors speak of `path`.
+pub(super) fn import(file: &File, path: &Path) -> Result<Imported, Error> {
+    let wrong = |message: String| Error::Log { path: path.to_owned(), message };
+    let about = About::of(file, path)?;
+    if let Some(format) = about.format.as_ref().filter(|format| **format != FORMAT.to_string()) {
+        return Err(wrong(format!("is a log of layout {format}; this program reads layout {FORMAT}")));
+    }
+    let cast = about.cast.clone().filter(sound).ok_or_else(|| {
+        wrong(format!("is an MCAP file, but no log of Echelon: it has no topic {}", Topics::CAST))
+    })?;
+    let mut manifest = match &about.manifest {
+        Some(text) => serde_json::from_str(text)
+            .map_err(|error| wrong(format!("holds a manifest that cannot be read: {error}")))?,
+        None => guessed(&cast, &about),
+    };
+    let scene = about.scene.clone().unwrap_or_default();
+    let ours = output::scratch()?;
+    let copy = ours.try_clone().map_err(Error::io("write", path))?;
+    let mut writer = Writer::create((ours, path), &cast, (&scene, &manifest), false)?;
+    let (mut pending, mut batch, mut count) = (Pending::default(), vec![], 0);
+    let mut take = |pending: &mut Pending, until: u64| -> Result<bool, Error> {
+        while let Some(moment) = pending.pop(until, &cast) {
+            let Some(moment) = moment else { return Ok(false) };
+            batch.push(moment);
+            count += 1;
+            if batch.len() == BATCH {
+                writer.push(&mut batch, &[])?;
+                batch.clear();
+            }
+        }
+        Ok(true)
+    };
+    let mut sound = true;
+    read(file, path, |item| {
+        if let Item::Message { header, data } = item
+            && let Some(channel) = about.channels.get(&header.channel_id)
+        {
+            let fits = pending.add(*channel, &header, &data);
+            sound = sound && fits && (!about.in_order || take(&mut pending, header.log_time)?);
+        }
+        Ok(sound)
+    })?;
+    sound = sound && take(&mut pending, u64::MAX)?;
+    if !batch.is_empty() {
+        writer.push(&mut batch, &[])?;
+    }
+    if manifest.digest.is_none() {
+        manifest.samples = count;
+    }
+    let remark = about.remark(count, sound);
+    writer.finish(&manifest)?;
+    Ok(Imported { file: copy, remark })
+}
+
+/// What can be said of a run whose manifest was left out.
+fn guessed(cast: &Cast, about: &About) -> Manifest {
+    let name = |robot: usize| cast.members.get(robot).map_or_else(String::new, |member| member.name.clone());
+    Manifest {
+        format: manifest::FORMAT,
+        program: "unknown".to_owned(),
+        commit: None,
+        title: cast.title.clone(),
+        seed: 0,
+        period: about.times[1] - about.times[0],
+        duration: cast.duration,
+        robots: cast.members.iter().map(|member| member.name.clone()).collect(),
+        edges: cast.edges.iter().map(|edge| [name(edge.leader), name(edge.follower)]).collect(),
+        status: Status::Running,
+        samples: about.samples,
+        digest: None,
+    }
+}
+
+impl About {
+    fn of(file: &File, path: &Path) -> Result<Self, Error> {
+        let mut about = Self { in_order: true, ..Self::default() };
+        let (mut schemas, mut topics) = (HashMap::new(), vec![]);
+        let mut last = 0;
+        read(file, path, |item| {
+            match item {
+                Item::Header(header) => about.library = header.library,
+                Item::Metadata(metadata) if metadata.name == NAME => {
+                    about.format = metadata.metadata.get("format").cloned();
+                }
+                Item::Attachment { header, data, .. } => {
+                    let text = String::from_utf8(data.into_owned()).ok();
+                    match &*header.name {
+                        // The last one is that of the end.
+                        "manifest.json" => about.manifest = text.or(about.manifest.take()),
+                        "scene.toml" => about.scene = text.or(about.scene.take()),
+                        _ => {}
+                    }
+                }
+                Item::Schema { header, .. } => {
+                    schemas.insert(header.id, header.name);
+                }
+                Item::Channel(channel) => {
+                    let Some(schema) = schemas.get(&channel.schema_id) else { return Ok(true) };
+                    let index = channel.metadata.get("index").and_then(|text| text.parse().ok());
+                    if let Some(kind) = Channel::of(schema, index.unwrap_or(0)) {
+                        about.channels.insert(channel.id, kind);
+                    }
+                    if index.is_none() {
+                        topics.push((channel.id, schema.clone(), channel.topic));
+                    }
+                }
+                Item::Message { header, data } => {
+                    let Some(kind) = about.channels.get(&header.channel_id) else { return Ok(true) };
+                    match kind {
+                        Channel::Cast => about.cast = record::read::<Stage>(&data).map(|stage| stage.0),
+                        Channel::Sample => {
+                            if let Some(time) = about.times.get_mut(about.samples as usize) {
+                                *time = header.log_time as f64 * 1e-9;
+                            }
+                            about.samples += 1;
+                        }
+                        _ => {}
+                    }
+                    about.in_order &= header.log_time >= last;
+                    last = header.log_time;
+                }
+                _ => {}
+            }
+            Ok(true)
+        })?;
+        about.find(&topics);
+        Ok(about)
+    }
+
+    /// Whose a channel is by its topic, where what was written about it was left out.
+    fn find(&mut self, topics: &[(u16, String, String)]) {
+        let Some(cast) = &self.cast else { return };
+        let place = |kind: Channel, topic: &str| match kind {
+            Channel::Robot(_) => cast.members.iter().position(|member| Topics::robot(member) == topic),
+            Channel::Edge(_) => cast.edges.iter().position(|edge| Topics::edge(cast, *edge) == topic),
+            Channel::Look(_) => cast.edges.iter().position(|edge| Topics::looks(cast, *edge) == topic),
+            Channel::Prop(_) => cast.props.iter().position(|prop| Topics::prop(prop) == topic),
+            _ => Some(0),
+        };
+        for (id, schema, topic) in topics {
+            let kind = Channel::of(schema, 0);
+            match kind.and_then(|kind| place(kind, topic)).and_then(|index| Channel::of(schema, index)) {
+                Some(kind) => self.channels.insert(*id, kind),
+                None => self.channels.remove(id),
+            };
+        }
+    }
+
+    /// What was done with the log, and what it lacks.
+    fn remark(&self, count: u64, sound: bool) -> String {
+        let mut remark = format!("was written anew by {}", self.library);
+        let lacks = [(self.scene.is_none(), "its scene"), (self.manifest.is_none(), "its manifest with the digest")];
+        let lacks: Vec<&str> = lacks.iter().filter(|(lacks, _)| *lacks).map(|(_, what)| *what).collect();
+        if !lacks.is_empty() {
+            remark += &format!(", which left out {}", lacks.join(" and "));
+        }
+        if !sound || count < self.samples {
+            remark += &format!(
+                "; of its {} samples the first {count} are whole, the others lack topics or messages",
+                self.samples
+            );
+        }
+        remark
+    }
+}
+
+/// What has come of moments that are not complete.
+#[derive(Default)]
+struct Pending {
+    /// By time, ns.
+    moments: BTreeMap<u64, Parts>,
+    /// Where props are that have not moved since.
+    props: BTreeMap<usize, Placement>,
+}
+
+/// Of one moment.
+#[derive(Default)]
+struct Parts {
+    robots: BTreeMap<usize, RobotState>,
+    edges: BTreeMap<usize, EdgeState>,
+    props: BTreeMap<usize, Placement>,
+    frames: Vec<Frame>,
+    contacts: Vec<Contact>,
+    sample: Option<Sample>,
+}
+
+impl Pending {
+    /// Takes a message in; whether it makes sense.
+    fn add(&mut self, channel: Channel, header: &MessageHeader, data: &[u8]) -> bool {
+        if matches!(channel, Channel::Cast) {
+            return true;
+        }
+        let parts = self.moments.entry(header.log_time).or_default();
+        let mut put = || -> Option<()> {
+            match channel {
+                Channel::Robot(index) => drop(parts.robots.insert(index, record::read(data)?)),
+                Channel::Edge(index) => drop(parts.edges.insert(index, record::read(data)?)),
+                Channel::Prop(index) => drop(parts.props.insert(index, record::read(data)?)),
+                Channel::Look(index) => parts.frames.push(Frame { edge: index, ..record::read(data)? }),
+                Channel::Contact => {
+                    parts.contacts.push(record::read::<Touch>(data)?.contact);
+                }
+                Channel::Sample => parts.sample = Some(record::read(data)?),
+                Channel::Cast => {}
+            }
+            Some(())
+        };
+        put().is_some()
+    }
+
+    /// The first moment before `until` ns, out of which nothing more can come; `Some(None)` where it is not whole, `None`
+    /// where there is none.
+    fn pop(&mut self, until: u64, cast: &Cast) -> Option<Option<Moment>> {
+        let first = self.moments.first_entry().filter(|entry| *entry.key() < until)?;
+        Some(first.remove().whole(&mut self.props, cast))
+    }
+}
+
+impl Parts {
+    /// The moment, if all of it is there.
+    fn whole(self, placed: &mut BTreeMap<usize, Placement>, cast: &Cast) -> Option<Moment> {
+        let sample = self.sample?;
+        placed.extend(self.props);
+        let counts = [
+            (sample.robots, self.robots.len()),
+            (sample.edges, self.edges.len()),
+            (sample.props, placed.len()),
+            (sample.contacts, self.contacts.len()),
+            (sample.looks, self.frames.len()),
+        ];
+        counts.iter().all(|(told, found)| *told == *found as u64).then_some(())?;
+        let inside = |last: Option<&usize>, count: usize| last.is_none_or(|last| *last < count);
+        let fits = inside(self.robots.keys().next_back(), cast.members.len())
+            && inside(self.edges.keys().next_back(), cast.edges.len())
+            && inside(placed.keys().next_back(), cast.props.len())
+            && self.frames.iter().all(|frame| frame.edge < cast.edges.len());
+        let mut moment = Moment { contacts: self.contacts, frames: self.frames, ..Moment::default() };
+        moment.snapshot.time = sample.time;
+        moment.snapshot.robots = self.robots.into_values().collect();
+        moment.snapshot.props = placed.values().copied().collect();
+        moment.edges = self.edges.into_values().collect();
+        fits.then_some(moment)
+    }
+}
+
+/// Shows `take` every record, those in chunks too, until it has seen enough. What was cut off ends there.
+fn read(
+    mut file: &File,
+    path: &Path,
+    mut take: impl FnMut(Item<'_>) -> Result<bool, Error>,
+) -> Result<(), Error> {
+    let damaged = |error: &dyn std::fmt::Display| Error::Log {
+        path: path.to_owned(),
+        message: format!("is damaged: {error}"),
+    };
+    file.rewind().map_err(Error::io("read", path))?;
+    let mut file = BufReader::with_capacity(1 << 16, file);
+    let options = LinearReaderOptions::default().with_record_length_limit(LONGEST as usize);
+    let mut reader = LinearReader::new_with_options(options);
+    while let Some(event) = reader.next_event() {
+        match event {
+            Ok(LinearReadEvent::ReadRequest(count)) => {
+                let room = reader.insert(count.min(1 << 20));
+                let read = file.read(room).map_err(Error::io("read", path))?;
+                reader.notify_read(read);
+            }
+            Ok(LinearReadEvent::Record { data, opcode }) => {
+                let item = mcap::parse_record(opcode, data).map_err(|error| damaged(&error))?;
+                if !take(item)? {
+                    return Ok(());
+                }
+            }
+            Err(mcap::McapError::UnexpectedEof | mcap::McapError::UnexpectedEoc) => return Ok(()),
+            Err(error) => return Err(damaged(&error)),
+        }
+    }
+    Ok(())
+}
