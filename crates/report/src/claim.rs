@@ -2,7 +2,7 @@
 //! values, and its verdict follows from them.
 
 use crate::trace::Trace;
-use crate::words::quantity;
+use crate::words::{quantity, told_apart};
 use serde::Serialize;
 
 /// A measured value.
@@ -29,6 +29,9 @@ pub struct Claim {
     pub values: Vec<Value>,
     /// What they have to do.
     pub wanted: String,
+    /// What they may not exceed, if that is it.
+    #[serde(skip)]
+    pub(crate) limit: Option<f64>,
     /// Whether they do.
     pub holds: bool,
 }
@@ -52,6 +55,7 @@ impl Claim {
             quantity: quantity.to_owned(),
             values: values.iter().map(value).collect(),
             wanted,
+            limit: None,
             holds: holds && measured,
         }
     }
@@ -78,12 +82,15 @@ impl Claim {
         limit: f64,
     ) -> Self {
         let holds = values.iter().all(|(_, value)| *value <= limit);
-        Self::new(about, of, values, (format!("at most {}", quantity(limit, of.1)), holds))
+        let claim = Self::new(about, of, values, (format!("at most {}", quantity(limit, of.1)), holds));
+        Self { limit: Some(limit), ..claim }
     }
 
-    /// The numbers in words: `OFB 3.47 mm, RSFB 3.40 mm`.
+    /// The numbers in words, those that differ told apart: `OFB 3.47 mm, RSFB 3.40 mm`.
     pub fn found(&self) -> String {
-        let each = self.values.iter().map(|v| format!("{} {}", v.name, quantity(v.value, v.unit)));
+        let values = self.values.iter().map(|v| v.value).chain(self.limit).collect::<Vec<_>>();
+        let texts = told_apart(&values, self.values.first().map_or("", |v| v.unit));
+        let each = self.values.iter().zip(&texts).map(|(v, text)| format!("{} {text}", v.name));
         each.collect::<Vec<_>>().join(", ")
     }
 }

@@ -108,6 +108,7 @@ fn expectations(run: &Trace) -> Vec<Claim> {
             values: vec![],
             wanted: finding.wanted,
             holds: finding.met,
+            limit: None,
         })
         .collect()
 }

@@ -4,30 +4,56 @@ use std::f64::consts::PI;
 
 /// A value with its unit, in three digits, small lengths in mm and angles in degrees.
 pub(crate) fn quantity(value: f64, unit: &str) -> String {
+    quantity_to(3, value, unit)
+}
+
+/// Values with their unit, in three digits, or as many more as tell those apart that differ.
+pub(crate) fn told_apart(values: &[f64], unit: &str) -> Vec<String> {
+    let mut texts = vec![];
+    for count in 3..=17 {
+        texts = values.iter().map(|value| quantity_to(count, *value, unit)).collect();
+        let apart = |a: usize, b: usize| values[a] == values[b] || texts[a] != texts[b];
+        if (0..values.len()).all(|a| (0..a).all(|b| apart(a, b))) {
+            break;
+        }
+    }
+    texts
+}
+
+fn quantity_to(count: i32, value: f64, unit: &str) -> String {
     match unit {
-        "m" if value.abs() < 0.1 && value != 0.0 => format!("{} mm", digits(value * 1e3)),
-        "rad" if value.abs() < 0.5 * PI && value != 0.0 => format!("{}°", digits(value * 180.0 / PI)),
-        "" => digits(value),
-        unit => format!("{} {unit}", digits(value)),
+        "m" if value.abs() < 0.1 && value != 0.0 => format!("{} mm", digits_to(count, value * 1e3)),
+        "rad" if value.abs() < 0.5 * PI && value != 0.0 => {
+            format!("{}°", digits_to(count, value * 180.0 / PI))
+        }
+        "" => digits_to(count, value),
+        unit => format!("{} {unit}", digits_to(count, value)),
     }
 }
 
 /// Three digits that count; powers of ten where zeros would have to be counted.
 pub(crate) fn digits(value: f64) -> String {
+    digits_to(3, value)
+}
+
+/// As many digits that count as `count`.
+fn digits_to(count: i32, value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 { "0".to_owned() } else { "—".to_owned() };
     }
     let decade = value.abs().log10().floor();
     // Rounding may carry into the next decade: 9.996 is 10.0.
-    let decade =
-        if (value.abs() / 10_f64.powf(decade) * 100.0).round() >= 1000.0 { decade + 1.0 } else { decade };
+    let shift = 10_f64.powi(count - 1);
+    let carried = (value.abs() / 10_f64.powf(decade) * shift).round() >= 10.0 * shift;
+    let decade = if carried { decade + 1.0 } else { decade };
     if (-3.0..6.0).contains(&decade) {
-        let decimals = (2.0 - decade).max(0.0) as usize;
+        let decimals = (f64::from(count - 1) - decade).max(0.0) as usize;
         return format!("{value:.decimals$}").replace('-', "−");
     }
     let factor = value / 10_f64.powf(decade);
     let raised: String = format!("{decade}").chars().map(raise).collect();
-    format!("{factor:.2}·10{raised}").replace('-', "−")
+    let decimals = (count - 1) as usize;
+    format!("{factor:.decimals$}·10{raised}").replace('-', "−")
 }
 
 fn raise(c: char) -> char {
@@ -69,6 +95,16 @@ mod tests {
         assert_eq!(quantity(PI / 180.0, "rad"), "1.00°");
         assert_eq!(quantity(5.41, "rad"), "5.41 rad");
         assert_eq!(quantity(3.0, ""), "3.00");
+    }
+
+    /// "NOT SO: 20.0 mm, at most 20.0 mm" helps nobody.
+    #[test]
+    fn what_differs_is_told_apart() {
+        assert_eq!(told_apart(&[0.020_04, 0.02], "m"), ["20.04 mm", "20.00 mm"]);
+        assert_eq!(told_apart(&[1.234, 1.234, 2.0], ""), ["1.23", "1.23", "2.00"]);
+        assert_eq!(told_apart(&[1.0, 1.0 + 1e-9], "rad"), ["57.2957795°", "57.2957796°"]);
+        assert_eq!(told_apart(&[3.9e-14, 3.901e-14], ""), ["3.900·10⁻¹⁴", "3.901·10⁻¹⁴"]);
+        assert_eq!(told_apart(&[0.0, f64::NAN, f64::NAN], ""), ["0", "—", "—"]);
     }
 
     #[test]
