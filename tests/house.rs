@@ -41,7 +41,10 @@ const ARROWS: [(&str, &[&str]); 13] = [
     ("figures", &[]),
     ("simulation", &["vocabulary", "scene", "formation", "world", "perception", "recording"]),
     ("report", &["vocabulary", "scene", "simulation", "recording", "figures"]),
-    ("lab", &["vocabulary", "output", "scene", "formation", "simulation", "recording", "rendering", "figures"]),
+    (
+        "lab",
+        &["vocabulary", "output", "scene", "formation", "simulation", "recording", "rendering", "figures"],
+    ),
     (
         "cli",
         &[

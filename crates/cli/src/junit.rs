@@ -90,7 +90,8 @@ mod tests {
     fn what_xml_does_not_allow_is_made_visible() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("report.xml");
-        let broken = Case { name: "a\u{fffe}b\u{1b}[31mc".into(), came: Came::Broken("\u{ffff}\0 no".into()) };
+        let broken =
+            Case { name: "a\u{fffe}b\u{1b}[31mc".into(), came: Came::Broken("\u{ffff}\0 no".into()) };
         write(&path, "x\u{fffe}.toml", &[broken]).expect("written");
         let text = std::fs::read_to_string(&path).expect("text");
         assert!(text.contains("errors=\"1\"") && text.contains("a\u{fffd}b\u{fffd}[31mc"), "{text}");

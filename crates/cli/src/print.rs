@@ -82,7 +82,10 @@ mod tests {
 
     #[test]
     fn what_would_steer_a_terminal_is_spelt_out() {
-        assert_eq!(harmless("a\u{1b}[31mred\u{7}\u{9b}2J \u{202e}x"), "a\\u001B[31mred\\u0007\\u009B2J \\u202Ex");
+        assert_eq!(
+            harmless("a\u{1b}[31mred\u{7}\u{9b}2J \u{202e}x"),
+            "a\\u001B[31mred\\u0007\\u009B2J \\u202Ex"
+        );
         let fine = "two lines\n\tω = 3 rad/s, 隊列, مرحبا";
         assert!(matches!(harmless(fine), Cow::Borrowed(text) if text == fine));
         // The spelling reads back as what it was.

@@ -86,7 +86,8 @@ impl Recorded {
     pub(crate) fn scene(&self) -> Result<Scene, Failure> {
         let (place, text) = &self.scene;
         if text.is_empty() {
-            let text = format!("{} holds no scene: it can be drawn and compared, not run again", place.display());
+            let text =
+                format!("{} holds no scene: it can be drawn and compared, not run again", place.display());
             return Err(Failure::Usage(text));
         }
         let loaded = Scene::parse(text, place, &[]).map_err(|errors| Failure::Usage(errors.to_string()))?;

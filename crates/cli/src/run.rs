@@ -183,9 +183,7 @@ impl Sink {
                 let Finished { metrics, digest, written } = recorder.conclude(status);
                 (metrics, digest, written.map(drop))
             }
-            Self::Judge(judge) => {
-                (Metrics { certificates, ..judge.0.finish() }, judge.1.text(), Ok(()))
-            }
+            Self::Judge(judge) => (Metrics { certificates, ..judge.0.finish() }, judge.1.text(), Ok(())),
         }
     }
 }

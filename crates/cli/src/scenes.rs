@@ -20,8 +20,10 @@ pub(crate) struct ScenesArgs {
 pub(crate) fn scenes(args: &ScenesArgs) -> Outcome {
     if let Some(name) = &args.name {
         let Some(found) = shipped(name) else {
-            let near = nearest_shipped(name).map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"));
-            let text = format!("no scene called `{name}` comes with the program{near}; `echelon scenes` lists them");
+            let near =
+                nearest_shipped(name).map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"));
+            let text =
+                format!("no scene called `{name}` comes with the program{near}; `echelon scenes` lists them");
             return Err(Failure::Usage(text));
         };
         verbatim(found.text);

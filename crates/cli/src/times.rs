@@ -59,7 +59,10 @@ mod tests {
     #[test]
     fn zero_has_no_sign_and_names_tell_times_apart() {
         let times = within(&[-0.0, 1.0004, 1.0001, 1.0001 + 1e-12], 3.0).expect("times");
-        assert_eq!(times.iter().map(|t| in_names(*t)).collect::<Vec<_>>(), ["000.000", "001.0001", "001.0004"]);
+        assert_eq!(
+            times.iter().map(|t| in_names(*t)).collect::<Vec<_>>(),
+            ["000.000", "001.0001", "001.0004"]
+        );
         assert!(times[0].is_sign_positive());
         assert_eq!(in_names(230.0 * 0.01), "002.300");
         assert_eq!(in_names(1234.5), "1234.500");

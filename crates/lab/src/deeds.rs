@@ -150,6 +150,9 @@ impl Desk {
     }
 
     fn undo(&mut self) {
+        if self.in_the_past() {
+            return self.undo_past();
+        }
         let step = self.draft.as_mut().and_then(crate::session::draft::Draft::undo);
         if let Some((what, effect)) = step {
             self.take(&format!("Undo: {}", what.trim_end_matches('…')), &effect);
@@ -157,6 +160,9 @@ impl Desk {
     }
 
     fn redo(&mut self) {
+        if self.in_the_past() {
+            return self.note("Nothing was taken back here: what came later is on the branch that has it");
+        }
         let step = self.draft.as_mut().and_then(crate::session::draft::Draft::redo);
         if let Some((what, effect)) = step {
             self.take(&format!("Redo: {}", what.trim_end_matches('…')), &effect);

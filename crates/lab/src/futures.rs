@@ -28,7 +28,7 @@ impl Desk {
         what: &str,
         edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
     ) -> bool {
-        let past = self.forks == 0 && self.cursor.is_some_and(|time| time < self.end() - 1e-9);
+        let past = self.in_the_past();
         let time = self.time();
         let done = match &mut self.draft {
             Some(draft) if !past => {
@@ -46,6 +46,35 @@ impl Desk {
             }
         }
         true
+    }
+
+    /// Whether it is the past that is looked at, where an edit makes another future.
+    pub(crate) fn in_the_past(&self) -> bool {
+        self.forks == 0 && self.cursor.is_some_and(|time| time < self.end() - 1e-9)
+    }
+
+    /// What undo would take back: in the past, the last change that holds there.
+    pub fn undoes(&self) -> Option<String> {
+        let draft = self.draft.as_ref()?;
+        let what = if self.in_the_past() { draft.step_to(&self.there()?.1)?.0 } else { draft.undoes()? };
+        Some(what.trim_end_matches('…').to_owned())
+    }
+
+    /// Takes back the last change that holds where it is looked at: a future without it.
+    pub(crate) fn undo_past(&mut self) {
+        let step = self.there().zip(self.draft.as_ref()).and_then(|((_, there), draft)| {
+            let (what, before) = draft.step_to(&there)?;
+            Some((format!("Undo: {}", what.trim_end_matches('…')), before.to_owned()))
+        });
+        let Some((what, before)) = step else {
+            return self.note("Nothing was changed before this time");
+        };
+        self.fork();
+        let Some(draft) = &mut self.draft else { return };
+        match draft.replace(&what, before) {
+            Ok(effect) => self.take(&what, &effect),
+            Err(fault) => self.fault(fault),
+        }
     }
 
     /// In the past, an edit makes another future; one that cannot be makes none.

@@ -16,6 +16,7 @@ pub mod keep;
 pub mod kept;
 pub mod keys;
 pub mod look;
+mod lost;
 mod over;
 pub mod panels;
 pub mod panes;

@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::app::Lab;
+use crate::lost;
 use eframe::egui::ViewportBuilder;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use std::path::PathBuf;
@@ -57,14 +58,17 @@ pub fn open(options: Options) -> Result<(), Error> {
     };
     let ended = Arc::new(Mutex::new(None));
     let why = Arc::clone(&ended);
-    let made = eframe::run_native(
-        NAME,
-        native,
-        Box::new(move |context| {
-            let lab = Lab::new(context, &options, (began, why))?;
-            Ok(Box::new(lab))
-        }),
-    );
+    let show = || {
+        eframe::run_native(
+            NAME,
+            native,
+            Box::new(move |context| {
+                let lab = Lab::new(context, &options, (began, why))?;
+                Ok(Box::new(lab))
+            }),
+        )
+    };
+    let made = lost::told(show).map_err(Error::Window)?;
     let ended: Option<Error> = ended.lock().unwrap_or_else(PoisonError::into_inner).take();
     match (made, ended) {
         (Ok(()), None) => Ok(()),
@@ -101,6 +105,13 @@ fn setup(adapter: &str) -> WgpuSetup {
     WgpuSetup::CreateNew(new)
 }
 
+/// What a library says, without its own name and the place in its source, which is that of whoever built it.
+fn plain(error: &str) -> &str {
+    let error = error.rsplit("failed: ").next().unwrap_or(error);
+    let at_place = error.split_once("os error at ").and_then(|(_, rest)| rest.split_once(": "));
+    at_place.map_or(error, |(_, words)| words).trim_end_matches('.')
+}
+
 /// What a person can do where no window can be opened.
 fn explained(error: &str) -> String {
     let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
@@ -108,11 +119,27 @@ fn explained(error: &str) -> String {
     let why = if cfg!(target_os = "linux") && !displayed {
         "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)"
     } else {
-        // Libraries put their own names and places in front.
-        error.rsplit("failed: ").next().unwrap_or(error).trim_end_matches('.')
+        plain(error)
     };
     format!(
         "the window cannot be opened: {why}. The lab needs a desktop (X11 or Wayland; Xvfb serves too) and an adapter, see \
          `echelon doctor`; `echelon film` and `echelon capture` need neither"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_show_no_place_of_whoever_built_it() {
+        let told = "winit EventLoopError: os error at /home/builder/.cargo/registry/src/index-1/winit-0.30.13/src/mod.rs:788: \
+                    Failed to open connection to X server";
+        assert_eq!(plain(told), "Failed to open connection to X server");
+        assert_eq!(
+            plain("wgpu failed: no adapter for `x` can show a window."),
+            "no adapter for `x` can show a window"
+        );
+        assert!(!explained(told).contains("/home"));
+    }
 }

@@ -93,7 +93,10 @@ impl Drop for Place {
 pub(crate) fn named(path: &Path) -> Result<(), Error> {
     match path.as_os_str().as_encoded_bytes() {
         b"" => Err(Error::place(path, "(nothing) is no place to write to: name one")),
-        b"-" => Err(Error::place(path, "would be standard output, which only text goes to: name a file or folder")),
+        b"-" => Err(Error::place(
+            path,
+            "would be standard output, which only text goes to: name a file or folder",
+        )),
         _ => Ok(()),
     }
 }

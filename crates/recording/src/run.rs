@@ -69,9 +69,8 @@ impl Recorder {
     /// [`Error::Output`] where the folder holds a run (unless `force`) or anything else, where another run is being written
     /// there, and where it cannot be written.
     pub fn create(folder: &Path, cast: &Cast, options: RunOptions) -> Result<Self, Error> {
-        let ours = |folder: &Path| {
-            folder.join("manifest.json").exists().then(|| OURS.map(str::to_owned).to_vec())
-        };
+        let ours =
+            |folder: &Path| folder.join("manifest.json").exists().then(|| OURS.map(str::to_owned).to_vec());
         let claim = Claim::new(folder, "a run", options.force, ours)?;
         let tables = folder.join("tables");
         fs::create_dir(&tables).map_err(Error::io("create", &tables))?;

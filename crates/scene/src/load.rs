@@ -32,8 +32,8 @@ impl Scene {
         if let Some(shipped) = named(path) {
             return Self::parse(shipped.text, path, overrides);
         }
-        let text = read_text(path)
-            .map_err(|fault| Diagnostics::whole_file(path, fault + &suggestion(path)))?;
+        let text =
+            read_text(path).map_err(|fault| Diagnostics::whole_file(path, fault + &suggestion(path)))?;
         Self::parse(&text, path, overrides)
     }
 

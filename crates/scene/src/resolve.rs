@@ -245,7 +245,8 @@ fn shots(shots: &mut [Shot], (place, duration): (Place, f64), drafts: &[Draft], 
         for part in shot.view.iter().flat_map(|view| view.split('+')) {
             check_view(Some((place, part.trim())), drafts, reading);
         }
-        (shot.from, shot.to) = (Some(from), Some(to));
+        // A shot that begins after the run has no end of its own, also where the scene is written out.
+        (shot.from, shot.to) = (Some(from), (to > from).then_some(to));
         now = to;
     }
 }

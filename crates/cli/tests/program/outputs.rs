@@ -21,10 +21,12 @@ fn folders_are_made_where_they_are_missing() {
     assert!(code == 0 && out.contains("samples") || out.contains("steps"), "{code} {out}{err}");
     assert!(folder.path().join("reports/deep/x.xml").exists());
     for film in ["new/dir/f.mp4", "new/gif/f.gif", "new/frames/f"] {
-        let (code, _, err) = run(folder.path(), &[&["film", &line, "-o", film, "--fps", "5"], &small[..]].concat());
+        let (code, _, err) =
+            run(folder.path(), &[&["film", &line, "-o", film, "--fps", "5"], &small[..]].concat());
         assert!(code == 0 && folder.path().join(film).exists(), "{film}: {err}");
     }
-    let (code, _, err) = run(folder.path(), &[&["capture", &line, "-o", "new/pictures/deep"], &small[..]].concat());
+    let (code, _, err) =
+        run(folder.path(), &[&["capture", &line, "-o", "new/pictures/deep"], &small[..]].concat());
     assert!(code == 0 && folder.path().join("new/pictures/deep/line-three-000.200.png").exists(), "{err}");
 }
 
@@ -120,7 +122,8 @@ fn one_rule_for_times() {
     let folder = tempfile::tempdir().expect("a folder");
     let line = scene("line-three");
     let capture = |at: &str| {
-        let base = ["capture", &line, "--size", "64x48", "--set", "time.duration=2.3", "--set", "expect={}", "-q"];
+        let base =
+            ["capture", &line, "--size", "64x48", "--set", "time.duration=2.3", "--set", "expect={}", "-q"];
         run(folder.path(), &[&base[..], &["--at", at]].concat())
     };
     for at in ["2.3000000000000003,-0", "1.0001", "1.0004", "2.3"] {
@@ -141,7 +144,8 @@ fn one_rule_for_times() {
 #[test]
 fn a_picture_after_the_end_is_called_by_the_time_it_shows() {
     let folder = tempfile::tempdir().expect("a folder");
-    let base = ["capture", &scene("cars-crash"), "--size", "64x48", "--set", "physics.on_contact=stop", "--json"];
+    let base =
+        ["capture", &scene("cars-crash"), "--size", "64x48", "--set", "physics.on_contact=stop", "--json"];
     let (code, out, err) = run(folder.path(), &[&base[..], &["--at", "1,2,3"]].concat());
     assert_eq!(code, 0, "{err}");
     let names: Vec<String> = files(folder.path()).iter().map(|path| path.display().to_string()).collect();
@@ -154,7 +158,8 @@ fn a_picture_after_the_end_is_called_by_the_time_it_shows() {
 #[test]
 fn scenes_are_found_by_name_from_anywhere() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (code, out, err) = run(folder.path(), &[&["run", "circle-three", "--no-record"], &SHORT[..]].concat());
+    let (code, out, err) =
+        run(folder.path(), &[&["run", "circle-three", "--no-record"], &SHORT[..]].concat());
     assert!(code == 0 && out.contains("leader"), "{out}{err}");
     let (code, out, _) = run(folder.path(), &["scenes"]);
     assert!(code == 0 && out.lines().count() >= 28 && out.contains("cars-yard"), "{out}");
@@ -208,7 +213,11 @@ fn titles_do_not_steer_the_terminal() {
     let from = text.lines().find(|line| line.starts_with("title")).expect("a title");
     let text = text.replace(from, "title = \"a\\u001b[31mred\\u0007\\u009b2J\\u202eb\"");
     fs::write(folder.path().join("red.toml"), text).expect("written");
-    for args in [&["check", "red.toml"][..], &["check", "red.toml", "--resolved"], &["run", "red.toml", "--no-record"]] {
+    for args in [
+        &["check", "red.toml"][..],
+        &["check", "red.toml", "--resolved"],
+        &["run", "red.toml", "--no-record"],
+    ] {
         let (_, out, err) = run(folder.path(), args);
         let steering = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
         assert!(!out.contains(steering) && !err.contains(steering), "{args:?}: {out:?} {err:?}");

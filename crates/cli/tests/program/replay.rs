@@ -97,3 +97,14 @@ fn what_is_no_run_folder_is_refused() {
     let (code, _, err) = told(&echelon(folder.path(), &["replay", "run"]));
     assert!(code == 2 && err.contains("scene.toml"), "{err}");
 }
+
+/// A run that ends before its storyboard does could not be replayed: its scene was written out with a shot of no length.
+#[test]
+fn a_run_shorter_than_its_storyboard_replays() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let short = ["--set", "time.duration=5", "--set", "expect={}"];
+    let args = [&["run", "change-places", "-q", "-o", "short"], &short[..]].concat();
+    assert_eq!(told(&echelon(folder.path(), &args)).0, 0);
+    let (code, out, err) = told(&echelon(folder.path(), &["replay", "short"]));
+    assert!(code == 0 && out.contains("same: bit for bit"), "{out}{err}");
+}

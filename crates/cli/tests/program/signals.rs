@@ -82,10 +82,11 @@ fn who_waits_for_a_pipe_is_not_deaf() {
 #[test]
 fn a_second_signal_ends_it_at_once() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut child = command(folder.path(), &["run", &scene("line-three"), "-o", "run", "--set", "time.duration=20000"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("started");
+    let mut child =
+        command(folder.path(), &["run", &scene("line-three"), "-o", "run", "--set", "time.duration=20000"])
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("started");
     wait_for(&folder.path().join("run/tables/edges.parts/000001.parquet"));
     signal(&child, "-INT");
     signal(&child, "-INT");

@@ -164,7 +164,7 @@ fn menu(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
                 Action::Reload,
                 desk.draft.as_ref().is_some_and(|d| d.path.is_some()),
             ),
-            ("Undo   Ctrl Z", Action::Undo, desk.draft.as_ref().is_some_and(|d| d.undoes().is_some())),
+            ("Undo   Ctrl Z", Action::Undo, desk.undoes().is_some()),
             ("Redo   Ctrl Y", Action::Redo, desk.draft.as_ref().is_some_and(|d| d.redoes().is_some())),
             ("Keep the run   K", Action::KeepRun, true),
             ("Curves as CSV", Action::CurvesCsv, true),

@@ -191,6 +191,13 @@ impl Draft {
         Some((what, effect))
     }
 
+    /// The step that made `text`: what it was, and the text before it. The newest, where several did.
+    pub fn step_to(&self, text: &str) -> Option<(&str, &str)> {
+        let after = self.undo.iter().skip(1).map(|step| &*step.text).chain([&*self.text]);
+        let steps: Vec<_> = self.undo.iter().zip(after).collect();
+        steps.into_iter().rfind(|(_, after)| *after == text).map(|(step, _)| (&*step.what, &*step.text))
+    }
+
     /// What undo would take back.
     pub fn undoes(&self) -> Option<&str> {
         self.undo.last().map(|step| step.what.trim_end_matches('…'))

@@ -151,3 +151,36 @@ fn a_scene_with_changes_of_its_own_is_tuned_as_it_goes() {
     let effect = rig.desk.draft.as_mut().map(|draft| draft.replace("Script", text));
     assert!(matches!(effect, Some(Ok(Effect::Restart(_)))), "{effect:?}");
 }
+
+/// Undo in the past took back what was done last in the present.
+#[test]
+fn undo_in_the_past_takes_back_what_holds_there() {
+    let mut rig = Rig::new(THREE);
+    rig.steps(30);
+    rig.act(&[tune("law.k", "6.0"), Action::Rest]);
+    rig.steps(30);
+    rig.act(&[tune("law.k", "9.0"), Action::Rest]);
+    rig.steps(30);
+    let trunk = rig.told(0);
+    let text = rig.text().to_owned();
+    // Before the first change there is nothing to take back.
+    rig.act(&[Action::Seek(0.1)]);
+    assert_eq!(rig.desk.undoes(), None);
+    rig.act(&[Action::Undo]);
+    assert_eq!((rig.desk.branches.len(), rig.text()), (1, &*text));
+    // Between the two it is the first.
+    rig.act(&[Action::Seek(0.45)]);
+    assert_eq!(rig.desk.undoes().as_deref(), Some("Gain of all"));
+    rig.act(&[Action::Undo]);
+    assert_eq!((rig.desk.branches.len(), rig.desk.branch, gains(&rig.desk)), (2, 1, gains(&desk(THREE, 0))));
+    assert_eq!(rig.desk.end(), 0.45, "it goes on from where one looked");
+    rig.steps(20);
+    let told = rig.told(1);
+    assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
+    // The present is as it was, and what was taken back can be done again.
+    assert_eq!(rig.told(0).digest, trunk.digest);
+    rig.act(&[Action::Undo]);
+    assert_eq!(gains(&rig.desk), [6.0; 2]);
+    rig.act(&[Action::Branch(0)]);
+    assert_eq!(rig.text(), text);
+}

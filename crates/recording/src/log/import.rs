@@ -196,7 +196,8 @@ impl About {
     /// What was done with the log, and what it lacks.
     fn remark(&self, count: u64, sound: bool) -> String {
         let mut remark = format!("was written anew by {}", self.library);
-        let lacks = [(self.scene.is_none(), "its scene"), (self.manifest.is_none(), "its manifest with the digest")];
+        let lacks =
+            [(self.scene.is_none(), "its scene"), (self.manifest.is_none(), "its manifest with the digest")];
         let lacks: Vec<&str> = lacks.iter().filter(|(lacks, _)| *lacks).map(|(_, what)| *what).collect();
         if !lacks.is_empty() {
             remark += &format!(", which left out {}", lacks.join(" and "));

@@ -333,7 +333,8 @@ impl Outline {
                     // Begin, end, size, checksum, and the name of the compression after its length.
                     let head = body(&mut reader, start, 36).map_err(io)?;
                     let begin = head.first_chunk().map_or(0, |begin| u64::from_le_bytes(*begin));
-                    outline.foreign |= head.get(28..).is_some_and(|name| name.starts_with(&[4, 0, 0, 0, b'z']));
+                    outline.foreign |=
+                        head.get(28..).is_some_and(|name| name.starts_with(&[4, 0, 0, 0, b'z']));
                     outline.chunks.push(Chunk { start, length, begin });
                 }
                 op::HEADER if length < LONGEST => {

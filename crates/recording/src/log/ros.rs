@@ -12,7 +12,8 @@ pub(super) fn legal<'a>(names: impl IntoIterator<Item = &'a str>) -> BTreeMap<St
     for name in changed {
         let plain = plain(name);
         let numbered = (2..).map(|number| format!("{plain}_{number}"));
-        if let Some(free) = std::iter::once(plain.clone()).chain(numbered).find(|free| !taken.contains(free)) {
+        if let Some(free) = std::iter::once(plain.clone()).chain(numbered).find(|free| !taken.contains(free))
+        {
             taken.insert(free.clone());
             all.insert(name.to_owned(), free);
         }

@@ -1,0 +1,20 @@
+//! What must hold for any bytes whatsoever. Each function takes bytes as a fuzzer makes them and panics where something is
+//! not as it should be; `scripts/fuzz` runs them by the million, `tests/corpus.rs` on what was found before.
+
+mod log;
+mod motion;
+mod scenes;
+
+pub use log::mcap_log;
+pub use motion::way_points;
+pub use scenes::{csv_table, overrides, scene_text, storyboard};
+
+/// All targets by the name of their corpus.
+pub const TARGETS: [(&str, fn(&[u8])); 6] = [
+    ("scene_text", scene_text),
+    ("overrides", overrides),
+    ("csv_table", csv_table),
+    ("mcap_log", mcap_log),
+    ("storyboard", storyboard),
+    ("way_points", way_points),
+];
