@@ -5,7 +5,8 @@
 //! for bit, or is not there.
 
 use super::messages::{Sample, Touch};
-use super::read::{Channel, LONGEST};
+use super::outline::LONGEST;
+use super::read::Channel;
 use super::record;
 use super::stage::{Stage, sound};
 use super::writer::Writer;

@@ -18,6 +18,7 @@ mod compare;
 mod drawing;
 mod import;
 mod messages;
+mod outline;
 mod pictures;
 mod pipe;
 mod read;

@@ -2,16 +2,17 @@
 //!
 //! Whole records are looked for from the beginning, so a log that was cut off reads like any other, up to its last chunk.
 
+use super::FORMAT;
 use super::import::{Imported, import};
 use super::messages::{Sample, Touch};
+use super::outline::{Chunk, LONGEST, Outline, body};
 use super::record::{self, Record};
 use super::stage::{Stage, sound};
-use super::{FORMAT, NAME, OURS};
 use crate::{Error, Manifest, Status};
 use mcap::records::{MessageHeader, Record as Chunked, op};
 use std::collections::{HashMap, VecDeque};
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use vocabulary::{Cast, EdgeState, Frame, Moment, Placement, RobotState};
@@ -47,19 +48,6 @@ pub(super) enum Channel {
     Sample,
     Cast,
 }
-
-/// A chunk of messages.
-#[derive(Debug, Clone, Copy)]
-struct Chunk {
-    /// Of its content in the file.
-    start: u64,
-    length: u64,
-    /// Time of its first message, ns.
-    begin: u64,
-}
-
-/// More than this no record of ours is long, bytes.
-pub(super) const LONGEST: u64 = 1 << 30;
 
 impl Log {
     /// Opens the log at `path`.
@@ -283,93 +271,6 @@ impl Channel {
             Sample::NAME => Some(Self::Sample),
             Stage::NAME => Some(Self::Cast),
             _ => None,
-        }
-    }
-}
-
-fn body(file: &mut &File, start: u64, length: u64) -> std::io::Result<Vec<u8>> {
-    file.seek(SeekFrom::Start(start))?;
-    let mut bytes = Vec::new();
-    file.take(length.min(LONGEST)).read_to_end(&mut bytes)?;
-    Ok(bytes)
-}
-
-/// What stands outside the chunks, and where those are.
-#[derive(Default)]
-struct Outline {
-    format: Option<String>,
-    manifest: Option<String>,
-    scene: Option<String>,
-    chunks: Vec<Chunk>,
-    whole: bool,
-    /// Another program wrote it: nothing can be said of how it is laid.
-    foreign: bool,
-}
-
-impl Outline {
-    fn of(file: &mut File, path: &Path) -> Result<Self, Error> {
-        let io = |source| Error::io("read", path)(source);
-        let about = file.metadata().map_err(io)?;
-        let mut magic = [0; 8];
-        file.rewind().map_err(io)?;
-        if about.is_dir() || file.read_exact(&mut magic).is_err() || magic != *mcap::MAGIC {
-            let message = "is no log: it does not begin as MCAP files do".to_owned();
-            return Err(Error::Log { path: path.to_owned(), message });
-        }
-        let mut outline = Self::default();
-        let (mut at, end) = (mcap::MAGIC.len() as u64, about.len());
-        let mut reader = &*file;
-        while at + 9 <= end {
-            let head = body(&mut reader, at, 9).map_err(io)?;
-            let Some((code, length)) = head.split_first() else { break };
-            let Ok(length) = length.try_into().map(u64::from_le_bytes) else { break };
-            let start = at + 9;
-            // A record that reaches beyond the file was being written when the run was cut off.
-            if length > end - start {
-                break;
-            }
-            match *code {
-                op::CHUNK if length >= 16 => {
-                    // Begin, end, size, checksum, and the name of the compression after its length.
-                    let head = body(&mut reader, start, 36).map_err(io)?;
-                    let begin = head.first_chunk().map_or(0, |begin| u64::from_le_bytes(*begin));
-                    outline.foreign |=
-                        head.get(28..).is_some_and(|name| name.starts_with(&[4, 0, 0, 0, b'z']));
-                    outline.chunks.push(Chunk { start, length, begin });
-                }
-                op::HEADER if length < LONGEST => {
-                    let bytes = body(&mut reader, start, length).map_err(io)?;
-                    if let Ok(Chunked::Header(header)) = mcap::parse_record(*code, &bytes) {
-                        outline.foreign = !header.library.starts_with(OURS);
-                    }
-                }
-                op::MESSAGE => outline.foreign = true,
-                op::METADATA | op::ATTACHMENT if length < LONGEST => {
-                    let bytes = body(&mut reader, start, length).map_err(io)?;
-                    outline.note(mcap::parse_record(*code, &bytes).ok());
-                }
-                op::DATA_END => outline.whole = true,
-                _ => {}
-            }
-            at = start + length;
-        }
-        Ok(outline)
-    }
-
-    fn note(&mut self, item: Option<Chunked<'_>>) {
-        match item {
-            Some(Chunked::Metadata(metadata)) if metadata.name == NAME => {
-                self.format = metadata.metadata.get("format").cloned();
-            }
-            Some(Chunked::Attachment { header, data, .. }) => {
-                let text = String::from_utf8(data.into_owned()).ok();
-                match &*header.name {
-                    "manifest.json" => self.manifest = text.or(self.manifest.take()),
-                    "scene.toml" => self.scene = text,
-                    _ => {}
-                }
-            }
-            _ => {}
         }
     }
 }
