@@ -164,7 +164,7 @@ fn cameras_without_anyone_to_draw_for_them_say_so() {
     let mut run = start(&scene("vision-line-three", 1.0, SensingKind::Camera));
     assert!(run.needs_eyes());
     assert!(run.next_moment().is_none());
-    assert!(run.fault().is_some_and(|fault| fault.contains("pictures")));
+    assert!(run.fault().is_some_and(|fault| fault.to_string().contains("pictures")));
 }
 
 /// The paper's claim, on pictures: the same digest twice, and a formation that closes up.

@@ -93,7 +93,7 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     }
     let what = format!("Certifying {}, {} s", stem(&args.scene.scene), scene.time.duration);
     let progress = Progress::begin(&what, simulation.len(), quiet);
-    let mut examiner = Examiner::new(&scene, &simulation);
+    let mut examiner = Examiner::keeping(&scene, &simulation);
     let mut step = 0;
     while simulation.next_moment().is_some() {
         examiner.push(&simulation);
@@ -106,7 +106,7 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
         }
     }
     if let Some(fault) = simulation.fault() {
-        return Err(Failure::Machine(fault.to_owned()));
+        return Err(fault.into());
     }
     progress.end();
     let certificates = examiner.finish(&simulation);

@@ -8,6 +8,8 @@ use std::io::Write;
 pub(crate) enum Failure {
     /// The run did not show what its scene expects; already told in the report.
     Expectation,
+    /// The run came to a number that is none.
+    Broken(String),
     /// The command line or the scene is wrong.
     Usage(String),
     /// The machine cannot do it: no adapter, disk full.
@@ -19,7 +21,7 @@ pub(crate) enum Failure {
 impl Failure {
     pub(crate) fn code(&self) -> u8 {
         match self {
-            Self::Expectation => 1,
+            Self::Expectation | Self::Broken(_) => 1,
             Self::Usage(_) => 2,
             Self::Machine(_) => 3,
             Self::Interrupted(_) => 130,
@@ -30,11 +32,20 @@ impl Failure {
     pub(crate) fn tell(&self) {
         let message = match self {
             Self::Expectation => return,
-            Self::Usage(text) | Self::Machine(text) => format!("error: {text}"),
+            Self::Broken(text) | Self::Usage(text) | Self::Machine(text) => format!("error: {text}"),
             Self::Interrupted(text) => format!("interrupted: {text}"),
         };
         // Nobody is left to tell if standard error is closed.
         let _ = writeln!(std::io::stderr(), "{}", harmless(&message));
+    }
+}
+
+impl From<&simulation::Fault> for Failure {
+    fn from(fault: &simulation::Fault) -> Self {
+        match fault {
+            simulation::Fault::Eyes(text) => Self::Machine(text.clone()),
+            simulation::Fault::NotFinite(what) => Self::Broken(what.to_string()),
+        }
     }
 }
 

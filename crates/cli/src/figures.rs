@@ -181,7 +181,7 @@ fn run(job: &Job, mut simulation: Simulation, meter: &mut Meter) -> Result<Ran, 
         stop(meter)?;
     }
     if let Some(fault) = simulation.fault() {
-        return Err(Failure::Machine(fault.to_owned()));
+        return Err(fault.into());
     }
     Ok(Ran { case: job.case, variant: job.variant, trace: tracer.finish() })
 }

@@ -60,7 +60,7 @@ impl Playback {
                 if let Some(moment) = simulation.next_moment() {
                     self.after.clone_from(moment);
                 } else {
-                    self.fault = simulation.fault().map(|fault| Failure::Machine(fault.to_owned()));
+                    self.fault = simulation.fault().map(Failure::from);
                     return false;
                 }
             }

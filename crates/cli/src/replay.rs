@@ -212,7 +212,7 @@ fn run_again(
         }
     }
     match simulation.fault() {
-        Some(fault) => Err(Failure::Machine(fault.to_owned())),
+        Some(fault) => Err(fault.into()),
         None => Ok((samples, digest.text(), apart)),
     }
 }

@@ -14,8 +14,9 @@ use recording::log::Roll;
 use recording::{
     CertificateMetrics, Digest, Finished, Judging, Metrics, MetricsBuilder, Recorder, RunOptions, Status,
 };
+use simulation::Fault;
 use simulation::certify::Examiner;
-use simulation::verdict::verdict;
+use simulation::verdict::{Finding, verdict};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -60,15 +61,19 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
             }
         }
     }
-    if let Some(fault) = simulation.fault() {
-        sink.abandon();
-        return Err(Failure::Machine(fault.to_owned()));
-    }
+    let broken = match simulation.fault() {
+        Some(Fault::NotFinite(what)) => Some(Finding::not_finite(what)),
+        Some(fault @ Fault::Eyes(_)) => {
+            sink.abandon();
+            return Err(fault.into());
+        }
+        None => None,
+    };
     let wall = began.elapsed().as_secs_f64();
     progress.end();
     let status = match step == steps {
         true => Status::Complete,
-        false if simulation.stopped() => Status::Stopped,
+        false if simulation.stopped() || broken.is_some() => Status::Stopped,
         false => Status::Interrupted,
     };
     let certificates = examiner.finish(&simulation);
@@ -82,7 +87,8 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
             metrics.duration, scene.time.duration
         )));
     }
-    let findings = verdict(&scene, &metrics, status == Status::Complete);
+    let mut findings = verdict(&scene, &metrics, status == Status::Complete);
+    findings.extend(broken);
     let met = findings.iter().all(|f| f.met);
     let summary = Summary {
         scene: &scene,

@@ -1,9 +1,12 @@
 //! What lead robots do: every kind gives v, dv/dt, ω and dω/dt at any time.
 
+mod bend;
 mod hermite;
 mod pace;
+mod tridiagonal;
 mod way;
 
+pub use bend::Bend;
 pub use hermite::Hermite;
 pub use pace::Pace;
 pub use way::{Way, WayError};

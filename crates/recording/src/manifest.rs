@@ -12,7 +12,7 @@ pub enum Status {
     Interrupted,
     /// To its end.
     Complete,
-    /// Ended by its scene, where bodies touched.
+    /// Ended by its scene, where bodies touched, or where a number was not finite.
     Stopped,
 }
 

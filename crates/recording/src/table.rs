@@ -43,6 +43,8 @@ pub enum Column {
 
 /// Samples a part holds: at 10 ms, half a run of the paper.
 const SAMPLES_PER_PART: usize = 750;
+/// Rows of a Parquet file that are in memory at once while it is written.
+const ROWS_PER_GROUP: usize = 1 << 17;
 
 impl TableKind {
     /// Stem of the file's name.
@@ -354,7 +356,10 @@ fn write_parquet(
 fn parquet_writer(path: &Path, schema: &Arc<Schema>) -> Result<ArrowWriter<File>, Error> {
     let file = File::create(path).map_err(Error::io("create", path))?;
     let compression = Compression::ZSTD(ZstdLevel::default());
-    let properties = WriterProperties::builder().set_compression(compression).build();
+    let properties = WriterProperties::builder()
+        .set_compression(compression)
+        .set_max_row_group_row_count(Some(ROWS_PER_GROUP))
+        .build();
     ArrowWriter::try_new(file, schema.clone(), Some(properties)).map_err(Error::table(path))
 }
 

@@ -102,9 +102,46 @@ fn read_row(record: &csv::StringRecord, columns: [usize; 3]) -> Result<[f64; 3],
     Ok(row)
 }
 
-/// The line at a position in a file.
+/// The line of the record that is read from a position in a file on. The reader stands behind the last record: the rest
+/// of its line end, empty lines and comments come first.
 pub(crate) fn line_at(position: Option<&csv::Position>, text: &str, source: usize) -> Place {
-    let start = position.map_or(0, |position| position.byte() as usize);
-    let length = text.get(start..).and_then(|rest| rest.lines().next()).map_or(0, str::len);
+    let mut start = position.map_or(0, |position| position.byte() as usize);
+    let length = loop {
+        let rest = text.get(start..).unwrap_or("");
+        let length = rest.find(['\r', '\n']).unwrap_or(rest.len());
+        if length == rest.len() || !(length == 0 || rest.starts_with('#')) {
+            break length;
+        }
+        start += length + 1;
+    };
     Place { source, start, end: start + length }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    /// Line and text of the fault of a table that has one in its row `2,x,0`.
+    fn fault(text: &str) -> (usize, String) {
+        let mut reading = Reading::new(Path::new(""));
+        let source = reading.add_source("way.csv".to_owned(), text);
+        assert_eq!(read_rows(text, source, &mut reading), None);
+        let diagnostics = reading.into_diagnostics();
+        let [one] = diagnostics.all() else { panic!("{diagnostics}") };
+        (one.line, one.excerpt.clone())
+    }
+
+    #[test]
+    fn a_fault_stands_at_its_line_whatever_lies_between() {
+        for (text, line) in [
+            ("t,v,omega\n0,1,0\n2,x,0\n", 3),
+            ("t,v,omega\r\n0,1,0\r\n2,x,0\r\n", 3),
+            ("t,v,omega\n0,1,0\n\n\n2,x,0", 5),
+            ("t,v,omega\n0,1,0\n# a remark\n\n# and one more\n2,x,0\n", 6),
+            ("# first\r\nt,v,omega\r\n\r\n0,1,0\r\n# a remark\r\n2,x,0\r\n", 6),
+        ] {
+            assert_eq!(fault(text), (line, "2,x,0".to_owned()), "{text:?}");
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Why a scene that reads well cannot run.
 
+use crate::drivable::Undrivable;
 use formation::GraphError;
 use formation::lead::WayError;
 use thiserror::Error;
@@ -17,6 +18,14 @@ pub enum BuildError {
         robot: String,
         /// What is wrong with its points.
         source: WayError,
+    },
+    /// A path of a lead robot or a guided prop asks for what it cannot do.
+    #[error("the path of `{robot}` cannot be driven: {found}")]
+    Undrivable {
+        /// The lead robot or prop.
+        robot: String,
+        /// What is asked for, and where.
+        found: Box<Undrivable>,
     },
     /// An observer too fast for continuous time.
     #[error(

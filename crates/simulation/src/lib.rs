@@ -6,7 +6,9 @@
 mod build;
 pub mod certify;
 mod continuous;
+mod drivable;
 mod error;
+mod fault;
 mod lookout;
 mod regime;
 mod reins;
@@ -16,6 +18,8 @@ pub mod tune;
 pub mod verdict;
 
 pub use build::{build, caption};
+pub use drivable::Undrivable;
 pub use error::BuildError;
+pub use fault::{Fault, NotFinite};
 pub use regime::{Regime, Turn};
 pub use step::{ObserverStart, Setup, Simulation, Timing};

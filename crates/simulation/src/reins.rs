@@ -1,7 +1,7 @@
 //! A run in the hand: what may be changed while it goes, and copies of it.
 
-use crate::regime::Regime;
-use crate::step::{Setup, Simulation, pending, samples};
+use crate::regime::{Regime, sample_at};
+use crate::step::{Setup, Simulation, pending};
 use formation::EdgeLaw;
 use std::sync::Arc;
 use vocabulary::Moment;
@@ -49,7 +49,7 @@ impl Simulation {
 
     /// Goes on until `duration` s at least.
     pub fn extend_to(&mut self, duration: f64) {
-        self.last_sample = self.last_sample.max(samples(duration, self.period));
+        self.last_sample = self.last_sample.max(sample_at(duration, self.period));
         self.cast.duration = self.cast.duration.max(duration);
     }
 

@@ -1,38 +1,56 @@
 //! The stage of a scene: its robots, props and ground as the world takes them.
 
+use crate::drivable::{Motion, Undrivable, undrivable};
 use crate::error::BuildError;
 use formation::Course;
 use formation::lead::{Courses, Hermite, Pace, Table, Way, WayError};
 use scene::{Compensation, Path, PropMotion, Role, Scene, SpeedProfile, VehicleKind};
 use std::sync::Arc;
-use vocabulary::{Mobility, Placement, Pose, Profile, Prop};
+use vocabulary::{Limits, Mobility, Placement, Pose, Profile, Prop};
 use world::wheeled::tyre::Tyre;
 use world::{Actor, Drivetrain, Handling, PropBody, Stage, Unicycle, Wheeled};
 
 /// All that is on stage.
 pub(crate) fn stage(scene: &Scene) -> Result<Stage, BuildError> {
     Ok(Stage {
-        actors: scene.robots.iter().map(actor).collect::<Result<_, _>>()?,
-        props: scene.props.iter().map(prop).collect::<Result<_, _>>()?,
+        actors: (0..scene.robots.len()).map(|index| actor(scene, index)).collect::<Result<_, _>>()?,
+        props: scene.props.iter().map(|prop| body(scene, prop)).collect::<Result<_, _>>()?,
         terrain: scene.ground.terrain.clone(),
         step: scene.physics.step,
     })
 }
 
-fn actor(robot: &scene::Robot) -> Result<Actor, BuildError> {
+fn actor(scene: &Scene, index: usize) -> Result<Actor, BuildError> {
+    let robot = &scene.robots[index];
     let (mut pose, mut speed, mut lead) = (robot.pose, 0.0, None);
     match &robot.role {
         Role::Lead { path } => {
-            let (profile, start) =
+            let (motion, start) =
                 course(path).map_err(|source| BuildError::Way { robot: robot.name.clone(), source })?;
+            check_drivable(scene, index, &motion)?;
             pose = start.unwrap_or(pose);
-            lead = Some(profile);
+            lead = Some(motion.profile());
         }
         Role::Follow(follow) => speed = follow.speed,
     }
     let Handling { limits, wheels } = handling(&robot.vehicle);
     let unicycle = Unicycle { pose, speed, limits, body: robot.vehicle.body(), lead };
     Ok(Actor { robot: unicycle, wheels })
+}
+
+/// Holds the motion of a lead robot against its limits, and against those that it has after each change.
+fn check_drivable(scene: &Scene, index: usize, motion: &Motion) -> Result<(), BuildError> {
+    let robot = &scene.robots[index];
+    let changed = scene.changes.iter().map(|change| (change.at, change.then.robots[index].vehicle.limits()));
+    let mut limits: Vec<_> = [(0.0, robot.vehicle.limits())].into_iter().chain(changed).collect();
+    limits.dedup_by(|later, earlier| later.1 == earlier.1);
+    for (k, (from, bounds)) in limits.iter().enumerate() {
+        let end = limits.get(k + 1).map_or(scene.time.duration, |next| next.0).min(scene.time.duration);
+        if let Some(found) = undrivable(motion, bounds, [*from, end]).filter(|_| *from <= end) {
+            return Err(found.of(&robot.name));
+        }
+    }
+    Ok(())
 }
 
 /// Limits and driver of a vehicle.
@@ -79,14 +97,22 @@ fn wheeled(vehicle: &scene::Vehicle) -> Wheeled {
     }
 }
 
-fn prop(prop: &scene::Prop) -> Result<PropBody, BuildError> {
+/// A guided prop turns by no more than this in a physics step, rad.
+const TURN_A_STEP: f64 = 0.1;
+
+fn body(scene: &Scene, prop: &scene::Prop) -> Result<PropBody, BuildError> {
     let (mobility, mass, path) = match &prop.motion {
         PropMotion::Fixed => (Mobility::Fixed, 1.0, None),
         PropMotion::Loose { mass } => (Mobility::Loose, *mass, None),
         PropMotion::Guided { path } => {
-            let found =
+            let (motion, start) =
                 course(path).map_err(|source| BuildError::Way { robot: prop.name.clone(), source })?;
-            (Mobility::Guided, 1.0, Some(found))
+            let turn_rate_max = TURN_A_STEP / scene.physics.step;
+            let limits = Limits { speed_max: f64::INFINITY, turn_rate_max, ..Limits::PAPER };
+            if let Some(found) = undrivable(&motion, &limits, [0.0, scene.time.duration]) {
+                return Err(Undrivable { step: Some(scene.physics.step), ..found }.of(&prop.name));
+            }
+            (Mobility::Guided, 1.0, Some((motion.profile(), start)))
         }
     };
     let start = path.as_ref().and_then(|(_, start)| *start).unwrap_or(prop.pose);
@@ -105,7 +131,7 @@ fn prop(prop: &scene::Prop) -> Result<PropBody, BuildError> {
 }
 
 /// The motion along a path, and where it has to start if the path says so.
-fn course(path: &Path) -> Result<(Arc<dyn Profile>, Option<Pose>), WayError> {
+fn course(path: &Path) -> Result<(Motion, Option<Pose>), WayError> {
     let profile: Arc<dyn Profile> = match path {
         Path::Constant { speed, turn_rate } | Path::Circle { speed, turn_rate } => {
             Arc::new(Courses::constant(*speed, *turn_rate))
@@ -132,13 +158,13 @@ fn course(path: &Path) -> Result<(Arc<dyn Profile>, Option<Pose>), WayError> {
         Path::Waypoints { points, closed, speed } => {
             let way = Way::new(points, *closed, pace(speed))?;
             let start = way.start();
-            return Ok((Arc::new(way), Some(start)));
+            return Ok((Motion::Way(Arc::new(way)), Some(start)));
         }
         // A checked table has rows; one without would stand still.
         Path::Table { rows } => Table::new(rows)
             .map_or_else(|| Arc::new(Courses::constant(0.0, 0.0)) as Arc<dyn Profile>, |t| Arc::new(t)),
     };
-    Ok((profile, None))
+    Ok((Motion::Free(profile), None))
 }
 
 fn pace(speed: &SpeedProfile) -> Pace {

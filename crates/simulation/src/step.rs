@@ -1,6 +1,7 @@
 //! One step of a simulation. New here? This is the page to read first.
 
 use crate::continuous::Continuous;
+use crate::fault::{Fault, not_finite};
 use crate::lookout::Lookout;
 use crate::regime::{Regime, Turn, sample_at, wakes};
 use formation::{Estimate, Formation, FormationState, LawKind};
@@ -72,7 +73,7 @@ pub struct Simulation {
     pub(crate) last_sample: u64,
     pub(crate) stop_at_contact: bool,
     pub(crate) stopped: bool,
-    pub(crate) fault: Option<String>,
+    pub(crate) fault: Option<Fault>,
     /// What is to change, and at which sample.
     pub(crate) changes: VecDeque<(u64, Arc<Regime>)>,
     /// What changes at the next sample.
@@ -116,7 +117,7 @@ impl Simulation {
             frames: Vec::new(),
             moment,
             sample: 0,
-            last_sample: samples(setup.duration, setup.period),
+            last_sample: sample_at(setup.duration, setup.period),
             stop_at_contact: setup.stop_at_contact,
             stopped: false,
             fault: None,
@@ -141,12 +142,16 @@ impl Simulation {
             self.state.estimates[edge] = Estimate::at(&self.observations[edge].relative);
         }
         if let Err(fault) = self.look(time) {
-            self.fault = Some(fault);
+            self.fault = Some(Fault::Eyes(fault));
             return None;
         }
         self.formation.decide(time, &self.observations, &mut self.state);
         self.plant.world_mut().apply(&self.state.commands);
         self.write_moment(time);
+        self.fault = not_finite(&self.moment, &self.cast).map(Fault::NotFinite);
+        if self.fault.is_some() {
+            return None;
+        }
         self.stopped = self.stop_at_contact && self.moment.contacts.iter().any(Contact::of_robot);
         self.sample += 1;
         Some(&self.moment)
@@ -288,9 +293,9 @@ impl Simulation {
         }
     }
 
-    /// Why the run ended before its time, where cameras could not take their pictures.
-    pub fn fault(&self) -> Option<&str> {
-        self.fault.as_deref()
+    /// Why the run ended before its time, where it did so of itself.
+    pub fn fault(&self) -> Option<&Fault> {
+        self.fault.as_ref()
     }
 
     /// Never: a run has at least its first sample.
@@ -373,9 +378,4 @@ fn first_estimate(seen: &Relative, start: ObserverStart) -> Estimate {
 pub(crate) fn pending(changes: &[Turn], period: f64) -> VecDeque<(u64, Arc<Regime>)> {
     let turn = |turn: &Turn| (sample_at(turn.at, period), Arc::new(turn.regime.clone()));
     changes.iter().map(turn).collect()
-}
-
-/// Whole periods in the run; a period that misses the end by rounding only counts.
-pub(crate) fn samples(duration: f64, period: f64) -> u64 {
-    (duration / period * (1.0 + 1e-12) + 1e-9).floor() as u64
 }

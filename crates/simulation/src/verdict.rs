@@ -1,6 +1,7 @@
 //! What a run showed, held against what its scene expects.
 
 use crate::build::short;
+use crate::fault::NotFinite;
 use recording::{EdgeMetrics, Metrics};
 use scene::{Expect, OnContact, Scene};
 
@@ -15,6 +16,14 @@ pub struct Finding {
     pub found: String,
     /// Whether it was met.
     pub met: bool,
+}
+
+impl Finding {
+    /// What every scene expects, and was not met.
+    pub fn not_finite(fault: &NotFinite) -> Self {
+        let wanted = "every number finite".to_owned();
+        Self { key: "finite", wanted, found: fault.to_string(), met: false }
+    }
 }
 
 /// Everything that a scene asks of its run, in the order of its keys.

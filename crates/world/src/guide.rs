@@ -31,6 +31,30 @@ pub(crate) fn chase(ideal: &Motion, now: &Motion, wheelbase: f64, limits: &Limit
     limits.saturate(asked, now.speed)
 }
 
+/// Nearer to its place than this many wheelbases a robot is where it should be, and stays until it is this many away.
+const PLACED: [f64; 2] = [0.01, 0.03];
+
+/// Whether the ideal stands still.
+pub(crate) fn waits(ideal: &Motion) -> bool {
+    ideal.speed == 0.0 && ideal.acceleration <= 0.0
+}
+
+/// Whether a robot that has come to its place, or past it, stands there while its ideal waits.
+pub(crate) fn stands(ideal: &Motion, now: &Motion, wheelbase: f64, stood: bool) -> bool {
+    waits(ideal) && along(ideal, now) <= PLACED[usize::from(stood)] * wheelbase
+}
+
+/// The speed at which the chase closes in on a motion, m/s.
+pub(crate) fn wanted_speed(ideal: &Motion, now: &Motion) -> f64 {
+    ideal.speed + ALONG * along(ideal, now)
+}
+
+/// How far a motion is ahead, m.
+fn along(ideal: &Motion, now: &Motion) -> f64 {
+    let (sin, cos) = now.pose.heading.sin_cos();
+    cos * (ideal.pose.x - now.pose.x) + sin * (ideal.pose.y - now.pose.y)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -176,7 +176,7 @@ pub(crate) fn measure(
         }
     }
     if let Some(fault) = simulation.fault() {
-        return Err(fault.to_owned());
+        return Err(fault.to_string());
     }
     run.edges = edges.iter().map(Gathering::finish).collect();
     Ok(Some(run))

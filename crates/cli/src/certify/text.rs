@@ -109,7 +109,7 @@ fn statement(finding: &Finding) {
     let margin =
         finding.margin.map_or_else(String::new, |margin| format!(", least margin {}", short(margin)));
     let when = finding.against.map_or_else(String::new, |spell| {
-        if spell.share >= 1.0 {
+        if spell.throughout {
             "throughout".to_owned()
         } else if spell.first == spell.last {
             format!("at {:.2} s", spell.first)

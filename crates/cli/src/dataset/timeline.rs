@@ -31,7 +31,7 @@ impl Timeline {
             }
             let Some(moment) = self.simulation.next_moment() else {
                 let fault = self.simulation.fault();
-                return fault.map_or(Ok(false), |fault| Err(Failure::Machine(fault.to_owned())));
+                return fault.map_or(Ok(false), |fault| Err(fault.into()));
             };
             self.past.push_back(moment.snapshot.clone());
             while self.past.get(1).is_some_and(|second| second.time <= time - self.memory) {

@@ -6,7 +6,8 @@
 //! border. Eq 51 prints ‖r‖² ≤ 2 L₁ε; from eq 44 follows dV/dt ≤ −½k₁₂‖r‖² where
 //! ‖r‖ ≥ 2 L₁ε, and this is what is used.
 
-use super::witness::{Row, Witness};
+use super::ledger::Peaks;
+use super::witness::Witness;
 
 /// Constants of one edge of a run by output feedback.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,21 +56,20 @@ impl Constants {
     /// Of what a witness has seen; `None` where its observer is not stable or it has seen nothing.
     pub fn of(witness: &Witness) -> Option<Self> {
         let layer = witness.layer()?;
-        let rows = witness.rows();
-        let first = rows.first()?;
-        let largest = |value: fn(&Row) -> f64| rows.iter().map(value).fold(0.0, f64::max);
+        witness.span()?;
+        let Peaks { first_observer_error, rate_gain: sigma_s, effect: sigma_v, filtered } =
+            witness.ledger().peaks;
         let (least, norm) = (layer.least, layer.norm);
         let gain = witness.law().gain;
         let (k_least, k_most) = (gain[0].min(gain[1]), gain[0].max(gain[1]));
         let epsilon = witness.observer().epsilon;
         let epsilon = epsilon[0].max(epsilon[1]);
-        let (sigma_s, sigma_v) = (largest(|row| row.rate_gain), largest(|row| row.effect));
         let sigma_1 = (sigma_s + 2.0 * k_most) / k_least;
         let rho = 16.0 * sigma_v.powi(2) * norm.powi(3);
         let l1 = sigma_1 * (rho / least).sqrt();
         // A run that stays inside the ball of eq 51 needs no larger one.
-        let mu = largest(|row| row.filtered).max(2.0 * l1 * epsilon);
-        let c3 = epsilon * first.observer_error;
+        let mu = filtered.max(2.0 * l1 * epsilon);
+        let c3 = epsilon * first_observer_error;
         let (mu_1, mu_2) = (1.0 / (2.0 * norm), c3 * c3 * norm);
         let trap = rho * epsilon.powi(2);
         let late = epsilon / mu_1 * (mu_2 / (rho * epsilon.powi(4))).ln();

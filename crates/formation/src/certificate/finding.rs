@@ -2,7 +2,8 @@
 
 use super::constants::Constants;
 use super::premise::{Premise, Spell};
-use super::witness::{Row, Witness};
+use super::tally::{Room, Tally};
+use super::witness::Witness;
 use crate::law::{LawKind, Switching};
 
 /// What the theorems state.
@@ -98,6 +99,17 @@ impl Outcome {
     }
 }
 
+/// Samples at which the numbers say otherwise: from the first to the last, not always in between.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Against {
+    /// s.
+    pub first: f64,
+    /// s.
+    pub last: f64,
+    /// Whether that is every sample.
+    pub throughout: bool,
+}
+
 /// A statement held against a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
@@ -107,7 +119,7 @@ pub struct Finding {
     pub unmet: Vec<Premise>,
     /// Samples at which the numbers say otherwise, premises or not; `None` where they are as stated throughout, or where
     /// there are no numbers.
-    pub against: Option<Spell>,
+    pub against: Option<Against>,
     /// The least room to the other side, in the statement's own unit; `None` where there are no numbers.
     pub margin: Option<f64>,
 }
@@ -117,7 +129,7 @@ impl Finding {
     pub fn outcome(&self) -> Outcome {
         match (self.unmet.is_empty(), self.against) {
             (false, _) => Outcome::PremiseNotMet,
-            (true, Some(spell)) => Outcome::Violated(spell.first),
+            (true, Some(against)) => Outcome::Violated(against.first),
             (true, None) => Outcome::Holds,
         }
     }
@@ -138,12 +150,9 @@ pub struct Circumstances {
     pub rough_leader: Option<f64>,
 }
 
-/// V may rise from sample to sample by this share of its largest value: what is left of the trapezoids' error.
-const ROUNDING: f64 = 1e-6;
-
 /// All statements, held against what a witness has seen.
 pub fn certify(witness: &Witness, circumstances: &Circumstances) -> Vec<Finding> {
-    let view = View { witness, circumstances, constants: Constants::of(witness), rows: witness.rows() };
+    let view = View { witness, circumstances, constants: Constants::of(witness) };
     Statement::ALL.into_iter().map(|statement| view.finding(statement)).collect()
 }
 
@@ -151,7 +160,6 @@ struct View<'a> {
     witness: &'a Witness,
     circumstances: &'a Circumstances,
     constants: Option<Constants>,
-    rows: &'a [Row],
 }
 
 impl View<'_> {
@@ -168,103 +176,74 @@ impl View<'_> {
             return Finding { statement, unmet: vec![premise], against: None, margin: None };
         }
         let unmet = self.unmet(statement);
+        let ledger = self.witness.ledger();
         let (against, margin) = match statement {
-            Statement::RobustGain => self.throughout(|row| row.margin),
-            Statement::NonNegative => self.throughout(|row| row.p),
-            Statement::TrackingDecrease => self.falls(
-                |row| row.v,
-                |row, constants| constants.is_none_or(|c| row.filtered > c.sigma_1 * row.observer_error),
-            ),
+            Statement::RobustGain => self.throughout(&ledger.margin()),
+            Statement::NonNegative => self.throughout(&ledger.p),
+            Statement::TrackingDecrease => {
+                let bound = self.constants.filter(|_| self.observes()).map_or(0.0, |c| c.sigma_1);
+                some_of(ledger.v.found(bound))
+            }
             Statement::ObserverDecrease => {
-                self.falls(|row| row.w, |row, constants| constants.is_some_and(|c| row.w > c.trap))
+                some_of(self.constants.map_or((None, None), |c| ledger.w.found(c.trap)))
             }
             Statement::Epsilon => self.constant(|c| c.epsilon_1 - c.epsilon),
-            Statement::Trapped => {
-                let from = self.constants.map_or(0.0, |c| c.t_epsilon);
-                let trap = self.constants.map_or(0.0, |c| c.trap);
-                let (against, margin) = self.after(from, |row| trap - row.w);
-                (against, margin)
-            }
+            Statement::Trapped => self.trapped(),
             Statement::UltimateBound => self.in_the_end(),
         };
         Finding { statement, unmet, against, margin }
     }
 
-    /// Samples at which `room` is below zero, and its least value.
-    fn throughout(&self, room: impl Fn(&Row) -> f64) -> (Option<Spell>, Option<f64>) {
-        self.after(f64::NEG_INFINITY, room)
-    }
-
-    fn after(&self, from: f64, room: impl Fn(&Row) -> f64) -> (Option<Spell>, Option<f64>) {
-        let rows = || self.rows.iter().filter(|row| row.time >= from);
-        let least = rows().map(&room).reduce(f64::min);
-        (self.spell(|row| row.time >= from && room(row) < 0.0), least)
-    }
-
-    /// Samples after which `value` rose although `where_it_falls`; the margin is the least fall, per sample.
-    fn falls(
-        &self,
-        value: impl Fn(&Row) -> f64,
-        where_it_falls: impl Fn(&Row, Option<&Constants>) -> bool,
-    ) -> (Option<Spell>, Option<f64>) {
-        let observing = self.constants.as_ref().filter(|_| self.observes());
-        let largest = self.rows.iter().map(|row| value(row).abs()).fold(0.0, f64::max);
-        let falls = |pair: &[Row]| match pair {
-            [a, b] if where_it_falls(a, observing) => Some((a.time, value(a) - value(b))),
-            _ => None,
-        };
-        let steps = || self.rows.windows(2).filter_map(falls);
-        let risen: Vec<f64> =
-            steps().filter(|(_, fall)| *fall < -ROUNDING * largest).map(|(time, _)| time).collect();
-        let least = steps().map(|(_, fall)| fall).reduce(f64::min);
-        (self.spell_of(&risen), least)
+    /// Samples at which a room is below zero, and its least value.
+    fn throughout(&self, room: &Room) -> (Option<Against>, Option<f64>) {
+        let spell = room.below.spell(self.witness.ledger().samples);
+        let against =
+            |spell: Spell| Against { first: spell.first, last: spell.last, throughout: spell.share >= 1.0 };
+        (spell.map(against), room.least)
     }
 
     /// A statement about constants: it is so, or from the start not.
-    fn constant(&self, room: impl Fn(&Constants) -> f64) -> (Option<Spell>, Option<f64>) {
+    fn constant(&self, room: impl Fn(&Constants) -> f64) -> (Option<Against>, Option<f64>) {
         let margin = self.constants.as_ref().map(room);
-        let (first, last) = self.ends();
-        (margin.filter(|m| *m < 0.0).map(|_| Spell { first, last, share: 1.0 }), margin)
+        let [first, last] = self.witness.ledger().span;
+        (margin.filter(|m| *m < 0.0).map(|_| Against { first, last, throughout: true }), margin)
+    }
+
+    /// The bound of eq 49, from T_ε on.
+    fn trapped(&self) -> (Option<Against>, Option<f64>) {
+        let Some(Constants { trap, t_epsilon, .. }) = self.constants else { return (None, None) };
+        let ledger = self.witness.ledger();
+        let (ends, largest) = ledger.trapped.from(t_epsilon, trap);
+        let throughout = ledger.span[0] >= t_epsilon && ledger.least_w > trap;
+        let against = ends.map(|[first, last]| Against { first, last, throughout });
+        (against, largest.map(|largest| trap - largest))
     }
 
     /// The bound of eq 53: violated where the last sample is outside.
-    fn in_the_end(&self) -> (Option<Spell>, Option<f64>) {
+    fn in_the_end(&self) -> (Option<Against>, Option<f64>) {
         let Some(bound) = self.constants.map(|c| c.delta_0) else { return (None, None) };
-        let room = |row: &Row| bound - (row.error + row.error_rate + row.observer_error);
-        let margin = self.rows.last().map(room);
-        let against = self.spell(|row| room(row) < 0.0);
-        (against.filter(|_| margin.is_some_and(|m| m < 0.0)), margin)
+        let ledger = self.witness.ledger();
+        let [least, last] = ledger.whole;
+        let ends = ledger.end.ends([bound, 0.0]).filter(|_| last > bound);
+        let against = ends.map(|[first, last]| Against { first, last, throughout: least > bound });
+        (against, Some(bound - last))
     }
 
     fn observes(&self) -> bool {
         self.witness.law().kind == LawKind::OutputFeedback
     }
 
-    fn ends(&self) -> (f64, f64) {
-        (self.rows.first().map_or(0.0, |row| row.time), self.rows.last().map_or(0.0, |row| row.time))
-    }
-
-    fn spell(&self, at: impl Fn(&Row) -> bool) -> Option<Spell> {
-        let times: Vec<f64> = self.rows.iter().filter(|row| at(row)).map(|row| row.time).collect();
-        self.spell_of(&times)
-    }
-
-    fn spell_of(&self, times: &[f64]) -> Option<Spell> {
-        let (first, last) = (*times.first()?, *times.last()?);
-        Some(Spell { first, last, share: times.len() as f64 / self.rows.len().max(1) as f64 })
-    }
-
     /// Premises of a statement that the run does not meet.
     fn unmet(&self, statement: Statement) -> Vec<Premise> {
-        let (c, law) = (self.circumstances, self.witness.law());
+        let (c, law, ledger) = (self.circumstances, self.witness.law(), self.witness.ledger());
         let rough = c.rough_leader.map(|at| Premise::LeaderNotSmooth { at });
         let smoothed = matches!(law.switching, Switching::Tanh(_)).then_some(Premise::Smoothed);
-        let beta =
-            || self.throughout(|row| row.margin).0.map(|spell| Premise::RobustGain { at: spell.first });
-        let saturated = || self.spell(|row| row.limited).map(Premise::Saturated);
-        let chatter = || self.spell(|row| row.chatters).map(Premise::Chatter);
-        let at_bound = || self.spell(|row| row.at_speed_bound).map(Premise::SpeedBound);
-        let close = || self.spell(|row| row.too_close).map(Premise::TooClose);
+        let spell = |tally: &Tally| tally.spell(ledger.samples);
+        let beta = || spell(&ledger.margin().below).map(|spell| Premise::RobustGain { at: spell.first });
+        let saturated = || spell(&ledger.limited).map(Premise::Saturated);
+        let chatter = || spell(&ledger.chatters).map(Premise::Chatter);
+        let at_bound = || spell(&ledger.at_speed_bound).map(Premise::SpeedBound);
+        let close = || spell(&ledger.too_close).map(Premise::TooClose);
         let held = c.held.map(Premise::Held);
         let looks = c.looks.then_some(Premise::Looks);
         let wheels = c.wheels.then_some(Premise::Wheels);
@@ -309,4 +288,9 @@ impl View<'_> {
         };
         list.into_iter().flatten().collect()
     }
+}
+
+/// From a first to a last sample, and never all of them: each speaks of the step to the next.
+fn some_of((ends, margin): (Option<[f64; 2]>, Option<f64>)) -> (Option<Against>, Option<f64>) {
+    (ends.map(|[first, last]| Against { first, last, throughout: false }), margin)
 }

@@ -1,6 +1,8 @@
 //! What one edge went through, sample by sample, in the quantities of the theorems.
 
 use super::boundary::BoundaryLayer;
+use super::constants::Constants;
+use super::ledger::Ledger;
 use crate::law::{Law, LawKind, Switching};
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
@@ -70,23 +72,38 @@ pub struct Row {
     pub chatters: bool,
 }
 
+impl Row {
+    /// ‖r‖/‖η‖, which σ₁ bounds.
+    pub(super) fn reach(&self) -> f64 {
+        self.filtered / self.observer_error
+    }
+
+    /// ‖e‖ + ‖de/dt‖ + ‖η‖ (eq 53).
+    pub(super) fn whole(&self) -> f64 {
+        self.error + self.error_rate + self.observer_error
+    }
+}
+
 /// Goes along with one edge; its law and observer stay the same.
 #[derive(Debug, Clone)]
 pub struct Witness {
     law: Law,
     observer: Observer,
     layer: Option<BoundaryLayer>,
-    rows: Vec<Row>,
+    ledger: Ledger,
+    last_row: Option<Row>,
+    /// Every sample, where they are kept.
+    rows: Option<Vec<Row>>,
     last: Option<Sums>,
     first_error: [f64; 2],
     initial: f64,
     settled_effect: [f64; 2],
     /// Index of the sample at which the sign of each error switched last.
-    switched: [Option<usize>; 2],
+    switched: [Option<u64>; 2],
 }
 
 /// A sign that switches back within so many samples switches faster than steps follow.
-const FEW: usize = 4;
+const FEW: u64 = 4;
 
 /// What the integrals of P need of the sample before.
 #[derive(Debug, Clone, Copy)]
@@ -107,13 +124,21 @@ impl Witness {
             law,
             observer,
             layer: BoundaryLayer::of(&observer),
-            rows: Vec::new(),
+            ledger: Ledger::default(),
+            last_row: None,
+            rows: None,
             last: None,
             first_error: [0.0; 2],
             initial: 0.0,
             settled_effect: [0.0; 2],
             switched: [None; 2],
         }
+    }
+
+    /// Keeps every sample from now on, which takes about a hundred bytes each.
+    #[must_use]
+    pub fn keeping(self) -> Self {
+        Self { rows: Some(Vec::new()), ..self }
     }
 
     /// The law it goes along with.
@@ -131,9 +156,18 @@ impl Witness {
         self.layer.as_ref()
     }
 
-    /// All samples so far.
+    /// All samples so far; none unless it is [`Self::keeping`] them.
     pub fn rows(&self) -> &[Row] {
-        &self.rows
+        self.rows.as_deref().unwrap_or_default()
+    }
+
+    /// First and last time, s; `None` before the first sample.
+    pub fn span(&self) -> Option<[f64; 2]> {
+        (self.ledger.samples > 0).then_some(self.ledger.span)
+    }
+
+    pub(super) fn ledger(&self) -> &Ledger {
+        &self.ledger
     }
 
     /// ζ_b (eq 26).
@@ -170,7 +204,7 @@ impl Witness {
             if step > 0.0 { (effect - last.effect).norm() / step } else { 0.0 }
         });
         // The slope to this sample counts for the one before, too.
-        if let Some(before) = self.rows.last_mut() {
+        if let Some(before) = &mut self.last_row {
             before.effect_rate = before.effect_rate.max(slope);
             before.margin = margin(&self.law, before);
         }
@@ -193,7 +227,16 @@ impl Witness {
             chatters,
         };
         row.margin = margin(&self.law, &row);
-        self.rows.push(row);
+        let before = self.last_row.replace(row);
+        if let Some(rows) = &mut self.rows {
+            if let (Some(last), Some(before)) = (rows.last_mut(), before) {
+                *last = before;
+            }
+            rows.push(row);
+        }
+        self.ledger.push(&row, before.as_ref());
+        let constants = Constants::of(self).filter(|_| self.law.kind == LawKind::OutputFeedback);
+        self.ledger.judge(before.as_ref(), constants.as_ref());
         self.last = Some(sums);
         self.settled_effect = effect.into();
     }
@@ -222,7 +265,7 @@ impl Witness {
     fn chatters(&mut self, error: &Vector2<f64>) -> bool {
         let sign = self.law.kind != LawKind::FullState && self.law.switching == Switching::Sign;
         let Some(last) = self.last.filter(|_| sign) else { return false };
-        let now = self.rows.len();
+        let now = self.ledger.samples;
         let mut again = false;
         for i in 0..2 {
             if last.error[i] * error[i] < 0.0 {

@@ -51,6 +51,38 @@ impl Pace {
             }
         }
     }
+
+    /// When `travelled` m are behind, s; `None` where that never is.
+    pub(super) fn when(&self, travelled: f64) -> Option<f64> {
+        match &self.0 {
+            Given::Time(speed) => {
+                let last = speed.times().last().unwrap_or(0.0);
+                let spare = travelled - speed.integral(last);
+                if spare > 0.0 {
+                    let final_speed = speed.at(last)[0];
+                    return (final_speed > 0.0).then(|| last + spare / final_speed);
+                }
+                let (mut low, mut high) = (0.0, last);
+                for _ in 0..60 {
+                    let middle = f64::midpoint(low, high);
+                    if speed.integral(middle) < travelled { low = middle } else { high = middle }
+                }
+                Some(high)
+            }
+            Given::Distance { speed, rows, reached } => {
+                let k = rows.partition_point(|row| *row <= travelled).max(1) - 1;
+                Some(reached[k] + driving_time(speed, rows[k], travelled))
+            }
+        }
+    }
+
+    /// Whether the speed stays what it is from `time` s on.
+    pub(super) fn is_steady_from(&self, time: f64) -> bool {
+        match &self.0 {
+            Given::Time(speed) => speed.times().last().is_none_or(|last| time >= last),
+            Given::Distance { reached, .. } => reached.last().is_none_or(|last| time >= *last),
+        }
+    }
 }
 
 /// Seconds from `a` to `b` m: ∫ ds/v(s) by Simpson's rule.
@@ -96,12 +128,22 @@ mod tests {
         for t in [0.5, 1.2, 2.5, 4.0, 9.0] {
             let [s, v, a] = pace.at(t);
             assert!((profile.at(s)[0] - v).abs() < 1e-9);
+            assert!((pace.when(s).expect("it comes there") - t).abs() < 1e-6);
             assert!(((pace.at(t + h)[0] - pace.at(t - h)[0]) / (2.0 * h) - v).abs() < 1e-5, "speed at {t}");
             assert!(
                 ((pace.at(t + h)[1] - pace.at(t - h)[1]) / (2.0 * h) - a).abs() < 1e-4,
                 "acceleration at {t}"
             );
         }
+    }
+
+    #[test]
+    fn it_is_known_when_a_distance_is_behind() {
+        let pace = Pace::over_time(Hermite::new(vec![[0.0, 0.5], [4.0, 1.5], [6.0, 0.0]]).expect("rows"));
+        for t in [0.3, 3.0, 5.5] {
+            assert!((pace.when(pace.at(t)[0]).expect("it comes there") - t).abs() < 1e-9, "{t}");
+        }
+        assert_eq!(pace.when(10.0), None, "it stands from 6 s on");
     }
 
     #[test]

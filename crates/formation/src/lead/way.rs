@@ -2,9 +2,8 @@
 //!
 //! The curve is the interpolating cubic spline over chord length: its curvature is continuous, so the turn rate is.
 
-use super::Pace;
+use super::{Bend, Pace, bend::sharpest, tridiagonal::Tridiagonal};
 use kurbo::{CubicBez, ParamCurve, ParamCurveArclen, ParamCurveDeriv, Point, Vec2};
-use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 use vocabulary::{Drive, Pose, Profile};
 
@@ -34,6 +33,8 @@ pub struct Way {
     pace: Pace,
 }
 
+/// Rounds of a closed way that are looked at while its speed changes.
+const MOST_LAPS: u32 = 1000;
 /// Accuracy of arc lengths, m.
 const ACCURACY: f64 = 1e-10;
 
@@ -64,6 +65,29 @@ impl Way {
     pub fn start(&self) -> Pose {
         let (point, tangent) = (self.pieces[0].p0, self.pieces[0].p1 - self.pieces[0].p0);
         Pose::new(point.x, point.y, tangent.atan2())
+    }
+
+    /// The sharpest bend of every piece, each time that it is passed before `until` s while the speed still changes, and
+    /// once after.
+    pub fn bends(&self, until: f64) -> Vec<Bend> {
+        let mut bends = Vec::new();
+        for (k, piece) in self.pieces.iter().enumerate() {
+            let (u, curvature) = sharpest(piece);
+            let near = if u < 0.5 { k } else { k + 1 };
+            let from = if u < 0.5 { piece.p0 } else { piece.p3 };
+            let along = self.lengths[k] + piece.subsegment(0.0..u).arclen(ACCURACY);
+            for lap in 0..if self.closed { MOST_LAPS } else { 1 } {
+                let travelled = along + f64::from(lap) * self.length();
+                let Some(time) = self.pace.when(travelled).filter(|time| *time <= until) else { break };
+                let speed = self.pace.at(time)[1];
+                let point = if self.closed { near % self.pieces.len() } else { near } + 1;
+                bends.push(Bend { point, place: [from.x, from.y], curvature, time, speed });
+                if self.pace.is_steady_from(time) {
+                    break;
+                }
+            }
+        }
+        bends
     }
 
     /// Curvature in 1/m and its change along the curve in 1/m² after `travelled` m; straight on beyond an open end.
@@ -123,28 +147,33 @@ fn spline(points: &[[f64; 2]], closed: bool) -> Result<Vec<CubicBez>, WayError> 
 fn tangents(knots: &[Point], chords: &[f64], closed: bool) -> Vec<Vec2> {
     let n = if closed { knots.len() - 1 } else { knots.len() };
     let secant = |k: usize| (knots[k + 1] - knots[k]) / chords[k];
-    let mut matrix = DMatrix::<f64>::zeros(n, n);
-    let mut rhs = [DVector::<f64>::zeros(n), DVector::<f64>::zeros(n)];
+    let mut matrix = Tridiagonal { lower: vec![0.0; n - 1], diagonal: vec![0.0; n], upper: vec![0.0; n - 1] };
+    let mut corners = [0.0; 2];
+    let mut right = vec![[0.0; 2]; n];
     for k in 0..n {
         let row = if closed || (k > 0 && k < n - 1) {
             let before = (k + chords.len() - 1) % chords.len();
             let (h0, h1) = (chords[before], chords[k]);
-            matrix[(k, before)] += h1;
-            matrix[(k, k)] += 2.0 * (h0 + h1);
-            matrix[(k, (k + 1) % n)] += h0;
+            matrix.diagonal[k] = 2.0 * (h0 + h1);
+            *if k == 0 { &mut corners[0] } else { &mut matrix.lower[k - 1] } = h1;
+            *if k == n - 1 { &mut corners[1] } else { &mut matrix.upper[k] } = h0;
             3.0 * (h1 * secant(before) + h0 * secant(k))
         } else {
-            let (other, piece) = if k == 0 { (1, 0) } else { (n - 2, n - 2) };
-            matrix[(k, k)] = 2.0;
-            matrix[(k, other)] = 1.0;
+            let (other, piece) =
+                if k == 0 { (&mut matrix.upper[0], 0) } else { (&mut matrix.lower[n - 2], n - 2) };
+            matrix.diagonal[k] = 2.0;
+            *other = 1.0;
             3.0 * secant(piece)
         };
-        (rhs[0][k], rhs[1][k]) = (row.x, row.y);
+        right[k] = [row.x, row.y];
     }
     // The matrix is strictly diagonally dominant, so the solution exists.
-    let lu = matrix.lu();
-    let [x, y] = rhs.map(|r| lu.solve(&r).unwrap_or_else(|| DVector::zeros(n)));
-    (0..knots.len()).map(|k| Vec2::new(x[k % n], y[k % n])).collect()
+    if closed {
+        matrix.solve_cyclic(corners, &mut right);
+    } else {
+        matrix.solve(&mut right);
+    }
+    (0..knots.len()).map(|k| Vec2::new(right[k % n][0], right[k % n][1])).collect()
 }
 
 #[cfg(test)]

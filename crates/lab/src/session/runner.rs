@@ -252,7 +252,7 @@ impl Work {
         let why = self.branches.as_ref().and_then(|branches| {
             let simulation = branches.list()[self.active].simulation();
             let touched = || simulation.stopped().then(|| "The run stops here: bodies touched.".to_owned());
-            simulation.fault().map(str::to_owned).or_else(touched)
+            simulation.fault().map(ToString::to_string).or_else(touched)
         });
         self.tell(News::Stands(why));
     }

@@ -6,7 +6,7 @@ settings! {
     /// Length, control period and mode of a run.
     #[derive(Copy)]
     pub struct Time from TimePart {
-        /// Length of the run, s.
+        /// Length of the run, s; it ends with the first control sample at or after that.
         pub duration: f64 = 15.0, number("s").above(0.0).up_to(1e5);
         /// Control period, s; at most the duration.
         pub period: f64 = 0.01, number("s").from(1e-5).up_to(1e5);

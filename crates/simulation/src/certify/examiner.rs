@@ -47,8 +47,8 @@ impl Certificate {
             statement: finding.statement.name().to_owned(),
             source: finding.statement.source().to_owned(),
             outcome: finding.outcome().name().to_owned(),
-            against_from: finding.against.map(|spell| spell.first),
-            against_to: finding.against.map(|spell| spell.last),
+            against_from: finding.against.map(|against| against.first),
+            against_to: finding.against.map(|against| against.last),
             margin: finding.margin.filter(|margin| margin.is_finite()),
             unmet: finding.unmet.iter().map(Premise::words).collect(),
         };
@@ -79,6 +79,7 @@ pub struct Examiner {
     timing: Timing,
     period: f64,
     last: Vec<Drive>,
+    keeps: bool,
 }
 
 /// An edge since its law last changed.
@@ -91,9 +92,10 @@ struct Stretch {
 }
 
 impl Stretch {
-    fn of(law: &EdgeLaw) -> Self {
+    fn of(law: &EdgeLaw, keeps: bool) -> Self {
+        let witness = Witness::new(law.law, law.observer);
         Self {
-            witness: Witness::new(law.law, law.observer),
+            witness: if keeps { witness.keeping() } else { witness },
             set_point: law.set_point.clone(),
             looks: law.looks.is_some(),
             rough_leader: None,
@@ -110,18 +112,28 @@ impl Stretch {
 }
 
 impl Examiner {
-    /// For a run of `scene` that has not begun.
+    /// For a run of `scene` that has not begun; its memory does not grow with the run.
     pub fn new(scene: &Scene, simulation: &Simulation) -> Self {
+        Self::examiner(scene, simulation, false)
+    }
+
+    /// As [`Self::new`], with every sample kept in the witness of its certificate.
+    pub fn keeping(scene: &Scene, simulation: &Simulation) -> Self {
+        Self::examiner(scene, simulation, true)
+    }
+
+    fn examiner(scene: &Scene, simulation: &Simulation, keeps: bool) -> Self {
         let wheels: Vec<bool> = scene.robots.iter().map(|robot| robot.vehicle.kind.has_wheels()).collect();
         let leads = &simulation.cast().members;
         Self {
-            edges: simulation.formation().laws().iter().map(Stretch::of).collect(),
+            edges: simulation.formation().laws().iter().map(|law| Stretch::of(law, keeps)).collect(),
             closed: Vec::new(),
             leads_on_wheels: leads.iter().zip(&wheels).map(|(m, wheels)| m.leads && *wheels).collect(),
             wheels,
             timing: simulation.timing,
             period: simulation.period(),
             last: Vec::new(),
+            keeps,
         }
     }
 
@@ -131,8 +143,8 @@ impl Examiner {
         let drives = self.drives(simulation, moment);
         for (index, (edge, law)) in formation.edges().iter().zip(formation.laws()).enumerate() {
             if !self.edges[index].fits(law) {
-                let over = std::mem::replace(&mut self.edges[index], Stretch::of(law));
-                if !over.witness.rows().is_empty() {
+                let over = std::mem::replace(&mut self.edges[index], Stretch::of(law, self.keeps));
+                if over.witness.span().is_some() {
                     self.closed.push(self.certificate(index, *edge, &over));
                 }
             }
@@ -149,7 +161,7 @@ impl Examiner {
     pub fn finish(mut self, simulation: &Simulation) -> Vec<Certificate> {
         let mut all = std::mem::take(&mut self.closed);
         for (index, (edge, stretch)) in simulation.formation().edges().iter().zip(&self.edges).enumerate() {
-            if !stretch.witness.rows().is_empty() {
+            if stretch.witness.span().is_some() {
                 all.push(self.certificate(index, *edge, stretch));
             }
         }
@@ -159,7 +171,7 @@ impl Examiner {
 
     /// The certificate of an edge as things are; `None` before the first sample.
     pub fn so_far(&self, simulation: &Simulation, edge: usize) -> Option<Certificate> {
-        let stretch = self.edges.get(edge).filter(|stretch| !stretch.witness.rows().is_empty())?;
+        let stretch = self.edges.get(edge).filter(|stretch| stretch.witness.span().is_some())?;
         Some(self.certificate(edge, *simulation.formation().edges().get(edge)?, stretch))
     }
 
@@ -174,12 +186,11 @@ impl Examiner {
             rough_leader: stretch.rough_leader,
         };
         let law = witness.law();
-        let ends = [witness.rows().first(), witness.rows().last()].map(|row| row.map_or(0.0, |r| r.time));
         let effect = witness.last_effect();
         let smoothed = law.kind != LawKind::FullState && matches!(law.switching, Switching::Tanh(_));
         Certificate {
             edge: index,
-            span: ends,
+            span: witness.span().unwrap_or_default(),
             findings: certify(witness, &circumstances),
             constants: Constants::of(witness).filter(|_| law.kind == LawKind::OutputFeedback),
             final_error: stretch.final_error,

@@ -37,7 +37,7 @@ pub fn rows(moments: &[&Moment], (index, edge): (usize, Edge), follow: &Follow) 
 
 fn witness(moments: &[&Moment], (index, edge): (usize, Edge), follow: &Follow) -> Witness {
     let law = edge_law(follow);
-    let mut witness = Witness::new(law.law, law.observer);
+    let mut witness = Witness::new(law.law, law.observer).keeping();
     let observes = law.law.kind == LawKind::OutputFeedback;
     let mut before: Option<(f64, Motion, [f64; 2])> = None;
     for moment in moments {

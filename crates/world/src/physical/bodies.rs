@@ -165,7 +165,10 @@ impl Bodies {
             .active_collision_types(ActiveCollisionTypes::all());
         let handle = match prop.prop.mobility {
             Mobility::Fixed => None,
-            Mobility::Loose => Some(self.set.insert(RigidBodyBuilder::dynamic().pose(frame))),
+            Mobility::Loose => {
+                // What is thrown flies fast.
+                Some(self.set.insert(RigidBodyBuilder::dynamic().pose(frame).ccd_enabled(true)))
+            }
             Mobility::Guided => {
                 Some(self.set.insert(RigidBodyBuilder::kinematic_position_based().pose(frame)))
             }

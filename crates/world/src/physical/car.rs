@@ -2,7 +2,7 @@
 
 use super::bodies::Bodies;
 use super::watch::Watch;
-use crate::guide::chase;
+use crate::guide::{chase, stands, waits, wanted_speed};
 use crate::wheeled::driver::{Driver, Effort, Pace, WINDOW};
 use crate::wheeled::tyre::Brush;
 use crate::wheeled::wheel::{Carriage, Footing, Mounting, Pull, Push};
@@ -34,6 +34,10 @@ pub(super) struct Car {
     vehicle: Arc<Wheeled>,
     limits: Limits,
     leads: bool,
+    /// Whether it comes to a stand, or stands.
+    waits: bool,
+    /// Speed at which it is told to go, m/s.
+    told: f64,
     mountings: [Mounting; 4],
     pace: Pace,
     command: Command,
@@ -62,6 +66,8 @@ impl Car {
             body,
             limits: robot.limits,
             leads: robot.lead.is_some(),
+            waits: false,
+            told: slowest,
             mountings: Mounting::of(&vehicle),
             pace: Pace::new(&vehicle, step),
             command: Command::default(),
@@ -78,6 +84,9 @@ impl Car {
     /// Goes on with other limits and another driver; body, springs and tyres stay.
     pub(super) fn adopt(&mut self, limits: Limits, vehicle: Arc<Wheeled>) {
         self.driver.slowest = if self.leads { 0.0 } else { limits.speed_min };
+        if !self.leads {
+            self.told = limits.speed_min;
+        }
         self.pace = Pace::new(&vehicle, self.pace.step());
         (self.limits, self.vehicle) = (limits, vehicle);
     }
@@ -85,16 +94,20 @@ impl Car {
     /// Takes the command for the time to come; a lead robot chases its ideal.
     pub(super) fn take(&mut self, command: Command, ideal: &Motion, now: &Motion) {
         self.command = if self.leads {
-            chase(ideal, now, self.vehicle.body.wheelbase, &self.limits)
+            let wheelbase = self.vehicle.body.wheelbase;
+            self.driver.parked = stands(ideal, now, wheelbase, self.driver.parked);
+            (self.waits, self.told) = (waits(ideal), wanted_speed(ideal, now));
+            chase(ideal, now, wheelbase, &self.limits)
         } else {
             let Command { acceleration, turn_rate } = self.limits.saturate(command, now.speed);
             Command { acceleration: self.limits.admissible(acceleration, now.speed), turn_rate }
         };
     }
 
-    /// How far the driver's target is ahead of `speed`, as a share of how far it can be.
-    pub(super) fn ahead(&self, speed: f64) -> f64 {
-        (self.driver.target - speed) / (WINDOW * self.limits.speed_max)
+    /// How far the driver's target is ahead of `speed`, as a share of how far it can be, and the speed at which it is
+    /// told to go, m/s.
+    pub(super) fn pull(&self, speed: f64) -> [f64; 2] {
+        [(self.driver.target - speed) / (WINDOW * self.limits.speed_max), self.told]
     }
 
     /// Drives for one physics step of `h` s: from the command to the push of all wheels.
@@ -107,6 +120,7 @@ impl Car {
         let level = Vector::new(ahead.x, ahead.y, 0.0).normalize_or(Vector::X);
         let arm = origin - carriage.centre;
         let speed = (carriage.velocity + carriage.spin.cross(arm)).dot(level);
+        self.driver.slope = if self.waits { ahead.z } else { 0.0 };
         let effort = self.driver.drive(&self.vehicle, &self.pace, self.command, speed, carriage.spin.z);
         self.reactions.clear();
         let air = carriage.velocity * (-self.vehicle.drag * carriage.velocity.length());

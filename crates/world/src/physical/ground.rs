@@ -3,8 +3,8 @@
 use rapier3d_f64::prelude::{ColliderBuilder, Vector};
 use vocabulary::Terrain;
 
-/// Half the side of the ground, m.
-const FAR: f64 = 1e5;
+/// Half the side of the ground, m: twice as far as anything can start.
+pub(super) const FAR: f64 = 2e6;
 /// Thickness, m.
 const DEEP: f64 = 2.0;
 

@@ -17,7 +17,7 @@ use rapier3d_f64::prelude::RigidBodyHandle;
 use rayon::prelude::*;
 use std::sync::Arc;
 use vocabulary::{
-    Command, Contact, Mobility, Motion, Passage, Placement, Pose, Profile, Prop, Snapshot, Terrain,
+    Command, Contact, Mobility, Motion, Passage, Placement, Pose, Profile, Prop, Snapshot, Solid, Terrain,
 };
 
 /// A robot on stage.
@@ -72,7 +72,15 @@ pub struct Physical {
     touches: Touches,
     record: Record,
     step: f64,
+    /// Size of the smallest thing that can be run into, m.
+    smallest: f64,
 }
+
+/// How far what goes its own way may move in a physics step, as a share of its size and that of what it runs into: half
+/// of both, and it would be nearer to the other side.
+const STRIDE: f64 = 0.25;
+/// Most physics steps in place of one.
+const MOST_PARTS: f64 = 100.0;
 
 /// A prop that goes its own way.
 #[derive(Debug, Clone)]
@@ -82,6 +90,8 @@ struct Guided {
     /// At the start of the current advance.
     pose: Pose,
     height: f64,
+    /// m.
+    size: f64,
 }
 
 /// Vehicles from which on they are driven on all threads.
@@ -112,10 +122,15 @@ impl Physical {
             if let (Some(body), Mobility::Guided, Some(path)) = (body, prop.prop.mobility, &prop.path) {
                 let Placement { position: [x, y, height], rotation: [_, _, z, w] } = prop.prop.placement;
                 let pose = Pose::new(x, y, 2.0 * z.atan2(w));
-                guided.push(Guided { body, path: path.clone(), pose, height });
+                let size = smaller_side(&prop.prop.solid);
+                guided.push(Guided { body, path: path.clone(), pose, height, size });
             }
         }
         let record = Record::new(&cars, &bodies);
+        let movable = props.iter().filter(|prop| prop.prop.mobility == Mobility::Loose);
+        let movable = movable.map(|prop| smaller_side(&prop.prop.solid));
+        let robots = actors.iter().map(|actor| actor.robot.body.length.min(actor.robot.body.width));
+        let smallest = movable.chain(robots).fold(f64::INFINITY, f64::min);
         let mut world = Self {
             bodies,
             cars,
@@ -127,6 +142,7 @@ impl Physical {
             touches: Touches::default(),
             record,
             step,
+            smallest,
         };
         world.write_snapshot();
         world
@@ -140,6 +156,24 @@ impl Physical {
         self.bodies.step(h);
         self.find_touches(time);
         self.record.note(&self.cars, &self.bodies, h);
+    }
+
+    /// Physics steps in the next `duration` s: more of them where something goes its own way so fast that it would pass
+    /// through what is in its way.
+    fn steps(&self, duration: f64) -> f64 {
+        let time = self.snapshot.time;
+        let sizes = |own: f64| STRIDE * (own + self.smallest);
+        let unicycles = self.unicycles.iter().map(|(index, _)| {
+            // Robots are among the smallest.
+            self.snapshot.robots[*index].motion.speed.abs() / sizes(self.smallest)
+        });
+        let guided = self.guided.iter().map(|prop| {
+            let [begin, end] = [time, time + duration].map(|t| prop.path.at(t).speed.abs());
+            begin.max(end) / sizes(prop.size)
+        });
+        let pace = unicycles.chain(guided).fold(0.0, f64::max);
+        let steps = (duration / self.step - 1e-9).ceil().max(1.0);
+        steps * (pace * duration / steps).ceil().clamp(1.0, MOST_PARTS)
     }
 
     /// What has no mass goes its way.
@@ -197,7 +231,7 @@ impl Physical {
             let below = self.surroundings.surface(motion.pose.x, motion.pose.y).height - attitude.height;
             let robot = &mut self.snapshot.robots[car.index];
             robot.condition =
-                car.watch.look(self.snapshot.time, car.ahead(motion.speed), &motion, &attitude, below);
+                car.watch.look(self.snapshot.time, car.pull(motion.speed), &motion, &attitude, below);
             (robot.motion, robot.attitude, robot.wheels) = (motion, attitude, car.wheels);
         }
         for (index, placement) in self.snapshot.props.iter_mut().enumerate() {
@@ -206,6 +240,12 @@ impl Physical {
             }
         }
     }
+}
+
+/// The smaller side of what a solid covers of the ground, m.
+fn smaller_side(solid: &Solid) -> f64 {
+    let [length, width, _] = solid.extent();
+    length.min(width)
 }
 
 impl World for Physical {
@@ -233,7 +273,7 @@ impl World for Physical {
     }
 
     fn advance(&mut self, duration: f64) {
-        let steps = (duration / self.step - 1e-9).ceil().max(1.0);
+        let steps = self.steps(duration);
         let h = duration / steps;
         self.touches.forget_ended();
         self.ideals.move_on(duration);

@@ -20,6 +20,10 @@ pub struct Driver {
     /// Angle of a wheel midway between the front wheels, rad; of a differential drive, the difference of the forces of
     /// its sides, right minus left, N.
     pub turn: f64,
+    /// Whether the brakes hold the vehicle where it stands, at once; the motors of a differential drive hold like brakes.
+    pub parked: bool,
+    /// Sine of the slope, nose up, that the driver makes up for: only where it comes to a stand.
+    pub slope: f64,
 }
 
 /// What takes effect at the wheels.
@@ -80,6 +84,9 @@ impl Driver {
         speed: f64,
         turn_rate: f64,
     ) -> Effort {
+        if self.parked {
+            return self.hold(vehicle, pace);
+        }
         self.accelerate(vehicle, pace, command.acceleration, [speed, turn_rate]);
         match vehicle.drivetrain {
             Drivetrain::Steered { angle_max, rate, .. } => {
@@ -96,6 +103,26 @@ impl Driver {
         }
     }
 
+    /// Brakes hold, motors let go, and wheels stay as they are steered.
+    fn hold(&mut self, vehicle: &Wheeled, pace: &Pace) -> Effort {
+        self.target = 0.0;
+        self.force -= pace.drive * self.force;
+        let drive = self.force.max(0.0);
+        match vehicle.drivetrain {
+            Drivetrain::Steered { .. } => Effort {
+                drive: [drive / 4.0; 4],
+                brake: [vehicle.brake_force / 4.0; 4],
+                tan_steering: self.turn.tan(),
+            },
+            Drivetrain::Differential => {
+                self.turn -= pace.turn * self.turn;
+                let brake = vehicle.brake_force / 2.0;
+                let (left, right) = (0.5 * (drive - self.turn), 0.5 * (drive + self.turn));
+                Effort { drive: [0.0, 0.0, left, right], brake: [0.0, 0.0, brake, brake], tan_steering: 0.0 }
+            }
+        }
+    }
+
     fn accelerate(
         &mut self,
         vehicle: &Wheeled,
@@ -106,7 +133,8 @@ impl Driver {
         let window = WINDOW * vehicle.limits.speed_max;
         let held = (self.target + pace.step * acceleration).clamp(speed - window, speed + window);
         self.target = held.clamp(self.slowest, vehicle.limits.speed_max);
-        let resistance = resistance(vehicle, speed, turn_rate);
+        let weight = vehicle.mass * GRAVITY;
+        let resistance = resistance(vehicle, speed, turn_rate) + weight * self.slope;
         let missing = self.target - speed;
         let wanted = vehicle.mass * (acceleration + vehicle.speed_gain * missing) + resistance;
         let range = |force: f64| force.clamp(-vehicle.brake_force, vehicle.drive_force);

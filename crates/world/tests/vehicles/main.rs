@@ -2,5 +2,6 @@
 
 mod alone;
 mod common;
+mod standing;
 mod together;
 mod truck;

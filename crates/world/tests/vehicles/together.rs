@@ -239,3 +239,51 @@ proptest! {
         }
     }
 }
+
+/// At a steady speed, m/s.
+#[derive(Debug)]
+struct Steady(f64);
+
+impl vocabulary::Profile for Steady {
+    fn at(&self, _: f64) -> vocabulary::Drive {
+        vocabulary::Drive { speed: self.0, ..vocabulary::Drive::default() }
+    }
+}
+
+/// Whatever its speed, what goes its own way pushes what is in its way before it, and does not pass through.
+#[test]
+fn a_fast_guided_block_meets_a_loose_one() {
+    let block = Solid::Block { size: [0.3, 0.3, 0.3] };
+    for speed in [1.0, 10.0, 40.0, 100.0] {
+        let mut guided = prop(block, Pose::default(), None);
+        guided.prop.mobility = Mobility::Guided;
+        guided.path = Some(std::sync::Arc::new(Steady(speed)));
+        let loose = prop(block, Pose::new(2.0, 0.0, 0.0), Some(1.0));
+        let mut world = Physical::new(Stage { props: vec![guided, loose], ..flat(vec![]) });
+        let mut touched = 0;
+        for _ in 0..(300.0 / speed) as usize {
+            world.apply(&[]);
+            world.advance(0.01);
+            touched = touched.max(world.contacts().len());
+            let [from, to] = [0, 1].map(|k| world.snapshot().props[k].position[0]);
+            assert!(to - from > 0.15, "at {speed} m/s the block at {from} m has passed the one at {to} m");
+        }
+        assert!(touched > 0, "at {speed} m/s");
+    }
+}
+
+/// The ground bears as far out as anything can start.
+#[test]
+fn a_thousand_kilometres_out_things_stand_and_drive_as_at_home() {
+    let far = [-1e6, 1e6];
+    let crate_ =
+        prop(Solid::Block { size: [0.3, 0.3, 0.3] }, Pose::new(far[0], far[1] + 2.0, 0.3), Some(1.0));
+    let car = actor(&truck(), Pose::new(far[0], far[1], 0.0), 1.0);
+    let mut run = Run { world: Physical::new(Stage { props: vec![crate_], ..flat(vec![car]) }) };
+    run.hold(FORWARD, 5.0, |_| {});
+    let snapshot = run.world.snapshot();
+    let [x, y, z] = snapshot.props[0].position;
+    assert!((x - far[0]).abs() < 1e-3 && (y - far[1] - 2.0).abs() < 1e-3 && z.abs() < 1e-3, "{x} {y} {z}");
+    assert_eq!(snapshot.robots[0].condition, vocabulary::Condition::Able);
+    assert!((run.motion().pose.x - far[0] - 5.0).abs() < 0.1, "{}", run.motion().pose.x - far[0]);
+}
