@@ -1,7 +1,7 @@
 //! One folder, one program that fills it.
 
 use crate::Error;
-use crate::place::named;
+use crate::place::{named, no_file};
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
@@ -30,9 +30,7 @@ impl Claim {
         ours: impl FnOnce(&Path) -> Option<Vec<String>>,
     ) -> Result<Self, Error> {
         named(folder)?;
-        if folder.exists() && !folder.is_dir() {
-            return Err(Error::place(folder, "is no folder: name one"));
-        }
+        no_file(folder)?;
         fs::create_dir_all(folder).map_err(Error::io("create", folder))?;
         let claim = Self::lock(folder)?;
         let entries = fs::read_dir(folder).map_err(Error::io("read", folder))?;
@@ -123,6 +121,6 @@ mod tests {
         drop(claim(folder.path(), true).expect("replaced"));
         assert!(at("notes.txt").exists() && !at("mark").exists() && !at("old").exists());
         let told = claim(&at("notes.txt"), true).expect_err("a file").to_string();
-        assert!(told.contains("is no folder"), "{told}");
+        assert!(told.contains("is a file"), "{told}");
     }
 }

@@ -46,9 +46,7 @@ impl Place {
     /// [`Error::Place`] for what is no folder; [`Error::Io`] where it cannot be written.
     pub fn folder(path: &Path) -> Result<Self, Error> {
         named(path)?;
-        if path.exists() && !path.is_dir() {
-            return Err(Error::place(path, "is no folder: name one"));
-        }
+        no_file(path)?;
         let place = Self::made(&followed(path))?;
         match Draft::new(&path.join("output")) {
             Err(Error::Io { source, .. }) => Err(Error::io("write into", path)(source)),
@@ -101,6 +99,15 @@ pub(crate) fn named(path: &Path) -> Result<(), Error> {
     }
 }
 
+/// Refuses what is there and is no folder.
+pub(crate) fn no_file(path: &Path) -> Result<(), Error> {
+    match path.exists() && !path.is_dir() {
+        true if path.is_file() => Err(Error::place(path, "is a file: name a folder")),
+        true => Err(Error::place(path, "is no folder: name one")),
+        false => Ok(()),
+    }
+}
+
 #[cfg(unix)]
 fn is_device(about: &fs::Metadata) -> bool {
     use std::os::unix::fs::FileTypeExt;
@@ -145,7 +152,7 @@ mod tests {
         };
         assert!(told(Place::file(root.path())).contains("is a folder"));
         assert!(told(Place::file(&root.path().join("new/"))).contains("is a folder"));
-        assert!(told(Place::folder(&file)).contains("is no folder"));
+        assert!(told(Place::folder(&file)).contains("is a file"));
         assert!(told(Place::file(Path::new("-"))).contains("standard output"));
         assert!(told(Place::folder(Path::new("-"))).contains("standard output"));
         assert!(told(Place::file(Path::new(""))).contains("name one"));

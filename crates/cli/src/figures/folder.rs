@@ -110,6 +110,12 @@ mod tests {
         let mut folder = Folder::create(&path, false).expect("new");
         folder.write("old.svg", b"old").expect("written");
         folder.close("complete", None).expect("closed");
+        // A place that was kept for a film which was never finished is not listed.
+        assert!(!folder.place("film.mp4").exists());
+        folder.close("interrupted", None).expect("closed");
+        let listed = fs::read_to_string(path.join(MARK)).expect("a list");
+        assert!(listed.contains("old.svg") && !listed.contains("film.mp4"), "{listed}");
+        drop(folder);
         fs::write(path.join("notes.txt"), "mine").expect("written");
         let told = |force| match Folder::create(&path, force) {
             Err(Failure::Usage(text)) => text,

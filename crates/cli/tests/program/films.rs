@@ -118,7 +118,7 @@ fn stills_are_a_sheet_and_a_strobe_picture() {
     assert_eq!((size("two-sheet.png"), size("two-strobe.png")), ([3 * 72 + 8, 2 * 44 + 8], [64, 36]));
     fs::write(folder.path().join("file"), "x").expect("written");
     let (code, _, err) = told(&echelon(folder.path(), &["stills", "two.toml", "-o", "file"]));
-    assert!(code == 3 && err.contains("file"), "{err}");
+    assert!(code == 2 && err.contains("is a file"), "{err}");
 }
 
 #[test]
