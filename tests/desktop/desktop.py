@@ -140,6 +140,15 @@ class Lab:
 
 
 AWAY = (1180, 560)
+# As no window manager does it.
+DESTROY = """
+import ctypes, sys
+x = ctypes.CDLL("libX11.so.6")
+x.XOpenDisplay.restype = ctypes.c_void_p
+display = ctypes.c_void_p(x.XOpenDisplay(None))
+x.XDestroyWindow(display, ctypes.c_ulong(int(sys.argv[1])))
+x.XSync(display, 0)
+"""
 FIRST_BUTTON = (10, 7, 32, 27)
 # Where the robots of the scene are when the arrangement is the first one.
 ROBOTS = (250, 150, 950, 590)
@@ -566,18 +575,28 @@ class Test:
         check(code == 130, f"exit code {code}: {lab.err.read_text()}")
         return "exit code 130"
 
+    def is_destroyed(self):
+        lab = Lab(self, self.scene.name, "--paused")
+        subprocess.run([sys.executable, "-c", DESTROY, str(lab.window)], env=self.environment, check=True)
+        code, said = lab.ended(20), lab.err.read_text().strip()
+        check(code == 3 and "taken away from outside" in said, f"exit code {code}: {said}")
+        check("\n" not in said and "panick" not in said, f"not one line: {said}")
+        return said
+
     def refuses(self):
         lines = []
         for words, environment in (
             ([self.scene.name], self.bare),
+            ([self.scene.name], {**self.environment, "DISPLAY": ":4711"}),
             ([self.scene.name, "--adapter", "no such adapter"], self.environment),
         ):
             done = self.echelons("lab", *words, environment=environment)
             said = (done.stdout + done.stderr).strip()
             check(done.returncode == 3, f"exit code {done.returncode}: {said}")
             check(said and "\n" not in said and "panick" not in said, f"not one line: {said}")
+            check(".cargo" not in said and ".rs:" not in said, f"a place of whoever built it: {said}")
             lines.append(said)
-        return "exit code 3 twice:\n    " + "\n    ".join(lines)
+        return "exit code 3 each time:\n    " + "\n    ".join(lines)
 
 
 def texts(path):
@@ -628,6 +647,7 @@ def main():
         test.step("Closing in the middle of a film", test.closes_in_a_film)
         test.step("Opening a broken scene", test.shows_faults)
         test.step("Ctrl C in the terminal", test.is_interrupted)
+        test.step("Another program destroys the window", test.is_destroyed)
         test.step("Starting where there is no screen, and no such adapter", test.refuses)
     finally:
         if test.lab and test.lab.process.poll() is None:
