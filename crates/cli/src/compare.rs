@@ -110,6 +110,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
         let case = |pair: &Pair| Case {
             name: pair.name.clone(),
             failure: (!pair.passes(args.threshold)).then(|| pair.words()),
+            skipped: None,
         };
         junit::write(path, "pictures", &compared.iter().map(case).collect::<Vec<_>>())?;
     }

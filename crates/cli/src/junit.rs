@@ -12,13 +12,16 @@ pub(crate) struct Case {
     pub(crate) name: String,
     /// What was wanted and what was found instead; `None` where it is as it should be.
     pub(crate) failure: Option<String>,
+    /// Why it was not judged.
+    pub(crate) skipped: Option<String>,
 }
 
 impl Case {
     /// An expectation of a scene.
     pub(crate) fn of(finding: &Finding) -> Self {
-        let failure = (!finding.met).then(|| format!("wanted {}, found {}", finding.wanted, finding.found));
-        Self { name: format!("{}: {}", finding.key, finding.wanted), failure }
+        let failure = finding.failed().then(|| format!("wanted {}, found {}", finding.wanted, finding.found));
+        let skipped = finding.met.is_none().then(|| finding.found.clone());
+        Self { name: format!("{}: {}", finding.key, finding.wanted), failure, skipped }
     }
 }
 
@@ -26,11 +29,14 @@ impl Case {
 pub(crate) fn write(path: &Path, name: &str, cases: &[Case]) -> Result<(), Failure> {
     let mut suite = TestSuite::new(name);
     for case in cases {
-        let status = case.failure.as_ref().map_or_else(TestCaseStatus::success, |text| {
-            let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+        let mut status = match (&case.failure, &case.skipped) {
+            (Some(_), _) => TestCaseStatus::non_success(NonSuccessKind::Failure),
+            (None, Some(_)) => TestCaseStatus::skipped(),
+            (None, None) => TestCaseStatus::success(),
+        };
+        if let Some(text) = case.failure.as_ref().or(case.skipped.as_ref()) {
             status.set_message(text.as_str());
-            status
-        });
+        }
         let mut written = TestCase::new(case.name.as_str(), status);
         written.set_classname(name);
         suite.add_test_case(written);
@@ -53,11 +59,18 @@ mod tests {
         let case = |name: &str, failure: Option<&str>| Case {
             name: name.into(),
             failure: failure.map(str::to_owned),
+            skipped: None,
         };
-        write(&path, "line", &[case("fine", None), case("a < b", Some("wanted ≤ 1 m, found 2 m & more"))])
-            .expect("written");
+        let open = Case { skipped: Some("too short".into()), ..case("open", None) };
+        write(
+            &path,
+            "line",
+            &[case("fine", None), case("a < b", Some("wanted ≤ 1 m, found 2 m & more")), open],
+        )
+        .expect("written");
         let text = std::fs::read_to_string(&path).expect("text");
-        assert!(text.contains("tests=\"2\"") && text.contains("failures=\"1\""), "{text}");
+        assert!(text.contains("tests=\"3\"") && text.contains("failures=\"1\""), "{text}");
+        assert!(text.contains("<skipped") && text.contains("too short"), "{text}");
         assert!(text.contains("a &lt; b") && text.contains("2 m &amp; more"), "{text}");
     }
 }

@@ -74,7 +74,11 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     };
     let certificates = examiner.finish(&simulation);
     let certificates = certificates.iter().map(|c| c.metrics(simulation.cast())).collect();
-    let (metrics, digest) = sink.finish(status, certificates)?;
+    let findings: Vec<Finding> = match status {
+        Status::Interrupted => vec![],
+        _ => verdict(&scene, &sink.metrics(), status == Status::Complete).into_iter().chain(broken).collect(),
+    };
+    let (metrics, digest) = sink.finish(status, certificates, &findings)?;
     if status == Status::Interrupted {
         let place = folder.map_or_else(String::new, |f| format!(", recorded in {}", f.display()));
         return Err(Failure::Interrupted(format!(
@@ -82,9 +86,7 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
             metrics.duration, scene.time.duration
         )));
     }
-    let mut findings = verdict(&scene, &metrics, status == Status::Complete);
-    findings.extend(broken);
-    let met = findings.iter().all(|f| f.met);
+    let met = !findings.iter().any(Finding::failed);
     if let Some(path) = &args.junit {
         junit::write(path, &stem(&args.scene.scene), &findings.iter().map(Case::of).collect::<Vec<_>>())?;
     }
@@ -159,14 +161,23 @@ impl Sink {
         }
     }
 
+    fn metrics(&self) -> Metrics {
+        match self {
+            Self::Record(recorder) => recorder.metrics(),
+            Self::Judge(judge) => judge.0.finish(),
+        }
+    }
+
     fn finish(
         self,
         status: Status,
         certificates: Vec<CertificateMetrics>,
+        findings: &[Finding],
     ) -> Result<(Metrics, String), recording::Error> {
         match self {
             Self::Record(mut recorder) => {
                 recorder.certify(certificates);
+                recorder.judge(findings.iter().map(Finding::metrics).collect());
                 let (manifest, metrics) = recorder.finish(status)?;
                 Ok((metrics, manifest.digest.unwrap_or_default()))
             }

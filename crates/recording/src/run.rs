@@ -4,8 +4,10 @@ use crate::log::{self, Pipe, Roll};
 use crate::manifest::FORMAT;
 use crate::table::{TableKind, TableWriter};
 use crate::{
-    CertificateMetrics, Digest, Error, Judging, Manifest, Metrics, MetricsBuilder, Status, write_whole,
+    CertificateMetrics, Digest, Error, ExpectationMetrics, Judging, Manifest, Metrics, MetricsBuilder,
+    Status, write_whole,
 };
+use serde::Serialize;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -45,7 +47,18 @@ pub struct Recorder {
     log: Option<Pipe>,
     metrics: MetricsBuilder,
     certificates: Vec<CertificateMetrics>,
+    expectations: Vec<ExpectationMetrics>,
     digest: Digest,
+}
+
+/// `metrics.json`.
+#[derive(Serialize)]
+struct MetricsFile<'a> {
+    #[serde(flatten)]
+    metrics: &'a Metrics,
+    /// What the scene expects, where somebody has looked.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    expectations: &'a [ExpectationMetrics],
 }
 
 /// What a run folder may contain that we wrote ourselves and may replace.
@@ -83,6 +96,7 @@ impl Recorder {
             tables: TableKind::of(cast).into_iter().map(writer).collect::<Result<_, _>>()?,
             metrics: MetricsBuilder::new(cast, options.judging),
             certificates: Vec::new(),
+            expectations: Vec::new(),
             digest: Digest::default(),
             log,
             manifest,
@@ -111,6 +125,16 @@ impl Recorder {
         self.certificates = certificates;
     }
 
+    /// What was measured so far.
+    pub fn metrics(&self) -> Metrics {
+        self.metrics.finish()
+    }
+
+    /// What became of the scene's expectations, for the file of metrics.
+    pub fn judge(&mut self, expectations: Vec<ExpectationMetrics>) {
+        self.expectations = expectations;
+    }
+
     /// Closes the tables and writes metrics and manifest.
     ///
     /// # Errors
@@ -123,7 +147,8 @@ impl Recorder {
         }
         let metrics =
             Metrics { certificates: std::mem::take(&mut self.certificates), ..self.metrics.finish() };
-        write_json(&self.folder.join("metrics.json"), &metrics)?;
+        let file = MetricsFile { metrics: &metrics, expectations: &self.expectations };
+        write_json(&self.folder.join("metrics.json"), &file)?;
         self.manifest.status = status;
         self.manifest.digest = Some(self.digest.text());
         self.log.take().map_or(Ok(()), |log| log.finish(&self.manifest))?;

@@ -82,6 +82,25 @@ impl Scene {
         self.robots.iter().position(|robot| robot.name == name)
     }
 
+    /// What of the scene comes after the end of its run and so never takes effect, in words: changes, and expectations
+    /// that are judged from a time on.
+    pub fn late(&self) -> Vec<String> {
+        let end = self.time.duration;
+        let changes = self.changes.iter().filter(|change| change.at > end);
+        let mut late: Vec<_> = changes
+            .map(|change| format!("the change at {} s comes after the end of the run at {end} s", change.at))
+            .collect();
+        let Expect { settled_after, settling_time, .. } = self.expect;
+        for (key, time) in [("settled_after", settled_after), ("settling_time", settling_time)] {
+            if let Some(time) = time.filter(|time| *time > end) {
+                late.push(format!(
+                    "`{key}` of {time} s is after the end of the run at {end} s: it is not judged"
+                ));
+            }
+        }
+        late
+    }
+
     /// Does `work` to every robot as it is at the start and as it is after every change.
     pub fn for_every_robot(&mut self, mut work: impl FnMut(&mut Robot)) {
         let later = self.changes.iter_mut().flat_map(|change| &mut change.then.robots);
