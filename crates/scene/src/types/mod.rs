@@ -86,10 +86,15 @@ impl Scene {
     /// that are judged from a time on.
     pub fn late(&self) -> Vec<String> {
         let end = self.time.duration;
-        let changes = self.changes.iter().filter(|change| change.at > end);
-        let mut late: Vec<_> = changes
-            .map(|change| format!("the change at {} s comes after the end of the run at {end} s", change.at))
-            .collect();
+        let mut changes = self.changes.iter().filter(|change| change.at > end);
+        let mut late = vec![];
+        if let Some(first) = changes.next() {
+            let more = match changes.count() {
+                0 => "comes".to_owned(),
+                more => format!("and {more} more come"),
+            };
+            late.push(format!("the change at {} s {more} after the end of the run at {end} s", first.at));
+        }
         let Expect { settled_after, settling_time, .. } = self.expect;
         for (key, time) in [("settled_after", settled_after), ("settling_time", settling_time)] {
             if let Some(time) = time.filter(|time| *time > end) {
