@@ -2,12 +2,6 @@
 //!
 //! Every case of a folder with `cases/*.json` and `golden/*.csv` is run: those of `tests/reference`, whose
 //! `reference.py` made the golden files, and those of the folder named by `ECHELON_REFERENCE_DIR` if it is set.
-//!
-//! `reference.py` has one first-order error, and only observers slower than the control period remember it: at the
-//! first instant of a period its Runge-Kutta lets the observer see the acceleration commanded against a bound
-//! (`free == vj` holds there), which adds g [a, 0]ᵀ STEP/6 to the estimated rates once a period while a speed stands
-//! at its bound. Ten times smaller steps in `reference.py` make the deviation ten times smaller. Such a case is
-//! compared twice: as it is, and with the same error added to our observers; it must then agree to the tolerance.
 
 use formation::lead::Courses;
 use formation::{Course, EdgeLaw, Formation, Graph, Law, LawKind, Observer, SetPointCourse, Switching};
@@ -256,22 +250,12 @@ fn golden(path: &Path) -> Outcome<Vec<Vec<f64>>> {
     rows.collect()
 }
 
-/// Integration step of `reference.py`, s.
-const STEP: f64 = 1e-5;
-
-/// All moments of the case; with the error of `reference.py` added, if asked for.
-fn moments(case: &Case, with_its_error: bool) -> Outcome<Vec<Moment>> {
+/// All moments of the case.
+fn moments(case: &Case) -> Outcome<Vec<Moment>> {
     let mut run = Simulation::new(case.setup()?);
     let mut moments: Vec<Moment> = vec![];
     while let Some(moment) = run.next_moment() {
         moments.push(moment.clone());
-        let Some(now) = moments.last().filter(|_| with_its_error) else { continue };
-        for (index, edge) in now.edges.iter().enumerate() {
-            let unseen = edge.asked.acceleration - edge.applied.acceleration;
-            let (sin, cos) = edge.relative.view_angle.sin_cos();
-            let impulse = unseen * STEP / 6.0;
-            run.disturb_observer(index, [cos * impulse, -sin / edge.relative.distance * impulse]);
-        }
     }
     Ok(moments)
 }
@@ -356,14 +340,8 @@ fn every_reference_case_is_reproduced() {
 fn check(folder: &Path, path: &Path, name: &str) -> Outcome<()> {
     let case: Case = serde_json::from_str(&fs::read_to_string(path)?)?;
     let rows = golden(&folder.join("golden").join(format!("{name}.csv")))?;
-    let mut found = compare(&case, &rows, &moments(&case, false)?)?;
+    let found = compare(&case, &rows, &moments(&case)?)?;
     report(name, &found);
-    let slow_observer =
-        case.mode == "sampled" && case.controller.kind == "OFB" && case.controller.epsilon > case.period;
-    if slow_observer && case.verdict(&found).is_err() {
-        found = compare(&case, &rows, &moments(&case, true)?)?;
-        report("  with the error of reference.py", &found);
-    }
     if found.compared < 2 || found.compared != rows.len() {
         return Err(format!("only {} of {} rows compared", found.compared, rows.len()).into());
     }

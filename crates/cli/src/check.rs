@@ -4,7 +4,7 @@ use crate::Outcome;
 use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::load::load_file;
-use crate::print::say;
+use crate::print::{note, say};
 
 pub(crate) fn check(args: &CheckArgs) -> Outcome {
     let mut problems = Vec::new();
@@ -19,6 +19,9 @@ pub(crate) fn check(args: &CheckArgs) -> Outcome {
                 say(&scene.to_toml());
             }
             Ok((scene, setup)) => {
+                for late in scene.late() {
+                    note(&format!("{}: note: {late}", path.display()));
+                }
                 let (robots, edges) = (setup.cast.members.len(), setup.cast.edges.len());
                 let length = scene.time.duration;
                 let count = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });

@@ -101,7 +101,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     let kind = if job.ffmpeg { FilmKind::Ffmpeg } else { FilmKind::of(&job.path) };
     // An animation stores every pixel that changes, and on moving ground all do.
     if kind == FilmKind::Gif {
-        (job.settings.size, job.settings.fps) = ([480, 270], 10);
+        (job.settings.size, job.settings.fps) = ([480, 270], 10.0);
     }
     if let Some(preset) = job.preset {
         preset.apply(&mut job.settings, job.duration);
@@ -111,7 +111,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
         _ => Place::file(&job.path)?,
     };
     let Job { path, name, cast, settings, .. } = &job;
-    let rate = job.fps.unwrap_or(f64::from(settings.fps));
+    let rate = job.fps.unwrap_or(settings.fps);
     if !(1.0..=240.0).contains(&rate) {
         return Err(rendering::Error::FrameRate(rate).into());
     }

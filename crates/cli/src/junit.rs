@@ -19,6 +19,8 @@ pub(crate) enum Came {
     Fine,
     /// What was wanted, and what was found instead.
     Failed(String),
+    /// Why it was not judged.
+    Skipped(String),
     /// Why it could not be checked at all.
     Broken(String),
 }
@@ -27,8 +29,9 @@ impl Case {
     /// An expectation of a scene.
     pub(crate) fn of(finding: &Finding) -> Self {
         let came = match finding.met {
-            true => Came::Fine,
-            false => Came::Failed(format!("wanted {}, found {}", finding.wanted, finding.found)),
+            Some(true) => Came::Fine,
+            Some(false) => Came::Failed(format!("wanted {}, found {}", finding.wanted, finding.found)),
+            None => Came::Skipped(finding.found.clone()),
         };
         Self { name: format!("{}: {}", finding.key, finding.wanted), came }
     }
@@ -47,6 +50,11 @@ pub(crate) fn write(path: &Path, name: &str, cases: &[Case]) -> Result<(), Failu
         let status = match &case.came {
             Came::Fine => TestCaseStatus::success(),
             Came::Failed(text) => not(NonSuccessKind::Failure, text),
+            Came::Skipped(text) => {
+                let mut status = TestCaseStatus::skipped();
+                status.set_message(allowed(text));
+                status
+            }
             Came::Broken(text) => not(NonSuccessKind::Error, text),
         };
         let mut written = TestCase::new(allowed(&case.name), status);
@@ -78,10 +86,16 @@ mod tests {
             name: name.into(),
             came: failure.map_or(Came::Fine, |text| Came::Failed(text.to_owned())),
         };
-        write(&path, "line", &[case("fine", None), case("a < b", Some("wanted ≤ 1 m, found 2 m & more"))])
-            .expect("written");
+        let open = Case { name: "open".into(), came: Came::Skipped("too short".into()) };
+        write(
+            &path,
+            "line",
+            &[case("fine", None), case("a < b", Some("wanted ≤ 1 m, found 2 m & more")), open],
+        )
+        .expect("written");
         let text = std::fs::read_to_string(&path).expect("text");
-        assert!(text.contains("tests=\"2\"") && text.contains("failures=\"1\""), "{text}");
+        assert!(text.contains("tests=\"3\"") && text.contains("failures=\"1\""), "{text}");
+        assert!(text.contains("<skipped") && text.contains("too short"), "{text}");
         assert!(text.contains("a &lt; b") && text.contains("2 m &amp; more"), "{text}");
     }
 

@@ -78,7 +78,11 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     };
     let certificates = examiner.finish(&simulation);
     let certificates = certificates.iter().map(|c| c.metrics(simulation.cast())).collect();
-    let (metrics, digest, written) = sink.finish(status, certificates);
+    let findings: Vec<Finding> = match status {
+        Status::Interrupted => vec![],
+        _ => verdict(&scene, &sink.metrics(), status == Status::Complete).into_iter().chain(broken).collect(),
+    };
+    let (metrics, digest, written) = sink.finish(status, certificates, &findings);
     if status == Status::Interrupted {
         written?;
         let place = folder.map_or_else(String::new, |f| format!(", recorded in {}", f.display()));
@@ -87,9 +91,7 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
             metrics.duration, scene.time.duration
         )));
     }
-    let mut findings = verdict(&scene, &metrics, status == Status::Complete);
-    findings.extend(broken);
-    let met = findings.iter().all(|f| f.met);
+    let met = !findings.iter().any(Finding::failed);
     let summary = Summary {
         scene: &scene,
         metrics: &metrics,
@@ -177,15 +179,24 @@ impl Sink {
         }
     }
 
+    fn metrics(&self) -> Metrics {
+        match self {
+            Self::Record(recorder) => recorder.metrics(),
+            Self::Judge(judge) => judge.0.finish(),
+        }
+    }
+
     /// Metrics, digest, and whether what was to be written is.
     fn finish(
         self,
         status: Status,
         certificates: Vec<CertificateMetrics>,
+        findings: &[Finding],
     ) -> (Metrics, String, Result<(), recording::Error>) {
         match self {
             Self::Record(mut recorder) => {
                 recorder.certify(certificates);
+                recorder.judge(findings.iter().map(Finding::metrics).collect());
                 let Finished { metrics, digest, written } = recorder.conclude(status);
                 (metrics, digest, written.map(drop))
             }

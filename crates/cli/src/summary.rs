@@ -156,14 +156,18 @@ fn expectations(summary: &Summary<'_>) {
     }
     say("\nexpectations");
     for finding in summary.findings {
-        let mark = if finding.met { "met   " } else { "FAILED" };
+        let mark = match finding.met {
+            Some(true) => "met   ",
+            Some(false) => "FAILED",
+            None => "not judged",
+        };
         say(&format!("  {mark} {:22} {}, found {}", finding.key, finding.wanted, finding.found));
     }
 }
 
 /// The expectations that failed, on standard error.
 pub(crate) fn failures(summary: &Summary<'_>) {
-    for finding in summary.findings.iter().filter(|f| !f.met) {
+    for finding in summary.findings.iter().filter(|f| f.failed()) {
         note(&format!("expectation failed: {} {}, found {}", finding.key, finding.wanted, finding.found));
     }
 }
@@ -181,6 +185,6 @@ pub(crate) fn as_json(summary: &Summary<'_>) {
         "folder": summary.folder.as_ref().map(|f| f.display().to_string()),
         "metrics": summary.metrics,
         "expectations": summary.findings.iter().map(finding).collect::<Vec<_>>(),
-        "met": summary.findings.iter().all(|f| f.met),
+        "met": !summary.findings.iter().any(Finding::failed),
     }));
 }

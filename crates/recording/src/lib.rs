@@ -3,7 +3,7 @@
 //! ```text
 //! manifest.json     what ran, how it ended, the digest of its trajectory
 //! scene.toml        the scene with every default written out
-//! metrics.json      errors, effort, clearance, contacts
+//! metrics.json      errors, effort, clearance, contacts, certificates, expectations
 //! log.mcap          all of it in one file, for other tools and for redrawing: see [`log`]
 //! tables/           robots, edges, contacts and, where any can move, props as .parquet; also .csv where asked for
 //! ```
@@ -17,6 +17,7 @@ mod columns;
 mod contacts;
 mod digest;
 mod error;
+mod expectations;
 pub mod log;
 mod looks;
 mod manifest;
@@ -28,6 +29,7 @@ pub use certificates::{CertificateMetrics, StatementMetrics};
 pub use contacts::ContactMetrics;
 pub use digest::Digest;
 pub use error::Error;
+pub use expectations::ExpectationMetrics;
 pub use looks::LookMetrics;
 pub use manifest::{Manifest, Status};
 pub use metrics::{EdgeMetrics, Judging, Metrics, MetricsBuilder, RobotMetrics};

@@ -3,8 +3,11 @@
 use crate::log::{self, Pipe, Roll};
 use crate::manifest::FORMAT;
 use crate::table::{TableKind, TableWriter};
-use crate::{CertificateMetrics, Digest, Error, Judging, Manifest, Metrics, MetricsBuilder, Status};
+use crate::{
+    CertificateMetrics, Digest, Error, ExpectationMetrics, Judging, Manifest, Metrics, MetricsBuilder, Status,
+};
 use output::{Claim, write_whole};
+use serde::Serialize;
 use std::fs;
 use std::path::{Path, PathBuf};
 use vocabulary::{Cast, Moment};
@@ -43,6 +46,7 @@ pub struct Recorder {
     log: Option<Pipe>,
     metrics: MetricsBuilder,
     certificates: Vec<CertificateMetrics>,
+    expectations: Vec<ExpectationMetrics>,
     digest: Digest,
     /// Last, so that it is given up when all files are closed.
     _claim: Claim,
@@ -57,6 +61,16 @@ pub struct Finished {
     pub digest: String,
     /// What was written down of it, or why it was not.
     pub written: Result<Manifest, Error>,
+}
+
+/// `metrics.json`.
+#[derive(Serialize)]
+struct MetricsFile<'a> {
+    #[serde(flatten)]
+    metrics: &'a Metrics,
+    /// What the scene expects, where somebody has looked.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    expectations: &'a [ExpectationMetrics],
 }
 
 /// What a run folder may contain that we wrote ourselves and may replace.
@@ -89,6 +103,7 @@ impl Recorder {
             tables: TableKind::of(cast).into_iter().map(writer).collect::<Result<_, _>>()?,
             metrics: MetricsBuilder::new(cast, options.judging),
             certificates: Vec::new(),
+            expectations: Vec::new(),
             digest: Digest::default(),
             log,
             manifest,
@@ -118,6 +133,16 @@ impl Recorder {
         self.certificates = certificates;
     }
 
+    /// What was measured so far.
+    pub fn metrics(&self) -> Metrics {
+        self.metrics.finish()
+    }
+
+    /// What became of the scene's expectations, for the file of metrics.
+    pub fn judge(&mut self, expectations: Vec<ExpectationMetrics>) {
+        self.expectations = expectations;
+    }
+
     /// Closes the tables and writes metrics and manifest.
     ///
     /// # Errors
@@ -144,7 +169,8 @@ impl Recorder {
             table.push(&self.cast, last)?;
             table.finish()?;
         }
-        write_json(&self.folder.join("metrics.json"), metrics)?;
+        let file = MetricsFile { metrics, expectations: &self.expectations };
+        write_json(&self.folder.join("metrics.json"), &file)?;
         self.log.take().map_or(Ok(()), |log| log.finish(&self.manifest))?;
         self.write_manifest()
     }

@@ -9,8 +9,8 @@ use crate::{
     text::{Form, Node, Place, Reading, Value, table},
 };
 
-/// Most robots times changes.
-const MOST_STATES: usize = 100 * MOST_ROBOTS;
+/// Most robots times changes: each is a whole robot in memory.
+const MOST_STATES: usize = 20 * MOST_ROBOTS;
 /// Parts of a scene that no robot depends on once it runs; left out of what is read again.
 const SETTLED: [&str; 8] =
     ["ground", "props", "patterns", "changes", "environment", "views", "film", "expect"];

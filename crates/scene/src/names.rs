@@ -7,6 +7,7 @@ use crate::text::{
     number, triple,
 };
 use serde_json::{Value as Json, json};
+use unicode_normalization::char::is_combining_mark;
 
 /// Start pose [m, m, rad].
 pub(crate) const POSE: Triple<Number, Number, Angle> = triple(number("m"), number("m"), angle_of_turns(10.0));
@@ -28,7 +29,7 @@ impl Form for NameForm {
     type Out = String;
 
     fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
-        let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+        let fits = |c: char| c.is_alphanumeric() || is_combining_mark(c) || c == '-' || c == '_';
         let name = node
             .as_text()
             .filter(|name| name.chars().all(fits) && (1..=self.most).contains(&name.chars().count()));

@@ -4,7 +4,7 @@ use crate::{
     groups::{made_by, makes},
     text::{
         Node, Place, Reading, Value,
-        node::Entry,
+        node::{Entry, composed},
         words::{did_you_mean, nearest},
     },
 };
@@ -28,7 +28,7 @@ impl FromStr for Override {
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         match text.split_once('=') {
             Some((path, _)) if path.split('.').all(|part| !part.trim().is_empty()) => {
-                Ok(Self(text.to_owned()))
+                Ok(Self(composed(text)))
             }
             _ => Err(OverrideError(text.to_owned())),
         }

@@ -69,7 +69,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         environment: document.environment?.value.complete(&EnvironmentPart::default()),
         views,
         film,
-        expect: expect(&document.expect?.value, &time, reading),
+        expect: expect(&document.expect?.value, reading),
     })
 }
 
@@ -101,7 +101,7 @@ pub(crate) fn resolve_robots(document: &Document, root: &Node, reading: &mut Rea
     drafts.into_iter().map(|draft| draft.robot).collect()
 }
 
-fn expect(part: &ExpectPart, time: &Time, reading: &mut Reading) -> Expect {
+fn expect(part: &ExpectPart, reading: &mut Reading) -> Expect {
     let expect = part.complete(&ExpectPart::default());
     let bound = part.settled_error_at_most.as_ref().or(part.settled_rms_at_most.as_ref());
     match (bound, &part.settled_after) {
@@ -110,15 +110,6 @@ fn expect(part: &ExpectPart, time: &Time, reading: &mut Reading) -> Expect {
         }
         (None, Some(after)) => {
             let message = "`settled_after` needs `settled_error_at_most` or `settled_rms_at_most`, which hold from then on";
-            reading.note(after.place, message);
-        }
-        (_, Some(after)) if expect.settled_after.is_some_and(|after| after >= time.duration) => {
-            let message = format!(
-                "`settled_after` must be before the end of the run at {} s; for a shorter run set it too, as in --set \
-                 expect.settled_after={}",
-                time.duration,
-                0.5 * time.duration
-            );
             reading.note(after.place, message);
         }
         _ => {}

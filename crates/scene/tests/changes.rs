@@ -209,3 +209,16 @@ fn one_robot_of_a_group_may_follow_another() {
     let unknown = fault(&format!("{GROUP}[groups.members.robot-5]\nleader = \"robot-l\"\n"));
     assert!(unknown.to_string().contains("there is no robot called `robot-l`"), "{unknown}");
 }
+
+/// Every change of every robot is kept, so that there is a bound.
+#[test]
+fn very_many_changes_of_very_many_robots_are_refused() {
+    let text = |changes: usize| {
+        let robots = "[[groups]]\nshape = \"column\"\ncount = 10000\npath = { kind = \"constant\" }\n";
+        let change = |k: usize| format!("[[changes]]\nat = {k}\nset = [\"law.k={}\"]\n", 1 + k % 5);
+        let changes: Vec<String> = (0..changes).map(change).collect();
+        format!("schema = 1\ntitle = \"t\"\n{robots}{}", changes.concat())
+    };
+    let refused = Scene::parse(&text(21), "t.toml", &[]).expect_err("too many").to_string();
+    assert!(refused.contains("21 changes of 10000 robots are too many: at most 200000"), "{refused}");
+}

@@ -82,3 +82,64 @@ fn what_is_no_override_is_told() {
         assert!(fault.contains("path.to.key=value"), "{fault}");
     }
 }
+
+/// What looks alike is alike, however its accents are written.
+#[test]
+fn names_may_be_written_with_combining_marks() {
+    let (apart, together) = ("Ame\u{301}lie", "Am\u{e9}lie");
+    let text = SCENE.replace("name = \"leader\"", &format!("name = \"{apart}\""));
+    let text = text.replace("leader = \"leader\"", &format!("leader = \"{together}\""));
+    let change = format!("robots.{apart}.path.turn_rate=0.1").parse::<Override>().unwrap();
+    let scene = Scene::parse(&text, "test.toml", &[change]).unwrap_or_else(|faults| panic!("{faults}")).scene;
+    assert_eq!(scene.robots[0].name, together);
+    let Role::Lead { path: Path::Circle { turn_rate, .. } } = scene.robots[0].role else {
+        panic!("it leads")
+    };
+    assert_eq!(turn_rate, 0.1);
+    let group = "schema = 1\ntitle = \"t\"\n[[groups]]\nname = \"ame\u{301}\"\nshape = \"column\"\ncount = 3\n\
+                 path = { kind = \"constant\" }\n[groups.members.\"am\u{e9}-2\"]\ndistance = 1.5\n";
+    let scene = Scene::parse(group, "test.toml", &[]).unwrap_or_else(|faults| panic!("{faults}")).scene;
+    let Role::Follow(follow) = &scene.robots[1].role else { panic!("it follows") };
+    assert_eq!(follow.distance, Channel::Constant(1.5));
+    // A mark alone is no letter that anything else would take.
+    assert!(Scene::parse(&SCENE.replace("name = \"leader\"", "name = \"a b\""), "test.toml", &[]).is_err());
+}
+
+#[test]
+fn the_papers_words_for_its_laws_are_read() {
+    for (word, kind) in
+        [("fsfb", LawKind::FullState), ("rsfb", LawKind::RobustState), ("ofb", LawKind::OutputFeedback)]
+    {
+        let scene = with(&[&format!("law.kind={word}")]).unwrap();
+        let Role::Follow(follow) = &scene.robots[1].role else { panic!("robot 1 follows") };
+        assert_eq!(follow.law.kind, kind);
+        assert!(!scene.to_toml().contains(word), "it is written in full");
+    }
+    let fault = with(&["law.kind=osfb"]).unwrap_err().to_string();
+    assert!(fault.contains("`ofb`") && fault.contains("did you mean `"), "{fault}");
+}
+
+#[test]
+fn a_frame_rate_may_be_broken() {
+    assert_eq!(with(&["film.fps=29.97"]).unwrap().film.fps, 29.97);
+    assert_eq!(with(&["film.fps=25"]).unwrap().film.fps, 25.0);
+    assert!(with(&["film.fps=0.5"]).is_err());
+}
+
+/// A shorter run is no mistake: what it does not come to is told, and not judged.
+#[test]
+fn what_comes_after_the_end_is_told() {
+    let more = "[expect]\nsettled_after = 6.0\nsettled_error_at_most = [0.1, 0.1]\n[[changes]]\nat = 5.0\n\
+                set = [\"law.k=4\"]\n";
+    let late = |set: &[&str]| {
+        let set: Vec<Override> = set.iter().map(|change| change.parse().unwrap()).collect();
+        Scene::parse(&format!("{SCENE}{more}"), "test.toml", &set)
+            .unwrap_or_else(|f| panic!("{f}"))
+            .scene
+            .late()
+    };
+    assert_eq!(late(&[]), Vec::<String>::new());
+    let told = late(&["time.duration=3"]);
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told[0].contains("the change at 5 s") && told[1].contains("`settled_after` of 6 s"), "{told:?}");
+}

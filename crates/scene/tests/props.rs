@@ -170,11 +170,6 @@ fn props_that_cannot_be() {
         ("vehicle = \"car\"\n[time]\nmode = \"continuous\"", 9, &["for unicycles", "`a` has wheels"]),
         ("[expect]\nsettled_error_at_most = [0.1, 0.1]", 8, &["`settled_after` is missing"]),
         ("[expect]\nsettled_after = 3", 8, &["needs `settled_error_at_most`"]),
-        (
-            "[expect]\nsettled_after = 15\nsettled_error_at_most = [1, 1]",
-            8,
-            &["before the end of the run at 15 s"],
-        ),
         ("[expect]\ncontact_impulse_within = [2, 1]", 8, &["2 is more than 1"]),
     ] {
         let diagnostics = Scene::parse(&text(keys), "t.toml", &[]).expect_err(keys);

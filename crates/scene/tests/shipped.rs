@@ -70,7 +70,7 @@ fn the_schema_refuses_what_the_reader_refuses() {
         ("path.kind = \"constant\"", "path.kind = \"constant\"\npath.radius = 1"),
         ("path.kind = \"constant\"", "path.kind = \"constant\"\nlaw.epsilon = 1"),
         ("path.kind = \"constant\"", "path.kind = \"constant\"\n[time]\nduration = -1"),
-        ("path.kind = \"constant\"", "path.kind = \"constant\"\n[film]\nfps = 1.5"),
+        ("path.kind = \"constant\"", "path.kind = \"constant\"\n[film]\nfps = 0.5"),
         ("schema = 1", "schema = 2"),
         ("name = \"a\"\n", ""),
     ] {

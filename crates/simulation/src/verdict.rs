@@ -2,7 +2,7 @@
 
 use crate::build::short;
 use crate::fault::NotFinite;
-use recording::{EdgeMetrics, Metrics};
+use recording::{EdgeMetrics, ExpectationMetrics, Metrics};
 use scene::{Expect, OnContact, Scene};
 
 /// One expectation and what became of it.
@@ -14,15 +14,27 @@ pub struct Finding {
     pub wanted: String,
     /// What was found, with unit, and on which edge or between which robots.
     pub found: String,
-    /// Whether it was met.
-    pub met: bool,
+    /// Whether it was met; `None` where the run is too short to show it.
+    pub met: Option<bool>,
 }
 
 impl Finding {
     /// What every scene expects, and was not met.
     pub fn not_finite(fault: &NotFinite) -> Self {
         let wanted = "every number finite".to_owned();
-        Self { key: "finite", wanted, found: fault.to_string(), met: false }
+        Self { key: "finite", wanted, found: fault.to_string(), met: Some(false) }
+    }
+
+    /// Whether it was judged and not met.
+    pub fn failed(&self) -> bool {
+        self.met == Some(false)
+    }
+
+    /// The finding as `metrics.json` holds it.
+    pub fn metrics(&self) -> ExpectationMetrics {
+        let Self { key, wanted, found, met } = self;
+        let (key, wanted, found) = ((*key).to_owned(), wanted.clone(), found.clone());
+        ExpectationMetrics { key, wanted, found, met: *met }
     }
 }
 
@@ -89,12 +101,12 @@ fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Find
     }
     if let Some(most) = expect.settled_error_at_most {
         for (channel, most) in most.into_iter().enumerate() {
-            findings.worst("settled_error_at_most", channel, most, |edge| edge.late_peak_error);
+            findings.late("settled_error_at_most", channel, most, expect, |edge| edge.late_peak_error);
         }
     }
     if let Some(most) = expect.settled_rms_at_most {
         for (channel, most) in most.into_iter().enumerate() {
-            findings.worst("settled_rms_at_most", channel, most, |edge| edge.late_rms_error);
+            findings.late("settled_rms_at_most", channel, most, expect, |edge| edge.late_rms_error);
         }
     }
     if let Some(least) = expect.in_view_at_least {
@@ -111,7 +123,7 @@ fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Find
         }
     }
     if let Some(range) = expect.speed_within {
-        findings.speeds(range, expect.settling_time.is_some());
+        findings.speeds(range, expect.settling_time);
     }
     findings.list
 }
@@ -129,7 +141,13 @@ const RATE_UNITS: [&str; 2] = ["m/s", "rad/s"];
 
 impl Findings<'_> {
     fn add(&mut self, key: &'static str, wanted: String, found: String, met: bool) {
-        self.list.push(Finding { key, wanted, found, met });
+        self.list.push(Finding { key, wanted, found, met: Some(met) });
+    }
+
+    /// What the run does not show, since it ended before this time, s.
+    fn add_unjudged(&mut self, key: &'static str, wanted: String, before: f64) {
+        let found = format!("the run ended at {:.2} s, before {before} s", self.metrics.duration);
+        self.list.push(Finding { key, wanted, found, met: None });
     }
 
     fn contacts(&mut self, key: &'static str, wanted: String, met: impl Fn(usize) -> bool) {
@@ -198,6 +216,23 @@ impl Findings<'_> {
         self.add(key, wanted, found, met);
     }
 
+    /// As [`Self::worst`], of what is measured from a time on.
+    fn late(
+        &mut self,
+        key: &'static str,
+        channel: usize,
+        most: f64,
+        expect: &Expect,
+        value: impl Fn(&EdgeMetrics) -> [f64; 2],
+    ) {
+        match expect.settled_after.filter(|after| self.metrics.duration < *after) {
+            Some(after) => {
+                self.add_unjudged(key, format!("≤ {} {}", short(most), ERROR_UNITS[channel]), after);
+            }
+            None => self.worst(key, channel, most, value),
+        }
+    }
+
     fn worst_rate(
         &mut self,
         key: &'static str,
@@ -230,6 +265,9 @@ impl Findings<'_> {
         let wanted = format!("≤ {latest} s into ±{} m, ±{} rad", short(band[0]), short(band[1]));
         let unsettled = self.metrics.edges.iter().find(|edge| edge.settling_time.is_none());
         let slowest = self.metrics.edges.iter().filter_map(|edge| edge.settling_time.map(|t| (t, edge)));
+        if unsettled.is_some() && self.metrics.duration < latest {
+            return self.add_unjudged("settling_time", wanted, latest);
+        }
         let (found, met) = match (unsettled, slowest.max_by(|a, b| a.0.total_cmp(&b.0))) {
             (Some(edge), _) => (format!("{} does not settle", name(edge)), false),
             (None, Some((time, edge))) => (format!("{time:.2} s on {}", name(edge)), time <= latest),
@@ -238,16 +276,19 @@ impl Findings<'_> {
         self.add("settling_time", wanted, found, met);
     }
 
-    fn speeds(&mut self, [slowest, fastest]: [f64; 2], settled_only: bool) {
+    fn speeds(&mut self, [slowest, fastest]: [f64; 2], settling: Option<f64>) {
         let wanted = format!("{slowest} to {fastest} m/s");
         let mut worst: Option<(f64, String)> = None;
         for edge in &self.metrics.edges {
-            let speeds = if settled_only { edge.settled_speeds } else { Some(edge.speeds) };
+            let speeds = if settling.is_some() { edge.settled_speeds } else { Some(edge.speeds) };
             let Some([low, high]) = speeds else { continue };
             let outside = (slowest - low).max(high - fastest);
             if worst.as_ref().is_none_or(|(most, _)| outside > *most) {
                 worst = Some((outside, format!("{low:.3} to {high:.3} m/s for `{}`", edge.follower)));
             }
+        }
+        if let Some(latest) = settling.filter(|latest| worst.is_none() && self.metrics.duration < *latest) {
+            return self.add_unjudged("speed_within", wanted, latest);
         }
         let (outside, found) = worst.unwrap_or((f64::INFINITY, "no settled follower".into()));
         self.add("speed_within", wanted, found, outside <= 0.0);
@@ -296,7 +337,7 @@ mod tests {
     }
 
     fn met(expect: &Expect, metrics: &Metrics, key: &str) -> Vec<bool> {
-        expectations(expect, metrics, true).iter().filter(|f| f.key == key).map(|f| f.met).collect()
+        expectations(expect, metrics, true).iter().filter(|f| f.key == key).filter_map(|f| f.met).collect()
     }
 
     #[test]
@@ -363,7 +404,7 @@ mod tests {
     #[test]
     fn a_robot_that_cannot_drive_is_named() {
         let findings = expectations(&Expect { all_able: true, ..Expect::default() }, &metrics(), true);
-        assert!(findings.iter().any(|f| !f.met && f.found.contains("`ann` is stuck")), "{findings:?}");
+        assert!(findings.iter().any(|f| f.failed() && f.found.contains("`ann` is stuck")), "{findings:?}");
     }
 
     #[test]
@@ -379,7 +420,29 @@ mod tests {
         metrics.edges[0].settling_time = None;
         let expect = Expect { no_contact: true, settling_time: Some(9.0), ..Expect::default() };
         let findings = expectations(&expect, &metrics, false);
-        assert_eq!(findings.iter().filter(|f| !f.met).count(), 3);
+        assert_eq!(findings.iter().filter(|f| f.failed()).count(), 3);
         assert!(findings.iter().any(|f| f.found.contains("bob` does not settle")), "{findings:?}");
+    }
+
+    #[test]
+    fn what_a_run_is_too_short_to_show_is_not_judged() {
+        let expect = Expect {
+            settled_after: Some(20.0),
+            settled_error_at_most: Some([0.1, 0.1]),
+            settled_rms_at_most: Some([0.1, 0.1]),
+            settling_time: Some(16.0),
+            speed_within: Some([0.9, 1.1]),
+            ..Expect::default()
+        };
+        let mut metrics = metrics();
+        metrics.edges[0].settling_time = None;
+        metrics.edges[0].settled_speeds = None;
+        let findings = expectations(&expect, &metrics, true);
+        let open: Vec<_> = findings.iter().filter(|f| f.met.is_none()).collect();
+        assert_eq!(open.len(), 6, "{findings:?}");
+        assert_eq!(open[0].found, "the run ended at 15.00 s, before 16 s");
+        metrics.duration = 30.0;
+        let findings = expectations(&expect, &metrics, true);
+        assert!(findings.iter().all(|f| f.met.is_some()), "{findings:?}");
     }
 }

@@ -193,3 +193,19 @@ fn runs_move_between_threads() {
     is_send::<Simulation>();
     is_send::<simulation::Setup>();
 }
+
+/// A run lasts as long as it says, also where its end is no control sample.
+#[test]
+fn a_run_ends_with_the_first_sample_at_or_after_its_duration() {
+    for (duration, period, samples) in [(1.0, 0.3, 5), (1.0, 0.1, 11), (0.3, 0.1, 4), (15.0, 0.01, 1501)] {
+        let text = format!(
+            "schema = 1\ntitle = \"t\"\ntime = {{ duration = {duration}, period = {period} }}\n[[robots]]\n\
+             name = \"a\"\npose = [0, 0, 0]\npath = {{ kind = \"constant\" }}\n"
+        );
+        let scene = scene::Scene::parse(&text, "t.toml", &[]).expect("a scene").scene;
+        let mut run = simulation::Simulation::new(simulation::build(&scene).expect("a run"));
+        assert_eq!(run.len(), samples);
+        while run.next_moment().is_some() {}
+        assert!(run.moment().snapshot.time >= duration - 1e-9, "{} s", run.moment().snapshot.time);
+    }
+}

@@ -22,7 +22,7 @@ impl Preset {
             Self::Paper => ([1280, 720], [0.0, 0.0], 60.0),
             Self::Social => ([1080, 1920], [2.0, 3.0], 24.0),
         };
-        (film.size, film.fps) = (size, 30);
+        (film.size, film.fps) = (size, 30.0);
         [film.title, film.end] = cards;
         if !film.shots.is_empty() {
             return;

@@ -1,7 +1,10 @@
 //! Where paths lead in a text.
 
 use super::EditError;
-use crate::text::words::{did_you_mean, nearest};
+use crate::text::{
+    node::composed,
+    words::{did_you_mean, nearest},
+};
 use toml_edit::{Item, Table};
 
 /// A part of a path that has been looked up.
@@ -15,7 +18,7 @@ pub(super) enum Step {
 
 /// What the parts of `path` mean in the text; keys need not be there yet.
 pub(super) fn steps(root: &Table, path: &str) -> Result<Vec<Step>, EditError> {
-    let mut parts: Vec<String> = path.split('.').map(|part| part.trim().to_owned()).collect();
+    let mut parts: Vec<String> = path.split('.').map(|part| composed(part.trim())).collect();
     if parts.iter().any(String::is_empty) {
         return Err(EditError::new(format!("`{path}` is no path: write it as law.k")));
     }
@@ -72,7 +75,8 @@ pub(super) fn names<'a>(root: &'a Table, list: &str) -> impl Iterator<Item = &'a
 /// Index of the item of a list with that name or number.
 fn index_of(root: &Table, list: &str, name: &str) -> Option<usize> {
     let items = items(root, list);
-    let named = items.iter().position(|item| item.get("name").and_then(Item::as_str) == Some(name));
+    let called = |item: &Item| item.get("name").and_then(Item::as_str).map(composed);
+    let named = items.iter().position(|item| called(item).as_deref() == Some(name));
     named.or_else(|| name.parse().ok().filter(|index| *index < items.len()))
 }
 
@@ -82,7 +86,7 @@ pub(super) fn made_by_group(root: &Table, name: &str) -> Option<usize> {
 }
 
 fn made_by(group: &Item) -> impl Iterator<Item = String> {
-    let start = group.get("name").and_then(Item::as_str).unwrap_or("robot").to_owned();
+    let start = composed(group.get("name").and_then(Item::as_str).unwrap_or("robot"));
     let count = group.get("count").and_then(Item::as_integer).unwrap_or(0).clamp(0, 10_000);
     let first = if group.get("path").is_some() { 1 } else { 2 };
     (first..=count).map(move |place| format!("{start}-{place}"))

@@ -3,6 +3,7 @@
 use crate::text::{Place, Reading};
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
+use unicode_normalization::UnicodeNormalization;
 
 /// A value and where it stands.
 #[derive(Debug, Clone)]
@@ -55,7 +56,7 @@ impl Node {
         match DeValue::parse(text) {
             Ok(value) => from_value(value.get_ref(), place(source, offset, &value.span()), offset),
             Err(_) => {
-                Self { place: place(source, offset, &(0..text.len())), value: Value::Text(text.to_owned()) }
+                Self { place: place(source, offset, &(0..text.len())), value: Value::Text(composed(text)) }
             }
         }
     }
@@ -145,6 +146,11 @@ impl Node {
     }
 }
 
+/// Text as most people write it: letters with their accents as one character each, so that what looks alike is alike.
+pub(crate) fn composed(text: &str) -> String {
+    text.nfc().collect()
+}
+
 fn shorten(text: &str) -> String {
     if text.chars().count() <= 40 {
         return text.to_owned();
@@ -158,7 +164,7 @@ fn place(source: usize, offset: usize, span: &Range<usize>) -> Place {
 
 fn from_table(table: &DeTable<'_>, at: Place, offset: usize) -> Node {
     let entries = table.iter().map(|(key, value)| Entry {
-        key: key.get_ref().clone().into_owned(),
+        key: composed(key.get_ref()),
         place: place(at.source, offset, &key.span()),
         node: from_value(value.get_ref(), place(at.source, offset, &value.span()), offset),
     });
@@ -167,7 +173,7 @@ fn from_table(table: &DeTable<'_>, at: Place, offset: usize) -> Node {
 
 fn from_value(value: &DeValue<'_>, at: Place, offset: usize) -> Node {
     let value = match value {
-        DeValue::String(text) => Value::Text(text.clone().into_owned()),
+        DeValue::String(text) => Value::Text(composed(text)),
         DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {
             Ok(integer) => Value::Integer(integer),
             Err(_) => Value::Number(integer.as_str().parse().unwrap_or(f64::INFINITY)),

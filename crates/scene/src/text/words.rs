@@ -61,11 +61,14 @@ pub(crate) fn did_you_mean(word: &str) -> String {
     format!(", did you mean `{word}`?")
 }
 
-/// Defines a public enum whose variants are words of a scene file: its type, its form and how it is written.
+/// Defines a public enum whose variants are words of a scene file: its type, its form and how it is written. After a bar
+/// stands another word that is read for the same.
 macro_rules! words {
     (
         $(#[doc = $about:literal])*
-        $vis:vis enum $name:ident { $( $(#[doc = $doc:literal])* $variant:ident = $word:literal, )+ }
+        $vis:vis enum $name:ident {
+            $( $(#[doc = $doc:literal])* $variant:ident = $word:literal $(| $other:literal)?, )+
+        }
     ) => {
         $(#[doc = $about])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -73,7 +76,10 @@ macro_rules! words {
 
         impl $name {
             pub(crate) const fn form() -> $crate::text::words::Words<Self> {
-                $crate::text::words::Words(&[$( ($word, Self::$variant, concat!($($doc),*)), )+])
+                $crate::text::words::Words(&[$(
+                    ($word, Self::$variant, concat!($($doc),*)),
+                    $( ($other, Self::$variant, concat!("As `", $word, "`.")), )?
+                )+])
             }
         }
     };

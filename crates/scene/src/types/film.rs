@@ -18,7 +18,7 @@ settings! {
         /// View; the scene's default view if left out.
         pub view: Option<String> = None, optional(ViewForm);
         /// Frames a second.
-        pub fps: u32 = 30, integer::<u32>(1, 240);
+        pub fps: f64 = 30.0, number("1/s").from(1.0).up_to(240.0);
         /// [width, height] in pixels, both even.
         pub size: [u32; 2] = [1280, 720], couple(integer::<u32>(16, 8192), integer::<u32>(16, 8192));
         /// How long a card with the title stands before the run, s; 0 for none.

@@ -29,14 +29,14 @@ settings! {
 }
 
 words! {
-    /// Which law a follower uses.
+    /// Which law a follower uses; the paper's own words are read for the same.
     pub enum LawKind {
         /// Knows its leader's motion (eq 20).
-        FullState = "full-state",
+        FullState = "full-state" | "fsfb",
         /// Knows the rates of distance and bearing, not its leader's motion (eq 22).
-        RobustState = "robust-state",
+        RobustState = "robust-state" | "rsfb",
         /// Knows distance and bearing only (eq 42).
-        OutputFeedback = "output-feedback",
+        OutputFeedback = "output-feedback" | "ofb",
     }
 }
 

@@ -82,6 +82,30 @@ impl Scene {
         self.robots.iter().position(|robot| robot.name == name)
     }
 
+    /// What of the scene comes after the end of its run and so never takes effect, in words: changes, and expectations
+    /// that are judged from a time on.
+    pub fn late(&self) -> Vec<String> {
+        let end = self.time.duration;
+        let mut changes = self.changes.iter().filter(|change| change.at > end);
+        let mut late = vec![];
+        if let Some(first) = changes.next() {
+            let more = match changes.count() {
+                0 => "comes".to_owned(),
+                more => format!("and {more} more come"),
+            };
+            late.push(format!("the change at {} s {more} after the end of the run at {end} s", first.at));
+        }
+        let Expect { settled_after, settling_time, .. } = self.expect;
+        for (key, time) in [("settled_after", settled_after), ("settling_time", settling_time)] {
+            if let Some(time) = time.filter(|time| *time > end) {
+                late.push(format!(
+                    "`{key}` of {time} s is after the end of the run at {end} s: it is not judged"
+                ));
+            }
+        }
+        late
+    }
+
     /// Does `work` to every robot as it is at the start and as it is after every change.
     pub fn for_every_robot(&mut self, mut work: impl FnMut(&mut Robot)) {
         let later = self.changes.iter_mut().flat_map(|change| &mut change.then.robots);
