@@ -4,6 +4,7 @@
 //! control sample; [`verdict`] holds what was measured against what the scene expects.
 
 mod build;
+mod caption;
 pub mod certify;
 mod continuous;
 mod error;
@@ -15,7 +16,8 @@ mod step;
 pub mod tune;
 pub mod verdict;
 
-pub use build::{build, caption};
+pub use build::build;
+pub use caption::caption;
 pub use error::BuildError;
 pub use regime::{Regime, Turn};
 pub use step::{ObserverStart, Setup, Simulation, Timing};

@@ -1,6 +1,6 @@
 //! What a run showed, held against what its scene expects.
 
-use crate::build::short;
+use crate::caption::short;
 use recording::{EdgeMetrics, Metrics};
 use scene::{Expect, OnContact, Scene};
 
