@@ -79,8 +79,8 @@ pub(crate) struct SceneArgs {
     /// Seed in place of the scene's
     #[arg(long)]
     pub(crate) seed: Option<u64>,
-    /// Adapter to draw with, pictures of cameras on robots included: vulkan, gl, or part of its name; fails where there is
-    /// none such
+    /// Adapter to draw with, pictures of cameras on robots included: its number in `echelon doctor`, vulkan, gl, part of its
+    /// name, or both as in vulkan:llvmpipe; fails where there is none such
     #[arg(long, default_value = "auto")]
     pub(crate) adapter: String,
     /// Print the result as JSON
@@ -125,7 +125,8 @@ pub(crate) struct LabArgs {
     /// Change a value of the scene, as an edit that can be undone; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<Override>,
-    /// Adapter to draw with: vulkan, gl, or part of its name; fails where there is none such
+    /// Adapter to draw with: its number in `echelon doctor`, vulkan, gl, part of its name, or both as in vulkan:llvmpipe; fails
+    /// where there is none such
     #[arg(long, default_value = "auto")]
     pub(crate) adapter: String,
     /// Width and height of the window, such as 1280x800
@@ -274,7 +275,8 @@ pub(crate) struct AccuracyArgs {
     /// Seed of the poses and of the noise
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Adapter to draw with: vulkan, gl, or part of its name; fails where there is none such
+    /// Adapter to draw with: its number in `echelon doctor`, vulkan, gl, part of its name, or both as in vulkan:llvmpipe; fails
+    /// where there is none such
     #[arg(long, default_value = "auto")]
     pub(crate) adapter: String,
     /// Print the result as JSON

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::junit::{self, Came, Case};
 use crate::print::{json, say};
 use clap::Args;
-use image::{Rgb, RgbImage};
+use image::{Rgb, RgbImage, Rgba, RgbaImage};
 use image_compare::rgb_hybrid_compare;
 use output::Place;
 use serde_json::json;
@@ -191,14 +191,14 @@ fn names(folder: &Path) -> Result<BTreeSet<OsString>, Failure> {
     Ok(pictures.filter_map(|path| path.file_name().map(OsString::from)).collect())
 }
 
-fn read(path: &Path) -> Result<RgbImage, Failure> {
+fn read(path: &Path) -> Result<RgbaImage, Failure> {
     let refused = |e: &dyn std::fmt::Display| Failure::Usage(format!("cannot read {}: {e}", path.display()));
     let reader = image::ImageReader::open(path).map_err(|e| refused(&e))?;
     let mut reader = reader.with_guessed_format().map_err(|e| refused(&e))?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(4 * MOST_PIXELS);
     reader.limits(limits);
-    Ok(reader.decode().map_err(|e| refused(&e))?.into_rgb8())
+    Ok(reader.decode().map_err(|e| refused(&e))?.into_rgba8())
 }
 
 fn look(
@@ -212,18 +212,57 @@ fn look(
         let [(w, h), (v, g)] = [a.dimensions(), b.dimensions()];
         return Ok(Err(format!("is {v}×{g} pixels, wanted {w}×{h}")));
     }
-    let compared = rgb_hybrid_compare(&a, &b)
-        .map_err(|e| Failure::Machine(format!("cannot compare {}: {e}", found.display())))?;
-    let map = compared.image.to_color_map().into_rgb8();
-    let likeness =
-        Likeness { adapters: adapters(wanted, found), ..likeness_of(&a, &b, compared.score, &map) };
+    let shown =
+        shown(&a, &b).map_err(|e| Failure::Machine(format!("cannot compare {}: {e}", found.display())))?;
+    let likeness = Likeness { adapters: adapters(wanted, found), ..shown.likeness };
     if let Some(folder) = args.out.as_ref().filter(|_| likeness.other > 0.0) {
         let refused = |e| Failure::Machine(format!("cannot create {}: {e}", folder.display()));
         std::fs::create_dir_all(folder).map_err(refused)?;
         let path = folder.join(Path::new(name).with_extension("difference.png"));
-        rendering::png::write(&path, &side_by_side(&a, &b, &map), &[("Software", crate::run::PROGRAM)])?;
+        let picture = side_by_side(&shown.wanted, &shown.found, &shown.map);
+        rendering::png::write(&path, &picture, &[("Software", crate::run::PROGRAM)])?;
     }
     Ok(Ok(likeness))
+}
+
+/// Two pictures on a ground, and how alike they are there.
+struct Shown {
+    wanted: RgbImage,
+    found: RgbImage,
+    /// The unlikeness of every pixel.
+    map: RgbImage,
+    likeness: Likeness,
+}
+
+/// Two pictures on the ground on which they are less alike, black or white: what is transparent shows the ground, and no
+/// opaque colour is like it on both.
+fn shown(wanted: &RgbaImage, found: &RgbaImage) -> Result<Shown, String> {
+    let on = |ground: u8| {
+        let (wanted, found) = (flat(wanted, ground), flat(found, ground));
+        let compared = rgb_hybrid_compare(&wanted, &found).map_err(|e| e.to_string())?;
+        let map = compared.image.to_color_map().into_rgb8();
+        let likeness = likeness_of(&wanted, &found, compared.score, &map);
+        Ok::<_, String>(Shown { wanted, found, map, likeness })
+    };
+    let black = on(0)?;
+    if [wanted, found].into_iter().all(|picture| picture.pixels().all(|p| p.0[3] == 255)) {
+        return Ok(black);
+    }
+    let white = on(255)?;
+    let less = |a: &Likeness, b: &Likeness| a.least < b.least || a.least == b.least && a.other > b.other;
+    Ok(if less(&white.likeness, &black.likeness) { white } else { black })
+}
+
+/// A picture as it is seen on a ground of one grey.
+fn flat(picture: &RgbaImage, ground: u8) -> RgbImage {
+    let mix = |colour: u8, alpha: u8| {
+        let (colour, alpha, ground) = (u32::from(colour), u32::from(alpha), u32::from(ground));
+        ((colour * alpha + ground * (255 - alpha) + 127) / 255) as u8
+    };
+    RgbImage::from_fn(picture.width(), picture.height(), |x, y| {
+        let Rgba([r, g, b, alpha]) = *picture.get_pixel(x, y);
+        Rgb([r, g, b].map(|colour| mix(colour, alpha)))
+    })
 }
 
 /// What drew two pictures, where their files say so and it was not the same.
@@ -316,6 +355,19 @@ mod tests {
         noisy.pixels_mut().step_by(700).for_each(|p| p.0[1] = p.0[1].saturating_add(3));
         let near = likeness(&a, &noisy);
         assert!(near.least > 0.95 && near.other > 0.0, "{}", near.least);
+    }
+
+    #[test]
+    fn what_is_transparent_is_like_no_colour() {
+        let opaque = |value: u8| RgbaImage::from_pixel(64, 64, Rgba([value, value, value, 255]));
+        let clear = RgbaImage::from_pixel(64, 64, Rgba([0, 0, 0, 0]));
+        for value in [0, 128, 255] {
+            let found = shown(&opaque(value), &clear).expect("compared").likeness;
+            assert!(found.least < 0.9 && found.other == 1.0, "{value}: {}", found.least);
+        }
+        // What colour it would have is not seen.
+        let other = RgbaImage::from_pixel(64, 64, Rgba([200, 0, 0, 0]));
+        assert_eq!(shown(&clear, &other).expect("compared").likeness.other, 0.0);
     }
 
     #[test]

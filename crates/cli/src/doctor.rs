@@ -25,10 +25,10 @@ pub(crate) fn doctor(args: &DoctorArgs) -> Outcome {
             "encoders": { "h264": "built in", "gif": "built in", "png": "built in", "ffmpeg": ffmpeg },
         }));
     } else {
-        say(&format!("{PROGRAM}\n\nadapters, in the order they are tried"));
-        for a in &found {
+        say(&format!("{PROGRAM}\n\nadapters, in the order they are tried; --adapter takes the number"));
+        for (place, a) in found.iter().enumerate() {
             let kind = if a.software { "software" } else { "hardware" };
-            say(&format!("  {} ({}, {}) {kind}", a.name, a.backend, a.driver));
+            say(&format!("  {place}  {} ({}, {}) {kind}", a.name, a.backend, a.driver));
         }
         match &opened {
             Ok(name) => say(&format!("  drawing works with {name}")),

@@ -10,7 +10,7 @@ use crate::args::{FilmArgs, PictureArgs};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::load::{load, stem};
-use crate::picture::Studio;
+use crate::picture::{Studio, told_lacking};
 use crate::playback::{Playback, Source};
 use crate::print::{json, note, say};
 use crate::progress::Progress;
@@ -19,7 +19,7 @@ use output::Place;
 use plots::Plots;
 pub(crate) use preset::Preset;
 use recording::{Judging, MetricsBuilder};
-use rendering::{Film, FilmKind, Gpu, Show};
+use rendering::{Film, FilmKind, Gpu, Room, Show};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -99,9 +99,8 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
 pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
     let began = Instant::now();
     let kind = if job.ffmpeg { FilmKind::Ffmpeg } else { FilmKind::of(&job.path) };
-    // An animation stores every pixel that changes, and on moving ground all do.
     if kind == FilmKind::Gif {
-        (job.settings.size, job.settings.fps) = ([480, 270], 10.0);
+        lighten(&mut job.settings);
     }
     if let Some(preset) = job.preset {
         preset.apply(&mut job.settings, job.duration);
@@ -121,6 +120,8 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     let board = Board::new(settings, (job.picture.view.as_deref(), view), job.duration, &names)?;
     let frames = board.frames(rate);
     let mut studio = Studio::open((job.adapter, job.picture), cast, view, settings.size)?;
+    let told = settings.shots.iter().map(|shot| shot.line.as_str()).chain([job.description.as_str()]);
+    told_lacking(&studio.renderer.unwritable(told));
     let source = source(&studio.gpu)?;
     let (mut film, done) = begin(&job, kind, &studio, rate)?;
 
@@ -132,6 +133,8 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     let mut playback = Playback::new(cast, source).measured(MetricsBuilder::new(cast, job.judging));
     let mut plots = Plots::new(cast, job.duration);
     let plain = studio.style.clone();
+    // Where a line or a panel comes and goes, no camera moves.
+    let room = Room { panel: plain.inset, rows: board.rows(cast.edges.len()) };
     let mut shot = 0;
     while shot < frames && !interrupt::asked() {
         let frame = board.at(shot, rate);
@@ -147,6 +150,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
                 card: words::card(&frame, &job.description, cast, || playback.metrics()),
                 line: words::line(&frame, cast, &moment),
                 plots: plots.shown(frame.plots),
+                room,
             };
             if let Some((_, caption)) = job.captions.iter().rfind(|(at, _)| *at <= moment.snapshot.time) {
                 studio.renderer.retitle(&cast.title, caption);
@@ -192,6 +196,18 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     Ok(())
 }
 
+/// An animation stores every pixel that changes, and on moving ground all do: it is smaller and slower than a film, unless
+/// the scene says otherwise.
+fn lighten(settings: &mut scene::Film) {
+    let plain = scene::Film::default();
+    if settings.size == plain.size {
+        settings.size = [480, 270];
+    }
+    if settings.fps == plain.fps {
+        settings.fps = 10.0;
+    }
+}
+
 /// A film to write, and how many frames of it are there.
 fn begin(job: &Job<'_>, kind: FilmKind, studio: &Studio, rate: f64) -> Result<(Film, u64), Failure> {
     let [width, height] = studio.size;
@@ -209,4 +225,19 @@ fn begin(job: &Job<'_>, kind: FilmKind, studio: &Studio, rate: f64) -> Result<(F
         drop(Film::resume(&job.path, (width, height), rate, &format!("not {made_of}"))?);
     }
     Ok(Film::resume(&job.path, (width, height), rate, &made_of)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_animation_has_the_measures_of_its_scene() {
+        let mut plain = scene::Film::default();
+        lighten(&mut plain);
+        assert_eq!((plain.size, plain.fps), ([480, 270], 10.0));
+        let mut own = scene::Film { size: [320, 180], fps: 25.0, ..scene::Film::default() };
+        lighten(&mut own);
+        assert_eq!((own.size, own.fps), ([320, 180], 25.0));
+    }
 }

@@ -4,6 +4,7 @@ use crate::args::PictureArgs;
 use crate::failure::Failure;
 use crate::print::note;
 use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, View};
+use std::collections::BTreeSet;
 use vocabulary::Cast;
 
 /// Everything that draws.
@@ -44,13 +45,25 @@ impl Studio {
                 _ => None,
             });
         }
-        // Text that suits 720 lines suits no poster: it grows with the picture, and never below its size there. What is
-        // higher than wide is looked at on a phone.
-        let [width, height] = size.map(f64::from);
-        let grown = if height > width { width / 640.0 } else { height / 720.0 };
-        style.scale = args.scale.unwrap_or_else(|| grown.max(1.0));
+        style.scale = args.scale.unwrap_or_else(|| Style::scale_for(size[0], size[1]));
         let gpu = Gpu::open(&AdapterChoice::from(adapter))?;
         let renderer = Renderer::new(&gpu, cast, size[0], size[1], args.samples)?;
+        let named = names.iter().chain([&cast.title, &cast.caption]).map(String::as_str);
+        told_lacking(&renderer.unwritable(named));
         Ok(Self { gpu, renderer, layout, style, size })
     }
+}
+
+/// Says which characters will be boxes in a picture, if any will.
+pub(crate) fn told_lacking(lacks: &BTreeSet<char>) {
+    const MOST: usize = 12;
+    if lacks.is_empty() {
+        return;
+    }
+    let some: String = lacks.iter().take(MOST).collect();
+    let more = if lacks.len() > MOST { format!(" and {} more", lacks.len() - MOST) } else { String::new() };
+    note(&format!(
+        "no font of this machine has {some}{more}: boxes are drawn in their place; a font with them helps, such as those of \
+         the package fonts-noto or fonts-noto-cjk (Debian, Ubuntu)"
+    ));
 }

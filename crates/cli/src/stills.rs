@@ -83,7 +83,7 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
         names: false,
         inset: false,
         clock: false,
-        scale: args.picture.scale.unwrap_or((f64::from(large[1]) / 720.0).max(1.0)),
+        scale: args.picture.scale.unwrap_or_else(|| Style::scale_for(large[0], large[1])),
         ..small.style
     };
     let mut pictures = Vec::with_capacity(moments.len());

@@ -93,11 +93,8 @@ fn setup(adapter: &str) -> WgpuSetup {
     if !wanted.is_empty() && wanted != "auto" {
         new.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
             let shows = |adapter: &&wgpu::Adapter| surface.is_none_or(|s| adapter.is_surface_supported(s));
-            let fits = |adapter: &&wgpu::Adapter| {
-                let info = adapter.get_info();
-                info.backend.to_str() == wanted || info.name.to_lowercase().contains(&wanted)
-            };
-            adapters.iter().filter(shows).find(fits).cloned().ok_or_else(|| {
+            let meant = rendering::AdapterChoice::from(wanted.as_str()).among(adapters);
+            meant.iter().find(shows).cloned().ok_or_else(|| {
                 format!("no adapter for `{wanted}` can show a window; `echelon doctor` lists what there is")
             })
         }));

@@ -4,6 +4,7 @@ use crate::View;
 use crate::carried::carried;
 use crate::floor::Floor;
 use crate::glide::between;
+use crate::room::{Bound, Room, eye};
 use crate::steady::{Extent, Steady};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
 use vocabulary::{Cast, Edge, Snapshot};
@@ -30,35 +31,60 @@ const LEAST_OVER_GROUND: f64 = 0.28;
 /// Of an eye that somebody has put somewhere, m.
 const LEAST_OVER_FLOOR: f64 = 0.06;
 
-/// How a view is composed: the numbers of the snake view, from looking at pictures.
+/// How the snake view is composed, from looking at pictures: as it is for small formations, and as it is at the most for
+/// wide ones, which would lie in a thin band of the picture if nobody looked down on them.
 struct Composition {
-    field_of_view: f64,
-    /// Where the horizon stands, as a share of the height from the top.
+    /// Where the horizon stands, as a share of the height from the top; negative above the picture.
     horizon: f64,
     /// Share of the width the formation may take.
     width: f64,
-    /// Normalised heights (−1 bottom, 1 top) between which the formation stays.
-    rows: [f64; 2],
-    nearest: f64,
+    /// Normalised height (−1 bottom, 1 top) up to which the formation stays.
+    top: f64,
 }
 
-const SNAKE: Composition =
-    Composition { field_of_view: 0.8029, horizon: 0.10, width: 0.70, rows: [-0.52, 0.30], nearest: 2.6 };
+const FIELD_OF_VIEW: f64 = 0.8029;
+const LOW: Composition = Composition { horizon: 0.10, width: 0.70, top: 0.30 };
+const HIGH: Composition = Composition { horizon: -1.9, width: 0.90, top: 0.90 };
+/// Normalised height down to which the formation stays; higher where words are.
+const BOTTOM: f64 = -0.52;
+/// Nearer the eye does not come, m.
+const NEAREST: f64 = 2.6;
+/// How many bodies wide a formation is at which the eye begins to rise, and at which it is as high as it may be; in a view
+/// twice as wide as high, twice as many.
+const WIDE: [f64; 2] = [5.0, 26.0];
+/// From this share of the way up on, the formation may take all the room there is.
+const ALL_ROOM: f64 = 0.6;
+/// Robots reach over their places by this, rings at set points too; of the default body, m.
+const REACH: f64 = 0.28;
+
+impl Composition {
+    /// On the way from the low to the high one.
+    fn at(share: f64) -> Self {
+        let mix = |low: f64, high: f64, share: f64| low + (high - low) * share;
+        let room = (share / ALL_ROOM).min(1.0);
+        Self {
+            horizon: mix(LOW.horizon, HIGH.horizon, share),
+            width: mix(LOW.width, HIGH.width, room),
+            top: mix(LOW.top, HIGH.top, room),
+        }
+    }
+}
 
 impl Camera {
-    /// The camera of `view` on a picture `aspect` times as wide as high.
+    /// The camera of `view`, which keeps robots in `room` where it can.
     pub(crate) fn of(
         view: &View,
         steady: &Steady,
         snapshot: &Snapshot,
         (cast, floor): (&Cast, &Floor),
-        aspect: f64,
+        room: &Room,
     ) -> Self {
+        let aspect = room.aspect();
         let mut camera = match view {
-            View::Snake => snake(steady, aspect),
+            View::Snake => snake(steady, room),
             View::SnakeEye => snake_eye(steady, aspect),
-            View::Top => top(steady, aspect),
-            View::Orbit => orbit(steady, snapshot.time, cast.edges.is_empty(), aspect),
+            View::Top => top(steady, room),
+            View::Orbit => orbit(steady, snapshot.time, cast.edges.is_empty(), room),
             View::Follow(robot) => follow(steady, snapshot, &cast.edges, *robot, aspect),
             View::Camera(robot) => return carried(snapshot, cast, *robot, aspect),
             View::Fixed { eye, target, field_of_view } => {
@@ -68,8 +94,7 @@ impl Camera {
                 return Self::looking(eye, target, *field_of_view, aspect);
             }
             View::Between(from, to, share) => {
-                let [from, to] =
-                    [from, to].map(|view| Self::of(view, steady, snapshot, (cast, floor), aspect));
+                let [from, to] = [from, to].map(|view| Self::of(view, steady, snapshot, (cast, floor), room));
                 return between(&from, &to, *share, steady);
             }
         };
@@ -199,26 +224,22 @@ impl Camera {
         [-middle / up, -aside / up, up.signum()]
     }
 
-    /// Moves the eye so that `points` fill the picture between the composition's bounds, turning nothing.
-    fn fit(&mut self, points: &[DVec3], composition: &Composition, size: f64) {
+    /// Moves the eye as near to `points` as `bounds` let it, turning nothing.
+    fn fit(&mut self, points: &[DVec3], bounds: &[Bound], nearest: f64) {
         self.eye = DVec3::ZERO;
         let seen: Vec<_> = points.iter().map(|p| self.view_from_world(*p)).collect();
-        let most = |f: &dyn Fn(&DVec3) -> f64| seen.iter().map(f).fold(f64::NEG_INFINITY, f64::max);
-        // Each bound of the picture is a plane through the eye; a point inside all of them bounds the eye linearly.
-        let side = composition.width * self.half.x;
-        let [bottom, top] = composition.rows.map(|row| row * self.half.y);
-        let left = most(&|p| -p.x - side * p.z);
-        let right = most(&|p| p.x - side * p.z);
-        let over = most(&|p| p.y - top * p.z);
-        let under = most(&|p| bottom * p.z - p.y);
-        let near = seen.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
-        let across = -(left + right) / (2.0 * side);
-        let down = -(over + under) / (top - bottom);
-        let z = across.min(down).min(near - composition.nearest * size);
-        let (lowest, highest) = (over + top * z, bottom * z - under);
-        let x = 0.5 * (right - left);
-        self.eye = self.right * x + self.up * (0.2 * lowest + 0.8 * highest) + self.forward * z;
+        let place = eye(&seen, self.half, bounds, nearest, EYE_LOW);
+        self.eye = self.right * place.x + self.up * place.y + self.forward * place.z;
     }
+}
+
+/// Where the eye may be lower or higher, it is this share of the way up: robots are in the lower part of their room.
+const EYE_LOW: f64 = 0.6;
+
+/// The sides of the picture as bounds: a share of the width, and normalised heights.
+fn sides(width: f64, [bottom, top]: [f64; 2]) -> [Bound; 4] {
+    let bound = |across: f64, up: f64, most: f64| Bound { across, up, most };
+    [bound(1.0, 0.0, width), bound(-1.0, 0.0, width), bound(0.0, 1.0, top), bound(0.0, -1.0, -bottom)]
 }
 
 /// Outline of the formation from the ground to the robots' height.
@@ -228,12 +249,48 @@ fn corners(extent: &Extent, margin: f64) -> Vec<DVec3> {
     places.flat_map(|[x, y]| [DVec3::new(x, y, low), DVec3::new(x, y, high)]).collect()
 }
 
-fn snake(steady: &Steady, aspect: f64) -> Camera {
-    let tangent = (0.5 * SNAKE.field_of_view).tan();
-    let pitch = ((1.0 - 2.0 * SNAKE.horizon) * tangent).atan();
+fn snake(steady: &Steady, room: &Room) -> Camera {
     let extent = steady.formation();
-    let mut camera = Camera::pitched(extent.frame.heading, pitch, tangent, aspect);
-    camera.fit(&corners(&extent, 0.16 * extent.size), &SNAKE, extent.size);
+    let places = corners(&extent, REACH * extent.size);
+    let [bottom, over] = room.rows();
+    let bottom = bottom.max(BOTTOM);
+    let tangent = (0.5 * FIELD_OF_VIEW).tan();
+    let at = |share: f64| {
+        let form = Composition::at(share);
+        let pitch = ((1.0 - 2.0 * form.horizon) * tangent).atan();
+        let camera = Camera::pitched(extent.frame.heading, pitch, tangent, room.aspect());
+        (camera, sides(form.width, [bottom, form.top.min(over)]))
+    };
+    // How much more of the picture the formation takes across than up and down.
+    let flat = |share: f64| {
+        let (camera, bounds) = at(share);
+        let most = |bound: &Bound| {
+            let (a, b) = (bound.across / camera.half.x, bound.up / camera.half.y);
+            let over = |p: &DVec3| {
+                let p = camera.view_from_world(*p);
+                a * p.x + b * p.y - bound.most * p.z
+            };
+            places.iter().map(over).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let [right, left, up, down] = bounds.each_ref().map(|bound| (most(bound), bound.most));
+        let far = |a: (f64, f64), b: (f64, f64)| (a.0 + b.0) / (a.1 + b.1);
+        far(right, left) - far(up, down)
+    };
+    let wide = (extent.left[1] - extent.left[0]) / (extent.size * room.aspect());
+    let most = ((wide - WIDE[0]) / (WIDE[1] - WIDE[0])).clamp(0.0, 1.0);
+    let most = most * most * (3.0 - 2.0 * most);
+    let (mut low, mut high) = (0.0, most);
+    if flat(high) >= 0.0 {
+        low = high;
+    } else if flat(low) > 0.0 {
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if flat(middle) > 0.0 { low = middle } else { high = middle }
+        }
+    }
+    let (mut camera, bounds) = at(low);
+    let bounds: Vec<_> = bounds.into_iter().chain(room.corners()).collect();
+    camera.fit(&places, &bounds, NEAREST * extent.size);
     camera
 }
 
@@ -253,40 +310,51 @@ fn snake_eye(steady: &Steady, aspect: f64) -> Camera {
     camera
 }
 
-fn top(steady: &Steady, aspect: f64) -> Camera {
+fn top(steady: &Steady, room: &Room) -> Camera {
     let extent = steady.formation();
     let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
     // A circle around the formation, so that turning does not zoom.
     let grown = extent.grown(0.45 * extent.size);
     let across = 0.5 * (grown.forward[1] - grown.forward[0]).hypot(grown.left[1] - grown.left[0]);
-    let half = (across * 1.04 / aspect.min(1.0)).max(1.2 * extent.size);
+    let (middle, radius) = room.disc();
+    let half = across.max(1.2 * extent.size) / radius;
+    let half = DVec2::new(half * room.aspect(), half);
+    let eye = DVec2::new(x, y) - DVec2::from_array(middle) * half;
     Camera {
-        eye: DVec3::new(x, y, 100.0 + extent.ground[1]),
+        eye: eye.extend(100.0 + extent.ground[1]),
         forward: DVec3::NEG_Z,
         right: DVec3::X,
         up: DVec3::Y,
-        half: DVec2::new(half * aspect, half),
+        half,
         shift: DVec2::ZERO,
         near: NEAR,
         perspective: false,
     }
 }
 
-fn orbit(steady: &Steady, time: f64, alone: bool, aspect: f64) -> Camera {
+fn orbit(steady: &Steady, time: f64, alone: bool, room: &Room) -> Camera {
     let extent = steady.formation();
     let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
-    let grown = extent.grown(0.4 * extent.size);
+    let grown = extent.grown(REACH * extent.size);
     let radius = 0.5 * (grown.forward[1] - grown.forward[0]).hypot(grown.left[1] - grown.left[0]);
     let tangent = (19.0_f64).to_radians().tan();
-    let distance = radius / (0.85 * tangent * aspect.min(1.78)) + 0.3 * radius;
     // A full turn in 40 s, so that no side stays hidden: from behind a formation on the left; robots of which none
     // follows another often meet, and meetings are seen from the side.
     let start = if alone { 1.6 } else { 2.6 };
     let (turn, rise) = (start + time * 0.157, 0.42_f64);
-    let distance = distance.max(3.0 * extent.size);
-    let eye = DVec3::new(turn.cos() * rise.cos(), turn.sin() * rise.cos(), rise.sin()) * distance;
-    let target = DVec3::new(x, y, 0.5 * (extent.ground[0] + extent.ground[1]) + 0.1);
-    Camera::looking(target + eye, target, (38.0_f64).to_radians(), aspect)
+    let heading = turn + std::f64::consts::PI;
+    let mut camera = Camera::pitched(heading, rise, tangent, room.aspect());
+    // A circle around the formation, so that turning does not zoom.
+    let [low, high] = [extent.ground[0], extent.ground[1] + 0.3 * extent.size];
+    let around = (0..32).flat_map(|k| {
+        let (sin, cos) = (heading + std::f64::consts::TAU * f64::from(k) / 32.0).sin_cos();
+        [low, high].map(|z| DVec3::new(x + radius * cos, y + radius * sin, z))
+    });
+    let [bottom, over] = room.rows();
+    let bounds: Vec<_> =
+        sides(0.9, [bottom.max(-0.9), over.min(0.8)]).into_iter().chain(room.corners()).collect();
+    camera.fit(&around.collect::<Vec<_>>(), &bounds, NEAREST * extent.size);
+    camera
 }
 
 /// Behind one robot, turned a little to its leader and far enough back for that to be in the picture.

@@ -3,15 +3,15 @@
 use crate::View;
 use crate::camera::Camera;
 use crate::floor::Deck;
-use crate::inset::inset;
-use crate::labels::{Window, Words, caption, view_words};
+use crate::inset::{clearness, inset};
+use crate::labels::{Window, Words, ring_boxes, robot_boxes, view_words};
+use crate::letters::Letters;
 use crate::paint::Stage;
 use crate::passes::frame::Frame;
 use crate::passes::ground::TILE;
-use crate::passes::overlay::Shapes;
 use crate::passes::shadow::{ShadowPass, SunView, sun_view};
-use crate::passes::text::{Line, TextPass};
-use crate::show::{make_room, show};
+use crate::plan::{Area, Plan, overlap};
+use crate::show::{line_place, show};
 use glam::{DVec2, DVec3};
 use vocabulary::{Cast, Light, Member, Moment, RobotState};
 
@@ -149,34 +149,46 @@ pub(crate) fn frame(
     frame
 }
 
-/// Text and flat shapes of the whole picture; the last `upper` of the views lie over others.
-pub(crate) fn words(
-    text: &mut TextPass,
+/// Below this a panel is not there.
+const UNSEEN: f32 = 0.02;
+
+/// Text and flat shapes of the whole picture, and the panels that lie over views: that of errors, and a film's line.
+pub(crate) fn words<'a>(
+    letters: &'a mut Letters,
     stage: &Stage<'_>,
-    (views, upper): (&[View], usize),
+    plan: &Plan,
     windows: &[Window<'_>],
     size: (u32, u32),
-) -> (Vec<Line>, Shapes) {
-    let mut words = Words::new(text, stage.style.scale);
-    let left = stage.style.show.left_over(size);
-    let line = make_room(&mut words, &stage.style.show, left);
-    let (lower, over) = windows.split_at(windows.len() - upper);
+) -> (Words<'a>, Vec<Area>) {
+    let mut words = Words::new(letters, stage.style.scale);
+    let shown = &stage.style.show;
+    let left = plan.left;
+    let said = shown.line.as_ref().filter(|line| line.opacity > 0.0);
+    let said = said.map(|line| (line_place(&mut words, line, [left.0 as f32, left.1 as f32]), line.opacity));
+    if let Some((line, _)) = said {
+        words.reserve(line);
+    }
+    let (lower, over) = windows.split_at(windows.len() - plan.upper);
     for window in over {
         words.framed(window.tile);
     }
-    let carried = |view: &View| matches!(view, View::Camera(_));
     let sky = windows.first().map_or(0.0, |w| 0.5 * (1.0 - w.camera.horizon()) * f64::from(w.tile.height));
-    let only_cameras = views.iter().all(carried);
-    caption(&mut words, stage, left, (sky as f32, !only_cameras));
-    // In a quarter of a picture it would cover a whole view.
-    let plotted = !stage.style.show.plots.is_empty();
-    let charted = stage.style.inset && !plotted && !views.first().is_some_and(carried);
-    if let (true, [first] | [first, _]) = (charted, lower) {
-        inset(&mut words, stage, first.tile, line);
+    plan.write(&mut words, stage.moment.snapshot.time, sky as f32);
+    let mut panels: Vec<_> = said.iter().map(|(line, _)| *line).collect();
+    if let (Some(place), Some(first)) = (plan.panel, lower.first()) {
+        let hidden = [robot_boxes(stage, *first), ring_boxes(stage, *first)].concat();
+        // An empty panel under a card would only be a stain; and what a film says is worth more.
+        let carded = shown.card.as_ref().map_or(0.0, |card| card.opacity);
+        let told = said.filter(|(line, _)| overlap(line, &place)).map_or(0.0, |(_, opacity)| opacity);
+        let clear = clearness(&words, &place, &hidden) * ((1.0 - carded) * (1.0 - told)) as f32;
+        if clear > UNSEEN {
+            inset(&mut words, stage, place, clear);
+            panels.push(place);
+        }
     }
-    for (view, window) in views.iter().zip(windows) {
+    for (view, window) in plan.views.iter().zip(windows) {
         view_words(&mut words, stage, *window, view);
     }
-    show(&mut words, &stage.style.show, stage.colours, (left, size));
-    (words.lines, words.shapes)
+    show(&mut words, shown, stage.colours, (left, size));
+    (words, panels)
 }

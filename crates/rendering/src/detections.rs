@@ -143,7 +143,7 @@ fn detections(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robo
         }
         let ink = colour(frame.outcome);
         // Thin in a small picture, where thick lines would cover what they tell of.
-        let width = words.scaled(1.6 * (window.tile.width as f32 / 640.0).clamp(0.55, 1.0));
+        let width = words.scaled(1.6 * (window.tile.width as f32 / words.scaled(640.0)).clamp(0.55, 1.0));
         let mut sketch = Sketch { words, window, lens: follower.lens, width };
         region(&mut sketch, frame);
         if let (true, Some(shell)) = (frame.outcome.seen(), &leader.shell) {

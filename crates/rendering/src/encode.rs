@@ -3,6 +3,7 @@
 use crate::camera::Camera;
 use crate::crowd::Fleet;
 use crate::floor::Floor;
+use crate::letters::Letters;
 use crate::model::Detail;
 use crate::passes::Canvas;
 use crate::passes::decal::{Corner, Layer};
@@ -29,7 +30,7 @@ const PLAIN_ABOVE: usize = 24;
 pub(crate) struct Passes {
     pub(crate) world: World,
     overlay: OverlayPass,
-    pub(crate) text: TextPass,
+    text: TextPass,
     /// What the shadow map was drawn from: while nothing moves it stays.
     shadowed: Option<Vec<u8>>,
 }
@@ -101,14 +102,15 @@ impl Passes {
         frames: &[Frame],
         prepared: &mut Prepared,
         corners: &[Corner],
-        lines: &[Line],
+        (lines, letters): (&[Line], &mut Letters),
     ) -> Result<(), Error> {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let (crowds, props) =
             (once(&mut prepared.crowd).chain(prepared.own.iter_mut().flatten()), once(&mut prepared.props));
         self.world.upload(gpu, frames, crowds, props, corners);
         self.overlay.fill(device, queue, [width as f32, height as f32], &prepared.shapes);
-        self.text.fill(device, queue, [width, height], lines).map_err(|e| Error::Device(e.to_string()))?;
+        let written = self.text.fill((device, queue), [width, height], lines, letters);
+        written.map_err(|e| Error::Device(e.to_string()))?;
         let casting = Some(casting(frames, prepared));
         prepared.shadowed = self.shadowed == casting;
         self.shadowed = casting;

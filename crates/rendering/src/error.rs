@@ -89,6 +89,11 @@ pub enum Error {
     /// A frame rate outside what films can hold.
     #[error("{0} frames a second is out of range: use 1 to 240")]
     FrameRate(f64),
+    /// A frame rate that browsers would show at a fifth of it.
+    #[error(
+        "{0} frames a second are too many for a .gif, which browsers then show far too slowly: use at most 50, or an .mp4"
+    )]
+    GifRate(f64),
     /// A picture that does not fit its film or file.
     #[error("a picture of {got:?} pixels does not fit {want:?}")]
     Mismatch {
@@ -125,6 +130,7 @@ impl Error {
                 | Self::Samples(_)
                 | Self::OddSize { .. }
                 | Self::FrameRate(_)
+                | Self::GifRate(_)
                 | Self::Mismatch { .. }
                 | Self::Cast { .. }
         )

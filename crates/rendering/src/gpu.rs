@@ -10,8 +10,23 @@ pub enum AdapterChoice {
     /// A hardware adapter before a software one, Vulkan before GL.
     #[default]
     Auto,
-    /// The first whose backend (`vulkan`, `gl`, `metal`, `dx12`) this is, or whose name contains it; case does not count.
+    /// The first that fits; case does not count. `vulkan`, `gl`, `metal` and `dx12` are backends, `vulkan:llvmpipe` is one of
+    /// a backend whose name or driver contains a word, a word alone one of any backend, and a number its place in
+    /// [`adapters`].
     Named(String),
+}
+
+impl AdapterChoice {
+    /// Those of some adapters that it means, the one it would take first; for a window, which may not take all.
+    pub fn among(&self, adapters: &[Adapter]) -> Vec<Adapter> {
+        let mut all: Vec<_> = adapters.iter().map(|adapter| (adapter.get_info(), adapter)).collect();
+        all.sort_by_key(|(info, _)| rank(info));
+        let fits = |(place, (info, _)): &(usize, (Info, &Adapter))| match self {
+            Self::Auto => true,
+            Self::Named(name) => fits(&AdapterInfo::new(info), *place, name),
+        };
+        all.into_iter().enumerate().filter(fits).map(|(_, (_, adapter))| adapter.clone()).collect()
+    }
 }
 
 impl From<&str> for AdapterChoice {
@@ -149,16 +164,33 @@ fn choose(choice: &AdapterChoice) -> Result<Adapter, Error> {
             .into_iter()
             .find_map(|backends| sorted(backends).into_iter().next())
             .ok_or_else(|| Error::NoAdapter { wanted: None, found: found() }),
-        AdapterChoice::Named(name) => sorted(Backends::all())
-            .into_iter()
-            .find(|a| fits(&a.get_info(), name))
-            .ok_or_else(|| Error::NoAdapter { wanted: Some(name.clone()), found: found() }),
+        AdapterChoice::Named(name) => {
+            let meant = choice.among(&sorted(Backends::all())).into_iter().next();
+            meant.ok_or_else(|| Error::NoAdapter { wanted: Some(name.clone()), found: found() })
+        }
     }
 }
 
-fn fits(info: &Info, name: &str) -> bool {
-    info.backend.to_str().eq_ignore_ascii_case(name)
-        || info.name.to_lowercase().contains(&name.to_lowercase())
+const BACKENDS: [&str; 4] = ["vulkan", "gl", "metal", "dx12"];
+
+/// Whether an adapter at a place of the list is the one that a name means.
+fn fits(info: &AdapterInfo, place: usize, name: &str) -> bool {
+    let name = name.trim().to_lowercase();
+    if name.bytes().all(|byte| byte.is_ascii_digit()) {
+        return name.parse() == Ok(place);
+    }
+    if BACKENDS.contains(&name.as_str()) {
+        return info.backend == name;
+    }
+    let (backend, word) = match name.split_once(':') {
+        Some((backend, word)) if BACKENDS.contains(&backend) => (Some(backend), word.trim()),
+        _ => (None, name.as_str()),
+    };
+    // What stands in brackets are versions, which change with every driver.
+    let called = |text: &str| text.split(" (").next().unwrap_or_default().to_lowercase().contains(word);
+    backend.is_none_or(|backend| info.backend == backend)
+        && word.chars().any(char::is_alphabetic)
+        && (called(&info.name) || called(&info.driver))
 }
 
 fn sorted(backends: Backends) -> Vec<Adapter> {
@@ -188,10 +220,56 @@ fn rank(info: &Info) -> (u8, u8) {
 }
 
 fn found() -> String {
-    let all: Vec<_> = adapters().iter().map(|a| format!("{} ({})", a.name, a.backend)).collect();
+    let numbered = |(place, a): (usize, &AdapterInfo)| format!("{place}: {}, {}", a.backend, a.name);
+    let all: Vec<_> = adapters().iter().enumerate().map(numbered).collect();
     if all.is_empty() {
         "this machine has none".into()
     } else {
-        format!("this machine has {}", all.join(", "))
+        format!("this machine has {}", all.join("; "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn adapter(name: &str, backend: &str, driver: &str) -> AdapterInfo {
+        AdapterInfo { name: name.into(), backend: backend.into(), driver: driver.into(), software: true }
+    }
+
+    /// The place of the adapter that a name means on a machine with lavapipe and its GL sister.
+    fn found(all: &[AdapterInfo], name: &str) -> Option<usize> {
+        all.iter().enumerate().position(|(place, info)| fits(info, place, name))
+    }
+
+    #[test]
+    fn a_name_means_one_adapter() {
+        let vulkan =
+            adapter("llvmpipe (LLVM 15.0.6, 256 bits)", "vulkan", "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)");
+        let gl = adapter("llvmpipe (LLVM 15.0.6, 256 bits)", "gl", "4.5 (Core Profile) Mesa 22.3.6");
+        let card = adapter("NVIDIA H200", "vulkan", "NVIDIA 570.1");
+        let all = [card.clone(), vulkan, gl.clone()];
+        for (name, place) in [
+            ("vulkan", Some(0)),
+            ("gl", Some(2)),
+            ("metal", None),
+            ("llvmpipe", Some(1)),
+            ("vulkan:llvmpipe", Some(1)),
+            ("GL:LLVMpipe", Some(2)),
+            ("h200", Some(0)),
+            ("0", Some(0)),
+            ("2", Some(2)),
+            // A number is a place, and no part of a version.
+            ("3", None),
+            ("15", None),
+            ("15.0.6", None),
+            ("22.3", None),
+            ("vulkan:", None),
+            ("", None),
+        ] {
+            assert_eq!(found(&all, name), place, "{name}");
+        }
+        // A backend that is named and not there is not replaced by another.
+        assert_eq!(found(&[card, gl], "vulkan:llvmpipe"), None);
     }
 }

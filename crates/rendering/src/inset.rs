@@ -1,13 +1,15 @@
 //! The charts in the corner: distance and bearing error of each edge over the whole run so far.
 
-use crate::labels::{Ink, Words, overlap};
+use crate::labels::{Ink, MARGIN, Words};
 use crate::paint::Stage;
+use crate::plan::{Area, overlap};
 use crate::view::Tile;
 use glam::Vec2;
 
-/// Size at scale 1, pixels.
-const SIZE: [f32; 2] = [320.0, 170.0];
-const MARGIN: f32 = 24.0;
+/// Sizes of the panel at scale 1, pixels: with numbers beside its charts, and where there is little room with the numbers
+/// in the titles.
+const LARGE: [f32; 2] = [320.0, 170.0];
+const SMALL: [f32; 2] = [200.0, 106.0];
 
 /// What one chart shows, by its index in an error.
 #[derive(Debug, Clone, Copy)]
@@ -36,12 +38,16 @@ const QUANTITIES: [Quantity; 2] = [
 ];
 
 /// Where the panel is in a tile; nothing where it would fill the tile.
-fn place(words: &Words<'_>, tile: Tile) -> Option<[f32; 4]> {
-    let [width, height] = SIZE.map(|s| words.scaled(s));
+pub(crate) fn panel(words: &Words<'_>, tile: Tile) -> Option<Area> {
     let margin = words.scaled(MARGIN);
-    let [right, bottom] = [tile.width, tile.height].map(|side| side as f32 - margin);
-    let fits = right - width > words.scaled(150.0) && bottom - height > 0.45 * tile.height as f32;
-    fits.then_some([tile.x as f32 + right - width, tile.y as f32 + bottom - height, width, height])
+    let (wide, high) = (tile.width as f32, tile.height as f32);
+    let place = |[width, height]: [f32; 2], most: f32| {
+        let [width, height] = [width, height].map(|side| words.scaled(side));
+        let fits = width + margin <= 0.66 * wide && height + margin <= most * high;
+        let (x, y) = (tile.x as f32 + wide - margin - width, tile.y as f32 + high - margin - height);
+        fits.then_some([x, y, width, height])
+    };
+    place(LARGE, 0.3).or_else(|| place(SMALL, 0.36))
 }
 
 /// Maps time and error, in shown units, to pixels.
@@ -54,6 +60,8 @@ struct Axes {
     /// Pixels a unit.
     unit: f32,
     duration: f32,
+    /// Opacity of all of it.
+    clear: f32,
 }
 
 impl Axes {
@@ -64,22 +72,35 @@ impl Axes {
     }
 }
 
-/// Draws the panel and both charts over one time axis; not over the `line` at the bottom.
-pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, tile: Tile, line: Option<[f32; 4]>) {
-    let Some(panel) = place(words, tile).filter(|_| !stage.cast.edges.is_empty()) else { return };
-    // What a film says is worth more.
-    if line.is_some_and(|line| overlap(&panel, &line)) {
-        return;
-    }
+/// Nearer to a robot than this the panel fades, and is gone before it covers it; at scale 1, pixels.
+const NEAR: f32 = 12.0;
+
+/// How much of a panel shows that shall hide none of `robots`: it fades where one comes near.
+pub(crate) fn clearness(words: &Words<'_>, panel: &Area, robots: &[Area]) -> f32 {
+    let near = words.scaled(NEAR);
+    let gap = |robot: &Area| {
+        let aside = |k: usize| (robot[k] - panel[k] - panel[k + 2]).max(panel[k] - robot[k] - robot[k + 2]);
+        if overlap(robot, panel) { 0.0 } else { aside(0).max(0.0).hypot(aside(1).max(0.0)) }
+    };
+    let least = robots.iter().map(gap).fold(near, f32::min) / near;
+    least * least * (3.0 - 2.0 * least)
+}
+
+/// Draws the panel and both charts over one time axis.
+pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, panel: Area, clear: f32) {
     words.reserve(panel);
     let radius = words.scaled(7.0);
-    words.shapes.panel(panel, radius, [0.98, 0.98, 0.97, 0.86]);
+    words.shapes.panel(panel, radius, [0.98, 0.98, 0.97, 0.86 * clear]);
+    let ink = Ink::ON_PANEL.faded(clear);
     let [x, y, width, height] = panel;
+    let large = width > words.scaled(0.5 * (LARGE[0] + SMALL[0]));
     let duration = stage.cast.duration.max(stage.moment.snapshot.time).max(1e-3) as f32;
-    let (left, right) = (x + words.scaled(50.0), x + width - words.scaled(14.0));
-    for (quantity, row) in QUANTITIES.iter().zip([24.0, 95.0]) {
+    let aside = if large { 50.0 } else { 10.0 };
+    let (left, right) = (x + words.scaled(aside), x + width - words.scaled(if large { 14.0 } else { 10.0 }));
+    let (rows, tall) = if large { ([24.0, 95.0], 50.0) } else { ([20.0, 62.0], 22.0) };
+    for (quantity, row) in QUANTITIES.iter().zip(rows) {
         let limit = ceiling(largest(stage, quantity)).min(quantity.most);
-        let (top, high) = (y + words.scaled(row), words.scaled(50.0));
+        let (top, high) = (y + words.scaled(row), words.scaled(tall));
         let axes = Axes {
             left,
             right,
@@ -88,15 +109,17 @@ pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, tile: Tile, line: 
             bottom: top + high,
             unit: 0.5 * high / limit,
             duration,
+            clear,
         };
-        frame(words, &axes, quantity, limit);
+        frame(words, &axes, quantity, limit, large);
         curves(words, stage, &axes, quantity);
     }
-    let under = y + height - words.scaled(12.0);
-    words.write("0".into(), [left, under], 10.0, false, Ink::ON_PANEL);
+    let size = if large { 11.0 } else { 12.0 };
+    let under = y + height - words.scaled(if large { 12.0 } else { 9.0 });
+    words.write("0".into(), [left, under], size, false, ink);
     let text = format!("{} s", (duration * 10.0).round() / 10.0);
-    let width = words.width(&text, 10.0, false);
-    words.write(text, [right - width, under], 10.0, false, Ink::ON_PANEL);
+    let width = words.width(&text, size, false);
+    words.write(text, [right - width, under], size, false, ink);
 }
 
 /// The largest error so far, in shown units.
@@ -113,28 +136,37 @@ fn ceiling(most: f32) -> f32 {
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|n| n * power).find(|n| *n >= most * 0.999).unwrap_or(most)
 }
 
-fn frame(words: &mut Words<'_>, axes: &Axes, quantity: &Quantity, limit: f32) {
+fn frame(words: &mut Words<'_>, axes: &Axes, quantity: &Quantity, limit: f32, large: bool) {
     let thin = words.scaled(1.0);
-    let ink = |alpha: f32| [0.07, 0.09, 0.11, alpha];
+    let ink = |alpha: f32| [0.07, 0.09, 0.11, alpha * axes.clear];
     for (height, alpha) in [(axes.top, 0.15), (axes.zero, 0.55), (axes.bottom, 0.15)] {
         let height = height.round() + 0.5;
         words.shapes.line(Vec2::new(axes.left, height), Vec2::new(axes.right, height), thin, ink(alpha));
     }
-    // Right of the numbers, which reach down to the next title.
-    let title = [axes.left, axes.top - words.scaled(11.0)];
-    words.write(quantity.title.into(), title, 11.0, true, Ink::ON_PANEL);
     // Small distances read better in centimetres.
     let (shown, unit) =
         if quantity.index == 0 && limit < 0.1 { (limit * 100.0, " cm") } else { (limit, quantity.unit) };
     let shown = (shown * 1e3).round() / 1e3;
+    let ink = Ink::ON_PANEL.faded(axes.clear);
+    if !large {
+        let title = [axes.left, axes.top - words.scaled(9.0)];
+        words.write(quantity.title.into(), title, 12.0, true, ink);
+        let text = format!("±{shown}{unit}");
+        let width = words.width(&text, 12.0, false);
+        words.write(text, [axes.right - width, title[1]], 12.0, false, ink);
+        return;
+    }
+    // Right of the numbers, which reach down to the next title.
+    let title = [axes.left, axes.top - words.scaled(11.0)];
+    words.write(quantity.title.into(), title, 11.0, true, ink);
     let rows = [
         (format!("{shown}{unit}"), axes.top),
         ("0".into(), axes.zero),
         (format!("\u{2212}{shown}{unit}"), axes.bottom),
     ];
     for (text, height) in rows {
-        let width = words.width(&text, 10.0, false);
-        words.write(text, [axes.left - width - words.scaled(5.0), height], 10.0, false, Ink::ON_PANEL);
+        let width = words.width(&text, 11.0, false);
+        words.write(text, [axes.left - width - words.scaled(5.0), height], 11.0, false, ink);
     }
 }
 
@@ -145,7 +177,7 @@ fn curves(words: &mut Words<'_>, stage: &Stage<'_>, axes: &Axes, quantity: &Quan
     for (index, edge) in stage.cast.edges.iter().enumerate() {
         let [r, g, b] = stage.colours[edge.follower];
         // A little darker than on the ground: the panel is bright.
-        let colour = [r * 0.86, g * 0.86, b * 0.86, 0.95];
+        let colour = [r * 0.86, g * 0.86, b * 0.86, 0.95 * axes.clear];
         let last = stage.moment.edges.get(index).map(|e| (now, pick(e.error[quantity.index] as f32)));
         let past = stage.trail.errors.entries.iter();
         let past = past.filter_map(|(t, e)| e.get(index).map(|e| (*t, pick(e[quantity.index]))));

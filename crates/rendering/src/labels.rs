@@ -2,27 +2,29 @@
 
 use crate::camera::Camera;
 use crate::detections::camera_words;
+use crate::letters::{Block, Letters, Measure, line_height};
 use crate::model::Build;
-use crate::paint::Stage;
+use crate::paint::{RING, Stage};
 use crate::palette::{self, Rgb};
 use crate::passes::overlay::Shapes;
-use crate::passes::text::{Line, TextPass, line_height};
+use crate::passes::text::Line;
+use crate::plan::{Area, area, overlap};
+use crate::trail::set_points;
 use crate::{View, view::Tile};
 use glam::{DVec2, DVec3, Vec2};
 use vocabulary::{Condition, Member, RobotState};
 
 /// Distance of words from the picture's edge at scale 1, pixels.
-const MARGIN: f32 = 24.0;
-
-/// A rectangle of the picture: left, top, width, height.
-type Box4 = [f32; 4];
+pub(crate) const MARGIN: f32 = 24.0;
 
 /// Collects lines of text and refuses what would overlap.
 pub(crate) struct Words<'a> {
     pub(crate) lines: Vec<Line>,
     pub(crate) shapes: Shapes,
-    taken: Vec<Box4>,
-    text: &'a mut TextPass,
+    /// Where names, edges and coordinates were written.
+    pub(crate) labels: Vec<Area>,
+    taken: Vec<Area>,
+    letters: &'a mut Letters,
     scale: f32,
 }
 
@@ -60,12 +62,19 @@ impl Window<'_> {
 }
 
 impl<'a> Words<'a> {
-    pub(crate) fn new(text: &'a mut TextPass, scale: f64) -> Self {
-        Self { lines: Vec::new(), shapes: Shapes::default(), taken: Vec::new(), text, scale: scale as f32 }
+    pub(crate) fn new(letters: &'a mut Letters, scale: f64) -> Self {
+        Self {
+            lines: Vec::new(),
+            shapes: Shapes::default(),
+            labels: Vec::new(),
+            taken: Vec::new(),
+            letters,
+            scale: scale as f32,
+        }
     }
 
     /// Keeps words away from a rectangle.
-    pub(crate) fn reserve(&mut self, area: Box4) {
+    pub(crate) fn reserve(&mut self, area: Area) {
         self.taken.push(area);
     }
 
@@ -79,7 +88,7 @@ impl<'a> Words<'a> {
         for (from, to) in [(a, c), (c, b), (b, d), (d, a)] {
             self.shapes.line(from, to, thick, [red, green, blue, 0.95]);
         }
-        self.reserve([x, y, width, height]);
+        self.reserve(area(&tile));
     }
 
     pub(crate) fn scaled(&self, size: f32) -> f32 {
@@ -87,14 +96,36 @@ impl<'a> Words<'a> {
     }
 
     pub(crate) fn width(&mut self, text: &str, size: f32, bold: bool) -> f32 {
+        self.measure(text, size, bold, None).width
+    }
+
+    pub(crate) fn measure(&mut self, text: &str, size: f32, bold: bool, block: Option<Block>) -> Measure {
         let size = self.scaled(size);
-        self.text.measure(text, size, bold)
+        self.letters.measure(text, size, bold, block)
     }
 
     /// Writes a line whose left end and middle are at `at`, whatever is there.
     pub(crate) fn write(&mut self, text: String, at: [f32; 2], size: f32, bold: bool, ink: Ink) {
+        self.push(text, at, size, bold, ink, None);
+    }
+
+    /// Writes a text that may have several lines; the middle of its first is at `at`.
+    pub(crate) fn write_block(
+        &mut self,
+        text: String,
+        at: [f32; 2],
+        size: f32,
+        bold: bool,
+        ink: Ink,
+        block: Block,
+    ) {
+        self.push(text, at, size, bold, ink, Some(block));
+    }
+
+    fn push(&mut self, text: String, at: [f32; 2], size: f32, bold: bool, ink: Ink, block: Option<Block>) {
         let size = self.scaled(size);
-        self.lines.push(Line { text, at, size, bold, colour: ink.colour, alpha: ink.alpha, halo: ink.halo });
+        let Ink { colour, alpha, halo } = ink;
+        self.lines.push(Line { text, at, size, bold, block, colour, alpha, halo });
     }
 
     /// Writes a centred line at the first of `places` that is free and inside `within`.
@@ -113,6 +144,7 @@ impl<'a> Words<'a> {
             let area = [place.x - 0.5 * width - 4.0, place.y - 0.5 * height, width + 8.0, height];
             if inside(&area, within) && !self.taken.iter().any(|other| overlap(&area, other)) {
                 self.taken.push(area);
+                self.labels.push(area);
                 self.write(text.to_owned(), [place.x - 0.5 * width, place.y], size, bold, ink);
                 return true;
             }
@@ -141,52 +173,12 @@ impl Ink {
     }
 }
 
-fn inside(area: &Box4, tile: &Tile) -> bool {
+fn inside(area: &Area, tile: &Tile) -> bool {
     let [left, top] = [tile.x as f32, tile.y as f32];
     area[0] > left + 2.0
         && area[1] > top + 2.0
         && area[0] + area[2] < left + tile.width as f32 - 2.0
         && area[1] + area[3] < top + tile.height as f32 - 2.0
-}
-
-pub(crate) fn overlap(a: &Box4, b: &Box4) -> bool {
-    a[0] < b[0] + b[2] && b[0] < a[0] + a[2] && a[1] < b[1] + b[3] && b[1] < a[1] + a[3]
-}
-
-/// Title, law and time, at the corners of the whole picture; `sky` is how far down the sky reaches, pixels,
-/// and without a title a picture has no words of its own.
-pub(crate) fn caption(
-    words: &mut Words<'_>,
-    stage: &Stage<'_>,
-    (wide, height): (u32, u32),
-    (sky, titled): (f32, bool),
-) {
-    let margin = words.scaled(MARGIN);
-    let cast = stage.cast;
-    if stage.style.caption && titled {
-        let rows = [(&cast.title, 20.0, true, 10.0), (&cast.caption, 13.0, false, 33.0)];
-        for (text, size, bold, down) in rows {
-            if !text.is_empty() {
-                let middle = margin + words.scaled(down);
-                let most = (wide as f32 - 2.0 * margin).max(1.0);
-                // Where it is too long for the picture, in smaller letters.
-                let size = size * (most / words.width(text, size, bold)).clamp(0.5, 1.0);
-                let width = words.width(text, size, bold);
-                let half = words.scaled(0.7 * size);
-                // Dark on sky and haze, light on the ground.
-                let ink = if middle < 1.3 * sky { Ink::DARK } else { Ink::LIGHT };
-                words.reserve([margin - 6.0, middle - half, width + 12.0, 2.0 * half]);
-                words.write(text.clone(), [margin, middle], size, bold, ink);
-            }
-        }
-    }
-    if stage.style.clock && titled {
-        let text = format!("t = {:.2} s", stage.moment.snapshot.time);
-        let middle = height as f32 - margin - words.scaled(8.0);
-        let (width, half) = (words.width(&text, 18.0, true), words.scaled(14.0));
-        words.reserve([margin - 6.0, middle - half, width + 12.0, 2.0 * half]);
-        words.write(text, [margin, middle], 18.0, true, Ink::LIGHT);
-    }
 }
 
 /// Names, edges, scale bar and coordinates of one view.
@@ -317,7 +309,7 @@ fn scale_bar(words: &mut Words<'_>, window: Window<'_>) {
 }
 
 /// The rectangle of the picture that holds each robot, mast and shell included.
-fn robot_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Box4> {
+pub(crate) fn robot_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Area> {
     let robots = stage.moment.snapshot.robots.iter().zip(&stage.cast.members);
     let area = |(robot, member): (&RobotState, &Member)| {
         let body = member.body;
@@ -339,6 +331,23 @@ fn robot_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Box4> {
     robots.filter_map(area).collect()
 }
 
+/// The rectangles of the picture that hold the rings at set points.
+pub(crate) fn ring_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Area> {
+    let reach = RING * stage.size;
+    let ring = |[x, y]: [f64; 2]| {
+        let around = (0..8).map(|k| {
+            let (sin, cos) = (std::f64::consts::FRAC_PI_4 * f64::from(k)).sin_cos();
+            window.anywhere(stage.on_floor(x + reach * cos, y + reach * sin))
+        });
+        let points: Option<Vec<_>> = around.collect();
+        let points = points?;
+        let low = points.iter().copied().fold(Vec2::INFINITY, Vec2::min);
+        let size = points.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max) - low;
+        size.is_finite().then_some([low.x, low.y, size.x, size.y])
+    };
+    set_points(stage.cast, stage.moment).into_iter().flatten().filter_map(ring).collect()
+}
+
 /// Coordinates where the strong lines of the ground cross.
 fn coordinates(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
     let level = stage.trail.steady.formation().ground[0];
@@ -354,7 +363,7 @@ fn coordinates(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
             let point = stage.on_floor(x, y);
             let pixel = window.camera.metres_per_pixel(point, f64::from(window.tile.height));
             // Fades before the crossings crowd together.
-            let alpha = ((0.013 - pixel) / 0.004).clamp(0.0, 1.0) as f32;
+            let alpha = ((0.013 - pixel * stage.style.scale) / 0.004).clamp(0.0, 1.0) as f32;
             if let (true, Some(at)) = (alpha > 0.02, window.pixel(point)) {
                 let text = format!("{x:.0}, {y:.0}").replace('-', "\u{2212}");
                 let half = 0.5 * words.width(&text, 11.0, false);

@@ -130,7 +130,8 @@ impl<'a> Painter<'a> {
             corners: Vec::new(),
             camera,
             height,
-            stage_scale: stage.style.scale * (height / 720.0).clamp(0.6, 1.0),
+            // In a part of a picture that is small beside its words, lines are thin as well.
+            stage_scale: stage.style.scale * (height / (720.0 * stage.style.scale)).clamp(0.6, 1.0),
             origin: stage.origin,
             floor: stage.floor,
             quick: stage.style.interactive,

@@ -6,17 +6,18 @@ use crate::crowd::{Fleet, crowd, part};
 use crate::encode::{Passes, Prepared, Surface};
 use crate::floor::Floor;
 use crate::labels::{Window, detail};
+use crate::letters::Letters;
 use crate::paint::{Stage, paint};
 use crate::palette::{Rgb, robot_colours};
 use crate::passes::Canvas;
 use crate::passes::decal::{Corner, Layer};
 use crate::pick::pick;
+use crate::plan::Plan;
 use crate::props::props;
 use crate::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
-use crate::{
-    Error, Gpu, Layout, Picked, Sightline, Style, Trail, View,
-    view::{Tile, corner},
-};
+use crate::{Error, Gpu, Layout, Picked, Sightline, Style, Trail, View};
+use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
 use vocabulary::{Cast, Moment, Picture};
 use wgpu::TextureFormat;
 
@@ -32,6 +33,8 @@ pub struct Renderer {
     canvas: Canvas,
     attachments: Attachments,
     passes: Passes,
+    /// Behind a lock, since whoever asks how a view is seen has to know how long its words are.
+    letters: Mutex<Letters>,
     /// Two, so that one picture can be drawn while the one before is read.
     offscreen: Vec<Offscreen>,
     waiting: Option<(usize, wgpu::SubmissionIndex)>,
@@ -77,6 +80,7 @@ impl Renderer {
             canvas,
             attachments: Attachments::new(&gpu.device, (width, height), format, samples),
             passes,
+            letters: Mutex::new(Letters::new()),
             offscreen: Vec::new(),
             waiting: None,
         };
@@ -219,8 +223,9 @@ impl Renderer {
         style: &Style,
     ) -> Result<Prepared, Error> {
         self.check(moment)?;
-        let (views, tiles, upper) = self.views(layout, style);
-        let cameras = self.cameras(trail, moment, &views, &tiles);
+        let plan = self.plan(layout, style);
+        let (views, tiles) = (&plan.views, &plan.tiles);
+        let cameras = cameras(&plan, trail, moment, &self.cast, &self.floor);
         // Cameras on robots see nothing that is drawn to explain.
         let bare = Style { shadows: style.shadows, ..Style::bare() };
         let stage = Stage {
@@ -253,7 +258,7 @@ impl Renderer {
         let own = seen().map(own).collect();
         let mut corners = Vec::new();
         let mut decals = Vec::new();
-        for ((view, camera), tile) in seen().zip(&tiles) {
+        for ((view, camera), tile) in seen().zip(tiles) {
             let add = |(layer, more): (Layer, Vec<Corner>)| {
                 let first = corners.len() as u32;
                 corners.extend(more);
@@ -262,24 +267,26 @@ impl Renderer {
             decals.push(paint(&stage_of(view), view, camera, f64::from(tile.height)).map(add));
         }
         let windows: Vec<_> =
-            cameras.iter().zip(&tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
-        let (lines, shapes) = words(&mut self.passes.text, &stage, (&views, upper), &windows, self.size);
+            cameras.iter().zip(tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
+        let letters = self.letters.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let (words, _) = words(letters, &stage, &plan, &windows, self.size);
+        let (lines, shapes) = (words.lines, words.shapes);
         let ghosts = views.iter().map(|view| !matches!(view, View::SnakeEye | View::Camera(_))).collect();
         let veiled = seen().map(|(view, camera)| veiled_decks(camera, &stage, view)).collect();
         let mut prepared = Prepared {
             crowd,
             cameras,
             own,
-            upper,
+            upper: plan.upper,
             props,
-            tiles,
+            tiles: plan.tiles,
             veiled,
             decals,
             ghosts,
             shapes,
             shadowed: false,
         };
-        self.passes.upload(&self.gpu, self.size, &frames, &mut prepared, &corners, &lines)?;
+        self.passes.upload(&self.gpu, self.size, &frames, &mut prepared, &corners, (&lines, letters))?;
         Ok(prepared)
     }
 
@@ -296,9 +303,9 @@ impl Renderer {
         style: &Style,
     ) -> Result<Vec<Sightline>, Error> {
         self.check(moment)?;
-        let (views, tiles, _) = self.views(layout, style);
-        let cameras = self.cameras(trail, moment, &views, &tiles);
-        let seen = views.into_iter().zip(tiles).zip(cameras);
+        let plan = self.plan(layout, style);
+        let cameras = cameras(&plan, trail, moment, &self.cast, &self.floor);
+        let seen = plan.views.into_iter().zip(plan.tiles).zip(cameras);
         Ok(seen
             .map(|((view, tile), camera)| Sightline::new(view, tile, camera, self.floor.clone()))
             .collect())
@@ -313,26 +320,14 @@ impl Renderer {
         pick(sightline, &self.cast, moment, pixel)
     }
 
-    fn cameras(&self, trail: &Trail, moment: &Moment, views: &[View], tiles: &[Tile]) -> Vec<Camera> {
-        let aspect = |tile: &Tile| f64::from(tile.width) / f64::from(tile.height);
-        let camera = |(view, tile): (&View, &Tile)| {
-            Camera::of(view, &trail.steady, &moment.snapshot, (&self.cast, &self.floor), aspect(tile))
-        };
-        views.iter().zip(tiles).map(camera).collect()
+    /// The characters of some texts that neither the embedded fonts nor those of the machine have.
+    pub fn unwritable<'a>(&self, texts: impl IntoIterator<Item = &'a str>) -> BTreeSet<char> {
+        self.letters.lock().unwrap_or_else(PoisonError::into_inner).lacks(texts.into_iter())
     }
 
-    /// The views of a picture with their tiles, and how many of them, the last, lie over others.
-    fn views(&self, layout: &Layout, style: &Style) -> (Vec<View>, Vec<Tile>, usize) {
-        let mut views = layout.views.clone();
-        let (width, height) = style.show.left_over(self.size);
-        let mut tiles = layout.tiles(width, height);
-        let member =
-            style.picture_in_picture.and_then(|robot| self.cast.members.get(robot).map(|m| (robot, m)));
-        let (Some((robot, member)), Some(first)) = (member, tiles.first()) else { return (views, tiles, 0) };
-        let aspect = f64::from(member.lens.width.max(1)) / f64::from(member.lens.height.max(1));
-        tiles.push(corner(first, aspect, 24.0 * style.scale));
-        views.push(View::Camera(robot));
-        (views, tiles, 1)
+    fn plan(&self, layout: &Layout, style: &Style) -> Plan {
+        let mut letters = self.letters.lock().unwrap_or_else(PoisonError::into_inner);
+        Plan::new(&mut letters, &self.cast, layout, style, self.size)
     }
 
     /// A target with all that drawing into it takes.
@@ -350,4 +345,18 @@ impl Renderer {
         }
         Ok(())
     }
+}
+
+/// The cameras of a picture's views.
+pub(crate) fn cameras(
+    plan: &Plan,
+    trail: &Trail,
+    moment: &Moment,
+    cast: &Cast,
+    floor: &Floor,
+) -> Vec<Camera> {
+    let camera = |(k, view): (usize, &View)| {
+        Camera::of(view, &trail.steady, &moment.snapshot, (cast, floor), &plan.room(k))
+    };
+    plan.views.iter().enumerate().map(camera).collect()
 }

@@ -1,7 +1,9 @@
 //! What films add to pictures: cards, a line at the bottom, plots beside the view.
 
 use crate::labels::{Ink, Words};
+use crate::letters::{Block, line_height};
 use crate::palette::{self, Rgb};
+use crate::plan::Area;
 use glam::Vec2;
 
 /// What is shown over and beside the views of a picture.
@@ -13,6 +15,17 @@ pub struct Show {
     pub line: Option<Line>,
     /// Plots beside the views, or below them where the picture is higher than wide; from top to bottom.
     pub plots: Vec<Plot>,
+    /// What cameras leave room for though this picture may not have it.
+    pub room: Room,
+}
+
+/// What other pictures of a film have, so that a camera does not move where it comes or goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Room {
+    /// The chart of errors.
+    pub panel: bool,
+    /// Rows of the line at the bottom.
+    pub rows: usize,
 }
 
 /// Large words over a darkened picture.
@@ -215,39 +228,73 @@ fn number(value: f64, [low, high]: [f64; 2]) -> String {
     if text == "-0" { "0".to_owned() } else { text.replace('-', "\u{2212}") }
 }
 
-/// Where a line at the bottom is, and the size of its letters.
-fn line_place(words: &mut Words<'_>, said: &Line, [width, height]: [f32; 2]) -> ([f32; 4], f32) {
-    let mut size = 17.0_f32;
-    let most = said.rows.iter().map(|row| words.width(row, size, true)).fold(1.0_f32, f32::max);
-    size *= (0.9 * width / most).min(1.0);
-    let (wide, pad) = (most.min(0.9 * width), words.scaled(12.0));
-    let high = words.scaled(1.45 * size) * said.rows.len() as f32 + pad;
-    // Clear of the clock in the corner.
-    let bottom = height - words.scaled(62.0);
-    ([0.5 * (width - wide) - pad, bottom - high, wide + 2.0 * pad, high], size)
+/// Size of the letters of a line at the bottom, at scale 1, pixels; and most lines of a row of it.
+const LINE: f32 = 17.0;
+const LINE_ROWS: usize = 2;
+
+/// The rows of a line at the bottom: each with its room and the lines it takes, and the size of its letters.
+fn line_rows(words: &mut Words<'_>, said: &Line, width: f32) -> (Vec<(Block, f32, usize)>, f32) {
+    let most = 0.9 * width;
+    let widest = said.rows.iter().map(|row| words.width(row, LINE, true)).fold(1.0_f32, f32::max);
+    // A little too long, it is smaller; much too long, it wraps.
+    let size = LINE * (0.995 * most / widest).clamp(0.75, 1.0);
+    let block = Block { width: most, rows: LINE_ROWS, centred: false };
+    let rows = said.rows.iter().map(|row| {
+        let measure = words.measure(row, size, true, Some(block));
+        (block, measure.width, measure.rows)
+    });
+    (rows.collect(), size)
 }
 
-/// Keeps other words away from where the line at the bottom will be, and says where that is.
-pub(crate) fn make_room(words: &mut Words<'_>, show: &Show, views: (u32, u32)) -> Option<[f32; 4]> {
-    let said = show.line.as_ref().filter(|line| line.opacity > 0.0)?;
-    let (place, _) = line_place(words, said, [views.0 as f32, views.1 as f32]);
-    words.reserve(place);
-    Some(place)
+/// The panel behind `rows` lines of a line at the bottom, `wide` pixels across.
+fn line_panel(words: &Words<'_>, [width, height]: [f32; 2], wide: f32, rows: usize) -> Area {
+    let pad = words.scaled(12.0);
+    let high = words.scaled(1.45 * LINE) * rows as f32 + pad;
+    // Clear of the clock in the corner.
+    let bottom = height - words.scaled(62.0);
+    [0.5 * (width - wide) - pad, bottom - high, wide + 2.0 * pad, high]
+}
+
+/// Where a line at the bottom is.
+pub(crate) fn line_place(words: &mut Words<'_>, said: &Line, views: [f32; 2]) -> Area {
+    let (rows, _) = line_rows(words, said, views[0]);
+    let wide = rows.iter().map(|row| row.1).fold(1.0, f32::max);
+    line_panel(words, views, wide, rows.iter().map(|row| row.2).sum())
+}
+
+/// Where a line at the bottom is or may come to be in the film.
+pub(crate) fn line_room(words: &mut Words<'_>, show: &Show, views: [f32; 2]) -> Option<Area> {
+    let said = show.line.as_ref().map(|said| line_place(words, said, views));
+    let kept = (show.room.rows > 0).then(|| line_panel(words, views, 0.9 * views[0], show.room.rows));
+    match (said, kept) {
+        (Some(said), Some(kept)) => {
+            let top = said[1].min(kept[1]);
+            Some([kept[0], top, kept[2], kept[1] + kept[3] - top])
+        }
+        (said, kept) => said.or(kept),
+    }
 }
 
 fn line(words: &mut Words<'_>, said: &Line, views: [f32; 2]) {
     let alpha = said.opacity as f32;
-    let (place, size) = line_place(words, said, views);
+    let (rows, size) = line_rows(words, said, views[0]);
+    let place = line_place(words, said, views);
     let [r, g, b] = palette::INK;
-    let (radius, row, pad) = (words.scaled(8.0), words.scaled(1.45 * size), words.scaled(12.0));
+    let (radius, row, pad) = (words.scaled(8.0), words.scaled(1.45 * LINE), words.scaled(12.0));
     words.shapes.panel(place, radius, [r, g, b, 0.72 * alpha]);
-    for (k, text) in said.rows.iter().enumerate() {
-        let own = words.width(text, size, true);
-        let at = [0.5 * (views[0] - own), place[1] + 0.5 * pad + row * (k as f32 + 0.5)];
-        let ink = Ink { halo: (0.0, palette::INK), ..Ink::LIGHT };
-        words.write(text.clone(), at, size, true, ink.faded(alpha));
+    let ink = Ink { halo: (0.0, palette::INK), ..Ink::LIGHT }.faded(alpha);
+    let mut down = place[1] + 0.5 * pad;
+    for (text, (block, own, lines)) in said.rows.iter().zip(rows) {
+        let left = 0.5 * (views[0] - own);
+        words.write_block(text.clone(), [left, down + 0.5 * row], size, true, ink, block);
+        down += row * lines as f32;
     }
 }
+
+/// Sizes of a card's title and of its rows at scale 1, pixels; and most lines of each.
+const CARD: [(f32, usize); 2] = [(40.0, 2), (20.0, 3)];
+/// A row of a card is not wider than this at scale 1, pixels: longer ones are hard to read.
+const CARD_WIDTH: f32 = 760.0;
 
 fn card(words: &mut Words<'_>, shown: &Card, [width, height]: [f32; 2]) {
     let alpha = shown.opacity as f32;
@@ -257,20 +304,30 @@ fn card(words: &mut Words<'_>, shown: &Card, [width, height]: [f32; 2]) {
         said.alpha *= 1.0 - 0.96 * alpha;
     }
     words.shapes.panel([0.0, 0.0, width, height], 0.0, [r, g, b, 0.78 * alpha]);
+    let [(large, title_rows), (small, rows)] = CARD;
+    // Where it is a little too long for the picture, in smaller letters; then in several lines.
     let most = 0.86 * width;
-    let mut large = 40.0_f32;
-    large *= (most / words.width(&shown.title, large, true).max(1.0)).min(1.0);
-    let mut small = 20.0_f32;
-    let widest = shown.rows.iter().map(|row| words.width(row, small, false)).fold(1.0_f32, f32::max);
-    small *= (most / widest).min(1.0);
-    let (first, each) = (words.scaled(1.9 * large), words.scaled(1.65 * small));
-    let mut down = 0.46 * height - 0.5 * (first + each * shown.rows.len() as f32) + 0.5 * first;
-    let light = Ink { halo: (0.0, palette::INK), ..Ink::LIGHT };
-    let rows = shown.rows.iter().map(|row| (row, small, false));
-    for (text, size, bold) in std::iter::once((&shown.title, large, true)).chain(rows) {
-        let own = words.width(text, size, bold);
-        words.write(text.clone(), [0.5 * (width - own), down], size, bold, light.faded(alpha));
-        down += if bold { 0.5 * first + 0.5 * each } else { each };
+    let fit = most / words.width(&shown.title, large, true).max(1.0);
+    let large = large * (0.995 * fit).clamp(0.6, 1.0);
+    let narrow = most.min(words.scaled(CARD_WIDTH));
+    let block = |width: f32, rows: usize| Block { width, rows, centred: true };
+    let texts = std::iter::once((&shown.title, large, true, block(most, title_rows)))
+        .chain(shown.rows.iter().map(|row| (row, small, false, block(narrow, rows))));
+    let texts: Vec<_> = texts
+        .map(|(text, size, bold, block)| {
+            let lines = words.measure(text, size, bold, Some(block)).rows;
+            // Between lines of one text is less than between texts.
+            let line = line_height(words.scaled(size));
+            (text, size, bold, block, line, line * lines as f32 + words.scaled(0.4 * size))
+        })
+        .collect();
+    let whole: f32 = texts.iter().map(|text| text.5).sum();
+    let mut down = (0.46 * height - 0.5 * whole).max(0.0);
+    let ink = Ink { halo: (0.0, palette::INK), ..Ink::LIGHT }.faded(alpha);
+    for (text, size, bold, block, line, high) in texts {
+        let left = 0.5 * (width - block.width);
+        words.write_block(text.clone(), [left, down + 0.5 * line], size, bold, ink, block);
+        down += high;
     }
 }
 

@@ -10,7 +10,8 @@ macro_rules! elements {
         #[derive(Debug, Clone, PartialEq)]
         pub struct Style {
             $($(#[$doc])* pub $field: bool,)*
-            /// Size of text and lines relative to a picture of 720 lines at arm's length; 2 for dense screens.
+            /// Size of text and lines relative to a picture of 720 lines at arm's length; 2 for dense screens, and
+            /// [`Style::scale_for`] for files.
             pub scale: f64,
             /// Over views through cameras: tags as they were found, and the leader where the estimate has it.
             pub detections: bool,
@@ -82,7 +83,18 @@ elements! {
     contacts = "contacts",
 }
 
+/// Below this scale names could not be read.
+const LEAST_SCALE: f64 = 0.65;
+
 impl Style {
+    /// The scale that suits a picture of some size: text and lines are the same part of it as at 1280×720, and never too
+    /// small to be read. What is higher than wide is looked at on a phone.
+    pub fn scale_for(width: u32, height: u32) -> f64 {
+        let [width, height] = [width, height].map(f64::from);
+        let grown = if height > width { width / 640.0 } else { height / 720.0 };
+        grown.max(LEAST_SCALE)
+    }
+
     /// Everything except the elements named.
     ///
     /// # Errors

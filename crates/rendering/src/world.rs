@@ -4,6 +4,7 @@ use crate::Gpu;
 use crate::camera::Camera;
 use crate::crowd::Fleet;
 use crate::floor::Floor;
+use crate::letters::digits;
 use crate::model::Detail;
 use crate::passes::Canvas;
 use crate::passes::asphalt::Asphalt;
@@ -16,7 +17,6 @@ use crate::passes::shadow::ShadowPass;
 use crate::passes::sky::SkyPass;
 use crate::passes::tag::TagPass;
 use crate::passes::terrain::TerrainPass;
-use crate::passes::text::digits;
 use std::ops::Range;
 use vocabulary::Cast;
 

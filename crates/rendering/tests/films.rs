@@ -81,6 +81,9 @@ fn the_parameter_sets_are_in_the_index() {
     let parameters = &description[start..];
     assert_eq!((parameters[0], parameters[5], parameters[8] & 31), (1, 0xe1, 7));
     assert_eq!(parameters[1], parameters[9]);
+    // Primaries, transfer and matrix of BT.709, video range.
+    let colours = description.windows(4).position(|w| w == b"nclx").unwrap() + 4;
+    assert_eq!(description[colours..colours + 7], [0, 1, 0, 1, 0, 1, 0]);
 }
 
 #[test]
@@ -133,6 +136,13 @@ fn what_cannot_be_filmed_is_refused_with_the_fix() {
         let error = Film::create(path, FilmKind::Mp4, size.0, size.1, rate).unwrap_err();
         assert!(error.is_usage(), "{error}");
     }
+    // Browsers show what is faster at 10 frames a second.
+    assert!(
+        Film::create(Path::new("/nowhere/a.gif"), FilmKind::Gif, 640, 360, 50.0)
+            .is_err_and(|e| !e.is_usage())
+    );
+    let fast = Film::create(Path::new("/nowhere/a.gif"), FilmKind::Gif, 640, 360, 60.0).unwrap_err();
+    assert!(fast.is_usage() && fast.to_string().contains("at most 50"), "{fast}");
     for kind in [FilmKind::Mp4, FilmKind::Gif, FilmKind::PngSequence] {
         let error = Film::create(path, kind, 640, 360, 30.0).unwrap_err();
         assert!(!error.is_usage() && error.to_string().contains("/nowhere/a.mp4"), "{error}");

@@ -1,5 +1,6 @@
 //! A checked scene, turned into the parts that run it.
 
+use crate::caption::caption;
 use crate::error::{BuildError, EPSILON_MIN};
 use crate::regime::{Regime, Turn};
 use crate::stage::{handling, stage};
@@ -217,68 +218,4 @@ fn observer_start(follow: &Follow) -> ObserverStart {
         scene::ObserverStart::Offset(offset) => ObserverStart::Offset(offset),
         scene::ObserverStart::At(at) => ObserverStart::At(at),
     }
-}
-
-/// Law, gains and timing of a scene in one line, for pictures and reports; of the first follower where they differ.
-pub fn caption(scene: &Scene) -> String {
-    let Some((_, follow)) = scene.robots.iter().find_map(follows) else {
-        return "No followers".to_owned();
-    };
-    let law = &follow.law;
-    let mut parts = vec![
-        match law.kind {
-            scene::LawKind::FullState => "Full state feedback".to_owned(),
-            scene::LawKind::RobustState => "Robust state feedback".to_owned(),
-            scene::LawKind::OutputFeedback => "Output feedback".to_owned(),
-        },
-        format!("K {}", pair(law.k)),
-    ];
-    if law.kind != scene::LawKind::FullState {
-        parts.push(format!("β {}", pair(law.beta)));
-        parts.push(match law.switching {
-            scene::Switching::Tanh => format!("tanh slope {}", pair(law.slope)),
-            scene::Switching::Sign => "sign".to_owned(),
-        });
-    }
-    let looks = follow.sensing.kind != SensingKind::Truth;
-    if looks && follow.observer.kind == scene::ObserverKind::Unscented {
-        parts.push("dual unscented filter".to_owned());
-    } else if looks && follow.observer.adaptive {
-        parts.push("ε from noise".to_owned());
-    } else if law.kind == scene::LawKind::OutputFeedback {
-        parts.push(format!("ε {} s", pair(follow.observer.epsilon)));
-    }
-    let rate = short(follow.sensing.rate);
-    match follow.sensing.kind {
-        SensingKind::Truth => {}
-        SensingKind::Noise => parts.push(format!("{rate} noisy looks a second")),
-        SensingKind::Geometric => parts.push(format!("{rate} looks at tags a second")),
-        SensingKind::Camera => parts.push(format!("{rate} pictures a second")),
-    }
-    let mode = match scene.time.mode {
-        _ if looks => format!("every {} ms", short(scene.time.period * 1e3)),
-        scene::Mode::Continuous => "continuous time".to_owned(),
-        scene::Mode::Sampled => format!("every {} ms", short(scene.time.period * 1e3)),
-        scene::Mode::Measured => format!("every {} ms, sampled measurement", short(scene.time.period * 1e3)),
-    };
-    parts.push(mode);
-    match scene.changes.len() {
-        0 => {}
-        1 => parts.push("1 change".to_owned()),
-        changes => parts.push(format!("{changes} changes")),
-    }
-    parts.join(" · ")
-}
-
-fn pair(values: [f64; 2]) -> String {
-    if values[0] == values[1] {
-        short(values[0])
-    } else {
-        format!("({}, {})", short(values[0]), short(values[1]))
-    }
-}
-
-/// A number to six significant digits, without those that come from arithmetic only.
-pub(crate) fn short(value: f64) -> String {
-    format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string()
 }

@@ -1,6 +1,6 @@
 //! Whether what a path asks for can be driven: turn rate and speed, all along it, held against limits.
 
-use crate::build::short;
+use crate::caption::short;
 use crate::error::BuildError;
 use formation::lead::Way;
 use std::fmt;

@@ -4,6 +4,7 @@
 //! control sample; [`verdict`] holds what was measured against what the scene expects.
 
 mod build;
+mod caption;
 pub mod certify;
 mod continuous;
 mod drivable;
@@ -17,7 +18,8 @@ mod step;
 pub mod tune;
 pub mod verdict;
 
-pub use build::{build, caption};
+pub use build::build;
+pub use caption::caption;
 pub use drivable::Undrivable;
 pub use error::BuildError;
 pub use fault::{Fault, NotFinite};

@@ -1,6 +1,6 @@
 //! What a run showed, held against what its scene expects.
 
-use crate::build::short;
+use crate::caption::short;
 use crate::fault::NotFinite;
 use recording::{EdgeMetrics, ExpectationMetrics, Metrics};
 use scene::{Expect, OnContact, Scene};

@@ -1,5 +1,6 @@
 //! The storyboard as frames: which moment of the run a frame shows, from where, and with what beside it.
 
+use super::words::set_point_rows;
 use crate::failure::Failure;
 use rendering::{Layout, View};
 use scene::{Film, Plot, Shot};
@@ -81,6 +82,14 @@ impl Board {
     pub(super) fn frames(&self, rate: f64) -> u64 {
         let cuts: u64 = self.cuts.iter().map(|cut| cut.frames(rate)).sum();
         (count(self.title, rate) + cuts + count(self.end, rate)).max(1)
+    }
+
+    /// Most rows of a line at the bottom, in a run with so many edges.
+    pub(super) fn rows(&self, edges: usize) -> usize {
+        let rows = |shot: &Shot| {
+            usize::from(!shot.line.is_empty()) + if shot.set_points { set_point_rows(edges) } else { 0 }
+        };
+        self.cuts.iter().map(|cut| rows(&cut.shot)).max().unwrap_or(0)
     }
 
     /// Frame number `index`, from 0.

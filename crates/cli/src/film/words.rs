@@ -8,6 +8,14 @@ use vocabulary::{Cast, Moment, Thing};
 /// Set points that are told one by one.
 const MOST_SET_POINTS: usize = 4;
 
+/// Set points in a row.
+const IN_A_ROW: usize = 2;
+
+/// Rows of the set points of so many edges.
+pub(super) fn set_point_rows(edges: usize) -> usize {
+    edges.min(MOST_SET_POINTS).div_ceil(IN_A_ROW)
+}
+
 /// The card over a frame, if there is one.
 pub(super) fn card(
     frame: &Frame<'_>,
@@ -18,9 +26,7 @@ pub(super) fn card(
     let [title, end] = frame.cards;
     if title > 0.0 {
         let about = description.split_whitespace().collect::<Vec<_>>().join(" ");
-        let mut rows = wrapped(&about, 76);
-        rows.truncate(3);
-        rows.push(cast.caption.clone());
+        let rows = [about, cast.caption.clone()].into_iter().filter(|row| !row.is_empty()).collect();
         return Some(Card { title: cast.title.clone(), rows, opacity: title });
     }
     (end > 0.0).then(|| Card { title: cast.title.clone(), rows: results(&metrics()), opacity: end })
@@ -88,26 +94,11 @@ fn set_points(cast: &Cast, moment: &Moment) -> Vec<String> {
         .iter()
         .take(MOST_SET_POINTS)
         .collect::<Vec<_>>()
-        .chunks(2)
+        .chunks(IN_A_ROW)
         .map(|pair| pair.iter().map(|text| text.as_str()).collect::<Vec<_>>().join("   ·   "))
         .collect();
     if let (true, Some(last)) = (more > 0, rows.last_mut()) {
         *last = format!("{last}   ·   and {more} more");
     }
     rows
-}
-
-/// A text in lines of at most `width` letters.
-fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }

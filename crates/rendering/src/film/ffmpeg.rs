@@ -86,8 +86,17 @@ fn arguments(format: Format, file: &Path) -> Vec<OsString> {
     let size = format!("{}x{}", format.width, format.height);
     let rate = format.rate.to_string();
     let words = ["-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", &size, "-r", &rate];
-    let output = ["-i", "-", "-an", "-pix_fmt", "yuv420p"];
-    words.into_iter().chain(output).map(OsString::from).chain([file.as_os_str().to_owned()]).collect()
+    let output = ["-i", "-", "-an", "-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p"];
+    // Said as well as done: players guess the colours of a film that does not say them.
+    let colours =
+        ["-color_primaries", "bt709", "-color_trc", "bt709", "-colorspace", "bt709", "-color_range", "tv"];
+    words
+        .into_iter()
+        .chain(output)
+        .chain(colours)
+        .map(OsString::from)
+        .chain([file.as_os_str().to_owned()])
+        .collect()
 }
 
 #[cfg(test)]
@@ -114,6 +123,8 @@ mod tests {
         let words = arguments(Format { width: 640, height: 360, rate: 29.97 }, Path::new("a film.webm"));
         let after = |name: &str| words.iter().skip_while(|w| *w != name).nth(1).and_then(|w| w.to_str());
         assert_eq!([after("-s"), after("-r"), after("-i")], [Some("640x360"), Some("29.97"), Some("-")]);
+        let colours = ["-color_primaries", "-color_trc", "-colorspace", "-color_range"].map(after);
+        assert_eq!(colours, [Some("bt709"), Some("bt709"), Some("bt709"), Some("tv")]);
         // One word, spaces and all, and the last.
         assert_eq!(words.last().and_then(|w| w.to_str()), Some("a film.webm"));
     }

@@ -48,7 +48,8 @@ impl H264 {
     /// Goes on with a film that was made of the same; how many frames there are.
     pub(super) fn resume(path: &Path, format: Format, made_of: &str) -> Result<(Self, u64), Error> {
         let Format { width, height, rate } = format;
-        let made_of = format!("{width}x{height} {rate} {made_of}");
+        // A film goes on only with the colours that it began with.
+        let made_of = format!("{width}x{height} {rate} BT.709 {made_of}");
         let kept = Kept::open(path, &made_of, group(&format))?;
         let track = mp4::Track::new(width, height, rate).going_on(&kept.found);
         let frames = kept.found.sizes.len() as u64;
@@ -102,7 +103,7 @@ fn encoder(format: &Format) -> Result<Encoder, Error> {
         .adaptive_quantization(false)
         .skip_frames(false)
         .num_threads(1)
-        .vui(VuiConfig::bt601());
+        .vui(VuiConfig::bt709());
     Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|e| refused(&e))
 }
 
@@ -157,7 +158,7 @@ impl Sink for H264 {
     }
 }
 
-/// Brightness, and colour at half the size, after BT.601 with video range.
+/// Brightness, and colour at half the size, after BT.709 with video range.
 struct Planes {
     width: usize,
     height: usize,
@@ -183,7 +184,7 @@ impl Planes {
             for (y, p) in out.iter_mut().zip(row.chunks_exact(4)) {
                 let [r, g, b] = [p[0], p[1], p[2]].map(u32::from);
                 // Weights in 1/256 add up to 219/255 of the full range.
-                *y = ((66 * r + 129 * g + 25 * b + 128 + (16 << 8)) >> 8) as u8;
+                *y = ((47 * r + 157 * g + 16 * b + 128 + (16 << 8)) >> 8) as u8;
             }
         }
         let half = width / 2;
@@ -196,8 +197,8 @@ impl Planes {
                     (i32::from(a[k]) + i32::from(a[k + 4]) + i32::from(b[k]) + i32::from(b[k + 4]) + 2) / 4
                 };
                 let [r, g, b] = [mean(0), mean(1), mean(2)];
-                *u = ((-38 * r - 74 * g + 112 * b + 128 + (128 << 8)) >> 8) as u8;
-                *v = ((112 * r - 94 * g - 18 * b + 128 + (128 << 8)) >> 8) as u8;
+                *u = ((-26 * r - 86 * g + 112 * b + 128 + (128 << 8)) >> 8) as u8;
+                *v = ((112 * r - 102 * g - 10 * b + 128 + (128 << 8)) >> 8) as u8;
             }
         }
     }
@@ -210,7 +211,7 @@ mod tests {
     #[test]
     fn colours_have_their_video_levels() {
         for (rgb, yuv) in
-            [([255, 255, 255], [235, 128, 128]), ([0, 0, 0], [16, 128, 128]), ([255, 0, 0], [82, 90, 240])]
+            [([255, 255, 255], [235, 128, 128]), ([0, 0, 0], [16, 128, 128]), ([255, 0, 0], [63, 102, 240])]
         {
             let mut planes = Planes::new(2, 2);
             planes.fill(&[rgb[0], rgb[1], rgb[2], 255].repeat(4));

@@ -202,6 +202,9 @@ fn work(mut sink: Box<dyn Sink>, receiver: &Receiver<Message>) -> Result<(), Err
     }
 }
 
+/// A .gif counts in hundredths of a second, and what is shown for less than two of them browsers show for ten.
+const FASTEST_GIF: f64 = 50.0;
+
 fn check(kind: FilmKind, format: &Format) -> Result<(), Error> {
     let &Format { width, height, rate } = format;
     let most = 8192;
@@ -211,6 +214,9 @@ fn check(kind: FilmKind, format: &Format) -> Result<(), Error> {
     }
     if !(1.0..=240.0).contains(&rate) {
         return Err(Error::FrameRate(rate));
+    }
+    if kind == FilmKind::Gif && rate > FASTEST_GIF {
+        return Err(Error::GifRate(rate));
     }
     let halved = matches!(kind, FilmKind::Mp4 | FilmKind::Ffmpeg);
     if halved && (width % 2 == 1 || height % 2 == 1) {

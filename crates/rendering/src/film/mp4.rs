@@ -156,8 +156,8 @@ impl Track {
                 &self.picture,
             ],
         );
-        // BT.601 in video range, as the pictures are converted.
-        let colour = boxed(*b"colr", &[b"nclx", &[0, 6, 0, 6, 0, 6, 0]]);
+        // BT.709 in video range, as the pictures are converted.
+        let colour = boxed(*b"colr", &[b"nclx", &[0, 1, 0, 1, 0, 1, 0]]);
         boxed(
             *b"avc1",
             &[

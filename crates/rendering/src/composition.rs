@@ -1,0 +1,78 @@
+//! Where things are in a picture, without drawing it: what words and panels cover, and what they should not.
+
+use crate::compose::{local_origin, shadowed, towards_sun, words};
+use crate::floor::Floor;
+use crate::labels::{Window, detail, ring_boxes, robot_boxes};
+use crate::letters::Letters;
+use crate::paint::Stage;
+use crate::palette::robot_colours;
+use crate::plan::{Plan, area, overlap};
+use crate::renderer::cameras;
+use crate::{Layout, Style, Trail, View};
+use vocabulary::{Cast, Moment};
+
+/// Rectangles of a picture: left, top, width and height in pixels from its upper left corner.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Composition {
+    /// The views, those that lie over others last.
+    pub views: Vec<[f32; 4]>,
+    /// The chart of errors, a film's line, and views in corners.
+    pub panels: Vec<[f32; 4]>,
+    /// Title, caption and time.
+    pub captions: Vec<[f32; 4]>,
+    /// Names, edges and coordinates.
+    pub labels: Vec<[f32; 4]>,
+    /// Robots as far as a view shows them; not those of views through cameras.
+    pub robots: Vec<[f32; 4]>,
+    /// The rings at set points, likewise.
+    pub set_points: Vec<[f32; 4]>,
+}
+
+impl Composition {
+    /// That of the picture that a renderer of `cast` draws at a size.
+    pub fn new(
+        cast: &Cast,
+        (trail, moment): (&Trail, &Moment),
+        layout: &Layout,
+        style: &Style,
+        size: (u32, u32),
+    ) -> Self {
+        let mut letters = Letters::new();
+        let floor = Floor::new(cast);
+        let colours = robot_colours(cast);
+        let plan = Plan::new(&mut letters, cast, layout, style, size);
+        let cameras = cameras(&plan, trail, moment, cast, &floor);
+        let stage = Stage {
+            cast,
+            floor: &floor,
+            colours: &colours,
+            trail,
+            moment,
+            style,
+            origin: local_origin(moment),
+            sun: towards_sun(&cast.light),
+            size: trail.steady.formation().size,
+            shadowed: shadowed(cast, moment),
+            detail: detail(cast.members.len()),
+        };
+        let windows: Vec<_> =
+            cameras.iter().zip(&plan.tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
+        let (words, panels) = words(&mut letters, &stage, &plan, &windows, size);
+        let views: Vec<_> = plan.tiles.iter().map(area).collect();
+        let mut composition = Self {
+            panels: [&panels, &views[views.len() - plan.upper..]].concat(),
+            captions: plan.captions().collect(),
+            labels: words.labels,
+            ..Self::default()
+        };
+        for (view, window) in plan.views.iter().zip(&windows) {
+            if !matches!(view, View::Camera(_)) {
+                let seen =
+                    |boxes: Vec<[f32; 4]>| boxes.into_iter().filter(|b| overlap(b, &area(&window.tile)));
+                composition.robots.extend(seen(robot_boxes(&stage, *window)));
+                composition.set_points.extend(seen(ring_boxes(&stage, *window)));
+            }
+        }
+        Self { views, ..composition }
+    }
+}

@@ -1,0 +1,116 @@
+//! A scene's laws in one line, for pictures and reports.
+
+use scene::{Follow, LawKind, Mode, ObserverKind, Role, Scene, SensingKind, Switching};
+
+/// Law, gains and timing of a scene in one line; ranges where gains of followers differ, "mixed" where their laws do.
+pub fn caption(scene: &Scene) -> String {
+    let all: Vec<&Follow> = scene.robots.iter().filter_map(follow).collect();
+    if all.is_empty() {
+        return "No followers".to_owned();
+    }
+    let mut parts = vec![common(&all, |follow| law(follow.law.kind)).unwrap_or("Mixed laws").to_owned()];
+    parts.push(format!("K {}", range(&all, |follow| follow.law.k)));
+    let robust: Vec<_> = all.iter().copied().filter(|f| f.law.kind != LawKind::FullState).collect();
+    if !robust.is_empty() {
+        parts.push(format!("β {}", range(&robust, |follow| follow.law.beta)));
+        parts.push(match common(&robust, |follow| follow.law.switching) {
+            Some(Switching::Tanh) => format!("tanh slope {}", range(&robust, |follow| follow.law.slope)),
+            Some(Switching::Sign) => "sign".to_owned(),
+            None => "tanh or sign".to_owned(),
+        });
+    }
+    let observed: Vec<_> = all.iter().copied().filter(|follow| observer(follow).is_some()).collect();
+    match common(&observed, |follow| observer(follow)) {
+        Some(Some(Observer::Epsilon)) => {
+            parts.push(format!("ε {} s", range(&observed, |follow| follow.observer.epsilon)));
+        }
+        Some(Some(Observer::Noise)) => parts.push("ε from noise".to_owned()),
+        Some(Some(Observer::Unscented)) => parts.push("dual unscented filter".to_owned()),
+        Some(None) => {}
+        None if observed.is_empty() => {}
+        None => parts.push("mixed observers".to_owned()),
+    }
+    let looking: Vec<_> = all.iter().copied().filter(|follow| looks(follow)).collect();
+    if !looking.is_empty() {
+        let rate = range(&looking, |follow| [follow.sensing.rate; 2]);
+        parts.push(match common(&all, |follow| follow.sensing.kind) {
+            Some(SensingKind::Noise) => format!("{rate} noisy looks a second"),
+            Some(SensingKind::Geometric) => format!("{rate} looks at tags a second"),
+            Some(SensingKind::Camera) => format!("{rate} pictures a second"),
+            Some(SensingKind::Truth) | None => format!("mixed sensing, {rate} looks a second"),
+        });
+    }
+    let every = format!("every {} ms", short(scene.time.period * 1e3));
+    parts.push(match scene.time.mode {
+        _ if !looking.is_empty() => every,
+        Mode::Continuous => "continuous time".to_owned(),
+        Mode::Sampled => every,
+        Mode::Measured => format!("{every}, sampled measurement"),
+    });
+    match scene.changes.len() {
+        0 => {}
+        1 => parts.push("1 change".to_owned()),
+        changes => parts.push(format!("{changes} changes")),
+    }
+    parts.join(" · ")
+}
+
+fn follow(robot: &scene::Robot) -> Option<&Follow> {
+    match &robot.role {
+        Role::Lead { .. } => None,
+        Role::Follow(follow) => Some(follow),
+    }
+}
+
+fn law(kind: LawKind) -> &'static str {
+    match kind {
+        LawKind::FullState => "Full state feedback",
+        LawKind::RobustState => "Robust state feedback",
+        LawKind::OutputFeedback => "Output feedback",
+    }
+}
+
+fn looks(follow: &Follow) -> bool {
+    follow.sensing.kind != SensingKind::Truth
+}
+
+/// What is worth saying of an observer.
+#[derive(Clone, Copy, PartialEq)]
+enum Observer {
+    Epsilon,
+    Noise,
+    Unscented,
+}
+
+fn observer(follow: &Follow) -> Option<Observer> {
+    if looks(follow) && follow.observer.kind == ObserverKind::Unscented {
+        Some(Observer::Unscented)
+    } else if looks(follow) && follow.observer.adaptive {
+        Some(Observer::Noise)
+    } else {
+        (follow.law.kind == LawKind::OutputFeedback).then_some(Observer::Epsilon)
+    }
+}
+
+/// The value that all followers have, if they have one.
+fn common<T: PartialEq>(all: &[&Follow], value: impl Fn(&Follow) -> T) -> Option<T> {
+    let mut values = all.iter().map(|follow| value(follow));
+    let first = values.next()?;
+    values.all(|other| other == first).then_some(first)
+}
+
+/// Two values of every follower: one where they are the same, from the smallest to the largest where followers differ.
+fn range(all: &[&Follow], value: impl Fn(&Follow) -> [f64; 2]) -> String {
+    let [first, second] = [0, 1].map(|k| {
+        let values = || all.iter().map(|follow| value(follow)[k]);
+        let (low, high) =
+            (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+        if low == high { short(low) } else { format!("{} to {}", short(low), short(high)) }
+    });
+    if first == second { first } else { format!("({first}, {second})") }
+}
+
+/// A number to six significant digits, without those that come from arithmetic only.
+pub(crate) fn short(value: f64) -> String {
+    format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string()
+}
