@@ -33,8 +33,9 @@ const FIXED: [&str; 15] = [
     "film",
 ];
 /// Keys of a robot, a group or a member of one that cannot change while it runs.
-const FIXED_OF_ROBOTS: [&str; 12] = [
+const FIXED_OF_ROBOTS: [&str; 13] = [
     "name",
+    "absent",
     "pose",
     "path",
     "leader",

@@ -8,7 +8,7 @@ use crate::{
     path_form::PATH,
     patterns::{PatternForm, PatternKeys},
     prop_form::{MOST_PROPS, PropForm, PropKeys},
-    text::{angle_within, form::Number, integer, keys, list, number, table, text, words},
+    text::{angle_within, flag, form::Number, integer, keys, list, number, table, text, words},
     types::{
         BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, LawPart, ObserverPart, PhysicsPart,
         SensingForm, SensingPart, TimePart, VehiclePart, ViewsPart, VisionPart,
@@ -152,6 +152,10 @@ keys! {
 keys! {
     /// What is different about one robot of a group. Where it starts, and how fast, is up to the group.
     struct MemberKeys {
+        /// What the robot is called, in place of the name that it has by its place.
+        name: String = NameForm::WHOLE, optional;
+        /// Whether its place stays empty; who follows that place needs a `leader` of its own then.
+        absent: bool = flag(), optional;
         /// Name of the robot that it follows, in place of the shape's.
         leader: String = NameForm::WHOLE, optional;
         /// Wanted distance from the robot it follows, m, in place of the shape's.

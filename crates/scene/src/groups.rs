@@ -71,8 +71,12 @@ pub(crate) fn expand(
     let (leader, origin) = group.leader(&usual.vehicle, defaults, drafts, reading)?;
     let mut scatter = Scatter::new(keys, group.index, seed)?;
     for (place, spot) in group.spots(count)?.into_iter().enumerate().skip(1) {
-        let name = group.name(place);
-        let member = group.member(&name).map(|member| &member.keys);
+        // Drawn for places that stay empty, too: the others start where they do all the same.
+        let pose = scatter.around(origin, spot.at);
+        let member = group.member(place);
+        if member.is_some_and(MemberKeys::is_absent) {
+            continue;
+        }
         let (mut own, mut speed) = (usual, speed);
         if member.is_some() {
             own = group.outfit(member, defaults, reading)?;
@@ -83,32 +87,62 @@ pub(crate) fn expand(
             check_distance(distance.least(), own.law.distance_min, found.place, reading);
         }
         let Outfit { vehicle, law, observer, sensing } = own;
+        let name = group.name(place);
         let told = member.and_then(|keys| keys.leader.clone());
+        if told.is_none() {
+            group.check_present(spot.follows, &name, reading);
+        }
         let usual = || if spot.follows == 0 { leader.clone() } else { group.name(spot.follows) };
         let followed = told.as_ref().map_or_else(usual, |told| told.value.clone());
         let follow = Follow { leader: followed, speed, distance, bearing, law, observer, sensing };
         let role = Role::Follow(Box::new(follow));
-        let pose = scatter.around(origin, spot.at);
         group.push(Robot { name, pose, number: 0, vehicle, role }, told, drafts);
     }
     Some(())
 }
 
-/// Names of the robots that the group at `node` makes.
+impl MemberKeys {
+    fn is_absent(&self) -> bool {
+        self.absent.as_ref().is_some_and(|absent| absent.value)
+    }
+}
+
+/// The names that the robots of the group at `node` have by their places.
 pub(crate) fn made_by(node: &Node) -> impl Iterator<Item = String> {
-    let start = node.get("name").and_then(Node::as_text).unwrap_or("robot").to_owned();
+    let start = start_of(node).to_owned();
+    places(node).map(move |place| format!("{start}-{place}"))
+}
+
+/// The name that the robot of the group at `node` which is called `name` has by its place; `None` if there is none.
+pub(crate) fn member_called(node: &Node, name: &str) -> Option<String> {
+    let other = |key: &str| node.get("members")?.get(key)?.get("name")?.as_text();
+    let Some(Value::Table(members)) = node.get("members").map(|members| &members.value) else {
+        return makes(node, name).then(|| name.to_owned());
+    };
+    let renamed = members.iter().find(|entry| other(&entry.key) == Some(name)).map(|entry| entry.key.clone());
+    let by_place = || other(name).is_none().then(|| name.to_owned());
+    renamed.or_else(by_place).filter(|key| makes(node, key))
+}
+
+/// Whether a robot of the group at `node` has that name by its place.
+fn makes(node: &Node, key: &str) -> bool {
+    let number = key.strip_prefix(start_of(node)).and_then(|rest| rest.strip_prefix('-'));
+    let place = number.and_then(|number| number.parse::<usize>().ok().filter(|n| n.to_string() == number));
+    place.is_some_and(|place| places(node).contains(&place))
+}
+
+fn start_of(node: &Node) -> &str {
+    node.get("name").and_then(Node::as_text).unwrap_or("robot")
+}
+
+fn places(node: &Node) -> std::ops::RangeInclusive<usize> {
     let count = match node.get("count").map(|count| &count.value) {
         Some(Value::Integer(count)) => usize::try_from(*count).unwrap_or(0).min(MOST_ROBOTS),
         _ => 0,
     };
     // The robot in place 1 is the group's own only if it has a path.
     let first = if node.get("path").is_some() { 1 } else { 2 };
-    (first..=count).map(move |place| format!("{start}-{place}"))
-}
-
-/// Whether the group at `node` makes a robot called `name`.
-pub(crate) fn makes(node: &Node, name: &str) -> bool {
-    made_by(node).any(|made| made == name)
+    first..=count
 }
 
 /// What a robot of a group is and does.
@@ -153,9 +187,24 @@ pub(crate) struct Group<'a> {
 }
 
 impl Group<'_> {
-    /// What is different about the robot called `name`.
-    fn member(&self, name: &str) -> Option<&Member> {
-        self.keys.members.as_ref()?.value.iter().find(|member| member.name.value == name)
+    /// What is different about the robot in `place`, counted from 0.
+    fn member(&self, place: usize) -> Option<&MemberKeys> {
+        let key = self.key(place);
+        let members = &self.keys.members.as_ref()?.value;
+        members.iter().find(|member| member.name.value == key).map(|member| &member.keys)
+    }
+
+    /// Notes that `follower` follows the robot in `place`, where that is absent.
+    fn check_present(&self, place: usize, follower: &str, reading: &mut Reading) {
+        if let Some(absent) =
+            self.member(place).filter(|keys| keys.is_absent()).and_then(|keys| keys.absent.as_ref())
+        {
+            let key = self.key(place);
+            let message = format!(
+                "`{key}` cannot be absent: `{follower}` follows it; give `{follower}` another `leader`"
+            );
+            reading.note(absent.place, message);
+        }
     }
 
     /// Notes members that the group does not have.
@@ -240,9 +289,15 @@ impl Group<'_> {
         Some(spots)
     }
 
-    /// Name of the robot in `place`, counted from 0.
-    fn name(&self, place: usize) -> String {
+    /// Name by its place of the robot in `place`, counted from 0.
+    fn key(&self, place: usize) -> String {
         format!("{}-{}", self.keys.name.as_ref().map_or("robot", |name| &name.value), place + 1)
+    }
+
+    /// What the robot in `place`, counted from 0, is called.
+    fn name(&self, place: usize) -> String {
+        let own = self.member(place).and_then(|keys| keys.name.as_ref());
+        own.map_or_else(|| self.key(place), |name| name.value.clone())
     }
 
     fn push(&self, robot: Robot, leader: Option<Found<String>>, drafts: &mut Vec<Draft>) {
@@ -260,8 +315,8 @@ impl Group<'_> {
         defaults: &Defaults,
         reading: &mut Reading,
     ) -> Option<Vehicle> {
-        let Some(Member { keys, .. }) = self.member(name) else { return Some(*usual) };
-        for (key, place) in keys.places().into_iter().filter(|(key, _)| *key != "vehicle") {
+        let Some(keys) = self.member(0) else { return Some(*usual) };
+        for (key, place) in keys.places().into_iter().filter(|(key, _)| !["name", "vehicle"].contains(key)) {
             reading.note(place, format!("`{key}` is for robots that follow, but `{name}` leads"));
         }
         self.vehicle(keys.vehicle.as_ref(), defaults, reading)

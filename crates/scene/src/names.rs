@@ -23,16 +23,19 @@ impl NameForm {
     pub(crate) const WHOLE: Self = Self { most: 40 };
     /// The start of names that end in a number.
     pub(crate) const START: Self = Self { most: 34 };
+
+    /// Whether it takes `name`.
+    pub(crate) fn takes(&self, name: &str) -> bool {
+        let fits = |c: char| c.is_alphanumeric() || is_combining_mark(c) || c == '-' || c == '_';
+        name.chars().all(fits) && (1..=self.most).contains(&name.chars().count())
+    }
 }
 
 impl Form for NameForm {
     type Out = String;
 
     fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
-        let fits = |c: char| c.is_alphanumeric() || is_combining_mark(c) || c == '-' || c == '_';
-        let name = node
-            .as_text()
-            .filter(|name| name.chars().all(fits) && (1..=self.most).contains(&name.chars().count()));
+        let name = node.as_text().filter(|name| self.takes(name));
         if name.is_none() {
             reading.wrong(node, &format!("a name of 1 to {} letters, digits, `-` and `_`", self.most));
         }

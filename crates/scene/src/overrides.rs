@@ -1,7 +1,7 @@
 //! Changes to a scene from the command line: `--set time.duration=5`.
 
 use crate::{
-    groups::{made_by, makes},
+    groups::{made_by, member_called},
     text::{
         Node, Place, Reading, Value,
         node::{Entry, composed},
@@ -104,14 +104,17 @@ fn put_in_scene(root: &mut Node, path: &[Part<'_>], value: Node, reading: &mut R
     if list.text != "robots" || groups.is_empty() || find(root.items("robots"), name.text).is_ok() {
         return put(root, path, value, reading);
     }
-    let Some(index) = groups.iter().position(|group| makes(group, name.text)) else {
+    let mut known = groups.iter().enumerate();
+    let Some((index, key)) = known.find_map(|(index, group)| Some((index, member_called(group, name.text)?)))
+    else {
         reading.note(name.place, unknown_robot(root, name.text));
         return;
     };
-    let inside: Vec<_> = [Part { text: "members", place: list.place }, *name]
-        .into_iter()
-        .chain(rest.iter().copied())
-        .collect();
+    let inside: Vec<_> =
+        [Part { text: "members", place: list.place }, Part { text: &key, place: name.place }]
+            .into_iter()
+            .chain(rest.iter().copied())
+            .collect();
     if let Some(group) = root.items_mut("groups").get_mut(index) {
         put(group, &inside, value, reading);
     }

@@ -170,8 +170,8 @@ fn robots_come_and_go() {
     for fault in [
         SceneText::add_robot(&mut text, "pose = [0, 0, 0]"),
         SceneText::add_robot(&mut text, "name = \"robot-3\""),
-        text.remove_item("robots", "robot-3"),
-        text.rename_robot("robot-3", "carl"),
+        text.remove_item("robots", "robot-9"),
+        text.rename_robot("robot-9", "carl"),
         text.rename_robot("leader", "robot-3"),
         text.rename_robot("leader", "a b"),
         text.set("robots.leda.distance", "1"),
@@ -190,6 +190,30 @@ fn a_new_name_is_new_everywhere() {
     assert_eq!(renamed, SCENE.replace("bob", "carl"));
     let renamed = edit(|text| text.rename_robot("leader", "anna").unwrap());
     assert_eq!(renamed, SCENE.replace("\"leader\"", "\"anna\""));
+}
+
+/// Robots that a group makes are renamed and removed as others are: the group says so.
+#[test]
+fn robots_of_a_group_are_renamed_and_removed_one_by_one() {
+    let renamed = edit(|text| text.rename_robot("robot-3", "left").unwrap());
+    let member = "leader = \"bob\"\n\n[groups.members.robot-3]\nname = \"left\"\n\n[views]";
+    assert!(renamed.contains(member) && renamed.contains("\"robots.left.law.k=3\""), "{renamed}");
+    let mut text = SceneText::parse(&renamed).unwrap();
+    text.set("robots.left.distance", "1.5").unwrap();
+    assert!(text.text().contains("name = \"left\"\ndistance = 1.5\n"), "{}", text.text());
+    assert!(
+        text.rename_robot("robot-2", "left").is_err() && text.set("robots.robot-3.distance", "1").is_err()
+    );
+    text.rename_robot("left", "robot-3").unwrap();
+    text.remove("robots.robot-3.distance").unwrap();
+    assert_eq!(text.text().replace("\n\n\n", "\n\n"), SCENE.replace('\'', "\""));
+    text.remove_item("robots", "robot-4").unwrap();
+    assert!(text.text().contains("[groups.members.robot-4]\nabsent = true\n"), "{}", text.text());
+    // Whom a member of a group is told to follow is spoken of, too.
+    let told = "\n[groups.members.robot-3]\nleader = \"robot-2\"\n";
+    let mut text = SceneText::parse(&SCENE.replace("\n[views]", &format!("{told}\n[views]"))).unwrap();
+    text.rename_robot("robot-2", "right").unwrap();
+    assert!(text.text().contains("leader = \"right\""), "{}", text.text());
 }
 
 fn shipped() -> Vec<String> {

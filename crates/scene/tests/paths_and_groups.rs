@@ -196,3 +196,29 @@ fn groups_that_cannot_be() {
         assert!(fault.message.contains(words), "{diagnostics}");
     }
 }
+
+/// A robot of a group may have a name of its own, and a place may stay empty; the others stay as they are.
+#[test]
+fn members_have_names_of_their_own_and_places_stay_empty() {
+    let group =
+        "schema = 1\ntitle = \"t\"\n[[groups]]\nshape = \"v\"\ncount = 5\npath = { kind = \"constant\" }\n";
+    let read = |more: &str| Scene::parse(&format!("{group}{more}"), "t.toml", &[]);
+    let whole = read("").unwrap().scene;
+    let own = read("[groups.members.robot-3]\nname = \"left\"\n[groups.members.robot-4]\nabsent = true\n");
+    let scene = own.unwrap_or_else(|faults| panic!("{faults}")).scene;
+    let names: Vec<&str> = scene.robots.iter().map(|robot| robot.name.as_str()).collect();
+    assert_eq!(names, ["robot-1", "robot-2", "left", "robot-5"]);
+    assert_eq!(scene.robots[3].pose, whole.robots[4].pose);
+    let Role::Follow(follow) = &scene.robots[3].role else { panic!("robot-5 follows") };
+    assert_eq!(follow.leader, "left");
+    let set = ["robots.left.distance=1.5".parse().unwrap(), "robots.robot-4.absent=false".parse().unwrap()];
+    let text = format!(
+        "{group}[groups.members.robot-3]\nname = \"left\"\n[groups.members.robot-4]\nabsent = true\n"
+    );
+    assert_eq!(Scene::parse(&text, "t.toml", &set).unwrap().scene.robots.len(), 5);
+    let fault = |more: &str| read(more).unwrap_err().to_string();
+    let told = fault("[groups.members.robot-3]\nabsent = true\n");
+    assert!(told.contains("`robot-3` cannot be absent: `robot-5` follows it"), "{told}");
+    assert!(fault("[groups.members.robot-1]\nabsent = true\n").contains("`robot-1` leads"));
+    assert!(fault("[groups.members.robot-2]\nname = \"robot-3\"\n").contains("two robots called `robot-3`"));
+}

@@ -25,9 +25,9 @@ pub(super) fn steps(root: &Table, path: &str) -> Result<Vec<Step>, EditError> {
     if let [list, name, ..] = parts.as_slice()
         && list == "robots"
         && index_of(root, "robots", name).is_none()
-        && let Some(group) = made_by_group(root, name)
+        && let Some((group, key)) = made_by_group(root, name)
     {
-        parts.splice(..1, ["groups".to_owned(), group.to_string(), "members".to_owned()]);
+        parts.splice(..2, ["groups".to_owned(), group.to_string(), "members".to_owned(), key]);
     }
     let mut steps: Vec<Step> = Vec::with_capacity(parts.len());
     let mut at: Option<&Item> = None;
@@ -68,8 +68,8 @@ pub(super) fn items<'a>(root: &'a Table, list: &str) -> Vec<&'a Item> {
 }
 
 /// The names in a list.
-pub(super) fn names<'a>(root: &'a Table, list: &str) -> impl Iterator<Item = &'a str> {
-    items(root, list).into_iter().filter_map(|item| item.get("name")?.as_str())
+pub(super) fn names(root: &Table, list: &str) -> impl Iterator<Item = String> {
+    items(root, list).into_iter().filter_map(|item| item.get("name")?.as_str().map(composed))
 }
 
 /// Index of the item of a list with that name or number.
@@ -80,9 +80,20 @@ fn index_of(root: &Table, list: &str, name: &str) -> Option<usize> {
     named.or_else(|| name.parse().ok().filter(|index| *index < items.len()))
 }
 
-/// Index of the group that makes a robot called `name`.
-pub(super) fn made_by_group(root: &Table, name: &str) -> Option<usize> {
-    items(root, "groups").iter().position(|group| made_by(group).any(|made| made == name))
+/// Index of the group that makes a robot called `name`, and the name that the robot has by its place there.
+pub(super) fn made_by_group(root: &Table, name: &str) -> Option<(usize, String)> {
+    let groups = items(root, "groups");
+    groups.iter().enumerate().find_map(|(index, group)| Some((index, member_called(group, name)?)))
+}
+
+fn member_called(group: &Item, name: &str) -> Option<String> {
+    let members = group.get("members").and_then(Item::as_table_like);
+    let other = |item: &Item| item.get("name").and_then(Item::as_str).map(composed);
+    let mut all = members.into_iter().flat_map(toml_edit::TableLike::iter);
+    let renamed = all.find(|(_, item)| other(item).as_deref() == Some(name)).map(|(key, _)| composed(key));
+    let own = members.and_then(|members| members.get(name)).and_then(other);
+    let by_place = || own.is_none().then(|| name.to_owned());
+    renamed.or_else(by_place).filter(|key| made_by(group).any(|made| made == *key))
 }
 
 fn made_by(group: &Item) -> impl Iterator<Item = String> {
@@ -94,7 +105,7 @@ fn made_by(group: &Item) -> impl Iterator<Item = String> {
 
 /// That `list` has nothing called `name`, with the nearest that it has.
 pub(super) fn nothing_called(root: &Table, list: &str, name: &str) -> String {
-    let mut known: Vec<String> = names(root, list).map(str::to_owned).collect();
+    let mut known: Vec<String> = names(root, list).collect();
     if list == "robots" {
         known.extend(items(root, "groups").into_iter().flat_map(|group| made_by(group).take(1000)));
     }

@@ -6,6 +6,7 @@ mod merge;
 mod put;
 mod rename;
 
+use crate::{names::NameForm, text::node::composed};
 use find::{Step, item_at, items, made_by_group, names, steps};
 use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
 
@@ -122,30 +123,47 @@ impl SceneText {
         put::add(self.document.as_table_mut(), list, table)
     }
 
-    /// Takes the item called or numbered `name` out of a list of tables, with the comment lines right above and in it.
+    /// Takes the item called or numbered `name` out of a list of tables, with the comment lines right above and in it. Of a
+    /// robot that a group makes, the group says that it is absent.
     ///
     /// # Errors
-    /// Where there is none such, or a group makes it.
+    /// Where there is none such.
     pub fn remove_item(&mut self, list: &str, name: &str) -> Result<(), EditError> {
+        let name = &*composed(name);
+        if self.made(list, name).is_some() {
+            return self.set(&format!("{list}.{name}.absent"), "true");
+        }
         self.check_own(list, name)?;
         let steps = steps(self.document.as_table(), &format!("{list}.{name}"))?;
         cut::cut_item(&mut self.document, &steps)
     }
 
-    /// Calls a robot something else, wherever it is spoken of: by followers, groups, views and changes.
+    /// Calls a robot something else, wherever it is spoken of: by followers, groups, views and changes. Of a robot that a
+    /// group makes, the group says what it is called.
     ///
     /// # Errors
-    /// Where there is none called `old`, a group makes it, or `new` is taken or no name.
+    /// Where there is none called `old`, or `new` is taken or no name.
     pub fn rename_robot(&mut self, old: &str, new: &str) -> Result<(), EditError> {
-        self.check_own("robots", old)?;
+        let (old, new) = (&*composed(old), &*composed(new));
+        let made = self.made("robots", old);
+        if made.is_none() {
+            self.check_own("robots", old)?;
+        }
         if old == new {
             return Ok(());
         }
         self.check_free(new)?;
-        let fits = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-        if !new.chars().all(fits) || !(1..=40).contains(&new.chars().count()) {
+        if !NameForm::WHOLE.takes(new) {
             let text = format!("`{new}` is no name: 1 to 40 letters, digits, `-` and `_`");
             return Err(EditError::new(text));
+        }
+        match made {
+            // Its own name again.
+            Some((_, key)) if key == new => {
+                self.remove(&format!("robots.{old}.name"))?;
+            }
+            Some(_) => self.set(&format!("robots.{old}.name"), &Value::from(new).to_string())?,
+            None => {}
         }
         rename::rename(self.document.as_table_mut(), old, new);
         Ok(())
@@ -170,17 +188,20 @@ impl SceneText {
         if taken { Err(EditError::new(format!("there is a robot called `{name}` already"))) } else { Ok(()) }
     }
 
-    /// Refuses robots that groups make.
-    fn check_own(&self, list: &str, name: &str) -> Result<(), EditError> {
+    /// The group that makes a robot of this name, if it does not stand in the list itself, and the name that the robot
+    /// has by its place.
+    fn made(&self, list: &str, name: &str) -> Option<(usize, String)> {
         let root = self.document.as_table();
         let written = names(root, list).any(|known| known == name);
-        if list == "robots" && !written && made_by_group(root, name).is_some() {
-            return Err(EditError::new(format!(
-                "`{name}` is made by a group: change the group's `count` or `name`, or what it is under `members`"
-            )));
-        }
+        if list == "robots" && !written { made_by_group(root, name) } else { None }
+    }
+
+    /// Refuses names and numbers that nothing in a list has.
+    fn check_own(&self, list: &str, name: &str) -> Result<(), EditError> {
+        let root = self.document.as_table();
         let number = name.parse::<usize>().is_ok_and(|index| index < items(root, list).len());
-        if written || number { Ok(()) } else { Err(EditError::new(find::nothing_called(root, list, name))) }
+        let known = number || names(root, list).any(|known| known == name);
+        if known { Ok(()) } else { Err(EditError::new(find::nothing_called(root, list, name))) }
     }
 }
 

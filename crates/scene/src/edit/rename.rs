@@ -1,6 +1,7 @@
 //! A robot's name, wherever it is spoken of.
 
 use super::merge::merge;
+use crate::text::node::composed;
 use toml_edit::{Item, Table, Value};
 
 /// Calls the robot `old` `new` from now on.
@@ -10,6 +11,12 @@ pub(super) fn rename(root: &mut Table, old: &str, new: &str) {
             item.get_mut(key).into_iter().for_each(|item| exchange(item, old, new));
         });
     }
+    for_every_item(root, "groups", |group| {
+        let members = group.get_mut("members").and_then(Item::as_table_like_mut);
+        for (_, member) in members.into_iter().flat_map(toml_edit::TableLike::iter_mut) {
+            member.get_mut("leader").into_iter().for_each(|item| exchange(item, old, new));
+        }
+    });
     for (table, key) in [("views", "default"), ("film", "view")] {
         for start in ["follow:", "camera:"] {
             let view = root.get_mut(table).and_then(|table| table.get_mut(key));
@@ -69,7 +76,7 @@ fn for_every_item(root: &mut Table, list: &str, work: impl Fn(&mut Item)) {
 /// Puts the text `new` where the text `old` stands.
 fn exchange(item: &mut Item, old: &str, new: &str) {
     if let Item::Value(value) = item
-        && value.as_str() == Some(old)
+        && value.as_str().map(composed).as_deref() == Some(old)
     {
         merge(value, Value::from(new));
     }
