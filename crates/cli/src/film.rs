@@ -135,11 +135,18 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     let plain = studio.style.clone();
     // Where a line or a panel comes and goes, no camera moves.
     let room = Room { panel: plain.inset, rows: board.rows(cast.edges.len()) };
-    let mut shot = 0;
-    while shot < frames && !interrupt::asked() {
-        let frame = board.at(shot, rate);
+    // A run that ends before its time has fewer frames than its storyboard.
+    let (mut index, mut shot, mut shown) = (0, 0, f64::NEG_INFINITY);
+    while index < frames && !interrupt::asked() {
+        let frame = board.at(index, rate);
         let moment = playback.at(frame.time);
         playback.check()?;
+        // Its last moment is shown, and not once more.
+        if frame.cards[1] == 0.0 && playback.ended().is_some_and(|end| shown >= end) {
+            index = board.last_card(rate);
+            continue;
+        }
+        shown = moment.snapshot.time;
         plots.record(&moment);
         if shot >= done {
             let mut style = plain.clone();
@@ -158,17 +165,17 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
             let ready = studio.renderer.draw_next(playback.trail(), &moment, &frame.layout, &style)?;
             ready.map_or(Ok(()), |picture| film.push(picture))?;
         }
-        shot += 1;
-        progress.at(shot);
+        (index, shot) = (index + 1, shot + 1);
+        progress.at(index);
     }
     if let Some(picture) = studio.renderer.finish()? {
         film.push(picture)?;
     }
-    if shot <= done && shot < frames {
+    if shot <= done && index < frames {
         // Nothing new: what was kept stays.
         return Err(Failure::Interrupted("no film was written".into()));
     }
-    if shot < frames {
+    if index < frames {
         film.pause()?;
         progress.end();
         let seconds = shot as f64 / rate;
@@ -177,18 +184,21 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     }
     film.finish()?;
     progress.end();
+    if let Some(end) = playback.ended().filter(|_| shot < frames && !job.quiet) {
+        note(&format!("the run ended at {end:.2} s of {:.2} s, and the film with it", job.duration));
+    }
     let seconds = began.elapsed().as_secs_f64();
     let adapter = studio.gpu.description();
     if job.json {
         json(&json!({
-            "file": path.display().to_string(), "frames": frames, "fps": rate, "size": studio.size,
+            "file": path.display().to_string(), "frames": shot, "fps": rate, "size": studio.size,
             "adapter": adapter, "wall_seconds": seconds, "frames_found": done,
         }));
     } else if !job.quiet {
-        let length = frames as f64 / rate;
+        let length = shot as f64 / rate;
         let [width, height] = studio.size;
         say(&format!(
-            "{}: {length:.2} s, {frames} frames of {width}×{height} at {rate} a second",
+            "{}: {length:.2} s, {shot} frames of {width}×{height} at {rate} a second",
             path.display()
         ));
         say(&format!("drawn in {seconds:.1} s with {adapter}"));

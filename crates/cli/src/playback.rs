@@ -26,6 +26,8 @@ pub(crate) struct Playback {
     trail: Trail,
     before: Moment,
     after: Moment,
+    /// Whether there is no moment after that.
+    ended: bool,
     metrics: Option<Box<MetricsBuilder>>,
 }
 
@@ -34,7 +36,7 @@ impl Playback {
     pub(crate) fn new(cast: &Cast, source: Source) -> Self {
         let (before, after) = (Moment::default(), Moment::default());
         let mut playback =
-            Self { source, fault: None, trail: Trail::new(cast), before, after, metrics: None };
+            Self { source, fault: None, trail: Trail::new(cast), before, after, ended: false, metrics: None };
         playback.step();
         playback.before.clone_from(&playback.after);
         playback
@@ -87,12 +89,18 @@ impl Playback {
             std::mem::swap(&mut self.before, &mut self.after);
             if !self.step() {
                 std::mem::swap(&mut self.before, &mut self.after);
+                self.ended = true;
                 break;
             }
         }
         let (from, to) = (self.before.snapshot.time, self.after.snapshot.time);
         let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
         Moment::between(&self.before, &self.after, share)
+    }
+
+    /// When the run ended, s, if all of it has been asked for.
+    pub(crate) fn ended(&self) -> Option<f64> {
+        self.ended.then_some(self.after.snapshot.time)
     }
 
     /// Fails where the cameras on robots could not take their pictures, or the recording is damaged.

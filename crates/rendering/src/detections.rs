@@ -6,7 +6,7 @@ use crate::paint::Stage;
 use crate::palette::{Rgb, hex};
 use crate::view::Tile;
 use glam::Vec2;
-use vocabulary::{FACES, Frame, Lens, Member, Outcome, Rigid, Shell, tag_code};
+use vocabulary::{FACES, Frame, Lens, Member, Outcome, Rigid, Shell, tag_code, wrap};
 
 /// Older looks are forgotten, s.
 const FORGOTTEN: f64 = 2.0;
@@ -30,18 +30,35 @@ struct Sketch<'a, 'b, 'c> {
     words: &'a mut Words<'b>,
     window: Window<'c>,
     lens: Lens,
+    /// How far the camera has turned to the left since the look, rad.
+    turn: f64,
     width: f32,
 }
 
+/// Where a direction (x/z right, y/z down) is for a camera that has turned to the left; `None` behind it.
+fn turned([x, y]: [f64; 2], turn: f64) -> Option<[f64; 2]> {
+    let (sin, cos) = turn.sin_cos();
+    let ahead = cos - x * sin;
+    (ahead > 0.02).then(|| [(x * cos + sin) / ahead, y / ahead])
+}
+
+/// How far a robot's camera has turned to the left since a look, rad: what is drawn of it was seen then, over what is seen
+/// now.
+fn turn_since(stage: &Stage<'_>, robot: usize, frame: &Frame) -> f64 {
+    let now = stage.moment.snapshot.robots.get(robot).copied().unwrap_or_default();
+    let heading = stage.trail.heading_at(robot, frame.sighting.stamp, stage.moment);
+    wrap(now.motion.pose.heading - heading + now.camera_pan - frame.pan)
+}
+
 impl Sketch<'_, '_, '_> {
-    /// Where a direction (x/z right, y/z down) is seen, pixels of the whole picture.
-    fn at(&self, [x, y]: [f64; 2]) -> Vec2 {
-        self.window.direction(x, -y)
+    /// Where a direction of the look (x/z right, y/z down) is seen, pixels of the whole picture.
+    fn at(&self, direction: [f64; 2]) -> Option<Vec2> {
+        turned(direction, self.turn).map(|[x, y]| self.window.direction(x, -y))
     }
 
     fn line(&mut self, from: [f64; 2], to: [f64; 2], colour: Rgb, alpha: f32) {
-        let ends = clipped(self.at(from), self.at(to), &self.window.tile);
-        if let Some((a, b)) = ends {
+        let (Some(from), Some(to)) = (self.at(from), self.at(to)) else { return };
+        if let Some((a, b)) = clipped(from, to, &self.window.tile) {
             let [red, green, blue] = colour;
             self.words.shapes.line(a, b, self.width, [red, green, blue, alpha]);
         }
@@ -144,7 +161,8 @@ fn detections(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robo
         let ink = colour(frame.outcome);
         // Thin in a small picture, where thick lines would cover what they tell of.
         let width = words.scaled(1.6 * (window.tile.width as f32 / words.scaled(640.0)).clamp(0.55, 1.0));
-        let mut sketch = Sketch { words, window, lens: follower.lens, width };
+        let mut sketch =
+            Sketch { words, window, lens: follower.lens, turn: turn_since(stage, robot, frame), width };
         region(&mut sketch, frame);
         if let (true, Some(shell)) = (frame.outcome.seen(), &leader.shell) {
             sketch.shell(&estimated(frame, follower), shell, ink);
@@ -180,8 +198,8 @@ fn ids(sketch: &mut Sketch<'_, '_, '_>, frame: &Frame, leader: &Member, ink: Rgb
             continue;
         }
         let middle = [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / 4.0);
-        let at = sketch.at(sketch.lens.direction(middle));
-        let corner = sketch.at(sketch.lens.direction(corners[0]));
+        let place = |pixel| sketch.at(sketch.lens.direction(pixel));
+        let (Some(at), Some(corner)) = (place(middle), place(corners[0])) else { continue };
         if at.distance(corner) < sketch.words.scaled(18.0) {
             continue;
         }
@@ -228,4 +246,68 @@ fn report(words: &mut Words<'_>, tile: Tile, leader: &str, frame: &Frame, row: &
         n => format!(", {n} faces"),
     };
     line(words, format!("{leader}: {}{faces}", frame.outcome.name()), true, told);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::carried::carried;
+    use crate::floor::Floor;
+    use crate::{Style, Trail};
+    use glam::{DVec2, DVec3};
+    use vocabulary::{Body, Cast, Moment, Pose, RobotState, Sighting, Snapshot};
+
+    /// A robot that stands or turns on the spot, whose camera pans, at a time.
+    fn moment(time: f64, heading: f64, pan: f64) -> Moment {
+        let mut robot = RobotState { camera_pan: pan, ..RobotState::default() };
+        robot.motion.pose = Pose::new(0.0, 0.0, heading);
+        Moment {
+            snapshot: Snapshot { time, robots: vec![robot], ..Snapshot::default() },
+            ..Moment::default()
+        }
+    }
+
+    #[test]
+    fn a_look_is_drawn_where_it_was_seen_though_the_camera_turns() {
+        let cast = Cast { members: vec![Member::new("a", true, Body::default())], ..Cast::default() };
+        let member = &cast.members[0];
+        let style = Style::default();
+        for (rate, panning) in [(0.0, 1.5), (0.8, 0.0), (1.0, -1.5), (0.0, 0.0)] {
+            let at = |time: f64| moment(time, 3.0 + rate * time, 0.3 + panning * time);
+            let mut trail = Trail::new(&cast);
+            for k in 0..=50 {
+                trail.push(&at(f64::from(k) * 0.01));
+            }
+            let (stamp, now) = (0.453, at(0.5));
+            let stage = Stage {
+                cast: &cast,
+                floor: &Floor::new(&cast),
+                colours: &[vocabulary::colours::LEAD],
+                trail: &trail,
+                moment: &now,
+                style: &style,
+                origin: DVec3::ZERO,
+                sun: DVec3::Z,
+                size: 1.0,
+                shadowed: (DVec2::ZERO, 1.0),
+                detail: 1.0,
+            };
+            // A point far away, as the camera saw it at the look.
+            let then = at(stamp).snapshot.robots[0];
+            let looked = then.motion.pose.heading + then.camera_pan + 0.1;
+            let point = [40.0 * looked.cos(), 40.0 * looked.sin(), 1.0];
+            let [x, y, z] = member.mount.world_from_camera(&then).inverse().apply(point);
+            let pan = then.camera_pan;
+            let frame =
+                Frame { sighting: Sighting { stamp, ..Sighting::default() }, pan, ..Frame::default() };
+            let turn = turn_since(&stage, 0, &frame);
+            let camera = carried(&now.snapshot, &cast, 0, 4.0 / 3.0);
+            let window = Window { camera: &camera, tile: Tile { x: 0, y: 0, width: 640, height: 480 } };
+            let [right, down] = turned([x / z, y / z], turn).unwrap();
+            let drawn = window.direction(right, -down);
+            let seen = window.pixel(DVec3::from_array(point)).unwrap();
+            // The camera sits in front of the axis about which the body turns.
+            assert!(drawn.distance(seen) < 1.5, "{rate} {panning}: {drawn} is not {seen}");
+        }
+    }
 }

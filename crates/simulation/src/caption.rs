@@ -114,3 +114,33 @@ fn range(all: &[&Follow], value: impl Fn(&Follow) -> [f64; 2]) -> String {
 pub(crate) fn short(value: f64) -> String {
     format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn told(sets: &[&str]) -> String {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/line-three.toml");
+        let sets: Vec<_> = sets.iter().map(|set| set.parse().expect("an override")).collect();
+        caption(&Scene::load(path, &sets).expect("a scene").scene)
+    }
+
+    #[test]
+    fn gains_that_differ_are_told_as_ranges() {
+        let plain = told(&[]);
+        assert_eq!(plain, "Output feedback · K 5 · β 5 · tanh slope 24.53 · ε 0.001 s · every 10 ms");
+        // The first follower alone would be told as if it were all.
+        let one = told(&["robots.follower-2.law.k=3", "robots.follower-2.observer.epsilon=0.002"]);
+        assert_eq!(
+            one,
+            "Output feedback · K 3 to 5 · β 5 · tanh slope 24.53 · ε 0.001 to 0.002 s · every 10 ms"
+        );
+        let both = told(&["robots.follower-2.law.k=[3, 4]"]);
+        assert!(both.contains("K (3 to 5, 4 to 5)"), "{both}");
+        let laws = told(&["robots.follower-2.law.kind=full-state"]);
+        assert!(laws.starts_with("Mixed laws · K 5 · β 5 ·"), "{laws}");
+        let sees = told(&["robots.follower-2.sensing.kind=geometric"]);
+        assert!(sees.contains("mixed sensing"), "{sees}");
+    }
+}

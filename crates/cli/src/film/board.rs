@@ -84,6 +84,11 @@ impl Board {
         (count(self.title, rate) + cuts + count(self.end, rate)).max(1)
     }
 
+    /// The frame with which the end card begins.
+    pub(super) fn last_card(&self, rate: f64) -> u64 {
+        self.frames(rate).saturating_sub(count(self.end, rate))
+    }
+
     /// Most rows of a line at the bottom, in a run with so many edges.
     pub(super) fn rows(&self, edges: usize) -> usize {
         let rows = |shot: &Shot| {
@@ -203,6 +208,8 @@ mod tests {
         // A jump in time is a cut: no camera goes through it.
         assert_eq!(board.at(30, 10.0).layout, Layout::single(View::Top));
         assert!((board.at(34, 10.0).time - 4.1).abs() < 1e-12);
+        assert!(board.last_card(10.0) == 70 && board.at(70, 10.0).cards[1] > 0.0);
+        assert!(board.at(69, 10.0).cards[1] == 0.0);
         let last = board.at(89, 10.0);
         assert!(last.time == 5.0 && last.cards == [0.0, 1.0]);
     }

@@ -41,6 +41,31 @@ fn a_storyboard_is_followed_and_the_same_film_is_the_same_file() {
     assert!(files(folder.path()).iter().all(|path| !path.to_string_lossy().contains("journal")));
 }
 
+/// A run that is stopped by a contact has no picture after that, and its card at once.
+#[test]
+fn a_film_ends_with_its_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (run, film) = ("physics = { on_contact = \"stop\" }\n", "[film]\nend = 0.5\nfps = 20\n");
+    let wall =
+        "[[props]]\nname = \"wall\"\nshape = \"block\"\nsize = [0.2, 2.0, 0.5]\npose = [1.2, 0.0, 0.0]\n";
+    for (board, cards) in [("[film]\nfps = 20\n", 0), (film, 10)] {
+        write_scene(folder.path(), &format!("[vehicle]\nkind = \"car\"\n{wall}{board}"));
+        let text = fs::read_to_string(folder.path().join("two.toml")).expect("a scene");
+        fs::write(folder.path().join("two.toml"), text.replacen("time =", &format!("{run}time ="), 1))
+            .expect("written");
+        let args = ["film", "two.toml", "--size", "128x72", "--samples", "1", "-o", "frames"];
+        let (code, _, err) = told(&echelon(folder.path(), &args));
+        assert!(code == 0 && err.contains("the run ended at"), "{err}");
+        let frames = files(&folder.path().join("frames"));
+        // Half a metre at a metre a second, of two seconds.
+        assert!((6..24).contains(&(frames.len() - cards)), "{}", frames.len());
+        let picture = |k: usize| fs::read(&frames[k]).expect("a picture");
+        let last = frames.len() - cards - 1;
+        assert!(picture(last) != picture(last - 1), "it stands still at the end");
+        fs::remove_dir_all(folder.path().join("frames")).expect("removed");
+    }
+}
+
 #[test]
 fn a_storyboard_that_does_not_fit_its_run_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
