@@ -186,6 +186,9 @@ impl Lab {
     fn send(&mut self) {
         for order in std::mem::take(&mut self.desk.orders) {
             let order = match order {
+                Order::TakeUp { scene, .. } => {
+                    Order::TakeUp { scene, gpu: Some(self.viewport.gpu().clone()) }
+                }
                 Order::Open { scene, until, .. } => {
                     Order::Open { scene, until, gpu: Some(self.viewport.gpu().clone()) }
                 }

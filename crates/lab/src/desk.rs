@@ -5,7 +5,6 @@ use crate::session::draft::Draft;
 use crate::session::forecast::Forecast;
 use crate::session::history::History;
 use crate::session::runner::{News, Order};
-use recording::log::Log;
 use scene::{Channel, Follow, Role, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -153,19 +152,6 @@ impl Desk {
         self.draft.as_ref().map(Draft::scene)
     }
 
-    /// Opens a run that was recorded, to look through it; its files are looked for at `home`.
-    ///
-    /// # Errors
-    /// All that is wrong with its scene; then the desk is as before.
-    pub fn open_recorded(&mut self, log: Log, home: &Path) -> Result<(), String> {
-        self.draft = Some(Draft::new(log.scene().to_owned(), None, home)?);
-        self.choice = Choice::Nothing;
-        self.begin();
-        (self.recorded, self.playing) = (true, false);
-        self.orders.push(Order::Recorded(Box::new(log)));
-        Ok(())
-    }
-
     /// Runs the scene as it stands from time 0, at once up to `until` s.
     pub fn restart(&mut self, until: f64) {
         self.begin();
@@ -176,33 +162,13 @@ impl Desk {
         self.orders.push(Order::Play(self.playing));
     }
 
-    fn begin(&mut self) {
+    pub(crate) fn begin(&mut self) {
         let Some(draft) = &self.draft else { return };
         draft.text().clone_into(&mut self.base);
         self.first = Some(Arc::clone(draft.scene()));
         self.chosen = self.chosen_name();
         self.own.clone_from(&draft.scene().changes);
         self.cursor = None;
-    }
-
-    /// Runs the scene of a recorded run anew, up to the time that is looked at.
-    pub(crate) fn leave_recording(&mut self) {
-        if self.recorded {
-            let until = self.time();
-            self.restart(until);
-            self.note("The scene runs anew from here on: what was recorded cannot be changed");
-        }
-    }
-
-    /// Goes on through a recorded run, `seconds` of the clock; whether it goes on after that.
-    pub fn roll(&mut self, seconds: f64) -> bool {
-        if !self.recorded || !self.playing {
-            return false;
-        }
-        let time = self.time() + seconds * self.pace;
-        self.playing = time < self.end();
-        self.cursor = self.playing.then_some(time);
-        self.playing
     }
 
     /// The scene as it was written by the time that is looked at.
@@ -400,6 +366,7 @@ impl Desk {
                 self.forked(branch, (from, sample), name, changes);
             }
             News::Changed(branch, change) => self.changed(branch, &change),
+            News::TakenUp(same) => self.taken_up(same),
             News::Told { .. } => {}
             News::Stands(why) => {
                 self.playing = false;

@@ -22,6 +22,7 @@ pub mod panels;
 pub mod panes;
 mod past;
 pub mod quantities;
+mod recorded;
 pub mod session;
 mod shots;
 pub mod studio;

@@ -4,4 +4,5 @@ pub mod branches;
 pub mod draft;
 pub mod forecast;
 pub mod history;
+pub mod orders;
 pub mod runner;

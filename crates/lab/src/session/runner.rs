@@ -1,7 +1,9 @@
 //! The thread on which the run goes. Orders come in, news go out; neither side waits for the other.
 
-use super::branches::{Branches, Change};
+use super::branches::Branches;
 use super::forecast::Crystal;
+pub use super::orders::{News, Order};
+use recording::Digest;
 use recording::log::Log;
 use rendering::{CameraEyes, Gpu};
 use scene::Scene;
@@ -12,87 +14,6 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel}
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use vocabulary::{Cast, Moment};
-
-/// What the window asks for.
-pub enum Order {
-    /// Another scene, from time 0; its run is brought to `until` s at once.
-    Open {
-        /// What to run.
-        scene: Arc<Scene>,
-        /// Draws for cameras on robots.
-        gpu: Option<Gpu>,
-        /// s.
-        until: f64,
-    },
-    /// A run that was recorded: all of it is told at once, and nothing goes on.
-    Recorded(Box<Log>),
-    /// Run on, or stand.
-    Play(bool),
-    /// Simulated seconds per second.
-    Pace(f64),
-    /// One sample, then stand.
-    Step,
-    /// The parameters of this scene hold from the next sample on.
-    Change(Arc<Scene>),
-    /// A new branch that leaves another before a sample, and goes on by itself.
-    Fork {
-        /// The branch that is left.
-        from: usize,
-        /// Where.
-        sample: u64,
-        /// What the new one is called.
-        name: String,
-    },
-    /// Go on with another branch.
-    Switch(usize),
-    /// How far to look ahead, s; 0 for not at all.
-    Ahead(f64),
-    /// What it takes to write the run of a branch down.
-    Tell(usize),
-}
-
-/// What the window is told.
-pub enum News {
-    /// A scene was opened.
-    Opened {
-        /// Who is on stage.
-        cast: Arc<Cast>,
-        /// Control period, s.
-        period: f64,
-    },
-    /// A branch was made and is the one that goes on.
-    Forked {
-        /// Its index.
-        branch: usize,
-        /// The branch it leaves.
-        from: usize,
-        /// The first sample that is its own.
-        sample: u64,
-        /// What it is called.
-        name: String,
-        /// Changes it shares with the branch it leaves.
-        changes: Vec<Change>,
-    },
-    /// Samples of a branch.
-    Moments(usize, Vec<Moment>),
-    /// Parameters of a branch were changed, or, where nothing is set, are as before again.
-    Changed(usize, Change),
-    /// All there is to know of a branch so far.
-    Told {
-        /// Its index.
-        branch: usize,
-        /// What was changed.
-        changes: Vec<Change>,
-        /// Samples so far.
-        samples: u64,
-        /// Their digest.
-        digest: String,
-    },
-    /// The run stands, and why, where it was not asked to.
-    Stands(Option<String>),
-    /// Something cannot be done.
-    Refused(String),
-}
 
 /// The thread and its channels.
 pub struct Runner {
@@ -127,6 +48,7 @@ impl Runner {
                 unread: count,
                 wake: Box::new(wake),
                 branches: None,
+                recorded: (0, String::new()),
                 active: 0,
                 playing: false,
                 pace: 1.0,
@@ -174,6 +96,8 @@ struct Work {
     unread: Arc<AtomicUsize>,
     wake: Box<dyn Fn() + Send>,
     branches: Option<Branches>,
+    /// Samples of the run that was recorded, and their digest.
+    recorded: (u64, String),
     active: usize,
     playing: bool,
     pace: f64,
@@ -274,6 +198,7 @@ impl Work {
         match order {
             Order::Open { scene, gpu, until } => self.open(scene, gpu.as_ref(), until),
             Order::Recorded(log) => self.look_through(&log),
+            Order::TakeUp { scene, gpu } => self.take_up(scene, gpu.as_ref()),
             Order::Play(on) => {
                 self.playing = on && self.branches.is_some();
                 self.owed = 0.0;
@@ -299,9 +224,9 @@ impl Work {
         }
     }
 
-    fn open(&mut self, scene: Arc<Scene>, gpu: Option<&Gpu>, until: f64) {
+    /// The branches of a scene; `None` after saying why not.
+    fn branches_of(&self, scene: Arc<Scene>, gpu: Option<&Gpu>) -> Option<Branches> {
         let mut blind = None;
-        let planned = scene.time.duration;
         let opened = Branches::open(scene, |simulation| {
             if simulation.needs_eyes() {
                 match gpu.map(|gpu| CameraEyes::new(gpu, simulation.cast())) {
@@ -311,13 +236,17 @@ impl Work {
                 }
             }
         });
-        let branches = match opened {
-            Ok(branches) => branches,
-            Err(error) => return self.tell(News::Refused(error.to_string())),
-        };
-        if let Some(why) = blind {
-            return self.tell(News::Refused(why));
+        match (opened, blind) {
+            (Ok(branches), None) => return Some(branches),
+            (Err(error), _) => self.tell(News::Refused(error.to_string())),
+            (Ok(_), Some(why)) => self.tell(News::Refused(why)),
         }
+        None
+    }
+
+    fn open(&mut self, scene: Arc<Scene>, gpu: Option<&Gpu>, until: f64) {
+        let planned = scene.time.duration;
+        let Some(branches) = self.branches_of(scene, gpu) else { return };
         let simulation = branches.list()[0].simulation();
         let cast = Cast { duration: planned, ..simulation.cast().clone() };
         let (cast, period) = (Arc::new(cast), simulation.period());
@@ -334,20 +263,37 @@ impl Work {
         (self.branches, self.active, self.playing) = (None, 0, false);
         let (cast, period) = (Arc::new(log.cast().clone()), log.manifest().period);
         self.tell(News::Opened { cast, period });
-        let mut batch = Vec::new();
+        let (mut batch, mut digest, mut samples) = (Vec::new(), Digest::default(), 0);
+        let mut fault = None;
         for moment in log.moments() {
             match moment {
-                Ok(moment) => batch.push(moment),
-                Err(error) => {
-                    self.report(std::mem::take(&mut batch));
-                    return self.tell(News::Refused(error.to_string()));
+                Ok(moment) => {
+                    digest.push(&moment);
+                    samples += 1;
+                    batch.push(moment);
                 }
+                Err(error) => fault = Some(error.to_string()),
             }
             if batch.len() == BATCH {
                 self.report(std::mem::take(&mut batch));
             }
         }
         self.report(batch);
+        self.recorded = (samples, digest.text());
+        if let Some(fault) = fault {
+            self.tell(News::Refused(fault));
+        }
+    }
+
+    /// Runs the scene of the recorded run as far as that came. The window has seen it.
+    fn take_up(&mut self, scene: Arc<Scene>, gpu: Option<&Gpu>) {
+        let Some(mut branches) = self.branches_of(scene, gpu) else { return };
+        let (samples, digest) = &self.recorded;
+        while branches.list()[0].simulation().sample() < *samples && branches.advance(0).is_some() {}
+        let same = branches.list()[0].digest() == *digest;
+        (self.active, self.owed) = (0, 0.0);
+        self.branches = Some(branches);
+        self.tell(News::TakenUp(same));
     }
 
     /// At least the first sample, and all up to `until` s, within a second of waiting.

@@ -38,6 +38,7 @@ fn text(desk: &Desk) -> String {
 /// What the run is asked for.
 fn orders(desk: &Desk) -> Vec<&'static str> {
     let word = |order: &Order| match order {
+        Order::TakeUp { .. } => "take up",
         Order::Open { .. } => "open",
         Order::Recorded(_) => "recorded",
         Order::Play(_) => "play",

@@ -74,16 +74,49 @@ fn it_plays_by_the_clock_to_its_end_and_from_there_anew() {
     assert!(rig.desk.act(&Action::Toggle) && rig.desk.roll(0.1) && rig.desk.time() < 1.0);
 }
 
+/// A branch leaves the recording where one looks; the recording stays beside it.
 #[test]
-fn whoever_changes_something_runs_the_scene_anew() {
+fn a_recorded_run_has_branches() {
     let folder = record(THREE);
     let mut rig = opened(folder.path());
-    assert!(rig.desk.act(&Action::Seek(2.0)) && rig.desk.act(&Action::Fork));
-    assert!(rig.desk.notice.as_ref().is_some_and(|notice| notice.contains("no branches")));
+    let (samples, digest) = run(THREE);
     let set = Action::SetPoint { edge: 0, distance: 1.5, bearing: 2.356 };
+    assert!(rig.desk.act(&Action::Seek(2.0)));
     rig.act(&[set]);
     assert!(!rig.desk.recorded && rig.text().contains("1.5"));
+    assert_eq!((rig.desk.branches.len(), rig.desk.branch), (2, 1));
+    assert_eq!(rig.desk.branches[1].parent, Some((0, 2.0)));
+    assert!(rig.desk.log.iter().any(|event| event.text.contains("bit for bit")), "{:?}", rig.desk.log);
     assert!((rig.desk.end() - 2.0).abs() < 0.05, "{}", rig.desk.end());
+    rig.steps(30);
+    let told = rig.told(1);
+    assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
+    // What was recorded is still there, and goes on.
+    let trunk = rig.told(0);
+    assert_eq!((trunk.samples, trunk.digest), (samples, digest));
+    rig.act(&[Action::Branch(0)]);
+    let end = rig.desk.end();
     rig.steps(3);
-    assert!((rig.desk.end() - 2.03).abs() < 0.05);
+    assert!((rig.desk.end() - end - 0.03).abs() < 1e-9);
+    rig.act(&[Action::Seek(1.0), Action::Fork]);
+    assert_eq!(rig.desk.branches[2].parent, Some((0, 1.0)));
+}
+
+/// A recording that does not come out again is not branched from: the scene begins anew.
+#[test]
+fn a_recording_of_another_program_begins_anew() {
+    let folder = record(THREE);
+    let mut rig = opened(folder.path());
+    rig.desk
+        .draft
+        .as_mut()
+        .expect("a draft")
+        .edit("other", |text| text.set("robots.left.law.k", "2.0").map_err(|e| e.to_string()))
+        .expect("edited");
+    assert!(rig.desk.act(&Action::Seek(2.0)));
+    rig.act(&[Action::Fork]);
+    rig.settle();
+    assert!(rig.desk.notice.as_ref().is_some_and(|notice| notice.contains("not run as it was recorded")));
+    assert_eq!(rig.desk.branches.len(), 1);
+    assert!(rig.desk.end() < 3.0);
 }
