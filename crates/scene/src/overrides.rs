@@ -17,20 +17,32 @@ use std::{fmt, str::FromStr};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Override(String);
 
-/// An override without `=`, or with an empty part in its path.
+/// What is no override.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is not an override: write path.to.key=value, such as time.duration=5")]
-pub struct OverrideError(String);
+pub enum OverrideError {
+    /// Without `=`, or with an empty part in its path.
+    #[error("`{0}` is not an override: write path.to.key=value, such as time.duration=5")]
+    Form(String),
+    /// With a path of so many parts.
+    #[error("an override with a path of {0} parts leads nowhere: none has more than {MOST_PARTS}")]
+    Deep(usize),
+}
+
+/// Most parts of a path: nothing in a scene lies deeper.
+pub(crate) const MOST_PARTS: usize = 32;
 
 impl FromStr for Override {
     type Err = OverrideError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         match text.split_once('=') {
+            Some((path, _)) if path.split('.').count() > MOST_PARTS => {
+                Err(OverrideError::Deep(path.split('.').count()))
+            }
             Some((path, _)) if path.split('.').all(|part| !part.trim().is_empty()) => {
                 Ok(Self(composed(text)))
             }
-            _ => Err(OverrideError(text.to_owned())),
+            _ => Err(OverrideError::Form(text.to_owned())),
         }
     }
 }

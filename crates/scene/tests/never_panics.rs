@@ -124,3 +124,14 @@ fn deep_nesting_and_many_faults() {
     let robot = |n| format!("[[robots]]\nname = \"r{n}\"\npose = [0, 0, 0]\nleader = \"q{n}\"\n");
     try_out(&(0..5_000).map(robot).collect::<Vec<_>>().concat(), &[]);
 }
+
+/// A path that goes down for ever would take the stack with it.
+#[test]
+fn endless_paths_are_refused() {
+    let endless = format!("{}b=1", "a.".repeat(60_000));
+    let fault = endless.parse::<scene::Override>().unwrap_err().to_string();
+    assert!(fault.contains("60001 parts"), "{fault}");
+    let mut text = scene::SceneText::parse("schema = 1\n").unwrap();
+    assert!(text.set(&"a.".repeat(60_000), "1").is_err());
+    assert!(text.set(&format!("{}b", "a.".repeat(60_000)), "1").is_err());
+}

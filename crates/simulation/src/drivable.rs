@@ -53,7 +53,7 @@ pub(crate) fn undrivable(motion: &Motion, limits: &Limits, [from, to]: [f64; 2])
         let bound = limits.turn_rate_at(speed) * SLACK;
         // What is not a number is not within a bound either.
         let fits = turn_rate <= bound && speed <= limits.speed_max * SLACK;
-        (!fits).then(|| Undrivable { time, point, speed, turn_rate, limits: *limits, step: None })
+        (!fits).then_some(Undrivable { time, point, speed, turn_rate, limits: *limits, step: None })
     };
     if let Motion::Way(way) = motion {
         let bends = way.bends(to).into_iter().filter(|bend| bend.time >= from && bend.speed > 0.0);

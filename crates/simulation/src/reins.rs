@@ -76,6 +76,7 @@ impl Simulation {
             lookout: self.lookout.clone(),
             frames: self.frames.clone(),
             moment: self.moment.clone(),
+            spare: self.spare.clone(),
             fault: self.fault.clone(),
             changes: self.changes.clone(),
             adopted: self.adopted.clone(),

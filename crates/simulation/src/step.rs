@@ -69,6 +69,8 @@ pub struct Simulation {
     pub(crate) lookout: Option<Lookout>,
     pub(crate) frames: Vec<Frame>,
     pub(crate) moment: Moment,
+    /// The moment before, over which the next is written.
+    pub(crate) spare: Moment,
     pub(crate) sample: u64,
     pub(crate) last_sample: u64,
     pub(crate) stop_at_contact: bool,
@@ -115,6 +117,7 @@ impl Simulation {
             observations,
             lookout,
             frames: Vec::new(),
+            spare: moment.clone(),
             moment,
             sample: 0,
             last_sample: sample_at(setup.duration, setup.period),
@@ -147,9 +150,11 @@ impl Simulation {
         }
         self.formation.decide(time, &self.observations, &mut self.state);
         self.plant.world_mut().apply(&self.state.commands);
+        std::mem::swap(&mut self.moment, &mut self.spare);
         self.write_moment(time);
         self.fault = not_finite(&self.moment, &self.cast).map(Fault::NotFinite);
         if self.fault.is_some() {
+            std::mem::swap(&mut self.moment, &mut self.spare);
             return None;
         }
         self.stopped = self.stop_at_contact && self.moment.contacts.iter().any(Contact::of_robot);

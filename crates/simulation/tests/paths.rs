@@ -115,6 +115,7 @@ fn a_number_that_is_not_finite_ends_the_run_and_is_named() {
     while let Some(moment) = run.next_moment() {
         assert!(moment.edges[0].asked.turn_rate.is_finite());
     }
+    assert!(run.moment().edges[0].asked.turn_rate.is_finite(), "nobody gets to see it");
     let Some(Fault::NotFinite(what)) = run.fault() else { panic!("{:?}", run.fault()) };
     assert!(what.to_string().starts_with("the command asked for of `ann` → `bob`"), "{what}");
 }

@@ -1,5 +1,7 @@
 //! Linear systems of three diagonals, solved in time that grows with their size alone: a curve may have many points.
 
+use std::array::from_fn;
+
 /// A matrix with entries beside the diagonal only; row k has `lower[k - 1]`, `diagonal[k]`, `upper[k]`.
 #[derive(Debug, Clone)]
 pub(super) struct Tridiagonal {
@@ -28,21 +30,21 @@ impl Tridiagonal {
             if k + 2 < n {
                 self.upper[k + 1] -= second[k] * share;
             }
-            for i in 0..N {
-                right[k + 1][i] -= right[k][i] * share;
-            }
+            let (above, below) = (right[k], right[k + 1]);
+            right[k + 1] = from_fn(|i| below[i] - above[i] * share);
         }
         for k in (0..n).rev() {
-            for i in 0..N {
+            let after = [1, 2].map(|more| right.get(k + more).copied());
+            right[k] = from_fn(|i| {
                 let mut value = right[k][i];
-                if k + 2 < n {
-                    value -= right[k + 2][i] * second[k];
+                if let Some(after) = after[1] {
+                    value -= after[i] * second[k];
                 }
-                if k + 1 < n {
-                    value -= right[k + 1][i] * self.upper[k];
+                if let Some(after) = after[0] {
+                    value -= after[i] * self.upper[k];
                 }
-                right[k][i] = value / self.diagonal[k];
-            }
+                value / self.diagonal[k]
+            });
         }
     }
 

@@ -1,6 +1,7 @@
 //! Where paths lead in a text.
 
 use super::EditError;
+use crate::overrides::MOST_PARTS;
 use crate::text::{
     node::composed,
     words::{did_you_mean, nearest},
@@ -21,6 +22,9 @@ pub(super) fn steps(root: &Table, path: &str) -> Result<Vec<Step>, EditError> {
     let mut parts: Vec<String> = path.split('.').map(|part| composed(part.trim())).collect();
     if parts.iter().any(String::is_empty) {
         return Err(EditError::new(format!("`{path}` is no path: write it as law.k")));
+    }
+    if parts.len() > MOST_PARTS {
+        return Err(EditError::new(format!("a path of {} parts leads nowhere", parts.len())));
     }
     if let [list, name, ..] = parts.as_slice()
         && list == "robots"

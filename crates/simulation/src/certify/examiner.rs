@@ -114,15 +114,15 @@ impl Stretch {
 impl Examiner {
     /// For a run of `scene` that has not begun; its memory does not grow with the run.
     pub fn new(scene: &Scene, simulation: &Simulation) -> Self {
-        Self::examiner(scene, simulation, false)
+        Self::begin(scene, simulation, false)
     }
 
     /// As [`Self::new`], with every sample kept in the witness of its certificate.
     pub fn keeping(scene: &Scene, simulation: &Simulation) -> Self {
-        Self::examiner(scene, simulation, true)
+        Self::begin(scene, simulation, true)
     }
 
-    fn examiner(scene: &Scene, simulation: &Simulation, keeps: bool) -> Self {
+    fn begin(scene: &Scene, simulation: &Simulation, keeps: bool) -> Self {
         let wheels: Vec<bool> = scene.robots.iter().map(|robot| robot.vehicle.kind.has_wheels()).collect();
         let leads = &simulation.cast().members;
         Self {

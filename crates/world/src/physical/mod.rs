@@ -90,8 +90,8 @@ struct Guided {
     /// At the start of the current advance.
     pose: Pose,
     height: f64,
-    /// m.
-    size: f64,
+    /// Smaller side, and farthest point from its middle, m.
+    size: [f64; 2],
 }
 
 /// Vehicles from which on they are driven on all threads.
@@ -122,7 +122,7 @@ impl Physical {
             if let (Some(body), Mobility::Guided, Some(path)) = (body, prop.prop.mobility, &prop.path) {
                 let Placement { position: [x, y, height], rotation: [_, _, z, w] } = prop.prop.placement;
                 let pose = Pose::new(x, y, 2.0 * z.atan2(w));
-                let size = smaller_side(&prop.prop.solid);
+                let size = [smaller_side(&prop.prop.solid), prop.prop.solid.reach()];
                 guided.push(Guided { body, path: path.clone(), pose, height, size });
             }
         }
@@ -168,12 +168,16 @@ impl Physical {
             self.snapshot.robots[*index].motion.speed.abs() / sizes(self.smallest)
         });
         let guided = self.guided.iter().map(|prop| {
-            let [begin, end] = [time, time + duration].map(|t| prop.path.at(t).speed.abs());
-            begin.max(end) / sizes(prop.size)
+            let [side, reach] = prop.size;
+            let [begin, end] = [time, time + duration].map(|t| {
+                let drive = prop.path.at(t);
+                drive.speed.abs() + reach * drive.turn_rate.abs()
+            });
+            begin.max(end) / sizes(side)
         });
         let pace = unicycles.chain(guided).fold(0.0, f64::max);
         let steps = (duration / self.step - 1e-9).ceil().max(1.0);
-        steps * (pace * duration / steps).ceil().clamp(1.0, MOST_PARTS)
+        (steps * (pace * duration / steps).ceil().clamp(1.0, MOST_PARTS)).min(f64::from(u32::MAX))
     }
 
     /// What has no mass goes its way.

@@ -272,6 +272,30 @@ fn a_fast_guided_block_meets_a_loose_one() {
     }
 }
 
+/// The arm of a turnstile sweeps away what it meets.
+#[test]
+fn a_fast_turning_arm_meets_a_loose_block() {
+    #[derive(Debug)]
+    struct Turns;
+    impl vocabulary::Profile for Turns {
+        fn at(&self, _: f64) -> vocabulary::Drive {
+            vocabulary::Drive { turn_rate: 20.0, ..vocabulary::Drive::default() }
+        }
+    }
+    let mut arm = prop(Solid::Block { size: [8.0, 0.05, 0.5] }, Pose::default(), None);
+    arm.prop.mobility = Mobility::Guided;
+    arm.path = Some(std::sync::Arc::new(Turns));
+    let block = prop(Solid::Block { size: [0.1, 0.1, 0.1] }, Pose::new(0.0, 3.5, 0.0), Some(1.0));
+    let mut world = Physical::new(Stage { props: vec![arm, block], ..flat(vec![]) });
+    for _ in 0..15 {
+        world.apply(&[]);
+        world.advance(0.01);
+    }
+    // The arm turns by 3 rad in this time: past the block, which has gone with it.
+    let [x, y, _] = world.snapshot().props[1].position;
+    assert!(x < -1.0 && x.hypot(y) > 3.0, "{x} {y}");
+}
+
 /// The ground bears as far out as anything can start.
 #[test]
 fn a_thousand_kilometres_out_things_stand_and_drive_as_at_home() {
