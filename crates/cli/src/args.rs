@@ -158,7 +158,7 @@ pub(crate) struct PictureArgs {
     /// Show what this robot's camera sees in a corner of the picture, with the overlay
     #[arg(long, value_name = "ROBOT")]
     pub(crate) inset_camera: Option<String>,
-    /// Size of text and lines; grows with the height of the picture if left out
+    /// Size of text and lines; that of 1280x720 is 1, and it goes with the size of the picture if left out
     #[arg(long, value_parser = scale)]
     pub(crate) scale: Option<f64>,
     /// Samples a pixel: 4, or 1 for speed
@@ -189,7 +189,7 @@ pub(crate) struct FilmArgs {
     /// Frames a second of simulation time
     #[arg(long)]
     pub(crate) fps: Option<f64>,
-    /// Film file: .mp4 or .gif (480x270, 10 frames a second if not said otherwise); without an ending, a folder of
+    /// Film file: .mp4 or .gif (480x270, 10 frames a second where the scene says no other); without an ending, a folder of
     /// PNG frames; any other ending needs ffmpeg. NAME.mp4 if left out
     #[arg(long, short, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
