@@ -68,7 +68,7 @@ pub(super) fn import(file: &File, path: &Path) -> Result<Imported, Error> {
     let (mut pending, mut batch, mut count) = (Pending::default(), vec![], 0);
     let mut take = |pending: &mut Pending, until: u64| -> Result<bool, Error> {
         while let Some(moment) = pending.pop(until, &cast) {
-            let Some(moment) = moment else { return Ok(false) };
+            let Ok(moment) = moment else { return Ok(false) };
             batch.push(moment);
             count += 1;
             if batch.len() == BATCH {
@@ -196,20 +196,21 @@ impl About {
 
     /// What was done with the log, and what it lacks.
     fn remark(&self, count: u64, sound: bool) -> String {
-        let mut remark = format!("was written anew by {}", self.library);
+        let anew = format!("was written anew by {}", self.library);
         let lacks =
             [(self.scene.is_none(), "its scene"), (self.manifest.is_none(), "its manifest with the digest")];
         let lacks: Vec<&str> = lacks.iter().filter(|(lacks, _)| *lacks).map(|(_, what)| *what).collect();
-        if !lacks.is_empty() {
-            remark += &format!(", which left out {}", lacks.join(" and "));
-        }
-        if !sound || count < self.samples {
-            remark += &format!(
-                "; of its {} samples the first {count} are whole, the others lack topics or messages",
-                self.samples
-            );
-        }
-        remark
+        let lacks = match lacks.join(" and ") {
+            nothing if nothing.is_empty() => nothing,
+            lacks => format!(", which left out {lacks}"),
+        };
+        let all = self.samples;
+        let broken = if sound && count == all {
+            String::new()
+        } else {
+            format!("; of its {all} samples the first {count} are whole, the others lack topics or messages")
+        };
+        format!("{anew}{lacks}{broken}")
     }
 }
 
@@ -232,6 +233,9 @@ struct Parts {
     contacts: Vec<Contact>,
     sample: Option<Sample>,
 }
+
+/// A moment lacks something.
+struct NotWhole;
 
 impl Pending {
     /// Takes a message in; whether it makes sense.
@@ -257,11 +261,10 @@ impl Pending {
         put().is_some()
     }
 
-    /// The first moment before `until` ns, out of which nothing more can come; `Some(None)` where it is not whole, `None`
-    /// where there is none.
-    fn pop(&mut self, until: u64, cast: &Cast) -> Option<Option<Moment>> {
+    /// The first moment before `until` ns, to which nothing more can come, if it is whole; `None` where there is none.
+    fn pop(&mut self, until: u64, cast: &Cast) -> Option<Result<Moment, NotWhole>> {
         let first = self.moments.first_entry().filter(|entry| *entry.key() < until)?;
-        Some(first.remove().whole(&mut self.props, cast))
+        Some(first.remove().whole(&mut self.props, cast).ok_or(NotWhole))
     }
 }
 

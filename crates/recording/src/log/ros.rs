@@ -1,6 +1,7 @@
 //! Names as ROS 2 takes them in topics: letters, digits and single underscores, no digit in front.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
 
 /// A legal name for each of `names`, no two the same: those that are legal keep theirs.
 pub(super) fn legal<'a>(names: impl IntoIterator<Item = &'a str>) -> BTreeMap<String, String> {
@@ -28,8 +29,8 @@ fn plain(name: &str) -> String {
         match c {
             'a'..='z' | 'A'..='Z' | '0'..='9' => text.push(c),
             c if c.is_ascii() => text.push('_'),
-            // A letter that ROS does not have is told by its number.
-            c => text += &format!("u{:x}_", u32::from(c)),
+            // A letter that ROS does not have is told by its number; writing to a text cannot fail.
+            c => drop(write!(text, "u{:x}_", u32::from(c))),
         }
     }
     let words: Vec<&str> = text.split('_').filter(|word| !word.is_empty()).collect();
