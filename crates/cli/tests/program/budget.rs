@@ -32,6 +32,7 @@ fn errors_grow_with_the_noise_of_corners() {
     let args = short(&scene, &["--pixel-noise", "0,1,0.1", "--json"]);
     let value = json(&args);
     assert_eq!(value["runs"].as_array().map(Vec::len), Some(7), "truth, and three levels with two observers");
+    assert_eq!(value["status"], "complete");
     let errors = look_errors(&value);
     assert!(errors.windows(2).all(|w| w[1] > 2.0 * w[0]), "{errors:?}");
     assert!(value["without_camera"].as_str().is_some_and(|why| why.contains("--no-camera")));

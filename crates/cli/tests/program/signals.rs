@@ -94,3 +94,20 @@ fn a_second_signal_ends_it_at_once() {
     let (code, _, _) = told(&child.wait_with_output().expect("ended"));
     assert_eq!(code, 130);
 }
+
+/// A comparison that was stopped says so in its numbers.
+#[test]
+fn a_budget_that_is_stopped_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = scene("vision-circle-three");
+    let args = ["budget", &scene, "--no-camera", "--set", "time.duration=2000", "-o", "out"];
+    let mut child =
+        command(folder.path(), &args).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("started");
+    wait_for(&folder.path().join("out"));
+    std::thread::sleep(Duration::from_millis(300));
+    signal(&child, "-INT");
+    assert!(ends(&mut child));
+    let text = fs::read_to_string(folder.path().join("out/budget.json")).expect("numbers");
+    let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(value["status"], "interrupted", "{text}");
+}
