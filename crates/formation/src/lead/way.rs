@@ -37,6 +37,8 @@ pub struct Way {
 const MOST_LAPS: u32 = 1000;
 /// Accuracy of arc lengths, m.
 const ACCURACY: f64 = 1e-10;
+/// As a share of a length: no closer than numbers are to each other.
+const RELATIVE_ACCURACY: f64 = 1e-12;
 
 impl Way {
     /// Through `points` in m (back to the first if `closed`).
@@ -51,7 +53,7 @@ impl Way {
         let pieces = spline(points, closed)?;
         let mut lengths = vec![0.0];
         for piece in &pieces {
-            lengths.push(lengths[lengths.len() - 1] + piece.arclen(ACCURACY));
+            lengths.push(lengths[lengths.len() - 1] + piece.arclen(accuracy(piece)));
         }
         Ok(Self { pieces, lengths, closed, pace })
     }
@@ -75,7 +77,7 @@ impl Way {
             let (u, curvature) = sharpest(piece);
             let near = if u < 0.5 { k } else { k + 1 };
             let from = if u < 0.5 { piece.p0 } else { piece.p3 };
-            let along = self.lengths[k] + piece.subsegment(0.0..u).arclen(ACCURACY);
+            let along = self.lengths[k] + piece.subsegment(0.0..u).arclen(accuracy(piece));
             for lap in 0..if self.closed { MOST_LAPS } else { 1 } {
                 let travelled = along + f64::from(lap) * self.length();
                 let Some(time) = self.pace.when(travelled).filter(|time| *time <= until) else { break };
@@ -99,7 +101,7 @@ impl Way {
         let along = travelled.rem_euclid(length);
         let k = self.lengths.partition_point(|l| *l <= along).clamp(1, self.pieces.len()) - 1;
         let piece = &self.pieces[k];
-        let u = piece.inv_arclen(along - self.lengths[k], ACCURACY);
+        let u = piece.inv_arclen(along - self.lengths[k], accuracy(piece));
         let first = piece.deriv();
         let second = first.deriv();
         let third = second.deriv().eval(u).to_vec2();
@@ -123,6 +125,12 @@ impl Profile for Way {
             turn_acceleration: acceleration * curvature + speed * speed * change,
         }
     }
+}
+
+/// Of the arc length of a piece, m.
+fn accuracy(piece: &CubicBez) -> f64 {
+    let [a, b, c, d] = [piece.p0, piece.p1, piece.p2, piece.p3];
+    ACCURACY.max(RELATIVE_ACCURACY * (a.distance(b) + b.distance(c) + c.distance(d)))
 }
 
 /// The interpolating C² cubic spline as Bézier pieces: periodic if closed, natural if open.
