@@ -151,6 +151,30 @@ fn nothing_lies_under_what_films_add() {
     assert!(wrong.is_empty(), "{} faults:\n{}", wrong.len(), wrong.join("\n"));
 }
 
+/// Views that do not go by the formation have robots everywhere: there the panel goes, and under a card as well.
+#[test]
+fn the_panel_makes_way_where_a_camera_cannot() {
+    let (cast, all) = shown("seven-v", 8.0, 20);
+    let views = ["follow:robot-2", "follow:robot-7", "snake-eye", "fixed:-9,0,6,0,0,0", "fixed:8,8,9,3,-3,0"];
+    let (mut there, mut gone) = (0, 0);
+    for (size, view) in SIZES.iter().flat_map(|size| views.map(|view| (*size, view))) {
+        for at in &all {
+            let composition = composed(&cast, at, view, &Style::default(), size);
+            for panel in &composition.panels {
+                let all = [&composition.robots, &composition.set_points, &composition.labels];
+                let hidden = all.into_iter().flatten().filter(|b| overlap(b, panel)).count();
+                assert_eq!(hidden, 0, "{view} {size:?} at {}", at.1.snapshot.time);
+            }
+            there += composition.panels.len();
+            gone += 1 - composition.panels.len();
+        }
+    }
+    assert!(there > 50 && gone > 50, "there {there}, gone {gone}");
+    let card = rendering::Card { title: "A V".into(), rows: vec![], opacity: 1.0 };
+    let titled = Style { show: Show { card: Some(card), ..Show::default() }, ..Style::default() };
+    assert!(composed(&cast, &all[0], "snake", &titled, (1280, 720)).panels.is_empty());
+}
+
 /// From picture to picture of a film the panel stays where it is, and what is seen moves little.
 #[test]
 fn panels_stand_and_cameras_are_calm() {

@@ -6,7 +6,7 @@ use crate::paint::Stage;
 use crate::palette::{Rgb, hex};
 use crate::view::Tile;
 use glam::Vec2;
-use vocabulary::{FACES, Frame, Lens, Member, Outcome, Rigid, Shell, tag_code, wrap};
+use vocabulary::{Edge, FACES, Frame, Lens, Member, Outcome, Relative, Rigid, Shell, tag_code, wrap};
 
 /// Older looks are forgotten, s.
 const FORGOTTEN: f64 = 2.0;
@@ -30,7 +30,7 @@ struct Sketch<'a, 'b, 'c> {
     words: &'a mut Words<'b>,
     window: Window<'c>,
     lens: Lens,
-    /// How far the camera has turned to the left since the look, rad.
+    /// How far the camera has turned to the left of its leader since the look, rad.
     turn: f64,
     width: f32,
 }
@@ -42,12 +42,22 @@ fn turned([x, y]: [f64; 2], turn: f64) -> Option<[f64; 2]> {
     (ahead > 0.02).then(|| [(x * cos + sin) / ahead, y / ahead])
 }
 
-/// How far a robot's camera has turned to the left since a look, rad: what is drawn of it was seen then, over what is seen
-/// now.
-fn turn_since(stage: &Stage<'_>, robot: usize, frame: &Frame) -> f64 {
-    let now = stage.moment.snapshot.robots.get(robot).copied().unwrap_or_default();
-    let heading = stage.trail.heading_at(robot, frame.sighting.stamp, stage.moment);
-    wrap(now.motion.pose.heading - heading + now.camera_pan - frame.pan)
+/// How far the camera has turned to the left of its leader since a look, rad: what was seen then is drawn over what is
+/// seen now.
+fn turn_since(stage: &Stage<'_>, edge: &Edge, frame: &Frame) -> f64 {
+    let robots = &stage.moment.snapshot.robots;
+    let (Some(own), Some(leader), Some(member)) =
+        (robots.get(edge.follower), robots.get(edge.leader), stage.cast.members.get(edge.follower))
+    else {
+        return 0.0;
+    };
+    let bearing = |relative: &Relative, pan: f64| {
+        let (sin, cos) = relative.view_angle.sin_cos();
+        let ahead = -relative.distance * cos - member.mount.forward;
+        (-relative.distance * sin).atan2(ahead) - pan
+    };
+    let now = Relative::between(leader.motion.pose, own.motion.pose);
+    wrap(bearing(&frame.truth, frame.pan) - bearing(&now, own.camera_pan))
 }
 
 impl Sketch<'_, '_, '_> {
@@ -162,7 +172,7 @@ fn detections(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robo
         // Thin in a small picture, where thick lines would cover what they tell of.
         let width = words.scaled(1.6 * (window.tile.width as f32 / words.scaled(640.0)).clamp(0.55, 1.0));
         let mut sketch =
-            Sketch { words, window, lens: follower.lens, turn: turn_since(stage, robot, frame), width };
+            Sketch { words, window, lens: follower.lens, turn: turn_since(stage, edge, frame), width };
         region(&mut sketch, frame);
         if let (true, Some(shell)) = (frame.outcome.seen(), &leader.shell) {
             sketch.shell(&estimated(frame, follower), shell, ink);
@@ -255,34 +265,33 @@ mod tests {
     use crate::floor::Floor;
     use crate::{Style, Trail};
     use glam::{DVec2, DVec3};
-    use vocabulary::{Body, Cast, Moment, Pose, RobotState, Sighting, Snapshot};
+    use vocabulary::{Body, Cast, Moment, Pose, RobotState, Snapshot};
 
-    /// A robot that stands or turns on the spot, whose camera pans, at a time.
-    fn moment(time: f64, heading: f64, pan: f64) -> Moment {
-        let mut robot = RobotState { camera_pan: pan, ..RobotState::default() };
-        robot.motion.pose = Pose::new(0.0, 0.0, heading);
-        Moment {
-            snapshot: Snapshot { time, robots: vec![robot], ..Snapshot::default() },
-            ..Moment::default()
-        }
+    /// A leader that drives past, and a follower that drives and turns while its camera pans, at a time.
+    fn moment(time: f64, [turn, panning, passing]: [f64; 3]) -> Moment {
+        let mut robots = vec![RobotState::default(); 2];
+        robots[0].motion.pose = Pose::new(2.0, 0.5 + passing * (time - 0.5), 0.3);
+        robots[1].motion.pose = Pose::new(0.4 * (time - 0.5), 0.0, turn * (time - 0.5));
+        robots[1].camera_pan = 0.1 + panning * (time - 0.5);
+        Moment { snapshot: Snapshot { time, robots, ..Snapshot::default() }, ..Moment::default() }
     }
 
     #[test]
-    fn a_look_is_drawn_where_it_was_seen_though_the_camera_turns() {
-        let cast = Cast { members: vec![Member::new("a", true, Body::default())], ..Cast::default() };
-        let member = &cast.members[0];
-        let style = Style::default();
-        for (rate, panning) in [(0.0, 1.5), (0.8, 0.0), (1.0, -1.5), (0.0, 0.0)] {
-            let at = |time: f64| moment(time, 3.0 + rate * time, 0.3 + panning * time);
-            let mut trail = Trail::new(&cast);
-            for k in 0..=50 {
-                trail.push(&at(f64::from(k) * 0.01));
-            }
-            let (stamp, now) = (0.453, at(0.5));
+    fn a_look_is_drawn_over_the_leader_though_the_camera_turns() {
+        let member = |name: &str, leads: bool| Member::new(name, leads, Body::default());
+        let edge = Edge { leader: 0, follower: 1 };
+        let cast = Cast {
+            members: vec![member("a", true), member("b", false)],
+            edges: vec![edge],
+            ..Cast::default()
+        };
+        let (trail, style) = (Trail::new(&cast), Style::default());
+        for rates in [[0.0; 3], [0.0, 1.5, 0.0], [1.0, -1.5, 0.0], [0.8, 0.0, 0.0], [0.3, 0.2, 0.8]] {
+            let (then, now) = (moment(0.45, rates), moment(0.5, rates));
             let stage = Stage {
                 cast: &cast,
                 floor: &Floor::new(&cast),
-                colours: &[vocabulary::colours::LEAD],
+                colours: &[vocabulary::colours::LEAD; 2],
                 trail: &trail,
                 moment: &now,
                 style: &style,
@@ -292,22 +301,23 @@ mod tests {
                 shadowed: (DVec2::ZERO, 1.0),
                 detail: 1.0,
             };
-            // A point far away, as the camera saw it at the look.
-            let then = at(stamp).snapshot.robots[0];
-            let looked = then.motion.pose.heading + then.camera_pan + 0.1;
-            let point = [40.0 * looked.cos(), 40.0 * looked.sin(), 1.0];
-            let [x, y, z] = member.mount.world_from_camera(&then).inverse().apply(point);
-            let pan = then.camera_pan;
-            let frame =
-                Frame { sighting: Sighting { stamp, ..Sighting::default() }, pan, ..Frame::default() };
-            let turn = turn_since(&stage, 0, &frame);
-            let camera = carried(&now.snapshot, &cast, 0, 4.0 / 3.0);
+            // The leader's middle, as the camera saw it at the look.
+            let [leader, own] = [0, 1].map(|k| then.snapshot.robots[k]);
+            let Pose { x, y, .. } = leader.motion.pose;
+            let [x, y, z] = cast.members[1].mount.world_from_camera(&own).inverse().apply([x, y, 0.2]);
+            let frame = Frame {
+                truth: Relative::between(leader.motion.pose, own.motion.pose),
+                pan: own.camera_pan,
+                ..Frame::default()
+            };
+            let camera = carried(&now.snapshot, &cast, 1, 4.0 / 3.0);
             let window = Window { camera: &camera, tile: Tile { x: 0, y: 0, width: 640, height: 480 } };
-            let [right, down] = turned([x / z, y / z], turn).unwrap();
+            let [right, down] = turned([x / z, y / z], turn_since(&stage, &edge, &frame)).unwrap();
             let drawn = window.direction(right, -down);
-            let seen = window.pixel(DVec3::from_array(point)).unwrap();
-            // The camera sits in front of the axis about which the body turns.
-            assert!(drawn.distance(seen) < 1.5, "{rate} {panning}: {drawn} is not {seen}");
+            let Pose { x, y, .. } = now.snapshot.robots[0].motion.pose;
+            let seen = window.pixel(DVec3::new(x, y, 0.2)).unwrap();
+            // It has come a few millimetres nearer or gone as far away.
+            assert!(drawn.distance(seen) < 1.0, "{rates:?}: {drawn} is not {seen}");
         }
     }
 }

@@ -294,7 +294,7 @@ fn line(words: &mut Words<'_>, said: &Line, views: [f32; 2]) {
 /// Sizes of a card's title and of its rows at scale 1, pixels; and most lines of each.
 const CARD: [(f32, usize); 2] = [(40.0, 2), (20.0, 3)];
 /// A row of a card is not wider than this at scale 1, pixels: longer ones are hard to read.
-const CARD_WIDTH: f32 = 760.0;
+const CARD_WIDTH: f32 = 800.0;
 
 fn card(words: &mut Words<'_>, shown: &Card, [width, height]: [f32; 2]) {
     let alpha = shown.opacity as f32;
@@ -310,6 +310,9 @@ fn card(words: &mut Words<'_>, shown: &Card, [width, height]: [f32; 2]) {
     let fit = most / words.width(&shown.title, large, true).max(1.0);
     let large = large * (0.995 * fit).clamp(0.6, 1.0);
     let narrow = most.min(words.scaled(CARD_WIDTH));
+    let widest = shown.rows.iter().map(|row| words.width(row, small, false)).fold(1.0_f32, f32::max);
+    let fit = 0.995 * narrow / widest;
+    let small = if fit >= 0.75 { small * fit.min(1.0) } else { small };
     let block = |width: f32, rows: usize| Block { width, rows, centred: true };
     let texts = std::iter::once((&shown.title, large, true, block(most, title_rows)))
         .chain(shown.rows.iter().map(|row| (row, small, false, block(narrow, rows))));

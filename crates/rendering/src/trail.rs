@@ -117,23 +117,6 @@ impl Trail {
         self.looks.get(edge)?.as_ref()
     }
 
-    /// The heading of a robot at a time up to that of `now`, rad, within the time that a ribbon tells of.
-    pub(crate) fn heading_at(&self, robot: usize, time: f64, now: &Moment) -> f64 {
-        let here = now.snapshot.robots.get(robot).map_or(0.0, |robot| robot.motion.pose.heading);
-        let heading = |row: &Row| row.poses.get(robot).map(|pose| (row.time, pose.heading));
-        let mut after = (now.snapshot.time, here);
-        for before in self.ribbons.iter().rev().filter_map(heading) {
-            if before.0 <= time && before.0 < after.0 {
-                let share = ((time - before.0) / (after.0 - before.0)).clamp(0.0, 1.0);
-                return before.1 + share * wrap(after.1 - before.1);
-            }
-            if before.0 < after.0 {
-                after = before;
-            }
-        }
-        after.1
-    }
-
     /// Remembers contacts that are new.
     fn touch(&mut self, contacts: &[Contact]) {
         for contact in contacts {
