@@ -56,6 +56,7 @@ mod shade;
 mod show;
 mod sightline;
 mod sketch;
+mod snake;
 mod steady;
 mod style;
 mod target;
