@@ -10,7 +10,7 @@ use crate::args::{FilmArgs, PictureArgs};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::load::{load, stem};
-use crate::picture::{Studio, told_lacking};
+use crate::picture::Studio;
 use crate::playback::{Playback, Source};
 use crate::print::{json, note, say};
 use crate::progress::Progress;
@@ -121,7 +121,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     let frames = board.frames(rate);
     let mut studio = Studio::open((job.adapter, job.picture), cast, view, settings.size)?;
     let told = settings.shots.iter().map(|shot| shot.line.as_str()).chain([job.description.as_str()]);
-    told_lacking(&studio.renderer.unwritable(told));
+    studio.check_texts(told);
     let source = source(&studio.gpu)?;
     let (mut film, done) = begin(&job, kind, &studio, rate)?;
 

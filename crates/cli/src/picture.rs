@@ -14,6 +14,8 @@ pub(crate) struct Studio {
     pub(crate) layout: Layout,
     pub(crate) style: Style,
     pub(crate) size: [u32; 2],
+    /// Characters of names that no font has, which has been told.
+    lacks: BTreeSet<char>,
 }
 
 impl Studio {
@@ -49,13 +51,19 @@ impl Studio {
         let gpu = Gpu::open(&AdapterChoice::from(adapter))?;
         let renderer = Renderer::new(&gpu, cast, size[0], size[1], args.samples)?;
         let named = names.iter().chain([&cast.title, &cast.caption]).map(String::as_str);
-        told_lacking(&renderer.unwritable(named));
-        Ok(Self { gpu, renderer, layout, style, size })
+        let lacks = renderer.unwritable(named);
+        tell_lacking(&lacks);
+        Ok(Self { gpu, renderer, layout, style, size, lacks })
+    }
+
+    /// Says which more characters no font has, of texts besides the names.
+    pub(crate) fn check_texts<'a>(&self, texts: impl IntoIterator<Item = &'a str>) {
+        tell_lacking(&(&self.renderer.unwritable(texts) - &self.lacks));
     }
 }
 
 /// Says which characters will be boxes in a picture, if any will.
-pub(crate) fn told_lacking(lacks: &BTreeSet<char>) {
+fn tell_lacking(lacks: &BTreeSet<char>) {
     const MOST: usize = 12;
     if lacks.is_empty() {
         return;

@@ -5,6 +5,7 @@ use crate::carried::carried;
 use crate::floor::Floor;
 use crate::glide::between;
 use crate::room::{Bound, Room, eye};
+use crate::snake::snake;
 use crate::steady::{Extent, Steady};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
 use vocabulary::{Cast, Edge, Snapshot};
@@ -31,44 +32,10 @@ const LEAST_OVER_GROUND: f64 = 0.28;
 /// Of an eye that somebody has put somewhere, m.
 const LEAST_OVER_FLOOR: f64 = 0.06;
 
-/// How the snake view is composed, from looking at pictures: as it is for small formations, and as it is at the most for
-/// wide ones, which would lie in a thin band of the picture if nobody looked down on them.
-struct Composition {
-    /// Where the horizon stands, as a share of the height from the top; negative above the picture.
-    horizon: f64,
-    /// Share of the width the formation may take.
-    width: f64,
-    /// Normalised height (−1 bottom, 1 top) up to which the formation stays.
-    top: f64,
-}
-
-const FIELD_OF_VIEW: f64 = 0.8029;
-const LOW: Composition = Composition { horizon: 0.10, width: 0.70, top: 0.30 };
-const HIGH: Composition = Composition { horizon: -1.9, width: 0.90, top: 0.90 };
-/// Normalised height down to which the formation stays; higher where words are.
-const BOTTOM: f64 = -0.52;
 /// Nearer the eye does not come, m.
-const NEAREST: f64 = 2.6;
-/// How many bodies wide a formation is at which the eye begins to rise, and at which it is as high as it may be; in a view
-/// twice as wide as high, twice as many.
-const WIDE: [f64; 2] = [5.0, 26.0];
-/// From this share of the way up on, the formation may take all the room there is.
-const ALL_ROOM: f64 = 0.6;
+pub(crate) const NEAREST: f64 = 2.6;
 /// Robots reach over their places by this, rings at set points too; of the default body, m.
-const REACH: f64 = 0.28;
-
-impl Composition {
-    /// On the way from the low to the high one.
-    fn at(share: f64) -> Self {
-        let mix = |low: f64, high: f64, share: f64| low + (high - low) * share;
-        let room = (share / ALL_ROOM).min(1.0);
-        Self {
-            horizon: mix(LOW.horizon, HIGH.horizon, share),
-            width: mix(LOW.width, HIGH.width, room),
-            top: mix(LOW.top, HIGH.top, room),
-        }
-    }
-}
+pub(crate) const REACH: f64 = 0.28;
 
 impl Camera {
     /// The camera of `view`, which keeps robots in `room` where it can.
@@ -133,7 +100,7 @@ impl Camera {
         }
     }
 
-    fn pitched(heading: f64, pitch: f64, tangent: f64, aspect: f64) -> Self {
+    pub(crate) fn pitched(heading: f64, pitch: f64, tangent: f64, aspect: f64) -> Self {
         let forward = DVec3::new(heading.cos() * pitch.cos(), heading.sin() * pitch.cos(), -pitch.sin());
         let right = DVec3::new(heading.sin(), -heading.cos(), 0.0);
         let half = DVec2::new(tangent * aspect, tangent);
@@ -225,7 +192,7 @@ impl Camera {
     }
 
     /// Moves the eye as near to `points` as `bounds` let it, turning nothing.
-    fn fit(&mut self, points: &[DVec3], bounds: &[Bound], nearest: f64) {
+    pub(crate) fn fit(&mut self, points: &[DVec3], bounds: &[Bound], nearest: f64) {
         self.eye = DVec3::ZERO;
         let seen: Vec<_> = points.iter().map(|p| self.view_from_world(*p)).collect();
         let place = eye(&seen, self.half, bounds, nearest, EYE_LOW);
@@ -237,61 +204,16 @@ impl Camera {
 const EYE_LOW: f64 = 0.6;
 
 /// The sides of the picture as bounds: a share of the width, and normalised heights.
-fn sides(width: f64, [bottom, top]: [f64; 2]) -> [Bound; 4] {
+pub(crate) fn sides(width: f64, [bottom, top]: [f64; 2]) -> [Bound; 4] {
     let bound = |across: f64, up: f64, most: f64| Bound { across, up, most };
     [bound(1.0, 0.0, width), bound(-1.0, 0.0, width), bound(0.0, 1.0, top), bound(0.0, -1.0, -bottom)]
 }
 
 /// Outline of the formation from the ground to the robots' height.
-fn corners(extent: &Extent, margin: f64) -> Vec<DVec3> {
+pub(crate) fn corners(extent: &Extent, margin: f64) -> Vec<DVec3> {
     let places = extent.outline(margin).into_iter().map(|[f, l]| extent.frame.world_from_body(f, l));
     let [low, high] = [extent.ground[0], extent.ground[1] + 0.3 * extent.size];
     places.flat_map(|[x, y]| [DVec3::new(x, y, low), DVec3::new(x, y, high)]).collect()
-}
-
-fn snake(steady: &Steady, room: &Room) -> Camera {
-    let extent = steady.formation();
-    let places = corners(&extent, REACH * extent.size);
-    let [bottom, over] = room.rows();
-    let bottom = bottom.max(BOTTOM);
-    let tangent = (0.5 * FIELD_OF_VIEW).tan();
-    let at = |share: f64| {
-        let form = Composition::at(share);
-        let pitch = ((1.0 - 2.0 * form.horizon) * tangent).atan();
-        let camera = Camera::pitched(extent.frame.heading, pitch, tangent, room.aspect());
-        (camera, sides(form.width, [bottom, form.top.min(over)]))
-    };
-    // How much more of the picture the formation takes across than up and down.
-    let flat = |share: f64| {
-        let (camera, bounds) = at(share);
-        let most = |bound: &Bound| {
-            let (a, b) = (bound.across / camera.half.x, bound.up / camera.half.y);
-            let over = |p: &DVec3| {
-                let p = camera.view_from_world(*p);
-                a * p.x + b * p.y - bound.most * p.z
-            };
-            places.iter().map(over).fold(f64::NEG_INFINITY, f64::max)
-        };
-        let [right, left, up, down] = bounds.each_ref().map(|bound| (most(bound), bound.most));
-        let far = |a: (f64, f64), b: (f64, f64)| (a.0 + b.0) / (a.1 + b.1);
-        far(right, left) - far(up, down)
-    };
-    let wide = (extent.left[1] - extent.left[0]) / (extent.size * room.aspect());
-    let most = ((wide - WIDE[0]) / (WIDE[1] - WIDE[0])).clamp(0.0, 1.0);
-    let most = most * most * (3.0 - 2.0 * most);
-    let (mut low, mut high) = (0.0, most);
-    if flat(high) >= 0.0 {
-        low = high;
-    } else if flat(low) > 0.0 {
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if flat(middle) > 0.0 { low = middle } else { high = middle }
-        }
-    }
-    let (mut camera, bounds) = at(low);
-    let bounds: Vec<_> = bounds.into_iter().chain(room.corners()).collect();
-    camera.fit(&places, &bounds, NEAREST * extent.size);
-    camera
 }
 
 fn snake_eye(steady: &Steady, aspect: f64) -> Camera {

@@ -236,8 +236,8 @@ pub(crate) fn digits() -> (Vec<u8>, u32, u32) {
 mod tests {
     use super::*;
 
-    fn block(width: f32, rows: usize) -> Option<Block> {
-        Some(Block { width, rows, centred: false })
+    fn block(width: f32, rows: usize) -> Block {
+        Block { width, rows, centred: false }
     }
 
     #[test]
@@ -246,21 +246,21 @@ mod tests {
         let text = "Seven robots in a V that drive along a figure eight for a minute and a half";
         let whole = letters.measure(text, 20.0, true, None);
         assert_eq!(whole.rows, 1);
-        let two = letters.measure(text, 20.0, true, block(0.6 * whole.width, 2));
+        let two = letters.measure(text, 20.0, true, Some(block(0.6 * whole.width, 2)));
         assert!(two.rows == 2 && two.width <= 0.6 * whole.width, "{two:?}");
-        let cut = letters.measure(text, 20.0, true, block(0.2 * whole.width, 2));
+        let cut = letters.measure(text, 20.0, true, Some(block(0.2 * whole.width, 2)));
         assert!(cut.rows == 2 && cut.width <= 0.2 * whole.width, "{cut:?}");
         // Without spaces, too.
         let letters_only = "X".repeat(200);
-        let cut = letters.measure(&letters_only, 20.0, true, block(300.0, 2));
+        let cut = letters.measure(&letters_only, 20.0, true, Some(block(300.0, 2)));
         assert!(cut.rows == 2 && cut.width <= 300.0, "{cut:?}");
     }
 
     #[test]
     fn lines_of_a_text_stay_lines() {
         let mut letters = Letters::new();
-        assert_eq!(letters.measure("One\nTwo", 20.0, true, block(900.0, 2)).rows, 2);
-        assert_eq!(letters.measure("One\nTwo\nThree\n\n", 20.0, true, block(900.0, 2)).rows, 2);
+        assert_eq!(letters.measure("One\nTwo", 20.0, true, Some(block(900.0, 2))).rows, 2);
+        assert_eq!(letters.measure("One\nTwo\nThree\n\n", 20.0, true, Some(block(900.0, 2))).rows, 2);
         // Where there is one line only, they share it.
         assert_eq!(letters.measure("One\nTwo", 20.0, true, None).rows, 1);
         // A line begins with a word, not with the space before it.
@@ -270,7 +270,7 @@ mod tests {
             &mut letters.own,
             "one two three four",
             (20.0, false),
-            block(90.0, 2),
+            Some(block(90.0, 2)),
             &BTreeSet::new(),
         ));
         assert!(

@@ -55,6 +55,7 @@ mod shade;
 mod show;
 mod sightline;
 mod sketch;
+mod snake;
 mod steady;
 mod style;
 mod target;

@@ -144,7 +144,7 @@ fn highest(planes: &[[f64; 4]], most: f64, low: f64) -> [f64; 3] {
     let crossing = |(a, b): (DVec2, DVec2)| {
         let (first, last) = (a.x.min(b.x), a.x.max(b.x));
         let share = if last > first { ((x - a.x) / (b.x - a.x)).clamp(0.0, 1.0) } else { 0.5 };
-        (first <= x && x <= last).then(|| a.y + (b.y - a.y) * share)
+        (first <= x && x <= last).then_some(a.y + (b.y - a.y) * share)
     };
     let [under, over] = range(&mut edges.filter_map(crossing));
     [x, under + (over - under) * low, bottom]

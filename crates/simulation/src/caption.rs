@@ -20,7 +20,7 @@ pub fn caption(scene: &Scene) -> String {
         });
     }
     let observed: Vec<_> = all.iter().copied().filter(|follow| observer(follow).is_some()).collect();
-    match common(&observed, |follow| observer(follow)) {
+    match common(&observed, observer) {
         Some(Some(Observer::Epsilon)) => {
             parts.push(format!("ε {} s", range(&observed, |follow| follow.observer.epsilon)));
         }
