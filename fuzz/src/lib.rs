@@ -9,8 +9,11 @@ pub use log::mcap_log;
 pub use motion::way_points;
 pub use scenes::{csv_table, overrides, scene_text, storyboard};
 
-/// All targets by the name of their corpus.
-pub const TARGETS: [(&str, fn(&[u8])); 6] = [
+/// A target: the name of its corpus, and what is done with bytes.
+pub type Target = (&'static str, fn(&[u8]));
+
+/// All targets.
+pub const TARGETS: [Target; 6] = [
     ("scene_text", scene_text),
     ("overrides", overrides),
     ("csv_table", csv_table),
