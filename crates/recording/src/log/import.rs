@@ -5,7 +5,7 @@
 //! for bit, or is not there.
 
 use super::messages::{Sample, Touch};
-use super::outline::LONGEST;
+use super::outline::{LONGEST, parse};
 use super::read::Channel;
 use super::record;
 use super::stage::{Stage, sound};
@@ -317,7 +317,7 @@ fn read(
                 reader.notify_read(read);
             }
             Ok(LinearReadEvent::Record { data, opcode }) => {
-                let item = mcap::parse_record(opcode, data).map_err(|error| damaged(&error))?;
+                let item = parse(opcode, data).map_err(|error| damaged(&error))?;
                 if !take(item)? {
                     return Ok(());
                 }

@@ -20,6 +20,24 @@ pub(super) struct Chunk {
 /// More than this no record of ours is long, bytes.
 pub(super) const LONGEST: u64 = 1 << 30;
 
+/// A record by its code. The library takes for granted that there is a checksum behind an attachment.
+pub(super) fn parse(code: u8, body: &[u8]) -> mcap::McapResult<Chunked<'_>> {
+    if code == op::ATTACHMENT && !is_closed(body) {
+        return Err(mcap::McapError::UnexpectedEof);
+    }
+    mcap::parse_record(code, body)
+}
+
+/// Whether an attachment has all that stands around its data: two times, two texts, a length, and a checksum.
+fn is_closed(body: &[u8]) -> bool {
+    let after_text = |at: usize| {
+        let length = u32::from_le_bytes(body.get(at..at.checked_add(4)?)?.try_into().ok()?);
+        at.checked_add(4)?.checked_add(usize::try_from(length).ok()?)
+    };
+    let least = after_text(16).and_then(after_text).and_then(|at| at.checked_add(8 + 4));
+    least.is_some_and(|least| least <= body.len())
+}
+
 /// So many bytes of a file.
 pub(super) fn body(file: &mut &File, start: u64, length: u64) -> std::io::Result<Vec<u8>> {
     file.seek(SeekFrom::Start(start))?;
@@ -74,14 +92,14 @@ impl Outline {
                 }
                 op::HEADER if length < LONGEST => {
                     let bytes = body(&mut reader, start, length).map_err(io)?;
-                    if let Ok(Chunked::Header(header)) = mcap::parse_record(*code, &bytes) {
+                    if let Ok(Chunked::Header(header)) = parse(*code, &bytes) {
                         outline.foreign = !header.library.starts_with(OURS);
                     }
                 }
                 op::MESSAGE => outline.foreign = true,
                 op::METADATA | op::ATTACHMENT if length < LONGEST => {
                     let bytes = body(&mut reader, start, length).map_err(io)?;
-                    outline.note(mcap::parse_record(*code, &bytes).ok());
+                    outline.note(parse(*code, &bytes).ok());
                 }
                 op::DATA_END => outline.whole = true,
                 _ => {}

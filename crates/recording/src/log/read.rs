@@ -5,7 +5,7 @@
 use super::FORMAT;
 use super::import::{Imported, import};
 use super::messages::{Sample, Touch};
-use super::outline::{Chunk, LONGEST, Outline, body};
+use super::outline::{Chunk, LONGEST, Outline, body, parse};
 use super::record::{self, Record};
 use super::stage::{Stage, sound};
 use crate::{Error, Manifest, Status};
@@ -229,7 +229,7 @@ impl Log {
             message: format!("is damaged {:.2} s into the run: {why}", chunk.begin as f64 * 1e-9),
         };
         let body = body(&mut &*self.file, chunk.start, chunk.length).map_err(Error::io("read", path))?;
-        let record = mcap::parse_record(op::CHUNK, &body).map_err(|error| damaged(&error))?;
+        let record = parse(op::CHUNK, &body).map_err(|error| damaged(&error))?;
         let Chunked::Chunk { header, data } = record else { return Ok(vec![]) };
         let mut bytes = Vec::new();
         // One byte more than is promised is enough to see that the promise is broken.
@@ -256,7 +256,7 @@ fn records(mut bytes: &[u8]) -> impl Iterator<Item = Chunked<'_>> {
         let length = usize::try_from(u64::from_le_bytes(length.try_into().ok()?)).ok()?;
         let (body, rest) = rest.split_at_checked(length)?;
         bytes = rest;
-        mcap::parse_record(*code, body).ok()
+        parse(*code, body).ok()
     })
 }
 

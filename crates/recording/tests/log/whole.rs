@@ -164,3 +164,26 @@ fn a_run_without_log_has_none() {
     recorder.expect("a recorder").finish(Status::Complete).expect("finished");
     assert!(!folder.path().join(FILE).exists());
 }
+
+/// The library panicked where an attachment ended before its checksum.
+#[test]
+fn an_attachment_without_its_checksum_is_damage() {
+    let folder = tempfile::tempdir().expect("a folder");
+    record(folder.path(), 20, Status::Complete);
+    let path = folder.path().join(FILE);
+    let bytes = fs::read(&path).expect("a log");
+    let name = bytes.windows(10).position(|window| window == b"scene.toml").expect("an attachment");
+    // Before the name: code, length of the record, two times, length of the name.
+    let head = name - 4 - 16 - 9;
+    assert_eq!(bytes[head], 9);
+    let whole = u64::from_le_bytes(bytes[head + 1..head + 9].try_into().expect("eight bytes"));
+    for length in 0..whole {
+        let mut cut = bytes[..head + 1].to_vec();
+        cut.extend_from_slice(&length.to_le_bytes());
+        cut.extend_from_slice(&bytes[head + 9..][..length as usize]);
+        cut.extend_from_slice(&bytes[head + 9..][whole as usize..]);
+        fs::write(&path, cut).expect("written");
+        let told = Log::open(&path).expect_err("its scene is damaged").to_string();
+        assert!(told.contains("its scene or its manifest is missing"), "{length}: {told}");
+    }
+}
