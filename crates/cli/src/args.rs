@@ -173,7 +173,7 @@ pub(crate) struct CaptureArgs {
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
     /// Times in s, such as 0,5,15; the end of the run if left out
-    #[arg(long, value_name = "TIMES", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIMES", value_delimiter = ',', allow_negative_numbers = true, value_parser = time)]
     pub(crate) at: Vec<f64>,
     /// Folder for the pictures; it may hold others
     #[arg(long, short, value_name = "DIR", default_value = ".")]
@@ -309,6 +309,11 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     text.split_once(['x', 'X', '×'])
         .and_then(|(w, h)| Some([parse(w)?, parse(h)?]))
         .ok_or_else(|| "write width and height in pixels, such as 1280x720".to_owned())
+}
+
+/// A time of a list; spaces after commas are natural.
+pub(crate) fn time(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| "write seconds with commas between them, such as 0,2.5,15".to_owned())
 }
 
 fn pixels(text: &str) -> Result<f64, String> {

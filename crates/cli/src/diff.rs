@@ -51,6 +51,9 @@ struct Diff {
 
 pub(crate) fn diff(args: &DiffArgs) -> Outcome {
     let [a, b] = [Recorded::open(&args.a)?, Recorded::open(&args.b)?];
+    for run in [&a, &b] {
+        run.needs_the_start("a comparison")?;
+    }
     let names = [&a, &b].map(|run| run.path.display().to_string());
     let who = [&a, &b].map(|run| (run.manifest.robots.clone(), run.manifest.edges.clone()));
     let casts = (who[0] != who[1]).then(|| who.map(|(robots, edges)| told(&robots, &edges)));

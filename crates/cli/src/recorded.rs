@@ -5,6 +5,7 @@ use crate::interrupt;
 use crate::print::note;
 use crate::progress::Progress;
 use crate::run::STRIDE;
+use crate::times::shown;
 use recording::log::{self, Log};
 use recording::{Digest, Manifest};
 use scene::Scene;
@@ -72,6 +73,21 @@ impl Recorded {
         Self { path: path.to_owned(), manifest: log.manifest().clone(), scene, log: Ok(log) }
     }
 
+    /// Fails where the beginning was left out, which `work` needs.
+    pub(crate) fn needs_the_start(&self, work: &str) -> Result<(), Failure> {
+        let begins = self.moments().map_or(0.0, Log::begins);
+        if begins < 1e-9 {
+            return Ok(());
+        }
+        Err(Failure::Usage(format!(
+            "{} begins at {} s: {work} needs the run from its start; `echelon replay {} --capture {}` draws what is there",
+            self.path.display(),
+            shown(begins),
+            self.path.display(),
+            shown(begins)
+        )))
+    }
+
     /// Its moments; fails where they are not there.
     pub(crate) fn log(self) -> Result<Log, Failure> {
         self.log
@@ -111,8 +127,7 @@ impl Recorded {
             }
         }
         if samples == 0 {
-            let text =
-                format!("{} holds no sample: it was cut off before its first chunk", log.path().display());
+            let text = format!("{} holds no whole sample", log.path().display());
             return Err(Failure::Usage(text));
         }
         Ok(Some((samples, digest.text())))

@@ -26,7 +26,7 @@ pub(crate) struct ReplayArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "capture")]
     film: Option<PathBuf>,
     /// Draw pictures of what was recorded at these times in s, such as 0,5,15, without simulating
-    #[arg(long, value_name = "TIMES", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIMES", value_delimiter = ',', allow_negative_numbers = true, value_parser = crate::args::time)]
     capture: Vec<f64>,
     /// Folder for the pictures; it may hold others
     #[arg(long, short, value_name = "DIR", default_value = ".", requires = "capture")]
@@ -82,9 +82,18 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
     let view = scene.as_ref().map_or_else(|| scene::Views::default().default, |s| s.views.default.clone());
     let description = scene.as_ref().map_or_else(String::new, |scene| scene.description.clone());
     let expect = scene.as_ref().map_or_else(scene::Expect::default, |scene| scene.expect);
+    if args.film.is_some() {
+        run.needs_the_start("a film")?;
+    }
     let samples = run.manifest.samples;
     let name = name(&args.run);
     let log = run.log()?;
+    let begins = log.begins();
+    if let Some(early) = args.capture.iter().find(|time| **time < begins - 1e-9) {
+        let begins = crate::times::shown(begins);
+        let text = format!("{early} s is not in {}: it begins at {begins} s", log.path().display());
+        return Err(Failure::Usage(text));
+    }
     let cast = log.cast().clone();
     let mut duration = cast.duration;
     if log.manifest().status != Status::Complete {
@@ -146,6 +155,7 @@ fn name(run: &std::path::Path) -> String {
 /// Runs the scene again.
 fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
     let quiet = args.quiet || args.json;
+    run.needs_the_start("a replay")?;
     let mut manifest = run.manifest.clone();
     let logged = run.logged(quiet)?;
     let recorded = match (&manifest.digest, &logged) {

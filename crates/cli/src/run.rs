@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::junit::{self, Came, Case};
 use crate::load::{Loaded, load, stem};
+use crate::print::note;
 use crate::progress::Progress;
 use crate::summary::{self, Summary};
 use output::Place;
@@ -29,6 +30,9 @@ pub(crate) const STRIDE: u64 = 16;
 pub(crate) fn run(args: &RunArgs) -> Outcome {
     let _report = args.junit.as_deref().map(Place::file).transpose()?;
     let mut loaded = load(&args.scene).or_else(|failure| unreadable(args, failure))?;
+    for late in loaded.scene.late().iter().filter(|_| !args.scene.quiet && !args.scene.json) {
+        note(&format!("note: {late}"));
+    }
     let roll = Roll::default();
     let logs = !args.no_record && !args.no_log;
     let drawn = eyes::open(&mut loaded.simulation, None, &args.scene.adapter, logs.then_some(&roll))?;

@@ -148,6 +148,10 @@ pub(crate) fn followed(path: &Path) -> PathBuf {
         if let Ok(whole) = fs::canonicalize(&path) {
             return whole;
         }
+        // A stream of this process: its link leads to no name.
+        if path.exists() {
+            break;
+        }
         let Ok(target) = fs::read_link(&path) else { break };
         path = folder_of(&path).join(target);
     }

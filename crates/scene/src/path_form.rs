@@ -214,7 +214,13 @@ impl KindKeys<Path> for WaypointsKeys {
         let next = points.iter().skip(1).chain(back);
         // Closer than this there is no telling in which direction the curve goes.
         if points.iter().zip(next).any(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-3) {
-            reading.note(place, "neighbouring points of a curve must be at least 0.001 m apart");
+            let hint = if closed && points.first() == points.last() {
+                ": a closed curve comes back by itself, so leave out the last point"
+            } else {
+                ""
+            };
+            reading
+                .note(place, format!("neighbouring points of a curve must be at least 0.001 m apart{hint}"));
         }
         Some(Path::Waypoints { points, closed, speed: self.speed?.value })
     }

@@ -24,6 +24,8 @@ use vocabulary::{Cast, Contact, EdgeState, Frame, Moment, Placement, RobotState}
 /// A log of ours, and what the foreign one has and lacks.
 pub(super) struct Imported {
     pub(super) file: File,
+    /// Time of its first moment, s.
+    pub(super) begins: f64,
     pub(super) remark: String,
 }
 
@@ -66,9 +68,12 @@ pub(super) fn import(file: &File, path: &Path) -> Result<Imported, Error> {
     let copy = ours.try_clone().map_err(Error::io("write", path))?;
     let mut writer = Writer::create((ours, path), &cast, (&scene, &manifest), false)?;
     let (mut pending, mut batch, mut count) = (Pending::default(), vec![], 0);
+    let mut span = [0.0; 2];
     let mut take = |pending: &mut Pending, until: u64| -> Result<bool, Error> {
         while let Some(moment) = pending.pop(until, &cast) {
             let Ok(moment) = moment else { return Ok(false) };
+            let time = moment.snapshot.time;
+            span = if count == 0 { [time; 2] } else { [span[0], time] };
             batch.push(moment);
             count += 1;
             if batch.len() == BATCH {
@@ -92,12 +97,23 @@ pub(super) fn import(file: &File, path: &Path) -> Result<Imported, Error> {
     if !batch.is_empty() {
         writer.push(&mut batch, &[])?;
     }
-    if manifest.digest.is_none() {
-        manifest.samples = count;
+    // Of a part, nobody knows the digest of the whole.
+    let cut = manifest.digest.is_some() && count < manifest.samples;
+    let whole = (manifest.samples.saturating_sub(1)) as f64 * manifest.period;
+    if cut {
+        (manifest.digest, manifest.status) = (None, Status::Interrupted);
     }
-    let remark = about.remark(count, sound);
+    if manifest.digest.is_none() {
+        manifest.samples = (span[1] / manifest.period).round() as u64 + 1;
+    }
+    let part = if cut {
+        format!("; of {whole:.2} s it holds {:.2} to {:.2} s", span[0], span[1])
+    } else {
+        String::new()
+    };
+    let remark = about.remark(count, sound) + &part;
     writer.finish(&manifest)?;
-    Ok(Imported { file: copy, remark })
+    Ok(Imported { file: copy, begins: span[0], remark })
 }
 
 /// What can be said of a run whose manifest was left out.
@@ -113,7 +129,7 @@ fn guessed(cast: &Cast, about: &About) -> Manifest {
         duration: cast.duration,
         robots: cast.members.iter().map(|member| member.name.clone()).collect(),
         edges: cast.edges.iter().map(|edge| [name(edge.leader), name(edge.follower)]).collect(),
-        status: Status::Running,
+        status: Status::Interrupted,
         samples: about.samples,
         digest: None,
     }

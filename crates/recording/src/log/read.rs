@@ -35,6 +35,8 @@ struct Inside {
     whole: bool,
     /// What another program did with the file, if one did.
     remark: Option<String>,
+    /// Time of the first moment, s.
+    begins: f64,
 }
 
 /// What a channel's messages are.
@@ -59,15 +61,20 @@ impl Log {
         let mut file = File::open(path).map_err(Error::io("open", path))?;
         let outline = Outline::of(&mut file, path)?;
         if outline.foreign {
-            let Imported { mut file, remark } = import(&file, path)?;
+            let Imported { mut file, begins, remark } = import(&file, path)?;
             let outline = Outline::of(&mut file, path)?;
-            return Self::of_ours(file, path, outline, Some(remark));
+            return Self::of_ours(file, path, outline, (begins, Some(remark)));
         }
-        Self::of_ours(file, path, outline, None)
+        Self::of_ours(file, path, outline, (0.0, None))
     }
 
     /// Opens a file that is laid as ours are.
-    fn of_ours(file: File, path: &Path, outline: Outline, remark: Option<String>) -> Result<Self, Error> {
+    fn of_ours(
+        file: File,
+        path: &Path,
+        outline: Outline,
+        (begins, remark): (f64, Option<String>),
+    ) -> Result<Self, Error> {
         let wrong = |message: &str| Error::Log { path: path.to_owned(), message: message.to_owned() };
         let Some(format) = outline.format else {
             return Err(wrong(
@@ -92,6 +99,7 @@ impl Log {
             chunks: outline.chunks,
             whole: outline.whole,
             remark,
+            begins,
         };
         Self { file: Arc::new(file), inside: Arc::new(inside) }.with_first_chunk()
     }
@@ -174,6 +182,11 @@ impl Log {
     /// Where another program wrote the file anew: what it did, and what it left out.
     pub fn remark(&self) -> Option<&str> {
         self.inside.remark.as_deref()
+    }
+
+    /// Time of the first moment, s: 0 unless another program left out the beginning.
+    pub fn begins(&self) -> f64 {
+        self.inside.begins
     }
 
     /// Robots, edges, props, ground.

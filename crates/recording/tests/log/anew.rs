@@ -23,6 +23,8 @@ struct Anew {
     without: Option<&'static str>,
     /// The library that is named.
     library: &'static str,
+    /// Times that are kept, ns; all if empty. What stands at time 0 besides samples is kept.
+    span: Option<[u64; 2]>,
 }
 
 fn rewrite(from: &Path, to: &Path, how: Anew) {
@@ -36,6 +38,9 @@ fn rewrite(from: &Path, to: &Path, how: Anew) {
     let mut messages: Vec<mcap::Message<'_>> =
         mcap::MessageStream::new(&bytes).expect("messages").map(|m| m.expect("a message")).collect();
     messages.retain(|m| how.without.is_none_or(|topic| m.channel.topic != topic));
+    if let Some([from, to]) = how.span {
+        messages.retain(|m| m.channel.topic == "/cast" || (from..=to).contains(&m.log_time));
+    }
     if how.by_topic {
         messages.sort_by(|a, b| a.channel.topic.cmp(&b.channel.topic));
     }
@@ -119,6 +124,16 @@ fn what_another_program_left_out_is_told() {
     rewrite(&original, &copy, Anew { without: Some("/robot/bob/state"), ..other });
     let remark = Log::open(&copy).expect("a log").remark().map(str::to_owned).expect("a remark");
     assert!(remark.contains("of its 250 samples the first 0 are whole"), "{remark}");
+    // A part says which part it is, and has no digest of the whole.
+    let span = Some([1_000_000_000, 2_000_000_000]);
+    rewrite(&original, &copy, Anew { span, ..other });
+    let log = Log::open(&copy).expect("a log");
+    let remark = log.remark().expect("a remark");
+    assert!(remark.contains("of 2.49 s it holds 1.00 to 2.00 s"), "{remark}");
+    assert!((log.begins() - 1.0).abs() < 1e-9, "{}", log.begins());
+    assert_eq!((log.manifest().samples, log.manifest().digest.as_ref()), (201, None));
+    let first = log.moments().next().expect("one").expect("whole");
+    assert_eq!(first.snapshot.time, log.begins());
     rewrite(&original, &copy, Anew { without: Some("/cast"), ..other });
     let refused = Log::open(&copy).expect_err("no cast").to_string();
     assert!(refused.contains("no log of Echelon") && refused.contains("/cast"), "{refused}");

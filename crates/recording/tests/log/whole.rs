@@ -178,7 +178,7 @@ fn an_attachment_without_its_checksum_is_damage() {
     assert_eq!(bytes[head], 9);
     let whole = u64::from_le_bytes(bytes[head + 1..head + 9].try_into().expect("eight bytes"));
     for length in 0..whole {
-        let mut cut = bytes[..head + 1].to_vec();
+        let mut cut = bytes[..=head].to_vec();
         cut.extend_from_slice(&length.to_le_bytes());
         cut.extend_from_slice(&bytes[head + 9..][..length as usize]);
         cut.extend_from_slice(&bytes[head + 9..][whole as usize..]);

@@ -17,8 +17,7 @@ impl Sequence {
     pub(super) fn create(path: &Path) -> Result<Self, Error> {
         // Pictures of an older, longer film would stay among the new ones.
         if std::fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some()) {
-            let full = std::io::Error::new(std::io::ErrorKind::DirectoryNotEmpty, "the folder is not empty");
-            return Err(Error::write(path, full));
+            return Err(output::Error::Occupied { path: path.to_owned(), what: None }.into());
         }
         Ok(Self { folder: DraftFolder::new(path)?, count: 0 })
     }
