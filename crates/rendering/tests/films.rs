@@ -113,7 +113,7 @@ fn a_sequence_is_a_folder_of_numbered_pictures() {
     names.sort();
     assert_eq!(names, ["frame-00000.png", "frame-00001.png", "frame-00002.png"]);
     let error = film(&path, FilmKind::PngSequence, 1, 30.0).unwrap_err();
-    assert!(error.to_string().contains("not empty"), "{error}");
+    assert!(error.is_usage() && error.to_string().contains("holds other files"), "{error}");
 }
 
 #[test]
