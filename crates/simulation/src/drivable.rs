@@ -139,9 +139,17 @@ impl fmt::Display for Undrivable {
         } else {
             write!(f, "{place} it turns back on the spot, which no turn rate does")?;
         }
-        write!(f, ": bend it along a radius of at least {} m", rounded(self.radius()))?;
+        let needed = rounded(self.radius());
         if self.point.is_some() {
-            write!(f, ", with points that lead round")?;
+            // An infinite curvature gives a radius of 0.
+            let radius = rounded(self.curvature().recip());
+            write!(
+                f,
+                ": the curve through the points has a radius of {radius} m there and needs at least {needed} m; move \
+                 the points apart, or add some that lead round"
+            )?;
+        } else {
+            write!(f, ": bend it along a radius of at least {needed} m")?;
         }
         self.slower()
             .map_or(Ok(()), |speed| write!(f, ", or go at no more than {} m/s there", rounded(speed)))
