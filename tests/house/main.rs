@@ -1,5 +1,7 @@
 //! House rules that a compiler does not check.
 
+mod measures;
+
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
