@@ -1,6 +1,6 @@
 //! The same scene, seed and build: the same digest, whether or not pictures are drawn and on whatever thread.
 
-use recording::Digest;
+use metrics::Digest;
 use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, View};
 use scene::Scene;
 use simulation::{Simulation, build};

@@ -3,7 +3,7 @@
 //! A digest depends on how the platform computes sines and the like, so the file also holds a digest of its mathematics. On
 //! another platform, runs are compared by where the robots end.
 
-use recording::Digest;
+use metrics::Digest;
 use scene::{SHIPPED, Scene};
 use simulation::{Simulation, build};
 use std::fmt::Write;

@@ -1,9 +1,10 @@
 //! Formations of wheeled vehicles: gains that fit them, and that the physics step does not matter.
 
-use recording::{Judging, Metrics, MetricsBuilder};
+use metrics::{Metrics, MetricsBuilder};
 use scene::Scene;
 use simulation::{Simulation, build};
 use std::path::Path;
+use vocabulary::Judging;
 
 fn run(name: &str, overrides: &[&str]) -> Metrics {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);

@@ -25,7 +25,7 @@ fn start(scene: &Scene) -> Simulation {
 
 /// Digest of a run, and what `visit` makes of its moments.
 fn play(mut run: Simulation, mut visit: impl FnMut(&Moment)) -> String {
-    let mut digest = recording::Digest::default();
+    let mut digest = metrics::Digest::default();
     while let Some(moment) = run.next_moment() {
         digest.push(moment);
         visit(moment);
@@ -79,7 +79,7 @@ fn looks_are_the_same_in_every_run_and_go_on_alike_from_a_copy() {
     let whole = play(start(&scene), |_| ());
     assert_eq!(whole, play(start(&scene), |_| ()));
     let mut run = start(&scene);
-    let mut digest = recording::Digest::default();
+    let mut digest = metrics::Digest::default();
     for _ in 0..257 {
         digest.push(run.next_moment().expect("a moment"));
     }

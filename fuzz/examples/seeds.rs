@@ -99,7 +99,7 @@ fn log(name: &str) -> Vec<u8> {
         commit: None,
         seed: scene.seed,
         period: scene.time.period,
-        judging: recording::Judging { settling_band: [0.02; 2], settled_after: 0.0 },
+        judging: vocabulary::Judging { settling_band: [0.02; 2], settled_after: 0.0 },
     };
     let mut recorder = recording::Recorder::create(folder.path(), run.cast(), options).expect("a recorder");
     while let Some(moment) = run.next_moment() {

@@ -31,21 +31,32 @@ fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// Whom each crate may use among our own; everybody else may not.
-const ARROWS: [(&str, &[&str]); 13] = [
+const ARROWS: [(&str, &[&str]); 14] = [
     ("vocabulary", &[]),
     ("output", &[]),
     ("scene", &["vocabulary"]),
     ("formation", &["vocabulary"]),
     ("world", &["vocabulary"]),
     ("perception", &["vocabulary"]),
-    ("recording", &["vocabulary", "output"]),
+    ("metrics", &["vocabulary"]),
+    ("recording", &["vocabulary", "metrics", "output"]),
     ("rendering", &["vocabulary", "output"]),
     ("figures", &[]),
-    ("simulation", &["vocabulary", "scene", "formation", "world", "perception", "recording"]),
-    ("report", &["vocabulary", "scene", "simulation", "recording", "figures"]),
+    ("simulation", &["vocabulary", "scene", "formation", "world", "perception", "metrics"]),
+    ("report", &["vocabulary", "scene", "simulation", "metrics", "figures"]),
     (
         "lab",
-        &["vocabulary", "output", "scene", "formation", "simulation", "recording", "rendering", "figures"],
+        &[
+            "vocabulary",
+            "output",
+            "scene",
+            "formation",
+            "simulation",
+            "metrics",
+            "recording",
+            "rendering",
+            "figures",
+        ],
     ),
     (
         "cli",
@@ -55,6 +66,7 @@ const ARROWS: [(&str, &[&str]); 13] = [
             "scene",
             "perception",
             "simulation",
+            "metrics",
             "recording",
             "rendering",
             "figures",

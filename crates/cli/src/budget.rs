@@ -99,8 +99,7 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
         note(why);
     }
     let cases = cases(args, gpu.is_some(), &scene);
-    let settled_after =
-        scene.expect.settled_after.filter(|t| *t < scene.time.duration).unwrap_or(0.5 * scene.time.duration);
+    let settled_after = scene.judging().settled_after;
     let mut budget = Budget {
         scene: &scene,
         cast: simulation.cast().clone(),

@@ -15,15 +15,15 @@ use crate::playback::{Playback, Source};
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use board::Board;
+use metrics::MetricsBuilder;
 use output::Place;
 use plots::Plots;
 pub(crate) use preset::Preset;
-use recording::{Judging, MetricsBuilder};
 use rendering::{Film, FilmKind, Gpu, Room, Show};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
-use vocabulary::Cast;
+use vocabulary::{Cast, Judging};
 
 /// What a film is made of.
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
@@ -82,10 +82,7 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
         duration: scene.time.duration,
         settings: scene.film.clone(),
         view: &scene.views.default,
-        judging: Judging {
-            settling_band: scene.expect.settling_band,
-            settled_after: scene.expect.settled_after.unwrap_or(0.0),
-        },
+        judging: scene.judging(),
         run: scene.to_toml(),
         captions: captions(&scene),
     };

@@ -2,10 +2,11 @@
 
 use crate::failure::Failure;
 use crate::interrupt;
+use metrics::{Metrics, MetricsBuilder};
 use recording::log::Moments;
-use recording::{Judging, Metrics, MetricsBuilder};
 use rendering::Trail;
 use simulation::Simulation;
+use vocabulary::Judging;
 use vocabulary::{Cast, Moment};
 
 /// What nothing is judged by.

@@ -10,8 +10,9 @@ use crate::recorded::Recorded;
 use crate::run::{PROGRAM, STRIDE};
 use crate::{capture, eyes, film, interrupt};
 use clap::Args;
+use metrics::Digest;
 use recording::log::Log;
-use recording::{Digest, Judging, Manifest, Status};
+use recording::{Manifest, Status};
 use scene::Scene;
 use serde_json::json;
 use simulation::Simulation;
@@ -119,10 +120,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
             duration,
             settings,
             view: &view,
-            judging: Judging {
-                settling_band: expect.settling_band,
-                settled_after: expect.settled_after.unwrap_or(0.0),
-            },
+            judging: expect.judging(duration),
             run: format!("{:?}", log.manifest()),
             captions: scene.as_ref().map_or_else(Vec::new, film::captions),
         };

@@ -10,11 +10,10 @@ use crate::load::{Loaded, load, stem};
 use crate::print::note;
 use crate::progress::Progress;
 use crate::summary::{self, Summary};
+use metrics::{CertificateMetrics, Digest, Metrics, MetricsBuilder};
 use output::Place;
 use recording::log::Roll;
-use recording::{
-    CertificateMetrics, Digest, Finished, Judging, Metrics, MetricsBuilder, Recorder, RunOptions, Status,
-};
+use recording::{Finished, Recorder, RunOptions, Status};
 use simulation::Fault;
 use simulation::certify::Examiner;
 use simulation::verdict::{Finding, verdict};
@@ -41,7 +40,7 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     let mut sink = match &folder {
         Some(folder) => Sink::record(folder, args, &scene, &simulation, roll)?,
         None => Sink::Judge(Box::new((
-            MetricsBuilder::new(simulation.cast(), judging(&scene)),
+            MetricsBuilder::new(simulation.cast(), scene.judging()),
             Digest::default(),
         ))),
     };
@@ -132,11 +131,6 @@ fn unreadable(args: &RunArgs, failure: Failure) -> Result<Loaded, Failure> {
     Err(failure)
 }
 
-fn judging(scene: &scene::Scene) -> Judging {
-    let settled_after = scene.expect.settled_after.unwrap_or(0.0);
-    Judging { settling_band: scene.expect.settling_band, settled_after }
-}
-
 /// Where moments go.
 enum Sink {
     Record(Box<Recorder>),
@@ -161,7 +155,7 @@ impl Sink {
             commit: option_env!("ECHELON_COMMIT").map(str::to_owned),
             seed: scene.seed,
             period: scene.time.period,
-            judging: judging(scene),
+            judging: scene.judging(),
         };
         Ok(Self::Record(Box::new(Recorder::create(folder, simulation.cast(), options)?)))
     }

@@ -2,7 +2,7 @@
 
 use crate::eyes::Drawn;
 use crate::print::{json, note, say};
-use recording::Metrics;
+use metrics::Metrics;
 use scene::Scene;
 use serde_json::json;
 use simulation::verdict::Finding;

@@ -1,7 +1,7 @@
 //! A run of the lab, written down: run again from its scene and its changes, with tables and digest.
 
 use recording::log::Roll;
-use recording::{Judging, Recorder, RunOptions, Status};
+use recording::{Recorder, RunOptions, Status};
 use rendering::{CameraEyes, Gpu};
 use scene::Scene;
 use simulation::Simulation;
@@ -36,7 +36,6 @@ pub fn keep(
         let eyes = CameraEyes::new(gpu, run.cast()).map_err(|error| error.to_string())?;
         run.open_eyes(roll.through(Box::new(eyes)));
     }
-    let settled_after = scene.expect.settled_after.unwrap_or(0.5 * scene.time.duration);
     let options = RunOptions {
         csv: false,
         no_log: false,
@@ -47,7 +46,7 @@ pub fn keep(
         commit: option_env!("ECHELON_COMMIT").map(str::to_owned),
         seed: scene.seed,
         period: scene.time.period,
-        judging: Judging { settling_band: scene.expect.settling_band, settled_after },
+        judging: scene.judging(),
     };
     let mut recorder = Recorder::create(folder, run.cast(), options).map_err(|error| error.to_string())?;
     while let Some(moment) = run.next_moment() {

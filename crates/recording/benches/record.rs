@@ -3,11 +3,12 @@
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use recording::log::{FILE, Log};
-use recording::{Judging, Recorder, RunOptions, Status};
+use recording::{Recorder, RunOptions, Status};
 use scene::Scene;
 use simulation::{Simulation, build};
 use std::hint::black_box;
 use std::path::Path;
+use vocabulary::Judging;
 
 fn load(name: &str) -> Scene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");

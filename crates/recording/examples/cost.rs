@@ -2,11 +2,12 @@
 //!
 //! `cargo run --release -p recording --example cost -- [PAIRS] [SCENE…]`
 
-use recording::{Judging, Recorder, RunOptions, Status};
+use recording::{Recorder, RunOptions, Status};
 use scene::Scene;
 use simulation::{Simulation, build};
 use std::path::Path;
 use std::time::Instant;
+use vocabulary::Judging;
 
 /// Runs a scene and records it; ms.
 fn record(scene: &Scene, no_log: bool) -> f64 {

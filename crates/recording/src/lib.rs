@@ -11,27 +11,14 @@
 //! Rows reach the disk as the run goes, in parts that are each complete, so a run that is cut short leaves what it
 //! had; its manifest then says `running` or `interrupted`, never `complete`.
 
-mod certificates;
-pub mod clearance;
 mod columns;
-mod contacts;
-mod digest;
 mod error;
-mod expectations;
 pub mod log;
-mod looks;
 mod manifest;
-mod metrics;
 mod run;
 mod table;
 
-pub use certificates::{CertificateMetrics, StatementMetrics};
-pub use contacts::ContactMetrics;
-pub use digest::Digest;
 pub use error::Error;
-pub use expectations::ExpectationMetrics;
-pub use looks::LookMetrics;
 pub use manifest::{Manifest, Status};
-pub use metrics::{EdgeMetrics, Judging, Metrics, MetricsBuilder, RobotMetrics};
 pub use run::{Finished, Recorder, RunOptions};
 pub use table::{Column, TableKind, read_table};

@@ -3,13 +3,13 @@
 use crate::log::{self, Pipe, Roll};
 use crate::manifest::FORMAT;
 use crate::table::{TableKind, TableWriter};
-use crate::{
-    CertificateMetrics, Digest, Error, ExpectationMetrics, Judging, Manifest, Metrics, MetricsBuilder, Status,
-};
+use crate::{Error, Manifest, Status};
+use metrics::{CertificateMetrics, Digest, ExpectationMetrics, Metrics, MetricsBuilder};
 use output::{Claim, write_whole};
 use serde::Serialize;
 use std::fs;
 use std::path::{Path, PathBuf};
+use vocabulary::Judging;
 use vocabulary::{Cast, Moment};
 
 /// What a recorder has to know before the first moment.

@@ -2,7 +2,7 @@
 
 use crate::effort::{Effort, EffortSums};
 use figures::Rgb;
-use recording::{Digest, Judging, Metrics, MetricsBuilder};
+use metrics::{Digest, Metrics, MetricsBuilder};
 use scene::Scene;
 use simulation::Simulation;
 use vocabulary::{Cast, Command, Edge, Moment, Motion, wrap};
@@ -49,21 +49,13 @@ pub struct Trace {
     pub digest: String,
 }
 
-/// Share of a run after which errors count as settled ones, where a scene does not say.
-const LATE: f64 = 0.8;
 /// Samples times robots that are kept at most; longer runs are kept every so often.
 const MOST_ROWS: u64 = 4_000_000;
-
-/// The scene's own time if it says one that comes, else the last fifth.
-fn late_from(scene: &Scene) -> f64 {
-    let length = scene.time.duration;
-    scene.expect.settled_after.filter(|time| *time < length).unwrap_or(LATE * length)
-}
 
 impl Trace {
     /// Time from which errors count as settled ones, s.
     pub fn late_from(&self) -> f64 {
-        late_from(&self.scene)
+        self.scene.judging().settled_after
     }
 
     /// Index of the sample at or after `time`, the last one after the end.
@@ -119,8 +111,7 @@ impl Tracer {
     ) -> Self {
         let cast = simulation.cast().clone();
         let (robots, edges) = (cast.members.len(), cast.edges.len());
-        let judging = Judging { settling_band: scene.expect.settling_band, settled_after: late_from(scene) };
-        let metrics = MetricsBuilder::new(&cast, judging);
+        let metrics = MetricsBuilder::new(&cast, scene.judging());
         Self {
             every: (simulation.len() * robots as u64).div_ceil(MOST_ROWS).max(1),
             sample: 0,

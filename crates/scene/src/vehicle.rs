@@ -7,6 +7,7 @@ use crate::{
 };
 use serde::{Serializer, ser};
 use serde_json::{Value as Json, json};
+use vocabulary::GRAVITY;
 
 /// Keys that every kind has.
 const EVERYBODY: [&str; 11] = [
@@ -187,9 +188,9 @@ impl Check<'_> {
 
     fn springs(&self, reading: &mut Reading) {
         let Vehicle { mass, spring, travel, .. } = self.vehicle;
-        let sag = mass * 9.81 / 4.0 / spring;
+        let sag = mass * GRAVITY / 4.0 / spring;
         if sag >= 5.0 * travel {
-            let least = mass * 9.81 / 4.0 / (5.0 * travel);
+            let least = mass * GRAVITY / 4.0 / (5.0 * travel);
             let message = format!(
                 "springs of {spring} N/m do not carry {mass} kg: they sag by {sag:.3} m, with a `travel` of {travel} m; \
                  stiffer than {least:.0} N/m"

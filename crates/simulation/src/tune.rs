@@ -6,7 +6,7 @@
 
 use crate::{BuildError, Simulation, build};
 use cobyla::{RhoBeg, StopTols, minimize};
-use recording::{Judging, Metrics, MetricsBuilder};
+use metrics::{Metrics, MetricsBuilder};
 use scene::{LawKind, Role, Scene};
 use std::cell::RefCell;
 use thiserror::Error;
@@ -162,9 +162,7 @@ fn trial(scene: &Scene, gains: Gains) -> Result<Trial, BuildError> {
     let mut scene = scene.clone();
     gains.give(&mut scene);
     let mut simulation = Simulation::new(build(&scene)?);
-    let settled_after = 0.5 * scene.time.duration;
-    let judging = Judging { settling_band: scene.expect.settling_band, settled_after };
-    let mut metrics = MetricsBuilder::new(simulation.cast(), judging);
+    let mut metrics = MetricsBuilder::new(simulation.cast(), scene.judging());
     while let Some(moment) = simulation.next_moment() {
         metrics.push(moment);
     }
@@ -182,7 +180,7 @@ fn trial(scene: &Scene, gains: Gains) -> Result<Trial, BuildError> {
 
 /// Less is better.
 fn cost(metrics: &Metrics) -> f64 {
-    let edge = |e: &recording::EdgeMetrics| {
+    let edge = |e: &metrics::EdgeMetrics| {
         let late = e.late_peak_error[0] / 0.01 + e.late_peak_error[1].to_degrees();
         late + e.iae[0] + e.iae[1] + 10.0 * e.limited
     };

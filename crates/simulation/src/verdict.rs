@@ -2,7 +2,7 @@
 
 use crate::caption::short;
 use crate::fault::NotFinite;
-use recording::{EdgeMetrics, ExpectationMetrics, Metrics};
+use metrics::{EdgeMetrics, ExpectationMetrics, Metrics};
 use scene::{Expect, OnContact, Scene};
 
 /// One expectation and what became of it.
@@ -302,7 +302,7 @@ fn name(edge: &EdgeMetrics) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use recording::RobotMetrics;
+    use metrics::RobotMetrics;
 
     fn metrics() -> Metrics {
         let edge = EdgeMetrics {

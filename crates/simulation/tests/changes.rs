@@ -1,6 +1,6 @@
 //! Changes while a run goes: written in the scene or adopted on the way, they make the same run bit for bit.
 
-use recording::Digest;
+use metrics::Digest;
 use scene::{Override, Scene};
 use simulation::{Simulation, build};
 use vocabulary::Moment;

@@ -1,7 +1,7 @@
 //! Words of films: cards, and the line at the bottom.
 
 use super::board::Frame;
-use recording::{EdgeMetrics, Metrics};
+use metrics::{EdgeMetrics, Metrics};
 use rendering::{Card, Line};
 use vocabulary::{Cast, Moment, Thing};
 

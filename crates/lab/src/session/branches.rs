@@ -4,7 +4,7 @@
 //! every second or so, is kept as a saved simulation; going back starts from the one before and runs on to the sample
 //! asked for, which is the same run bit for bit.
 
-use recording::Digest;
+use metrics::Digest;
 use scene::{Scene, SceneText};
 use simulation::{BuildError, Setup, Simulation};
 use std::rc::Rc;

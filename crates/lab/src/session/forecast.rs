@@ -1,6 +1,6 @@
 //! What will come if nobody changes anything: a copy of the run, sent ahead on a thread of its own.
 
-use recording::clearance::Clearance;
+use metrics::clearance::Clearance;
 use simulation::Simulation;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{

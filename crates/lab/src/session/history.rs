@@ -1,6 +1,6 @@
 //! Everything simulated so far, branch by branch, so that it can be looked at again: moments, trails, and curves.
 
-use recording::clearance::Clearance;
+use metrics::clearance::Clearance;
 use rendering::Trail;
 use std::sync::Arc;
 use vocabulary::{Cast, Moment};

@@ -3,7 +3,7 @@
 use super::branches::Branches;
 use super::forecast::Crystal;
 pub use super::orders::{News, Order};
-use recording::Digest;
+use metrics::Digest;
 use recording::log::Log;
 use rendering::{CameraEyes, Gpu};
 use scene::Scene;

@@ -173,7 +173,7 @@ impl Rig {
 /// Number and digest of the samples of a scene.
 pub(crate) fn run(text: &str) -> (u64, String) {
     let mut run = Simulation::new(simulation::build(&scene(text)).expect("a run"));
-    let mut digest = recording::Digest::default();
+    let mut digest = metrics::Digest::default();
     while let Some(moment) = run.next_moment() {
         digest.push(moment);
     }

@@ -3,9 +3,10 @@
 use crate::common::{Rig, THREE, run, scene};
 use lab::action::Action;
 use recording::log::{FILE, Log, Roll};
-use recording::{Judging, Recorder, RunOptions, Status};
+use recording::{Recorder, RunOptions, Status};
 use simulation::Simulation;
 use std::path::Path;
+use vocabulary::Judging;
 
 /// Records a scene; its folder.
 fn record(text: &str) -> tempfile::TempDir {
@@ -49,7 +50,7 @@ fn a_recorded_run_is_all_there_and_stands_where_one_looks() {
     let folder = record(THREE);
     let mut rig = opened(folder.path());
     assert!(rig.desk.recorded && rig.desk.cursor == Some(0.0) && !rig.desk.playing);
-    let mut digest = recording::Digest::default();
+    let mut digest = metrics::Digest::default();
     let history = rig.desk.history.as_ref().expect("a past");
     let all = history.between(0, [0.0, 20.0], usize::MAX);
     for moment in &all {

@@ -1,9 +1,10 @@
 //! A run by robots that do anything, recorded.
 
 use recording::log::Roll;
-use recording::{Judging, Manifest, Recorder, RunOptions, Status};
+use recording::{Manifest, Recorder, RunOptions, Status};
 use std::path::Path;
 use std::sync::Arc;
+use vocabulary::Judging;
 use vocabulary::{
     Body, Cast, Condition, Contact, Edge, EdgeState, Frame, Member, Mobility, Moment, Outcome, Placement,
     Prop, RobotState, Shell, Sight, Snapshot, Solid, Terrain, Thing,

@@ -1,8 +1,9 @@
 //! Logs as this program writes them.
 
 use crate::common::{Numbers, cast, options, record, same};
+use metrics::Digest;
 use recording::log::{FILE, Log, compare};
-use recording::{Digest, Error, Recorder, RunOptions, Status};
+use recording::{Error, Recorder, RunOptions, Status};
 use std::fs;
 use std::path::Path;
 use vocabulary::Moment;

@@ -4,6 +4,7 @@ use crate::text::{
     angle_within, couple, flag, form::Angle, form::Number, integer, lists::Couple, number, optional, settings,
 };
 use std::f64::consts::PI;
+use vocabulary::Judging;
 
 /// Size of a distance error.
 const LENGTH: Number = number("m").from(0.0);
@@ -59,5 +60,17 @@ settings! {
         pub all_able: bool = false, flag();
         /// Largest height of any robot's ground point over the ground, m: jumps and climbs.
         pub lift_at_most: Option<f64> = None, optional(LENGTH);
+    }
+}
+
+/// Share of a run from which errors are late ones, where its scene does not say.
+const LATE: f64 = 0.5;
+
+impl Expect {
+    /// What a run of `duration` s is judged by. Late errors count from `settled_after` on, or from half time where a scene
+    /// gives none that comes.
+    pub fn judging(&self, duration: f64) -> Judging {
+        let said = self.settled_after.filter(|time| *time < duration);
+        Judging { settling_band: self.settling_band, settled_after: said.unwrap_or(LATE * duration) }
     }
 }

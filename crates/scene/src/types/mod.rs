@@ -41,6 +41,7 @@ pub(crate) use stage::{EnvironmentPart, ROBOT_VIEWS, ViewsPart};
 pub(crate) use vehicle::VehiclePart;
 
 use serde::Serialize;
+use vocabulary::Judging;
 
 /// One experiment, checked and complete.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -80,6 +81,11 @@ impl Scene {
     /// Index of the robot called `name`.
     pub fn index_of(&self, name: &str) -> Option<usize> {
         self.robots.iter().position(|robot| robot.name == name)
+    }
+
+    /// What a run of this scene is judged by.
+    pub fn judging(&self) -> Judging {
+        self.expect.judging(self.time.duration)
     }
 
     /// What of the scene comes after the end of its run and so never takes effect, in words: changes, and expectations

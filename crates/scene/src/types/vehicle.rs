@@ -1,7 +1,7 @@
 //! What a robot is and what it can do.
 
 use crate::text::{angle_within, form::Number, number, settings, words};
-use vocabulary::{Body, Limits};
+use vocabulary::{Body, GRAVITY, Limits};
 
 /// A measure of a body.
 const MEASURE: Number = number("m").above(0.0).up_to(100.0);
@@ -11,8 +11,6 @@ const LAG: Number = number("s").from(0.0).up_to(10.0);
 const FORCE: Number = number("N").above(0.0).up_to(1e7);
 /// rad.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
-/// m/s².
-const GRAVITY: f64 = 9.81;
 /// Share of what its tyres hold that a vehicle is driven up to sideways.
 const GRIP_USED: f64 = 0.8;
 

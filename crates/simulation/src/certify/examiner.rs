@@ -5,7 +5,7 @@ use formation::certificate::{
     Circumstances, Constants, Finding, Instant, Outcome, Premise, Statement, Witness, certify,
 };
 use formation::{EdgeLaw, Estimate, LawKind, SetPointCourse, Switching};
-use recording::{CertificateMetrics, StatementMetrics};
+use metrics::{CertificateMetrics, StatementMetrics};
 use scene::Scene;
 use vocabulary::{Cast, Drive, Edge, Moment, Thing};
 

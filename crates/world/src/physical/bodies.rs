@@ -5,7 +5,6 @@ use super::PropBody;
 use super::ground::ground;
 use crate::Wheeled;
 use crate::touch::Touch;
-use crate::wheeled::GRAVITY;
 use crate::wheeled::wheel::{Carriage, Footing};
 use rapier3d_f64::parry::bounding_volume::BoundingVolume;
 use rapier3d_f64::prelude::{
@@ -14,7 +13,7 @@ use rapier3d_f64::prelude::{
     PhysicsPipeline, Pose as Frame, QueryFilter, Ray, RigidBodyBuilder, RigidBodyHandle, RigidBodySet,
     Rotation, SharedShape, SoftBodySet, Vector,
 };
-use vocabulary::{Attitude, Body, Mobility, Motion, Placement, Pose, Solid, Surface, Thing};
+use vocabulary::{Attitude, Body, GRAVITY, Mobility, Motion, Placement, Pose, Solid, Surface, Thing};
 
 /// Bodies whose nearest points are closer than this touch, m.
 const TOUCHING: f64 = 1e-4;

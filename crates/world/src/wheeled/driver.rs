@@ -5,8 +5,8 @@
 //! their lags.
 
 use super::actuator::{demand, share};
-use super::{Drivetrain, GRAVITY, Wheeled};
-use vocabulary::Command;
+use super::{Drivetrain, Wheeled};
+use vocabulary::{Command, GRAVITY};
 
 /// What a driver remembers, and where the actuators stand.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -11,10 +11,7 @@ pub mod wheel;
 
 pub use driver::{Driver, Effort};
 
-use vocabulary::{Body, Limits};
-
-/// Standard gravity, m/s².
-pub const GRAVITY: f64 = 9.806_65;
+use vocabulary::{Body, GRAVITY, Limits};
 
 /// Parameters of a wheeled vehicle. Masses, lengths, lags and stiffnesses are positive.
 ///

@@ -1,8 +1,9 @@
 //! A wheel on the ground: how far its spring is compressed, how hard it presses, how its tyre holds.
 
+use super::Wheeled;
 use super::tyre::{Brush, Rolling, Tyre};
-use super::{GRAVITY, Wheeled};
 use rapier3d_f64::math::Vector;
+use vocabulary::GRAVITY;
 
 /// Stiffness of the bump stop over that of the spring.
 const BUMP_STOP: f64 = 4.0;

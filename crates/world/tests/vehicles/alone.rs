@@ -1,8 +1,8 @@
 //! One vehicle by itself.
 
 use crate::common::{Run, actor, differential, flat, truck};
-use vocabulary::{Command, Condition, Pose};
-use world::wheeled::{Drivetrain, GRAVITY};
+use vocabulary::{Command, Condition, GRAVITY, Pose};
+use world::wheeled::Drivetrain;
 use world::{Wheeled, World};
 
 const FORWARD: Command = Command { acceleration: 0.0, turn_rate: 0.0 };

@@ -5,7 +5,7 @@ use crate::clearance::Clearance;
 use crate::contacts::{ContactLog, ContactMetrics};
 use crate::looks::{LookMetrics, LookSums};
 use serde::Serialize;
-use vocabulary::{Cast, Condition, Contact, EdgeState, Moment, Thing};
+use vocabulary::{Cast, Condition, Contact, EdgeState, Judging, Moment, Thing};
 
 /// `metrics.json`. Every pair is [distance, bearing] or [acceleration, turn rate].
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -50,15 +50,6 @@ pub struct RobotMetrics {
     pub lift_max: f64,
     /// At the end: able, overturned, stuck or fallen.
     pub condition: String,
-}
-
-/// What a run is judged by.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Judging {
-    /// |error| under which an edge counts as settled, [m, rad].
-    pub settling_band: [f64; 2],
-    /// Time from which [`EdgeMetrics::late_peak_error`] and [`EdgeMetrics::late_rms_error`] count, s.
-    pub settled_after: f64,
 }
 
 /// One edge over a run.
@@ -211,7 +202,7 @@ impl MetricsBuilder {
     }
 
     /// The contacts that have not ended, as if they ended now.
-    pub(crate) fn close_contacts(&self) -> Vec<Contact> {
+    pub fn close_contacts(&self) -> Vec<Contact> {
         self.contacts.close()
     }
 

@@ -2,11 +2,12 @@
 
 use cap::Cap;
 use recording::log::Roll;
-use recording::{Judging, Recorder, RunOptions};
+use recording::{Recorder, RunOptions};
 use scene::Scene;
 use simulation::certify::Examiner;
 use simulation::{Simulation, build};
 use std::alloc::System;
+use vocabulary::Judging;
 
 #[global_allocator]
 static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
@@ -16,7 +17,7 @@ const STRETCH: usize = 1500;
 
 #[test]
 fn a_run_that_goes_on_takes_no_more_memory() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/figure-eight-seven.toml");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/figure-eight-seven.toml");
     let scene =
         Scene::load(path, &["time.duration=150".parse().expect("an override")]).expect("a scene").scene;
     let mut simulation = Simulation::new(build(&scene).expect("a run"));

@@ -1,0 +1,16 @@
+//! What a run was like, as numbers that are taken from its moments one after the other, in memory that does not grow.
+
+mod certificates;
+pub mod clearance;
+mod contacts;
+mod digest;
+mod expectations;
+mod looks;
+mod metrics;
+
+pub use certificates::{CertificateMetrics, StatementMetrics};
+pub use contacts::ContactMetrics;
+pub use digest::Digest;
+pub use expectations::ExpectationMetrics;
+pub use looks::LookMetrics;
+pub use metrics::{EdgeMetrics, Metrics, MetricsBuilder, RobotMetrics};
