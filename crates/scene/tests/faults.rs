@@ -209,6 +209,19 @@ fn another(name: &str, leader: &str) -> String {
 fn duplicate_names() {
     let text = format!("{GOOD}{}", another("follower", "leader"));
     assert_fault(&text, (24, 8), &["two robots called `follower`"]);
+    // A robot of a group stands where its own name is written.
+    let group = "[[groups]]\nname = \"g\"\nshape = \"column\"\ncount = 3\nleader = \"leader\"\n";
+    let member = "[groups.members.g-2]\nname = \"follower\"\n";
+    assert_fault(&format!("{GOOD}\n{group}{member}"), (29, 8), &["two robots called `follower`"]);
+}
+
+/// What was typed is at fault, though the robot stands before the other in the file.
+#[test]
+fn a_name_given_twice_by_the_command_line_is_shown_there() {
+    let change = "robots.leader.name=follower".parse().unwrap();
+    let diagnostics = Scene::parse(GOOD, "test.toml", &[change]).unwrap_err();
+    let twice = diagnostics.all().iter().find(|fault| fault.message.contains("two robots")).unwrap();
+    assert_eq!((twice.origin.as_str(), twice.column), ("--set", 20), "{diagnostics}");
 }
 
 #[test]

@@ -180,7 +180,7 @@ fn groups_that_cannot_be() {
         ),
         (
             "shape = \"v\"\ncount = 3\n[[robots]]\nname = \"robot-2\"\npose = [0, 0, 0]\nleader = \"robot-1\"\ndistance = 1\nbearing = 1",
-            3,
+            8,
             "two robots",
         ),
         (
