@@ -2,7 +2,7 @@
 
 use crate::{
     files::read_beside,
-    table_file::line_at,
+    table_file::{line_at, separator, why},
     text::{Form, Node, Place, Reading, form::Number, number},
 };
 use serde_json::{Value as Json, json};
@@ -40,7 +40,7 @@ fn read_rows(text: &str, source: usize, reading: &mut Reading) -> Option<Vec<Vec
     for (index, record) in table.records().enumerate() {
         let position =
             record.as_ref().map_or_else(csv::Error::position, csv::StringRecord::position).cloned();
-        let row = record.map_err(|error| format!("not a row of heights: {error}"));
+        let row = record.map_err(|error| format!("not a row of heights: {}", why(&error)));
         let wanted = rows.first().map(Vec::len);
         match row.and_then(|record| read_row(&record, index + 1, wanted)) {
             Ok(row) => {
@@ -71,7 +71,8 @@ fn read_row(record: &csv::StringRecord, row: usize, wanted: Option<usize>) -> Re
             if text.is_empty() {
                 return format!("there is no height in row {row}, column {column}: a hole");
             }
-            format!("the height in row {row}, column {column} must be {}, not {text:?}", HEIGHT.expected())
+            let hint = separator(text).unwrap_or_default();
+            format!("the height in row {row}, column {column} must be {}, not {text:?}{hint}", HEIGHT.expected())
         })
     };
     let heights = record.iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;

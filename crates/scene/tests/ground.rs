@@ -83,6 +83,7 @@ fn heights_come_from_files_and_stay_in_the_scene() {
         ("0,1,2\n0,high,2\n", 2, "not \"high\""),
         ("0,1,2\n0,1\n", 2, "row 2 has 2 heights and the first row 3: there is no height from column 3 on"),
         ("0,1,2\n0,1,2,3\n", 2, "more heights from column 4 on"),
+        ("0;1;2\n", 1, "not \"0;1;2\"; the file is separated by `;`: use commas"),
         ("0,1,2\n", 1, "two rows of two"),
         ("", 1, "two rows of two"),
     ] {
