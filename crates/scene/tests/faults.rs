@@ -328,6 +328,32 @@ fn a_fault_is_printed_with_its_line() {
     );
 }
 
+/// Letters and marks that leave no trace: `bob` and `bob` would be two robots.
+#[test]
+fn names_that_cannot_be_seen_are_refused() {
+    let validator = jsonschema::validator_for(&scene::schema()).unwrap();
+    let fits = |name: &str| {
+        validator.is_valid(&serde_json::json!({
+            "schema": 1, "title": "t",
+            "robots": [{ "name": name, "pose": [0, 0, 0], "path": { "kind": "constant" } }],
+        }))
+    };
+    for sign in "\u{3164}\u{ffa0}\u{115f}\u{1160}\u{34f}\u{17b4}\u{180b}\u{fe0f}\u{e0100}\u{200b}\u{2060}\u{feff}".chars() {
+        for name in [format!("{sign}"), format!("leader{sign}")] {
+            let words = format!(": U+{:04X} in it cannot be seen", u32::from(sign));
+            let to = format!("name = \"{name}\"");
+            let text = GOOD.replacen("name = \"leader\"", &to, 1);
+            let all = faults(&text);
+            assert!(all.iter().any(|fault| fault.line == 12 && fault.message.contains(&words)), "{all:?}");
+            assert!(!fits(&name), "the schema takes U+{:04X}", u32::from(sign));
+        }
+    }
+    for name in ["leader", "Amélie-2", "로봇_1", "गाड़ी"] {
+        assert_eq!(faults(&GOOD.replace("\"leader\"", &format!("\"{name}\""))), [], "{name}");
+        assert!(fits(name), "{name}");
+    }
+}
+
 #[test]
 fn control_characters_do_not_reach_the_terminal() {
     let text = "schema = 1\ntitle = \"t\"\n\"\\u001b[2J\" = 1\n\"a\u{85}b\" = \"\\u0007\"";
