@@ -5,6 +5,7 @@ use output::write_whole;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use simulation::verdict::Finding;
 use std::path::Path;
+use vocabulary::readable;
 
 /// One thing that was checked.
 pub(crate) struct Case {
@@ -71,7 +72,7 @@ pub(crate) fn write(path: &Path, name: &str, cases: &[Case]) -> Result<(), Failu
 /// Text with what XML does not allow, though escaped, made visible: names of files may hold anything.
 fn allowed(text: &str) -> String {
     let fits = |c: char| matches!(c, '\t' | '\n' | '\r' | ' '..='\u{fffd}' | '\u{10000}'..);
-    text.chars().map(|c| if fits(c) && !matches!(c, '\u{7f}'..='\u{9f}') { c } else { '\u{fffd}' }).collect()
+    readable(text).chars().map(|c| if fits(c) && !matches!(c, '\u{7f}'..='\u{9f}') { c } else { '\u{fffd}' }).collect()
 }
 
 #[cfg(test)]
