@@ -218,7 +218,7 @@ fn folder(args: &RunArgs) -> Result<PathBuf, Failure> {
     let refused =
         |path: &Path, e: &std::io::Error| Failure::Machine(format!("cannot create {}: {e}", path.display()));
     let runs = Path::new("runs");
-    std::fs::create_dir_all(runs).map_err(|e| refused(runs, &e))?;
+    let _place = Place::folder(runs)?;
     let mut number = 1;
     loop {
         let path = runs.join(format!("{stem}-{number:03}"));

@@ -64,8 +64,9 @@ impl Place {
         if path.exists() {
             return Self::folder(path);
         }
-        let place = Self::made(folder_of(path))?;
-        drop(Draft::new(path)?);
+        let goal = followed(path);
+        let place = Self::made(folder_of(&goal))?;
+        drop(Draft::new(&goal)?);
         Ok(place)
     }
 
@@ -89,6 +90,10 @@ impl Drop for Place {
 
 /// Refuses what names nothing.
 pub(crate) fn named(path: &Path) -> Result<(), Error> {
+    let goal = followed(path);
+    if goal.ancestors().any(|part| part.is_symlink() && !part.exists()) {
+        return Err(Error::place(path, "is a link that leads nowhere, round in a circle: name another place"));
+    }
     match path.as_os_str().as_encoded_bytes() {
         b"" => Err(Error::place(path, "(nothing) is no place to write to: name one")),
         b"-" => Err(Error::place(
@@ -138,6 +143,35 @@ mod tests {
         drop(Place::new_folder(&root.path().join("c/d")).expect("a place"));
         assert!(!root.path().join("c").exists());
         assert_eq!(fs::read_dir(root.path()).expect("listed").count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_links_lead_to_is_made() {
+        use std::os::unix::fs::symlink;
+        let root = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| root.path().join(name);
+        symlink("nowhere/deep", at("link")).expect("linked");
+        for (name, made) in [("link", "nowhere/deep"), ("link/below/it", "nowhere/deep/below/it")] {
+            let claim = crate::Claim::new(&at(name), "a run", false, |_| None).expect("claimed");
+            assert!(at(made).join(".lock").exists(), "{name}");
+            drop(claim);
+            std::fs::remove_dir_all(at("nowhere")).expect("removed");
+            for look in [Place::folder, Place::file, Place::new_folder] {
+                drop(look(&at(name)).expect("a place"));
+                assert!(!at("nowhere").exists() && at("link").is_symlink(), "{name}");
+            }
+        }
+        symlink("b", at("a")).expect("linked");
+        symlink("a/c", at("b")).expect("linked");
+        for name in ["a", "a/below"] {
+            let claim = crate::Claim::new(&at(name), "a run", false, |_| None).map(drop);
+            let places = [Place::folder(&at(name)), Place::file(&at(name)), Place::new_folder(&at(name))];
+            for result in places.map(|place| place.map(drop)).into_iter().chain([claim]) {
+                let error = result.expect_err("refused");
+                assert!(error.is_usage() && error.to_string().contains("round in a circle"), "{error}");
+            }
+        }
     }
 
     #[test]
