@@ -98,7 +98,7 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
 /// Makes the film of what `source` tells; it may use the adapter that draws.
 pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
     let began = Instant::now();
-    let kind = if job.ffmpeg { FilmKind::Ffmpeg } else { FilmKind::of(&job.path) };
+    let kind = FilmKind::of(&job.path, job.ffmpeg)?;
     if kind == FilmKind::Gif {
         lighten(&mut job.settings);
     }

@@ -104,11 +104,21 @@ pub(crate) fn named(path: &Path) -> Result<(), Error> {
     }
 }
 
-/// Refuses what is there and is no folder.
+/// Endings that nobody gives a folder on purpose.
+const ENDINGS: [&str; 15] = [
+    "png", "jpg", "jpeg", "gif", "mp4", "m4v", "webm", "svg", "pdf", "json", "csv", "xml", "html", "mcap", "toml",
+];
+
+/// Refuses what is there and is no folder, and what would be one with the name of a file.
 pub(crate) fn no_file(path: &Path) -> Result<(), Error> {
-    match path.exists() && !path.is_dir() {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    match path.exists() {
+        true if path.is_dir() => Ok(()),
         true if path.is_file() => Err(Error::place(path, "is a file: name a folder")),
         true => Err(Error::place(path, "is no folder: name one")),
+        false if ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str())) => {
+            Err(Error::place(path, "has the ending of a file, and names a folder here: leave the ending out"))
+        }
         false => Ok(()),
     }
 }
@@ -187,6 +197,13 @@ mod tests {
         assert!(told(Place::file(root.path())).contains("is a folder"));
         assert!(told(Place::file(&root.path().join("new/"))).contains("is a folder"));
         assert!(told(Place::folder(&file)).contains("is a file"));
+        for name in ["shot.png", "run.MCAP", "deep/numbers.json"] {
+            assert!(told(Place::folder(&root.path().join(name))).contains("leave the ending out"), "{name}");
+        }
+        // A folder that is there is one, whatever it is called.
+        fs::create_dir(root.path().join("old.png")).expect("made");
+        drop(Place::folder(&root.path().join("old.png")).expect("a folder"));
+        drop(Place::folder(&root.path().join("v1.2")).expect("a folder"));
         assert!(told(Place::file(Path::new("-"))).contains("standard output"));
         assert!(told(Place::folder(Path::new("-"))).contains("standard output"));
         assert!(told(Place::file(Path::new(""))).contains("name one"));
