@@ -23,7 +23,7 @@ use rendering::{AdapterChoice, Gpu};
 use scene::Scene;
 use simulation::Simulation;
 use std::path::Path;
-use vocabulary::Cast;
+use vocabulary::{Cast, counted};
 
 /// A comparison, as far as it has come.
 pub(crate) struct Budget<'a> {
@@ -112,7 +112,7 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
         complete: false,
     };
     let each = simulation.len();
-    let what = format!("{} runs of {}, {} s each", cases.len(), stem(&args.scene.scene), scene.time.duration);
+    let what = format!("{} of {}, {} s each", counted(cases.len(), "run"), stem(&args.scene.scene), scene.time.duration);
     let progress = Progress::begin(&what, each.saturating_mul(cases.len() as u64), silent);
     for (index, case) in cases.iter().enumerate() {
         let mut simulation = Simulation::new(case.build(&scene)?);
@@ -130,7 +130,7 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
     budget.complete = budget.runs.len() == cases.len();
     finish(&budget, folder, args)?;
     if !budget.complete {
-        let done = format!("after {} of {} runs; they are printed", budget.runs.len(), cases.len());
+        let done = format!("after {} of {}; they are printed", budget.runs.len(), counted(cases.len(), "run"));
         return Err(Failure::Interrupted(done));
     }
     Ok(())

@@ -13,7 +13,7 @@ use output::Place;
 use rendering::{Gpu, png};
 use serde_json::json;
 use std::path::Path;
-use vocabulary::Cast;
+use vocabulary::{Cast, counted};
 
 /// What pictures are made of.
 pub(crate) struct Job<'a> {
@@ -68,7 +68,7 @@ pub(crate) fn draw(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Fa
     let source = source(&studio.gpu)?;
     let adapter = studio.gpu.description();
     let mut playback = Playback::new(cast, source);
-    let what = format!("Drawing {} pictures of {name}", times.len());
+    let what = format!("Drawing {} of {name}", counted(times.len(), "picture"));
     let progress = Progress::begin(&what, times.len() as u64, job.quiet || times.len() < 4);
     let (mut files, mut shown) = (Vec::new(), Vec::new());
     for (count, time) in times.iter().enumerate() {

@@ -12,7 +12,7 @@ use serde_json::json;
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use vocabulary::Picture;
+use vocabulary::{Picture, counted};
 
 #[derive(Debug, Args)]
 pub(crate) struct CompareArgs {
@@ -128,8 +128,9 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
         if failed > 0 || !args.quiet {
             let all = compared.len();
             say(&format!(
-                "{} of {all} pictures alike, every part by {} at least",
+                "{} of {} alike, every part by {} at least",
                 all - failed,
+                counted(all, "picture"),
                 args.threshold
             ));
         }

@@ -12,6 +12,7 @@ use recording::log::{Comparison, compare};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use vocabulary::counted;
 
 #[derive(Debug, Args)]
 pub(crate) struct DiffArgs {
@@ -72,7 +73,7 @@ pub(crate) fn diff(args: &DiffArgs) -> Outcome {
             })?;
             progress.end();
             if interrupt::asked() {
-                return Err(Failure::Interrupted(format!("after {} samples", found.samples)));
+                return Err(Failure::Interrupted(format!("after {}", counted(found.samples, "sample"))));
             }
             Some(found)
         }
@@ -95,7 +96,8 @@ pub(crate) fn diff(args: &DiffArgs) -> Outcome {
 fn told(robots: &[String], edges: &[[String; 2]]) -> String {
     let edges: Vec<String> =
         edges.iter().map(|[leader, follower]| format!("{leader} → {follower}")).collect();
-    format!("{} robots: {}; {} edges: {}", robots.len(), robots.join(", "), edges.len(), edges.join(", "))
+    let (some, all) = (counted(robots.len(), "robot"), counted(edges.len(), "edge"));
+    format!("{some}: {}; {all}: {}", robots.join(", "), edges.join(", "))
 }
 
 /// Keys of the resolved scenes that differ; one that cannot be read here is compared as a whole.
@@ -225,12 +227,12 @@ fn differing(count: usize) -> String {
 fn moments(found: &Comparison, same: bool, names: &[String; 2]) {
     if same {
         let exact = if found.peaks.is_empty() && found.differing == 0 { "same: bit for bit" } else { "same" };
-        say(&format!("{exact}, {} samples", found.samples));
+        say(&format!("{exact}, {}", counted(found.samples, "sample")));
         return;
     }
-    say(&format!("DIFFERENT in {} of {} samples", found.differing, found.samples));
+    say(&format!("DIFFERENT in {} of {}", found.differing, counted(found.samples, "sample")));
     for (more, name) in found.more.iter().zip(names).filter(|(more, _)| **more > 0) {
-        say(&format!("{name} goes on for {more} samples more"));
+        say(&format!("{name} goes on for {} more", counted(more, "sample")));
     }
     if let Some(first) = &found.first {
         let (name, unit) = unit(first.quantity);

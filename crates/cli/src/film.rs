@@ -23,7 +23,7 @@ use rendering::{Film, FilmKind, Gpu, Room, Show};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
-use vocabulary::Cast;
+use vocabulary::{Cast, counted};
 
 /// What a film is made of.
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
@@ -125,7 +125,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     let source = source(&studio.gpu)?;
     let (mut film, done) = begin(&job, kind, &studio, rate)?;
 
-    let what = format!("Filming {name}, {frames} frames, to {}", path.display());
+    let what = format!("Filming {name}, {}, to {}", counted(frames, "frame"), path.display());
     let progress = Progress::begin(&what, frames, job.quiet);
     if done > 0 && !job.quiet {
         note(&format!("going on after {:.2} s that are there from an interrupted film", done as f64 / rate));
@@ -198,8 +198,9 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
         let length = shot as f64 / rate;
         let [width, height] = studio.size;
         say(&format!(
-            "{}: {length:.2} s, {shot} frames of {width}×{height} at {rate} a second",
-            path.display()
+            "{}: {length:.2} s, {} of {width}×{height} at {rate} a second",
+            path.display(),
+            counted(shot, "frame")
         ));
         say(&format!("drawn in {seconds:.1} s with {adapter}"));
     }

@@ -11,6 +11,7 @@ use recording::{Digest, Manifest};
 use scene::Scene;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use vocabulary::counted;
 
 /// A recorded run.
 pub(crate) struct Recorded {
@@ -122,7 +123,7 @@ impl Recorded {
             if samples % STRIDE == 0 {
                 progress.at(samples);
                 if interrupt::asked() {
-                    return Err(Failure::Interrupted(format!("after {samples} samples")));
+                    return Err(Failure::Interrupted(format!("after {}", counted(samples, "sample"))));
                 }
             }
         }

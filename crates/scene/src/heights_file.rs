@@ -6,6 +6,7 @@ use crate::{
     text::{Form, Node, Place, Reading, form::Number, number},
 };
 use serde_json::{Value as Json, json};
+use vocabulary::counted;
 
 /// One height.
 pub(crate) const HEIGHT: Number = number("m").from(-1000.0).up_to(1000.0);
@@ -84,7 +85,8 @@ pub(crate) fn wrong_length(row: usize, length: usize, wanted: Option<usize>) -> 
     let wanted = wanted.filter(|wanted| *wanted != length)?;
     let column = length.min(wanted) + 1;
     let missing = if length < wanted { "there is no height from" } else { "there are more heights from" };
-    Some(format!("row {row} has {length} heights and the first row {wanted}: {missing} column {column} on"))
+    let heights = counted(length, "height");
+    Some(format!("row {row} has {heights} and the first row {wanted}: {missing} column {column} on"))
 }
 
 /// What is wrong with the number of heights in rows of one length.

@@ -6,6 +6,7 @@ use crate::{
     text::{Form, Node, Place, Reading, form::Number},
 };
 use serde_json::{Value as Json, json};
+use vocabulary::counted;
 
 /// Columns and the forms of their values.
 const COLUMNS: [(&str, Number); 3] = [("t", TIME), ("v", SPEED), ("omega", TURN_RATE)];
@@ -111,7 +112,7 @@ fn read_row(record: &csv::StringRecord, columns: [usize; 3]) -> Result<[f64; 3],
 pub(crate) fn why(error: &csv::Error) -> String {
     match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("it has {len} values, and the header {expected_len}")
+            format!("it has {}, and the header {expected_len}", counted(len, "value"))
         }
         _ => error.to_string(),
     }

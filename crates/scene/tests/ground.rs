@@ -117,7 +117,7 @@ fn grounds_that_cannot_be() {
         ),
         (&format!("{rough}\n[[ground.patches]]\nregion = [1, 1, 2, 2]"), 10, "`friction` is missing"),
         (table, 7, "either `heights` or `file`"),
-        (&format!("{table}\nheights = [[0, 1], [0]]"), 10, "row 2 has 1 heights and the first row 2"),
+        (&format!("{table}\nheights = [[0, 1], [0]]"), 10, "row 2 has 1 height and the first row 2"),
         (&format!("{table}\nheights = [[0, 1], [0, nan]]"), 10, "`heights` must be a number in m"),
         (&format!("{table}\nheights = [[0, 1]]"), 10, "two rows of two"),
         (&format!("{table}\nfile = \"nowhere.csv\""), 10, "no such file"),

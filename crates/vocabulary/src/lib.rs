@@ -36,7 +36,7 @@ pub use eyes::{Eyes, Grey, Mount, Shot};
 pub use lens::{Lens, Region};
 pub use limits::Limits;
 pub use moment::{EdgeState, Moment};
-pub use numeral::readable;
+pub use numeral::{counted, readable};
 pub use observation::{EdgeSample, Observation, TRACK_NODES, Track};
 pub use passage::Passage;
 pub use picture::Picture;

@@ -1,6 +1,7 @@
 //! Numbers in messages as people read them.
 
 use std::borrow::Cow;
+use std::fmt::Display;
 
 /// So many zeros in a row nobody counts.
 const ZEROS: &str = "0000000000000000";
@@ -32,9 +33,22 @@ pub fn readable(text: &str) -> Cow<'_, str> {
     Cow::Owned(clean)
 }
 
+/// How many there are of what `noun` is one of: `1 frame`, `2 frames`.
+pub fn counted(count: impl Display, noun: &str) -> String {
+    let count = count.to_string();
+    let plural = if count == "1" { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_is_no_plural() {
+        assert_eq!([0, 1, 2, 11].map(|n| counted(n, "frame")), ["0 frames", "1 frame", "2 frames", "11 frames"]);
+        assert_eq!((counted(1.0, "look"), counted("0.5 to 1", "look")), ("1 look".into(), "0.5 to 1 looks".into()));
+    }
 
     #[test]
     fn numbers_of_very_many_zeros_have_an_exponent() {
