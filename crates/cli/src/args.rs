@@ -143,13 +143,15 @@ pub(crate) struct LabArgs {
 /// How pictures look.
 #[derive(Debug, Args)]
 pub(crate) struct PictureArgs {
-    /// snake, snake-eye, top, orbit, follow:ROBOT, camera:ROBOT or fixed; several joined by '+' split the picture
+    /// snake, snake-eye, top, orbit, follow:ROBOT, camera:ROBOT, fixed, or fixed:ex,ey,ez,tx,ty,tz[,degrees] from an eye to a
+    /// target in m with a field of view; several joined by '+' split the picture
     #[arg(long)]
     pub(crate) view: Option<String>,
     /// Pixels, such as 1280x720
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<[u32; 2]>,
-    /// Elements to leave out, such as labels,inset,ghosts
+    /// Elements to leave out, such as labels,inset; any of ribbons, ghosts, set-points, edges, labels, names, grid, inset,
+    /// caption, time, shadows, marks, contacts
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) without: Vec<String>,
     /// In views through cameras, draw the tags found, the pose estimated and how sure it is
