@@ -108,7 +108,8 @@ pub(crate) struct RunArgs {
     /// Replace an earlier run in the folder
     #[arg(long)]
     pub(crate) force: bool,
-    /// Also write what became of the scene's expectations as JUnit XML, which CI systems read
+    /// Also write what became of the scene's expectations as JUnit XML, which CI systems read; `-` is standard
+    /// output, and what is for people goes to standard error
     #[arg(long, value_name = "FILE")]
     pub(crate) junit: Option<PathBuf>,
     /// Record nothing, only simulate and judge

@@ -2,6 +2,7 @@
 
 use crate::Outcome;
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::junit::{self, Came, Case};
 use crate::print::{json, say};
 use clap::Args;
@@ -12,6 +13,7 @@ use serde_json::json;
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 use vocabulary::{Picture, counted};
 
 #[derive(Debug, Args)]
@@ -28,7 +30,8 @@ pub(crate) struct CompareArgs {
     /// Folder for pictures of the differences: wanted, found, and where they differ
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Also write the result as JUnit XML, which CI systems read
+    /// Also write the result as JUnit XML, which CI systems read; `-` is standard
+    /// output, and what is for people goes to standard error
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
     /// Print the result as JSON
@@ -96,17 +99,36 @@ impl Pair {
 }
 
 pub(crate) fn compare(args: &CompareArgs) -> Outcome {
+    let began = Instant::now();
+    let _report = junit::open(args.junit.as_deref(), args.json)?;
+    let mut cases = vec![];
+    let outcome = judge(args, &mut cases);
+    junit::close(args.junit.as_deref(), "pictures", cases, (outcome, began.elapsed()))
+}
+
+/// Compares all pictures; `cases` are what became of them.
+fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
     let pairs = pairs(args)?;
-    let _report = args.junit.as_deref().map(Place::file).transpose()?;
     let _place = args.out.as_deref().map(Place::folder).transpose()?;
-    let mut compared = Vec::with_capacity(pairs.len());
+    interrupt::watch();
+    let all = pairs.len();
+    let mut compared = Vec::with_capacity(all);
     for (name, wanted, found) in pairs {
+        if interrupt::asked() {
+            let came = Came::Skipped("the comparison was interrupted".to_owned());
+            cases.push(Case { name, came, time: Some(Duration::ZERO) });
+            continue;
+        }
+        let began = Instant::now();
         let likeness = match (wanted, found) {
             (Some(wanted), Some(found)) => look(&wanted, &found, &name, args)?,
             (Some(_), None) => Err(format!("is not in {}", args.found.display())),
             (None, _) => Err(format!("is not in {}", args.wanted.display())),
         };
-        compared.push(Pair { name, found: likeness });
+        let pair = Pair { name, found: likeness };
+        let came = if pair.passes(args.threshold) { Came::Fine } else { Came::Failed(pair.words()) };
+        cases.push(Case { name: pair.name.clone(), came, time: Some(began.elapsed()) });
+        compared.push(pair);
     }
     let failed = compared.iter().filter(|pair| !pair.passes(args.threshold)).count();
     if args.json {
@@ -135,13 +157,9 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
             ));
         }
     }
-    // What came out is told, whatever becomes of a file.
-    if let Some(path) = &args.junit {
-        let case = |pair: &Pair| Case {
-            name: pair.name.clone(),
-            came: if pair.passes(args.threshold) { Came::Fine } else { Came::Failed(pair.words()) },
-        };
-        junit::write(path, "pictures", &compared.iter().map(case).collect::<Vec<_>>())?;
+    if compared.len() < all {
+        let text = format!("{} of {} are compared", compared.len(), counted(all, "picture"));
+        return Err(Failure::Interrupted(text));
     }
     if failed == 0 { Ok(()) } else { Err(Failure::Expectation) }
 }

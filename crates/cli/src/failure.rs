@@ -28,6 +28,14 @@ impl Failure {
         }
     }
 
+    /// What cut the work short; nothing where it came to its end.
+    pub(crate) fn text(&self) -> Option<&str> {
+        match self {
+            Self::Expectation => None,
+            Self::Broken(text) | Self::Usage(text) | Self::Machine(text) | Self::Interrupted(text) => Some(text),
+        }
+    }
+
     /// One message on standard error.
     pub(crate) fn tell(&self) {
         let message = match self {

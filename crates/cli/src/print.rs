@@ -11,8 +11,19 @@ use vocabulary::readable;
 /// Whether standard output refused something, for other reasons than that its reader has gone.
 static LOST: AtomicBool = AtomicBool::new(false);
 
+/// Whether standard output is for something else than results for people.
+static TAKEN: AtomicBool = AtomicBool::new(false);
+
+/// Leaves standard output to [`verbatim`]: results for people go to standard error from here on.
+pub(crate) fn make_way() {
+    TAKEN.store(true, Ordering::Relaxed);
+}
+
 /// Prints a line to standard output; a reader that has gone away is no error.
 pub(crate) fn say(text: &str) {
+    if TAKEN.load(Ordering::Relaxed) {
+        return note(text);
+    }
     write(format!("{}\n", harmless(text)).as_bytes());
 }
 

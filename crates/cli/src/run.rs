@@ -5,7 +5,7 @@ use crate::args::RunArgs;
 use crate::eyes;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::junit::{self, Came, Case};
+use crate::junit::{self, Case};
 use crate::load::{Loaded, load, stem};
 use crate::print::note;
 use crate::progress::Progress;
@@ -28,8 +28,16 @@ pub(crate) const PROGRAM: &str = concat!("echelon ", env!("CARGO_PKG_VERSION"));
 pub(crate) const STRIDE: u64 = 16;
 
 pub(crate) fn run(args: &RunArgs) -> Outcome {
-    let _report = args.junit.as_deref().map(Place::file).transpose()?;
-    let mut loaded = load(&args.scene).or_else(|failure| unreadable(args, failure))?;
+    let began = Instant::now();
+    let _report = junit::open(args.junit.as_deref(), args.scene.json)?;
+    let mut cases = vec![];
+    let outcome = judge(args, &mut cases);
+    junit::close(args.junit.as_deref(), &stem(&args.scene.scene), cases, (outcome, began.elapsed()))
+}
+
+/// Runs the scene; `cases` are what became of its expectations.
+fn judge(args: &RunArgs, cases: &mut Vec<Case>) -> Outcome {
+    let mut loaded = load(&args.scene)?;
     for late in loaded.scene.late().iter().filter(|_| !args.scene.quiet && !args.scene.json) {
         note(&format!("note: {late}"));
     }
@@ -88,6 +96,8 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     };
     let (metrics, digest, written) = sink.finish(status, certificates, &findings);
     if status == Status::Interrupted {
+        let why = format!("the run was interrupted at {:.2} s", metrics.duration);
+        cases.extend(verdict(&scene, &metrics, false).iter().map(|finding| Case::unjudged(finding, &why)));
         written?;
         let place = folder.map_or_else(String::new, |f| format!(", recorded in {}", f.display()));
         return Err(Failure::Interrupted(format!(
@@ -95,6 +105,7 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
             metrics.duration, scene.time.duration
         )));
     }
+    cases.extend(findings.iter().map(Case::of));
     let met = !findings.iter().any(Finding::failed);
     let summary = Summary {
         scene: &scene,
@@ -115,21 +126,7 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     }
     // What came out is told, whatever becomes of a file.
     written?;
-    if let Some(path) = &args.junit {
-        junit::write(path, &stem(&args.scene.scene), &findings.iter().map(Case::of).collect::<Vec<_>>())?;
-    }
     if met { Ok(()) } else { Err(Failure::Expectation) }
-}
-
-/// A scene that cannot be read is a result, too, where results are asked for as a file.
-fn unreadable(args: &RunArgs, failure: Failure) -> Result<Loaded, Failure> {
-    if let (Some(path), Failure::Usage(text)) = (&args.junit, &failure) {
-        let case = Case { name: "the scene can be read".to_owned(), came: Came::Broken(text.clone()) };
-        if let Err(other) = junit::write(path, &stem(&args.scene.scene), &[case]) {
-            other.tell();
-        }
-    }
-    Err(failure)
 }
 
 fn judging(scene: &scene::Scene) -> Judging {

@@ -44,7 +44,8 @@ fn places_that_cannot_be_are_refused_at_once() {
     for (args, code, words) in [
         (vec!["run", &line, "--no-record", "--junit", "folder"], 2, "is a folder"),
         (vec!["run", &line, "--no-record", "--junit", "file/x.xml"], 3, "cannot create file"),
-        (vec!["run", &line, "--no-record", "--junit", "-"], 2, "standard output"),
+        (vec!["run", &line, "--no-record", "--json", "--junit", "-"], 2, "name a file for one of them"),
+        (vec!["compare", "folder", "folder", "--json", "--junit", "-"], 2, "name a file for one of them"),
         (vec!["run", &line, "-o", "file"], 2, "is a file"),
         (vec!["run", &line, "-o", "-"], 2, "standard output"),
         (vec!["film", &line, "-o", "-"], 2, "standard output"),

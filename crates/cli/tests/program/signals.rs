@@ -111,3 +111,22 @@ fn a_budget_that_is_stopped_says_so() {
     let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(value["status"], "interrupted", "{text}");
 }
+
+/// Nothing was written, and a CI system took the job for one without results.
+#[test]
+fn a_run_that_is_stopped_has_a_report_all_the_same() {
+    for name in ["-INT", "-TERM"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let line = scene("line-three");
+        let args = ["run", &line, "-o", "run", "--junit", "report.xml", "--set", "time.duration=20000"];
+        let mut child = command(folder.path(), &args).stderr(Stdio::null()).spawn().expect("started");
+        wait_for(&folder.path().join("run/tables/edges.parts/000001.parquet"));
+        signal(&child, name);
+        assert!(ends(&mut child), "{name}");
+        let text = fs::read_to_string(folder.path().join("report.xml")).expect("a report");
+        let (cases, skipped) = (text.matches("<testcase").count(), text.matches("<skipped").count());
+        assert!(text.contains("errors=\"1\"") && text.contains("failures=\"0\""), "{text}");
+        assert!(cases > 2 && skipped == cases - 1 && text.contains("interrupted at"), "{text}");
+        assert!(text.contains("settling_time") && text.contains("of 20000 s, recorded in run"), "{text}");
+    }
+}
