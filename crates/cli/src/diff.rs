@@ -41,8 +41,10 @@ fn tolerance(text: &str) -> Result<f64, String> {
 /// What two runs have and have not in common.
 struct Diff {
     names: [String; 2],
-    /// Keys of the resolved scenes that differ, with both values.
-    keys: Vec<(String, [String; 2])>,
+    /// Keys of the resolved scenes that differ, with both values; `None` where a run has no scene.
+    keys: Option<Vec<(String, [String; 2])>>,
+    /// Which runs have none.
+    bare: [bool; 2],
     /// Robots and edges, where they are not the same.
     casts: Option<[String; 2]>,
     digests: [Option<String>; 2],
@@ -58,7 +60,9 @@ pub(crate) fn diff(args: &DiffArgs) -> Outcome {
     let names = [&a, &b].map(|run| run.path.display().to_string());
     let who = [&a, &b].map(|run| (run.manifest.robots.clone(), run.manifest.edges.clone()));
     let casts = (who[0] != who[1]).then(|| who.map(|(robots, edges)| told(&robots, &edges)));
-    let keys = keys(&a, &b);
+    // Others' logs may hold no scene.
+    let bare = [&a, &b].map(|run| run.scene.1.is_empty());
+    let keys = (bare == [false; 2]).then(|| keys(&a, &b));
     let digests = [&a, &b].map(|run| run.manifest.digest.clone());
     let moments = match (a.moments(), b.moments()) {
         (Some(left), Some(right)) if casts.is_none() => {
@@ -84,7 +88,7 @@ pub(crate) fn diff(args: &DiffArgs) -> Outcome {
         a.log()?;
         b.log()?;
     }
-    let diff = Diff { names, keys, casts, digests, moments };
+    let diff = Diff { names, keys, bare, casts, digests, moments };
     if args.json {
         diff.as_json();
     } else if !args.quiet {
@@ -163,13 +167,16 @@ impl Diff {
         if let Some([left, right]) = &self.casts {
             say(&format!("other robots or edges\n  {a}: {left}\n  {b}: {right}"));
         }
-        if !self.keys.is_empty() {
-            say(&format!("{} the scene:", differing(self.keys.len())));
-            for (key, [left, right]) in self.keys.iter().take(20) {
+        for name in self.names.iter().zip(self.bare).filter_map(|(name, bare)| bare.then_some(name)) {
+            say(&format!("{name}: the log has no scene to compare"));
+        }
+        if let Some(keys) = self.keys.as_ref().filter(|keys| !keys.is_empty()) {
+            say(&format!("{} the scene:", differing(keys.len())));
+            for (key, [left, right]) in keys.iter().take(20) {
                 say(&format!("  {key}: {left} | {right}"));
             }
-            if self.keys.len() > 20 {
-                say(&format!("  and {} more; --json tells all", self.keys.len() - 20));
+            if keys.len() > 20 {
+                say(&format!("  and {} more; --json tells all", keys.len() - 20));
             }
         }
         match &self.moments {
@@ -185,7 +192,8 @@ impl Diff {
 
     fn as_json(&self) {
         let pair = |[a, b]: &[String; 2]| json!({ "a": a, "b": b });
-        let keys = self.keys.iter().map(|(key, [a, b])| json!({ "key": key, "a": a, "b": b }));
+        let key = |(key, [a, b]): &(String, [String; 2])| json!({ "key": key, "a": a, "b": b });
+        let keys = self.keys.as_ref().map(|keys| keys.iter().map(key).collect::<Vec<_>>());
         let finite = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
         let moments = self.moments.as_ref().map(|found| {
             let first = found.first.as_ref().map(|first| {
@@ -212,7 +220,7 @@ impl Diff {
             "same": self.same(),
             "runs": pair(&self.names),
             "casts": self.casts.as_ref().map(pair),
-            "scene": keys.collect::<Vec<_>>(),
+            "scene": keys,
             "digests": { "a": self.digests[0], "b": self.digests[1] },
             "moments": moments,
         }));
