@@ -177,7 +177,11 @@ fn pairs(args: &CompareArgs) -> Result<Vec<Named>, Failure> {
         (true, true) => {
             let (left, right) = (names(wanted)?, names(found)?);
             if left.is_empty() && right.is_empty() {
-                let text = format!("neither {} nor {} holds a .png", wanted.display(), found.display());
+                let text = format!(
+                    "neither {} nor {} holds a .png: name pictures, or folders of them; recorded runs are compared by `echelon diff`",
+                    wanted.display(),
+                    found.display()
+                );
                 return Err(Failure::Usage(text));
             }
             let file = |names: &BTreeSet<OsString>, folder: &Path, name: &OsString| {
@@ -214,6 +218,9 @@ fn read(path: &Path) -> Result<RgbaImage, Failure> {
     let refused = |e: &dyn std::fmt::Display| Failure::Usage(format!("cannot read {}: {e}", path.display()));
     let reader = image::ImageReader::open(path).map_err(|e| refused(&e))?;
     let mut reader = reader.with_guessed_format().map_err(|e| refused(&e))?;
+    if reader.format().is_none() {
+        return Err(refused(&"it is no picture; recorded runs are compared by `echelon diff`"));
+    }
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(4 * MOST_PIXELS);
     reader.limits(limits);
