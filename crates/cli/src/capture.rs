@@ -94,7 +94,10 @@ pub(crate) fn draw(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Fa
             ("Time", &*time_text),
             ("Adapter", &*adapter),
         ];
-        png::write(&path, &picture, &metadata)?;
+        png::write(&path, &picture, &metadata).map_err(|error| {
+            let all = counted(times.len(), "picture");
+            Failure::from(error).but(&format!("{count} of {all} were written before"))
+        })?;
         files.push(path.display().to_string());
         shown.push(time);
         progress.at(count as u64 + 1);

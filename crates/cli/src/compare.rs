@@ -111,7 +111,7 @@ fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
     let pairs = pairs(args)?;
     let _place = args.out.as_deref().map(Place::folder).transpose()?;
     interrupt::watch();
-    let all = pairs.len();
+    let (all, mut lost) = (pairs.len(), None);
     let mut compared = Vec::with_capacity(all);
     for (name, wanted, found) in pairs {
         if interrupt::asked() {
@@ -121,7 +121,7 @@ fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
         }
         let began = Instant::now();
         let likeness = match (wanted, found) {
-            (Some(wanted), Some(found)) => look(&wanted, &found, &name, args)?,
+            (Some(wanted), Some(found)) => look(&wanted, &found, (&name, args), &mut lost)?,
             (Some(_), None) => Err(format!("is not in {}", args.found.display())),
             (None, _) => Err(format!("is not in {}", args.wanted.display())),
         };
@@ -160,6 +160,9 @@ fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
     if compared.len() < all {
         let text = format!("{} of {} are compared", compared.len(), counted(all, "picture"));
         return Err(Failure::Interrupted(text));
+    }
+    if let Some(failure) = lost {
+        return Err(failure);
     }
     if failed == 0 { Ok(()) } else { Err(Failure::Expectation) }
 }
@@ -230,8 +233,8 @@ fn read(path: &Path) -> Result<RgbaImage, Failure> {
 fn look(
     wanted: &Path,
     found: &Path,
-    name: &str,
-    args: &CompareArgs,
+    (name, args): (&str, &CompareArgs),
+    lost: &mut Option<Failure>,
 ) -> Result<Result<Likeness, String>, Failure> {
     let (a, b) = (read(wanted)?, read(found)?);
     if a.dimensions() != b.dimensions() {
@@ -242,11 +245,11 @@ fn look(
         shown(&a, &b).map_err(|e| Failure::Machine(format!("cannot compare {}: {e}", found.display())))?;
     let likeness = Likeness { adapters: adapters(wanted, found), ..shown.likeness };
     if let Some(folder) = args.out.as_ref().filter(|_| likeness.other > 0.0) {
-        let refused = |e| Failure::Machine(format!("cannot create {}: {e}", folder.display()));
-        std::fs::create_dir_all(folder).map_err(refused)?;
         let path = folder.join(Path::new(name).with_extension("difference.png"));
         let picture = side_by_side(&shown.wanted, &shown.found, &shown.map);
-        rendering::png::write(&path, &picture, &[("Software", crate::run::PROGRAM)])?;
+        let written = rendering::png::write(&path, &picture, &[("Software", crate::run::PROGRAM)]);
+        // What came out is told, whatever becomes of a file.
+        *lost = lost.take().or(written.err().map(Failure::from));
     }
     Ok(Ok(likeness))
 }

@@ -69,7 +69,12 @@ pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
         let time = frame as f64 * args.every;
         // Half of an exposure comes after its instant; at the end of the run robots are held where they are.
         timeline.reach(time + 0.5 * export.exposure.shutter)?;
-        export.take(&timeline, frame, time)?;
+        export.take(&timeline, frame, time).map_err(|failure| {
+            let count = counted(export.pictures.len(), "picture");
+            // The disk may still take the list.
+            let _ = export.write("interrupted");
+            failure.but(&format!("{} keeps the first {count}; --force begins anew", args.out.display()))
+        })?;
         frame += 1;
         progress.at(frame);
         if interrupt::asked() {

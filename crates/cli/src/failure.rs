@@ -28,6 +28,14 @@ impl Failure {
         }
     }
 
+    /// With what is there all the same, where the machine is at fault.
+    pub(crate) fn but(self, kept: &str) -> Self {
+        match self {
+            Self::Machine(text) => Self::Machine(format!("{text}; {kept}")),
+            other => other,
+        }
+    }
+
     /// What cut the work short; nothing where it came to its end.
     pub(crate) fn text(&self) -> Option<&str> {
         match self {

@@ -163,26 +163,26 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
                 studio.renderer.retitle(&cast.title, caption);
             }
             let ready = studio.renderer.draw_next(playback.trail(), &moment, &frame.layout, &style)?;
-            ready.map_or(Ok(()), |picture| film.push(picture))?;
+            ready.map_or(Ok(()), |picture| film.push(picture)).map_err(|e| refused(e, &job, kind, rate))?;
         }
         (index, shot) = (index + 1, shot + 1);
         progress.at(index);
     }
     if let Some(picture) = studio.renderer.finish()? {
-        film.push(picture)?;
+        film.push(picture).map_err(|e| refused(e, &job, kind, rate))?;
     }
     if shot <= done && index < frames {
         // Nothing new: what was kept stays.
         return Err(Failure::Interrupted("no film was written".into()));
     }
     if index < frames {
-        film.pause()?;
+        film.pause().map_err(|e| refused(e, &job, kind, rate))?;
         progress.end();
         let seconds = shot as f64 / rate;
         let more = if kind == FilmKind::Mp4 { "; the same command goes on from there" } else { "" };
         return Err(Failure::Interrupted(format!("{} holds the first {seconds:.2} s{more}", path.display())));
     }
-    film.finish()?;
+    film.finish().map_err(|e| refused(e, &job, kind, rate))?;
     progress.end();
     if let Some(end) = playback.ended().filter(|_| shot < frames && !job.quiet) {
         note(&format!("the run ended at {end:.2} s of {:.2} s, and the film with it", job.duration));
@@ -205,6 +205,20 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
         say(&format!("drawn in {seconds:.1} s with {adapter}"));
     }
     Ok(())
+}
+
+/// A disk that refuses a film, with what it keeps of it.
+fn refused(error: rendering::Error, job: &Job<'_>, kind: FilmKind, rate: f64) -> Failure {
+    let kept = if kind == FilmKind::Mp4 { Film::kept(&job.path, rate) } else { 0 };
+    let text = match (kind, kept) {
+        (FilmKind::Mp4, 0) => "nothing of the film is kept yet".to_owned(),
+        (FilmKind::Mp4, frames) => format!(
+            "the first {:.2} s are kept beside it, and the same command goes on from there once there is room",
+            frames as f64 / rate
+        ),
+        _ => "nothing of the film is kept; an .mp4 would go on from where it was".to_owned(),
+    };
+    Failure::from(error).but(&text)
 }
 
 /// An animation stores every pixel that changes, and on moving ground all do: it is smaller and slower than a film, unless

@@ -11,7 +11,7 @@ use crate::print::note;
 use crate::progress::Progress;
 use crate::summary::{self, Summary};
 use output::Place;
-use recording::log::Roll;
+use recording::log::{self, Log, Roll};
 use recording::{
     CertificateMetrics, Digest, Finished, Judging, Metrics, MetricsBuilder, Recorder, RunOptions, Status,
 };
@@ -62,7 +62,7 @@ fn judge(args: &RunArgs, cases: &mut Vec<Case>) -> Outcome {
     while let Some(moment) = simulation.next_moment() {
         if let Err(error) = sink.push(moment) {
             sink.abandon();
-            return Err(error.into());
+            return Err(Failure::from(error).but(&folder.as_deref().map_or_else(String::new, kept)));
         }
         examiner.push(&simulation);
         step += 1;
@@ -125,8 +125,26 @@ fn judge(args: &RunArgs, cases: &mut Vec<Case>) -> Outcome {
         summary::failures(&summary);
     }
     // What came out is told, whatever becomes of a file.
-    written?;
+    written.map_err(|error| {
+        let kept = args.out.as_ref().map_or_else(|| "the folder".to_owned(), |out| out.display().to_string());
+        Failure::from(error).but(&format!("{kept} keeps what was written before"))
+    })?;
     if met { Ok(()) } else { Err(Failure::Expectation) }
+}
+
+/// What a disk that refuses has left of the run in `folder`.
+fn kept(folder: &Path) -> String {
+    let shown = folder.display();
+    let log = Log::open(&folder.join(log::FILE)).ok();
+    let period = log.as_ref().map_or(0.0, |log| log.manifest().period);
+    match log.map_or(0, |log| log.manifest().samples) {
+        0 => format!("{shown} keeps the parts of its tables that were closed, and says interrupted"),
+        samples => format!(
+            "{shown} keeps the run up to {:.2} s, which `echelon replay {shown}` draws with --capture or --film, and says \
+             interrupted",
+            (samples - 1) as f64 * period
+        ),
+    }
 }
 
 fn judging(scene: &scene::Scene) -> Judging {

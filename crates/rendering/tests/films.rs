@@ -185,6 +185,7 @@ fn an_interrupted_film_goes_on_and_is_the_same_in_the_end() {
     // A program that is killed leaves whole groups of two seconds.
     drop(kept(&path("a.mp4"), "the same", 47).0);
     assert!(!path("a.mp4").exists());
+    assert_eq!((Film::kept(&path("a.mp4"), 10.0), Film::kept(&path("b.mp4"), 10.0)), (40, 0));
     let (second, done) = kept(&path("a.mp4"), "the same", 70);
     assert_eq!(done, 40);
     second.finish().unwrap();

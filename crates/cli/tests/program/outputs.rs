@@ -239,3 +239,39 @@ fn titles_do_not_steer_the_terminal() {
     fs::write(folder.path().join("again.toml"), out).expect("written");
     assert_eq!(run(folder.path(), &["check", "again.toml"]).0, 0);
 }
+
+/// A disk that takes `blocks` of 1024 bytes in a file and no more, as a full one does.
+#[cfg(target_os = "linux")]
+fn on_a_full_disk(folder: &Path, blocks: u32, args: &[&str]) -> (i32, String, String) {
+    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
+    let mut command = std::process::Command::new("bash");
+    command.args(["-c", &script, env!("CARGO_BIN_EXE_echelon")]).args(args).current_dir(folder);
+    told(&command.output().expect("it ran"))
+}
+
+/// What there is all the same stood nowhere, nor that a film goes on.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_with_what_is_kept() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = scene("line-three");
+    let run_on = |blocks: u32, args: &[&str]| on_a_full_disk(folder.path(), blocks, args);
+    let (code, _, err) = run_on(400, &["run", &line, "-q", "-o", "run", "--set", "time.duration=200", "--set", "expect={}"]);
+    assert!(code == 3 && err.contains("; run keeps the run up to "), "{err}");
+    assert!(err.contains("which `echelon replay run` draws") && err.contains("says interrupted"), "{err}");
+    let manifest = fs::read_to_string(folder.path().join("run/manifest.json")).expect("a manifest");
+    assert!(manifest.contains("\"interrupted\""), "{manifest}");
+    let film = ["film", &line, "-q", "--size", "320x180", "--fps", "5", "-o"];
+    let (code, _, err) = run_on(60, &[&film[..], &["f.mp4"]].concat());
+    let (_, rest) = err.split_once("; the first ").unwrap_or_else(|| panic!("{code} {err}"));
+    let seconds: f64 = rest.split_once(" s are kept beside it").expect("how much").0.parse().expect("seconds");
+    assert!(code == 3 && seconds >= 2.0 && err.contains("the same command goes on from there"), "{err}");
+    assert!(!folder.path().join("f.mp4").exists());
+    let (code, out, err) = run(folder.path(), &[&["film", &line, "--size", "320x180", "--fps", "5", "-o"], &["f.mp4"][..]].concat());
+    assert!(code == 0 && err.contains(&format!("going on after {seconds:.2} s")), "{out}{err}");
+    let (code, _, err) = run_on(30, &[&film[..], &["f.gif"]].concat());
+    assert!(code == 3 && err.contains("nothing of the film is kept"), "{err}");
+    let pictures = ["capture", &line, "-q", "--at", "0,1", "--size", "640x360"];
+    let (code, _, err) = run_on(4, &pictures);
+    assert!(code == 3 && err.contains("0 of 2 pictures were written before"), "{err}");
+}

@@ -131,6 +131,7 @@ fn scenes_and_runs_are_told_apart() {
         (&["check", "run"], "is a recorded run"),
         (&["capture", "a.mcap"], "`--capture 0,5` or `--film film.mp4` it draws it"),
         (&["run", "renamed"], "renamed is a recorded run"),
+        (&["figures", "run", "-o", "f"], "is a recorded run"),
         (&["budget", "run/log.mcap"], "run/log.mcap is a recorded run"),
         (&["compare", "a.mcap", "a.mcap"], "a.mcap: it is no picture; recorded runs are compared by `echelon diff`"),
         (&["compare", "run", "run"], "recorded runs are compared by `echelon diff`"),

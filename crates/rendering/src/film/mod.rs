@@ -129,6 +129,11 @@ impl Film {
         Ok((Self::begin(path, format, Box::new(sink), frames)?, frames))
     }
 
+    /// How many frames of an interrupted .mp4 of `rate` frames a second are kept at `path` for [`Film::resume`].
+    pub fn kept(path: &Path, rate: f64) -> u64 {
+        kept::frames(path, h264::group(rate))
+    }
+
     fn begin(path: &Path, format: Format, sink: Box<dyn Sink>, frames: u64) -> Result<Self, Error> {
         let (sender, receiver) = sync_channel(WAITING);
         let thread = std::thread::Builder::new()
