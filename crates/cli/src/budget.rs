@@ -144,7 +144,7 @@ fn finish(budget: &Budget<'_>, folder: Option<&Path>, args: &BudgetArgs) -> Outc
         table::print(budget);
     }
     let Some(folder) = folder else { return Ok(()) };
-    let written = files::write(folder, budget)?;
+    let written = files::write(folder, budget, args.scene.quiet)?;
     if !args.scene.json && !args.scene.quiet {
         for path in written {
             say(&path.display().to_string());

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::junit::{self, Came, Case};
 use crate::print::{json, say};
+use crate::replaced::Replaced;
 use clap::Args;
 use image::{Rgb, RgbImage, Rgba, RgbaImage};
 use image_compare::rgb_hybrid_compare;
@@ -103,7 +104,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
     let _report = junit::open(args.junit.as_deref(), args.json)?;
     let mut cases = vec![];
     let outcome = judge(args, &mut cases);
-    junit::close(args.junit.as_deref(), "pictures", cases, (outcome, began.elapsed()))
+    junit::close(args.junit.as_deref(), "pictures", cases, (outcome, began.elapsed()), args.quiet)
 }
 
 /// Compares all pictures; `cases` are what became of them.
@@ -111,7 +112,7 @@ fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
     let pairs = pairs(args)?;
     let _place = args.out.as_deref().map(Place::folder).transpose()?;
     interrupt::watch();
-    let (all, mut lost) = (pairs.len(), None);
+    let (all, mut lost, mut replaced) = (pairs.len(), None, Replaced::default());
     let mut compared = Vec::with_capacity(all);
     for (name, wanted, found) in pairs {
         if interrupt::asked() {
@@ -121,7 +122,7 @@ fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
         }
         let began = Instant::now();
         let likeness = match (wanted, found) {
-            (Some(wanted), Some(found)) => look(&wanted, &found, (&name, args), &mut lost)?,
+            (Some(wanted), Some(found)) => look(&wanted, &found, (&name, args), (&mut lost, &mut replaced))?,
             (Some(_), None) => Err(format!("is not in {}", args.found.display())),
             (None, _) => Err(format!("is not in {}", args.wanted.display())),
         };
@@ -157,6 +158,7 @@ fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
             ));
         }
     }
+    replaced.tell(args.quiet);
     if compared.len() < all {
         let text = format!("{} of {} are compared", compared.len(), counted(all, "picture"));
         return Err(Failure::Interrupted(text));
@@ -234,7 +236,7 @@ fn look(
     wanted: &Path,
     found: &Path,
     (name, args): (&str, &CompareArgs),
-    lost: &mut Option<Failure>,
+    (lost, replaced): (&mut Option<Failure>, &mut Replaced),
 ) -> Result<Result<Likeness, String>, Failure> {
     let (a, b) = (read(wanted)?, read(found)?);
     if a.dimensions() != b.dimensions() {
@@ -247,6 +249,7 @@ fn look(
     if let Some(folder) = args.out.as_ref().filter(|_| likeness.other > 0.0) {
         let path = folder.join(Path::new(name).with_extension("difference.png"));
         let picture = side_by_side(&shown.wanted, &shown.found, &shown.map);
+        replaced.look(&path);
         let written = rendering::png::write(&path, &picture, &[("Software", crate::run::PROGRAM)]);
         // What came out is told, whatever becomes of a file.
         *lost = lost.take().or(written.err().map(Failure::from));

@@ -14,6 +14,7 @@ use crate::picture::Studio;
 use crate::playback::{Playback, Source};
 use crate::print::{json, note, say};
 use crate::progress::Progress;
+use crate::replaced::Replaced;
 use board::Board;
 use output::Place;
 use plots::Plots;
@@ -124,6 +125,11 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     studio.check_texts(told);
     let source = source(&studio.gpu)?;
     let (mut film, done) = begin(&job, kind, &studio, rate)?;
+    let mut replaced = Replaced::default();
+    // What an interrupted film left is its own beginning.
+    if done == 0 {
+        replaced.look(path);
+    }
 
     let what = format!("Filming {name}, {}, to {}", counted(frames, "frame"), path.display());
     let progress = Progress::begin(&what, frames, job.quiet);
@@ -177,6 +183,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     }
     if index < frames {
         film.pause().map_err(|e| refused(e, &job, kind, rate))?;
+        replaced.tell(job.quiet);
         progress.end();
         let seconds = shot as f64 / rate;
         let more = if kind == FilmKind::Mp4 { "; the same command goes on from there" } else { "" };
@@ -184,6 +191,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     }
     film.finish().map_err(|e| refused(e, &job, kind, rate))?;
     progress.end();
+    replaced.tell(job.quiet);
     if let Some(end) = playback.ended().filter(|_| shot < frames && !job.quiet) {
         note(&format!("the run ended at {end:.2} s of {:.2} s, and the film with it", job.duration));
     }

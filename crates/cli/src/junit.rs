@@ -3,6 +3,7 @@
 use crate::Outcome;
 use crate::failure::Failure;
 use crate::print;
+use crate::replaced::Replaced;
 use output::{Place, write_whole};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use simulation::verdict::Finding;
@@ -76,14 +77,17 @@ pub(crate) fn close(
     name: &str,
     mut cases: Vec<Case>,
     (outcome, wall): (Outcome, Duration),
+    quiet: bool,
 ) -> Outcome {
     let Some(path) = path else { return outcome };
+    let mut replaced = Replaced::default();
+    replaced.look(path);
     let cut = outcome.as_ref().err().and_then(Failure::text);
     if let Some(text) = cut {
         let came = Came::Broken(text.to_owned());
         cases.push(Case { name: "the work comes to its end".to_owned(), came, time: None });
     }
-    let written = write(path, name, &cases, wall);
+    let written = write(path, name, &cases, wall).map(|()| replaced.tell(quiet));
     match outcome {
         Err(first) if first.text().is_some() => {
             if let Err(other) = written {

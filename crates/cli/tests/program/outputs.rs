@@ -275,3 +275,32 @@ fn a_full_disk_is_told_with_what_is_kept() {
     let (code, _, err) = run_on(4, &pictures);
     assert!(code == 3 && err.contains("0 of 2 pictures were written before"), "{err}");
 }
+
+/// A film replaced another without a word. One rule for all: files are replaced, and that is told.
+#[test]
+fn what_is_replaced_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = scene("line-three");
+    let small = ["--size", "64x48", "--set", "time.duration=0.2", "--set", "expect={}"];
+    let drawn = |args: &[&str]| [args, &small[..]].concat();
+    let film = drawn(&["film", &line, "-o", "f.mp4", "--fps", "5"]);
+    let pictures = drawn(&["capture", &line, "-o", "p", "--at", "0,0.1"]);
+    let (line_args, plain) = (["--set", "time.duration=1", "--set", "expect={}"], &line);
+    let report = [&["run", plain, "--no-record", "--junit", "r.xml"], &line_args[..]].concat();
+    let certificate = [&["certify", plain, "-o", "c", "--paper-only"], &line_args[..]].concat();
+    for (args, name) in [
+        (film, "f.mp4"),
+        (drawn(&["film", &line, "-o", "f.gif", "--fps", "5"]), "f.gif"),
+        (pictures, "p/line-three-000.000.png, p/line-three-000.100.png"),
+        (drawn(&["stills", &line, "-o", "s", "--count", "2"]), "s/line-three-sheet.png, s/line-three-strobe.png"),
+        (report, "r.xml"),
+        (certificate, "c/certificate.json"),
+    ] {
+        let (code, _, err) = run(folder.path(), &args);
+        assert!(code == 0 && !err.contains("replaced"), "{args:?}: {err}");
+        let (code, _, err) = run(folder.path(), &args);
+        assert!(code == 0 && err.contains(&format!("replaced {name}")), "{args:?}: {err}");
+        let (code, _, err) = run(folder.path(), &[&args[..], &["-q"]].concat());
+        assert!(code == 0 && err.is_empty(), "{args:?}: {err}");
+    }
+}
