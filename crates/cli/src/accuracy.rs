@@ -66,7 +66,10 @@ pub(crate) fn accuracy(args: &AccuracyArgs) -> Outcome {
         }
     }
     if done < args.poses {
-        return Err(Failure::Interrupted(format!("after {done} of {}; they are printed", counted(args.poses, "pose"))));
+        return Err(Failure::Interrupted(format!(
+            "after {done} of {}; they are printed",
+            counted(args.poses, "pose")
+        )));
     }
     Ok(())
 }

@@ -112,7 +112,12 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
         complete: false,
     };
     let each = simulation.len();
-    let what = format!("{} of {}, {} s each", counted(cases.len(), "run"), stem(&args.scene.scene), scene.time.duration);
+    let what = format!(
+        "{} of {}, {} s each",
+        counted(cases.len(), "run"),
+        stem(&args.scene.scene),
+        scene.time.duration
+    );
     let progress = Progress::begin(&what, each.saturating_mul(cases.len() as u64), silent);
     for (index, case) in cases.iter().enumerate() {
         let mut simulation = Simulation::new(case.build(&scene)?);
@@ -130,7 +135,8 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
     budget.complete = budget.runs.len() == cases.len();
     finish(&budget, folder, args)?;
     if !budget.complete {
-        let done = format!("after {} of {}; they are printed", budget.runs.len(), counted(cases.len(), "run"));
+        let done =
+            format!("after {} of {}; they are printed", budget.runs.len(), counted(cases.len(), "run"));
         return Err(Failure::Interrupted(done));
     }
     Ok(())

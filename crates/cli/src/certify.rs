@@ -114,7 +114,8 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     let cast = simulation.cast().clone();
     let mut report = Report { scene: &scene, cast, certificates, beyond, bound: args.bound, wall: 0.0 };
     report.wall = began.elapsed().as_secs_f64();
-    let written = args.out.as_deref().map(|folder| files::write(folder, &report, args.scene.quiet)).transpose();
+    let written =
+        args.out.as_deref().map(|folder| files::write(folder, &report, args.scene.quiet)).transpose();
     if args.scene.json {
         json(&files::as_json(&report));
     } else if !args.scene.quiet {

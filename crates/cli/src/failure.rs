@@ -40,7 +40,9 @@ impl Failure {
     pub(crate) fn text(&self) -> Option<&str> {
         match self {
             Self::Expectation => None,
-            Self::Broken(text) | Self::Usage(text) | Self::Machine(text) | Self::Interrupted(text) => Some(text),
+            Self::Broken(text) | Self::Usage(text) | Self::Machine(text) | Self::Interrupted(text) => {
+                Some(text)
+            }
         }
     }
 

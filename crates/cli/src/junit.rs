@@ -150,7 +150,10 @@ fn kept_lines(xml: &str) -> String {
 /// Text with what XML does not allow, though escaped, made visible: names of files may hold anything.
 fn allowed(text: &str) -> String {
     let fits = |c: char| matches!(c, '\t' | '\n' | '\r' | ' '..='\u{fffd}' | '\u{10000}'..);
-    readable(text).chars().map(|c| if fits(c) && !matches!(c, '\u{7f}'..='\u{9f}') { c } else { '\u{fffd}' }).collect()
+    readable(text)
+        .chars()
+        .map(|c| if fits(c) && !matches!(c, '\u{7f}'..='\u{9f}') { c } else { '\u{fffd}' })
+        .collect()
 }
 
 #[cfg(test)]
@@ -166,7 +169,11 @@ mod tests {
             time: None,
             came: failure.map_or(Came::Fine, |text| Came::Failed(text.to_owned())),
         };
-        let open = Case { name: "open".into(), came: Came::Skipped("too short".into()), time: Some(Duration::from_millis(2500)) };
+        let open = Case {
+            name: "open".into(),
+            came: Came::Skipped("too short".into()),
+            time: Some(Duration::from_millis(2500)),
+        };
         write(
             &path,
             "line",
@@ -177,7 +184,10 @@ mod tests {
         let text = std::fs::read_to_string(&path).expect("text");
         assert!(text.contains("tests=\"3\"") && text.contains("failures=\"1\""), "{text}");
         assert!(text.contains("<skipped") && text.contains("too short"), "{text}");
-        assert!(text.contains("a &lt; b") && text.contains("wanted ≤ 1 m,&#10;found &quot;2&quot; m &amp; more"), "{text}");
+        assert!(
+            text.contains("a &lt; b") && text.contains("wanted ≤ 1 m,&#10;found &quot;2&quot; m &amp; more"),
+            "{text}"
+        );
         // The whole takes 4 s; what has no time of its own shares what is left.
         for (times, mark) in [(2, "time=\"4.000\""), (1, "time=\"2.500\""), (2, "time=\"0.750\"")] {
             assert_eq!(text.matches(mark).count(), times, "{mark}: {text}");
@@ -189,8 +199,11 @@ mod tests {
     fn what_xml_does_not_allow_is_made_visible() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("report.xml");
-        let broken =
-            Case { name: "a\u{fffe}b\u{1b}[31mc".into(), came: Came::Broken("\u{ffff}\0 no".into()), time: None };
+        let broken = Case {
+            name: "a\u{fffe}b\u{1b}[31mc".into(),
+            came: Came::Broken("\u{ffff}\0 no".into()),
+            time: None,
+        };
         write(&path, "x\u{fffe}.toml", &[broken], Duration::ZERO).expect("written");
         let text = std::fs::read_to_string(&path).expect("text");
         assert!(text.contains("errors=\"1\"") && text.contains("a\u{fffd}b\u{fffd}[31mc"), "{text}");

@@ -38,9 +38,11 @@ impl Recorded {
         if !path.is_dir() {
             return match Log::open(path) {
                 Ok(log) => Ok(Self::of_log(path, log)),
-                Err(_) if !path.exists() => {
-                    Err(Failure::Usage(format!("{} is no run folder and no log: {}", path.display(), absent(path))))
-                }
+                Err(_) if !path.exists() => Err(Failure::Usage(format!(
+                    "{} is no run folder and no log: {}",
+                    path.display(),
+                    absent(path)
+                ))),
                 Err(error) => Err(match Failure::from(error) {
                     Failure::Usage(text) => Failure::Usage(text + &instead(path)),
                     other => other,
@@ -144,7 +146,8 @@ impl Recorded {
 }
 
 /// What a recorded run is, for who named something else.
-const WANTED: &str = "a run folder, such as runs/line-three-001, or its log.mcap is wanted; `echelon run SCENE` leaves one";
+const WANTED: &str =
+    "a run folder, such as runs/line-three-001, or its log.mcap is wanted; `echelon run SCENE` leaves one";
 
 /// What to say where there is nothing at `path`.
 fn absent(path: &Path) -> String {
@@ -175,14 +178,13 @@ pub(crate) fn refuse(path: &Path) -> Result<(), Failure> {
         read.is_ok() && &head == b"\x89MCAP"
     };
     let folder = path.is_dir() && (file("manifest.json") || file(log::FILE));
-    if !folder && !(path.is_file() && log()) {
+    let alone = path.is_file() && log();
+    if !folder && !alone {
         return Ok(());
     }
     let shown = path.display();
-    let scene = match folder && file("scene.toml") {
-        true => format!("; its scene is {}", path.join("scene.toml").display()),
-        false => String::new(),
-    };
+    let scene = path.join("scene.toml");
+    let scene = if scene.is_file() { format!("; its scene is {}", scene.display()) } else { String::new() };
     Err(Failure::Usage(format!(
         "{shown} is a recorded run, and a scene is wanted here: `echelon replay {shown}` runs it again, with \
          `--capture 0,5` or `--film film.mp4` it draws it{scene}"
@@ -197,7 +199,9 @@ fn read_manifest(folder: &Path) -> Result<Manifest, Failure> {
             "{} is no run folder: it has no manifest.json and no log.mcap; {WANTED}",
             folder.display()
         )),
-        ErrorKind::InvalidData => Failure::Usage(format!("{} is no manifest: it is not text", path.display())),
+        ErrorKind::InvalidData => {
+            Failure::Usage(format!("{} is no manifest: it is not text", path.display()))
+        }
         _ => Failure::Machine(format!("cannot read {}: {error}", path.display())),
     })?;
     serde_json::from_str(&text)

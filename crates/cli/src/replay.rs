@@ -251,7 +251,11 @@ impl Replay {
             return "same: bit for bit".to_owned();
         }
         if self.samples != samples {
-            return format!("DIFFERENT: it had {} when it was recorded, and has {} now", counted(samples, "sample"), self.samples);
+            return format!(
+                "DIFFERENT: it had {} when it was recorded, and has {} now",
+                counted(samples, "sample"),
+                self.samples
+            );
         }
         if self.digest == self.recorded && !self.log_agrees() {
             let when = self.apart.map_or_else(String::new, |time| format!(", from {time:.2} s on"));

@@ -32,7 +32,13 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     let _report = junit::open(args.junit.as_deref(), args.scene.json)?;
     let mut cases = vec![];
     let outcome = judge(args, &mut cases);
-    junit::close(args.junit.as_deref(), &stem(&args.scene.scene), cases, (outcome, began.elapsed()), args.scene.quiet)
+    junit::close(
+        args.junit.as_deref(),
+        &stem(&args.scene.scene),
+        cases,
+        (outcome, began.elapsed()),
+        args.scene.quiet,
+    )
 }
 
 /// Runs the scene; `cases` are what became of its expectations.

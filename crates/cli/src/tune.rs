@@ -52,7 +52,10 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
         say(&format!("[observer]\nepsilon = {:.4}", gains.epsilon));
     }
     if interrupted {
-        return Err(Failure::Interrupted(format!("after {}; the best so far is printed", counted(tried, "run"))));
+        return Err(Failure::Interrupted(format!(
+            "after {}; the best so far is printed",
+            counted(tried, "run")
+        )));
     }
     Ok(())
 }

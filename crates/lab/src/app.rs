@@ -414,8 +414,11 @@ impl eframe::App for Lab {
         self.end_film();
         if self.studio.waiting() > 1 {
             // Where nobody reads it, the film is finished all the same.
-            let _ =
-                writeln!(std::io::stderr(), "finishing the film: {} to draw", counted(self.studio.waiting(), "frame"));
+            let _ = writeln!(
+                std::io::stderr(),
+                "finishing the film: {} to draw",
+                counted(self.studio.waiting(), "frame")
+            );
         }
         if self.print {
             self.timings.print(&self.desk);

@@ -60,9 +60,7 @@ pub fn keep(
     if (manifest.samples, &*digest) == (seen.samples, &*seen.digest) {
         Ok(format!("The run is in {place}: {samples}, digest {digest}, as seen here"))
     } else {
-        Err(format!(
-            "{place} holds {samples} with digest {digest}, not what was seen here"
-        ))
+        Err(format!("{place} holds {samples} with digest {digest}, not what was seen here"))
     }
 }
 

@@ -92,7 +92,10 @@ impl Drop for Place {
 pub(crate) fn named(path: &Path) -> Result<(), Error> {
     let goal = followed(path);
     if goal.ancestors().any(|part| part.is_symlink() && !part.exists()) {
-        return Err(Error::place(path, "is a link that leads nowhere, round in a circle: name another place"));
+        return Err(Error::place(
+            path,
+            "is a link that leads nowhere, round in a circle: name another place",
+        ));
     }
     match path.as_os_str().as_encoded_bytes() {
         b"" => Err(Error::place(path, "(nothing) is no place to write to: name one")),
@@ -106,7 +109,8 @@ pub(crate) fn named(path: &Path) -> Result<(), Error> {
 
 /// Endings that nobody gives a folder on purpose.
 const ENDINGS: [&str; 15] = [
-    "png", "jpg", "jpeg", "gif", "mp4", "m4v", "webm", "svg", "pdf", "json", "csv", "xml", "html", "mcap", "toml",
+    "png", "jpg", "jpeg", "gif", "mp4", "m4v", "webm", "svg", "pdf", "json", "csv", "xml", "html", "mcap",
+    "toml",
 ];
 
 /// Refuses what is there and is no folder, and what would be one with the name of a file.

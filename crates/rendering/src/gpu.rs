@@ -179,7 +179,8 @@ const ALIASES: [(&str, &str); 2] = [("lavapipe", "vulkan:llvmpipe"), ("opengl", 
 /// Whether an adapter at a place of the list is the one that a name means.
 fn fits(info: &AdapterInfo, place: usize, name: &str) -> bool {
     let name = name.trim().to_lowercase();
-    let name = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, known)| (*known).to_owned());
+    let name =
+        ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, known)| (*known).to_owned());
     if name.bytes().all(|byte| byte.is_ascii_digit()) {
         return name.parse() == Ok(place);
     }

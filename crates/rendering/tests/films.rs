@@ -241,9 +241,15 @@ fn endings_that_no_film_has_are_refused_with_those_that_films_have() {
     for name in ["a.mp4", "a.gif", "a.mov"] {
         assert_eq!(kind(name, true).unwrap(), FilmKind::Ffmpeg, "{name}");
     }
-    for (name, ffmpeg) in
-        [("a.png", false), ("a.xyz", false), ("a.", false), (".mp4", false), ("in/.gif", false), (".webm", false), ("a", true)]
-    {
+    for (name, ffmpeg) in [
+        ("a.png", false),
+        ("a.xyz", false),
+        ("a.", false),
+        (".mp4", false),
+        ("in/.gif", false),
+        (".webm", false),
+        ("a", true),
+    ] {
         let error = kind(name, ffmpeg).unwrap_err();
         let text = error.to_string();
         assert!(error.is_usage() && text.starts_with(&format!("{name} is no name of a film")), "{text}");

@@ -73,7 +73,10 @@ fn read_row(record: &csv::StringRecord, row: usize, wanted: Option<usize>) -> Re
                 return format!("there is no height in row {row}, column {column}: a hole");
             }
             let hint = separator(text).unwrap_or_default();
-            format!("the height in row {row}, column {column} must be {}, not {text:?}{hint}", HEIGHT.expected())
+            format!(
+                "the height in row {row}, column {column} must be {}, not {text:?}{hint}",
+                HEIGHT.expected()
+            )
         })
     };
     let heights = record.iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;

@@ -338,7 +338,10 @@ fn names_that_cannot_be_seen_are_refused() {
             "robots": [{ "name": name, "pose": [0, 0, 0], "path": { "kind": "constant" } }],
         }))
     };
-    for sign in "\u{3164}\u{ffa0}\u{115f}\u{1160}\u{34f}\u{17b4}\u{180b}\u{fe0f}\u{e0100}\u{200b}\u{2060}\u{feff}".chars() {
+    for sign in
+        "\u{3164}\u{ffa0}\u{115f}\u{1160}\u{34f}\u{17b4}\u{180b}\u{fe0f}\u{e0100}\u{200b}\u{2060}\u{feff}"
+            .chars()
+    {
         for name in [format!("{sign}"), format!("leader{sign}")] {
             let words = format!(": U+{:04X} in it cannot be seen", u32::from(sign));
             let to = format!("name = \"{name}\"");

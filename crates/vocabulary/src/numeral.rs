@@ -1,7 +1,7 @@
 //! Numbers in messages as people read them.
 
 use std::borrow::Cow;
-use std::fmt::Display;
+use std::fmt::{Display, Write};
 
 /// So many zeros in a row nobody counts.
 const ZEROS: &str = "0000000000000000";
@@ -22,10 +22,12 @@ pub fn readable(text: &str) -> Cow<'_, str> {
         let inside =
             clean.chars().chain(before.chars()).next_back().is_some_and(|c| c.is_alphanumeric() || c == '_');
         clean.push_str(before);
-        match number.parse::<f64>() {
-            // Written as this language writes numbers; with zeros in front it is a name.
-            Ok(value) if !inside && number.contains(ZEROS) && number == value.to_string() => clean.push_str(&format!("{value:e}")),
-            _ => clean.push_str(number),
+        // Written as this language writes numbers; with zeros in front it is a name.
+        let long = |value: &f64| !inside && number.contains(ZEROS) && number == value.to_string();
+        match number.parse::<f64>().ok().filter(long) {
+            // Writing to a text cannot fail.
+            Some(value) => drop(write!(clean, "{value:e}")),
+            None => clean.push_str(number),
         }
         rest = after;
     }
@@ -46,8 +48,14 @@ mod tests {
 
     #[test]
     fn one_is_no_plural() {
-        assert_eq!([0, 1, 2, 11].map(|n| counted(n, "frame")), ["0 frames", "1 frame", "2 frames", "11 frames"]);
-        assert_eq!((counted(1.0, "look"), counted("0.5 to 1", "look")), ("1 look".into(), "0.5 to 1 looks".into()));
+        assert_eq!(
+            [0, 1, 2, 11].map(|n| counted(n, "frame")),
+            ["0 frames", "1 frame", "2 frames", "11 frames"]
+        );
+        assert_eq!(
+            (counted(1.0, "look"), counted("0.5 to 1", "look")),
+            ("1 look".into(), "0.5 to 1 looks".into())
+        );
     }
 
     #[test]

@@ -158,7 +158,8 @@ fn the_shipped_storyboard_covers_its_run() {
 fn one_frame_is_one_frame() {
     let folder = tempfile::tempdir().expect("a folder");
     write_scene(folder.path(), "");
-    let args = ["film", "two.toml", "--size", "64x36", "--samples", "1", "--set", "time.duration=0.5", "--fps", "2"];
+    let args =
+        ["film", "two.toml", "--size", "64x36", "--samples", "1", "--set", "time.duration=0.5", "--fps", "2"];
     let (code, out, err) = told(&echelon(folder.path(), &args));
     assert!(code == 0 && out.contains("two.mp4: 0.50 s, 1 frame of 64×36 at 2 a second"), "{out}{err}");
     assert!(err.contains("Filming two, 1 frame, to two.mp4"), "{err}");

@@ -151,8 +151,7 @@ fn a_log_without_a_scene_is_compared_by_its_moments() {
     let library = bytes.windows(8).position(|name| name == b"echelon ").expect("a header");
     bytes[library..library + 7].copy_from_slice(b"another");
     // Before its name an attachment (9) has its length, two times and the length of the name; 0x90 is nobody's record.
-    const NAME: &[u8] = b"scene.toml";
-    let names: Vec<usize> = (29..bytes.len()).filter(|at| bytes[*at..].starts_with(NAME)).collect();
+    let names: Vec<usize> = (29..bytes.len()).filter(|at| bytes[*at..].starts_with(b"scene.toml")).collect();
     let attachments: Vec<usize> = names.into_iter().map(|at| at - 29).filter(|at| bytes[*at] == 9).collect();
     assert_eq!(attachments.len(), 1);
     bytes[attachments[0]] = 0x90;

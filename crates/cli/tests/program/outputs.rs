@@ -256,7 +256,8 @@ fn a_full_disk_is_told_with_what_is_kept() {
     let folder = tempfile::tempdir().expect("a folder");
     let line = scene("line-three");
     let run_on = |blocks: u32, args: &[&str]| on_a_full_disk(folder.path(), blocks, args);
-    let (code, _, err) = run_on(400, &["run", &line, "-q", "-o", "run", "--set", "time.duration=200", "--set", "expect={}"]);
+    let (code, _, err) =
+        run_on(400, &["run", &line, "-q", "-o", "run", "--set", "time.duration=200", "--set", "expect={}"]);
     assert!(code == 3 && err.contains("; run keeps the run up to "), "{err}");
     assert!(err.contains("which `echelon replay run` draws") && err.contains("says interrupted"), "{err}");
     let manifest = fs::read_to_string(folder.path().join("run/manifest.json")).expect("a manifest");
@@ -264,10 +265,14 @@ fn a_full_disk_is_told_with_what_is_kept() {
     let film = ["film", &line, "-q", "--size", "320x180", "--fps", "5", "-o"];
     let (code, _, err) = run_on(60, &[&film[..], &["f.mp4"]].concat());
     let (_, rest) = err.split_once("; the first ").unwrap_or_else(|| panic!("{code} {err}"));
-    let seconds: f64 = rest.split_once(" s are kept beside it").expect("how much").0.parse().expect("seconds");
+    let seconds: f64 =
+        rest.split_once(" s are kept beside it").expect("how much").0.parse().expect("seconds");
     assert!(code == 3 && seconds >= 2.0 && err.contains("the same command goes on from there"), "{err}");
     assert!(!folder.path().join("f.mp4").exists());
-    let (code, out, err) = run(folder.path(), &[&["film", &line, "--size", "320x180", "--fps", "5", "-o"], &["f.mp4"][..]].concat());
+    let (code, out, err) = run(
+        folder.path(),
+        &[&["film", &line, "--size", "320x180", "--fps", "5", "-o"], &["f.mp4"][..]].concat(),
+    );
     assert!(code == 0 && err.contains(&format!("going on after {seconds:.2} s")), "{out}{err}");
     let (code, _, err) = run_on(30, &[&film[..], &["f.gif"]].concat());
     assert!(code == 3 && err.contains("nothing of the film is kept"), "{err}");
@@ -276,13 +281,16 @@ fn a_full_disk_is_told_with_what_is_kept() {
     assert!(code == 3 && err.contains("0 of 2 pictures were written before"), "{err}");
 }
 
+/// Small and short.
+fn drawn<'a>(args: &[&'a str]) -> Vec<&'a str> {
+    [args, &["--size", "64x48", "--set", "time.duration=0.2", "--set", "expect={}"]].concat()
+}
+
 /// A film replaced another without a word. One rule for all: files are replaced, and that is told.
 #[test]
 fn what_is_replaced_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let line = scene("line-three");
-    let small = ["--size", "64x48", "--set", "time.duration=0.2", "--set", "expect={}"];
-    let drawn = |args: &[&str]| [args, &small[..]].concat();
     let film = drawn(&["film", &line, "-o", "f.mp4", "--fps", "5"]);
     let pictures = drawn(&["capture", &line, "-o", "p", "--at", "0,0.1"]);
     let (line_args, plain) = (["--set", "time.duration=1", "--set", "expect={}"], &line);
@@ -292,7 +300,10 @@ fn what_is_replaced_is_told() {
         (film, "f.mp4"),
         (drawn(&["film", &line, "-o", "f.gif", "--fps", "5"]), "f.gif"),
         (pictures, "p/line-three-000.000.png, p/line-three-000.100.png"),
-        (drawn(&["stills", &line, "-o", "s", "--count", "2"]), "s/line-three-sheet.png, s/line-three-strobe.png"),
+        (
+            drawn(&["stills", &line, "-o", "s", "--count", "2"]),
+            "s/line-three-sheet.png, s/line-three-strobe.png",
+        ),
         (report, "r.xml"),
         (certificate, "c/certificate.json"),
     ] {

@@ -126,7 +126,7 @@ fn views_and_elements_are_documented_as_they_are_taken() {
     let error = rendering::View::parse("nowhere", &names).expect_err("no view").to_string();
     let (_, views) = error.split_once("views are ").expect("a list");
     let (views, _) = views.rsplit_once(", and several").expect("its end");
-    let mut views: Vec<&str> = Vec::from_iter(views.split(", "));
+    let mut views: Vec<&str> = views.split(", ").collect();
     assert!(views.len() == 7 && views.contains(&"fixed:ex,ey,ez,tx,ty,tz[,degrees]"), "{error}");
     views.push("fixed");
     for view in views {

@@ -126,14 +126,20 @@ fn scenes_and_runs_are_told_apart() {
         (&["replay", "mine.toml"], "a scene is recorded by `echelon run mine.toml`"),
         (&["replay", "run/metrics.json"], "its run is the folder run"),
         (&["replay", "run/manifest.json"], "its run is the folder run"),
-        (&["capture", "run"], "is a recorded run, and a scene is wanted here: `echelon replay run` runs it again"),
+        (
+            &["capture", "run"],
+            "is a recorded run, and a scene is wanted here: `echelon replay run` runs it again",
+        ),
         (&["film", "run"], "its scene is run/scene.toml"),
         (&["check", "run"], "is a recorded run"),
         (&["capture", "a.mcap"], "`--capture 0,5` or `--film film.mp4` it draws it"),
         (&["run", "renamed"], "renamed is a recorded run"),
         (&["figures", "run", "-o", "f"], "is a recorded run"),
         (&["budget", "run/log.mcap"], "run/log.mcap is a recorded run"),
-        (&["compare", "a.mcap", "a.mcap"], "a.mcap: it is no picture; recorded runs are compared by `echelon diff`"),
+        (
+            &["compare", "a.mcap", "a.mcap"],
+            "a.mcap: it is no picture; recorded runs are compared by `echelon diff`",
+        ),
         (&["compare", "run", "run"], "recorded runs are compared by `echelon diff`"),
     ] {
         let (code, out, err) = told(&echelon(folder.path(), args));

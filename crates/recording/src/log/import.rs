@@ -224,7 +224,10 @@ impl About {
         let broken = if sound && count == all {
             String::new()
         } else {
-            format!("; of its {} the first {count} are whole, the others lack topics or messages", counted(all, "sample"))
+            format!(
+                "; of its {} the first {count} are whole, the others lack topics or messages",
+                counted(all, "sample")
+            )
         };
         format!("{anew}{lacks}{broken}")
     }

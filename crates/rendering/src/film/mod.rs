@@ -39,7 +39,8 @@ impl FilmKind {
             // `.mp4` alone is a hidden file to the system, and a slip to us.
             None => {
                 let name = path.file_name().map(low).unwrap_or_default();
-                let known = |ending: &str| Self::BUILT_IN.contains(&ending) || Self::BY_FFMPEG.contains(&ending);
+                let known =
+                    |ending: &str| Self::BUILT_IN.contains(&ending) || Self::BY_FFMPEG.contains(&ending);
                 let slip = name.strip_prefix('.').is_some_and(known);
                 return if slip || ffmpeg { Err(refused()) } else { Ok(Self::PngSequence) };
             }
