@@ -192,8 +192,9 @@ pub(crate) struct FilmArgs {
     /// Frames a second of simulation time
     #[arg(long)]
     pub(crate) fps: Option<f64>,
-    /// Film file: .mp4 or .gif (480x270, 10 frames a second where the scene says no other); without an ending, a folder of
-    /// PNG frames; .webm, .mkv, .mov, .avi, .mpg, .mpeg, .ogv, .ts, .flv and .wmv need ffmpeg. NAME.mp4 if left out
+    /// Film file: .mp4, .m4v or .gif (480x270, 10 frames a second where the scene says no other); without an ending, a
+    /// folder of PNG frames; .webm, .mkv, .mov, .avi, .mpg, .mpeg, .ogv, .ts, .flv and .wmv need ffmpeg. NAME.mp4 if left
+    /// out
     #[arg(long, short, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Encode with the ffmpeg on PATH instead of the built-in encoder

@@ -100,11 +100,14 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     let adapter = small.gpu.description();
     let texts =
         [("Title", cast.title.as_str()), ("Software", crate::run::PROGRAM), ("Adapter", adapter.as_str())];
-    let (mut files, mut replaced) = (Vec::new(), Replaced::default());
+    let (mut files, mut replaced) = (Vec::<(PathBuf, [u32; 2])>::new(), Replaced::default());
     for (kind, picture) in [("sheet", sheet), ("strobe", strobe)] {
         let path = args.out.join(format!("{name}-{kind}.png"));
         replaced.look(&path);
-        write(&path, &picture, &texts)?;
+        write(&path, &picture, &texts).map_err(|failure| match files.first() {
+            Some((first, _)) => failure.but(&format!("{} is written", first.display())),
+            None => failure.but("nothing is written"),
+        })?;
         files.push((path, [picture.width, picture.height]));
     }
     replaced.tell(args.scene.quiet);

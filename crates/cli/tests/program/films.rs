@@ -164,3 +164,15 @@ fn one_frame_is_one_frame() {
     assert!(code == 0 && out.contains("two.mp4: 0.50 s, 1 frame of 64×36 at 2 a second"), "{out}{err}");
     assert!(err.contains("Filming two, 1 frame, to two.mp4"), "{err}");
 }
+
+/// The help and the book name every ending that is taken.
+#[test]
+fn endings_are_documented_as_they_are_taken() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/films.md");
+    let page = fs::read_to_string(page).expect("a page");
+    let (_, help, _) = told(&echelon(Path::new("."), &["film", "--help"]));
+    for ending in rendering::FilmKind::BUILT_IN.iter().chain(&rendering::FilmKind::BY_FFMPEG) {
+        assert!(page.contains(&format!("`.{ending}`")), "{ending} is not in docs/films.md");
+        assert!(help.contains(&format!(".{ending}")), "{ending} is not in: {help}");
+    }
+}
