@@ -161,6 +161,21 @@ fn links_lead_somewhere() {
     assert!(linked > 50, "{linked} links");
 }
 
+/// How long the first build takes is said in three places.
+#[test]
+fn the_first_build_takes_as_long_everywhere() {
+    let read = |name: &str| fs::read_to_string(root().join(name)).expect("a text").replace('\n', " ");
+    let script = read("scripts/film");
+    let (figure, _) = script
+        .split_once("the first time this takes ")
+        .and_then(|(_, rest)| rest.split_once(" minutes"))
+        .expect("a figure");
+    for page in ["README.md", "docs/start.md"] {
+        let said = format!("The first build takes {figure} minutes");
+        assert!(read(page).contains(&said), "{page} does not say: {said}");
+    }
+}
+
 #[test]
 fn files_stay_short() {
     for (path, text) in sources(&["rs", "wgsl"]) {

@@ -17,7 +17,7 @@ use rendering::{AdapterChoice, Gpu};
 use serde_json::json;
 use std::time::Instant;
 use tally::{Bin, bin_of, median};
-use vocabulary::{FACES, TAGS};
+use vocabulary::{FACES, TAGS, counted};
 
 /// How many leaders with different tags take turns, at most.
 const LEADERS: u64 = 12;
@@ -26,7 +26,7 @@ pub(crate) fn accuracy(args: &AccuracyArgs) -> Outcome {
     let began = Instant::now();
     interrupt::watch();
     let gpu = Gpu::open(&AdapterChoice::from(args.adapter.as_str()))?;
-    let what = format!("Locating a leader in {} poses", args.poses);
+    let what = format!("Locating a leader in {}", counted(args.poses, "pose"));
     let progress = Progress::begin(&what, args.poses, args.json);
     let mut bins = [Bin::default(); BINS.len()];
     let mut times: [Vec<Times>; 2] = [vec![], vec![]];
@@ -59,13 +59,17 @@ pub(crate) fn accuracy(args: &AccuracyArgs) -> Outcome {
         value["wall_seconds"] = json!(seconds);
         print::json(&value);
     } else {
-        print::say(&format!("{done} poses, seed {}, drawn in {seconds:.1} s with {adapter}\n", args.seed));
+        let poses = counted(done, "pose");
+        print::say(&format!("{poses}, seed {}, drawn in {seconds:.1} s with {adapter}\n", args.seed));
         for line in table::text(&bins, &medians) {
             print::say(&line);
         }
     }
     if done < args.poses {
-        return Err(Failure::Interrupted(format!("after {done} of {} poses; they are printed", args.poses)));
+        return Err(Failure::Interrupted(format!(
+            "after {done} of {}; they are printed",
+            counted(args.poses, "pose")
+        )));
     }
     Ok(())
 }

@@ -108,7 +108,8 @@ pub(crate) struct RunArgs {
     /// Replace an earlier run in the folder
     #[arg(long)]
     pub(crate) force: bool,
-    /// Also write what became of the scene's expectations as JUnit XML, which CI systems read
+    /// Also write what became of the scene's expectations as JUnit XML, which CI systems read; `-` is standard
+    /// output, and what is for people goes to standard error
     #[arg(long, value_name = "FILE")]
     pub(crate) junit: Option<PathBuf>,
     /// Record nothing, only simulate and judge
@@ -143,13 +144,15 @@ pub(crate) struct LabArgs {
 /// How pictures look.
 #[derive(Debug, Args)]
 pub(crate) struct PictureArgs {
-    /// snake, snake-eye, top, orbit, follow:ROBOT, camera:ROBOT or fixed; several joined by '+' split the picture
+    /// snake, snake-eye, top, orbit, follow:ROBOT, camera:ROBOT, fixed, or fixed:ex,ey,ez,tx,ty,tz[,degrees] from an eye to a
+    /// target in m with a field of view; several joined by '+' split the picture
     #[arg(long)]
     pub(crate) view: Option<String>,
     /// Pixels, such as 1280x720
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<[u32; 2]>,
-    /// Elements to leave out, such as labels,inset,ghosts
+    /// Elements to leave out, such as labels,inset; any of ribbons, ghosts, set-points, edges, labels, names, grid, inset,
+    /// caption, time, shadows, marks, contacts
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) without: Vec<String>,
     /// In views through cameras, draw the tags found, the pose estimated and how sure it is
@@ -189,8 +192,9 @@ pub(crate) struct FilmArgs {
     /// Frames a second of simulation time
     #[arg(long)]
     pub(crate) fps: Option<f64>,
-    /// Film file: .mp4 or .gif (480x270, 10 frames a second where the scene says no other); without an ending, a folder of
-    /// PNG frames; any other ending needs ffmpeg. NAME.mp4 if left out
+    /// Film file: .mp4, .m4v or .gif (480x270, 10 frames a second where the scene says no other); without an ending, a
+    /// folder of PNG frames; .webm, .mkv, .mov, .avi, .mpg, .mpeg, .ogv, .ts, .flv and .wmv need ffmpeg. NAME.mp4 if left
+    /// out
     #[arg(long, short, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Encode with the ffmpeg on PATH instead of the built-in encoder

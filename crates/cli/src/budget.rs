@@ -23,7 +23,7 @@ use rendering::{AdapterChoice, Gpu};
 use scene::Scene;
 use simulation::Simulation;
 use std::path::Path;
-use vocabulary::Cast;
+use vocabulary::{Cast, counted};
 
 /// A comparison, as far as it has come.
 pub(crate) struct Budget<'a> {
@@ -111,7 +111,12 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
         complete: false,
     };
     let each = simulation.len();
-    let what = format!("{} runs of {}, {} s each", cases.len(), stem(&args.scene.scene), scene.time.duration);
+    let what = format!(
+        "{} of {}, {} s each",
+        counted(cases.len(), "run"),
+        stem(&args.scene.scene),
+        scene.time.duration
+    );
     let progress = Progress::begin(&what, each.saturating_mul(cases.len() as u64), silent);
     for (index, case) in cases.iter().enumerate() {
         let mut simulation = Simulation::new(case.build(&scene)?);
@@ -129,7 +134,8 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
     budget.complete = budget.runs.len() == cases.len();
     finish(&budget, folder, args)?;
     if !budget.complete {
-        let done = format!("after {} of {} runs; they are printed", budget.runs.len(), cases.len());
+        let done =
+            format!("after {} of {}; they are printed", budget.runs.len(), counted(cases.len(), "run"));
         return Err(Failure::Interrupted(done));
     }
     Ok(())
@@ -143,7 +149,7 @@ fn finish(budget: &Budget<'_>, folder: Option<&Path>, args: &BudgetArgs) -> Outc
         table::print(budget);
     }
     let Some(folder) = folder else { return Ok(()) };
-    let written = files::write(folder, budget)?;
+    let written = files::write(folder, budget, args.scene.quiet)?;
     if !args.scene.json && !args.scene.quiet {
         for path in written {
             say(&path.display().to_string());

@@ -8,12 +8,13 @@ use crate::picture::Studio;
 use crate::playback::{Playback, Source};
 use crate::print::{json, note, say};
 use crate::progress::Progress;
+use crate::replaced::Replaced;
 use crate::{interrupt, run, times};
 use output::Place;
 use rendering::{Gpu, png};
 use serde_json::json;
 use std::path::Path;
-use vocabulary::Cast;
+use vocabulary::{Cast, counted};
 
 /// What pictures are made of.
 pub(crate) struct Job<'a> {
@@ -68,9 +69,9 @@ pub(crate) fn draw(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Fa
     let source = source(&studio.gpu)?;
     let adapter = studio.gpu.description();
     let mut playback = Playback::new(cast, source);
-    let what = format!("Drawing {} pictures of {name}", times.len());
+    let what = format!("Drawing {} of {name}", counted(times.len(), "picture"));
     let progress = Progress::begin(&what, times.len() as u64, job.quiet || times.len() < 4);
-    let (mut files, mut shown) = (Vec::new(), Vec::new());
+    let (mut files, mut shown, mut replaced) = (Vec::new(), Vec::new(), Replaced::default());
     for (count, time) in times.iter().enumerate() {
         let moment = playback.at(*time);
         if interrupt::asked() {
@@ -94,7 +95,11 @@ pub(crate) fn draw(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Fa
             ("Time", &*time_text),
             ("Adapter", &*adapter),
         ];
-        png::write(&path, &picture, &metadata)?;
+        replaced.look(&path);
+        png::write(&path, &picture, &metadata).map_err(|error| {
+            let all = counted(times.len(), "picture");
+            Failure::from(error).but(&format!("{count} of {all} were written before"))
+        })?;
         files.push(path.display().to_string());
         shown.push(time);
         progress.at(count as u64 + 1);
@@ -103,6 +108,7 @@ pub(crate) fn draw(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Fa
         }
     }
     progress.end();
+    replaced.tell(job.quiet);
     if job.json {
         json(&json!({ "files": files, "times": shown, "size": studio.size, "adapter": adapter }));
     } else if !job.quiet {

@@ -114,11 +114,14 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     let cast = simulation.cast().clone();
     let mut report = Report { scene: &scene, cast, certificates, beyond, bound: args.bound, wall: 0.0 };
     report.wall = began.elapsed().as_secs_f64();
-    let written = args.out.as_deref().map(|folder| files::write(folder, &report)).transpose()?;
+    let written =
+        args.out.as_deref().map(|folder| files::write(folder, &report, args.scene.quiet)).transpose();
     if args.scene.json {
         json(&files::as_json(&report));
     } else if !args.scene.quiet {
-        text::tell(&report, &written.unwrap_or_default());
+        text::tell(&report, written.as_ref().map_or(&[], |files| files.as_deref().unwrap_or_default()));
     }
+    // What came out is told, whatever becomes of a file.
+    written?;
     if args.strict && !report.holds() { Err(Failure::Expectation) } else { Ok(()) }
 }

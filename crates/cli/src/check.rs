@@ -5,6 +5,7 @@ use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::load::load_file;
 use crate::print::{note, say};
+use vocabulary::counted;
 
 pub(crate) fn check(args: &CheckArgs) -> Outcome {
     let mut problems = Vec::new();
@@ -15,7 +16,7 @@ pub(crate) fn check(args: &CheckArgs) -> Outcome {
                 problems.push(format!("{}: {beyond}", path.display()));
             }
             Ok((scene, setup)) if args.resolved => {
-                say(&format!("# {}: {} robots", path.display(), setup.cast.members.len()));
+                say(&format!("# {}: {}", path.display(), counted(setup.cast.members.len(), "robot")));
                 say(&scene.to_toml());
             }
             Ok((scene, setup)) => {
@@ -24,8 +25,7 @@ pub(crate) fn check(args: &CheckArgs) -> Outcome {
                 }
                 let (robots, edges) = (setup.cast.members.len(), setup.cast.edges.len());
                 let length = scene.time.duration;
-                let count = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
-                let (robots, edges) = (count(robots, "robot"), count(edges, "edge"));
+                let (robots, edges) = (counted(robots, "robot"), counted(edges, "edge"));
                 say(&format!("{}: good: {}; {robots} and {edges}, {length} s", path.display(), scene.title));
             }
             Err(Failure::Usage(text)) => problems.push(text),

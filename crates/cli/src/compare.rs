@@ -2,8 +2,10 @@
 
 use crate::Outcome;
 use crate::failure::Failure;
+use crate::interrupt;
 use crate::junit::{self, Came, Case};
 use crate::print::{json, say};
+use crate::replaced::Replaced;
 use clap::Args;
 use image::{Rgb, RgbImage, Rgba, RgbaImage};
 use image_compare::rgb_hybrid_compare;
@@ -12,7 +14,8 @@ use serde_json::json;
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use vocabulary::Picture;
+use std::time::{Duration, Instant};
+use vocabulary::{Picture, counted};
 
 #[derive(Debug, Args)]
 pub(crate) struct CompareArgs {
@@ -28,7 +31,8 @@ pub(crate) struct CompareArgs {
     /// Folder for pictures of the differences: wanted, found, and where they differ
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Also write the result as JUnit XML, which CI systems read
+    /// Also write the result as JUnit XML, which CI systems read; `-` is standard
+    /// output, and what is for people goes to standard error
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
     /// Print the result as JSON
@@ -96,17 +100,36 @@ impl Pair {
 }
 
 pub(crate) fn compare(args: &CompareArgs) -> Outcome {
+    let began = Instant::now();
+    let _report = junit::open(args.junit.as_deref(), args.json)?;
+    let mut cases = vec![];
+    let outcome = judge(args, &mut cases);
+    junit::close(args.junit.as_deref(), "pictures", cases, (outcome, began.elapsed()), args.quiet)
+}
+
+/// Compares all pictures; `cases` are what became of them.
+fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
     let pairs = pairs(args)?;
-    let _report = args.junit.as_deref().map(Place::file).transpose()?;
     let _place = args.out.as_deref().map(Place::folder).transpose()?;
-    let mut compared = Vec::with_capacity(pairs.len());
+    interrupt::watch();
+    let (all, mut lost, mut replaced) = (pairs.len(), None, Replaced::default());
+    let mut compared = Vec::with_capacity(all);
     for (name, wanted, found) in pairs {
+        if interrupt::asked() {
+            let came = Came::Skipped("the comparison was interrupted".to_owned());
+            cases.push(Case { name, came, time: Some(Duration::ZERO) });
+            continue;
+        }
+        let began = Instant::now();
         let likeness = match (wanted, found) {
-            (Some(wanted), Some(found)) => look(&wanted, &found, &name, args)?,
+            (Some(wanted), Some(found)) => look(&wanted, &found, (&name, args), (&mut lost, &mut replaced))?,
             (Some(_), None) => Err(format!("is not in {}", args.found.display())),
             (None, _) => Err(format!("is not in {}", args.wanted.display())),
         };
-        compared.push(Pair { name, found: likeness });
+        let pair = Pair { name, found: likeness };
+        let came = if pair.passes(args.threshold) { Came::Fine } else { Came::Failed(pair.words()) };
+        cases.push(Case { name: pair.name.clone(), came, time: Some(began.elapsed()) });
+        compared.push(pair);
     }
     let failed = compared.iter().filter(|pair| !pair.passes(args.threshold)).count();
     if args.json {
@@ -128,19 +151,20 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
         if failed > 0 || !args.quiet {
             let all = compared.len();
             say(&format!(
-                "{} of {all} pictures alike, every part by {} at least",
+                "{} of {} alike, every part by {} at least",
                 all - failed,
+                counted(all, "picture"),
                 args.threshold
             ));
         }
     }
-    // What came out is told, whatever becomes of a file.
-    if let Some(path) = &args.junit {
-        let case = |pair: &Pair| Case {
-            name: pair.name.clone(),
-            came: if pair.passes(args.threshold) { Came::Fine } else { Came::Failed(pair.words()) },
-        };
-        junit::write(path, "pictures", &compared.iter().map(case).collect::<Vec<_>>())?;
+    replaced.tell(args.quiet);
+    if compared.len() < all {
+        let text = format!("{} of {} are compared", compared.len(), counted(all, "picture"));
+        return Err(Failure::Interrupted(text));
+    }
+    if let Some(failure) = lost {
+        return Err(failure);
     }
     if failed == 0 { Ok(()) } else { Err(Failure::Expectation) }
 }
@@ -158,7 +182,11 @@ fn pairs(args: &CompareArgs) -> Result<Vec<Named>, Failure> {
         (true, true) => {
             let (left, right) = (names(wanted)?, names(found)?);
             if left.is_empty() && right.is_empty() {
-                let text = format!("neither {} nor {} holds a .png", wanted.display(), found.display());
+                let text = format!(
+                    "neither {} nor {} holds a .png: name pictures, or folders of them; recorded runs are compared by `echelon diff`",
+                    wanted.display(),
+                    found.display()
+                );
                 return Err(Failure::Usage(text));
             }
             let file = |names: &BTreeSet<OsString>, folder: &Path, name: &OsString| {
@@ -195,6 +223,9 @@ fn read(path: &Path) -> Result<RgbaImage, Failure> {
     let refused = |e: &dyn std::fmt::Display| Failure::Usage(format!("cannot read {}: {e}", path.display()));
     let reader = image::ImageReader::open(path).map_err(|e| refused(&e))?;
     let mut reader = reader.with_guessed_format().map_err(|e| refused(&e))?;
+    if reader.format().is_none() {
+        return Err(refused(&"it is no picture; recorded runs are compared by `echelon diff`"));
+    }
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(4 * MOST_PIXELS);
     reader.limits(limits);
@@ -204,8 +235,8 @@ fn read(path: &Path) -> Result<RgbaImage, Failure> {
 fn look(
     wanted: &Path,
     found: &Path,
-    name: &str,
-    args: &CompareArgs,
+    (name, args): (&str, &CompareArgs),
+    (lost, replaced): (&mut Option<Failure>, &mut Replaced),
 ) -> Result<Result<Likeness, String>, Failure> {
     let (a, b) = (read(wanted)?, read(found)?);
     if a.dimensions() != b.dimensions() {
@@ -216,11 +247,12 @@ fn look(
         shown(&a, &b).map_err(|e| Failure::Machine(format!("cannot compare {}: {e}", found.display())))?;
     let likeness = Likeness { adapters: adapters(wanted, found), ..shown.likeness };
     if let Some(folder) = args.out.as_ref().filter(|_| likeness.other > 0.0) {
-        let refused = |e| Failure::Machine(format!("cannot create {}: {e}", folder.display()));
-        std::fs::create_dir_all(folder).map_err(refused)?;
         let path = folder.join(Path::new(name).with_extension("difference.png"));
         let picture = side_by_side(&shown.wanted, &shown.found, &shown.map);
-        rendering::png::write(&path, &picture, &[("Software", crate::run::PROGRAM)])?;
+        replaced.look(&path);
+        let written = rendering::png::write(&path, &picture, &[("Software", crate::run::PROGRAM)]);
+        // What came out is told, whatever becomes of a file.
+        *lost = lost.take().or(written.err().map(Failure::from));
     }
     Ok(Ok(likeness))
 }

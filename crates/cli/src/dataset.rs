@@ -25,7 +25,7 @@ use scene::{Role, Scene};
 use serde_json::{Value, json};
 use std::time::Instant;
 use timeline::Timeline;
-use vocabulary::{Cast, Edge, Region};
+use vocabulary::{Cast, Edge, Region, counted};
 
 /// Version of the form of `dataset.json`.
 const FORMAT: u32 = 1;
@@ -58,8 +58,8 @@ pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
     let frames = ((duration / args.every + 1e-9).floor() as u64).saturating_add(1);
     let name = stem(&args.scene.scene);
     let what = format!(
-        "Exporting {name}, {} pictures, to {}",
-        frames.saturating_mul(edges.len() as u64),
+        "Exporting {name}, {}, to {}",
+        counted(frames.saturating_mul(edges.len() as u64), "picture"),
         args.out.display()
     );
     let progress = Progress::begin(&what, frames, args.scene.quiet || args.scene.json);
@@ -69,7 +69,12 @@ pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
         let time = frame as f64 * args.every;
         // Half of an exposure comes after its instant; at the end of the run robots are held where they are.
         timeline.reach(time + 0.5 * export.exposure.shutter)?;
-        export.take(&timeline, frame, time)?;
+        export.take(&timeline, frame, time).map_err(|failure| {
+            let count = counted(export.pictures.len(), "picture");
+            // The disk may still take the list.
+            let _ = export.write("interrupted");
+            failure.but(&format!("{} keeps the first {count}; --force begins anew", args.out.display()))
+        })?;
         frame += 1;
         progress.at(frame);
         if interrupt::asked() {
@@ -84,8 +89,8 @@ pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
     };
     export.write(status)?;
     if status == "interrupted" {
-        let count = export.pictures.len();
-        let text = format!("{} holds the first {count} pictures", args.out.display());
+        let count = counted(export.pictures.len(), "picture");
+        let text = format!("{} holds the first {count}", args.out.display());
         return Err(Failure::Interrupted(text));
     }
     let seconds = began.elapsed().as_secs_f64();
@@ -97,11 +102,11 @@ pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
         }));
     } else if !args.scene.quiet {
         print::say(&format!(
-            "{}: {} pictures of {} cameras, {} tags in view, {} readable, {} detected",
+            "{}: {} of {}, {} in view, {} readable, {} detected",
             args.out.display(),
-            summary["pictures"],
-            edges.len(),
-            summary["tags"],
+            counted(&summary["pictures"], "picture"),
+            counted(edges.len(), "camera"),
+            counted(&summary["tags"], "tag"),
             summary["readable"],
             summary["detected"]
         ));

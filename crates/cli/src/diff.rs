@@ -12,6 +12,7 @@ use recording::log::{Comparison, compare};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use vocabulary::counted;
 
 #[derive(Debug, Args)]
 pub(crate) struct DiffArgs {
@@ -40,8 +41,10 @@ fn tolerance(text: &str) -> Result<f64, String> {
 /// What two runs have and have not in common.
 struct Diff {
     names: [String; 2],
-    /// Keys of the resolved scenes that differ, with both values.
-    keys: Vec<(String, [String; 2])>,
+    /// Keys of the resolved scenes that differ, with both values; `None` where a run has no scene.
+    keys: Option<Vec<(String, [String; 2])>>,
+    /// Which runs have none.
+    bare: [bool; 2],
     /// Robots and edges, where they are not the same.
     casts: Option<[String; 2]>,
     digests: [Option<String>; 2],
@@ -57,7 +60,9 @@ pub(crate) fn diff(args: &DiffArgs) -> Outcome {
     let names = [&a, &b].map(|run| run.path.display().to_string());
     let who = [&a, &b].map(|run| (run.manifest.robots.clone(), run.manifest.edges.clone()));
     let casts = (who[0] != who[1]).then(|| who.map(|(robots, edges)| told(&robots, &edges)));
-    let keys = keys(&a, &b);
+    // Others' logs may hold no scene.
+    let bare = [&a, &b].map(|run| run.scene.1.is_empty());
+    let keys = (bare == [false; 2]).then(|| keys(&a, &b));
     let digests = [&a, &b].map(|run| run.manifest.digest.clone());
     let moments = match (a.moments(), b.moments()) {
         (Some(left), Some(right)) if casts.is_none() => {
@@ -72,7 +77,7 @@ pub(crate) fn diff(args: &DiffArgs) -> Outcome {
             })?;
             progress.end();
             if interrupt::asked() {
-                return Err(Failure::Interrupted(format!("after {} samples", found.samples)));
+                return Err(Failure::Interrupted(format!("after {}", counted(found.samples, "sample"))));
             }
             Some(found)
         }
@@ -83,7 +88,7 @@ pub(crate) fn diff(args: &DiffArgs) -> Outcome {
         a.log()?;
         b.log()?;
     }
-    let diff = Diff { names, keys, casts, digests, moments };
+    let diff = Diff { names, keys, bare, casts, digests, moments };
     if args.json {
         diff.as_json();
     } else if !args.quiet {
@@ -95,7 +100,8 @@ pub(crate) fn diff(args: &DiffArgs) -> Outcome {
 fn told(robots: &[String], edges: &[[String; 2]]) -> String {
     let edges: Vec<String> =
         edges.iter().map(|[leader, follower]| format!("{leader} → {follower}")).collect();
-    format!("{} robots: {}; {} edges: {}", robots.len(), robots.join(", "), edges.len(), edges.join(", "))
+    let (some, all) = (counted(robots.len(), "robot"), counted(edges.len(), "edge"));
+    format!("{some}: {}; {all}: {}", robots.join(", "), edges.join(", "))
 }
 
 /// Keys of the resolved scenes that differ; one that cannot be read here is compared as a whole.
@@ -161,13 +167,16 @@ impl Diff {
         if let Some([left, right]) = &self.casts {
             say(&format!("other robots or edges\n  {a}: {left}\n  {b}: {right}"));
         }
-        if !self.keys.is_empty() {
-            say(&format!("{} the scene:", differing(self.keys.len())));
-            for (key, [left, right]) in self.keys.iter().take(20) {
+        for name in self.names.iter().zip(self.bare).filter_map(|(name, bare)| bare.then_some(name)) {
+            say(&format!("{name}: the log has no scene to compare"));
+        }
+        if let Some(keys) = self.keys.as_ref().filter(|keys| !keys.is_empty()) {
+            say(&format!("{} the scene:", differing(keys.len())));
+            for (key, [left, right]) in keys.iter().take(20) {
                 say(&format!("  {key}: {left} | {right}"));
             }
-            if self.keys.len() > 20 {
-                say(&format!("  and {} more; --json tells all", self.keys.len() - 20));
+            if keys.len() > 20 {
+                say(&format!("  and {} more; --json tells all", keys.len() - 20));
             }
         }
         match &self.moments {
@@ -183,7 +192,8 @@ impl Diff {
 
     fn as_json(&self) {
         let pair = |[a, b]: &[String; 2]| json!({ "a": a, "b": b });
-        let keys = self.keys.iter().map(|(key, [a, b])| json!({ "key": key, "a": a, "b": b }));
+        let key = |(key, [a, b]): &(String, [String; 2])| json!({ "key": key, "a": a, "b": b });
+        let keys = self.keys.as_ref().map(|keys| keys.iter().map(key).collect::<Vec<_>>());
         let finite = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
         let moments = self.moments.as_ref().map(|found| {
             let first = found.first.as_ref().map(|first| {
@@ -210,7 +220,7 @@ impl Diff {
             "same": self.same(),
             "runs": pair(&self.names),
             "casts": self.casts.as_ref().map(pair),
-            "scene": keys.collect::<Vec<_>>(),
+            "scene": keys,
             "digests": { "a": self.digests[0], "b": self.digests[1] },
             "moments": moments,
         }));
@@ -225,12 +235,12 @@ fn differing(count: usize) -> String {
 fn moments(found: &Comparison, same: bool, names: &[String; 2]) {
     if same {
         let exact = if found.peaks.is_empty() && found.differing == 0 { "same: bit for bit" } else { "same" };
-        say(&format!("{exact}, {} samples", found.samples));
+        say(&format!("{exact}, {}", counted(found.samples, "sample")));
         return;
     }
-    say(&format!("DIFFERENT in {} of {} samples", found.differing, found.samples));
+    say(&format!("DIFFERENT in {} of {}", found.differing, counted(found.samples, "sample")));
     for (more, name) in found.more.iter().zip(names).filter(|(more, _)| **more > 0) {
-        say(&format!("{name} goes on for {more} samples more"));
+        say(&format!("{name} goes on for {} more", counted(more, "sample")));
     }
     if let Some(first) = &found.first {
         let (name, unit) = unit(first.quantity);

@@ -28,6 +28,24 @@ impl Failure {
         }
     }
 
+    /// With what is there all the same, where the machine is at fault.
+    pub(crate) fn but(self, kept: &str) -> Self {
+        match self {
+            Self::Machine(text) => Self::Machine(format!("{text}; {kept}")),
+            other => other,
+        }
+    }
+
+    /// What cut the work short; nothing where it came to its end.
+    pub(crate) fn text(&self) -> Option<&str> {
+        match self {
+            Self::Expectation => None,
+            Self::Broken(text) | Self::Usage(text) | Self::Machine(text) | Self::Interrupted(text) => {
+                Some(text)
+            }
+        }
+    }
+
     /// One message on standard error.
     pub(crate) fn tell(&self) {
         let message = match self {

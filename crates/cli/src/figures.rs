@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::load::stem;
 use crate::print::note;
 use crate::run::PROGRAM;
-use crate::{eyes, interrupt};
+use crate::{eyes, interrupt, recorded};
 use clap::Args;
 use folder::Folder;
 use meter::Meter;
@@ -92,7 +92,7 @@ pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
             let status = if matches!(failure, Failure::Interrupted(_)) { "interrupted" } else { "failed" };
             // The first failure is the one to tell.
             let _ = folder.close(status, None);
-            Err(failure)
+            Err(failure.but(&format!("{} keeps what was written before", args.out.display())))
         }
     }
 }
@@ -107,6 +107,7 @@ fn subject(args: &FiguresArgs) -> Result<Subject, Failure> {
         let seed = format!("seed={seed}").parse();
         overrides.push(seed.map_err(|e: scene::OverrideError| Failure::Usage(e.to_string()))?);
     }
+    recorded::refuse(path)?;
     let loaded = Scene::load(path, &overrides).map_err(|errors| Failure::Usage(errors.to_string()))?;
     Ok(Subject { jobs: report::scene_jobs(&loaded.scene), own: Some((loaded.scene, stem(path))) })
 }

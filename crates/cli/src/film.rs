@@ -14,6 +14,7 @@ use crate::picture::Studio;
 use crate::playback::{Playback, Source};
 use crate::print::{json, note, say};
 use crate::progress::Progress;
+use crate::replaced::Replaced;
 use board::Board;
 use metrics::MetricsBuilder;
 use output::Place;
@@ -23,7 +24,7 @@ use rendering::{Film, FilmKind, Gpu, Room, Show};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
-use vocabulary::{Cast, Judging};
+use vocabulary::{Cast, Judging, counted};
 
 /// What a film is made of.
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
@@ -95,7 +96,7 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
 /// Makes the film of what `source` tells; it may use the adapter that draws.
 pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
     let began = Instant::now();
-    let kind = if job.ffmpeg { FilmKind::Ffmpeg } else { FilmKind::of(&job.path) };
+    let kind = FilmKind::of(&job.path, job.ffmpeg)?;
     if kind == FilmKind::Gif {
         lighten(&mut job.settings);
     }
@@ -121,8 +122,13 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     studio.check_texts(told);
     let source = source(&studio.gpu)?;
     let (mut film, done) = begin(&job, kind, &studio, rate)?;
+    let mut replaced = Replaced::default();
+    // What an interrupted film left is its own beginning.
+    if done == 0 {
+        replaced.look(path);
+    }
 
-    let what = format!("Filming {name}, {frames} frames, to {}", path.display());
+    let what = format!("Filming {name}, {}, to {}", counted(frames, "frame"), path.display());
     let progress = Progress::begin(&what, frames, job.quiet);
     if done > 0 && !job.quiet {
         note(&format!("going on after {:.2} s that are there from an interrupted film", done as f64 / rate));
@@ -160,27 +166,29 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
                 studio.renderer.retitle(&cast.title, caption);
             }
             let ready = studio.renderer.draw_next(playback.trail(), &moment, &frame.layout, &style)?;
-            ready.map_or(Ok(()), |picture| film.push(picture))?;
+            ready.map_or(Ok(()), |picture| film.push(picture)).map_err(|e| refused(e, &job, kind, rate))?;
         }
         (index, shot) = (index + 1, shot + 1);
         progress.at(index);
     }
     if let Some(picture) = studio.renderer.finish()? {
-        film.push(picture)?;
+        film.push(picture).map_err(|e| refused(e, &job, kind, rate))?;
     }
     if shot <= done && index < frames {
         // Nothing new: what was kept stays.
         return Err(Failure::Interrupted("no film was written".into()));
     }
     if index < frames {
-        film.pause()?;
+        film.pause().map_err(|e| refused(e, &job, kind, rate))?;
+        replaced.tell(job.quiet);
         progress.end();
         let seconds = shot as f64 / rate;
         let more = if kind == FilmKind::Mp4 { "; the same command goes on from there" } else { "" };
         return Err(Failure::Interrupted(format!("{} holds the first {seconds:.2} s{more}", path.display())));
     }
-    film.finish()?;
+    film.finish().map_err(|e| refused(e, &job, kind, rate))?;
     progress.end();
+    replaced.tell(job.quiet);
     if let Some(end) = playback.ended().filter(|_| shot < frames && !job.quiet) {
         note(&format!("the run ended at {end:.2} s of {:.2} s, and the film with it", job.duration));
     }
@@ -195,12 +203,27 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
         let length = shot as f64 / rate;
         let [width, height] = studio.size;
         say(&format!(
-            "{}: {length:.2} s, {shot} frames of {width}×{height} at {rate} a second",
-            path.display()
+            "{}: {length:.2} s, {} of {width}×{height} at {rate} a second",
+            path.display(),
+            counted(shot, "frame")
         ));
         say(&format!("drawn in {seconds:.1} s with {adapter}"));
     }
     Ok(())
+}
+
+/// A disk that refuses a film, with what it keeps of it.
+fn refused(error: rendering::Error, job: &Job<'_>, kind: FilmKind, rate: f64) -> Failure {
+    let kept = if kind == FilmKind::Mp4 { Film::kept(&job.path, rate) } else { 0 };
+    let text = match (kind, kept) {
+        (FilmKind::Mp4, 0) => "nothing of the film is kept yet".to_owned(),
+        (FilmKind::Mp4, frames) => format!(
+            "the first {:.2} s are kept beside it, and the same command goes on from there once there is room",
+            frames as f64 / rate
+        ),
+        _ => "nothing of the film is kept; an .mp4 would go on from where it was".to_owned(),
+    };
+    Failure::from(error).but(&text)
 }
 
 /// An animation stores every pixel that changes, and on moving ground all do: it is smaller and slower than a film, unless

@@ -4,6 +4,7 @@ use crate::args::SceneArgs;
 use crate::eyes::{self, Drawn};
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::recorded;
 use rendering::Gpu;
 use scene::{Override, Scene};
 use simulation::{Setup, Simulation};
@@ -35,6 +36,7 @@ impl Loaded {
 
 /// Loads, checks and builds the scene at `path`.
 pub(crate) fn load_file(path: &Path, overrides: &[Override]) -> Result<(Scene, Setup), Failure> {
+    recorded::refuse(path)?;
     let loaded = Scene::load(path, overrides).map_err(|errors| Failure::Usage(errors.to_string()))?;
     let setup = simulation::build(&loaded.scene)
         .map_err(|error| Failure::Usage(format!("{}: {error}", path.display())))?;

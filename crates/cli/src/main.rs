@@ -24,6 +24,7 @@ mod print;
 mod progress;
 mod quiet;
 mod recorded;
+mod replaced;
 mod replay;
 mod run;
 mod scenes;

@@ -6,12 +6,24 @@ use clap_complete::Shell;
 use std::borrow::Cow;
 use std::io::{ErrorKind, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
+use vocabulary::readable;
 
 /// Whether standard output refused something, for other reasons than that its reader has gone.
 static LOST: AtomicBool = AtomicBool::new(false);
 
+/// Whether standard output is for something else than results for people.
+static TAKEN: AtomicBool = AtomicBool::new(false);
+
+/// Leaves standard output to [`verbatim`]: results for people go to standard error from here on.
+pub(crate) fn make_way() {
+    TAKEN.store(true, Ordering::Relaxed);
+}
+
 /// Prints a line to standard output; a reader that has gone away is no error.
 pub(crate) fn say(text: &str) {
+    if TAKEN.load(Ordering::Relaxed) {
+        return note(text);
+    }
     write(format!("{}\n", harmless(text)).as_bytes());
 }
 
@@ -21,8 +33,16 @@ pub(crate) fn verbatim(text: &str) {
 }
 
 /// Text with every character spelt out that would move a terminal's cursor, colour it or turn the direction of reading:
-/// titles and names come from files. The spelling is that of JSON and TOML.
+/// titles and names come from files. The spelling is that of JSON and TOML. Numbers that nobody can read are written with an
+/// exponent.
 pub(crate) fn harmless(text: &str) -> Cow<'_, str> {
+    match readable(text) {
+        Cow::Borrowed(text) => spelt(text),
+        Cow::Owned(text) => Cow::Owned(spelt(&text).into_owned()),
+    }
+}
+
+fn spelt(text: &str) -> Cow<'_, str> {
     let harmful = |c: char| {
         (c.is_control() && c != '\n' && c != '\t')
             || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

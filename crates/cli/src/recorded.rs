@@ -10,8 +10,9 @@ use metrics::Digest;
 use recording::Manifest;
 use recording::log::{self, Log};
 use scene::Scene;
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
+use vocabulary::counted;
 
 /// A recorded run.
 pub(crate) struct Recorded {
@@ -35,9 +36,19 @@ impl Recorded {
     }
 
     fn read(path: &Path) -> Result<Self, Failure> {
-        if path.is_file() && !path.ends_with("manifest.json") {
-            let log = Log::open(path)?;
-            return Ok(Self::of_log(path, log));
+        if !path.is_dir() {
+            return match Log::open(path) {
+                Ok(log) => Ok(Self::of_log(path, log)),
+                Err(_) if !path.exists() => Err(Failure::Usage(format!(
+                    "{} is no run folder and no log: {}",
+                    path.display(),
+                    absent(path)
+                ))),
+                Err(error) => Err(match Failure::from(error) {
+                    Failure::Usage(text) => Failure::Usage(text + &instead(path)),
+                    other => other,
+                }),
+            };
         }
         let inside = path.join(log::FILE);
         let log = match Log::open(&inside) {
@@ -123,7 +134,7 @@ impl Recorded {
             if samples % STRIDE == 0 {
                 progress.at(samples);
                 if interrupt::asked() {
-                    return Err(Failure::Interrupted(format!("after {samples} samples")));
+                    return Err(Failure::Interrupted(format!("after {}", counted(samples, "sample"))));
                 }
             }
         }
@@ -135,15 +146,63 @@ impl Recorded {
     }
 }
 
+/// What a recorded run is, for who named something else.
+const WANTED: &str =
+    "a run folder, such as runs/line-three-001, or its log.mcap is wanted; `echelon run SCENE` leaves one";
+
+/// What to say where there is nothing at `path`.
+fn absent(path: &Path) -> String {
+    match path.to_str().and_then(scene::shipped) {
+        Some(_) => format!("it is a scene; `echelon run {}` records a run of it", path.display()),
+        None => format!("there is nothing of that name; {WANTED}"),
+    }
+}
+
+/// What to name in place of a file that is no log.
+fn instead(path: &Path) -> String {
+    let ends = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
+    let run = path.parent().filter(|folder| folder.join("manifest.json").is_file() && !ends("mcap"));
+    match run {
+        Some(folder) if folder.as_os_str().is_empty() => "; its run is this folder, `.`".to_owned(),
+        Some(folder) => format!("; its run is the folder {}", folder.display()),
+        None if ends("toml") => format!("; a scene is recorded by `echelon run {}`", path.display()),
+        None => String::new(),
+    }
+}
+
+/// Fails where a scene was to be named and a recorded run was.
+pub(crate) fn refuse(path: &Path) -> Result<(), Failure> {
+    let file = |name: &str| path.join(name).is_file();
+    let log = || {
+        let mut head = [0; 5];
+        let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut head));
+        read.is_ok() && &head == b"\x89MCAP"
+    };
+    let folder = path.is_dir() && (file("manifest.json") || file(log::FILE));
+    let alone = path.is_file() && log();
+    if !folder && !alone {
+        return Ok(());
+    }
+    let shown = path.display();
+    let scene = path.join("scene.toml");
+    let scene = if scene.is_file() { format!("; its scene is {}", scene.display()) } else { String::new() };
+    Err(Failure::Usage(format!(
+        "{shown} is a recorded run, and a scene is wanted here: `echelon replay {shown}` runs it again, with \
+         `--capture 0,5` or `--film film.mp4` it draws it{scene}"
+    )))
+}
+
 /// The manifest of the run in `folder`.
 fn read_manifest(folder: &Path) -> Result<Manifest, Failure> {
     let path = folder.join("manifest.json");
     let text = std::fs::read_to_string(&path).map_err(|error| match error.kind() {
         ErrorKind::NotFound | ErrorKind::NotADirectory => Failure::Usage(format!(
-            "{} is no run folder: it has no manifest.json; `echelon run` leaves folders such as runs/line-three-001",
+            "{} is no run folder: it has no manifest.json and no log.mcap; {WANTED}",
             folder.display()
         )),
-        ErrorKind::InvalidData => Failure::Usage(format!("{} is no manifest: it is not text", path.display())),
+        ErrorKind::InvalidData => {
+            Failure::Usage(format!("{} is no manifest: it is not text", path.display()))
+        }
         _ => Failure::Machine(format!("cannot read {}: {error}", path.display())),
     })?;
     serde_json::from_str(&text)

@@ -17,6 +17,7 @@ use scene::Scene;
 use serde_json::json;
 use simulation::Simulation;
 use std::path::PathBuf;
+use vocabulary::counted;
 
 #[derive(Debug, Args)]
 pub(crate) struct ReplayArgs {
@@ -215,7 +216,7 @@ fn run_again(
         if samples % STRIDE == 0 {
             progress.at(samples);
             if interrupt::asked() {
-                return Err(Failure::Interrupted(format!("after {samples} samples")));
+                return Err(Failure::Interrupted(format!("after {}", counted(samples, "sample"))));
             }
         }
     }
@@ -248,7 +249,11 @@ impl Replay {
             return "same: bit for bit".to_owned();
         }
         if self.samples != samples {
-            return format!("DIFFERENT: {samples} samples were recorded, and it has {} now", self.samples);
+            return format!(
+                "DIFFERENT: it had {} when it was recorded, and has {} now",
+                counted(samples, "sample"),
+                self.samples
+            );
         }
         if self.digest == self.recorded && !self.log_agrees() {
             let when = self.apart.map_or_else(String::new, |time| format!(", from {time:.2} s on"));
@@ -273,7 +278,7 @@ impl Replay {
             Status::Complete => "",
         };
         let duration = samples.saturating_sub(1) as f64 * period;
-        say(&format!("{title}\n{samples} samples, {duration:.2} s{ended}"));
+        say(&format!("{title}\n{}, {duration:.2} s{ended}", counted(samples, "sample")));
         if let Some(other) = self.other_program() {
             say(&other);
         }

@@ -5,14 +5,14 @@ use crate::args::RunArgs;
 use crate::eyes;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::junit::{self, Came, Case};
+use crate::junit::{self, Case};
 use crate::load::{Loaded, load, stem};
 use crate::print::note;
 use crate::progress::Progress;
 use crate::summary::{self, Summary};
 use metrics::{CertificateMetrics, Digest, Metrics, MetricsBuilder};
 use output::Place;
-use recording::log::Roll;
+use recording::log::{self, Log, Roll};
 use recording::{Finished, Recorder, RunOptions, Status};
 use simulation::Fault;
 use simulation::certify::Examiner;
@@ -27,8 +27,22 @@ pub(crate) const PROGRAM: &str = concat!("echelon ", env!("CARGO_PKG_VERSION"));
 pub(crate) const STRIDE: u64 = 16;
 
 pub(crate) fn run(args: &RunArgs) -> Outcome {
-    let _report = args.junit.as_deref().map(Place::file).transpose()?;
-    let mut loaded = load(&args.scene).or_else(|failure| unreadable(args, failure))?;
+    let began = Instant::now();
+    let _report = junit::open(args.junit.as_deref(), args.scene.json)?;
+    let mut cases = vec![];
+    let outcome = judge(args, &mut cases);
+    junit::close(
+        args.junit.as_deref(),
+        &stem(&args.scene.scene),
+        cases,
+        (outcome, began.elapsed()),
+        args.scene.quiet,
+    )
+}
+
+/// Runs the scene; `cases` are what became of its expectations.
+fn judge(args: &RunArgs, cases: &mut Vec<Case>) -> Outcome {
+    let mut loaded = load(&args.scene)?;
     for late in loaded.scene.late().iter().filter(|_| !args.scene.quiet && !args.scene.json) {
         note(&format!("note: {late}"));
     }
@@ -53,7 +67,7 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     while let Some(moment) = simulation.next_moment() {
         if let Err(error) = sink.push(moment) {
             sink.abandon();
-            return Err(error.into());
+            return Err(Failure::from(error).but(&folder.as_deref().map_or_else(String::new, kept)));
         }
         examiner.push(&simulation);
         step += 1;
@@ -87,6 +101,8 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
     };
     let (metrics, digest, written) = sink.finish(status, certificates, &findings);
     if status == Status::Interrupted {
+        let why = format!("the run was interrupted at {:.2} s", metrics.duration);
+        cases.extend(verdict(&scene, &metrics, false).iter().map(|finding| Case::unjudged(finding, &why)));
         written?;
         let place = folder.map_or_else(String::new, |f| format!(", recorded in {}", f.display()));
         return Err(Failure::Interrupted(format!(
@@ -94,6 +110,7 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
             metrics.duration, scene.time.duration
         )));
     }
+    cases.extend(findings.iter().map(Case::of));
     let met = !findings.iter().any(Finding::failed);
     let summary = Summary {
         scene: &scene,
@@ -113,22 +130,26 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
         summary::failures(&summary);
     }
     // What came out is told, whatever becomes of a file.
-    written?;
-    if let Some(path) = &args.junit {
-        junit::write(path, &stem(&args.scene.scene), &findings.iter().map(Case::of).collect::<Vec<_>>())?;
-    }
+    written.map_err(|error| {
+        let kept = args.out.as_ref().map_or_else(|| "the folder".to_owned(), |out| out.display().to_string());
+        Failure::from(error).but(&format!("{kept} keeps what was written before"))
+    })?;
     if met { Ok(()) } else { Err(Failure::Expectation) }
 }
 
-/// A scene that cannot be read is a result, too, where results are asked for as a file.
-fn unreadable(args: &RunArgs, failure: Failure) -> Result<Loaded, Failure> {
-    if let (Some(path), Failure::Usage(text)) = (&args.junit, &failure) {
-        let case = Case { name: "the scene can be read".to_owned(), came: Came::Broken(text.clone()) };
-        if let Err(other) = junit::write(path, &stem(&args.scene.scene), &[case]) {
-            other.tell();
-        }
+/// What a disk that refuses has left of the run in `folder`.
+fn kept(folder: &Path) -> String {
+    let shown = folder.display();
+    let log = Log::open(&folder.join(log::FILE)).ok();
+    let period = log.as_ref().map_or(0.0, |log| log.manifest().period);
+    match log.map_or(0, |log| log.manifest().samples) {
+        0 => format!("{shown} keeps the parts of its tables that were closed, and says interrupted"),
+        samples => format!(
+            "{shown} keeps the run up to {:.2} s, which `echelon replay {shown}` draws with --capture or --film, and says \
+             interrupted",
+            (samples - 1) as f64 * period
+        ),
     }
-    Err(failure)
 }
 
 /// Where moments go.
@@ -212,7 +233,7 @@ fn folder(args: &RunArgs) -> Result<PathBuf, Failure> {
     let refused =
         |path: &Path, e: &std::io::Error| Failure::Machine(format!("cannot create {}: {e}", path.display()));
     let runs = Path::new("runs");
-    std::fs::create_dir_all(runs).map_err(|e| refused(runs, &e))?;
+    let _place = Place::folder(runs)?;
     let mut number = 1;
     loop {
         let path = runs.join(format!("{stem}-{number:03}"));

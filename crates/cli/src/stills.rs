@@ -11,6 +11,7 @@ use crate::picture::Studio;
 use crate::playback::{Playback, Source};
 use crate::print::{json, say};
 use crate::progress::Progress;
+use crate::replaced::Replaced;
 use clap::Args;
 use output::Place;
 use rendering::{Layout, Style};
@@ -99,12 +100,17 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     let adapter = small.gpu.description();
     let texts =
         [("Title", cast.title.as_str()), ("Software", crate::run::PROGRAM), ("Adapter", adapter.as_str())];
-    let mut files = Vec::new();
+    let (mut files, mut replaced) = (Vec::<(PathBuf, [u32; 2])>::new(), Replaced::default());
     for (kind, picture) in [("sheet", sheet), ("strobe", strobe)] {
         let path = args.out.join(format!("{name}-{kind}.png"));
-        write(&path, &picture, &texts)?;
+        replaced.look(&path);
+        write(&path, &picture, &texts).map_err(|failure| match files.first() {
+            Some((first, _)) => failure.but(&format!("{} is written", first.display())),
+            None => failure.but("nothing is written"),
+        })?;
         files.push((path, [picture.width, picture.height]));
     }
+    replaced.tell(args.scene.quiet);
     if args.scene.json {
         let file =
             |(path, size): &(PathBuf, [u32; 2])| json!({ "file": path.display().to_string(), "size": size });

@@ -7,6 +7,7 @@ use scene::Scene;
 use serde_json::json;
 use simulation::verdict::Finding;
 use std::path::PathBuf;
+use vocabulary::counted;
 
 /// A run that reached its end.
 pub(crate) struct Summary<'a> {
@@ -38,11 +39,12 @@ pub(crate) fn as_text(summary: &Summary<'_>) {
     contacts(metrics);
     let speed = metrics.duration / summary.wall.max(1e-9);
     let speed = if speed < 10.0 { format!("{speed:.2}") } else { format!("{speed:.0}") };
-    say(&format!("{:.2} s in {} steps, {speed} times real time", metrics.duration, summary.steps));
+    say(&format!("{:.2} s in {}, {speed} times real time", metrics.duration, counted(summary.steps, "step")));
     if summary.drawn.pictures() > 0 {
         let (pictures, seconds) = (summary.drawn.pictures(), summary.drawn.seconds());
         say(&format!(
-            "{pictures} pictures of cameras, drawn in {seconds:.1} s of {:.1} s, {:.2} ms each",
+            "{} of cameras, drawn in {seconds:.1} s of {:.1} s, {:.2} ms each",
+            counted(pictures, "picture"),
             summary.wall,
             seconds / pictures as f64 * 1e3
         ));

@@ -9,6 +9,7 @@ use crate::print::{json, say};
 use crate::progress::Progress;
 use serde_json::json;
 use simulation::tune::{Trial, tune as search};
+use vocabulary::counted;
 
 pub(crate) fn tune(args: &TuneArgs) -> Outcome {
     let Loaded { scene, simulation } = load(&args.scene)?;
@@ -46,12 +47,15 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
         row("as it is", first);
         row("best", best);
         let gains = &best.gains;
-        say(&format!("\nof {tried} runs; in the scene:\n"));
+        say(&format!("\nof {}; in the scene:\n", counted(tried, "run")));
         say(&format!("[law]\nk = {:.2}\nbeta = {:.2}\nslope = {:.1}\n", gains.k, gains.beta, gains.slope));
         say(&format!("[observer]\nepsilon = {:.4}", gains.epsilon));
     }
     if interrupted {
-        return Err(Failure::Interrupted(format!("after {tried} runs; the best so far is printed")));
+        return Err(Failure::Interrupted(format!(
+            "after {}; the best so far is printed",
+            counted(tried, "run")
+        )));
     }
     Ok(())
 }

@@ -27,6 +27,7 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
+use vocabulary::counted;
 
 /// The window.
 pub(crate) struct Lab {
@@ -413,8 +414,11 @@ impl eframe::App for Lab {
         self.end_film();
         if self.studio.waiting() > 1 {
             // Where nobody reads it, the film is finished all the same.
-            let _ =
-                writeln!(std::io::stderr(), "finishing the film: {} frames to draw", self.studio.waiting());
+            let _ = writeln!(
+                std::io::stderr(),
+                "finishing the film: {} to draw",
+                counted(self.studio.waiting(), "frame")
+            );
         }
         if self.print {
             self.timings.print(&self.desk);

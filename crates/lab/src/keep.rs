@@ -6,6 +6,7 @@ use rendering::{CameraEyes, Gpu};
 use scene::Scene;
 use simulation::Simulation;
 use std::path::{Path, PathBuf};
+use vocabulary::counted;
 
 /// What was seen in the window.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -54,14 +55,11 @@ pub fn keep(
     }
     let (manifest, _) = recorder.finish(Status::Complete).map_err(|error| error.to_string())?;
     let digest = manifest.digest.unwrap_or_default();
-    let place = folder.display();
+    let (place, samples) = (folder.display(), counted(manifest.samples, "sample"));
     if (manifest.samples, &*digest) == (seen.samples, &*seen.digest) {
-        Ok(format!("The run is in {place}: {} samples, digest {digest}, as seen here", manifest.samples))
+        Ok(format!("The run is in {place}: {samples}, digest {digest}, as seen here"))
     } else {
-        Err(format!(
-            "{place} holds {} samples with digest {digest}, not what was seen here",
-            manifest.samples
-        ))
+        Err(format!("{place} holds {samples} with digest {digest}, not what was seen here"))
     }
 }
 

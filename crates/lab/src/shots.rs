@@ -7,6 +7,7 @@ use eframe::egui;
 use rendering::{Layout, Sketch, Style};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use vocabulary::counted;
 
 /// A film under way.
 pub(crate) struct Filming {
@@ -22,7 +23,7 @@ pub(crate) struct Filming {
 impl Filming {
     /// How far it is, in words.
     pub(crate) fn words(&self, waiting: usize) -> String {
-        format!("{}: {} frames, {waiting} waiting", self.path.display(), self.frames)
+        format!("{}: {}, {waiting} waiting", self.path.display(), counted(self.frames, "frame"))
     }
 }
 

@@ -166,7 +166,7 @@ impl Work {
                 Ok(Some(path))
             }
             Job::Begin { path, cast, size, trail } => {
-                let film = Film::create(&path, FilmKind::of(&path), size.0, size.1, RATE)?;
+                let film = Film::create(&path, FilmKind::of(&path, false)?, size.0, size.1, RATE)?;
                 self.film = Some(Reel { path, film, cast, size, trail: *trail });
                 Ok(None)
             }

@@ -1,6 +1,7 @@
 //! One folder, one program that fills it.
 
 use crate::Error;
+use crate::draft::followed;
 use crate::place::{named, no_file};
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -31,7 +32,8 @@ impl Claim {
     ) -> Result<Self, Error> {
         named(folder)?;
         no_file(folder)?;
-        fs::create_dir_all(folder).map_err(Error::io("create", folder))?;
+        // Where a link leads is made, too.
+        fs::create_dir_all(followed(folder)).map_err(Error::io("create", folder))?;
         let claim = Self::lock(folder)?;
         let entries = fs::read_dir(folder).map_err(Error::io("read", folder))?;
         if entries.flatten().all(|entry| entry.file_name() == LOCK) {

@@ -152,8 +152,14 @@ pub(crate) fn followed(path: &Path) -> PathBuf {
         if path.exists() {
             break;
         }
-        let Ok(target) = fs::read_link(&path) else { break };
-        path = folder_of(&path).join(target);
+        // The file itself, or a folder on the way to it.
+        let Some(link) = path.ancestors().find(|part| part.is_symlink() && !part.exists()) else { break };
+        let Ok(target) = fs::read_link(link) else { break };
+        let goal = folder_of(link).join(target);
+        path = match path.strip_prefix(link) {
+            Ok(rest) if !rest.as_os_str().is_empty() => goal.join(rest),
+            _ => goal,
+        };
     }
     path
 }

@@ -64,8 +64,9 @@ impl Place {
         if path.exists() {
             return Self::folder(path);
         }
-        let place = Self::made(folder_of(path))?;
-        drop(Draft::new(path)?);
+        let goal = followed(path);
+        let place = Self::made(folder_of(&goal))?;
+        drop(Draft::new(&goal)?);
         Ok(place)
     }
 
@@ -89,6 +90,13 @@ impl Drop for Place {
 
 /// Refuses what names nothing.
 pub(crate) fn named(path: &Path) -> Result<(), Error> {
+    let goal = followed(path);
+    if goal.ancestors().any(|part| part.is_symlink() && !part.exists()) {
+        return Err(Error::place(
+            path,
+            "is a link that leads nowhere, round in a circle: name another place",
+        ));
+    }
     match path.as_os_str().as_encoded_bytes() {
         b"" => Err(Error::place(path, "(nothing) is no place to write to: name one")),
         b"-" => Err(Error::place(
@@ -99,11 +107,22 @@ pub(crate) fn named(path: &Path) -> Result<(), Error> {
     }
 }
 
-/// Refuses what is there and is no folder.
+/// Endings that nobody gives a folder on purpose.
+const ENDINGS: [&str; 15] = [
+    "png", "jpg", "jpeg", "gif", "mp4", "m4v", "webm", "svg", "pdf", "json", "csv", "xml", "html", "mcap",
+    "toml",
+];
+
+/// Refuses what is there and is no folder, and what would be one with the name of a file.
 pub(crate) fn no_file(path: &Path) -> Result<(), Error> {
-    match path.exists() && !path.is_dir() {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    match path.exists() {
+        true if path.is_dir() => Ok(()),
         true if path.is_file() => Err(Error::place(path, "is a file: name a folder")),
         true => Err(Error::place(path, "is no folder: name one")),
+        false if ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str())) => {
+            Err(Error::place(path, "has the ending of a file, and names a folder here: leave the ending out"))
+        }
         false => Ok(()),
     }
 }
@@ -140,6 +159,35 @@ mod tests {
         assert_eq!(fs::read_dir(root.path()).expect("listed").count(), 1);
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn what_links_lead_to_is_made() {
+        use std::os::unix::fs::symlink;
+        let root = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| root.path().join(name);
+        symlink("nowhere/deep", at("link")).expect("linked");
+        for (name, made) in [("link", "nowhere/deep"), ("link/below/it", "nowhere/deep/below/it")] {
+            let claim = crate::Claim::new(&at(name), "a run", false, |_| None).expect("claimed");
+            assert!(at(made).join(".lock").exists(), "{name}");
+            drop(claim);
+            std::fs::remove_dir_all(at("nowhere")).expect("removed");
+            for look in [Place::folder, Place::file, Place::new_folder] {
+                drop(look(&at(name)).expect("a place"));
+                assert!(!at("nowhere").exists() && at("link").is_symlink(), "{name}");
+            }
+        }
+        symlink("b", at("a")).expect("linked");
+        symlink("a/c", at("b")).expect("linked");
+        for name in ["a", "a/below"] {
+            let claim = crate::Claim::new(&at(name), "a run", false, |_| None).map(drop);
+            let places = [Place::folder(&at(name)), Place::file(&at(name)), Place::new_folder(&at(name))];
+            for result in places.map(|place| place.map(drop)).into_iter().chain([claim]) {
+                let error = result.expect_err("refused");
+                assert!(error.is_usage() && error.to_string().contains("round in a circle"), "{error}");
+            }
+        }
+    }
+
     #[test]
     fn what_is_no_place_is_refused_with_what_helps() {
         let root = tempfile::tempdir().expect("a folder");
@@ -153,6 +201,13 @@ mod tests {
         assert!(told(Place::file(root.path())).contains("is a folder"));
         assert!(told(Place::file(&root.path().join("new/"))).contains("is a folder"));
         assert!(told(Place::folder(&file)).contains("is a file"));
+        for name in ["shot.png", "run.MCAP", "deep/numbers.json"] {
+            assert!(told(Place::folder(&root.path().join(name))).contains("leave the ending out"), "{name}");
+        }
+        // A folder that is there is one, whatever it is called.
+        fs::create_dir(root.path().join("old.png")).expect("made");
+        drop(Place::folder(&root.path().join("old.png")).expect("a folder"));
+        drop(Place::folder(&root.path().join("v1.2")).expect("a folder"));
         assert!(told(Place::file(Path::new("-"))).contains("standard output"));
         assert!(told(Place::folder(Path::new("-"))).contains("standard output"));
         assert!(told(Place::file(Path::new(""))).contains("name one"));

@@ -22,7 +22,7 @@ fn main() -> Result<(), rendering::Error> {
     let (mut trail, style) = (play.trail(0.0), Style::default());
     let file = word(0, "film.mp4");
     let path: &std::path::Path = file.as_ref();
-    let mut film = Film::create(path, FilmKind::of(path), width, height, rate)?;
+    let mut film = Film::create(path, FilmKind::of(path, false)?, width, height, rate)?;
     for k in 0..(number(3, 15.0) * rate) as u32 {
         let moment = play.at(f64::from(k) / rate);
         trail.push(&moment);

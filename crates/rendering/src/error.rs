@@ -1,5 +1,6 @@
 //! What can go wrong while drawing, told apart by who can mend it: the user's words or the machine.
 
+use crate::FilmKind;
 use std::path::{Path, PathBuf};
 
 /// Everything this crate can fail with.
@@ -37,6 +38,19 @@ pub enum Error {
     /// Another program writes the same film.
     #[error("another program is making {} just now; wait for it, or choose another file with -o", .0.display())]
     Busy(PathBuf),
+    /// An ending that no film has.
+    #[error(
+        "{} is no name of a film: write NAME.mp4, .m4v or .gif, {}one of {} through ffmpeg",
+        .path.display(),
+        if *.ffmpeg { "or " } else { "NAME alone for a folder of PNG frames, or " },
+        FilmKind::BY_FFMPEG.map(|ending| format!(".{ending}")).join(", ")
+    )]
+    Ending {
+        /// What was named.
+        path: PathBuf,
+        /// Whether ffmpeg was asked for, which makes no folders.
+        ffmpeg: bool,
+    },
     /// ffmpeg was asked for and is not there.
     #[error(
         "ffmpeg was not found on PATH; install it (`apt-get install ffmpeg`) or write an .mp4 with the built-in encoder"
@@ -124,6 +138,7 @@ impl Error {
             self,
             Self::View { .. }
                 | Self::Busy(_)
+                | Self::Ending { .. }
                 | Self::TooManyViews(_)
                 | Self::Element { .. }
                 | Self::Size { .. }

@@ -12,7 +12,7 @@ pub enum AdapterChoice {
     Auto,
     /// The first that fits; case does not count. `vulkan`, `gl`, `metal` and `dx12` are backends, `vulkan:llvmpipe` is one of
     /// a backend whose name or driver contains a word, a word alone one of any backend, and a number its place in
-    /// [`adapters`].
+    /// [`adapters`]. `lavapipe` is `vulkan:llvmpipe`, and `opengl` is `gl`, as people call them.
     Named(String),
 }
 
@@ -173,9 +173,14 @@ fn choose(choice: &AdapterChoice) -> Result<Adapter, Error> {
 
 const BACKENDS: [&str; 4] = ["vulkan", "gl", "metal", "dx12"];
 
+/// Names that people know them by, and what they are called here.
+const ALIASES: [(&str, &str); 2] = [("lavapipe", "vulkan:llvmpipe"), ("opengl", "gl")];
+
 /// Whether an adapter at a place of the list is the one that a name means.
 fn fits(info: &AdapterInfo, place: usize, name: &str) -> bool {
     let name = name.trim().to_lowercase();
+    let name =
+        ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, known)| (*known).to_owned());
     if name.bytes().all(|byte| byte.is_ascii_digit()) {
         return name.parse() == Ok(place);
     }
@@ -256,6 +261,8 @@ mod tests {
             ("llvmpipe", Some(1)),
             ("vulkan:llvmpipe", Some(1)),
             ("GL:LLVMpipe", Some(2)),
+            ("lavapipe", Some(1)),
+            ("OpenGL", Some(2)),
             ("h200", Some(0)),
             ("0", Some(0)),
             ("2", Some(2)),
@@ -270,6 +277,9 @@ mod tests {
             assert_eq!(found(&all, name), place, "{name}");
         }
         // A backend that is named and not there is not replaced by another.
-        assert_eq!(found(&[card, gl], "vulkan:llvmpipe"), None);
+        for name in ["vulkan:llvmpipe", "lavapipe"] {
+            assert_eq!(found(&[card.clone(), gl.clone()], name), None);
+        }
+        assert_eq!(found(&[card], "opengl"), None);
     }
 }

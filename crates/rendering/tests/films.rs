@@ -185,6 +185,7 @@ fn an_interrupted_film_goes_on_and_is_the_same_in_the_end() {
     // A program that is killed leaves whole groups of two seconds.
     drop(kept(&path("a.mp4"), "the same", 47).0);
     assert!(!path("a.mp4").exists());
+    assert_eq!((Film::kept(&path("a.mp4"), 10.0), Film::kept(&path("b.mp4"), 10.0)), (40, 0));
     let (second, done) = kept(&path("a.mp4"), "the same", 70);
     assert_eq!(done, 40);
     second.finish().unwrap();
@@ -220,4 +221,41 @@ fn a_film_of_something_else_begins_anew_and_two_programs_keep_apart() {
     // What is no journal is none of ours.
     std::fs::write(folder.path().join(".a.mp4.journal"), [0xff, 0xfe, 0, 1]).unwrap();
     assert_eq!(kept(&path, "one", 5).1, 0);
+}
+
+/// `.mp4` alone made a folder, and `x.png` a film that ffmpeg refused in its own words.
+#[test]
+fn endings_that_no_film_has_are_refused_with_those_that_films_have() {
+    let kind = |name: &str, ffmpeg| FilmKind::of(Path::new(name), ffmpeg);
+    for (name, wanted) in [
+        ("a.mp4", FilmKind::Mp4),
+        ("a.M4V", FilmKind::Mp4),
+        ("a.gif", FilmKind::Gif),
+        ("a", FilmKind::PngSequence),
+        (".frames", FilmKind::PngSequence),
+        ("a.webm", FilmKind::Ffmpeg),
+        ("a.b.mkv", FilmKind::Ffmpeg),
+    ] {
+        assert_eq!(kind(name, false).unwrap(), wanted, "{name}");
+    }
+    for name in ["a.mp4", "a.gif", "a.mov"] {
+        assert_eq!(kind(name, true).unwrap(), FilmKind::Ffmpeg, "{name}");
+    }
+    for (name, ffmpeg) in [
+        ("a.png", false),
+        ("a.xyz", false),
+        ("a.", false),
+        (".mp4", false),
+        ("in/.gif", false),
+        (".webm", false),
+        ("a", true),
+    ] {
+        let error = kind(name, ffmpeg).unwrap_err();
+        let text = error.to_string();
+        assert!(error.is_usage() && text.starts_with(&format!("{name} is no name of a film")), "{text}");
+        for ending in FilmKind::BUILT_IN.iter().chain(&FilmKind::BY_FFMPEG) {
+            assert!(text.contains(&format!(".{ending}")), "{ending}: {text}");
+        }
+        assert_eq!(text.contains("folder of PNG frames"), !ffmpeg, "{text}");
+    }
 }

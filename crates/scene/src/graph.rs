@@ -19,10 +19,14 @@ pub(crate) struct Named {
 /// comes to a robot that leads if it goes from leader to leader; there may be several that lead.
 pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, reading: &mut Reading) {
     let mut leader_of: HashMap<&str, Option<&Found<String>>> = HashMap::new();
+    let mut places: HashMap<&str, Place> = HashMap::new();
     for robot in robots.clone() {
         let Some(name) = &robot.name else { continue };
-        if leader_of.insert(&name.value, robot.leader.as_ref()).is_some() {
-            reading.note(name.place, format!("there are two robots called `{}`", name.value));
+        leader_of.insert(&name.value, robot.leader.as_ref());
+        if let Some(other) = places.insert(&name.value, name.place) {
+            // The one that was written later, from the command line above all.
+            let place = name.place.max(other);
+            reading.note(place, format!("there are two robots called `{}`", name.value));
         }
     }
     for robot in robots.clone() {

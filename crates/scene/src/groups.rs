@@ -96,7 +96,7 @@ pub(crate) fn expand(
         let followed = told.as_ref().map_or_else(usual, |told| told.value.clone());
         let follow = Follow { leader: followed, speed, distance, bearing, law, observer, sensing };
         let role = Role::Follow(Box::new(follow));
-        group.push(Robot { name, pose, number: 0, vehicle, role }, told, drafts);
+        group.push(place, Robot { name, pose, number: 0, vehicle, role }, told, drafts);
     }
     Some(())
 }
@@ -296,13 +296,19 @@ impl Group<'_> {
 
     /// What the robot in `place`, counted from 0, is called.
     fn name(&self, place: usize) -> String {
-        let own = self.member(place).and_then(|keys| keys.name.as_ref());
-        own.map_or_else(|| self.key(place), |name| name.value.clone())
+        self.own_name(place).map_or_else(|| self.key(place), |name| name.value.clone())
     }
 
-    fn push(&self, robot: Robot, leader: Option<Found<String>>, drafts: &mut Vec<Draft>) {
-        let place = self.keys.name.as_ref().map_or(self.node.place, |name| name.place);
-        let name = Some(Found { place, value: robot.name.clone() });
+    /// What the robot in `place`, counted from 0, is called other than by its place.
+    fn own_name(&self, place: usize) -> Option<&Found<String>> {
+        self.member(place)?.name.as_ref()
+    }
+
+    /// Appends the robot in `place`, counted from 0.
+    fn push(&self, place: usize, robot: Robot, leader: Option<Found<String>>, drafts: &mut Vec<Draft>) {
+        let said = self.own_name(place).or(self.keys.name.as_ref());
+        let at = said.map_or(self.node.place, |name| name.place);
+        let name = Some(Found { place: at, value: robot.name.clone() });
         // Leaders that the shape gives exist, and the one outside has been looked up; one that is written has not.
         drafts.push(Draft { named: Named { name, leader }, number: None, robot: Some(robot) });
     }
@@ -341,7 +347,7 @@ impl Group<'_> {
                 let given = keys.pose.as_ref().or(path.value.start().is_none().then_some(&origin));
                 let pose = start_pose(given, Some(&path.value), self.node.place, reading)?;
                 let role = Role::Lead { path: path.value.clone() };
-                self.push(Robot { name: name.clone(), pose, number: 0, vehicle, role }, None, drafts);
+                self.push(0, Robot { name: name.clone(), pose, number: 0, vehicle, role }, None, drafts);
                 Some((name, pose))
             }
             (None, Some(_)) => {

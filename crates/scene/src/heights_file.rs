@@ -2,10 +2,11 @@
 
 use crate::{
     files::read_beside,
-    table_file::line_at,
+    table_file::{line_at, separator, why},
     text::{Form, Node, Place, Reading, form::Number, number},
 };
 use serde_json::{Value as Json, json};
+use vocabulary::counted;
 
 /// One height.
 pub(crate) const HEIGHT: Number = number("m").from(-1000.0).up_to(1000.0);
@@ -40,7 +41,7 @@ fn read_rows(text: &str, source: usize, reading: &mut Reading) -> Option<Vec<Vec
     for (index, record) in table.records().enumerate() {
         let position =
             record.as_ref().map_or_else(csv::Error::position, csv::StringRecord::position).cloned();
-        let row = record.map_err(|error| format!("not a row of heights: {error}"));
+        let row = record.map_err(|error| format!("not a row of heights: {}", why(&error)));
         let wanted = rows.first().map(Vec::len);
         match row.and_then(|record| read_row(&record, index + 1, wanted)) {
             Ok(row) => {
@@ -71,7 +72,11 @@ fn read_row(record: &csv::StringRecord, row: usize, wanted: Option<usize>) -> Re
             if text.is_empty() {
                 return format!("there is no height in row {row}, column {column}: a hole");
             }
-            format!("the height in row {row}, column {column} must be {}, not {text:?}", HEIGHT.expected())
+            let hint = separator(text).unwrap_or_default();
+            format!(
+                "the height in row {row}, column {column} must be {}, not {text:?}{hint}",
+                HEIGHT.expected()
+            )
         })
     };
     let heights = record.iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
@@ -83,7 +88,8 @@ pub(crate) fn wrong_length(row: usize, length: usize, wanted: Option<usize>) -> 
     let wanted = wanted.filter(|wanted| *wanted != length)?;
     let column = length.min(wanted) + 1;
     let missing = if length < wanted { "there is no height from" } else { "there are more heights from" };
-    Some(format!("row {row} has {length} heights and the first row {wanted}: {missing} column {column} on"))
+    let heights = counted(length, "height");
+    Some(format!("row {row} has {heights} and the first row {wanted}: {missing} column {column} on"))
 }
 
 /// What is wrong with the number of heights in rows of one length.

@@ -13,7 +13,7 @@ use rand_chacha::{
     rand_core::{Rng, SeedableRng},
 };
 use std::f64::consts::PI;
-use vocabulary::{Pose, Solid};
+use vocabulary::{Pose, Solid, counted};
 
 /// Keeps the random numbers of fields apart from those of groups.
 const FIRST_STREAM: u64 = 1 << 32;
@@ -151,8 +151,8 @@ impl Stage<'_> {
             });
             let Some((pose, outline)) = spot else {
                 let message = format!(
-                    "there is room for {} props only, {} m clear of robots and of each other",
-                    spots.len(),
+                    "there is room for {} only, {} m clear of robots and of each other",
+                    counted(spots.len(), "prop"),
                     field.keep_clear
                 );
                 reading.note(field.count.place, message);

@@ -6,6 +6,7 @@ use crate::{
     text::{Form, Node, Place, Reading, form::Number},
 };
 use serde_json::{Value as Json, json};
+use vocabulary::counted;
 
 /// Columns and the forms of their values.
 const COLUMNS: [(&str, Number); 3] = [("t", TIME), ("v", SPEED), ("omega", TURN_RATE)];
@@ -59,7 +60,7 @@ fn read_rows(text: &str, source: usize, reading: &mut Reading) -> Option<Vec<[f6
             text,
             source,
         );
-        let row = record.map_err(|error| format!("not a row of the table: {error}"));
+        let row = record.map_err(|error| format!("not a row of the table: {}", why(&error)));
         match row.and_then(|record| read_row(&record, columns)) {
             Ok(row) => {
                 if let Some(fault) = out_of_order(rows.last().map(|last| last[0]), row[0]) {
@@ -86,7 +87,9 @@ fn find_columns(header: &csv::StringRecord, source: usize, reading: &mut Reading
     let [Some(t), Some(v), Some(omega)] = COLUMNS.map(find) else {
         let names = COLUMNS.map(|(name, _)| name).join(", ");
         let found = header.iter().take(10).collect::<Vec<_>>().join(", ");
-        reading.note(Place { source, start: 0, end: 0 }, format!("the columns must be {names}, not {found}"));
+        let hint = header.iter().find_map(separator).unwrap_or_default();
+        let message = format!("the columns must be {names}, not {found}{hint}");
+        reading.note(Place { source, start: 0, end: 0 }, message);
         return None;
     };
     Some([t, v, omega])
@@ -97,9 +100,31 @@ fn read_row(record: &csv::StringRecord, columns: [usize; 3]) -> Result<[f64; 3],
     for ((value, column), (name, form)) in row.iter_mut().zip(columns).zip(COLUMNS) {
         let text = record.get(column).unwrap_or("");
         let number = text.parse().ok().filter(|number| form.holds(*number));
-        *value = number.ok_or_else(|| format!("`{name}` must be {}, not {text:?}", form.expected()))?;
+        *value = number.ok_or_else(|| {
+            let hint = separator(text).unwrap_or_default();
+            format!("`{name}` must be {}, not {text:?}{hint}", form.expected())
+        })?;
     }
     Ok(row)
+}
+
+/// What the reader of tables says of a row, without its line, which is told with the place.
+pub(crate) fn why(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("it has {}, and the header {expected_len}", counted(len, "value"))
+        }
+        _ => error.to_string(),
+    }
+}
+
+/// The end of a message about a value that holds what other programs put between values.
+pub(crate) fn separator(text: &str) -> Option<&'static str> {
+    let known = [
+        (';', "; the file is separated by `;`: use commas, and points in numbers"),
+        ('\t', "; the file is separated by tabs: use commas"),
+    ];
+    known.into_iter().find_map(|(sign, hint)| text.contains(sign).then_some(hint))
 }
 
 /// The line of the record that is read from a position in a file on. The reader stands behind the last record: the rest

@@ -209,6 +209,19 @@ fn another(name: &str, leader: &str) -> String {
 fn duplicate_names() {
     let text = format!("{GOOD}{}", another("follower", "leader"));
     assert_fault(&text, (24, 8), &["two robots called `follower`"]);
+    // A robot of a group stands where its own name is written.
+    let group = "[[groups]]\nname = \"g\"\nshape = \"column\"\ncount = 3\nleader = \"leader\"\n";
+    let member = "[groups.members.g-2]\nname = \"follower\"\n";
+    assert_fault(&format!("{GOOD}\n{group}{member}"), (29, 8), &["two robots called `follower`"]);
+}
+
+/// What was typed is at fault, though the robot stands before the other in the file.
+#[test]
+fn a_name_given_twice_by_the_command_line_is_shown_there() {
+    let change = "robots.leader.name=follower".parse().unwrap();
+    let diagnostics = Scene::parse(GOOD, "test.toml", &[change]).unwrap_err();
+    let twice = diagnostics.all().iter().find(|fault| fault.message.contains("two robots")).unwrap();
+    assert_eq!((twice.origin.as_str(), twice.column), ("--set", 20), "{diagnostics}");
 }
 
 #[test]
@@ -313,6 +326,35 @@ fn a_fault_is_printed_with_its_line() {
         "a.toml:5:1: unknown key `durration`, did you mean `duration`? (known here: `duration`, `period`, `mode`)\n  \
            5 | durration = 10.0\n    | ^^^^^^^^^"
     );
+}
+
+/// Letters and marks that leave no trace: `bob` and `bob` would be two robots.
+#[test]
+fn names_that_cannot_be_seen_are_refused() {
+    let validator = jsonschema::validator_for(&scene::schema()).unwrap();
+    let fits = |name: &str| {
+        validator.is_valid(&serde_json::json!({
+            "schema": 1, "title": "t",
+            "robots": [{ "name": name, "pose": [0, 0, 0], "path": { "kind": "constant" } }],
+        }))
+    };
+    for sign in
+        "\u{3164}\u{ffa0}\u{115f}\u{1160}\u{34f}\u{17b4}\u{180b}\u{fe0f}\u{e0100}\u{200b}\u{2060}\u{feff}"
+            .chars()
+    {
+        for name in [format!("{sign}"), format!("leader{sign}")] {
+            let words = format!(": U+{:04X} in it cannot be seen", u32::from(sign));
+            let to = format!("name = \"{name}\"");
+            let text = GOOD.replacen("name = \"leader\"", &to, 1);
+            let all = faults(&text);
+            assert!(all.iter().any(|fault| fault.line == 12 && fault.message.contains(&words)), "{all:?}");
+            assert!(!fits(&name), "the schema takes U+{:04X}", u32::from(sign));
+        }
+    }
+    for name in ["leader", "Amélie-2", "로봇_1", "गाड़ी"] {
+        assert_eq!(faults(&GOOD.replace("\"leader\"", &format!("\"{name}\""))), [], "{name}");
+        assert!(fits(name), "{name}");
+    }
 }
 
 #[test]

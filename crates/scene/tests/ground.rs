@@ -83,6 +83,7 @@ fn heights_come_from_files_and_stay_in_the_scene() {
         ("0,1,2\n0,high,2\n", 2, "not \"high\""),
         ("0,1,2\n0,1\n", 2, "row 2 has 2 heights and the first row 3: there is no height from column 3 on"),
         ("0,1,2\n0,1,2,3\n", 2, "more heights from column 4 on"),
+        ("0;1;2\n", 1, "not \"0;1;2\"; the file is separated by `;`: use commas"),
         ("0,1,2\n", 1, "two rows of two"),
         ("", 1, "two rows of two"),
     ] {
@@ -116,7 +117,7 @@ fn grounds_that_cannot_be() {
         ),
         (&format!("{rough}\n[[ground.patches]]\nregion = [1, 1, 2, 2]"), 10, "`friction` is missing"),
         (table, 7, "either `heights` or `file`"),
-        (&format!("{table}\nheights = [[0, 1], [0]]"), 10, "row 2 has 1 heights and the first row 2"),
+        (&format!("{table}\nheights = [[0, 1], [0]]"), 10, "row 2 has 1 height and the first row 2"),
         (&format!("{table}\nheights = [[0, 1], [0, nan]]"), 10, "`heights` must be a number in m"),
         (&format!("{table}\nheights = [[0, 1]]"), 10, "two rows of two"),
         (&format!("{table}\nfile = \"nowhere.csv\""), 10, "no such file"),

@@ -108,7 +108,10 @@ fn tables_stand_beside_the_scene() {
     for (text, line, words) in [
         ("t,v,omega\n0,1,0\n1,nan,0\n2,fast,0\n", 3, "`v` must be a number in m/s"),
         ("t,v,omega\n0,1,0\n0,1,0\n", 3, "rows must rise"),
-        ("t,v,omega\n0,1\n", 2, "not a row"),
+        ("t,v,omega\n0,1\n", 2, "not a row of the table: it has 2 values, and the header 3"),
+        ("t;v;omega\n0;1;0\n", 1, "not t;v;omega; the file is separated by `;`: use commas"),
+        ("t\tv\tomega\n0\t1\t0\n", 1, "separated by tabs: use commas"),
+        ("t,v,omega\n0;1;0,1,0\n", 2, "not \"0;1;0\"; the file is separated by `;`"),
         ("t,v,w\n0,1,0\n", 1, "columns must be t, v, omega"),
         ("t,v,omega\n", 1, "1 to 100000 rows"),
         ("", 1, "columns must be"),
@@ -118,6 +121,8 @@ fn tables_stand_beside_the_scene() {
         let fault = &diagnostics.all()[0];
         assert_eq!((fault.origin.as_str(), fault.line), (table.to_str().unwrap(), line), "{fault}");
         assert!(fault.message.contains(words), "{fault}");
+        // The place says the line, and the message not once more.
+        assert!(!fault.message.contains("line") && !fault.message.contains("byte"), "{fault}");
     }
 }
 
@@ -180,7 +185,7 @@ fn groups_that_cannot_be() {
         ),
         (
             "shape = \"v\"\ncount = 3\n[[robots]]\nname = \"robot-2\"\npose = [0, 0, 0]\nleader = \"robot-1\"\ndistance = 1\nbearing = 1",
-            3,
+            8,
             "two robots",
         ),
         (

@@ -1,6 +1,7 @@
 //! A scene's laws in one line, for pictures and reports.
 
 use scene::{Follow, LawKind, Mode, ObserverKind, Role, Scene, SensingKind, Switching};
+use vocabulary::counted;
 
 /// Law, gains and timing of a scene in one line; ranges where gains of followers differ, "mixed" where their laws do.
 pub fn caption(scene: &Scene) -> String {
@@ -34,10 +35,10 @@ pub fn caption(scene: &Scene) -> String {
     if !looking.is_empty() {
         let rate = range(&looking, |follow| [follow.sensing.rate; 2]);
         parts.push(match common(&all, |follow| follow.sensing.kind) {
-            Some(SensingKind::Noise) => format!("{rate} noisy looks a second"),
-            Some(SensingKind::Geometric) => format!("{rate} looks at tags a second"),
-            Some(SensingKind::Camera) => format!("{rate} pictures a second"),
-            Some(SensingKind::Truth) | None => format!("mixed sensing, {rate} looks a second"),
+            Some(SensingKind::Noise) => format!("{} a second", counted(rate, "noisy look")),
+            Some(SensingKind::Geometric) => format!("{} at tags a second", counted(rate, "look")),
+            Some(SensingKind::Camera) => format!("{} a second", counted(rate, "picture")),
+            Some(SensingKind::Truth) | None => format!("mixed sensing, {} a second", counted(rate, "look")),
         });
     }
     let every = format!("every {} ms", short(scene.time.period * 1e3));

@@ -5,25 +5,28 @@ use super::case::Observer;
 use super::picture;
 use super::scaling::Growth;
 use crate::failure::Failure;
+use crate::replaced::Replaced;
 use output::write_whole;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// Writes figure, JSON and CSV into `folder`; what was there under their names is replaced.
-pub(crate) fn write(folder: &Path, budget: &Budget<'_>) -> Result<Vec<PathBuf>, Failure> {
+pub(crate) fn write(folder: &Path, budget: &Budget<'_>, quiet: bool) -> Result<Vec<PathBuf>, Failure> {
     let stem = if budget.constants { "epsilon" } else { "budget" };
     let texts = [
         ("svg", picture::figure(budget).svg()),
         ("json", format!("{:#}\n", as_json(budget))),
         ("csv", as_csv(budget)),
     ];
-    let mut written = vec![];
+    let (mut written, mut replaced) = (vec![], Replaced::default());
     for (ending, text) in texts {
         let path = folder.join(stem).with_extension(ending);
+        replaced.look(&path);
         write_whole(&path, text.as_bytes())?;
         written.push(path);
     }
+    replaced.tell(quiet);
     Ok(written)
 }
 

@@ -5,6 +5,7 @@ use super::case::{Case, Level, Observer};
 use super::measure::{Measured, Run};
 use super::scaling::Growth;
 use crate::print::say;
+use vocabulary::counted;
 
 /// Edges that are told one by one.
 const MOST_EDGES: usize = 12;
@@ -45,7 +46,7 @@ pub(crate) fn print(budget: &Budget<'_>) {
 fn trouble(budget: &Budget<'_>, case: &Case, run: &Run) {
     let name = format!("{}, {}", case.level.name(), case.observer.name());
     if run.contacts > 0 {
-        say(&format!("{name}: {} contacts", run.contacts));
+        say(&format!("{name}: {}", counted(run.contacts, "contact")));
     }
     if run.duration + 1.5 * budget.scene.time.period < budget.scene.time.duration {
         say(&format!("{name}: ended at {:.2} s with a contact", run.duration));

@@ -9,6 +9,7 @@ use simulation::certify::reach::{self, Reach};
 use simulation::certify::sensitivity::{self, Sensitivities};
 use simulation::certify::{Channel, Discretisation, LongestPeriod};
 use std::sync::atomic::{AtomicU64, Ordering};
+use vocabulary::counted;
 
 /// All of it.
 pub(super) struct Beyond {
@@ -58,10 +59,12 @@ fn sensitivities(scene: &Scene, asked: bool, quiet: bool) -> Result<Result<Sensi
     let runs = 1 + 2 * sensitivity::gains(scene).len() as u64;
     if heavy && !asked {
         return Ok(Err(format!(
-            "left out: {runs} runs of this scene take long; ask for them with --sensitivity"
+            "left out: {} of this scene take long; ask for them with --sensitivity",
+            counted(runs, "run")
         )));
     }
-    let progress = Progress::begin(&format!("Trying every gain, {runs} runs"), runs, quiet || !heavy);
+    let what = format!("Trying every gain, {}", counted(runs, "run"));
+    let progress = Progress::begin(&what, runs, quiet || !heavy);
     let done = AtomicU64::new(0);
     let look = || {
         done.fetch_add(1, Ordering::Relaxed);

@@ -5,6 +5,7 @@ use super::beyond::Beyond;
 use super::pictures;
 use super::text::reason;
 use crate::failure::Failure;
+use crate::replaced::Replaced;
 use output::write_whole;
 use serde_json::{Value, json};
 use simulation::certify::chain::LENGTHS;
@@ -13,7 +14,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// Writes everything into `folder`; what was there under the same names is replaced.
-pub(super) fn write(folder: &Path, report: &Report<'_>) -> Result<Vec<PathBuf>, Failure> {
+pub(super) fn write(folder: &Path, report: &Report<'_>, quiet: bool) -> Result<Vec<PathBuf>, Failure> {
     let mut texts =
         vec![("certificate.json", format!("{:#}\n", as_json(report))), ("certificate.csv", table(report))];
     texts.extend(pictures::figures(report));
@@ -25,12 +26,14 @@ pub(super) fn write(folder: &Path, report: &Report<'_>) -> Result<Vec<PathBuf>, 
                 .map_err(|e| Failure::Machine(format!("cannot remove {}: {e}", path.display())))?;
         }
     }
-    let mut written = vec![];
+    let (mut written, mut replaced) = (vec![], Replaced::default());
     for (name, text) in texts {
         let path = folder.join(name);
+        replaced.look(&path);
         write_whole(&path, text.as_bytes())?;
         written.push(path);
     }
+    replaced.tell(quiet);
     Ok(written)
 }
 

@@ -4,6 +4,7 @@ use super::drawn::Show;
 use super::{FiguresArgs, Subject};
 use crate::progress::Progress;
 use simulation::Simulation;
+use vocabulary::counted;
 
 /// What a frame of a film and a printed sheet weigh in samples of a few robots.
 const FRAME: u64 = 120;
@@ -29,8 +30,7 @@ impl Meter {
         let of = subject.own.as_ref().map_or("the paper", |(_, name)| name.as_str());
         let films = if shows.is_empty() { String::new() } else { format!(", {} films", shows.len()) };
         let films = if shows.len() == 1 { ", a film".to_owned() } else { films };
-        let plural = if runs.len() == 1 { "run" } else { "runs" };
-        let what = format!("Figures of {of}: {} {plural}{films}", runs.len());
+        let what = format!("Figures of {of}: {}{films}", counted(runs.len(), "run"));
         let all = samples + FRAME * frames + SHEET * SHEETS;
         let progress = Progress::begin(&what, all, args.quiet || args.json);
         Self { progress, done: 0, samples: 0, frames: 0, sheets: 0 }
@@ -59,9 +59,9 @@ impl Meter {
     /// What has been done, in words.
     pub(super) fn so_far(&self) -> String {
         match (self.frames, self.sheets) {
-            (0, 0) => format!("after {} samples of the runs", self.samples),
-            (frames, 0) => format!("after all runs and {frames} frames"),
-            (_, sheets) => format!("after all runs, with {sheets} figures written"),
+            (0, 0) => format!("after {} of the runs", counted(self.samples, "sample")),
+            (frames, 0) => format!("after all runs and {}", counted(frames, "frame")),
+            (_, sheets) => format!("after all runs, with {} written", counted(sheets, "figure")),
         }
     }
 }

@@ -5,6 +5,7 @@ use super::folder::{Folder, found};
 use crate::print::{json, say};
 use report::{Ran, Report};
 use serde_json::json;
+use vocabulary::counted;
 
 pub(super) fn tell(args: &FiguresArgs, report: &Report, runs: &[Ran], (folder, wall): (&Folder, f64)) {
     if args.json {
@@ -20,7 +21,7 @@ pub(super) fn tell(args: &FiguresArgs, report: &Report, runs: &[Ran], (folder, w
     }
     let (claims, holding) = (report.claims().count(), report.claims().filter(|c| c.holds).count());
     if claims > 0 {
-        say(&format!("{holding} of {claims} statements about the figures hold"));
+        say(&format!("{holding} of {} about the figures hold", counted(claims, "statement")));
     }
     for claim in report.claims().filter(|claim| !claim.holds) {
         say(&format!("NOT SO  {}: {}", claim.figure, claim.claim));
@@ -37,6 +38,6 @@ pub(super) fn tell(args: &FiguresArgs, report: &Report, runs: &[Ran], (folder, w
         count => format!(", {count} films"),
     };
     let runs = if runs.len() == 1 { "a run".to_owned() } else { format!("{} runs", runs.len()) };
-    say(&format!("{} figures{films} and a report of {runs}, in {wall:.1} s", report.items.len()));
+    say(&format!("{}{films} and a report of {runs}, in {wall:.1} s", counted(report.items.len(), "figure")));
     say(&folder.path().join("report.html").display().to_string());
 }

@@ -171,6 +171,27 @@ fn overrides_that_lead_nowhere() {
     drawing_refused(&["run", &scene, "--set", "law.k=-3"], 2, &["law.k=-3", "k"]);
 }
 
+/// 1e-320 was told with all its zeros.
+#[test]
+fn numbers_in_messages_can_be_read() {
+    let scene = scene("line-three");
+    drawing_refused(&["film", &scene, "--fps", "1e-320"], 2, &["error: 1e-320 frames a second"]);
+    drawing_refused(&["capture", &scene, "--at", "1e300"], 2, &["error: 1e300 s is no time"]);
+    drawing_refused(&["run", &scene, "--set", "time.duration=1e-320"], 2, &["`duration` of 1e-320 s"]);
+    drawing_refused(&["check", &scene, "--set", "robots.1.distance=1e-320"], 2, &["falls to 1e-320 m"]);
+    let args = [
+        "run",
+        &scene,
+        "--no-record",
+        "-q",
+        "--set",
+        "time.duration=1",
+        "--set",
+        "expect={final_distance_error=1e-320}",
+    ];
+    drawing_refused(&args, 1, &["≤ 1e-320 m"]);
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn places_that_cannot_be_written() {

@@ -72,3 +72,30 @@ fn expectations_are_test_cases() {
     let report = fs::read_to_string(folder.path().join("report.xml")).expect("a report");
     assert!(report.contains("failures=\"1\"") && report.contains("wanted"), "{report}");
 }
+
+/// Standard output is the report's, and people read standard error.
+#[test]
+fn a_report_goes_to_standard_output_where_asked_to() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = scene("line-three");
+    let args = ["run", &line, "--no-record", "--junit", "-"];
+    let (code, out, err) = told(&echelon(folder.path(), &args));
+    assert!(code == 0 && out.starts_with("<?xml") && out.trim_end().ends_with("</testsuites>"), "{out}");
+    assert!(err.contains("met    settling_time") && err.contains("digest"), "{err}");
+    // On the suites, the suite, and every case.
+    let times = 2 + out.matches("<testcase").count();
+    assert!(times > 4 && out.matches(" time=\"").count() == times, "{out}");
+    assert!(fs::read_dir(folder.path()).expect("a folder").next().is_none(), "nothing called `-`");
+    fs::write(folder.path().join("bad.toml"), "schema = = 1\n").expect("written");
+    let (code, out, _) = told(&echelon(folder.path(), &["run", "bad.toml", "--junit", "-"]));
+    // A message of several lines keeps them.
+    assert!(code == 2 && out.contains("errors=\"1\"") && out.contains("schema = = 1&#10;"), "{out}");
+    assert!(out.lines().all(|line| line.trim_start().starts_with('<')), "{out}");
+    // A picture that cannot be read ends the comparison, and the report says so.
+    for name in ["a", "b"] {
+        fs::create_dir(folder.path().join(name)).expect("made");
+        fs::write(folder.path().join(name).join("x.png"), "no picture").expect("written");
+    }
+    let (code, out, _) = told(&echelon(folder.path(), &["compare", "a", "b", "--junit", "-"]));
+    assert!(code == 2 && out.contains("errors=\"1\"") && out.contains("cannot read a/x.png"), "{out}");
+}

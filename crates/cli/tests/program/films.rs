@@ -152,3 +152,27 @@ fn the_shipped_storyboard_covers_its_run() {
     assert_eq!(code, 0, "{err}");
     assert!(out.contains("to = 32.0") && out.contains("speed = 0.5"), "{out}");
 }
+
+/// "1 frames of 64×36" is no English.
+#[test]
+fn one_frame_is_one_frame() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write_scene(folder.path(), "");
+    let args =
+        ["film", "two.toml", "--size", "64x36", "--samples", "1", "--set", "time.duration=0.5", "--fps", "2"];
+    let (code, out, err) = told(&echelon(folder.path(), &args));
+    assert!(code == 0 && out.contains("two.mp4: 0.50 s, 1 frame of 64×36 at 2 a second"), "{out}{err}");
+    assert!(err.contains("Filming two, 1 frame, to two.mp4"), "{err}");
+}
+
+/// The help and the book name every ending that is taken.
+#[test]
+fn endings_are_documented_as_they_are_taken() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/films.md");
+    let page = fs::read_to_string(page).expect("a page");
+    let (_, help, _) = told(&echelon(Path::new("."), &["film", "--help"]));
+    for ending in rendering::FilmKind::BUILT_IN.iter().chain(&rendering::FilmKind::BY_FFMPEG) {
+        assert!(page.contains(&format!("`.{ending}`")), "{ending} is not in docs/films.md");
+        assert!(help.contains(&format!(".{ending}")), "{ending} is not in: {help}");
+    }
+}

@@ -140,3 +140,28 @@ fn what_cannot_be_drawn_says_why() {
     let (code, _, err) = told(&echelon(folder.path(), &["run", &scene, "-o", "run"]));
     assert!(code == 2 && err.contains("--force"), "{err}");
 }
+
+/// A log that another program wrote may hold no scene: it was said to differ.
+#[test]
+fn a_log_without_a_scene_is_compared_by_its_moments() {
+    let folder = tempfile::tempdir().expect("a folder");
+    record(folder.path(), "run", "circle-three", &[]);
+    let mut bytes = fs::read(folder.path().join("run/log.mcap")).expect("a log");
+    // The library's name stands in the header, and says whose it is.
+    let library = bytes.windows(8).position(|name| name == b"echelon ").expect("a header");
+    bytes[library..library + 7].copy_from_slice(b"another");
+    // Before its name an attachment (9) has its length, two times and the length of the name; 0x90 is nobody's record.
+    let names: Vec<usize> = (29..bytes.len()).filter(|at| bytes[*at..].starts_with(b"scene.toml")).collect();
+    let attachments: Vec<usize> = names.into_iter().map(|at| at - 29).filter(|at| bytes[*at] == 9).collect();
+    assert_eq!(attachments.len(), 1);
+    bytes[attachments[0]] = 0x90;
+    fs::write(folder.path().join("bare.mcap"), bytes).expect("written");
+    for args in [["diff", "run", "bare.mcap"], ["diff", "bare.mcap", "run"]] {
+        let (code, out, err) = told(&echelon(folder.path(), &args));
+        assert!(code == 0 && out.contains("bare.mcap: the log has no scene to compare"), "{out}{err}");
+        assert!(!out.contains("differ") && out.contains("same: bit for bit, 201 samples"), "{out}");
+        let (_, out, _) = told(&echelon(folder.path(), &[&args[..], &["--json"]].concat()));
+        let report: Value = serde_json::from_str(&out).expect("JSON");
+        assert_eq!((&report["scene"], &report["same"]), (&Value::Null, &Value::Bool(true)));
+    }
+}

@@ -44,11 +44,23 @@ fn places_that_cannot_be_are_refused_at_once() {
     for (args, code, words) in [
         (vec!["run", &line, "--no-record", "--junit", "folder"], 2, "is a folder"),
         (vec!["run", &line, "--no-record", "--junit", "file/x.xml"], 3, "cannot create file"),
-        (vec!["run", &line, "--no-record", "--junit", "-"], 2, "standard output"),
+        (vec!["run", &line, "--no-record", "--json", "--junit", "-"], 2, "name a file for one of them"),
+        (vec!["compare", "folder", "folder", "--json", "--junit", "-"], 2, "name a file for one of them"),
         (vec!["run", &line, "-o", "file"], 2, "is a file"),
         (vec!["run", &line, "-o", "-"], 2, "standard output"),
         (vec!["film", &line, "-o", "-"], 2, "standard output"),
         (vec!["film", &line, "-o", "file/f.mp4"], 3, "cannot create file"),
+        (vec!["film", &line, "-o", "x.png"], 2, "x.png is no name of a film: write NAME.mp4, .m4v or .gif"),
+        (vec!["film", &line, "-o", "x.xyz"], 2, ".webm, .mkv"),
+        (vec!["film", &line, "-o", "deep/.mp4"], 2, "deep/.mp4 is no name of a film"),
+        (vec!["film", &line, "-o", "frames", "--ffmpeg"], 2, "frames is no name of a film"),
+        (vec!["run", &line, "-o", "run.mcap"], 2, "leave the ending out"),
+        (vec!["capture", &line, "-o", "deep/x.png"], 2, "deep/x.png has the ending of a file"),
+        (vec!["stills", &line, "-o", "x.png"], 2, "leave the ending out"),
+        (vec!["figures", &line, "-o", "x.pdf", "--no-pictures"], 2, "leave the ending out"),
+        (vec!["dataset", &line, "-o", "x.json"], 2, "leave the ending out"),
+        (vec!["budget", &line, "-o", "x.svg"], 2, "leave the ending out"),
+        (vec!["certify", &line, "-o", "x.json"], 2, "leave the ending out"),
         (vec!["capture", &line, "-o", "file"], 2, "is a file"),
         (vec!["capture", &line, "-o", "-"], 2, "standard output"),
         (vec!["stills", &line, "-o", "file"], 2, "is a file"),
@@ -226,4 +238,80 @@ fn titles_do_not_steer_the_terminal() {
     let (_, out, _) = run(folder.path(), &["check", "red.toml", "--resolved"]);
     fs::write(folder.path().join("again.toml"), out).expect("written");
     assert_eq!(run(folder.path(), &["check", "again.toml"]).0, 0);
+}
+
+/// A disk that takes `blocks` of 1024 bytes in a file and no more, as a full one does.
+#[cfg(target_os = "linux")]
+fn on_a_full_disk(folder: &Path, blocks: u32, args: &[&str]) -> (i32, String, String) {
+    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
+    let mut command = std::process::Command::new("bash");
+    command.args(["-c", &script, env!("CARGO_BIN_EXE_echelon")]).args(args).current_dir(folder);
+    told(&command.output().expect("it ran"))
+}
+
+/// What there is all the same stood nowhere, nor that a film goes on.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_with_what_is_kept() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = scene("line-three");
+    let run_on = |blocks: u32, args: &[&str]| on_a_full_disk(folder.path(), blocks, args);
+    let (code, _, err) =
+        run_on(400, &["run", &line, "-q", "-o", "run", "--set", "time.duration=200", "--set", "expect={}"]);
+    assert!(code == 3 && err.contains("; run keeps the run up to "), "{err}");
+    assert!(err.contains("which `echelon replay run` draws") && err.contains("says interrupted"), "{err}");
+    let manifest = fs::read_to_string(folder.path().join("run/manifest.json")).expect("a manifest");
+    assert!(manifest.contains("\"interrupted\""), "{manifest}");
+    let film = ["film", &line, "-q", "--size", "320x180", "--fps", "5", "-o"];
+    let (code, _, err) = run_on(60, &[&film[..], &["f.mp4"]].concat());
+    let (_, rest) = err.split_once("; the first ").unwrap_or_else(|| panic!("{code} {err}"));
+    let seconds: f64 =
+        rest.split_once(" s are kept beside it").expect("how much").0.parse().expect("seconds");
+    assert!(code == 3 && seconds >= 2.0 && err.contains("the same command goes on from there"), "{err}");
+    assert!(!folder.path().join("f.mp4").exists());
+    let (code, out, err) = run(
+        folder.path(),
+        &[&["film", &line, "--size", "320x180", "--fps", "5", "-o"], &["f.mp4"][..]].concat(),
+    );
+    assert!(code == 0 && err.contains(&format!("going on after {seconds:.2} s")), "{out}{err}");
+    let (code, _, err) = run_on(30, &[&film[..], &["f.gif"]].concat());
+    assert!(code == 3 && err.contains("nothing of the film is kept"), "{err}");
+    let pictures = ["capture", &line, "-q", "--at", "0,1", "--size", "640x360"];
+    let (code, _, err) = run_on(4, &pictures);
+    assert!(code == 3 && err.contains("0 of 2 pictures were written before"), "{err}");
+}
+
+/// Small and short.
+fn drawn<'a>(args: &[&'a str]) -> Vec<&'a str> {
+    [args, &["--size", "64x48", "--set", "time.duration=0.2", "--set", "expect={}"]].concat()
+}
+
+/// A film replaced another without a word. One rule for all: files are replaced, and that is told.
+#[test]
+fn what_is_replaced_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = scene("line-three");
+    let film = drawn(&["film", &line, "-o", "f.mp4", "--fps", "5"]);
+    let pictures = drawn(&["capture", &line, "-o", "p", "--at", "0,0.1"]);
+    let (line_args, plain) = (["--set", "time.duration=1", "--set", "expect={}"], &line);
+    let report = [&["run", plain, "--no-record", "--junit", "r.xml"], &line_args[..]].concat();
+    let certificate = [&["certify", plain, "-o", "c", "--paper-only"], &line_args[..]].concat();
+    for (args, name) in [
+        (film, "f.mp4"),
+        (drawn(&["film", &line, "-o", "f.gif", "--fps", "5"]), "f.gif"),
+        (pictures, "p/line-three-000.000.png, p/line-three-000.100.png"),
+        (
+            drawn(&["stills", &line, "-o", "s", "--count", "2"]),
+            "s/line-three-sheet.png, s/line-three-strobe.png",
+        ),
+        (report, "r.xml"),
+        (certificate, "c/certificate.json"),
+    ] {
+        let (code, _, err) = run(folder.path(), &args);
+        assert!(code == 0 && !err.contains("replaced"), "{args:?}: {err}");
+        let (code, _, err) = run(folder.path(), &args);
+        assert!(code == 0 && err.contains(&format!("replaced {name}")), "{args:?}: {err}");
+        let (code, _, err) = run(folder.path(), &[&args[..], &["-q"]].concat());
+        assert!(code == 0 && err.is_empty(), "{args:?}: {err}");
+    }
 }

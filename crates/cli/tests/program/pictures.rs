@@ -3,6 +3,7 @@
 use crate::common::{echelon, files, scene, told};
 use serde_json::Value;
 use std::fs;
+use std::path::Path;
 
 #[test]
 fn capture_writes_one_picture_per_time_and_view_words_are_obeyed() {
@@ -104,5 +105,34 @@ fn find_views(value: &Value) -> Option<Vec<String>> {
         Value::Array(items) => items.iter().find_map(find_views),
         Value::Object(map) => map.values().find_map(find_views),
         _ => None,
+    }
+}
+
+/// Views and elements of pictures stood in errors alone. The help and the book name those that the program takes.
+#[test]
+fn views_and_elements_are_documented_as_they_are_taken() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/start.md");
+    let page = fs::read_to_string(page).expect("a page");
+    let (_, table) = page.split_once("| element | what it is |").expect("a table of elements");
+    let rows = table.lines().skip(2).map_while(|row| row.strip_prefix("| `")?.split('`').next());
+    assert_eq!(rows.collect::<Vec<_>>(), rendering::Style::ELEMENTS);
+    let (_, help, _) = told(&echelon(folder.path(), &["capture", "--help"]));
+    let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    let elements = rendering::Style::ELEMENTS.join(", ");
+    assert!(help.contains(&format!("any of {elements} ")), "{help}");
+    // The error is made of the list that is taken.
+    let names = ["ROBOT".to_owned()];
+    let error = rendering::View::parse("nowhere", &names).expect_err("no view").to_string();
+    let (_, views) = error.split_once("views are ").expect("a list");
+    let (views, _) = views.rsplit_once(", and several").expect("its end");
+    let mut views: Vec<&str> = views.split(", ").collect();
+    assert!(views.len() == 7 && views.contains(&"fixed:ex,ey,ez,tx,ty,tz[,degrees]"), "{error}");
+    views.push("fixed");
+    for view in views {
+        assert!(help.contains(view), "{view} is not in: {help}");
+        assert!(page.contains(&format!("`{view}`")), "{view} is not in docs/start.md");
+        let example = view.replace("ex,ey,ez,tx,ty,tz[,degrees]", "0,-12,6,0,3,0,30");
+        rendering::View::parse(&example, &names).expect(view);
     }
 }

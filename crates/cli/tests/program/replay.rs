@@ -53,7 +53,7 @@ fn what_differs_is_told() {
     assert!(code == 1 && out.is_empty() && err.contains("DIFFERENT"), "{out}{err}");
     fs::write(&path, text.replacen("duration = 2.0", "duration = 1.0", 1)).expect("written");
     let (code, out, _) = told(&echelon(folder.path(), &["replay", "run"]));
-    assert!(code == 1 && out.contains("201 samples were recorded, and it has 101 now"), "{out}");
+    assert!(code == 1 && out.contains("it had 201 samples when it was recorded, and has 101 now"), "{out}");
 }
 
 /// An interrupted run is compared over the samples it has.
@@ -107,4 +107,42 @@ fn a_run_shorter_than_its_storyboard_replays() {
     assert_eq!(told(&echelon(folder.path(), &args)).0, 0);
     let (code, out, err) = told(&echelon(folder.path(), &["replay", "short"]));
     assert!(code == 0 && out.contains("same: bit for bit"), "{out}{err}");
+}
+
+/// Who names a scene where a run is wanted, or a run where a scene is, is told which and what to type.
+#[test]
+fn scenes_and_runs_are_told_apart() {
+    let folder = tempfile::tempdir().expect("a folder");
+    record(folder.path(), "line-three");
+    fs::copy(scene("line-three"), folder.path().join("mine.toml")).expect("copied");
+    fs::copy(folder.path().join("run/log.mcap"), folder.path().join("a.mcap")).expect("copied");
+    fs::copy(folder.path().join("run/log.mcap"), folder.path().join("renamed")).expect("copied");
+    let wanted = "such as runs/line-three-001, or its log.mcap is wanted; `echelon run SCENE` leaves one";
+    for (args, words) in [
+        (&["replay", "nosuch"][..], wanted),
+        (&["diff", "run", "nosuch"], wanted),
+        (&["replay", "."], wanted),
+        (&["replay", "line-three"], "it is a scene; `echelon run line-three` records a run of it"),
+        (&["replay", "mine.toml"], "a scene is recorded by `echelon run mine.toml`"),
+        (&["replay", "run/metrics.json"], "its run is the folder run"),
+        (&["replay", "run/manifest.json"], "its run is the folder run"),
+        (
+            &["capture", "run"],
+            "is a recorded run, and a scene is wanted here: `echelon replay run` runs it again",
+        ),
+        (&["film", "run"], "its scene is run/scene.toml"),
+        (&["check", "run"], "is a recorded run"),
+        (&["capture", "a.mcap"], "`--capture 0,5` or `--film film.mp4` it draws it"),
+        (&["run", "renamed"], "renamed is a recorded run"),
+        (&["figures", "run", "-o", "f"], "is a recorded run"),
+        (&["budget", "run/log.mcap"], "run/log.mcap is a recorded run"),
+        (
+            &["compare", "a.mcap", "a.mcap"],
+            "a.mcap: it is no picture; recorded runs are compared by `echelon diff`",
+        ),
+        (&["compare", "run", "run"], "recorded runs are compared by `echelon diff`"),
+    ] {
+        let (code, out, err) = told(&echelon(folder.path(), args));
+        assert!(code == 2 && out.is_empty() && err.contains(words), "{args:?}: {err}");
+    }
 }

@@ -200,18 +200,23 @@ fn schema_and_completions_print_what_they_say() {
     assert!(code == 0 && out.contains("_echelon"), "{out}");
 }
 
-/// The scene of README.md is good, and shows what it expects.
+/// The scene of README.md is good, and shows what it expects, with every block after it pasted below it.
 #[test]
 fn the_scene_of_the_readme_runs() {
     let readme =
         fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md")).expect("a text");
-    let (_, rest) = readme.split_once("```toml\n").expect("a scene");
-    let (text, _) = rest.split_once("```").expect("its end");
+    let blocks = readme.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
     let folder = tempfile::tempdir().expect("a folder");
-    fs::write(folder.path().join("two.toml"), text).expect("written");
-    let (code, out, err) = told(&echelon(folder.path(), &["run", "two.toml", "--no-record"]));
-    assert_eq!(code, 0, "{out}{err}");
-    assert!(out.contains("met    final_distance_error"), "{out}");
+    let (mut scene, mut count) = (String::new(), 0);
+    for block in blocks {
+        scene = format!("{scene}\n{block}");
+        count += 1;
+        fs::write(folder.path().join("two.toml"), &scene).expect("written");
+        let (code, out, err) = told(&echelon(folder.path(), &["run", "two.toml", "--no-record"]));
+        assert_eq!(code, 0, "with {count} blocks: {out}{err}");
+        assert!(out.contains("met    final_distance_error"), "{out}");
+    }
+    assert_eq!(count, 3);
 }
 
 #[test]

@@ -111,3 +111,53 @@ fn a_budget_that_is_stopped_says_so() {
     let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(value["status"], "interrupted", "{text}");
 }
+
+/// Nothing was written, and a CI system took the job for one without results.
+#[test]
+fn a_run_that_is_stopped_has_a_report_all_the_same() {
+    for name in ["-INT", "-TERM"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let line = scene("line-three");
+        let args = ["run", &line, "-o", "run", "--junit", "report.xml", "--set", "time.duration=20000"];
+        let mut child = command(folder.path(), &args).stderr(Stdio::null()).spawn().expect("started");
+        wait_for(&folder.path().join("run/tables/edges.parts/000001.parquet"));
+        signal(&child, name);
+        assert!(ends(&mut child), "{name}");
+        let text = fs::read_to_string(folder.path().join("report.xml")).expect("a report");
+        let (cases, skipped) = (text.matches("<testcase").count(), text.matches("<skipped").count());
+        assert!(text.contains("errors=\"1\"") && text.contains("failures=\"0\""), "{text}");
+        assert!(cases > 2 && skipped == cases - 1 && text.contains("interrupted at"), "{text}");
+        assert!(text.contains("settling_time") && text.contains("of 20000 s, recorded in run"), "{text}");
+    }
+}
+
+/// More pictures than are compared while a signal comes.
+const PICTURES: usize = 200;
+
+/// A comparison that is stopped says of every picture what became of it.
+#[test]
+fn a_comparison_that_is_stopped_has_a_report_all_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let line = scene("line-three");
+    let args = ["capture", &line, "--at", "0,2", "--size", "1280x720", "--samples", "1", "-q", "-o", "drawn"];
+    assert_eq!(told(&command(folder.path(), &args).output().expect("it ran")).0, 0);
+    for (side, time) in [("a", "000.000"), ("b", "002.000")] {
+        fs::create_dir(at(side)).expect("made");
+        for k in 0..PICTURES {
+            let drawn = at(&format!("drawn/line-three-{time}.png"));
+            fs::hard_link(drawn, at(side).join(format!("{k:03}.png"))).expect("linked");
+        }
+    }
+    let args = ["compare", "a", "b", "-q", "-o", "where", "--junit", "report.xml"];
+    let mut child =
+        command(folder.path(), &args).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("started");
+    wait_for(&at("where/000.difference.png"));
+    signal(&child, "-TERM");
+    assert!(ends(&mut child));
+    let (code, _, err) = told(&child.wait_with_output().expect("ended"));
+    assert!(code == 130 && err.contains(&format!("of {PICTURES} pictures are compared")), "{err}");
+    let text = fs::read_to_string(at("report.xml")).expect("a report");
+    assert!(text.matches("<testcase").count() == PICTURES + 1 && text.contains("errors=\"1\""), "{text}");
+    assert!(text.contains("failures=\"") && text.contains("the comparison was interrupted"), "{text}");
+}

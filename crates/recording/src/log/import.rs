@@ -19,7 +19,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
-use vocabulary::{Cast, Contact, EdgeState, Frame, Moment, Placement, RobotState};
+use vocabulary::{Cast, Contact, EdgeState, Frame, Moment, Placement, RobotState, counted};
 
 /// A log of ours, and what the foreign one has and lacks.
 pub(super) struct Imported {
@@ -224,7 +224,10 @@ impl About {
         let broken = if sound && count == all {
             String::new()
         } else {
-            format!("; of its {all} samples the first {count} are whole, the others lack topics or messages")
+            format!(
+                "; of its {} the first {count} are whole, the others lack topics or messages",
+                counted(all, "sample")
+            )
         };
         format!("{anew}{lacks}{broken}")
     }

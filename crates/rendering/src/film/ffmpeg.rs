@@ -16,6 +16,8 @@ pub(super) struct Ffmpeg {
     /// What it says about failures; read aside, lest a full pipe stop it.
     words: Option<JoinHandle<String>>,
     file: Option<Draft>,
+    /// Of the draft and of its goal.
+    names: [String; 2],
 }
 
 impl Ffmpeg {
@@ -40,12 +42,15 @@ impl Ffmpeg {
                 text
             })
         });
-        Ok(Self { child, words, file: Some(file) })
+        let names = [file.path(), path].map(|path| path.display().to_string());
+        Ok(Self { child, words, file: Some(file), names })
     }
 
     fn failure(&mut self) -> Error {
         let words = self.words.take().and_then(|w| w.join().ok()).unwrap_or_default();
-        Error::Encode(format!("ffmpeg: {}", words.trim()))
+        // It knows the draft alone, and a user the goal.
+        let [draft, goal] = &self.names;
+        Error::Encode(format!("ffmpeg: {}", words.replace(draft, goal).trim()))
     }
 }
 

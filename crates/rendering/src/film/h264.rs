@@ -50,7 +50,7 @@ impl H264 {
         let Format { width, height, rate } = format;
         // A film goes on only with the colours that it began with.
         let made_of = format!("{width}x{height} {rate} BT.709 {made_of}");
-        let kept = Kept::open(path, &made_of, group(&format))?;
+        let kept = Kept::open(path, &made_of, group(rate))?;
         let track = mp4::Track::new(width, height, rate).going_on(&kept.found);
         let frames = kept.found.sizes.len() as u64;
         Ok((Self::with(path, format, Store::Kept(Box::new(kept)), track), frames))
@@ -85,8 +85,9 @@ impl H264 {
     }
 }
 
-fn group(format: &Format) -> usize {
-    (GROUP * format.rate).round().max(1.0) as usize
+/// Frames of a group in a film of `rate` frames a second.
+pub(super) fn group(rate: f64) -> usize {
+    (GROUP * rate).round().max(1.0) as usize
 }
 
 fn encoder(format: &Format) -> Result<Encoder, Error> {
@@ -96,7 +97,7 @@ fn encoder(format: &Format) -> Result<Encoder, Error> {
         .usage_type(UsageType::CameraVideoRealTime)
         .complexity(Complexity::Low)
         // One group, one encoder.
-        .intra_frame_period(IntraFramePeriod::from_num_frames(group(format) as u32))
+        .intra_frame_period(IntraFramePeriod::from_num_frames(group(format.rate) as u32))
         // The scene is steady and the quality constant: analysing pictures first would only cost time.
         .scene_change_detect(false)
         .background_detection(false)
@@ -115,7 +116,7 @@ impl Sink for H264 {
     fn add(&mut self, picture: &Picture) -> Result<(), Error> {
         let number = self.track.frames();
         // The first of a group is encoded as if it were the first of all, so that a film can go on there.
-        if number.is_multiple_of(group(&self.format)) {
+        if number.is_multiple_of(group(self.format.rate)) {
             self.encoder = None;
         }
         let encoder = match &mut self.encoder {
@@ -123,7 +124,7 @@ impl Sink for H264 {
             none => none.insert(encoder(&self.format)?),
         };
         self.planes.fill(&picture.rgba);
-        let millis = (number % group(&self.format)) as f64 * 1000.0 / self.format.rate;
+        let millis = (number % group(self.format.rate)) as f64 * 1000.0 / self.format.rate;
         let stream = encoder
             .encode_at(&self.planes.slices(), Timestamp::from_millis(millis.round() as u64))
             .map_err(|e| refused(&e))?;
@@ -139,7 +140,7 @@ impl Sink for H264 {
                     kept.parameters(self.track.parameters())?;
                 }
                 kept.add(&frame, key)?;
-                let last = (number + 1).is_multiple_of(group(&self.format));
+                let last = (number + 1).is_multiple_of(group(self.format.rate));
                 if last { kept.close_group() } else { Ok(()) }
             }
         }

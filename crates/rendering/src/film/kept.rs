@@ -110,6 +110,15 @@ impl Drop for Kept {
     }
 }
 
+/// Frames of the film `goal` that are kept in whole groups of `group`, whatever it is made of.
+pub(super) fn frames(goal: &Path, group: usize) -> u64 {
+    let [frames, journal] = paths(goal);
+    let text = std::fs::read_to_string(journal).unwrap_or_default();
+    let length = std::fs::metadata(frames).map_or(0, |about| about.len());
+    let made_of = text.lines().nth(1).unwrap_or_default();
+    read(&text, made_of, group, length).map_or(0, |found| found.sizes.len() as u64)
+}
+
 const HEAD: &str = "echelon film 1";
 
 fn line(size: u32, key: bool) -> String {

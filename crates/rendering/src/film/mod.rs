@@ -27,16 +27,35 @@ pub enum FilmKind {
 }
 
 impl FilmKind {
-    /// The kind that a file's ending asks for: `.mp4` and `.gif` are built in, others are left to ffmpeg, and
-    /// without an ending it is a folder of pictures.
-    pub fn of(path: &Path) -> Self {
-        match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
-            None => Self::PngSequence,
-            Some("mp4" | "m4v") => Self::Mp4,
+    /// The kind that a file's ending asks for: `.mp4`, `.m4v` and `.gif` are built in, those of [`FilmKind::BY_FFMPEG`] go
+    /// through ffmpeg, and without an ending it is a folder of pictures. With `ffmpeg`, all endings go through that.
+    ///
+    /// # Errors
+    /// [`Error::Ending`] for any other, for an ending without a name, and with `ffmpeg` for none.
+    pub fn of(path: &Path, ffmpeg: bool) -> Result<Self, Error> {
+        let low = |text: &std::ffi::OsStr| text.to_string_lossy().to_lowercase();
+        let refused = || Error::Ending { path: path.to_owned(), ffmpeg };
+        let kind = match path.extension().map(low).as_deref() {
+            // `.mp4` alone is a hidden file to the system, and a slip to us.
+            None => {
+                let name = path.file_name().map(low).unwrap_or_default();
+                let known =
+                    |ending: &str| Self::BUILT_IN.contains(&ending) || Self::BY_FFMPEG.contains(&ending);
+                let slip = name.strip_prefix('.').is_some_and(known);
+                return if slip || ffmpeg { Err(refused()) } else { Ok(Self::PngSequence) };
+            }
             Some("gif") => Self::Gif,
-            Some(_) => Self::Ffmpeg,
-        }
+            Some(ending) if Self::BUILT_IN.contains(&ending) => Self::Mp4,
+            Some(ending) if Self::BY_FFMPEG.contains(&ending) => Self::Ffmpeg,
+            Some(_) => return Err(refused()),
+        };
+        Ok(if ffmpeg { Self::Ffmpeg } else { kind })
     }
+
+    /// Endings of films by the built-in encoders.
+    pub const BUILT_IN: [&str; 3] = ["mp4", "m4v", "gif"];
+    /// Endings of films that go through ffmpeg, which knows by them what to write.
+    pub const BY_FFMPEG: [&str; 10] = ["webm", "mkv", "mov", "avi", "mpg", "mpeg", "ogv", "ts", "flv", "wmv"];
 }
 
 /// A film's measures.
@@ -109,6 +128,11 @@ impl Film {
         check(FilmKind::Mp4, &format)?;
         let (sink, frames) = h264::H264::resume(path, format, made_of)?;
         Ok((Self::begin(path, format, Box::new(sink), frames)?, frames))
+    }
+
+    /// How many frames of an interrupted .mp4 of `rate` frames a second are kept at `path` for [`Film::resume`].
+    pub fn kept(path: &Path, rate: f64) -> u64 {
+        kept::frames(path, h264::group(rate))
     }
 
     fn begin(path: &Path, format: Format, sink: Box<dyn Sink>, frames: u64) -> Result<Self, Error> {

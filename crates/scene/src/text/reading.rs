@@ -2,6 +2,7 @@
 
 use crate::{Diagnostic, Diagnostics, text::Node};
 use std::path::{Path, PathBuf};
+use vocabulary::readable;
 
 /// More notes than this help nobody.
 const MOST_NOTES: usize = 100;
@@ -118,7 +119,7 @@ impl Reading {
     }
 
     fn diagnostic(&self, place: Place, message: &str) -> Diagnostic {
-        let message = message.to_owned();
+        let message = readable(message).into_owned();
         let Some(source) = self.sources.get(place.source) else {
             return Diagnostic {
                 origin: String::new(),
