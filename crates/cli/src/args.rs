@@ -144,8 +144,8 @@ pub(crate) struct LabArgs {
 /// How pictures look.
 #[derive(Debug, Args)]
 pub(crate) struct PictureArgs {
-    /// snake, snake-eye, top, orbit, follow:ROBOT, camera:ROBOT, fixed, or fixed:ex,ey,ez,tx,ty,tz[,degrees] from an eye to a
-    /// target in m with a field of view; several joined by '+' split the picture
+    /// snake, snake-eye, top, orbit, follow:ROBOT, camera:ROBOT, fixed, or `fixed:ex,ey,ez,tx,ty,tz[,degrees]` from an eye
+    /// to a target in m with a field of view; several joined by '+' split the picture
     #[arg(long)]
     pub(crate) view: Option<String>,
     /// Pixels, such as 1280x720
