@@ -62,7 +62,7 @@ fn certificates(text: &str, set: &[&str]) -> Vec<Certificate> {
     let scene = Scene::parse(text, "ideal.toml", &set).expect("a scene").scene;
     let mut simulation = Simulation::new(build(&scene).expect("a run"));
     let mut examiner = Examiner::keeping(&scene, &simulation);
-    while simulation.next_moment().is_some() {
+    while simulation.next_record().is_some() {
         examiner.push(&simulation);
     }
     examiner.finish(&simulation)
@@ -218,12 +218,12 @@ fn gains_down_a_chain_are_those_of_a_run() {
     // Fourier sums over the last whole periods, when the start has died out.
     let span = 3.0 * std::f64::consts::TAU / rate;
     let mut sums = [[0.0; 3]; 3];
-    while let Some(moment) = simulation.next_moment() {
-        let time = moment.snapshot.time;
+    while let Some(record) = simulation.next_record() {
+        let time = record.snapshot.time;
         if time < 30.0 - span {
             continue;
         }
-        for (sum, edge) in sums.iter_mut().zip(&moment.edges) {
+        for (sum, edge) in sums.iter_mut().zip(&record.edges) {
             let e = edge.error[0];
             *sum = [sum[0] + e * (rate * time).cos(), sum[1] + e * (rate * time).sin(), sum[2] + 1.0];
         }

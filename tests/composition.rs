@@ -4,38 +4,44 @@ use rendering::{Composition, Layout, Line, Plot, Room, Show, Style, Trail};
 use scene::Scene;
 use simulation::{Simulation, build};
 use std::path::Path;
-use vocabulary::{Cast, Moment};
+use vocabulary::{FleetInfo, StepRecord};
 
 const SIZES: [(u32, u32); 7] =
     [(480, 270), (640, 360), (640, 480), (960, 540), (1280, 720), (1080, 1920), (2560, 1440)];
 const VIEWS: [&str; 4] = ["snake", "top", "snake+top", "orbit"];
 
 /// A scene's cast, and its moments with what was before them, one every `every` samples.
-fn shown(name: &str, seconds: f64, every: usize) -> (Cast, Vec<(Trail, Moment)>) {
+fn shown(name: &str, seconds: f64, every: usize) -> (FleetInfo, Vec<(Trail, StepRecord)>) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name).with_extension("toml");
     // The run is the same up to then; pictures of cameras would only take time.
     let sees = if name.starts_with("vision") { "sensing.kind=geometric" } else { "seed=1" };
     let loaded = Scene::load(path, &[sees.parse().expect("an override")]).expect("a scene");
     let mut run = Simulation::new(build(&loaded.scene).expect("a formation"));
-    let cast = run.cast().clone();
-    let (mut trail, mut all, mut sample) = (Trail::new(&cast), Vec::new(), 0);
-    while let Some(moment) = run.next_moment() {
-        trail.push(moment);
+    let fleet = run.fleet().clone();
+    let (mut trail, mut all, mut sample) = (Trail::new(&fleet), Vec::new(), 0);
+    while let Some(record) = run.next_record() {
+        trail.push(record);
         if sample % every == 0 {
-            all.push((trail.clone(), moment.clone()));
+            all.push((trail.clone(), record.clone()));
         }
         sample += 1;
-        if moment.snapshot.time >= seconds {
+        if record.snapshot.time >= seconds {
             break;
         }
     }
-    (cast, all)
+    (fleet, all)
 }
 
-fn composed(cast: &Cast, at: &(Trail, Moment), view: &str, style: &Style, size: (u32, u32)) -> Composition {
-    let names: Vec<String> = cast.members.iter().map(|m| m.name.clone()).collect();
+fn composed(
+    fleet: &FleetInfo,
+    at: &(Trail, StepRecord),
+    view: &str,
+    style: &Style,
+    size: (u32, u32),
+) -> Composition {
+    let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
     let style = Style { scale: Style::scale_for(size.0, size.1), ..style.clone() };
-    Composition::new(cast, (&at.0, &at.1), &Layout::parse(view, &names).expect("a view"), &style, size)
+    Composition::new(fleet, (&at.0, &at.1), &Layout::parse(view, &names).expect("a view"), &style, size)
 }
 
 fn overlap(a: &[f32; 4], b: &[f32; 4]) -> bool {
@@ -94,12 +100,12 @@ fn nothing_lies_under_panels_and_captions() {
         ("cars-seven-v", 20.0, 200),
         ("vision-seven-v", 10.0, 200),
     ] {
-        let (cast, all) = shown(name, seconds, every);
+        let (fleet, all) = shown(name, seconds, every);
         for (size, view) in SIZES.iter().flat_map(|size| VIEWS.map(|view| (*size, view))) {
             for at in &all {
-                let composition = composed(&cast, at, view, &Style::default(), size);
+                let composition = composed(&fleet, at, view, &Style::default(), size);
                 assert_eq!(composition.panels.len(), 1, "{name} {view} {size:?}: no panel");
-                for fault in faults(&composition, (cast.members.len(), cast.edges.len())) {
+                for fault in faults(&composition, (fleet.robots.len(), fleet.edges.len())) {
                     let time = at.1.snapshot.time;
                     wrong.push(format!("{name} {view} {size:?} at {time:.2}: {fault}"));
                 }
@@ -121,11 +127,11 @@ fn nothing_lies_under_what_films_add() {
     let plotted = Show { plots: vec![Plot::default(); 2], room: room(0), ..Show::default() };
     let mut wrong = Vec::new();
     for (name, seconds) in [("seven-v", 8.0), ("circle-three", 10.0), ("vision-seven-v", 6.0)] {
-        let (cast, all) = shown(name, seconds, 100);
+        let (fleet, all) = shown(name, seconds, 100);
         let mut check = |view: &str, style: &Style, size: (u32, u32)| {
             for at in &all {
-                let composition = composed(&cast, at, view, style, size);
-                for fault in faults(&composition, (cast.members.len(), cast.edges.len())) {
+                let composition = composed(&fleet, at, view, style, size);
+                for fault in faults(&composition, (fleet.robots.len(), fleet.edges.len())) {
                     wrong.push(format!("{name} {view} {size:?} at {:.2}: {fault}", at.1.snapshot.time));
                 }
             }
@@ -154,12 +160,12 @@ fn nothing_lies_under_what_films_add() {
 /// Views that do not go by the formation have robots everywhere: there the panel goes, and under a card as well.
 #[test]
 fn the_panel_makes_way_where_a_camera_cannot() {
-    let (cast, all) = shown("seven-v", 8.0, 20);
+    let (fleet, all) = shown("seven-v", 8.0, 20);
     let views = ["follow:robot-2", "follow:robot-7", "snake-eye", "fixed:-9,0,6,0,0,0", "fixed:8,8,9,3,-3,0"];
     let (mut there, mut gone) = (0, 0);
     for (size, view) in SIZES.iter().flat_map(|size| views.map(|view| (*size, view))) {
         for at in &all {
-            let composition = composed(&cast, at, view, &Style::default(), size);
+            let composition = composed(&fleet, at, view, &Style::default(), size);
             for panel in &composition.panels {
                 let all = [&composition.robots, &composition.set_points, &composition.labels];
                 let hidden = all.into_iter().flatten().filter(|b| overlap(b, panel)).count();
@@ -172,7 +178,7 @@ fn the_panel_makes_way_where_a_camera_cannot() {
     assert!(there > 50 && gone > 50, "there {there}, gone {gone}");
     let card = rendering::Card { title: "A V".into(), rows: vec![], opacity: 1.0 };
     let titled = Style { show: Show { card: Some(card), ..Show::default() }, ..Style::default() };
-    assert!(composed(&cast, &all[0], "snake", &titled, (1280, 720)).panels.is_empty());
+    assert!(composed(&fleet, &all[0], "snake", &titled, (1280, 720)).panels.is_empty());
 }
 
 /// From picture to picture of a film the panel stays where it is, and what is seen moves little.
@@ -180,13 +186,13 @@ fn the_panel_makes_way_where_a_camera_cannot() {
 fn panels_stand_and_cameras_are_calm() {
     for (name, seconds) in [("seven-v", 6.0), ("hundred", 1.5), ("cars-seven-v", 6.0)] {
         // 33 pictures a second.
-        let (cast, all) = shown(name, seconds, 3);
+        let (fleet, all) = shown(name, seconds, 3);
         for (view, size) in
             [("snake", (640, 360)), ("snake", (1280, 720)), ("orbit", (960, 540)), ("snake", (1080, 1920))]
         {
             let mut before: Option<Composition> = None;
             for at in &all {
-                let now = composed(&cast, at, view, &Style::default(), size);
+                let now = composed(&fleet, at, view, &Style::default(), size);
                 if let Some(before) = before {
                     assert_eq!(
                         (&now.panels, &now.captions),

@@ -18,8 +18,8 @@ fn simulation(name: &str, mode: &str) -> Simulation {
 
 fn digest(mut simulation: Simulation) -> String {
     let mut digest = Digest::default();
-    while let Some(moment) = simulation.next_moment() {
-        digest.push(moment);
+    while let Some(record) = simulation.next_record() {
+        digest.push(record);
     }
     digest.text()
 }
@@ -50,15 +50,15 @@ fn physics_is_equal_bit_for_bit_on_any_thread_and_after_a_save() {
         assert_eq!(on(4), one, "{name}");
         let (mut run, mut sum) = (simulation(name, "sampled"), Digest::default());
         for _ in 0..150 {
-            sum.push(run.next_moment().expect("a moment"));
+            sum.push(run.next_record().expect("a moment"));
         }
         let mut saved = run.save();
         let mut resumed = sum.clone();
-        while let Some(moment) = run.next_moment() {
-            sum.push(moment);
+        while let Some(record) = run.next_record() {
+            sum.push(record);
         }
-        while let Some(moment) = saved.next_moment() {
-            resumed.push(moment);
+        while let Some(record) = saved.next_record() {
+            resumed.push(record);
         }
         assert_eq!((sum.text(), resumed.text()), (one.clone(), one), "{name}");
     }
@@ -79,17 +79,17 @@ fn no_picture_changes_the_digest() {
 /// The digest of a run that is drawn now and then.
 fn drawn(name: &str) -> String {
     let mut drawn = simulation(name, "sampled");
-    let cast = drawn.cast().clone();
+    let fleet = drawn.fleet().clone();
     let gpu = Gpu::open(&AdapterChoice::Auto).expect("an adapter; see `echelon doctor`");
-    let mut renderer = Renderer::new(&gpu, &cast, 160, 90, 4).expect("a renderer");
-    let (mut trail, layout, style) = (Trail::new(&cast), Layout::single(View::Snake), Style::default());
+    let mut renderer = Renderer::new(&gpu, &fleet, 160, 90, 4).expect("a renderer");
+    let (mut trail, layout, style) = (Trail::new(&fleet), Layout::single(View::Snake), Style::default());
     let mut sum = Digest::default();
     let mut step = 0;
-    while let Some(moment) = drawn.next_moment() {
-        sum.push(moment);
-        trail.push(moment);
+    while let Some(record) = drawn.next_record() {
+        sum.push(record);
+        trail.push(record);
         if step % 60 == 0 {
-            renderer.draw(&trail, moment, &layout, &style).expect("a picture");
+            renderer.draw(&trail, record, &layout, &style).expect("a picture");
         }
         step += 1;
     }

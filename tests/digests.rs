@@ -8,7 +8,7 @@ use scene::{SHIPPED, Scene};
 use simulation::{Simulation, build};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use vocabulary::{Moment, RobotState, Snapshot};
+use vocabulary::{RobotState, Snapshot, StepRecord};
 
 /// Longest part of a scene that is run, s: long enough for every law to settle and every vehicle to meet what is in its way.
 const LONGEST: f64 = 12.0;
@@ -53,9 +53,9 @@ fn line(case: &Case) -> String {
     let scene = Scene::load(&path, &overrides).expect("a shorter scene").scene;
     let mut simulation = Simulation::new(build(&scene).expect("a formation"));
     let (mut digest, mut ends) = (Digest::default(), String::new());
-    while let Some(moment) = simulation.next_moment() {
-        digest.push(moment);
-        let robots = &moment.snapshot.robots;
+    while let Some(record) = simulation.next_record() {
+        digest.push(record);
+        let robots = &record.snapshot.robots;
         ends.clear();
         for robot in [&robots[0], &robots[robots.len() - 1]] {
             write!(ends, " {:.6} {:.6}", robot.motion.pose.x, robot.motion.pose.y).expect("a string");
@@ -83,7 +83,7 @@ fn platform() -> String {
             let mut robot = RobotState::default();
             robot.motion.pose.x = function(x);
             let snapshot = Snapshot { time: x, robots: vec![robot], props: vec![] };
-            digest.push(&Moment { snapshot, ..Moment::default() });
+            digest.push(&StepRecord { snapshot, ..StepRecord::default() });
         }
     }
     digest.text()

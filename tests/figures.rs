@@ -12,10 +12,10 @@ static RUNS: LazyLock<Vec<Ran>> = LazyLock::new(|| {
     let jobs = paper_jobs().expect("shipped scenes");
     let run = |job: &report::Job| {
         let mut simulation = Simulation::new(build(&job.scene).expect("a scene that runs"));
-        let colours = vec![[0.0; 3]; simulation.cast().members.len()];
+        let colours = vec![[0.0; 3]; simulation.fleet().robots.len()];
         let mut tracer = Tracer::new(job.name.clone(), &job.scene, &simulation, &colours, job.transient);
-        while let Some(moment) = simulation.next_moment() {
-            tracer.push(moment);
+        while let Some(record) = simulation.next_record() {
+            tracer.push(record);
         }
         Ran { case: job.case, variant: job.variant, trace: tracer.finish() }
     };
@@ -102,8 +102,8 @@ fn the_graph_of_seven_is_that_of_the_independent_solution() {
     }
     let seven = RUNS.iter().find(|ran| ran.case == Case::Seven).expect("seven robots");
     let golden = golden("seven_line_ofb_sampled");
-    for (edge, cast) in seven.trace.cast.edges.iter().enumerate() {
-        let wanted = &golden[&format!("e_l{}", cast.follower)];
+    for (edge, fleet) in seven.trace.fleet.edges.iter().enumerate() {
+        let wanted = &golden[&format!("e_l{}", fleet.follower)];
         for (time, wanted) in golden["t"].iter().zip(wanted) {
             let found = seven.trace.edges[edge][seven.trace.sample_at(*time)].error[0];
             assert!((found - wanted).abs() < 1e-5, "edge {edge} at {time} s");

@@ -35,11 +35,11 @@ fn a_run_that_goes_on_takes_no_more_memory() {
         judging: Judging { settling_band: [0.02; 2], settled_after: 0.0 },
     };
     let mut recorder =
-        Recorder::create(&folder.path().join("run"), simulation.cast(), options).expect("a recorder");
+        Recorder::create(&folder.path().join("run"), simulation.fleet(), options).expect("a recorder");
     let mut examiner = Examiner::new(&scene, &simulation);
     let mut stretch = || {
         for _ in 0..STRETCH {
-            recorder.push(simulation.next_moment().expect("a moment")).expect("recorded");
+            recorder.push(simulation.next_record().expect("a moment")).expect("recorded");
             examiner.push(&simulation);
         }
         ALLOCATOR.allocated()

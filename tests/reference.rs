@@ -3,16 +3,18 @@
 //! Every case of a folder with `cases/*.json` and `golden/*.csv` is run: those of `tests/reference`, whose
 //! `reference.py` made the golden files, and those of the folder named by `ECHELON_REFERENCE_DIR` if it is set.
 
-use formation::lead::Courses;
-use formation::{Course, EdgeLaw, Formation, Graph, Law, LawKind, Observer, SetPointCourse, Switching};
+use formation::lead::AnalyticTrajectory;
+use formation::{
+    EdgeLaw, Formation, Graph, Law, LawKind, Observer, ScalarTrajectory, SetPointTrajectory, Switching,
+};
 use serde::Deserialize;
 use simulation::{ObserverStart, Setup, Simulation, Timing};
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{Body, Cast, Limits, Member, Moment, Pose, Profile, wrap};
-use world::{Actor, Stage, Unicycle};
+use vocabulary::{Body, FleetInfo, Limits, Pose, RobotInfo, StepRecord, Trajectory, wrap};
+use world::{RobotSetup, Unicycle, WorldSetup};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
@@ -92,8 +94,12 @@ fn two() -> f64 {
     2.0
 }
 
-fn course(mean: f64, wave: Option<Wave>) -> Course {
-    wave.map_or(Course::Constant(mean), |w| Course::Sinusoid { mean, amplitude: w.amplitude, rate: w.rate })
+fn course(mean: f64, wave: Option<Wave>) -> ScalarTrajectory {
+    wave.map_or(ScalarTrajectory::Constant(mean), |w| ScalarTrajectory::Sinusoid {
+        mean,
+        amplitude: w.amplitude,
+        rate: w.rate,
+    })
 }
 
 impl Case {
@@ -117,7 +123,7 @@ impl Case {
                 distance_min,
             },
             looks: None,
-            set_point: SetPointCourse::constant(0.0, 0.0),
+            set_point: SetPointTrajectory::constant(0.0, 0.0),
         })
     }
 
@@ -130,16 +136,16 @@ impl Case {
         for edge in &self.edges {
             let waves = edge.modulation.unwrap_or([None, None]);
             let [distance, bearing] = [0, 1].map(|i| course(edge.set_point[i], waves[i]));
-            laws.push(EdgeLaw { set_point: SetPointCourse { distance, bearing }, ..self.law()? });
+            laws.push(EdgeLaw { set_point: SetPointTrajectory { distance, bearing }, ..self.law()? });
         }
         let b = &self.bounds;
         let limits =
             Limits { speed_min: b.v_min, speed_max: b.v_max, turn_rate_max: b.omega_max, ..Limits::PAPER };
-        let lead: Arc<dyn Profile> = Arc::new(Courses {
+        let lead: Arc<dyn Trajectory> = Arc::new(AnalyticTrajectory {
             speed: course(self.lead.v, self.lead.v_wave),
             turn_rate: course(self.lead.omega, self.lead.omega_wave),
         });
-        let actor = |(index, r): (usize, &Robot)| Actor {
+        let actor = |(index, r): (usize, &Robot)| RobotSetup {
             robot: Unicycle {
                 pose: Pose::new(r.pose[0], r.pose[1], wrap(r.pose[2])),
                 speed: r.v,
@@ -150,18 +156,19 @@ impl Case {
             wheels: None,
         };
         let actors = self.robots.iter().enumerate().map(actor).collect();
-        let member = |(index, name): (usize, &String)| Member::new(name.clone(), index == 0, Body::default());
+        let member =
+            |(index, name): (usize, &String)| RobotInfo::new(name.clone(), index == 0, Body::default());
         Ok(Setup {
             changes: vec![],
-            cast: Cast {
+            fleet: FleetInfo {
                 duration: self.duration,
-                members: names.iter().enumerate().map(member).collect(),
+                robots: names.iter().enumerate().map(member).collect(),
                 edges: graph.edges().to_vec(),
-                ..Cast::default()
+                ..FleetInfo::default()
             },
-            senses: None,
+            sensor_config: None,
             observer_starts: vec![ObserverStart::Offset([0.0; 2]); self.edges.len()],
-            stage: Stage { actors, props: vec![], terrain: None, step: 0.005 },
+            stage: WorldSetup { actors, props: vec![], terrain: None, step: 0.005 },
             stop_at_contact: false,
             formation: Formation::new(
                 graph,
@@ -191,11 +198,11 @@ impl Case {
     }
 
     /// Whether a bound of the follower or of a robot up its chain acts on it at this moment.
-    fn bounded(&self, moment: &Moment, follower: usize) -> Vec<bool> {
+    fn bounded(&self, record: &StepRecord, follower: usize) -> Vec<bool> {
         let mut flags = vec![];
         let mut at = follower;
         while let Some(edge) = self.edges.iter().find(|e| e.follower == at) {
-            let m = &moment.snapshot.robots[at].motion;
+            let m = &record.snapshot.robots[at].motion;
             flags.push(m.speed <= self.bounds.v_min || m.speed >= self.bounds.v_max);
             flags.push(m.turn_rate.abs() >= self.bounds.omega_max);
             at = edge.leader;
@@ -204,15 +211,15 @@ impl Case {
     }
 
     /// For every edge and sample: whether a bound became active within 30 ms of it.
-    fn near_bounds(&self, moments: &[Moment]) -> Vec<Vec<bool>> {
+    fn near_bounds(&self, records: &[StepRecord]) -> Vec<Vec<bool>> {
         let reach = (0.03 / self.period).round() as usize;
         let edges = self.edges.iter().map(|edge| {
-            let flags: Vec<_> = moments.iter().map(|m| self.bounded(m, edge.follower)).collect();
+            let flags: Vec<_> = records.iter().map(|m| self.bounded(m, edge.follower)).collect();
             let rises = |k: usize| (0..flags[k].len()).any(|i| flags[k][i] && (k == 0 || !flags[k - 1][i]));
-            let rising: Vec<bool> = (0..moments.len()).map(rises).collect();
+            let rising: Vec<bool> = (0..records.len()).map(rises).collect();
             let near =
                 |k: usize| rising[k.saturating_sub(reach)..(k + reach + 1).min(rising.len())].contains(&true);
-            (0..moments.len()).map(near).collect()
+            (0..records.len()).map(near).collect()
         });
         edges.collect()
     }
@@ -251,27 +258,27 @@ fn golden(path: &Path) -> Outcome<Vec<Vec<f64>>> {
 }
 
 /// All moments of the case.
-fn moments(case: &Case) -> Outcome<Vec<Moment>> {
+fn records(case: &Case) -> Outcome<Vec<StepRecord>> {
     let mut run = Simulation::new(case.setup()?);
-    let mut moments: Vec<Moment> = vec![];
-    while let Some(moment) = run.next_moment() {
-        moments.push(moment.clone());
+    let mut records: Vec<StepRecord> = vec![];
+    while let Some(record) = run.next_record() {
+        records.push(record.clone());
     }
-    Ok(moments)
+    Ok(records)
 }
 
-fn compare(case: &Case, golden: &[Vec<f64>], moments: &[Moment]) -> Outcome<Deviation> {
-    let near = case.near_bounds(moments);
+fn compare(case: &Case, golden: &[Vec<f64>], records: &[StepRecord]) -> Outcome<Deviation> {
+    let near = case.near_bounds(records);
     let mut out = Deviation { states: Worst::none(), rates: Worst::none(), compared: 0 };
     for (row, k) in golden.iter().zip((0..).step_by(case.record_every)) {
-        let moment = moments.get(k).ok_or("the run ended before the golden file")?;
-        let time = moment.snapshot.time;
+        let record = records.get(k).ok_or("the run ended before the golden file")?;
+        let time = record.snapshot.time;
         if (time - row[0]).abs() > 1e-9 {
             return Err(format!("row {k} is at {} s, expected {time} s", row[0]).into());
         }
         let mut columns = row[1..].iter();
         let mut next = || columns.next().copied().ok_or("the golden file has too few columns");
-        for (i, robot) in moment.snapshot.robots.iter().enumerate() {
+        for (i, robot) in record.snapshot.robots.iter().enumerate() {
             let m = &robot.motion;
             for (name, ours) in [("x", m.pose.x), ("y", m.pose.y), ("theta", m.pose.heading), ("v", m.speed)]
             {
@@ -283,7 +290,7 @@ fn compare(case: &Case, golden: &[Vec<f64>], moments: &[Moment]) -> Outcome<Devi
         // Columns come in the order of the followers' numbers, edges in the order of the case.
         for j in 1..case.robots.len() {
             let index = case.edges.iter().position(|e| e.follower == j).ok_or("a robot without a leader")?;
-            let edge = &moment.edges[index];
+            let edge = &record.edges[index];
             let (a, w) = (edge.applied.acceleration - next()?, edge.applied.turn_rate - next()?);
             let e = [edge.error[0] - next()?, wrap(edge.error[1] - next()?)];
             let ds = [edge.rates[0] - next()?, edge.rates[1] - next()?];
@@ -340,7 +347,7 @@ fn every_reference_case_is_reproduced() {
 fn check(folder: &Path, path: &Path, name: &str) -> Outcome<()> {
     let case: Case = serde_json::from_str(&fs::read_to_string(path)?)?;
     let rows = golden(&folder.join("golden").join(format!("{name}.csv")))?;
-    let found = compare(&case, &rows, &moments(&case)?)?;
+    let found = compare(&case, &rows, &records(&case)?)?;
     report(name, &found);
     if found.compared < 2 || found.compared != rows.len() {
         return Err(format!("only {} of {} rows compared", found.compared, rows.len()).into());

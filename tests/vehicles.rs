@@ -13,9 +13,9 @@ fn run(name: &str, overrides: &[&str]) -> Metrics {
     let mut simulation = Simulation::new(build(&scene).expect("a formation"));
     let settled_after = scene.expect.settled_after.unwrap_or(0.0);
     let judging = Judging { settling_band: scene.expect.settling_band, settled_after };
-    let mut metrics = MetricsBuilder::new(simulation.cast(), judging);
-    while let Some(moment) = simulation.next_moment() {
-        metrics.push(moment);
+    let mut metrics = MetricsBuilder::new(simulation.fleet(), judging);
+    while let Some(record) = simulation.next_record() {
+        metrics.push(record);
     }
     metrics.finish()
 }

@@ -1,10 +1,10 @@
 //! Robots that look: the loop closed on looks, on any machine, and on pictures where there is an adapter.
 
-use rendering::{AdapterChoice, CameraEyes, Gpu};
+use rendering::{AdapterChoice, Gpu, GpuCameraRenderer};
 use scene::{Role, Scene, SensingKind};
 use simulation::{Simulation, build};
 use std::path::Path;
-use vocabulary::{Moment, Outcome, Sight};
+use vocabulary::{Outcome, StepRecord, TrackingState};
 
 /// A shipped scene, its length and its followers' sensing changed.
 fn scene(name: &str, duration: f64, kind: SensingKind) -> Scene {
@@ -24,19 +24,19 @@ fn start(scene: &Scene) -> Simulation {
 }
 
 /// Digest of a run, and what `visit` makes of its moments.
-fn play(mut run: Simulation, mut visit: impl FnMut(&Moment)) -> String {
+fn play(mut run: Simulation, mut visit: impl FnMut(&StepRecord)) -> String {
     let mut digest = metrics::Digest::default();
-    while let Some(moment) = run.next_moment() {
-        digest.push(moment);
-        visit(moment);
+    while let Some(record) = run.next_record() {
+        digest.push(record);
+        visit(record);
     }
     assert_eq!(run.fault(), None);
     digest.text()
 }
 
 /// Root mean square errors of the edges [m, rad] from `after` s on, worst edge.
-fn worst_rms(moments: &[Moment], after: f64) -> [f64; 2] {
-    let late: Vec<&Moment> = moments.iter().filter(|m| m.snapshot.time >= after).collect();
+fn worst_rms(records: &[StepRecord], after: f64) -> [f64; 2] {
+    let late: Vec<&StepRecord> = records.iter().filter(|m| m.snapshot.time >= after).collect();
     let edges = late.first().map_or(0, |m| m.edges.len());
     let rms = |edge: usize, k: usize| {
         (late.iter().map(|m| m.edges[edge].error[k].powi(2)).sum::<f64>() / late.len() as f64).sqrt()
@@ -44,16 +44,16 @@ fn worst_rms(moments: &[Moment], after: f64) -> [f64; 2] {
     [0, 1].map(|k| (0..edges).map(|edge| rms(edge, k)).fold(0.0, f64::max))
 }
 
-fn moments(run: Simulation) -> Vec<Moment> {
+fn records(run: Simulation) -> Vec<StepRecord> {
     let mut all = vec![];
-    play(run, |moment| all.push(moment.clone()));
+    play(run, |record| all.push(record.clone()));
     all
 }
 
 #[test]
 fn formations_hold_on_looks_at_tags() {
     for name in ["vision-circle-three", "vision-cars-circle-three"] {
-        let all = moments(start(&scene(name, 20.0, SensingKind::Geometric)));
+        let all = records(start(&scene(name, 20.0, SensingKind::Geometric)));
         let [distance, bearing] = worst_rms(&all, 8.0);
         assert!(distance < 0.03 && bearing.to_degrees() < 1.5, "{name}: {distance} m, {bearing} rad");
         let frames = || all.iter().flat_map(|m| &m.frames);
@@ -69,7 +69,7 @@ fn the_second_estimator_holds_them_too() {
             follow.observer.kind = scene::ObserverKind::Unscented;
         }
     }
-    let [distance, bearing] = worst_rms(&moments(start(&scene)), 8.0);
+    let [distance, bearing] = worst_rms(&records(start(&scene)), 8.0);
     assert!(distance < 0.05 && bearing.to_degrees() < 2.5, "{distance} m, {bearing} rad");
 }
 
@@ -81,12 +81,12 @@ fn looks_are_the_same_in_every_run_and_go_on_alike_from_a_copy() {
     let mut run = start(&scene);
     let mut digest = metrics::Digest::default();
     for _ in 0..257 {
-        digest.push(run.next_moment().expect("a moment"));
+        digest.push(run.next_record().expect("a moment"));
     }
     let mut saved = run.save();
-    while run.next_moment().is_some() {}
-    while let Some(moment) = saved.next_moment() {
-        digest.push(moment);
+    while run.next_record().is_some() {}
+    while let Some(record) = saved.next_record() {
+        digest.push(record);
     }
     assert_eq!(digest.text(), whole);
     let mut other = scene.clone();
@@ -103,14 +103,14 @@ fn looks_have_their_own_instants_and_arrive_late() {
             (follow.sensing.rate, follow.sensing.latency) = (37.0, 0.025);
         }
     }
-    let all = moments(start(&scene));
+    let all = records(start(&scene));
     let mut count = 0;
-    for moment in &all {
-        for frame in moment.frames.iter().filter(|frame| frame.edge == 0) {
-            assert!((frame.sighting.stamp - f64::from(count) / 37.0).abs() < 1e-9, "{frame:?}");
-            let late = moment.snapshot.time - frame.sighting.stamp;
+    for record in &all {
+        for frame in record.frames.iter().filter(|frame| frame.edge == 0) {
+            assert!((frame.measurement.stamp - f64::from(count) / 37.0).abs() < 1e-9, "{frame:?}");
+            let late = record.snapshot.time - frame.measurement.stamp;
             assert!(late > 0.025 - 1e-9 && late < 0.035 + 1e-9, "{late}");
-            let off = frame.sighting.relative.distance - frame.truth.distance;
+            let off = frame.measurement.relative.distance - frame.truth.distance;
             assert!(off.abs() < 0.02, "{off}");
             count += 1;
         }
@@ -127,18 +127,19 @@ fn a_leader_that_was_lost_is_found_again() {
             follow.sensing.hold = 0.3;
         }
     }
-    let all = moments(start(&scene));
-    let states: Vec<Sight> = all.iter().map(|m| m.edges[0].sight).collect();
-    let lost = states.iter().position(|s| *s == Sight::Lost).expect("lost for a while");
-    assert!(states[..lost].contains(&Sight::Coasting) && states[0] == Sight::Waiting);
-    let found = lost + states[lost..].iter().position(|s| *s == Sight::Tracking).expect("found again");
+    let all = records(start(&scene));
+    let states: Vec<TrackingState> = all.iter().map(|m| m.edges[0].sight).collect();
+    let lost = states.iter().position(|s| *s == TrackingState::Lost).expect("lost for a while");
+    assert!(states[..lost].contains(&TrackingState::Coasting) && states[0] == TrackingState::Waiting);
+    let found =
+        lost + states[lost..].iter().position(|s| *s == TrackingState::Tracking).expect("found again");
     let speeds = |range: std::ops::Range<usize>| -> Vec<f64> {
         all[range].iter().map(|m| m.snapshot.robots[1].motion.speed).collect()
     };
     let lowest = speeds(lost..found).into_iter().fold(f64::INFINITY, f64::min);
     assert!(lowest < 0.95 * speeds(lost..lost + 1)[0], "it slows down: {lowest}");
     let last = all.last().expect("moments");
-    assert!(last.edges[0].error[0].abs() < 0.05 && last.edges[0].sight == Sight::Tracking);
+    assert!(last.edges[0].error[0].abs() < 0.05 && last.edges[0].sight == TrackingState::Tracking);
     assert!(all.iter().all(|m| m.contacts.is_empty()));
 }
 
@@ -150,10 +151,10 @@ fn who_never_sees_its_leader_slows_down_and_does_not_fail() {
     for robot in &mut scene.robots[1..] {
         robot.pose.heading = std::f64::consts::PI;
     }
-    let all = moments(start(&scene));
+    let all = records(start(&scene));
     let last = all.last().expect("moments");
     for (edge, robot) in last.edges.iter().zip(&last.snapshot.robots[1..]) {
-        assert_eq!(edge.sight, Sight::Lost);
+        assert_eq!(edge.sight, TrackingState::Lost);
         assert!(robot.motion.speed < 0.05, "{}", robot.motion.speed);
     }
     assert!(all.iter().flat_map(|m| &m.frames).all(|frame| frame.outcome == Outcome::Missed));
@@ -162,8 +163,8 @@ fn who_never_sees_its_leader_slows_down_and_does_not_fail() {
 #[test]
 fn cameras_without_anyone_to_draw_for_them_say_so() {
     let mut run = start(&scene("vision-line-three", 1.0, SensingKind::Camera));
-    assert!(run.needs_eyes());
-    assert!(run.next_moment().is_none());
+    assert!(run.needs_cameras());
+    assert!(run.next_record().is_none());
     assert!(run.fault().is_some_and(|fault| fault.to_string().contains("pictures")));
 }
 
@@ -174,21 +175,21 @@ fn the_loop_closes_on_pictures_and_does_so_alike_every_time() {
     let run = || {
         let mut run = start(&scene);
         let gpu = Gpu::open(&AdapterChoice::Auto).expect("an adapter, as for all pictures");
-        let eyes = CameraEyes::new(&gpu, run.cast()).expect("eyes");
-        run.open_eyes(Box::new(eyes));
+        let eyes = GpuCameraRenderer::new(&gpu, run.fleet()).expect("eyes");
+        run.attach_cameras(Box::new(eyes));
         run
     };
     let mut all = vec![];
-    let first = play(run(), |moment| all.push(moment.clone()));
+    let first = play(run(), |record| all.push(record.clone()));
     assert_eq!(first, play(run(), |_| ()));
     let frames: Vec<_> = all.iter().flat_map(|m| &m.frames).collect();
     assert!(frames.len() >= 356, "{}", frames.len());
     // In the first second both close up as fast as they can, and their cameras swing.
-    let late: Vec<_> = frames.iter().filter(|frame| frame.sighting.stamp > 1.0).collect();
+    let late: Vec<_> = frames.iter().filter(|frame| frame.measurement.stamp > 1.0).collect();
     let seen = late.iter().filter(|frame| frame.outcome.seen()).count();
     assert!(seen as f64 >= 0.99 * late.len() as f64, "{seen} of {}", late.len());
     for frame in frames.iter().filter(|frame| frame.outcome == Outcome::Used) {
-        let off = (frame.sighting.relative.distance - frame.truth.distance).abs();
+        let off = (frame.measurement.relative.distance - frame.truth.distance).abs();
         assert!(off < 0.01 * frame.truth.distance, "{frame:?}");
     }
     let [before, after] = [&all[0], all.last().expect("moments")].map(|m| m.edges[0].error[0].abs());

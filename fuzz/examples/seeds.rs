@@ -101,9 +101,9 @@ fn log(name: &str) -> Vec<u8> {
         period: scene.time.period,
         judging: vocabulary::Judging { settling_band: [0.02; 2], settled_after: 0.0 },
     };
-    let mut recorder = recording::Recorder::create(folder.path(), run.cast(), options).expect("a recorder");
-    while let Some(moment) = run.next_moment() {
-        recorder.push(moment).expect("recorded");
+    let mut recorder = recording::Recorder::create(folder.path(), run.fleet(), options).expect("a recorder");
+    while let Some(record) = run.next_record() {
+        recorder.push(record).expect("recorded");
     }
     recorder.finish(recording::Status::Complete).expect("finished");
     fs::read(folder.path().join("log.mcap")).expect("a log")

@@ -11,12 +11,12 @@ pub fn mcap_log(data: &[u8]) {
     let path = folder.path().join("log.mcap");
     std::fs::write(&path, data).expect("written");
     let Ok(log) = Log::open(&path) else { return };
-    let (robots, edges) = (log.cast().members.len(), log.cast().edges.len());
+    let (robots, edges) = (log.fleet().robots.len(), log.fleet().edges.len());
     let mut middle = 0.0;
-    for moment in log.moments().take(MOST) {
-        let Ok(moment) = moment else { break };
-        assert!(moment.snapshot.robots.len() <= robots && moment.edges.len() <= edges);
-        middle = 0.5 * moment.snapshot.time;
+    for record in log.records().take(MOST) {
+        let Ok(record) = record else { break };
+        assert!(record.snapshot.robots.len() <= robots && record.edges.len() <= edges);
+        middle = 0.5 * record.snapshot.time;
     }
     drop(log.at(middle));
     drop(log.moments_from(middle).next());

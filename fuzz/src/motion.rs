@@ -29,8 +29,8 @@ pub fn way_points(data: &[u8]) {
     let Ok(setup) = simulation::build(&loaded.scene) else { return };
     let mut simulation = Simulation::new(setup);
     for _ in 0..SAMPLES {
-        let Some(moment) = simulation.next_moment() else { break };
-        let motion = moment.snapshot.robots[0].motion;
+        let Some(record) = simulation.next_record() else { break };
+        let motion = record.snapshot.robots[0].motion;
         let numbers = [
             motion.pose.x,
             motion.pose.y,

@@ -68,7 +68,7 @@ fn check(text: &str, set: &[Override]) {
         Ok(setup) => {
             let mut simulation = Simulation::new(setup);
             for _ in 0..SAMPLES {
-                if simulation.next_moment().is_none() {
+                if simulation.next_record().is_none() {
                     break;
                 }
             }

@@ -38,7 +38,7 @@ pub(crate) fn accuracy(args: &AccuracyArgs) -> Outcome {
             bench = Some(Bench::new(&gpu, number(args.seed, done / each), args.seed)?);
         }
         let Some(bench) = bench.as_mut() else { break };
-        let snapshot = place(args.seed, done, &bench.cast.members[FOLLOWER]);
+        let snapshot = place(args.seed, done, &bench.fleet.robots[FOLLOWER]);
         let (sample, took) = bench.try_pose(&snapshot, done)?;
         bins[bin_of(sample.distance)].add(&sample);
         for (all, one) in times.iter_mut().zip(took) {

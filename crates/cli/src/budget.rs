@@ -23,12 +23,12 @@ use rendering::{AdapterChoice, Gpu};
 use scene::Scene;
 use simulation::Simulation;
 use std::path::Path;
-use vocabulary::{Cast, counted};
+use vocabulary::{FleetInfo, counted};
 
 /// A comparison, as far as it has come.
 pub(crate) struct Budget<'a> {
     pub(crate) scene: &'a Scene,
-    pub(crate) cast: Cast,
+    pub(crate) fleet: FleetInfo,
     /// Time from which errors count, s.
     pub(crate) settled_after: f64,
     /// Whether observer constants are compared instead of ways of sensing.
@@ -45,8 +45,8 @@ pub(crate) struct Budget<'a> {
 impl Budget<'_> {
     /// Names of the edges.
     pub(crate) fn edge(&self, index: usize) -> [&str; 2] {
-        let name = |robot: usize| self.cast.members.get(robot).map_or("", |m| m.name.as_str());
-        self.cast.edges.get(index).map_or([""; 2], |edge| [name(edge.leader), name(edge.follower)])
+        let name = |robot: usize| self.fleet.robots.get(robot).map_or("", |m| m.name.as_str());
+        self.fleet.edges.get(index).map_or([""; 2], |edge| [name(edge.leader), name(edge.follower)])
     }
 
     /// The run of a case, where it has come to that.
@@ -102,7 +102,7 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
     let settled_after = scene.judging().settled_after;
     let mut budget = Budget {
         scene: &scene,
-        cast: simulation.cast().clone(),
+        fleet: simulation.fleet().clone(),
         settled_after,
         constants: !args.epsilon.is_empty(),
         runs: vec![],

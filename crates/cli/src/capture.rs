@@ -14,7 +14,7 @@ use output::Place;
 use rendering::{Gpu, png};
 use serde_json::json;
 use std::path::Path;
-use vocabulary::{Cast, counted};
+use vocabulary::{FleetInfo, counted};
 
 /// What pictures are made of.
 pub(crate) struct Job<'a> {
@@ -30,7 +30,7 @@ pub(crate) struct Job<'a> {
     pub(crate) of: &'a Path,
     /// What files are called by.
     pub(crate) name: String,
-    pub(crate) cast: Cast,
+    pub(crate) fleet: FleetInfo,
     /// s.
     pub(crate) duration: f64,
     pub(crate) settings: &'a scene::Film,
@@ -49,13 +49,13 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
         json: args.scene.json,
         of: &args.scene.scene,
         name: stem(&args.scene.scene),
-        cast: loaded.simulation.cast().clone(),
+        fleet: loaded.simulation.fleet().clone(),
         duration: scene.time.duration,
         settings: &scene.film,
         view: &scene.views.default,
     };
     draw(&job, |gpu| {
-        loaded.open_eyes(Some(gpu), &args.scene)?;
+        loaded.attach_cameras(Some(gpu), &args.scene)?;
         Ok(Source::Run(Box::new(loaded.simulation)))
     })
 }
@@ -64,28 +64,28 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
 pub(crate) fn draw(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
     let times = times::within(job.at, job.duration)?;
     let _place = Place::folder(job.out)?;
-    let Job { cast, name, .. } = job;
-    let mut studio = Studio::open((job.adapter, job.picture), cast, job.view, job.settings.size)?;
+    let Job { fleet, name, .. } = job;
+    let mut studio = Studio::open((job.adapter, job.picture), fleet, job.view, job.settings.size)?;
     let source = source(&studio.gpu)?;
     let adapter = studio.gpu.description();
-    let mut playback = Playback::new(cast, source);
+    let mut playback = Playback::new(fleet, source);
     let what = format!("Drawing {} of {name}", counted(times.len(), "picture"));
     let progress = Progress::begin(&what, times.len() as u64, job.quiet || times.len() < 4);
     let (mut files, mut shown, mut replaced) = (Vec::new(), Vec::new(), Replaced::default());
     for (count, time) in times.iter().enumerate() {
-        let moment = playback.at(*time);
+        let record = playback.at(*time);
         if interrupt::asked() {
             return Err(Failure::Interrupted(format!("{count} of {} pictures are written", times.len())));
         }
         playback.check()?;
         // A run that ended early has no later times: the picture is that of its end, once, and is called so.
-        let (end, early) = (moment.snapshot.time, moment.snapshot.time < time - 1e-9);
+        let (end, early) = (record.snapshot.time, record.snapshot.time < time - 1e-9);
         let time = if early { end } else { *time };
         if early {
             let end = times::shown(end);
             note(&format!("the run ended at {end} s: a picture shows its end, later times have none"));
         }
-        let picture = studio.renderer.draw(playback.trail(), &moment, &studio.layout, &studio.style)?;
+        let picture = studio.renderer.draw(playback.trail(), &record, &studio.layout, &studio.style)?;
         let path = job.out.join(format!("{name}-{}.png", times::in_names(time)));
         let time_text = time.to_string();
         let scene_text = job.of.display().to_string();

@@ -19,7 +19,7 @@ use scene::Scene;
 use simulation::certify::{Certificate, Examiner};
 use std::path::PathBuf;
 use std::time::Instant;
-use vocabulary::{Cast, Thing};
+use vocabulary::{EntityId, FleetInfo};
 
 #[derive(Debug, Args)]
 pub(crate) struct CertifyArgs {
@@ -51,7 +51,7 @@ fn bound(text: &str) -> Result<f64, String> {
 /// All that is known of a scene.
 pub(crate) struct Report<'a> {
     scene: &'a Scene,
-    cast: Cast,
+    fleet: FleetInfo,
     certificates: Vec<Certificate>,
     beyond: Option<Beyond>,
     bound: Option<f64>,
@@ -61,8 +61,8 @@ pub(crate) struct Report<'a> {
 impl Report<'_> {
     /// "leader → follower".
     fn edge(&self, index: usize) -> String {
-        let name = |robot: usize| self.cast.name(Thing::Robot(robot));
-        self.cast
+        let name = |robot: usize| self.fleet.name(EntityId::Robot(robot));
+        self.fleet
             .edges
             .get(index)
             .map_or_else(String::new, |e| format!("{} → {}", name(e.leader), name(e.follower)))
@@ -70,7 +70,7 @@ impl Report<'_> {
 
     /// Name of the robot that follows on an edge.
     fn follower(&self, index: usize) -> &str {
-        self.cast.edges.get(index).map_or("", |edge| self.cast.name(Thing::Robot(edge.follower)))
+        self.fleet.edges.get(index).map_or("", |edge| self.fleet.name(EntityId::Robot(edge.follower)))
     }
 
     /// Whether no statement of any edge is violated.
@@ -83,10 +83,10 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     let began = Instant::now();
     let mut loaded = load(&args.scene)?;
     let _place = args.out.as_deref().map(Place::folder).transpose()?;
-    loaded.open_eyes(None, &args.scene)?;
+    loaded.attach_cameras(None, &args.scene)?;
     let Loaded { scene, mut simulation } = loaded;
     let quiet = args.scene.quiet || args.scene.json;
-    if simulation.cast().edges.is_empty() {
+    if simulation.fleet().edges.is_empty() {
         let text =
             format!("{}: nobody follows anybody, so there is nothing to certify", args.scene.scene.display());
         return Err(Failure::Usage(text));
@@ -95,7 +95,7 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     let progress = Progress::begin(&what, simulation.len(), quiet);
     let mut examiner = Examiner::keeping(&scene, &simulation);
     let mut step = 0;
-    while simulation.next_moment().is_some() {
+    while simulation.next_record().is_some() {
         examiner.push(&simulation);
         step += 1;
         if step % STRIDE == 0 {
@@ -111,8 +111,8 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     progress.end();
     let certificates = examiner.finish(&simulation);
     let beyond = (!args.paper_only).then(|| beyond::look(&scene, args.sensitivity, quiet)).transpose()?;
-    let cast = simulation.cast().clone();
-    let mut report = Report { scene: &scene, cast, certificates, beyond, bound: args.bound, wall: 0.0 };
+    let fleet = simulation.fleet().clone();
+    let mut report = Report { scene: &scene, fleet, certificates, beyond, bound: args.bound, wall: 0.0 };
     report.wall = began.elapsed().as_secs_f64();
     let written =
         args.out.as_deref().map(|folder| files::write(folder, &report, args.scene.quiet)).transpose();

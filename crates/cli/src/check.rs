@@ -16,14 +16,14 @@ pub(crate) fn check(args: &CheckArgs) -> Outcome {
                 problems.push(format!("{}: {beyond}", path.display()));
             }
             Ok((scene, setup)) if args.resolved => {
-                say(&format!("# {}: {}", path.display(), counted(setup.cast.members.len(), "robot")));
+                say(&format!("# {}: {}", path.display(), counted(setup.fleet.robots.len(), "robot")));
                 say(&scene.to_toml());
             }
             Ok((scene, setup)) => {
                 for late in scene.late() {
                     note(&format!("{}: note: {late}", path.display()));
                 }
-                let (robots, edges) = (setup.cast.members.len(), setup.cast.edges.len());
+                let (robots, edges) = (setup.fleet.robots.len(), setup.fleet.edges.len());
                 let length = scene.time.duration;
                 let (robots, edges) = (counted(robots, "robot"), counted(edges, "edge"));
                 say(&format!("{}: good: {}; {robots} and {edges}, {length} s", path.display(), scene.title));

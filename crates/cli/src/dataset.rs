@@ -19,13 +19,13 @@ use camera::{FollowerCamera, Taken};
 use folder::Folder;
 use light::{Exposure, Wanted, gather};
 use perception::imaging::Optics;
-use perception::sensors::{CameraModel, Senses, Sensor, Source};
-use rendering::{AdapterChoice, CameraEyes, Gpu};
+use perception::sensors::{CameraSettings, Sensor, SensorConfig, Source};
+use rendering::{AdapterChoice, Gpu, GpuCameraRenderer};
 use scene::{Role, Scene};
 use serde_json::{Value, json};
 use std::time::Instant;
 use timeline::Timeline;
-use vocabulary::{Cast, Edge, Region, counted};
+use vocabulary::{Edge, FleetInfo, Region, counted};
 
 /// Version of the form of `dataset.json`.
 const FORMAT: u32 = 1;
@@ -33,22 +33,22 @@ const FORMAT: u32 = 1;
 pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
     let began = Instant::now();
     let mut loaded = load(&args.scene)?;
-    let cast = loaded.simulation.cast().clone();
-    let edges = chosen(&cast, &args.edges)?;
+    let fleet = loaded.simulation.fleet().clone();
+    let edges = chosen(&fleet, &args.edges)?;
     let gpu = Gpu::open(&AdapterChoice::from(args.scene.adapter.as_str()))?;
-    loaded.open_eyes(Some(&gpu), &args.scene)?;
+    loaded.attach_cameras(Some(&gpu), &args.scene)?;
     let scene = loaded.scene;
     let mut export = Export {
-        eyes: CameraEyes::new(&gpu, &cast)?,
-        cameras: edges.iter().map(|edge| follower_camera(&scene, &cast, *edge, args.whole)).collect(),
-        senses: senses(&scene, &cast),
+        eyes: GpuCameraRenderer::new(&gpu, &fleet)?,
+        cameras: edges.iter().map(|edge| follower_camera(&scene, &fleet, *edge, args.whole)).collect(),
+        sensor_config: sensor_config(&scene, &fleet),
         exposure: Exposure { factor: scene.vision.exposure, shutter: scene.vision.shutter },
         folder: Folder::create(&args.out, args.force)?,
         adapter: gpu.description(),
         pictures: vec![],
         images: vec![],
         annotations: vec![],
-        cast,
+        fleet,
         scene,
     };
     // A data set whose program was killed says so, and can be replaced.
@@ -116,9 +116,9 @@ pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
 }
 
 /// The edges of the followers that are named; all if none is.
-fn chosen(cast: &Cast, names: &[String]) -> Result<Vec<Edge>, Failure> {
-    let follower = |edge: &Edge| cast.members[edge.follower].name.as_str();
-    let known: Vec<&str> = cast.edges.iter().map(follower).collect();
+fn chosen(fleet: &FleetInfo, names: &[String]) -> Result<Vec<Edge>, Failure> {
+    let follower = |edge: &Edge| fleet.robots[edge.follower].name.as_str();
+    let known: Vec<&str> = fleet.edges.iter().map(follower).collect();
     if known.is_empty() {
         return Err(Failure::Usage("the scene has no followers, and so no cameras".into()));
     }
@@ -129,17 +129,21 @@ fn chosen(cast: &Cast, names: &[String]) -> Result<Vec<Edge>, Failure> {
         )));
     }
     let wanted = |edge: &&Edge| names.is_empty() || names.iter().any(|name| name == follower(edge));
-    Ok(cast.edges.iter().filter(wanted).copied().collect())
+    Ok(fleet.edges.iter().filter(wanted).copied().collect())
 }
 
 /// Tilt that is expected of bodies on springs or uneven ground, standard deviation, rad; as for cameras that steer.
 const TILT: f64 = std::f64::consts::PI / 180.0;
 
-fn follower_camera(scene: &Scene, cast: &Cast, edge: Edge, whole: bool) -> FollowerCamera {
+fn follower_camera(scene: &Scene, fleet: &FleetInfo, edge: Edge, whole: bool) -> FollowerCamera {
     let (vision, robots) = (&scene.vision, &scene.robots);
-    let optics = Optics { lens: cast.members[edge.follower].lens, blur: vision.blur, noise: vision.noise };
+    let optics = Optics {
+        camera_model: fleet.robots[edge.follower].camera_model,
+        blur: vision.blur,
+        noise: vision.noise,
+    };
     let wheels = |index: usize| robots.get(index).is_some_and(|robot| robot.vehicle.kind.has_wheels());
-    let upright = cast.terrain.is_none() && !wheels(edge.leader) && !wheels(edge.follower);
+    let upright = fleet.terrain.is_none() && !wheels(edge.leader) && !wheels(edge.follower);
     let asked = robots.get(edge.follower).and_then(|robot| match &robot.role {
         Role::Follow(follow) => follow.sensing.tilt,
         Role::Lead { .. } => None,
@@ -149,20 +153,27 @@ fn follower_camera(scene: &Scene, cast: &Cast, edge: Edge, whole: bool) -> Follo
 }
 
 /// What knows what stands in the way of whom; nobody looks with it.
-fn senses(scene: &Scene, cast: &Cast) -> Senses {
+fn sensor_config(scene: &Scene, fleet: &FleetInfo) -> SensorConfig {
     let truth = Sensor { source: Source::Truth, rate: 1.0, latency: 0.0, drop: 0.0, tilt: 0.0 };
-    let sensors = cast.edges.iter().map(|_| truth).collect();
-    let things = (cast.members.as_slice(), cast.props.as_slice());
-    Senses::new(&cast.edges, sensors, things, cast.terrain.clone(), CameraModel::default(), scene.seed)
+    let sensors = fleet.edges.iter().map(|_| truth).collect();
+    let things = (fleet.robots.as_slice(), fleet.props.as_slice());
+    SensorConfig::new(
+        &fleet.edges,
+        sensors,
+        things,
+        fleet.terrain.clone(),
+        CameraSettings::default(),
+        scene.seed,
+    )
 }
 
 /// A data set that is being written.
 struct Export {
     scene: Scene,
-    cast: Cast,
-    eyes: CameraEyes,
+    fleet: FleetInfo,
+    eyes: GpuCameraRenderer,
     cameras: Vec<FollowerCamera>,
-    senses: Senses,
+    sensor_config: SensorConfig,
     exposure: Exposure,
     folder: Folder,
     adapter: String,
@@ -178,16 +189,16 @@ impl Export {
         // What is within rounding of a control sample is told as the time that was asked for.
         now.time = time;
         let want = |camera: &FollowerCamera| {
-            let source = camera.sensor.source(Region::whole(&camera.sensor.optics().lens));
+            let source = camera.sensor.source(Region::whole(&camera.sensor.optics().camera_model));
             Wanted { robot: camera.edge.follower, region: source.region, centre: source.centre }
         };
         let wanted: Vec<Wanted> = self.cameras.iter().map(want).collect();
-        let light = gather(&mut self.eyes, &self.cast, &self.exposure, (timeline, &now), &wanted)?;
+        let light = gather(&mut self.eyes, &self.fleet, &self.exposure, (timeline, &now), &wanted)?;
         for (camera, light) in self.cameras.iter_mut().zip(&light) {
             let picture = camera.expose(light, self.scene.seed, frame);
             let name = format!("{frame:05}-{:03}", camera.edge.follower);
             let file = self.folder.picture(&name, &picture)?;
-            let labels = camera.labels(&self.cast, &self.senses, &now);
+            let labels = camera.labels(&self.fleet, &self.sensor_config, &now);
             let image = self.images.len() + 1;
             self.images.push(json!({
                 "id": image, "file_name": file, "width": picture.width, "height": picture.height,
@@ -196,7 +207,7 @@ impl Export {
                 self.annotations.push(label.as_coco(self.annotations.len() + 1, image));
             }
             let taken = Taken { file, picture: &picture, snapshot: &now };
-            self.pictures.push(camera.note(&self.cast, &labels, &taken));
+            self.pictures.push(camera.note(&self.fleet, &labels, &taken));
         }
         Ok(())
     }
@@ -205,20 +216,20 @@ impl Export {
         self.folder.json(
             "dataset.json",
             &json!({
-                "format": FORMAT, "program": PROGRAM, "status": status, "title": self.cast.title,
+                "format": FORMAT, "program": PROGRAM, "status": status, "title": self.fleet.title,
                 "seed": self.scene.seed, "adapter": self.adapter,
                 "tags": { "family": "tag36h11", "opencv": "DICT_APRILTAG_36h11" },
                 "sensor": {
                     "blur": self.scene.vision.blur, "noise": self.scene.vision.noise,
                     "exposure": self.exposure.factor, "shutter": self.exposure.shutter,
                 },
-                "robots": self.cast.members.iter().map(words::robot).collect::<Vec<_>>(),
-                "cameras": self.cameras.iter().map(|c| c.describe(&self.cast)).collect::<Vec<_>>(),
+                "robots": self.fleet.robots.iter().map(words::robot).collect::<Vec<_>>(),
+                "cameras": self.cameras.iter().map(|c| c.describe(&self.fleet)).collect::<Vec<_>>(),
                 "summary": self.summary(),
                 "pictures": self.pictures,
             }),
         )?;
-        self.folder.json("coco.json", &words::coco(&self.cast.title, &self.images, &self.annotations))
+        self.folder.json("coco.json", &words::coco(&self.fleet.title, &self.images, &self.annotations))
     }
 
     /// How much there is of everything.
@@ -241,22 +252,22 @@ impl Export {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::{Body, Member};
+    use vocabulary::{Body, RobotInfo};
 
     #[test]
     fn followers_are_chosen_by_name() {
         let names = ["ann", "bob", "eve"];
-        let cast = Cast {
-            members: names.map(|name| Member::new(name, name == "ann", Body::default())).to_vec(),
+        let fleet = FleetInfo {
+            robots: names.map(|name| RobotInfo::new(name, name == "ann", Body::default())).to_vec(),
             edges: vec![Edge { leader: 0, follower: 1 }, Edge { leader: 1, follower: 2 }],
-            ..Cast::default()
+            ..FleetInfo::default()
         };
         let chosen = |names: &[&str]| {
             let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
-            chosen(&cast, &names)
+            chosen(&fleet, &names)
         };
         assert_eq!(chosen(&[]).expect("all").len(), 2);
-        assert_eq!(chosen(&["eve"]).expect("one"), [cast.edges[1]]);
+        assert_eq!(chosen(&["eve"]).expect("one"), [fleet.edges[1]]);
         for bad in ["ann", "", "boob"] {
             assert!(matches!(chosen(&[bad]), Err(Failure::Usage(text)) if text.contains("bob, eve")));
         }

@@ -49,7 +49,7 @@ struct Diff {
     casts: Option<[String; 2]>,
     digests: [Option<String>; 2],
     /// Of the moments, where both have logs and the same robots.
-    moments: Option<Comparison>,
+    records: Option<Comparison>,
 }
 
 pub(crate) fn diff(args: &DiffArgs) -> Outcome {
@@ -64,7 +64,7 @@ pub(crate) fn diff(args: &DiffArgs) -> Outcome {
     let bare = [&a, &b].map(|run| run.scene.1.is_empty());
     let keys = (bare == [false; 2]).then(|| keys(&a, &b));
     let digests = [&a, &b].map(|run| run.manifest.digest.clone());
-    let moments = match (a.moments(), b.moments()) {
+    let records = match (a.records(), b.records()) {
         (Some(left), Some(right)) if casts.is_none() => {
             let steps = a.manifest.samples.max(b.manifest.samples);
             let what = format!("Comparing {} with {}", names[0], names[1]);
@@ -84,11 +84,11 @@ pub(crate) fn diff(args: &DiffArgs) -> Outcome {
         _ => None,
     };
     // Without logs, digests tell whether, but not where.
-    if moments.is_none() && casts.is_none() && (digests[0].is_none() || digests[1].is_none()) {
+    if records.is_none() && casts.is_none() && (digests[0].is_none() || digests[1].is_none()) {
         a.log()?;
         b.log()?;
     }
-    let diff = Diff { names, keys, bare, casts, digests, moments };
+    let diff = Diff { names, keys, bare, casts, digests, records };
     if args.json {
         diff.as_json();
     } else if !args.quiet {
@@ -156,7 +156,7 @@ fn unit(field: &str) -> (String, &'static str) {
 impl Diff {
     fn same(&self) -> bool {
         self.casts.is_none()
-            && match &self.moments {
+            && match &self.records {
                 Some(found) => found.same(),
                 None => self.digests[0].is_some() && self.digests[0] == self.digests[1],
             }
@@ -179,8 +179,8 @@ impl Diff {
                 say(&format!("  and {} more; --json tells all", keys.len() - 20));
             }
         }
-        match &self.moments {
-            Some(found) => moments(found, self.same(), &self.names),
+        match &self.records {
+            Some(found) => records(found, self.same(), &self.names),
             None if self.casts.is_some() => say("DIFFERENT"),
             None => {
                 let verdict =
@@ -195,7 +195,7 @@ impl Diff {
         let key = |(key, [a, b]): &(String, [String; 2])| json!({ "key": key, "a": a, "b": b });
         let keys = self.keys.as_ref().map(|keys| keys.iter().map(key).collect::<Vec<_>>());
         let finite = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
-        let moments = self.moments.as_ref().map(|found| {
+        let records = self.records.as_ref().map(|found| {
             let first = found.first.as_ref().map(|first| {
                 let (name, unit) = unit(first.quantity);
                 json!({
@@ -222,7 +222,7 @@ impl Diff {
             "casts": self.casts.as_ref().map(pair),
             "scene": keys,
             "digests": { "a": self.digests[0], "b": self.digests[1] },
-            "moments": moments,
+            "moments": records,
         }));
     }
 }
@@ -232,7 +232,7 @@ fn differing(count: usize) -> String {
 }
 
 /// What became of the moments.
-fn moments(found: &Comparison, same: bool, names: &[String; 2]) {
+fn records(found: &Comparison, same: bool, names: &[String; 2]) {
     if same {
         let exact = if found.peaks.is_empty() && found.differing == 0 { "same: bit for bit" } else { "same" };
         say(&format!("{exact}, {}", counted(found.samples, "sample")));

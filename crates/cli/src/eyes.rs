@@ -2,12 +2,12 @@
 
 use crate::failure::Failure;
 use recording::log::Roll;
-use rendering::{AdapterChoice, CameraEyes, Gpu};
+use rendering::{AdapterChoice, Gpu, GpuCameraRenderer};
 use simulation::Simulation;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::Instant;
-use vocabulary::{Eyes, Grey, Shot, Snapshot};
+use vocabulary::{CameraRenderer, Grey, Shot, Snapshot};
 
 /// What drawing for the robots' cameras has cost so far.
 #[derive(Debug, Clone, Default)]
@@ -27,11 +27,11 @@ impl Drawn {
 
 /// Eyes with a stop watch.
 struct Timed {
-    eyes: CameraEyes,
+    eyes: GpuCameraRenderer,
     drawn: Drawn,
 }
 
-impl Eyes for Timed {
+impl CameraRenderer for Timed {
     fn look(&mut self, snapshot: &Snapshot, shots: &[Shot], pictures: &mut Vec<Grey>) -> Result<(), String> {
         let began = Instant::now();
         let result = self.eyes.look(snapshot, shots, pictures);
@@ -51,14 +51,14 @@ pub(crate) fn open(
     roll: Option<&Roll>,
 ) -> Result<Drawn, Failure> {
     let drawn = Drawn::default();
-    if !simulation.needs_eyes() {
+    if !simulation.needs_cameras() {
         return Ok(drawn);
     }
     let opened = if gpu.is_none() { Some(Gpu::open(&AdapterChoice::from(adapter))?) } else { None };
     if let Some(gpu) = gpu.or(opened.as_ref()) {
-        let eyes = CameraEyes::new(gpu, simulation.cast())?;
-        let eyes: Box<dyn Eyes> = Box::new(Timed { eyes, drawn: drawn.clone() });
-        simulation.open_eyes(match roll {
+        let eyes = GpuCameraRenderer::new(gpu, simulation.fleet())?;
+        let eyes: Box<dyn CameraRenderer> = Box::new(Timed { eyes, drawn: drawn.clone() });
+        simulation.attach_cameras(match roll {
             Some(roll) => roll.through(eyes),
             None => eyes,
         });

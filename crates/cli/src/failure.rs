@@ -61,7 +61,7 @@ impl Failure {
 impl From<&simulation::Fault> for Failure {
     fn from(fault: &simulation::Fault) -> Self {
         match fault {
-            simulation::Fault::Eyes(text) => Self::Machine(text.clone()),
+            simulation::Fault::CameraRenderer(text) => Self::Machine(text.clone()),
             simulation::Fault::NotFinite(what) => Self::Broken(what.to_string()),
         }
     }

@@ -16,7 +16,7 @@ use clap::Args;
 use folder::Folder;
 use meter::Meter;
 use rendering::{AdapterChoice, Gpu};
-use report::{Case, Job, Press, Ran, Report, Tracer};
+use report::{Case, Job, Ran, Rasterizer, Report, Tracer};
 use scene::{Override, Scene};
 use simulation::Simulation;
 use std::path::PathBuf;
@@ -156,7 +156,7 @@ fn make(
             drawn::draw(show, gpu, &args.adapter, &runs, (&mut *folder, &mut *meter), &mut report)?;
         }
     }
-    let press = Press::new(&[rendering::FONT]);
+    let press = Rasterizer::new(&[rendering::FONT]);
     let printed = |error: report::PressError| Failure::Machine(error.to_string());
     for item in &report.items {
         stop(meter)?;
@@ -174,10 +174,10 @@ fn make(
 const DPI: f32 = 300.0;
 
 fn run(job: &Job, mut simulation: Simulation, meter: &mut Meter) -> Result<Ran, Failure> {
-    let colours = rendering::robot_colours(simulation.cast());
+    let colours = rendering::robot_colours(simulation.fleet());
     let mut tracer = Tracer::new(job.name.clone(), &job.scene, &simulation, &colours, job.transient);
-    while let Some(moment) = simulation.next_moment() {
-        tracer.push(moment);
+    while let Some(record) = simulation.next_record() {
+        tracer.push(record);
         meter.sample();
         stop(meter)?;
     }

@@ -24,7 +24,7 @@ use rendering::{Film, FilmKind, Gpu, Room, Show};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
-use vocabulary::{Cast, Judging, counted};
+use vocabulary::{FleetInfo, Judging, counted};
 
 /// What a film is made of.
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
@@ -43,7 +43,7 @@ pub(crate) struct Job<'a> {
     pub(crate) json: bool,
     /// Of the scene or the recorded run.
     pub(crate) name: String,
-    pub(crate) cast: Cast,
+    pub(crate) fleet: FleetInfo,
     /// What the scene is about.
     pub(crate) description: String,
     /// s.
@@ -78,7 +78,7 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
         quiet: args.scene.quiet,
         json: args.scene.json,
         name,
-        cast: loaded.simulation.cast().clone(),
+        fleet: loaded.simulation.fleet().clone(),
         description: scene.description.clone(),
         duration: scene.time.duration,
         settings: scene.film.clone(),
@@ -88,7 +88,7 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
         captions: captions(&scene),
     };
     shoot(job, |gpu| {
-        loaded.open_eyes(Some(gpu), &args.scene)?;
+        loaded.attach_cameras(Some(gpu), &args.scene)?;
         Ok(Source::Run(Box::new(loaded.simulation)))
     })
 }
@@ -107,17 +107,17 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
         FilmKind::PngSequence => Place::new_folder(&job.path)?,
         _ => Place::file(&job.path)?,
     };
-    let Job { path, name, cast, settings, .. } = &job;
+    let Job { path, name, fleet, settings, .. } = &job;
     let rate = job.fps.unwrap_or(settings.fps);
     if !(1.0..=240.0).contains(&rate) {
         return Err(rendering::Error::FrameRate(rate).into());
     }
     let view = settings.view.as_deref().unwrap_or(job.view);
-    let names: Vec<String> = cast.members.iter().map(|m| m.name.clone()).collect();
+    let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
     // Whoever names a view wants that one, from beginning to end.
     let board = Board::new(settings, (job.picture.view.as_deref(), view), job.duration, &names)?;
     let frames = board.frames(rate);
-    let mut studio = Studio::open((job.adapter, job.picture), cast, view, settings.size)?;
+    let mut studio = Studio::open((job.adapter, job.picture), fleet, view, settings.size)?;
     let told = settings.shots.iter().map(|shot| shot.line.as_str()).chain([job.description.as_str()]);
     studio.check_texts(told);
     let source = source(&studio.gpu)?;
@@ -133,39 +133,39 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     if done > 0 && !job.quiet {
         note(&format!("going on after {:.2} s that are there from an interrupted film", done as f64 / rate));
     }
-    let mut playback = Playback::new(cast, source).measured(MetricsBuilder::new(cast, job.judging));
-    let mut plots = Plots::new(cast, job.duration);
+    let mut playback = Playback::new(fleet, source).measured(MetricsBuilder::new(fleet, job.judging));
+    let mut plots = Plots::new(fleet, job.duration);
     let plain = studio.style.clone();
     // Where a line or a panel comes and goes, no camera moves.
-    let room = Room { panel: plain.inset, rows: board.rows(cast.edges.len()) };
+    let room = Room { panel: plain.inset, rows: board.rows(fleet.edges.len()) };
     // A run that ends before its time has fewer frames than its storyboard.
     let (mut index, mut shot, mut shown) = (0, 0, f64::NEG_INFINITY);
     while index < frames && !interrupt::asked() {
         let frame = board.at(index, rate);
-        let moment = playback.at(frame.time);
+        let record = playback.at(frame.time);
         playback.check()?;
         // Its last moment is shown, and not once more.
         if frame.cards[1] == 0.0 && playback.ended().is_some_and(|end| shown >= end) {
             index = board.last_card(rate);
             continue;
         }
-        shown = moment.snapshot.time;
-        plots.record(&moment);
+        shown = record.snapshot.time;
+        plots.record(&record);
         if shot >= done {
             let mut style = plain.clone();
             for element in frame.without {
                 style.set(element, false)?;
             }
             style.show = Show {
-                card: words::card(&frame, &job.description, cast, || playback.metrics()),
-                line: words::line(&frame, cast, &moment),
+                card: words::card(&frame, &job.description, fleet, || playback.metrics()),
+                line: words::line(&frame, fleet, &record),
                 plots: plots.shown(frame.plots),
                 room,
             };
-            if let Some((_, caption)) = job.captions.iter().rfind(|(at, _)| *at <= moment.snapshot.time) {
-                studio.renderer.retitle(&cast.title, caption);
+            if let Some((_, caption)) = job.captions.iter().rfind(|(at, _)| *at <= record.snapshot.time) {
+                studio.renderer.retitle(&fleet.title, caption);
             }
-            let ready = studio.renderer.draw_next(playback.trail(), &moment, &frame.layout, &style)?;
+            let ready = studio.renderer.draw_next(playback.trail(), &record, &frame.layout, &style)?;
             ready.map_or(Ok(()), |picture| film.push(picture)).map_err(|e| refused(e, &job, kind, rate))?;
         }
         (index, shot) = (index + 1, shot + 1);

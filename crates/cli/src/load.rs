@@ -29,7 +29,7 @@ pub(crate) fn load(args: &SceneArgs) -> Result<Loaded, Failure> {
 
 impl Loaded {
     /// Gives the robots' cameras someone to draw for them, where they take pictures: `gpu`, or the adapter of `args`.
-    pub(crate) fn open_eyes(&mut self, gpu: Option<&Gpu>, args: &SceneArgs) -> Result<Drawn, Failure> {
+    pub(crate) fn attach_cameras(&mut self, gpu: Option<&Gpu>, args: &SceneArgs) -> Result<Drawn, Failure> {
         eyes::open(&mut self.simulation, gpu, &args.adapter, None)
     }
 }

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::print::note;
 use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, View};
 use std::collections::BTreeSet;
-use vocabulary::Cast;
+use vocabulary::FleetInfo;
 
 /// Everything that draws.
 pub(crate) struct Studio {
@@ -22,11 +22,11 @@ impl Studio {
     /// Checks the words first and opens the adapter last, since that takes longest.
     pub(crate) fn open(
         (adapter, args): (&str, &PictureArgs),
-        cast: &Cast,
+        fleet: &FleetInfo,
         view: &str,
         size: [u32; 2],
     ) -> Result<Self, Failure> {
-        let names: Vec<String> = cast.members.iter().map(|m| m.name.clone()).collect();
+        let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
         let layout = Layout::parse(args.view.as_deref().unwrap_or(view), &names)?;
         let size = args.size.unwrap_or(size);
         let mut style = Style::without(&args.without)?;
@@ -36,7 +36,7 @@ impl Studio {
             note(
                 "--overlay shows in views through cameras only: add --view camera:ROBOT or --inset-camera ROBOT",
             );
-        } else if style.detections && !cast.looks {
+        } else if style.detections && !fleet.looks {
             note("nobody looks in this scene, so there is nothing to overlay: try --set sensing.kind=camera");
         }
         if let Some(robot) = &args.inset_camera {
@@ -49,8 +49,8 @@ impl Studio {
         }
         style.scale = args.scale.unwrap_or_else(|| Style::scale_for(size[0], size[1]));
         let gpu = Gpu::open(&AdapterChoice::from(adapter))?;
-        let renderer = Renderer::new(&gpu, cast, size[0], size[1], args.samples)?;
-        let named = names.iter().chain([&cast.title, &cast.caption]).map(String::as_str);
+        let renderer = Renderer::new(&gpu, fleet, size[0], size[1], args.samples)?;
+        let named = names.iter().chain([&fleet.title, &fleet.caption]).map(String::as_str);
         let lacks = renderer.unwritable(named);
         tell_lacking(&lacks);
         Ok(Self { gpu, renderer, layout, style, size, lacks })

@@ -7,7 +7,7 @@ use recording::log::Moments;
 use rendering::Trail;
 use simulation::Simulation;
 use vocabulary::Judging;
-use vocabulary::{Cast, Moment};
+use vocabulary::{FleetInfo, StepRecord};
 
 /// What nothing is judged by.
 const NOTHING: Judging = Judging { settling_band: [0.0; 2], settled_after: 0.0 };
@@ -25,19 +25,26 @@ pub(crate) struct Playback {
     source: Source,
     fault: Option<Failure>,
     trail: Trail,
-    before: Moment,
-    after: Moment,
+    before: StepRecord,
+    after: StepRecord,
     /// Whether there is no moment after that.
     ended: bool,
     metrics: Option<Box<MetricsBuilder>>,
 }
 
 impl Playback {
-    /// At time 0 of a run by `cast`.
-    pub(crate) fn new(cast: &Cast, source: Source) -> Self {
-        let (before, after) = (Moment::default(), Moment::default());
-        let mut playback =
-            Self { source, fault: None, trail: Trail::new(cast), before, after, ended: false, metrics: None };
+    /// At time 0 of a run by `fleet`.
+    pub(crate) fn new(fleet: &FleetInfo, source: Source) -> Self {
+        let (before, after) = (StepRecord::default(), StepRecord::default());
+        let mut playback = Self {
+            source,
+            fault: None,
+            trail: Trail::new(fleet),
+            before,
+            after,
+            ended: false,
+            metrics: None,
+        };
         playback.step();
         playback.before.clone_from(&playback.after);
         playback
@@ -52,7 +59,7 @@ impl Playback {
 
     /// What was measured so far.
     pub(crate) fn metrics(&self) -> Metrics {
-        let nothing = || MetricsBuilder::new(&Cast::default(), NOTHING).finish();
+        let nothing = || MetricsBuilder::new(&FleetInfo::default(), NOTHING).finish();
         self.metrics.as_ref().map_or_else(nothing, |metrics| metrics.finish())
     }
 
@@ -60,15 +67,15 @@ impl Playback {
     fn step(&mut self) -> bool {
         match &mut self.source {
             Source::Run(simulation) => {
-                if let Some(moment) = simulation.next_moment() {
-                    self.after.clone_from(moment);
+                if let Some(record) = simulation.next_record() {
+                    self.after.clone_from(record);
                 } else {
                     self.fault = simulation.fault().map(Failure::from);
                     return false;
                 }
             }
-            Source::Log(moments) => match moments.next() {
-                Some(Ok(moment)) => self.after = moment,
+            Source::Log(records) => match records.next() {
+                Some(Ok(record)) => self.after = record,
                 Some(Err(error)) => {
                     self.fault = Some(error.into());
                     return false;
@@ -85,7 +92,7 @@ impl Playback {
 
     /// The moment at `time` s, not before the last one asked for; the last moment of the run after its end; an
     /// earlier one where the program has been asked to stop.
-    pub(crate) fn at(&mut self, time: f64) -> Moment {
+    pub(crate) fn at(&mut self, time: f64) -> StepRecord {
         while self.after.snapshot.time < time && !interrupt::asked() {
             std::mem::swap(&mut self.before, &mut self.after);
             if !self.step() {
@@ -96,7 +103,7 @@ impl Playback {
         }
         let (from, to) = (self.before.snapshot.time, self.after.snapshot.time);
         let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
-        Moment::between(&self.before, &self.after, share)
+        StepRecord::between(&self.before, &self.after, share)
     }
 
     /// When the run ended, s, if all of it has been asked for.

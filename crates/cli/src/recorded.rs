@@ -28,7 +28,7 @@ impl Recorded {
     /// Opens a run folder or a log.
     pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
         let opened = Self::read(path)?;
-        if let Some(remark) = opened.moments().and_then(Log::remark) {
+        if let Some(remark) = opened.records().and_then(Log::remark) {
             note(&format!("{} {remark}", path.display()));
         }
         interrupt::watch();
@@ -87,7 +87,7 @@ impl Recorded {
 
     /// Fails where the beginning was left out, which `work` needs.
     pub(crate) fn needs_the_start(&self, work: &str) -> Result<(), Failure> {
-        let begins = self.moments().map_or(0.0, Log::begins);
+        let begins = self.records().map_or(0.0, Log::begins);
         if begins < 1e-9 {
             return Ok(());
         }
@@ -106,7 +106,7 @@ impl Recorded {
     }
 
     /// Its moments, where they are there.
-    pub(crate) fn moments(&self) -> Option<&Log> {
+    pub(crate) fn records(&self) -> Option<&Log> {
         self.log.as_ref().ok()
     }
 
@@ -124,12 +124,12 @@ impl Recorded {
 
     /// Samples and digest of the moments in its log, where it has one.
     pub(crate) fn logged(&self, quiet: bool) -> Result<Option<(u64, String)>, Failure> {
-        let Some(log) = self.moments() else { return Ok(None) };
+        let Some(log) = self.records() else { return Ok(None) };
         let steps = self.manifest.samples;
         let progress = Progress::begin(&format!("Reading {}", log.path().display()), steps, quiet);
         let (mut digest, mut samples) = (Digest::default(), 0);
-        for moment in log.moments() {
-            digest.push(&moment?);
+        for record in log.records() {
+            digest.push(&record?);
             samples += 1;
             if samples % STRIDE == 0 {
                 progress.at(samples);

@@ -96,14 +96,14 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
         let text = format!("{early} s is not in {}: it begins at {begins} s", log.path().display());
         return Err(Failure::Usage(text));
     }
-    let cast = log.cast().clone();
-    let mut duration = cast.duration;
+    let fleet = log.fleet().clone();
+    let mut duration = fleet.duration;
     if log.manifest().status != Status::Complete {
         duration = duration.min(samples.saturating_sub(1) as f64 * log.manifest().period);
         // A storyboard goes with the whole run.
         settings.shots.clear();
     }
-    let source = || Ok(Source::Log(Box::new(log.moments())));
+    let source = || Ok(Source::Log(Box::new(log.records())));
     if let Some(path) = &args.film {
         let job = film::Job {
             picture: &args.picture,
@@ -116,7 +116,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
             quiet: args.quiet,
             json: args.json,
             name,
-            cast,
+            fleet,
             description,
             duration,
             settings,
@@ -136,7 +136,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
         json: args.json,
         of: &args.run,
         name,
-        cast,
+        fleet,
         duration,
         settings: &settings,
         view: &view,
@@ -178,9 +178,9 @@ fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
     let progress = Progress::begin(&format!("Replaying {}", scene.title), simulation.len(), quiet);
     let cut = matches!(manifest.status, Status::Interrupted | Status::Running);
     let most = if cut { manifest.samples } else { u64::MAX };
-    let (samples, digest, apart) = run_again(&mut simulation, most, run.moments(), &progress)?;
+    let (samples, digest, apart) = run_again(&mut simulation, most, run.records(), &progress)?;
     progress.end();
-    let sees = simulation.needs_eyes();
+    let sees = simulation.needs_cameras();
     let log = logged.map(|(_, digest)| digest);
     let replay = Replay { manifest, recorded, log, digest, samples, apart, sees };
     if args.json {
@@ -201,16 +201,16 @@ fn run_again(
     progress: &Progress,
 ) -> Result<(u64, String, Option<f64>), Failure> {
     let (mut digest, mut samples, mut apart) = (Digest::default(), 0, None);
-    let mut logged = log.map(Log::moments);
+    let mut logged = log.map(Log::records);
     while samples < most {
-        let Some(moment) = simulation.next_moment() else { break };
-        digest.push(moment);
+        let Some(record) = simulation.next_record() else { break };
+        digest.push(record);
         // The digest is that of motions and commands; this is everything.
         if let (None, Some(logged)) = (apart, &mut logged)
             && let Some(then) = logged.next().transpose()?
-            && then != *moment
+            && then != *record
         {
-            apart = Some(moment.snapshot.time);
+            apart = Some(record.snapshot.time);
         }
         samples += 1;
         if samples % STRIDE == 0 {

@@ -54,7 +54,7 @@ fn judge(args: &RunArgs, cases: &mut Vec<Case>) -> Outcome {
     let mut sink = match &folder {
         Some(folder) => Sink::record(folder, args, &scene, &simulation, roll)?,
         None => Sink::Judge(Box::new((
-            MetricsBuilder::new(simulation.cast(), scene.judging()),
+            MetricsBuilder::new(simulation.fleet(), scene.judging()),
             Digest::default(),
         ))),
     };
@@ -64,8 +64,8 @@ fn judge(args: &RunArgs, cases: &mut Vec<Case>) -> Outcome {
     let began = Instant::now();
     let mut step = 0;
     let mut examiner = Examiner::new(&scene, &simulation);
-    while let Some(moment) = simulation.next_moment() {
-        if let Err(error) = sink.push(moment) {
+    while let Some(record) = simulation.next_record() {
+        if let Err(error) = sink.push(record) {
             sink.abandon();
             return Err(Failure::from(error).but(&folder.as_deref().map_or_else(String::new, kept)));
         }
@@ -80,7 +80,7 @@ fn judge(args: &RunArgs, cases: &mut Vec<Case>) -> Outcome {
     }
     let broken = match simulation.fault() {
         Some(Fault::NotFinite(what)) => Some(Finding::not_finite(what)),
-        Some(fault @ Fault::Eyes(_)) => {
+        Some(fault @ Fault::CameraRenderer(_)) => {
             sink.abandon();
             return Err(fault.into());
         }
@@ -94,7 +94,7 @@ fn judge(args: &RunArgs, cases: &mut Vec<Case>) -> Outcome {
         false => Status::Interrupted,
     };
     let certificates = examiner.finish(&simulation);
-    let certificates = certificates.iter().map(|c| c.metrics(simulation.cast())).collect();
+    let certificates = certificates.iter().map(|c| c.metrics(simulation.fleet())).collect();
     let findings: Vec<Finding> = match status {
         Status::Interrupted => vec![],
         _ => verdict(&scene, &sink.metrics(), status == Status::Complete).into_iter().chain(broken).collect(),
@@ -178,15 +178,15 @@ impl Sink {
             period: scene.time.period,
             judging: scene.judging(),
         };
-        Ok(Self::Record(Box::new(Recorder::create(folder, simulation.cast(), options)?)))
+        Ok(Self::Record(Box::new(Recorder::create(folder, simulation.fleet(), options)?)))
     }
 
-    fn push(&mut self, moment: &vocabulary::Moment) -> Result<(), recording::Error> {
+    fn push(&mut self, record: &vocabulary::StepRecord) -> Result<(), recording::Error> {
         match self {
-            Self::Record(recorder) => recorder.push(moment),
+            Self::Record(recorder) => recorder.push(record),
             Self::Judge(judge) => {
-                judge.0.push(moment);
-                judge.1.push(moment);
+                judge.0.push(record);
+                judge.1.push(record);
                 Ok(())
             }
         }

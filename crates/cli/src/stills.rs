@@ -17,7 +17,7 @@ use output::Place;
 use rendering::{Layout, Style};
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use vocabulary::{Moment, Picture};
+use vocabulary::{Picture, StepRecord};
 
 #[derive(Debug, Args)]
 pub(crate) struct StillsArgs {
@@ -45,37 +45,37 @@ const GAP: u32 = 8;
 pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;
     let _place = Place::folder(&args.out)?;
-    let cast = loaded.simulation.cast().clone();
+    let fleet = loaded.simulation.fleet().clone();
     let name = stem(&args.scene.scene);
     let quiet = args.scene.quiet || args.scene.json;
     let tile = args.picture.size.unwrap_or(TILE);
     let large = args.picture.size.unwrap_or(STROBE);
     let view = loaded.scene.views.default.clone();
-    let mut small = Studio::open((&args.scene.adapter, &args.picture), &cast, &view, tile)?;
-    loaded.open_eyes(Some(&small.gpu), &args.scene)?;
+    let mut small = Studio::open((&args.scene.adapter, &args.picture), &fleet, &view, tile)?;
+    loaded.attach_cameras(Some(&small.gpu), &args.scene)?;
     let duration = loaded.scene.time.duration;
 
     // Both are drawn from the same moments.
     let steps = u64::from(2 * args.count);
     let progress = Progress::begin(&format!("Drawing stills of {name}"), steps, quiet);
-    let mut playback = Playback::new(&cast, Source::Run(Box::new(loaded.simulation)));
-    let (mut moments, mut tiles): (Vec<Moment>, Vec<Picture>) = (Vec::new(), Vec::new());
+    let mut playback = Playback::new(&fleet, Source::Run(Box::new(loaded.simulation)));
+    let (mut records, mut tiles): (Vec<StepRecord>, Vec<Picture>) = (Vec::new(), Vec::new());
     for k in 0..args.count {
-        let moment = playback.at(duration * f64::from(k) / f64::from(args.count - 1));
+        let record = playback.at(duration * f64::from(k) / f64::from(args.count - 1));
         playback.check()?;
         if interrupt::asked() {
             return Err(Failure::Interrupted("nothing was written".into()));
         }
         // Title and law stand on the first picture for all of them.
         let style = Style { caption: small.style.caption && k == 0, inset: false, ..small.style.clone() };
-        tiles.push(small.renderer.draw(playback.trail(), &moment, &small.layout, &style)?);
-        moments.push(moment);
+        tiles.push(small.renderer.draw(playback.trail(), &record, &small.layout, &style)?);
+        records.push(record);
         progress.at(u64::from(k) + 1);
     }
     let sheet = sheet(&tiles, args.columns);
-    let mut big = rendering::Renderer::new(&small.gpu, &cast, large[0], large[1], args.picture.samples)?;
+    let mut big = rendering::Renderer::new(&small.gpu, &fleet, large[0], large[1], args.picture.samples)?;
     let aspect = f64::from(large[0]) / f64::from(large[1]);
-    let layout = Layout::single(strobe::view(&moments, &cast, aspect));
+    let layout = Layout::single(strobe::view(&records, &fleet, aspect));
     let style = Style {
         ghosts: false,
         labels: false,
@@ -87,19 +87,19 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
         scale: args.picture.scale.unwrap_or_else(|| Style::scale_for(large[0], large[1])),
         ..small.style
     };
-    let mut pictures = Vec::with_capacity(moments.len());
-    for (k, moment) in moments.iter().enumerate() {
+    let mut pictures = Vec::with_capacity(records.len());
+    for (k, record) in records.iter().enumerate() {
         if interrupt::asked() {
             return Err(Failure::Interrupted("nothing was written".into()));
         }
-        pictures.push(big.draw(playback.trail(), moment, &layout, &style)?);
+        pictures.push(big.draw(playback.trail(), record, &layout, &style)?);
         progress.at(u64::from(args.count) + k as u64 + 1);
     }
     let strobe = strobe::together(&pictures);
     progress.end();
     let adapter = small.gpu.description();
     let texts =
-        [("Title", cast.title.as_str()), ("Software", crate::run::PROGRAM), ("Adapter", adapter.as_str())];
+        [("Title", fleet.title.as_str()), ("Software", crate::run::PROGRAM), ("Adapter", adapter.as_str())];
     let (mut files, mut replaced) = (Vec::<(PathBuf, [u32; 2])>::new(), Replaced::default());
     for (kind, picture) in [("sheet", sheet), ("strobe", strobe)] {
         let path = args.out.join(format!("{name}-{kind}.png"));

@@ -13,7 +13,7 @@ use vocabulary::counted;
 
 pub(crate) fn tune(args: &TuneArgs) -> Outcome {
     let Loaded { scene, simulation } = load(&args.scene)?;
-    if simulation.needs_eyes() {
+    if simulation.needs_cameras() {
         let text = format!(
             "{}: a hundred runs on pictures take too long to tune on; tune on calculated tags instead, which err alike: \
              --set sensing.kind=geometric --set sensing.pixel_noise=0.05",

@@ -4,7 +4,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use formation::relative::Geometry;
 use formation::{Estimate, Law, LawInput, LawKind, Observer, Switching};
 use std::hint::black_box;
-use vocabulary::{Drive, EdgeSample, Relative, SetPoint, Track};
+use vocabulary::{EdgeSample, MotionInput, Relative, SetPoint, Track};
 
 fn relative(t: f64) -> Relative {
     Relative { distance: 2.1 + 0.3 * t, bearing: -2.3 - 0.2 * t, view_angle: -2.2 + 0.4 * t }
@@ -13,7 +13,7 @@ fn relative(t: f64) -> Relative {
 fn laws(c: &mut Criterion) {
     let mut group = c.benchmark_group("law");
     let set_point = SetPoint { value: [2.0, -2.3], ..SetPoint::default() };
-    let leader = Drive { speed: 1.0, turn_rate: 0.3, ..Drive::default() };
+    let leader = MotionInput { speed: 1.0, turn_rate: 0.3, ..MotionInput::default() };
     for kind in [LawKind::FullState, LawKind::RobustState, LawKind::OutputFeedback] {
         let law = Law {
             kind,

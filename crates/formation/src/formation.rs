@@ -5,9 +5,11 @@ use crate::law::{Law, LawInput, LawKind};
 use crate::looks::LookLaw;
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
-use crate::set_point::SetPointCourse;
+use crate::set_point::SetPointTrajectory;
 use std::sync::Arc;
-use vocabulary::{Command, Drive, Edge, Limits, Observation, Profile, SetPoint, Sight, wrap};
+use vocabulary::{
+    Command, Edge, Limits, MotionInput, Observation, SetPoint, TrackingState, Trajectory, wrap,
+};
 
 /// Parameters of one edge.
 #[derive(Debug, Clone)]
@@ -19,16 +21,16 @@ pub struct EdgeLaw {
     /// How it makes an estimate of looks; `None` where it is told the truth.
     pub looks: Option<LookLaw>,
     /// Where it shall be.
-    pub set_point: SetPointCourse,
+    pub set_point: SetPointTrajectory,
 }
 
-/// Parameters of a formation: they do not change as it runs but by [`Formation::adopt`].
+/// Parameters of a formation: they do not change as it runs but by [`Formation::apply_parameters`].
 #[derive(Debug, Clone)]
 pub struct Formation {
     graph: Graph,
     edges: Vec<EdgeLaw>,
     limits: Vec<Limits>,
-    leads: Vec<(usize, Arc<dyn Profile>)>,
+    leads: Vec<(usize, Arc<dyn Trajectory>)>,
     period: f64,
 }
 
@@ -60,7 +62,7 @@ pub struct FormationState {
     pub decisions: Vec<Decision>,
     /// Per robot: what it is told; for a lead robot its prescribed motion.
     pub commands: Vec<Command>,
-    drives: Vec<Drive>,
+    drives: Vec<MotionInput>,
     /// ω of the last sample and of the one before, per robot; `None` before there was one.
     turn_rates: [Option<Vec<f64>>; 2],
 }
@@ -72,7 +74,7 @@ impl Formation {
         graph: Graph,
         edges: Vec<EdgeLaw>,
         limits: Vec<Limits>,
-        leads: Vec<(usize, Arc<dyn Profile>)>,
+        leads: Vec<(usize, Arc<dyn Trajectory>)>,
         period: f64,
     ) -> Self {
         debug_assert_eq!((edges.len(), limits.len()), (graph.edges().len(), graph.robots()));
@@ -80,7 +82,7 @@ impl Formation {
     }
 
     /// Goes on with other laws and limits, as many as before.
-    pub fn adopt(&mut self, edges: Vec<EdgeLaw>, limits: Vec<Limits>) {
+    pub fn apply_parameters(&mut self, edges: Vec<EdgeLaw>, limits: Vec<Limits>) {
         debug_assert_eq!((edges.len(), limits.len()), (self.edges.len(), self.limits.len()));
         self.edges = edges;
         self.limits = limits;
@@ -107,7 +109,7 @@ impl Formation {
     }
 
     /// Robots that follow nobody, with their motion.
-    pub fn leads(&self) -> &[(usize, Arc<dyn Profile>)] {
+    pub fn leads(&self) -> &[(usize, Arc<dyn Trajectory>)] {
         &self.leads
     }
 
@@ -123,7 +125,7 @@ impl Formation {
             estimates,
             decisions: vec![Decision::default(); self.edges.len()],
             commands: vec![Command::default(); robots],
-            drives: vec![Drive::default(); robots],
+            drives: vec![MotionInput::default(); robots],
             turn_rates: [None, None],
         }
     }
@@ -137,8 +139,8 @@ impl Formation {
 
     /// Evaluates all laws at an instant, leaders before followers, without memory: for continuous time.
     pub fn evaluate(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
-        for (robot, profile) in &self.leads {
-            let drive = profile.at(time);
+        for (robot, trajectory) in &self.leads {
+            let drive = trajectory.at(time);
             state.drives[*robot] = drive;
             state.commands[*robot] = Command { acceleration: drive.acceleration, turn_rate: drive.turn_rate };
         }
@@ -157,11 +159,11 @@ impl Formation {
     fn decide_edge(&self, index: usize, time: f64, seen: &Observation, state: &FormationState) -> Decision {
         let (edge, parameters) = (self.edges()[index], &self.edges[index]);
         let limits = &self.limits[edge.follower];
-        if matches!(seen.sight, Sight::Waiting | Sight::Lost) {
+        if matches!(seen.sight, TrackingState::Waiting | TrackingState::Lost) {
             return without_leader(&parameters.set_point.at(time), seen, limits);
         }
         // What the leader does within this sample it tells its follower; its speed the follower has to observe.
-        let leader = Drive { speed: seen.leader_speed.unwrap_or(0.0), ..state.drives[edge.leader] };
+        let leader = MotionInput { speed: seen.leader_speed.unwrap_or(0.0), ..state.drives[edge.leader] };
         let geometry = Geometry::new(&seen.relative, parameters.law.distance_min);
         let set_point = parameters.set_point.at(time);
         let own_speed = seen.own_speed.max(limits.speed_min);
@@ -205,8 +207,10 @@ impl Decision {
 /// slowest speed besides.
 fn without_leader(set_point: &SetPoint, seen: &Observation, limits: &Limits) -> Decision {
     let braking = (limits.speed_min - seen.own_speed) / BRAKING;
-    let asked =
-        Command { acceleration: if seen.sight == Sight::Lost { braking } else { 0.0 }, turn_rate: 0.0 };
+    let asked = Command {
+        acceleration: if seen.sight == TrackingState::Lost { braking } else { 0.0 },
+        turn_rate: 0.0,
+    };
     Decision::of(asked, set_point, seen.own_speed, limits)
 }
 
@@ -239,7 +243,7 @@ impl FormationState {
 mod tests {
     use super::*;
     use crate::law::Switching;
-    use crate::lead::Courses;
+    use crate::lead::AnalyticTrajectory;
     use vocabulary::Relative;
 
     fn chain(kind: LawKind) -> Formation {
@@ -252,9 +256,9 @@ mod tests {
             distance_min: 0.1,
         };
         let observer = Observer { epsilon: [1e-3; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 };
-        let edge = EdgeLaw { law, observer, looks: None, set_point: SetPointCourse::constant(2.0, -2.3) };
+        let edge = EdgeLaw { law, observer, looks: None, set_point: SetPointTrajectory::constant(2.0, -2.3) };
         let limits = Limits::PAPER;
-        let lead: Arc<dyn Profile> = Arc::new(Courses::constant(1.0, 0.3));
+        let lead: Arc<dyn Trajectory> = Arc::new(AnalyticTrajectory::constant(1.0, 0.3));
         Formation::new(graph, vec![edge.clone(), edge], vec![limits; 3], vec![(0, lead)], 0.01)
     }
 

@@ -7,7 +7,7 @@
 
 use crate::relative::Geometry;
 use nalgebra::Vector2;
-use vocabulary::{Command, Drive, SetPoint};
+use vocabulary::{Command, MotionInput, SetPoint};
 
 /// What a law is allowed to know.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,7 +58,7 @@ pub struct LawInput<'a> {
     /// v_j, m/s, positive.
     pub own_speed: f64,
     /// The leader's motion; only full state feedback looks at it.
-    pub leader: &'a Drive,
+    pub leader: &'a MotionInput,
 }
 
 impl Law {
@@ -147,7 +147,7 @@ mod tests {
             let r = Relative::between(Pose::default(), Pose::new(x, y, h));
             prop_assume!(r.distance > 0.2);
             let geometry = Geometry::new(&r, 0.1);
-            let leader = Drive { speed: lv, acceleration: la, turn_rate: lw, turn_acceleration: ldw };
+            let leader = MotionInput { speed: lv, acceleration: la, turn_rate: lw, turn_acceleration: ldw };
             let set_point = SetPoint { value: [sd, sb], rate: [0.1, -0.2], acceleration: [0.3, 0.1] };
             let rates = geometry.rates(v, lv, lw);
             let error = [sd - r.distance, wrap(sb - r.bearing)];
@@ -173,7 +173,7 @@ mod tests {
             if sign { law.switching = Switching::Sign; }
             let r = vocabulary::Relative { distance: n[0], bearing: n[1], view_angle: n[2] };
             let geometry = Geometry::new(&r, law.distance_min);
-            let leader = Drive { speed: n[3], acceleration: n[4], turn_rate: n[5], turn_acceleration: n[6] };
+            let leader = MotionInput { speed: n[3], acceleration: n[4], turn_rate: n[5], turn_acceleration: n[6] };
             let set_point = SetPoint { value: [n[7], n[8]], rate: [n[9], n[10]], acceleration: [n[11], n[12]] };
             let own_speed = LIMITS.clamp_speed(n[13]);
             prop_assert!(own_speed >= LIMITS.speed_min);
@@ -192,7 +192,7 @@ mod tests {
         let r = Relative::between(Pose::default(), Pose::new(-root, -root, 0.0));
         let geometry = Geometry::new(&r, 0.1);
         let set_point = SetPoint { value: [2.0, -0.75 * PI], ..SetPoint::default() };
-        let leader = Drive { speed: 1.0, ..Drive::default() };
+        let leader = MotionInput { speed: 1.0, ..MotionInput::default() };
         let u = law(LawKind::FullState).command(&LawInput {
             geometry: &geometry,
             error: [0.0; 2],

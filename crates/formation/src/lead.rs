@@ -2,31 +2,31 @@
 
 mod bend;
 mod hermite;
-mod pace;
+mod speed_schedule;
+mod spline_path;
 mod tridiagonal;
-mod way;
 
 pub use bend::Bend;
 pub use hermite::Hermite;
-pub use pace::Pace;
-pub use way::{Way, WayError};
+pub use speed_schedule::SpeedSchedule;
+pub use spline_path::{SplinePath, SplinePathError};
 
-use crate::set_point::Course;
-use vocabulary::{Drive, Profile};
+use crate::set_point::ScalarTrajectory;
+use vocabulary::{MotionInput, Trajectory};
 
 /// Speed and turn rate as functions of time: constant, circle, sinusoids, figure eight.
 #[derive(Debug, Clone)]
-pub struct Courses {
+pub struct AnalyticTrajectory {
     /// m/s.
-    pub speed: Course,
+    pub speed: ScalarTrajectory,
     /// rad/s.
-    pub turn_rate: Course,
+    pub turn_rate: ScalarTrajectory,
 }
 
-impl Courses {
+impl AnalyticTrajectory {
     /// Constant `speed` in m/s and `turn_rate` in rad/s: a straight line or a circle.
     pub fn constant(speed: f64, turn_rate: f64) -> Self {
-        Self { speed: Course::Constant(speed), turn_rate: Course::Constant(turn_rate) }
+        Self { speed: ScalarTrajectory::Constant(speed), turn_rate: ScalarTrajectory::Constant(turn_rate) }
     }
 
     /// A figure eight driven at constant `speed` in m/s in `period` s per whole eight, starting at its crossing,
@@ -36,19 +36,19 @@ impl Courses {
     /// ∮ cos(A sin φ) dφ = 2π J0(A) = 0; its first zero gives the eight.
     pub fn figure_eight(speed: f64, period: f64) -> Self {
         let rate = std::f64::consts::TAU / period;
-        let turn_rate = Course::Sinusoid { mean: 0.0, amplitude: FIRST_ZERO_OF_J0 * rate, rate };
-        Self { speed: Course::Constant(speed), turn_rate }
+        let turn_rate = ScalarTrajectory::Sinusoid { mean: 0.0, amplitude: FIRST_ZERO_OF_J0 * rate, rate };
+        Self { speed: ScalarTrajectory::Constant(speed), turn_rate }
     }
 }
 
 /// First zero of the Bessel function J0.
 const FIRST_ZERO_OF_J0: f64 = 2.404_825_557_695_773;
 
-impl Profile for Courses {
-    fn at(&self, time: f64) -> Drive {
+impl Trajectory for AnalyticTrajectory {
+    fn at(&self, time: f64) -> MotionInput {
         let ([speed, acceleration, _], [turn_rate, turn_acceleration, _]) =
             (self.speed.at(time), self.turn_rate.at(time));
-        Drive { speed, acceleration, turn_rate, turn_acceleration }
+        MotionInput { speed, acceleration, turn_rate, turn_acceleration }
     }
 }
 
@@ -67,11 +67,11 @@ impl Table {
     }
 }
 
-impl Profile for Table {
-    fn at(&self, time: f64) -> Drive {
+impl Trajectory for Table {
+    fn at(&self, time: f64) -> MotionInput {
         let ([speed, acceleration], [turn_rate, turn_acceleration]) =
             (self.speed.at(time), self.turn_rate.at(time));
-        Drive { speed, acceleration, turn_rate, turn_acceleration }
+        MotionInput { speed, acceleration, turn_rate, turn_acceleration }
     }
 }
 
@@ -79,13 +79,13 @@ impl Profile for Table {
 mod tests {
     use super::*;
 
-    /// Position and heading after driving `profile` for `duration` s, by a fine midpoint rule.
-    fn drive(profile: &dyn Profile, duration: f64) -> [f64; 3] {
+    /// Position and heading after driving `trajectory` for `duration` s, by a fine midpoint rule.
+    fn drive(trajectory: &dyn Trajectory, duration: f64) -> [f64; 3] {
         let steps = 200_000;
         let h = duration / f64::from(steps);
         let (mut x, mut y, mut heading) = (0.0, 0.0, 0.0_f64);
         for k in 0..steps {
-            let d = profile.at((f64::from(k) + 0.5) * h);
+            let d = trajectory.at((f64::from(k) + 0.5) * h);
             let middle = heading + d.turn_rate * h / 2.0;
             x += d.speed * middle.cos() * h;
             y += d.speed * middle.sin() * h;
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn a_figure_eight_closes_and_crosses_itself() {
-        let eight = Courses::figure_eight(0.8, 40.0);
+        let eight = AnalyticTrajectory::figure_eight(0.8, 40.0);
         for (time, name) in [(40.0, "end"), (20.0, "crossing")] {
             let [x, y, _] = drive(&eight, time);
             assert!(x.hypot(y) < 1e-3, "{name}: {x} {y}");
@@ -109,7 +109,7 @@ mod tests {
     fn table_rows_are_met_and_derivatives_match() {
         let table = Table::new(&[[0.0, 1.0, 0.0], [2.0, 1.5, 0.3], [3.0, 1.5, -0.2]]).expect("rows");
         assert_eq!(table.at(2.0).speed, 1.5);
-        assert_eq!(table.at(9.0), Drive { speed: 1.5, turn_rate: -0.2, ..Drive::default() });
+        assert_eq!(table.at(9.0), MotionInput { speed: 1.5, turn_rate: -0.2, ..MotionInput::default() });
         let h = 1e-6;
         for t in [0.3, 1.1, 2.6] {
             let slope = (table.at(t + h).turn_rate - table.at(t - h).turn_rate) / (2.0 * h);

@@ -9,9 +9,9 @@
 
 pub mod certificate;
 pub mod energy;
+pub mod feasible;
 pub mod formation;
 pub mod graph;
-pub mod holdable;
 pub mod law;
 pub mod lead;
 pub mod looks;
@@ -24,4 +24,4 @@ pub use graph::{Graph, GraphError};
 pub use law::{Law, LawInput, LawKind, Switching};
 pub use looks::{LookLaw, Method, Own, Tracker};
 pub use observer::{Estimate, Observer};
-pub use set_point::{Course, Ramp, SetPointCourse};
+pub use set_point::{Ramp, ScalarTrajectory, SetPointTrajectory};

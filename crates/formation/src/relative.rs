@@ -3,7 +3,7 @@
 //! Indices of the paper: i is the leader, j the follower.
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
-use vocabulary::{Drive, Relative};
+use vocabulary::{MotionInput, Relative};
 
 /// A relative position ready for the equations: sines and cosines taken, distance kept off zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,13 +90,13 @@ impl Geometry {
     }
 
     /// g_v V_i, [m/s², rad/s²]: what the leader's motion does to d²s/dt².
-    pub fn leader_effect(&self, follower_speed: f64, leader: &Drive) -> Vector2<f64> {
+    pub fn leader_effect(&self, follower_speed: f64, leader: &MotionInput) -> Vector2<f64> {
         self.leader_matrix(follower_speed) * leader_vector(leader)
     }
 }
 
 /// V_i = [v, dv/dt, v², dω/dt, vω] of the leader, SI units.
-pub fn leader_vector(leader: &Drive) -> SVector<f64, 5> {
+pub fn leader_vector(leader: &MotionInput) -> SVector<f64, 5> {
     let v = leader.speed;
     SVector::<f64, 5>::new(v, leader.acceleration, v * v, leader.turn_acceleration, v * leader.turn_rate)
 }
@@ -107,7 +107,7 @@ pub fn second_rates(
     follower_speed: f64,
     command: &Vector2<f64>,
     rates: &Vector2<f64>,
-    leader: &Drive,
+    leader: &MotionInput,
 ) -> Vector2<f64> {
     -(geometry.input_matrix(follower_speed) * command
         + geometry.drift(follower_speed)
@@ -126,7 +126,7 @@ mod tests {
     #[derive(Debug, Clone, Copy)]
     struct Rover {
         pose: Pose,
-        drive: Drive,
+        drive: MotionInput,
     }
 
     impl Rover {
@@ -147,8 +147,11 @@ mod tests {
                     now.pose.y + h / 6.0 * (a.1 + 4.0 * b.1 + c.1),
                     heading(h),
                 );
-                let drive =
-                    Drive { speed: speed(h), turn_rate: now.drive.turn_rate + d.turn_acceleration * h, ..*d };
+                let drive = MotionInput {
+                    speed: speed(h),
+                    turn_rate: now.drive.turn_rate + d.turn_acceleration * h,
+                    ..*d
+                };
                 now = Self { pose, drive };
             }
             now
@@ -159,7 +162,7 @@ mod tests {
         (-5.0..5.0, -5.0..5.0, -PI..PI, 0.05..2.0, -2.0..2.0, -1.0..1.0, -1.0..1.0).prop_map(
             |(x, y, heading, speed, acceleration, turn_rate, turn_acceleration)| Rover {
                 pose: Pose::new(x, y, heading),
-                drive: Drive { speed, acceleration, turn_rate, turn_acceleration },
+                drive: MotionInput { speed, acceleration, turn_rate, turn_acceleration },
             },
         )
     }
@@ -225,8 +228,8 @@ mod tests {
         /// g0, g_s: what is left of d²s/dt² with a leader at rest and no command.
         #[test]
         fn drift_and_rate_matrix_stand_alone(mut leader in rover(), mut follower in rover()) {
-            leader.drive = Drive::default();
-            follower.drive = Drive { speed: follower.drive.speed, ..Drive::default() };
+            leader.drive = MotionInput::default();
+            follower.drive = MotionInput { speed: follower.drive.speed, ..MotionInput::default() };
             let r = Relative::between(leader.pose, follower.pose);
             prop_assume!(r.distance > 0.5);
             let v = follower.drive.speed;
@@ -243,12 +246,12 @@ mod tests {
             prop_assume!(r.distance > 0.5);
             let geometry = Geometry::new(&r, 0.1);
             let v = follower.drive.speed;
-            let base = Rover { drive: Drive { speed: leader.drive.speed, ..Drive::default() }, ..leader };
-            let still = Rover { drive: Drive::default(), ..leader };
+            let base = Rover { drive: MotionInput { speed: leader.drive.speed, ..MotionInput::default() }, ..leader };
+            let still = Rover { drive: MotionInput::default(), ..leader };
             for (one, other) in [
                 (leader, base),
-                (Rover { drive: Drive { acceleration: 1.0, ..base.drive }, ..leader }, base),
-                (Rover { drive: Drive { turn_acceleration: 1.0, ..base.drive }, ..leader }, base),
+                (Rover { drive: MotionInput { acceleration: 1.0, ..base.drive }, ..leader }, base),
+                (Rover { drive: MotionInput { turn_acceleration: 1.0, ..base.drive }, ..leader }, base),
                 (base, still),
             ] {
                 let change = differences(&one, &follower).1 - differences(&other, &follower).1;

@@ -15,7 +15,7 @@ pub struct Ramp {
 
 /// A value over time.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Course {
+pub enum ScalarTrajectory {
     /// Always the same.
     Constant(f64),
     /// `mean + amplitude · sin(rate · t)`.
@@ -36,7 +36,7 @@ pub enum Course {
     },
 }
 
-impl Course {
+impl ScalarTrajectory {
     /// Value, first and second derivative at `t` s.
     pub fn at(&self, t: f64) -> [f64; 3] {
         match self {
@@ -72,17 +72,17 @@ impl Ramp {
 
 /// The set point of an edge over time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SetPointCourse {
+pub struct SetPointTrajectory {
     /// m.
-    pub distance: Course,
+    pub distance: ScalarTrajectory,
     /// rad.
-    pub bearing: Course,
+    pub bearing: ScalarTrajectory,
 }
 
-impl SetPointCourse {
+impl SetPointTrajectory {
     /// A set point that stays, m and rad.
     pub fn constant(distance: f64, bearing: f64) -> Self {
-        Self { distance: Course::Constant(distance), bearing: Course::Constant(bearing) }
+        Self { distance: ScalarTrajectory::Constant(distance), bearing: ScalarTrajectory::Constant(bearing) }
     }
 
     /// s^d and its derivatives at `t` s.
@@ -97,11 +97,11 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn courses() -> [Course; 3] {
+    fn courses() -> [ScalarTrajectory; 3] {
         [
-            Course::Constant(2.0),
-            Course::Sinusoid { mean: 2.0, amplitude: 0.3, rate: 0.7 },
-            Course::Ramps {
+            ScalarTrajectory::Constant(2.0),
+            ScalarTrajectory::Sinusoid { mean: 2.0, amplitude: 0.3, rate: 0.7 },
+            ScalarTrajectory::Ramps {
                 from: 2.0,
                 ramps: vec![Ramp { start: 1.0, over: 2.0, to: 3.0 }, Ramp { start: 4.0, over: 1.5, to: 1.0 }],
             },

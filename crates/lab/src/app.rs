@@ -221,8 +221,8 @@ impl Lab {
             let empty = Arc::default();
             let seen = DeskView {
                 desk,
-                cast: desk.history.as_ref().map_or(&empty, |history| history.cast()),
-                moment: desk.shown(),
+                fleet: desk.history.as_ref().map_or(&empty, |history| history.fleet()),
+                record: desk.shown(),
                 trail: desk.history.as_ref().and_then(|history| history.trail(branch, time)),
             };
             viewport.show(ui, &seen, out);

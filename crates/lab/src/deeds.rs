@@ -232,9 +232,9 @@ impl Desk {
 
     /// The edge on the other side of the same leader.
     pub(crate) fn twin(&self, edge: usize, [distance, bearing]: [f64; 2]) -> Option<usize> {
-        let cast = self.history.as_ref()?.cast();
-        let leader = cast.edges.get(edge)?.leader;
-        (0..cast.edges.len()).filter(|other| *other != edge && cast.edges[*other].leader == leader).find(
+        let fleet = self.history.as_ref()?.fleet();
+        let leader = fleet.edges.get(edge)?.leader;
+        (0..fleet.edges.len()).filter(|other| *other != edge && fleet.edges[*other].leader == leader).find(
             |other| {
                 self.set_point(*other).is_some_and(|[d, b]| {
                     (d - distance).abs() < ALIKE[0] && wrap(b + bearing).abs() < ALIKE[1]
@@ -244,7 +244,7 @@ impl Desk {
     }
 
     fn reshape(&mut self, scale: f64, turn: f64) {
-        let edges = self.history.as_ref().map_or(0, |history| history.cast().edges.len());
+        let edges = self.history.as_ref().map_or(0, |history| history.fleet().edges.len());
         let moved = |edge: usize| {
             let [distance, bearing] = self.set_point(edge)?;
             Some((edge, [distance * scale, wrap(bearing + turn)]))
@@ -255,9 +255,9 @@ impl Desk {
 
     /// Names of leader and follower of an edge.
     fn names_of(&self, edge: usize) -> Option<[String; 2]> {
-        let cast = self.history.as_ref()?.cast();
-        let ends = cast.edges.get(edge)?;
-        Some([cast.members.get(ends.leader)?.name.clone(), cast.members.get(ends.follower)?.name.clone()])
+        let fleet = self.history.as_ref()?.fleet();
+        let ends = fleet.edges.get(edge)?;
+        Some([fleet.robots.get(ends.leader)?.name.clone(), fleet.robots.get(ends.follower)?.name.clone()])
     }
 
     /// Lets one robot follow another, from where it is now.
@@ -272,9 +272,9 @@ impl Desk {
                 behind.name, ahead.name
             ));
         }
-        let moment = self.moment();
+        let record = self.record();
         let pose = |robot: usize, start: vocabulary::Pose| {
-            moment.as_ref().and_then(|m| m.snapshot.robots.get(robot)).map_or(start, |r| r.motion.pose)
+            record.as_ref().and_then(|m| m.snapshot.robots.get(robot)).map_or(start, |r| r.motion.pose)
         };
         let now = Relative::between(pose(leader, ahead.pose), pose(follower, behind.pose));
         let (name, ahead) = (behind.name.clone(), ahead.name.clone());

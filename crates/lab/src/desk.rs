@@ -9,7 +9,7 @@ use scene::{Channel, Follow, Role, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{EdgeState, Moment, wrap};
+use vocabulary::{EdgeState, StepRecord, wrap};
 
 /// What is selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -181,7 +181,7 @@ impl Desk {
 
     fn chosen_name(&self) -> Option<String> {
         let robot = self.chosen_robot()?;
-        Some(self.history.as_ref()?.cast().members.get(robot)?.name.clone())
+        Some(self.history.as_ref()?.fleet().robots.get(robot)?.name.clone())
     }
 
     /// The scene with what its own changes have made of it by the time that is looked at.
@@ -198,7 +198,7 @@ impl Desk {
     }
 
     /// The moment that is looked at.
-    pub fn moment(&self) -> Option<Arc<Moment>> {
+    pub fn record(&self) -> Option<Arc<StepRecord>> {
         let history = self.history.as_ref()?;
         match self.cursor {
             Some(time) => history.at(self.branch, time),
@@ -207,25 +207,25 @@ impl Desk {
     }
 
     /// The moment that is looked at, with set points as they are wanted now: a run that stands shows what a hand moves.
-    pub fn shown(&self) -> Option<Arc<Moment>> {
-        let moment = self.moment()?;
+    pub fn shown(&self) -> Option<Arc<StepRecord>> {
+        let record = self.record()?;
         if self.cursor.is_some() || self.playing {
-            return Some(moment);
+            return Some(record);
         }
         let wanted: Vec<Option<[f64; 2]>> =
-            (0..moment.edges.len()).map(|edge| self.set_point(edge)).collect();
+            (0..record.edges.len()).map(|edge| self.set_point(edge)).collect();
         let stale =
             |(state, wanted): (&EdgeState, &Option<[f64; 2]>)| wanted.is_some_and(|w| w != state.set_point);
-        if !moment.edges.iter().zip(&wanted).any(stale) {
-            return Some(moment);
+        if !record.edges.iter().zip(&wanted).any(stale) {
+            return Some(record);
         }
-        let mut moment = Moment::clone(&moment);
-        for (state, wanted) in moment.edges.iter_mut().zip(wanted) {
+        let mut record = StepRecord::clone(&record);
+        for (state, wanted) in record.edges.iter_mut().zip(wanted) {
             state.set_point = wanted.unwrap_or(state.set_point);
             let [distance, bearing] = state.set_point;
             state.error = [distance - state.relative.distance, wrap(bearing - state.relative.bearing)];
         }
-        Some(Arc::new(moment))
+        Some(Arc::new(record))
     }
 
     /// The time that is looked at, s.
@@ -251,7 +251,7 @@ impl Desk {
     /// The set point of an edge as it is wanted now, m and rad.
     pub fn set_point(&self, edge: usize) -> Option<[f64; 2]> {
         let (_, _, follow) = self.follower(edge)?;
-        let now = self.moment().and_then(|moment| Some(moment.edges.get(edge)?.set_point));
+        let now = self.record().and_then(|record| Some(record.edges.get(edge)?.set_point));
         let value = |channel: &Channel, now: Option<f64>| match channel {
             Channel::Constant(value) => Some(*value),
             _ => now,
@@ -270,15 +270,15 @@ impl Desk {
 
     /// The edge on which a robot follows.
     pub fn edge_of(&self, robot: usize) -> Option<usize> {
-        let cast = self.history.as_ref()?.cast();
-        cast.edges.iter().position(|edge| edge.follower == robot)
+        let fleet = self.history.as_ref()?.fleet();
+        fleet.edges.iter().position(|edge| edge.follower == robot)
     }
 
     /// The robot that is selected, or the follower of the edge that is.
     pub fn chosen_robot(&self) -> Option<usize> {
         match self.choice {
             Choice::Robot(robot) => Some(robot),
-            Choice::Edge(edge) => self.history.as_ref()?.cast().edges.get(edge).map(|edge| edge.follower),
+            Choice::Edge(edge) => self.history.as_ref()?.fleet().edges.get(edge).map(|edge| edge.follower),
             Choice::Nothing => None,
         }
     }
@@ -348,17 +348,17 @@ impl Desk {
     /// Takes in what the thread of the run tells.
     pub fn hear(&mut self, news: News) {
         match news {
-            News::Opened { cast, period } => {
-                self.history = Some(History::new(cast, period));
+            News::Opened { fleet, period } => {
+                self.history = Some(History::new(fleet, period));
                 self.branches = vec![BranchFace::trunk()];
                 (self.branch, self.cursor, self.forecast, self.forks) = (0, None, None, 0);
                 self.cursor = self.recorded.then_some(0.0);
                 self.check_choice();
             }
-            News::Moments(branch, moments) => {
+            News::Moments(branch, records) => {
                 if let Some(history) = &mut self.history {
-                    for moment in moments {
-                        history.push(branch, moment);
+                    for record in records {
+                        history.push(branch, record);
                     }
                 }
             }
@@ -380,14 +380,14 @@ impl Desk {
 
     /// What was selected stays so by its name; what is not there any more is not.
     fn check_choice(&mut self) {
-        let Some(cast) = self.history.as_ref().map(History::cast) else { return };
-        let named = |name: &String| cast.members.iter().position(|member| member.name == *name);
+        let Some(fleet) = self.history.as_ref().map(History::fleet) else { return };
+        let named = |name: &String| fleet.robots.iter().position(|member| member.name == *name);
         let robot = self.chosen.as_ref().and_then(named);
-        let edge = robot.and_then(|robot| cast.edges.iter().position(|edge| edge.follower == robot));
+        let edge = robot.and_then(|robot| fleet.edges.iter().position(|edge| edge.follower == robot));
         self.choice = match (robot, edge, self.choice) {
             (Some(_), Some(edge), Choice::Edge(_)) => Choice::Edge(edge),
             (Some(robot), ..) => Choice::Robot(robot),
-            (None, ..) if self.chosen.is_none() && !cast.edges.is_empty() => Choice::Edge(0),
+            (None, ..) if self.chosen.is_none() && !fleet.edges.is_empty() => Choice::Edge(0),
             _ => Choice::Nothing,
         };
     }

@@ -2,7 +2,7 @@
 
 use recording::log::Roll;
 use recording::{Recorder, RunOptions, Status};
-use rendering::{CameraEyes, Gpu};
+use rendering::{Gpu, GpuCameraRenderer};
 use scene::Scene;
 use simulation::Simulation;
 use std::path::{Path, PathBuf};
@@ -32,10 +32,10 @@ pub fn keep(
     let setup = simulation::build(&scene).map_err(|error| error.to_string())?;
     let mut run = Simulation::new(setup);
     let roll = Roll::default();
-    if run.needs_eyes() {
+    if run.needs_cameras() {
         let gpu = gpu.ok_or("there is no adapter to draw what cameras see")?;
-        let eyes = CameraEyes::new(gpu, run.cast()).map_err(|error| error.to_string())?;
-        run.open_eyes(roll.through(Box::new(eyes)));
+        let eyes = GpuCameraRenderer::new(gpu, run.fleet()).map_err(|error| error.to_string())?;
+        run.attach_cameras(roll.through(Box::new(eyes)));
     }
     let options = RunOptions {
         csv: false,
@@ -49,9 +49,9 @@ pub fn keep(
         period: scene.time.period,
         judging: scene.judging(),
     };
-    let mut recorder = Recorder::create(folder, run.cast(), options).map_err(|error| error.to_string())?;
-    while let Some(moment) = run.next_moment() {
-        recorder.push(moment).map_err(|error| error.to_string())?;
+    let mut recorder = Recorder::create(folder, run.fleet(), options).map_err(|error| error.to_string())?;
+    while let Some(record) = run.next_record() {
+        recorder.push(record).map_err(|error| error.to_string())?;
     }
     let (manifest, _) = recorder.finish(Status::Complete).map_err(|error| error.to_string())?;
     let digest = manifest.digest.unwrap_or_default();

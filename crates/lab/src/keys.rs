@@ -162,12 +162,12 @@ fn commands(ctx: &egui::Context, out: &mut Vec<Action>) {
 
 fn chosen(desk: &Desk) -> Option<(usize, String)> {
     let robot = desk.chosen_robot()?;
-    Some((robot, desk.history.as_ref()?.cast().members.get(robot)?.name.clone()))
+    Some((robot, desk.history.as_ref()?.fleet().robots.get(robot)?.name.clone()))
 }
 
 /// The edge after or before the one that is selected.
 fn next(desk: &Desk, by: i64) -> Choice {
-    let edges = desk.history.as_ref().map_or(0, |history| history.cast().edges.len()) as i64;
+    let edges = desk.history.as_ref().map_or(0, |history| history.fleet().edges.len()) as i64;
     if edges == 0 {
         return Choice::Nothing;
     }

@@ -7,7 +7,7 @@ use formation::relative::Geometry;
 use scene::{Follow, LawKind};
 use simulation::certify::{Row, rows};
 use std::fmt::Write;
-use vocabulary::{Edge, EdgeState, Moment, Snapshot};
+use vocabulary::{Edge, EdgeState, Snapshot, StepRecord};
 
 /// What a plot shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,24 +128,25 @@ pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> V
             all.push(Curve { branch, robot: None, points });
             continue;
         }
-        let moments = history.between(branch, [from, span[1]], most);
-        for (edge, ends) in history.cast().edges.iter().enumerate() {
+        let records = history.between(branch, [from, span[1]], most);
+        for (edge, ends) in history.fleet().edges.iter().enumerate() {
             let Some((_, _, follow)) = desk.follower(edge) else { continue };
-            if let Some(points) = certified(quantity, &moments, (edge, *ends), follow) {
+            if let Some(points) = certified(quantity, &records, (edge, *ends), follow) {
                 all.push(Curve { branch, robot: Some(ends.follower), points });
                 continue;
             }
-            let point = |m: &&Moment| Some([m.snapshot.time, value(quantity, m, (edge, *ends), follow)?]);
-            let points = moments.iter().filter_map(point).collect();
+            let point = |m: &&StepRecord| Some([m.snapshot.time, value(quantity, m, (edge, *ends), follow)?]);
+            let points = records.iter().filter_map(point).collect();
             all.push(Curve { branch, robot: Some(ends.follower), points });
         }
         if quantity == Quantity::Speed {
-            for (robot, _) in history.cast().members.iter().enumerate().filter(|(_, member)| member.leads) {
-                let speed = |m: &&Moment| Some([m.snapshot.time, m.snapshot.robots.get(robot)?.motion.speed]);
+            for (robot, _) in history.fleet().robots.iter().enumerate().filter(|(_, member)| member.leads) {
+                let speed =
+                    |m: &&StepRecord| Some([m.snapshot.time, m.snapshot.robots.get(robot)?.motion.speed]);
                 all.push(Curve {
                     branch,
                     robot: Some(robot),
-                    points: moments.iter().filter_map(speed).collect(),
+                    points: records.iter().filter_map(speed).collect(),
                 });
             }
         }
@@ -156,7 +157,7 @@ pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> V
 /// Quantities that go by how a run came to be: they need all moments. `None` for others.
 fn certified(
     quantity: Quantity,
-    moments: &[&Moment],
+    records: &[&StepRecord],
     edge: (usize, Edge),
     follow: &Follow,
 ) -> Option<Vec<[f64; 2]>> {
@@ -166,21 +167,26 @@ fn certified(
         Quantity::Lyapunov => |row| row.v,
         _ => return None,
     };
-    let rows = if follow.law.kind == LawKind::FullState { vec![] } else { rows(moments, edge, follow) };
+    let rows = if follow.law.kind == LawKind::FullState { vec![] } else { rows(records, edge, follow) };
     Some(rows.iter().map(|row| [row.time, value(row)]).filter(|p| p[1].is_finite()).collect())
 }
 
 /// A quantity of an edge at a moment; `None` where there is none.
-fn value(quantity: Quantity, moment: &Moment, (index, edge): (usize, Edge), follow: &Follow) -> Option<f64> {
-    let state = moment.edges.get(index)?;
-    let rates = || true_rates(&moment.snapshot, edge, state, follow.law.distance_min);
+fn value(
+    quantity: Quantity,
+    record: &StepRecord,
+    (index, edge): (usize, Edge),
+    follow: &Follow,
+) -> Option<f64> {
+    let state = record.edges.get(index)?;
+    let rates = || true_rates(&record.snapshot, edge, state, follow.law.distance_min);
     let observes = follow.law.kind == LawKind::OutputFeedback;
     let value = match quantity {
         Quantity::DistanceError => state.error[0],
         Quantity::BearingError => state.error[1].to_degrees(),
         Quantity::Acceleration => state.applied.acceleration,
         Quantity::TurnRate => state.applied.turn_rate,
-        Quantity::Speed => moment.snapshot.robots.get(edge.follower)?.motion.speed,
+        Quantity::Speed => record.snapshot.robots.get(edge.follower)?.motion.speed,
         Quantity::DistanceRateError => rates()?[0] - state.rates[0],
         Quantity::BearingRateError => (rates()?[1] - state.rates[1]).to_degrees(),
         Quantity::TrackingEnergy => {
@@ -244,8 +250,8 @@ pub fn csv(desk: &Desk) -> String {
     for quantity in Quantity::ALL {
         for curve in curves(desk, quantity, [0.0, f64::INFINITY], usize::MAX) {
             let branch = desk.branches.get(curve.branch).map_or("", |b| &b.name);
-            let cast = desk.history.as_ref().map(History::cast);
-            let robot = curve.robot.and_then(|robot| cast?.members.get(robot)).map_or("", |m| &m.name);
+            let fleet = desk.history.as_ref().map(History::fleet);
+            let robot = curve.robot.and_then(|robot| fleet?.robots.get(robot)).map_or("", |m| &m.name);
             let head = format!("{},{},{}", quoted(branch), quoted(robot), quantity.column());
             for [time, value] in curve.points {
                 // Writing to a text cannot fail.
@@ -259,8 +265,8 @@ pub fn csv(desk: &Desk) -> String {
 /// The curves as a figure for print.
 pub fn svg(desk: &Desk) -> String {
     use figures::{Axis, Figure, Guide, Panel, Series};
-    let cast = desk.history.as_ref().map(|history| history.cast().clone());
-    let colours = cast.as_ref().map(|cast| rendering::robot_colours(cast)).unwrap_or_default();
+    let fleet = desk.history.as_ref().map(|history| history.fleet().clone());
+    let colours = fleet.as_ref().map(|fleet| rendering::robot_colours(fleet)).unwrap_or_default();
     let shown = [
         Quantity::DistanceError,
         Quantity::BearingError,
@@ -271,7 +277,7 @@ pub fn svg(desk: &Desk) -> String {
     ];
     let panels = shown.into_iter().map(|quantity| {
         let series = curves(desk, quantity, [0.0, f64::INFINITY], 600).into_iter().map(|curve| {
-            let name = curve.robot.and_then(|r| cast.as_ref()?.members.get(r)).map_or("all", |m| &m.name);
+            let name = curve.robot.and_then(|r| fleet.as_ref()?.robots.get(r)).map_or("all", |m| &m.name);
             let active = curve.branch == desk.branch;
             let branch = desk.branches.get(curve.branch).map_or("", |b| &b.name);
             Series {

@@ -29,33 +29,33 @@ impl Filming {
 
 impl Lab {
     /// What is seen now, for a picture `size` large.
-    pub(crate) fn shot(&self, moment: &Arc<vocabulary::Moment>, size: (u32, u32)) -> Option<Shot> {
-        let cast = self.desk.history.as_ref()?.cast();
+    pub(crate) fn shot(&self, record: &Arc<vocabulary::StepRecord>, size: (u32, u32)) -> Option<Shot> {
+        let fleet = self.desk.history.as_ref()?.fleet();
         let scale = (f64::from(size.1) / 720.0).max(0.5);
         Some(Shot {
-            moment: Arc::clone(moment),
-            layout: self.viewport.layout(cast, moment),
-            style: self.viewport.dressed(&self.desk, moment, scale),
+            record: Arc::clone(record),
+            layout: self.viewport.layout(fleet, record),
+            style: self.viewport.dressed(&self.desk, record, scale),
             words: self.desk.words(),
         })
     }
 
     /// What a film shows now: what is seen, or the view that was chosen for it, without what only the hand needs.
-    pub(crate) fn film_shot(&self, moment: &Arc<vocabulary::Moment>) -> Option<Shot> {
-        let shot = self.shot(moment, (1280, 720))?;
+    pub(crate) fn film_shot(&self, record: &Arc<vocabulary::StepRecord>) -> Option<Shot> {
+        let shot = self.shot(record, (1280, 720))?;
         let Some(view) = &self.desk.film_from else { return Some(shot) };
-        let cast = self.desk.history.as_ref()?.cast();
-        let names: Vec<String> = cast.members.iter().map(|member| member.name.clone()).collect();
+        let fleet = self.desk.history.as_ref()?.fleet();
+        let names: Vec<String> = fleet.robots.iter().map(|member| member.name.clone()).collect();
         let style = Style { sketch: Sketch::default(), inset: true, ..shot.style };
         Some(Shot { layout: Layout::parse(view, &names).unwrap_or(shot.layout), style, ..shot })
     }
 
     pub(crate) fn picture(&mut self) {
         let size = (1920, 1080);
-        let (Some(moment), Some(history)) = (self.desk.moment(), &self.desk.history) else { return };
+        let (Some(record), Some(history)) = (self.desk.record(), &self.desk.history) else { return };
         let time = self.desk.time();
         let Some(trail) = history.trail(self.desk.branch, time).cloned() else { return };
-        let (cast, Some(shot)) = (Arc::clone(history.cast()), self.shot(&moment, size)) else { return };
+        let (fleet, Some(shot)) = (Arc::clone(history.fleet()), self.shot(&record, size)) else { return };
         let path = free(Path::new("."), &self.name(), "png");
         let home =
             self.desk.draft.as_ref().map_or_else(String::new, |draft| draft.home().display().to_string());
@@ -69,7 +69,7 @@ impl Lab {
         ];
         self.studio.ask(Job::Picture {
             path,
-            cast,
+            fleet,
             size,
             trail: Box::new(trail),
             shot: Box::new(shot),
@@ -100,9 +100,9 @@ impl Lab {
         let branch = self.desk.branch;
         let Some(history) = &self.desk.history else { return };
         let Some(trail) = history.trail(branch, time).cloned() else { return };
-        let cast = Arc::clone(history.cast());
+        let fleet = Arc::clone(history.fleet());
         let path = free(Path::new("."), &self.name(), "mp4");
-        self.studio.ask(Job::Begin { path: path.clone(), cast, size: (1280, 720), trail: Box::new(trail) });
+        self.studio.ask(Job::Begin { path: path.clone(), fleet, size: (1280, 720), trail: Box::new(trail) });
         self.desk.note(format!("Filming to {}", path.display()));
         let next = time + self.desk.pace / RATE;
         self.film = Some(Filming { path, next, branch, sent: time, frames: 0 });
@@ -132,10 +132,10 @@ impl Lab {
         let end = history.end(film.branch);
         let mut jobs = Vec::new();
         while film.next <= end + 1e-9 {
-            let Some(moment) = history.at(film.branch, film.next) else { break };
+            let Some(record) = history.at(film.branch, film.next) else { break };
             jobs.push(Job::Moments(history.since(film.branch, [film.sent, film.next])));
             film.sent = film.next;
-            if let Some(shot) = self.film_shot(&moment) {
+            if let Some(shot) = self.film_shot(&record) {
                 jobs.push(Job::Frame(Box::new(shot)));
                 film.frames += 1;
             }

@@ -8,7 +8,7 @@ use std::sync::{
     atomic::{AtomicUsize, Ordering::Relaxed},
 };
 use std::thread::JoinHandle;
-use vocabulary::{Cast, Moment};
+use vocabulary::{FleetInfo, StepRecord};
 
 /// Frames of a film a second.
 pub const RATE: f64 = 30.0;
@@ -17,7 +17,7 @@ pub const RATE: f64 = 30.0;
 #[derive(Clone)]
 pub struct Shot {
     /// What is drawn.
-    pub moment: Arc<Moment>,
+    pub record: Arc<StepRecord>,
     /// From where.
     pub layout: Layout,
     /// And how.
@@ -33,7 +33,7 @@ pub enum Job {
         /// Its file.
         path: PathBuf,
         /// Who is on stage.
-        cast: Arc<Cast>,
+        fleet: Arc<FleetInfo>,
         /// Width and height, pixels.
         size: (u32, u32),
         /// The past.
@@ -48,7 +48,7 @@ pub enum Job {
         /// Its file.
         path: PathBuf,
         /// Who is on stage.
-        cast: Arc<Cast>,
+        fleet: Arc<FleetInfo>,
         /// Width and height, pixels, even.
         size: (u32, u32),
         /// The past.
@@ -57,7 +57,7 @@ pub enum Job {
     /// The past is another: somebody changed the branch.
     Trail(Box<Trail>),
     /// What has happened since the last frame.
-    Moments(Vec<Arc<Moment>>),
+    Moments(Vec<Arc<StepRecord>>),
     /// The next frame.
     Frame(Box<Shot>),
     /// The film ends.
@@ -140,7 +140,7 @@ impl Drop for Studio {
 /// The state of the thread.
 struct Work {
     gpu: Gpu,
-    drawer: Option<(Arc<Cast>, Renderer)>,
+    drawer: Option<(Arc<FleetInfo>, Renderer)>,
     film: Option<Reel>,
 }
 
@@ -148,7 +148,7 @@ struct Work {
 struct Reel {
     path: PathBuf,
     film: Film,
-    cast: Arc<Cast>,
+    fleet: Arc<FleetInfo>,
     size: (u32, u32),
     trail: Trail,
 }
@@ -157,17 +157,17 @@ impl Work {
     /// Does a job; the file that is complete with it.
     fn take(&mut self, job: Job) -> Result<Option<PathBuf>, Error> {
         match job {
-            Job::Picture { path, cast, size, trail, shot, texts } => {
-                let drawer = self.drawer(&cast, size)?;
+            Job::Picture { path, fleet, size, trail, shot, texts } => {
+                let drawer = self.drawer(&fleet, size)?;
                 drawer.retitle(&shot.words[0], &shot.words[1]);
-                let picture = drawer.draw(&trail, &shot.moment, &shot.layout, &shot.style)?;
+                let picture = drawer.draw(&trail, &shot.record, &shot.layout, &shot.style)?;
                 let texts: Vec<(&str, &str)> = texts.iter().map(|(key, text)| (*key, &**text)).collect();
                 png::write(&path, &picture, &texts)?;
                 Ok(Some(path))
             }
-            Job::Begin { path, cast, size, trail } => {
+            Job::Begin { path, fleet, size, trail } => {
                 let film = Film::create(&path, FilmKind::of(&path, false)?, size.0, size.1, RATE)?;
-                self.film = Some(Reel { path, film, cast, size, trail: *trail });
+                self.film = Some(Reel { path, film, fleet, size, trail: *trail });
                 Ok(None)
             }
             Job::Trail(trail) => {
@@ -176,10 +176,10 @@ impl Work {
                 }
                 Ok(None)
             }
-            Job::Moments(moments) => {
+            Job::Moments(records) => {
                 if let Some(reel) = &mut self.film {
-                    for moment in &moments {
-                        reel.trail.push(moment);
+                    for record in &records {
+                        reel.trail.push(record);
                     }
                 }
                 Ok(None)
@@ -201,19 +201,19 @@ impl Work {
 
     fn frame(&mut self, shot: &Shot) -> Result<(), Error> {
         let Some(mut reel) = self.film.take() else { return Ok(()) };
-        let drawer = self.drawer(&reel.cast, reel.size)?;
+        let drawer = self.drawer(&reel.fleet, reel.size)?;
         drawer.retitle(&shot.words[0], &shot.words[1]);
-        let picture = drawer.draw(&reel.trail, &shot.moment, &shot.layout, &shot.style)?;
+        let picture = drawer.draw(&reel.trail, &shot.record, &shot.layout, &shot.style)?;
         reel.film.push(picture)?;
         self.film = Some(reel);
         Ok(())
     }
 
-    fn drawer(&mut self, cast: &Arc<Cast>, size: (u32, u32)) -> Result<&mut Renderer, Error> {
-        let fitting = self.drawer.take().filter(|(known, _)| Arc::ptr_eq(known, cast));
+    fn drawer(&mut self, fleet: &Arc<FleetInfo>, size: (u32, u32)) -> Result<&mut Renderer, Error> {
+        let fitting = self.drawer.take().filter(|(known, _)| Arc::ptr_eq(known, fleet));
         let drawer = match fitting {
             Some(drawer) => drawer,
-            None => (Arc::clone(cast), Renderer::new(&self.gpu, cast, size.0, size.1, 4)?),
+            None => (Arc::clone(fleet), Renderer::new(&self.gpu, fleet, size.0, size.1, 4)?),
         };
         let (_, renderer) = self.drawer.insert(drawer);
         renderer.resize(size.0, size.1)?;

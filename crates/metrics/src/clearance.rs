@@ -2,11 +2,11 @@
 //!
 //! What a robot drives on does not count: ramps, the ground, and props whose top is lower than the middle of its body.
 
-use parry3d_f64::math::{Pose as Frame, Rotation, Vector};
+use parry3d_f64::math::{Pose as Isometry, Rotation, Vector};
 use parry3d_f64::query::distance;
 use parry3d_f64::shape::{Cone, Cuboid, Cylinder, Shape};
 use std::f64::consts::FRAC_PI_2;
-use vocabulary::{Body, Cast, Placement, RobotState, Snapshot, Solid, Thing};
+use vocabulary::{Body, EntityId, FleetInfo, Placement, RobotState, Snapshot, Solid};
 
 /// The room between a robot and something else.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,7 +14,7 @@ pub struct Room {
     /// m; 0 where the two touch or overlap.
     pub clearance: f64,
     /// What is nearest.
-    pub nearest: Thing,
+    pub nearest: EntityId,
     /// s.
     pub time: f64,
 }
@@ -32,15 +32,15 @@ pub struct Clearance {
 /// A convex body and where it is.
 #[derive(Clone)]
 struct Hull {
-    thing: Thing,
+    thing: EntityId,
     shape: std::sync::Arc<dyn Shape>,
     /// The shape's frame in that of the robot or prop.
-    inside: Frame,
+    inside: Isometry,
     /// Radius of the ball around its middle.
     reach: f64,
     /// Half its height while it stands upright, m.
     half_height: f64,
-    frame: Frame,
+    frame: Isometry,
 }
 
 impl std::fmt::Debug for Hull {
@@ -53,12 +53,12 @@ impl std::fmt::Debug for Hull {
 }
 
 impl Clearance {
-    /// For a run of `cast`.
-    pub fn new(cast: &Cast) -> Self {
-        let robots = cast.members.iter().enumerate().map(|(k, member)| Hull::robot(k, &member.body));
-        let props = cast.props.iter().enumerate().filter_map(|(k, prop)| Hull::prop(k, &prop.solid));
+    /// For a run of `fleet`.
+    pub fn new(fleet: &FleetInfo) -> Self {
+        let robots = fleet.robots.iter().enumerate().map(|(k, member)| Hull::robot(k, &member.body));
+        let props = fleet.props.iter().enumerate().filter_map(|(k, prop)| Hull::prop(k, &prop.solid));
         let shapes: Vec<Hull> = robots.chain(props).collect();
-        let (count, robots) = (shapes.len(), cast.members.len());
+        let (count, robots) = (shapes.len(), fleet.robots.len());
         Self { shapes, least: vec![None; robots], robots, order: (0..count).collect() }
     }
 
@@ -103,12 +103,12 @@ impl Hull {
     fn robot(index: usize, body: &Body) -> Self {
         let half = Vector::new(0.5 * body.length, 0.5 * body.width, 0.5 * body.height);
         Self {
-            thing: Thing::Robot(index),
+            thing: EntityId::Robot(index),
             shape: std::sync::Arc::new(Cuboid::new(half)),
-            inside: Frame::from_translation(Vector::new(0.5 * body.wheelbase, 0.0, 0.5 * body.height)),
+            inside: Isometry::from_translation(Vector::new(0.5 * body.wheelbase, 0.0, 0.5 * body.height)),
             reach: half.length(),
             half_height: half.z,
-            frame: Frame::identity(),
+            frame: Isometry::identity(),
         }
     }
 
@@ -116,12 +116,12 @@ impl Hull {
         let [l, w, h] = solid.extent();
         let raised = Vector::new(0.0, 0.0, 0.5 * h);
         // parry's cylinders and cones stand along y.
-        let stood = Frame::from_parts(raised, Rotation::from_axis_angle(Vector::X, FRAC_PI_2));
-        let (shape, inside): (std::sync::Arc<dyn Shape>, Frame) = match *solid {
+        let stood = Isometry::from_parts(raised, Rotation::from_axis_angle(Vector::X, FRAC_PI_2));
+        let (shape, inside): (std::sync::Arc<dyn Shape>, Isometry) = match *solid {
             Solid::Wedge { .. } => return None,
             Solid::Block { .. } => (
                 std::sync::Arc::new(Cuboid::new(Vector::new(0.5 * l, 0.5 * w, 0.5 * h))),
-                Frame::from_translation(raised),
+                Isometry::from_translation(raised),
             ),
             Solid::Cylinder { radius, height } => {
                 (std::sync::Arc::new(Cylinder::new(0.5 * height, radius)), stood)
@@ -130,20 +130,20 @@ impl Hull {
         };
         let reach = (0.25 * (l * l + w * w + h * h)).sqrt();
         Some(Self {
-            thing: Thing::Prop(index),
+            thing: EntityId::Prop(index),
             shape,
             inside,
             reach,
             half_height: 0.5 * h,
-            frame: Frame::identity(),
+            frame: Isometry::identity(),
         })
     }
 
     fn stand(&mut self, snapshot: &Snapshot) {
         let frame = match self.thing {
-            Thing::Robot(index) => snapshot.robots.get(index).map(of_robot),
-            Thing::Prop(index) => snapshot.props.get(index).map(of_placement),
-            Thing::Ground => None,
+            EntityId::Robot(index) => snapshot.robots.get(index).map(of_robot),
+            EntityId::Prop(index) => snapshot.props.get(index).map(of_placement),
+            EntityId::Ground => None,
         };
         if let Some(frame) = frame {
             self.frame = frame * self.inside;
@@ -160,7 +160,7 @@ impl Hull {
 
     /// Whether the other is a prop lower than the middle of this robot's body.
     fn drives_over(&self, other: &Self) -> bool {
-        let robot = matches!(self.thing, Thing::Robot(_)) && matches!(other.thing, Thing::Prop(_));
+        let robot = matches!(self.thing, EntityId::Robot(_)) && matches!(other.thing, EntityId::Prop(_));
         robot && other.frame.translation.z + other.half_height < self.frame.translation.z
     }
 
@@ -181,37 +181,41 @@ fn known(least: &[Option<Room>], k: usize) -> f64 {
     least.get(k).map_or(0.0, |room| room.map_or(f64::INFINITY, |room| room.clearance))
 }
 
-fn of_robot(robot: &RobotState) -> Frame {
+fn of_robot(robot: &RobotState) -> Isometry {
     let (pose, attitude) = (robot.motion.pose, robot.attitude);
     let turn = Rotation::from_rotation_z(pose.heading)
         * Rotation::from_rotation_y(attitude.pitch)
         * Rotation::from_rotation_x(attitude.roll);
-    Frame::from_parts(Vector::new(pose.x, pose.y, attitude.height), turn)
+    Isometry::from_parts(Vector::new(pose.x, pose.y, attitude.height), turn)
 }
 
-fn of_placement(placement: &Placement) -> Frame {
+fn of_placement(placement: &Placement) -> Isometry {
     let [x, y, z, w] = placement.rotation;
-    Frame::from_parts(Vector::from(placement.position), Rotation::from_xyzw(x, y, z, w))
+    Isometry::from_parts(Vector::from(placement.position), Rotation::from_xyzw(x, y, z, w))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use vocabulary::{Member, Mobility, Pose, Prop};
+    use vocabulary::{Mobility, Pose, Prop, RobotInfo};
 
     const BODY: Body =
         Body { length: 0.4, width: 0.2, height: 0.2, wheelbase: 0.3, track: 0.2, wheel_radius: 0.05 };
 
-    fn cast(robots: usize, props: &[Solid]) -> Cast {
-        let member = Member::new("", false, BODY);
+    fn fleet(robots: usize, props: &[Solid]) -> FleetInfo {
+        let member = RobotInfo::new("", false, BODY);
         let prop = |solid: &Solid| Prop {
             name: String::new(),
             solid: *solid,
             placement: Placement::default(),
             mobility: Mobility::Fixed,
         };
-        Cast { members: vec![member; robots], props: props.iter().map(prop).collect(), ..Cast::default() }
+        FleetInfo {
+            robots: vec![member; robots],
+            props: props.iter().map(prop).collect(),
+            ..FleetInfo::default()
+        }
     }
 
     fn snapshot(poses: &[Pose], props: &[Pose]) -> Snapshot {
@@ -224,8 +228,8 @@ mod tests {
         Snapshot { time: 1.0, robots: poses.iter().map(robot).collect(), props }
     }
 
-    fn least(cast: &Cast, snapshot: &Snapshot) -> Vec<Option<Room>> {
-        let mut clearance = Clearance::new(cast);
+    fn least(fleet: &FleetInfo, snapshot: &Snapshot) -> Vec<Option<Room>> {
+        let mut clearance = Clearance::new(fleet);
         clearance.push(snapshot);
         clearance.least().to_vec()
     }
@@ -236,7 +240,7 @@ mod tests {
             // The bodies' middles are half a wheelbase ahead of their poses.
             let [dx, dy] = Pose::new(0.0, 0.0, heading).world_from_body(0.15, 0.0);
             let poses = [Pose::default(), Pose::new(x + 0.15 - dx, y - dy, heading)];
-            least(&cast(2, &[]), &snapshot(&poses, &[]))[0].expect("another robot").clearance
+            least(&fleet(2, &[]), &snapshot(&poses, &[]))[0].expect("another robot").clearance
         };
         assert!((at(1.0, 0.0, 0.0) - 0.6).abs() < 1e-9);
         assert!((at(0.0, 1.0, 0.0) - 0.8).abs() < 1e-9);
@@ -251,18 +255,18 @@ mod tests {
         let pillar = Solid::Cylinder { radius: 0.1, height: 1.0 };
         let ramp = Solid::Wedge { size: [1.0, 1.0, 0.2] };
         let places = [Pose::new(1.15, 0.0, 0.0), Pose::default()];
-        let rooms = least(&cast(1, &[pillar, ramp]), &snapshot(&[Pose::default()], &places));
+        let rooms = least(&fleet(1, &[pillar, ramp]), &snapshot(&[Pose::default()], &places));
         let room = rooms[0].expect("a pillar");
         assert!((room.clearance - 0.7).abs() < 1e-6, "{room:?}");
-        assert_eq!((room.nearest, room.time), (Thing::Prop(0), 1.0));
-        assert_eq!(least(&cast(1, &[ramp]), &snapshot(&[Pose::default()], &places[1..]))[0], None);
+        assert_eq!((room.nearest, room.time), (EntityId::Prop(0), 1.0));
+        assert_eq!(least(&fleet(1, &[ramp]), &snapshot(&[Pose::default()], &places[1..]))[0], None);
     }
 
     #[test]
     fn what_is_driven_over_does_not_count() {
         let (kerb, wall) = (Solid::Block { size: [1.0, 1.0, 0.05] }, Solid::Block { size: [1.0, 1.0, 0.5] });
         let beside = [Pose::new(1.5, 0.0, 0.0)];
-        let clearance = |solid| least(&cast(1, &[solid]), &snapshot(&[Pose::default()], &beside))[0];
+        let clearance = |solid| least(&fleet(1, &[solid]), &snapshot(&[Pose::default()], &beside))[0];
         assert_eq!(clearance(kerb), None);
         assert!((clearance(wall).expect("a wall").clearance - 0.65).abs() < 1e-9);
     }
@@ -272,11 +276,11 @@ mod tests {
         #[test]
         fn sweeping_equals_trying_all(poses in proptest::collection::vec((-3.0..3.0, -3.0..3.0, -3.0..3.0), 2..12)) {
             let poses: Vec<Pose> = poses.into_iter().map(|(x, y, h)| Pose::new(x, y, h)).collect();
-            let swept = least(&cast(poses.len(), &[]), &snapshot(&poses, &[]));
+            let swept = least(&fleet(poses.len(), &[]), &snapshot(&poses, &[]));
             for (i, room) in swept.iter().enumerate() {
                 let pair = |j: usize| {
                     let two = [poses[i.min(j)], poses[i.max(j)]];
-                    least(&cast(2, &[]), &snapshot(&two, &[]))[0].expect("another").clearance
+                    least(&fleet(2, &[]), &snapshot(&two, &[]))[0].expect("another").clearance
                 };
                 let wanted = (0..poses.len()).filter(|j| *j != i).map(pair).fold(f64::INFINITY, f64::min);
                 prop_assert!((room.expect("others").clearance - wanted).abs() < 1e-9);

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use std::collections::BTreeMap;
-use vocabulary::{Cast, Contact};
+use vocabulary::{Contact, FleetInfo};
 
 /// Contacts that metrics list one by one.
 const LISTED: usize = 100;
@@ -79,9 +79,9 @@ impl ContactLog {
         self.open.values().map(|contact| Contact { open: false, ..*contact }).collect()
     }
 
-    pub(crate) fn first(&self, cast: &Cast) -> Vec<ContactMetrics> {
+    pub(crate) fn first(&self, fleet: &FleetInfo) -> Vec<ContactMetrics> {
         let entry = |contact: &Contact| ContactMetrics {
-            between: contact.things.map(|thing| cast.name(thing).to_owned()),
+            between: contact.things.map(|thing| fleet.name(thing).to_owned()),
             begin: contact.begin,
             end: contact.end,
             place: contact.place,
@@ -95,13 +95,13 @@ impl ContactLog {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::Thing;
+    use vocabulary::EntityId;
 
     #[test]
     fn a_contact_that_lasts_is_one() {
         let contact = |number, impulse, open| Contact {
             number,
-            things: [Thing::Robot(0), Thing::Ground],
+            things: [EntityId::Robot(0), EntityId::Ground],
             begin: 1.0,
             end: 2.0,
             open,
@@ -110,14 +110,14 @@ mod tests {
             impulse,
         };
         let props =
-            |number| Contact { things: [Thing::Prop(0), Thing::Prop(1)], ..contact(number, 9.0, true) };
+            |number| Contact { things: [EntityId::Prop(0), EntityId::Prop(1)], ..contact(number, 9.0, true) };
         let mut log = ContactLog::default();
         log.push(&[contact(0, 1.0, true)]);
         log.push(&[contact(0, 5.0, true), contact(1, 2.0, true)]);
         log.push(&[contact(0, 5.0, false), contact(1, 3.0, true), props(2)]);
         assert_eq!((log.count(), log.largest()), (2, 5.0));
         assert_eq!(log.close(), [contact(1, 3.0, false), Contact { open: false, ..props(2) }]);
-        let first = log.first(&Cast::default());
+        let first = log.first(&FleetInfo::default());
         assert_eq!((first.len(), first[1].impulse, &*first[1].between[1]), (2, 3.0, "ground"));
     }
 }

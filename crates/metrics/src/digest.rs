@@ -1,6 +1,6 @@
 //! One number for a whole trajectory.
 
-use vocabulary::{Moment, Relative};
+use vocabulary::{Relative, StepRecord};
 use xxhash_rust::xxh3::Xxh3;
 
 /// A running 128-bit digest (XXH3) of every f64 of every moment, in order: equal only for bitwise equal runs.
@@ -12,29 +12,29 @@ pub struct Digest {
 
 impl Digest {
     /// Takes in a moment: time, poses, speeds, commands, estimates, props, contacts, looks at leaders.
-    pub fn push(&mut self, moment: &Moment) {
+    pub fn push(&mut self, record: &StepRecord) {
         self.bytes.clear();
         let mut put = |values: &[f64]| self.bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
-        put(&[moment.snapshot.time]);
-        for robot in &moment.snapshot.robots {
+        put(&[record.snapshot.time]);
+        for robot in &record.snapshot.robots {
             let m = &robot.motion;
             put(&[m.pose.x, m.pose.y, m.pose.heading, m.speed, m.acceleration, m.turn_rate]);
             put(&[robot.attitude.height, robot.attitude.roll, robot.attitude.pitch]);
         }
-        for edge in &moment.edges {
+        for edge in &record.edges {
             put(&[edge.set_point[0], edge.set_point[1], edge.error[0], edge.error[1]]);
             put(&[edge.applied.acceleration, edge.applied.turn_rate, edge.rates[0], edge.rates[1]]);
         }
-        for prop in &moment.snapshot.props {
+        for prop in &record.snapshot.props {
             put(&prop.position);
             put(&prop.rotation);
         }
-        for contact in &moment.contacts {
+        for contact in &record.contacts {
             put(&[contact.begin, contact.end, contact.impulse]);
         }
-        for frame in &moment.frames {
-            let Relative { distance, bearing, view_angle } = frame.sighting.relative;
-            put(&[frame.sighting.stamp, frame.arrival, distance, bearing, view_angle]);
+        for frame in &record.frames {
+            let Relative { distance, bearing, view_angle } = frame.measurement.relative;
+            put(&[frame.measurement.stamp, frame.arrival, distance, bearing, view_angle]);
         }
         self.hash.update(&self.bytes);
     }
@@ -55,9 +55,9 @@ mod tests {
         for (k, x) in values.iter().enumerate() {
             let mut robot = RobotState::default();
             robot.motion.pose.x = *x;
-            digest.push(&Moment {
+            digest.push(&StepRecord {
                 snapshot: Snapshot { time: k as f64, robots: vec![robot], props: vec![] },
-                ..Moment::default()
+                ..StepRecord::default()
             });
         }
         digest.text()

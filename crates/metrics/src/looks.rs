@@ -1,7 +1,7 @@
 //! How well a follower saw its leader over a run.
 
 use serde::Serialize;
-use vocabulary::{EdgeState, Frame, Outcome, Sight, wrap};
+use vocabulary::{EdgeState, MeasurementRecord, Outcome, TrackingState, wrap};
 
 /// Looks of one follower over a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
@@ -43,14 +43,14 @@ pub(crate) struct LookSums {
 }
 
 impl LookSums {
-    pub(crate) fn look(&mut self, frame: &Frame) {
+    pub(crate) fn look(&mut self, frame: &MeasurementRecord) {
         self.looked = true;
         let m = &mut self.metrics;
         m.taken += 1;
         match frame.outcome {
             Outcome::Used => {
                 m.used += 1;
-                let (seen, truth) = (frame.sighting.relative, frame.truth);
+                let (seen, truth) = (frame.measurement.relative, frame.truth);
                 let off = [
                     seen.distance - truth.distance,
                     wrap(seen.bearing - truth.bearing),
@@ -69,9 +69,9 @@ impl LookSums {
     pub(crate) fn know(&mut self, edge: &EdgeState, step: f64) {
         self.metrics.longest_gap = self.metrics.longest_gap.max(edge.age);
         match edge.sight {
-            Sight::Truth | Sight::Waiting => {}
-            Sight::Lost => self.metrics.lost += step,
-            Sight::Tracking | Sight::Coasting => {
+            TrackingState::Truth | TrackingState::Waiting => {}
+            TrackingState::Lost => self.metrics.lost += step,
+            TrackingState::Tracking | TrackingState::Coasting => {
                 let (seen, truth) = (edge.seen, edge.relative);
                 let off = [
                     seen.distance - truth.distance,
@@ -108,7 +108,7 @@ fn add_squares(sums: &mut [f64; 3], off: [f64; 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::{Relative, Sighting};
+    use vocabulary::{Measurement, Relative};
 
     #[test]
     fn looks_are_counted_by_what_came_of_them() {
@@ -118,10 +118,10 @@ mod tests {
         for (k, outcome) in (0..).zip(outcomes) {
             let relative = Relative { distance: 2.0 + 0.1 * f64::from(k), ..Relative::default() };
             let truth = Relative { distance: 2.0, ..Relative::default() };
-            let sighting = Sighting { relative, ..Sighting::default() };
-            sums.look(&Frame { outcome, sighting, truth, ..Frame::default() });
+            let measurement = Measurement { relative, ..Measurement::default() };
+            sums.look(&MeasurementRecord { outcome, measurement, truth, ..MeasurementRecord::default() });
         }
-        sums.know(&EdgeState { sight: Sight::Lost, age: 0.7, ..EdgeState::default() }, 0.01);
+        sums.know(&EdgeState { sight: TrackingState::Lost, age: 0.7, ..EdgeState::default() }, 0.01);
         let metrics = sums.finish().expect("it looked");
         assert_eq!((metrics.taken, metrics.used, metrics.dropped), (5, 2, 1));
         assert!((metrics.in_view - 0.75).abs() < 1e-12);

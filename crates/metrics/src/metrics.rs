@@ -5,7 +5,7 @@ use crate::clearance::Clearance;
 use crate::contacts::{ContactLog, ContactMetrics};
 use crate::looks::{LookMetrics, LookSums};
 use serde::Serialize;
-use vocabulary::{Cast, Condition, Contact, EdgeState, Judging, Moment, Thing};
+use vocabulary::{Condition, Contact, EdgeState, EntityId, FleetInfo, Judging, StepRecord};
 
 /// `metrics.json`. Every pair is [distance, bearing] or [acceleration, turn rate].
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -96,7 +96,7 @@ pub struct EdgeMetrics {
 /// Gathers [`Metrics`].
 #[derive(Debug, Clone)]
 pub struct MetricsBuilder {
-    cast: Cast,
+    fleet: FleetInfo,
     judging: Judging,
     edges: Vec<EdgeSums>,
     samples: u64,
@@ -137,65 +137,65 @@ struct Settled {
 }
 
 impl MetricsBuilder {
-    /// For a run of `cast`.
-    pub fn new(cast: &Cast, judging: Judging) -> Self {
-        let edges = vec![EdgeSums { speeds: [f64::INFINITY, 0.0], ..EdgeSums::default() }; cast.edges.len()];
+    /// For a run of `fleet`.
+    pub fn new(fleet: &FleetInfo, judging: Judging) -> Self {
+        let edges = vec![EdgeSums { speeds: [f64::INFINITY, 0.0], ..EdgeSums::default() }; fleet.edges.len()];
         Self {
             judging,
             edges,
             samples: 0,
             time: 0.0,
-            clearance: Clearance::new(cast),
+            clearance: Clearance::new(fleet),
             contacts: ContactLog::default(),
-            lifts: vec![0.0; cast.members.len()],
-            conditions: vec![Condition::Able; cast.members.len()],
-            cast: cast.clone(),
+            lifts: vec![0.0; fleet.robots.len()],
+            conditions: vec![Condition::Able; fleet.robots.len()],
+            fleet: fleet.clone(),
         }
     }
 
     /// Takes in a moment.
-    pub fn push(&mut self, moment: &Moment) {
-        let time = moment.snapshot.time;
+    pub fn push(&mut self, record: &StepRecord) {
+        let time = record.snapshot.time;
         let step = if self.samples == 0 { 0.0 } else { time - self.time };
-        for (index, edge) in moment.edges.iter().enumerate() {
-            let speed = moment.snapshot.robots[self.cast.edges[index].follower].motion.speed;
+        for (index, edge) in record.edges.iter().enumerate() {
+            let speed = record.snapshot.robots[self.fleet.edges[index].follower].motion.speed;
             self.edges[index].push(edge, speed, time, step, &self.judging);
         }
-        for frame in &moment.frames {
+        for frame in &record.frames {
             if let Some(edge) = self.edges.get_mut(frame.edge) {
                 edge.looks.look(frame);
             }
         }
-        for (index, robot) in moment.snapshot.robots.iter().enumerate() {
+        for (index, robot) in record.snapshot.robots.iter().enumerate() {
             let pose = robot.motion.pose;
-            let lift = robot.attitude.height - self.cast.surface(pose.x, pose.y).height;
+            let lift = robot.attitude.height - self.fleet.surface(pose.x, pose.y).height;
             self.lifts[index] = self.lifts[index].max(lift);
             self.conditions[index] = robot.condition;
         }
-        self.clearance.push(&moment.snapshot);
-        self.contacts.push(&moment.contacts);
+        self.clearance.push(&record.snapshot);
+        self.contacts.push(&record.contacts);
         self.samples += 1;
         self.time = time;
     }
 
     /// The metrics of all moments so far.
     pub fn finish(&self) -> Metrics {
-        let name = |thing: Thing| self.cast.name(thing).to_owned();
-        let robot = |index: usize| name(Thing::Robot(index));
-        let pairs = self.edges.iter().zip(&self.cast.edges);
+        let name = |thing: EntityId| self.fleet.name(thing).to_owned();
+        let robot = |index: usize| name(EntityId::Robot(index));
+        let pairs = self.edges.iter().zip(&self.fleet.edges);
         let rooms = self.clearance.least().iter().enumerate();
         let least = rooms.filter_map(|(k, room)| Some((k, (*room)?)));
         let least = least.min_by(|a, b| a.1.clearance.total_cmp(&b.1.clearance));
         Metrics {
             duration: self.time,
             edges: pairs.map(|(s, e)| s.finish(robot(e.leader), robot(e.follower), self.samples)).collect(),
-            robots: (0..self.cast.members.len()).map(|k| self.robot(k)).collect(),
+            robots: (0..self.fleet.robots.len()).map(|k| self.robot(k)).collect(),
             clearance_min: least.map(|(_, room)| room.clearance),
             clearance_min_time: least.map(|(_, room)| room.time),
             clearance_min_robots: least.map(|(k, room)| [robot(k), name(room.nearest)]),
             contacts: self.contacts.count(),
             contact_impulse_max: self.contacts.largest(),
-            first_contacts: self.contacts.first(&self.cast),
+            first_contacts: self.contacts.first(&self.fleet),
             settling_band: self.judging.settling_band,
             certificates: vec![],
         }
@@ -209,9 +209,9 @@ impl MetricsBuilder {
     fn robot(&self, index: usize) -> RobotMetrics {
         let room = self.clearance.least()[index];
         RobotMetrics {
-            robot: self.cast.name(Thing::Robot(index)).to_owned(),
+            robot: self.fleet.name(EntityId::Robot(index)).to_owned(),
             clearance_min: room.map(|r| r.clearance),
-            nearest: room.map(|r| self.cast.name(r.nearest).to_owned()),
+            nearest: room.map(|r| self.fleet.name(r.nearest).to_owned()),
             clearance_min_time: room.map(|r| r.time),
             lift_max: self.lifts[index],
             condition: self.conditions[index].name().to_owned(),
@@ -290,25 +290,25 @@ impl EdgeSums {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::{Edge, Member, Pose, RobotState, Snapshot};
+    use vocabulary::{Edge, Pose, RobotInfo, RobotState, Snapshot};
 
     /// An error that falls by e^(−t) on an edge of two robots 1 m apart at the start.
     fn run() -> Metrics {
-        let member = |name: &str| Member::new(name, name == "a", vocabulary::Body::default());
+        let member = |name: &str| RobotInfo::new(name, name == "a", vocabulary::Body::default());
         let edges = vec![Edge { leader: 0, follower: 1 }];
-        let cast = Cast { members: vec![member("a"), member("b")], edges, ..Cast::default() };
+        let fleet = FleetInfo { robots: vec![member("a"), member("b")], edges, ..FleetInfo::default() };
         let mut builder =
-            MetricsBuilder::new(&cast, Judging { settling_band: [0.1, 0.1], settled_after: 1.0 });
+            MetricsBuilder::new(&fleet, Judging { settling_band: [0.1, 0.1], settled_after: 1.0 });
         for k in 0..=1000 {
             let time = f64::from(k) * 0.01;
             let mut robots = vec![RobotState::default(); 2];
             robots[1].motion.pose = Pose::new(-1.0 - (time - 5.0).abs(), 0.0, 0.0);
             robots[1].motion.speed = 1.0;
             let edge = EdgeState { error: [(-time).exp(), 0.0], ..EdgeState::default() };
-            builder.push(&Moment {
+            builder.push(&StepRecord {
                 snapshot: Snapshot { time, robots, props: vec![] },
                 edges: vec![edge],
-                ..Moment::default()
+                ..StepRecord::default()
             });
         }
         builder.finish()
@@ -337,17 +337,17 @@ mod tests {
 
     #[test]
     fn an_edge_that_leaves_its_band_has_not_settled() {
-        let cast = Cast {
-            members: vec![Member::new("a", true, vocabulary::Body::default()); 2],
+        let fleet = FleetInfo {
+            robots: vec![RobotInfo::new("a", true, vocabulary::Body::default()); 2],
             edges: vec![Edge { leader: 0, follower: 1 }],
-            ..Cast::default()
+            ..FleetInfo::default()
         };
         let mut builder =
-            MetricsBuilder::new(&cast, Judging { settling_band: [0.1, 0.1], settled_after: 1.0 });
+            MetricsBuilder::new(&fleet, Judging { settling_band: [0.1, 0.1], settled_after: 1.0 });
         for error in [0.0, 0.05, 0.2] {
             let edge = EdgeState { error: [0.0, error], ..EdgeState::default() };
             let snapshot = Snapshot { time: error, robots: vec![RobotState::default(); 2], props: vec![] };
-            builder.push(&Moment { snapshot, edges: vec![edge], ..Moment::default() });
+            builder.push(&StepRecord { snapshot, edges: vec![edge], ..StepRecord::default() });
         }
         let metrics = builder.finish();
         assert_eq!((metrics.edges[0].settling_time, metrics.edges[0].settled_rms_error), (None, None));

@@ -10,7 +10,7 @@ pub mod imaging;
 pub mod pose;
 pub mod sensors;
 
-use vocabulary::{Edge, EdgeSample, Observation, Passage, Relative, Snapshot, Track, nearest_turn};
+use vocabulary::{Edge, EdgeSample, Observation, Relative, Snapshot, StepInterpolant, Track, nearest_turn};
 
 /// One observation per edge, of the truth.
 pub fn observe(snapshot: &Snapshot, edges: &[Edge], observations: &mut Vec<Observation>) {
@@ -32,23 +32,30 @@ pub fn observe(snapshot: &Snapshot, edges: &[Edge], observations: &mut Vec<Obser
 const SHORTEST: f64 = 1e-6;
 
 /// The last step as `edge` saw it, in smooth stretches handed to `visit` one after the other.
-pub fn tracks(passage: &(impl Passage + ?Sized), edge: Edge, mut visit: impl FnMut(&Track)) {
-    let end = passage.duration();
-    let mut kinks = [passage.kink(edge.leader), passage.kink(edge.follower)].map(|k| k.unwrap_or(end));
+pub fn tracks(interpolant: &(impl StepInterpolant + ?Sized), edge: Edge, mut visit: impl FnMut(&Track)) {
+    let end = interpolant.duration();
+    let mut kinks = [interpolant.saturation_time(edge.leader), interpolant.saturation_time(edge.follower)]
+        .map(|k| k.unwrap_or(end));
     kinks.sort_by(f64::total_cmp);
     let mut from = 0.0;
     for until in kinks {
         if until - from > SHORTEST && end - until > SHORTEST {
-            visit(&track(passage, edge, from, until));
+            visit(&track(interpolant, edge, from, until));
             from = until;
         }
     }
-    visit(&track(passage, edge, from, end));
+    visit(&track(interpolant, edge, from, end));
 }
 
 /// The edge as seen at one instant of the last step; the bearing is the turn nearest to `near`.
-pub fn sample(passage: &(impl Passage + ?Sized), edge: Edge, elapsed: f64, near: Option<f64>) -> EdgeSample {
-    let (leader, follower) = (passage.during(edge.leader, elapsed), passage.during(edge.follower, elapsed));
+pub fn sample(
+    interpolant: &(impl StepInterpolant + ?Sized),
+    edge: Edge,
+    elapsed: f64,
+    near: Option<f64>,
+) -> EdgeSample {
+    let (leader, follower) =
+        (interpolant.during(edge.leader, elapsed), interpolant.during(edge.follower, elapsed));
     let mut relative = Relative::between(leader.pose, follower.pose);
     if let Some(near) = near {
         relative.bearing = nearest_turn(relative.bearing, near);
@@ -61,13 +68,13 @@ pub fn sample(passage: &(impl Passage + ?Sized), edge: Edge, elapsed: f64, near:
     }
 }
 
-fn track(passage: &(impl Passage + ?Sized), edge: Edge, from: f64, until: f64) -> Track {
+fn track(interpolant: &(impl StepInterpolant + ?Sized), edge: Edge, from: f64, until: f64) -> Track {
     let duration = until - from;
     // A node on a kink belongs to the stretch it is sampled for: its acceleration is that of the middle.
-    let middle = passage.during(edge.follower, from + duration / 2.0);
+    let middle = interpolant.during(edge.follower, from + duration / 2.0);
     let mut near = None;
     let samples = Track::NODES.map(|node| {
-        let mut sample = sample(passage, edge, from + node * duration, near);
+        let mut sample = sample(interpolant, edge, from + node * duration, near);
         sample.acceleration = middle.acceleration;
         near = Some(sample.relative.bearing);
         sample
@@ -83,7 +90,7 @@ mod tests {
     /// A leader at rest at the origin; a follower on a circle around it, whose acceleration jumps at 4 ms.
     struct Circling;
 
-    impl Passage for Circling {
+    impl StepInterpolant for Circling {
         fn duration(&self) -> f64 {
             0.01
         }
@@ -99,7 +106,7 @@ mod tests {
             Motion { pose, speed: 2.0, acceleration, turn_rate: 1.0 }
         }
 
-        fn kink(&self, robot: usize) -> Option<f64> {
+        fn saturation_time(&self, robot: usize) -> Option<f64> {
             (robot == 1).then_some(0.004)
         }
     }

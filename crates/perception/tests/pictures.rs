@@ -6,18 +6,18 @@ use perception::detect::{Detector, Locus, Tag, recognise, sharpen};
 use perception::imaging::{Optics, Purpose, Sensor, noise_stream};
 use perception::pose::{Prior, locate};
 use synthetic::{Scenes, sensor};
-use vocabulary::{Grey, Lens, Region, wrap};
+use vocabulary::{CameraModel, Grey, Region, wrap};
 
 /// The library's conventions are ours: pixel (0, 0) has its middle at (0, 0), corners go clockwise from the top left.
 #[test]
 fn corners_are_where_they_should_be_and_in_order() {
     let mut views = Scenes::seeded(1);
-    let mut sensor = sensor(views.lens);
+    let mut sensor = sensor(views.camera_model);
     let mut detector = Locus::new();
     let (mut sum, mut n, mut tags) = ([0.0; 2], 0.0, vec![]);
     for frame in 0..12 {
         let scene = views.next(2.0);
-        let picture = scene.picture(&mut sensor, Region::whole(&views.lens), frame);
+        let picture = scene.picture(&mut sensor, Region::whole(&views.camera_model), frame);
         detector.detect(&picture, &mut tags);
         for tag in &tags {
             let face = scene.rig.shell.face_of(tag.id).expect("a tag of the shell");
@@ -78,7 +78,7 @@ fn assert_within(what: &str, errors: [f64; 3], limits: [f64; 3]) {
 fn leaders_are_located_as_well_as_they_should_be() {
     for (distance, limits) in STRETCH {
         let mut views = Scenes::seeded(2);
-        let mut sensor = sensor(views.lens);
+        let mut sensor = sensor(views.camera_model);
         let told = *sensor.optics();
         let (errors, n, seen) = errors(&mut views, &mut sensor, &told, distance, 40);
         assert!(n >= 25.0 && seen >= 39, "{n} {seen}");
@@ -89,19 +89,19 @@ fn leaders_are_located_as_well_as_they_should_be() {
 /// Neither a lens that distorts nor a blur and noise that are not what was said does much harm.
 #[test]
 fn other_cameras_do_as_well() {
-    let distorting = Lens { distortion: [-0.28, 0.09, 1e-3, -7e-4, -0.01], ..Lens::default() };
+    let distorting = CameraModel { distortion: [-0.28, 0.09, 1e-3, -7e-4, -0.01], ..CameraModel::default() };
     let usual = Optics::default();
     let cameras = [
         ("distorting", distorting, usual.blur, usual.noise),
-        ("softer than told", Lens::default(), 1.1, usual.noise),
-        ("sharper than told", Lens::default(), 0.3, usual.noise),
-        ("noisier than told", Lens::default(), usual.blur, 2.0 * usual.noise),
+        ("softer than told", CameraModel::default(), 1.1, usual.noise),
+        ("sharper than told", CameraModel::default(), 0.3, usual.noise),
+        ("noisier than told", CameraModel::default(), usual.blur, 2.0 * usual.noise),
     ];
-    for (name, lens, blur, noise) in cameras {
+    for (name, camera_model, blur, noise) in cameras {
         let mut views = Scenes::seeded(3);
-        views.lens = lens;
-        let mut sensor = Sensor::new(Optics { lens, blur, noise });
-        let told = Optics { lens, ..usual };
+        views.camera_model = camera_model;
+        let mut sensor = Sensor::new(Optics { camera_model, blur, noise });
+        let told = Optics { camera_model, ..usual };
         let (errors, n, _) = errors(&mut views, &mut sensor, &told, 3.0, 30);
         println!("{name}: {errors:?}");
         assert!(n >= 15.0);
@@ -113,9 +113,10 @@ fn other_cameras_do_as_well() {
 #[test]
 fn tags_do_not_depend_on_the_number_of_threads() {
     let mut views = Scenes::seeded(4);
-    let mut sensor = sensor(views.lens);
-    let pictures: Vec<Grey> =
-        (0..6).map(|frame| views.next(2.5).picture(&mut sensor, Region::whole(&views.lens), frame)).collect();
+    let mut sensor = sensor(views.camera_model);
+    let pictures: Vec<Grey> = (0..6)
+        .map(|frame| views.next(2.5).picture(&mut sensor, Region::whole(&views.camera_model), frame))
+        .collect();
     let found = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| {
@@ -142,7 +143,7 @@ fn tags_do_not_depend_on_the_number_of_threads() {
 #[test]
 fn a_detector_remembers_nothing() {
     let mut views = Scenes::seeded(5);
-    let mut sensor = sensor(views.lens);
+    let mut sensor = sensor(views.camera_model);
     let pictures: Vec<Grey> = (0..4)
         .map(|frame| {
             let scene = views.next(1.5 + 0.7 * frame as f64);
@@ -211,7 +212,7 @@ proptest::proptest! {
         let picture = Grey { width: 120, height: 90, values };
         let corners = [0, 1, 2, 3].map(|k| [numbers[2 * k], numbers[2 * k + 1]]);
         let mut tags = [Tag { id, corners, deviation: 0.0 }];
-        let optics = Optics { lens: Lens { distortion, ..Lens::default() }, blur, noise: 0.0 };
+        let optics = Optics { camera_model: CameraModel { distortion, ..CameraModel::default() }, blur, noise: 0.0 };
         sharpen(&picture, Region { x: 30, y: 20, width: 120, height: 90 }, &optics, &mut tags);
         let was_finite = corners.iter().flatten().all(|x| x.is_finite());
         assert!(!was_finite || tags[0].corners.iter().flatten().all(|x| x.is_finite()));

@@ -1,5 +1,5 @@
 //! What recording costs: whole runs of three scenes with their tables, without and with the log. The second over the
-//! first is what the log adds; `moments` is the time to read them all back.
+//! first is what the log adds; `records` is the time to read them all back.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use recording::log::{FILE, Log};
@@ -31,9 +31,9 @@ fn record(scene: &Scene, no_log: bool) -> tempfile::TempDir {
         period: scene.time.period,
         judging: Judging { settling_band: [0.02; 2], settled_after: 0.0 },
     };
-    let mut recorder = Recorder::create(folder.path(), run.cast(), options).expect("a recorder");
-    while let Some(moment) = run.next_moment() {
-        recorder.push(moment).expect("recorded");
+    let mut recorder = Recorder::create(folder.path(), run.fleet(), options).expect("a recorder");
+    while let Some(record) = run.next_record() {
+        recorder.push(record).expect("recorded");
     }
     recorder.finish(Status::Complete).expect("finished");
     folder
@@ -53,7 +53,7 @@ fn runs(c: &mut Criterion) {
         group.bench_function(BenchmarkId::new("moments", name), |b| {
             b.iter(|| {
                 let log = Log::open(&folder.path().join(FILE)).expect("a log");
-                log.moments().for_each(|moment| drop(black_box(moment)));
+                log.records().for_each(|record| drop(black_box(record)));
             });
         });
     }

@@ -26,9 +26,9 @@ fn record(scene: &Scene, no_log: bool) -> f64 {
         judging: Judging { settling_band: [0.02; 2], settled_after: 0.0 },
     };
     let began = Instant::now();
-    let mut recorder = Recorder::create(folder.path(), run.cast(), options).expect("a recorder");
-    while let Some(moment) = run.next_moment() {
-        recorder.push(moment).expect("recorded");
+    let mut recorder = Recorder::create(folder.path(), run.fleet(), options).expect("a recorder");
+    while let Some(record) = run.next_record() {
+        recorder.push(record).expect("recorded");
     }
     recorder.finish(Status::Complete).expect("finished");
     began.elapsed().as_secs_f64() * 1e3

@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::fs;
 use std::path::{Path, PathBuf};
 use vocabulary::Judging;
-use vocabulary::{Cast, Moment};
+use vocabulary::{FleetInfo, StepRecord};
 
 /// What a recorder has to know before the first moment.
 #[derive(Debug, Clone)]
@@ -40,7 +40,7 @@ pub struct RunOptions {
 /// Writes a run folder; dropped without [`Recorder::finish`], it leaves what it had, marked `running`.
 pub struct Recorder {
     folder: PathBuf,
-    cast: Cast,
+    fleet: FleetInfo,
     manifest: Manifest,
     tables: Vec<TableWriter>,
     log: Option<Pipe>,
@@ -82,7 +82,7 @@ impl Recorder {
     /// # Errors
     /// [`Error::Output`] where the folder holds a run (unless `force`) or anything else, where another run is being written
     /// there, and where it cannot be written.
-    pub fn create(folder: &Path, cast: &Cast, options: RunOptions) -> Result<Self, Error> {
+    pub fn create(folder: &Path, fleet: &FleetInfo, options: RunOptions) -> Result<Self, Error> {
         let ours =
             |folder: &Path| folder.join("manifest.json").exists().then(|| OURS.map(str::to_owned).to_vec());
         let claim = Claim::new(folder, "a run", options.force, ours)?;
@@ -90,18 +90,18 @@ impl Recorder {
         fs::create_dir(&tables).map_err(Error::io("create", &tables))?;
         write_whole(&folder.join("scene.toml"), options.scene.as_bytes())?;
         let writer = |kind| TableWriter::create(&tables, kind, options.csv);
-        let manifest = first_manifest(cast, &options);
+        let manifest = first_manifest(fleet, &options);
         let log = if options.no_log {
             None
         } else {
-            let (path, known) = (folder.join(log::FILE), (cast, &*options.scene));
+            let (path, known) = (folder.join(log::FILE), (fleet, &*options.scene));
             Some(Pipe::create(&path, known, &manifest, options.roll)?)
         };
         let recorder = Self {
             folder: folder.to_owned(),
-            cast: cast.clone(),
-            tables: TableKind::of(cast).into_iter().map(writer).collect::<Result<_, _>>()?,
-            metrics: MetricsBuilder::new(cast, options.judging),
+            fleet: fleet.clone(),
+            tables: TableKind::of(fleet).into_iter().map(writer).collect::<Result<_, _>>()?,
+            metrics: MetricsBuilder::new(fleet, options.judging),
             certificates: Vec::new(),
             expectations: Vec::new(),
             digest: Digest::default(),
@@ -117,13 +117,13 @@ impl Recorder {
     ///
     /// # Errors
     /// [`Error`] when the disk does not take it.
-    pub fn push(&mut self, moment: &Moment) -> Result<(), Error> {
-        self.digest.push(moment);
-        self.metrics.push(moment);
+    pub fn push(&mut self, record: &StepRecord) -> Result<(), Error> {
+        self.digest.push(record);
+        self.metrics.push(record);
         for table in &mut self.tables {
-            table.push(&self.cast, moment)?;
+            table.push(&self.fleet, record)?;
         }
-        self.log.as_mut().map_or(Ok(()), |log| log.push(moment))?;
+        self.log.as_mut().map_or(Ok(()), |log| log.push(record))?;
         self.manifest.samples += 1;
         Ok(())
     }
@@ -154,7 +154,7 @@ impl Recorder {
 
     /// As [`Recorder::finish`]; what came out is told, whether or not the disk takes it.
     pub fn conclude(mut self, status: Status) -> Finished {
-        let last = Moment { contacts: self.metrics.close_contacts(), ..Moment::default() };
+        let last = StepRecord { contacts: self.metrics.close_contacts(), ..StepRecord::default() };
         let metrics =
             Metrics { certificates: std::mem::take(&mut self.certificates), ..self.metrics.finish() };
         let digest = self.digest.text();
@@ -164,9 +164,9 @@ impl Recorder {
         Finished { metrics, digest, written: written.map(|()| self.manifest) }
     }
 
-    fn close(&mut self, last: &Moment, metrics: &Metrics) -> Result<(), Error> {
+    fn close(&mut self, last: &StepRecord, metrics: &Metrics) -> Result<(), Error> {
         for table in &mut self.tables {
-            table.push(&self.cast, last)?;
+            table.push(&self.fleet, last)?;
             table.finish()?;
         }
         let file = MetricsFile { metrics, expectations: &self.expectations };
@@ -192,18 +192,18 @@ impl Recorder {
     }
 }
 
-fn first_manifest(cast: &Cast, options: &RunOptions) -> Manifest {
-    let name = |robot: usize| cast.members[robot].name.clone();
+fn first_manifest(fleet: &FleetInfo, options: &RunOptions) -> Manifest {
+    let name = |robot: usize| fleet.robots[robot].name.clone();
     Manifest {
         format: FORMAT,
         program: options.program.clone(),
         commit: options.commit.clone(),
-        title: cast.title.clone(),
+        title: fleet.title.clone(),
         seed: options.seed,
         period: options.period,
-        duration: cast.duration,
-        robots: cast.members.iter().map(|m| m.name.clone()).collect(),
-        edges: cast.edges.iter().map(|e| [name(e.leader), name(e.follower)]).collect(),
+        duration: fleet.duration,
+        robots: fleet.robots.iter().map(|m| m.name.clone()).collect(),
+        edges: fleet.edges.iter().map(|e| [name(e.leader), name(e.follower)]).collect(),
         status: Status::Running,
         samples: 0,
         digest: None,
@@ -220,25 +220,29 @@ fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), Error> 
 mod tests {
     use super::*;
     use crate::table::{Column, read_table};
-    use vocabulary::{Body, Edge, EdgeState, Member, RobotState, Snapshot};
+    use vocabulary::{Body, Edge, EdgeState, RobotInfo, RobotState, Snapshot};
 
-    fn cast() -> Cast {
-        let member = |name: &str| Member::new(name, name == "ann", Body::default());
-        Cast {
+    fn fleet() -> FleetInfo {
+        let member = |name: &str| RobotInfo::new(name, name == "ann", Body::default());
+        FleetInfo {
             title: "two".into(),
             duration: 20.0,
-            members: vec![member("ann"), member("bob")],
+            robots: vec![member("ann"), member("bob")],
             edges: vec![Edge { leader: 0, follower: 1 }],
-            ..Cast::default()
+            ..FleetInfo::default()
         }
     }
 
-    fn moment(k: u32) -> Moment {
+    fn step_record(k: u32) -> StepRecord {
         let time = f64::from(k) * 0.01;
         let mut robots = vec![RobotState::default(); 2];
         robots[1].motion.pose.x = time / 3.0;
         let edge = EdgeState { error: [time, -time], limited: k.is_multiple_of(2), ..EdgeState::default() };
-        Moment { snapshot: Snapshot { time, robots, props: vec![] }, edges: vec![edge], ..Moment::default() }
+        StepRecord {
+            snapshot: Snapshot { time, robots, props: vec![] },
+            edges: vec![edge],
+            ..StepRecord::default()
+        }
     }
 
     fn options(force: bool) -> RunOptions {
@@ -257,9 +261,9 @@ mod tests {
     }
 
     fn record(folder: &Path, samples: u32) -> Recorder {
-        let mut recorder = Recorder::create(folder, &cast(), options(false)).expect("a recorder");
+        let mut recorder = Recorder::create(folder, &fleet(), options(false)).expect("a recorder");
         for k in 0..samples {
-            recorder.push(&moment(k)).expect("recorded");
+            recorder.push(&step_record(k)).expect("recorded");
         }
         recorder
     }
@@ -300,14 +304,14 @@ mod tests {
     fn a_folder_in_use_is_never_overwritten_without_force() {
         let folder = tempfile::tempdir().expect("a folder");
         record(folder.path(), 3).finish(Status::Interrupted).expect("finished");
-        let refused = Recorder::create(folder.path(), &cast(), options(false)).err().expect("refused");
+        let refused = Recorder::create(folder.path(), &fleet(), options(false)).err().expect("refused");
         assert!(refused.to_string().contains("--force"), "{refused}");
         fs::write(folder.path().join("notes.txt"), "mine").expect("written");
-        Recorder::create(folder.path(), &cast(), options(true)).expect("replaced");
+        Recorder::create(folder.path(), &fleet(), options(true)).expect("replaced");
         assert_eq!(fs::read_to_string(folder.path().join("notes.txt")).expect("kept"), "mine");
         let other = tempfile::tempdir().expect("a folder");
         fs::write(other.path().join("thesis.tex"), "years").expect("written");
-        let refused = Recorder::create(other.path(), &cast(), options(true)).err().expect("refused");
+        let refused = Recorder::create(other.path(), &fleet(), options(true)).err().expect("refused");
         assert!(refused.to_string().contains("other files"), "{refused}");
     }
 
@@ -316,13 +320,13 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let live = record(folder.path(), 10);
         for force in [false, true] {
-            let refused = Recorder::create(folder.path(), &cast(), options(force)).err().expect("refused");
+            let refused = Recorder::create(folder.path(), &fleet(), options(force)).err().expect("refused");
             assert!(refused.to_string().contains("another program"), "{refused}");
         }
         let (written, _) = live.finish(Status::Complete).expect("undisturbed");
         assert_eq!((manifest(folder.path()), written.samples), (written.clone(), 10));
         // Once it has ended it may be replaced.
-        drop(Recorder::create(folder.path(), &cast(), options(true)).expect("replaced"));
+        drop(Recorder::create(folder.path(), &fleet(), options(true)).expect("replaced"));
     }
 
     #[test]
@@ -335,8 +339,9 @@ mod tests {
 
     #[test]
     fn an_unwritable_place_is_one_clear_error() {
-        let error =
-            Recorder::create(Path::new("/proc/nowhere/run"), &cast(), options(false)).err().expect("refused");
+        let error = Recorder::create(Path::new("/proc/nowhere/run"), &fleet(), options(false))
+            .err()
+            .expect("refused");
         assert!(error.to_string().contains("/proc/nowhere/run"), "{error}");
     }
 }

@@ -13,7 +13,7 @@ use parquet::file::properties::WriterProperties;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{Cast, Mobility, Moment};
+use vocabulary::{FleetInfo, Mobility, StepRecord};
 
 /// The tables of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,13 +63,13 @@ impl TableKind {
         columns::of(self)
     }
 
-    /// The tables that a run of `cast` has.
-    pub fn of(cast: &Cast) -> Vec<Self> {
-        let moving = cast.props.iter().any(|prop| prop.mobility != Mobility::Fixed);
+    /// The tables that a run of `fleet` has.
+    pub fn of(fleet: &FleetInfo) -> Vec<Self> {
+        let moving = fleet.props.iter().any(|prop| prop.mobility != Mobility::Fixed);
         let all = [Self::Robots, Self::Edges, Self::Contacts, Self::Props, Self::Looks];
         let has = |kind: &Self| match kind {
             Self::Props => moving,
-            Self::Looks => cast.looks,
+            Self::Looks => fleet.looks,
             _ => true,
         };
         all.into_iter().filter(has).collect()
@@ -85,12 +85,12 @@ impl TableKind {
         self.columns().iter().map(kind).collect()
     }
 
-    /// One row per robot or edge of `moment`, passed on as text, numbers and flags in the order of the columns.
-    fn rows(self, cast: &Cast, moment: &Moment, mut put: impl FnMut(&[&str], &[f64], &[bool])) {
-        let time = moment.snapshot.time;
+    /// One row per robot or edge of `record`, passed on as text, numbers and flags in the order of the columns.
+    fn rows(self, fleet: &FleetInfo, record: &StepRecord, mut put: impl FnMut(&[&str], &[f64], &[bool])) {
+        let time = record.snapshot.time;
         match self {
             Self::Robots => {
-                for (member, robot) in cast.members.iter().zip(&moment.snapshot.robots) {
+                for (member, robot) in fleet.robots.iter().zip(&record.snapshot.robots) {
                     let m = &robot.motion;
                     let (a, [left, right, ..]) = (&robot.attitude, &robot.wheels);
                     let numbers = [
@@ -110,9 +110,9 @@ impl TableKind {
                 }
             }
             Self::Edges => {
-                for (edge, state) in cast.edges.iter().zip(&moment.edges) {
+                for (edge, state) in fleet.edges.iter().zip(&record.edges) {
                     let [leader, follower] =
-                        [&*cast.members[edge.leader].name, &*cast.members[edge.follower].name];
+                        [&*fleet.robots[edge.leader].name, &*fleet.robots[edge.follower].name];
                     let (r, s) = (&state.relative, state);
                     let numbers = [
                         time,
@@ -138,14 +138,14 @@ impl TableKind {
                 }
             }
             Self::Contacts => {
-                for contact in moment.contacts.iter().filter(|contact| !contact.open) {
-                    let names = contact.things.map(|thing| cast.name(thing));
+                for contact in record.contacts.iter().filter(|contact| !contact.open) {
+                    let names = contact.things.map(|thing| fleet.name(thing));
                     let ([x, y, z], [nx, ny, nz]) = (contact.place, contact.normal);
                     put(&names, &[contact.begin, contact.end, x, y, z, nx, ny, nz, contact.impulse], &[]);
                 }
             }
             Self::Props => {
-                for (prop, placement) in cast.props.iter().zip(&moment.snapshot.props) {
+                for (prop, placement) in fleet.props.iter().zip(&record.snapshot.props) {
                     if prop.mobility != Mobility::Fixed {
                         let ([x, y, z], [qx, qy, qz, qw]) = (placement.position, placement.rotation);
                         put(&[&prop.name], &[time, x, y, z, qx, qy, qz, qw], &[]);
@@ -153,10 +153,10 @@ impl TableKind {
                 }
             }
             Self::Looks => {
-                for frame in &moment.frames {
-                    let Some(edge) = cast.edges.get(frame.edge) else { continue };
-                    let [leader, follower] = [edge.leader, edge.follower].map(|k| &*cast.members[k].name);
-                    let (look, truth, region) = (&frame.sighting, &frame.truth, &frame.region);
+                for frame in &record.frames {
+                    let Some(edge) = fleet.edges.get(frame.edge) else { continue };
+                    let [leader, follower] = [edge.leader, edge.follower].map(|k| &*fleet.robots[k].name);
+                    let (look, truth, region) = (&frame.measurement, &frame.truth, &frame.region);
                     let [x, y, width, height] =
                         [region.x, region.y, region.width, region.height].map(f64::from);
                     let r = look.relative;
@@ -228,9 +228,9 @@ impl TableWriter {
         self.parts_folder().join(format!("{index:06}.parquet"))
     }
 
-    pub(crate) fn push(&mut self, cast: &Cast, moment: &Moment) -> Result<(), Error> {
+    pub(crate) fn push(&mut self, fleet: &FleetInfo, record: &StepRecord) -> Result<(), Error> {
         let columns = &mut self.columns;
-        self.kind.rows(cast, moment, |texts, numbers, flags| {
+        self.kind.rows(fleet, record, |texts, numbers, flags| {
             let (mut texts, mut numbers, mut flags) = (texts.iter(), numbers.iter(), flags.iter());
             for column in columns.iter_mut() {
                 match column {

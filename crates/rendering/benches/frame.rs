@@ -13,7 +13,7 @@ mod stage;
 
 use course::{TRUCK, furnish};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use rendering::{AdapterChoice, CameraEyes, Film, FilmKind, Gpu, Layout, Renderer, Style};
+use rendering::{AdapterChoice, Film, FilmKind, Gpu, GpuCameraRenderer, Layout, Renderer, Style};
 use sight::shots;
 use stage::{Path, Play};
 use vocabulary::{Region, Shot};
@@ -44,13 +44,13 @@ fn frames(criterion: &mut Criterion) {
                 continue;
             }
             let play = Play::new(robots, Path::named("eight"));
-            let Ok(mut renderer) = Renderer::new(&gpu, &play.cast, width, height, samples) else { continue };
-            let (trail, moment, style) = (play.trail(12.0), play.at(12.0), Style::default());
+            let Ok(mut renderer) = Renderer::new(&gpu, &play.fleet, width, height, samples) else { continue };
+            let (trail, record, style) = (play.trail(12.0), play.at(12.0), Style::default());
             let Ok(layout) = Layout::parse(view, &[]) else { continue };
             group.bench_function(
                 format!("{view}, {robots} robots, {width}x{height}, {samples} samples"),
                 |b| {
-                    b.iter(|| renderer.draw(&trail, &moment, &layout, &style));
+                    b.iter(|| renderer.draw(&trail, &record, &layout, &style));
                 },
             );
         }
@@ -62,20 +62,20 @@ fn film(criterion: &mut Criterion) {
     let gpu = gpu();
     let play = Play::new(3, Path::named("eight"));
     let count = 45_u32;
-    let moments: Vec<_> = (0..count).map(|k| play.at(f64::from(k) / 30.0)).collect();
+    let records: Vec<_> = (0..count).map(|k| play.at(f64::from(k) / 30.0)).collect();
     let layout = Layout::single(rendering::View::Snake);
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut group = criterion.benchmark_group("film");
     group.sample_size(10).throughput(Throughput::Elements(u64::from(count)));
     group.bench_function("snake, 3 robots, 1280x720, mp4", |b| {
-        let mut renderer = Renderer::new(&gpu, &play.cast, 1280, 720, 4).expect("a renderer");
+        let mut renderer = Renderer::new(&gpu, &play.fleet, 1280, 720, 4).expect("a renderer");
         b.iter_batched(
             || play.trail(0.0),
             |mut trail| -> Result<(), rendering::Error> {
                 let mut film = Film::create(&folder.path().join("a.mp4"), FilmKind::Mp4, 1280, 720, 30.0)?;
-                for moment in &moments {
-                    trail.push(moment);
-                    if let Some(picture) = renderer.draw_next(&trail, moment, &layout, &Style::default())? {
+                for record in &records {
+                    trail.push(record);
+                    if let Some(picture) = renderer.draw_next(&trail, record, &layout, &Style::default())? {
                         film.push(picture)?;
                     }
                 }
@@ -94,15 +94,15 @@ fn film(criterion: &mut Criterion) {
 fn eyes(criterion: &mut Criterion) {
     let gpu = gpu();
     let mut play = Play::new(8, Path::named("eight"));
-    furnish(&mut play.cast, TRUCK, false, false);
+    furnish(&mut play.fleet, TRUCK, false, false);
     let mut snapshot = play.at(12.0).snapshot;
-    let whole = shots(&play.cast, &mut snapshot);
+    let whole = shots(&play.fleet, &mut snapshot);
     let part = |shot: &Shot| Shot { region: Region { x: 210, y: 160, width: 220, height: 160 }, ..*shot };
     let parts: Vec<_> = whole.iter().map(part).collect();
     let mut group = criterion.benchmark_group("eyes");
     group.sample_size(30);
     for (name, shots) in [("7 of 220x160", &parts), ("7 of 640x480", &whole)] {
-        let Ok(mut eyes) = CameraEyes::new(&gpu, &play.cast) else { continue };
+        let Ok(mut eyes) = GpuCameraRenderer::new(&gpu, &play.fleet) else { continue };
         let mut pictures = Vec::new();
         group.bench_function(name, |b| b.iter(|| eyes.take(&snapshot, shots, &mut pictures)));
     }

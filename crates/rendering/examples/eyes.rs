@@ -12,13 +12,17 @@ mod sight;
 mod stage;
 
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded};
-use rendering::{AdapterChoice, CameraEyes, Gpu, png};
+use rendering::{AdapterChoice, Gpu, GpuCameraRenderer, png};
 use sight::{region_around, shots};
 use stage::{Path, Play};
 use std::time::Instant;
 use vocabulary::{Body, Grey, Picture, Region, Shot, Snapshot};
 
-fn median(eyes: &mut CameraEyes, snapshot: &Snapshot, shots: &[Shot]) -> Result<String, rendering::Error> {
+fn median(
+    eyes: &mut GpuCameraRenderer,
+    snapshot: &Snapshot,
+    shots: &[Shot],
+) -> Result<String, rendering::Error> {
     let mut pictures = Vec::new();
     let mut times = Vec::new();
     for _ in 0..61 {
@@ -61,22 +65,22 @@ fn main() -> Result<(), rendering::Error> {
     };
     let ground = word(4, "flat");
     furnish(
-        &mut play.cast,
+        &mut play.fleet,
         body,
         matches!(ground.as_str(), "hills" | "course"),
         ground != "flat" && ground != "hills",
     );
-    let mut moment = play.at(number(2, 12.0));
-    enlarge(&mut moment, scale);
-    let mut moment = grounded(&play.cast, moment);
+    let mut record = play.at(number(2, 12.0));
+    enlarge(&mut record, scale);
+    let mut record = grounded(&play.fleet, record);
     let gpu = Gpu::open(&AdapterChoice::from(word(5, "auto").as_str()))?;
-    let mut eyes = CameraEyes::new(&gpu, &play.cast)?;
-    let whole = shots(&play.cast, &mut moment.snapshot);
+    let mut eyes = GpuCameraRenderer::new(&gpu, &play.fleet)?;
+    let whole = shots(&play.fleet, &mut record.snapshot);
     let near: Vec<_> = whole
         .iter()
-        .zip(&play.cast.edges)
+        .zip(&play.fleet.edges)
         .map(|(shot, edge)| Shot {
-            region: region_around(&play.cast, &moment.snapshot, shot, edge.leader),
+            region: region_around(&play.fleet, &record.snapshot, shot, edge.leader),
             ..*shot
         })
         .collect();
@@ -84,10 +88,10 @@ fn main() -> Result<(), rendering::Error> {
         .iter()
         .map(|s| Shot { region: Region { x: 210, y: 160, width: 220, height: 160 }, ..*s })
         .collect();
-    println!("{} shots of 220x160: {}", fixed.len(), median(&mut eyes, &moment.snapshot, &fixed)?);
-    println!("{} shots of shells: {}", near.len(), median(&mut eyes, &moment.snapshot, &near)?);
-    println!("{} shots of 640x480: {}", whole.len(), median(&mut eyes, &moment.snapshot, &whole)?);
+    println!("{} shots of 220x160: {}", fixed.len(), median(&mut eyes, &record.snapshot, &fixed)?);
+    println!("{} shots of shells: {}", near.len(), median(&mut eyes, &record.snapshot, &near)?);
+    println!("{} shots of 640x480: {}", whole.len(), median(&mut eyes, &record.snapshot, &whole)?);
     let mut pictures = Vec::new();
-    eyes.take(&moment.snapshot, &whole, &mut pictures)?;
+    eyes.take(&record.snapshot, &whole, &mut pictures)?;
     png::write(word(0, "eyes.png").as_ref(), &sheet(&pictures[..pictures.len().min(4)]), &[])
 }

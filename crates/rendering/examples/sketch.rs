@@ -14,16 +14,16 @@ use rendering::{
     robot_colours,
 };
 use stage::{Path, Play};
-use vocabulary::{Body, Moment, Pose};
+use vocabulary::{Body, Pose, StepRecord};
 
 /// Every kind of thing, `size` times as large as for small robots.
-fn sketched(play: &Play, at: &dyn Fn(f64) -> Moment, time: f64, size: f64) -> Sketch {
+fn sketched(play: &Play, at: &dyn Fn(f64) -> StepRecord, time: f64, size: f64) -> Sketch {
     let now = at(time);
-    let colours = robot_colours(&play.cast);
-    let pose = |moment: &Moment, k: usize| moment.snapshot.robots[k].motion.pose;
+    let colours = robot_colours(&play.fleet);
+    let pose = |record: &StepRecord, k: usize| record.snapshot.robots[k].motion.pose;
     let place = |p: Pose| [p.x, p.y];
     let mut sketch = Sketch::default();
-    let ahead: Vec<Moment> = (0..=60).map(|k| at(time + 0.1 * f64::from(k))).collect();
+    let ahead: Vec<StepRecord> = (0..=60).map(|k| at(time + 0.1 * f64::from(k))).collect();
     let last = ahead.len() - 1;
     for (robot, colour) in colours.iter().enumerate() {
         let places: Vec<_> = ahead.iter().map(|m| place(pose(m, robot))).collect();
@@ -80,25 +80,26 @@ fn main() -> Result<(), rendering::Error> {
     let ground = word(8, "flat");
     let mut play = Play::new(number(2, 3.0) as usize, Path::named(&word(3, "eight")));
     furnish(
-        &mut play.cast,
+        &mut play.fleet,
         body,
         matches!(ground.as_str(), "hills" | "course"),
         matches!(ground.as_str(), "props" | "course"),
     );
     let at = |time: f64| {
-        let mut moment = play.at(time);
-        enlarge(&mut moment, scale);
-        grounded(&play.cast, moment)
+        let mut record = play.at(time);
+        enlarge(&mut record, scale);
+        grounded(&play.fleet, record)
     };
     let time = number(4, 12.0);
-    let mut trail = Trail::new(&play.cast);
+    let mut trail = Trail::new(&play.fleet);
     for k in 0..=(time * 30.0) as i32 {
         trail.push(&at(f64::from(k) / 30.0));
     }
-    let names: Vec<_> = play.cast.members.iter().map(|m| m.name.clone()).collect();
+    let names: Vec<_> = play.fleet.robots.iter().map(|m| m.name.clone()).collect();
     let layout = Layout::parse(&word(1, "snake"), &names)?;
     let gpu = Gpu::open(&AdapterChoice::Auto)?;
-    let mut renderer = Renderer::new(&gpu, &play.cast, number(5, 1280.0) as u32, number(6, 800.0) as u32, 4)?;
+    let mut renderer =
+        Renderer::new(&gpu, &play.fleet, number(5, 1280.0) as u32, number(6, 800.0) as u32, 4)?;
     let interactive = word(9, "") == "interactive";
     let style = Style { sketch: sketched(&play, &at, time, scale), interactive, ..Style::default() };
     let picture = renderer.draw(&trail, &at(time), &layout, &style)?;

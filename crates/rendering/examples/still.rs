@@ -14,7 +14,7 @@ use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, png};
 use sight::looks;
 use stage::{Path, Play};
 use std::time::Instant;
-use vocabulary::{Body, Moment};
+use vocabulary::{Body, StepRecord};
 
 /// The play with its bodies and its ground, and how large it is.
 fn staged(robots: usize, path: &str, body: &str, ground: &str) -> (Play, f64) {
@@ -26,23 +26,23 @@ fn staged(robots: usize, path: &str, body: &str, ground: &str) -> (Play, f64) {
         _ => (Body::default(), 1.0),
     };
     let props = matches!(ground, "props" | "course");
-    furnish(&mut play.cast, body, matches!(ground, "hills" | "course"), props);
+    furnish(&mut play.fleet, body, matches!(ground, "hills" | "course"), props);
     (play, scale)
 }
 
 /// A moment on that ground; on a course the last robot ends on its roof.
-fn moment(play: &Play, scale: f64, wreck: f64, time: f64) -> Moment {
-    let mut moment = play.at(time);
-    enlarge(&mut moment, scale);
-    let mut moment = grounded(&play.cast, moment);
-    let last = play.cast.members.len() - 1;
+fn record(play: &Play, scale: f64, wreck: f64, time: f64) -> StepRecord {
+    let mut record = play.at(time);
+    enlarge(&mut record, scale);
+    let mut record = grounded(&play.fleet, record);
+    let last = play.fleet.robots.len() - 1;
     if time > wreck {
-        overturn(&play.cast, &mut moment, last);
-        let robot = moment.snapshot.robots[last];
+        overturn(&play.fleet, &mut record, last);
+        let robot = record.snapshot.robots[last];
         let (pose, height) = (robot.motion.pose, robot.attitude.height);
-        moment.contacts.push(touch(0, wreck + 0.1, [pose.x + 0.3, pose.y - 0.1, height - 0.2]));
+        record.contacts.push(touch(0, wreck + 0.1, [pose.x + 0.3, pose.y - 0.1, height - 0.2]));
     }
-    moment
+    record
 }
 
 fn main() -> Result<(), rendering::Error> {
@@ -52,17 +52,17 @@ fn main() -> Result<(), rendering::Error> {
     let number = |k: usize, other: f64| words.get(k).and_then(|w| w.parse().ok()).unwrap_or(other);
     let ground = word(10, "flat");
     let (play, scale) = staged(number(2, 3.0) as usize, &word(3, "eight"), &word(9, "small"), &ground);
-    let names: Vec<_> = play.cast.members.iter().map(|m| m.name.clone()).collect();
+    let names: Vec<_> = play.fleet.robots.iter().map(|m| m.name.clone()).collect();
     let time = number(4, 12.0);
     let gpu = Gpu::open(&AdapterChoice::from(word(8, "auto").as_str()))?;
     let opened = start.elapsed();
     let (width, height) = (number(5, 1280.0) as u32, number(6, 720.0) as u32);
-    let mut renderer = Renderer::new(&gpu, &play.cast, width, height, 4)?;
+    let mut renderer = Renderer::new(&gpu, &play.fleet, width, height, 4)?;
     let built = start.elapsed();
     let wreck = if ground == "course" { time - 0.22 } else { f64::INFINITY };
-    let mut trail = if words.len() > 9 { Trail::new(&play.cast) } else { play.trail(time) };
+    let mut trail = if words.len() > 9 { Trail::new(&play.fleet) } else { play.trail(time) };
     for k in 0..=(time * 30.0) as i32 {
-        trail.push(&moment(&play, scale, wreck, f64::from(k) / 30.0));
+        trail.push(&record(&play, scale, wreck, f64::from(k) / 30.0));
     }
     let without = word(11, "");
     let mut style = Style::without(
@@ -70,11 +70,11 @@ fn main() -> Result<(), rendering::Error> {
     )?;
     style.scale = number(7, 1.0);
     let layout = Layout::parse(&word(1, "snake"), &names)?;
-    let mut moment = moment(&play, scale, wreck, time);
-    looks(&play.cast, &mut moment);
+    let mut record = record(&play, scale, wreck, time);
+    looks(&play.fleet, &mut record);
     style.detections = !without.contains("detections");
     style.picture_in_picture = words.get(12).and_then(|w| w.parse().ok());
-    let picture = renderer.draw(&trail, &moment, &layout, &style)?;
+    let picture = renderer.draw(&trail, &record, &layout, &style)?;
     let drawn = start.elapsed();
     let file = word(0, "still.png");
     png::write(file.as_ref(), &picture, &[("Adapter", &gpu.description())])?;
@@ -86,7 +86,7 @@ fn main() -> Result<(), rendering::Error> {
     let mut times: Vec<_> = (0..15)
         .map(|_| {
             let start = Instant::now();
-            renderer.draw(&trail, &moment, &layout, &style).map(|_| start.elapsed())
+            renderer.draw(&trail, &record, &layout, &style).map(|_| start.elapsed())
         })
         .collect::<Result<_, _>>()?;
     times.sort();

@@ -12,7 +12,7 @@ use course::{CAR, enlarge, furnish, grounded};
 use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail};
 use stage::{Path, Play};
 use std::time::{Duration, Instant};
-use vocabulary::{Body, Moment};
+use vocabulary::{Body, StepRecord};
 
 fn median(mut times: Vec<Duration>) -> f64 {
     times.sort();
@@ -42,17 +42,17 @@ fn main() -> Result<(), rendering::Error> {
     let frames = word(4, "25").parse::<i32>().unwrap_or(25);
     let mut play = Play::new(robots, Path::named("eight"));
     let (hills, props) = (matches!(&*ground, "hills" | "course"), matches!(&*ground, "props" | "course"));
-    furnish(&mut play.cast, body, hills, props);
+    furnish(&mut play.fleet, body, hills, props);
     let at = |time: f64| {
-        let mut moment = play.at(time);
-        enlarge(&mut moment, scale);
-        grounded(&play.cast, moment)
+        let mut record = play.at(time);
+        enlarge(&mut record, scale);
+        grounded(&play.fleet, record)
     };
-    let mut trail = Trail::new(&play.cast);
-    let past: Vec<Moment> = (0..6_000).map(|k| at(0.01 * f64::from(k))).collect();
+    let mut trail = Trail::new(&play.fleet);
+    let past: Vec<StepRecord> = (0..6_000).map(|k| at(0.01 * f64::from(k))).collect();
     let start = Instant::now();
-    for moment in &past {
-        trail.push(moment);
+    for record in &past {
+        trail.push(record);
     }
     println!("push: {:.2} µs", start.elapsed().as_secs_f64() * 1e6 / past.len() as f64);
     let start = Instant::now();
@@ -78,16 +78,16 @@ fn main() -> Result<(), rendering::Error> {
     println!("{:>10} {:>7} {:>38} {:>8} {:>8}", "size", "samples", "without", "prepare", "frame");
     for (width, height) in [(800, 560), (1280, 800)] {
         for samples in [4, 1] {
-            let mut renderer = Renderer::new(&gpu, &play.cast, width, height, samples)?;
+            let mut renderer = Renderer::new(&gpu, &play.fleet, width, height, samples)?;
             let view = texture(&gpu, width, height);
             let mut times = vec![(Vec::new(), Vec::new()); styles.len()];
             for _ in 0..frames {
                 for (list, (prepared, whole)) in styles.iter().zip(&mut times) {
                     let style = styled(list)?;
                     now += if *list == "(still)" { 0.0 } else { 0.01 };
-                    let moment = at(now);
+                    let record = at(now);
                     let start = Instant::now();
-                    renderer.draw_into(&view, &trail, &moment, &layout, &style)?;
+                    renderer.draw_into(&view, &trail, &record, &layout, &style)?;
                     prepared.push(start.elapsed());
                     let waited = gpu.device.poll(wgpu::PollType::wait_indefinitely());
                     waited.map_err(|e| rendering::Error::Device(e.to_string()))?;

@@ -8,7 +8,7 @@ use crate::room::{Bound, Room, eye};
 use crate::snake::snake;
 use crate::steady::{Extent, Steady};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
-use vocabulary::{Cast, Edge, Snapshot};
+use vocabulary::{Edge, FleetInfo, Snapshot};
 
 /// Whence and how a picture is seen; only cameras on robots roll.
 #[derive(Debug, Clone, Copy)]
@@ -43,7 +43,7 @@ impl Camera {
         view: &View,
         steady: &Steady,
         snapshot: &Snapshot,
-        (cast, floor): (&Cast, &Floor),
+        (fleet, floor): (&FleetInfo, &Floor),
         room: &Room,
     ) -> Self {
         let aspect = room.aspect();
@@ -51,9 +51,9 @@ impl Camera {
             View::Snake => snake(steady, room),
             View::SnakeEye => snake_eye(steady, aspect),
             View::Top => top(steady, room),
-            View::Orbit => orbit(steady, snapshot.time, cast.edges.is_empty(), room),
-            View::Follow(robot) => follow(steady, snapshot, &cast.edges, *robot, aspect),
-            View::Camera(robot) => return carried(snapshot, cast, *robot, aspect),
+            View::Orbit => orbit(steady, snapshot.time, fleet.edges.is_empty(), room),
+            View::Follow(robot) => follow(steady, snapshot, &fleet.edges, *robot, aspect),
+            View::Camera(robot) => return carried(snapshot, fleet, *robot, aspect),
             View::Fixed { eye, target, field_of_view } => {
                 let [mut eye, target] = [eye, target].map(|place| DVec3::from_array(*place));
                 // Somebody has put it there: it stays, unless the floor is in the way.
@@ -61,7 +61,8 @@ impl Camera {
                 return Self::looking(eye, target, *field_of_view, aspect);
             }
             View::Between(from, to, share) => {
-                let [from, to] = [from, to].map(|view| Self::of(view, steady, snapshot, (cast, floor), room));
+                let [from, to] =
+                    [from, to].map(|view| Self::of(view, steady, snapshot, (fleet, floor), room));
                 return between(&from, &to, *share, steady);
             }
         };
@@ -348,8 +349,9 @@ mod tests {
             let mut snapshot = Snapshot { robots, ..Snapshot::default() };
             snapshot.robots[0].motion.pose = vocabulary::Pose::new(2.0 * cos, 2.0 * sin, 0.3);
             let mut steady = Steady::new(0, 1.0);
-            let moment = vocabulary::Moment { snapshot: snapshot.clone(), ..vocabulary::Moment::default() };
-            steady.push(&moment, &[]);
+            let record =
+                vocabulary::StepRecord { snapshot: snapshot.clone(), ..vocabulary::StepRecord::default() };
+            steady.push(&record, &[]);
             let camera = follow(&steady, &snapshot, &edges, 1, 16.0 / 9.0);
             let seen = |x, y| camera.project(DVec3::new(x, y, 0.0)).unwrap();
             let own = seen(0.0, 0.0);

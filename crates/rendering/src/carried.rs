@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use glam::{DVec2, DVec3};
-use vocabulary::{Body, Cast, Lens, Mount, Region, Shot, Snapshot};
+use vocabulary::{Body, CameraModel, CameraMount, FleetInfo, Region, Shot, Snapshot};
 
 /// What is nearer is not seen, m.
 const NEAR: f64 = 0.02;
@@ -48,18 +48,18 @@ impl Camera {
 }
 
 /// Through the camera of a robot: all of its sensor, and what is beside that or over it where the picture has room.
-pub(crate) fn carried(snapshot: &Snapshot, cast: &Cast, robot: usize, aspect: f64) -> Camera {
+pub(crate) fn carried(snapshot: &Snapshot, fleet: &FleetInfo, robot: usize, aspect: f64) -> Camera {
     let state = snapshot.robots.get(robot).copied().unwrap_or_default();
-    let (mount, lens) = cast.members.get(robot).map_or_else(
-        || (Mount::fitting(&Body::default()), Lens::default()),
-        |member| (member.mount, member.lens),
+    let (camera_mount, camera_model) = fleet.robots.get(robot).map_or_else(
+        || (CameraMount::fitting(&Body::default()), CameraModel::default()),
+        |member| (member.camera_mount, member.camera_model),
     );
     let mut camera = Camera::shot(&Shot {
         robot,
-        world_from_camera: mount.world_from_camera(&state),
-        focal: lens.focal,
-        centre: lens.centre,
-        region: Region::whole(&lens),
+        world_from_camera: camera_mount.world_from_camera(&state),
+        focal: camera_model.focal,
+        centre: camera_model.centre,
+        region: Region::whole(&camera_model),
         exposure: 1.0,
     });
     let DVec2 { x, y } = camera.half;

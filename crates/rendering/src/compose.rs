@@ -7,17 +7,17 @@ use crate::inset::{clearness, inset};
 use crate::labels::{Window, Words, ring_boxes, robot_boxes, view_words};
 use crate::letters::Letters;
 use crate::paint::Stage;
-use crate::passes::frame::Frame;
+use crate::passes::frame::FrameUniforms;
 use crate::passes::ground::TILE;
 use crate::passes::shadow::{ShadowPass, SunView, sun_view};
 use crate::plan::{Area, Plan, overlap};
 use crate::show::{line_place, show};
 use glam::{DVec2, DVec3};
-use vocabulary::{Cast, Light, Member, Moment, RobotState};
+use vocabulary::{FleetInfo, Light, RobotInfo, RobotState, StepRecord};
 
 /// A multiple of the ground's tile near the robots, so that single precision is enough around it.
-pub(crate) fn local_origin(moment: &Moment) -> DVec3 {
-    let places = moment.snapshot.robots.iter().map(|r| r.motion.pose);
+pub(crate) fn local_origin(record: &StepRecord) -> DVec3 {
+    let places = record.snapshot.robots.iter().map(|r| r.motion.pose);
     let first = places.clone().find(|p| p.x.is_finite() && p.y.is_finite()).unwrap_or_default();
     let snap = |x: f64| (x / TILE).round() * TILE;
     DVec3::new(snap(first.x), snap(first.y), 0.0)
@@ -37,11 +37,11 @@ pub(crate) fn towards_sun(light: &Light) -> DVec3 {
 const PROPS_WITHIN: f64 = 13.0;
 
 /// Middle and radius of what the shadow map has to cover: all robots, and the props around them.
-pub(crate) fn shadowed(cast: &Cast, moment: &Moment) -> (DVec2, f64) {
-    let (middle, radius) = robots_within(cast, moment).unwrap_or((DVec3::ZERO, 1.0));
+pub(crate) fn shadowed(fleet: &FleetInfo, record: &StepRecord) -> (DVec2, f64) {
+    let (middle, radius) = robots_within(fleet, record).unwrap_or((DVec3::ZERO, 1.0));
     let mut reach = radius;
-    for (k, prop) in cast.props.iter().enumerate() {
-        let place = moment.snapshot.props.get(k).unwrap_or(&prop.placement).position;
+    for (k, prop) in fleet.props.iter().enumerate() {
+        let place = record.snapshot.props.get(k).unwrap_or(&prop.placement).position;
         let away =
             middle.distance(DVec3::from_array(place)) + prop.solid.reach().hypot(prop.solid.extent()[2]);
         let away = away.min(PROPS_WITHIN.max(radius));
@@ -54,20 +54,20 @@ pub(crate) fn shadowed(cast: &Cast, moment: &Moment) -> (DVec2, f64) {
 }
 
 /// Middle and radius of a ball around all robots; beyond 40 m a shadow is below a texel, wherever the robots are.
-fn robots_within(cast: &Cast, moment: &Moment) -> Option<(DVec3, f64)> {
+fn robots_within(fleet: &FleetInfo, record: &StepRecord) -> Option<(DVec3, f64)> {
     let places = || {
-        let states = moment.snapshot.robots.iter().map(|r| (r.motion.pose, r.attitude.height));
+        let states = record.snapshot.robots.iter().map(|r| (r.motion.pose, r.attitude.height));
         states.map(|(p, height)| DVec3::new(p.x, p.y, 0.1 + height)).filter(|p| p.is_finite())
     };
     let low = places().fold(DVec3::INFINITY, DVec3::min);
     let high = places().fold(DVec3::NEG_INFINITY, DVec3::max);
-    let size = cast.members.iter().map(|m| crate::model::size(&m.body)).fold(1.0, f64::max);
+    let size = fleet.robots.iter().map(|m| crate::model::size(&m.body)).fold(1.0, f64::max);
     low.is_finite().then(|| ((low + high) * 0.5, (0.5 * low.distance(high) + 0.8 * size).min(40.0)))
 }
 
 /// The view that the sun of a stage has of all robots and the props around them.
 pub(crate) fn sun_over(stage: &Stage<'_>) -> SunView {
-    match robots_within(stage.cast, stage.moment) {
+    match robots_within(stage.fleet, stage.record) {
         Some((middle, _)) => sun_view(stage.sun, middle - stage.origin, stage.shadowed.1),
         None => sun_view(stage.sun, DVec3::ZERO, 1.0),
     }
@@ -88,7 +88,7 @@ fn veiled(camera: &Camera, stage: &Stage<'_>, view: &View) -> f64 {
         let seen = camera.project(place).is_some_and(|p| p.abs().max_element() < 1.0);
         if seen { camera.view_from_world(place).z } else { f64::INFINITY }
     };
-    let robots = stage.moment.snapshot.robots.iter().enumerate();
+    let robots = stage.record.snapshot.robots.iter().enumerate();
     robots.map(|(k, robot)| nearest(k, robot)).fold(f64::INFINITY, f64::min) - 0.9 * stage.size
 }
 
@@ -97,7 +97,7 @@ const MOST_LOOKED_FOR: usize = 500;
 
 /// Which decks hide most of a robot. Others stay as they are: who looks at a ramp wants to see it.
 pub(crate) fn veiled_decks(camera: &Camera, stage: &Stage<'_>, view: &View) -> Vec<bool> {
-    let robots = &stage.moment.snapshot.robots;
+    let robots = &stage.record.snapshot.robots;
     let decks = &stage.floor.decks;
     if decks.is_empty()
         || robots.len() > MOST_LOOKED_FOR
@@ -106,7 +106,7 @@ pub(crate) fn veiled_decks(camera: &Camera, stage: &Stage<'_>, view: &View) -> V
         return vec![false; decks.len()];
     }
     let looked_for = |k: &usize| !matches!(view, View::Follow(robot) if robot != k);
-    let all = robots.iter().zip(&stage.cast.members).enumerate().filter(|(k, _)| looked_for(k));
+    let all = robots.iter().zip(&stage.fleet.robots).enumerate().filter(|(k, _)| looked_for(k));
     let spots: Vec<_> = all.map(|(_, (robot, member))| spots(robot, member)).collect();
     let hides = |deck: &Deck| {
         spots.iter().any(|of| of.iter().filter(|spot| deck.hides(camera.eye, **spot)).count() > of.len() / 2)
@@ -115,7 +115,7 @@ pub(crate) fn veiled_decks(camera: &Camera, stage: &Stage<'_>, view: &View) -> V
 }
 
 /// Five places on a robot, half-way up.
-fn spots(robot: &RobotState, member: &Member) -> [DVec3; 5] {
+fn spots(robot: &RobotState, member: &RobotInfo) -> [DVec3; 5] {
     let body = &member.body;
     let up = robot.attitude.height + 0.5 * body.height;
     [(0.0, 0.0), (0.4, 0.4), (0.4, -0.4), (-0.4, -0.4), (-0.4, 0.4)].map(|(forward, left)| {
@@ -131,13 +131,13 @@ pub(crate) fn frame(
     view: &View,
     sun: &SunView,
     shadow: &ShadowPass,
-) -> Frame {
-    let mut frame = Frame::new(camera, stage.origin, sun.shadow_from_local);
+) -> FrameUniforms {
+    let mut frame = FrameUniforms::new(camera, stage.origin, sun.shadow_from_local);
     let [x, y, z] = stage.sun.as_vec3().to_array();
     // A large formation is seen from farther away and would drown in it.
-    let haze = (stage.cast.light.haze_from.max(0.1) * (0.2 * camera.eye.z).max(1.0)) as f32;
+    let haze = (stage.fleet.light.haze_from.max(0.1) * (0.2 * camera.eye.z).max(1.0)) as f32;
     frame.sun = [x, y, z, if stage.style.shadows { shadow.penumbra(sun) } else { 0.0 }];
-    if let Some(terrain) = &stage.cast.terrain {
+    if let Some(terrain) = &stage.fleet.terrain {
         let [x, y] = terrain.origin;
         frame.terrain = (DVec3::new(x, y, 0.0) - stage.origin).as_vec3().extend(1.0).to_array();
     }
@@ -173,7 +173,7 @@ pub(crate) fn words<'a>(
         words.framed(window.tile);
     }
     let sky = windows.first().map_or(0.0, |w| 0.5 * (1.0 - w.camera.horizon()) * f64::from(w.tile.height));
-    plan.write(&mut words, stage.moment.snapshot.time, sky as f32);
+    plan.write(&mut words, stage.record.snapshot.time, sky as f32);
     let mut panels: Vec<_> = said.iter().map(|(line, _)| *line).collect();
     if let (Some(place), Some(first)) = (plan.panel, lower.first()) {
         let hidden = [robot_boxes(stage, *first), ring_boxes(stage, *first)].concat();

@@ -9,7 +9,7 @@ use crate::palette::robot_colours;
 use crate::plan::{Plan, area, overlap};
 use crate::renderer::cameras;
 use crate::{Layout, Style, Trail, View};
-use vocabulary::{Cast, Moment};
+use vocabulary::{FleetInfo, StepRecord};
 
 /// Rectangles of a picture: left, top, width and height in pixels from its upper left corner.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -29,31 +29,31 @@ pub struct Composition {
 }
 
 impl Composition {
-    /// That of the picture that a renderer of `cast` draws at a size.
+    /// That of the picture that a renderer of `fleet` draws at a size.
     pub fn new(
-        cast: &Cast,
-        (trail, moment): (&Trail, &Moment),
+        fleet: &FleetInfo,
+        (trail, record): (&Trail, &StepRecord),
         layout: &Layout,
         style: &Style,
         size: (u32, u32),
     ) -> Self {
         let mut letters = Letters::new();
-        let floor = Floor::new(cast);
-        let colours = robot_colours(cast);
-        let plan = Plan::new(&mut letters, cast, layout, style, size);
-        let cameras = cameras(&plan, trail, moment, cast, &floor);
+        let floor = Floor::new(fleet);
+        let colours = robot_colours(fleet);
+        let plan = Plan::new(&mut letters, fleet, layout, style, size);
+        let cameras = cameras(&plan, trail, record, fleet, &floor);
         let stage = Stage {
-            cast,
+            fleet,
             floor: &floor,
             colours: &colours,
             trail,
-            moment,
+            record,
             style,
-            origin: local_origin(moment),
-            sun: towards_sun(&cast.light),
+            origin: local_origin(record),
+            sun: towards_sun(&fleet.light),
             size: trail.steady.formation().size,
-            shadowed: shadowed(cast, moment),
-            detail: detail(cast.members.len()),
+            shadowed: shadowed(fleet, record),
+            detail: detail(fleet.robots.len()),
         };
         let windows: Vec<_> =
             cameras.iter().zip(&plan.tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();

@@ -7,22 +7,22 @@ use crate::paint::{Stage, flat};
 use crate::palette::{Rgb, linear};
 use crate::passes::robot::{Crowd, Instance, Squad};
 use glam::{DVec3, Mat3, Mat4, Vec3};
-use vocabulary::{Attitude, Cast, Member, Pose, RobotState};
+use vocabulary::{Attitude, FleetInfo, Pose, RobotInfo, RobotState};
 
 /// Opacity of a ghost.
 const GHOST: f32 = 0.18;
 
 /// The builds of a cast, each once, and which of them every robot has.
 #[derive(Debug)]
-pub(crate) struct Fleet {
+pub(crate) struct RobotModels {
     pub(crate) builds: Vec<Build>,
     of: Vec<usize>,
 }
 
-impl Fleet {
-    pub(crate) fn new(cast: &Cast) -> Self {
+impl RobotModels {
+    pub(crate) fn new(fleet: &FleetInfo) -> Self {
         let mut builds: Vec<Build> = Vec::new();
-        let of = cast.members.iter().map(|member| {
+        let of = fleet.robots.iter().map(|member| {
             let build = Build::new(member);
             builds.iter().position(|b| *b == build).unwrap_or_else(|| {
                 builds.push(build);
@@ -35,31 +35,37 @@ impl Fleet {
 }
 
 /// All copies of the models in a picture.
-pub(crate) fn crowd(stage: &Stage<'_>, fleet: &Fleet) -> Crowd {
-    let mut crowd = Crowd { squads: vec![Squad::default(); fleet.builds.len()], ..Crowd::default() };
-    for (index, (robot, member)) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members).enumerate() {
+pub(crate) fn crowd(stage: &Stage<'_>, robot_models: &RobotModels) -> Crowd {
+    let mut crowd = Crowd { squads: vec![Squad::default(); robot_models.builds.len()], ..Crowd::default() };
+    for (index, (robot, member)) in stage.record.snapshot.robots.iter().zip(&stage.fleet.robots).enumerate() {
         let mut look = Look::new(member, index, stage.colours[index]);
         let pose = robot.motion.pose;
         look.marks[2] = (stage.floor.height(flat(&pose)) - stage.origin.z) as f32;
-        let kind = fleet.of[index];
-        let (squad, build) = (&mut crowd.squads[kind], &fleet.builds[kind]);
+        let kind = robot_models.of[index];
+        let (squad, build) = (&mut crowd.squads[kind], &robot_models.builds[kind]);
         crowd.cameras.push(stand(squad, robot, build, &look, stage.origin));
     }
     if stage.style.ghosts && stage.detail > 0.0 {
-        ghosts(&mut crowd, stage, fleet);
+        ghosts(&mut crowd, stage, robot_models);
     }
-    sketched(&mut crowd, stage, fleet);
+    sketched(&mut crowd, stage, robot_models);
     crowd
 }
 
 /// What of a crowd a camera on robot `own` may see: not the head it sits in.
-pub(crate) fn part(all: &Crowd, stage: &Stage<'_>, fleet: &Fleet, camera: &Camera, own: usize) -> Crowd {
+pub(crate) fn part(
+    all: &Crowd,
+    stage: &Stage<'_>,
+    robot_models: &RobotModels,
+    camera: &Camera,
+    own: usize,
+) -> Crowd {
     let mut part = Crowd { squads: vec![Squad::default(); all.squads.len()], ..Crowd::default() };
     let mut counts = vec![0; all.squads.len()];
     let mut seen = Vec::new();
-    for (index, robot) in stage.moment.snapshot.robots.iter().enumerate() {
-        let kind = fleet.of[index];
-        let (middle, radius) = fleet.builds[kind].ball();
+    for (index, robot) in stage.record.snapshot.robots.iter().enumerate() {
+        let kind = robot_models.of[index];
+        let (middle, radius) = robot_models.builds[kind].ball();
         let middle = DVec3::from_array(robot.world_from_body().apply(middle));
         if camera.may_see(middle, radius) {
             seen.push((camera.view_from_world(middle).z, index, counts[kind]));
@@ -69,7 +75,7 @@ pub(crate) fn part(all: &Crowd, stage: &Stage<'_>, fleet: &Fleet, camera: &Camer
     // What is near hides what is behind it.
     seen.sort_by(|a, b| a.0.total_cmp(&b.0));
     for (_, index, place) in seen {
-        let kind = fleet.of[index];
+        let kind = robot_models.of[index];
         let (squad, whole) = (&mut part.squads[kind], &all.squads[kind]);
         squad.bodies.push(whole.bodies[place]);
         squad.wheels.extend_from_slice(&whole.wheels[4 * place..4 * place + 4]);
@@ -87,7 +93,7 @@ struct Look {
 }
 
 impl Look {
-    fn new(member: &Member, index: usize, colour: Rgb) -> Self {
+    fn new(member: &RobotInfo, index: usize, colour: Rgb) -> Self {
         let tag = member.shell.and_then(|shell| shell.first_tag).map_or(-1.0, f32::from);
         Self { colour, marks: [roof_number(member, index), f32::from(u8::from(member.leads)), 0.0, tag] }
     }
@@ -104,7 +110,7 @@ impl Look {
 }
 
 /// The number that ends a robot's name, else its place on stage.
-fn roof_number(member: &Member, index: usize) -> f32 {
+fn roof_number(member: &RobotInfo, index: usize) -> f32 {
     let digits = member.name.chars().rev().take_while(char::is_ascii_digit).count();
     let tail = &member.name[member.name.len() - digits..];
     tail.parse::<u16>().ok().filter(|n| *n < 1000).map_or(index as f32, f32::from)
@@ -144,15 +150,15 @@ fn stand(squad: &mut Squad, robot: &RobotState, build: &Build, look: &Look, orig
     look.instance(camera, 1.0)
 }
 
-fn ghosts(crowd: &mut Crowd, stage: &Stage<'_>, fleet: &Fleet) {
-    let now = stage.moment.snapshot.time;
+fn ghosts(crowd: &mut Crowd, stage: &Stage<'_>, robot_models: &RobotModels) {
+    let now = stage.record.snapshot.time;
     for row in &stage.trail.ghosts {
         let age = now - row.time;
         if !(0.0..=crate::trail::RIBBON).contains(&age) {
             continue;
         }
-        for (index, (pose, member)) in row.poses.iter().zip(&stage.cast.members).enumerate() {
-            let here = stage.moment.snapshot.robots.get(index).map(|r| r.motion.pose).unwrap_or_default();
+        for (index, (pose, member)) in row.poses.iter().zip(&stage.fleet.robots).enumerate() {
+            let here = stage.record.snapshot.robots.get(index).map(|r| r.motion.pose).unwrap_or_default();
             // A ghost steps out of its robot gradually and fades before it goes.
             let away = ((here.x - pose.x).hypot(here.y - pose.y) / member.body.length - 0.8).clamp(0.0, 1.0);
             let late = ((crate::trail::RIBBON - age) / 1.5).clamp(0.0, 1.0);
@@ -160,20 +166,20 @@ fn ghosts(crowd: &mut Crowd, stage: &Stage<'_>, fleet: &Fleet) {
             if alpha > 0.01 {
                 let look = Look::new(member, index, stage.colours[index]);
                 let base = local_from_body(pose, &lying(stage, pose), stage.origin);
-                crowd.squads[fleet.of[index]].ghosts.push(look.instance(base, alpha));
+                crowd.squads[robot_models.of[index]].ghosts.push(look.instance(base, alpha));
             }
         }
     }
 }
 
 /// The bodies of a sketch.
-fn sketched(crowd: &mut Crowd, stage: &Stage<'_>, fleet: &Fleet) {
+fn sketched(crowd: &mut Crowd, stage: &Stage<'_>, robot_models: &RobotModels) {
     for Ghost { robot, pose, alpha } in &stage.style.sketch.ghosts {
         let finite = [pose.x, pose.y, pose.heading].iter().all(|x| x.is_finite());
-        let Some(member) = stage.cast.members.get(*robot).filter(|_| finite) else { continue };
+        let Some(member) = stage.fleet.robots.get(*robot).filter(|_| finite) else { continue };
         let look = Look::new(member, *robot, stage.colours[*robot]);
         let base = local_from_body(pose, &lying(stage, pose), stage.origin);
-        crowd.squads[fleet.of[*robot]].ghosts.push(look.instance(base, alpha.clamp(0.0, 1.0)));
+        crowd.squads[robot_models.of[*robot]].ghosts.push(look.instance(base, alpha.clamp(0.0, 1.0)));
     }
 }
 
@@ -194,7 +200,7 @@ mod tests {
 
     #[test]
     fn roofs_show_the_number_of_the_name() {
-        let member = |name: &str| Member::new(name, false, Body::default());
+        let member = |name: &str| RobotInfo::new(name, false, Body::default());
         assert_eq!(roof_number(&member("follower-12"), 3), 12.0);
         assert_eq!(roof_number(&member("leader"), 0), 0.0);
         assert_eq!(roof_number(&member("x99999999"), 4), 4.0);

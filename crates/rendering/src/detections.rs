@@ -6,7 +6,9 @@ use crate::paint::Stage;
 use crate::palette::{Rgb, hex};
 use crate::view::Tile;
 use glam::Vec2;
-use vocabulary::{Edge, FACES, Frame, Lens, Member, Outcome, Relative, Rigid, Shell, tag_code, wrap};
+use vocabulary::{
+    CameraModel, Edge, FACES, MeasurementRecord, Outcome, Relative, Rigid, RobotInfo, Shell, tag_code, wrap,
+};
 
 /// Older looks are forgotten, s.
 const FORGOTTEN: f64 = 2.0;
@@ -29,7 +31,7 @@ fn colour(outcome: Outcome) -> Rgb {
 struct Sketch<'a, 'b, 'c> {
     words: &'a mut Words<'b>,
     window: Window<'c>,
-    lens: Lens,
+    camera_model: CameraModel,
     /// How far the camera has turned to the left of its leader since the look, rad.
     turn: f64,
     width: f32,
@@ -44,16 +46,16 @@ fn turned([x, y]: [f64; 2], turn: f64) -> Option<[f64; 2]> {
 
 /// How far the camera has turned to the left of its leader since a look, rad: what was seen then is drawn over what is
 /// seen now.
-fn turn_since(stage: &Stage<'_>, edge: &Edge, frame: &Frame) -> f64 {
-    let robots = &stage.moment.snapshot.robots;
+fn turn_since(stage: &Stage<'_>, edge: &Edge, frame: &MeasurementRecord) -> f64 {
+    let robots = &stage.record.snapshot.robots;
     let (Some(own), Some(leader), Some(member)) =
-        (robots.get(edge.follower), robots.get(edge.leader), stage.cast.members.get(edge.follower))
+        (robots.get(edge.follower), robots.get(edge.leader), stage.fleet.robots.get(edge.follower))
     else {
         return 0.0;
     };
     let bearing = |relative: &Relative, pan: f64| {
         let (sin, cos) = relative.view_angle.sin_cos();
-        let ahead = -relative.distance * cos - member.mount.forward;
+        let ahead = -relative.distance * cos - member.camera_mount.forward;
         (-relative.distance * sin).atan2(ahead) - pan
     };
     let now = Relative::between(leader.motion.pose, own.motion.pose);
@@ -78,7 +80,7 @@ impl Sketch<'_, '_, '_> {
     fn outline(&mut self, corners: &[[f64; 2]], colour: Rgb, alpha: f32) {
         for (k, a) in corners.iter().enumerate() {
             let b = corners[(k + 1) % corners.len()];
-            let (a, b) = (self.lens.direction(*a), self.lens.direction(b));
+            let (a, b) = (self.camera_model.direction(*a), self.camera_model.direction(b));
             self.line(a, b, colour, alpha);
         }
     }
@@ -134,17 +136,17 @@ fn clipped(a: Vec2, b: Vec2, tile: &Tile) -> Option<(Vec2, Vec2)> {
 }
 
 /// The leader's body as the estimate has it, in the frame of the follower's camera at the look.
-fn estimated(frame: &Frame, follower: &Member) -> Rigid {
-    let relative = frame.sighting.relative;
+fn estimated(frame: &MeasurementRecord, follower: &RobotInfo) -> Rigid {
+    let relative = frame.measurement.relative;
     let (sin, cos) = relative.view_angle.sin_cos();
     let at = [-relative.distance * cos, -relative.distance * sin, 0.0];
     let leader = Rigid::turned(at, relative.view_angle - relative.bearing, 0.0, 0.0);
-    follower.mount.body_from_camera(frame.pan).inverse().after(&leader)
+    follower.camera_mount.body_from_camera(frame.pan).inverse().after(&leader)
 }
 
 /// Whose camera a view is through, and what it found.
 pub(crate) fn camera_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robot: usize) {
-    let Some(member) = stage.cast.members.get(robot) else { return };
+    let Some(member) = stage.fleet.robots.get(robot) else { return };
     if stage.style.detections {
         detections(words, stage, window, robot);
     }
@@ -155,24 +157,29 @@ pub(crate) fn camera_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Win
 
 /// Everything about the last look of each edge of a robot, over the view of its camera.
 fn detections(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robot: usize) {
-    let now = stage.moment.snapshot.time;
+    let now = stage.record.snapshot.time;
     let mut row = 0.0;
-    for (index, edge) in stage.cast.edges.iter().enumerate().filter(|(_, edge)| edge.follower == robot) {
-        let news = stage.moment.frames.iter().rev().find(|frame| frame.edge == index);
+    for (index, edge) in stage.fleet.edges.iter().enumerate().filter(|(_, edge)| edge.follower == robot) {
+        let news = stage.record.frames.iter().rev().find(|frame| frame.edge == index);
         let Some(frame) = news.or_else(|| stage.trail.look(index)) else { continue };
         let (Some(follower), Some(leader)) =
-            (stage.cast.members.get(robot), stage.cast.members.get(edge.leader))
+            (stage.fleet.robots.get(robot), stage.fleet.robots.get(edge.leader))
         else {
             continue;
         };
-        if !(0.0..FORGOTTEN).contains(&(now - frame.sighting.stamp)) {
+        if !(0.0..FORGOTTEN).contains(&(now - frame.measurement.stamp)) {
             continue;
         }
         let ink = colour(frame.outcome);
         // Thin in a small picture, where thick lines would cover what they tell of.
         let width = words.scaled(1.6 * (window.tile.width as f32 / words.scaled(640.0)).clamp(0.55, 1.0));
-        let mut sketch =
-            Sketch { words, window, lens: follower.lens, turn: turn_since(stage, edge, frame), width };
+        let mut sketch = Sketch {
+            words,
+            window,
+            camera_model: follower.camera_model,
+            turn: turn_since(stage, edge, frame),
+            width,
+        };
         region(&mut sketch, frame);
         if let (true, Some(shell)) = (frame.outcome.seen(), &leader.shell) {
             sketch.shell(&estimated(frame, follower), shell, ink);
@@ -186,7 +193,7 @@ fn detections(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robo
     }
 }
 
-fn region(sketch: &mut Sketch<'_, '_, '_>, frame: &Frame) {
+fn region(sketch: &mut Sketch<'_, '_, '_>, frame: &MeasurementRecord) {
     let r = frame.region;
     if r.width == 0 || r.height == 0 {
         return;
@@ -199,7 +206,7 @@ fn region(sketch: &mut Sketch<'_, '_, '_>, frame: &Frame) {
 }
 
 /// The numbers of the tags, in their middles.
-fn ids(sketch: &mut Sketch<'_, '_, '_>, frame: &Frame, leader: &Member, ink: Rgb) {
+fn ids(sketch: &mut Sketch<'_, '_, '_>, frame: &MeasurementRecord, leader: &RobotInfo, ink: Rgb) {
     let Some(first) = leader.shell.and_then(|shell| shell.first_tag) else { return };
     for (face, corners) in frame.tags.iter().enumerate() {
         let Some(corners) = corners else { continue };
@@ -208,7 +215,7 @@ fn ids(sketch: &mut Sketch<'_, '_, '_>, frame: &Frame, leader: &Member, ink: Rgb
             continue;
         }
         let middle = [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / 4.0);
-        let place = |pixel| sketch.at(sketch.lens.direction(pixel));
+        let place = |pixel| sketch.at(sketch.camera_model.direction(pixel));
         let (Some(at), Some(corner)) = (place(middle), place(corners[0])) else { continue };
         if at.distance(corner) < sketch.words.scaled(18.0) {
             continue;
@@ -222,7 +229,7 @@ fn ids(sketch: &mut Sketch<'_, '_, '_>, frame: &Frame, leader: &Member, ink: Rgb
 }
 
 /// Numbers and outcome of a look in two lines at the foot of a tile.
-fn report(words: &mut Words<'_>, tile: Tile, leader: &str, frame: &Frame, row: &mut f32) {
+fn report(words: &mut Words<'_>, tile: Tile, leader: &str, frame: &MeasurementRecord, row: &mut f32) {
     let told = Ink { colour: colour(frame.outcome), ..Ink::LIGHT };
     let left = tile.x as f32 + words.scaled(10.0);
     let mut line = |words: &mut Words<'_>, text: String, bold: bool, ink: Ink| {
@@ -237,7 +244,7 @@ fn report(words: &mut Words<'_>, tile: Tile, leader: &str, frame: &Frame, row: &
         *row += 1.0;
     };
     if frame.outcome.seen() {
-        let (r, [d, b, v]) = (frame.sighting.relative, frame.sighting.deviation);
+        let (r, [d, b, v]) = (frame.measurement.relative, frame.measurement.deviation);
         let angle = |x: f64, s: f64| {
             format!("{:.1}° ± {:.3}°", x.to_degrees(), s.to_degrees()).replace('-', "\u{2212}")
         };
@@ -265,35 +272,35 @@ mod tests {
     use crate::floor::Floor;
     use crate::{Style, Trail};
     use glam::{DVec2, DVec3};
-    use vocabulary::{Body, Cast, Moment, Pose, RobotState, Snapshot};
+    use vocabulary::{Body, FleetInfo, Pose, RobotState, Snapshot, StepRecord};
 
     /// A leader that drives past, and a follower that drives and turns while its camera pans, at a time.
-    fn moment(time: f64, [turn, panning, passing]: [f64; 3]) -> Moment {
+    fn record(time: f64, [turn, panning, passing]: [f64; 3]) -> StepRecord {
         let mut robots = vec![RobotState::default(); 2];
         robots[0].motion.pose = Pose::new(2.0, 0.5 + passing * (time - 0.5), 0.3);
         robots[1].motion.pose = Pose::new(0.4 * (time - 0.5), 0.0, turn * (time - 0.5));
         robots[1].camera_pan = 0.1 + panning * (time - 0.5);
-        Moment { snapshot: Snapshot { time, robots, ..Snapshot::default() }, ..Moment::default() }
+        StepRecord { snapshot: Snapshot { time, robots, ..Snapshot::default() }, ..StepRecord::default() }
     }
 
     #[test]
     fn a_look_is_drawn_over_the_leader_though_the_camera_turns() {
-        let member = |name: &str, leads: bool| Member::new(name, leads, Body::default());
+        let member = |name: &str, leads: bool| RobotInfo::new(name, leads, Body::default());
         let edge = Edge { leader: 0, follower: 1 };
-        let cast = Cast {
-            members: vec![member("a", true), member("b", false)],
+        let fleet = FleetInfo {
+            robots: vec![member("a", true), member("b", false)],
             edges: vec![edge],
-            ..Cast::default()
+            ..FleetInfo::default()
         };
-        let (trail, style) = (Trail::new(&cast), Style::default());
+        let (trail, style) = (Trail::new(&fleet), Style::default());
         for rates in [[0.0; 3], [0.0, 1.5, 0.0], [1.0, -1.5, 0.0], [0.8, 0.0, 0.0], [0.3, 0.2, 0.8]] {
-            let (then, now) = (moment(0.45, rates), moment(0.5, rates));
+            let (then, now) = (record(0.45, rates), record(0.5, rates));
             let stage = Stage {
-                cast: &cast,
-                floor: &Floor::new(&cast),
+                fleet: &fleet,
+                floor: &Floor::new(&fleet),
                 colours: &[vocabulary::colours::LEAD; 2],
                 trail: &trail,
-                moment: &now,
+                record: &now,
                 style: &style,
                 origin: DVec3::ZERO,
                 sun: DVec3::Z,
@@ -304,13 +311,13 @@ mod tests {
             // The leader's middle, as the camera saw it at the look.
             let [leader, own] = [0, 1].map(|k| then.snapshot.robots[k]);
             let Pose { x, y, .. } = leader.motion.pose;
-            let [x, y, z] = cast.members[1].mount.world_from_camera(&own).inverse().apply([x, y, 0.2]);
-            let frame = Frame {
+            let [x, y, z] = fleet.robots[1].camera_mount.world_from_camera(&own).inverse().apply([x, y, 0.2]);
+            let frame = MeasurementRecord {
                 truth: Relative::between(leader.motion.pose, own.motion.pose),
                 pan: own.camera_pan,
-                ..Frame::default()
+                ..MeasurementRecord::default()
             };
-            let camera = carried(&now.snapshot, &cast, 1, 4.0 / 3.0);
+            let camera = carried(&now.snapshot, &fleet, 1, 4.0 / 3.0);
             let window = Window { camera: &camera, tile: Tile { x: 0, y: 0, width: 640, height: 480 } };
             let [right, down] = turned([x / z, y / z], turn_since(&stage, &edge, &frame)).unwrap();
             let drawn = window.direction(right, -down);

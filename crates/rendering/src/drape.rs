@@ -236,7 +236,7 @@ fn lifted(corner: Corner, terrain: &Terrain, origin: DVec3) -> Corner {
 mod tests {
     use super::*;
     use std::sync::Arc;
-    use vocabulary::{Cast, Mobility, Placement, Pose, Prop, Solid};
+    use vocabulary::{FleetInfo, Mobility, Placement, Pose, Prop, Solid};
 
     #[test]
     fn every_piece_lies_in_the_ground() {
@@ -279,8 +279,8 @@ mod tests {
             fixed(Solid::Block { size: [1.2, 1.1, 0.3] }, 0.6, 0.2, 1.1, 0.0),
             fixed(Solid::Block { size: [1.0, 1.0, 0.1] }, -0.7, 0.1, 0.0, 0.0),
         ];
-        let cast = Cast { props, terrain: Some(Arc::new(terrain)), ..Cast::default() };
-        let floor = Floor::new(&cast);
+        let fleet = FleetInfo { props, terrain: Some(Arc::new(terrain)), ..FleetInfo::default() };
+        let floor = Floor::new(&fleet);
         assert_eq!(floor.decks.len(), 3);
         let origin = DVec3::new(20.0, 0.0, 0.0);
         let corner = |x: f64, y: f64| Corner {

@@ -1,23 +1,23 @@
 //! All passes of a picture, in the order in which they run.
 
 use crate::camera::Camera;
-use crate::crowd::Fleet;
+use crate::crowd::RobotModels;
 use crate::floor::Floor;
 use crate::letters::Letters;
 use crate::model::Detail;
 use crate::passes::Canvas;
 use crate::passes::decal::{Corner, Layer};
-use crate::passes::frame::Frame;
+use crate::passes::frame::FrameUniforms;
 use crate::passes::overlay::{OverlayPass, Shapes};
 use crate::passes::prop::Copies;
 use crate::passes::robot::Crowd;
 use crate::passes::text::{Line, TextPass};
 use crate::target::Attachments;
-use crate::world::{Sight, World};
+use crate::world::{SceneView, World};
 use crate::{Error, Gpu, view::Tile};
 use std::iter::once;
 use std::ops::Range;
-use vocabulary::Cast;
+use vocabulary::FleetInfo;
 
 /// Shows where triangles of the terrain do not quite meet.
 const STONE: wgpu::Color = wgpu::Color { r: 0.42, g: 0.42, b: 0.41, a: 1.0 };
@@ -57,9 +57,9 @@ pub(crate) struct Prepared {
 }
 
 impl Prepared {
-    fn sight(&self, index: usize) -> Sight<'_> {
+    fn sight(&self, index: usize) -> SceneView<'_> {
         let [under @ .., over] = &self.decals[index];
-        Sight {
+        SceneView {
             index,
             camera: &self.cameras[index],
             crowd: self.own[index].as_ref().unwrap_or(&self.crowd),
@@ -81,13 +81,19 @@ pub(crate) struct Surface<'a> {
 }
 
 impl Passes {
-    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, cast: &Cast, fleet: &Fleet, floor: &Floor) -> Self {
-        let detail = if cast.members.len() > PLAIN_ABOVE { Detail::Plain } else { Detail::Full };
+    pub(crate) fn new(
+        gpu: &Gpu,
+        canvas: Canvas,
+        fleet: &FleetInfo,
+        robot_models: &RobotModels,
+        floor: &Floor,
+    ) -> Self {
+        let detail = if fleet.robots.len() > PLAIN_ABOVE { Detail::Plain } else { Detail::Full };
         let flat = Canvas { samples: 1, ..canvas };
-        let robots = cast.members.len();
-        let side = if robots > 12 || !cast.props.is_empty() { 2048 } else { 1024 };
+        let robots = fleet.robots.len();
+        let side = if robots > 12 || !fleet.props.is_empty() { 2048 } else { 1024 };
         Self {
-            world: World::new(gpu, canvas, cast, (fleet, floor), (detail, side)),
+            world: World::new(gpu, canvas, fleet, (robot_models, floor), (detail, side)),
             overlay: OverlayPass::new(&gpu.device, flat),
             text: TextPass::new(&gpu.device, &gpu.queue, flat),
             shadowed: None,
@@ -99,7 +105,7 @@ impl Passes {
         &mut self,
         gpu: &Gpu,
         (width, height): (u32, u32),
-        frames: &[Frame],
+        frames: &[FrameUniforms],
         prepared: &mut Prepared,
         corners: &[Corner],
         (lines, letters): (&[Line], &mut Letters),
@@ -175,7 +181,7 @@ impl Passes {
 }
 
 /// All that a shadow map is drawn from.
-fn casting(frames: &[Frame], prepared: &Prepared) -> Vec<u8> {
+fn casting(frames: &[FrameUniforms], prepared: &Prepared) -> Vec<u8> {
     let mut bytes = Vec::new();
     if let Some(frame) = frames.first() {
         bytes.extend_from_slice(bytemuck::bytes_of(&frame.shadow_from_local));

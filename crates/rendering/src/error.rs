@@ -118,7 +118,7 @@ pub enum Error {
     },
     /// A moment whose robots or edges are not those of the cast.
     #[error("the moment has {got} {what}, the cast {want}")]
-    Cast {
+    FleetInfo {
         /// Robots or edges.
         what: &'static str,
         /// In the moment.
@@ -147,7 +147,7 @@ impl Error {
                 | Self::FrameRate(_)
                 | Self::GifRate(_)
                 | Self::Mismatch { .. }
-                | Self::Cast { .. }
+                | Self::FleetInfo { .. }
         )
     }
 

@@ -3,7 +3,7 @@
 use crate::atlas::{Atlas, CANVAS, pack};
 use crate::camera::Camera;
 use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun};
-use crate::crowd::{Fleet, crowd, part};
+use crate::crowd::{RobotModels, crowd, part};
 use crate::floor::Floor;
 use crate::model::Detail;
 use crate::paint::{Stage, shade};
@@ -13,11 +13,11 @@ use crate::passes::prop::Copies;
 use crate::passes::robot::Crowd;
 use crate::props::props;
 use crate::view::{Tile, View};
-use crate::world::{Sight, World};
+use crate::world::{SceneView, World};
 use crate::{Error, Gpu, Style, Trail};
 use std::iter::once;
 use std::ops::Range;
-use vocabulary::{Cast, Eyes, Grey, Moment, Shot, Snapshot};
+use vocabulary::{CameraRenderer, FleetInfo, Grey, Shot, Snapshot, StepRecord};
 
 /// Side of the shadow map, texels.
 const SHADOWS: u32 = 1024;
@@ -26,11 +26,11 @@ const ATLASES: usize = 4;
 
 /// Cameras on the robots of a cast: all pictures of an instant are drawn together.
 #[derive(Debug)]
-pub struct CameraEyes {
+pub struct GpuCameraRenderer {
     gpu: Gpu,
-    cast: Cast,
+    fleet: FleetInfo,
     colours: Vec<Rgb>,
-    fleet: Fleet,
+    robot_models: RobotModels,
     floor: Floor,
     trail: Trail,
     style: Style,
@@ -48,34 +48,34 @@ struct Scene {
     tile: Tile,
 }
 
-impl CameraEyes {
-    /// Eyes for the robots of `cast`.
+impl GpuCameraRenderer {
+    /// Eyes for the robots of `fleet`.
     ///
     /// # Errors
     /// [`Error::Device`] where the device fails.
-    pub fn new(gpu: &Gpu, cast: &Cast) -> Result<Self, Error> {
-        let (fleet, floor) = (Fleet::new(cast), Floor::new(cast));
-        let world = World::new(gpu, CANVAS, cast, (&fleet, &floor), (Detail::Coarse, SHADOWS));
+    pub fn new(gpu: &Gpu, fleet: &FleetInfo) -> Result<Self, Error> {
+        let (robot_models, floor) = (RobotModels::new(fleet), Floor::new(fleet));
+        let world = World::new(gpu, CANVAS, fleet, (&robot_models, &floor), (Detail::Coarse, SHADOWS));
         gpu.check()?;
         Ok(Self {
             gpu: gpu.clone(),
-            colours: robot_colours(cast),
-            fleet,
+            colours: robot_colours(fleet),
+            robot_models,
             floor,
             // Cameras see no past.
-            trail: Trail::new(cast),
+            trail: Trail::new(fleet),
             style: Style::bare(),
             world,
             atlases: Vec::new(),
-            size: cast.members.iter().map(|m| crate::model::size(&m.body)).fold(1.0, f64::max),
-            cast: cast.clone(),
+            size: fleet.robots.iter().map(|m| crate::model::size(&m.body)).fold(1.0, f64::max),
+            fleet: fleet.clone(),
         })
     }
 
     /// The pictures of all `shots` of an instant, one each.
     ///
     /// # Errors
-    /// [`Error::Cast`] for a snapshot of other robots, [`Error::Size`] for regions that are empty or too large,
+    /// [`Error::FleetInfo`] for a snapshot of other robots, [`Error::Size`] for regions that are empty or too large,
     /// [`Error::Device`] where the device fails.
     pub fn take(
         &mut self,
@@ -83,29 +83,29 @@ impl CameraEyes {
         shots: &[Shot],
         pictures: &mut Vec<Grey>,
     ) -> Result<(), Error> {
-        let (got, want) = (snapshot.robots.len(), self.cast.members.len());
+        let (got, want) = (snapshot.robots.len(), self.fleet.robots.len());
         if got != want {
-            return Err(Error::Cast { what: "robots", got, want });
+            return Err(Error::FleetInfo { what: "robots", got, want });
         }
         pictures.resize_with(shots.len(), Grey::default);
         let Some(first) = shots.first() else { return Ok(()) };
         let (tiles, size) = self.places(shots)?;
-        let moment = Moment { snapshot: snapshot.clone(), ..Moment::default() };
+        let record = StepRecord { snapshot: snapshot.clone(), ..StepRecord::default() };
         let stage = Stage {
-            cast: &self.cast,
+            fleet: &self.fleet,
             floor: &self.floor,
             colours: &self.colours,
             trail: &self.trail,
-            moment: &moment,
+            record: &record,
             style: &self.style,
-            origin: local_origin(&moment),
-            sun: towards_sun(&self.cast.light),
+            origin: local_origin(&record),
+            sun: towards_sun(&self.fleet.light),
             size: self.size,
-            shadowed: shadowed(&self.cast, &moment),
+            shadowed: shadowed(&self.fleet, &record),
             detail: 0.0,
         };
         let sun = sun_over(&stage);
-        let (mut all, mut things) = (crowd(&stage, &self.fleet), props(&stage));
+        let (mut all, mut things) = (crowd(&stage, &self.robot_models), props(&stage));
         let mut corners: Vec<Corner> = Vec::new();
         let under = shade(&stage, &Camera::shot(first)).map(|(layer, more)| {
             let from = corners.len() as u32;
@@ -121,7 +121,7 @@ impl CameraEyes {
             frames.push(frame);
             scenes.push(Scene {
                 camera,
-                crowd: part(&all, &stage, &self.fleet, &camera, shot.robot),
+                crowd: part(&all, &stage, &self.robot_models, &camera, shot.robot),
                 props: things.part(&camera, stage.origin),
                 tile: *tile,
             });
@@ -180,7 +180,7 @@ impl CameraEyes {
                 let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
                 pass.set_viewport(x, y, width, height, 0.0, 1.0);
                 pass.set_scissor_rect(tile.x, tile.y, tile.width, tile.height);
-                let sight = Sight {
+                let sight = SceneView {
                     index,
                     camera: &scene.camera,
                     crowd: &scene.crowd,
@@ -200,7 +200,7 @@ impl CameraEyes {
     }
 }
 
-impl Eyes for CameraEyes {
+impl CameraRenderer for GpuCameraRenderer {
     fn look(&mut self, snapshot: &Snapshot, shots: &[Shot], pictures: &mut Vec<Grey>) -> Result<(), String> {
         self.take(snapshot, shots, pictures).map_err(|error| error.to_string())
     }

@@ -14,7 +14,7 @@ const SOOT: Rgb = [0.03, 0.03, 0.035];
 impl Painter<'_> {
     /// Crosses on the ground where things touched.
     pub(crate) fn scuffs(&mut self, stage: &Stage<'_>) {
-        for touch in stage.trail.touches.iter().filter(|t| t.begin <= stage.moment.snapshot.time) {
+        for touch in stage.trail.touches.iter().filter(|t| t.begin <= stage.record.snapshot.time) {
             let middle = DVec3::from_array(touch.place).truncate();
             let size = (0.075 * stage.size).max(5.0 * self.stage_scale * self.pixel(middle));
             let round = [DVec2::X, DVec2::Y].map(|axis| axis * (1.5 * size));
@@ -30,7 +30,7 @@ impl Painter<'_> {
 
     /// Rings that open and fade, around a star.
     pub(crate) fn flashes(&mut self, stage: &Stage<'_>) {
-        let now = stage.moment.snapshot.time;
+        let now = stage.record.snapshot.time;
         for touch in &stage.trail.touches {
             let age = (now - touch.begin) / FLASH;
             if (0.0..1.0).contains(&age) {

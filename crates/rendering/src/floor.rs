@@ -3,7 +3,7 @@
 use crate::props::turn;
 use glam::{DQuat, DVec2, DVec3};
 use std::sync::Arc;
-use vocabulary::{Cast, Mobility, Prop, Solid, Terrain};
+use vocabulary::{FleetInfo, Mobility, Prop, Solid, Terrain};
 
 /// A block narrower than this is a wall or a kerb, m.
 const LEAST_WIDTH: f64 = 1.0;
@@ -36,9 +36,9 @@ pub(crate) struct Deck {
 }
 
 impl Floor {
-    pub(crate) fn new(cast: &Cast) -> Self {
-        let mut floor = Self { terrain: cast.terrain.clone(), ..Self::default() };
-        let decks = cast.props.iter().enumerate().filter_map(|(k, prop)| Deck::new(k, prop, &floor));
+    pub(crate) fn new(fleet: &FleetInfo) -> Self {
+        let mut floor = Self { terrain: fleet.terrain.clone(), ..Self::default() };
+        let decks = fleet.props.iter().enumerate().filter_map(|(k, prop)| Deck::new(k, prop, &floor));
         floor.decks = decks.collect();
         let ground = floor.terrain.iter().flat_map(|terrain| terrain.heights.iter().copied());
         let tops = floor.decks.iter().flat_map(|deck| deck.outline.map(|place| deck.height(place)));
@@ -200,7 +200,7 @@ mod tests {
     }
 
     fn floor(props: Vec<Prop>) -> Floor {
-        Floor::new(&Cast { props, ..Cast::default() })
+        Floor::new(&FleetInfo { props, ..FleetInfo::default() })
     }
 
     #[test]

@@ -17,7 +17,7 @@ pub(crate) fn between(from: &Camera, to: &Camera, share: f64, steady: &Steady) -
     let extent = steady.formation();
     let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
     let middle = DVec3::new(x, y, extent.ground[0]);
-    let (a, b) = (Sight::of(from, middle), Sight::of(to, middle));
+    let (a, b) = (ViewPoint::of(from, middle), ViewPoint::of(to, middle));
     let mix = |p: f64, q: f64| p + (q - p) * share;
     let geometric = |p: f64, q: f64| (mix(p.ln(), q.ln())).exp();
     let (heading, pitch) = (mix(a.heading, nearest_turn(b.heading, a.heading)), mix(a.pitch, b.pitch));
@@ -40,7 +40,7 @@ pub(crate) fn between(from: &Camera, to: &Camera, share: f64, steady: &Steady) -
 }
 
 /// A camera by what it sees.
-struct Sight {
+struct ViewPoint {
     /// The way it looks, as on a compass; of one that looks straight down, where the picture's top is. rad.
     heading: f64,
     /// How far it looks down, rad.
@@ -53,7 +53,7 @@ struct Sight {
     tangent: f64,
 }
 
-impl Sight {
+impl ViewPoint {
     fn of(camera: &Camera, middle: DVec3) -> Self {
         let away = (middle - camera.eye).dot(camera.forward).max(0.5);
         let flat = if camera.forward.z < -0.999_999 { camera.up } else { camera.forward };

@@ -94,7 +94,7 @@ pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, panel: Area, clear
     let ink = Ink::ON_PANEL.faded(clear);
     let [x, y, width, height] = panel;
     let large = width > words.scaled(0.5 * (LARGE[0] + SMALL[0]));
-    let duration = stage.cast.duration.max(stage.moment.snapshot.time).max(1e-3) as f32;
+    let duration = stage.fleet.duration.max(stage.record.snapshot.time).max(1e-3) as f32;
     let aside = if large { 50.0 } else { 10.0 };
     let (left, right) = (x + words.scaled(aside), x + width - words.scaled(if large { 14.0 } else { 10.0 }));
     let (rows, tall) = if large { ([24.0, 95.0], 50.0) } else { ([20.0, 62.0], 22.0) };
@@ -124,7 +124,7 @@ pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, panel: Area, clear
 
 /// The largest error so far, in shown units.
 fn largest(stage: &Stage<'_>, quantity: &Quantity) -> f32 {
-    let now = stage.moment.edges.iter().map(|e| e.error[quantity.index] as f32);
+    let now = stage.record.edges.iter().map(|e| e.error[quantity.index] as f32);
     let past = stage.trail.errors.entries.iter().flat_map(|(_, e)| e.iter()).map(|e| e[quantity.index]);
     let sizes = past.chain(now).map(|e| e.abs() * quantity.factor).filter(|e| e.is_finite());
     sizes.fold(quantity.least, f32::max)
@@ -171,14 +171,14 @@ fn frame(words: &mut Words<'_>, axes: &Axes, quantity: &Quantity, limit: f32, la
 }
 
 fn curves(words: &mut Words<'_>, stage: &Stage<'_>, axes: &Axes, quantity: &Quantity) {
-    let now = stage.moment.snapshot.time;
-    let wide = words.scaled(if stage.cast.edges.len() > 12 { 1.0 } else { 1.6 });
+    let now = stage.record.snapshot.time;
+    let wide = words.scaled(if stage.fleet.edges.len() > 12 { 1.0 } else { 1.6 });
     let pick = |error: f32| error * quantity.factor;
-    for (index, edge) in stage.cast.edges.iter().enumerate() {
+    for (index, edge) in stage.fleet.edges.iter().enumerate() {
         let [r, g, b] = stage.colours[edge.follower];
         // A little darker than on the ground: the panel is bright.
         let colour = [r * 0.86, g * 0.86, b * 0.86, 0.95 * axes.clear];
-        let last = stage.moment.edges.get(index).map(|e| (now, pick(e.error[quantity.index] as f32)));
+        let last = stage.record.edges.get(index).map(|e| (now, pick(e.error[quantity.index] as f32)));
         let past = stage.trail.errors.entries.iter();
         let past = past.filter_map(|(t, e)| e.get(index).map(|e| (*t, pick(e[quantity.index]))));
         let points = past.filter(|(t, _)| *t < now).chain(last).filter(|(_, e)| e.is_finite());

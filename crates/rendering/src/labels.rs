@@ -12,7 +12,7 @@ use crate::plan::{Area, area, overlap};
 use crate::trail::set_points;
 use crate::{View, view::Tile};
 use glam::{DVec2, DVec3, Vec2};
-use vocabulary::{Condition, Member, RobotState};
+use vocabulary::{Condition, RobotInfo, RobotState};
 
 /// Distance of words from the picture's edge at scale 1, pixels.
 pub(crate) const MARGIN: f32 = 24.0;
@@ -202,7 +202,7 @@ pub(crate) fn view_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Windo
 }
 
 /// The middle of a robot, and how many times as large as the default body it is.
-fn middle(robot: &RobotState, member: &Member) -> (DVec3, f64) {
+fn middle(robot: &RobotState, member: &RobotInfo) -> (DVec3, f64) {
     let size = crate::model::size(&member.body);
     let [x, y] = robot.motion.pose.world_from_body(0.12 * size, 0.0);
     // Over its ground point, or under it where it lies on its roof.
@@ -211,7 +211,7 @@ fn middle(robot: &RobotState, member: &Member) -> (DVec3, f64) {
 }
 
 fn reserve_robots(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
-    for (robot, member) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members) {
+    for (robot, member) in stage.record.snapshot.robots.iter().zip(&stage.fleet.robots) {
         let (middle, size) = middle(robot, member);
         if let Some(at) = window.pixel(middle) {
             let pixel = window.camera.metres_per_pixel(middle, f64::from(window.tile.height));
@@ -232,8 +232,8 @@ fn trouble(condition: Condition) -> Option<&'static str> {
 }
 
 fn names(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
-    let crowded = stage.cast.members.len() > 24;
-    for (robot, member) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members) {
+    let crowded = stage.fleet.robots.len() > 24;
+    for (robot, member) in stage.record.snapshot.robots.iter().zip(&stage.fleet.robots) {
         let trouble = trouble(robot.condition);
         // In a crowd only those who are in trouble are named.
         if crowded && trouble.is_none() {
@@ -255,10 +255,10 @@ fn names(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
 
 fn edges(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
     let place = |k: usize| {
-        let pose = stage.moment.snapshot.robots.get(k)?.motion.pose;
+        let pose = stage.record.snapshot.robots.get(k)?.motion.pose;
         window.pixel(stage.on_floor(pose.x, pose.y))
     };
-    for (edge, state) in stage.cast.edges.iter().zip(&stage.moment.edges) {
+    for (edge, state) in stage.fleet.edges.iter().zip(&stage.record.edges) {
         let (Some(a), Some(b)) = (place(edge.leader), place(edge.follower)) else { continue };
         let degrees = state.relative.bearing.to_degrees().round();
         let sign = if degrees < 0.0 { "\u{2212}" } else { "" };
@@ -310,8 +310,8 @@ fn scale_bar(words: &mut Words<'_>, window: Window<'_>) {
 
 /// The rectangle of the picture that holds each robot, mast and shell included.
 pub(crate) fn robot_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Area> {
-    let robots = stage.moment.snapshot.robots.iter().zip(&stage.cast.members);
-    let area = |(robot, member): (&RobotState, &Member)| {
+    let robots = stage.record.snapshot.robots.iter().zip(&stage.fleet.robots);
+    let area = |(robot, member): (&RobotState, &RobotInfo)| {
         let body = member.body;
         let (middle, reach) = (0.5 * body.wheelbase, 0.5 * body.length + 0.05);
         let side = 0.5 * body.width + 0.06;
@@ -345,7 +345,7 @@ pub(crate) fn ring_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Area> {
         let size = points.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max) - low;
         size.is_finite().then_some([low.x, low.y, size.x, size.y])
     };
-    set_points(stage.cast, stage.moment).into_iter().flatten().filter_map(ring).collect()
+    set_points(stage.fleet, stage.record).into_iter().flatten().filter_map(ring).collect()
 }
 
 /// Coordinates where the strong lines of the ground cross.
@@ -393,23 +393,25 @@ mod tests {
     use super::*;
     use crate::floor::Floor;
     use crate::{Style, Trail};
-    use vocabulary::{Body, Cast, Moment, Pose, Snapshot};
+    use vocabulary::{Body, FleetInfo, Pose, Snapshot, StepRecord};
 
     #[test]
     fn a_robots_box_holds_all_of_it() {
-        let member = Member::new("a", true, Body::default());
-        let cast = Cast { members: vec![member], ..Cast::default() };
+        let member = RobotInfo::new("a", true, Body::default());
+        let fleet = FleetInfo { robots: vec![member], ..FleetInfo::default() };
         let mut robot = RobotState::default();
         robot.motion.pose = Pose::new(1.0, 2.0, 0.0);
-        let moment =
-            Moment { snapshot: Snapshot { robots: vec![robot], ..Snapshot::default() }, ..Moment::default() };
-        let (trail, style) = (Trail::new(&cast), Style::default());
+        let record = StepRecord {
+            snapshot: Snapshot { robots: vec![robot], ..Snapshot::default() },
+            ..StepRecord::default()
+        };
+        let (trail, style) = (Trail::new(&fleet), Style::default());
         let stage = Stage {
-            cast: &cast,
-            floor: &Floor::new(&cast),
+            fleet: &fleet,
+            floor: &Floor::new(&fleet),
             colours: &[vocabulary::colours::LEAD],
             trail: &trail,
-            moment: &moment,
+            record: &record,
             style: &style,
             origin: DVec3::ZERO,
             sun: DVec3::Z,

@@ -2,14 +2,14 @@
 //!
 //! ```no_run
 //! use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, View, png};
-//! # fn shown(cast: &vocabulary::Cast, moments: &[vocabulary::Moment]) -> Result<(), rendering::Error> {
+//! # fn shown(fleet: &vocabulary::FleetInfo, records: &[vocabulary::StepRecord]) -> Result<(), rendering::Error> {
 //! let gpu = Gpu::open(&AdapterChoice::Auto)?;
-//! let mut renderer = Renderer::new(&gpu, cast, 1280, 720, 4)?;
-//! let mut trail = Trail::new(cast);
-//! for moment in moments {
-//!     trail.push(moment);
+//! let mut renderer = Renderer::new(&gpu, fleet, 1280, 720, 4)?;
+//! let mut trail = Trail::new(fleet);
+//! for record in records {
+//!     trail.push(record);
 //! }
-//! if let Some(last) = moments.last() {
+//! if let Some(last) = records.last() {
 //!     let picture = renderer.draw(&trail, last, &Layout::single(View::Snake), &Style::default())?;
 //!     png::write("last.png".as_ref(), &picture, &[("Adapter", &gpu.description())])?;
 //! }
@@ -19,7 +19,7 @@
 //!
 //! A [`Trail`] remembers the past, a [`Renderer`] draws a moment on top of it from the views of a [`Layout`].
 //! The world is f64; positions are narrowed to f32 relative to an origin near the robots. Pictures are sRGB.
-//! The same moments give the same picture, byte for byte, on the same adapter.
+//! The same records give the same picture, byte for byte, on the same adapter.
 
 mod atlas;
 mod camera;
@@ -66,7 +66,7 @@ mod world;
 
 pub use composition::Composition;
 pub use error::Error;
-pub use eyes::CameraEyes;
+pub use eyes::GpuCameraRenderer;
 pub use film::{Film, FilmKind};
 pub use gpu::{AdapterChoice, AdapterInfo, Gpu, adapters};
 pub use letters::FONT;

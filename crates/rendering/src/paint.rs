@@ -9,7 +9,7 @@ use crate::thin::thinned;
 use crate::trail::{RIBBON, Trail, set_points};
 use crate::{Style, View};
 use glam::{DVec2, DVec3};
-use vocabulary::{Body, Cast, Moment, Pose};
+use vocabulary::{Body, FleetInfo, Pose, StepRecord};
 
 /// Half the width of a ribbon, m.
 const RIBBON_HALF: f64 = 0.03;
@@ -28,11 +28,11 @@ const RUBBER: Rgb = [0.05, 0.05, 0.055];
 /// What the painters look at.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stage<'a> {
-    pub(crate) cast: &'a Cast,
+    pub(crate) fleet: &'a FleetInfo,
     pub(crate) floor: &'a Floor,
     pub(crate) colours: &'a [Rgb],
     pub(crate) trail: &'a Trail,
-    pub(crate) moment: &'a Moment,
+    pub(crate) record: &'a StepRecord,
     pub(crate) style: &'a Style,
     pub(crate) origin: DVec3,
     /// Direction to the sun.
@@ -274,12 +274,12 @@ impl Painter<'_> {
 
     fn marks(&mut self, stage: &Stage<'_>) {
         let entries = &stage.trail.marks.entries;
-        for (robot, member) in stage.cast.members.iter().enumerate() {
+        for (robot, member) in stage.fleet.robots.iter().enumerate() {
             let points: Vec<_> = entries
                 .iter()
                 .filter_map(|(_, rows)| rows.get(robot))
                 .map(|mark| (flat(&mark.pose), 0.13 + 0.42 * mark.slide))
-                .chain(stage.moment.snapshot.robots.get(robot).map(|r| (flat(&r.motion.pose), 0.13)))
+                .chain(stage.record.snapshot.robots.get(robot).map(|r| (flat(&r.motion.pose), 0.13)))
                 .collect();
             if points.len() > 1 {
                 for side in [-0.5, 0.5] {
@@ -297,7 +297,7 @@ impl Painter<'_> {
 
     /// Dots under robots that are only a few pixels long, so that a crowd keeps its colours.
     fn dots(&mut self, stage: &Stage<'_>) {
-        let robots = stage.moment.snapshot.robots.iter().zip(&stage.cast.members).zip(stage.colours);
+        let robots = stage.record.snapshot.robots.iter().zip(&stage.fleet.robots).zip(stage.colours);
         for ((robot, member), colour) in robots {
             let middle = flat(&robot.motion.pose);
             let pixel = self.pixel(middle) * self.stage_scale;
@@ -311,10 +311,10 @@ impl Painter<'_> {
     }
 
     fn ribbons(&mut self, stage: &Stage<'_>) {
-        let now = stage.moment.snapshot.time;
-        for (robot, state) in stage.moment.snapshot.robots.iter().enumerate() {
+        let now = stage.record.snapshot.time;
+        for (robot, state) in stage.record.snapshot.robots.iter().enumerate() {
             let colour = stage.colours[robot];
-            let leads = stage.cast.members[robot].leads;
+            let leads = stage.fleet.robots[robot].leads;
             let mut points = ribbon(stage.trail, robot, now);
             points.push((flat(&state.motion.pose), 0.9));
             self.band(&points, RIBBON_HALF * stage.size, 0.9, 0.0, colour);
@@ -326,8 +326,8 @@ impl Painter<'_> {
     }
 
     fn set_points(&mut self, stage: &Stage<'_>) {
-        let goals = set_points(stage.cast, stage.moment);
-        for (edge, goal) in stage.cast.edges.iter().zip(goals) {
+        let goals = set_points(stage.fleet, stage.record);
+        for (edge, goal) in stage.fleet.edges.iter().zip(goals) {
             let Some(goal) = goal.map(DVec2::from_array) else { continue };
             let colour = stage.colours[edge.follower];
             let reach = RING * stage.size;
@@ -338,9 +338,9 @@ impl Painter<'_> {
     }
 
     fn errors(&mut self, stage: &Stage<'_>) {
-        let goals = set_points(stage.cast, stage.moment);
-        for (edge, goal) in stage.cast.edges.iter().zip(goals) {
-            let robot = stage.moment.snapshot.robots.get(edge.follower);
+        let goals = set_points(stage.fleet, stage.record);
+        for (edge, goal) in stage.fleet.edges.iter().zip(goals) {
+            let robot = stage.record.snapshot.robots.get(edge.follower);
             let (Some(goal), Some(robot)) = (goal.map(DVec2::from_array), robot) else { continue };
             let from = flat(&robot.motion.pose);
             // Comes and goes gently, so that nothing flickers around the threshold.
@@ -386,8 +386,8 @@ impl Painter<'_> {
         if stage.detail <= 0.0 {
             return;
         }
-        let at = |k: usize| stage.moment.snapshot.robots.get(k).map(|r| flat(&r.motion.pose));
-        for edge in &stage.cast.edges {
+        let at = |k: usize| stage.record.snapshot.robots.get(k).map(|r| flat(&r.motion.pose));
+        for edge in &stage.fleet.edges {
             if let (Some(leader), Some(follower)) = (at(edge.leader), at(edge.follower)) {
                 self.line(leader, follower, 0.016, palette::PAPER, 0.92 * stage.detail);
             }

@@ -5,7 +5,7 @@ use crate::paint::RING;
 use crate::sightline::{Ray, Sightline};
 use crate::trail::{set_points, sizes};
 use glam::{DVec2, DVec3};
-use vocabulary::{Cast, Member, Moment, RobotState};
+use vocabulary::{FleetInfo, RobotInfo, RobotState, StepRecord};
 
 /// What is this near to a pixel is meant, pixels.
 const NEAR: f64 = 5.0;
@@ -22,11 +22,16 @@ pub enum Picked {
 }
 
 /// What is under a pixel of a view.
-pub(crate) fn pick(sight: &Sightline, cast: &Cast, moment: &Moment, pixel: [f64; 2]) -> Vec<Picked> {
+pub(crate) fn pick(
+    sight: &Sightline,
+    fleet: &FleetInfo,
+    record: &StepRecord,
+    pixel: [f64; 2],
+) -> Vec<Picked> {
     let ray = sight.ray(pixel);
     // What is behind a hill is not meant.
     let ground = sight.depth(&ray).map_or(f64::INFINITY, |far| far + 0.02 * far + 0.3);
-    let robots = moment.snapshot.robots.iter().zip(&cast.members).enumerate();
+    let robots = record.snapshot.robots.iter().zip(&fleet.robots).enumerate();
     let mut found: Vec<((f64, f64), Picked)> = robots
         .filter_map(|(k, (robot, member))| {
             let (beside, far) = depth(sight, &ray, robot, member, DVec2::from_array(pixel))?;
@@ -35,8 +40,8 @@ pub(crate) fn pick(sight: &Sightline, cast: &Cast, moment: &Moment, pixel: [f64;
         .collect();
     found.sort_by(|((a, near), _), ((b, far), _)| a.total_cmp(b).then(near.total_cmp(far)));
     let mut picked: Vec<_> = found.into_iter().map(|(_, robot)| robot).collect();
-    picked.extend(goals(sight, cast, moment, pixel));
-    picked.extend(edges(sight, cast, moment, DVec2::from_array(pixel)));
+    picked.extend(goals(sight, fleet, record, pixel));
+    picked.extend(edges(sight, fleet, record, DVec2::from_array(pixel)));
     picked
 }
 
@@ -46,7 +51,7 @@ fn depth(
     sight: &Sightline,
     ray: &Ray,
     robot: &RobotState,
-    member: &Member,
+    member: &RobotInfo,
     pixel: DVec2,
 ) -> Option<(f64, f64)> {
     let body = &member.body;
@@ -76,10 +81,10 @@ fn entered(ray: &Ray, low: DVec3, high: DVec3) -> Option<f64> {
 }
 
 /// The set points whose rings are under a pixel, the nearest middle first.
-fn goals(sight: &Sightline, cast: &Cast, moment: &Moment, pixel: [f64; 2]) -> Vec<Picked> {
+fn goals(sight: &Sightline, fleet: &FleetInfo, record: &StepRecord, pixel: [f64; 2]) -> Vec<Picked> {
     let Some(place) = sight.ground(pixel).map(DVec2::from_array) else { return Vec::new() };
-    let reach = RING * sizes(cast).max(1.0);
-    let mut found: Vec<_> = set_points(cast, moment)
+    let reach = RING * sizes(fleet).max(1.0);
+    let mut found: Vec<_> = set_points(fleet, record)
         .into_iter()
         .enumerate()
         .filter_map(|(k, goal)| {
@@ -95,12 +100,12 @@ fn goals(sight: &Sightline, cast: &Cast, moment: &Moment, pixel: [f64; 2]) -> Ve
 }
 
 /// The edges that pass a pixel, the nearest first.
-fn edges(sight: &Sightline, cast: &Cast, moment: &Moment, pixel: DVec2) -> Vec<Picked> {
+fn edges(sight: &Sightline, fleet: &FleetInfo, record: &StepRecord, pixel: DVec2) -> Vec<Picked> {
     let place = |k: usize| {
-        let pose = moment.snapshot.robots.get(k)?.motion.pose;
+        let pose = record.snapshot.robots.get(k)?.motion.pose;
         sight.pixel_of_ground([pose.x, pose.y]).map(DVec2::from_array)
     };
-    let mut found: Vec<_> = cast
+    let mut found: Vec<_> = fleet
         .edges
         .iter()
         .enumerate()
@@ -129,18 +134,18 @@ mod tests {
     use crate::view::Tile;
     use vocabulary::{Body, Edge, EdgeState, Pose, Snapshot};
 
-    fn stage() -> (Cast, Moment) {
-        let member = |name: &str, leads| Member::new(name, leads, Body::default());
-        let cast = Cast {
-            members: vec![member("a", true), member("b", false)],
+    fn stage() -> (FleetInfo, StepRecord) {
+        let member = |name: &str, leads| RobotInfo::new(name, leads, Body::default());
+        let fleet = FleetInfo {
+            robots: vec![member("a", true), member("b", false)],
             edges: vec![Edge { leader: 0, follower: 1 }],
-            ..Cast::default()
+            ..FleetInfo::default()
         };
         let mut robots = vec![RobotState::default(); 2];
         robots[1].motion.pose = Pose::new(-2.0, 0.0, 0.3);
         let edge = EdgeState { set_point: [2.0, 2.5], ..EdgeState::default() };
         let snapshot = Snapshot { robots, ..Snapshot::default() };
-        (cast, Moment { snapshot, edges: vec![edge], ..Moment::default() })
+        (fleet, StepRecord { snapshot, edges: vec![edge], ..StepRecord::default() })
     }
 
     fn sight(eye: [f64; 3], to: [f64; 3]) -> Sightline {
@@ -151,25 +156,25 @@ mod tests {
 
     #[test]
     fn the_nearest_robot_is_first_and_edges_are_last() {
-        let (cast, moment) = stage();
+        let (fleet, record) = stage();
         let sight = sight([-5.0, -0.3, 0.6], [0.0, 0.0, 0.1]);
         let at = |x: f64, y: f64, z: f64| sight.pixel([x, y, z]).unwrap();
         // From behind, the follower hides part of its leader.
-        let both = pick(&sight, &cast, &moment, at(0.1, 0.0, 0.08));
+        let both = pick(&sight, &fleet, &record, at(0.1, 0.0, 0.08));
         assert!(both.starts_with(&[Picked::Robot(1), Picked::Robot(0)]), "{both:?}");
-        assert_eq!(pick(&sight, &cast, &moment, at(-1.9, 0.0, 0.05))[0], Picked::Robot(1));
-        let between = pick(&sight, &cast, &moment, at(-1.0, 0.0, 0.0));
+        assert_eq!(pick(&sight, &fleet, &record, at(-1.9, 0.0, 0.05))[0], Picked::Robot(1));
+        let between = pick(&sight, &fleet, &record, at(-1.0, 0.0, 0.0));
         assert!(between.ends_with(&[Picked::Edge(0)]), "{between:?}");
         let goal = [2.0 * 2.5_f64.cos(), 2.0 * 2.5_f64.sin()];
-        assert_eq!(pick(&sight, &cast, &moment, at(goal[0], goal[1], 0.0)), [Picked::SetPoint(0)]);
-        assert!(pick(&sight, &cast, &moment, at(1.0, -2.0, 0.0)).is_empty());
+        assert_eq!(pick(&sight, &fleet, &record, at(goal[0], goal[1], 0.0)), [Picked::SetPoint(0)]);
+        assert!(pick(&sight, &fleet, &record, at(1.0, -2.0, 0.0)).is_empty());
     }
 
     #[test]
     fn a_robot_of_a_few_pixels_is_still_found() {
-        let (cast, moment) = stage();
+        let (fleet, record) = stage();
         let sight = sight([0.0, -0.001, 300.0], [0.0; 3]);
         let [x, y] = sight.pixel([0.1, 0.0, 0.0]).unwrap();
-        assert_eq!(pick(&sight, &cast, &moment, [x, y - 3.0])[0], Picked::Robot(0));
+        assert_eq!(pick(&sight, &fleet, &record, [x, y - 3.0])[0], Picked::Robot(0));
     }
 }

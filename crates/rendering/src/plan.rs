@@ -8,7 +8,7 @@ use crate::palette;
 use crate::room::Room;
 use crate::show::line_room;
 use crate::view::{Layout, Tile, View, corner};
-use vocabulary::Cast;
+use vocabulary::FleetInfo;
 
 /// A rectangle of the picture: left, top, width, height; pixels.
 pub(crate) type Area = [f32; 4];
@@ -53,16 +53,17 @@ pub(crate) struct Plan {
 impl Plan {
     pub(crate) fn new(
         letters: &mut Letters,
-        cast: &Cast,
+        fleet: &FleetInfo,
         layout: &Layout,
         style: &Style,
         size: (u32, u32),
     ) -> Self {
         let left = style.show.left_over(size);
         let (mut views, mut tiles, mut upper) = (layout.views.clone(), layout.tiles(left.0, left.1), 0);
-        let member = style.picture_in_picture.and_then(|robot| cast.members.get(robot).map(|m| (robot, m)));
+        let member = style.picture_in_picture.and_then(|robot| fleet.robots.get(robot).map(|m| (robot, m)));
         if let (Some((robot, member)), Some(first)) = (member, tiles.first()) {
-            let aspect = f64::from(member.lens.width.max(1)) / f64::from(member.lens.height.max(1));
+            let aspect =
+                f64::from(member.camera_model.width.max(1)) / f64::from(member.camera_model.height.max(1));
             tiles.push(corner(first, aspect, 24.0 * style.scale));
             views.push(View::Camera(robot));
             upper = 1;
@@ -84,10 +85,10 @@ impl Plan {
         };
         if titled && style.caption {
             let free = plan.free_width(&words);
-            plan.headings = headings(&mut words, cast, free);
+            plan.headings = headings(&mut words, fleet, free);
         }
         if titled && style.clock {
-            plan.clock = Some(clock(&mut words, cast, left));
+            plan.clock = Some(clock(&mut words, fleet, left));
         }
         let line = line_room(&mut words, &style.show, [left.0 as f32, left.1 as f32]);
         let below = plan.views.len() - upper;
@@ -95,7 +96,7 @@ impl Plan {
         let charted = style.show.plots.is_empty()
             && below <= 2
             && !plan.views.first().is_some_and(carried)
-            && !cast.edges.is_empty();
+            && !fleet.edges.is_empty();
         let place = plan.tiles.first().filter(|_| charted).and_then(|tile| panel(&words, *tile));
         plan.panel = place.filter(|_| style.inset);
         let kept = place.filter(|_| style.inset || style.show.room.panel);
@@ -169,11 +170,11 @@ fn time_text(time: f64) -> String {
 }
 
 /// Title and caption, one under the other, within `free` pixels.
-fn headings(words: &mut Words<'_>, cast: &Cast, free: f32) -> Vec<Heading> {
+fn headings(words: &mut Words<'_>, fleet: &FleetInfo, free: f32) -> Vec<Heading> {
     let margin = words.scaled(MARGIN);
     let mut top = margin - words.scaled(2.0);
     let mut all = Vec::new();
-    for (text, full, bold, below) in [(&cast.title, 20.0, true, 1.0), (&cast.caption, 13.0, false, 0.0)] {
+    for (text, full, bold, below) in [(&fleet.title, 20.0, true, 1.0), (&fleet.caption, 13.0, false, 0.0)] {
         if text.trim().is_empty() {
             continue;
         }
@@ -190,8 +191,8 @@ fn headings(words: &mut Words<'_>, cast: &Cast, free: f32) -> Vec<Heading> {
 }
 
 /// Where the clock is: wide enough for any time of the run, so that it takes the same room all the time.
-fn clock(words: &mut Words<'_>, cast: &Cast, (_, height): (u32, u32)) -> Area {
+fn clock(words: &mut Words<'_>, fleet: &FleetInfo, (_, height): (u32, u32)) -> Area {
     let margin = words.scaled(MARGIN);
-    let (width, high) = (words.width(&time_text(cast.duration), CLOCK, true), words.scaled(28.0));
+    let (width, high) = (words.width(&time_text(fleet.duration), CLOCK, true), words.scaled(28.0));
     [margin, height as f32 - margin - words.scaled(8.0) - 0.5 * high, width, high]
 }

@@ -19,8 +19,8 @@ const GUIDED: Rgb = hex(0x00a5_434c);
 
 /// Every prop of the cast with its index and its place: that of the moment, else the one where it starts.
 pub(crate) fn placed<'a>(stage: &Stage<'a>) -> impl Iterator<Item = (usize, &'a Prop, Placement)> + use<'a> {
-    let now = &stage.moment.snapshot.props;
-    let all = stage.cast.props.iter().enumerate();
+    let now = &stage.record.snapshot.props;
+    let all = stage.fleet.props.iter().enumerate();
     all.map(|(k, prop)| (k, prop, now.get(k).copied().unwrap_or(prop.placement))).filter(|(.., p)| sound(p))
 }
 
@@ -52,7 +52,7 @@ pub(crate) fn props(stage: &Stage<'_>) -> Copies {
         copies.others[look(prop) as usize].push(instance(stage, prop, &placement, ground));
     }
     for deck in &stage.floor.decks {
-        let prop = &stage.cast.props[deck.prop];
+        let prop = &stage.fleet.props[deck.prop];
         let ground = stage.floor.ground(DVec3::from_array(prop.placement.position).truncate());
         copies.decks.push((look(prop), instance(stage, prop, &prop.placement, ground)));
     }

@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun, veiled_decks, words};
-use crate::crowd::{Fleet, crowd, part};
+use crate::crowd::{RobotModels, crowd, part};
 use crate::encode::{Passes, Prepared, Surface};
 use crate::floor::Floor;
 use crate::labels::{Window, detail};
@@ -18,16 +18,16 @@ use crate::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
 use crate::{Error, Gpu, Layout, Picked, Sightline, Style, Trail, View};
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
-use vocabulary::{Cast, Moment, Picture};
+use vocabulary::{FleetInfo, Picture, StepRecord};
 use wgpu::TextureFormat;
 
 /// Draws moments of one cast at one size.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
-    cast: Cast,
+    fleet: FleetInfo,
     colours: Vec<Rgb>,
-    fleet: Fleet,
+    robot_models: RobotModels,
     floor: Floor,
     size: (u32, u32),
     canvas: Canvas,
@@ -45,8 +45,8 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Size`] or [`Error::Samples`] for what cannot be drawn, [`Error::Device`] where the device fails.
-    pub fn new(gpu: &Gpu, cast: &Cast, width: u32, height: u32, samples: u32) -> Result<Self, Error> {
-        Self::with_format(gpu, cast, width, height, samples, PICTURE_FORMAT)
+    pub fn new(gpu: &Gpu, fleet: &FleetInfo, width: u32, height: u32, samples: u32) -> Result<Self, Error> {
+        Self::with_format(gpu, fleet, width, height, samples, PICTURE_FORMAT)
     }
 
     /// A renderer into textures of `format`, for a window's surface. The shaders write sRGB-encoded values, so
@@ -56,7 +56,7 @@ impl Renderer {
     /// As [`Renderer::new`].
     pub fn with_format(
         gpu: &Gpu,
-        cast: &Cast,
+        fleet: &FleetInfo,
         width: u32,
         height: u32,
         samples: u32,
@@ -67,14 +67,14 @@ impl Renderer {
             return Err(Error::Samples(samples));
         }
         let canvas = Canvas { format, samples, mono: false };
-        let fleet = Fleet::new(cast);
-        let floor = Floor::new(cast);
-        let passes = Passes::new(gpu, canvas, cast, &fleet, &floor);
+        let robot_models = RobotModels::new(fleet);
+        let floor = Floor::new(fleet);
+        let passes = Passes::new(gpu, canvas, fleet, &robot_models, &floor);
         let renderer = Self {
             gpu: gpu.clone(),
-            cast: cast.clone(),
-            colours: robot_colours(cast),
-            fleet,
+            fleet: fleet.clone(),
+            colours: robot_colours(fleet),
+            robot_models,
             floor,
             size: (width, height),
             canvas,
@@ -95,8 +95,8 @@ impl Renderer {
 
     /// Changes title and caption, as where gains are tuned while a run goes.
     pub fn retitle(&mut self, title: &str, caption: &str) {
-        title.clone_into(&mut self.cast.title);
-        caption.clone_into(&mut self.cast.caption);
+        title.clone_into(&mut self.fleet.title);
+        caption.clone_into(&mut self.fleet.caption);
     }
 
     /// Changes the size of the pictures.
@@ -118,15 +118,15 @@ impl Renderer {
     /// The picture of a moment.
     ///
     /// # Errors
-    /// [`Error::Cast`] for a moment of other robots, [`Error::Device`] where the device fails.
+    /// [`Error::FleetInfo`] for a moment of other robots, [`Error::Device`] where the device fails.
     pub fn draw(
         &mut self,
         trail: &Trail,
-        moment: &Moment,
+        record: &StepRecord,
         layout: &Layout,
         style: &Style,
     ) -> Result<Picture, Error> {
-        let (slot, submission) = self.submit(trail, moment, layout, style)?;
+        let (slot, submission) = self.submit(trail, record, layout, style)?;
         self.offscreen[slot].read(&self.gpu, submission)
     }
 
@@ -138,11 +138,11 @@ impl Renderer {
     pub fn draw_next(
         &mut self,
         trail: &Trail,
-        moment: &Moment,
+        record: &StepRecord,
         layout: &Layout,
         style: &Style,
     ) -> Result<Option<Picture>, Error> {
-        let next = self.submit(trail, moment, layout, style)?;
+        let next = self.submit(trail, record, layout, style)?;
         let before = self.waiting.replace(next);
         before.map(|(slot, submission)| self.offscreen[slot].read(&self.gpu, submission)).transpose()
     }
@@ -164,17 +164,17 @@ impl Renderer {
         &mut self,
         target: &wgpu::TextureView,
         trail: &Trail,
-        moment: &Moment,
+        record: &StepRecord,
         layout: &Layout,
         style: &Style,
     ) -> Result<wgpu::SubmissionIndex, Error> {
-        self.encoded((trail, moment), layout, style, target, None)
+        self.encoded((trail, record), layout, style, target, None)
     }
 
     fn submit(
         &mut self,
         trail: &Trail,
-        moment: &Moment,
+        record: &StepRecord,
         layout: &Layout,
         style: &Style,
     ) -> Result<(usize, wgpu::SubmissionIndex), Error> {
@@ -186,19 +186,19 @@ impl Renderer {
             self.offscreen.push(Offscreen::new(&self.gpu.device, self.size, self.canvas.format));
         }
         let view = self.offscreen[slot].view.clone();
-        Ok((slot, self.encoded((trail, moment), layout, style, &view, Some(slot))?))
+        Ok((slot, self.encoded((trail, record), layout, style, &view, Some(slot))?))
     }
 
     /// Draws a moment into a target and copies it to where it is read, if it is.
     fn encoded(
         &mut self,
-        (trail, moment): (&Trail, &Moment),
+        (trail, record): (&Trail, &StepRecord),
         layout: &Layout,
         style: &Style,
         target: &wgpu::TextureView,
         read: Option<usize>,
     ) -> Result<wgpu::SubmissionIndex, Error> {
-        let drawn = self.prepare(trail, moment, layout, style).and_then(|prepared| {
+        let drawn = self.prepare(trail, record, layout, style).and_then(|prepared| {
             let mut encoder =
                 self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             self.passes.encode(&mut encoder, self.surface(target), &prepared)?;
@@ -218,30 +218,30 @@ impl Renderer {
     fn prepare(
         &mut self,
         trail: &Trail,
-        moment: &Moment,
+        record: &StepRecord,
         layout: &Layout,
         style: &Style,
     ) -> Result<Prepared, Error> {
-        self.check(moment)?;
+        self.check(record)?;
         let plan = self.plan(layout, style);
         let (views, tiles) = (&plan.views, &plan.tiles);
-        let cameras = cameras(&plan, trail, moment, &self.cast, &self.floor);
+        let cameras = cameras(&plan, trail, record, &self.fleet, &self.floor);
         // Cameras on robots see nothing that is drawn to explain.
         let bare = Style { shadows: style.shadows, ..Style::bare() };
         let stage = Stage {
-            cast: &self.cast,
+            fleet: &self.fleet,
             floor: &self.floor,
             colours: &self.colours,
             trail,
-            moment,
+            record,
             style,
-            origin: local_origin(moment),
-            sun: towards_sun(&self.cast.light),
+            origin: local_origin(record),
+            sun: towards_sun(&self.fleet.light),
             size: trail.steady.formation().size,
-            shadowed: shadowed(&self.cast, moment),
-            detail: detail(self.cast.members.len()),
+            shadowed: shadowed(&self.fleet, record),
+            detail: detail(self.fleet.robots.len()),
         };
-        let (crowd, props) = (crowd(&stage, &self.fleet), props(&stage));
+        let (crowd, props) = (crowd(&stage, &self.robot_models), props(&stage));
         let sun = sun_over(&stage);
         let shadow = &self.passes.world.shadow;
         let stage_of = |view: &View| match view {
@@ -252,7 +252,7 @@ impl Renderer {
         let frames: Vec<_> =
             seen().map(|(view, camera)| frame(camera, &stage_of(view), view, &sun, shadow)).collect();
         let own = |(view, camera): (&View, &Camera)| match view {
-            View::Camera(robot) => Some(part(&crowd, &stage, &self.fleet, camera, *robot)),
+            View::Camera(robot) => Some(part(&crowd, &stage, &self.robot_models, camera, *robot)),
             _ => None,
         };
         let own = seen().map(own).collect();
@@ -294,17 +294,17 @@ impl Renderer {
     /// picture of [`Style::picture_in_picture`], which lies over others, is the last.
     ///
     /// # Errors
-    /// [`Error::Cast`] for a moment of other robots.
+    /// [`Error::FleetInfo`] for a moment of other robots.
     pub fn sightlines(
         &self,
         trail: &Trail,
-        moment: &Moment,
+        record: &StepRecord,
         layout: &Layout,
         style: &Style,
     ) -> Result<Vec<Sightline>, Error> {
-        self.check(moment)?;
+        self.check(record)?;
         let plan = self.plan(layout, style);
-        let cameras = cameras(&plan, trail, moment, &self.cast, &self.floor);
+        let cameras = cameras(&plan, trail, record, &self.fleet, &self.floor);
         let seen = plan.views.into_iter().zip(plan.tiles).zip(cameras);
         Ok(seen
             .map(|((view, tile), camera)| Sightline::new(view, tile, camera, self.floor.clone()))
@@ -313,11 +313,11 @@ impl Renderer {
 
     /// What of a moment is under a pixel of one of its views, or within a few pixels of it: robots by how near they are,
     /// then set points, then edges.
-    pub fn pick(&self, sightline: &Sightline, moment: &Moment, pixel: [f64; 2]) -> Vec<Picked> {
-        if self.check(moment).is_err() || !sightline.holds(pixel) {
+    pub fn pick(&self, sightline: &Sightline, record: &StepRecord, pixel: [f64; 2]) -> Vec<Picked> {
+        if self.check(record).is_err() || !sightline.holds(pixel) {
             return Vec::new();
         }
-        pick(sightline, &self.cast, moment, pixel)
+        pick(sightline, &self.fleet, record, pixel)
     }
 
     /// The characters of some texts that neither the embedded fonts nor those of the machine have.
@@ -327,7 +327,7 @@ impl Renderer {
 
     fn plan(&self, layout: &Layout, style: &Style) -> Plan {
         let mut letters = self.letters.lock().unwrap_or_else(PoisonError::into_inner);
-        Plan::new(&mut letters, &self.cast, layout, style, self.size)
+        Plan::new(&mut letters, &self.fleet, layout, style, self.size)
     }
 
     /// A target with all that drawing into it takes.
@@ -335,12 +335,12 @@ impl Renderer {
         Surface { target, attachments: &self.attachments, size: self.size }
     }
 
-    fn check(&self, moment: &Moment) -> Result<(), Error> {
-        let robots = (moment.snapshot.robots.len(), self.cast.members.len());
-        let edges = (moment.edges.len(), self.cast.edges.len());
+    fn check(&self, record: &StepRecord) -> Result<(), Error> {
+        let robots = (record.snapshot.robots.len(), self.fleet.robots.len());
+        let edges = (record.edges.len(), self.fleet.edges.len());
         for (what, (got, want)) in [("robots", robots), ("edges", edges)] {
             if got != want {
-                return Err(Error::Cast { what, got, want });
+                return Err(Error::FleetInfo { what, got, want });
             }
         }
         Ok(())
@@ -351,12 +351,12 @@ impl Renderer {
 pub(crate) fn cameras(
     plan: &Plan,
     trail: &Trail,
-    moment: &Moment,
-    cast: &Cast,
+    record: &StepRecord,
+    fleet: &FleetInfo,
     floor: &Floor,
 ) -> Vec<Camera> {
     let camera = |(k, view): (usize, &View)| {
-        Camera::of(view, &trail.steady, &moment.snapshot, (cast, floor), &plan.room(k))
+        Camera::of(view, &trail.steady, &record.snapshot, (fleet, floor), &plan.room(k))
     };
     plan.views.iter().enumerate().map(camera).collect()
 }

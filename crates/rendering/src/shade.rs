@@ -7,7 +7,7 @@ use crate::passes::decal::Form;
 use crate::props::{corners, placed, turn};
 use glam::{DMat3, DVec2, DVec3};
 use std::collections::BTreeMap;
-use vocabulary::{Member, Placement, Prop, RobotState, Solid};
+use vocabulary::{Placement, Prop, RobotInfo, RobotState, Solid};
 
 /// Shadows are lit by the sky alone, so they are a little blue.
 const SHADE: Rgb = [0.015, 0.02, 0.04];
@@ -23,9 +23,9 @@ impl Painter<'_> {
         // What the sun gives, of all the light on flat ground: shadows under a low sun are faint.
         let share = 2.063 * stage.sun.z / (2.063 * stage.sun.z + 0.41);
         let alpha = (0.80 * share) as f32;
-        let robots = stage.moment.snapshot.robots.iter().zip(&stage.cast.members);
+        let robots = stage.record.snapshot.robots.iter().zip(&stage.fleet.robots);
         let mut patches: Vec<Patch> = robots.map(|(r, m)| robot_shadow(stage, r, m)).collect();
-        if stage.cast.props.is_empty() {
+        if stage.fleet.props.is_empty() {
             for [middle, along, across] in patches {
                 self.patch(middle, along, across, Form::Shadow, SHADE, alpha);
             }
@@ -53,7 +53,7 @@ impl Painter<'_> {
             let height = stage.floor.height(DVec3::from_array(place.position).truncate());
             self.foot(height, prop, &place);
         }
-        for (robot, member) in stage.moment.snapshot.robots.iter().zip(&stage.cast.members) {
+        for (robot, member) in stage.record.snapshot.robots.iter().zip(&stage.fleet.robots) {
             self.tyres(stage, robot, member);
         }
     }
@@ -61,13 +61,13 @@ impl Painter<'_> {
     /// The dark around decks, on the ground alone.
     pub(crate) fn deck_feet(&mut self, stage: &Stage<'_>) {
         for deck in &stage.floor.decks {
-            let prop = &stage.cast.props[deck.prop];
+            let prop = &stage.fleet.props[deck.prop];
             let height = stage.floor.ground(DVec3::from_array(prop.placement.position).truncate());
             self.foot(height, prop, &prop.placement);
         }
     }
 
-    fn tyres(&mut self, stage: &Stage<'_>, robot: &RobotState, member: &Member) {
+    fn tyres(&mut self, stage: &Stage<'_>, robot: &RobotState, member: &RobotInfo) {
         let (pose, body) = (robot.motion.pose, member.body);
         let ahead = DVec2::from_angle(pose.heading);
         let place = |forward, left| DVec2::from_array(pose.world_from_body(forward, left));
@@ -161,7 +161,7 @@ fn wheel_height(robot: &RobotState, forward: f64, left: f64) -> f64 {
     tilt.height - forward * tilt.pitch.sin() + left * tilt.roll.sin() * tilt.pitch.cos()
 }
 
-fn robot_shadow(stage: &Stage<'_>, robot: &RobotState, member: &Member) -> Patch {
+fn robot_shadow(stage: &Stage<'_>, robot: &RobotState, member: &RobotInfo) -> Patch {
     let build = Build::new(member);
     let away = -stage.sun.truncate() / stage.sun.z;
     let [x, y] = robot.motion.pose.world_from_body(0.15 * member.body.length, 0.0);
@@ -181,7 +181,7 @@ fn prop_shadow(stage: &Stage<'_>, prop: &Prop, place: &Placement) -> Option<Patc
     let foot = DVec3::from_array(place.position);
     let ground = stage.floor.ground(foot.truncate());
     // Ground that falls away lengthens shadows.
-    let stretch = if stage.cast.terrain.is_some() { 1.6 } else { 1.0 };
+    let stretch = if stage.fleet.terrain.is_some() { 1.6 } else { 1.0 };
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for corner in corners(prop, place) {
         for share in [0.0, stretch * (corner.z - ground).max(0.0)] {

@@ -183,7 +183,7 @@ fn met(mut above: f64, mut under: f64, over: impl Fn(f64) -> f64) -> f64 {
 mod tests {
     use super::*;
     use std::sync::Arc;
-    use vocabulary::{Cast, Mobility, Placement, Pose, Prop, Solid, Terrain};
+    use vocabulary::{FleetInfo, Mobility, Placement, Pose, Prop, Solid, Terrain};
 
     const TILE: Tile = Tile { x: 100, y: 40, width: 640, height: 360 };
 
@@ -216,7 +216,7 @@ mod tests {
             placement: Placement::upright(Pose::new(1.0, 0.0, 0.4), 0.1),
             mobility: Mobility::Fixed,
         };
-        Floor::new(&Cast { props: vec![ramp], terrain: Some(Arc::new(terrain)), ..Cast::default() })
+        Floor::new(&FleetInfo { props: vec![ramp], terrain: Some(Arc::new(terrain)), ..FleetInfo::default() })
     }
 
     #[test]

@@ -89,7 +89,7 @@ pub(crate) fn snake(steady: &Steady, room: &Room) -> Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::{Moment, Pose, RobotState, Snapshot};
+    use vocabulary::{Pose, RobotState, Snapshot, StepRecord};
 
     fn seen(places: &[[f64; 2]], size: [f64; 2]) -> (Camera, [f64; 2], [f64; 2]) {
         let robot = |[x, y]: &[f64; 2]| {
@@ -99,8 +99,10 @@ mod tests {
         };
         let robots = places.iter().map(robot).collect();
         let mut steady = Steady::new(0, 1.0);
-        steady
-            .push(&Moment { snapshot: Snapshot { robots, ..Snapshot::default() }, ..Moment::default() }, &[]);
+        steady.push(
+            &StepRecord { snapshot: Snapshot { robots, ..Snapshot::default() }, ..StepRecord::default() },
+            &[],
+        );
         let camera = snake(&steady, &Room::new(size, vec![], 1.0));
         let points: Vec<_> =
             places.iter().map(|[x, y]| camera.project(DVec3::new(*x, *y, 0.0)).expect("seen")).collect();

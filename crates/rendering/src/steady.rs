@@ -1,6 +1,6 @@
 //! What cameras follow: headings and the formation's extent, filtered so that a picture never jumps.
 
-use vocabulary::{Condition, Moment, Pose, nearest_turn};
+use vocabulary::{Condition, Pose, StepRecord, nearest_turn};
 
 /// Time constant of headings, s: calm in curves, and a first order filter cannot overshoot.
 const HEADING_LAG: f64 = 0.8;
@@ -71,13 +71,13 @@ impl Steady {
     }
 
     /// Takes in a moment together with the set points on the ground.
-    pub(crate) fn push(&mut self, moment: &Moment, set_points: &[[f64; 2]]) {
-        let time = moment.snapshot.time;
+    pub(crate) fn push(&mut self, record: &StepRecord, set_points: &[[f64; 2]]) {
+        let time = record.snapshot.time;
         // The first moment is taken as it is.
         let step = self.time.map_or(f64::INFINITY, |before| (time - before).max(0.0));
         self.time = Some(time);
-        self.turn(moment, step);
-        let Some(wanted) = self.measure(moment, set_points) else { return };
+        self.turn(record, step);
+        let Some(wanted) = self.measure(record, set_points) else { return };
         let old = self.extent.unwrap_or(wanted);
         self.extent = Some(approach(&old, &wanted, step));
     }
@@ -110,9 +110,9 @@ impl Steady {
         })
     }
 
-    fn turn(&mut self, moment: &Moment, step: f64) {
+    fn turn(&mut self, record: &StepRecord, step: f64) {
         let share = 1.0 - (-step / HEADING_LAG).exp();
-        let robots = &moment.snapshot.robots;
+        let robots = &record.snapshot.robots;
         self.headings.resize(robots.len(), f64::NAN);
         for (kept, robot) in self.headings.iter_mut().zip(robots) {
             let heading = robot.motion.pose.heading;
@@ -126,8 +126,8 @@ impl Steady {
         }
     }
 
-    fn measure(&self, moment: &Moment, set_points: &[[f64; 2]]) -> Option<Extent> {
-        let robots = &moment.snapshot.robots;
+    fn measure(&self, record: &StepRecord, set_points: &[[f64; 2]]) -> Option<Extent> {
+        let robots = &record.snapshot.robots;
         let lead = robots.get(self.lead)?.motion.pose;
         let frame = Pose { heading: self.heading(self.lead)?, ..lead };
         let local = |[x, y]: [f64; 2]| {
@@ -191,23 +191,23 @@ mod tests {
     use super::*;
     use vocabulary::{RobotState, Snapshot};
 
-    fn moment(time: f64, places: &[[f64; 3]]) -> Moment {
+    fn record(time: f64, places: &[[f64; 3]]) -> StepRecord {
         let robot = |p: &[f64; 3]| {
             let mut robot = RobotState::default();
             robot.motion.pose = Pose::new(p[0], p[1], p[2]);
             robot
         };
         let robots = places.iter().map(robot).collect();
-        Moment { snapshot: Snapshot { time, robots, ..Snapshot::default() }, ..Moment::default() }
+        StepRecord { snapshot: Snapshot { time, robots, ..Snapshot::default() }, ..StepRecord::default() }
     }
 
     #[test]
     fn a_turn_is_followed_without_overshoot() {
         let mut steady = Steady::new(0, 1.0);
-        steady.push(&moment(0.0, &[[0.0, 0.0, 3.0]]), &[]);
+        steady.push(&record(0.0, &[[0.0, 0.0, 3.0]]), &[]);
         let mut last = 3.0;
         for k in 1..800 {
-            steady.push(&moment(f64::from(k) * 0.01, &[[0.0, 0.0, -3.0]]), &[]);
+            steady.push(&record(f64::from(k) * 0.01, &[[0.0, 0.0, -3.0]]), &[]);
             let heading = steady.heading(0).unwrap();
             assert!(heading >= last && heading <= std::f64::consts::TAU - 3.0);
             last = heading;
@@ -218,11 +218,11 @@ mod tests {
     #[test]
     fn a_stray_robot_zooms_slowly() {
         let mut steady = Steady::new(0, 1.0);
-        steady.push(&moment(0.0, &[[0.0; 3], [-2.0, -2.0, 0.0]]), &[]);
+        steady.push(&record(0.0, &[[0.0; 3], [-2.0, -2.0, 0.0]]), &[]);
         let size = |s: &Steady| s.formation().left[1] - s.formation().left[0];
         let before = size(&steady);
         for k in 1..=100 {
-            steady.push(&moment(f64::from(k) * 0.01, &[[0.0; 3], [-2.0, -20.0, 0.0]]), &[]);
+            steady.push(&record(f64::from(k) * 0.01, &[[0.0; 3], [-2.0, -20.0, 0.0]]), &[]);
         }
         assert!(size(&steady) / before < 1.15);
     }

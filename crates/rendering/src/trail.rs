@@ -3,7 +3,7 @@
 use crate::steady::Steady;
 use std::collections::VecDeque;
 use std::sync::Arc;
-use vocabulary::{Cast, Contact, Frame, Moment, Pose, wrap};
+use vocabulary::{Contact, FleetInfo, MeasurementRecord, Pose, StepRecord, wrap};
 
 /// How long a ribbon is, s.
 pub(crate) const RIBBON: f64 = 12.0;
@@ -35,9 +35,9 @@ pub struct Trail {
     before: Vec<Pose>,
     slides: Vec<f32>,
     /// The last look of each edge.
-    looks: Vec<Option<Frame>>,
+    looks: Vec<Option<MeasurementRecord>>,
     pub(crate) errors: Thinning<Arc<[[f32; 2]]>>,
-    cast: Arc<Cast>,
+    fleet: Arc<FleetInfo>,
     spacing: f64,
 }
 
@@ -56,13 +56,13 @@ pub(crate) struct Mark {
 }
 
 impl Trail {
-    /// An empty memory of a run by `cast`.
-    pub fn new(cast: &Cast) -> Self {
-        let lead = cast.members.iter().position(|m| m.leads).unwrap_or(0);
+    /// An empty memory of a run by `fleet`.
+    pub fn new(fleet: &FleetInfo) -> Self {
+        let lead = fleet.robots.iter().position(|m| m.leads).unwrap_or(0);
         // Many robots have coarser ribbons: the picture shows each of them smaller.
-        let points = RIBBON_POINTS.min(6_000 / cast.members.len().max(1)).max(48);
+        let points = RIBBON_POINTS.min(6_000 / fleet.robots.len().max(1)).max(48);
         Self {
-            steady: Steady::new(lead, sizes(cast)),
+            steady: Steady::new(lead, sizes(fleet)),
             ribbons: VecDeque::new(),
             ghosts: VecDeque::new(),
             marks: Thinning::new(),
@@ -70,9 +70,9 @@ impl Trail {
             forgotten: None,
             before: Vec::new(),
             slides: Vec::new(),
-            looks: vec![None; cast.edges.len()],
+            looks: vec![None; fleet.edges.len()],
             errors: Thinning::new(),
-            cast: Arc::new(cast.clone()),
+            fleet: Arc::new(fleet.clone()),
             spacing: RIBBON / points as f64,
         }
     }
@@ -85,23 +85,23 @@ impl Trail {
     /// Takes in the next moment; every control sample, or at least 30 a second.
     ///
     /// A moment that is not later than the last one is ignored.
-    pub fn push(&mut self, moment: &Moment) {
-        let time = moment.snapshot.time;
+    pub fn push(&mut self, record: &StepRecord) {
+        let time = record.snapshot.time;
         if !time.is_finite() || self.steady.time().is_some_and(|last| time <= last) {
             return;
         }
-        let goals: Vec<_> = set_points(&self.cast, moment).into_iter().flatten().collect();
-        self.steady.push(moment, &goals);
-        let poses = || moment.snapshot.robots.iter().map(|r| r.motion.pose).collect::<Arc<[Pose]>>();
+        let goals: Vec<_> = set_points(&self.fleet, record).into_iter().flatten().collect();
+        self.steady.push(record, &goals);
+        let poses = || record.snapshot.robots.iter().map(|r| r.motion.pose).collect::<Arc<[Pose]>>();
         keep(&mut self.ribbons, time, self.spacing, RIBBON, poses);
         keep(&mut self.ghosts, time, GHOST_EVERY, RIBBON, poses);
-        self.touch(&moment.contacts);
-        for frame in &moment.frames {
+        self.touch(&record.contacts);
+        for frame in &record.frames {
             if let Some(look) = self.looks.get_mut(frame.edge) {
                 *look = Some(*frame);
             }
         }
-        self.slide(moment);
+        self.slide(record);
         let (before, slides) = (&self.before, &self.slides);
         let marks =
             || before.iter().zip(slides).map(|(pose, slide)| Mark { pose: *pose, slide: *slide }).collect();
@@ -109,11 +109,11 @@ impl Trail {
             self.slides.fill(0.0);
         }
         let error = |e: &[f64; 2]| e.map(|x| x as f32);
-        self.errors.push(time, || moment.edges.iter().map(|e| error(&e.error)).collect());
+        self.errors.push(time, || record.edges.iter().map(|e| error(&e.error)).collect());
     }
 
     /// The last look of an edge that arrived.
-    pub(crate) fn look(&self, edge: usize) -> Option<&Frame> {
+    pub(crate) fn look(&self, edge: usize) -> Option<&MeasurementRecord> {
         self.looks.get(edge)?.as_ref()
     }
 
@@ -133,8 +133,8 @@ impl Trail {
     }
 
     /// Compares where the robots went since the moment before with where they look.
-    fn slide(&mut self, moment: &Moment) {
-        let poses = || moment.snapshot.robots.iter().map(|r| r.motion.pose);
+    fn slide(&mut self, record: &StepRecord) {
+        let poses = || record.snapshot.robots.iter().map(|r| r.motion.pose);
         self.slides.resize(poses().len(), 0.0);
         for ((slide, from), to) in self.slides.iter_mut().zip(&self.before).zip(poses()) {
             *slide = slide.max(slid(from, &to));
@@ -158,21 +158,21 @@ fn slid(from: &Pose, to: &Pose) -> f32 {
 }
 
 /// How many times as large as the default body every robot is.
-pub(crate) fn sizes(cast: &Cast) -> f64 {
-    cast.members.iter().map(|m| crate::model::size(&m.body)).fold(0.0, f64::max)
+pub(crate) fn sizes(fleet: &FleetInfo) -> f64 {
+    fleet.robots.iter().map(|m| crate::model::size(&m.body)).fold(0.0, f64::max)
 }
 
 /// Where on the ground each edge wants its follower, m.
-pub fn set_points(cast: &Cast, moment: &Moment) -> Vec<Option<[f64; 2]>> {
+pub fn set_points(fleet: &FleetInfo, record: &StepRecord) -> Vec<Option<[f64; 2]>> {
     let place = |k: usize| {
-        let state = moment.edges.get(k)?;
-        let leader = moment.snapshot.robots.get(cast.edges.get(k)?.leader)?;
+        let state = record.edges.get(k)?;
+        let leader = record.snapshot.robots.get(fleet.edges.get(k)?.leader)?;
         let [distance, bearing] = state.set_point;
         let (sin, cos) = bearing.sin_cos();
         let place = leader.motion.pose.world_from_body(distance * cos, distance * sin);
         place.iter().all(|x| x.is_finite()).then_some(place)
     };
-    (0..cast.edges.len()).map(place).collect()
+    (0..fleet.edges.len()).map(place).collect()
 }
 
 fn keep(rows: &mut VecDeque<Row>, time: f64, every: f64, span: f64, poses: impl Fn() -> Arc<[Pose]>) {
@@ -222,17 +222,17 @@ impl<T> Thinning<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::{Member, RobotState, Snapshot};
+    use vocabulary::{RobotInfo, RobotState, Snapshot};
 
     #[test]
     fn memory_is_bounded() {
-        let member = Member::new("a", true, vocabulary::Body::default());
-        let cast = Cast { members: vec![member], ..Cast::default() };
-        let mut trail = Trail::new(&cast);
+        let member = RobotInfo::new("a", true, vocabulary::Body::default());
+        let fleet = FleetInfo { robots: vec![member], ..FleetInfo::default() };
+        let mut trail = Trail::new(&fleet);
         for k in 0..200_000 {
             let robots = vec![RobotState::default()];
             let snapshot = Snapshot { time: f64::from(k) * 0.01, robots, ..Snapshot::default() };
-            trail.push(&Moment { snapshot, ..Moment::default() });
+            trail.push(&StepRecord { snapshot, ..StepRecord::default() });
         }
         assert!(trail.ribbons.len() <= RIBBON_POINTS + 2);
         assert!(trail.ghosts.len() <= 6);
@@ -242,14 +242,14 @@ mod tests {
 
     #[test]
     fn a_copy_shares_what_is_remembered() {
-        let member = Member::new("a", true, vocabulary::Body::default());
-        let cast = Cast { members: vec![member; 7], ..Cast::default() };
-        let mut trail = Trail::new(&cast);
+        let member = RobotInfo::new("a", true, vocabulary::Body::default());
+        let fleet = FleetInfo { robots: vec![member; 7], ..FleetInfo::default() };
+        let mut trail = Trail::new(&fleet);
         assert_eq!(trail.time(), None);
         for k in 0..6_000 {
             let robots = vec![RobotState::default(); 7];
             let snapshot = Snapshot { time: f64::from(k) * 0.01, robots, ..Snapshot::default() };
-            trail.push(&Moment { snapshot, ..Moment::default() });
+            trail.push(&StepRecord { snapshot, ..StepRecord::default() });
         }
         assert_eq!(trail.time(), Some(59.99));
         let copy = trail.clone();
@@ -264,10 +264,10 @@ mod tests {
 
     #[test]
     fn contacts_are_remembered_once_and_not_for_ever() {
-        let mut trail = Trail::new(&Cast::default());
+        let mut trail = Trail::new(&FleetInfo::default());
         let contact = |number: u64, begin: f64| Contact {
             number,
-            things: [vocabulary::Thing::Robot(0), vocabulary::Thing::Ground],
+            things: [vocabulary::EntityId::Robot(0), vocabulary::EntityId::Ground],
             begin,
             end: begin,
             open: true,
@@ -278,7 +278,7 @@ mod tests {
         for k in 0..2_000_u64 {
             let contacts = vec![contact(k, k as f64), contact(k / 2, k as f64)];
             let snapshot = Snapshot { time: k as f64, ..Snapshot::default() };
-            trail.push(&Moment { snapshot, contacts, ..Moment::default() });
+            trail.push(&StepRecord { snapshot, contacts, ..StepRecord::default() });
         }
         assert_eq!(trail.touches.len(), TOUCHES);
         assert!(trail.touches.iter().all(|t| t.begin == t.number as f64));

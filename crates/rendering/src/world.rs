@@ -2,14 +2,14 @@
 
 use crate::Gpu;
 use crate::camera::Camera;
-use crate::crowd::Fleet;
+use crate::crowd::RobotModels;
 use crate::floor::Floor;
 use crate::letters::digits;
 use crate::model::Detail;
 use crate::passes::Canvas;
 use crate::passes::asphalt::Asphalt;
 use crate::passes::decal::{Corner, DecalPass, Layer};
-use crate::passes::frame::{Frame, FrameGroups};
+use crate::passes::frame::{FrameGroups, FrameUniforms};
 use crate::passes::ground::GroundPass;
 use crate::passes::prop::{Copies, PropPass, Veil};
 use crate::passes::robot::{Crowd, Models, RobotPass};
@@ -18,7 +18,7 @@ use crate::passes::sky::SkyPass;
 use crate::passes::tag::TagPass;
 use crate::passes::terrain::TerrainPass;
 use std::ops::Range;
-use vocabulary::Cast;
+use vocabulary::FleetInfo;
 
 /// Every pass with what it keeps on the device.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ pub(crate) struct World {
 
 /// What there is to see in a view.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Sight<'a> {
+pub(crate) struct SceneView<'a> {
     /// Of the view, among those uploaded.
     pub(crate) index: usize,
     pub(crate) camera: &'a Camera,
@@ -60,15 +60,15 @@ impl World {
     pub(crate) fn new(
         gpu: &Gpu,
         canvas: Canvas,
-        cast: &Cast,
-        (fleet, floor): (&Fleet, &Floor),
+        fleet: &FleetInfo,
+        (robot_models, floor): (&RobotModels, &Floor),
         (detail, shadows): (Detail, u32),
     ) -> Self {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let map = ShadowPass::map(device, shadows);
         let groups = FrameGroups::new(device, &map);
         let asphalt = Asphalt::new(device, queue);
-        let terrain = cast.terrain.as_deref();
+        let terrain = fleet.terrain.as_deref();
         // What is seen through needs an opacity, which a monochrome picture has not.
         let veil = match (canvas.mono, floor.decks.is_empty()) {
             (true, _) => Veil::None,
@@ -77,12 +77,12 @@ impl World {
         };
         let prop = || PropPass::new(device, queue, canvas, &groups, &asphalt, veil);
         Self {
-            models: Models::new(device, queue, detail, &fleet.builds),
+            models: Models::new(device, queue, detail, &robot_models.builds),
             robot: RobotPass::new(device, queue, canvas, &groups, digits()),
             tag: TagPass::new(device, queue, canvas, &groups),
             ground: GroundPass::new(device, canvas, &groups, &asphalt),
             terrain: terrain.map(|t| TerrainPass::new(device, queue, canvas, &groups, &asphalt, t)),
-            prop: (!cast.props.is_empty()).then(prop),
+            prop: (!fleet.props.is_empty()).then(prop),
             decal: DecalPass::new(device, canvas, &groups, !floor.is_plane()),
             sky: SkyPass::new(device, canvas, &groups),
             shadow: ShadowPass::new(device, &groups, map, shadows),
@@ -95,7 +95,7 @@ impl World {
     pub(crate) fn upload<'a>(
         &mut self,
         gpu: &Gpu,
-        frames: &[Frame],
+        frames: &[FrameUniforms],
         crowds: impl Iterator<Item = &'a mut Crowd>,
         props: impl Iterator<Item = &'a mut Copies>,
         corners: &[Corner],
@@ -120,7 +120,7 @@ impl World {
 
     /// Flat ground and sky are painted first and without depth: robots cover little of them, and on processors the
     /// depth test of every pixel would cost more than shading the few that are hidden.
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, sight: &Sight<'_>) {
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, sight: &SceneView<'_>) {
         pass.set_bind_group(0, &self.groups.view, &[FrameGroups::offset(sight.index)]);
         pass.set_bind_group(1, &self.groups.light, &[]);
         self.sky.draw(pass);

@@ -2,12 +2,12 @@
 //!
 //! These need an adapter; `apt-get install mesa-vulkan-drivers` brings one that draws on the processor.
 
-use rendering::{AdapterChoice, CameraEyes, Gpu};
+use rendering::{AdapterChoice, Gpu, GpuCameraRenderer};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
 use vocabulary::{
-    Attitude, Body, Cast, Edge, Eyes, FACES, Grey, Lens, Light, Member, Motion, Placement, Pose, Prop,
-    Region, Rigid, RobotState, Shell, Shot, Snapshot, Solid, tag_cell,
+    Attitude, Body, CameraModel, CameraRenderer, Edge, FACES, FleetInfo, Grey, Light, Motion, Placement,
+    Pose, Prop, Region, Rigid, RobotInfo, RobotState, Shell, Shot, Snapshot, Solid, tag_cell,
 };
 
 fn gpu() -> &'static Gpu {
@@ -17,12 +17,12 @@ fn gpu() -> &'static Gpu {
 }
 
 /// A robot that is looked at and one that looks.
-fn cast(shell: Shell) -> Cast {
-    let mut leader = Member::new("leader", true, Body::default());
+fn fleet(shell: Shell) -> FleetInfo {
+    let mut leader = RobotInfo::new("leader", true, Body::default());
     leader.shell = Some(shell.tagged(7));
-    let members = vec![leader, Member::new("follower", false, Body::default())];
+    let members = vec![leader, RobotInfo::new("follower", false, Body::default())];
     let light = Light { sun_elevation: 0.6, sun_azimuth: 3.0, ..Light::default() };
-    Cast { members, edges: vec![Edge { leader: 0, follower: 1 }], light, ..Cast::default() }
+    FleetInfo { robots: members, edges: vec![Edge { leader: 0, follower: 1 }], light, ..FleetInfo::default() }
 }
 
 fn state(x: f64, y: f64, heading: f64, attitude: Attitude) -> RobotState {
@@ -38,19 +38,19 @@ fn stage(distance: f64, turn: f64) -> Snapshot {
     Snapshot { time: 0.0, robots: vec![leader, follower], props: vec![] }
 }
 
-fn shot(cast: &Cast, snapshot: &Snapshot, lens: &Lens) -> Shot {
+fn shot(fleet: &FleetInfo, snapshot: &Snapshot, camera_model: &CameraModel) -> Shot {
     Shot {
         robot: 1,
-        world_from_camera: cast.members[1].mount.world_from_camera(&snapshot.robots[1]),
-        focal: lens.focal,
-        centre: lens.centre,
-        region: Region::whole(lens),
+        world_from_camera: fleet.robots[1].camera_mount.world_from_camera(&snapshot.robots[1]),
+        focal: camera_model.focal,
+        centre: camera_model.centre,
+        region: Region::whole(camera_model),
         exposure: 1.0,
     }
 }
 
-fn look(cast: &Cast, snapshot: &Snapshot, shots: &[Shot]) -> Vec<Grey> {
-    let mut eyes = CameraEyes::new(gpu(), cast).unwrap();
+fn look(fleet: &FleetInfo, snapshot: &Snapshot, shots: &[Shot]) -> Vec<Grey> {
+    let mut eyes = GpuCameraRenderer::new(gpu(), fleet).unwrap();
     let mut pictures = Vec::new();
     eyes.look(snapshot, shots, &mut pictures).unwrap();
     pictures
@@ -74,12 +74,13 @@ fn step(picture: &Grey, place: [f64; 2], inward: [f64; 2], reach: f64) -> Option
     let fine = 0.05;
     let count = (2.0 * reach / fine).round() as i32;
     let along = |s: f64| at(picture, [place[0] + s * inward[0], place[1] + s * inward[1]]);
-    let profile: Vec<f64> = (0..=count).map(|k| along(f64::from(k) * fine - reach)).collect::<Option<_>>()?;
+    let trajectory: Vec<f64> =
+        (0..=count).map(|k| along(f64::from(k) * fine - reach)).collect::<Option<_>>()?;
     let end = (1.0 / fine) as usize;
     let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-    let (white, black) = (mean(&profile[..end]), mean(&profile[profile.len() - end..]));
+    let (white, black) = (mean(&trajectory[..end]), mean(&trajectory[trajectory.len() - end..]));
     (white - black > 40.0).then(|| {
-        let bright: f64 = profile.iter().map(|v| (v - black) / (white - black)).sum::<f64>() * fine;
+        let bright: f64 = trajectory.iter().map(|v| (v - black) / (white - black)).sum::<f64>() * fine;
         bright - 0.5 * fine - reach
     })
 }
@@ -87,7 +88,7 @@ fn step(picture: &Grey, place: [f64; 2], inward: [f64; 2], reach: f64) -> Option
 /// Sides of black squares lie within 0.03 pixels of where the shell's corners are projected.
 #[test]
 fn edges_of_tags_are_where_they_are_projected() {
-    let lens = Lens { centre: [612.2, 391.7], ..Lens::pinhole(1280, 800, 0.9) };
+    let camera_model = CameraModel { centre: [612.2, 391.7], ..CameraModel::pinhole(1280, 800, 0.9) };
     let mut compared = 0;
     let poses = [
         (1.3, 0.0),
@@ -101,10 +102,10 @@ fn edges_of_tags_are_where_they_are_projected() {
     ];
     for (k, (distance, turn)) in poses.into_iter().enumerate() {
         let shell = if distance > 4.0 { Shell::PAPER.scaled(4.0).at(0.3, 0.9) } else { Shell::PAPER };
-        let cast = cast(shell);
+        let fleet = fleet(shell);
         let snapshot = stage(distance, turn);
-        let shot = shot(&cast, &snapshot, &lens);
-        let picture = &look(&cast, &snapshot, &[shot])[0];
+        let shot = shot(&fleet, &snapshot, &camera_model);
+        let picture = &look(&fleet, &snapshot, &[shot])[0];
         let camera_from_body = shot.world_from_camera.inverse().after(&snapshot.robots[0].world_from_body());
         for face in 0..FACES {
             let frame = camera_from_body.after(&shell.body_from_face(face));
@@ -115,7 +116,8 @@ fn edges_of_tags_are_where_they_are_projected() {
                 continue;
             }
             let corners = shell.tag_corners(face).map(|corner| camera_from_body.apply(corner));
-            let Some(seen) = corners.map(|c| lens.project(c)).into_iter().collect::<Option<Vec<_>>>() else {
+            let Some(seen) = corners.map(|c| camera_model.project(c)).into_iter().collect::<Option<Vec<_>>>()
+            else {
                 continue;
             };
             for side in 0..4 {
@@ -149,19 +151,19 @@ fn edges_of_tags_are_where_they_are_projected() {
 /// Cells are as bright as the tag has them, from near to where a cell is less than a pixel.
 #[test]
 fn tags_show_their_codes_and_keep_their_mean() {
-    let lens = Lens::pinhole(1280, 800, 0.9);
-    let cast = cast(Shell::PAPER);
+    let camera_model = CameraModel::pinhole(1280, 800, 0.9);
+    let fleet = fleet(Shell::PAPER);
     let mut means = Vec::new();
     for distance in [0.9, 2.0, 5.0, 20.0] {
         let snapshot = stage(distance, 0.0);
-        let shot = shot(&cast, &snapshot, &lens);
-        let picture = &look(&cast, &snapshot, &[shot])[0];
+        let shot = shot(&fleet, &snapshot, &camera_model);
+        let picture = &look(&fleet, &snapshot, &[shot])[0];
         let face = Shell::PAPER.body_from_face(2);
         let camera_from_face =
             shot.world_from_camera.inverse().after(&snapshot.robots[0].world_from_body()).after(&face);
         let brightness = |column: f64, row: f64| {
             let [x, y] = [column - 5.0, 5.0 - row].map(|c| c * Shell::PAPER.cell);
-            at(picture, lens.project(camera_from_face.apply([x, y, 0.0]))?)
+            at(picture, camera_model.project(camera_from_face.apply([x, y, 0.0]))?)
         };
         let cells: Vec<_> = (0..100)
             .map(|k| (k % 10, k / 10))
@@ -182,14 +184,14 @@ fn tags_show_their_codes_and_keep_their_mean() {
 
 #[test]
 fn light_is_linear_and_paper_in_the_sun_is_bright() {
-    let mut cast = cast(Shell::PAPER);
+    let mut fleet = fleet(Shell::PAPER);
     // The sun stands behind the follower and straight before the leader's rear face.
-    cast.light = Light { sun_elevation: 0.175, sun_azimuth: PI, ..Light::default() };
+    fleet.light = Light { sun_elevation: 0.175, sun_azimuth: PI, ..Light::default() };
     let snapshot = stage(1.2, 0.0);
-    let lens = Lens::pinhole(640, 480, 0.9);
-    let one = shot(&cast, &snapshot, &lens);
+    let camera_model = CameraModel::pinhole(640, 480, 0.9);
+    let one = shot(&fleet, &snapshot, &camera_model);
     let pictures =
-        look(&cast, &snapshot, &[one, Shot { exposure: 0.5, ..one }, Shot { exposure: 3.0, ..one }]);
+        look(&fleet, &snapshot, &[one, Shot { exposure: 0.5, ..one }, Shot { exposure: 3.0, ..one }]);
     let white = pictures[0].values.iter().copied().max().unwrap();
     let top = f64::from(white) / 255.0;
     assert!((0.70..0.95).contains(&top), "{top}");
@@ -203,28 +205,28 @@ fn light_is_linear_and_paper_in_the_sun_is_bright() {
 /// A region shows what is there in the whole picture, also with many shots of all sizes at once.
 #[test]
 fn regions_are_parts_of_the_whole() {
-    let cast = cast(Shell::PAPER);
+    let fleet = fleet(Shell::PAPER);
     let snapshot = stage(1.4, 0.3);
-    let lens = Lens::pinhole(640, 480, 0.9);
-    let whole = shot(&cast, &snapshot, &lens);
+    let camera_model = CameraModel::pinhole(640, 480, 0.9);
+    let whole = shot(&fleet, &snapshot, &camera_model);
     let parts =
         [(200, 130, 220, 160), (0, 0, 64, 48), (301, 207, 33, 77), (600, 400, 40, 80), (7, 300, 500, 9)];
     let mut shots = vec![whole];
     shots.extend(parts.map(|(x, y, width, height)| Shot { region: Region { x, y, width, height }, ..whole }));
-    let pictures = look(&cast, &snapshot, &shots);
+    let pictures = look(&fleet, &snapshot, &shots);
     for (shot, picture) in shots.iter().zip(&pictures) {
         let region = shot.region;
         assert_eq!((picture.width, picture.height), (region.width, region.height));
         assert_eq!(picture.values.len(), (region.width * region.height) as usize);
         let off = picture.values.iter().enumerate().filter(|(k, value)| {
             let (x, y) = (*k as u32 % region.width, *k as u32 / region.width);
-            let same = pictures[0].values[((region.y + y) * lens.width + region.x + x) as usize];
+            let same = pictures[0].values[((region.y + y) * camera_model.width + region.x + x) as usize];
             same.abs_diff(**value) > 3
         });
         let count = off.count();
         assert!(count * 200 <= picture.values.len(), "{region:?}: {count} pixels differ");
     }
-    let mut eyes = CameraEyes::new(gpu(), &cast).unwrap();
+    let mut eyes = GpuCameraRenderer::new(gpu(), &fleet).unwrap();
     let mut again = Vec::new();
     for _ in 0..3 {
         eyes.take(&snapshot, &shots, &mut again).unwrap();
@@ -234,21 +236,21 @@ fn regions_are_parts_of_the_whole() {
 
 #[test]
 fn a_wall_hides_the_leader() {
-    let mut cast = cast(Shell::PAPER);
+    let mut fleet = fleet(Shell::PAPER);
     let snapshot = stage(2.0, 0.0);
-    let lens = Lens::pinhole(640, 480, 0.9);
-    let shot = shot(&cast, &snapshot, &lens);
-    let open = look(&cast, &snapshot, &[shot]);
+    let camera_model = CameraModel::pinhole(640, 480, 0.9);
+    let shot = shot(&fleet, &snapshot, &camera_model);
+    let open = look(&fleet, &snapshot, &[shot]);
     let place = Placement::upright(Pose::new(511.2, -77.1, 0.0), 0.0);
     let solid = Solid::Block { size: [0.2, 1.0, 0.6] };
-    cast.props.push(Prop {
+    fleet.props.push(Prop {
         name: "wall".into(),
         solid,
         placement: place,
         mobility: vocabulary::Mobility::Fixed,
     });
     let snapshot = Snapshot { props: vec![place], ..snapshot };
-    let behind = look(&cast, &snapshot, &[shot]);
+    let behind = look(&fleet, &snapshot, &[shot]);
     let dark = |picture: &Grey| picture.values.iter().filter(|v| **v < 12).count();
     assert!(dark(&open[0]) > 800 && dark(&behind[0]) < 200, "{} {}", dark(&open[0]), dark(&behind[0]));
 }
@@ -256,19 +258,19 @@ fn a_wall_hides_the_leader() {
 /// However a camera is turned, the sky is where the sky is.
 #[test]
 fn horizons_may_lean_and_turn_over() {
-    let cast = cast(Shell::PAPER);
+    let fleet = fleet(Shell::PAPER);
     let snapshot = stage(2.0, 0.0);
-    let lens = Lens::pinhole(320, 240, 0.9);
+    let camera_model = CameraModel::pinhole(320, 240, 0.9);
     for roll in [0.0, 0.3, -0.9, 1.57, FRAC_PI_2, 2.5, PI, -2.0] {
         for pitch in [0.1, -0.2] {
             let looking = Rigid::turned([500.0, -60.0, 1.0], 2.0, pitch, roll);
-            let body_from_camera = cast.members[1].mount.body_from_camera(0.0);
+            let body_from_camera = fleet.robots[1].camera_mount.body_from_camera(0.0);
             let turn = Rigid { translation: [0.0; 3], ..body_from_camera };
             let world_from_camera = looking.after(&turn);
-            let shot = Shot { world_from_camera, ..shot(&cast, &snapshot, &lens) };
-            let picture = &look(&cast, &snapshot, &[shot])[0];
+            let shot = Shot { world_from_camera, ..shot(&fleet, &snapshot, &camera_model) };
+            let picture = &look(&fleet, &snapshot, &[shot])[0];
             for (u, v) in (0..16).flat_map(|u| (0..12).map(move |v| (20 * u + 3, 20 * v + 3))) {
-                let [x, y] = lens.direction([f64::from(u), f64::from(v)]);
+                let [x, y] = camera_model.direction([f64::from(u), f64::from(v)]);
                 let up = world_from_camera.turn([x, y, 1.0])[2];
                 let bright = picture.values[(v * 320 + u) as usize];
                 // Near the horizon both are haze.
@@ -282,13 +284,13 @@ fn horizons_may_lean_and_turn_over() {
 
 #[test]
 fn shells_may_be_blank_or_missing() {
-    let lens = Lens::pinhole(640, 480, 0.9);
+    let camera_model = CameraModel::pinhole(640, 480, 0.9);
     let snapshot = stage(1.4, 0.0);
     let bright = |shell: Option<Shell>| {
-        let mut cast = cast(Shell::PAPER);
-        cast.members[0].shell = shell;
-        let shot = Shot { exposure: 1.2, ..shot(&cast, &snapshot, &lens) };
-        look(&cast, &snapshot, &[shot])[0].values.iter().filter(|v| **v > 160).count()
+        let mut fleet = fleet(Shell::PAPER);
+        fleet.robots[0].shell = shell;
+        let shot = Shot { exposure: 1.2, ..shot(&fleet, &snapshot, &camera_model) };
+        look(&fleet, &snapshot, &[shot])[0].values.iter().filter(|v| **v > 160).count()
     };
     let (tagged, blank, none) =
         (bright(Some(Shell::PAPER.tagged(3))), bright(Some(Shell::PAPER)), bright(None));
@@ -297,11 +299,11 @@ fn shells_may_be_blank_or_missing() {
 
 #[test]
 fn what_cannot_be_taken_is_refused() {
-    let cast = cast(Shell::PAPER);
+    let fleet = fleet(Shell::PAPER);
     let snapshot = stage(2.0, 0.0);
-    let lens = Lens::pinhole(640, 480, 0.9);
-    let shot = shot(&cast, &snapshot, &lens);
-    let mut eyes = CameraEyes::new(gpu(), &cast).unwrap();
+    let camera_model = CameraModel::pinhole(640, 480, 0.9);
+    let shot = shot(&fleet, &snapshot, &camera_model);
+    let mut eyes = GpuCameraRenderer::new(gpu(), &fleet).unwrap();
     let mut pictures = Vec::new();
     assert!(eyes.look(&Snapshot::default(), &[shot], &mut pictures).is_err());
     for (width, height) in [(0, 10), (1 << 20, 10)] {

@@ -8,7 +8,7 @@ use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded, hills, overturn, pro
 use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, View};
 use stage::{Path, Play};
 use std::sync::{Arc, OnceLock};
-use vocabulary::{Body, Cast, Mobility, Moment, Picture, Solid, Terrain};
+use vocabulary::{Body, FleetInfo, Mobility, Picture, Solid, StepRecord, Terrain};
 
 const SIZE: (u32, u32) = (640, 360);
 
@@ -19,15 +19,15 @@ fn gpu() -> &'static Gpu {
 }
 
 /// The picture of a moment whose past is that moment alone.
-fn snap(cast: &Cast, moment: &Moment, view: View, style: &Style) -> Picture {
-    let mut trail = Trail::new(cast);
-    trail.push(moment);
-    shot(cast, &trail, moment, view, style)
+fn snap(fleet: &FleetInfo, record: &StepRecord, view: View, style: &Style) -> Picture {
+    let mut trail = Trail::new(fleet);
+    trail.push(record);
+    shot(fleet, &trail, record, view, style)
 }
 
-fn shot(cast: &Cast, trail: &Trail, moment: &Moment, view: View, style: &Style) -> Picture {
-    let mut renderer = Renderer::new(gpu(), cast, SIZE.0, SIZE.1, 4).unwrap();
-    renderer.draw(trail, moment, &Layout::single(view), style).unwrap()
+fn shot(fleet: &FleetInfo, trail: &Trail, record: &StepRecord, view: View, style: &Style) -> Picture {
+    let mut renderer = Renderer::new(gpu(), fleet, SIZE.0, SIZE.1, 4).unwrap();
+    renderer.draw(trail, record, &Layout::single(view), style).unwrap()
 }
 
 /// Straight down on the x-y plane from 9 m over `ground`.
@@ -69,9 +69,9 @@ fn blue([r, g, b]: [i32; 3]) -> bool {
     b > 90 && g > r && 3 * r < 2 * b
 }
 
-fn straight() -> (Cast, Moment) {
+fn straight() -> (FleetInfo, StepRecord) {
     let play = Play::new(3, Path::Straight);
-    (play.cast.clone(), play.at(12.0))
+    (play.fleet.clone(), play.at(12.0))
 }
 
 fn ground(height: f64) -> Arc<Terrain> {
@@ -81,17 +81,17 @@ fn ground(height: f64) -> Arc<Terrain> {
 
 #[test]
 fn props_stand_where_they_are_and_cast_shadows() {
-    let (mut cast, moment) = straight();
-    let empty = snap(&cast, &moment, plan(0.0), &Style::bare());
+    let (mut fleet, record) = straight();
+    let empty = snap(&fleet, &record, plan(0.0), &Style::bare());
     let cone = Solid::Cone { radius: 0.2, height: 0.5 };
     let block = Solid::Block { size: [0.5, 0.5, 0.5] };
-    cast.props = vec![
+    fleet.props = vec![
         prop(cone, Mobility::Loose, 5.0, 2.0, 0.0),
         prop(block, Mobility::Fixed, 5.0, -2.5, 0.0),
         prop(block, Mobility::Guided, 6.5, 2.5, 0.0),
     ];
     // A moment without placements shows props where they start.
-    let picture = snap(&cast, &moment, plan(0.0), &Style::bare());
+    let picture = snap(&fleet, &record, plan(0.0), &Style::bare());
     let [r, g, b] = mean(&picture, pixel(5.1, 1.9), 3);
     assert!(r > 1.5 * g && r > 2.0 * b, "{r} {g} {b}");
     let [r, g, b] = mean(&picture, pixel(6.5, 2.5), 3);
@@ -108,12 +108,12 @@ fn props_stand_where_they_are_and_cast_shadows() {
 
 #[test]
 fn a_prop_moves_with_the_moment() {
-    let (mut cast, mut moment) = straight();
+    let (mut fleet, mut record) = straight();
     let crate_of = Solid::Block { size: [0.5; 3] };
-    cast.props = vec![prop(crate_of, Mobility::Loose, 5.0, 2.0, 0.0)];
-    let first = snap(&cast, &moment, plan(0.0), &Style::bare());
-    moment.snapshot.props = vec![prop(crate_of, Mobility::Loose, 5.0, -2.0, 0.7).placement];
-    let then = snap(&cast, &moment, plan(0.0), &Style::bare());
+    fleet.props = vec![prop(crate_of, Mobility::Loose, 5.0, 2.0, 0.0)];
+    let first = snap(&fleet, &record, plan(0.0), &Style::bare());
+    record.snapshot.props = vec![prop(crate_of, Mobility::Loose, 5.0, -2.0, 0.7).placement];
+    let then = snap(&fleet, &record, plan(0.0), &Style::bare());
     let warm = |picture: &Picture, y: f64| {
         let [r, _, b] = mean(picture, pixel(5.0, y), 3);
         r - b
@@ -124,42 +124,42 @@ fn a_prop_moves_with_the_moment() {
 
 #[test]
 fn a_prop_shades_the_robot_behind_it() {
-    let (mut cast, moment) = straight();
-    let pose = moment.snapshot.robots[0].motion.pose;
-    let brightness = |cast: &Cast| {
-        mean(&snap(cast, &moment, plan(0.0), &Style::bare()), pixel(pose.x + 0.1, pose.y), 6)[1]
+    let (mut fleet, record) = straight();
+    let pose = record.snapshot.robots[0].motion.pose;
+    let brightness = |fleet: &FleetInfo| {
+        mean(&snap(fleet, &record, plan(0.0), &Style::bare()), pixel(pose.x + 0.1, pose.y), 6)[1]
     };
-    let before = brightness(&cast);
+    let before = brightness(&fleet);
     let wall = Solid::Block { size: [1.5, 0.1, 0.9] };
-    cast.props = vec![prop(wall, Mobility::Fixed, pose.x, pose.y + 0.5, 0.0)];
-    let after = brightness(&cast);
+    fleet.props = vec![prop(wall, Mobility::Fixed, pose.x, pose.y + 0.5, 0.0)];
+    let after = brightness(&fleet);
     assert!(after < 0.8 * before, "{before} {after}");
 }
 
 #[test]
 fn a_level_terrain_looks_like_the_plain_from_as_high_above() {
     let play = Play::new(3, Path::named("circle"));
-    let mut cast = play.cast.clone();
+    let mut fleet = play.fleet.clone();
     let style = Style::without(&["caption", "names"]).unwrap();
-    let flat = shot(&cast, &play.trail(6.0), &play.at(6.0), plan(0.0), &style);
+    let flat = shot(&fleet, &play.trail(6.0), &play.at(6.0), plan(0.0), &style);
     let view = |ground: f64| View::Fixed {
         eye: [-3.0, -2.0, 2.0 + ground],
         target: [3.0, 1.0, ground],
         field_of_view: 0.7,
     };
-    let oblique = shot(&cast, &play.trail(6.0), &play.at(6.0), view(0.0), &style);
-    cast.terrain = Some(ground(1.5));
-    let mut trail = Trail::new(&cast);
-    let mut last = Moment::default();
+    let oblique = shot(&fleet, &play.trail(6.0), &play.at(6.0), view(0.0), &style);
+    fleet.terrain = Some(ground(1.5));
+    let mut trail = Trail::new(&fleet);
+    let mut last = StepRecord::default();
     for k in 0..=180 {
-        last = grounded(&cast, play.at(f64::from(k) / 30.0));
+        last = grounded(&fleet, play.at(f64::from(k) / 30.0));
         trail.push(&last);
     }
     assert_eq!(last.snapshot.robots[0].attitude.height, 1.5);
     // The plain is a plane and the terrain a mesh: a few edges fall differently.
     let most = (SIZE.0 * SIZE.1 / 100) as usize;
     for (view, before) in [(plan(1.5), flat), (view(1.5), oblique)] {
-        let raised = shot(&cast, &trail, &last, view, &style);
+        let raised = shot(&fleet, &trail, &last, view, &style);
         let found = differ(&before, &raised, 24);
         assert!(found < most, "{found}");
     }
@@ -167,15 +167,15 @@ fn a_level_terrain_looks_like_the_plain_from_as_high_above() {
 
 #[test]
 fn a_hill_hides_what_is_behind_it() {
-    let (mut cast, moment) = straight();
-    let hidden = moment.snapshot.robots[2].motion.pose;
+    let (mut fleet, record) = straight();
+    let hidden = record.snapshot.robots[2].motion.pose;
     let view = || View::Fixed {
         eye: [hidden.x - 6.0, hidden.y, 0.5],
         target: [hidden.x, hidden.y, 0.1],
         field_of_view: 0.4,
     };
     let style = Style::without(&["labels", "names"]).unwrap();
-    let plain = count(&snap(&cast, &moment, view(), &style), blue);
+    let plain = count(&snap(&fleet, &record, view(), &style), blue);
     let side = 41;
     let heights = (0..side * side).map(|k| {
         let (x, y) = ((k % side) as f64 * 0.5 - 10.0, (k / side) as f64 * 0.5 - 10.0);
@@ -183,63 +183,63 @@ fn a_hill_hides_what_is_behind_it() {
     });
     let origin = [hidden.x - 10.0, hidden.y - 10.0];
     let heights = heights.collect();
-    cast.terrain =
+    fleet.terrain =
         Some(Arc::new(Terrain { origin, cell: 0.5, columns: side, rows: side, heights, grip: vec![] }));
-    let behind = count(&snap(&cast, &moment, view(), &style), blue);
+    let behind = count(&snap(&fleet, &record, view(), &style), blue);
     assert!(plain > 300 && behind * 10 < plain, "{plain} {behind}");
 }
 
 #[test]
 fn ice_is_blue() {
-    let (mut cast, moment) = straight();
+    let (mut fleet, record) = straight();
     let mut terrain = (*ground(0.0)).clone();
-    cast.terrain = Some(Arc::new(terrain.clone()));
-    let dry = mean(&snap(&cast, &moment, plan(0.0), &Style::bare()), pixel(5.0, 3.0), 8);
+    fleet.terrain = Some(Arc::new(terrain.clone()));
+    let dry = mean(&snap(&fleet, &record, plan(0.0), &Style::bare()), pixel(5.0, 3.0), 8);
     terrain.grip = vec![0.1; 4];
-    cast.terrain = Some(Arc::new(terrain));
-    let icy = mean(&snap(&cast, &moment, plan(0.0), &Style::bare()), pixel(5.0, 3.0), 8);
+    fleet.terrain = Some(Arc::new(terrain));
+    let icy = mean(&snap(&fleet, &record, plan(0.0), &Style::bare()), pixel(5.0, 3.0), 8);
     assert!(icy[2] - icy[0] > 15.0 && dry[2] - dry[0] < 8.0, "{dry:?} {icy:?}");
 }
 
 #[test]
 fn a_contact_flashes_and_leaves_a_mark() {
-    let (cast, mut moment) = straight();
+    let (fleet, mut record) = straight();
     let style = Style { contacts: true, ..Style::bare() };
     let place = (5.0, 2.0);
-    moment.contacts = vec![touch(0, 12.0, [place.0, place.1, 0.1])];
-    let mut trail = Trail::new(&cast);
-    trail.push(&moment);
-    moment.contacts.clear();
+    record.contacts = vec![touch(0, 12.0, [place.0, place.1, 0.1])];
+    let mut trail = Trail::new(&fleet);
+    trail.push(&record);
+    record.contacts.clear();
     let mut after = |wait: f64| {
-        moment.snapshot.time = 12.0 + wait;
-        mean(&shot(&cast, &trail, &moment, plan(0.0), &style), pixel(place.0, place.1), 1)[1]
+        record.snapshot.time = 12.0 + wait;
+        mean(&shot(&fleet, &trail, &record, plan(0.0), &style), pixel(place.0, place.1), 1)[1]
     };
     let (flash, later, last) = (after(0.1), after(1.0), after(500.0));
-    let ground = mean(&snap(&cast, &moment, plan(0.0), &Style::bare()), pixel(place.0, place.1), 1)[1];
+    let ground = mean(&snap(&fleet, &record, plan(0.0), &Style::bare()), pixel(place.0, place.1), 1)[1];
     assert!(flash > 190.0 && flash > 1.6 * ground, "{flash} {ground}");
     assert!(later < 0.7 * ground && (later - last).abs() < 1.0, "{ground} {later} {last}");
 }
 
 #[test]
 fn a_flash_shows_through_what_is_in_front() {
-    let (mut cast, mut moment) = straight();
-    cast.props = vec![prop(Solid::Block { size: [1.0, 1.0, 1.0] }, Mobility::Fixed, 5.0, 2.0, 0.0)];
+    let (mut fleet, mut record) = straight();
+    fleet.props = vec![prop(Solid::Block { size: [1.0, 1.0, 1.0] }, Mobility::Fixed, 5.0, 2.0, 0.0)];
     let style = Style { contacts: true, ..Style::bare() };
-    let quiet = snap(&cast, &moment, plan(0.0), &style);
-    moment.contacts = vec![touch(0, 11.95, [5.0, 2.0, 0.1])];
-    let loud = snap(&cast, &moment, plan(0.0), &style);
+    let quiet = snap(&fleet, &record, plan(0.0), &style);
+    record.contacts = vec![touch(0, 11.95, [5.0, 2.0, 0.1])];
+    let loud = snap(&fleet, &record, plan(0.0), &style);
     assert!(differ(&quiet, &loud, 20) > 60);
 }
 
 #[test]
 fn what_stands_before_the_robots_is_seen_through() {
-    let (mut cast, moment) = straight();
+    let (mut fleet, record) = straight();
     let warm = |[r, g, b]: [i32; 3]| r > g + 12 && g > b + 12;
-    let clear = snap(&cast, &moment, View::Snake, &Style::bare());
+    let clear = snap(&fleet, &record, View::Snake, &Style::bare());
     let plain = count(&clear, warm);
-    let last = moment.snapshot.robots[1].motion.pose;
-    cast.props = vec![prop(Solid::Block { size: [0.1, 9.0, 1.2] }, Mobility::Fixed, last.x - 1.4, 0.0, 0.0)];
-    let veiled = snap(&cast, &moment, View::Snake, &Style::bare());
+    let last = record.snapshot.robots[1].motion.pose;
+    fleet.props = vec![prop(Solid::Block { size: [0.1, 9.0, 1.2] }, Mobility::Fixed, last.x - 1.4, 0.0, 0.0)];
+    let veiled = snap(&fleet, &record, View::Snake, &Style::bare());
     let hidden = differ(&veiled, &clear, 12);
     assert!(hidden > 5_000, "the wall is there: {hidden}");
     let found = count(&veiled, warm);
@@ -247,24 +247,24 @@ fn what_stands_before_the_robots_is_seen_through() {
 }
 
 /// A moment of the straight play on a platform under all robots, 0.3 m high.
-fn on_a_platform() -> (Cast, Moment) {
-    let (mut cast, mut moment) = straight();
-    cast.props = vec![prop(Solid::Block { size: [24.0, 12.0, 0.3] }, Mobility::Fixed, 6.0, 0.0, 0.0)];
-    moment.snapshot.robots.iter_mut().for_each(|r| r.attitude.height = 0.3);
-    (cast, moment)
+fn on_a_platform() -> (FleetInfo, StepRecord) {
+    let (mut fleet, mut record) = straight();
+    fleet.props = vec![prop(Solid::Block { size: [24.0, 12.0, 0.3] }, Mobility::Fixed, 6.0, 0.0, 0.0)];
+    record.snapshot.robots.iter_mut().for_each(|r| r.attitude.height = 0.3);
+    (fleet, record)
 }
 
 #[test]
 fn a_ribbon_lies_on_the_ramp_under_it() {
     let play = Play::new(3, Path::Straight);
-    let (mut cast, moment) = (play.cast.clone(), play.at(12.0));
+    let (mut fleet, record) = (play.fleet.clone(), play.at(12.0));
     let style = Style { ribbons: true, ..Style::bare() };
-    let painted = |cast: &Cast| shot(cast, &play.trail(12.0), &moment, plan(0.0), &style);
-    let plain = count(&painted(&cast), blue);
-    let place = moment.snapshot.robots[2].motion.pose;
+    let painted = |fleet: &FleetInfo| shot(fleet, &play.trail(12.0), &record, plan(0.0), &style);
+    let plain = count(&painted(&fleet), blue);
+    let place = record.snapshot.robots[2].motion.pose;
     let (middle, size) = (place.x - 1.4, [2.0, 1.6, 0.3]);
-    cast.props = vec![prop(Solid::Wedge { size }, Mobility::Fixed, middle, place.y, 0.0)];
-    let picture = painted(&cast);
+    fleet.props = vec![prop(Solid::Wedge { size }, Mobility::Fixed, middle, place.y, 0.0)];
+    let picture = painted(&fleet);
     for x in [-0.8, -0.4, 0.0, 0.4, 0.8] {
         // What is higher is nearer to the eye, which is over (6, 0).
         let near = 9.0 / (9.0 - size[2] * (x / size[0] + 0.5));
@@ -276,25 +276,25 @@ fn a_ribbon_lies_on_the_ramp_under_it() {
     let found = count(&picture, blue);
     assert!(found * 10 > plain * 8, "{found} of {plain}");
     // Nobody drives on a wall: what is under it is hidden.
-    cast.props = vec![prop(Solid::Block { size: [2.0, 1.6, 1.2] }, Mobility::Fixed, middle, place.y, 0.0)];
-    let hidden = count(&painted(&cast), blue);
+    fleet.props = vec![prop(Solid::Block { size: [2.0, 1.6, 1.2] }, Mobility::Fixed, middle, place.y, 0.0)];
+    let hidden = count(&painted(&fleet), blue);
     assert!(hidden * 2 < plain, "{hidden} of {plain}");
 }
 
 #[test]
 fn a_platform_is_like_higher_ground() {
-    let (cast, moment) = on_a_platform();
+    let (fleet, record) = on_a_platform();
     let style = Style { ribbons: false, ..Style::without(&["caption", "names", "grid"]).unwrap() };
-    let high = snap(&cast, &moment, plan(0.3), &style);
-    let (mut flat, moment) = straight();
+    let high = snap(&fleet, &record, plan(0.3), &style);
+    let (mut flat, record) = straight();
     flat.props = vec![];
-    let low = snap(&flat, &moment, plan(0.0), &style);
+    let low = snap(&flat, &record, plan(0.0), &style);
     // Rings and contact patches are where they are on the ground.
     for like in [orange, blue] {
         let (on, under) = (count(&high, like), count(&low, like));
         assert!(under > 20 && on * 10 > under * 9, "{on} {under}");
     }
-    let pose = moment.snapshot.robots[0].motion.pose;
+    let pose = record.snapshot.robots[0].motion.pose;
     let dark = |picture: &Picture| {
         let [near, far] = [0.13, 1.5].map(|y| mean(picture, pixel(pose.x, pose.y + y), 0)[1]);
         near / far
@@ -304,10 +304,10 @@ fn a_platform_is_like_higher_ground() {
 
 #[test]
 fn what_robots_drive_on_is_not_darkened() {
-    let (cast, moment) = on_a_platform();
+    let (fleet, record) = on_a_platform();
     for view in [View::Snake, View::SnakeEye, View::Follow(1)] {
         let name = format!("{view:?}");
-        let picture = snap(&cast, &moment, view, &Style::bare());
+        let picture = snap(&fleet, &record, view, &Style::bare());
         for x in [40, 160, 480, 600] {
             let [r, _, b] = mean(&picture, (x, SIZE.1 - 12), 6);
             assert!(r > 150.0 && r > b + 5.0, "{name} {x}: {r} {b}");
@@ -317,18 +317,18 @@ fn what_robots_drive_on_is_not_darkened() {
 
 #[test]
 fn a_platform_before_a_robot_is_seen_through() {
-    let (mut cast, moment) = straight();
+    let (mut fleet, record) = straight();
     let mut yellow = |props: Vec<vocabulary::Prop>, samples: u32| {
-        cast.props = props;
-        let mut trail = Trail::new(&cast);
-        trail.push(&moment);
-        let mut renderer = Renderer::new(gpu(), &cast, SIZE.0, SIZE.1, samples).unwrap();
+        fleet.props = props;
+        let mut trail = Trail::new(&fleet);
+        trail.push(&record);
+        let mut renderer = Renderer::new(gpu(), &fleet, SIZE.0, SIZE.1, samples).unwrap();
         let layout = Layout::single(View::Follow(1));
-        let picture = renderer.draw(&trail, &moment, &layout, &Style::bare()).unwrap();
+        let picture = renderer.draw(&trail, &record, &layout, &Style::bare()).unwrap();
         assert!(picture.rgba.chunks_exact(4).all(|p| p[3] == 255));
         count(&picture, |[r, g, b]| r > g + 12 && g > b + 25)
     };
-    let pose = moment.snapshot.robots[1].motion.pose;
+    let pose = record.snapshot.robots[1].motion.pose;
     let platform = Solid::Block { size: [1.0, 4.0, 0.9] };
     for samples in [1, 4] {
         let open = yellow(vec![], samples);
@@ -341,16 +341,16 @@ fn a_platform_before_a_robot_is_seen_through() {
 fn bodies_of_all_sizes_are_in_the_picture() {
     for (body, scale) in [(TRUCK, 1.0), (ROVER, 1.0), (CAR, 10.0), (Body::default(), 1.0)] {
         let mut play = Play::new(3, Path::Eight);
-        furnish(&mut play.cast, body, false, false);
+        furnish(&mut play.fleet, body, false, false);
         // The shell on a car's roof hides much of its paint; it is bodies that are counted.
-        for member in play.cast.members.iter_mut().filter(|member| member.body.length > 1.2) {
+        for member in play.fleet.robots.iter_mut().filter(|member| member.body.length > 1.2) {
             member.shell = None;
         }
-        let mut moment = play.at(9.0);
-        enlarge(&mut moment, scale);
+        let mut record = play.at(9.0);
+        enlarge(&mut record, scale);
         for view in [View::Snake, View::Top, View::Orbit, View::SnakeEye, View::Follow(1)] {
             let name = format!("{view:?}");
-            let picture = snap(&play.cast, &moment, view, &Style::bare());
+            let picture = snap(&play.fleet, &record, view, &Style::bare());
             let found = count(&picture, |[r, g, b]| r > g + 30 && g > b + 40);
             assert!(found > 60, "{name} of {body:?}: {found}");
         }
@@ -360,17 +360,17 @@ fn bodies_of_all_sizes_are_in_the_picture() {
 #[test]
 fn robots_on_hills_are_in_the_picture() {
     let mut play = Play::new(3, Path::Eight);
-    furnish(&mut play.cast, TRUCK, true, true);
-    assert_eq!(play.cast.props.len(), props().len());
+    furnish(&mut play.fleet, TRUCK, true, true);
+    assert_eq!(play.fleet.props.len(), props().len());
     let field = hills();
     let raised = Terrain { heights: field.heights.iter().map(|h| h + 30.0).collect(), ..field };
-    play.cast.terrain = Some(Arc::new(raised));
-    play.cast.props.clear();
-    let moment = grounded(&play.cast, play.at(9.0));
-    assert!(moment.snapshot.robots[0].attitude.height > 25.0);
+    play.fleet.terrain = Some(Arc::new(raised));
+    play.fleet.props.clear();
+    let record = grounded(&play.fleet, play.at(9.0));
+    assert!(record.snapshot.robots[0].attitude.height > 25.0);
     for view in [View::Snake, View::Top, View::Orbit, View::SnakeEye, View::Follow(1)] {
         let name = format!("{view:?}");
-        let picture = snap(&play.cast, &moment, view, &Style::bare());
+        let picture = snap(&play.fleet, &record, view, &Style::bare());
         let found = count(&picture, |[r, g, b]| r > g + 30 && g > b + 40);
         assert!(found > 60, "{name}: {found}");
     }
@@ -378,22 +378,22 @@ fn robots_on_hills_are_in_the_picture() {
 
 #[test]
 fn trouble_is_named() {
-    let (cast, mut moment) = straight();
+    let (fleet, mut record) = straight();
     let style = Style { names: true, ..Style::bare() };
     let alarm = |c: [i32; 3]| c[0] > 200 && (120..190).contains(&c[1]) && c[2] < 170 && c[0] - c[2] > 60;
-    let before = count(&snap(&cast, &moment, View::Snake, &style), alarm);
-    overturn(&cast, &mut moment, 2);
-    let after = count(&snap(&cast, &moment, View::Snake, &style), alarm);
+    let before = count(&snap(&fleet, &record, View::Snake, &style), alarm);
+    overturn(&fleet, &mut record, 2);
+    let after = count(&snap(&fleet, &record, View::Snake, &style), alarm);
     assert!(after > before + 40, "{before} {after}");
 }
 
 #[test]
 fn a_thousand_props_are_drawn() {
-    let (mut cast, moment) = straight();
+    let (mut fleet, record) = straight();
     let cone = Solid::Cone { radius: 0.05, height: 0.15 };
     let place = |k: u32| (f64::from(k % 40) * 0.2 + 2.0, f64::from(k / 40) * 0.2 - 2.5);
-    cast.props = (0..1000).map(|k| prop(cone, Mobility::Loose, place(k).0, place(k).1, 0.0)).collect();
-    let picture = snap(&cast, &moment, plan(0.0), &Style::default());
+    fleet.props = (0..1000).map(|k| prop(cone, Mobility::Loose, place(k).0, place(k).1, 0.0)).collect();
+    let picture = snap(&fleet, &record, plan(0.0), &Style::default());
     let found = count(&picture, orange);
     assert!(found > 3_000, "{found}");
 }
@@ -402,14 +402,14 @@ fn a_thousand_props_are_drawn() {
 #[test]
 fn golden_course() {
     let mut play = Play::new(3, Path::Eight);
-    furnish(&mut play.cast, TRUCK, true, true);
-    let mut trail = Trail::new(&play.cast);
-    let mut last = Moment::default();
+    furnish(&mut play.fleet, TRUCK, true, true);
+    let mut trail = Trail::new(&play.fleet);
+    let mut last = StepRecord::default();
     for k in 0..=150 {
-        last = grounded(&play.cast, play.at(f64::from(k) / 30.0));
+        last = grounded(&play.fleet, play.at(f64::from(k) / 30.0));
         trail.push(&last);
     }
-    let mut renderer = Renderer::new(gpu(), &play.cast, 216, 122, 4).unwrap();
+    let mut renderer = Renderer::new(gpu(), &play.fleet, 216, 122, 4).unwrap();
     let style = Style { scale: 0.6, ..Style::default() };
     let picture = renderer.draw(&trail, &last, &Layout::single(View::Snake), &style).unwrap();
     let file = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/course.png");

@@ -9,7 +9,7 @@ mod stage;
 use rendering::{AdapterChoice, Error, Gpu, Layout, Renderer, Style, View};
 use stage::{Path, Play};
 use std::sync::OnceLock;
-use vocabulary::{Contact, Moment, Picture, Pose, Thing};
+use vocabulary::{Contact, EntityId, Picture, Pose, StepRecord};
 
 const SIZE: (u32, u32) = (640, 360);
 
@@ -20,7 +20,7 @@ fn gpu() -> &'static Gpu {
 }
 
 fn draw(play: &Play, view: View, time: f64, style: &Style) -> Picture {
-    let mut renderer = Renderer::new(gpu(), &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+    let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     renderer.draw(&play.trail(time), &play.at(time), &Layout::single(view), style).unwrap()
 }
 
@@ -61,14 +61,14 @@ fn robots_stand_where_they_are_in_their_colours() {
     let play = Play::new(3, Path::Straight);
     let time = 12.0;
     let picture = draw(&play, plan(), time, &Style::bare());
-    let moment = play.at(time);
+    let record = play.at(time);
     for (robot, colour) in [(1, ORANGE), (2, BLUE)] {
-        let pose = moment.snapshot.robots[robot].motion.pose;
+        let pose = record.snapshot.robots[robot].motion.pose;
         let found = alike(&picture, pixel(pose.x + 0.05, pose.y), 8, colour);
         assert!(found > 25, "robot {robot}: {found}");
         assert!(alike(&picture, pixel(pose.x, -pose.y), 8, colour) < 5);
     }
-    let lead = moment.snapshot.robots[0].motion.pose;
+    let lead = record.snapshot.robots[0].motion.pose;
     let (x, y) = pixel(lead.x + 0.24, lead.y + 0.06);
     let dark = picture.rgb(x, y).unwrap();
     assert!(dark.iter().all(|c| *c < 90), "{dark:?}");
@@ -92,7 +92,7 @@ fn no_picture_is_black_or_clipped() {
     let single = [View::Snake, View::SnakeEye, View::Top, View::Orbit, View::Follow(3), plan()];
     let split = Layout { views: single[..3].to_vec() };
     for view in single.into_iter().map(Layout::single).chain([split]) {
-        let mut renderer = Renderer::new(gpu(), &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+        let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
         let picture = renderer.draw(&play.trail(9.0), &play.at(9.0), &view, &Style::default()).unwrap();
         let pixels = picture.rgba.chunks_exact(4);
         let total = pixels.len();
@@ -120,7 +120,7 @@ fn a_ribbon_lies_behind_its_robot() {
 fn touch(pose: Pose) -> Contact {
     Contact {
         number: 0,
-        things: [Thing::Robot(0), Thing::Ground],
+        things: [EntityId::Robot(0), EntityId::Ground],
         begin: 1.95,
         end: 2.0,
         open: true,
@@ -134,11 +134,11 @@ fn touch(pose: Pose) -> Contact {
 fn every_element_can_be_switched_off() {
     let play = Play::new(3, Path::Eight);
     let draw = |style: &Style| {
-        let mut renderer = Renderer::new(gpu(), &play.cast, 800, 600, 4).unwrap();
-        let (mut trail, mut moment) = (play.trail(1.9), play.at(2.0));
-        moment.contacts = vec![touch(moment.snapshot.robots[0].motion.pose)];
-        trail.push(&moment);
-        renderer.draw(&trail, &moment, &Layout::single(View::Snake), style).unwrap()
+        let mut renderer = Renderer::new(gpu(), &play.fleet, 800, 600, 4).unwrap();
+        let (mut trail, mut record) = (play.trail(1.9), play.at(2.0));
+        record.contacts = vec![touch(record.snapshot.robots[0].motion.pose)];
+        trail.push(&record);
+        renderer.draw(&trail, &record, &Layout::single(View::Snake), style).unwrap()
     };
     let full = draw(&Style::default());
     for name in Style::ELEMENTS {
@@ -159,7 +159,7 @@ fn a_crowd_is_drawn_without_its_labels() {
 fn the_same_moments_give_the_same_bytes() {
     let play = Play::new(7, Path::Eight);
     let layout = Layout::parse("snake+top", &[]).unwrap();
-    let mut renderer = Renderer::new(gpu(), &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+    let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     let trail = play.trail(6.0);
     let first = renderer.draw(&trail, &play.at(6.0), &layout, &Style::default()).unwrap();
     // Other pictures in between, and the pipelined way, must not show.
@@ -177,20 +177,20 @@ fn the_same_moments_give_the_same_bytes() {
 #[test]
 fn a_formation_far_from_the_origin_looks_the_same() {
     let play = Play::new(3, Path::Circle);
-    let away = |moment: &Moment| {
-        let mut moved = moment.clone();
+    let away = |record: &StepRecord| {
+        let mut moved = record.clone();
         moved.snapshot.robots.iter_mut().for_each(|r| r.motion.pose.x += 40_000.0);
         moved
     };
-    let mut renderer = Renderer::new(gpu(), &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+    let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     let style = Style::without(&["grid"]).unwrap();
     let mut pictures = Vec::new();
     for shifted in [false, true] {
-        let mut trail = rendering::Trail::new(&play.cast);
-        let mut last = Moment::default();
+        let mut trail = rendering::Trail::new(&play.fleet);
+        let mut last = StepRecord::default();
         for k in 0..90 {
-            let moment = play.at(f64::from(k) / 30.0);
-            last = if shifted { away(&moment) } else { moment };
+            let record = play.at(f64::from(k) / 30.0);
+            last = if shifted { away(&record) } else { record };
             trail.push(&last);
         }
         pictures.push(renderer.draw(&trail, &last, &Layout::single(View::Snake), &style).unwrap());
@@ -204,15 +204,15 @@ fn a_formation_far_from_the_origin_looks_the_same() {
 fn bad_input_is_refused_with_reasons() {
     let play = Play::new(3, Path::Straight);
     for (width, height) in [(0, 720), (1280, 0), (9000, 720), (1280, 1_000_000)] {
-        let error = Renderer::new(gpu(), &play.cast, width, height, 4).unwrap_err();
+        let error = Renderer::new(gpu(), &play.fleet, width, height, 4).unwrap_err();
         assert!(matches!(error, Error::Size { .. }) && error.is_usage(), "{error}");
     }
-    assert!(matches!(Renderer::new(gpu(), &play.cast, 64, 64, 3), Err(Error::Samples(3))));
-    let mut renderer = Renderer::new(gpu(), &play.cast, 64, 64, 1).unwrap();
+    assert!(matches!(Renderer::new(gpu(), &play.fleet, 64, 64, 3), Err(Error::Samples(3))));
+    let mut renderer = Renderer::new(gpu(), &play.fleet, 64, 64, 1).unwrap();
     let other = Play::new(2, Path::Straight);
     let error =
         renderer.draw(&other.trail(0.0), &other.at(0.0), &Layout::single(View::Top), &Style::default());
-    assert!(matches!(error, Err(Error::Cast { what: "robots", got: 2, want: 3 })));
+    assert!(matches!(error, Err(Error::FleetInfo { what: "robots", got: 2, want: 3 })));
     let error = Gpu::open(&AdapterChoice::from("voodoo")).unwrap_err();
     assert!(!error.is_usage() && error.to_string().contains("mesa-vulkan-drivers"), "{error}");
 }
@@ -233,7 +233,7 @@ fn golden(name: &str, picture: &Picture) {
 #[test]
 fn golden_pictures() {
     let play = Play::new(3, Path::Eight);
-    let mut renderer = Renderer::new(gpu(), &play.cast, 216, 122, 4).unwrap();
+    let mut renderer = Renderer::new(gpu(), &play.fleet, 216, 122, 4).unwrap();
     let style = Style { scale: 0.6, ..Style::default() };
     for (name, view) in [("snake", View::Snake), ("top", View::Top), ("orbit", View::Orbit)] {
         let picture = renderer.draw(&play.trail(5.0), &play.at(5.0), &Layout::single(view), &style).unwrap();
@@ -245,16 +245,16 @@ fn golden_pictures() {
 #[test]
 fn views_through_cameras_show_what_the_robot_sees() {
     let play = Play::new(3, Path::Eight);
-    let mut moment = play.at(12.0);
-    sight::looks(&play.cast, &mut moment);
-    let frame = moment.frames[0];
+    let mut record = play.at(12.0);
+    sight::looks(&play.fleet, &mut record);
+    let frame = record.frames[0];
     let corners = frame.tags.iter().flatten().next().copied().unwrap();
     let bare = Style { shadows: true, ..Style::bare() };
     let marked = Style { detections: true, ..bare.clone() };
     let inside = Style { picture_in_picture: Some(1), ..bare.clone() };
     let draw = |view: View, style: &Style| {
-        let mut renderer = Renderer::new(gpu(), &play.cast, 640, 480, 4).unwrap();
-        renderer.draw(&play.trail(12.0), &moment, &Layout::single(view), style).unwrap()
+        let mut renderer = Renderer::new(gpu(), &play.fleet, 640, 480, 4).unwrap();
+        renderer.draw(&play.trail(12.0), &record, &Layout::single(view), style).unwrap()
     };
     let (plain, drawn) = (draw(View::Camera(1), &bare), draw(View::Camera(1), &marked));
     for [x, y] in corners {
@@ -317,18 +317,18 @@ fn shadow_middle(play: &Play) -> [f64; 2] {
 #[test]
 fn shadows_fall_away_from_the_sun() {
     let mut play = Play::new(1, Path::Straight);
-    play.cast.light.sun_elevation = 0.5;
+    play.fleet.light.sun_elevation = 0.5;
     // The picture has +x up and +y to the left.
-    play.cast.light.sun_azimuth = 0.0;
+    play.fleet.light.sun_azimuth = 0.0;
     let [x, below] = shadow_middle(&play);
-    play.cast.light.sun_azimuth = std::f64::consts::PI;
+    play.fleet.light.sun_azimuth = std::f64::consts::PI;
     let [_, above] = shadow_middle(&play);
     assert!(below > above + 8.0, "{below} {above}");
-    play.cast.light.sun_azimuth = std::f64::consts::FRAC_PI_2;
+    play.fleet.light.sun_azimuth = std::f64::consts::FRAC_PI_2;
     let [right, _] = shadow_middle(&play);
     assert!(right > x + 4.0, "{right} {x}");
     // Straight above there is no direction to fall in, and still a picture.
-    play.cast.light.sun_elevation = std::f64::consts::FRAC_PI_2;
+    play.fleet.light.sun_elevation = std::f64::consts::FRAC_PI_2;
     let _ = draw(&play, plan(), 12.0, &Style::bare());
 }
 
@@ -337,7 +337,7 @@ fn haze_covers_distant_ground_and_spares_what_is_near() {
     let mut play = Play::new(3, Path::Straight);
     let picture = |play: &Play| draw(play, View::Snake, 12.0, &Style::bare());
     let clear = picture(&play);
-    play.cast.light.haze_from = 8.0;
+    play.fleet.light.haze_from = 8.0;
     let hazy = picture(&play);
     let row = |picture: &Picture, y: u32| {
         (0..SIZE.0).map(|x| f64::from(picture.rgb(x, y).unwrap()[1])).sum::<f64>() / f64::from(SIZE.0)

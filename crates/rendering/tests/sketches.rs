@@ -21,7 +21,7 @@ fn gpu() -> &'static Gpu {
 }
 
 fn draw(play: &Play, view: View, sketch: Sketch) -> Picture {
-    let mut renderer = Renderer::new(gpu(), &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+    let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     let style = Style { sketch, ..Style::bare() };
     renderer.draw(&play.trail(2.0), &play.at(2.0), &Layout::single(view), &style).unwrap()
 }
@@ -226,7 +226,7 @@ fn on_hills_a_stroke_is_hidden_behind_the_hill_and_seen_on_it() {
     let height = |k: usize| (1.0 - (0.25 * (k % 41) as f64 - 5.0 - 2.0).abs()).max(0.0);
     let heights = (0..41 * 41).map(height).collect();
     let terrain = Terrain { origin: [-5.0; 2], cell: 0.25, columns: 41, rows: 41, heights, grip: vec![] };
-    play.cast.terrain = Some(Arc::new(terrain));
+    play.fleet.terrain = Some(Arc::new(terrain));
     let view = || View::Fixed { eye: [-4.0, 0.5, 1.2], target: [2.0, 0.5, 0.5], field_of_view: 0.7 };
     let line = |x: f64| Sketch {
         strokes: vec![Stroke {
@@ -249,14 +249,14 @@ fn on_hills_a_stroke_is_hidden_behind_the_hill_and_seen_on_it() {
 #[test]
 fn sightlines_agree_with_the_picture() {
     let play = Play::new(3, Path::Eight);
-    let mut renderer = Renderer::new(gpu(), &play.cast, SIZE.0, SIZE.1, 4).unwrap();
-    let (trail, moment) = (play.trail(5.0), play.at(5.0));
+    let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
+    let (trail, record) = (play.trail(5.0), play.at(5.0));
     let layout = Layout { views: vec![View::Snake, View::Top, View::Orbit] };
-    let at = moment.snapshot.robots[1].motion.pose.world_from_body(0.13, 0.7);
+    let at = record.snapshot.robots[1].motion.pose.world_from_body(0.13, 0.7);
     let ring = Ring { pixels: 6.0, ..Ring::new(at, 0.0, RED) };
     let style = Style { sketch: Sketch { rings: vec![ring], ..Sketch::default() }, ..Style::bare() };
-    let picture = renderer.draw(&trail, &moment, &layout, &style).unwrap();
-    let sights = renderer.sightlines(&trail, &moment, &layout, &style).unwrap();
+    let picture = renderer.draw(&trail, &record, &layout, &style).unwrap();
+    let sights = renderer.sightlines(&trail, &record, &layout, &style).unwrap();
     assert_eq!(sights.len(), 3);
     for sight in sights {
         let [x, y] = sight.pixel_of_ground(at).unwrap();
@@ -267,13 +267,13 @@ fn sightlines_agree_with_the_picture() {
         };
         let around: i32 = [(3.0, 0.0), (-4.0, 0.0)].iter().map(|(x, y)| red(*x, *y)).max().unwrap();
         assert!(around > 50, "{:?} {around}", sight.view());
-        let robot = moment.snapshot.robots[1].motion.pose.world_from_body(0.13, 0.0);
+        let robot = record.snapshot.robots[1].motion.pose.world_from_body(0.13, 0.0);
         let [x, y] = sight.pixel([robot[0], robot[1], 0.05]).unwrap();
-        let picked = renderer.pick(&sight, &moment, [x, y]);
+        let picked = renderer.pick(&sight, &record, [x, y]);
         assert_eq!(picked.first(), Some(&rendering::Picked::Robot(1)), "{:?}", sight.view());
         // Taken over by a hand, the robot stays where it was.
         let free = Layout { views: vec![sight.free().view()] };
-        let whole = renderer.sightlines(&trail, &moment, &free, &style).unwrap();
+        let whole = renderer.sightlines(&trail, &record, &free, &style).unwrap();
         let before = [x - f64::from(sight.tile().x), y - f64::from(sight.tile().y)];
         let factor = f64::from(SIZE.1) / f64::from(sight.tile().height);
         let after = whole[0].pixel([robot[0], robot[1], 0.05]).unwrap();

@@ -61,12 +61,12 @@ fn bytes(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<u8> {
 
 fn drawn(gpu: &Gpu, play: &Play, samples: u32, format: TextureFormat) -> (Vec<u8>, Picture) {
     let layout = Layout { views: vec![View::Snake, View::Top] };
-    let mut renderer = Renderer::with_format(gpu, &play.cast, SIZE.0, SIZE.1, samples, format).unwrap();
+    let mut renderer = Renderer::with_format(gpu, &play.fleet, SIZE.0, SIZE.1, samples, format).unwrap();
     let texture = target(gpu, SIZE, format);
-    let (trail, moment, style) = (play.trail(3.0), play.at(3.0), Style::default());
+    let (trail, record, style) = (play.trail(3.0), play.at(3.0), Style::default());
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    renderer.draw_into(&view, &trail, &moment, &layout, &style).unwrap();
-    (bytes(gpu, &texture), renderer.draw(&trail, &moment, &layout, &style).unwrap())
+    renderer.draw_into(&view, &trail, &record, &layout, &style).unwrap();
+    (bytes(gpu, &texture), renderer.draw(&trail, &record, &layout, &style).unwrap())
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn renderers_share_a_device() {
     let style = Style::default();
     let alone = plays.each_ref().map(|play| drawn(&gpu, play, 4, TextureFormat::Rgba8Unorm).1);
     let mut both = plays.each_ref().map(|play| {
-        Renderer::with_format(&gpu, &play.cast, SIZE.0, SIZE.1, 4, TextureFormat::Rgba8Unorm).unwrap()
+        Renderer::with_format(&gpu, &play.fleet, SIZE.0, SIZE.1, 4, TextureFormat::Rgba8Unorm).unwrap()
     });
     let layout = Layout { views: vec![View::Snake, View::Top] };
     for _ in 0..2 {
@@ -111,15 +111,15 @@ fn renderers_share_a_device() {
 fn what_does_not_fit_is_an_error_and_the_next_is_drawn() {
     let gpu = foreign(Limits::default());
     let play = Play::new(3, Path::Eight);
-    let mut renderer = Renderer::new(&gpu, &play.cast, SIZE.0, SIZE.1, 4).unwrap();
-    let (trail, moment, style) = (play.trail(1.0), play.at(1.0), Style::default());
+    let mut renderer = Renderer::new(&gpu, &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
+    let (trail, record, style) = (play.trail(1.0), play.at(1.0), Style::default());
     let layout = Layout::single(View::Snake);
     let view = |size, format| target(&gpu, size, format).create_view(&wgpu::TextureViewDescriptor::default());
     for (size, format) in [((64, 64), TextureFormat::Rgba8Unorm), (SIZE, TextureFormat::Rgba8UnormSrgb)] {
-        let error = renderer.draw_into(&view(size, format), &trail, &moment, &layout, &style).unwrap_err();
+        let error = renderer.draw_into(&view(size, format), &trail, &record, &layout, &style).unwrap_err();
         assert!(matches!(error, Error::Device(_)), "{error}");
         let fits = view(SIZE, TextureFormat::Rgba8Unorm);
-        renderer.draw_into(&fits, &trail, &moment, &layout, &style).unwrap();
+        renderer.draw_into(&fits, &trail, &record, &layout, &style).unwrap();
     }
 }
 
@@ -127,23 +127,23 @@ fn what_does_not_fit_is_an_error_and_the_next_is_drawn() {
 fn a_lost_device_is_an_error_every_time() {
     let gpu = foreign(Limits::default());
     let play = Play::new(3, Path::Eight);
-    let mut renderer = Renderer::new(&gpu, &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+    let mut renderer = Renderer::new(&gpu, &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     let texture = target(&gpu, SIZE, TextureFormat::Rgba8Unorm);
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    let (trail, moment, style) = (play.trail(1.0), play.at(1.0), Style::default());
+    let (trail, record, style) = (play.trail(1.0), play.at(1.0), Style::default());
     let layout = Layout::single(View::Snake);
-    renderer.draw_into(&view, &trail, &moment, &layout, &style).unwrap();
+    renderer.draw_into(&view, &trail, &record, &layout, &style).unwrap();
     gpu.device.destroy();
     // What is already on the way may still arrive.
     let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
     for _ in 0..2 {
-        let into = renderer.draw_into(&view, &trail, &moment, &layout, &style);
+        let into = renderer.draw_into(&view, &trail, &record, &layout, &style);
         assert!(matches!(into, Err(Error::Device(_))), "{into:?}");
-        let draw = renderer.draw(&trail, &moment, &layout, &style);
+        let draw = renderer.draw(&trail, &record, &layout, &style);
         assert!(matches!(draw, Err(Error::Device(_))), "{draw:?}");
         assert!(renderer.resize(300, 180).is_ok());
     }
-    assert!(matches!(Renderer::new(&gpu, &play.cast, 64, 64, 1), Err(Error::Device(_))));
+    assert!(matches!(Renderer::new(&gpu, &play.fleet, 64, 64, 1), Err(Error::Device(_))));
 }
 
 /// A window whose edge is dragged for some seconds, with text that is never the same.
@@ -151,7 +151,7 @@ fn a_lost_device_is_an_error_every_time() {
 fn memory_stays_bounded_while_a_window_is_dragged() {
     let gpu = foreign(Limits::default());
     let play = Play::new(3, Path::Eight);
-    let mut renderer = Renderer::new(&gpu, &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+    let mut renderer = Renderer::new(&gpu, &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     let held = || gpu.device.generate_allocator_report().map_or(0, |r| r.total_allocated_bytes);
     let (trail, layout) = (play.trail(1.0), Layout::single(View::Snake));
     let mut after = Vec::new();
@@ -161,8 +161,8 @@ fn memory_stays_bounded_while_a_window_is_dragged() {
         let view = target(&gpu, size, TextureFormat::Rgba8Unorm)
             .create_view(&wgpu::TextureViewDescriptor::default());
         let style = Style { scale: 0.6 + 0.002 * f64::from(k % 90), ..Style::default() };
-        let moment = play.at(1.0 + 0.01 * f64::from(k));
-        renderer.draw_into(&view, &trail, &moment, &layout, &style).unwrap();
+        let record = play.at(1.0 + 0.01 * f64::from(k));
+        renderer.draw_into(&view, &trail, &record, &layout, &style).unwrap();
         if k % 40 == 39 {
             wait(&gpu);
             after.push(held());
@@ -178,19 +178,19 @@ fn a_picture_does_not_hang_on_the_one_before() {
     let play = Play::new(3, Path::Eight);
     let trail = play.trail(3.0);
     let style = Style::default();
-    let mut kept = Renderer::new(&gpu, &play.cast, SIZE.0, SIZE.1, 4).unwrap();
+    let mut kept = Renderer::new(&gpu, &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     // Still from another side, moved, failed and then drawn, and still again.
     let small = target(&gpu, (32, 32), TextureFormat::Rgba8Unorm);
     let small = small.create_view(&wgpu::TextureViewDescriptor::default());
     for (time, view) in [(3.0, View::Snake), (3.0, View::Orbit), (3.4, View::Orbit), (3.4, View::Top)] {
-        let (moment, layout) = (play.at(time), Layout::single(view));
-        let fresh = Renderer::new(&gpu, &play.cast, SIZE.0, SIZE.1, 4)
-            .and_then(|mut renderer| renderer.draw(&trail, &moment, &layout, &style))
+        let (record, layout) = (play.at(time), Layout::single(view));
+        let fresh = Renderer::new(&gpu, &play.fleet, SIZE.0, SIZE.1, 4)
+            .and_then(|mut renderer| renderer.draw(&trail, &record, &layout, &style))
             .unwrap();
-        assert!(kept.draw(&trail, &moment, &layout, &style).unwrap() == fresh);
+        assert!(kept.draw(&trail, &record, &layout, &style).unwrap() == fresh);
         assert!(kept.draw_into(&small, &trail, &play.at(1.0), &layout, &style).is_err());
-        assert!(kept.draw(&trail, &moment, &layout, &style).unwrap() == fresh);
-        assert!(kept.draw(&trail, &moment, &layout, &style).unwrap() == fresh);
+        assert!(kept.draw(&trail, &record, &layout, &style).unwrap() == fresh);
+        assert!(kept.draw(&trail, &record, &layout, &style).unwrap() == fresh);
     }
 }
 
@@ -198,12 +198,12 @@ fn a_picture_does_not_hang_on_the_one_before() {
 fn quick_pictures_look_like_others() {
     let gpu = foreign(Limits::default());
     let play = Play::new(7, Path::Eight);
-    let mut renderer = Renderer::new(&gpu, &play.cast, 800, 560, 4).unwrap();
-    let (trail, moment) = (play.trail(40.0), play.at(40.0));
+    let mut renderer = Renderer::new(&gpu, &play.fleet, 800, 560, 4).unwrap();
+    let (trail, record) = (play.trail(40.0), play.at(40.0));
     for view in [View::Snake, View::Orbit, View::Top] {
         let mut draw = |interactive: bool| {
             let style = Style { interactive, ..Style::default() };
-            renderer.draw(&trail, &moment, &Layout::single(view.clone()), &style).unwrap()
+            renderer.draw(&trail, &record, &Layout::single(view.clone()), &style).unwrap()
         };
         let (whole, quick) = (draw(false), draw(true));
         let apart: Vec<_> = whole.rgba.iter().zip(&quick.rgba).map(|(a, b)| a.abs_diff(*b)).collect();

@@ -101,9 +101,9 @@ pub(crate) fn stands_so(stem: &str, run: &Trace) -> Claim {
 
 /// Edges on the longest way from a lead robot.
 fn depth(run: &Trace) -> usize {
-    let mut depths = vec![0; run.cast.members.len()];
-    for _ in 0..run.cast.members.len() {
-        for edge in &run.cast.edges {
+    let mut depths = vec![0; run.fleet.robots.len()];
+    for _ in 0..run.fleet.robots.len() {
+        for edge in &run.fleet.edges {
             let above = depths.get(edge.leader).copied().unwrap_or(0);
             if let Some(depth) = depths.get_mut(edge.follower) {
                 *depth = above + 1;

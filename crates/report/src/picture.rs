@@ -52,7 +52,7 @@ fn poses(run: &Trace, time: f64) -> String {
     let sample = run.sample_at(time);
     let mut csv = String::from("time_s,robot,x_m,y_m,heading_rad,speed_m_s\n");
     let now = run.times.get(sample).copied().unwrap_or(time);
-    for (member, motions) in run.cast.members.iter().zip(&run.robots) {
+    for (member, motions) in run.fleet.robots.iter().zip(&run.robots) {
         let Some(m) = motions.get(sample) else { continue };
         let cells = [m.pose.x, m.pose.y, m.pose.heading, m.speed].map(number).join(",");
         let _ = writeln!(csv, "{},{},{cells}", number(now), quoted(&member.name));

@@ -26,11 +26,11 @@ pub fn of_scene(scene: &Scene, runs: &[Ran]) -> Report {
     let mut first = ways("trajectories", run, &scene.title);
     first.claims = expectations(run);
     report.items.push(first);
-    if run.cast.edges.is_empty() {
+    if run.fleet.edges.is_empty() {
         report.left_out.push("Inputs, errors, comparisons and graph: nobody follows.".to_owned());
         return report;
     }
-    let crowd = if run.cast.edges.len() < crate::draw::NAMED {
+    let crowd = if run.fleet.edges.len() < crate::draw::NAMED {
         ""
     } else {
         " By name: the followers with the largest and the smallest error that stays; pale: all others."
@@ -60,11 +60,11 @@ fn straight(run: &Trace) -> bool {
 /// True and estimated rates of the follower by output feedback whose error stays largest.
 fn observed(run: &Trace) -> Option<Item> {
     let observes = |edge: &usize| {
-        let robot = run.cast.edges.get(*edge).and_then(|e| run.scene.robots.get(e.follower));
+        let robot = run.fleet.edges.get(*edge).and_then(|e| run.scene.robots.get(e.follower));
         matches!(robot.map(|r| &r.role), Some(Role::Follow(f)) if f.law.kind == LawKind::OutputFeedback)
     };
     let settled = |edge: &usize| run.settled(*edge).unwrap_or(0.0);
-    let edges = (0..run.cast.edges.len()).filter(observes);
+    let edges = (0..run.fleet.edges.len()).filter(observes);
     let edge = edges.max_by(|a, b| settled(a).total_cmp(&settled(b)).then(b.cmp(a)))?;
     let caption = format!(
         "What the observer of {} makes of the rates of distance and bearing, beside the true ones; below, the size of the \

@@ -58,7 +58,7 @@ const LISTED: usize = 24;
 
 /// All edges of a run; of many, those whose errors stay largest.
 pub(crate) fn edges(run: &Trace) -> Table {
-    let mut order: Vec<usize> = (0..run.cast.edges.len()).collect();
+    let mut order: Vec<usize> = (0..run.fleet.edges.len()).collect();
     if order.len() > LISTED {
         order.sort_by(|a, b| run.settled(*b).unwrap_or(0.0).total_cmp(&run.settled(*a).unwrap_or(0.0)));
         order.truncate(LISTED);
@@ -76,8 +76,8 @@ pub(crate) fn edges(run: &Trace) -> Table {
         ])
     };
     Table {
-        caption: if run.cast.edges.len() > LISTED {
-            format!("The {LISTED} of {} edges whose errors stay largest.", run.cast.edges.len())
+        caption: if run.fleet.edges.len() > LISTED {
+            format!("The {LISTED} of {} edges whose errors stay largest.", run.fleet.edges.len())
         } else {
             "All edges.".to_owned()
         },

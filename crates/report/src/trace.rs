@@ -5,7 +5,7 @@ use figures::Rgb;
 use metrics::{Digest, Metrics, MetricsBuilder};
 use scene::Scene;
 use simulation::Simulation;
-use vocabulary::{Cast, Command, Edge, Moment, Motion, wrap};
+use vocabulary::{Command, Edge, FleetInfo, Motion, StepRecord, wrap};
 
 /// One edge at one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -32,7 +32,7 @@ pub struct Trace {
     /// The scene that ran.
     pub scene: Scene,
     /// Names, bodies, edges.
-    pub cast: Cast,
+    pub fleet: FleetInfo,
     /// Colour of every robot.
     pub colours: Vec<Rgb>,
     /// s, of every sample kept.
@@ -78,13 +78,13 @@ impl Trace {
 
     /// Name of an edge's follower.
     pub fn follower(&self, edge: usize) -> &str {
-        let robot = self.cast.edges.get(edge).and_then(|edge| self.cast.members.get(edge.follower));
+        let robot = self.fleet.edges.get(edge).and_then(|edge| self.fleet.robots.get(edge.follower));
         robot.map_or("", |member| &member.name)
     }
 
     /// The follower's colour.
     pub(crate) fn colour(&self, edge: usize) -> Rgb {
-        let robot = self.cast.edges.get(edge).and_then(|edge| self.colours.get(edge.follower));
+        let robot = self.fleet.edges.get(edge).and_then(|edge| self.colours.get(edge.follower));
         robot.copied().unwrap_or_default()
     }
 }
@@ -109,9 +109,9 @@ impl Tracer {
         colours: &[Rgb],
         transient: f64,
     ) -> Self {
-        let cast = simulation.cast().clone();
-        let (robots, edges) = (cast.members.len(), cast.edges.len());
-        let metrics = MetricsBuilder::new(&cast, scene.judging());
+        let fleet = simulation.fleet().clone();
+        let (robots, edges) = (fleet.robots.len(), fleet.edges.len());
+        let metrics = MetricsBuilder::new(&fleet, scene.judging());
         Self {
             every: (simulation.len() * robots as u64).div_ceil(MOST_ROWS).max(1),
             sample: 0,
@@ -127,34 +127,34 @@ impl Tracer {
                 metrics: metrics.finish(),
                 efforts: vec![],
                 digest: String::new(),
-                cast,
+                fleet,
             },
             metrics,
         }
     }
 
     /// Takes in a moment.
-    pub fn push(&mut self, moment: &Moment) {
-        let time = moment.snapshot.time;
-        self.metrics.push(moment);
-        self.digest.push(moment);
-        for (sums, edge) in self.efforts.iter_mut().zip(&moment.edges) {
+    pub fn push(&mut self, record: &StepRecord) {
+        let time = record.snapshot.time;
+        self.metrics.push(record);
+        self.digest.push(record);
+        for (sums, edge) in self.efforts.iter_mut().zip(&record.edges) {
             sums.push(time, edge.asked, edge.applied);
         }
         if self.sample.is_multiple_of(self.every) {
-            self.keep(moment);
+            self.keep(record);
         }
         self.sample += 1;
     }
 
-    fn keep(&mut self, moment: &Moment) {
-        let robots = &moment.snapshot.robots;
-        self.trace.times.push(moment.snapshot.time);
+    fn keep(&mut self, record: &StepRecord) {
+        let robots = &record.snapshot.robots;
+        self.trace.times.push(record.snapshot.time);
         for (kept, robot) in self.trace.robots.iter_mut().zip(robots) {
             kept.push(robot.motion);
         }
         let Self { trace, .. } = self;
-        for ((kept, edge), state) in trace.edges.iter_mut().zip(&trace.cast.edges).zip(&moment.edges) {
+        for ((kept, edge), state) in trace.edges.iter_mut().zip(&trace.fleet.edges).zip(&record.edges) {
             kept.push(EdgeRow {
                 error: state.error,
                 asked: state.asked,

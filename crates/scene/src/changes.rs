@@ -6,7 +6,7 @@ use crate::{
     overrides::Origin,
     resolve::resolve_robots,
     sets::{Difference, refusal},
-    text::{Form, Node, Place, Reading, Value, table},
+    text::{Form, Node, Reporter, Span, Value, table},
 };
 
 /// Most robots times changes: each is a whole robot in memory.
@@ -51,7 +51,7 @@ const FIXED_OF_ROBOTS: [&str; 13] = [
 
 /// The changes that `root` has, in the order of time, each with the scene that holds after it; `scene` is the one at the
 /// start. Notes stand at the text of the change.
-pub(crate) fn changes(root: &Node, scene: &Scene, reading: &mut Reading) -> Vec<Change> {
+pub(crate) fn changes(root: &Node, scene: &Scene, reporter: &mut Reporter) -> Vec<Change> {
     let items = root.items("changes");
     if items.len() * scene.robots.len() > MOST_STATES {
         let message = format!(
@@ -59,7 +59,7 @@ pub(crate) fn changes(root: &Node, scene: &Scene, reading: &mut Reading) -> Vec<
             items.len(),
             scene.robots.len()
         );
-        reading.note(items[0].place.first(), message);
+        reporter.report(items[0].place.first(), message);
         return vec![];
     }
     let at = |item: &Node| item.get("at").and_then(Node::as_number).unwrap_or(0.0);
@@ -71,11 +71,11 @@ pub(crate) fn changes(root: &Node, scene: &Scene, reading: &mut Reading) -> Vec<
         let before = changes.last().map_or(scene, |change| &change.then);
         let mut next = tree.clone();
         // A change at fault is left out, so that later ones are judged by themselves.
-        if let Some(change) = change(at, item, &mut next, before, reading) {
+        if let Some(change) = change(at, item, &mut next, before, reporter) {
             changes.push(change);
             tree = next;
         }
-        if reading.is_full() {
+        if reporter.is_full() {
             break;
         }
     }
@@ -94,24 +94,24 @@ fn of_robots(root: &Node) -> Node {
 }
 
 /// One change on top of `before`, whose tree is `tree`; `None` after notes.
-fn change(at: f64, item: &Node, tree: &mut Node, before: &Scene, reading: &mut Reading) -> Option<Change> {
-    let first = reading.notes();
+fn change(at: f64, item: &Node, tree: &mut Node, before: &Scene, reporter: &mut Reporter) -> Option<Change> {
+    let first = reporter.notes();
     let place = item.get("set").map_or(item.place, |set| set.place);
-    let sets = overrides(item, reading);
+    let sets = overrides(item, reporter);
     for set in &sets {
-        set.put(tree, reading);
+        set.put(tree, reporter);
     }
-    let robots = if reading.notes() == first { robots(tree, before, reading) } else { None };
+    let robots = if reporter.notes() == first { robots(tree, before, reporter) } else { None };
     // What is found elsewhere was right before this change.
-    reading.gather(first, place, &format!(", by the change at {at} s"));
-    let robots = robots.filter(|_| reading.notes() == first)?;
+    reporter.gather(first, place, &format!(", by the change at {at} s"));
+    let robots = robots.filter(|_| reporter.notes() == first)?;
     let mut found = Difference::default();
     found.note_robots(&before.robots, &robots);
     // One robot speaks for all.
     if let Some(path) = found.obstacles.first() {
         let key = path.rsplit('.').next().unwrap_or(path);
         let set = sets.iter().find(|set| set.change.path().contains(&key));
-        reading.note(set.map_or(place, |set| set.place), refusal(path));
+        reporter.report(set.map_or(place, |set| set.place), refusal(path));
     }
     let then = Scene { robots, changes: vec![], ..shell(before) };
     found.obstacles.is_empty().then(|| Change { at, set: found.sets, then: Box::new(then) })
@@ -133,9 +133,9 @@ fn shell(scene: &Scene) -> Scene {
 }
 
 /// The robots of a changed tree; where they start, and how fast, is past.
-fn robots(tree: &Node, before: &Scene, reading: &mut Reading) -> Option<Vec<Robot>> {
-    let document = table::<Document>().read(tree, reading)?;
-    let mut robots = resolve_robots(&document, tree, reading)?;
+fn robots(tree: &Node, before: &Scene, reporter: &mut Reporter) -> Option<Vec<Robot>> {
+    let document = table::<Document>().read(tree, reporter)?;
+    let mut robots = resolve_robots(&document, tree, reporter)?;
     for (robot, before) in robots.iter_mut().zip(&before.robots) {
         robot.pose = before.pose;
         if let (Role::Follow(follow), Role::Follow(before)) = (&mut robot.role, &before.role) {
@@ -149,11 +149,11 @@ fn robots(tree: &Node, before: &Scene, reading: &mut Reading) -> Option<Vec<Robo
 struct Set {
     change: Override,
     origin: Origin,
-    place: Place,
+    place: Span,
 }
 
 /// What a change sets; notes what is no override.
-fn overrides(item: &Node, reading: &mut Reading) -> Vec<Set> {
+fn overrides(item: &Node, reporter: &mut Reporter) -> Vec<Set> {
     let mut sets = vec![];
     for node in item.items("set") {
         let Some(text) = node.as_text() else { continue };
@@ -161,25 +161,25 @@ fn overrides(item: &Node, reading: &mut Reading) -> Vec<Set> {
             Ok(change) => {
                 let place = node.place;
                 // Without escapes in it, every character has its place between the quotes.
-                let shown = reading.shown(place);
+                let shown = reporter.shown(place);
                 let plain = shown.len() == text.len() + 2 && shown.get(1..=text.len()) == Some(text);
                 let whole = (!plain).then_some(place);
                 let origin = Origin { source: place.source, offset: place.start + 1, whole };
                 sets.push(Set { change, origin, place });
             }
-            Err(error) => reading.note(node.place, error.to_string()),
+            Err(error) => reporter.report(node.place, error.to_string()),
         }
     }
     sets
 }
 
 impl Set {
-    fn put(&self, tree: &mut Node, reading: &mut Reading) {
+    fn put(&self, tree: &mut Node, reporter: &mut Reporter) {
         let path = self.change.path();
         if is_fixed(&path) {
-            reading.note(self.place, refusal(&path.join(".")));
+            reporter.report(self.place, refusal(&path.join(".")));
         } else {
-            self.change.apply_at(self.origin, tree, reading);
+            self.change.apply_at(self.origin, tree, reporter);
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::{
     Channel, Path,
     ground::{GroundForm, GroundKeys},
-    groups::{Member, MembersForm},
+    groups::{GroupMember, MembersForm},
     names::{NameForm, POSE},
     path_form::PATH,
     patterns::{PatternForm, PatternKeys},
@@ -145,7 +145,7 @@ keys! {
         /// What differs from the scene's `sensing`.
         sensing: SensingPart = SensingForm, part;
         /// Robots of the group that differ from the others, by their names.
-        members: Vec<Member> = MembersForm, part;
+        members: Vec<GroupMember> = MembersForm, part;
     }
 }
 

@@ -1,6 +1,6 @@
 //! Reading text files that somebody named: one clear message for each way this can fail.
 
-use crate::text::{Node, Reading};
+use crate::text::{Node, Reporter};
 use std::{
     fs::File,
     io::{ErrorKind, Read},
@@ -37,20 +37,20 @@ pub(crate) fn read_text(path: &Path) -> Result<String, String> {
 }
 
 /// Reads a file that a scene names, lying beside it: its text, and what to call it in notes; `None` after a note.
-pub(crate) fn read_beside(node: &Node, reading: &mut Reading) -> Option<(String, usize)> {
+pub(crate) fn read_beside(node: &Node, reporter: &mut Reporter) -> Option<(String, usize)> {
     let Some(name) = node.as_text() else {
-        reading.wrong(node, "the name of a CSV file");
+        reporter.wrong(node, "the name of a CSV file");
         return None;
     };
-    let path = reading.beside_scene(name);
+    let path = reporter.beside_scene(name);
     match read_text(&path) {
         Ok(text) => {
-            let source = reading.add_source(path.display().to_string(), &text);
-            reading.files.push(path);
+            let source = reporter.add_source(path.display().to_string(), &text);
+            reporter.files.push(path);
             Some((text, source))
         }
         Err(fault) => {
-            reading.note(node.place, format!("{}: {fault}", path.display()));
+            reporter.report(node.place, format!("{}: {fault}", path.display()));
             None
         }
     }

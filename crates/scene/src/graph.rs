@@ -3,7 +3,7 @@
 //! The formation checks its graph too; here the faults can be shown where they are written.
 
 use crate::text::{
-    Found, Place, Reading,
+    Found, Reporter, Span,
     words::{did_you_mean, nearest},
 };
 use std::collections::HashMap;
@@ -17,35 +17,35 @@ pub(crate) struct Named {
 
 /// Notes duplicate names, unknown leaders, robots that follow themselves, and cycles. Without these every follower
 /// comes to a robot that leads if it goes from leader to leader; there may be several that lead.
-pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, reading: &mut Reading) {
+pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, reporter: &mut Reporter) {
     let mut leader_of: HashMap<&str, Option<&Found<String>>> = HashMap::new();
-    let mut places: HashMap<&str, Place> = HashMap::new();
+    let mut places: HashMap<&str, Span> = HashMap::new();
     for robot in robots.clone() {
         let Some(name) = &robot.name else { continue };
         leader_of.insert(&name.value, robot.leader.as_ref());
         if let Some(other) = places.insert(&name.value, name.place) {
             // The one that was written later, from the command line above all.
             let place = name.place.max(other);
-            reading.note(place, format!("there are two robots called `{}`", name.value));
+            reporter.report(place, format!("there are two robots called `{}`", name.value));
         }
     }
     for robot in robots.clone() {
         let Some(leader) = &robot.leader else { continue };
         if robot.name.as_ref().is_some_and(|name| name.value == leader.value) {
-            reading.note(leader.place, format!("`{}` cannot follow itself", leader.value));
-        } else if !leader_of.contains_key(leader.value.as_str()) && !reading.is_full() {
-            check_known(&leader.value, leader.place, robots.clone(), reading);
+            reporter.report(leader.place, format!("`{}` cannot follow itself", leader.value));
+        } else if !leader_of.contains_key(leader.value.as_str()) && !reporter.is_full() {
+            check_known(&leader.value, leader.place, robots.clone(), reporter);
         }
     }
-    check_cycles(robots, &leader_of, reading);
+    check_cycles(robots, &leader_of, reporter);
 }
 
 /// Notes that no robot is called `name`, if so, with the nearest name there is.
 pub(crate) fn check_known<'a>(
     name: &str,
-    place: Place,
+    place: Span,
     robots: impl Iterator<Item = &'a Named> + Clone,
-    reading: &mut Reading,
+    reporter: &mut Reporter,
 ) {
     // A robot whose name cannot be read may be the one that is meant.
     if robots.clone().any(|robot| robot.name.as_ref().is_none_or(|known| known.value == name)) {
@@ -54,13 +54,13 @@ pub(crate) fn check_known<'a>(
     let mut names = robots.filter_map(|robot| Some(robot.name.as_ref()?.value.as_str()));
     // With very many robots the nearest of the first ones has to do.
     let hint = nearest(name, names.by_ref().take(1000)).map_or_else(String::new, did_you_mean);
-    reading.note(place, format!("there is no robot called `{name}`{hint}"));
+    reporter.report(place, format!("there is no robot called `{name}`{hint}"));
 }
 
 fn check_cycles<'a>(
     robots: impl Iterator<Item = &'a Named>,
     leader_of: &HashMap<&'a str, Option<&'a Found<String>>>,
-    reading: &mut Reading,
+    reporter: &mut Reporter,
 ) {
     // Each name is walked from once; a walk that meets its own trail has found a cycle.
     let mut walk_of: HashMap<&str, usize> = HashMap::new();
@@ -72,7 +72,7 @@ fn check_cycles<'a>(
                 None => trail.push(name),
                 Some(earlier) => {
                     if earlier == walk {
-                        note_cycle(&trail, name, leader_of, reading);
+                        note_cycle(&trail, name, leader_of, reporter);
                     }
                     break;
                 }
@@ -86,13 +86,14 @@ fn note_cycle(
     trail: &[&str],
     name: &str,
     leader_of: &HashMap<&str, Option<&Found<String>>>,
-    reading: &mut Reading,
+    reporter: &mut Reporter,
 ) {
     let cycle: Vec<_> = trail.iter().copied().skip_while(|robot| *robot != name).collect();
     let Some(Some(leader)) = leader_of.get(name) else { return };
     // A robot that follows itself has its own message.
     if cycle.len() > 1 {
         let chain: Vec<_> = cycle.iter().chain([&name]).map(|robot| format!("`{robot}`")).collect();
-        reading.note(leader.place, format!("following comes round in a circle: {}", chain.join(" follows ")));
+        reporter
+            .report(leader.place, format!("following comes round in a circle: {}", chain.join(" follows ")));
     }
 }

@@ -5,7 +5,7 @@ use crate::{
     heights_file::{HEIGHT, HeightsForm, wrong_length, wrong_size},
     relief,
     text::{
-        Form, Found, Keys, Node, Place, Reading, Value, couple,
+        Form, Found, Keys, Node, Reporter, Span, Value, couple,
         form::Number,
         integer, keys,
         keys::{TableReader, one_of},
@@ -36,7 +36,7 @@ pub(crate) struct RegionForm;
 impl Form for RegionForm {
     type Out = [f64; 4];
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<[f64; 4]> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<[f64; 4]> {
         let numbers: Vec<_> = match &node.value {
             Value::List(items) => items.iter().filter_map(Node::as_number).collect(),
             _ => vec![],
@@ -45,7 +45,7 @@ impl Form for RegionForm {
         let held = |region: &[f64; 4]| region.iter().all(|at| number("m").holds(*at));
         let region = region.filter(held).filter(|[x0, y0, x1, y1]| x0 < x1 && y0 < y1);
         if region.is_none() {
-            reading.wrong(node, "a list [x from, y from, x to, y to] in m, each `from` below its `to`");
+            reporter.wrong(node, "a list [x from, y from, x to, y to] in m, each `from` below its `to`");
         }
         region
     }
@@ -138,7 +138,7 @@ struct Written {
 }
 
 impl KindKeys<Written> for FlatKeys {
-    fn make(self, _: &Node, _: &mut Reading) -> Option<Written> {
+    fn make(self, _: &Node, _: &mut Reporter) -> Option<Written> {
         Some(Written { relief: Relief::Flat { cell: self.cell?.value }, seeded: true })
     }
 }
@@ -147,7 +147,7 @@ impl KindKeys<Written> for FlatKeys {
 macro_rules! noise {
     ($keys:ident, $relief:path) => {
         impl KindKeys<Written> for $keys {
-            fn make(self, _: &Node, reading: &mut Reading) -> Option<Written> {
+            fn make(self, _: &Node, reporter: &mut Reporter) -> Option<Written> {
                 let (region, cell) = (self.region?, self.cell?);
                 let noise = Noise {
                     amplitude: self.amplitude?.value,
@@ -156,7 +156,7 @@ macro_rules! noise {
                     region: region.value,
                     cell: cell.value,
                 };
-                check_noise(&noise, cell.place, region.place, reading)?;
+                check_noise(&noise, cell.place, region.place, reporter)?;
                 Some(Written { relief: $relief(noise), seeded: self.seed.is_some() })
             }
         }
@@ -165,20 +165,20 @@ macro_rules! noise {
 noise!(RoughKeys, Relief::Rough);
 noise!(HillKeys, Relief::Hills);
 
-fn check_noise(noise: &Noise, cell: Place, region: Place, reading: &mut Reading) -> Option<()> {
+fn check_noise(noise: &Noise, cell: Span, region: Span, reporter: &mut Reporter) -> Option<()> {
     if noise.cell > 0.25 * noise.wavelength {
         let message = format!(
             "`cell` of {} m is too coarse for waves of {} m: at most a quarter of `wavelength`",
             noise.cell, noise.wavelength
         );
-        reading.note(cell, message);
+        reporter.report(cell, message);
         return None;
     }
-    check_points(noise.region, noise.cell, region, reading)
+    check_points(noise.region, noise.cell, region, reporter)
 }
 
 /// Notes at `place` that a grid would have too many points.
-fn check_points(region: [f64; 4], cell: f64, place: Place, reading: &mut Reading) -> Option<()> {
+fn check_points(region: [f64; 4], cell: f64, place: Span, reporter: &mut Reporter) -> Option<()> {
     let [columns, rows] = relief::grid(region, cell);
     if columns * rows <= MOST_POINTS {
         return Some(());
@@ -186,13 +186,13 @@ fn check_points(region: [f64; 4], cell: f64, place: Place, reading: &mut Reading
     let message = format!(
         "{columns:.0} × {rows:.0} points with a `cell` of {cell} m; the most are {MOST_POINTS:.0}: take a larger `cell`"
     );
-    reading.note(place, message);
+    reporter.report(place, message);
     None
 }
 
 impl KindKeys<Written> for TableKeys {
-    fn make(self, node: &Node, reading: &mut Reading) -> Option<Written> {
-        let (heights, from_file) = one_of(node, ("heights", self.heights), ("file", self.file), reading)?;
+    fn make(self, node: &Node, reporter: &mut Reporter) -> Option<Written> {
+        let (heights, from_file) = one_of(node, ("heights", self.heights), ("file", self.file), reporter)?;
         if !from_file {
             let wanted = heights.value.first().map(Vec::len);
             let rows = heights.value.iter().zip(node.items("heights")).enumerate();
@@ -201,7 +201,7 @@ impl KindKeys<Written> for TableKeys {
             });
             let size = wrong_size(&heights.value).map(|fault| (heights.place, fault));
             if let Some((place, fault)) = wrong.chain(size).next() {
-                reading.note(place, fault);
+                reporter.report(place, fault);
                 return None;
             }
         }
@@ -237,11 +237,11 @@ pub(crate) struct GroundKeys {
 impl Form for GroundForm {
     type Out = GroundKeys;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<GroundKeys> {
-        let mut table = TableReader::of(node, reading)?;
-        let Taken::Known(written) = RELIEF.take(node, &mut table, reading) else { return None };
-        let shared = SharedKeys::read(&mut table, reading);
-        table.finish(reading);
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<GroundKeys> {
+        let mut table = TableReader::of(node, reporter)?;
+        let Taken::Known(written) = RELIEF.take(node, &mut table, reporter) else { return None };
+        let shared = SharedKeys::read(&mut table, reporter);
+        table.finish(reporter);
         let patches = shared.patches?.value.into_iter().map(|keys| {
             let (region, friction) = (keys.region?, keys.friction?.value);
             Some(Found { place: region.place, value: Patch { region: region.value, friction } })
@@ -256,7 +256,7 @@ impl Form for GroundForm {
 }
 
 /// The ground of a scene with this seed; `None` after a note.
-pub(crate) fn ground(keys: Option<&GroundKeys>, seed: u64, reading: &mut Reading) -> Option<Ground> {
+pub(crate) fn ground(keys: Option<&GroundKeys>, seed: u64, reporter: &mut Reporter) -> Option<Ground> {
     let Some(keys) = keys else {
         let relief = Relief::Flat { cell: FLAT_CELL };
         return Some(Ground { relief, friction: 1.0, patches: vec![], terrain: None });
@@ -273,7 +273,7 @@ pub(crate) fn ground(keys: Option<&GroundKeys>, seed: u64, reading: &mut Reading
         Relief::Flat { .. } if friction == 1.0 && patches.is_empty() => {
             return Some(Ground { relief, friction, patches, terrain: None });
         }
-        Relief::Flat { cell } => flat(*cell, &keys.patches, reading)?,
+        Relief::Flat { cell } => flat(*cell, &keys.patches, reporter)?,
         Relief::Rough(noise) => relief::make(noise, ROUGH_LAYERS),
         Relief::Hills(noise) => relief::make(noise, 1),
         Relief::Table { origin, cell, heights } => Terrain {
@@ -285,25 +285,25 @@ pub(crate) fn ground(keys: Option<&GroundKeys>, seed: u64, reading: &mut Reading
             grip: vec![],
         },
     };
-    check_patches(&keys.patches, &terrain, reading);
+    check_patches(&keys.patches, &terrain, reporter);
     terrain.grip = grip(&terrain, friction, &patches);
     Some(Ground { relief, friction, patches, terrain: Some(Arc::new(terrain)) })
 }
 
 /// Flat ground, just around its patches.
-fn flat(cell: f64, patches: &[Found<Patch>], reading: &mut Reading) -> Option<Terrain> {
+fn flat(cell: f64, patches: &[Found<Patch>], reporter: &mut Reporter) -> Option<Terrain> {
     let Some(first) = patches.first() else { return Some(relief::level([0.0, 0.0, cell, cell], cell)) };
     let [x0, y0, x1, y1] = patches.iter().fold(first.value.region, |[a, b, c, d], patch| {
         let [x0, y0, x1, y1] = patch.value.region;
         [a.min(x0), b.min(y0), c.max(x1), d.max(y1)]
     });
     let around = [x0 - cell, y0 - cell, x1 + cell, y1 + cell];
-    check_points(around, cell, first.place, reading)?;
+    check_points(around, cell, first.place, reporter)?;
     Some(relief::level(around, cell))
 }
 
 /// Notes patches that the grid cannot show: beyond its edges the ground goes on as it is there, without end.
-fn check_patches(patches: &[Found<Patch>], terrain: &Terrain, reading: &mut Reading) {
+fn check_patches(patches: &[Found<Patch>], terrain: &Terrain, reporter: &mut Reporter) {
     let Terrain { origin: [x, y], cell, columns, rows, .. } = *terrain;
     let [right, left] = [x + (columns - 1) as f64 * cell, y + (rows - 1) as f64 * cell];
     for patch in patches {
@@ -311,10 +311,10 @@ fn check_patches(patches: &[Found<Patch>], terrain: &Terrain, reading: &mut Read
         if x0 <= x || y0 <= y || x1 >= right || y1 >= left {
             let message =
                 format!("a patch must lie inside the ground, from [{x}, {y}] to [{right}, {left}] in m");
-            reading.note(patch.place, message);
+            reporter.report(patch.place, message);
         } else if (x1 - x0).min(y1 - y0) < cell {
             let message = format!("a patch must be as wide and long as a `cell` of the ground, {cell} m");
-            reading.note(patch.place, message);
+            reporter.report(patch.place, message);
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::{
     graph::{Named, check_known},
     robots::{Defaults, Draft, check_distance, check_path, start_pose, start_speed},
     text::{
-        Form, Found, Keys, Node, Part, Reading, Value,
+        Form, Found, Keys, Node, Part, Reporter, Value,
         node::Entry,
         table,
         words::{did_you_mean, nearest},
@@ -23,7 +23,7 @@ use vocabulary::{Pose, wrap};
 
 /// What is different about one robot of a group.
 #[derive(Debug, Clone)]
-pub(crate) struct Member {
+pub(crate) struct GroupMember {
     name: Found<String>,
     keys: MemberKeys,
 }
@@ -32,16 +32,16 @@ pub(crate) struct Member {
 pub(crate) struct MembersForm;
 
 impl Form for MembersForm {
-    type Out = Vec<Member>;
+    type Out = Vec<GroupMember>;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Vec<Member>> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Vec<GroupMember>> {
         let Value::Table(entries) = &node.value else {
-            reading.wrong(node, "a table of robots by their names");
+            reporter.wrong(node, "a table of robots by their names");
             return None;
         };
         let member = |entry: &Entry| {
             let name = Found { place: entry.place, value: entry.key.clone() };
-            Some(Member { name, keys: table::<MemberKeys>().read(&entry.node, reading)? })
+            Some(GroupMember { name, keys: table::<MemberKeys>().read(&entry.node, reporter)? })
         };
         // All are read before giving up, so that every fault is told.
         let members: Vec<_> = entries.iter().map(member).collect();
@@ -59,16 +59,16 @@ pub(crate) fn expand(
     seed: u64,
     defaults: &Defaults,
     drafts: &mut Vec<Draft>,
-    reading: &mut Reading,
+    reporter: &mut Reporter,
 ) -> Option<()> {
     let keys = group.keys;
-    let count = group.count(drafts.len(), reading)?;
-    group.check_members(reading);
-    let usual = group.outfit(None, defaults, reading)?;
-    let speed = start_speed(keys.speed.as_ref(), &usual.vehicle, reading);
+    let count = group.count(drafts.len(), reporter)?;
+    group.check_members(reporter);
+    let usual = group.outfit(None, defaults, reporter)?;
+    let speed = start_speed(keys.speed.as_ref(), &usual.vehicle, reporter);
     let spacing = keys.distance.as_ref()?;
-    check_distance(spacing.value, usual.law.distance_min, spacing.place, reading);
-    let (leader, origin) = group.leader(&usual.vehicle, defaults, drafts, reading)?;
+    check_distance(spacing.value, usual.law.distance_min, spacing.place, reporter);
+    let (leader, origin) = group.leader(&usual.vehicle, defaults, drafts, reporter)?;
     let mut scatter = Scatter::new(keys, group.index, seed)?;
     for (place, spot) in group.spots(count)?.into_iter().enumerate().skip(1) {
         // Drawn for places that stay empty, too: the others start where they do all the same.
@@ -79,18 +79,18 @@ pub(crate) fn expand(
         }
         let (mut own, mut speed) = (usual, speed);
         if member.is_some() {
-            own = group.outfit(member, defaults, reading)?;
-            speed = start_speed(keys.speed.as_ref(), &own.vehicle, reading);
+            own = group.outfit(member, defaults, reporter)?;
+            speed = start_speed(keys.speed.as_ref(), &own.vehicle, reporter);
         }
         let (distance, bearing) = spot.set_point(member);
         if let Some(found) = member.and_then(|keys| keys.distance.as_ref()) {
-            check_distance(distance.least(), own.law.distance_min, found.place, reading);
+            check_distance(distance.least(), own.law.distance_min, found.place, reporter);
         }
         let Outfit { vehicle, law, observer, sensing } = own;
         let name = group.name(place);
         let told = member.and_then(|keys| keys.leader.clone());
         if told.is_none() {
-            group.check_present(spot.follows, &name, reading);
+            group.check_present(spot.follows, &name, reporter);
         }
         let usual = || if spot.follows == 0 { leader.clone() } else { group.name(spot.follows) };
         let followed = told.as_ref().map_or_else(usual, |told| told.value.clone());
@@ -195,7 +195,7 @@ impl Group<'_> {
     }
 
     /// Notes that `follower` follows the robot in `place`, where that is absent.
-    fn check_present(&self, place: usize, follower: &str, reading: &mut Reading) {
+    fn check_present(&self, place: usize, follower: &str, reporter: &mut Reporter) {
         if let Some(absent) =
             self.member(place).filter(|keys| keys.is_absent()).and_then(|keys| keys.absent.as_ref())
         {
@@ -203,19 +203,19 @@ impl Group<'_> {
             let message = format!(
                 "`{key}` cannot be absent: `{follower}` follows it; give `{follower}` another `leader`"
             );
-            reading.note(absent.place, message);
+            reporter.report(absent.place, message);
         }
     }
 
     /// Notes members that the group does not have.
-    fn check_members(&self, reading: &mut Reading) {
-        for Member { name, .. } in self.keys.members.iter().flat_map(|members| &members.value) {
+    fn check_members(&self, reporter: &mut Reporter) {
+        for GroupMember { name, .. } in self.keys.members.iter().flat_map(|members| &members.value) {
             if !makes(self.node, &name.value) {
                 let names: Vec<_> = made_by(self.node).take(1000).collect();
                 let near = nearest(&name.value, names.iter().map(String::as_str));
                 let hint = near.map_or_else(String::new, did_you_mean);
                 let message = format!("this group makes no robot called `{}`{hint}", name.value);
-                reading.note(name.place, message);
+                reporter.report(name.place, message);
             }
         }
     }
@@ -225,11 +225,11 @@ impl Group<'_> {
         &self,
         member: Option<&MemberKeys>,
         defaults: &Defaults,
-        reading: &mut Reading,
+        reporter: &mut Reporter,
     ) -> Option<Outfit> {
         let nothing = MemberKeys::default();
         let (keys, own) = (self.keys, member.unwrap_or(&nothing));
-        let vehicle = self.vehicle(own.vehicle.as_ref(), defaults, reading)?;
+        let vehicle = self.vehicle(own.vehicle.as_ref(), defaults, reporter)?;
         let law = over(own.law.as_ref(), keys.law.as_ref()?);
         let observer = over(own.observer.as_ref(), keys.observer.as_ref()?);
         let sensing = over(own.sensing.as_ref(), keys.sensing.as_ref()?);
@@ -246,24 +246,24 @@ impl Group<'_> {
         &self,
         own: Option<&Found<VehiclePart>>,
         defaults: &Defaults,
-        reading: &mut Reading,
+        reporter: &mut Reporter,
     ) -> Option<Vehicle> {
         let (group, place) = (self.keys.vehicle.as_ref()?, self.node.place);
-        let Some(own) = own else { return Some(defaults.vehicle(Some(group), place, reading)) };
+        let Some(own) = own else { return Some(defaults.vehicle(Some(group), place, reporter)) };
         let kind_of = |part: &VehiclePart| part.kind.as_ref().map(|found| found.value);
         let usual = kind_of(&group.value).unwrap_or(usual_kind(&defaults.vehicle));
         let same = kind_of(&own.value).is_none_or(|kind| kind == usual);
         let value = if same { own.value.over(&group.value) } else { own.value.clone() };
-        Some(defaults.vehicle(Some(&Found { place: own.place, value }), place, reading))
+        Some(defaults.vehicle(Some(&Found { place: own.place, value }), place, reporter))
     }
 
     /// Number of places, if the shape and the scene, which has `before` robots already, can take them.
-    fn count(&self, before: usize, reading: &mut Reading) -> Option<usize> {
+    fn count(&self, before: usize, reporter: &mut Reporter) -> Option<usize> {
         let (shape, count) = (self.keys.shape.as_ref()?.value, self.keys.count.as_ref()?);
         let crowd = || format!("this makes more than {MOST_ROBOTS} robots");
         let fault = shape.refuses(count.value).or_else(|| (before + count.value > MOST_ROBOTS).then(crowd));
         if let Some(fault) = fault {
-            reading.note(count.place, fault);
+            reporter.report(count.place, fault);
             return None;
         }
         Some(count.value)
@@ -319,13 +319,13 @@ impl Group<'_> {
         name: &str,
         usual: &Vehicle,
         defaults: &Defaults,
-        reading: &mut Reading,
+        reporter: &mut Reporter,
     ) -> Option<Vehicle> {
         let Some(keys) = self.member(0) else { return Some(*usual) };
         for (key, place) in keys.places().into_iter().filter(|(key, _)| !["name", "vehicle"].contains(key)) {
-            reading.note(place, format!("`{key}` is for robots that follow, but `{name}` leads"));
+            reporter.report(place, format!("`{key}` is for robots that follow, but `{name}` leads"));
         }
-        self.vehicle(keys.vehicle.as_ref(), defaults, reading)
+        self.vehicle(keys.vehicle.as_ref(), defaults, reporter)
     }
 
     /// Name and start pose of the robot in place 1, which is made if it is the group's own.
@@ -334,38 +334,40 @@ impl Group<'_> {
         usual: &Vehicle,
         defaults: &Defaults,
         drafts: &mut Vec<Draft>,
-        reading: &mut Reading,
+        reporter: &mut Reporter,
     ) -> Option<(String, Pose)> {
         let keys = self.keys;
         match (self.node.get("path"), self.node.get("leader")) {
             (Some(_), None) => {
                 let path = keys.path.as_ref()?;
                 let name = self.name(0);
-                let vehicle = self.leading(&name, usual, defaults, reading)?;
-                check_path(path, &vehicle, reading);
+                let vehicle = self.leading(&name, usual, defaults, reporter)?;
+                check_path(path, &vehicle, reporter);
                 let origin = Found { place: self.node.place, value: [0.0; 3] };
                 let given = keys.pose.as_ref().or(path.value.start().is_none().then_some(&origin));
-                let pose = start_pose(given, Some(&path.value), self.node.place, reading)?;
+                let pose = start_pose(given, Some(&path.value), self.node.place, reporter)?;
                 let role = Role::Lead { path: path.value.clone() };
                 self.push(0, Robot { name: name.clone(), pose, number: 0, vehicle, role }, None, drafts);
                 Some((name, pose))
             }
             (None, Some(_)) => {
                 if let Some(pose) = self.node.entry("pose") {
-                    reading.note(
+                    reporter.report(
                         pose.place,
                         "`pose` is for groups with a `path`; this one starts at its leader",
                     );
                 }
                 let leader = keys.leader.as_ref()?;
-                check_known(&leader.value, leader.place, drafts.iter().map(|draft| &draft.named), reading);
+                check_known(&leader.value, leader.place, drafts.iter().map(|draft| &draft.named), reporter);
                 let is_leader = |robot: &&Robot| robot.name == leader.value;
                 let robot = drafts.iter().filter_map(|draft| draft.robot.as_ref()).find(is_leader)?;
                 Some((leader.value.clone(), robot.pose))
             }
             _ => {
-                reading
-                    .note(self.node.place, "a group needs either a `path` for its own leader, or a `leader`");
+                reporter.report(
+                    self.node.place,
+                    "a group needs either a `path` for its own leader, or a `leader`",
+                );
                 None
             }
         }

@@ -3,7 +3,7 @@
 use crate::{
     files::read_beside,
     table_file::{line_at, separator, why},
-    text::{Form, Node, Place, Reading, form::Number, number},
+    text::{Form, Node, Reporter, Span, form::Number, number},
 };
 use serde_json::{Value as Json, json};
 use vocabulary::counted;
@@ -19,9 +19,9 @@ pub(crate) struct HeightsForm;
 impl Form for HeightsForm {
     type Out = Vec<Vec<f64>>;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Vec<Vec<f64>>> {
-        let (text, source) = read_beside(node, reading)?;
-        read_rows(&text, source, reading)
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Vec<Vec<f64>>> {
+        let (text, source) = read_beside(node, reporter)?;
+        read_rows(&text, source, reporter)
     }
 
     fn schema(&self) -> Json {
@@ -29,7 +29,7 @@ impl Form for HeightsForm {
     }
 }
 
-fn read_rows(text: &str, source: usize, reading: &mut Reading) -> Option<Vec<Vec<f64>>> {
+fn read_rows(text: &str, source: usize, reporter: &mut Reporter) -> Option<Vec<Vec<f64>>> {
     let mut table = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
@@ -49,16 +49,16 @@ fn read_rows(text: &str, source: usize, reading: &mut Reading) -> Option<Vec<Vec
                 rows.push(row);
             }
             Err(fault) => {
-                reading.note(line_at(position.as_ref(), text, source), fault);
+                reporter.report(line_at(position.as_ref(), text, source), fault);
                 good = false;
             }
         }
-        if count > MOST_HEIGHTS || reading.is_full() {
+        if count > MOST_HEIGHTS || reporter.is_full() {
             break;
         }
     }
     if good && let Some(fault) = wrong_size(&rows) {
-        reading.note(Place { source, start: 0, end: 0 }, fault);
+        reporter.report(Span { source, start: 0, end: 0 }, fault);
         return None;
     }
     good.then_some(rows)

@@ -7,7 +7,7 @@ use crate::{
     files::read_text,
     resolve::resolve,
     shipped::{Shipped, nearest_shipped, shipped},
-    text::{Form, Node, Reading, table},
+    text::{Form, Node, Reporter, table},
 };
 use serde::Serialize;
 use serde_json::json;
@@ -47,14 +47,14 @@ impl Scene {
             let fault = "is empty: a scene needs at least `schema = 1`, a title and a robot";
             return Err(Diagnostics::whole_file(path, fault.to_owned()));
         }
-        let mut reading = Reading::new(path.parent().unwrap_or(Path::new("")));
-        let scene = check(text, path, overrides, &mut reading);
+        let mut reporter = Reporter::new(path.parent().unwrap_or(Path::new("")));
+        let scene = check(text, path, overrides, &mut reporter);
         match scene {
-            Some(scene) if reading.is_clean() => {
-                let files = [path.to_owned()].into_iter().chain(reading.files).collect();
+            Some(scene) if reporter.is_clean() => {
+                let files = [path.to_owned()].into_iter().chain(reporter.files).collect();
                 Ok(Loaded { scene, files })
             }
-            _ => Err(reading.into_diagnostics()),
+            _ => Err(reporter.into_diagnostics()),
         }
     }
 
@@ -86,16 +86,16 @@ fn suggestion(path: &Path) -> String {
     }
 }
 
-fn check(text: &str, path: &Path, overrides: &[Override], reading: &mut Reading) -> Option<Scene> {
-    let source = reading.add_source(path.display().to_string(), text);
-    let mut root = Node::parse_document(text, source, reading)?;
+fn check(text: &str, path: &Path, overrides: &[Override], reporter: &mut Reporter) -> Option<Scene> {
+    let source = reporter.add_source(path.display().to_string(), text);
+    let mut root = Node::parse_document(text, source, reporter)?;
     for change in overrides {
-        change.apply(&mut root, reading);
+        change.apply(&mut root, reporter);
     }
-    let document = table::<Document>().read(&root, reading)?;
-    let mut scene = resolve(document, &root, reading)?;
-    if reading.is_clean() {
-        scene.changes = changes(&root, &scene, reading);
+    let document = table::<Document>().read(&root, reporter)?;
+    let mut scene = resolve(document, &root, reporter)?;
+    if reporter.is_clean() {
+        scene.changes = changes(&root, &scene, reporter);
     }
     Some(scene)
 }

@@ -1,7 +1,7 @@
 //! What robots and props have in common as they are written: names and poses.
 
 use crate::text::{
-    Form, Node, Reading, angle_of_turns,
+    Form, Node, Reporter, angle_of_turns,
     form::{Angle, Number},
     lists::Triple,
     number, triple,
@@ -36,13 +36,13 @@ impl NameForm {
 impl Form for NameForm {
     type Out = String;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<String> {
         let name = node.as_text().filter(|name| self.takes(name));
         if name.is_none() {
-            reading.wrong(node, &format!("a name of 1 to {} letters, digits, `-` and `_`", self.most));
+            reporter.wrong(node, &format!("a name of 1 to {} letters, digits, `-` and `_`", self.most));
             let invisible = node.as_text().and_then(|name| name.chars().find(|c| is_invisible(*c)));
             if let Some(sign) = invisible {
-                reading.append_to_last(&format!(": U+{:04X} in it cannot be seen", u32::from(sign)));
+                reporter.append_to_last(&format!(": U+{:04X} in it cannot be seen", u32::from(sign)));
             }
         }
         name.map(str::to_owned)

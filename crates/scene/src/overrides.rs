@@ -3,7 +3,7 @@
 use crate::{
     groups::{made_by, member_called},
     text::{
-        Node, Place, Reading, Value,
+        Node, Reporter, Span, Value,
         node::{Entry, composed},
         words::{did_you_mean, nearest},
     },
@@ -64,18 +64,18 @@ impl fmt::Display for Override {
 #[derive(Clone, Copy)]
 struct Part<'a> {
     text: &'a str,
-    place: Place,
+    place: Span,
 }
 
 impl Override {
     /// Puts the value where the path says; notes where there is no such place.
-    pub(crate) fn apply(&self, root: &mut Node, reading: &mut Reading) {
-        let source = reading.add_source("--set".to_owned(), &self.0);
-        self.apply_at(Origin { source, offset: 0, whole: None }, root, reading);
+    pub(crate) fn apply(&self, root: &mut Node, reporter: &mut Reporter) {
+        let source = reporter.add_source("--set".to_owned(), &self.0);
+        self.apply_at(Origin { source, offset: 0, whole: None }, root, reporter);
     }
 
     /// As [`Override::apply`], for text that stands somewhere else.
-    pub(crate) fn apply_at(&self, origin: Origin, root: &mut Node, reading: &mut Reading) {
+    pub(crate) fn apply_at(&self, origin: Origin, root: &mut Node, reporter: &mut Reporter) {
         let Origin { source, offset, whole } = origin;
         let (path, value) = self.0.split_once('=').unwrap_or((&self.0, ""));
         let indent = value.len() - value.trim_start().len();
@@ -85,11 +85,11 @@ impl Override {
         }
         let mut start = offset;
         let parts = path.split('.').map(|text| {
-            let place = Place { source, start, end: start + text.len() };
+            let place = Span { source, start, end: start + text.len() };
             start += text.len() + 1;
             Part { text: text.trim(), place: whole.unwrap_or(place) }
         });
-        put_in_scene(root, &parts.collect::<Vec<_>>(), value, reading);
+        put_in_scene(root, &parts.collect::<Vec<_>>(), value, reporter);
     }
 
     /// The parts of its path.
@@ -106,20 +106,20 @@ pub(crate) struct Origin {
     /// Of its first character.
     pub(crate) offset: usize,
     /// Where all of it stands, if its characters cannot be told apart there.
-    pub(crate) whole: Option<Place>,
+    pub(crate) whole: Option<Span>,
 }
 
 /// Puts `value` at `path`. Robots that a group makes are reached as if they stood in `robots`.
-fn put_in_scene(root: &mut Node, path: &[Part<'_>], value: Node, reading: &mut Reading) {
-    let [list, name, rest @ ..] = path else { return put(root, path, value, reading) };
+fn put_in_scene(root: &mut Node, path: &[Part<'_>], value: Node, reporter: &mut Reporter) {
+    let [list, name, rest @ ..] = path else { return put(root, path, value, reporter) };
     let groups = root.items("groups");
     if list.text != "robots" || groups.is_empty() || find(root.items("robots"), name.text).is_ok() {
-        return put(root, path, value, reading);
+        return put(root, path, value, reporter);
     }
     let mut known = groups.iter().enumerate();
     let Some((index, key)) = known.find_map(|(index, group)| Some((index, member_called(group, name.text)?)))
     else {
-        reading.note(name.place, unknown_robot(root, name.text));
+        reporter.report(name.place, unknown_robot(root, name.text));
         return;
     };
     let inside: Vec<_> =
@@ -128,7 +128,7 @@ fn put_in_scene(root: &mut Node, path: &[Part<'_>], value: Node, reading: &mut R
             .chain(rest.iter().copied())
             .collect();
     if let Some(group) = root.items_mut("groups").get_mut(index) {
-        put(group, &inside, value, reading);
+        put(group, &inside, value, reporter);
     }
 }
 
@@ -141,7 +141,7 @@ fn unknown_robot(root: &Node, name: &str) -> String {
     format!("there is no robot called `{name}`{hint}")
 }
 
-fn put(node: &mut Node, path: &[Part<'_>], value: Node, reading: &mut Reading) {
+fn put(node: &mut Node, path: &[Part<'_>], value: Node, reporter: &mut Reporter) {
     let [part, rest @ ..] = path else {
         *node = value;
         return;
@@ -158,19 +158,21 @@ fn put(node: &mut Node, path: &[Part<'_>], value: Node, reading: &mut Reading) {
                 if ["vehicle", "sensing"].contains(&entry.key.as_str()) && !rest.is_empty() {
                     spell_out(&mut entry.node);
                 }
-                put(&mut entry.node, rest, value, reading);
+                put(&mut entry.node, rest, value, reporter);
             }
         }
         Value::List(items) => match find(items, part.text) {
             Ok(index) => {
                 if let Some(item) = items.get_mut(index) {
-                    put(item, rest, value, reading);
+                    put(item, rest, value, reporter);
                 }
             }
-            Err(fault) => reading.note(part.place, fault),
+            Err(fault) => reporter.report(part.place, fault),
         },
-        _ => reading
-            .note(part.place, format!("there is nothing called `{}` here: this is a plain value", part.text)),
+        _ => reporter.report(
+            part.place,
+            format!("there is nothing called `{}` here: this is a plain value", part.text),
+        ),
     }
 }
 

@@ -4,7 +4,7 @@ use crate::{
     Path, SpeedProfile,
     table_file::{CsvForm, check_rising},
     text::{
-        Form, Node, Reading, couple, flag,
+        Form, Node, Reporter, couple, flag,
         form::Number,
         keys,
         keys::one_of,
@@ -123,16 +123,16 @@ keys! {
 impl Form for SpeedForm {
     type Out = SpeedProfile;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<SpeedProfile> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<SpeedProfile> {
         if node.as_number().is_some() {
-            return SPEED.read(node, reading).map(SpeedProfile::Constant);
+            return SPEED.read(node, reporter).map(SpeedProfile::Constant);
         }
-        let keys = table::<SpeedKeys>().read(node, reading)?;
-        let (rows, along_time) = one_of(node, ("distance", keys.distance), ("time", keys.time), reading)?;
-        check_rising(rows.value.iter().map(|row| row[0]), rows.place, reading);
+        let keys = table::<SpeedKeys>().read(node, reporter)?;
+        let (rows, along_time) = one_of(node, ("distance", keys.distance), ("time", keys.time), reporter)?;
+        check_rising(rows.value.iter().map(|row| row[0]), rows.place, reporter);
         // Travel stops for good where a profile over distance stands at 0.
         if !along_time && rows.value.iter().any(|row| row[1] == 0.0) {
-            reading.note(
+            reporter.report(
                 rows.place,
                 "a speed over distance must stay above 0: the robot would never leave that point",
             );
@@ -146,18 +146,18 @@ impl Form for SpeedForm {
 }
 
 impl KindKeys<Path> for ConstantKeys {
-    fn make(self, _: &Node, _: &mut Reading) -> Option<Path> {
+    fn make(self, _: &Node, _: &mut Reporter) -> Option<Path> {
         Some(Path::Constant { speed: self.speed?.value, turn_rate: self.turn_rate?.value })
     }
 }
 
 impl KindKeys<Path> for SinusoidKeys {
-    fn make(self, _: &Node, reading: &mut Reading) -> Option<Path> {
+    fn make(self, _: &Node, reporter: &mut Reporter) -> Option<Path> {
         let (speed, amplitude) = (self.speed?.value, self.speed_amplitude?);
         if amplitude.value.abs() > speed {
             let message =
                 format!("`speed_amplitude` must be at most `speed`, {speed} m/s: nothing drives backwards");
-            reading.note(amplitude.place, message);
+            reporter.report(amplitude.place, message);
         }
         Some(Path::Sinusoid {
             speed,
@@ -171,19 +171,19 @@ impl KindKeys<Path> for SinusoidKeys {
 }
 
 impl KindKeys<Path> for CircleKeys {
-    fn make(self, node: &Node, reading: &mut Reading) -> Option<Path> {
+    fn make(self, node: &Node, reporter: &mut Reporter) -> Option<Path> {
         let speed = self.speed?.value;
         let (size, by_turn_rate) =
-            one_of(node, ("radius", self.radius), ("turn_rate", self.turn_rate), reading)?;
+            one_of(node, ("radius", self.radius), ("turn_rate", self.turn_rate), reporter)?;
         if by_turn_rate && let Some(direction) = self.direction {
-            reading.note(
+            reporter.report(
                 direction.place,
                 "the sign of `turn_rate` says the direction already; left is positive",
             );
             return None;
         }
         if size.value == 0.0 {
-            reading.note(
+            reporter.report(
                 size.place,
                 "a circle needs a `turn_rate` other than 0; a straight line is kind `constant`",
             );
@@ -196,19 +196,19 @@ impl KindKeys<Path> for CircleKeys {
 }
 
 impl KindKeys<Path> for FigureEightKeys {
-    fn make(self, node: &Node, reading: &mut Reading) -> Option<Path> {
+    fn make(self, node: &Node, reporter: &mut Reporter) -> Option<Path> {
         let speed = self.speed?.value;
-        let (size, by_period) = one_of(node, ("length", self.length), ("period", self.period), reading)?;
+        let (size, by_period) = one_of(node, ("length", self.length), ("period", self.period), reporter)?;
         Some(Path::FigureEight { speed, length: if by_period { speed * size.value } else { size.value } })
     }
 }
 
 impl KindKeys<Path> for WaypointsKeys {
-    fn make(self, _: &Node, reading: &mut Reading) -> Option<Path> {
+    fn make(self, _: &Node, reporter: &mut Reporter) -> Option<Path> {
         let (points, closed) = (self.points?, self.closed?.value);
         let (place, points) = (points.place, points.value);
         if closed && points.len() < 3 {
-            reading.note(place, "a closed curve needs at least three points");
+            reporter.report(place, "a closed curve needs at least three points");
         }
         let back = if closed { points.first() } else { None };
         let next = points.iter().skip(1).chain(back);
@@ -219,18 +219,20 @@ impl KindKeys<Path> for WaypointsKeys {
             } else {
                 ""
             };
-            reading
-                .note(place, format!("neighbouring points of a curve must be at least 0.001 m apart{hint}"));
+            reporter.report(
+                place,
+                format!("neighbouring points of a curve must be at least 0.001 m apart{hint}"),
+            );
         }
         Some(Path::Waypoints { points, closed, speed: self.speed?.value })
     }
 }
 
 impl KindKeys<Path> for TableKeys {
-    fn make(self, node: &Node, reading: &mut Reading) -> Option<Path> {
-        let (rows, from_file) = one_of(node, ("rows", self.rows), ("file", self.file), reading)?;
+    fn make(self, node: &Node, reporter: &mut Reporter) -> Option<Path> {
+        let (rows, from_file) = one_of(node, ("rows", self.rows), ("file", self.file), reporter)?;
         if !from_file {
-            check_rising(rows.value.iter().map(|row| row[0]), rows.place, reading);
+            check_rising(rows.value.iter().map(|row| row[0]), rows.place, reporter);
         }
         Some(Path::Table { rows: rows.value })
     }

@@ -5,7 +5,7 @@ use crate::{
     names::{NameForm, POSE},
     prop_form::{FRICTION, MASS, MEASURE, Measured, RESTITUTION, SOLIDS},
     text::{
-        Form, Found, Keys, Node, Reading, integer, keys,
+        Form, Found, Keys, Node, Reporter, integer, keys,
         keys::TableReader,
         kinds::{KindKeys, Kinds, Taken, kind},
         number,
@@ -111,7 +111,7 @@ fn beside([x, y, heading]: [f64; 3], forward: f64, left: f64) -> Pose {
 }
 
 impl KindKeys<Layout> for SlalomKeys {
-    fn make(self, _: &Node, _: &mut Reading) -> Option<Layout> {
+    fn make(self, _: &Node, _: &mut Reporter) -> Option<Layout> {
         let (pose, spacing, offset) = (self.pose?.value, self.spacing?.value, self.offset?.value);
         let solid = Solid::Cone { radius: self.radius?.value, height: self.height?.value };
         let cone = |index: usize| {
@@ -123,7 +123,7 @@ impl KindKeys<Layout> for SlalomKeys {
 }
 
 impl KindKeys<Layout> for CorridorKeys {
-    fn make(self, _: &Node, _: &mut Reading) -> Option<Layout> {
+    fn make(self, _: &Node, _: &mut Reporter) -> Option<Layout> {
         let (length, thickness) = (self.length?.value, self.thickness?.value);
         let (pose, left) = (self.pose?.value, 0.5 * (self.width?.value + thickness));
         let solid = Solid::Block { size: [length, thickness, self.height?.value] };
@@ -133,7 +133,7 @@ impl KindKeys<Layout> for CorridorKeys {
 }
 
 impl KindKeys<Layout> for GateKeys {
-    fn make(self, _: &Node, _: &mut Reading) -> Option<Layout> {
+    fn make(self, _: &Node, _: &mut Reporter) -> Option<Layout> {
         let (pose, radius) = (self.pose?.value, self.radius?.value);
         let left = 0.5 * self.width?.value + radius;
         let solid = Solid::Cylinder { radius, height: self.height?.value };
@@ -142,7 +142,7 @@ impl KindKeys<Layout> for GateKeys {
 }
 
 impl KindKeys<Layout> for FieldKeys {
-    fn make(self, _: &Node, _: &mut Reading) -> Option<Layout> {
+    fn make(self, _: &Node, _: &mut Reporter) -> Option<Layout> {
         Some(Layout::Field(Field {
             count: self.count?,
             seed: self.seed.map(|seed| seed.value),
@@ -195,11 +195,11 @@ pub(crate) struct PatternForm;
 impl Form for PatternForm {
     type Out = PatternKeys;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<PatternKeys> {
-        let mut table = TableReader::of(node, reading)?;
-        let Taken::Known(layout) = PATTERNS.take(node, &mut table, reading) else { return None };
-        let shared = SharedKeys::read(&mut table, reading);
-        table.finish(reading);
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<PatternKeys> {
+        let mut table = TableReader::of(node, reporter)?;
+        let Taken::Known(layout) = PATTERNS.take(node, &mut table, reporter) else { return None };
+        let shared = SharedKeys::read(&mut table, reporter);
+        table.finish(reporter);
         Some(PatternKeys {
             layout: layout?,
             name: shared.name?,

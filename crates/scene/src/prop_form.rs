@@ -5,7 +5,7 @@ use crate::{
     names::{NameForm, POSE},
     path_form::PATH,
     text::{
-        Form, Found, Keys, Node, Reading, couple,
+        Form, Found, Keys, Node, Reporter, couple,
         form::Number,
         keys,
         keys::TableReader,
@@ -92,36 +92,36 @@ fn anywhere(solid: Solid) -> Measured {
 }
 
 impl KindKeys<Measured> for BlockKeys {
-    fn make(self, _: &Node, _: &mut Reading) -> Option<Measured> {
+    fn make(self, _: &Node, _: &mut Reporter) -> Option<Measured> {
         Some(anywhere(Solid::Block { size: self.size?.value }))
     }
 }
 
 impl KindKeys<Measured> for RampKeys {
-    fn make(self, _: &Node, _: &mut Reading) -> Option<Measured> {
+    fn make(self, _: &Node, _: &mut Reporter) -> Option<Measured> {
         Some(anywhere(Solid::Wedge { size: self.size?.value }))
     }
 }
 
 impl KindKeys<Measured> for CylinderKeys {
-    fn make(self, _: &Node, _: &mut Reading) -> Option<Measured> {
+    fn make(self, _: &Node, _: &mut Reporter) -> Option<Measured> {
         Some(anywhere(Solid::Cylinder { radius: self.radius?.value, height: self.height?.value }))
     }
 }
 
 impl KindKeys<Measured> for ConeKeys {
-    fn make(self, _: &Node, _: &mut Reading) -> Option<Measured> {
+    fn make(self, _: &Node, _: &mut Reporter) -> Option<Measured> {
         Some(anywhere(Solid::Cone { radius: self.radius?.value, height: self.height?.value }))
     }
 }
 
 impl KindKeys<Measured> for WallKeys {
-    fn make(self, _: &Node, reading: &mut Reading) -> Option<Measured> {
+    fn make(self, _: &Node, reporter: &mut Reporter) -> Option<Measured> {
         let (from, to) = (self.from?.value, self.to?);
         let [dx, dy] = [to.value[0] - from[0], to.value[1] - from[1]];
         let length = dx.hypot(dy);
         if length < 1e-3 {
-            reading.note(to.place, "a wall must be at least 0.001 m long: `to` is where `from` is");
+            reporter.report(to.place, "a wall must be at least 0.001 m long: `to` is where `from` is");
             return None;
         }
         let pose = Pose::new(from[0] + 0.5 * dx, from[1] + 0.5 * dy, dy.atan2(dx));
@@ -183,11 +183,11 @@ pub(crate) struct PropForm;
 impl Form for PropForm {
     type Out = PropKeys;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<PropKeys> {
-        let mut table = TableReader::of(node, reading)?;
-        let Taken::Known(measured) = SHAPES.take(node, &mut table, reading) else { return None };
-        let shared = SharedKeys::read(&mut table, reading);
-        table.finish(reading);
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<PropKeys> {
+        let mut table = TableReader::of(node, reporter)?;
+        let Taken::Known(measured) = SHAPES.take(node, &mut table, reporter) else { return None };
+        let shared = SharedKeys::read(&mut table, reporter);
+        table.finish(reporter);
         Some(PropKeys {
             measured: measured?,
             name: shared.name?,

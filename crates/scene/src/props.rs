@@ -6,7 +6,7 @@ use crate::{
     patterns::{Field, Layout, PatternKeys},
     prop_form::{MOST_PROPS, PropKeys},
     robots::start_pose,
-    text::{Found, Node, Place, Reading},
+    text::{Found, Node, Reporter, Span},
 };
 use rand_chacha::{
     ChaCha8Rng,
@@ -37,34 +37,34 @@ impl Stage<'_> {
         props: &[PropKeys],
         patterns: &[PatternKeys],
         root: &Node,
-        reading: &mut Reading,
+        reporter: &mut Reporter,
     ) -> Vec<Placed> {
         let nodes = root.items("props").iter().map(|node| node.place);
         let written = props.iter().zip(nodes);
         let mut placed: Vec<_> =
-            written.filter_map(|(keys, place)| self.prop(keys, place, reading)).collect();
+            written.filter_map(|(keys, place)| self.prop(keys, place, reporter)).collect();
         for (index, keys) in patterns.iter().enumerate() {
-            self.expand(keys, index as u64, &mut placed, reading);
+            self.expand(keys, index as u64, &mut placed, reporter);
             if placed.len() > MOST_PROPS {
-                reading.note(keys.name.place, format!("this makes more than {MOST_PROPS} props"));
+                reporter.report(keys.name.place, format!("this makes more than {MOST_PROPS} props"));
                 break;
             }
         }
         placed
     }
 
-    fn prop(&self, keys: &PropKeys, place: Place, reading: &mut Reading) -> Option<Placed> {
+    fn prop(&self, keys: &PropKeys, place: Span, reporter: &mut Reporter) -> Option<Placed> {
         let pose = match (keys.measured.pose, &keys.pose) {
             (Some(_), Some(pose)) => {
-                reading.note(pose.place, "a wall stands from its `from` to its `to` and has no `pose`");
+                reporter.report(pose.place, "a wall stands from its `from` to its `to` and has no `pose`");
                 None
             }
             (Some(pose), None) => Some(pose),
-            (None, pose) => start_pose(pose.as_ref(), keys.path.as_ref(), place, reading),
+            (None, pose) => start_pose(pose.as_ref(), keys.path.as_ref(), place, reporter),
         }?;
         let motion = match (&keys.mass, &keys.path) {
             (Some(mass), Some(_)) => {
-                reading.note(
+                reporter.report(
                     mass.place,
                     "`mass` is for props that can be pushed; one with a `path` goes its own way",
                 );
@@ -82,7 +82,7 @@ impl Stage<'_> {
                 "`{}` starts in the ground: `elevation` of {elevation} m must be at least {foot:.3} m, or left out",
                 keys.name.value
             );
-            reading.note(keys.name.place, message);
+            reporter.report(keys.name.place, message);
         }
         let (friction, restitution) = (keys.friction, keys.restitution);
         let name = keys.name.value.clone();
@@ -106,10 +106,10 @@ impl Stage<'_> {
     }
 
     /// Appends the props of a pattern.
-    fn expand(&self, keys: &PatternKeys, index: u64, placed: &mut Vec<Placed>, reading: &mut Reading) {
+    fn expand(&self, keys: &PatternKeys, index: u64, placed: &mut Vec<Placed>, reporter: &mut Reporter) {
         let spots = match &keys.layout {
             Layout::Placed(spots) => spots.clone(),
-            Layout::Field(field) => self.strew(field, index, placed, reading),
+            Layout::Field(field) => self.strew(field, index, placed, reporter),
         };
         for (number, (solid, pose)) in spots.into_iter().enumerate() {
             let motion = keys.mass.map_or(PropMotion::Fixed, |mass| PropMotion::Loose { mass });
@@ -132,7 +132,7 @@ impl Stage<'_> {
         field: &Field,
         index: u64,
         placed: &[Placed],
-        reading: &mut Reading,
+        reporter: &mut Reporter,
     ) -> Vec<(Solid, Pose)> {
         let mut random = ChaCha8Rng::seed_from_u64(field.seed.unwrap_or(self.seed));
         random.set_stream(FIRST_STREAM + index);
@@ -155,7 +155,7 @@ impl Stage<'_> {
                     counted(spots.len(), "prop"),
                     field.keep_clear
                 );
-                reading.note(field.count.place, message);
+                reporter.report(field.count.place, message);
                 break;
             };
             taken.push(outline);

@@ -10,7 +10,7 @@ use crate::{
     robots::{Defaults, Draft, draft},
     sight::{Said, check_sight, number},
     start::check_start,
-    text::{Found, Node, Part, Place, Reading},
+    text::{Found, Node, Part, Reporter, Span},
     types::{
         EnvironmentPart, ExpectPart, FilmPart, PhysicsPart, ROBOT_VIEWS, TimePart, ViewsPart, VisionPart,
     },
@@ -19,42 +19,42 @@ use crate::{
 use std::collections::HashSet;
 
 /// The checked scene, or `None` after notes.
-pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) -> Option<Scene> {
+pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) -> Option<Scene> {
     // Another version may mean anything.
     document.schema.as_ref()?;
     let seed = document.seed.as_ref()?.value;
-    let defaults = defaults(&document, reading)?;
+    let defaults = defaults(&document, reporter)?;
     let physics = document.physics?.value;
     let time_part = document.time?.value;
-    let time = time(&time_part, reading);
+    let time = time(&time_part, reporter);
     let (robots, groups) = (document.robots?.value, document.groups?.value);
     let ground = match (root.get("ground"), &document.ground) {
         // It is there, and has its note.
         (Some(_), None) => None,
-        (_, keys) => ground(keys.as_ref().map(|found| &found.value), seed, reading),
+        (_, keys) => ground(keys.as_ref().map(|found| &found.value), seed, reporter),
     };
-    let mut drafts = drafts(&robots, &groups, root, seed, &defaults, reading);
-    number(&mut drafts, reading);
-    check_graph(drafts.iter().map(|draft| &draft.named), reading);
+    let mut drafts = drafts(&robots, &groups, root, seed, &defaults, reporter);
+    number(&mut drafts, reporter);
+    check_graph(drafts.iter().map(|draft| &draft.named), reporter);
     let (props, patterns) = (document.props?.value, document.patterns?.value);
     let standing: Vec<_> = drafts.iter().filter_map(|draft| draft.robot.as_ref()).collect();
     let stage = Stage { ground: ground.as_ref(), robots: &standing, seed };
-    let props = stage.props(&props, &patterns, root, reading);
-    check_names(&drafts, &props, reading);
+    let props = stage.props(&props, &patterns, root, reporter);
+    check_names(&drafts, &props, reporter);
     let vision_part = document.vision?.value;
     let vision = vision_part.complete(&VisionPart::default());
-    check_sight(&Said { time: &time_part, part: &vision_part, vision: &vision }, &drafts, reading);
+    check_sight(&Said { time: &time_part, part: &vision_part, vision: &vision }, &drafts, reporter);
     let level = ground.as_ref().is_none_or(|ground| ground.terrain.is_none());
-    check_continuous(&time_part, &drafts, &props, level, reading);
+    check_continuous(&time_part, &drafts, &props, level, reporter);
     if let Some(ground) = &ground
-        && reading.is_clean()
+        && reporter.is_clean()
     {
         let robots =
             drafts.iter().filter_map(|draft| Some((draft.named.name.as_ref()?.place, draft.robot.as_ref()?)));
-        check_start(robots, &props, ground, reading);
+        check_start(robots, &props, ground, reporter);
     }
-    let views = views(&document.views?.value, &drafts, reading);
-    let film = film(&document.film?.value, time.duration, &drafts, reading);
+    let views = views(&document.views?.value, &drafts, reporter);
+    let film = film(&document.film?.value, time.duration, &drafts, reporter);
     Some(Scene {
         title: document.title?.value,
         description: document.description?.value,
@@ -69,15 +69,15 @@ pub(crate) fn resolve(document: Document, root: &Node, reading: &mut Reading) ->
         environment: document.environment?.value.complete(&EnvironmentPart::default()),
         views,
         film,
-        expect: expect(&document.expect?.value, reading),
+        expect: expect(&document.expect?.value, reporter),
     })
 }
 
 /// What holds for every robot that says nothing else.
-fn defaults(document: &Document, reading: &mut Reading) -> Option<Defaults> {
+fn defaults(document: &Document, reporter: &mut Reporter) -> Option<Defaults> {
     let physics = &document.physics.as_ref()?.value;
     let vehicle = document.vehicle.as_ref()?.value.clone();
-    check_meaning(&vehicle, usual_kind(&vehicle), reading);
+    check_meaning(&vehicle, usual_kind(&vehicle), reporter);
     Some(Defaults {
         vehicle,
         law: document.law.as_ref()?.value.clone(),
@@ -89,28 +89,32 @@ fn defaults(document: &Document, reading: &mut Reading) -> Option<Defaults> {
 }
 
 /// The robots of a document alone, or `None` after notes: for what has changed since a scene was resolved.
-pub(crate) fn resolve_robots(document: &Document, root: &Node, reading: &mut Reading) -> Option<Vec<Robot>> {
+pub(crate) fn resolve_robots(
+    document: &Document,
+    root: &Node,
+    reporter: &mut Reporter,
+) -> Option<Vec<Robot>> {
     let seed = document.seed.as_ref()?.value;
-    let defaults = defaults(document, reading)?;
+    let defaults = defaults(document, reporter)?;
     let (robots, groups) = (&document.robots.as_ref()?.value, &document.groups.as_ref()?.value);
-    let mut drafts = drafts(robots, groups, root, seed, &defaults, reading);
-    number(&mut drafts, reading);
+    let mut drafts = drafts(robots, groups, root, seed, &defaults, reporter);
+    number(&mut drafts, reporter);
     let (time, part) = (&document.time.as_ref()?.value, &document.vision.as_ref()?.value);
     let vision = part.complete(&VisionPart::default());
-    check_sight(&Said { time, part, vision: &vision }, &drafts, reading);
+    check_sight(&Said { time, part, vision: &vision }, &drafts, reporter);
     drafts.into_iter().map(|draft| draft.robot).collect()
 }
 
-fn expect(part: &ExpectPart, reading: &mut Reading) -> Expect {
+fn expect(part: &ExpectPart, reporter: &mut Reporter) -> Expect {
     let expect = part.complete(&ExpectPart::default());
     let bound = part.settled_error_at_most.as_ref().or(part.settled_rms_at_most.as_ref());
     match (bound, &part.settled_after) {
         (Some(error), None) => {
-            reading.note(error.place, "`settled_after` is missing: from when on, in s, does this hold?");
+            reporter.report(error.place, "`settled_after` is missing: from when on, in s, does this hold?");
         }
         (None, Some(after)) => {
             let message = "`settled_after` needs `settled_error_at_most` or `settled_rms_at_most`, which hold from then on";
-            reading.note(after.place, message);
+            reporter.report(after.place, message);
         }
         _ => {}
     }
@@ -120,28 +124,34 @@ fn expect(part: &ExpectPart, reading: &mut Reading) -> Expect {
         if let Some(Found { place, value: Some([low, high]) }) = found
             && low > high
         {
-            reading.note(*place, format!("`{key}` is [least, most], and {low} is more than {high}"));
+            reporter.report(*place, format!("`{key}` is [least, most], and {low} is more than {high}"));
         }
     }
     expect
 }
 
 /// Notes props that are called as a robot or another prop.
-fn check_names(drafts: &[Draft], props: &[Placed], reading: &mut Reading) {
+fn check_names(drafts: &[Draft], props: &[Placed], reporter: &mut Reporter) {
     let robots: HashSet<_> =
         drafts.iter().filter_map(|draft| Some(&draft.named.name.as_ref()?.value)).collect();
     let mut seen = HashSet::new();
     for Placed { place, value: Prop { name, .. } } in props {
         if robots.contains(name) {
-            reading.note(*place, format!("there are a robot and a prop called `{name}`"));
+            reporter.report(*place, format!("there are a robot and a prop called `{name}`"));
         } else if !seen.insert(name) {
-            reading.note(*place, format!("there are two props called `{name}`"));
+            reporter.report(*place, format!("there are two props called `{name}`"));
         }
     }
 }
 
 /// Notes what continuous time cannot carry.
-fn check_continuous(part: &TimePart, drafts: &[Draft], props: &[Placed], level: bool, reading: &mut Reading) {
+fn check_continuous(
+    part: &TimePart,
+    drafts: &[Draft],
+    props: &[Placed],
+    level: bool,
+    reporter: &mut Reporter,
+) {
     let Some(mode) = part.mode.as_ref().filter(|mode| mode.value == Mode::Continuous) else { return };
     let mut robots = drafts.iter().filter_map(|draft| draft.robot.as_ref());
     let wheels =
@@ -152,7 +162,7 @@ fn check_continuous(part: &TimePart, drafts: &[Draft], props: &[Placed], level: 
         let message = format!(
             "mode `continuous` is for unicycles on empty ground, but {why}; use `sampled` or `measured`"
         );
-        reading.note(mode.place, message);
+        reporter.report(mode.place, message);
     }
 }
 
@@ -163,18 +173,19 @@ fn drafts(
     root: &Node,
     seed: u64,
     defaults: &Defaults,
-    reading: &mut Reading,
+    reporter: &mut Reporter,
 ) -> Vec<Draft> {
     let nodes = root.items("robots");
     let mut drafts: Vec<_> =
-        robots.iter().zip(nodes).map(|(keys, node)| draft(keys, node, defaults, reading)).collect();
+        robots.iter().zip(nodes).map(|(keys, node)| draft(keys, node, defaults, reporter)).collect();
     for (index, (keys, node)) in groups.iter().zip(root.items("groups")).enumerate() {
         let group = Group { keys, node, index: index as u64 };
         // A group that cannot be read has its notes already.
-        let _ = expand(&group, seed, defaults, &mut drafts, reading);
+        let _ = expand(&group, seed, defaults, &mut drafts, reporter);
     }
     if ["robots", "groups"].iter().all(|key| root.items(key).is_empty()) {
-        reading.note(root.place.first(), "a scene needs at least one robot: write [[robots]] or [[groups]]");
+        reporter
+            .report(root.place.first(), "a scene needs at least one robot: write [[robots]] or [[groups]]");
     }
     drafts
 }
@@ -182,7 +193,7 @@ fn drafts(
 /// More control steps than this are a slip of the pen.
 const MOST_STEPS: f64 = 1e8;
 
-fn time(part: &TimePart, reading: &mut Reading) -> Time {
+fn time(part: &TimePart, reporter: &mut Reporter) -> Time {
     let time = part.complete(&TimePart::default());
     // The key that was written is the one to point at; the defaults fit each other.
     let Some(place) = part.period.as_ref().map(|f| f.place).or(part.duration.as_ref().map(|f| f.place))
@@ -191,34 +202,35 @@ fn time(part: &TimePart, reading: &mut Reading) -> Time {
     };
     if time.period > time.duration {
         let Time { period, duration, .. } = time;
-        reading.note(place, format!("`period` of {period} s is larger than `duration` of {duration} s"));
+        reporter.report(place, format!("`period` of {period} s is larger than `duration` of {duration} s"));
     } else if time.duration / time.period > MOST_STEPS {
         let steps = time.duration / time.period;
-        reading.note(place, format!("{steps:.0} control periods in the run; the most are {MOST_STEPS:.0}"));
+        reporter
+            .report(place, format!("{steps:.0} control periods in the run; the most are {MOST_STEPS:.0}"));
     }
     time
 }
 
-fn views(part: &ViewsPart, drafts: &[Draft], reading: &mut Reading) -> Views {
-    check_view(part.default.as_ref().map(|found| (found.place, found.value.as_str())), drafts, reading);
+fn views(part: &ViewsPart, drafts: &[Draft], reporter: &mut Reporter) -> Views {
+    check_view(part.default.as_ref().map(|found| (found.place, found.value.as_str())), drafts, reporter);
     part.complete(&ViewsPart::default())
 }
 
-fn film(part: &FilmPart, duration: f64, drafts: &[Draft], reading: &mut Reading) -> Film {
+fn film(part: &FilmPart, duration: f64, drafts: &[Draft], reporter: &mut Reporter) -> Film {
     let view = part.view.as_ref().and_then(|found| Some((found.place, found.value.as_deref()?)));
-    check_view(view, drafts, reading);
+    check_view(view, drafts, reporter);
     if let Some(size) = part.size.as_ref().filter(|size| size.value.iter().any(|side| side % 2 == 1)) {
-        reading.note(size.place, "`size` must be even both ways, as video needs it");
+        reporter.report(size.place, "`size` must be even both ways, as video needs it");
     }
     let mut film = part.complete(&FilmPart::default());
     if let Some(place) = part.shots.as_ref().map(|found| found.place) {
-        shots(&mut film.shots, (place, duration), drafts, reading);
+        shots(&mut film.shots, (place, duration), drafts, reporter);
     }
     film
 }
 
 /// Gives every shot its beginning and end. Whether the run is long enough matters once it is filmed: [`Film::beyond`].
-fn shots(shots: &mut [Shot], (place, duration): (Place, f64), drafts: &[Draft], reading: &mut Reading) {
+fn shots(shots: &mut [Shot], (place, duration): (Span, f64), drafts: &[Draft], reporter: &mut Reporter) {
     let begins: Vec<Option<f64>> = shots.iter().map(|shot| shot.from).collect();
     let mut now = 0.0;
     for (k, shot) in shots.iter_mut().enumerate() {
@@ -228,13 +240,13 @@ fn shots(shots: &mut [Shot], (place, duration): (Place, f64), drafts: &[Draft], 
         let name = format!("shot {} of the film", k + 1);
         if from < now {
             let message = format!("{name} begins at {from} s, before the one before it ends, at {now} s");
-            reading.note(place, message);
+            reporter.report(place, message);
         } else if said.is_some_and(|to| to <= from) {
             let message = format!("{name} has no length: it begins at {from} s and ends at {to} s");
-            reading.note(place, message);
+            reporter.report(place, message);
         }
         for part in shot.view.iter().flat_map(|view| view.split('+')) {
-            check_view(Some((place, part.trim())), drafts, reading);
+            check_view(Some((place, part.trim())), drafts, reporter);
         }
         // A shot that begins after the run has no end of its own, also where the scene is written out.
         (shot.from, shot.to) = (Some(from), (to > from).then_some(to));
@@ -243,10 +255,10 @@ fn shots(shots: &mut [Shot], (place, duration): (Place, f64), drafts: &[Draft], 
 }
 
 /// Notes a view of a robot which is not there.
-fn check_view(view: Option<(Place, &str)>, drafts: &[Draft], reading: &mut Reading) {
+fn check_view(view: Option<(Span, &str)>, drafts: &[Draft], reporter: &mut Reporter) {
     if let Some((place, view)) = view
         && let Some(name) = ROBOT_VIEWS.iter().find_map(|start| view.strip_prefix(start))
     {
-        check_known(name, place, drafts.iter().map(|draft| &draft.named), reading);
+        check_known(name, place, drafts.iter().map(|draft| &draft.named), reporter);
     }
 }

@@ -4,7 +4,7 @@ use crate::{
     Follow, Law, Observer, Path, Robot, Role, Sensing, Vehicle,
     document::RobotKeys,
     graph::Named,
-    text::{Found, Node, Part, Place, Reading},
+    text::{Found, Node, Part, Reporter, Span},
     types::{LawPart, ObserverPart, SensingPart, VehiclePart},
     vehicle::{Written, vehicle},
 };
@@ -19,7 +19,7 @@ pub(crate) struct Defaults {
     /// Step of the physics, s.
     pub(crate) step: f64,
     /// Where that is said.
-    pub(crate) step_place: Option<Place>,
+    pub(crate) step_place: Option<Span>,
 }
 
 impl Defaults {
@@ -27,13 +27,13 @@ impl Defaults {
     pub(crate) fn vehicle(
         &self,
         own: Option<&Found<VehiclePart>>,
-        place: Place,
-        reading: &mut Reading,
+        place: Span,
+        reporter: &mut Reporter,
     ) -> Vehicle {
         let nothing = VehiclePart::default();
         let own = own.map_or(&nothing, |found| &found.value);
         let place = self.step_place.unwrap_or(place);
-        vehicle(&Written { own, scene: &self.vehicle, step: self.step, place }, reading)
+        vehicle(&Written { own, scene: &self.vehicle, step: self.step, place }, reporter)
     }
 
     /// The observer of a robot or group that says `own` of it.
@@ -60,19 +60,19 @@ pub(crate) struct Draft {
 }
 
 /// The robot of one table.
-pub(crate) fn draft(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Reading) -> Draft {
+pub(crate) fn draft(keys: &RobotKeys, node: &Node, defaults: &Defaults, reporter: &mut Reporter) -> Draft {
     let named = Named { name: keys.name.clone(), leader: keys.leader.clone() };
-    Draft { named, number: keys.number.clone(), robot: robot(keys, node, defaults, reading) }
+    Draft { named, number: keys.number.clone(), robot: robot(keys, node, defaults, reporter) }
 }
 
-fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reading: &mut Reading) -> Option<Robot> {
-    let vehicle = defaults.vehicle(keys.vehicle.as_ref(), node.place, reading);
-    let role = role(keys, node, &vehicle, defaults, reading);
+fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reporter: &mut Reporter) -> Option<Robot> {
+    let vehicle = defaults.vehicle(keys.vehicle.as_ref(), node.place, reporter);
+    let role = role(keys, node, &vehicle, defaults, reporter);
     let path = keys.path.as_ref().map(|path| &path.value);
     let pose = match (node.get("pose"), &keys.pose) {
         // It is there, and has its note.
         (Some(_), None) => None,
-        (_, pose) => start_pose(pose.as_ref(), path, node.place, reading),
+        (_, pose) => start_pose(pose.as_ref(), path, node.place, reporter),
     };
     Some(Robot { name: keys.name.as_ref()?.value.clone(), pose: pose?, number: 0, vehicle, role: role? })
 }
@@ -82,17 +82,17 @@ fn role(
     node: &Node,
     vehicle: &Vehicle,
     defaults: &Defaults,
-    reading: &mut Reading,
+    reporter: &mut Reporter,
 ) -> Option<Role> {
     let name = keys.name.as_ref()?;
     match (node.get("path"), node.get("leader")) {
-        (Some(_), None) => lead(keys, node, vehicle, reading),
+        (Some(_), None) => lead(keys, node, vehicle, reporter),
         (None, Some(_)) => {
-            follow(keys, node, vehicle, defaults, reading).map(|follow| Role::Follow(Box::new(follow)))
+            follow(keys, node, vehicle, defaults, reporter).map(|follow| Role::Follow(Box::new(follow)))
         }
         (Some(_), Some(leader)) => {
             let message = format!("`{}` has a `path` and a `leader`; a robot leads or follows", name.value);
-            reading.note(leader.place, message);
+            reporter.report(leader.place, message);
             None
         }
         (None, None) => {
@@ -100,22 +100,23 @@ fn role(
                 "robot `{}` is not connected: it needs a `path` to lead, or a `leader` to follow",
                 name.value
             );
-            reading.note(name.place, message);
+            reporter.report(name.place, message);
             None
         }
     }
 }
 
-fn lead(keys: &RobotKeys, node: &Node, vehicle: &Vehicle, reading: &mut Reading) -> Option<Role> {
+fn lead(keys: &RobotKeys, node: &Node, vehicle: &Vehicle, reporter: &mut Reporter) -> Option<Role> {
     let name = &keys.name.as_ref()?.value;
     for entry in ["distance", "bearing", "speed", "law", "observer", "sensing"]
         .into_iter()
         .filter_map(|key| node.entry(key))
     {
-        reading.note(entry.place, format!("`{}` is for robots that follow, but `{name}` leads", entry.key));
+        reporter
+            .report(entry.place, format!("`{}` is for robots that follow, but `{name}` leads", entry.key));
     }
     let path = keys.path.as_ref()?;
-    check_path(path, vehicle, reading);
+    check_path(path, vehicle, reporter);
     Some(Role::Lead { path: path.value.clone() })
 }
 
@@ -124,11 +125,11 @@ fn follow(
     node: &Node,
     vehicle: &Vehicle,
     defaults: &Defaults,
-    reading: &mut Reading,
+    reporter: &mut Reporter,
 ) -> Option<Follow> {
     for key in ["distance", "bearing"] {
         if node.get(key).is_none() {
-            reading.note(
+            reporter.report(
                 keys.leader.as_ref()?.place,
                 format!("`{key}` is missing: a robot that follows needs it"),
             );
@@ -138,9 +139,9 @@ fn follow(
     let law = law.complete_with(&defaults.law, Law::fitting(vehicle.kind));
     let observer = keys.observer.as_ref().map_or_else(ObserverPart::default, |found| found.value.clone());
     let sensing = keys.sensing.as_ref().map_or_else(SensingPart::default, |found| found.value.clone());
-    let speed = start_speed(keys.speed.as_ref(), vehicle, reading);
+    let speed = start_speed(keys.speed.as_ref(), vehicle, reporter);
     let (distance, bearing) = (keys.distance.as_ref()?, keys.bearing.as_ref()?);
-    check_distance(distance.value.least(), law.distance_min, distance.place, reading);
+    check_distance(distance.value.least(), law.distance_min, distance.place, reporter);
     Some(Follow {
         leader: keys.leader.as_ref()?.value.clone(),
         speed,
@@ -153,7 +154,7 @@ fn follow(
 }
 
 /// A follower's speed at the start, m/s.
-pub(crate) fn start_speed(speed: Option<&Found<f64>>, vehicle: &Vehicle, reading: &mut Reading) -> f64 {
+pub(crate) fn start_speed(speed: Option<&Found<f64>>, vehicle: &Vehicle, reporter: &mut Reporter) -> f64 {
     let Some(speed) = speed else { return vehicle.speed_min };
     let Vehicle { speed_min, speed_max, .. } = *vehicle;
     if !(speed_min..=speed_max).contains(&speed.value) {
@@ -161,33 +162,33 @@ pub(crate) fn start_speed(speed: Option<&Found<f64>>, vehicle: &Vehicle, reading
             "`speed` of {} m/s is outside the vehicle's limits, {speed_min} to {speed_max} m/s",
             speed.value
         );
-        reading.note(speed.place, message);
+        reporter.report(speed.place, message);
     }
     speed.value
 }
 
 /// Notes a wanted distance (m) that falls below the least one the law divides by.
-pub(crate) fn check_distance(least: f64, distance_min: f64, place: Place, reading: &mut Reading) {
+pub(crate) fn check_distance(least: f64, distance_min: f64, place: Span, reporter: &mut Reporter) {
     if least < distance_min {
         let message =
             format!("`distance` falls to {least} m, below the law's `distance_min` of {distance_min} m");
-        reading.note(place, message);
+        reporter.report(place, message);
     }
 }
 
 /// Notes a path that its robot cannot drive.
-pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reading: &mut Reading) {
+pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reporter: &mut Reporter) {
     let (speed, turn_rate) = path.value.peaks();
     if speed > vehicle.speed_max {
         let message = format!(
             "`path` reaches {speed} m/s, above the vehicle's `speed_max` of {} m/s",
             vehicle.speed_max
         );
-        reading.note(path.place, message);
+        reporter.report(path.place, message);
     }
     if let Some(turn_rate) = turn_rate.filter(|rate| *rate > vehicle.turn_rate_max) {
         let most = vehicle.turn_rate_max;
-        reading.note(
+        reporter.report(
             path.place,
             format!("`path` turns at {turn_rate} rad/s, above `turn_rate_max` of {most} rad/s"),
         );
@@ -201,7 +202,7 @@ pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reading: &mut Re
                 speed / turn_rate.abs(),
                 1.0 / curvature
             );
-            reading.note(path.place, message);
+            reporter.report(path.place, message);
         }
     }
 }
@@ -210,13 +211,13 @@ pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reading: &mut Re
 pub(crate) fn start_pose(
     pose: Option<&Found<[f64; 3]>>,
     path: Option<&Path>,
-    place: Place,
-    reading: &mut Reading,
+    place: Span,
+    reporter: &mut Reporter,
 ) -> Option<Pose> {
     let start = path.and_then(Path::start);
     let Some(pose) = pose else {
         if start.is_none() {
-            reading.note(place, "`pose` is missing: write [x, y, heading]");
+            reporter.report(place, "`pose` is missing: write [x, y, heading]");
         }
         return start;
     };
@@ -224,7 +225,7 @@ pub(crate) fn start_pose(
     if let Some(start) = start.filter(|start| (x - start.x).hypot(y - start.y) > 1e-6) {
         let message =
             format!("`pose` must start at the first of the path's points, [{}, {}]", start.x, start.y);
-        reading.note(pose.place, message);
+        reporter.report(pose.place, message);
     }
     Some(Pose::new(x, y, heading))
 }

@@ -3,12 +3,12 @@
 use crate::{
     Channel, Follow, LawKind, Mode, Robot, Role, Sensing, SensingKind, Vision,
     robots::Draft,
-    text::{Found, Place, Reading, words::quoted},
+    text::{Found, Reporter, Span, words::quoted},
     types::{SensingKind as Kind, TimePart, VisionPart},
 };
 use std::collections::HashMap;
 use std::f64::consts::PI;
-use vocabulary::{FACES, Lens, Mount, Pose, Shell, TAGS, wrap};
+use vocabulary::{CameraModel, CameraMount, FACES, Pose, Shell, TAGS, wrap};
 
 /// Robots whose shells the tag family can tell apart.
 const MOST_SHELLS: usize = TAGS / FACES;
@@ -26,26 +26,26 @@ impl Vision {
     }
 
     /// Where the camera of a robot sits.
-    pub fn mount(&self, robot: &Robot) -> Mount {
-        let (usual, shell) = (Mount::fitting(&robot.vehicle.body()), self.shell(robot));
+    pub fn camera_mount(&self, robot: &Robot) -> CameraMount {
+        let (usual, shell) = (CameraMount::fitting(&robot.vehicle.body()), self.shell(robot));
         // As far above a shell of another size as above the usual one.
         let above = usual.height + (self.shell_scale - 1.0) * (usual.height - shell.height);
-        Mount {
+        CameraMount {
             forward: self.camera_forward.unwrap_or(usual.forward),
             height: self.camera_height.unwrap_or(above),
         }
     }
 
     /// What every camera sees.
-    pub fn lens(&self) -> Lens {
+    pub fn camera_model(&self) -> CameraModel {
         let [width, height] = self.resolution;
         let distortion = [self.k1, self.k2, self.p1, self.p2, self.k3];
-        Lens { distortion, ..Lens::pinhole(width, height, self.field_of_view) }
+        CameraModel { distortion, ..CameraModel::pinhole(width, height, self.field_of_view) }
     }
 }
 
 /// Numbers for the robots that name none: the lowest that are free.
-pub(crate) fn number(drafts: &mut [Draft], reading: &mut Reading) {
+pub(crate) fn number(drafts: &mut [Draft], reporter: &mut Reporter) {
     let mut taken: HashMap<usize, String> = HashMap::new();
     for draft in drafts.iter() {
         let (Some(number), Some(name)) = (&draft.number, &draft.named.name) else { continue };
@@ -56,7 +56,7 @@ pub(crate) fn number(drafts: &mut [Draft], reading: &mut Reading) {
                 number.value,
                 first + FACES - 1
             );
-            reading.note(number.place, message);
+            reporter.report(number.place, message);
         }
     }
     let mut free = (0..).filter(|number| !taken.contains_key(number));
@@ -76,7 +76,7 @@ pub(crate) struct Said<'a> {
 }
 
 /// Notes looks that cannot be.
-pub(crate) fn check_sight(said: &Said<'_>, drafts: &[Draft], reading: &mut Reading) {
+pub(crate) fn check_sight(said: &Said<'_>, drafts: &[Draft], reporter: &mut Reporter) {
     let robots: HashMap<&str, &Robot> = drafts
         .iter()
         .filter_map(|draft| draft.robot.as_ref())
@@ -90,19 +90,19 @@ pub(crate) fn check_sight(said: &Said<'_>, drafts: &[Draft], reading: &mut Readi
         if kind == Kind::Truth {
             continue;
         }
-        check_law(said, follow, robot, name.place, reading);
-        check_hold(follow, robot, name.place, reading);
+        check_law(said, follow, robot, name.place, reporter);
+        check_hold(follow, robot, name.place, reporter);
         let leader = robots.get(follow.leader.as_str()).copied();
         if let Some(leader) = leader.filter(|_| kind.needs_tags()) {
             if !inside {
-                inside = check_shell(said, robot, name.place, reading);
+                inside = check_shell(said, robot, name.place, reporter);
             }
-            check_visible(said, follow, (leader, robot), name.place, reading);
+            check_visible(said, follow, (leader, robot), name.place, reporter);
         }
     }
 }
 
-fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Place, reading: &mut Reading) {
+fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Span, reporter: &mut Reporter) {
     let word = SensingKind::form().word_of(follow.sensing.kind);
     if follow.law.kind != LawKind::OutputFeedback {
         let law = LawKind::form().word_of(follow.law.kind);
@@ -111,7 +111,7 @@ fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Place, read
              `output-feedback`",
             robot.name
         );
-        reading.note(place, message);
+        reporter.report(place, message);
     }
     if let Some(mode) = said.time.mode.as_ref().filter(|mode| mode.value == Mode::Continuous) {
         let words =
@@ -120,12 +120,12 @@ fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Place, read
             "mode `continuous` knows no looks, but `{}` senses by `{word}`; use one of {words}",
             robot.name
         );
-        reading.note(mode.place, message);
+        reporter.report(mode.place, message);
     }
 }
 
 /// Notes looks that come so late or so seldom that a leader is lost between any two of them.
-fn check_hold(follow: &Follow, robot: &Robot, place: Place, reading: &mut Reading) {
+fn check_hold(follow: &Follow, robot: &Robot, place: Span, reporter: &mut Reporter) {
     let Sensing { rate, latency, hold, .. } = follow.sensing;
     if latency + 1.0 / rate >= hold {
         let message = format!(
@@ -134,32 +134,32 @@ fn check_hold(follow: &Follow, robot: &Robot, place: Place, reading: &mut Readin
             robot.name,
             latency + 1.0 / rate
         );
-        reading.note(place, message);
+        reporter.report(place, message);
     }
 }
 
 /// Notes cameras and tags that do not fit the robot's shell; whether it did.
-fn check_shell(said: &Said<'_>, robot: &Robot, place: Place, reading: &mut Reading) -> bool {
-    let (shell, mount) = (said.vision.shell(robot), said.vision.mount(robot));
-    let place = |found: [Option<Place>; 3]| found.into_iter().flatten().next().unwrap_or(place);
+fn check_shell(said: &Said<'_>, robot: &Robot, place: Span, reporter: &mut Reporter) -> bool {
+    let (shell, camera_mount) = (said.vision.shell(robot), said.vision.camera_mount(robot));
+    let place = |found: [Option<Span>; 3]| found.into_iter().flatten().next().unwrap_or(place);
     let at = |found: &Option<Found<f64>>| found.as_ref().map(|found| found.place);
     let part = said.part;
-    let up = mount.height - shell.height;
+    let up = camera_mount.height - shell.height;
     let half = 0.5 * shell.face_height;
     let within = shell.apothem - up * shell.lean.tan();
     let camera =
         [&part.camera_height, &part.camera_forward].map(|found| found.as_ref().map(|found| found.place));
-    if up.abs() < half && (mount.forward - shell.forward).abs() < within {
+    if up.abs() < half && (camera_mount.forward - shell.forward).abs() < within {
         let message = format!(
             "the camera of `{}` is inside its own shell: at {:.3} m over the ground, and the shell reaches from {:.3} m to \
              {:.3} m; set `camera_height` above that, or `camera_forward` beyond {:.3} m",
             robot.name,
-            mount.height,
+            camera_mount.height,
             shell.height - half,
             shell.height + half,
             shell.forward + within
         );
-        reading.note(place([camera[0], camera[1], at(&part.shell_scale)]), message);
+        reporter.report(place([camera[0], camera[1], at(&part.shell_scale)]), message);
         return true;
     }
     let slope = shell.face_height / shell.lean.cos();
@@ -171,7 +171,7 @@ fn check_shell(said: &Said<'_>, robot: &Robot, place: Place, reading: &mut Readi
             2.0 * shell.half_width(0.0)
         );
         let cell = part.tag_cell.as_ref().map(|found| found.place);
-        reading.note(place([cell, at(&part.shell_scale), None]), message);
+        reporter.report(place([cell, at(&part.shell_scale), None]), message);
         return true;
     }
     false
@@ -182,31 +182,32 @@ fn check_visible(
     said: &Said<'_>,
     follow: &Follow,
     (leader, robot): (&Robot, &Robot),
-    place: Place,
-    reading: &mut Reading,
+    place: Span,
+    reporter: &mut Reporter,
 ) {
     if leader.number >= MOST_SHELLS {
         let message = format!(
             "`{}` follows `{}` by its tags, but that is number {} and there are tags for {MOST_SHELLS} robots only",
             robot.name, leader.name, leader.number
         );
-        reading.note(place, message);
+        reporter.report(place, message);
         return;
     }
     let (Channel::Constant(distance), Channel::Constant(bearing)) = (&follow.distance, &follow.bearing)
     else {
         return;
     };
-    let (shell, mount, lens) = (said.vision.shell(leader), said.vision.mount(robot), said.vision.lens());
+    let (shell, camera_mount, camera_model) =
+        (said.vision.shell(leader), said.vision.camera_mount(robot), said.vision.camera_model());
     let (sin, cos) = bearing.sin_cos();
-    let [x, y] = Pose::new(distance * cos, distance * sin, 0.0).world_from_body(mount.forward, 0.0);
-    let eye = [x, y, mount.height];
+    let [x, y] = Pose::new(distance * cos, distance * sin, 0.0).world_from_body(camera_mount.forward, 0.0);
+    let eye = [x, y, camera_mount.height];
     let faces = (0..FACES).filter_map(|face| {
         let frame = shell.body_from_face(face);
         let [right, up, out] = frame.inverse().apply(eye);
         let away = (right * right + up * up + out * out).sqrt();
         let slant = out / away;
-        (slant > STEEPEST.cos()).then_some(lens.focal * shell.cell * slant.sqrt() / away)
+        (slant > STEEPEST.cos()).then_some(camera_model.focal * shell.cell * slant.sqrt() / away)
     });
     // Side by side and equally headed, as a formation is that has settled.
     let pan = wrap(bearing - PI).abs() - 0.5 * said.vision.field_of_view;
@@ -219,7 +220,7 @@ fn check_visible(
             wrap(bearing - PI).abs().to_degrees(),
             said.vision.pan_max.to_degrees()
         );
-        reading.note(place, message);
+        reporter.report(place, message);
         return;
     }
     let largest = faces.fold(None, |most: Option<f64>, size| Some(most.map_or(size, |most| most.max(size))));
@@ -235,7 +236,7 @@ fn check_visible(
              reading one takes {LEAST_CELL}; come nearer, or give more `resolution` or a larger `shell_scale`",
             robot.name
         ),
-        Some(pixels) if 8.0 * pixels > f64::from(lens.width.min(lens.height)) => format!(
+        Some(pixels) if 8.0 * pixels > f64::from(camera_model.width.min(camera_model.height)) => format!(
             "`{}` can never see its leader: at {distance} m a tag covers {:.0} pixels, more than the picture has; go farther away, or \
              give a wider `field_of_view`",
             robot.name,
@@ -243,5 +244,5 @@ fn check_visible(
         ),
         Some(_) => return,
     };
-    reading.note(place, message);
+    reporter.report(place, message);
 }

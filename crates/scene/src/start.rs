@@ -4,13 +4,13 @@ use crate::{
     Ground, Robot,
     outline::Outline,
     props::Placed,
-    text::{Place, Reading},
+    text::{Reporter, Span},
 };
 
 /// A body at its start.
 struct Body<'a> {
     name: &'a str,
-    place: Place,
+    place: Span,
     is_prop: bool,
     outline: Outline,
     /// [foot, top], m over z = 0.
@@ -19,10 +19,10 @@ struct Body<'a> {
 
 /// Notes robots that overlap each other or a prop where they start; props may overlap each other.
 pub(crate) fn check_start<'a>(
-    robots: impl Iterator<Item = (Place, &'a Robot)>,
+    robots: impl Iterator<Item = (Span, &'a Robot)>,
     props: &'a [Placed],
     ground: &Ground,
-    reading: &mut Reading,
+    reporter: &mut Reporter,
 ) {
     let height = |x, y| ground.terrain.as_ref().map_or(0.0, |terrain| terrain.at(x, y).height);
     let robots = robots.map(|(place, robot)| {
@@ -48,13 +48,13 @@ pub(crate) fn check_start<'a>(
         let end = body.outline.span()[1];
         let near = bodies.iter().skip(index + 1).take_while(|other| other.outline.span()[0] < end);
         for other in near.filter(|other| body.meets(other)) {
-            if reading.is_full() {
+            if reporter.is_full() {
                 return;
             }
             // The one that is written later is the one to move.
             let (first, second) = if body.place <= other.place { (body, other) } else { (other, body) };
             let message = format!("`{}` and `{}` overlap where they start", first.name, second.name);
-            reading.note(second.place, message);
+            reporter.report(second.place, message);
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::{
     files::read_beside,
     path_form::{MOST_ROWS, SPEED, TIME, TURN_RATE},
-    text::{Form, Node, Place, Reading, form::Number},
+    text::{Form, Node, Reporter, Span, form::Number},
 };
 use serde_json::{Value as Json, json};
 use vocabulary::counted;
@@ -17,9 +17,9 @@ pub(crate) struct CsvForm;
 impl Form for CsvForm {
     type Out = Vec<[f64; 3]>;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Vec<[f64; 3]>> {
-        let (text, source) = read_beside(node, reading)?;
-        read_rows(&text, source, reading)
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Vec<[f64; 3]>> {
+        let (text, source) = read_beside(node, reporter)?;
+        read_rows(&text, source, reporter)
     }
 
     fn schema(&self) -> Json {
@@ -37,21 +37,21 @@ fn out_of_order(last: Option<f64>, value: f64) -> Option<String> {
 }
 
 /// Notes where numbers do not rise from 0.
-pub(crate) fn check_rising(values: impl Iterator<Item = f64>, place: Place, reading: &mut Reading) {
+pub(crate) fn check_rising(values: impl Iterator<Item = f64>, place: Span, reporter: &mut Reporter) {
     let mut last = None;
     for value in values {
         if let Some(fault) = out_of_order(last, value) {
-            reading.note(place, fault);
+            reporter.report(place, fault);
             return;
         }
         last = Some(value);
     }
 }
 
-fn read_rows(text: &str, source: usize, reading: &mut Reading) -> Option<Vec<[f64; 3]>> {
+fn read_rows(text: &str, source: usize, reporter: &mut Reporter) -> Option<Vec<[f64; 3]>> {
     let mut table =
         csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
-    let columns = find_columns(table.headers().ok()?, source, reading)?;
+    let columns = find_columns(table.headers().ok()?, source, reporter)?;
     let mut rows: Vec<[f64; 3]> = Vec::new();
     let mut good = true;
     for record in table.records().take(MOST_ROWS + 1) {
@@ -64,32 +64,32 @@ fn read_rows(text: &str, source: usize, reading: &mut Reading) -> Option<Vec<[f6
         match row.and_then(|record| read_row(&record, columns)) {
             Ok(row) => {
                 if let Some(fault) = out_of_order(rows.last().map(|last| last[0]), row[0]) {
-                    reading.note(place, fault);
+                    reporter.report(place, fault);
                 }
                 rows.push(row);
             }
             Err(fault) => {
-                reading.note(place, fault);
+                reporter.report(place, fault);
                 good = false;
             }
         }
     }
     if good && !(1..=MOST_ROWS).contains(&rows.len()) {
         let message = format!("a table needs 1 to {MOST_ROWS} rows under its header");
-        reading.note(Place { source, start: 0, end: 0 }, message);
+        reporter.report(Span { source, start: 0, end: 0 }, message);
         return None;
     }
     good.then_some(rows)
 }
 
-fn find_columns(header: &csv::StringRecord, source: usize, reading: &mut Reading) -> Option<[usize; 3]> {
+fn find_columns(header: &csv::StringRecord, source: usize, reporter: &mut Reporter) -> Option<[usize; 3]> {
     let find = |(name, _): (&str, Number)| header.iter().position(|column| column == name);
     let [Some(t), Some(v), Some(omega)] = COLUMNS.map(find) else {
         let names = COLUMNS.map(|(name, _)| name).join(", ");
         let found = header.iter().take(10).collect::<Vec<_>>().join(", ");
         let hint = header.iter().find_map(separator).unwrap_or_default();
         let message = format!("the columns must be {names}, not {found}{hint}");
-        reading.note(Place { source, start: 0, end: 0 }, message);
+        reporter.report(Span { source, start: 0, end: 0 }, message);
         return None;
     };
     Some([t, v, omega])
@@ -129,7 +129,7 @@ pub(crate) fn separator(text: &str) -> Option<&'static str> {
 
 /// The line of the record that is read from a position in a file on. The reader stands behind the last record: the rest
 /// of its line end, empty lines and comments come first.
-pub(crate) fn line_at(position: Option<&csv::Position>, text: &str, source: usize) -> Place {
+pub(crate) fn line_at(position: Option<&csv::Position>, text: &str, source: usize) -> Span {
     let mut start = position.map_or(0, |position| position.byte() as usize);
     let length = loop {
         let rest = text.get(start..).unwrap_or("");
@@ -139,7 +139,7 @@ pub(crate) fn line_at(position: Option<&csv::Position>, text: &str, source: usiz
         }
         start += length + 1;
     };
-    Place { source, start, end: start + length }
+    Span { source, start, end: start + length }
 }
 
 #[cfg(test)]
@@ -149,10 +149,10 @@ mod tests {
 
     /// Line and text of the fault of a table that has one in its row `2,x,0`.
     fn fault(text: &str) -> (usize, String) {
-        let mut reading = Reading::new(Path::new(""));
-        let source = reading.add_source("way.csv".to_owned(), text);
-        assert_eq!(read_rows(text, source, &mut reading), None);
-        let diagnostics = reading.into_diagnostics();
+        let mut reporter = Reporter::new(Path::new(""));
+        let source = reporter.add_source("way.csv".to_owned(), text);
+        assert_eq!(read_rows(text, source, &mut reporter), None);
+        let diagnostics = reporter.into_diagnostics();
         let [one] = diagnostics.all() else { panic!("{diagnostics}") };
         (one.line, one.excerpt.clone())
     }

@@ -2,7 +2,7 @@
 
 use crate::{
     Vehicle, VehicleKind,
-    text::{Form, Found, Keys, Node, Part, Place, Reading, Value, table, words::quoted},
+    text::{Form, Found, Keys, Node, Part, Reporter, Span, Value, table, words::quoted},
     types::VehiclePart,
 };
 use serde::{Serializer, ser};
@@ -37,13 +37,13 @@ pub(crate) struct VehicleForm;
 impl Form for VehicleForm {
     type Out = VehiclePart;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<VehiclePart> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<VehiclePart> {
         match &node.value {
             Value::Text(_) => {
-                let value = VehicleKind::form().read(node, reading)?;
+                let value = VehicleKind::form().read(node, reporter)?;
                 Some(VehiclePart { kind: Some(Found { place: node.place, value }), ..VehiclePart::default() })
             }
-            _ => table::<VehiclePart>().read(node, reading),
+            _ => table::<VehiclePart>().read(node, reporter),
         }
     }
 
@@ -90,19 +90,19 @@ pub(crate) struct Written<'a> {
     /// Step of the physics, s.
     pub(crate) step: f64,
     /// Where that is said, or the robot where it is not.
-    pub(crate) place: Place,
+    pub(crate) place: Span,
 }
 
 /// The vehicle that is written, with notes where its values contradict each other.
-pub(crate) fn vehicle(written: &Written<'_>, reading: &mut Reading) -> Vehicle {
+pub(crate) fn vehicle(written: &Written<'_>, reporter: &mut Reporter) -> Vehicle {
     let nothing = VehiclePart::default();
     let usual = usual_kind(written.scene);
     let kind = written.own.kind.as_ref().map_or(usual, |found| found.value);
-    check_meaning(written.own, kind, reading);
+    check_meaning(written.own, kind, reporter);
     let scene = if kind == usual { written.scene } else { &nothing };
     let vehicle = written.own.complete_with(scene, Vehicle::ready_made(kind));
     let check = Check { written: &Written { scene, ..*written }, vehicle };
-    check.run(reading);
+    check.run(reporter);
     vehicle
 }
 
@@ -112,13 +112,15 @@ pub(crate) fn usual_kind(scene: &VehiclePart) -> VehicleKind {
 }
 
 /// Notes keys of `part` that mean nothing for vehicles of `kind`.
-pub(crate) fn check_meaning(part: &VehiclePart, kind: VehicleKind, reading: &mut Reading) {
+pub(crate) fn check_meaning(part: &VehiclePart, kind: VehicleKind, reporter: &mut Reporter) {
     for (key, place) in part.places().into_iter().filter(|(key, _)| !applies(key, kind)) {
         let others = VehicleKind::ALL.into_iter().filter(|other| applies(key, *other));
         let others = quoted(others.map(|other| VehicleKind::form().word_of(other)));
         let kind = VehicleKind::form().word_of(kind);
-        reading
-            .note(place, format!("`{key}` means nothing for a vehicle of kind `{kind}`; it is for {others}"));
+        reporter.report(
+            place,
+            format!("`{key}` means nothing for a vehicle of kind `{kind}`; it is for {others}"),
+        );
     }
 }
 
@@ -129,64 +131,64 @@ struct Check<'a> {
 }
 
 impl Check<'_> {
-    fn run(&self, reading: &mut Reading) {
+    fn run(&self, reporter: &mut Reporter) {
         let Vehicle { speed_min, speed_max, .. } = self.vehicle;
         if speed_min >= speed_max {
             let message =
                 format!("`speed_min` of {speed_min} m/s must be below `speed_max` of {speed_max} m/s");
-            self.note(&["speed_max", "speed_min"], message, reading);
+            self.report(&["speed_max", "speed_min"], message, reporter);
         }
         if self.vehicle.kind.has_wheels() {
-            self.measures(reading);
-            self.springs(reading);
-            self.step(reading);
+            self.measures(reporter);
+            self.springs(reporter);
+            self.step(reporter);
         }
     }
 
     /// Notes `message` at the first of `keys` that is written.
-    fn note(&self, keys: &[&str], message: String, reading: &mut Reading) {
+    fn report(&self, keys: &[&str], message: String, reporter: &mut Reporter) {
         let Written { own, scene, place, .. } = *self.written;
         let written = [own.places(), scene.places()].concat();
         let find = |key: &&str| written.iter().find(|(written, _)| written == key);
-        reading.note(keys.iter().find_map(find).map_or(place, |(_, place)| *place), message);
+        reporter.report(keys.iter().find_map(find).map_or(place, |(_, place)| *place), message);
     }
 
-    fn measures(&self, reading: &mut Reading) {
+    fn measures(&self, reporter: &mut Reporter) {
         let Vehicle { length, width, height, wheelbase, track, wheel_radius, .. } = self.vehicle;
         let Vehicle { mass_height, clearance, .. } = self.vehicle;
         if wheel_radius >= height {
             let message = format!(
                 "the middle of a wheel of `wheel_radius` {wheel_radius} m must lie below the roof, `height` of {height} m"
             );
-            self.note(&["wheel_radius", "height"], message, reading);
+            self.report(&["wheel_radius", "height"], message, reporter);
         } else if 2.0 * wheel_radius >= wheelbase {
             let message = format!(
                 "front and rear wheels of `wheel_radius` {wheel_radius} m overlap: below half the `wheelbase` of {wheelbase} m"
             );
-            self.note(&["wheel_radius", "wheelbase"], message, reading);
+            self.report(&["wheel_radius", "wheelbase"], message, reporter);
         }
         if clearance >= height {
             let message = format!("`clearance` of {clearance} m must be below `height` of {height} m");
-            self.note(&["clearance", "height"], message, reading);
+            self.report(&["clearance", "height"], message, reporter);
         }
         if mass_height > height {
             let message = format!("`mass_height` of {mass_height} m must be at most `height` of {height} m");
-            self.note(&["mass_height", "height"], message, reading);
+            self.report(&["mass_height", "height"], message, reporter);
         }
         if wheelbase > 1.2 * length {
             let message = format!(
                 "`wheelbase` of {wheelbase} m is too large for a `length` of {length} m: at most 1.2 of it"
             );
-            self.note(&["wheelbase", "length"], message, reading);
+            self.report(&["wheelbase", "length"], message, reporter);
         }
         if track > 1.5 * width {
             let message =
                 format!("`track` of {track} m is too large for a `width` of {width} m: at most 1.5 of it");
-            self.note(&["track", "width"], message, reading);
+            self.report(&["track", "width"], message, reporter);
         }
     }
 
-    fn springs(&self, reading: &mut Reading) {
+    fn springs(&self, reporter: &mut Reporter) {
         let Vehicle { mass, spring, travel, .. } = self.vehicle;
         let sag = mass * GRAVITY / 4.0 / spring;
         if sag >= 5.0 * travel {
@@ -195,11 +197,11 @@ impl Check<'_> {
                 "springs of {spring} N/m do not carry {mass} kg: they sag by {sag:.3} m, with a `travel` of {travel} m; \
                  stiffer than {least:.0} N/m"
             );
-            self.note(&["spring", "mass", "travel"], message, reading);
+            self.report(&["spring", "mass", "travel"], message, reporter);
         }
     }
 
-    fn step(&self, reading: &mut Reading) {
+    fn step(&self, reporter: &mut Reporter) {
         let Vehicle { mass, spring, damping, speed_max, width, .. } = self.vehicle;
         let step = self.written.step;
         // Explicit integration of the springs: both products have to stay below 1.
@@ -210,7 +212,7 @@ impl Check<'_> {
                 0.25 * mass / (step * step),
                 1.0 / frequency
             );
-            self.note(&["spring", "mass"], message, reading);
+            self.report(&["spring", "mass"], message, reporter);
         }
         let rate = 4.0 * damping / mass;
         if rate * step >= 1.0 {
@@ -219,7 +221,7 @@ impl Check<'_> {
                 0.25 * mass / step,
                 1.0 / rate
             );
-            self.note(&["damping", "mass"], message, reading);
+            self.report(&["damping", "mass"], message, reporter);
         }
         if speed_max * step > 0.5 * width {
             let message = format!(
@@ -228,7 +230,7 @@ impl Check<'_> {
                 0.5 * width / step,
                 0.5 * width / speed_max
             );
-            self.note(&["speed_max", "width"], message, reading);
+            self.report(&["speed_max", "width"], message, reporter);
         }
     }
 }

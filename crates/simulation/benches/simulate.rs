@@ -37,8 +37,8 @@ fn seconds_per_second(c: &mut Criterion) {
                 b.iter_batched_ref(
                     || Simulation::new(setup.clone()),
                     |run| {
-                        while let Some(moment) = run.next_moment() {
-                            black_box(moment);
+                        while let Some(record) = run.next_record() {
+                            black_box(record);
                         }
                     },
                     criterion::BatchSize::LargeInput,

@@ -2,15 +2,15 @@
 
 use crate::caption::caption;
 use crate::error::{BuildError, EPSILON_MIN};
-use crate::regime::{Regime, Turn};
+use crate::parameters::{ParameterSet, ScheduledChange};
 use crate::stage::{handling, stage};
 use crate::step::{ObserverStart, Setup, Timing};
-use formation::{Course, EdgeLaw, Formation, Graph, LookLaw, Method, SetPointCourse};
-use perception::sensors::{CameraModel, NoiseModel, Senses, Sensor, Source};
+use formation::{EdgeLaw, Formation, Graph, LookLaw, Method, ScalarTrajectory, SetPointTrajectory};
+use perception::sensors::{CameraSettings, NoiseModel, Sensor, SensorConfig, Source};
 use scene::{Channel, Follow, OnContact, Role, Scene, SensingKind};
 use std::sync::Arc;
-use vocabulary::{Cast, Edge, Light, Member};
-use world::Stage;
+use vocabulary::{Edge, FleetInfo, Light, RobotInfo};
+use world::WorldSetup;
 
 /// Puts the run of `scene` together.
 ///
@@ -29,18 +29,18 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let limits = stage.actors.iter().map(|actor| actor.robot.limits).collect();
     let edges = graph.edges().to_vec();
     let laws = followers.iter().map(|(_, follow)| edge_law(follow)).collect();
-    let member = |robot: &scene::Robot| Member {
+    let member = |robot: &scene::Robot| RobotInfo {
         name: robot.name.clone(),
         leads: matches!(robot.role, Role::Lead { .. }),
         body: robot.vehicle.body(),
         shell: Some(scene.vision.shell(robot)),
-        mount: scene.vision.mount(robot),
-        lens: scene.vision.lens(),
+        camera_mount: scene.vision.camera_mount(robot),
+        camera_model: scene.vision.camera_model(),
     };
-    let members: Vec<Member> = scene.robots.iter().map(member).collect();
+    let members: Vec<RobotInfo> = scene.robots.iter().map(member).collect();
     Ok(Setup {
-        senses: senses(scene, &followers, (&edges, &members), &stage),
-        cast: Cast {
+        sensor_config: sensor_config(scene, &followers, (&edges, &members), &stage),
+        fleet: FleetInfo {
             title: scene.title.clone(),
             caption: caption(scene),
             duration: scene.time.duration,
@@ -49,7 +49,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
                 sun_azimuth: scene.environment.sun_azimuth,
                 haze_from: scene.environment.haze_from,
             },
-            members,
+            robots: members,
             edges,
             looks: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
@@ -71,15 +71,15 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
 }
 
 /// What `change` puts in place.
-fn turn(change: &scene::Change) -> Result<Turn, BuildError> {
+fn turn(change: &scene::Change) -> Result<ScheduledChange, BuildError> {
     let robots = &change.then.robots;
     let followers: Vec<(&str, &Follow)> = robots.iter().filter_map(follows).collect();
     check_stiffness(&change.then, &followers)?;
-    let regime = Regime {
+    let parameters = ParameterSet {
         laws: followers.iter().map(|(_, follow)| edge_law(follow)).collect(),
         handling: robots.iter().map(|robot| handling(&robot.vehicle)).collect(),
     };
-    Ok(Turn { at: change.at, regime })
+    Ok(ScheduledChange { at: change.at, parameters })
 }
 
 fn check_stiffness(scene: &Scene, followers: &[(&str, &Follow)]) -> Result<(), BuildError> {
@@ -121,7 +121,10 @@ pub(crate) fn edge_law(follow: &Follow) -> EdgeLaw {
         },
         observer,
         looks: look_law(follow, observer),
-        set_point: SetPointCourse { distance: course(&follow.distance), bearing: course(&follow.bearing) },
+        set_point: SetPointTrajectory {
+            distance: course(&follow.distance),
+            bearing: course(&follow.bearing),
+        },
     }
 }
 
@@ -155,12 +158,12 @@ fn look_law(follow: &Follow, observer: formation::Observer) -> Option<LookLaw> {
 const TILT: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
 /// The senses of all followers; `None` where all are told the truth.
-fn senses(
+fn sensor_config(
     scene: &Scene,
     followers: &[(&str, &Follow)],
-    (edges, members): (&[Edge], &[Member]),
-    stage: &Stage,
-) -> Option<Arc<Senses>> {
+    (edges, members): (&[Edge], &[RobotInfo]),
+    stage: &WorldSetup,
+) -> Option<Arc<SensorConfig>> {
     let level = stage.terrain.is_none();
     let sensors = followers.iter().zip(edges).map(|((_, follow), edge)| {
         let sensing = &follow.sensing;
@@ -184,7 +187,7 @@ fn senses(
         }
     });
     let vision = &scene.vision;
-    let camera = CameraModel {
+    let camera = CameraSettings {
         blur: vision.blur,
         noise: vision.noise,
         exposure: vision.exposure,
@@ -195,17 +198,17 @@ fn senses(
     };
     let props: Vec<_> = stage.props.iter().map(|prop| prop.prop.clone()).collect();
     let (things, ground) = ((members, props.as_slice()), stage.terrain.clone());
-    let senses = Senses::new(edges, sensors.collect(), things, ground, camera, scene.seed);
-    senses.look().then(|| Arc::new(senses))
+    let sensor_config = SensorConfig::new(edges, sensors.collect(), things, ground, camera, scene.seed);
+    sensor_config.look().then(|| Arc::new(sensor_config))
 }
 
-fn course(channel: &Channel) -> Course {
+fn course(channel: &Channel) -> ScalarTrajectory {
     match channel {
-        Channel::Constant(value) => Course::Constant(*value),
+        Channel::Constant(value) => ScalarTrajectory::Constant(*value),
         Channel::Sinusoid { mean, amplitude, rate } => {
-            Course::Sinusoid { mean: *mean, amplitude: *amplitude, rate: *rate }
+            ScalarTrajectory::Sinusoid { mean: *mean, amplitude: *amplitude, rate: *rate }
         }
-        Channel::Ramps(ramps) => Course::Ramps {
+        Channel::Ramps(ramps) => ScalarTrajectory::Ramps {
             from: ramps.first().map_or(0.0, |r| r.from),
             ramps: ramps.iter().map(|r| formation::Ramp { start: r.start, over: r.over, to: r.to }).collect(),
         },

@@ -2,25 +2,25 @@
 
 use crate::caption::short;
 use crate::error::BuildError;
-use formation::lead::Way;
+use formation::lead::SplinePath;
 use std::fmt;
-use vocabulary::{Drive, Limits, Profile};
+use vocabulary::{Limits, MotionInput, Trajectory};
 
 /// A motion along a path.
 #[derive(Debug, Clone)]
 pub(crate) enum Motion {
     /// Along a curve.
-    Way(std::sync::Arc<Way>),
+    SplinePath(std::sync::Arc<SplinePath>),
     /// Any other.
-    Free(std::sync::Arc<dyn Profile>),
+    Free(std::sync::Arc<dyn Trajectory>),
 }
 
 impl Motion {
     /// Speed and turn rate over time.
-    pub(crate) fn profile(&self) -> std::sync::Arc<dyn Profile> {
+    pub(crate) fn trajectory(&self) -> std::sync::Arc<dyn Trajectory> {
         match self {
-            Self::Way(way) => way.clone(),
-            Self::Free(profile) => profile.clone(),
+            Self::SplinePath(way) => way.clone(),
+            Self::Free(trajectory) => trajectory.clone(),
         }
     }
 }
@@ -55,7 +55,7 @@ pub(crate) fn undrivable(motion: &Motion, limits: &Limits, [from, to]: [f64; 2])
         let fits = turn_rate <= bound && speed <= limits.speed_max * SLACK;
         (!fits).then_some(Undrivable { time, point, speed, turn_rate, limits: *limits, step: None })
     };
-    if let Motion::Way(way) = motion {
+    if let Motion::SplinePath(way) = motion {
         let bends = way.bends(to).into_iter().filter(|bend| bend.time >= from && bend.speed > 0.0);
         let worst = bends.filter_map(|bend| {
             judge(bend.time, Some((bend.point, bend.place)), bend.speed, bend.speed * bend.curvature)
@@ -64,10 +64,10 @@ pub(crate) fn undrivable(motion: &Motion, limits: &Limits, [from, to]: [f64; 2])
             return Some(found);
         }
     }
-    let profile = motion.profile();
+    let trajectory = motion.trajectory();
     let instants = (0..=INSTANTS).filter_map(|k| {
         let time = from + (to - from) * f64::from(k) / f64::from(INSTANTS);
-        let Drive { speed, turn_rate, .. } = profile.at(time);
+        let MotionInput { speed, turn_rate, .. } = trajectory.at(time);
         judge(time, None, speed, turn_rate.abs())
     });
     instants.max_by(|a, b| a.excess().total_cmp(&b.excess()))

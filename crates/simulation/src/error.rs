@@ -2,7 +2,7 @@
 
 use crate::drivable::Undrivable;
 use formation::GraphError;
-use formation::lead::WayError;
+use formation::lead::SplinePathError;
 use thiserror::Error;
 
 /// Why a scene that reads well cannot run.
@@ -13,11 +13,11 @@ pub enum BuildError {
     Graph(#[from] GraphError),
     /// The way-points of a lead robot or of a guided prop make no curve.
     #[error("the path of `{robot}`: {source}")]
-    Way {
+    SplinePath {
         /// The lead robot or prop.
         robot: String,
         /// What is wrong with its points.
-        source: WayError,
+        source: SplinePathError,
     },
     /// A path of a lead robot or a guided prop asks for what it cannot do.
     #[error("the path of `{robot}` cannot be driven: {found}")]

@@ -2,14 +2,16 @@
 
 use std::fmt;
 use thiserror::Error;
-use vocabulary::{Cast, Contact, EdgeState, Frame, Moment, Motion, Placement, RobotState, Thing};
+use vocabulary::{
+    Contact, EdgeState, EntityId, FleetInfo, MeasurementRecord, Motion, Placement, RobotState, StepRecord,
+};
 
 /// Why a run ended before its time.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Fault {
     /// Cameras could not take their pictures.
     #[error("{0}")]
-    Eyes(String),
+    CameraRenderer(String),
     /// A quantity is no finite number.
     #[error(transparent)]
     NotFinite(#[from] NotFinite),
@@ -33,25 +35,25 @@ impl fmt::Display for NotFinite {
     }
 }
 
-/// The first quantity of `moment` that is no finite number.
-pub(crate) fn not_finite(moment: &Moment, cast: &Cast) -> Option<NotFinite> {
-    let Moment { snapshot, edges, contacts, frames } = moment;
-    let named = |thing| format!("`{}`", cast.name(thing));
+/// The first quantity of `record` that is no finite number.
+pub(crate) fn not_finite(record: &StepRecord, fleet: &FleetInfo) -> Option<NotFinite> {
+    let StepRecord { snapshot, edges, contacts, frames } = record;
+    let named = |thing| format!("`{}`", fleet.name(thing));
     let found = |whose: String, quantity| NotFinite { whose, quantity, time: snapshot.time };
     let mut robots = snapshot.robots.iter().enumerate();
     if let Some((k, quantity)) = robots.find_map(|(k, robot)| Some((k, of_robot(robot)?))) {
-        return Some(found(named(Thing::Robot(k)), quantity));
+        return Some(found(named(EntityId::Robot(k)), quantity));
     }
     let between = |edge: usize| {
-        cast.edges.get(edge).map_or_else(String::new, |edge| {
-            format!("{} → {}", named(Thing::Robot(edge.leader)), named(Thing::Robot(edge.follower)))
+        fleet.edges.get(edge).map_or_else(String::new, |edge| {
+            format!("{} → {}", named(EntityId::Robot(edge.leader)), named(EntityId::Robot(edge.follower)))
         })
     };
     if let Some((k, quantity)) = edges.iter().enumerate().find_map(|(k, edge)| Some((k, of_edge(edge)?))) {
         return Some(found(between(k), quantity));
     }
     if let Some(k) = snapshot.props.iter().position(|prop| !is_placed(prop)) {
-        return Some(found(named(Thing::Prop(k)), "placement"));
+        return Some(found(named(EntityId::Prop(k)), "placement"));
     }
     if let Some(contact) = contacts.iter().find(|contact| !is_told(contact)) {
         let [a, b] = contact.things.map(named);
@@ -106,36 +108,36 @@ fn is_told(contact: &Contact) -> bool {
     finite(contact.place) && finite(contact.normal) && finite([contact.begin, contact.end, contact.impulse])
 }
 
-fn is_seen(frame: &Frame) -> bool {
-    let Frame { sighting, arrival, truth, pan, .. } = frame;
-    let places = [sighting.relative, *truth].iter().all(|r| finite([r.distance, r.bearing, r.view_angle]));
+fn is_seen(frame: &MeasurementRecord) -> bool {
+    let MeasurementRecord { measurement, arrival, truth, pan, .. } = frame;
+    let places = [measurement.relative, *truth].iter().all(|r| finite([r.distance, r.bearing, r.view_angle]));
     let corners = frame.tags.iter().flatten().flatten().all(|corner| finite(*corner));
-    places && corners && finite(sighting.deviation) && finite([sighting.stamp, *arrival, *pan])
+    places && corners && finite(measurement.deviation) && finite([measurement.stamp, *arrival, *pan])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::{Body, Edge, Member};
+    use vocabulary::{Body, Edge, RobotInfo};
 
     #[test]
     fn what_is_no_number_is_named_with_its_owner_and_time() {
-        let member = |name: &str| Member::new(name, name == "ann", Body::default());
-        let cast = Cast {
-            members: vec![member("ann"), member("bob")],
+        let member = |name: &str| RobotInfo::new(name, name == "ann", Body::default());
+        let fleet = FleetInfo {
+            robots: vec![member("ann"), member("bob")],
             edges: vec![Edge { leader: 0, follower: 1 }],
-            ..Cast::default()
+            ..FleetInfo::default()
         };
-        let mut moment = Moment::default();
-        moment.snapshot.time = 2.5;
-        moment.snapshot.robots = vec![RobotState::default(); 2];
-        moment.edges = vec![EdgeState::default()];
-        assert_eq!(not_finite(&moment, &cast), None);
-        moment.edges[0].applied.turn_rate = f64::INFINITY;
-        let told = not_finite(&moment, &cast).expect("an edge").to_string();
+        let mut record = StepRecord::default();
+        record.snapshot.time = 2.5;
+        record.snapshot.robots = vec![RobotState::default(); 2];
+        record.edges = vec![EdgeState::default()];
+        assert_eq!(not_finite(&record, &fleet), None);
+        record.edges[0].applied.turn_rate = f64::INFINITY;
+        let told = not_finite(&record, &fleet).expect("an edge").to_string();
         assert_eq!(told, "the command of `ann` → `bob` is no finite number at 2.50 s");
-        moment.snapshot.robots[1].motion.turn_rate = f64::NAN;
-        let told = not_finite(&moment, &cast).expect("a robot").to_string();
+        record.snapshot.robots[1].motion.turn_rate = f64::NAN;
+        let told = not_finite(&record, &fleet).expect("a robot").to_string();
         assert_eq!(told, "the turn rate of `bob` is no finite number at 2.50 s");
     }
 }

@@ -1,6 +1,6 @@
 //! The loop itself: the only place that knows the order of a step.
 //!
-//! [`build`] turns a checked scene into a [`Setup`]; [`Simulation`] runs it, one [`Moment`](vocabulary::Moment) per
+//! [`build`] turns a checked scene into a [`Setup`]; [`Simulation`] runs it, one [`StepRecord`](vocabulary::Moment) per
 //! control sample; [`verdict`] holds what was measured against what the scene expects.
 
 mod build;
@@ -10,9 +10,9 @@ mod continuous;
 mod drivable;
 mod error;
 mod fault;
-mod lookout;
-mod regime;
+mod parameters;
 mod reins;
+mod sensing;
 mod stage;
 mod step;
 pub mod tune;
@@ -23,5 +23,5 @@ pub use caption::caption;
 pub use drivable::Undrivable;
 pub use error::BuildError;
 pub use fault::{Fault, NotFinite};
-pub use regime::{Regime, Turn};
+pub use parameters::{ParameterSet, ScheduledChange};
 pub use step::{ObserverStart, Setup, Simulation, Timing};

@@ -1,21 +1,21 @@
 //! A run in the hand: what may be changed while it goes, and copies of it.
 
-use crate::regime::{Regime, sample_at};
+use crate::parameters::{ParameterSet, sample_at};
 use crate::step::{Setup, Simulation, pending};
 use formation::EdgeLaw;
 use std::sync::Arc;
-use vocabulary::Moment;
+use vocabulary::StepRecord;
 
 impl Simulation {
     /// From the next sample on the laws, set points and limits of `setup` hold, until something else does. Poses, time,
     /// motions of lead robots and what observers believe stay; changes that are to come stay too. `setup` is that of a
     /// scene which this run's scene leads to while it goes, see [`scene::Scene::sets_to`]; any other is not taken.
-    pub fn adopt(&mut self, setup: &Setup) {
+    pub fn apply_parameters(&mut self, setup: &Setup) {
         let fits = setup.formation.edges() == self.formation.edges()
-            && setup.cast.members.len() == self.cast.members.len();
+            && setup.fleet.robots.len() == self.fleet.robots.len();
         debug_assert!(fits, "the setup of another formation");
         if fits {
-            self.adopted = Some(Arc::new(Regime::of(setup)));
+            self.adopted = Some(Arc::new(ParameterSet::of(setup)));
         }
     }
 
@@ -26,19 +26,22 @@ impl Simulation {
     }
 
     /// The last moment, as it was when it was computed.
-    pub fn moment(&self) -> &Moment {
-        &self.moment
+    pub fn record(&self) -> &StepRecord {
+        &self.record
     }
 
     /// Followers are told the truth from now on, whatever their sensors: to look ahead where pictures cannot be drawn.
     pub fn trust(&mut self) {
-        self.lookout = None;
-        let limits = (0..self.cast.members.len()).map(|robot| *self.formation.limits(robot)).collect();
-        self.formation.adopt(trusting(self.formation.laws()), limits);
-        let told = |regime: &Regime| Regime { laws: trusting(&regime.laws), ..regime.clone() };
-        self.adopted = self.adopted.take().map(|regime| Arc::new(told(&regime)));
-        for (_, regime) in &mut self.changes {
-            *regime = Arc::new(told(regime));
+        self.sensing = None;
+        let limits = (0..self.fleet.robots.len()).map(|robot| *self.formation.limits(robot)).collect();
+        self.formation.apply_parameters(trusting(self.formation.laws()), limits);
+        let told = |parameters: &ParameterSet| ParameterSet {
+            laws: trusting(&parameters.laws),
+            ..parameters.clone()
+        };
+        self.adopted = self.adopted.take().map(|parameters| Arc::new(told(&parameters)));
+        for (_, parameters) in &mut self.changes {
+            *parameters = Arc::new(told(parameters));
         }
     }
 
@@ -50,7 +53,7 @@ impl Simulation {
     /// Goes on until `duration` s at least.
     pub fn extend_to(&mut self, duration: f64) {
         self.last_sample = self.last_sample.max(sample_at(duration, self.period));
-        self.cast.duration = self.cast.duration.max(duration);
+        self.fleet.duration = self.fleet.duration.max(duration);
     }
 
     /// Adds to the rates an edge's observer estimates, [m/s, rad/s]: to watch it recover.
@@ -59,8 +62,8 @@ impl Simulation {
             estimate.rates[0] += by[0];
             estimate.rates[1] += by[1];
         }
-        if let Some(lookout) = &mut self.lookout {
-            lookout.disturb(edge, by);
+        if let Some(sensing) = &mut self.sensing {
+            sensing.disturb(edge, by);
         }
     }
 
@@ -68,14 +71,14 @@ impl Simulation {
     #[must_use]
     pub fn save(&self) -> Self {
         Self {
-            cast: self.cast.clone(),
+            fleet: self.fleet.clone(),
             formation: self.formation.clone(),
             state: self.state.clone(),
             plant: self.plant.save(),
             observations: self.observations.clone(),
-            lookout: self.lookout.clone(),
+            sensing: self.sensing.clone(),
             frames: self.frames.clone(),
-            moment: self.moment.clone(),
+            record: self.record.clone(),
             spare: self.spare.clone(),
             fault: self.fault.clone(),
             changes: self.changes.clone(),

@@ -2,17 +2,17 @@
 
 use crate::drivable::{Motion, Undrivable, undrivable};
 use crate::error::BuildError;
-use formation::Course;
-use formation::lead::{Courses, Hermite, Pace, Table, Way, WayError};
+use formation::ScalarTrajectory;
+use formation::lead::{AnalyticTrajectory, Hermite, SpeedSchedule, SplinePath, SplinePathError, Table};
 use scene::{Compensation, Path, PropMotion, Role, Scene, SpeedProfile, VehicleKind};
 use std::sync::Arc;
-use vocabulary::{Limits, Mobility, Placement, Pose, Profile, Prop};
+use vocabulary::{Limits, Mobility, Placement, Pose, Prop, Trajectory};
 use world::wheeled::tyre::Tyre;
-use world::{Actor, Drivetrain, Handling, PropBody, Stage, Unicycle, Wheeled};
+use world::{Drivetrain, Handling, PropBody, RobotSetup, Unicycle, Wheeled, WorldSetup};
 
 /// All that is on stage.
-pub(crate) fn stage(scene: &Scene) -> Result<Stage, BuildError> {
-    Ok(Stage {
+pub(crate) fn stage(scene: &Scene) -> Result<WorldSetup, BuildError> {
+    Ok(WorldSetup {
         actors: (0..scene.robots.len()).map(|index| actor(scene, index)).collect::<Result<_, _>>()?,
         props: scene.props.iter().map(|prop| body(scene, prop)).collect::<Result<_, _>>()?,
         terrain: scene.ground.terrain.clone(),
@@ -20,22 +20,22 @@ pub(crate) fn stage(scene: &Scene) -> Result<Stage, BuildError> {
     })
 }
 
-fn actor(scene: &Scene, index: usize) -> Result<Actor, BuildError> {
+fn actor(scene: &Scene, index: usize) -> Result<RobotSetup, BuildError> {
     let robot = &scene.robots[index];
     let (mut pose, mut speed, mut lead) = (robot.pose, 0.0, None);
     match &robot.role {
         Role::Lead { path } => {
-            let (motion, start) =
-                course(path).map_err(|source| BuildError::Way { robot: robot.name.clone(), source })?;
+            let (motion, start) = course(path)
+                .map_err(|source| BuildError::SplinePath { robot: robot.name.clone(), source })?;
             check_drivable(scene, index, &motion)?;
             pose = start.unwrap_or(pose);
-            lead = Some(motion.profile());
+            lead = Some(motion.trajectory());
         }
         Role::Follow(follow) => speed = follow.speed,
     }
     let Handling { limits, wheels } = handling(&robot.vehicle);
     let unicycle = Unicycle { pose, speed, limits, body: robot.vehicle.body(), lead };
-    Ok(Actor { robot: unicycle, wheels })
+    Ok(RobotSetup { robot: unicycle, wheels })
 }
 
 /// Holds the motion of a lead robot against its limits, and against those that it has after each change.
@@ -106,13 +106,13 @@ fn body(scene: &Scene, prop: &scene::Prop) -> Result<PropBody, BuildError> {
         PropMotion::Loose { mass } => (Mobility::Loose, *mass, None),
         PropMotion::Guided { path } => {
             let (motion, start) =
-                course(path).map_err(|source| BuildError::Way { robot: prop.name.clone(), source })?;
+                course(path).map_err(|source| BuildError::SplinePath { robot: prop.name.clone(), source })?;
             let turn_rate_max = TURN_A_STEP / scene.physics.step;
             let limits = Limits { speed_max: f64::INFINITY, turn_rate_max, ..Limits::PAPER };
             if let Some(found) = undrivable(&motion, &limits, [0.0, scene.time.duration]) {
                 return Err(Undrivable { step: Some(scene.physics.step), ..found }.of(&prop.name));
             }
-            (Mobility::Guided, 1.0, Some((motion.profile(), start)))
+            (Mobility::Guided, 1.0, Some((motion.trajectory(), start)))
         }
     };
     let start = path.as_ref().and_then(|(_, start)| *start).unwrap_or(prop.pose);
@@ -124,17 +124,17 @@ fn body(scene: &Scene, prop: &scene::Prop) -> Result<PropBody, BuildError> {
             mobility,
         },
         mass,
-        path: path.map(|(profile, _)| profile),
+        path: path.map(|(trajectory, _)| trajectory),
         friction: prop.friction,
         restitution: prop.restitution,
     })
 }
 
 /// The motion along a path, and where it has to start if the path says so.
-fn course(path: &Path) -> Result<(Motion, Option<Pose>), WayError> {
-    let profile: Arc<dyn Profile> = match path {
+fn course(path: &Path) -> Result<(Motion, Option<Pose>), SplinePathError> {
+    let trajectory: Arc<dyn Trajectory> = match path {
         Path::Constant { speed, turn_rate } | Path::Circle { speed, turn_rate } => {
-            Arc::new(Courses::constant(*speed, *turn_rate))
+            Arc::new(AnalyticTrajectory::constant(*speed, *turn_rate))
         }
         Path::Sinusoid {
             speed,
@@ -144,35 +144,39 @@ fn course(path: &Path) -> Result<(Motion, Option<Pose>), WayError> {
             turn_rate_amplitude,
             turn_rate_rate,
         } => {
-            let wave = |mean: &f64, amplitude: &f64, rate: &f64| Course::Sinusoid {
+            let wave = |mean: &f64, amplitude: &f64, rate: &f64| ScalarTrajectory::Sinusoid {
                 mean: *mean,
                 amplitude: *amplitude,
                 rate: *rate,
             };
-            Arc::new(Courses {
+            Arc::new(AnalyticTrajectory {
                 speed: wave(speed, speed_amplitude, speed_rate),
                 turn_rate: wave(turn_rate, turn_rate_amplitude, turn_rate_rate),
             })
         }
-        Path::FigureEight { speed, length } => Arc::new(Courses::figure_eight(*speed, length / speed)),
+        Path::FigureEight { speed, length } => {
+            Arc::new(AnalyticTrajectory::figure_eight(*speed, length / speed))
+        }
         Path::Waypoints { points, closed, speed } => {
-            let way = Way::new(points, *closed, pace(speed))?;
+            let way = SplinePath::new(points, *closed, pace(speed))?;
             let start = way.start();
-            return Ok((Motion::Way(Arc::new(way)), Some(start)));
+            return Ok((Motion::SplinePath(Arc::new(way)), Some(start)));
         }
         // A checked table has rows; one without would stand still.
-        Path::Table { rows } => Table::new(rows)
-            .map_or_else(|| Arc::new(Courses::constant(0.0, 0.0)) as Arc<dyn Profile>, |t| Arc::new(t)),
+        Path::Table { rows } => Table::new(rows).map_or_else(
+            || Arc::new(AnalyticTrajectory::constant(0.0, 0.0)) as Arc<dyn Trajectory>,
+            |t| Arc::new(t),
+        ),
     };
-    Ok((Motion::Free(profile), None))
+    Ok((Motion::Free(trajectory), None))
 }
 
-fn pace(speed: &SpeedProfile) -> Pace {
+fn pace(speed: &SpeedProfile) -> SpeedSchedule {
     // Checked profiles have rows.
     let through = |rows: &[[f64; 2]]| Hermite::new(rows.to_vec()).unwrap_or_else(|| Hermite::constant(0.0));
     match speed {
-        SpeedProfile::Constant(v) => Pace::over_time(Hermite::constant(*v)),
-        SpeedProfile::Time(rows) => Pace::over_time(through(rows)),
-        SpeedProfile::Distance(rows) => Pace::over_distance(through(rows)),
+        SpeedProfile::Constant(v) => SpeedSchedule::over_time(Hermite::constant(*v)),
+        SpeedProfile::Time(rows) => SpeedSchedule::over_time(through(rows)),
+        SpeedProfile::Distance(rows) => SpeedSchedule::over_distance(through(rows)),
     }
 }

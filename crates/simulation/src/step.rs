@@ -2,15 +2,17 @@
 
 use crate::continuous::Continuous;
 use crate::fault::{Fault, not_finite};
-use crate::lookout::Lookout;
-use crate::regime::{Regime, Turn, sample_at, wakes};
+use crate::parameters::{ParameterSet, ScheduledChange, sample_at, wakes};
+use crate::sensing::SensingPipeline;
 use formation::{Estimate, Formation, FormationState, LawKind};
-use perception::sensors::Senses;
+use perception::sensors::SensorConfig;
 use std::collections::VecDeque;
 use std::f64::consts::PI;
 use std::sync::Arc;
-use vocabulary::{Cast, Contact, EdgeState, Eyes, Frame, Moment, Observation, Relative, wrap};
-use world::{Physical, Stage, Unicycles, World};
+use vocabulary::{
+    CameraRenderer, Contact, EdgeState, FleetInfo, MeasurementRecord, Observation, Relative, StepRecord, wrap,
+};
+use world::{Physical, Unicycles, World, WorldSetup};
 
 /// How law and observer act in time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,15 +29,15 @@ pub enum Timing {
 #[derive(Debug, Clone)]
 pub struct Setup {
     /// Names, bodies and edges.
-    pub cast: Cast,
+    pub fleet: FleetInfo,
     /// Graph, laws, set points, lead motions.
     pub formation: Formation,
     /// Robots, props and ground at the start.
-    pub stage: Stage,
+    pub stage: WorldSetup,
     /// Where observers start: added to the first measurement [m, rad], or in its place.
     pub observer_starts: Vec<ObserverStart>,
     /// How followers sense their leaders; `None` where all are told the truth.
-    pub senses: Option<Arc<Senses>>,
+    pub sensor_config: Option<Arc<SensorConfig>>,
     /// How law and observer act in time.
     pub timing: Timing,
     /// Whether the run ends where bodies touch.
@@ -45,7 +47,7 @@ pub struct Setup {
     /// Length of the run, s.
     pub duration: f64,
     /// What changes on the way, in the order of time.
-    pub changes: Vec<Turn>,
+    pub changes: Vec<ScheduledChange>,
 }
 
 /// Where the observer of one edge starts, [m, rad].
@@ -59,27 +61,27 @@ pub enum ObserverStart {
 
 /// A run under way. The same setup gives the same moments, bit for bit.
 pub struct Simulation {
-    pub(crate) cast: Cast,
+    pub(crate) fleet: FleetInfo,
     pub(crate) formation: Formation,
     pub(crate) state: FormationState,
     pub(crate) plant: Plant,
     pub(crate) timing: Timing,
     pub(crate) period: f64,
     pub(crate) observations: Vec<Observation>,
-    pub(crate) lookout: Option<Lookout>,
-    pub(crate) frames: Vec<Frame>,
-    pub(crate) moment: Moment,
+    pub(crate) sensing: Option<SensingPipeline>,
+    pub(crate) frames: Vec<MeasurementRecord>,
+    pub(crate) record: StepRecord,
     /// The moment before, over which the next is written.
-    pub(crate) spare: Moment,
+    pub(crate) spare: StepRecord,
     pub(crate) sample: u64,
     pub(crate) last_sample: u64,
     pub(crate) stop_at_contact: bool,
     pub(crate) stopped: bool,
     pub(crate) fault: Option<Fault>,
     /// What is to change, and at which sample.
-    pub(crate) changes: VecDeque<(u64, Arc<Regime>)>,
+    pub(crate) changes: VecDeque<(u64, Arc<ParameterSet>)>,
     /// What changes at the next sample.
-    pub(crate) adopted: Option<Arc<Regime>>,
+    pub(crate) adopted: Option<Arc<ParameterSet>>,
 }
 
 /// What moves the robots: a world that is told commands to hold, or plant, law and observers as one system.
@@ -99,26 +101,27 @@ impl Simulation {
         let start = |(o, s): (&Observation, &ObserverStart)| first_estimate(&o.relative, *s);
         let state =
             setup.formation.start(observations.iter().zip(&setup.observer_starts).map(start).collect());
-        let moment = Moment {
+        let record = StepRecord {
             snapshot: world.snapshot().clone(),
             edges: vec![EdgeState::default(); edges],
-            ..Moment::default()
+            ..StepRecord::default()
         };
         let changes = pending(&setup.changes, setup.period);
-        let lookout =
-            setup.senses.map(|senses| Lookout::new(senses, setup.observer_starts.clone(), world.snapshot()));
+        let sensing = setup.sensor_config.map(|sensor_config| {
+            SensingPipeline::new(sensor_config, setup.observer_starts.clone(), world.snapshot())
+        });
         Self {
-            cast: setup.cast,
+            fleet: setup.fleet,
             formation: setup.formation,
             state,
             plant,
             timing: setup.timing,
             period: setup.period,
             observations,
-            lookout,
+            sensing,
             frames: Vec::new(),
-            spare: moment.clone(),
-            moment,
+            spare: record.clone(),
+            record,
             sample: 0,
             last_sample: sample_at(setup.duration, setup.period),
             stop_at_contact: setup.stop_at_contact,
@@ -130,7 +133,7 @@ impl Simulation {
     }
 
     /// The next control sample: what is seen, what is decided, what is applied. `None` when the run is over.
-    pub fn next_moment(&mut self) -> Option<&Moment> {
+    pub fn next_record(&mut self) -> Option<&StepRecord> {
         if self.sample > self.last_sample || self.stopped || self.fault.is_some() {
             return None;
         }
@@ -145,56 +148,56 @@ impl Simulation {
             self.state.estimates[edge] = Estimate::at(&self.observations[edge].relative);
         }
         if let Err(fault) = self.look(time) {
-            self.fault = Some(Fault::Eyes(fault));
+            self.fault = Some(Fault::CameraRenderer(fault));
             return None;
         }
         self.formation.decide(time, &self.observations, &mut self.state);
         self.plant.world_mut().apply(&self.state.commands);
-        std::mem::swap(&mut self.moment, &mut self.spare);
+        std::mem::swap(&mut self.record, &mut self.spare);
         self.write_moment(time);
-        self.fault = not_finite(&self.moment, &self.cast).map(Fault::NotFinite);
+        self.fault = not_finite(&self.record, &self.fleet).map(Fault::NotFinite);
         if self.fault.is_some() {
-            std::mem::swap(&mut self.moment, &mut self.spare);
+            std::mem::swap(&mut self.record, &mut self.spare);
             return None;
         }
-        self.stopped = self.stop_at_contact && self.moment.contacts.iter().any(Contact::of_robot);
+        self.stopped = self.stop_at_contact && self.record.contacts.iter().any(Contact::of_robot);
         self.sample += 1;
-        Some(&self.moment)
+        Some(&self.record)
     }
 
     /// What changes at this sample takes hold; edges whose observers begin to run.
     fn change_over(&mut self) -> Vec<usize> {
         let mut woken = vec![];
-        while let Some((_, regime)) = self.changes.pop_front_if(|(sample, _)| *sample <= self.sample) {
-            self.take_over(&regime, &mut woken);
+        while let Some((_, parameters)) = self.changes.pop_front_if(|(sample, _)| *sample <= self.sample) {
+            self.take_over(&parameters, &mut woken);
         }
-        if let Some(regime) = self.adopted.take() {
-            self.take_over(&regime, &mut woken);
+        if let Some(parameters) = self.adopted.take() {
+            self.take_over(&parameters, &mut woken);
         }
         woken
     }
 
-    fn take_over(&mut self, regime: &Regime, woken: &mut Vec<usize>) {
-        let pairs = self.formation.laws().iter().zip(&regime.laws).enumerate();
+    fn take_over(&mut self, parameters: &ParameterSet, woken: &mut Vec<usize>) {
+        let pairs = self.formation.laws().iter().zip(&parameters.laws).enumerate();
         woken.extend(pairs.filter(|(_, (before, after))| wakes(before, after)).map(|(edge, _)| edge));
-        let limits = regime.handling.iter().map(|handling| handling.limits).collect();
-        self.formation.adopt(regime.laws.clone(), limits);
-        self.plant.adopt(regime, &self.formation);
+        let limits = parameters.handling.iter().map(|handling| handling.limits).collect();
+        self.formation.apply_parameters(parameters.laws.clone(), limits);
+        self.plant.apply_parameters(parameters, &self.formation);
     }
 
     /// Followers that are not told the truth look, and know what has arrived.
     fn look(&mut self, time: f64) -> Result<(), String> {
-        let Some(lookout) = &mut self.lookout else { return Ok(()) };
-        lookout.look(&self.formation, self.plant.world(), time, &mut self.frames)?;
-        lookout.tell(self.formation.laws(), &mut self.observations, &mut self.state.estimates);
+        let Some(sensing) = &mut self.sensing else { return Ok(()) };
+        sensing.look(&self.formation, self.plant.world(), time, &mut self.frames)?;
+        sensing.tell(self.formation.laws(), &mut self.observations, &mut self.state.estimates);
         Ok(())
     }
 
     /// Robots drive one period on, and observers with them.
     fn advance(&mut self) {
-        if let Some(lookout) = &mut self.lookout {
+        if let Some(sensing) = &mut self.sensing {
             let time = (self.sample - 1) as f64 * self.period;
-            lookout.begin(self.plant.world().snapshot(), time, self.period);
+            sensing.begin(self.plant.world().snapshot(), time, self.period);
         }
         match &mut self.plant {
             Plant::Held(world) => {
@@ -204,8 +207,8 @@ impl Simulation {
                     Timing::Measured => self.follow_samples(),
                     _ => follow(&self.formation, &mut self.state, world),
                 }
-                if let Some(lookout) = &mut self.lookout {
-                    lookout.follow(&self.formation, self.plant.world(), self.period);
+                if let Some(sensing) = &mut self.sensing {
+                    sensing.follow(&self.formation, self.plant.world(), self.period);
                 }
             }
             Plant::Continuous(system) => {
@@ -233,20 +236,20 @@ impl Simulation {
 
     /// Truth beside what was decided on it.
     fn write_moment(&mut self, time: f64) {
-        self.moment.snapshot.clone_from(self.plant.world().snapshot());
-        self.moment.snapshot.time = time;
-        self.moment.contacts.clear();
-        self.moment.contacts.extend_from_slice(self.plant.world().contacts());
-        self.moment.frames.clone_from(&self.frames);
-        for (index, (edge, out)) in self.formation.edges().iter().zip(&mut self.moment.edges).enumerate() {
-            let robots = &mut self.moment.snapshot.robots;
+        self.record.snapshot.clone_from(self.plant.world().snapshot());
+        self.record.snapshot.time = time;
+        self.record.contacts.clear();
+        self.record.contacts.extend_from_slice(self.plant.world().contacts());
+        self.record.frames.clone_from(&self.frames);
+        for (index, (edge, out)) in self.formation.edges().iter().zip(&mut self.record.edges).enumerate() {
+            let robots = &mut self.record.snapshot.robots;
             let relative =
                 Relative::between(robots[edge.leader].motion.pose, robots[edge.follower].motion.pose);
             let decision = &self.state.decisions[index];
             let wanted = decision.set_point;
-            let looks = self.lookout.as_ref().filter(|_| self.formation.laws()[index].looks.is_some());
+            let looks = self.sensing.as_ref().filter(|_| self.formation.laws()[index].looks.is_some());
             let (age, pan) = looks
-                .map_or_else(|| (0.0, wrap(relative.view_angle - PI)), |lookout| lookout.age_and_pan(index));
+                .map_or_else(|| (0.0, wrap(relative.view_angle - PI)), |sensing| sensing.age_and_pan(index));
             robots[edge.follower].camera_pan = pan;
             let known = &self.observations[index];
             *out = EdgeState {
@@ -267,8 +270,8 @@ impl Simulation {
     }
 
     /// Names, bodies and edges of the run.
-    pub fn cast(&self) -> &Cast {
-        &self.cast
+    pub fn fleet(&self) -> &FleetInfo {
+        &self.fleet
     }
 
     /// Graph, laws and set points of the run.
@@ -286,15 +289,15 @@ impl Simulation {
         self.stopped
     }
 
-    /// Whether cameras on robots take pictures, for which the run needs [`Simulation::open_eyes`].
-    pub fn needs_eyes(&self) -> bool {
-        self.lookout.as_ref().is_some_and(Lookout::need_eyes)
+    /// Whether cameras on robots take pictures, for which the run needs [`Simulation::attach_cameras`].
+    pub fn needs_cameras(&self) -> bool {
+        self.sensing.as_ref().is_some_and(SensingPipeline::need_eyes)
     }
 
     /// Who draws what the cameras on robots see.
-    pub fn open_eyes(&mut self, eyes: Box<dyn Eyes>) {
-        if let Some(lookout) = &mut self.lookout {
-            lookout.open(eyes);
+    pub fn attach_cameras(&mut self, eyes: Box<dyn CameraRenderer>) {
+        if let Some(sensing) = &mut self.sensing {
+            sensing.open(eyes);
         }
     }
 
@@ -316,7 +319,7 @@ impl Simulation {
 
 impl Plant {
     /// Unicycles on an empty plane are moved exactly; all else is moved by forces.
-    fn new(stage: Stage, timing: Timing, formation: &Formation) -> Self {
+    fn new(stage: WorldSetup, timing: Timing, formation: &Formation) -> Self {
         let ideal = stage.props.is_empty()
             && stage.terrain.is_none()
             && stage.actors.iter().all(|a| a.wheels.is_none());
@@ -330,9 +333,9 @@ impl Plant {
         }
     }
 
-    /// Robots have the limits of `regime` from now on, and laws are those of `formation`.
-    fn adopt(&mut self, regime: &Regime, formation: &Formation) {
-        self.world_mut().adopt(&regime.handling);
+    /// Robots have the limits of `parameters` from now on, and laws are those of `formation`.
+    fn apply_parameters(&mut self, parameters: &ParameterSet, formation: &Formation) {
+        self.world_mut().apply_parameters(&parameters.handling);
         if let Self::Continuous(system) = self {
             system.keep_pace(formation);
         }
@@ -380,7 +383,7 @@ fn first_estimate(seen: &Relative, start: ObserverStart) -> Estimate {
 }
 
 /// Changes by the samples at which they take hold.
-pub(crate) fn pending(changes: &[Turn], period: f64) -> VecDeque<(u64, Arc<Regime>)> {
-    let turn = |turn: &Turn| (sample_at(turn.at, period), Arc::new(turn.regime.clone()));
+pub(crate) fn pending(changes: &[ScheduledChange], period: f64) -> VecDeque<(u64, Arc<ParameterSet>)> {
+    let turn = |turn: &ScheduledChange| (sample_at(turn.at, period), Arc::new(turn.parameters.clone()));
     changes.iter().map(turn).collect()
 }

@@ -162,9 +162,9 @@ fn trial(scene: &Scene, gains: Gains) -> Result<Trial, BuildError> {
     let mut scene = scene.clone();
     gains.give(&mut scene);
     let mut simulation = Simulation::new(build(&scene)?);
-    let mut metrics = MetricsBuilder::new(simulation.cast(), scene.judging());
-    while let Some(moment) = simulation.next_moment() {
-        metrics.push(moment);
+    let mut metrics = MetricsBuilder::new(simulation.fleet(), scene.judging());
+    while let Some(record) = simulation.next_record() {
+        metrics.push(record);
     }
     let metrics = metrics.finish();
     let largest =

@@ -3,7 +3,7 @@
 use metrics::Digest;
 use scene::{Override, Scene};
 use simulation::{Simulation, build};
-use vocabulary::Moment;
+use vocabulary::StepRecord;
 
 const THREE: &str = "\
 schema = 1
@@ -49,12 +49,12 @@ fn simulation(scene: &Scene) -> Simulation {
 }
 
 /// The digest of all that is left of a run, and what of it was true at `at` s.
-fn finish(run: &mut Simulation, at: f64) -> (String, Option<Moment>) {
+fn finish(run: &mut Simulation, at: f64) -> (String, Option<StepRecord>) {
     let (mut sum, mut there) = (Digest::default(), None);
-    while let Some(moment) = run.next_moment() {
-        sum.push(moment);
-        if (moment.snapshot.time - at).abs() < 1e-9 {
-            there = Some(moment.clone());
+    while let Some(record) = run.next_record() {
+        sum.push(record);
+        if (record.snapshot.time - at).abs() < 1e-9 {
+            there = Some(record.clone());
         }
     }
     (sum.text(), there)
@@ -66,11 +66,11 @@ fn adopting(start: &Scene, scene: &Scene) -> String {
     loop {
         for change in &scene.changes {
             if run.sample() == (change.at / run.period()).round() as u64 {
-                run.adopt(&build(&change.then).expect("a run"));
+                run.apply_parameters(&build(&change.then).expect("a run"));
             }
         }
-        let Some(moment) = run.next_moment() else { break };
-        sum.push(moment);
+        let Some(record) = run.next_record() else { break };
+        sum.push(record);
     }
     sum.text()
 }
@@ -112,7 +112,7 @@ fn a_copy_of_a_run_has_the_changes_that_are_to_come() {
     let changed = scene(&format!("{THREE}{CHANGE}"), &[]);
     let mut run = simulation(&changed);
     for _ in 0..50 {
-        run.next_moment().expect("a moment");
+        run.next_record().expect("a moment");
     }
     let mut copy = run.save();
     assert_eq!(finish(&mut copy, 1.1), finish(&mut run, 1.1));
@@ -152,9 +152,9 @@ fn an_observer_that_wakes_starts_at_the_measurement() {
     let scene = scene(&text, &["law.kind=robust-state"]);
     let mut run = simulation(&scene);
     let mut peak: f64 = 0.0;
-    while let Some(moment) = run.next_moment() {
-        if moment.snapshot.time >= 2.0 {
-            peak = moment.edges.iter().fold(peak, |peak, edge| peak.max(edge.rates[0].abs()));
+    while let Some(record) = run.next_record() {
+        if record.snapshot.time >= 2.0 {
+            peak = record.edges.iter().fold(peak, |peak, edge| peak.max(edge.rates[0].abs()));
         }
     }
     assert!(peak < 1.0, "rates peak at {peak} m/s");
@@ -166,8 +166,8 @@ fn a_speed_beyond_new_limits_comes_within_them() {
         let text = format!("{THREE}[[changes]]\nat = 1.5\nset = ['robots.left.vehicle.speed_max=0.5']\n");
         let mut run = simulation(&scene(&text, &sets));
         let mut last = 0.0;
-        while let Some(moment) = run.next_moment() {
-            last = moment.snapshot.robots[1].motion.speed;
+        while let Some(record) = run.next_record() {
+            last = record.snapshot.robots[1].motion.speed;
         }
         assert!(last < 0.53, "{sets:?}: {last} m/s");
     }
@@ -181,7 +181,7 @@ fn a_run_can_be_extended_and_its_changes_replaced() {
     short.extend_to(4.0);
     assert_eq!((short.len(), short.sample()), (401, 0));
     for _ in 0..20 {
-        assert_eq!(short.next_moment(), long.next_moment());
+        assert_eq!(short.next_record(), long.next_record());
     }
     short.reschedule(&build(&changed).expect("a run"));
     assert_eq!(finish(&mut short, 1.1), finish(&mut long, 1.1));
@@ -205,7 +205,7 @@ fn a_run_ends_with_the_first_sample_at_or_after_its_duration() {
         let scene = scene::Scene::parse(&text, "t.toml", &[]).expect("a scene").scene;
         let mut run = simulation::Simulation::new(simulation::build(&scene).expect("a run"));
         assert_eq!(run.len(), samples);
-        while run.next_moment().is_some() {}
-        assert!(run.moment().snapshot.time >= duration - 1e-9, "{} s", run.moment().snapshot.time);
+        while run.next_record().is_some() {}
+        assert!(run.record().snapshot.time >= duration - 1e-9, "{} s", run.record().snapshot.time);
     }
 }

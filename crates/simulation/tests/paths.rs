@@ -96,8 +96,8 @@ fn sharp_turns_are_driven_through_their_points() {
         let limits = "vehicle = { kind = \"unicycle\", turn_rate_max = 1000.0 }\n";
         let mut run = Simulation::new(build(&scene(&waypoints(&points), limits)).expect("a run"));
         let mut nearest = [f64::INFINITY; 3];
-        while let Some(moment) = run.next_moment() {
-            let pose = moment.snapshot.robots[0].motion.pose;
+        while let Some(record) = run.next_record() {
+            let pose = record.snapshot.robots[0].motion.pose;
             for (near, [x, y]) in nearest.iter_mut().zip(points) {
                 // Between two samples it goes 1 cm.
                 *near = near.min(((pose.x - x).hypot(pose.y - y) - 0.005).max(0.0));
@@ -113,10 +113,10 @@ fn a_number_that_is_not_finite_ends_the_run_and_is_named() {
     let follower = "[[robots]]\nname = \"bob\"\npose = [-1, 0, 0]\nleader = \"ann\"\ndistance = 2.0\nbearing = 2.5\n\
                     vehicle = { speed_min = 1e-300 }\nlaw = { k = 1e6, beta = 1e6 }\n";
     let mut run = Simulation::new(build(&scene(r#"{ kind = "constant" }"#, follower)).expect("a run"));
-    while let Some(moment) = run.next_moment() {
-        assert!(moment.edges[0].asked.turn_rate.is_finite());
+    while let Some(record) = run.next_record() {
+        assert!(record.edges[0].asked.turn_rate.is_finite());
     }
-    assert!(run.moment().edges[0].asked.turn_rate.is_finite(), "nobody gets to see it");
+    assert!(run.record().edges[0].asked.turn_rate.is_finite(), "nobody gets to see it");
     let Some(Fault::NotFinite(what)) = run.fault() else { panic!("{:?}", run.fault()) };
     assert!(what.to_string().starts_with("the command asked for of `ann` → `bob`"), "{what}");
 }

@@ -1,6 +1,6 @@
 //! The robots' colours, the same in pictures, figures, windows and logs.
 
-use crate::Cast;
+use crate::FleetInfo;
 
 /// An sRGB colour, 0 to 1 a channel.
 pub type Rgb = [f32; 3];
@@ -24,8 +24,8 @@ const FOLLOWERS: [Rgb; 7] = [
     hex(0x00cc_79a7),
 ];
 
-/// The colour of every robot of `cast`: followers take turns in the order in which they stand.
-pub fn robot_colours(cast: &Cast) -> Vec<Rgb> {
+/// The colour of every robot of `fleet`: followers take turns in the order in which they stand.
+pub fn robot_colours(fleet: &FleetInfo) -> Vec<Rgb> {
     let mut followers = 0;
     let mut colour = |leads: bool| {
         if leads {
@@ -34,5 +34,5 @@ pub fn robot_colours(cast: &Cast) -> Vec<Rgb> {
         followers += 1;
         FOLLOWERS[(followers - 1) % FOLLOWERS.len()]
     };
-    cast.members.iter().map(|member| colour(member.leads)).collect()
+    fleet.robots.iter().map(|member| colour(member.leads)).collect()
 }

@@ -2,7 +2,7 @@
 
 /// What can touch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Thing {
+pub enum EntityId {
     /// Index of a robot in the cast.
     Robot(usize),
     /// Index of a prop in the cast.
@@ -14,7 +14,7 @@ pub enum Thing {
 impl Contact {
     /// Whether a robot takes part.
     pub fn of_robot(&self) -> bool {
-        self.things.iter().any(|thing| matches!(thing, Thing::Robot(_)))
+        self.things.iter().any(|thing| matches!(thing, EntityId::Robot(_)))
     }
 }
 
@@ -23,8 +23,8 @@ impl Contact {
 pub struct Contact {
     /// Counts the contacts of a run from 0.
     pub number: u64,
-    /// The two, in the order of [`Thing`].
-    pub things: [Thing; 2],
+    /// The two, in the order of [`EntityId`].
+    pub things: [EntityId; 2],
     /// When they first touched, s.
     pub begin: f64,
     /// When they last touched, s.

@@ -1,6 +1,6 @@
 //! What a follower knows of its leader: the only thing a law may look at.
 
-use crate::{Relative, Sight};
+use crate::{Relative, TrackingState};
 
 /// One look of a follower at its leader.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -12,7 +12,7 @@ pub struct Observation {
     /// The leader's forward speed, m/s, where it is known (state feedback); cameras do not tell it.
     pub leader_speed: Option<f64>,
     /// How well the follower knows where its leader is.
-    pub sight: Sight,
+    pub sight: TrackingState,
 }
 
 /// How an edge looked at one instant inside a control period.

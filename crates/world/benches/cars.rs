@@ -3,7 +3,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::sync::Arc;
 use vocabulary::{Command, Pose};
-use world::{Actor, Physical, Stage, Unicycle, World};
+use world::{Physical, RobotSetup, Unicycle, World, WorldSetup};
 
 #[path = "../tests/vehicles/truck.rs"]
 mod truck;
@@ -17,10 +17,10 @@ fn world(count: usize) -> Physical {
     let actor = |k: usize| {
         let pose = Pose::new((k % 32) as f64 * 4.0, (k / 32) as f64 * 4.0, 0.3);
         let robot = Unicycle { pose, speed: 1.0, limits: vehicle.limits, body: vehicle.body, lead: None };
-        Actor { robot, wheels: Some(vehicle.clone()) }
+        RobotSetup { robot, wheels: Some(vehicle.clone()) }
     };
     let actors = (0..count).map(actor).collect();
-    Physical::new(Stage { actors, props: vec![], terrain: None, step: 0.005 })
+    Physical::new(WorldSetup { actors, props: vec![], terrain: None, step: 0.005 })
 }
 
 fn cars(c: &mut Criterion) {

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 use vocabulary::{Command, Pose};
-use world::{Actor, Physical, Stage, Unicycle, World};
+use world::{Physical, RobotSetup, Unicycle, World, WorldSetup};
 
 #[path = "../tests/vehicles/truck.rs"]
 mod truck;
@@ -29,10 +29,10 @@ fn main() {
         let pose = Pose::new((k % 100) as f64 * 1.2, (k / 100) as f64 * 1.2, 3.0 * chance(k, 1));
         let speed = 2.0 + 2.0 * chance(k, 2);
         let robot = Unicycle { pose, speed, limits: vehicle.limits, body: vehicle.body, lead: None };
-        Actor { robot, wheels: Some(vehicle.clone()) }
+        RobotSetup { robot, wheels: Some(vehicle.clone()) }
     };
     let actors = (0..COUNT).map(actor).collect();
-    let mut world = Physical::new(Stage { actors, props: vec![], terrain: None, step: 0.005 });
+    let mut world = Physical::new(WorldSetup { actors, props: vec![], terrain: None, step: 0.005 });
     let began = Instant::now();
     let (mut contacts, mut lowest) = (0, 0.0_f64);
     for step in 0..SECONDS * 100 {

@@ -14,7 +14,7 @@ pub fn after(start: &Motion, t: f64) -> Motion {
 
 /// As [`after`], with sine and cosine of the first heading at hand.
 pub(crate) fn after_with(start: &Motion, sin: f64, cos: f64, t: f64) -> Motion {
-    let ([c0, s0], [c1, s1]) = moments(start.turn_rate * t);
+    let ([c0, s0], [c1, s1]) = records(start.turn_rate * t);
     let (p, q) = (start.speed * t, start.acceleration * t * t);
     let (forward, left) = (p * c0 + q * c1, p * s0 + q * s1);
     let pose = Pose {
@@ -26,7 +26,7 @@ pub(crate) fn after_with(start: &Motion, sin: f64, cos: f64, t: f64) -> Motion {
 }
 
 /// [real, imaginary] of f0 and f1 at `u`.
-fn moments(u: f64) -> ([f64; 2], [f64; 2]) {
+fn records(u: f64) -> ([f64; 2], [f64; 2]) {
     if u.abs() < 0.5 {
         return moments_by_series(u);
     }

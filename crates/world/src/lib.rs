@@ -12,12 +12,12 @@ mod touch;
 pub mod unicycle;
 pub mod wheeled;
 
-pub use physical::{Actor, Physical, PropBody, Stage};
+pub use physical::{Physical, PropBody, RobotSetup, WorldSetup};
 pub use unicycle::{Unicycle, Unicycles};
 pub use wheeled::{Drivetrain, Wheeled};
 
 use std::sync::Arc;
-use vocabulary::{Command, Contact, Limits, Passage, Snapshot};
+use vocabulary::{Command, Contact, Limits, Snapshot, StepInterpolant};
 
 /// What a robot can do, and how it is driven: what may change as it moves.
 #[derive(Debug, Clone)]
@@ -29,7 +29,7 @@ pub struct Handling {
 }
 
 /// A place where robots move.
-pub trait World: Passage + Send {
+pub trait World: StepInterpolant + Send {
     /// The truth at this instant: the only way out.
     fn snapshot(&self) -> &Snapshot;
 
@@ -38,7 +38,7 @@ pub trait World: Passage + Send {
 
     /// What every robot can do from now on, in the order of the snapshot. A follower without mass that is too fast or too
     /// slow for its limits has the nearest speed at once; one on wheels is driven there.
-    fn adopt(&mut self, handling: &[Handling]);
+    fn apply_parameters(&mut self, handling: &[Handling]);
 
     /// Moves everything `duration` s on; positive.
     fn advance(&mut self, duration: f64);

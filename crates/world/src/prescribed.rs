@@ -3,7 +3,7 @@
 //! Gauss-Legendre quadrature; its error at 1 m/s and 10 rad/s is below 1e-12 m per second. Where the turn rate is large or
 //! changes fast, stretches are halved, so that a sharp bend of a path is driven as it is.
 
-use vocabulary::{Drive, Motion, Pose, Profile, wrap};
+use vocabulary::{Motion, MotionInput, Pose, Trajectory, wrap};
 
 /// Nodes and weights of the three-point Gauss-Legendre rule on 0 to 1.
 const GAUSS: [(f64, f64); 3] =
@@ -16,7 +16,7 @@ const TURN: f64 = 0.3;
 const HALVINGS: u32 = 10;
 
 /// The motion of what follows `lead` from `pose` at `time`, `elapsed` s later.
-pub(crate) fn prescribed(lead: &dyn Profile, pose: Pose, time: f64, elapsed: f64) -> Motion {
+pub(crate) fn prescribed(lead: &dyn Trajectory, pose: Pose, time: f64, elapsed: f64) -> Motion {
     let stretches = (elapsed / GAUSS_REACH).ceil().max(1.0);
     let h = elapsed / stretches;
     let mut pose = pose;
@@ -28,9 +28,10 @@ pub(crate) fn prescribed(lead: &dyn Profile, pose: Pose, time: f64, elapsed: f64
 }
 
 /// One stretch of `h` s.
-fn stretch(lead: &dyn Profile, pose: Pose, from: f64, h: f64, halvings: u32) -> Pose {
+fn stretch(lead: &dyn Trajectory, pose: Pose, from: f64, h: f64, halvings: u32) -> Pose {
     let drives = GAUSS.map(|(node, _)| lead.at(from + node * h));
-    let sharp = |d: &Drive| (d.turn_rate * h).abs() > TURN || (d.turn_acceleration * h * h).abs() > TURN;
+    let sharp =
+        |d: &MotionInput| (d.turn_rate * h).abs() > TURN || (d.turn_acceleration * h * h).abs() > TURN;
     if halvings > 0 && drives.iter().any(sharp) {
         let middle = stretch(lead, pose, from, 0.5 * h, halvings - 1);
         return stretch(lead, middle, from + 0.5 * h, 0.5 * h, halvings - 1);
@@ -60,15 +61,15 @@ mod tests {
 
     const WIDTH: f64 = 1e-3;
 
-    impl Profile for Hook {
-        fn at(&self, t: f64) -> Drive {
+    impl Trajectory for Hook {
+        fn at(&self, t: f64) -> MotionInput {
             let u = (t - 1.0) / WIDTH;
             let turn_rate = 1.0 / WIDTH / (1.0 + u * u);
-            Drive {
+            MotionInput {
                 speed: 1.0,
                 turn_rate,
                 turn_acceleration: -2.0 * u / WIDTH / (1.0 + u * u) * turn_rate,
-                ..Drive::default()
+                ..MotionInput::default()
             }
         }
     }

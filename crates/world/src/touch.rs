@@ -1,7 +1,7 @@
 //! Contacts over time: which things touch, since when, and how hard.
 
 use std::collections::BTreeMap;
-use vocabulary::{Body, Contact, Pose, Snapshot, Thing};
+use vocabulary::{Body, Contact, EntityId, Pose, Snapshot};
 
 /// Things that have not touched for so long have parted, s: shorter gaps are one contact that rattles.
 const PARTED: f64 = 0.1;
@@ -10,7 +10,7 @@ const PARTED: f64 = 0.1;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Touch {
     /// The two, in order.
-    pub(crate) things: [Thing; 2],
+    pub(crate) things: [EntityId; 2],
     /// Where, m.
     pub(crate) place: [f64; 3],
     /// From the first to the second.
@@ -25,7 +25,7 @@ pub(crate) struct Touches {
     count: u64,
     contacts: Vec<Contact>,
     /// Where in `contacts` the open contact of two things is.
-    open: BTreeMap<[Thing; 2], usize>,
+    open: BTreeMap<[EntityId; 2], usize>,
 }
 
 impl Touches {
@@ -88,7 +88,7 @@ impl Touches {
                     break;
                 }
                 if let Some((place, normal)) = outlines[i.min(j)].overlap(&outlines[i.max(j)]) {
-                    let things = [Thing::Robot(i.min(j)), Thing::Robot(i.max(j))];
+                    let things = [EntityId::Robot(i.min(j)), EntityId::Robot(i.max(j))];
                     found.push(Touch { things, place, normal, impulse: 0.0 });
                 }
             }

@@ -6,7 +6,9 @@
 
 use crate::{Handling, World, arc, prescribed::prescribed, touch::Touches};
 use std::sync::Arc;
-use vocabulary::{Body, Command, Contact, Limits, Motion, Passage, Pose, Profile, RobotState, Snapshot};
+use vocabulary::{
+    Body, Command, Contact, Limits, Motion, Pose, RobotState, Snapshot, StepInterpolant, Trajectory,
+};
 
 /// Parameters and start of one unicycle.
 #[derive(Debug, Clone)]
@@ -20,7 +22,7 @@ pub struct Unicycle {
     /// For the turning of its wheels.
     pub body: Body,
     /// The motion of a lead robot.
-    pub lead: Option<Arc<dyn Profile>>,
+    pub lead: Option<Arc<dyn Trajectory>>,
 }
 
 /// A world of unicycles on the plane.
@@ -41,7 +43,7 @@ struct Step {
     sin: f64,
     cos: f64,
     /// When the speed meets its bound, and the motion from there.
-    kink: Option<(f64, Motion)>,
+    saturation_time: Option<(f64, Motion)>,
 }
 
 impl Unicycles {
@@ -92,9 +94,11 @@ impl Unicycles {
 
     fn motion_of(&self, robot: usize, elapsed: f64) -> Motion {
         let step = &self.steps[robot];
-        match (&self.robots[robot].lead, step.kink) {
+        match (&self.robots[robot].lead, step.saturation_time) {
             (Some(lead), _) => prescribed(lead.as_ref(), step.start.pose, self.started, elapsed),
-            (None, Some((kink, after))) if elapsed > kink => arc::after(&after, elapsed - kink),
+            (None, Some((saturation_time, after))) if elapsed > saturation_time => {
+                arc::after(&after, elapsed - saturation_time)
+            }
             (None, _) => arc::after_with(&step.start, step.sin, step.cos, elapsed),
         }
     }
@@ -116,7 +120,7 @@ impl World for Unicycles {
         }
     }
 
-    fn adopt(&mut self, handling: &[Handling]) {
+    fn apply_parameters(&mut self, handling: &[Handling]) {
         for ((state, robot), now) in self.snapshot.robots.iter_mut().zip(&mut self.robots).zip(handling) {
             robot.limits = now.limits;
             if robot.lead.is_none() {
@@ -138,7 +142,7 @@ impl World for Unicycles {
         Box::new(self.clone())
     }
 }
-impl Passage for Unicycles {
+impl StepInterpolant for Unicycles {
     fn duration(&self) -> f64 {
         self.duration
     }
@@ -147,15 +151,15 @@ impl Passage for Unicycles {
         self.motion_of(robot, elapsed)
     }
 
-    fn kink(&self, robot: usize) -> Option<f64> {
-        self.steps[robot].kink.map(|(time, _)| time)
+    fn saturation_time(&self, robot: usize) -> Option<f64> {
+        self.steps[robot].saturation_time.map(|(time, _)| time)
     }
 }
 
 impl Step {
     fn begin(start: &Motion, robot: &Unicycle, duration: f64) -> Self {
         let (sin, cos) = start.pose.heading.sin_cos();
-        let mut step = Self { start: *start, sin, cos, kink: None };
+        let mut step = Self { start: *start, sin, cos, saturation_time: None };
         if robot.lead.is_some() || start.acceleration == 0.0 {
             return step;
         }
@@ -163,7 +167,7 @@ impl Step {
         let reach = (bound - start.speed) / start.acceleration;
         if reach < duration {
             let met = arc::after_with(start, sin, cos, reach.max(0.0));
-            step.kink = Some((reach.max(0.0), Motion { speed: bound, acceleration: 0.0, ..met }));
+            step.saturation_time = Some((reach.max(0.0), Motion { speed: bound, acceleration: 0.0, ..met }));
         }
         step
     }
@@ -171,8 +175,10 @@ impl Step {
     /// Path length after `elapsed` s, m; for a lead robot to first order in its acceleration.
     fn travelled(&self, elapsed: f64) -> f64 {
         let run = |motion: &Motion, t: f64| t * (motion.speed + motion.acceleration * t / 2.0);
-        match self.kink {
-            Some((kink, after)) if elapsed > kink => run(&self.start, kink) + run(&after, elapsed - kink),
+        match self.saturation_time {
+            Some((saturation_time, after)) if elapsed > saturation_time => {
+                run(&self.start, saturation_time) + run(&after, elapsed - saturation_time)
+            }
             _ => run(&self.start, elapsed),
         }
     }
@@ -193,16 +199,16 @@ fn roll(state: &mut RobotState, body: &Body, travelled: f64, end: &Motion) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::{Drive, wrap};
+    use vocabulary::{MotionInput, wrap};
 
     const LIMITS: Limits = Limits::PAPER;
 
     #[derive(Debug)]
     struct Swing;
 
-    impl Profile for Swing {
-        fn at(&self, t: f64) -> Drive {
-            Drive {
+    impl Trajectory for Swing {
+        fn at(&self, t: f64) -> MotionInput {
+            MotionInput {
                 speed: 1.0 + 0.5 * (3.0 * t).sin(),
                 acceleration: 1.5 * (3.0 * t).cos(),
                 turn_rate: 8.0 * (2.0 * t).cos(),
@@ -211,7 +217,7 @@ mod tests {
         }
     }
 
-    fn robot(speed: f64, lead: Option<Arc<dyn Profile>>) -> Unicycle {
+    fn robot(speed: f64, lead: Option<Arc<dyn Trajectory>>) -> Unicycle {
         Unicycle { pose: Pose::new(0.0, 0.0, 0.3), speed, limits: LIMITS, body: Body::default(), lead }
     }
 
@@ -238,8 +244,8 @@ mod tests {
         let mut world = Unicycles::new(vec![robot(1.5, None)]);
         world.apply(&[Command { acceleration: 20.0, turn_rate: 1.0 }]);
         world.advance(0.01);
-        let kink = world.kink(0).expect("the bound is met");
-        assert!((kink - 0.005).abs() < 1e-12);
+        let saturation_time = world.saturation_time(0).expect("the bound is met");
+        assert!((saturation_time - 0.005).abs() < 1e-12);
         assert_eq!(world.snapshot().robots[0].motion.speed, 1.6);
         assert_eq!(world.during(0, 0.008).acceleration, 0.0);
         assert!((world.during(0, 0.002).speed - 1.54).abs() < 1e-12);
@@ -253,7 +259,7 @@ mod tests {
         world.apply(&[Command { acceleration: -5.0, turn_rate: 0.0 }]);
         assert_eq!(world.snapshot().robots[0].motion.acceleration, 0.0);
         world.advance(0.01);
-        assert_eq!((world.kink(0), world.snapshot().robots[0].motion.speed), (None, 0.01));
+        assert_eq!((world.saturation_time(0), world.snapshot().robots[0].motion.speed), (None, 0.01));
     }
 
     #[test]

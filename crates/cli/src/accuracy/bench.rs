@@ -8,9 +8,9 @@ use crate::failure::Failure;
 use perception::detect::{Detector, Locus, Tag, recognise_expected};
 use perception::imaging::{Optics, Purpose, Sensor, noise_stream};
 use perception::pose::{Prior, Rig, SeenFace, locate};
-use rendering::{CameraEyes, Gpu};
+use rendering::{Gpu, GpuCameraRenderer};
 use std::time::Instant;
-use vocabulary::{Body, Cast, Edge, FACES, Grey, Member, Pose, Region, Rigid, Shell, Shot, Snapshot};
+use vocabulary::{Body, Edge, FACES, FleetInfo, Grey, Pose, Region, Rigid, RobotInfo, Shell, Shot, Snapshot};
 
 /// What is timed, in the order of [`Times`].
 pub(crate) const STAGES: [&str; 4] = ["draw", "sensor", "detect and sharpen", "locate"];
@@ -22,8 +22,8 @@ const ELSEWHERE: f64 = 2.0;
 
 /// A leader, a camera that looks at it, and all that is needed to find the one in the picture of the other.
 pub(crate) struct Bench {
-    pub(crate) cast: Cast,
-    eyes: CameraEyes,
+    pub(crate) fleet: FleetInfo,
+    eyes: GpuCameraRenderer,
     sensor: Sensor,
     detector: Watched,
     seed: u64,
@@ -66,21 +66,24 @@ struct Found {
 impl Bench {
     /// With a leader that carries the tags of robot number `number`.
     pub(crate) fn new(gpu: &Gpu, number: usize, seed: u64) -> Result<Self, Failure> {
-        let mut leader = Member::new("leader", true, Body::default());
+        let mut leader = RobotInfo::new("leader", true, Body::default());
         let shell = leader.shell.unwrap_or(Shell::PAPER).tagged(number);
         leader.shell = Some(shell);
-        let cast = Cast {
-            members: vec![leader, Member::new("follower", false, Body::default())],
+        let fleet = FleetInfo {
+            robots: vec![leader, RobotInfo::new("follower", false, Body::default())],
             edges: vec![Edge { leader: LEADER, follower: FOLLOWER }],
             looks: true,
-            ..Cast::default()
+            ..FleetInfo::default()
         };
         Ok(Self {
-            eyes: CameraEyes::new(gpu, &cast)?,
-            sensor: Sensor::new(Optics { lens: cast.members[FOLLOWER].lens, ..Optics::default() }),
+            eyes: GpuCameraRenderer::new(gpu, &fleet)?,
+            sensor: Sensor::new(Optics {
+                camera_model: fleet.robots[FOLLOWER].camera_model,
+                ..Optics::default()
+            }),
             detector: Watched { inner: Locus::new(), shell, foreign: 0 },
             seed,
-            cast,
+            fleet,
         })
     }
 
@@ -91,22 +94,22 @@ impl Bench {
         number: u64,
     ) -> Result<(Sample, [Times; 2]), Failure> {
         let [leader, own] = [LEADER, FOLLOWER].map(|robot| snapshot.robots[robot]);
-        let follower = &self.cast.members[FOLLOWER];
-        let (shell, lens) = (self.detector.shell, follower.lens);
-        let body_from_camera = follower.mount.body_from_camera(own.camera_pan);
+        let follower = &self.fleet.robots[FOLLOWER];
+        let (shell, camera_model) = (self.detector.shell, follower.camera_model);
+        let body_from_camera = follower.camera_mount.body_from_camera(own.camera_pan);
         let camera_from_body =
-            follower.mount.world_from_camera(&own).inverse().after(&leader.world_from_body());
+            follower.camera_mount.world_from_camera(&own).inverse().after(&leader.world_from_body());
         let truth = relative_pose(&leader.motion.pose, &own.motion.pose);
-        let view = |face: usize| FaceView::of(&shell, &lens, &camera_from_body, face);
+        let view = |face: usize| FaceView::of(&shell, &camera_model, &camera_from_body, face);
         let views: Vec<FaceView> = (0..FACES).filter_map(view).collect();
-        let readable = views.iter().filter(|view| view.readable(&lens)).count();
+        let readable = views.iter().filter(|view| view.readable(&camera_model)).count();
         // A camera that tracks its leader expects so many, and searches the shade for them only.
         let expected = views.iter().filter(|view| view.surely_readable()).count().max(1);
 
-        let region = region_around(&shell, &lens, &camera_from_body);
+        let region = region_around(&shell, &camera_model, &camera_from_body);
         let mut near = self.look(snapshot, number, (region, expected), &camera_from_body)?;
-        let whole = self.look(snapshot, number, (Region::whole(&lens), FACES), &camera_from_body)?;
-        let rig = Rig { shell, lens, body_from_camera };
+        let whole = self.look(snapshot, number, (Region::whole(&camera_model), FACES), &camera_from_body)?;
+        let rig = Rig { shell, camera_model, body_from_camera };
         let clock = Instant::now();
         let estimate = locate(&rig, &near.faces, CORNER_NOISE, &Prior::default(), None);
         near.times[3] = milliseconds(clock);
@@ -134,12 +137,12 @@ impl Bench {
         (region, expected): (Region, usize),
         camera_from_body: &Rigid,
     ) -> Result<Found, Failure> {
-        let follower = &self.cast.members[FOLLOWER];
+        let follower = &self.fleet.robots[FOLLOWER];
         let source = self.sensor.source(region);
         let shot = Shot {
             robot: FOLLOWER,
-            world_from_camera: follower.mount.world_from_camera(&snapshot.robots[FOLLOWER]),
-            focal: follower.lens.focal,
+            world_from_camera: follower.camera_mount.world_from_camera(&snapshot.robots[FOLLOWER]),
+            focal: follower.camera_model.focal,
             centre: source.centre,
             region: source.region,
             exposure: 1.0,
@@ -168,7 +171,9 @@ impl Bench {
 
 /// Whether a face was found where it is not.
 fn strays(seen: &SeenFace, shell: &Shell, optics: &Optics, camera_from_body: &Rigid) -> bool {
-    let Some(view) = FaceView::of(shell, &optics.lens, camera_from_body, seen.face) else { return true };
+    let Some(view) = FaceView::of(shell, &optics.camera_model, camera_from_body, seen.face) else {
+        return true;
+    };
     let most = ELSEWHERE.max(0.5 * view.cell);
     seen.corners.iter().zip(view.corners).any(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) > most)
 }

@@ -2,7 +2,7 @@
 
 use perception::imaging::{Purpose, noise_stream};
 use std::f64::consts::{PI, TAU};
-use vocabulary::{Body, Member, Motion, Pose, RobotState, Snapshot};
+use vocabulary::{Body, Motion, Pose, RobotInfo, RobotState, Snapshot};
 
 /// Bounds of the distances that are told apart, m.
 pub(crate) const BINS: [[f64; 2]; 6] =
@@ -20,7 +20,7 @@ pub(crate) const LEADER: usize = 0;
 pub(crate) const FOLLOWER: usize = 1;
 
 /// The `number`th pose of a benchmark: the bins take turns, so that each gets its share.
-pub(crate) fn place(seed: u64, number: u64, follower: &Member) -> Snapshot {
+pub(crate) fn place(seed: u64, number: u64, follower: &RobotInfo) -> Snapshot {
     let mut stream = noise_stream(seed, LEADER, number, Purpose::Setup);
     let [low, high] = BINS[(number % BINS.len() as u64) as usize];
     let mut between = |low: f64, high: f64| low + (high - low) * stream.uniform();
@@ -32,9 +32,9 @@ pub(crate) fn place(seed: u64, number: u64, follower: &Member) -> Snapshot {
         let [x, y] = own.world_from_body(distance * direction.cos(), distance * direction.sin());
         let leader = Pose::new(x, y, vocabulary::wrap(between(0.0, TAU)));
         // The leader stands anywhere across the picture: the camera looks past it by that much.
-        let width = f64::from(follower.lens.width);
-        let aside = between(-ASIDE, ASIDE) * width / follower.lens.focal;
-        let forward = follower.mount.forward;
+        let width = f64::from(follower.camera_model.width);
+        let aside = between(-ASIDE, ASIDE) * width / follower.camera_model.focal;
+        let forward = follower.camera_mount.forward;
         let towards = (distance * direction.sin()).atan2(distance * direction.cos() - forward);
         let pan = towards + aside.atan();
         let body = &follower.body;
@@ -70,8 +70,8 @@ mod tests {
     use super::*;
     use vocabulary::{Relative, wrap};
 
-    fn member() -> Member {
-        Member::new("follower", false, Body::default())
+    fn member() -> RobotInfo {
+        RobotInfo::new("follower", false, Body::default())
     }
 
     #[test]
@@ -84,9 +84,9 @@ mod tests {
             let relative = Relative::between(leader.motion.pose, own.motion.pose);
             let [low, high] = BINS[(number % 6) as usize];
             assert!((low..=high).contains(&relative.distance), "{number}: {relative:?}");
-            let camera = follower.mount.world_from_camera(&own);
+            let camera = follower.camera_mount.world_from_camera(&own);
             let axis = camera.inverse().apply(leader.world_from_body().apply([0.0, 0.0, 0.2]));
-            let pixel = follower.lens.project(axis).expect("ahead");
+            let pixel = follower.camera_model.project(axis).expect("ahead");
             assert!(pixel[0] > 0.0 && pixel[0] < 639.0, "{number}: {pixel:?}");
             around[((wrap(relative.bearing) + PI) / TAU * 7.999) as usize] += 1;
         }

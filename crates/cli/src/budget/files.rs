@@ -32,7 +32,7 @@ pub(crate) fn write(folder: &Path, budget: &Budget<'_>, quiet: bool) -> Result<V
 
 /// Every number, in m, rad and s.
 pub(crate) fn as_json(budget: &Budget<'_>) -> Value {
-    let edges: Vec<_> = (0..budget.cast.edges.len()).collect();
+    let edges: Vec<_> = (0..budget.fleet.edges.len()).collect();
     let runs = budget.runs.iter().map(|(case, run)| {
         let constant = match case.observer {
             Observer::Constant(constant) => constant,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use simulation::Simulation;
-use vocabulary::{EdgeState, Frame, Moment, Outcome, Sight, wrap};
+use vocabulary::{EdgeState, MeasurementRecord, Outcome, StepRecord, TrackingState, wrap};
 
 /// One edge of one run, from the time after which it counts as settled. Triples are distance, bearing, view angle in m and
 /// rad, pairs distance and bearing.
@@ -93,8 +93,8 @@ impl Gathering {
         self.limited += u64::from(edge.limited);
         self.tracking.add(edge.error);
         match edge.sight {
-            Sight::Waiting | Sight::Lost => self.lost += 1,
-            Sight::Truth | Sight::Tracking | Sight::Coasting => {
+            TrackingState::Waiting | TrackingState::Lost => self.lost += 1,
+            TrackingState::Truth | TrackingState::Tracking | TrackingState::Coasting => {
                 self.told.add(difference(&edge.seen, &edge.relative));
             }
         }
@@ -106,13 +106,13 @@ impl Gathering {
         self.before = [self.before[1], Some(*edge)];
     }
 
-    fn look(&mut self, frame: &Frame) {
+    fn look(&mut self, frame: &MeasurementRecord) {
         self.taken += 1;
         self.arrived += u64::from(frame.outcome != Outcome::Dropped);
         self.seen += u64::from(!matches!(frame.outcome, Outcome::Dropped | Outcome::Missed));
         self.refused += u64::from(matches!(frame.outcome, Outcome::Rejected | Outcome::Ambiguous));
         if frame.outcome == Outcome::Used {
-            let off = difference(&frame.sighting.relative, &frame.truth);
+            let off = difference(&frame.measurement.relative, &frame.truth);
             self.looks.add(off);
             self.relative.add([off[0] / frame.truth.distance.max(1e-9)]);
         }
@@ -163,12 +163,12 @@ pub(crate) fn measure(
     mut go_on: impl FnMut(u64) -> bool,
 ) -> Result<Option<Run>, String> {
     let period = simulation.period();
-    let mut edges = vec![Gathering::NONE; simulation.cast().edges.len()];
+    let mut edges = vec![Gathering::NONE; simulation.fleet().edges.len()];
     let (mut run, mut step, mut before) = (Run::default(), 0, f64::NEG_INFINITY);
-    while let Some(moment) = simulation.next_moment() {
-        take_in(&mut edges, moment, settled_after, period);
-        let time = moment.snapshot.time;
-        run.contacts += moment.contacts.iter().filter(|c| c.begin > before && c.begin <= time).count();
+    while let Some(record) = simulation.next_record() {
+        take_in(&mut edges, record, settled_after, period);
+        let time = record.snapshot.time;
+        run.contacts += record.contacts.iter().filter(|c| c.begin > before && c.begin <= time).count();
         (run.duration, before) = (time, time);
         step += 1;
         if step % STRIDE == 0 && !go_on(step) {
@@ -182,14 +182,14 @@ pub(crate) fn measure(
     Ok(Some(run))
 }
 
-fn take_in(edges: &mut [Gathering], moment: &Moment, settled_after: f64, period: f64) {
-    for frame in moment.frames.iter().filter(|f| f.sighting.stamp >= settled_after) {
+fn take_in(edges: &mut [Gathering], record: &StepRecord, settled_after: f64, period: f64) {
+    for frame in record.frames.iter().filter(|f| f.measurement.stamp >= settled_after) {
         if let Some(edge) = edges.get_mut(frame.edge) {
             edge.look(frame);
         }
     }
-    if moment.snapshot.time >= settled_after {
-        for (gathering, edge) in edges.iter_mut().zip(&moment.edges) {
+    if record.snapshot.time >= settled_after {
+        for (gathering, edge) in edges.iter_mut().zip(&record.edges) {
             gathering.know(edge, period);
         }
     }
@@ -217,9 +217,9 @@ mod tests {
     fn only_looks_that_were_used_count_as_errors() {
         let mut gathering = Gathering::NONE;
         for (outcome, distance) in [(Outcome::Used, 2.2), (Outcome::Rejected, 9.0), (Outcome::Missed, 0.0)] {
-            let mut frame = Frame { outcome, ..Frame::default() };
+            let mut frame = MeasurementRecord { outcome, ..MeasurementRecord::default() };
             frame.truth.distance = 2.0;
-            frame.sighting.relative.distance = distance;
+            frame.measurement.relative.distance = distance;
             gathering.look(&frame);
         }
         let measured = gathering.finish();

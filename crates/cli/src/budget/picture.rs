@@ -14,9 +14,9 @@ pub(crate) fn figure(budget: &Budget<'_>) -> Figure {
 
 /// The followers' colours and names, by edge.
 fn followers(budget: &Budget<'_>) -> Vec<(Rgb, String)> {
-    let colours = rendering::robot_colours(&budget.cast);
+    let colours = rendering::robot_colours(&budget.fleet);
     let colour = |robot: usize| colours.get(robot).copied().unwrap_or_default();
-    let edges = budget.cast.edges.iter().enumerate();
+    let edges = budget.fleet.edges.iter().enumerate();
     edges.map(|(index, edge)| (colour(edge.follower), budget.edge(index)[1].to_owned())).collect()
 }
 

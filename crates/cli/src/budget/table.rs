@@ -21,13 +21,13 @@ pub(crate) fn print(budget: &Budget<'_>) {
     } else if let Some(why) = &budget.without_camera {
         say(why);
     }
-    for index in 0..budget.cast.edges.len().min(MOST_EDGES) {
+    for index in 0..budget.fleet.edges.len().min(MOST_EDGES) {
         let [leader, follower] = budget.edge(index);
         say(&format!("\n{leader} → {follower}"));
         if budget.constants { constants(budget, index) } else { levels(budget, index) }
     }
-    if budget.cast.edges.len() > MOST_EDGES {
-        let more = budget.cast.edges.len() - MOST_EDGES;
+    if budget.fleet.edges.len() > MOST_EDGES {
+        let more = budget.fleet.edges.len() - MOST_EDGES;
         say(&format!("\n… and {more} more edges, all in what --json prints and -o writes"));
     }
     say("");

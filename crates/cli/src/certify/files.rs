@@ -50,7 +50,7 @@ pub(super) fn as_json(report: &Report<'_>) -> Value {
 }
 
 fn edge(report: &Report<'_>, certificate: &Certificate) -> Value {
-    let mut value = serde_json::to_value(certificate.metrics(&report.cast)).unwrap_or_default();
+    let mut value = serde_json::to_value(certificate.metrics(&report.fleet)).unwrap_or_default();
     if let Some(map) = value.as_object_mut() {
         let witness = &certificate.witness;
         map.insert("zeta_b".to_owned(), json!(witness.initial()));
@@ -140,7 +140,7 @@ fn table(report: &Report<'_>) -> String {
          observer_error,w\n",
     );
     for certificate in &report.certificates {
-        let edge = certificate.metrics(&report.cast);
+        let edge = certificate.metrics(&report.fleet);
         let quoted = |name: &str| {
             if name.contains([',', '"']) {
                 format!("\"{}\"", name.replace('"', "\"\""))

@@ -29,9 +29,9 @@ pub(super) fn figures(report: &Report<'_>) -> Vec<(&'static str, String)> {
 }
 
 fn colours(report: &Report<'_>) -> Vec<Rgb> {
-    let robots = rendering::robot_colours(&report.cast);
+    let robots = rendering::robot_colours(&report.fleet);
     let colour = |edge: &vocabulary::Edge| robots.get(edge.follower).copied().unwrap_or([0.3; 3]);
-    report.cast.edges.iter().map(colour).collect()
+    report.fleet.edges.iter().map(colour).collect()
 }
 
 fn axis(label: &str, scale: Scale) -> Axis {

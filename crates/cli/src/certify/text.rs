@@ -5,7 +5,7 @@ use super::beyond::{Beyond, Chart};
 use crate::print::say;
 use simulation::certify::chain::{LENGTHS, Point};
 use simulation::certify::{
-    Certificate, Constants, Discretisation, Finding, LongestPeriod, NotLinear, Outcome, Statement, Unholdable,
+    Certificate, Constants, Discretisation, Finding, Infeasible, LongestPeriod, NotLinear, Outcome, Statement,
 };
 use std::path::PathBuf;
 
@@ -193,7 +193,7 @@ fn sensitivities(report: &Report<'_>, beyond: &Beyond) {
         Err(why) => return say(&format!("  sensitivity of the settled error: {why}")),
     };
     say("  sensitivity of the settled error (last fifth of the run): % more for 1 % more gain on all edges");
-    let edges = report.cast.edges.len().min(MOST_EDGES);
+    let edges = report.fleet.edges.len().min(MOST_EDGES);
     let head = row((0..edges).map(|e| format!("  {:>21}", clip(report.follower(e), 21))));
     say(&format!("    {:14}{head}", ""));
     let settled = found.settled.iter().take(edges);
@@ -231,13 +231,13 @@ fn reach(report: &Report<'_>, beyond: &Beyond) {
     }
 }
 
-pub(super) fn reason(why: Unholdable) -> &'static str {
+pub(super) fn reason(why: Infeasible) -> &'static str {
     match why {
-        Unholdable::TooClose => "nearer than the law allows",
-        Unholdable::TooSlow => "slower than it can drive",
-        Unholdable::TooFast => "faster than it can drive",
-        Unholdable::TooTight => "tighter than it can turn",
-        Unholdable::TooHard => "harder than it can speed up or brake",
+        Infeasible::TooClose => "nearer than the law allows",
+        Infeasible::TooSlow => "slower than it can drive",
+        Infeasible::TooFast => "faster than it can drive",
+        Infeasible::TooTight => "tighter than it can turn",
+        Infeasible::TooHard => "harder than it can speed up or brake",
     }
 }
 

@@ -5,9 +5,9 @@ use crate::dataset::words::{Labelled, camera, carrier, found, frame};
 use perception::detect::{Detector, Locus, Tag, identify, recognise, sharpen};
 use perception::imaging::{Optics, Purpose, Sensor, noise_stream};
 use perception::pose::{PoseEstimate, Prior, Rig, locate};
-use perception::sensors::Senses;
+use perception::sensors::SensorConfig;
 use serde_json::{Value, json};
-use vocabulary::{Cast, Edge, FACES, Grey, Pose, Region, RobotState, Shell, Snapshot, wrap};
+use vocabulary::{Edge, FACES, FleetInfo, Grey, Pose, Region, RobotState, Shell, Snapshot, wrap};
 
 /// Standard deviation of a corner's coordinates as found in pictures, besides what its finder reports, pixels; what
 /// cameras that steer by them assume.
@@ -39,30 +39,36 @@ impl FollowerCamera {
         Self { edge, sensor: Sensor::new(optics), detector: Locus::new(), tilt, whole }
     }
 
-    pub(crate) fn describe(&self, cast: &Cast) -> Value {
-        let [leader, robot] = [self.edge.leader, self.edge.follower].map(|k| cast.members[k].name.as_str());
-        camera(robot, leader, &self.sensor.optics().lens)
+    pub(crate) fn describe(&self, fleet: &FleetInfo) -> Value {
+        let [leader, robot] = [self.edge.leader, self.edge.follower].map(|k| fleet.robots[k].name.as_str());
+        camera(robot, leader, &self.sensor.optics().camera_model)
     }
 
     /// The sensor's picture of `light`, the `number`th of this camera.
     pub(crate) fn expose(&mut self, light: &Grey, seed: u64, number: u64) -> Grey {
         let mut random = noise_stream(seed, self.edge.follower, number, Purpose::Pixels);
         let mut picture = Grey::default();
-        let whole = Region::whole(&self.sensor.optics().lens);
+        let whole = Region::whole(&self.sensor.optics().camera_model);
         self.sensor.expose(light, whole, &mut random, &mut picture);
         picture
     }
 
     /// Every tag that is turned towards the camera and lies in its picture.
-    pub(crate) fn labels(&self, cast: &Cast, senses: &Senses, snapshot: &Snapshot) -> Vec<Labelled> {
+    pub(crate) fn labels(
+        &self,
+        fleet: &FleetInfo,
+        sensor_config: &SensorConfig,
+        snapshot: &Snapshot,
+    ) -> Vec<Labelled> {
         let follower = self.edge.follower;
-        let lens = &self.sensor.optics().lens;
-        let world_from_camera = cast.members[follower].mount.world_from_camera(&snapshot.robots[follower]);
+        let camera_model = &self.sensor.optics().camera_model;
+        let world_from_camera =
+            fleet.robots[follower].camera_mount.world_from_camera(&snapshot.robots[follower]);
         let camera_from_world = world_from_camera.inverse();
-        let own = cast.members[follower].shell;
+        let own = fleet.robots[follower].shell;
         let own_from_world = snapshot.robots[follower].world_from_body().inverse();
         let mut labels = Vec::new();
-        for (robot, (member, state)) in cast.members.iter().zip(&snapshot.robots).enumerate() {
+        for (robot, (member, state)) in fleet.robots.iter().zip(&snapshot.robots).enumerate() {
             let Some((shell, first)) = member.shell.and_then(|s| Some((s, s.first_tag?))) else { continue };
             if robot == follower {
                 continue;
@@ -70,21 +76,23 @@ impl FollowerCamera {
             let world_from_body = state.world_from_body();
             let camera_from_body = camera_from_world.after(&world_from_body);
             for (face, id) in (0..FACES).zip(first..) {
-                let Some(view) = FaceView::of(&shell, lens, &camera_from_body, face) else { continue };
+                let Some(view) = FaceView::of(&shell, camera_model, &camera_from_body, face) else {
+                    continue;
+                };
                 let world_from_tag = world_from_body.after(&shell.body_from_face(face));
                 let hides = |x: f64, y: f64| {
                     let (from, to) = (world_from_camera.translation, world_from_tag.apply([x, y, 0.0]));
                     let walls = own.is_some_and(|shell| {
                         walls_hide(&shell, own_from_world.apply(from), own_from_world.apply(to))
                     });
-                    walls || senses.hides(snapshot, (follower, robot), from, to)
+                    walls || sensor_config.hides(snapshot, (follower, robot), from, to)
                 };
                 let h = shell.half_tag();
                 let hidden = [[-h, h], [h, h], [h, -h], [-h, -h]].map(|[x, y]| hides(x, y));
                 let at = |k: u32| h * (2.0 * f64::from(k) / f64::from(POINTS - 1) - 1.0);
                 let grid = (0..POINTS).flat_map(|row| (0..POINTS).map(move |column| (at(column), at(row))));
                 let count = grid.filter(|(x, y)| hides(*x, *y)).count();
-                let readable = view.readable(lens);
+                let readable = view.readable(camera_model);
                 let hidden_share = count as f64 / f64::from(POINTS * POINTS);
                 labels.push(Labelled { id, robot, face, view, readable, hidden, hidden_share });
             }
@@ -93,27 +101,27 @@ impl FollowerCamera {
     }
 
     /// All that is written about a picture.
-    pub(crate) fn note(&mut self, cast: &Cast, labels: &[Labelled], taken: &Taken<'_>) -> Value {
+    pub(crate) fn note(&mut self, fleet: &FleetInfo, labels: &[Labelled], taken: &Taken<'_>) -> Value {
         let (follower, snapshot) = (self.edge.follower, taken.snapshot);
-        let (member, state) = (&cast.members[follower], &snapshot.robots[follower]);
+        let (member, state) = (&fleet.robots[follower], &snapshot.robots[follower]);
         json!({
             "file": taken.file, "time": snapshot.time, "robot": member.name,
-            "world_from_camera": frame(&member.mount.world_from_camera(state)),
-            "body_from_camera": frame(&member.mount.body_from_camera(state.camera_pan)),
-            "tags": labels.iter().map(|label| label.as_json(cast)).collect::<Vec<_>>(),
-            "detected": self.detected(cast, taken.picture),
-            "leader": self.leader(cast, taken),
+            "world_from_camera": frame(&member.camera_mount.world_from_camera(state)),
+            "body_from_camera": frame(&member.camera_mount.body_from_camera(state.camera_pan)),
+            "tags": labels.iter().map(|label| label.as_json(fleet)).collect::<Vec<_>>(),
+            "detected": self.detected(fleet, taken.picture),
+            "leader": self.leader(fleet, taken),
         })
     }
 
     /// Our detector's tags in the whole picture, whoever carries them.
-    fn detected(&mut self, cast: &Cast, picture: &Grey) -> Vec<Value> {
+    fn detected(&mut self, fleet: &FleetInfo, picture: &Grey) -> Vec<Value> {
         let optics = *self.sensor.optics();
         let mut tags: Vec<Tag> = vec![];
         self.detector.detect(picture, &mut tags);
         self.detector.detect_in_shade(picture, &mut tags);
-        sharpen(picture, Region::whole(&optics.lens), &optics, &mut tags);
-        let shells = cast.members.iter().filter_map(|member| member.shell);
+        sharpen(picture, Region::whole(&optics.camera_model), &optics, &mut tags);
+        let shells = fleet.robots.iter().filter_map(|member| member.shell);
         let accepted: Vec<_> = shells
             .flat_map(|shell| identify(&tags, &shell).into_iter().map(move |seen| (shell, seen)))
             .collect();
@@ -122,20 +130,21 @@ impl FollowerCamera {
                 .iter()
                 .any(|(shell, seen)| shell.face_of(tag.id) == Some(seen.face) && seen.corners == tag.corners)
         };
-        tags.iter().map(|tag| found(cast, tag, carrier(cast, tag.id).is_some() && known(tag))).collect()
+        tags.iter().map(|tag| found(fleet, tag, carrier(fleet, tag.id).is_some() && known(tag))).collect()
     }
 
     /// Where the leader is in the follower's frame, and where we think it is.
-    fn leader(&mut self, cast: &Cast, taken: &Taken<'_>) -> Value {
+    fn leader(&mut self, fleet: &FleetInfo, taken: &Taken<'_>) -> Value {
         let Edge { leader, follower } = self.edge;
         let [ahead, own] = [leader, follower].map(|robot| taken.snapshot.robots[robot]);
         let truth = relative_pose(&ahead.motion.pose, &own.motion.pose);
-        let name = cast.members[leader].name.as_str();
+        let name = fleet.robots[leader].name.as_str();
         let mut note = json!({ "robot": name, "truth": placed(&truth), "faces": [], "estimate": null });
-        let Some(shell) = cast.members[leader].shell else { return note };
-        let mount = cast.members[follower].mount;
-        let lens = self.sensor.optics().lens;
-        let rig = Rig { shell, lens, body_from_camera: mount.body_from_camera(own.camera_pan) };
+        let Some(shell) = fleet.robots[leader].shell else { return note };
+        let camera_mount = fleet.robots[follower].camera_mount;
+        let camera_model = self.sensor.optics().camera_model;
+        let rig =
+            Rig { shell, camera_model, body_from_camera: camera_mount.body_from_camera(own.camera_pan) };
         let region = self.region(&shell, &rig, (&own, &ahead));
         let part = cut(taken.picture, region);
         let optics = *self.sensor.optics();
@@ -154,10 +163,10 @@ impl FollowerCamera {
 
     fn region(&self, shell: &Shell, rig: &Rig, (own, ahead): (&RobotState, &RobotState)) -> Region {
         if self.whole {
-            return Region::whole(&rig.lens);
+            return Region::whole(&rig.camera_model);
         }
         let world_from_camera = own.world_from_body().after(&rig.body_from_camera);
-        region_around(shell, &rig.lens, &world_from_camera.inverse().after(&ahead.world_from_body()))
+        region_around(shell, &rig.camera_model, &world_from_camera.inverse().after(&ahead.world_from_body()))
     }
 }
 

@@ -3,8 +3,8 @@
 use crate::dataset::timeline::Timeline;
 use crate::failure::Failure;
 use perception::imaging;
-use rendering::CameraEyes;
-use vocabulary::{Cast, Grey, Region, Shot, Snapshot};
+use rendering::GpuCameraRenderer;
+use vocabulary::{FleetInfo, Grey, Region, Shot, Snapshot};
 
 /// A picture to be taken: of all a sensor needs for its whole frame.
 #[derive(Debug, Clone, Copy)]
@@ -26,8 +26,8 @@ pub(crate) struct Exposure {
 
 /// Ideal pictures of all that is `wanted` at the instant of `now`, the middle of their exposure.
 pub(crate) fn gather(
-    eyes: &mut CameraEyes,
-    cast: &Cast,
+    eyes: &mut GpuCameraRenderer,
+    fleet: &FleetInfo,
     exposure: &Exposure,
     (timeline, now): (&Timeline, &Snapshot),
     wanted: &[Wanted],
@@ -35,17 +35,17 @@ pub(crate) fn gather(
     imaging::gather(exposure.shutter, |off, pictures| {
         let then = timeline.at(now.time + off).filter(|_| off != 0.0);
         let then = then.as_ref().unwrap_or(now);
-        Ok(eyes.take(then, &shots(cast, exposure, then, wanted), pictures)?)
+        Ok(eyes.take(then, &shots(fleet, exposure, then, wanted), pictures)?)
     })
 }
 
-fn shots(cast: &Cast, exposure: &Exposure, snapshot: &Snapshot, wanted: &[Wanted]) -> Vec<Shot> {
+fn shots(fleet: &FleetInfo, exposure: &Exposure, snapshot: &Snapshot, wanted: &[Wanted]) -> Vec<Shot> {
     let shot = |want: &Wanted| {
-        let member = &cast.members[want.robot];
+        let member = &fleet.robots[want.robot];
         Shot {
             robot: want.robot,
-            world_from_camera: member.mount.world_from_camera(&snapshot.robots[want.robot]),
-            focal: member.lens.focal,
+            world_from_camera: member.camera_mount.world_from_camera(&snapshot.robots[want.robot]),
+            focal: member.camera_model.focal,
             centre: want.centre,
             region: want.region,
             exposure: exposure.factor,

@@ -29,11 +29,11 @@ impl Timeline {
             if interrupt::asked() {
                 return Ok(false);
             }
-            let Some(moment) = self.simulation.next_moment() else {
+            let Some(record) = self.simulation.next_record() else {
                 let fault = self.simulation.fault();
                 return fault.map_or(Ok(false), |fault| Err(fault.into()));
             };
-            self.past.push_back(moment.snapshot.clone());
+            self.past.push_back(record.snapshot.clone());
             while self.past.get(1).is_some_and(|second| second.time <= time - self.memory) {
                 self.past.pop_front();
             }

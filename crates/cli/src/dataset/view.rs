@@ -1,6 +1,6 @@
 //! How a tag stands in a camera's picture, by geometry alone.
 
-use vocabulary::{FACES, Lens, Region, Rigid, Shell};
+use vocabulary::{CameraModel, FACES, Region, Rigid, Shell};
 
 /// Pixels that a cell needs to be read, seen from ahead and at the steepest angle at which a tag is read at all; the
 /// same numbers that sensing of kind `geometric` goes by.
@@ -31,7 +31,12 @@ pub(crate) struct FaceView {
 
 impl FaceView {
     /// How a face of a shell is seen; `None` if it is turned away or not all of its tag is in the picture.
-    pub(crate) fn of(shell: &Shell, lens: &Lens, camera_from_body: &Rigid, face: usize) -> Option<Self> {
+    pub(crate) fn of(
+        shell: &Shell,
+        camera_model: &CameraModel,
+        camera_from_body: &Rigid,
+        face: usize,
+    ) -> Option<Self> {
         let camera_from_tag = camera_from_body.after(&shell.body_from_face(face));
         let (at, out) = (camera_from_tag.translation, camera_from_tag.turn([0.0, 0.0, 1.0]));
         let away = at.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -41,16 +46,16 @@ impl FaceView {
             return None;
         }
         let [Some(a), Some(b), Some(c), Some(d)] =
-            shell.tag_corners(face).map(|corner| seen(lens, camera_from_body.apply(corner)))
+            shell.tag_corners(face).map(|corner| seen(camera_model, camera_from_body.apply(corner)))
         else {
             return None;
         };
         let corners = [a, b, c, d];
-        corners.iter().all(|p| lens.holds(*p, 0.0)).then(|| Self {
+        corners.iter().all(|p| camera_model.holds(*p, 0.0)).then(|| Self {
             camera_from_tag,
             corners,
             incidence: slant.clamp(-1.0, 1.0).acos(),
-            cell: lens.focal * shell.cell / away,
+            cell: camera_model.focal * shell.cell / away,
         })
     }
 
@@ -60,29 +65,29 @@ impl FaceView {
     }
 
     /// Whether a detector should read it: large enough for its slant, and not at the edge of the picture.
-    pub(crate) fn readable(&self, lens: &Lens) -> bool {
+    pub(crate) fn readable(&self, camera_model: &CameraModel) -> bool {
         let slant = self.incidence.cos();
         let share = (1.0 - slant) / (1.0 - STEEPEST);
         let least = LEAST_CELL[0] + (LEAST_CELL[1] - LEAST_CELL[0]) * share;
-        slant >= STEEPEST && self.cell >= least && self.corners.iter().all(|p| lens.holds(*p, MARGIN))
+        slant >= STEEPEST && self.cell >= least && self.corners.iter().all(|p| camera_model.holds(*p, MARGIN))
     }
 }
 
 /// Where a point of the camera's frame is seen; `None` where distortion folds the picture over and what is outside of
 /// the view seems to be in it.
-fn seen(lens: &Lens, point: [f64; 3]) -> Option<[f64; 2]> {
-    let pixel = lens.project(point)?;
-    let back = lens.direction(pixel);
+fn seen(camera_model: &CameraModel, point: [f64; 3]) -> Option<[f64; 2]> {
+    let pixel = camera_model.project(point)?;
+    let back = camera_model.direction(pixel);
     let off = |k: usize| (back[k] - point[k] / point[2]).abs();
     (off(0).max(off(1)) < 1e-6).then_some(pixel)
 }
 
 /// The part of a picture that a camera which tracks a shell looks at; the whole where the shell is not in it.
-pub(crate) fn region_around(shell: &Shell, lens: &Lens, camera_from_body: &Rigid) -> Region {
-    let whole = Region::whole(lens);
+pub(crate) fn region_around(shell: &Shell, camera_model: &CameraModel, camera_from_body: &Rigid) -> Region {
+    let whole = Region::whole(camera_model);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for corner in (0..FACES).flat_map(|face| shell.tag_corners(face)) {
-        let Some(pixel) = seen(lens, camera_from_body.apply(corner)) else { return whole };
+        let Some(pixel) = seen(camera_model, camera_from_body.apply(corner)) else { return whole };
         for k in 0..2 {
             low[k] = low[k].min(pixel[k]);
             high[k] = high[k].max(pixel[k]);
@@ -95,7 +100,7 @@ pub(crate) fn region_around(shell: &Shell, lens: &Lens, camera_from_body: &Rigid
         let length = last.checked_sub(first)?.next_multiple_of(GRID).min(pixels - first);
         (length >= 2 * GRID).then_some((first, length))
     };
-    match (along(0, lens.width), along(1, lens.height)) {
+    match (along(0, camera_model.width), along(1, camera_model.height)) {
         (Some((x, width)), Some((y, height))) => Region { x, y, width, height },
         _ => whole,
     }
@@ -119,19 +124,20 @@ pub(crate) fn walls_hide(shell: &Shell, from: [f64; 3], to: [f64; 3]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::{Body, Mount, Pose, RobotState};
+    use vocabulary::{Body, CameraMount, Pose, RobotState};
 
     /// A leader in the frame of a default camera that looks ahead.
     fn leader(x: f64, y: f64, heading: f64) -> Rigid {
-        let camera = Mount::fitting(&Body::default()).world_from_camera(&RobotState::default());
+        let camera = CameraMount::fitting(&Body::default()).world_from_camera(&RobotState::default());
         let body = Rigid::turned([x, y, 0.0], Pose::new(x, y, heading).heading, 0.0, 0.0);
         camera.inverse().after(&body)
     }
 
     fn faces(camera_from_body: &Rigid) -> Vec<usize> {
-        let (shell, lens) = (Shell::PAPER, Lens::default());
+        let (shell, camera_model) = (Shell::PAPER, CameraModel::default());
         let readable = |face: &usize| {
-            FaceView::of(&shell, &lens, camera_from_body, *face).is_some_and(|view| view.readable(&lens))
+            FaceView::of(&shell, &camera_model, camera_from_body, *face)
+                .is_some_and(|view| view.readable(&camera_model))
         };
         (0..FACES).filter(readable).collect()
     }
@@ -151,7 +157,8 @@ mod tests {
 
     #[test]
     fn a_face_that_looks_here_has_corners_in_the_order_of_its_tag() {
-        let view = FaceView::of(&Shell::PAPER, &Lens::default(), &leader(2.0, 0.0, 0.0), 2).expect("seen");
+        let view =
+            FaceView::of(&Shell::PAPER, &CameraModel::default(), &leader(2.0, 0.0, 0.0), 2).expect("seen");
         let [[left, top], [right, _], [_, bottom], _] = view.corners;
         assert!(left < right && top < bottom, "{view:?}");
         // It leans back by 10°, and the camera is a little above it.
@@ -162,23 +169,26 @@ mod tests {
 
     #[test]
     fn a_region_holds_the_shell() {
-        let (shell, lens) = (Shell::PAPER, Lens::default());
+        let (shell, camera_model) = (Shell::PAPER, CameraModel::default());
         let camera_from_body = leader(3.0, 0.2, 0.4);
-        let region = region_around(&shell, &lens, &camera_from_body);
+        let region = region_around(&shell, &camera_model, &camera_from_body);
         assert!(region.width < 320 && region.height < 240, "{region:?}");
         for face in 0..FACES {
-            let Some(view) = FaceView::of(&shell, &lens, &camera_from_body, face) else { continue };
+            let Some(view) = FaceView::of(&shell, &camera_model, &camera_from_body, face) else { continue };
             for [x, y] in view.corners {
                 assert!(x > f64::from(region.x) && x < f64::from(region.x + region.width), "{region:?}");
                 assert!(y > f64::from(region.y) && y < f64::from(region.y + region.height), "{region:?}");
             }
         }
-        assert_eq!(region_around(&shell, &lens, &leader(-3.0, 0.0, 0.0)), Region::whole(&lens));
+        assert_eq!(
+            region_around(&shell, &camera_model, &leader(-3.0, 0.0, 0.0)),
+            Region::whole(&camera_model)
+        );
     }
 
     #[test]
     fn a_shells_walls_are_behind_its_own_camera() {
-        let eye = Mount::fitting(&Body::default()).body_from_camera(0.0).translation;
+        let eye = CameraMount::fitting(&Body::default()).body_from_camera(0.0).translation;
         let hides = |x: f64, y: f64, z: f64| walls_hide(&Shell::PAPER, eye, [x, y, z]);
         assert!(!hides(2.0, 0.0, 0.2) && !hides(0.5, 0.0, 0.1) && !hides(0.3, 2.0, 0.2));
         assert!(hides(-1.0, 0.0, 0.2) && hides(-0.8, 0.8, 0.15));
@@ -189,10 +199,10 @@ mod tests {
     /// With strong distortion the edge of the world is drawn back into the picture.
     #[test]
     fn what_only_seems_to_be_in_the_picture_is_not() {
-        let lens = Lens { distortion: [-0.4, 0.0, 0.0, 0.0, 0.0], ..Lens::default() };
-        assert!(seen(&lens, [0.1, 0.1, 1.0]).is_some());
+        let camera_model = CameraModel { distortion: [-0.4, 0.0, 0.0, 0.0, 0.0], ..CameraModel::default() };
+        assert!(seen(&camera_model, [0.1, 0.1, 1.0]).is_some());
         let folded = [1.55, 0.0, 1.0];
-        assert!(lens.project(folded).is_some_and(|p| lens.holds(p, 0.0)));
-        assert_eq!(seen(&lens, folded), None);
+        assert!(camera_model.project(folded).is_some_and(|p| camera_model.holds(p, 0.0)));
+        assert_eq!(seen(&camera_model, folded), None);
     }
 }

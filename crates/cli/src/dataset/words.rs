@@ -3,15 +3,15 @@
 use crate::dataset::view::FaceView;
 use perception::detect::Tag;
 use serde_json::{Value, json};
-use vocabulary::{Cast, FACES, Lens, Member, Rigid, Shell};
+use vocabulary::{CameraModel, FACES, FleetInfo, Rigid, RobotInfo, Shell};
 
 /// Names of a tag's corners in their order.
 const CORNERS: [&str; 4] = ["top-left", "top-right", "bottom-right", "bottom-left"];
 
 /// Which robot carries a tag, and on which face.
-pub(crate) fn carrier(cast: &Cast, id: u16) -> Option<(usize, usize)> {
-    let face = |m: &Member| m.shell.as_ref().and_then(|shell| shell.face_of(id));
-    cast.members.iter().enumerate().find_map(|(robot, member)| Some((robot, face(member)?)))
+pub(crate) fn carrier(fleet: &FleetInfo, id: u16) -> Option<(usize, usize)> {
+    let face = |m: &RobotInfo| m.shell.as_ref().and_then(|shell| shell.face_of(id));
+    fleet.robots.iter().enumerate().find_map(|(robot, member)| Some((robot, face(member)?)))
 }
 
 pub(crate) fn frame(frame: &Rigid) -> Value {
@@ -19,7 +19,7 @@ pub(crate) fn frame(frame: &Rigid) -> Value {
 }
 
 /// A robot, its shell and the tags on it.
-pub(crate) fn robot(member: &Member) -> Value {
+pub(crate) fn robot(member: &RobotInfo) -> Value {
     let shell = member.shell.as_ref();
     let face = |shell: &Shell, face: usize| {
         json!({
@@ -35,11 +35,11 @@ pub(crate) fn robot(member: &Member) -> Value {
 }
 
 /// A camera: pinhole and distortion as OpenCV has them.
-pub(crate) fn camera(robot: &str, leader: &str, lens: &Lens) -> Value {
+pub(crate) fn camera(robot: &str, leader: &str, camera_model: &CameraModel) -> Value {
     json!({
-        "robot": robot, "leader": leader, "width": lens.width, "height": lens.height,
-        "fx": lens.focal, "fy": lens.focal, "cx": lens.centre[0], "cy": lens.centre[1],
-        "distortion": lens.distortion,
+        "robot": robot, "leader": leader, "width": camera_model.width, "height": camera_model.height,
+        "fx": camera_model.focal, "fy": camera_model.focal, "cx": camera_model.centre[0], "cy": camera_model.centre[1],
+        "distortion": camera_model.distortion,
     })
 }
 
@@ -61,9 +61,9 @@ impl Labelled {
         self.hidden_share > 0.0 || self.hidden.iter().any(|h| *h)
     }
 
-    pub(crate) fn as_json(&self, cast: &Cast) -> Value {
+    pub(crate) fn as_json(&self, fleet: &FleetInfo) -> Value {
         json!({
-            "id": self.id, "robot": cast.members[self.robot].name, "face": self.face,
+            "id": self.id, "robot": fleet.robots[self.robot].name, "face": self.face,
             "camera_from_tag": frame(&self.view.camera_from_tag), "corners": self.view.corners,
             "incidence": self.view.incidence, "pixels_per_cell": self.view.cell,
             "readable": self.readable, "hidden": self.any_hidden(), "hidden_share": self.hidden_share,
@@ -93,10 +93,10 @@ impl Labelled {
 }
 
 /// A tag that was found; accepted if it stands as a face of its robot's shell would.
-pub(crate) fn found(cast: &Cast, tag: &Tag, accepted: bool) -> Value {
-    let carrier = carrier(cast, tag.id);
+pub(crate) fn found(fleet: &FleetInfo, tag: &Tag, accepted: bool) -> Value {
+    let carrier = carrier(fleet, tag.id);
     json!({
-        "id": tag.id, "robot": carrier.map(|(robot, _)| cast.members[robot].name.as_str()),
+        "id": tag.id, "robot": carrier.map(|(robot, _)| fleet.robots[robot].name.as_str()),
         "face": carrier.map(|(_, face)| face), "corners": tag.corners, "deviation": tag.deviation,
         "accepted": accepted,
     })
@@ -126,14 +126,16 @@ mod tests {
 
     #[test]
     fn a_tag_has_one_carrier() {
-        let mut cast =
-            Cast { members: vec![Member::new("ann", true, Body::default()); 2], ..Cast::default() };
-        for (k, member) in cast.members.iter_mut().enumerate() {
+        let mut fleet = FleetInfo {
+            robots: vec![RobotInfo::new("ann", true, Body::default()); 2],
+            ..FleetInfo::default()
+        };
+        for (k, member) in fleet.robots.iter_mut().enumerate() {
             member.shell = member.shell.map(|shell| shell.tagged(3 * k));
         }
-        assert_eq!(carrier(&cast, 4), Some((0, 4)));
-        assert_eq!(carrier(&cast, 16), Some((1, 1)));
-        assert_eq!(carrier(&cast, 5), None);
+        assert_eq!(carrier(&fleet, 4), Some((0, 4)));
+        assert_eq!(carrier(&fleet, 16), Some((1, 1)));
+        assert_eq!(carrier(&fleet, 5), None);
     }
 
     #[test]

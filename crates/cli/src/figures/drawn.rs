@@ -8,7 +8,7 @@ use crate::playback::{Playback, Source};
 use crate::run::PROGRAM;
 use rendering::{FilmKind, Gpu, Layout, Renderer, Style, png};
 use report::{Case, Film, Job, Ran, Report, Shot, add_picture, find};
-use vocabulary::Cast;
+use vocabulary::FleetInfo;
 
 /// A run to draw.
 pub(super) struct Show {
@@ -73,25 +73,25 @@ pub(super) fn draw(
     report: &mut Report,
 ) -> Result<(), Failure> {
     let simulation = ready(&show.job, Some(gpu), adapter)?;
-    let cast = simulation.cast().clone();
-    let layout = layout(show, &cast)?;
+    let fleet = simulation.fleet().clone();
+    let layout = layout(show, &fleet)?;
     let style = Style::without(&["caption", "inset", "labels"])?;
-    let mut renderer = Renderer::new(gpu, &cast, FILM[0], FILM[1], 4)?;
+    let mut renderer = Renderer::new(gpu, &fleet, FILM[0], FILM[1], 4)?;
     let file = format!("{}.mp4", show.name);
     let path = folder.place(&file);
     let mut film = rendering::Film::create(&path, FilmKind::Mp4, FILM[0], FILM[1], RATE)?;
-    let mut playback = Playback::new(&cast, Source::Run(Box::new(simulation)));
+    let mut playback = Playback::new(&fleet, Source::Run(Box::new(simulation)));
     let mut shot = show.shot.as_ref();
     for frame in 0..show.frames() {
         let time = frame as f64 * show.speed() / RATE;
         if let Some((stem, at)) = shot.filter(|(_, at)| *at <= time) {
-            picture(show, (stem.as_str(), *at), (gpu, &cast, &layout), &mut playback, runs, report)?;
+            picture(show, (stem.as_str(), *at), (gpu, &fleet, &layout), &mut playback, runs, report)?;
             shot = None;
         }
-        let moment = playback.at(time);
+        let record = playback.at(time);
         playback.check()?;
         stop(meter)?;
-        let ready = renderer.draw_next(playback.trail(), &moment, &layout, &style)?;
+        let ready = renderer.draw_next(playback.trail(), &record, &layout, &style)?;
         ready.map_or(Ok(()), |picture| film.push(picture))?;
         meter.frame();
     }
@@ -103,13 +103,13 @@ pub(super) fn draw(
         std::fs::read(&path).map_err(|e| Failure::Machine(format!("cannot read {}: {e}", path.display())))?;
     let speed = show.speed();
     let fast = if speed > 1.0 { format!(", {speed} times as fast as it is") } else { String::new() };
-    report.films.push(Film { file, caption: format!("{}{fast}.", cast.title), mp4 });
+    report.films.push(Film { file, caption: format!("{}{fast}.", fleet.title), mp4 });
     Ok(())
 }
 
 /// The view of the scene; the paper's is the snake's.
-fn layout(show: &Show, cast: &Cast) -> Result<Layout, Failure> {
-    let names: Vec<String> = cast.members.iter().map(|m| m.name.clone()).collect();
+fn layout(show: &Show, fleet: &FleetInfo) -> Result<Layout, Failure> {
+    let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
     let view = if show.case == Case::Own { show.job.scene.views.default.as_str() } else { "snake" };
     Ok(Layout::parse(view, &names)?)
 }
@@ -117,7 +117,7 @@ fn layout(show: &Show, cast: &Cast) -> Result<Layout, Failure> {
 fn picture(
     show: &Show,
     (stem, time): (&str, f64),
-    (gpu, cast, layout): (&Gpu, &Cast, &Layout),
+    (gpu, fleet, layout): (&Gpu, &FleetInfo, &Layout),
     playback: &mut Playback,
     runs: &[Ran],
     report: &mut Report,
@@ -125,19 +125,19 @@ fn picture(
     let Some(trace) = find(runs, show.case, show.job.variant) else { return Ok(()) };
     let mut style = Style::without(&["caption", "inset", "time"])?;
     style.scale = PICTURE_TEXT;
-    let mut renderer = Renderer::new(gpu, cast, PICTURE[0], PICTURE[1], 4)?;
-    let moment = playback.at(time);
+    let mut renderer = Renderer::new(gpu, fleet, PICTURE[0], PICTURE[1], 4)?;
+    let record = playback.at(time);
     playback.check()?;
-    let picture = renderer.draw(playback.trail(), &moment, layout, &style)?;
+    let picture = renderer.draw(playback.trail(), &record, layout, &style)?;
     let (at, adapter) = (format!("{time}"), gpu.description());
-    let texts = [("Software", PROGRAM), ("Title", &*cast.title), ("Time", &*at), ("Adapter", &*adapter)];
+    let texts = [("Software", PROGRAM), ("Title", &*fleet.title), ("Time", &*at), ("Adapter", &*adapter)];
     let view =
         if show.job.scene.views.default == "snake" || show.case != Case::Own { "Snake view" } else { "View" };
     let shot = Shot {
         stem: stem.to_owned(),
         caption: format!(
             "{view}: {}, at {time:.1} s. Ribbons are where the robots drove, rings where the followers should be.",
-            cast.title
+            fleet.title
         ),
         png: png::encode(&picture, &texts)?,
         size: PICTURE,

@@ -72,7 +72,7 @@ pub(super) fn found(report: &Report, runs: &[Ran]) -> serde_json::Map<String, Va
         let trace = &ran.trace;
         json!({
             "name": trace.name,
-            "title": trace.cast.title,
+            "title": trace.fleet.title,
             "seed": trace.scene.seed,
             "digest": trace.digest,
             "settled_from": trace.late_from(),

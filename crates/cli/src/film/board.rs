@@ -27,7 +27,7 @@ struct Cut {
 }
 
 /// One frame.
-pub(super) struct Frame<'a> {
+pub(super) struct FramePlan<'a> {
     /// s of the run.
     pub(super) time: f64,
     pub(super) layout: Layout,
@@ -98,7 +98,7 @@ impl Board {
     }
 
     /// Frame number `index`, from 0.
-    pub(super) fn at(&self, index: u64, rate: f64) -> Frame<'_> {
+    pub(super) fn at(&self, index: u64, rate: f64) -> FramePlan<'_> {
         let title = count(self.title, rate);
         let mut left = index.saturating_sub(title);
         let seconds = index as f64 / rate;
@@ -116,7 +116,7 @@ impl Board {
         }
         let last = ends(usize::MAX);
         let opacity = smooth(((left as f64 + 1.0) / rate / FADE[0]).min(1.0));
-        Frame { time: last.to, line_opacity: 0.0, ..last.frame(last.frames(rate), rate, [0.0, opacity]) }
+        FramePlan { time: last.to, line_opacity: 0.0, ..last.frame(last.frames(rate), rate, [0.0, opacity]) }
     }
 }
 
@@ -136,7 +136,7 @@ impl Cut {
         count(self.length(), rate).max(1)
     }
 
-    fn frame(&self, index: u64, rate: f64, cards: [f64; 2]) -> Frame<'_> {
+    fn frame(&self, index: u64, rate: f64, cards: [f64; 2]) -> FramePlan<'_> {
         let seconds = index as f64 / rate;
         let layout = match (&self.glides_from, single(&self.layout)) {
             (Some(from), Some(to)) if seconds < self.shot.glide => {
@@ -146,7 +146,7 @@ impl Cut {
             _ => self.layout.clone(),
         };
         let shown = (seconds / FADE[1]).min((self.length() - seconds) / FADE[1]);
-        Frame {
+        FramePlan {
             time: (self.from + seconds * self.shot.speed).min(self.to),
             layout,
             line: &self.shot.line,

@@ -2,7 +2,7 @@
 
 use rendering::{Curve, Plot as Shown};
 use scene::Plot;
-use vocabulary::{Cast, Edge, Moment};
+use vocabulary::{Edge, FleetInfo, StepRecord};
 
 /// Everything that may be plotted, so far.
 pub(super) struct Plots {
@@ -22,18 +22,22 @@ const ALL: [Plot; 6] = [
 ];
 
 impl Plots {
-    pub(super) fn new(cast: &Cast, duration: f64) -> Self {
-        Self { edges: cast.edges.clone(), duration, curves: vec![vec![vec![]; cast.edges.len()]; ALL.len()] }
+    pub(super) fn new(fleet: &FleetInfo, duration: f64) -> Self {
+        Self {
+            edges: fleet.edges.clone(),
+            duration,
+            curves: vec![vec![vec![]; fleet.edges.len()]; ALL.len()],
+        }
     }
 
     /// Takes in the moment of a frame.
-    pub(super) fn record(&mut self, moment: &Moment) {
-        let time = moment.snapshot.time;
+    pub(super) fn record(&mut self, record: &StepRecord) {
+        let time = record.snapshot.time;
         for (quantity, curves) in ALL.into_iter().zip(&mut self.curves) {
             for ((index, edge), curve) in self.edges.iter().enumerate().zip(curves) {
                 // While a card stands, so does the time.
                 if curve.last().is_none_or(|last| time > last[0]) {
-                    curve.push([time, value(quantity, moment, index, *edge).unwrap_or(f64::NAN)]);
+                    curve.push([time, value(quantity, record, index, *edge).unwrap_or(f64::NAN)]);
                 }
             }
         }
@@ -61,12 +65,12 @@ impl Plots {
     }
 }
 
-fn value(plot: Plot, moment: &Moment, index: usize, edge: Edge) -> Option<f64> {
-    let state = moment.edges.get(index)?;
+fn value(plot: Plot, record: &StepRecord, index: usize, edge: Edge) -> Option<f64> {
+    let state = record.edges.get(index)?;
     Some(match plot {
         Plot::DistanceError => state.error[0],
         Plot::BearingError => state.error[1].to_degrees(),
-        Plot::Speed => moment.snapshot.robots.get(edge.follower)?.motion.speed,
+        Plot::Speed => record.snapshot.robots.get(edge.follower)?.motion.speed,
         Plot::TurnRate => state.applied.turn_rate,
         Plot::Acceleration => state.applied.acceleration,
         Plot::Distance => state.relative.distance,

@@ -1,9 +1,9 @@
 //! Words of films: cards, and the line at the bottom.
 
-use super::board::Frame;
+use super::board::FramePlan;
 use metrics::{EdgeMetrics, Metrics};
 use rendering::{Card, Line};
-use vocabulary::{Cast, Moment, Thing};
+use vocabulary::{EntityId, FleetInfo, StepRecord};
 
 /// Set points that are told one by one.
 const MOST_SET_POINTS: usize = 4;
@@ -18,18 +18,18 @@ pub(super) fn set_point_rows(edges: usize) -> usize {
 
 /// The card over a frame, if there is one.
 pub(super) fn card(
-    frame: &Frame<'_>,
+    frame: &FramePlan<'_>,
     description: &str,
-    cast: &Cast,
+    fleet: &FleetInfo,
     metrics: impl FnOnce() -> Metrics,
 ) -> Option<Card> {
     let [title, end] = frame.cards;
     if title > 0.0 {
         let about = description.split_whitespace().collect::<Vec<_>>().join(" ");
-        let rows = [about, cast.caption.clone()].into_iter().filter(|row| !row.is_empty()).collect();
-        return Some(Card { title: cast.title.clone(), rows, opacity: title });
+        let rows = [about, fleet.caption.clone()].into_iter().filter(|row| !row.is_empty()).collect();
+        return Some(Card { title: fleet.title.clone(), rows, opacity: title });
     }
-    (end > 0.0).then(|| Card { title: cast.title.clone(), rows: results(&metrics()), opacity: end })
+    (end > 0.0).then(|| Card { title: fleet.title.clone(), rows: results(&metrics()), opacity: end })
 }
 
 /// What the run showed, in a few rows.
@@ -70,25 +70,25 @@ fn results(metrics: &Metrics) -> Vec<String> {
 }
 
 /// The line at the bottom of a frame, if there is one.
-pub(super) fn line(frame: &Frame<'_>, cast: &Cast, moment: &Moment) -> Option<Line> {
+pub(super) fn line(frame: &FramePlan<'_>, fleet: &FleetInfo, record: &StepRecord) -> Option<Line> {
     let mut rows = Vec::new();
     if !frame.line.is_empty() {
         rows.push(frame.line.to_owned());
     }
     if frame.set_points {
-        rows.extend(set_points(cast, moment));
+        rows.extend(set_points(fleet, record));
     }
     (!rows.is_empty() && frame.line_opacity > 0.0).then_some(Line { rows, opacity: frame.line_opacity })
 }
 
 /// Where the followers should be, now.
-fn set_points(cast: &Cast, moment: &Moment) -> Vec<String> {
+fn set_points(fleet: &FleetInfo, record: &StepRecord) -> Vec<String> {
     let one = |(edge, state): (&vocabulary::Edge, &vocabulary::EdgeState)| {
         let [distance, bearing] = state.set_point;
         let degrees = format!("{:.0}", bearing.to_degrees()).replace('-', "\u{2212}");
-        format!("{}  {distance:.2} m  {degrees}°", cast.name(Thing::Robot(edge.follower)))
+        format!("{}  {distance:.2} m  {degrees}°", fleet.name(EntityId::Robot(edge.follower)))
     };
-    let all: Vec<String> = cast.edges.iter().zip(&moment.edges).map(one).collect();
+    let all: Vec<String> = fleet.edges.iter().zip(&record.edges).map(one).collect();
     let more = all.len().saturating_sub(MOST_SET_POINTS);
     let mut rows: Vec<String> = all
         .iter()

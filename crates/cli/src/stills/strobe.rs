@@ -1,7 +1,7 @@
 //! All of a run in one picture, as under a stroboscope: pictures from one place, and of each what moved.
 
 use rendering::View;
-use vocabulary::{Cast, Moment, Picture};
+use vocabulary::{FleetInfo, Picture, StepRecord};
 
 /// Vertical field of view, rad.
 const FIELD: f64 = 0.55;
@@ -17,10 +17,10 @@ const MOVED: i32 = 26;
 const FAINT: f32 = 0.5;
 
 /// A place from which all moments are seen, as near as can be.
-pub(super) fn view(moments: &[Moment], cast: &Cast, aspect: f64) -> View {
+pub(super) fn view(records: &[StepRecord], fleet: &FleetInfo, aspect: f64) -> View {
     let mut points = Vec::new();
-    for moment in moments {
-        for (robot, member) in moment.snapshot.robots.iter().zip(&cast.members) {
+    for record in records {
+        for (robot, member) in record.snapshot.robots.iter().zip(&fleet.robots) {
             let (pose, size) = (robot.motion.pose, member.body.length);
             let around = [[-size, -size], [-size, size], [size, -size], [size, size]];
             points.extend(around.map(|[x, y]| [pose.x + x, pose.y + y, robot.attitude.height]));

@@ -8,7 +8,7 @@ use crate::law::{Law, LawInput, LawKind, Switching};
 use crate::observer::Estimate;
 use crate::relative::Geometry;
 use nalgebra::{Complex, DMatrix, Matrix2, SVector};
-use vocabulary::{Drive, EdgeSample, Relative, SetPoint, wrap};
+use vocabulary::{EdgeSample, MotionInput, Relative, SetPoint, wrap};
 
 /// What one edge makes of its leader's deviation [δv in m/s, δω in rad/s] at one frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +29,7 @@ pub struct LinearEdge {
     /// ∂ω_j/∂x, ∂ω_j/∂[v_i, ω_i], ∂ω_j/∂[dv_i/dt, dω_i/dt].
     turn: [DMatrix<f64>; 3],
     /// What the follower does in steady motion.
-    pub follower: Drive,
+    pub follower: MotionInput,
     /// Its error there, [m, rad].
     pub error: [f64; 2],
 }
@@ -53,7 +53,7 @@ struct Edge<'a> {
 
 impl Edge<'_> {
     /// dx/dt and ω_j.
-    fn rate(&self, x: &State, leader: &Drive) -> (State, f64) {
+    fn rate(&self, x: &State, leader: &MotionInput) -> (State, f64) {
         let relative = Relative { distance: x[0], bearing: x[1], view_angle: x[2] };
         let law = &self.law.law;
         let geometry = Geometry::new(&relative, law.distance_min);
@@ -93,7 +93,7 @@ impl Edge<'_> {
     }
 
     /// How dx/dt and ω_j change with each of the first `size` entries of x.
-    fn by_state(&self, x: &State, leader: &Drive, size: usize) -> Vec<(State, f64)> {
+    fn by_state(&self, x: &State, leader: &MotionInput, size: usize) -> Vec<(State, f64)> {
         let column = |k: usize| {
             let mut shift = State::zeros();
             shift[k] = STEP;
@@ -103,7 +103,7 @@ impl Edge<'_> {
     }
 
     /// The state at rest next to `x`, by Newton's method.
-    fn settle(&self, mut x: State, leader: &Drive, size: usize) -> Option<State> {
+    fn settle(&self, mut x: State, leader: &MotionInput, size: usize) -> Option<State> {
         for _ in 0..50 {
             let (rate, _) = self.rate(&x, leader);
             let columns = self.by_state(&x, leader, size);
@@ -134,7 +134,7 @@ impl LinearEdge {
     ///
     /// # Errors
     /// [`NotLinear`] where there is no steady motion to linearise about.
-    pub fn about(law: &EdgeLaw, leader: &Drive) -> Result<Self, NotLinear> {
+    pub fn about(law: &EdgeLaw, leader: &MotionInput) -> Result<Self, NotLinear> {
         if law.law.kind != LawKind::FullState && law.law.switching == Switching::Sign {
             return Err(NotLinear::Sign);
         }
@@ -143,10 +143,10 @@ impl LinearEdge {
         let size = if law.law.kind == LawKind::OutputFeedback { 8 } else { 4 };
         let guess = near(&law.law, &set_point, leader).ok_or(NotLinear::NoSteadyMotion)?;
         let x = edge.settle(guess, leader, size).ok_or(NotLinear::NoSteadyMotion)?;
-        let follower = Drive { speed: x[3], turn_rate: leader.turn_rate, ..Drive::default() };
+        let follower = MotionInput { speed: x[3], turn_rate: leader.turn_rate, ..MotionInput::default() };
         let error = [set_point.value[0] - x[0], wrap(set_point.value[1] - x[1])];
         let states = edge.by_state(&x, leader, size);
-        let by_leader = |change: fn(&mut Drive, f64)| {
+        let by_leader = |change: fn(&mut MotionInput, f64)| {
             let at = |h: f64| {
                 let mut moved = *leader;
                 change(&mut moved, h);
@@ -190,7 +190,7 @@ impl LinearEdge {
 }
 
 /// The state of an edge in steady motion, but for what its observer is off.
-fn near(law: &Law, set_point: &SetPoint, leader: &Drive) -> Option<State> {
+fn near(law: &Law, set_point: &SetPoint, leader: &MotionInput) -> Option<State> {
     let mut error = [0.0; 2];
     // What the leader's motion does depends a little on where the follower ends: this settles in a few rounds.
     for _ in 0..100 {
@@ -263,7 +263,7 @@ mod tests {
     use super::*;
     use crate::law::Law;
     use crate::observer::Observer;
-    use crate::set_point::SetPointCourse;
+    use crate::set_point::SetPointTrajectory;
 
     fn edge(kind: LawKind, epsilon: f64) -> EdgeLaw {
         let law = Law {
@@ -275,14 +275,15 @@ mod tests {
         };
         let observer =
             Observer { epsilon: [epsilon; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 };
-        let set_point = SetPointCourse::constant(2.0, -0.75 * std::f64::consts::PI);
+        let set_point = SetPointTrajectory::constant(2.0, -0.75 * std::f64::consts::PI);
         EdgeLaw { law, observer, looks: None, set_point }
     }
 
-    const AHEAD: Drive = Drive { speed: 1.0, acceleration: 0.0, turn_rate: 0.0, turn_acceleration: 0.0 };
-    const ROUND: Drive = Drive { turn_rate: 0.3, ..AHEAD };
+    const AHEAD: MotionInput =
+        MotionInput { speed: 1.0, acceleration: 0.0, turn_rate: 0.0, turn_acceleration: 0.0 };
+    const ROUND: MotionInput = MotionInput { turn_rate: 0.3, ..AHEAD };
 
-    fn linear(kind: LawKind, epsilon: f64, leader: &Drive) -> LinearEdge {
+    fn linear(kind: LawKind, epsilon: f64, leader: &MotionInput) -> LinearEdge {
         LinearEdge::about(&edge(kind, epsilon), leader).expect("steady motion")
     }
 
@@ -355,7 +356,7 @@ mod tests {
         let mut sign = edge(LawKind::RobustState, 1e-3);
         sign.law.switching = Switching::Sign;
         assert_eq!(LinearEdge::about(&sign, &AHEAD), Err(NotLinear::Sign));
-        let still = Drive { speed: 0.0, ..AHEAD };
+        let still = MotionInput { speed: 0.0, ..AHEAD };
         assert_eq!(
             LinearEdge::about(&edge(LawKind::RobustState, 1e-3), &still),
             Err(NotLinear::NoSteadyMotion)

@@ -7,7 +7,7 @@ use crate::law::{Law, LawKind, Switching};
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
 use nalgebra::Vector2;
-use vocabulary::{Drive, Relative, SetPoint, wrap};
+use vocabulary::{MotionInput, Relative, SetPoint, wrap};
 
 /// One edge at one control sample, as it truly was.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Instant {
     /// v_j, m/s, above zero.
     pub follower_speed: f64,
     /// The leader's motion.
-    pub leader: Drive,
+    pub leader: MotionInput,
     /// s^d and its derivatives.
     pub set_point: SetPoint,
     /// e, [m, rad], bearing wrapped.

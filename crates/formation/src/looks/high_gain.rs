@@ -3,7 +3,7 @@
 use super::{LookLaw, Own, innovation};
 use crate::observer::{Estimate, Observer, input_effect};
 use crate::relative::Geometry;
-use vocabulary::{Drive, EdgeSample, Relative, Sighting};
+use vocabulary::{EdgeSample, Measurement, MotionInput, Relative};
 
 /// ŝ1 and ŝ2, and the view angle, which no law controls but all of them use.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +31,7 @@ type State = [f64; 6];
 
 impl HighGain {
     /// Begins at a look with rates of zero.
-    pub(super) fn at(look: &Sighting) -> Self {
+    pub(super) fn at(look: &Measurement) -> Self {
         Self {
             estimate: Estimate::at(&look.relative),
             view_angle: look.relative.view_angle,
@@ -75,7 +75,7 @@ impl HighGain {
 
     /// How far a look is from what was expected, in standard deviations: those of the look, of the estimate it meets,
     /// and what the leader may have done unseen in `age` s.
-    pub(super) fn surprise(&self, law: &LookLaw, look: &Sighting, age: f64) -> f64 {
+    pub(super) fn surprise(&self, law: &LookLaw, look: &Measurement, age: f64) -> f64 {
         let off = innovation(&look.relative, &self.relative());
         let unseen = |k: usize| {
             let delta = law.disturbance[k.min(1)];
@@ -93,7 +93,7 @@ impl HighGain {
 
     /// Corrects each channel with L = [1 − p², (1 − p)²/Δt], p = e^(−Δt/ε), Δt the time since the last look. A look that is
     /// less certain than those before, such as the last one of a tag that slips behind a pillar, corrects less.
-    pub(super) fn correct(&mut self, law: &LookLaw, look: &Sighting, age: f64) {
+    pub(super) fn correct(&mut self, law: &LookLaw, look: &Measurement, age: f64) {
         let trust: [f64; 3] = std::array::from_fn(|k| {
             let ratio = look.deviation[k].powi(2) / self.variance[k].max(1e-24);
             if ratio > 1.0 { 2.0 / (1.0 + ratio) } else { 1.0 }
@@ -160,12 +160,12 @@ fn slope(x: &State, distance_min: f64, own: Own, coasting: bool) -> State {
 }
 
 /// What the leader does by the rates that are believed: eqs 6-7 solved for its speed, along its heading, and its turn rate.
-fn leader(geometry: &Geometry, &[_, _, dd, db, _, line_rate]: &State, own: Own) -> Drive {
+fn leader(geometry: &Geometry, &[_, _, dd, db, _, line_rate]: &State, own: Own) -> MotionInput {
     let along = own.speed * geometry.cos_view - dd;
     let across = line_rate * geometry.distance + own.speed * geometry.sin_view;
-    Drive {
+    MotionInput {
         speed: geometry.cos_bearing * along + geometry.sin_bearing * across,
         turn_rate: line_rate - db,
-        ..Drive::default()
+        ..MotionInput::default()
     }
 }

@@ -12,7 +12,7 @@ use crate::observer::{Estimate, Observer};
 use high_gain::HighGain;
 use std::collections::VecDeque;
 use unscented::Unscented;
-use vocabulary::{Outcome, Relative, Sight, Sighting, wrap};
+use vocabulary::{Measurement, Outcome, Relative, TrackingState, wrap};
 
 /// How looks become an estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,7 +112,7 @@ impl Tracker {
     }
 
     /// Puts in a look that has arrived; what came of it.
-    pub fn take(&mut self, law: &LookLaw, look: &Sighting) -> Outcome {
+    pub fn take(&mut self, law: &LookLaw, look: &Measurement) -> Outcome {
         let finite =
             |r: &Relative| r.distance.is_finite() && r.bearing.is_finite() && r.view_angle.is_finite();
         if !finite(&look.relative) || look.stamp < self.now - MEMORY {
@@ -155,7 +155,7 @@ impl Tracker {
     }
 
     /// Begins anew at a look, rates zero.
-    fn restart(&mut self, law: &LookLaw, look: &Sighting) {
+    fn restart(&mut self, law: &LookLaw, look: &Measurement) {
         self.rejected = 0;
         let own = self.past.iter().find(|s| look.stamp <= s.until).or(self.past.back());
         let speed = own.map_or(0.0, |s| s.own.speed);
@@ -217,16 +217,16 @@ impl Tracker {
     }
 
     /// Whether the leader counts as seen.
-    pub fn sight(&self, law: &LookLaw) -> Sight {
+    pub fn sight(&self, law: &LookLaw) -> TrackingState {
         let age = self.age();
         if age > law.hold {
-            Sight::Lost
+            TrackingState::Lost
         } else if self.anchor.is_none() {
-            Sight::Waiting
+            TrackingState::Waiting
         } else if law.coasts(age - law.interval) {
-            Sight::Coasting
+            TrackingState::Coasting
         } else {
-            Sight::Tracking
+            TrackingState::Tracking
         }
     }
 }
@@ -249,14 +249,14 @@ impl Belief {
     }
 
     /// How far a look is from what was expected, in standard deviations.
-    fn surprise(&self, law: &LookLaw, look: &Sighting, age: f64) -> f64 {
+    fn surprise(&self, law: &LookLaw, look: &Measurement, age: f64) -> f64 {
         match self {
             Self::HighGain(belief) => belief.surprise(law, look, age),
             Self::Unscented(belief) => belief.surprise(look),
         }
     }
 
-    fn correct(&mut self, law: &LookLaw, look: &Sighting, age: f64) {
+    fn correct(&mut self, law: &LookLaw, look: &Measurement, age: f64) {
         match self {
             Self::HighGain(belief) => belief.correct(law, look, age),
             Self::Unscented(belief) => belief.correct(law, look),

@@ -77,10 +77,10 @@ fn run(
     law: &LookLaw,
     deviation: [f64; 3],
     late: usize,
-    mut look_at: impl FnMut(usize, &mut Sighting) -> bool,
+    mut look_at: impl FnMut(usize, &mut Measurement) -> bool,
 ) -> Shown {
     let (mut pair, mut tracker) = (Pair::new(), Tracker::default());
-    let mut waiting: VecDeque<(usize, Sighting)> = VecDeque::new();
+    let mut waiting: VecDeque<(usize, Measurement)> = VecDeque::new();
     let mut shown = Shown { worst: [0.0; 3], rates: [0.0; 2], used: 0, rejected: 0 };
     let mut counted = 0;
     for k in 0..600_usize {
@@ -90,7 +90,7 @@ fn run(
             relative.distance += deviation[0] * n(0);
             relative.bearing += deviation[1] * n(1);
             relative.view_angle += deviation[2] * n(2);
-            let mut look = Sighting { stamp: k as f64 * T, relative, deviation };
+            let mut look = Measurement { stamp: k as f64 * T, relative, deviation };
             if look_at(k, &mut look) {
                 waiting.push_back((k + late, look));
             }
@@ -179,7 +179,7 @@ fn outliers_are_not_believed() {
 fn a_leader_that_is_truly_elsewhere_is_believed_at_the_third_look() {
     let law = law(Method::HighGain);
     let mut tracker = Tracker::default();
-    let look = |stamp, distance| Sighting {
+    let look = |stamp, distance| Measurement {
         stamp,
         relative: Relative { distance, bearing: -2.0, view_angle: -2.0 },
         deviation: [2e-3, 8e-3, 5e-4],
@@ -220,7 +220,7 @@ fn a_look_that_doubts_itself_moves_little() {
             let off = if k == 30 { 15e-3 } else { 0.0 };
             let relative = Relative { distance: 2.0 + off, bearing: -2.0, view_angle: -2.0 };
             let deviation = if k == 30 { deviation } else { sure };
-            tracker.take(&law, &Sighting { stamp: f64::from(k) * T, relative, deviation });
+            tracker.take(&law, &Measurement { stamp: f64::from(k) * T, relative, deviation });
             tracker.advance(&law, Own::default(), T);
         }
         tracker.estimate(&law).rates[0].abs()
@@ -244,8 +244,8 @@ fn a_hidden_leader_is_followed_by_how_it_went() {
 fn sight_is_lost_with_time_and_comes_back() {
     let law = law(Method::HighGain);
     let mut tracker = Tracker::default();
-    assert_eq!((tracker.sight(&law), tracker.relative()), (Sight::Waiting, None));
-    let look = |stamp| Sighting {
+    assert_eq!((tracker.sight(&law), tracker.relative()), (TrackingState::Waiting, None));
+    let look = |stamp| Measurement {
         stamp,
         relative: Relative { distance: 2.0, bearing: -2.0, view_angle: -2.0 },
         deviation: QUIET,
@@ -257,9 +257,12 @@ fn sight_is_lost_with_time_and_comes_back() {
         seen.push(tracker.sight(&law));
         assert!((tracker.age() - f64::from(k) * T).abs() < 1e-12);
     }
-    assert_eq!((seen[4], seen[20], seen[60]), (Sight::Tracking, Sight::Coasting, Sight::Lost));
+    assert_eq!(
+        (seen[4], seen[20], seen[60]),
+        (TrackingState::Tracking, TrackingState::Coasting, TrackingState::Lost)
+    );
     tracker.take(&law, &look(0.8));
-    assert_eq!(tracker.sight(&law), Sight::Tracking);
+    assert_eq!(tracker.sight(&law), TrackingState::Tracking);
 }
 
 #[test]
@@ -270,7 +273,8 @@ fn no_look_breaks_it() {
         let mut tracker = Tracker::default();
         for (k, (a, b)) in odd.iter().flat_map(|a| odd.iter().map(move |b| (*a, *b))).enumerate() {
             let relative = Relative { distance: a, bearing: b, view_angle: a };
-            tracker.take(&law, &Sighting { stamp: k as f64 * T, relative, deviation: [b.abs(), 1e-3, 0.0] });
+            tracker
+                .take(&law, &Measurement { stamp: k as f64 * T, relative, deviation: [b.abs(), 1e-3, 0.0] });
             tracker.advance(&law, Own { speed: 1.0, acceleration: 1.0, turn_rate: 3.0 }, T);
             if let Some(r) = tracker.relative() {
                 assert!(r.distance.is_finite() && r.bearing.is_finite() && r.view_angle.is_finite(), "{r:?}");

@@ -6,7 +6,7 @@ use super::{LookLaw, Own, innovation};
 use crate::observer::Estimate;
 use crate::relative::Geometry;
 use nalgebra::{Cholesky, Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3};
-use vocabulary::{Relative, Sighting};
+use vocabulary::{Measurement, Relative};
 
 /// State of both filters.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,7 +31,7 @@ const AT_FIRST: [f64; 2] = [1.0, 0.5];
 
 impl Unscented {
     /// Begins at a look; the leader is taken to be as fast as its follower and to drive straight on.
-    pub(super) fn at(_law: &LookLaw, look: &Sighting, own_speed: f64) -> Self {
+    pub(super) fn at(_law: &LookLaw, look: &Measurement, own_speed: f64) -> Self {
         let Relative { distance, bearing, view_angle } = look.relative;
         let position = Vector3::new(distance, bearing, view_angle);
         let variance = Vector3::from(look.deviation.map(|d| d * d + 1e-12));
@@ -74,7 +74,7 @@ impl Unscented {
         self.motion_covariance += Matrix2::from_diagonal(&Vector2::from(walk)) * duration;
     }
 
-    pub(super) fn surprise(&self, look: &Sighting) -> f64 {
+    pub(super) fn surprise(&self, look: &Measurement) -> f64 {
         let off = Vector3::from(innovation(&look.relative, &self.relative()));
         let motion = self.motion_covariance.diagonal();
         let age: f64 = self.since.iter().map(|(_, duration)| duration).sum();
@@ -83,7 +83,7 @@ impl Unscented {
         (0..3).map(|k| off[k].abs() / variance[k].max(1e-24).sqrt()).fold(0.0, f64::max)
     }
 
-    pub(super) fn correct(&mut self, law: &LookLaw, look: &Sighting) {
+    pub(super) fn correct(&mut self, law: &LookLaw, look: &Measurement) {
         let noise = noise(look);
         let (before, since) = (self.before, std::mem::take(&mut self.since));
         let replay = |motion: &Vector2<f64>| {
@@ -116,7 +116,7 @@ fn relative(position: &Vector3<f64>) -> Relative {
     Relative { distance: position.x, bearing: position.y, view_angle: position.z }
 }
 
-fn noise(look: &Sighting) -> Matrix3<f64> {
+fn noise(look: &Measurement) -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::from(look.deviation.map(|d| d * d + 1e-12)))
 }
 

@@ -32,11 +32,11 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
 fn findings(desk: &Desk) -> Option<Vec<Finding>> {
     let (history, scene) = (desk.history.as_ref()?, desk.scene_now()?);
     let chosen = desk.chosen_robot();
-    let edges = &history.cast().edges;
+    let edges = &history.fleet().edges;
     let index = edges.iter().position(|edge| Some(edge.follower) == chosen).unwrap_or(0);
     let (edge, (_, _, follow)) = (*edges.get(index)?, desk.follower(index)?);
-    let moments = history.between(desk.branch, [0.0, f64::INFINITY], MOST);
-    Some(so_far(&moments, (index, edge), follow, scene).0)
+    let records = history.between(desk.branch, [0.0, f64::INFINITY], MOST);
+    Some(so_far(&records, (index, edge), follow, scene).0)
 }
 
 /// A finding in words.

@@ -15,7 +15,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         return nobody(ui, desk, "Click a follower or its edge.");
     };
     ui.label(RichText::new(format!("{} → {name}", follow.leader)).strong());
-    let state = desk.shown().and_then(|moment| moment.edges.get(edge).copied());
+    let state = desk.shown().and_then(|record| record.edges.get(edge).copied());
     let now = state.map_or([0.0; 2], |state| state.set_point);
     let value = |channel: &Channel, now: f64| match channel {
         Channel::Constant(value) => *value,
@@ -104,7 +104,7 @@ fn ahead(ui: &mut Ui, desk: &Desk, edge: usize) {
     if let Some((time, things)) = &forecast.contact
         && let Some(history) = &desk.history
     {
-        let [a, b] = things.map(|thing| history.cast().name(thing).to_owned());
+        let [a, b] = things.map(|thing| history.fleet().name(thing).to_owned());
         let text = format!("contact at {} s: {a} and {b}", fixed(*time, 1));
         ui.colored_label(ui.visuals().error_fg_color, text);
     }

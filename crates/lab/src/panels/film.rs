@@ -63,7 +63,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, style: &Style, filming: Option<&str>, out:
 
 /// The view that films are taken from.
 fn from(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let names = desk.history.as_ref().map(|history| history.cast().members.iter().map(|m| m.name.clone()));
+    let names = desk.history.as_ref().map(|history| history.fleet().robots.iter().map(|m| m.name.clone()));
     let robots: Vec<String> = names.map(Iterator::collect).unwrap_or_default();
     let now = desk.film_from.as_deref().unwrap_or(SEEN);
     ui.horizontal(|ui| {

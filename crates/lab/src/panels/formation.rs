@@ -4,11 +4,11 @@ use super::{colour, naming, nothing};
 use crate::action::Action;
 use crate::desk::{Choice, Desk, Tool};
 use eframe::egui::{self, RichText, Role, Sense, Ui, WidgetInfo};
-use vocabulary::{Cast, Moment};
+use vocabulary::{FleetInfo, StepRecord};
 
 /// Robots as a tree.
 pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let Some(cast) = desk.history.as_ref().map(|history| history.cast().clone()) else {
+    let Some(fleet) = desk.history.as_ref().map(|history| history.fleet().clone()) else {
         return nothing(ui, "No scene is open.");
     };
     ui.horizontal_wrapped(|ui| {
@@ -21,23 +21,23 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
             out.push(Action::Take(if connects { Tool::Hand } else { Tool::Connect }));
         }
     });
-    let moment = desk.shown();
-    let rows = order(&cast);
+    let record = desk.shown();
+    let rows = order(&fleet);
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         for (robot, depth) in rows {
-            row(ui, desk, (&cast, moment.as_deref()), (robot, depth), out);
+            row(ui, desk, (&fleet, record.as_deref()), (robot, depth), out);
         }
     });
 }
 
 /// Robots, each after the one it follows, with its depth.
-fn order(cast: &Cast) -> Vec<(usize, usize)> {
-    let mut rows = Vec::with_capacity(cast.members.len());
+fn order(fleet: &FleetInfo) -> Vec<(usize, usize)> {
+    let mut rows = Vec::with_capacity(fleet.robots.len());
     let mut open: Vec<(usize, usize)> =
-        (0..cast.members.len()).rev().filter(|k| cast.members[*k].leads).map(|k| (k, 0)).collect();
+        (0..fleet.robots.len()).rev().filter(|k| fleet.robots[*k].leads).map(|k| (k, 0)).collect();
     while let Some((robot, depth)) = open.pop() {
         rows.push((robot, depth));
-        let followers = cast.edges.iter().rev().filter(|edge| edge.leader == robot);
+        let followers = fleet.edges.iter().rev().filter(|edge| edge.leader == robot);
         open.extend(followers.map(|edge| (edge.follower, depth + 1)));
     }
     rows
@@ -46,11 +46,11 @@ fn order(cast: &Cast) -> Vec<(usize, usize)> {
 fn row(
     ui: &mut Ui,
     desk: &Desk,
-    (cast, moment): (&Cast, Option<&Moment>),
+    (fleet, record): (&FleetInfo, Option<&StepRecord>),
     (robot, depth): (usize, usize),
     out: &mut Vec<Action>,
 ) {
-    let name = &cast.members[robot].name;
+    let name = &fleet.robots[robot].name;
     let chosen = desk.chosen_robot() == Some(robot);
     let response = ui
         .horizontal(|ui| {
@@ -60,7 +60,7 @@ fn row(
             let text =
                 if chosen { RichText::new(name).color(egui::Color32::WHITE) } else { RichText::new(name) };
             let label = ui.add(egui::Button::selectable(chosen, text).sense(Sense::click_and_drag()));
-            if let Some(error) = desk.edge_of(robot).and_then(|edge| Some(moment?.edges.get(edge)?.error)) {
+            if let Some(error) = desk.edge_of(robot).and_then(|edge| Some(record?.edges.get(edge)?.error)) {
                 let size = error[0].hypot(error[1]);
                 let text = format!("{} m", crate::tidy::fixed(error[0], 2));
                 let weak = RichText::new(text).small();

@@ -72,8 +72,8 @@ pub(crate) fn nobody(ui: &mut Ui, desk: &Desk, why: &str) {
 /// The colour of a robot on light and dark ground.
 pub(crate) fn colour(desk: &Desk, robot: usize, ui: &Ui) -> Color32 {
     let Some(history) = &desk.history else { return Color32::GRAY };
-    let colours = rendering::robot_colours(history.cast());
-    let leads = history.cast().members.get(robot).is_some_and(|member| member.leads);
+    let colours = rendering::robot_colours(history.fleet());
+    let leads = history.fleet().robots.get(robot).is_some_and(|member| member.leads);
     if leads && ui.visuals().dark_mode {
         // Near-black would be lost, and the gold of its stripe is too near to the first follower's orange.
         return Color32::from_rgb(0xe6, 0xe2, 0xd6);

@@ -8,7 +8,7 @@ use crate::desk::Desk;
 use crate::symbols;
 use eframe::egui::{ComboBox, Ui};
 use scene::{Sensing, SensingKind};
-use vocabulary::Sight;
+use vocabulary::TrackingState;
 
 const KINDS: [(SensingKind, &str, &str, &str); 4] = [
     (SensingKind::Truth, "Truth", "truth", "Every follower is told distance and bearing."),
@@ -57,13 +57,13 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         SensingKind::Geometric => PIXEL_NOISE.one(ui, sensing.pixel_noise, default.pixel_noise, out),
         SensingKind::Truth | SensingKind::Camera => {}
     }
-    if let Some(state) = desk.moment().and_then(|moment| moment.edges.get(edge).copied()) {
+    if let Some(state) = desk.record().and_then(|record| record.edges.get(edge).copied()) {
         let word = match state.sight {
-            Sight::Truth => "is told the truth",
-            Sight::Waiting => "has not seen its leader yet",
-            Sight::Tracking => "sees its leader",
-            Sight::Coasting => "coasts on what it believes",
-            Sight::Lost => "has lost its leader",
+            TrackingState::Truth => "is told the truth",
+            TrackingState::Waiting => "has not seen its leader yet",
+            TrackingState::Tracking => "sees its leader",
+            TrackingState::Coasting => "coasts on what it believes",
+            TrackingState::Lost => "has lost its leader",
         };
         ui.label(format!("{name} {word}"));
         ui.weak(format!("last look {} ms ago", crate::tidy::fixed(state.age * 1e3, 0)));

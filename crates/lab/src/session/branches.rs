@@ -9,7 +9,7 @@ use scene::{Scene, SceneText};
 use simulation::{BuildError, Setup, Simulation};
 use std::rc::Rc;
 use std::sync::Arc;
-use vocabulary::Moment;
+use vocabulary::StepRecord;
 
 /// Simulated time between two saved states at first, s.
 const MARK_EVERY: f64 = 1.0;
@@ -88,7 +88,7 @@ impl Branches {
     }
 
     /// The next sample of a branch; `None` where it is over.
-    pub fn advance(&mut self, branch: usize) -> Option<&Moment> {
+    pub fn advance(&mut self, branch: usize) -> Option<&StepRecord> {
         self.list.get_mut(branch)?.advance()
     }
 
@@ -114,13 +114,13 @@ impl Branches {
 }
 
 impl Branch {
-    fn advance(&mut self) -> Option<&Moment> {
-        self.digest.push(self.simulation.next_moment()?);
+    fn advance(&mut self) -> Option<&StepRecord> {
+        self.digest.push(self.simulation.next_record()?);
         let sample = self.simulation.sample();
         if sample.is_multiple_of(self.mark_every) {
             self.mark();
         }
-        Some(self.simulation.moment())
+        Some(self.simulation.record())
     }
 
     fn mark(&mut self) {
@@ -147,7 +147,7 @@ impl Branch {
             changes.push(change.clone());
         }
         if base.changes.is_empty() {
-            self.simulation.adopt(&setup);
+            self.simulation.apply_parameters(&setup);
         } else {
             self.simulation.reschedule(&planned(base, &changes)?);
         }
@@ -172,10 +172,10 @@ impl Branch {
             let sample = simulation.sample();
             let due = changes.iter().filter(|change| change.sample == sample && base.changes.is_empty());
             for setup in due.filter_map(|change| simulation::build(&change.scene).ok()) {
-                simulation.adopt(&setup);
+                simulation.apply_parameters(&setup);
             }
-            let Some(moment) = simulation.next_moment() else { break };
-            digest.push(moment);
+            let Some(record) = simulation.next_record() else { break };
+            digest.push(record);
         }
         Self { name, parent: Some(parent), changes, simulation, digest, marks, mark_every: self.mark_every }
     }

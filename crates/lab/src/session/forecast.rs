@@ -8,7 +8,7 @@ use std::sync::{
     atomic::{AtomicUsize, Ordering::Relaxed},
 };
 use std::time::Instant;
-use vocabulary::{Moment, Pose, Thing};
+use vocabulary::{EntityId, Pose, StepRecord};
 
 /// Points of a path, at most.
 const MOST_POINTS: usize = 160;
@@ -33,7 +33,7 @@ pub struct Forecast {
     /// Largest |error| of every edge in the last tenth, [m, rad].
     pub late_error: Vec<[f64; 2]>,
     /// First contact ahead: s and the robots or props in it.
-    pub contact: Option<(f64, [Thing; 2])>,
+    pub contact: Option<(f64, [EntityId; 2])>,
     /// First command that a limit cuts: s and edge.
     pub limited: Option<(f64, usize)>,
     /// How long it took to compute, s.
@@ -125,7 +125,7 @@ fn ahead(question: Question, newer: &dyn Fn() -> bool) -> Option<Forecast> {
     let began = Instant::now();
     let Question { branch, mut run, seconds, number } = question;
     // Pictures for cameras cannot be drawn ahead: there a follower is told the truth.
-    if run.needs_eyes() {
+    if run.needs_cameras() {
         run.trust();
     }
     let period = run.period();
@@ -133,11 +133,11 @@ fn ahead(question: Question, newer: &dyn Fn() -> bool) -> Option<Forecast> {
     let start = run.sample() as f64 * period;
     let mut teller = Teller::new(&run, samples, [start, start + samples as f64 * period]);
     for k in 0..samples {
-        let Some(moment) = run.next_moment() else {
-            teller.end(run.moment());
+        let Some(record) = run.next_record() else {
+            teller.end(run.record());
             break;
         };
-        teller.take(k, moment);
+        teller.take(k, record);
         // What is half done is finished: under a stream of questions there would be no answer at all.
         if k == samples / 4 && newer() && began.elapsed().as_millis() > 60 {
             return None;
@@ -159,46 +159,46 @@ struct Teller {
 
 impl Teller {
     fn new(run: &Simulation, samples: u64, span: [f64; 2]) -> Self {
-        let cast = run.cast();
-        let robots = cast.members.len();
+        let fleet = run.fleet();
+        let robots = fleet.robots.len();
         Self {
             out: Forecast {
                 span,
                 paths: vec![Vec::new(); robots],
                 motions: vec![Vec::new(); robots],
-                late_error: vec![[0.0; 2]; cast.edges.len()],
+                late_error: vec![[0.0; 2]; fleet.edges.len()],
                 ..Forecast::default()
             },
             stride: samples.div_ceil(MOST_POINTS as u64).max(1),
             samples,
             room_every: (ROOM_EVERY / run.period()).ceil().max(1.0) as u64,
-            clearance: Clearance::new(cast),
-            edges: cast.edges.clone(),
+            clearance: Clearance::new(fleet),
+            edges: fleet.edges.clone(),
             trouble: vec![Trouble::None; robots],
         }
     }
 
-    fn take(&mut self, k: u64, moment: &Moment) {
-        self.limits(moment);
-        self.contacts(k, moment);
-        self.errors(k, moment);
+    fn take(&mut self, k: u64, record: &StepRecord) {
+        self.limits(record);
+        self.contacts(k, record);
+        self.errors(k, record);
         if k + 1 == self.samples {
-            self.end(moment);
+            self.end(record);
         } else if k.is_multiple_of(self.stride) {
-            self.places(moment);
+            self.places(record);
         }
     }
 
     /// The last moment, be it because the run stops there.
-    fn end(&mut self, moment: &Moment) {
-        self.places(moment);
-        self.out.end = moment.snapshot.robots.iter().map(|robot| robot.motion.pose).collect();
+    fn end(&mut self, record: &StepRecord) {
+        self.places(record);
+        self.out.end = record.snapshot.robots.iter().map(|robot| robot.motion.pose).collect();
     }
 
-    fn places(&mut self, moment: &Moment) {
+    fn places(&mut self, record: &StepRecord) {
         let paths = self.out.paths.iter_mut().zip(&mut self.out.motions);
         for ((path, motions), (robot, trouble)) in
-            paths.zip(moment.snapshot.robots.iter().zip(&mut self.trouble))
+            paths.zip(record.snapshot.robots.iter().zip(&mut self.trouble))
         {
             let motion = robot.motion;
             path.push(Place { at: [motion.pose.x, motion.pose.y], trouble: std::mem::take(trouble) });
@@ -206,45 +206,45 @@ impl Teller {
         }
     }
 
-    fn limits(&mut self, moment: &Moment) {
-        for (index, (edge, state)) in self.edges.iter().zip(&moment.edges).enumerate() {
+    fn limits(&mut self, record: &StepRecord) {
+        for (index, (edge, state)) in self.edges.iter().zip(&record.edges).enumerate() {
             if state.limited {
                 self.trouble[edge.follower] = self.trouble[edge.follower].max(Trouble::Limited);
-                self.out.limited.get_or_insert((moment.snapshot.time, index));
+                self.out.limited.get_or_insert((record.snapshot.time, index));
             }
         }
     }
 
     /// Contacts of bodies with weight, and bodies of those without that run through each other.
-    fn contacts(&mut self, k: u64, moment: &Moment) {
-        let time = moment.snapshot.time;
-        let mut touch = |things: [Thing; 2]| {
+    fn contacts(&mut self, k: u64, record: &StepRecord) {
+        let time = record.snapshot.time;
+        let mut touch = |things: [EntityId; 2]| {
             for thing in things {
-                if let Thing::Robot(robot) = thing {
+                if let EntityId::Robot(robot) = thing {
                     self.trouble[robot] = Trouble::Contact;
                 }
             }
             self.out.contact.get_or_insert((time, things));
         };
-        for contact in moment.contacts.iter().filter(|contact| contact.of_robot() && contact.open) {
+        for contact in record.contacts.iter().filter(|contact| contact.of_robot() && contact.open) {
             touch(contact.things);
         }
         if k.is_multiple_of(self.room_every) {
-            self.clearance.push(&moment.snapshot);
+            self.clearance.push(&record.snapshot);
             let least = self.clearance.least().iter().enumerate();
             for (robot, room) in least.filter_map(|(robot, room)| Some((robot, room.as_ref()?))) {
                 if room.clearance <= 0.0 && room.time == time {
-                    touch([Thing::Robot(robot), room.nearest]);
+                    touch([EntityId::Robot(robot), room.nearest]);
                 }
             }
         }
     }
 
-    fn errors(&mut self, k: u64, moment: &Moment) {
+    fn errors(&mut self, k: u64, record: &StepRecord) {
         if (k as f64) < (1.0 - LATE) * self.samples as f64 {
             return;
         }
-        for (late, state) in self.out.late_error.iter_mut().zip(&moment.edges) {
+        for (late, state) in self.out.late_error.iter_mut().zip(&record.edges) {
             for (late, error) in late.iter_mut().zip(state.error) {
                 *late = late.max(error.abs());
             }

@@ -3,7 +3,7 @@
 use metrics::clearance::Clearance;
 use rendering::Trail;
 use std::sync::Arc;
-use vocabulary::{Cast, Moment};
+use vocabulary::{FleetInfo, StepRecord};
 
 /// Memory that the moments of a branch may take, bytes.
 const MOST_BYTES: usize = 96 << 20;
@@ -16,7 +16,7 @@ const MOST_TRAILS: usize = 40;
 
 /// The past of all branches.
 pub struct History {
-    cast: Arc<Cast>,
+    fleet: Arc<FleetInfo>,
     period: f64,
     past: Vec<Past>,
     /// Measures room, before it has seen anything.
@@ -28,10 +28,10 @@ pub struct History {
 /// The past of a branch, that of its parent before it left included.
 #[derive(Clone)]
 struct Past {
-    moments: Vec<Arc<Moment>>,
+    records: Vec<Arc<StepRecord>>,
     /// Only every so many samples are kept.
     stride: u64,
-    head: Option<Arc<Moment>>,
+    head: Option<Arc<StepRecord>>,
     trail: Trail,
     trails: Vec<Trail>,
     trail_every: f64,
@@ -47,24 +47,24 @@ const MOST_ROBOTS_WITH_ROOM: usize = 30;
 const MOST_ROOMS: usize = 20_000;
 
 impl History {
-    /// Of a run of `cast` with a control period in s.
-    pub fn new(cast: Arc<Cast>, period: f64) -> Self {
+    /// Of a run of `fleet` with a control period in s.
+    pub fn new(fleet: Arc<FleetInfo>, period: f64) -> Self {
         let past = Past {
-            moments: Vec::new(),
+            records: Vec::new(),
             stride: 1,
             head: None,
-            trail: Trail::new(&cast),
+            trail: Trail::new(&fleet),
             trails: Vec::new(),
             trail_every: TRAIL_EVERY,
             rooms: Vec::new(),
         };
-        let clearance = (cast.members.len() <= MOST_ROBOTS_WITH_ROOM).then(|| Clearance::new(&cast));
-        Self { clearance, cast, period, past: vec![past], shown: None }
+        let clearance = (fleet.robots.len() <= MOST_ROBOTS_WITH_ROOM).then(|| Clearance::new(&fleet));
+        Self { clearance, fleet, period, past: vec![past], shown: None }
     }
 
     /// Who is on stage.
-    pub fn cast(&self) -> &Arc<Cast> {
-        &self.cast
+    pub fn fleet(&self) -> &Arc<FleetInfo> {
+        &self.fleet
     }
 
     /// The same run in another light, under another title.
@@ -74,7 +74,8 @@ impl History {
             sun_azimuth: scene.environment.sun_azimuth,
             haze_from: scene.environment.haze_from,
         };
-        self.cast = Arc::new(Cast { light, title: scene.title.clone(), ..Cast::clone(&self.cast) });
+        self.fleet =
+            Arc::new(FleetInfo { light, title: scene.title.clone(), ..FleetInfo::clone(&self.fleet) });
     }
 
     /// Control period, s.
@@ -88,18 +89,18 @@ impl History {
     }
 
     /// Takes in the next moment of a branch.
-    pub fn push(&mut self, branch: usize, moment: Moment) {
-        let sample = self.sample(moment.snapshot.time);
+    pub fn push(&mut self, branch: usize, record: StepRecord) {
+        let sample = self.sample(record.snapshot.time);
         let most = self.most_moments();
         if let Some(past) = self.past.get_mut(branch) {
             // A branch is told where it begins; it may know already.
-            if past.is_known(&moment) {
+            if past.is_known(&record) {
                 return;
             }
             if let Some(clearance) = &self.clearance {
-                past.measure(clearance, &moment);
+                past.measure(clearance, &record);
             }
-            past.push(sample, Arc::new(moment), most, self.period);
+            past.push(sample, Arc::new(record), most, self.period);
         }
     }
 
@@ -108,16 +109,16 @@ impl History {
         let until = (sample as f64 - 0.5) * self.period;
         let Some(parent) = self.past.get(from) else { return };
         let mut past = Past {
-            moments: parent.moments.iter().filter(|m| m.snapshot.time < until).cloned().collect(),
+            records: parent.records.iter().filter(|m| m.snapshot.time < until).cloned().collect(),
             stride: parent.stride,
             head: None,
-            trail: Trail::new(&self.cast),
+            trail: Trail::new(&self.fleet),
             trails: parent.trails.iter().filter(|t| before(t, until)).cloned().collect(),
             trail_every: parent.trail_every,
             rooms: parent.rooms.iter().filter(|[time, _]| *time < until).copied().collect(),
         };
-        past.head = past.moments.last().cloned();
-        past.trail = past.trail_until(until, &self.cast);
+        past.head = past.records.last().cloned();
+        past.trail = past.trail_until(until, &self.fleet);
         self.past.push(past);
     }
 
@@ -127,31 +128,31 @@ impl History {
     }
 
     /// The last moment of a branch.
-    pub fn head(&self, branch: usize) -> Option<&Arc<Moment>> {
+    pub fn head(&self, branch: usize) -> Option<&Arc<StepRecord>> {
         self.past.get(branch)?.head.as_ref()
     }
 
     /// Time of the last moment of a branch, s.
     pub fn end(&self, branch: usize) -> f64 {
-        self.head(branch).map_or(0.0, |moment| moment.snapshot.time)
+        self.head(branch).map_or(0.0, |record| record.snapshot.time)
     }
 
     /// The moment of a branch at a time; between two that are kept, in between.
-    pub fn at(&self, branch: usize, time: f64) -> Option<Arc<Moment>> {
+    pub fn at(&self, branch: usize, time: f64) -> Option<Arc<StepRecord>> {
         let past = self.past.get(branch)?;
         let head = past.head.as_ref()?;
         let eps = 1e-6 * self.period;
         if time >= head.snapshot.time - eps {
             return Some(Arc::clone(head));
         }
-        let after = past.moments.partition_point(|m| m.snapshot.time <= time + eps);
-        let before = past.moments.get(after.saturating_sub(1))?;
-        let next = past.moments.get(after).unwrap_or(head);
+        let after = past.records.partition_point(|m| m.snapshot.time <= time + eps);
+        let before = past.records.get(after.saturating_sub(1))?;
+        let next = past.records.get(after).unwrap_or(head);
         let (a, b) = (before.snapshot.time, next.snapshot.time);
         if past.stride == 1 || time - a < eps || b <= a {
             return Some(Arc::clone(before));
         }
-        Some(Arc::new(Moment::between(before, next, ((time - a) / (b - a)).clamp(0.0, 1.0))))
+        Some(Arc::new(StepRecord::between(before, next, ((time - a) / (b - a)).clamp(0.0, 1.0))))
     }
 
     /// Makes the trail of a branch up to a time, for [`History::trail`].
@@ -167,7 +168,7 @@ impl History {
             (Some((_, near)), Some(kept)) if since(&near) < since(kept) => kept.clone(),
             (Some((_, near)), _) => near,
             (None, Some(kept)) => kept.clone(),
-            (None, None) => Trail::new(&self.cast),
+            (None, None) => Trail::new(&self.fleet),
         };
         self.shown = Some((branch, past.grow(start, time)));
     }
@@ -182,27 +183,27 @@ impl History {
     }
 
     /// Moments of a branch after one time and up to another, s.
-    pub fn since(&self, branch: usize, [after, until]: [f64; 2]) -> Vec<Arc<Moment>> {
+    pub fn since(&self, branch: usize, [after, until]: [f64; 2]) -> Vec<Arc<StepRecord>> {
         let Some(past) = self.past.get(branch) else { return Vec::new() };
-        let first = past.moments.partition_point(|m| m.snapshot.time <= after + 1e-9);
-        let some = past.moments[first..].iter().take_while(|m| m.snapshot.time <= until + 1e-9);
+        let first = past.records.partition_point(|m| m.snapshot.time <= after + 1e-9);
+        let some = past.records[first..].iter().take_while(|m| m.snapshot.time <= until + 1e-9);
         some.cloned().collect()
     }
 
     /// At most `most` moments of a branch between two times, s, evenly over all of it.
-    pub fn between(&self, branch: usize, [from, to]: [f64; 2], most: usize) -> Vec<&Moment> {
+    pub fn between(&self, branch: usize, [from, to]: [f64; 2], most: usize) -> Vec<&StepRecord> {
         let Some(past) = self.past.get(branch) else { return Vec::new() };
-        let first = past.moments.partition_point(|m| m.snapshot.time < from).saturating_sub(1);
-        let last = (past.moments.partition_point(|m| m.snapshot.time <= to) + 1).min(past.moments.len());
-        let some = &past.moments[first.min(last)..last];
+        let first = past.records.partition_point(|m| m.snapshot.time < from).saturating_sub(1);
+        let last = (past.records.partition_point(|m| m.snapshot.time <= to) + 1).min(past.records.len());
+        let some = &past.records[first.min(last)..last];
         // Whole multiples of the step, so that curves do not tremble as they grow.
         let step = some.len().div_ceil(most.max(1)).next_power_of_two();
         let skip = first.next_multiple_of(step) - first;
-        let mut moments: Vec<&Moment> = some.iter().skip(skip).step_by(step).map(|m| &**m).collect();
+        let mut records: Vec<&StepRecord> = some.iter().skip(skip).step_by(step).map(|m| &**m).collect();
         let head = past.head.as_deref().filter(|head| head.snapshot.time <= to);
-        let last = moments.last().map_or(f64::NEG_INFINITY, |moment| moment.snapshot.time);
-        moments.extend(head.filter(|head| head.snapshot.time > last));
-        moments
+        let last = records.last().map_or(f64::NEG_INFINITY, |record| record.snapshot.time);
+        records.extend(head.filter(|head| head.snapshot.time > last));
+        records
     }
 
     /// Least room between bodies of a branch between two times: s, m.
@@ -212,9 +213,9 @@ impl History {
     }
 
     fn most_moments(&self) -> usize {
-        let robots = self.cast.members.len() * size_of::<vocabulary::RobotState>();
-        let edges = self.cast.edges.len() * size_of::<vocabulary::EdgeState>();
-        let props = self.cast.props.len() * size_of::<vocabulary::Placement>();
+        let robots = self.fleet.robots.len() * size_of::<vocabulary::RobotState>();
+        let edges = self.fleet.edges.len() * size_of::<vocabulary::EdgeState>();
+        let props = self.fleet.props.len() * size_of::<vocabulary::Placement>();
         (MOST_BYTES / (robots + edges + props + 200)).clamp(LEAST_MOMENTS, MOST_MOMENTS)
     }
 }
@@ -224,18 +225,18 @@ impl Past {
         self.head.as_ref().is_none_or(|head| time >= head.snapshot.time - 1e-9)
     }
 
-    fn is_known(&self, moment: &Moment) -> bool {
-        self.head.as_ref().is_some_and(|head| moment.snapshot.time <= head.snapshot.time)
+    fn is_known(&self, record: &StepRecord) -> bool {
+        self.head.as_ref().is_some_and(|head| record.snapshot.time <= head.snapshot.time)
     }
 
-    fn measure(&mut self, clearance: &Clearance, moment: &Moment) {
-        let time = moment.snapshot.time;
+    fn measure(&mut self, clearance: &Clearance, record: &StepRecord) {
+        let time = record.snapshot.time;
         let due = self.rooms.last().is_none_or(|[last, _]| time >= last + ROOM_EVERY - 1e-9);
         if !due || self.rooms.len() >= MOST_ROOMS {
             return;
         }
         let mut clearance = clearance.clone();
-        clearance.push(&moment.snapshot);
+        clearance.push(&record.snapshot);
         let rooms = clearance.least().iter().flatten().map(|room| room.clearance);
         let least = rooms.fold(f64::INFINITY, f64::min);
         if least.is_finite() {
@@ -243,9 +244,9 @@ impl Past {
         }
     }
 
-    fn push(&mut self, sample: u64, moment: Arc<Moment>, most: usize, period: f64) {
-        self.trail.push(&moment);
-        let time = moment.snapshot.time;
+    fn push(&mut self, sample: u64, record: Arc<StepRecord>, most: usize, period: f64) {
+        self.trail.push(&record);
+        let time = record.snapshot.time;
         if self.trails.last().and_then(Trail::time).unwrap_or(0.0) + self.trail_every <= time + 1e-9 {
             self.trails.push(self.trail.clone());
             if self.trails.len() > MOST_TRAILS {
@@ -257,29 +258,29 @@ impl Past {
                 });
             }
         }
-        self.head = Some(Arc::clone(&moment));
+        self.head = Some(Arc::clone(&record));
         if sample.is_multiple_of(self.stride) {
-            self.moments.push(moment);
+            self.records.push(record);
         }
-        if self.moments.len() > most {
+        if self.records.len() > most {
             self.stride *= 2;
             let stride = self.stride;
-            self.moments.retain(|m| ((m.snapshot.time / period).round() as u64).is_multiple_of(stride));
+            self.records.retain(|m| ((m.snapshot.time / period).round() as u64).is_multiple_of(stride));
         }
     }
 
     /// The trail of everything up to a time.
-    fn trail_until(&self, time: f64, cast: &Cast) -> Trail {
+    fn trail_until(&self, time: f64, fleet: &FleetInfo) -> Trail {
         let start = self.trails.iter().rev().find(|trail| before(trail, time));
-        self.grow(start.cloned().unwrap_or_else(|| Trail::new(cast)), time)
+        self.grow(start.cloned().unwrap_or_else(|| Trail::new(fleet)), time)
     }
 
     /// A trail with the moments after it, up to a time.
     fn grow(&self, mut trail: Trail, time: f64) -> Trail {
         let last = trail.time().unwrap_or(f64::NEG_INFINITY);
-        let from = self.moments.partition_point(|m| m.snapshot.time <= last);
-        for moment in self.moments.iter().skip(from).take_while(|m| m.snapshot.time <= time + 1e-9) {
-            trail.push(moment);
+        let from = self.records.partition_point(|m| m.snapshot.time <= last);
+        for record in self.records.iter().skip(from).take_while(|m| m.snapshot.time <= time + 1e-9) {
+            trail.push(record);
         }
         trail
     }

@@ -5,7 +5,7 @@ use recording::log::Log;
 use rendering::Gpu;
 use scene::Scene;
 use std::sync::Arc;
-use vocabulary::{Cast, Moment};
+use vocabulary::{FleetInfo, StepRecord};
 
 /// What the window asks for.
 pub enum Order {
@@ -57,7 +57,7 @@ pub enum News {
     /// A scene was opened.
     Opened {
         /// Who is on stage.
-        cast: Arc<Cast>,
+        fleet: Arc<FleetInfo>,
         /// Control period, s.
         period: f64,
     },
@@ -77,7 +77,7 @@ pub enum News {
     /// The run that was recorded was taken up: whether it is the same bit for bit.
     TakenUp(bool),
     /// Samples of a branch.
-    Moments(usize, Vec<Moment>),
+    Moments(usize, Vec<StepRecord>),
     /// Parameters of a branch were changed, or, where nothing is set, are as before again.
     Changed(usize, Change),
     /// All there is to know of a branch so far.

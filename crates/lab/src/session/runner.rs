@@ -5,7 +5,7 @@ use super::forecast::Crystal;
 pub use super::orders::{News, Order};
 use metrics::Digest;
 use recording::log::Log;
-use rendering::{CameraEyes, Gpu};
+use rendering::{Gpu, GpuCameraRenderer};
 use scene::Scene;
 use simulation::Simulation;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-use vocabulary::{Cast, Moment};
+use vocabulary::{FleetInfo, StepRecord};
 
 /// The thread and its channels.
 pub struct Runner {
@@ -152,19 +152,19 @@ impl Work {
             return;
         }
         let began = Instant::now();
-        let mut moments = Vec::new();
+        let mut records = Vec::new();
         let Some(branches) = &mut self.branches else { return };
         let period = branches.list()[self.active].simulation().period();
         let mut ended = false;
         while self.owed >= period && began.elapsed() < STRETCH {
             self.owed -= period;
-            let Some(moment) = branches.advance(self.active) else {
+            let Some(record) = branches.advance(self.active) else {
                 ended = true;
                 break;
             };
-            moments.push(moment.clone());
+            records.push(record.clone());
         }
-        self.report(moments);
+        self.report(records);
         if ended {
             self.stand();
         }
@@ -181,9 +181,9 @@ impl Work {
         self.tell(News::Stands(why));
     }
 
-    fn report(&mut self, moments: Vec<Moment>) {
-        if !moments.is_empty() {
-            self.tell(News::Moments(self.active, moments));
+    fn report(&mut self, records: Vec<StepRecord>) {
+        if !records.is_empty() {
+            self.tell(News::Moments(self.active, records));
         }
     }
 
@@ -228,9 +228,9 @@ impl Work {
     fn branches_of(&self, scene: Arc<Scene>, gpu: Option<&Gpu>) -> Option<Branches> {
         let mut blind = None;
         let opened = Branches::open(scene, |simulation| {
-            if simulation.needs_eyes() {
-                match gpu.map(|gpu| CameraEyes::new(gpu, simulation.cast())) {
-                    Some(Ok(eyes)) => simulation.open_eyes(Box::new(eyes)),
+            if simulation.needs_cameras() {
+                match gpu.map(|gpu| GpuCameraRenderer::new(gpu, simulation.fleet())) {
+                    Some(Ok(eyes)) => simulation.attach_cameras(Box::new(eyes)),
                     Some(Err(error)) => blind = Some(error.to_string()),
                     None => blind = Some("There is no adapter to draw what cameras see.".to_owned()),
                 }
@@ -248,12 +248,12 @@ impl Work {
         let planned = scene.time.duration;
         let Some(branches) = self.branches_of(scene, gpu) else { return };
         let simulation = branches.list()[0].simulation();
-        let cast = Cast { duration: planned, ..simulation.cast().clone() };
-        let (cast, period) = (Arc::new(cast), simulation.period());
+        let fleet = FleetInfo { duration: planned, ..simulation.fleet().clone() };
+        let (fleet, period) = (Arc::new(fleet), simulation.period());
         self.active = 0;
         self.owed = 0.0;
         self.branches = Some(branches);
-        self.tell(News::Opened { cast, period });
+        self.tell(News::Opened { fleet, period });
         self.catch_up(until);
         self.look_ahead(true);
     }
@@ -261,16 +261,16 @@ impl Work {
     /// Tells what was recorded.
     fn look_through(&mut self, log: &Log) {
         (self.branches, self.active, self.playing) = (None, 0, false);
-        let (cast, period) = (Arc::new(log.cast().clone()), log.manifest().period);
-        self.tell(News::Opened { cast, period });
+        let (fleet, period) = (Arc::new(log.fleet().clone()), log.manifest().period);
+        self.tell(News::Opened { fleet, period });
         let (mut batch, mut digest, mut samples) = (Vec::new(), Digest::default(), 0);
         let mut fault = None;
-        for moment in log.moments() {
-            match moment {
-                Ok(moment) => {
-                    digest.push(&moment);
+        for record in log.records() {
+            match record {
+                Ok(record) => {
+                    digest.push(&record);
                     samples += 1;
-                    batch.push(moment);
+                    batch.push(record);
                 }
                 Err(error) => fault = Some(error.to_string()),
             }
@@ -300,15 +300,15 @@ impl Work {
     fn catch_up(&mut self, until: f64) {
         let began = Instant::now();
         let Some(branches) = &mut self.branches else { return };
-        let mut moments = Vec::new();
-        while let Some(moment) = branches.advance(self.active) {
-            moments.push(moment.clone());
-            if moment.snapshot.time >= until || began.elapsed() > Duration::from_secs(1) {
+        let mut records = Vec::new();
+        while let Some(record) = branches.advance(self.active) {
+            records.push(record.clone());
+            if record.snapshot.time >= until || began.elapsed() > Duration::from_secs(1) {
                 break;
             }
         }
-        let ended = moments.is_empty();
-        self.report(moments);
+        let ended = records.is_empty();
+        self.report(records);
         if ended {
             self.stand();
         }
@@ -317,7 +317,7 @@ impl Work {
     fn step(&mut self) {
         let Some(branches) = &mut self.branches else { return };
         match branches.advance(self.active).cloned() {
-            Some(moment) => self.report(vec![moment]),
+            Some(record) => self.report(vec![record]),
             None => self.stand(),
         }
         self.look_ahead(true);
@@ -339,7 +339,7 @@ impl Work {
         let made = &branches.list()[branch];
         let changes = made.changes.clone();
         // Of a long past the window does not keep every sample.
-        let here = (made.simulation().sample() > 0).then(|| made.simulation().moment().clone());
+        let here = (made.simulation().sample() > 0).then(|| made.simulation().record().clone());
         self.active = branch;
         self.owed = 0.0;
         self.tell(News::Forked { branch, from, sample, name, changes });

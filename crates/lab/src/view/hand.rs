@@ -8,7 +8,7 @@ use crate::tidy::snap;
 use eframe::egui::{self, Pos2, Rect, Ui, Vec2};
 use rendering::{Picked, Sightline, set_points};
 use std::sync::Arc;
-use vocabulary::{Moment, wrap};
+use vocabulary::{StepRecord, wrap};
 
 /// Steps of a set point under the hand: m and degrees.
 const STEPS: [f64; 2] = [0.1, 5.0];
@@ -29,7 +29,7 @@ impl Viewport {
         &mut self,
         ui: &Ui,
         response: &egui::Response,
-        (desk, moment): (&Desk, &Arc<Moment>),
+        (desk, record): (&Desk, &Arc<StepRecord>),
         rect: Rect,
         out: &mut Vec<Action>,
     ) {
@@ -37,11 +37,11 @@ impl Viewport {
         let pixel = |pos: Pos2| [pos.x - rect.left(), pos.y - rect.top()].map(|x| f64::from(x * pixels));
         let Some(sight) = self.stage.as_ref().and_then(|stage| stage.sight.clone()) else { return };
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        self.hover(desk, moment, (&sight, pointer.map(pixel)), f64::from(pixels * GRASP));
+        self.hover(desk, record, (&sight, pointer.map(pixel)), f64::from(pixels * GRASP));
         if response.drag_started() {
             // What was pressed counts, wherever the pointer is by now.
             let origin = ui.input(|input| input.pointer.press_origin());
-            self.hover(desk, moment, (&sight, origin.or(pointer).map(pixel)), f64::from(pixels * GRASP));
+            self.hover(desk, record, (&sight, origin.or(pointer).map(pixel)), f64::from(pixels * GRASP));
             self.begin_drag(ui, desk);
         }
         let share = |delta: Vec2| [delta.x, delta.y].map(|x| f64::from(x / rect.height().max(1.0)));
@@ -50,21 +50,21 @@ impl Viewport {
             match drag {
                 Drag::Orbit | Drag::Pan if delta == Vec2::ZERO => {}
                 Drag::Orbit => {
-                    self.take_camera(moment, None);
+                    self.take_camera(record, None);
                     if let Some(held) = &mut self.held {
                         held.orbit(share(delta));
                     }
                 }
                 Drag::Pan => {
                     let (from, to) = (sight.ground(pixel(pos - delta)), sight.ground(pixel(pos)));
-                    self.take_camera(moment, None);
+                    self.take_camera(record, None);
                     if let (Some(held), Some(from), Some(to)) = (&mut self.held, from, to) {
                         held.pan(from, to);
                     }
                 }
                 Drag::SetPoint(edge) => {
                     if let Some(place) = sight.ground(pixel(pos)) {
-                        out.extend(dragged(ui, desk, moment, edge, place));
+                        out.extend(dragged(ui, desk, record, edge, place));
                     }
                 }
                 Drag::Connect(robot) => {
@@ -75,7 +75,7 @@ impl Viewport {
         if response.drag_stopped() {
             self.end_drag(out);
         }
-        self.wheel(ui, response, (&sight, pointer.map(pixel)), moment);
+        self.wheel(ui, response, (&sight, pointer.map(pixel)), record);
         self.clicks(response, desk, (&sight, pointer.map(pixel)), out);
     }
 
@@ -83,14 +83,14 @@ impl Viewport {
     fn hover(
         &mut self,
         desk: &Desk,
-        moment: &Moment,
+        record: &StepRecord,
         (sight, pixel): (&Sightline, Option<[f64; 2]>),
         grasp: f64,
     ) {
         self.hand.over = None;
         self.hand.robot = None;
         let (Some(pixel), Some(stage)) = (pixel, &self.stage) else { return };
-        let near = set_points(&stage.cast, moment).into_iter().enumerate().filter_map(|(edge, at)| {
+        let near = set_points(&stage.fleet, record).into_iter().enumerate().filter_map(|(edge, at)| {
             let [x, y] = sight.pixel_of_ground(at?)?;
             let away = (x - pixel[0]).hypot(y - pixel[1]);
             let radius = super::sketching::RING / sight.metres_per_pixel([at?[0], at?[1], 0.0]).max(1e-9);
@@ -102,7 +102,7 @@ impl Viewport {
         if desk.tool == Tool::Hand {
             self.hand.over = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
         }
-        let robot = stage.renderer.pick(sight, moment, pixel).into_iter().find_map(|picked| match picked {
+        let robot = stage.renderer.pick(sight, record, pixel).into_iter().find_map(|picked| match picked {
             Picked::Robot(robot) => Some(robot),
             _ => None,
         });
@@ -148,7 +148,7 @@ impl Viewport {
         ui: &Ui,
         response: &egui::Response,
         (sight, pixel): (&Sightline, Option<[f64; 2]>),
-        moment: &Moment,
+        record: &StepRecord,
     ) {
         if !response.hovered() {
             return;
@@ -157,9 +157,9 @@ impl Viewport {
         let factor = f64::from((-scroll * 0.004).exp() / pinch.max(1e-3));
         if (factor - 1.0).abs() > 1e-4 {
             let about = pixel.and_then(|pixel| sight.ground(pixel));
-            self.take_camera(moment, None);
+            self.take_camera(record, None);
             if let Some(held) = &mut self.held {
-                held.zoom(factor, about, &moment.snapshot);
+                held.zoom(factor, about, &record.snapshot);
             }
         }
     }
@@ -189,7 +189,7 @@ impl Viewport {
             return Some(Action::Choose(Choice::Edge(edge)));
         }
         let stage = self.stage.as_ref()?;
-        let picked = stage.renderer.pick(sight, &*desk.moment()?, pixel).into_iter().next()?;
+        let picked = stage.renderer.pick(sight, &*desk.record()?, pixel).into_iter().next()?;
         Some(Action::Choose(match picked {
             Picked::Robot(robot) => Choice::Robot(robot),
             Picked::Edge(edge) | Picked::SetPoint(edge) => Choice::Edge(edge),
@@ -197,14 +197,14 @@ impl Viewport {
     }
 
     /// The hand takes the camera over from a named view.
-    pub(super) fn take_camera(&mut self, moment: &Moment, robot: Option<usize>) {
+    pub(super) fn take_camera(&mut self, record: &StepRecord, robot: Option<usize>) {
         if self.held.is_some() {
             return;
         }
         let Some(stage) = &self.stage else { return };
-        let lead = stage.cast.members.iter().position(|member| member.leads);
+        let lead = stage.fleet.robots.iter().position(|member| member.leads);
         if let Some(sight) = &stage.sight {
-            self.held = Some(HeldCamera::take(sight.free(), robot.or(lead), &moment.snapshot));
+            self.held = Some(HeldCamera::take(sight.free(), robot.or(lead), &record.snapshot));
         }
     }
 }
@@ -220,9 +220,9 @@ fn released_at(ui: &Ui) -> Option<Pos2> {
 }
 
 /// What a set point that is dragged to a place asks for.
-fn dragged(ui: &Ui, desk: &Desk, moment: &Moment, edge: usize, place: [f64; 2]) -> Option<Action> {
-    let ends = *desk.history.as_ref()?.cast().edges.get(edge)?;
-    let leader = moment.snapshot.robots.get(ends.leader)?.motion.pose;
+fn dragged(ui: &Ui, desk: &Desk, record: &StepRecord, edge: usize, place: [f64; 2]) -> Option<Action> {
+    let ends = *desk.history.as_ref()?.fleet().edges.get(edge)?;
+    let leader = record.snapshot.robots.get(ends.leader)?.motion.pose;
     let [dx, dy] = [place[0] - leader.x, place[1] - leader.y];
     let (distance, bearing) = (dx.hypot(dy), wrap(dy.atan2(dx) - leader.heading));
     let least = desk.follower(edge).map_or(0.1, |(_, _, follow)| follow.law.distance_min);

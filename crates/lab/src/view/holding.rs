@@ -2,8 +2,8 @@
 
 use crate::desk::Desk;
 use crate::session::forecast::Forecast;
-use formation::holdable::unholdable;
-use vocabulary::{Limits, Moment, Pose};
+use formation::feasible::unholdable;
+use vocabulary::{Limits, Pose, StepRecord};
 
 /// Side of a square of the field, m, and squares on a side.
 const STEP: f64 = 0.25;
@@ -56,25 +56,26 @@ impl Wanted {
 }
 
 /// The field around the leader of `edge`.
-pub fn field(desk: &Desk, edge: usize, moment: &Moment) -> Option<(Pose, Field)> {
+pub fn field(desk: &Desk, edge: usize, record: &StepRecord) -> Option<(Pose, Field)> {
     let history = desk.history.as_ref()?;
-    let cast = history.cast();
-    let ends = *cast.edges.get(edge)?;
+    let fleet = history.fleet();
+    let ends = *fleet.edges.get(edge)?;
     let (robot, _, follow) = desk.follower(edge)?;
     let scene = desk.scene_now()?;
     let vehicle = &scene.robots.get(robot)?.vehicle;
-    let leader = moment.snapshot.robots.get(ends.leader)?;
+    let leader = record.snapshot.robots.get(ends.leader)?;
     let looks = follow.sensing.kind != scene::SensingKind::Truth;
-    let lens = &cast.members.get(robot)?.lens;
+    let camera_model = &fleet.robots.get(robot)?.camera_model;
     // A cell of a tag must be at least two pixels wide to be read.
-    let cell = cast.members.get(ends.leader)?.shell.as_ref().map_or(0.015, |shell| shell.cell);
-    let far = lens.focal * cell / 2.0;
-    let half_picture = (0.5 * f64::from(lens.width) / lens.focal).atan();
-    let body = &cast.members[robot].body;
+    let cell = fleet.robots.get(ends.leader)?.shell.as_ref().map_or(0.015, |shell| shell.cell);
+    let far = camera_model.focal * cell / 2.0;
+    let half_picture = (0.5 * f64::from(camera_model.width) / camera_model.focal).atan();
+    let body = &fleet.robots[robot].body;
     let reach = body.length.hypot(body.width);
-    let others = cast.edges.iter().enumerate().filter(|(k, other)| *k != edge && other.leader == ends.leader);
+    let others =
+        fleet.edges.iter().enumerate().filter(|(k, other)| *k != edge && other.leader == ends.leader);
     let places = others.filter_map(|(k, _)| {
-        let [distance, bearing] = moment.edges.get(k)?.set_point;
+        let [distance, bearing] = record.edges.get(k)?.set_point;
         Some(([distance * bearing.cos(), distance * bearing.sin()], reach))
     });
     let wanted = Wanted {

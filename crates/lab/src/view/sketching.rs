@@ -5,7 +5,7 @@ use crate::desk::{Choice, Desk};
 use crate::session::forecast::{Forecast, Place, Trouble};
 use rendering::{Area, Arrow, Ghost, Ring, Sketch, Spot, Stroke, set_points};
 use std::sync::Arc;
-use vocabulary::{Cast, Moment};
+use vocabulary::{FleetInfo, StepRecord};
 
 /// Where something is wrong ahead.
 const ALARM: [f32; 3] = [0.90, 0.16, 0.10];
@@ -30,22 +30,22 @@ pub struct Hand {
 }
 
 /// The sketch of what is looked at.
-pub fn sketch(desk: &Desk, moment: &Moment, hand: &Hand) -> Sketch {
+pub fn sketch(desk: &Desk, record: &StepRecord, hand: &Hand) -> Sketch {
     let mut sketch = Sketch::default();
     let Some(history) = &desk.history else { return sketch };
-    let cast = Arc::clone(history.cast());
-    let colours = rendering::robot_colours(&cast);
+    let fleet = Arc::clone(history.fleet());
+    let colours = rendering::robot_colours(&fleet);
     if let Some(held) = hand.held {
-        refused(desk, held, moment, &mut sketch);
+        refused(desk, held, record, &mut sketch);
     }
     others(desk, &colours, &mut sketch);
     let present = desk.cursor.is_none();
     if let Some(forecast) = desk.forecast.as_ref().filter(|f| present && f.branch == desk.branch) {
-        future(forecast, &colours, &cast, &mut sketch);
+        future(forecast, &colours, &fleet, &mut sketch);
     }
-    handles(desk, &cast, (moment, &colours), hand, &mut sketch);
+    handles(desk, &fleet, (record, &colours), hand, &mut sketch);
     if let Some((robot, to)) = hand.connecting
-        && let Some(state) = moment.snapshot.robots.get(robot)
+        && let Some(state) = record.snapshot.robots.get(robot)
     {
         let from = [state.motion.pose.x, state.motion.pose.y];
         sketch.arrows.push(Arrow { from, to, gaps: [0.3, 0.0], colour: ACCENT, alpha: 0.95 });
@@ -54,8 +54,8 @@ pub fn sketch(desk: &Desk, moment: &Moment, hand: &Hand) -> Sketch {
 }
 
 /// Ground that the follower of an edge cannot hold.
-fn refused(desk: &Desk, edge: usize, moment: &Moment, sketch: &mut Sketch) {
-    let Some((leader, field)) = holding::field(desk, edge, moment) else { return };
+fn refused(desk: &Desk, edge: usize, record: &StepRecord, sketch: &mut Sketch) {
+    let Some((leader, field)) = holding::field(desk, edge, record) else { return };
     let half = 0.5 * (field.side - 1) as f64 * field.step;
     let area = Area::field([-half; 2], field.step, field.side, &scaled(&field.alphas, 0.34), REFUSED, true);
     // The field is the leader's; rows run ahead, columns to the left.
@@ -77,27 +77,27 @@ fn others(desk: &Desk, colours: &[[f32; 3]], sketch: &mut Sketch) {
         let from = desk.branches.get(branch).and_then(|face| face.parent).map_or(0.0, |(_, time)| time);
         // What is long past would cover the ground.
         let from = from.max(desk.time() - 12.0);
-        let moments = history.between(branch, [from, desk.time() + 12.0], 160);
+        let records = history.between(branch, [from, desk.time() + 12.0], 160);
         for (robot, colour) in colours.iter().enumerate() {
-            let spots = moments.iter().filter_map(|moment| {
-                let pose = moment.snapshot.robots.get(robot)?.motion.pose;
+            let spots = records.iter().filter_map(|record| {
+                let pose = record.snapshot.robots.get(robot)?.motion.pose;
                 Some(Spot { at: [pose.x, pose.y], colour: light(*colour), alpha: 0.55 })
             });
             sketch.strokes.push(Stroke { dashed: true, pixels: 1.6, ..Stroke::new(spots.collect()) });
         }
-        if let Some(moment) = history.at(branch, desk.time()) {
+        if let Some(record) = history.at(branch, desk.time()) {
             let ghost = |(robot, state): (usize, &vocabulary::RobotState)| Ghost {
                 robot,
                 pose: state.motion.pose,
                 alpha: 0.22,
             };
-            sketch.ghosts.extend(moment.snapshot.robots.iter().enumerate().map(ghost));
+            sketch.ghosts.extend(record.snapshot.robots.iter().enumerate().map(ghost));
         }
     }
 }
 
 /// The next seconds, and where the formation will be.
-fn future(forecast: &Forecast, colours: &[[f32; 3]], cast: &Cast, sketch: &mut Sketch) {
+fn future(forecast: &Forecast, colours: &[[f32; 3]], fleet: &FleetInfo, sketch: &mut Sketch) {
     for (robot, path) in forecast.paths.iter().enumerate() {
         // Paler than the ribbons, which are the past.
         let colour = light(colours.get(robot).copied().unwrap_or([0.6; 3])).map(|c| 0.4 + 0.6 * c);
@@ -117,7 +117,7 @@ fn future(forecast: &Forecast, colours: &[[f32; 3]], cast: &Cast, sketch: &mut S
         sketch.strokes.push(Stroke { pixels, ..Stroke::new(spots) });
     }
     // Where they stand in the end; in a crowd the paths say enough.
-    if cast.members.len() <= 30 {
+    if fleet.robots.len() <= 30 {
         let ghost = |(robot, pose): (usize, &vocabulary::Pose)| Ghost { robot, pose: *pose, alpha: 0.30 };
         sketch.ghosts.extend(forecast.end.iter().enumerate().map(ghost));
     }
@@ -126,16 +126,16 @@ fn future(forecast: &Forecast, colours: &[[f32; 3]], cast: &Cast, sketch: &mut S
 /// Rings to grasp, and a ring under what is selected.
 fn handles(
     desk: &Desk,
-    cast: &Cast,
-    (moment, colours): (&Moment, &[[f32; 3]]),
+    fleet: &FleetInfo,
+    (record, colours): (&StepRecord, &[[f32; 3]]),
     hand: &Hand,
     sketch: &mut Sketch,
 ) {
-    for (edge, at) in set_points(cast, moment).into_iter().enumerate() {
+    for (edge, at) in set_points(fleet, record).into_iter().enumerate() {
         let Some(at) = at else { continue };
-        let follower = cast.edges[edge].follower;
+        let follower = fleet.edges[edge].follower;
         let ring =
-            Ring { least: 17.0, ..Ring::new(at, RING * size(cast, follower), light(colours[follower])) };
+            Ring { least: 17.0, ..Ring::new(at, RING * size(fleet, follower), light(colours[follower])) };
         if hand.held == Some(edge) || desk.chosen_edge() == Some(edge) {
             sketch.rings.push(ring.selected());
         } else if hand.over == Some(edge) {
@@ -143,8 +143,8 @@ fn handles(
         }
     }
     let under = |robot: usize| {
-        let pose = moment.snapshot.robots.get(robot)?.motion.pose;
-        let body = cast.members.get(robot)?.body;
+        let pose = record.snapshot.robots.get(robot)?.motion.pose;
+        let body = fleet.robots.get(robot)?.body;
         let at = pose.world_from_body(0.5 * body.wheelbase, 0.0);
         Some(Ring { pixels: 2.0, ..Ring::new(at, 0.62 * body.length, ACCENT) })
     };
@@ -157,8 +157,8 @@ fn handles(
 }
 
 /// How many times as large as the usual robot one is.
-fn size(cast: &Cast, robot: usize) -> f64 {
-    cast.members.get(robot).map_or(1.0, |member| member.body.length / 0.42)
+fn size(fleet: &FleetInfo, robot: usize) -> f64 {
+    fleet.robots.get(robot).map_or(1.0, |member| member.body.length / 0.42)
 }
 
 /// A colour that stands out from asphalt.

@@ -10,7 +10,7 @@ use eframe::egui::{self, Color32, Pos2, Rect, Sense, TextureId, Ui, Vec2};
 use eframe::egui_wgpu::RenderState;
 use rendering::{Error, Gpu, Layout, Renderer, Sightline, Style, Trail, View};
 use std::sync::Arc;
-use vocabulary::{Cast, Moment};
+use vocabulary::{FleetInfo, StepRecord};
 
 /// Rooms for pixels of the view, both ways.
 const SIZES: [u32; 2] = [16, 8192];
@@ -39,7 +39,7 @@ pub struct Viewport {
 
 /// What draws the robots of one run.
 pub(super) struct Stage {
-    pub(super) cast: Arc<Cast>,
+    pub(super) fleet: Arc<FleetInfo>,
     pub(super) renderer: Renderer,
     pub(super) texture: wgpu::Texture,
     pub(super) id: TextureId,
@@ -55,7 +55,7 @@ impl Stage {
     fn fine(
         &mut self,
         gpu: &Gpu,
-        (trail, moment): (&Trail, &Moment),
+        (trail, record): (&Trail, &StepRecord),
         (layout, style): (&Layout, &Style),
         [title, caption]: &[String; 2],
     ) -> Result<(), Error> {
@@ -66,13 +66,13 @@ impl Stage {
                 finer
             }
             None => {
-                Renderer::with_format(gpu, &self.cast, width, height, 4, wgpu::TextureFormat::Rgba8Unorm)?
+                Renderer::with_format(gpu, &self.fleet, width, height, 4, wgpu::TextureFormat::Rgba8Unorm)?
             }
         };
         let finer = self.finer.insert(finer);
         finer.retitle(title, caption);
         let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        finer.draw_into(&view, trail, moment, layout, style).map(drop)
+        finer.draw_into(&view, trail, record, layout, style).map(drop)
     }
 }
 
@@ -124,30 +124,30 @@ impl Viewport {
 
     /// Keeps the camera with a robot; `None` lets it go.
     pub fn follow(&mut self, robot: Option<usize>, desk: &Desk) {
-        let Some(moment) = desk.moment() else { return };
+        let Some(record) = desk.record() else { return };
         if self.held.is_none() {
-            self.take_camera(&moment, robot);
+            self.take_camera(&record, robot);
         }
         if let Some(held) = &mut self.held {
             match robot {
                 Some(robot) => held.follow(robot),
-                None => held.let_go(&moment.snapshot),
+                None => held.let_go(&record.snapshot),
             }
         }
     }
 
     /// Views of the picture.
-    pub fn layout(&self, cast: &Cast, moment: &Moment) -> Layout {
+    pub fn layout(&self, fleet: &FleetInfo, record: &StepRecord) -> Layout {
         if let Some(held) = &self.held {
-            return Layout::single(held.view(&moment.snapshot));
+            return Layout::single(held.view(&record.snapshot));
         }
-        let names: Vec<String> = cast.members.iter().map(|member| member.name.clone()).collect();
+        let names: Vec<String> = fleet.robots.iter().map(|member| member.name.clone()).collect();
         Layout::parse(&self.view, &names).unwrap_or_else(|_| Layout::single(View::Snake))
     }
 
     /// The style of a picture with all that explains it.
-    pub fn dressed(&self, desk: &Desk, moment: &Moment, scale: f64) -> Style {
-        Style { scale, sketch: sketch(desk, moment, &self.hand), ..self.style.clone() }
+    pub fn dressed(&self, desk: &Desk, record: &StepRecord, scale: f64) -> Style {
+        Style { scale, sketch: sketch(desk, record, &self.hand), ..self.style.clone() }
     }
 
     /// The view in all the room there is.
@@ -155,14 +155,14 @@ impl Viewport {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "3D view"));
         self.rect = rect;
-        let Some(moment) = desk.moment.clone() else {
+        let Some(record) = desk.record.clone() else {
             return centred(ui, rect, "Open a scene: Ctrl O, or drop a file here.");
         };
-        self.under_hand(ui, &response, (desk.desk, &moment), rect, out);
+        self.under_hand(ui, &response, (desk.desk, &record), rect, out);
         let pixels = ui.pixels_per_point();
         let size =
             [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(SIZES[0], SIZES[1]));
-        if let Err(error) = self.draw(desk, &moment, (size[0], size[1]), f64::from(pixels)) {
+        if let Err(error) = self.draw(desk, &record, (size[0], size[1]), f64::from(pixels)) {
             self.fault = Some(error.to_string());
         }
         if let Some(fault) = &self.fault {
@@ -176,23 +176,23 @@ impl Viewport {
             let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
             ui.painter().image(stage.id, rect, whole, Color32::WHITE);
         }
-        self.readout(ui, desk.desk, &moment, rect);
+        self.readout(ui, desk.desk, &record, rect);
     }
 
     fn draw(
         &mut self,
         desk: &DeskView<'_>,
-        moment: &Arc<Moment>,
+        record: &Arc<StepRecord>,
         size: (u32, u32),
         pixels: f64,
     ) -> Result<(), Error> {
-        let cast = Arc::clone(desk.cast);
+        let fleet = Arc::clone(desk.fleet);
         // Text keeps its size on small views, and grows with the density of the screen.
         let scale = (0.92 * pixels).clamp(0.5, 6.0);
-        let layout = self.layout(&cast, moment);
-        let style = Style { interactive: true, ..self.dressed(desk.desk, moment, scale) };
-        if self.stage.as_ref().is_none_or(|stage| !Arc::ptr_eq(&stage.cast, &cast)) {
-            self.set_stage(&cast, size)?;
+        let layout = self.layout(&fleet, record);
+        let style = Style { interactive: true, ..self.dressed(desk.desk, record, scale) };
+        if self.stage.as_ref().is_none_or(|stage| !Arc::ptr_eq(&stage.fleet, &fleet)) {
+            self.set_stage(&fleet, size)?;
         }
         let Some(stage) = &mut self.stage else { return Ok(()) };
         if stage.renderer.size() != size {
@@ -210,8 +210,8 @@ impl Viewport {
         let shown = Shown {
             branch: desk.desk.branch,
             words: desk.desk.words(),
-            time: moment.snapshot.time,
-            goals: moment.edges.iter().map(|edge| edge.set_point).collect(),
+            time: record.snapshot.time,
+            goals: record.edges.iter().map(|edge| edge.set_point).collect(),
             layout: layout.clone(),
             style: style.clone(),
             size,
@@ -222,7 +222,7 @@ impl Viewport {
             Some((last, false)) if *last == shown => {
                 // Nothing moves any more: there is time for a better picture.
                 let fine = Style { interactive: false, ..style };
-                stage.fine(&self.gpu, (trail, moment), (&layout, &fine), &shown.words)?;
+                stage.fine(&self.gpu, (trail, record), (&layout, &fine), &shown.words)?;
                 stage.shown = Some((shown, true));
                 self.pictures += 1;
                 return Ok(());
@@ -231,18 +231,18 @@ impl Viewport {
         }
         let [title, caption] = &shown.words;
         stage.renderer.retitle(title, caption);
-        stage.sight = stage.renderer.sightlines(trail, moment, &layout, &style)?.into_iter().next();
+        stage.sight = stage.renderer.sightlines(trail, record, &layout, &style)?.into_iter().next();
         let view = stage.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        stage.renderer.draw_into(&view, trail, moment, &layout, &style)?;
+        stage.renderer.draw_into(&view, trail, record, &layout, &style)?;
         stage.shown = Some((shown, self.samples > 1));
         self.fault = None;
         self.pictures += 1;
         Ok(())
     }
 
-    fn set_stage(&mut self, cast: &Arc<Cast>, size: (u32, u32)) -> Result<(), Error> {
+    fn set_stage(&mut self, fleet: &Arc<FleetInfo>, size: (u32, u32)) -> Result<(), Error> {
         let format = wgpu::TextureFormat::Rgba8Unorm;
-        let renderer = Renderer::with_format(&self.gpu, cast, size.0, size.1, self.samples, format)?;
+        let renderer = Renderer::with_format(&self.gpu, fleet, size.0, size.1, self.samples, format)?;
         let texture = texture(&self.state.device, size);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut drawer = self.state.renderer.write();
@@ -252,7 +252,7 @@ impl Viewport {
         let id = drawer.register_native_texture(&self.state.device, &view, wgpu::FilterMode::Nearest);
         drop(drawer);
         self.stage = Some(Stage {
-            cast: Arc::clone(cast),
+            fleet: Arc::clone(fleet),
             renderer,
             texture,
             id,
@@ -270,7 +270,7 @@ impl Viewport {
     }
 
     /// Numbers beside the ring that is dragged, and what the tool does.
-    fn readout(&self, ui: &Ui, desk: &Desk, moment: &Moment, rect: Rect) {
+    fn readout(&self, ui: &Ui, desk: &Desk, record: &StepRecord, rect: Rect) {
         let font = egui::FontId::proportional(14.0);
         let plate = |text: String, at: Pos2, align: egui::Align2| {
             let galley = ui.painter().layout_no_wrap(text, font.clone(), Color32::WHITE);
@@ -283,7 +283,7 @@ impl Viewport {
             && let Some(pos) = ui.input(|input| input.pointer.latest_pos())
         {
             let text = format!("{} m   {}°", fixed(distance, 2), fixed(bearing.to_degrees(), 1));
-            let error = moment.edges.get(edge).map_or(0.0, |state| state.error[0].abs());
+            let error = record.edges.get(edge).map_or(0.0, |state| state.error[0].abs());
             let text = if error > 0.02 { format!("{text}\nnow {} m off", fixed(error, 2)) } else { text };
             plate(text, pos + Vec2::new(18.0, -14.0), egui::Align2::LEFT_BOTTOM);
         }
@@ -301,9 +301,9 @@ pub struct DeskView<'a> {
     /// All of it.
     pub desk: &'a Desk,
     /// Who is on stage.
-    pub cast: &'a Arc<Cast>,
+    pub fleet: &'a Arc<FleetInfo>,
     /// What is looked at.
-    pub moment: Option<Arc<Moment>>,
+    pub record: Option<Arc<StepRecord>>,
     /// The past of it.
     pub trail: Option<&'a Trail>,
 }

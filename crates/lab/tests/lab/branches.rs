@@ -88,17 +88,17 @@ fn own_changes() -> String {
 fn going_back_and_running_on_is_the_same_run() {
     for (way, text) in ways() {
         let mut hand = Hand::new(&text);
-        let mut moments = vec![];
+        let mut records = vec![];
         let end = 2 * MARK + 30;
         for _ in 0..end {
-            moments.push(hand.all.advance(0).expect("a moment").clone());
+            records.push(hand.all.advance(0).expect("a moment").clone());
         }
         for sample in [0, 1, MARK - 1, MARK, MARK + 1, 2 * MARK + 7, end] {
             hand.fork(0, sample, &text);
             while hand.sample() < end {
                 let at = hand.sample() as usize;
-                let moment = hand.all.advance(hand.branch).expect("a moment");
-                assert_eq!(*moment, moments[at], "{way}: sample {at} after going back to {sample}");
+                let record = hand.all.advance(hand.branch).expect("a moment");
+                assert_eq!(*record, records[at], "{way}: sample {at} after going back to {sample}");
             }
             assert_eq!(hand.digest(), hand.all.list()[0].digest(), "{way}: from {sample}");
         }

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
-use vocabulary::Cast;
+use vocabulary::FleetInfo;
 
 /// Three robots, with comments that edits have to keep.
 pub(crate) const THREE: &str = "\
@@ -77,11 +77,11 @@ pub(crate) fn desk(text: &str, samples: usize) -> Desk {
     let scene = Arc::clone(desk.scene().expect("a scene"));
     let mut run = Simulation::new(simulation::build(&scene).expect("a run"));
     run.extend_to(1e6);
-    let cast = Cast { duration: scene.time.duration, ..run.cast().clone() };
+    let fleet = FleetInfo { duration: scene.time.duration, ..run.fleet().clone() };
     let period = run.period();
-    desk.hear(News::Opened { cast: Arc::new(cast), period });
-    let moments = (0..samples).map(|_| run.next_moment().expect("a moment").clone()).collect();
-    desk.hear(News::Moments(0, moments));
+    desk.hear(News::Opened { fleet: Arc::new(fleet), period });
+    let records = (0..samples).map(|_| run.next_record().expect("a moment").clone()).collect();
+    desk.hear(News::Moments(0, records));
     desk.orders.clear();
     desk
 }
@@ -174,8 +174,8 @@ impl Rig {
 pub(crate) fn run(text: &str) -> (u64, String) {
     let mut run = Simulation::new(simulation::build(&scene(text)).expect("a run"));
     let mut digest = metrics::Digest::default();
-    while let Some(moment) = run.next_moment() {
-        digest.push(moment);
+    while let Some(record) = run.next_record() {
+        digest.push(record);
     }
     (run.sample(), digest.text())
 }

@@ -287,7 +287,7 @@ fn a_lead_robot_becomes_a_follower_where_it_is() {
     let mut desk = desk(&format!("{THREE}{second}"), 40);
     desk.act(&Action::Connect { leader: 0, follower: 3 });
     assert_eq!(desk.notice, None);
-    let now = desk.moment().expect("a moment");
+    let now = desk.record().expect("a moment");
     let relative =
         vocabulary::Relative::between(now.snapshot.robots[0].motion.pose, now.snapshot.robots[3].motion.pose);
     let [distance, bearing] = desk.set_point(2).expect("a set point");
@@ -321,7 +321,7 @@ fn robots_are_added_where_there_is_room() {
         }
     }
     assert!(matches!(&scene.robots[5].role, scene::Role::Follow(follow) if follow.leader == "follower-2"));
-    assert_eq!(rig.desk.history.as_ref().expect("a run").cast().members.len(), 6);
+    assert_eq!(rig.desk.history.as_ref().expect("a run").fleet().robots.len(), 6);
 }
 
 #[test]

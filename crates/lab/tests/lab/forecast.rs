@@ -4,14 +4,14 @@ use crate::common::{THREE, scene, with};
 use lab::session::forecast::{Crystal, Forecast, Trouble};
 use simulation::Simulation;
 use std::time::Duration;
-use vocabulary::{Relative, Thing};
+use vocabulary::{EntityId, Relative};
 
 /// A run of a scene, `samples` samples old.
 fn run(text: &str, samples: u64) -> Simulation {
     let mut run = Simulation::new(simulation::build(&scene(text)).expect("a run"));
     run.extend_to(1e6);
     while run.sample() < samples {
-        run.next_moment().expect("a moment");
+        run.next_record().expect("a moment");
     }
     run
 }
@@ -33,12 +33,12 @@ fn worst(forecast: &Forecast, robot: usize) -> Trouble {
 fn a_settled_formation_ends_at_its_set_points() {
     let run = run(include_str!("../../../../scenes/line-three.toml"), 500);
     let forecast = ahead(&run, 4.0);
-    let edges = &run.cast().edges;
-    for ((edge, late), moment) in edges.iter().zip(&forecast.late_error).zip(&run.moment().edges) {
+    let edges = &run.fleet().edges;
+    for ((edge, late), record) in edges.iter().zip(&forecast.late_error).zip(&run.record().edges) {
         assert!(late[0] < 0.0036 && late[1] < 1e-4, "{late:?}");
         let end = Relative::between(forecast.end[edge.leader], forecast.end[edge.follower]);
-        assert!((end.distance - moment.set_point[0]).abs() < 0.0036, "{end:?}");
-        assert!((end.bearing - moment.set_point[1]).abs() < 1e-4, "{end:?}");
+        assert!((end.distance - record.set_point[0]).abs() < 0.0036, "{end:?}");
+        assert!((end.bearing - record.set_point[1]).abs() < 1e-4, "{end:?}");
     }
     assert_eq!((forecast.contact, forecast.limited), (None, None));
     assert!((0..3).all(|robot| worst(&forecast, robot) == Trouble::None));
@@ -56,10 +56,10 @@ fn what_is_foreseen_is_what_comes() {
         let mut there = vec![];
         let mut late = vec![[0.0_f64; 2]; 2];
         for k in 0..samples {
-            let moment = run.next_moment().expect("a moment");
-            there.push(moment.clone());
+            let record = run.next_record().expect("a moment");
+            there.push(record.clone());
             if k as f64 >= 0.9 * samples as f64 {
-                for (late, state) in late.iter_mut().zip(&moment.edges) {
+                for (late, state) in late.iter_mut().zip(&record.edges) {
                     *late = [late[0].max(state.error[0].abs()), late[1].max(state.error[1].abs())];
                 }
             }
@@ -69,7 +69,7 @@ fn what_is_foreseen_is_what_comes() {
         assert_eq!(forecast.end, last.iter().map(|robot| robot.motion.pose).collect::<Vec<_>>());
         for (robot, (path, motions)) in forecast.paths.iter().zip(&forecast.motions).enumerate() {
             assert!((1..=161).contains(&path.len()) && path.len() == motions.len(), "{} places", path.len());
-            let mut way = there.iter().map(|moment| moment.snapshot.robots[robot].motion);
+            let mut way = there.iter().map(|record| record.snapshot.robots[robot].motion);
             for (place, motion) in path.iter().zip(motions) {
                 let found = way.find(|real| {
                     [real.pose.x, real.pose.y] == place.at && (real.speed, real.turn_rate) == *motion
@@ -93,7 +93,7 @@ fn a_contact_is_seen_before_it_is_made() {
         let (time, things) = forecast.contact.expect("a contact");
         // 5 m apart at 3 m/s, less half a vehicle at either end.
         assert!((1.2..1.75).contains(&time), "{what}: at {time} s");
-        assert_eq!(things.iter().filter(|thing| matches!(thing, Thing::Robot(_))).count(), 2, "{what}");
+        assert_eq!(things.iter().filter(|thing| matches!(thing, EntityId::Robot(_))).count(), 2, "{what}");
         for robot in 0..2 {
             assert_eq!(worst(&forecast, robot), Trouble::Contact, "{what}: robot {robot}");
             assert_eq!(forecast.paths[robot][0].trouble, Trouble::None, "{what}: not here and now");
@@ -121,7 +121,7 @@ fn a_limit_is_seen_before_it_cuts() {
 fn who_sees_by_pictures_is_told_the_truth_ahead() {
     let text = include_str!("../../../../scenes/vision-line-three.toml");
     let blind = run(text, 0);
-    assert!(blind.needs_eyes());
+    assert!(blind.needs_cameras());
     let forecast = ahead(&blind, 2.0);
     assert!((forecast.end[0].x - 2.0).abs() < 0.02, "the whole way: {:?}", forecast.end);
     assert!(forecast.paths.iter().all(|path| path.len() > 80));

@@ -96,11 +96,11 @@ fn edits_that_the_run_takes_one_by_one_are_remembered_one_by_one() {
     desk.act(&Action::Fork);
     let at = |desk: &Desk| gains(desk)[0];
     assert_eq!(at(&desk), 3.0, "before both");
-    let moments = {
+    let records = {
         let mut run = Simulation::new(simulation::build(&scene(THREE)).expect("a run"));
-        (0..62).map(|_| run.next_moment().expect("a moment").clone()).collect::<Vec<_>>()
+        (0..62).map(|_| run.next_record().expect("a moment").clone()).collect::<Vec<_>>()
     };
-    desk.hear(News::Moments(0, moments[60..].to_vec()));
+    desk.hear(News::Moments(0, records[60..].to_vec()));
     desk.act(&Action::Seek(0.6));
     desk.act(&Action::Fork);
     assert_eq!(at(&desk), 4.0, "between them");

@@ -12,8 +12,8 @@ fn stride(rig: &mut Rig, pace: f64, samples: u64) {
     loop {
         let news = rig.next();
         let there = match &news {
-            News::Moments(_, moments) => {
-                moments.last().is_some_and(|m| m.snapshot.time > samples as f64 * 0.01)
+            News::Moments(_, records) => {
+                records.last().is_some_and(|m| m.snapshot.time > samples as f64 * 0.01)
             }
             _ => false,
         };
@@ -73,9 +73,9 @@ fn a_branch_is_told_where_it_begins() {
         panic!("no branch")
     };
     assert!(name == "back" && changes.is_empty());
-    let News::Moments(1, moments) = rig.next() else { panic!("no moment") };
+    let News::Moments(1, records) = rig.next() else { panic!("no moment") };
     let history = rig.desk.history.as_ref().expect("a history");
-    assert_eq!(moments, [vocabulary::Moment::clone(&history.at(0, 0.36).expect("a moment"))]);
+    assert_eq!(records, [vocabulary::StepRecord::clone(&history.at(0, 0.36).expect("a moment"))]);
 }
 
 #[test]

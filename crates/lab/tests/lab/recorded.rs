@@ -25,9 +25,9 @@ fn record(text: &str) -> tempfile::TempDir {
         period: scene.time.period,
         judging: Judging { settling_band: [0.02; 2], settled_after: 0.0 },
     };
-    let mut recorder = Recorder::create(folder.path(), run.cast(), options).expect("a recorder");
-    while let Some(moment) = run.next_moment() {
-        recorder.push(moment).expect("recorded");
+    let mut recorder = Recorder::create(folder.path(), run.fleet(), options).expect("a recorder");
+    while let Some(record) = run.next_record() {
+        recorder.push(record).expect("recorded");
     }
     recorder.finish(Status::Complete).expect("finished");
     folder
@@ -53,12 +53,12 @@ fn a_recorded_run_is_all_there_and_stands_where_one_looks() {
     let mut digest = metrics::Digest::default();
     let history = rig.desk.history.as_ref().expect("a past");
     let all = history.between(0, [0.0, 20.0], usize::MAX);
-    for moment in &all {
-        digest.push(moment);
+    for record in &all {
+        digest.push(record);
     }
     assert_eq!((all.len() as u64, digest.text()), run(THREE));
     assert!(rig.desk.act(&Action::Seek(4.5)));
-    assert_eq!(rig.desk.moment().expect("a moment").snapshot.time, 4.5);
+    assert_eq!(rig.desk.record().expect("a moment").snapshot.time, 4.5);
     assert!(rig.desk.act(&Action::Step));
     assert!((rig.desk.time() - 4.51).abs() < 1e-9);
 }

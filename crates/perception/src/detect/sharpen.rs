@@ -12,9 +12,9 @@ mod bell;
 use super::Tag;
 use crate::imaging::Optics;
 use crate::pose::homography;
-use bell::Profile;
+use bell::EdgeProfile;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
-use vocabulary::{Grey, Lens, Region, TAG_CELLS, tag_cell};
+use vocabulary::{CameraModel, Grey, Region, TAG_CELLS, tag_cell};
 
 /// Corners of the black square, in cells from the middle of the tag, x right and y down.
 const SQUARE: [[f64; 2]; 4] = [[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0]];
@@ -61,7 +61,11 @@ pub fn sharpen(picture: &Grey, region: Region, optics: &Optics, tags: &mut [Tag]
     if picture.values.len() != picture.width as usize * picture.height as usize {
         return;
     }
-    let view = View { picture, lens: &optics.lens, corner: [f64::from(region.x), f64::from(region.y)] };
+    let view = View {
+        picture,
+        camera_model: &optics.camera_model,
+        corner: [f64::from(region.x), f64::from(region.y)],
+    };
     let blur = if optics.blur.is_finite() { optics.blur.clamp(0.0, 4.0) } else { 0.0 };
     for tag in tags {
         match fitted(&view, (blur * blur + PIXEL).sqrt(), tag) {
@@ -75,25 +79,26 @@ pub fn sharpen(picture: &Grey, region: Region, optics: &Optics, tags: &mut [Tag]
 /// A picture and how its pixels lie in the ideal one.
 struct View<'a> {
     picture: &'a Grey,
-    lens: &'a Lens,
+    camera_model: &'a CameraModel,
     corner: [f64; 2],
 }
 
 impl View<'_> {
     fn ideal(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        if !self.lens.distorts() {
+        if !self.camera_model.distorts() {
             return [x, y];
         }
-        let direction = self.lens.direction([x + self.corner[0], y + self.corner[1]]);
-        [0, 1].map(|k| self.lens.centre[k] + self.lens.focal * direction[k] - self.corner[k])
+        let direction = self.camera_model.direction([x + self.corner[0], y + self.corner[1]]);
+        [0, 1].map(|k| self.camera_model.centre[k] + self.camera_model.focal * direction[k] - self.corner[k])
     }
 
     fn seen(&self, ideal: [f64; 2]) -> Option<[f64; 2]> {
-        if !self.lens.distorts() {
+        if !self.camera_model.distorts() {
             return Some(ideal);
         }
-        let [x, y] = [0, 1].map(|k| (ideal[k] + self.corner[k] - self.lens.centre[k]) / self.lens.focal);
-        let [u, v] = self.lens.project([x, y, 1.0])?;
+        let [x, y] = [0, 1]
+            .map(|k| (ideal[k] + self.corner[k] - self.camera_model.centre[k]) / self.camera_model.focal);
+        let [u, v] = self.camera_model.project([x, y, 1.0])?;
         Some([u - self.corner[0], v - self.corner[1]])
     }
 }
@@ -221,7 +226,7 @@ fn shade(back: &Matrix3<f64>, cells: &Cells, blur: f64, [x, y]: [f64; 2]) -> Opt
     if !(tag[0].abs() < limit(soft[0]) && tag[1].abs() < limit(soft[1])) {
         return None;
     }
-    let (across, down) = (Profile::new(tag[0], soft[0]), Profile::new(tag[1], soft[1]));
+    let (across, down) = (EdgeProfile::new(tag[0], soft[0]), EdgeProfile::new(tag[1], soft[1]));
     let (mut value, mut by_u, mut by_v, mut widen) = (0.0, 0.0, 0.0, 0.0);
     for (row, [weight, change, widened]) in down.shares() {
         let mut line = [0.0; 3];

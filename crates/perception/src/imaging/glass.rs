@@ -1,6 +1,6 @@
 //! What a distorting lens makes of an ideal picture.
 
-use vocabulary::Lens;
+use vocabulary::CameraModel;
 
 /// Pixels between places where the distortion is undone exactly; straight lines between them err by 0.003 pixels in the
 /// corner of a strongly distorted (k1 = −0.3) picture of the default size.
@@ -18,17 +18,17 @@ pub(super) struct Glass {
 }
 
 impl Glass {
-    pub(super) fn new(lens: &Lens) -> Self {
+    pub(super) fn new(camera_model: &CameraModel) -> Self {
         let count = |size: u32| (size as usize + 2 * AROUND) / SPACING + 2;
-        let (columns, rows) = (count(lens.width), count(lens.height));
+        let (columns, rows) = (count(camera_model.width), count(camera_model.height));
         let at = |k: usize| (k * SPACING) as f64 - AROUND as f64;
         // Beyond any picture: keeps places where the lens cannot be undone from growing the ideal picture without end.
-        let most = [2.0 * f64::from(lens.width), 2.0 * f64::from(lens.height)];
+        let most = [2.0 * f64::from(camera_model.width), 2.0 * f64::from(camera_model.height)];
         let node = |k: usize| {
             let pixel = [at(k % columns), at(k / columns)];
-            let direction = lens.direction(pixel);
+            let direction = camera_model.direction(pixel);
             [0, 1].map(|k| {
-                let ideal = lens.centre[k] + lens.focal * direction[k];
+                let ideal = camera_model.centre[k] + camera_model.focal * direction[k];
                 let near = if ideal.is_finite() { ideal } else { pixel[k] };
                 // From the pixel itself, so that f32 has digits to spare.
                 (near.clamp(-most[k], 2.0 * most[k]) - pixel[k]) as f32

@@ -8,13 +8,13 @@ pub use exposure::gather;
 pub use noise::{Purpose, Stream, noise_stream};
 
 use glass::{Glass, between};
-use vocabulary::{Grey, Lens, Region};
+use vocabulary::{CameraModel, Grey, Region};
 
 /// A lens and the sensor behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Optics {
     /// Where things are seen.
-    pub lens: Lens,
+    pub camera_model: CameraModel,
     /// Standard deviation of the blur, pixels.
     pub blur: f64,
     /// Standard deviation of a pixel's noise, share of full scale.
@@ -24,7 +24,7 @@ pub struct Optics {
 impl Default for Optics {
     /// The default lens, blurred by 0.7 pixels, with a noise of three grey levels.
     fn default() -> Self {
-        Self { lens: Lens::default(), blur: 0.7, noise: 3.0 / 255.0 }
+        Self { camera_model: CameraModel::default(), blur: 0.7, noise: 3.0 / 255.0 }
     }
 }
 
@@ -63,7 +63,7 @@ impl Sensor {
         let sum = 2.0 * (0..=reach).map(bell).sum::<f64>() - 1.0;
         Self {
             optics,
-            glass: optics.lens.distorts().then(|| Glass::new(&optics.lens)),
+            glass: optics.camera_model.distorts().then(|| Glass::new(&optics.camera_model)),
             kernel: (0..=reach).map(|k| (bell(k) / sum) as f32).collect(),
             light: vec![],
             rows: vec![],
@@ -101,7 +101,7 @@ impl Sensor {
             [low, high] = ideal;
         }
         let size = [0, 1].map(|k| high[k].saturating_sub(low[k]).max(1) as u32);
-        let centre = [0, 1].map(|k| self.optics.lens.centre[k] - f64::from(low[k]));
+        let centre = [0, 1].map(|k| self.optics.camera_model.centre[k] - f64::from(low[k]));
         Source { region: Region { x: 0, y: 0, width: size[0], height: size[1] }, centre, corner: low }
     }
 

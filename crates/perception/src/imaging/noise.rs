@@ -144,9 +144,9 @@ mod tests {
         let mut values = vec![0.0; 400_000];
         noise_stream(7, 1, 2, Purpose::Pixels).normals(&mut values);
         let n = values.len() as f64;
-        let moment = |k: i32| values.iter().map(|x| f64::from(*x).powi(k)).sum::<f64>() / n;
-        assert!(moment(1).abs() < 0.006 && moment(3).abs() < 0.02, "{} {}", moment(1), moment(3));
-        assert!((moment(2) - 1.0).abs() < 0.01 && (moment(4) - 3.0).abs() < 0.08, "{}", moment(4));
+        let record = |k: i32| values.iter().map(|x| f64::from(*x).powi(k)).sum::<f64>() / n;
+        assert!(record(1).abs() < 0.006 && record(3).abs() < 0.02, "{} {}", record(1), record(3));
+        assert!((record(2) - 1.0).abs() < 0.01 && (record(4) - 3.0).abs() < 0.08, "{}", record(4));
         let beyond = |x: f32| values.iter().filter(|v| v.abs() > x).count() as f64 / n;
         assert!((beyond(1.0) - 0.3173).abs() < 0.003 && (beyond(2.0) - 0.0455).abs() < 0.001);
     }

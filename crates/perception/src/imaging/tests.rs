@@ -39,7 +39,7 @@ fn an_edge_becomes_as_soft_as_the_blur_says() {
 #[test]
 fn noise_is_as_strong_as_it_should_be() {
     let optics = Optics { blur: 0.0, noise: 4.0 / 255.0, ..Optics::default() };
-    let picture = taken(optics, Region::whole(&optics.lens), |_, _| 120.0);
+    let picture = taken(optics, Region::whole(&optics.camera_model), |_, _| 120.0);
     let n = picture.values.len() as f64;
     let mean = picture.values.iter().map(|v| f64::from(*v)).sum::<f64>() / n;
     let square = picture.values.iter().map(|v| (f64::from(*v) - mean).powi(2)).sum::<f64>() / n;
@@ -47,19 +47,23 @@ fn noise_is_as_strong_as_it_should_be() {
     assert!((mean - 120.0).abs() < 0.05 && (square - 16.0 - 1.0 / 12.0).abs() < 0.3, "{mean} {square}");
 }
 
-/// A pattern drawn through the pinhole and seen through the glass is where `Lens::direction` says.
+/// A pattern drawn through the pinhole and seen through the glass is where `CameraModel::direction` says.
 #[test]
 fn the_lens_bends_a_picture_as_it_bends_points() {
-    let lens = Lens { distortion: [-0.28, 0.09, 1e-3, -7e-4, -0.01], ..Lens::default() };
-    let optics = Optics { lens, blur: 0.0, noise: 0.0 };
+    let camera_model =
+        CameraModel { distortion: [-0.28, 0.09, 1e-3, -7e-4, -0.01], ..CameraModel::default() };
+    let optics = Optics { camera_model, blur: 0.0, noise: 0.0 };
     let light = |x: f64, y: f64| 128.0 + 100.0 * (x * 0.11).sin() * (y * 0.13).cos();
-    for region in [REGION, Region { x: 0, y: 0, width: 90, height: 70 }, Region::whole(&lens)] {
+    for region in [REGION, Region { x: 0, y: 0, width: 90, height: 70 }, Region::whole(&camera_model)] {
         let picture = taken(optics, region, light);
         let mut worst = 0.0_f64;
         for (k, value) in picture.values.iter().enumerate() {
             let (x, y) = (k as u32 % region.width + region.x, k as u32 / region.width + region.y);
-            let [u, v] = lens.direction([f64::from(x), f64::from(y)]);
-            let wanted = light(lens.centre[0] + lens.focal * u, lens.centre[1] + lens.focal * v);
+            let [u, v] = camera_model.direction([f64::from(x), f64::from(y)]);
+            let wanted = light(
+                camera_model.centre[0] + camera_model.focal * u,
+                camera_model.centre[1] + camera_model.focal * v,
+            );
             worst = worst.max((wanted - f64::from(*value)).abs());
         }
         assert!(worst < 2.0, "{worst}");
@@ -69,11 +73,12 @@ fn the_lens_bends_a_picture_as_it_bends_points() {
 /// Cutting a region out of a picture and taking a picture of the region are one.
 #[test]
 fn a_region_is_a_part_of_the_whole() {
-    let lens = Lens { distortion: [-0.2, 0.05, 0.0, 0.0, 0.0], ..Lens::default() };
-    for lens in [lens, Lens::default()] {
-        let optics = Optics { lens, blur: 0.8, noise: 0.0 };
+    let camera_model = CameraModel { distortion: [-0.2, 0.05, 0.0, 0.0, 0.0], ..CameraModel::default() };
+    for camera_model in [camera_model, CameraModel::default()] {
+        let optics = Optics { camera_model, blur: 0.8, noise: 0.0 };
         let light = |x: f64, y: f64| 128.0 + 100.0 * (x * 0.4).sin() * (y * 0.3).cos();
-        let (whole, part) = (taken(optics, Region::whole(&lens), light), taken(optics, REGION, light));
+        let (whole, part) =
+            (taken(optics, Region::whole(&camera_model), light), taken(optics, REGION, light));
         for y in 0..REGION.height {
             let start = ((y + REGION.y) * 640 + REGION.x) as usize;
             let row = &part.values[(y * REGION.width) as usize..][..REGION.width as usize];

@@ -17,7 +17,7 @@ pub use posit::{Match, classic_posit, posit};
 
 use nalgebra::{Matrix3, Vector3};
 use refine::{Corner, Minimum, Problem};
-use vocabulary::{FACE_DIRECTIONS, FACES, Lens, Pose, Relative, Rigid, Shell, wrap};
+use vocabulary::{CameraModel, FACE_DIRECTIONS, FACES, Pose, Relative, Rigid, Shell, wrap};
 
 /// Poses whose headings differ by less, rad, are not told apart: their difference goes into the covariance.
 const ALIKE: f64 = 4.0 * std::f64::consts::PI / 180.0;
@@ -40,7 +40,7 @@ pub struct Rig {
     /// The leader's shell.
     pub shell: Shell,
     /// The follower's lens.
-    pub lens: Lens,
+    pub camera_model: CameraModel,
     /// The follower's camera (x right, y down, z ahead) in its body, pan included.
     pub body_from_camera: Rigid,
 }
@@ -84,7 +84,7 @@ pub struct PoseEstimate {
 
 impl PoseEstimate {
     /// Distance, bearing and view angle, with the standard deviations [m, rad, rad] that the covariance gives them.
-    pub fn sighting(&self) -> (Relative, [f64; 3]) {
+    pub fn measurement(&self) -> (Relative, [f64; 3]) {
         let relative = Relative::between(self.pose, Pose::default());
         let square = relative.distance.powi(2).max(1e-12);
         let (x, y) = (self.pose.x, self.pose.y);
@@ -113,7 +113,7 @@ pub fn locate(
     prior: &Prior,
     near: Option<Pose>,
 ) -> Option<PoseEstimate> {
-    let valid = pixel_sigma.is_finite() && pixel_sigma > 0.0 && rig.lens.focal > 0.0;
+    let valid = pixel_sigma.is_finite() && pixel_sigma > 0.0 && rig.camera_model.focal > 0.0;
     let prior_valid = [prior.tilt, prior.height].iter().all(|s| s.is_finite() && *s >= 0.0);
     if !(valid && prior_valid) || faces.is_empty() || faces.iter().any(|seen| seen.face >= FACES) {
         return None;
@@ -123,8 +123,8 @@ pub fn locate(
     for seen in faces {
         let sigma = pixel_sigma.hypot(seen.deviation);
         for (point, pixel) in rig.shell.tag_corners(seen.face).into_iter().zip(seen.corners) {
-            corners.push(Corner::new(&rig.lens, point, pixel, sigma)?);
-            matches.push(Match { point, seen: rig.lens.direction(pixel) });
+            corners.push(Corner::new(&rig.camera_model, point, pixel, sigma)?);
+            matches.push(Match { point, seen: rig.camera_model.direction(pixel) });
         }
     }
     let raw = if faces.len() > 1 { posit(&matches) } else { None };
@@ -155,7 +155,7 @@ fn judge(
     raw: Option<Pose>,
 ) -> Option<PoseEstimate> {
     let camera_from_body = rig.body_from_camera.inverse();
-    let residual = |m: &Minimum| misfit(&camera_from_body.after(&m.body), matches) * rig.lens.focal;
+    let residual = |m: &Minimum| misfit(&camera_from_body.after(&m.body), matches) * rig.camera_model.focal;
     let mut best = minima.first()?;
     let side = faces.iter().map(|seen| longest_side(&seen.corners)).fold(0.0, f64::max);
     let explained = residual(best) < ABSURD * side;

@@ -7,7 +7,7 @@
 
 use super::Prior;
 use nalgebra::{Matrix2, Matrix3, Matrix6, Rotation3, SMatrix, Vector2, Vector3, Vector6};
-use vocabulary::{Lens, Pose, Rigid, wrap};
+use vocabulary::{CameraModel, Pose, Rigid, wrap};
 
 /// A corner further off than this, in standard deviations, counts by its distance and no longer by its square (Huber):
 /// one bad corner pulls no harder than three good ones. One good corner in 90 is that far off.
@@ -28,13 +28,18 @@ pub(super) struct Corner {
 
 impl Corner {
     /// A corner seen at `pixel` with an error of `sigma` pixels in each direction; `None` if the lens cannot be undone.
-    pub(super) fn new(lens: &Lens, point: [f64; 3], pixel: [f64; 2], sigma: f64) -> Option<Self> {
-        let seen = lens.direction(pixel);
-        let [[a, b], [c, d]] = lens.slope(seen);
-        let metric = Matrix2::new(a, b, c, d) * (lens.focal / sigma);
+    pub(super) fn new(
+        camera_model: &CameraModel,
+        point: [f64; 3],
+        pixel: [f64; 2],
+        sigma: f64,
+    ) -> Option<Self> {
+        let seen = camera_model.direction(pixel);
+        let [[a, b], [c, d]] = camera_model.slope(seen);
+        let metric = Matrix2::new(a, b, c, d) * (camera_model.focal / sigma);
         let finite = seen.iter().chain(metric.iter()).all(|x| x.is_finite());
         // Beyond where the mapping folds over a direction has nothing to do with the pixel.
-        let back = lens.project([seen[0], seen[1], 1.0])?;
+        let back = camera_model.project([seen[0], seen[1], 1.0])?;
         let there = (0..2).all(|k| (back[k] - pixel[k]).abs() < 1e-3);
         (finite && there).then(|| Self { point: point.into(), seen: seen.into(), metric })
     }

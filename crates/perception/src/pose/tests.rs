@@ -33,7 +33,7 @@ fn a_distorting_lens_is_undone() {
     let mut views = Views::seeded(12);
     for _ in 0..100 {
         let mut view = views.next(1.0..4.0);
-        view.rig.lens.distortion = [-0.28, 0.09, 1e-3, -7e-4, -0.01];
+        view.rig.camera_model.distortion = [-0.28, 0.09, 1e-3, -7e-4, -0.01];
         let view = View::of(view.rig, view.pose);
         if !view.faces.is_empty() {
             let found = locate(&view.rig, &view.seen(), 0.1, &FLAT, None).expect("a pose");
@@ -190,7 +190,7 @@ fn a_sighting_has_the_spread_of_its_noise() {
     for _ in 0..1500 {
         let noisy = View::of(view.rig, view.pose).noisy(0.15, &mut views);
         let found = locate(&noisy.rig, &noisy.seen(), 0.15, &FLAT, None).expect("a pose");
-        let (relative, deviation) = found.sighting();
+        let (relative, deviation) = found.measurement();
         let errors = [
             relative.distance - truth.distance,
             wrap(relative.bearing - truth.bearing),
@@ -218,9 +218,9 @@ proptest! {
         distortion in prop::array::uniform5(any_number()),
         distorts: bool,
     ) {
-        let lens = if distorts { Lens { distortion, ..Lens::default() } } else { Lens::default() };
-        let body_from_camera = vocabulary::Mount { forward: 0.1, height: 0.3 }.body_from_camera(numbers[46]);
-        let rig = Rig { shell: Shell::PAPER, lens, body_from_camera };
+        let camera_model = if distorts { CameraModel { distortion, ..CameraModel::default() } } else { CameraModel::default() };
+        let body_from_camera = vocabulary::CameraMount { forward: 0.1, height: 0.3 }.body_from_camera(numbers[46]);
+        let rig = Rig { shell: Shell::PAPER, camera_model, body_from_camera };
         let seen: Vec<_> = faces.iter().enumerate().map(|(k, face)| SeenFace {
             face: *face,
             corners: [0, 1, 2, 3].map(|c| [numbers[8 * k + 2 * c], numbers[8 * k + 2 * c + 1]]), deviation: numbers[47],
@@ -229,7 +229,7 @@ proptest! {
         for prior in [prior, FLAT] {
             for near in [None, Some(Pose::new(numbers[40], numbers[41], numbers[42]))] {
                 if let Some(found) = locate(&rig, &seen, numbers[43].abs(), &prior, near) {
-                    prop_assert!(found.pose.x.is_finite() && found.sighting().1.iter().all(|d| d.is_finite()));
+                    prop_assert!(found.pose.x.is_finite() && found.measurement().1.iter().all(|d| d.is_finite()));
                 }
             }
         }

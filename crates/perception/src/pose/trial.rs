@@ -3,7 +3,7 @@
 use super::{Match, Rig, SeenFace};
 use crate::imaging::{Purpose, Stream};
 use std::ops::Range;
-use vocabulary::{Body, FACES, Lens, Mount, Pose, Rigid, Shell, wrap};
+use vocabulary::{Body, CameraModel, CameraMount, FACES, Pose, Rigid, Shell, wrap};
 
 pub(crate) struct Views {
     stream: Stream,
@@ -38,8 +38,9 @@ impl Views {
         let pose =
             Pose::new(distance * bearing.cos(), distance * bearing.sin(), wrap(self.uniform(-3.1..3.1)));
         let pan = bearing + self.uniform(-0.15..0.15);
-        let body_from_camera = Mount::fitting(&Body::default()).body_from_camera(pan);
-        let rig = Rig { shell: Shell::PAPER.tagged(3), lens: Lens::default(), body_from_camera };
+        let body_from_camera = CameraMount::fitting(&Body::default()).body_from_camera(pan);
+        let rig =
+            Rig { shell: Shell::PAPER.tagged(3), camera_model: CameraModel::default(), body_from_camera };
         View::of(rig, pose)
     }
 }
@@ -68,7 +69,7 @@ impl View {
 
     /// With every corner off by `sigma` pixels of the default lens.
     pub(crate) fn noisy(mut self, sigma: f64, views: &mut Views) -> Self {
-        let sigma = sigma / self.rig.lens.focal;
+        let sigma = sigma / self.rig.camera_model.focal;
         for x in self.faces.iter_mut().flat_map(|(_, corners)| corners.iter_mut().flatten()) {
             *x += sigma * views.normal();
         }
@@ -77,7 +78,7 @@ impl View {
 
     /// The faces in pixels.
     pub(crate) fn seen(&self) -> Vec<SeenFace> {
-        let pixel = |[x, y]: [f64; 2]| self.rig.lens.project([x, y, 1.0]).expect("in front");
+        let pixel = |[x, y]: [f64; 2]| self.rig.camera_model.project([x, y, 1.0]).expect("in front");
         self.faces
             .iter()
             .map(|(face, c)| SeenFace { face: *face, corners: c.map(pixel), deviation: 0.0 })

@@ -1,14 +1,14 @@
 //! Pictures: where to look, what the sensor makes of the light, and the tags in it.
 
-use super::{Look, Senses, all_faces, pan};
+use super::{Look, SensorConfig, all_faces, pan};
 use crate::detect::{Locus, recognise_expected};
 use crate::imaging::{Optics, Purpose, Sensor, gather, noise_stream};
 use crate::pose::SeenFace;
-use vocabulary::{Eyes, FACES, Grey, Lens, Region, Rigid, Shot, Snapshot};
+use vocabulary::{CameraModel, CameraRenderer, FACES, Grey, Region, Rigid, Shot, Snapshot};
 
 /// How cameras turn and take pictures; the lens and the mount are each robot's own.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CameraModel {
+pub struct CameraSettings {
     /// Standard deviation of the blur, pixels.
     pub blur: f64,
     /// Standard deviation of a pixel's noise, share of full scale.
@@ -25,7 +25,7 @@ pub struct CameraModel {
     pub whole_frames: bool,
 }
 
-impl Default for CameraModel {
+impl Default for CameraSettings {
     fn default() -> Self {
         Self {
             blur: 0.7,
@@ -47,7 +47,7 @@ pub(super) struct Seen {
 
 /// What turns light into tags, kept from picture to picture; it remembers nothing that a result depends on.
 #[derive(Default)]
-pub(super) struct Darkroom {
+pub(super) struct CameraPipeline {
     /// One for each thread.
     benches: Vec<Bench>,
 }
@@ -61,20 +61,20 @@ struct Bench {
     picture: Grey,
 }
 
-impl Clone for Darkroom {
+impl Clone for CameraPipeline {
     /// An empty one does as well.
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
-impl std::fmt::Debug for Darkroom {
+impl std::fmt::Debug for CameraPipeline {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Darkroom").field("benches", &self.benches.len()).finish_non_exhaustive()
     }
 }
 
-impl Darkroom {
+impl CameraPipeline {
     /// As many benches as threads can work on `pictures` at once, at least one.
     fn benches(&mut self, pictures: usize) -> &mut [Bench] {
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -88,8 +88,8 @@ impl Darkroom {
 
 impl Bench {
     /// The sensor behind a lens.
-    fn sensor(&mut self, lens: &Lens, model: &CameraModel) -> &mut Sensor {
-        let optics = Optics { lens: *lens, blur: model.blur, noise: model.noise };
+    fn sensor(&mut self, camera_model: &CameraModel, model: &CameraSettings) -> &mut Sensor {
+        let optics = Optics { camera_model: *camera_model, blur: model.blur, noise: model.noise };
         let known = self.sensors.iter().position(|sensor| *sensor.optics() == optics);
         let index = known.unwrap_or_else(|| {
             self.sensors.push(Sensor::new(optics));
@@ -101,18 +101,18 @@ impl Bench {
     /// The tags of the leader in one picture, from the light that fell on the sensor.
     fn develop(
         &mut self,
-        model: &CameraModel,
-        senses: &Senses,
+        model: &CameraSettings,
+        sensor_config: &SensorConfig,
         look: &Look<'_>,
         (region, light): (Region, &Grey),
     ) -> Seen {
-        let mut random = noise_stream(senses.seed, look.follower, look.number, Purpose::Pixels);
+        let mut random = noise_stream(sensor_config.seed, look.follower, look.number, Purpose::Pixels);
         let mut picture = std::mem::take(&mut self.picture);
-        let sensor = self.sensor(&senses.kits[look.follower].lens, model);
+        let sensor = self.sensor(&sensor_config.kits[look.follower].camera_model, model);
         sensor.expose(light, region, &mut random, &mut picture);
         let optics = *sensor.optics();
-        let shell = senses.kits[look.leader].shell;
-        let expected = readable(senses, look).unwrap_or(FACES);
+        let shell = sensor_config.kits[look.leader].shell;
+        let expected = readable(sensor_config, look).unwrap_or(FACES);
         let faces = shell.map_or_else(Vec::new, |shell| {
             recognise_expected(&mut self.detector, (&picture, region), &optics, &shell, expected)
         });
@@ -129,18 +129,18 @@ const GRID: u32 = 16;
 /// Standard deviation of a corner's coordinates as found in pictures, besides what its finder reports, pixels.
 pub(super) const CORNER_NOISE: f64 = 0.02;
 
-impl CameraModel {
+impl CameraSettings {
     /// Takes the pictures of all looks at one instant and finds the leaders' tags in them.
     pub(super) fn see(
         &self,
-        senses: &Senses,
+        sensor_config: &SensorConfig,
         looks: &[&Look<'_>],
         period: (&Snapshot, &Snapshot),
-        (eyes, darkroom): (&mut dyn Eyes, &mut Darkroom),
+        (eyes, camera_pipeline): (&mut dyn CameraRenderer, &mut CameraPipeline),
     ) -> Result<Vec<Seen>, String> {
-        let regions: Vec<Region> = looks.iter().map(|look| self.region(senses, look)).collect();
-        let benches = darkroom.benches(looks.len());
-        let pictures = self.light(senses, looks, &regions, period, (eyes, &mut benches[0]))?;
+        let regions: Vec<Region> = looks.iter().map(|look| self.region(sensor_config, look)).collect();
+        let benches = camera_pipeline.benches(looks.len());
+        let pictures = self.light(sensor_config, looks, &regions, period, (eyes, &mut benches[0]))?;
         let jobs: Vec<_> = looks.iter().zip(regions.into_iter().zip(&pictures)).collect();
         let threads = benches.len();
         let mut found: Vec<Option<Seen>> = jobs.iter().map(|_| None).collect();
@@ -151,7 +151,7 @@ impl CameraModel {
                 let own = jobs.iter().enumerate().skip(first).step_by(threads);
                 let task = move || -> Vec<(usize, Seen)> {
                     own.map(|(k, (look, (region, light)))| {
-                        (k, bench.develop(self, senses, look, (*region, light)))
+                        (k, bench.develop(self, sensor_config, look, (*region, light)))
                     })
                     .collect()
                 };
@@ -172,20 +172,20 @@ impl CameraModel {
     /// The light that falls on the sensors: ideal pictures of what each lens needs to see its region.
     fn light(
         &self,
-        senses: &Senses,
+        sensor_config: &SensorConfig,
         looks: &[&Look<'_>],
         regions: &[Region],
         (before, after): (&Snapshot, &Snapshot),
-        (eyes, bench): (&mut dyn Eyes, &mut Bench),
+        (eyes, bench): (&mut dyn CameraRenderer, &mut Bench),
     ) -> Result<Vec<Grey>, String> {
         let mut shots = |snapshot: &Snapshot| -> Vec<Shot> {
             let shot = |(look, region): (&&Look<'_>, &Region)| {
-                let kit = &senses.kits[look.follower];
-                let source = bench.sensor(&kit.lens, self).source(*region);
+                let kit = &sensor_config.kits[look.follower];
+                let source = bench.sensor(&kit.camera_model, self).source(*region);
                 Shot {
                     robot: look.follower,
-                    world_from_camera: kit.mount.world_from_camera(&snapshot.robots[look.follower]),
-                    focal: kit.lens.focal,
+                    world_from_camera: kit.camera_mount.world_from_camera(&snapshot.robots[look.follower]),
+                    focal: kit.camera_model.focal,
                     centre: source.centre,
                     region: source.region,
                     exposure: self.exposure,
@@ -217,13 +217,13 @@ impl CameraModel {
     }
 
     /// Where the leader is expected to be seen; the whole picture where that is not known.
-    fn region(&self, senses: &Senses, look: &Look<'_>) -> Region {
-        let lens = &senses.kits[look.follower].lens;
-        let whole = Region::whole(lens);
+    fn region(&self, sensor_config: &SensorConfig, look: &Look<'_>) -> Region {
+        let camera_model = &sensor_config.kits[look.follower].camera_model;
+        let whole = Region::whole(camera_model);
         if self.whole_frames || !look.seen {
             return whole;
         }
-        expected(senses, look).and_then(|bounds| fitted(lens, bounds)).unwrap_or(whole)
+        expected(sensor_config, look).and_then(|bounds| fitted(camera_model, bounds)).unwrap_or(whole)
     }
 }
 
@@ -235,22 +235,22 @@ fn checked(pictures: &[Grey], wanted: usize) -> Result<(), String> {
 }
 
 /// The leader's frame in the camera's, as the follower expects it.
-fn camera_from_expected(senses: &Senses, look: &Look<'_>) -> Option<Rigid> {
+fn camera_from_expected(sensor_config: &SensorConfig, look: &Look<'_>) -> Option<Rigid> {
     let pose = pan::leader_pose(&look.expected?);
     let body_from_leader = Rigid::turned([pose.x, pose.y, 0.0], pose.heading, 0.0, 0.0);
     let pan = look.snapshot.robots.get(look.follower)?.camera_pan;
-    let mount = senses.kits.get(look.follower)?.mount;
-    Some(mount.body_from_camera(pan).inverse().after(&body_from_leader))
+    let camera_mount = sensor_config.kits.get(look.follower)?.camera_mount;
+    Some(camera_mount.body_from_camera(pan).inverse().after(&body_from_leader))
 }
 
 /// How many faces can surely be read where the leader is expected; `None` where that is not known.
-fn readable(senses: &Senses, look: &Look<'_>) -> Option<usize> {
-    let (leader, follower) = (senses.kits.get(look.leader)?, senses.kits.get(look.follower)?);
-    let (shell, from_leader) = (leader.shell?, camera_from_expected(senses, look)?);
+fn readable(sensor_config: &SensorConfig, look: &Look<'_>) -> Option<usize> {
+    let (leader, follower) = (sensor_config.kits.get(look.leader)?, sensor_config.kits.get(look.follower)?);
+    let (shell, from_leader) = (leader.shell?, camera_from_expected(sensor_config, look)?);
     let surely = |face: usize| {
         let camera = from_leader.after(&shell.body_from_face(face)).inverse().translation;
         let away = camera.iter().map(|x| x * x).sum::<f64>().sqrt();
-        camera[2] > SURELY.0 * away && follower.lens.focal * shell.cell > SURELY.1 * away
+        camera[2] > SURELY.0 * away && follower.camera_model.focal * shell.cell > SURELY.1 * away
     };
     look.seen.then(|| all_faces().filter(|face| surely(*face)).count().max(1))
 }
@@ -259,13 +259,13 @@ fn readable(senses: &Senses, look: &Look<'_>) -> Option<usize> {
 const SURELY: (f64, f64) = (0.55, 2.0);
 
 /// Smallest and largest column and row of the leader's tags where the follower expects them.
-fn expected(senses: &Senses, look: &Look<'_>) -> Option<[[f64; 2]; 2]> {
-    let camera_from_leader = camera_from_expected(senses, look)?;
-    let (leader, follower) = (senses.kits.get(look.leader)?, senses.kits.get(look.follower)?);
+fn expected(sensor_config: &SensorConfig, look: &Look<'_>) -> Option<[[f64; 2]; 2]> {
+    let camera_from_leader = camera_from_expected(sensor_config, look)?;
+    let (leader, follower) = (sensor_config.kits.get(look.leader)?, sensor_config.kits.get(look.follower)?);
     let shell = leader.shell?;
     let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for corner in all_faces().flat_map(|face| shell.tag_corners(face)) {
-        let pixel = follower.lens.project(camera_from_leader.apply(corner))?;
+        let pixel = follower.camera_model.project(camera_from_leader.apply(corner))?;
         for k in 0..2 {
             bounds[0][k] = bounds[0][k].min(pixel[k]);
             bounds[1][k] = bounds[1][k].max(pixel[k]);
@@ -275,7 +275,7 @@ fn expected(senses: &Senses, look: &Look<'_>) -> Option<[[f64; 2]; 2]> {
 }
 
 /// The region around some bounds, with a margin, cut at the edges of the picture; `None` where nothing is left.
-fn fitted(lens: &Lens, [low, high]: [[f64; 2]; 2]) -> Option<Region> {
+fn fitted(camera_model: &CameraModel, [low, high]: [[f64; 2]; 2]) -> Option<Region> {
     let size = (high[0] - low[0]).max(high[1] - low[1]);
     let margin = MARGIN.0 * size + MARGIN.1;
     let along = |k: usize, pixels: u32| {
@@ -288,7 +288,7 @@ fn fitted(lens: &Lens, [low, high]: [[f64; 2]; 2]) -> Option<Region> {
     if !size.is_finite() {
         return None;
     }
-    let ((x, width), (y, height)) = (along(0, lens.width)?, along(1, lens.height)?);
+    let ((x, width), (y, height)) = (along(0, camera_model.width)?, along(1, camera_model.height)?);
     Some(Region { x, y, width, height })
 }
 
@@ -298,8 +298,8 @@ mod tests {
 
     #[test]
     fn regions_hold_what_is_expected_and_stay_in_the_picture() {
-        let lens = Lens::default();
-        let region = fitted(&lens, [[300.0, 200.0], [420.0, 260.0]]).expect("a region");
+        let camera_model = CameraModel::default();
+        let region = fitted(&camera_model, [[300.0, 200.0], [420.0, 260.0]]).expect("a region");
         let margin = MARGIN.0 * 120.0 + MARGIN.1;
         let ends = [(region.x, region.width, 300.0, 420.0), (region.y, region.height, 200.0, 260.0)];
         for (first, length, low, high) in ends {
@@ -309,9 +309,9 @@ mod tests {
             );
         }
         assert!(region.width.is_multiple_of(GRID) && region.height.is_multiple_of(GRID));
-        let cut = fitted(&lens, [[-80.0, 300.0], [60.0, 900.0]]).expect("a region");
-        assert!(cut.x == 0 && cut.y + cut.height == lens.height);
-        assert_eq!(fitted(&lens, [[-500.0, 100.0], [-300.0, 200.0]]), None);
-        assert_eq!(fitted(&lens, [[f64::INFINITY, 0.0], [f64::NEG_INFINITY, 0.0]]), None);
+        let cut = fitted(&camera_model, [[-80.0, 300.0], [60.0, 900.0]]).expect("a region");
+        assert!(cut.x == 0 && cut.y + cut.height == camera_model.height);
+        assert_eq!(fitted(&camera_model, [[-500.0, 100.0], [-300.0, 200.0]]), None);
+        assert_eq!(fitted(&camera_model, [[f64::INFINITY, 0.0], [f64::NEG_INFINITY, 0.0]]), None);
     }
 }

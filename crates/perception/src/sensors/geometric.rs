@@ -1,6 +1,6 @@
 //! Tags as a camera would see them, calculated: no picture is drawn.
 
-use super::{Look, Senses, all_faces, sightline::hidden};
+use super::{Look, SensorConfig, all_faces, sightline::hidden};
 use crate::imaging::Stream;
 use crate::pose::SeenFace;
 
@@ -13,21 +13,23 @@ const MARGIN: f64 = 4.0;
 
 /// Corners of the tags that can be read, each coordinate with an error of `pixel_noise` pixels standard deviation.
 pub(super) fn faces(
-    senses: &Senses,
+    sensor_config: &SensorConfig,
     look: &Look<'_>,
     pixel_noise: f64,
     random: &mut Stream,
 ) -> Vec<SeenFace> {
-    let (Some(leader), Some(follower)) = (senses.kits.get(look.leader), senses.kits.get(look.follower))
+    let (Some(leader), Some(follower)) =
+        (sensor_config.kits.get(look.leader), sensor_config.kits.get(look.follower))
     else {
         return Vec::new();
     };
-    let (Some(shell), Some(camera_from_leader)) = (leader.shell, senses.camera_from_leader(look)) else {
+    let (Some(shell), Some(camera_from_leader)) = (leader.shell, sensor_config.camera_from_leader(look))
+    else {
         return Vec::new();
     };
     let robots = &look.snapshot.robots;
     let world_from_leader = robots[look.leader].world_from_body();
-    let world_from_camera = follower.mount.world_from_camera(&robots[look.follower]);
+    let world_from_camera = follower.camera_mount.world_from_camera(&robots[look.follower]);
     let mut seen = Vec::new();
     for face in all_faces() {
         // Errors are drawn for every face, so that a face out of sight changes none of the others.
@@ -40,16 +42,17 @@ pub(super) fn faces(
         }
         let share = (1.0 - slant) / (1.0 - STEEPEST);
         let least = LEAST_CELL[0] + (LEAST_CELL[1] - LEAST_CELL[0]) * share;
-        if follower.lens.focal * shell.cell / away < least {
+        if follower.camera_model.focal * shell.cell / away < least {
             continue;
         }
         let corners = shell.tag_corners(face);
-        let pixels = corners.map(|corner| follower.lens.project(camera_from_leader.apply(corner)));
+        let pixels = corners.map(|corner| follower.camera_model.project(camera_from_leader.apply(corner)));
         let [Some(a), Some(b), Some(c), Some(d)] = pixels else { continue };
         let pixels = [a, b, c, d];
-        let in_picture = pixels.iter().all(|p| follower.lens.holds(*p, MARGIN));
+        let in_picture = pixels.iter().all(|p| follower.camera_model.holds(*p, MARGIN));
         let from = world_from_camera.translation;
-        let in_sight = || corners.iter().all(|c| !hidden(senses, look, from, world_from_leader.apply(*c)));
+        let in_sight =
+            || corners.iter().all(|c| !hidden(sensor_config, look, from, world_from_leader.apply(*c)));
         if in_picture && in_sight() {
             let moved = |k: usize| [0, 1].map(|i| pixels[k][i] + pixel_noise * errors[k][i]);
             seen.push(SeenFace { face, corners: [0, 1, 2, 3].map(moved), deviation: 0.0 });

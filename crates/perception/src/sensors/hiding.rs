@@ -1,9 +1,9 @@
 //! What is hidden from whom, for those who know the truth.
 
-use super::{Look, Senses, sightline};
+use super::{Look, SensorConfig, sightline};
 use vocabulary::Snapshot;
 
-impl Senses {
+impl SensorConfig {
     /// Whether anything hides the point `to` on the robot `watched` from the point `from` on the robot `watcher`, both in
     /// the world's frame, m; those two robots themselves do not count.
     pub fn hides(

@@ -1,8 +1,8 @@
 //! Looks at leaders: who looks when, by which sensor, and when the follower has what it saw.
 //!
 //! A look is taken at its own instant, which need not be a control sample: robots are where they were at that instant,
-//! cameras point where they pointed. What is seen is on its way for the sensor's latency. [`Senses`] are parameters,
-//! [`Watch`] is their state.
+//! cameras point where they pointed. What is seen is on its way for the sensor's latency. [`SensorConfig`] are parameters,
+//! [`SensorState`] is their state.
 
 mod camera;
 mod geometric;
@@ -11,8 +11,8 @@ mod noise;
 mod pan;
 mod sightline;
 
-pub use camera::CameraModel;
-use camera::Darkroom;
+use camera::CameraPipeline;
+pub use camera::CameraSettings;
 pub use noise::NoiseModel;
 
 use crate::imaging::{Purpose, noise_stream};
@@ -20,8 +20,8 @@ use crate::pose::{Prior, Rig, SeenFace, locate};
 use pan::Pan;
 use std::collections::VecDeque;
 use vocabulary::{
-    Body, Edge, Eyes, FACES, Frame, Lens, Member, Mount, Outcome, Passage, Prop, Relative, Rigid, Shell,
-    Sight, Sighting, Snapshot, Terrain,
+    Body, CameraModel, CameraMount, CameraRenderer, Edge, FACES, Measurement, MeasurementRecord, Outcome,
+    Prop, Relative, Rigid, RobotInfo, Shell, Snapshot, StepInterpolant, Terrain, TrackingState,
 };
 
 /// Where the looks of one follower come from.
@@ -60,27 +60,27 @@ pub struct Sensor {
 pub(crate) struct Kit {
     pub(crate) body: Body,
     pub(crate) shell: Option<Shell>,
-    pub(crate) mount: Mount,
-    pub(crate) lens: Lens,
+    pub(crate) camera_mount: CameraMount,
+    pub(crate) camera_model: CameraModel,
 }
 
 /// Parameters of all followers' senses.
 #[derive(Debug, Clone)]
-pub struct Senses {
+pub struct SensorConfig {
     edges: Vec<Edge>,
     sensors: Vec<Sensor>,
     pub(crate) kits: Vec<Kit>,
     pub(crate) props: Vec<Prop>,
     pub(crate) terrain: Option<std::sync::Arc<Terrain>>,
-    camera: CameraModel,
+    camera: CameraSettings,
     pub(crate) seed: u64,
 }
 
 /// State of all followers' senses.
 #[derive(Debug, Clone)]
-pub struct Watch {
+pub struct SensorState {
     edges: Vec<EdgeWatch>,
-    darkroom: Darkroom,
+    camera_pipeline: CameraPipeline,
 }
 
 /// State of one follower's senses.
@@ -93,7 +93,7 @@ struct EdgeWatch {
     drift: noise::Drift,
     /// Whether the leader was recognised in the last look.
     seen: bool,
-    on_the_way: VecDeque<Frame>,
+    on_the_way: VecDeque<MeasurementRecord>,
 }
 
 /// What a follower believes, for its camera to follow.
@@ -102,7 +102,7 @@ pub struct Belief {
     /// Where it believes itself to be relative to its leader.
     pub relative: Option<Relative>,
     /// How well it knows.
-    pub sight: Sight,
+    pub sight: TrackingState,
 }
 
 /// One look as it is taken.
@@ -127,18 +127,23 @@ const INSTANT: f64 = 1e-9;
 /// Looks that are on their way at once, per follower; more than this and the oldest are lost.
 const MOST_ON_THE_WAY: usize = 4096;
 
-impl Senses {
+impl SensorConfig {
     /// Puts checked parts together: one sensor per edge, `members` in the order of the snapshots.
     pub fn new(
         edges: &[Edge],
         sensors: Vec<Sensor>,
-        (members, props): (&[Member], &[Prop]),
+        (members, props): (&[RobotInfo], &[Prop]),
         terrain: Option<std::sync::Arc<Terrain>>,
-        camera: CameraModel,
+        camera: CameraSettings,
         seed: u64,
     ) -> Self {
         debug_assert_eq!(edges.len(), sensors.len());
-        let kit = |m: &Member| Kit { body: m.body, shell: m.shell, mount: m.mount, lens: m.lens };
+        let kit = |m: &RobotInfo| Kit {
+            body: m.body,
+            shell: m.shell,
+            camera_mount: m.camera_mount,
+            camera_model: m.camera_model,
+        };
         Self {
             edges: edges.to_vec(),
             sensors,
@@ -166,20 +171,23 @@ impl Senses {
     }
 
     /// The state before the first look: cameras point at the leaders as they stand.
-    pub fn start(&self, snapshot: &Snapshot) -> Watch {
-        let watch = |edge: &Edge| {
+    pub fn start(&self, snapshot: &Snapshot) -> SensorState {
+        let sensor_state = |edge: &Edge| {
             let (leader, follower) = (&snapshot.robots[edge.leader], &snapshot.robots[edge.follower]);
             let relative = Relative::between(leader.motion.pose, follower.motion.pose);
-            let mount = self.kits[edge.follower].mount;
+            let camera_mount = self.kits[edge.follower].camera_mount;
             EdgeWatch {
                 looks: 0,
-                pan: Pan::at(pan::towards(&relative, mount.forward), &self.camera),
+                pan: Pan::at(pan::towards(&relative, camera_mount.forward), &self.camera),
                 drift: noise::Drift::default(),
                 seen: false,
                 on_the_way: VecDeque::new(),
             }
         };
-        Watch { edges: self.edges.iter().map(watch).collect(), darkroom: Darkroom::default() }
+        SensorState {
+            edges: self.edges.iter().map(sensor_state).collect(),
+            camera_pipeline: CameraPipeline::default(),
+        }
     }
 
     /// Takes all looks due after the last ones up to the end of a period, which began with the snapshot `before` and
@@ -189,37 +197,40 @@ impl Senses {
     /// What kept the cameras from taking pictures, in words.
     pub fn take_looks(
         &self,
-        watch: &mut Watch,
+        sensor_state: &mut SensorState,
         (before, after): (&Snapshot, &Snapshot),
-        passage: &(impl Passage + ?Sized),
+        interpolant: &(impl StepInterpolant + ?Sized),
         beliefs: &[Belief],
-        mut eyes: Option<&mut (dyn Eyes + '_)>,
+        mut eyes: Option<&mut (dyn CameraRenderer + '_)>,
     ) -> Result<(), String> {
-        while let Some((instant, due)) = self.next_looks(watch, after.time) {
+        while let Some((instant, due)) = self.next_looks(sensor_state, after.time) {
             let share = if after.time > before.time {
                 (instant - before.time) / (after.time - before.time)
             } else {
                 1.0
             };
-            let snapshot = self.instant(watch, (before, after), passage, share);
+            let snapshot = self.instant(sensor_state, (before, after), interpolant, share);
             let looks: Vec<Look<'_>> = due
                 .iter()
                 .map(|&edge| Look {
                     edge,
                     leader: self.edges[edge].leader,
                     follower: self.edges[edge].follower,
-                    number: watch.edges[edge].looks,
+                    number: sensor_state.edges[edge].looks,
                     snapshot: &snapshot,
                     expected: beliefs[edge].relative,
-                    seen: watch.edges[edge].seen && beliefs[edge].sight == Sight::Tracking,
-                    pan_rate: watch.edges[edge].pan.rate(after.time - before.time),
+                    seen: sensor_state.edges[edge].seen && beliefs[edge].sight == TrackingState::Tracking,
+                    pan_rate: sensor_state.edges[edge].pan.rate(after.time - before.time),
                 })
                 .collect();
-            let pictures =
-                self.pictures(&looks, (before, after), (eyes.as_deref_mut(), &mut watch.darkroom))?;
+            let pictures = self.pictures(
+                &looks,
+                (before, after),
+                (eyes.as_deref_mut(), &mut sensor_state.camera_pipeline),
+            )?;
             for (look, picture) in looks.iter().zip(pictures) {
-                let frame = self.frame(watch, look, instant, picture);
-                let state = &mut watch.edges[look.edge];
+                let frame = self.frame(sensor_state, look, instant, picture);
+                let state = &mut sensor_state.edges[look.edge];
                 state.looks += 1;
                 state.seen = frame.outcome.seen() || (state.seen && frame.outcome == Outcome::Dropped);
                 state.on_the_way.push_back(frame);
@@ -232,10 +243,10 @@ impl Senses {
     }
 
     /// The next instant at which someone looks, and who does.
-    fn next_looks(&self, watch: &Watch, until: f64) -> Option<(f64, Vec<usize>)> {
+    fn next_looks(&self, sensor_state: &SensorState, until: f64) -> Option<(f64, Vec<usize>)> {
         let due = |edge: usize| {
             let sensor = &self.sensors[edge];
-            (sensor.source != Source::Truth).then(|| watch.edges[edge].looks as f64 / sensor.rate)
+            (sensor.source != Source::Truth).then(|| sensor_state.edges[edge].looks as f64 / sensor.rate)
         };
         let all = 0..self.sensors.len();
         let instant = all.clone().filter_map(due).fold(f64::INFINITY, f64::min);
@@ -247,19 +258,19 @@ impl Senses {
     /// Everything as it was at `share` of the period: robots on their way, cameras between their directions.
     fn instant(
         &self,
-        watch: &Watch,
+        sensor_state: &SensorState,
         (before, after): (&Snapshot, &Snapshot),
-        passage: &(impl Passage + ?Sized),
+        interpolant: &(impl StepInterpolant + ?Sized),
         share: f64,
     ) -> Snapshot {
         let mut now = Snapshot::between(before, after, share);
-        let duration = passage.duration();
+        let duration = interpolant.duration();
         if duration > 0.0 && after.time > before.time {
             for (index, robot) in now.robots.iter_mut().enumerate() {
-                robot.motion = passage.during(index, share.clamp(0.0, 1.0) * duration);
+                robot.motion = interpolant.during(index, share.clamp(0.0, 1.0) * duration);
             }
         }
-        for (edge, state) in self.edges.iter().zip(&watch.edges) {
+        for (edge, state) in self.edges.iter().zip(&sensor_state.edges) {
             if let Some(robot) = now.robots.get_mut(edge.follower) {
                 robot.camera_pan = state.pan.between(share);
             }
@@ -268,18 +279,24 @@ impl Senses {
     }
 
     /// What comes of one look.
-    fn frame(&self, watch: &mut Watch, look: &Look<'_>, stamp: f64, picture: Option<camera::Seen>) -> Frame {
+    fn frame(
+        &self,
+        sensor_state: &mut SensorState,
+        look: &Look<'_>,
+        stamp: f64,
+        picture: Option<camera::Seen>,
+    ) -> MeasurementRecord {
         let sensor = &self.sensors[look.edge];
         let robot = |index: usize| &look.snapshot.robots[index];
         let truth = Relative::between(robot(look.leader).motion.pose, robot(look.follower).motion.pose);
-        let mut frame = Frame {
+        let mut frame = MeasurementRecord {
             edge: look.edge,
-            sighting: Sighting { stamp, ..Sighting::default() },
+            measurement: Measurement { stamp, ..Measurement::default() },
             arrival: stamp + sensor.latency,
             outcome: Outcome::Missed,
             truth,
             pan: robot(look.follower).camera_pan,
-            ..Frame::default()
+            ..MeasurementRecord::default()
         };
         let stream = |purpose| noise_stream(self.seed, look.follower, look.number, purpose);
         if stream(Purpose::Dropouts).uniform() < sensor.drop {
@@ -289,8 +306,8 @@ impl Senses {
         let mut random = stream(Purpose::Errors);
         match (sensor.source, picture) {
             (Source::Noise(model), _) => {
-                let drift = &mut watch.edges[look.edge].drift;
-                frame.sighting = model.sighting(stamp, &truth, 1.0 / sensor.rate, drift, &mut random);
+                let drift = &mut sensor_state.edges[look.edge].drift;
+                frame.measurement = model.measurement(stamp, &truth, 1.0 / sensor.rate, drift, &mut random);
                 frame.outcome = Outcome::Used;
             }
             (Source::Geometric { pixel_noise }, _) => {
@@ -307,7 +324,7 @@ impl Senses {
     }
 
     /// The pose of the leader from the faces seen.
-    fn locate(&self, look: &Look<'_>, faces: &[SeenFace], deviation: f64, frame: &mut Frame) {
+    fn locate(&self, look: &Look<'_>, faces: &[SeenFace], deviation: f64, frame: &mut MeasurementRecord) {
         for seen in faces {
             if let Some(tag) = frame.tags.get_mut(seen.face) {
                 *tag = Some(seen.corners);
@@ -317,8 +334,8 @@ impl Senses {
         let prior = Prior { tilt: self.sensors[look.edge].tilt, height: 0.0 };
         let near = look.expected.filter(|_| look.seen).map(|relative| pan::leader_pose(&relative));
         let Some(found) = locate(&rig, faces, deviation.max(1e-3), &prior, near) else { return };
-        let (relative, deviation) = found.sighting();
-        frame.sighting = Sighting { stamp: frame.sighting.stamp, relative, deviation };
+        let (relative, deviation) = found.measurement();
+        frame.measurement = Measurement { stamp: frame.measurement.stamp, relative, deviation };
         frame.outcome = if found.ambiguous { Outcome::Ambiguous } else { Outcome::Used };
     }
 
@@ -328,8 +345,8 @@ impl Senses {
         let pan = look.snapshot.robots.get(look.follower)?.camera_pan;
         Some(Rig {
             shell: self.kits.get(look.leader)?.shell?,
-            lens: kit.lens,
-            body_from_camera: kit.mount.body_from_camera(pan),
+            camera_model: kit.camera_model,
+            body_from_camera: kit.camera_mount.body_from_camera(pan),
         })
     }
 
@@ -338,7 +355,7 @@ impl Senses {
         &self,
         looks: &[Look<'_>],
         period: (&Snapshot, &Snapshot),
-        (eyes, darkroom): (Option<&mut (dyn Eyes + '_)>, &mut Darkroom),
+        (eyes, camera_pipeline): (Option<&mut (dyn CameraRenderer + '_)>, &mut CameraPipeline),
     ) -> Result<Vec<Option<camera::Seen>>, String> {
         let by_camera = |look: &Look<'_>| self.sensors[look.edge].source == Source::Camera;
         if !looks.iter().any(by_camera) {
@@ -346,13 +363,17 @@ impl Senses {
         }
         let eyes = eyes.ok_or("cameras are to take pictures, and nobody is there to draw them")?;
         let wanted: Vec<&Look<'_>> = looks.iter().filter(|look| by_camera(look)).collect();
-        let mut seen = self.camera.see(self, &wanted, period, (eyes, darkroom))?.into_iter();
+        let mut seen = self.camera.see(self, &wanted, period, (eyes, camera_pipeline))?.into_iter();
         Ok(looks.iter().map(|look| if by_camera(look) { seen.next() } else { None }).collect())
     }
 
     /// The looks of an edge that have arrived by `time`, in the order of their stamps.
-    pub fn arrived(watch: &mut Watch, edge: usize, time: f64) -> impl Iterator<Item = Frame> + '_ {
-        let waiting = watch.edges.get_mut(edge).map(|state| &mut state.on_the_way);
+    pub fn arrived(
+        sensor_state: &mut SensorState,
+        edge: usize,
+        time: f64,
+    ) -> impl Iterator<Item = MeasurementRecord> + '_ {
+        let waiting = sensor_state.edges.get_mut(edge).map(|state| &mut state.on_the_way);
         let mut waiting = waiting.into_iter().flat_map(move |frames| {
             let count = frames.iter().take_while(|frame| frame.arrival <= time + INSTANT).count();
             frames.drain(..count)
@@ -361,23 +382,23 @@ impl Senses {
     }
 
     /// Turns all cameras for a period to come towards where leaders are believed to be.
-    pub fn turn_cameras(&self, watch: &mut Watch, beliefs: &[Belief], period: f64) {
-        for ((edge, state), belief) in self.edges.iter().zip(&mut watch.edges).zip(beliefs) {
-            state.pan.turn(belief, self.kits[edge.follower].mount.forward, &self.camera, period);
+    pub fn turn_cameras(&self, sensor_state: &mut SensorState, beliefs: &[Belief], period: f64) {
+        for ((edge, state), belief) in self.edges.iter().zip(&mut sensor_state.edges).zip(beliefs) {
+            state.pan.turn(belief, self.kits[edge.follower].camera_mount.forward, &self.camera, period);
         }
     }
 
     /// Direction of the camera of an edge's follower at the start of the period that begins, rad from its heading.
-    pub fn pan(&self, watch: &Watch, edge: usize) -> f64 {
-        watch.edges.get(edge).map_or(0.0, |state| state.pan.between(0.0))
+    pub fn pan(&self, sensor_state: &SensorState, edge: usize) -> f64 {
+        sensor_state.edges.get(edge).map_or(0.0, |state| state.pan.between(0.0))
     }
 
     /// The shell's frames as a follower's camera sees them.
     pub(crate) fn camera_from_leader(&self, look: &Look<'_>) -> Option<Rigid> {
         let follower = look.snapshot.robots.get(look.follower)?;
         let leader = look.snapshot.robots.get(look.leader)?;
-        let mount = self.kits.get(look.follower)?.mount;
-        Some(mount.world_from_camera(follower).inverse().after(&leader.world_from_body()))
+        let camera_mount = self.kits.get(look.follower)?.camera_mount;
+        Some(camera_mount.world_from_camera(follower).inverse().after(&leader.world_from_body()))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The truth with errors.
 
 use crate::imaging::Stream;
-use vocabulary::{Relative, Sighting, wrap};
+use vocabulary::{Measurement, Relative, wrap};
 
 /// Errors of looks at the truth, each of [distance in m, bearing in rad, view angle in rad].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,14 +23,14 @@ pub(super) struct Drift {
 impl NoiseModel {
     /// A look `interval` s after the last one. Correlated errors are a first-order Gauss-Markov process, so that their
     /// standard deviation stays what it is.
-    pub(super) fn sighting(
+    pub(super) fn measurement(
         &self,
         stamp: f64,
         truth: &Relative,
         interval: f64,
         drift: &mut Drift,
         random: &mut Stream,
-    ) -> Sighting {
+    ) -> Measurement {
         let fresh = [0, 1, 2].map(|_| f64::from(random.normal()));
         let keep = if self.correlation > 0.0 { (-interval / self.correlation).exp() } else { 0.0 };
         let now = drift
@@ -38,7 +38,7 @@ impl NoiseModel {
             .map_or(fresh, |last| [0, 1, 2].map(|k| keep * last[k] + (1.0 - keep * keep).sqrt() * fresh[k]));
         drift.now = Some(now);
         let error = |k: usize| self.bias[k] + self.deviation[k] * now[k];
-        Sighting {
+        Measurement {
             stamp,
             relative: Relative {
                 distance: (truth.distance + error(0)).max(0.0),
@@ -64,7 +64,7 @@ mod tests {
         let count = 20_000;
         let errors: Vec<[f64; 3]> = (0..count)
             .map(|k| {
-                let r = model.sighting(f64::from(k) * 0.1, &truth, 0.1, &mut drift, &mut random).relative;
+                let r = model.measurement(f64::from(k) * 0.1, &truth, 0.1, &mut drift, &mut random).relative;
                 [r.distance - 3.0, wrap(r.bearing - 3.1), r.view_angle]
             })
             .collect();

@@ -1,7 +1,7 @@
 //! The camera on its mast: it turns towards the leader, and searches when it has lost it.
 
-use super::{Belief, CameraModel};
-use vocabulary::{Pose, Relative, Sight, wrap};
+use super::{Belief, CameraSettings};
+use vocabulary::{Pose, Relative, TrackingState, wrap};
 
 /// Where a camera points over the period that has passed, and how it searches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,7 +18,7 @@ pub(super) struct Pan {
 const SWEEP: f64 = 2.5;
 
 impl Pan {
-    pub(super) fn at(direction: f64, camera: &CameraModel) -> Self {
+    pub(super) fn at(direction: f64, camera: &CameraSettings) -> Self {
         let held = direction.clamp(-camera.pan_max, camera.pan_max);
         Self { from: held, to: held, sweep: 1.0 }
     }
@@ -34,13 +34,15 @@ impl Pan {
     }
 
     /// Turns for a period of `period` s, no faster and no farther than it can.
-    pub(super) fn turn(&mut self, belief: &Belief, forward: f64, camera: &CameraModel, period: f64) {
+    pub(super) fn turn(&mut self, belief: &Belief, forward: f64, camera: &CameraSettings, period: f64) {
         let most = camera.pan_rate * period;
         self.from = self.to;
         let wanted = match (belief.relative, belief.sight) {
-            (Some(relative), Sight::Truth | Sight::Tracking | Sight::Coasting) => towards(&relative, forward),
+            (Some(relative), TrackingState::Truth | TrackingState::Tracking | TrackingState::Coasting) => {
+                towards(&relative, forward)
+            }
             // Nothing has been seen yet: the camera stays where it was pointed.
-            (_, Sight::Waiting) => self.from,
+            (_, TrackingState::Waiting) => self.from,
             _ => {
                 if self.from * self.sweep >= camera.pan_max - 1e-9 {
                     self.sweep = -self.sweep;
@@ -85,14 +87,14 @@ mod tests {
 
     #[test]
     fn a_camera_turns_no_faster_than_it_can_and_searches_from_side_to_side() {
-        let camera = CameraModel { pan_rate: 1.0, pan_max: 1.0, ..CameraModel::default() };
+        let camera = CameraSettings { pan_rate: 1.0, pan_max: 1.0, ..CameraSettings::default() };
         let mut pan = Pan::at(0.0, &camera);
         let ahead = Relative { distance: 2.0, bearing: -2.0, view_angle: std::f64::consts::PI - 0.5 };
-        pan.turn(&Belief { relative: Some(ahead), sight: Sight::Tracking }, 0.0, &camera, 0.1);
+        pan.turn(&Belief { relative: Some(ahead), sight: TrackingState::Tracking }, 0.0, &camera, 0.1);
         assert!((pan.between(1.0) + 0.1).abs() < 1e-12, "{pan:?}");
         let mut seen = [0.0_f64; 2];
         for _ in 0..100 {
-            pan.turn(&Belief { relative: Some(ahead), sight: Sight::Lost }, 0.0, &camera, 0.1);
+            pan.turn(&Belief { relative: Some(ahead), sight: TrackingState::Lost }, 0.0, &camera, 0.1);
             assert!((pan.between(1.0) - pan.between(0.0)).abs() < 0.1 + 1e-12);
             seen = [seen[0].min(pan.between(1.0)), seen[1].max(pan.between(1.0))];
         }

@@ -1,21 +1,21 @@
 //! What stands between a camera and a tag.
 
-use super::{Kit, Look, Senses};
+use super::{Kit, Look, SensorConfig};
 use vocabulary::{Placement, Rigid, Solid};
 
 /// Whether anything but the two robots concerned hides `to` from `from`, both in the world's frame, m.
-pub(super) fn hidden(senses: &Senses, look: &Look<'_>, from: [f64; 3], to: [f64; 3]) -> bool {
-    let others = look.snapshot.robots.iter().zip(&senses.kits).enumerate();
+pub(super) fn hidden(sensor_config: &SensorConfig, look: &Look<'_>, from: [f64; 3], to: [f64; 3]) -> bool {
+    let others = look.snapshot.robots.iter().zip(&sensor_config.kits).enumerate();
     let mut others = others.filter(|(index, _)| *index != look.leader && *index != look.follower);
     if others.any(|(_, (robot, kit))| robot_hides(kit, &robot.world_from_body(), from, to)) {
         return true;
     }
-    let props = senses.props.iter().zip(&look.snapshot.props);
+    let props = sensor_config.props.iter().zip(&look.snapshot.props);
     let mut props = props.map(|(prop, place)| (prop.solid, place));
     if props.any(|(solid, place)| prop_hides(solid, place, from, to)) {
         return true;
     }
-    let Some(terrain) = &senses.terrain else { return false };
+    let Some(terrain) = &sensor_config.terrain else { return false };
     (1..GROUND_STEPS).any(|k| {
         let share = f64::from(k) / f64::from(GROUND_STEPS);
         let [x, y, z] = [0, 1, 2].map(|i| from[i] + (to[i] - from[i]) * share);

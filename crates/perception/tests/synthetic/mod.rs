@@ -1,7 +1,9 @@
 //! Pictures of a shell with tags, cast ray by ray: 8 by 8 of them to a pixel, in linear light.
 use perception::imaging::{Optics, Purpose, Sensor, Source, Stream, noise_stream};
 use perception::pose::Rig;
-use vocabulary::{Body, FACES, Grey, Lens, Mount, Pose, Region, Rigid, Shell, TAG_CELLS, tag_cell, wrap};
+use vocabulary::{
+    Body, CameraModel, CameraMount, FACES, Grey, Pose, Region, Rigid, Shell, TAG_CELLS, tag_cell, wrap,
+};
 
 const RAYS: usize = 8;
 
@@ -21,12 +23,12 @@ pub(crate) struct Scene {
 
 pub(crate) struct Scenes {
     stream: Stream,
-    pub(crate) lens: Lens,
+    pub(crate) camera_model: CameraModel,
 }
 
 impl Scenes {
     pub(crate) fn seeded(seed: u64) -> Self {
-        Self { stream: noise_stream(seed, 0, 0, Purpose::Setup), lens: Lens::default() }
+        Self { stream: noise_stream(seed, 0, 0, Purpose::Setup), camera_model: CameraModel::default() }
     }
 
     pub(crate) fn uniform(&mut self, low: f64, high: f64) -> f64 {
@@ -45,8 +47,8 @@ impl Scenes {
         let robot = (self.stream.uniform() * 117.0) as usize;
         let rig = Rig {
             shell: Shell::PAPER.tagged(robot),
-            lens: self.lens,
-            body_from_camera: Mount::fitting(&Body::default()).body_from_camera(pan),
+            camera_model: self.camera_model,
+            body_from_camera: CameraMount::fitting(&Body::default()).body_from_camera(pan),
         };
         let light = std::array::from_fn(|_| self.uniform(0.55, 1.0));
         let clutter = (0..12)
@@ -78,14 +80,17 @@ impl Scene {
         let (out, at) = (tag.turn([0.0, 0.0, 1.0]), tag.translation);
         let range = at.iter().map(|x| x * x).sum::<f64>().sqrt();
         let cosine = -(0..3).map(|k| out[k] * at[k]).sum::<f64>() / range;
-        let inside = |p: [f64; 2]| self.rig.lens.holds(p, 8.0);
+        let inside = |p: [f64; 2]| self.rig.camera_model.holds(p, 8.0);
         cosine > 65_f64.to_radians().cos() && self.corners(face).is_some_and(|c| c.into_iter().all(inside))
     }
 
     /// Where the corners of a face's tag are, pixels.
     pub(crate) fn corners(&self, face: usize) -> Option<[[f64; 2]; 4]> {
-        let at =
-            self.rig.shell.tag_corners(face).map(|c| self.rig.lens.project(self.camera_from_body.apply(c)));
+        let at = self
+            .rig
+            .shell
+            .tag_corners(face)
+            .map(|c| self.rig.camera_model.project(self.camera_from_body.apply(c)));
         let [Some(a), Some(b), Some(c), Some(d)] = at else { return None };
         Some([a, b, c, d])
     }
@@ -94,7 +99,7 @@ impl Scene {
     pub(crate) fn region(&self) -> Region {
         let [low, high] = self.extent();
         let more = 0.2 * (high[0] - low[0]).max(high[1] - low[1]) + 6.0;
-        let size = [self.rig.lens.width, self.rig.lens.height];
+        let size = [self.rig.camera_model.width, self.rig.camera_model.height];
         let from = [0, 1].map(|k| (low[k] - more).clamp(0.0, f64::from(size[k] - 32)) as u32);
         let until = [0, 1].map(|k| (high[k] + more).clamp(0.0, f64::from(size[k])) as u32);
         let span = [0, 1].map(|k| until[k].saturating_sub(from[k]).max(32));
@@ -108,7 +113,7 @@ impl Scene {
             let frame = self.camera_from_body.after(&self.rig.shell.body_from_face(face));
             for (x, y) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
                 let [x, y] = [x * 0.085, y * 0.083];
-                let Some(p) = self.rig.lens.project(frame.apply([x, y, 0.0])) else { continue };
+                let Some(p) = self.rig.camera_model.project(frame.apply([x, y, 0.0])) else { continue };
                 for k in 0..2 {
                     out[0][k] = out[0][k].min(p[k]);
                     out[1][k] = out[1][k].max(p[k]);
@@ -133,8 +138,8 @@ impl Scene {
             .map(|face| self.camera_from_body.after(&shell.body_from_face(face)).inverse())
             .collect();
         let half_face = 0.5 * shell.face_height / shell.lean.cos();
-        let focal = self.rig.lens.focal;
-        let cast = |x: f64, y: f64| -> Option<f64> {
+        let focal = self.rig.camera_model.focal;
+        let fleet = |x: f64, y: f64| -> Option<f64> {
             let ray = [(x - source.centre[0]) / focal, (y - source.centre[1]) / focal, 1.0];
             for (face, frame) in frames.iter().enumerate() {
                 let (from, along) = (frame.translation, frame.turn(ray));
@@ -160,7 +165,7 @@ impl Scene {
         let Region { width, height, .. } = source.region;
         let [low, high] = self.extent();
         // A distorting lens moves the shell in the ideal picture by less than this.
-        let around = if self.rig.lens.distorts() { 60.0 } else { 3.0 };
+        let around = if self.rig.camera_model.distorts() { 60.0 } else { 3.0 };
         let value = |k: u32| {
             let (x, y) = (f64::from(k % width), f64::from(k / width));
             let (fx, fy) = (x + f64::from(source.corner[0]), y + f64::from(source.corner[1]));
@@ -175,7 +180,7 @@ impl Scene {
             let mut sum = 0.0;
             for ray in 0..RAYS * RAYS {
                 let at = |k: usize| (k as f64 + 0.5) / RAYS as f64 - 0.5;
-                sum += cast(x + at(ray % RAYS), y + at(ray / RAYS)).unwrap_or(back);
+                sum += fleet(x + at(ray % RAYS), y + at(ray / RAYS)).unwrap_or(back);
             }
             (255.0 * sum / (RAYS * RAYS) as f64 + 0.5) as u8
         };
@@ -191,6 +196,6 @@ impl Scene {
     }
 }
 
-pub(crate) fn sensor(lens: Lens) -> Sensor {
-    Sensor::new(Optics { lens, ..Optics::default() })
+pub(crate) fn sensor(camera_model: CameraModel) -> Sensor {
+    Sensor::new(Optics { camera_model, ..Optics::default() })
 }

@@ -5,7 +5,7 @@ use super::read::Log;
 use super::record::{self, Fields, Record};
 use crate::Error;
 use std::collections::BTreeMap;
-use vocabulary::{Cast, Moment, wrap};
+use vocabulary::{FleetInfo, StepRecord, wrap};
 
 /// One quantity of one robot or edge at one sample, as two logs have it.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +67,7 @@ pub fn compare(
     tolerance: f64,
     mut tick: impl FnMut(u64) -> bool,
 ) -> Result<Comparison, Error> {
-    let (mut left, mut right) = (a.moments(), b.moments());
+    let (mut left, mut right) = (a.records(), b.records());
     let mut result = Comparison::default();
     let mut peaks = BTreeMap::new();
     let mut bytes = [vec![], vec![]];
@@ -78,11 +78,11 @@ pub fn compare(
             (None, Some(_)) => result.more[1] += 1,
             (Some(p), Some(q)) => {
                 let mut pair = [p, q];
-                for (moment, bytes) in pair.iter_mut().zip(&mut bytes) {
-                    bits(moment, bytes);
+                for (record, bytes) in pair.iter_mut().zip(&mut bytes) {
+                    bits(record, bytes);
                 }
                 if bytes[0] != bytes[1] {
-                    result.note(a.cast(), &pair, tolerance, &mut peaks);
+                    result.note(a.fleet(), &pair, tolerance, &mut peaks);
                 }
                 result.samples += 1;
             }
@@ -96,22 +96,22 @@ pub fn compare(
 }
 
 /// All of a moment as bytes.
-fn bits(moment: &mut Moment, out: &mut Vec<u8>) {
+fn bits(record: &mut StepRecord, out: &mut Vec<u8>) {
     out.clear();
-    out.extend(moment.snapshot.time.to_le_bytes());
-    for robot in &mut moment.snapshot.robots {
+    out.extend(record.snapshot.time.to_le_bytes());
+    for robot in &mut record.snapshot.robots {
         record::write(robot, out);
     }
-    for edge in &mut moment.edges {
+    for edge in &mut record.edges {
         record::write(edge, out);
     }
-    for prop in &mut moment.snapshot.props {
+    for prop in &mut record.snapshot.props {
         record::write(prop, out);
     }
-    for contact in &moment.contacts {
+    for contact in &record.contacts {
         record::write(&mut Touch { contact: *contact, ..Touch::default() }, out);
     }
-    for frame in &mut moment.frames {
+    for frame in &mut record.frames {
         out.extend(frame.edge.to_le_bytes());
         record::write(frame, out);
     }
@@ -121,9 +121,15 @@ fn bits(moment: &mut Moment, out: &mut Vec<u8>) {
 type Place = (usize, usize);
 
 impl Comparison {
-    fn note(&mut self, cast: &Cast, pair: &[Moment; 2], tolerance: f64, peaks: &mut BTreeMap<Place, Peak>) {
+    fn note(
+        &mut self,
+        fleet: &FleetInfo,
+        pair: &[StepRecord; 2],
+        tolerance: f64,
+        peaks: &mut BTreeMap<Place, Peak>,
+    ) {
         let time = pair[0].snapshot.time;
-        let [a, b] = [0, 1].map(|k| quantities(&pair[k], cast));
+        let [a, b] = [0, 1].map(|k| quantities(&pair[k], fleet));
         let before = self.first.is_some();
         let mut differs = false;
         let found = a.iter().map(Some).chain(std::iter::repeat(None));
@@ -189,32 +195,33 @@ impl Quantity {
 }
 
 /// All quantities of a moment, by edge, robot, prop, contact and look.
-fn quantities(moment: &Moment, cast: &Cast) -> Vec<Quantity> {
+fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<Quantity> {
     let mut all = Collector { of: "sample".to_owned(), table: 0, field: 0, found: vec![] };
-    let mut moment = moment.clone();
-    all.add("time_s", Value::Number(moment.snapshot.time));
-    let name = |robot: usize| cast.members.get(robot).map_or("?", |member| &*member.name);
+    let mut record = record.clone();
+    all.add("time_s", Value::Number(record.snapshot.time));
+    let name = |robot: usize| fleet.robots.get(robot).map_or("?", |member| &*member.name);
     let pair = |edge: usize| {
-        cast.edges
+        fleet
+            .edges
             .get(edge)
             .map_or_else(String::new, |e| format!("{} → {}", name(e.leader), name(e.follower)))
     };
     // What a follower wanted stands before what became of it.
-    for (index, edge) in moment.edges.iter_mut().enumerate() {
+    for (index, edge) in record.edges.iter_mut().enumerate() {
         all.collect(1, format!("edge {}", pair(index)), edge);
     }
-    for (index, robot) in moment.snapshot.robots.iter_mut().enumerate() {
+    for (index, robot) in record.snapshot.robots.iter_mut().enumerate() {
         all.collect(2, format!("robot {}", name(index)), robot);
     }
-    for (index, prop) in moment.snapshot.props.iter_mut().enumerate() {
-        all.collect(3, format!("prop {}", cast.props.get(index).map_or("?", |prop| &prop.name)), prop);
+    for (index, prop) in record.snapshot.props.iter_mut().enumerate() {
+        all.collect(3, format!("prop {}", fleet.props.get(index).map_or("?", |prop| &prop.name)), prop);
     }
-    for contact in &moment.contacts {
-        let [first, second] = contact.things.map(|thing| cast.name(thing).to_owned());
+    for contact in &record.contacts {
+        let [first, second] = contact.things.map(|thing| fleet.name(thing).to_owned());
         let of = format!("contact of {first} and {second}");
         all.collect(4, of, &mut Touch { contact: *contact, names: [first, second] });
     }
-    for frame in &mut moment.frames {
+    for frame in &mut record.frames {
         all.collect(5, format!("look of {}", pair(frame.edge)), frame);
     }
     all.found

@@ -14,7 +14,7 @@ use foxglove::messages::{
 };
 use std::collections::VecDeque;
 use vocabulary::colours::robot_colours;
-use vocabulary::{Cast, Moment, Rigid, Snapshot};
+use vocabulary::{FleetInfo, Rigid, Snapshot, StepRecord};
 
 /// Drawings a second; fewer where there are many robots.
 const RATE: f64 = 30.0;
@@ -28,7 +28,7 @@ const LIFT: f64 = 0.02;
 
 /// Makes drawings of moments.
 pub(super) struct Drawing {
-    cast: Cast,
+    fleet: FleetInfo,
     tf: u16,
     formation: u16,
     ribbons: u16,
@@ -72,14 +72,14 @@ pub(super) fn point([x, y, z]: [f64; 3]) -> Point3 {
 
 impl Drawing {
     /// Adds channels to `to`, and draws what is never drawn again.
-    pub(super) fn begin(cast: &Cast, to: &mut Channels) -> Result<Self, Error> {
+    pub(super) fn begin(fleet: &FleetInfo, to: &mut Channels) -> Result<Self, Error> {
         let colours: Vec<Color> =
-            robot_colours(cast).into_iter().map(|rgb| solids::colour(rgb, 1.0)).collect();
+            robot_colours(fleet).into_iter().map(|rgb| solids::colour(rgb, 1.0)).collect();
         let stage = channel::<SceneUpdate>("/stage", to)?;
         put(
             stage,
             Stamp::default(),
-            &SceneUpdate { deletions: vec![], entities: solids::entities(cast, &colours) },
+            &SceneUpdate { deletions: vec![], entities: solids::entities(fleet, &colours) },
             to,
         )?;
         let mut drawing = Self {
@@ -95,12 +95,12 @@ impl Drawing {
             past: VecDeque::new(),
             buffer: vec![],
             colours,
-            cast: cast.clone(),
+            fleet: fleet.clone(),
         };
-        for (index, member) in cast.members.iter().enumerate() {
+        for (index, member) in fleet.robots.iter().enumerate() {
             let frame = solids::robot_frame(member);
             drawing.poses.push(channel::<PoseInFrame>(&format!("/{frame}/pose"), to)?);
-            let looks = cast.looks && cast.edges.iter().any(|edge| edge.follower == index);
+            let looks = fleet.looks && fleet.edges.iter().any(|edge| edge.follower == index);
             let camera = format!("{frame}/camera");
             drawing.cameras.push(if looks {
                 let calibration = channel::<CameraCalibration>(&format!("/{camera}/calibration"), to)?;
@@ -115,16 +115,21 @@ impl Drawing {
     }
 
     /// Draws a moment, if it is time.
-    pub(super) fn moment(&mut self, stamp: Stamp, moment: &Moment, to: &mut Channels) -> Result<(), Error> {
+    pub(super) fn record(
+        &mut self,
+        stamp: Stamp,
+        record: &StepRecord,
+        to: &mut Channels,
+    ) -> Result<(), Error> {
         if stamp.time < self.next - 1e-6 {
             return Ok(());
         }
-        let crowd = (self.cast.members.len() as f64 / FEW as f64).max(1.0);
+        let crowd = (self.fleet.robots.len() as f64 / FEW as f64).max(1.0);
         self.next += crowd / RATE;
         if self.next <= stamp.time {
             self.next = stamp.time + crowd / RATE;
         }
-        let transforms = self.transforms(stamp, moment);
+        let transforms = self.transforms(stamp, record);
         for (channel, (transform, frame)) in self.poses.iter().zip(transforms.iter().zip(&self.frames)) {
             debug_assert_eq!(transform.child_frame_id, frame[0]);
             let pose = PoseInFrame {
@@ -138,7 +143,7 @@ impl Drawing {
             put(*channel, stamp, &pose, to)?;
         }
         put(self.tf, stamp, &FrameTransforms { transforms }, to)?;
-        let now: Vec<Point3> = moment
+        let now: Vec<Point3> = record
             .snapshot
             .robots
             .iter()
@@ -152,7 +157,7 @@ impl Drawing {
             self.drawn = stamp.time;
             put(self.ribbons, stamp, &self.draw_ribbons(stamp, &now), to)?;
         }
-        put(self.formation, stamp, &self.lines(stamp, moment, &now), to)?;
+        put(self.formation, stamp, &self.lines(stamp, record, &now), to)?;
         let spacing = RIBBON / RIBBON_POINTS as f64;
         if self.past.back().is_none_or(|(time, _)| stamp.time >= time + spacing - 1e-6) {
             self.past.push_back((stamp.time, now));
@@ -164,7 +169,7 @@ impl Drawing {
     }
 
     /// Robots first, in their order; then cameras, set points and props that can move.
-    fn transforms(&self, stamp: Stamp, moment: &Moment) -> Vec<FrameTransform> {
+    fn transforms(&self, stamp: Stamp, record: &StepRecord) -> Vec<FrameTransform> {
         let time = Some(at(stamp));
         let transform = |parent: &str, child: &str, frame: &Rigid| FrameTransform {
             timestamp: time,
@@ -173,19 +178,19 @@ impl Drawing {
             translation: Some(vector(frame.translation)),
             rotation: Some(quaternion(frame)),
         };
-        let Snapshot { robots, props, .. } = &moment.snapshot;
+        let Snapshot { robots, props, .. } = &record.snapshot;
         let seen = robots.iter().zip(&self.frames);
         let mut all: Vec<FrameTransform> = seen
             .map(|(robot, [name, ..])| transform(solids::WORLD, name, &robot.world_from_body()))
             .collect();
-        for (index, (robot, member)) in robots.iter().zip(&self.cast.members).enumerate() {
+        for (index, (robot, member)) in robots.iter().zip(&self.fleet.robots).enumerate() {
             if let (Some(Some(_)), Some([name, camera, _])) =
                 (self.cameras.get(index), self.frames.get(index))
             {
-                all.push(transform(name, camera, &member.mount.body_from_camera(robot.camera_pan)));
+                all.push(transform(name, camera, &member.camera_mount.body_from_camera(robot.camera_pan)));
             }
         }
-        for (edge, state) in self.cast.edges.iter().zip(&moment.edges) {
+        for (edge, state) in self.fleet.edges.iter().zip(&record.edges) {
             let (Some(leader), Some([_, _, goal])) =
                 (robots.get(edge.leader), self.frames.get(edge.follower))
             else {
@@ -194,10 +199,10 @@ impl Drawing {
             let [distance, bearing] = state.set_point;
             let pose = leader.motion.pose;
             let [x, y] = pose.world_from_body(distance * bearing.cos(), distance * bearing.sin());
-            let z = self.cast.surface(x, y).height + LIFT;
+            let z = self.fleet.surface(x, y).height + LIFT;
             all.push(transform(solids::WORLD, goal, &Rigid::turned([x, y, z], pose.heading, 0.0, 0.0)));
         }
-        for (prop, place) in self.cast.props.iter().zip(props) {
+        for (prop, place) in self.fleet.props.iter().zip(props) {
             if solids::moves(prop) {
                 let [x, y, z, w] = place.rotation;
                 all.push(FrameTransform {
@@ -213,7 +218,7 @@ impl Drawing {
     }
 
     /// Edges, and where robots have been since ribbons were drawn last.
-    fn lines(&self, stamp: Stamp, moment: &Moment, now: &[Point3]) -> SceneUpdate {
+    fn lines(&self, stamp: Stamp, record: &StepRecord, now: &[Point3]) -> SceneUpdate {
         let mut edges = LinePrimitive {
             r#type: Type::LineList.into(),
             thickness: 1.5,
@@ -221,10 +226,10 @@ impl Drawing {
             color: Some(solids::colour([0.07, 0.09, 0.11], 0.7)),
             ..LinePrimitive::default()
         };
-        let robots = &moment.snapshot.robots;
-        for edge in &self.cast.edges {
+        let robots = &record.snapshot.robots;
+        for edge in &self.fleet.edges {
             let middle = |robot: usize| {
-                let (state, member) = (robots.get(robot)?, self.cast.members.get(robot)?);
+                let (state, member) = (robots.get(robot)?, self.fleet.robots.get(robot)?);
                 Some(point(state.world_from_body().apply([0.0, 0.0, 0.5 * member.body.height])))
             };
             edges.points.extend([edge.leader, edge.follower].into_iter().filter_map(middle));
@@ -259,28 +264,28 @@ impl Drawing {
     pub(super) fn photo(&mut self, photo: &Photo, to: &mut Channels) -> Result<(), Error> {
         let Some(Some([calibration, image])) = self.cameras.get(photo.robot) else { return Ok(()) };
         let (Some(member), Some([_, frame, _])) =
-            (self.cast.members.get(photo.robot), self.frames.get(photo.robot))
+            (self.fleet.robots.get(photo.robot), self.frames.get(photo.robot))
         else {
             return Ok(());
         };
         let stamp = Stamp { number: 0, time: photo.time };
-        let lens = &member.lens;
-        let [cx, cy] = lens.centre;
+        let camera_model = &member.camera_model;
+        let [cx, cy] = camera_model.centre;
         let message = CameraCalibration {
             timestamp: Some(at(stamp)),
             frame_id: frame.clone(),
-            width: lens.width,
-            height: lens.height,
+            width: camera_model.width,
+            height: camera_model.height,
             // As light falls on the glass: what the glass does comes after it.
             distortion_model: "plumb_bob".to_owned(),
             d: vec![0.0; 5],
-            k: vec![lens.focal, 0.0, cx, 0.0, lens.focal, cy, 0.0, 0.0, 1.0],
+            k: vec![camera_model.focal, 0.0, cx, 0.0, camera_model.focal, cy, 0.0, 0.0, 1.0],
             r: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
-            p: vec![lens.focal, 0.0, cx, 0.0, 0.0, lens.focal, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
+            p: vec![camera_model.focal, 0.0, cx, 0.0, 0.0, camera_model.focal, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
         };
         put(*calibration, stamp, &message, to)?;
         self.buffer.clear();
-        if photo.png(lens, &mut self.buffer).is_some() {
+        if photo.png(camera_model, &mut self.buffer).is_some() {
             let message = CompressedImage {
                 timestamp: Some(at(stamp)),
                 frame_id: frame.clone(),

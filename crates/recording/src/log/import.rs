@@ -19,7 +19,9 @@ use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
-use vocabulary::{Cast, Contact, EdgeState, Frame, Moment, Placement, RobotState, counted};
+use vocabulary::{
+    Contact, EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState, StepRecord, counted,
+};
 
 /// A log of ours, and what the foreign one has and lacks.
 pub(super) struct Imported {
@@ -36,7 +38,7 @@ struct About {
     format: Option<String>,
     manifest: Option<String>,
     scene: Option<String>,
-    cast: Option<Cast>,
+    fleet: Option<FleetInfo>,
     channels: HashMap<u16, Channel>,
     /// Samples, and the times of the first two, s.
     samples: u64,
@@ -55,26 +57,26 @@ pub(super) fn import(file: &File, path: &Path) -> Result<Imported, Error> {
     if let Some(format) = about.format.as_ref().filter(|format| **format != FORMAT.to_string()) {
         return Err(wrong(format!("is a log of layout {format}; this program reads layout {FORMAT}")));
     }
-    let cast = about.cast.clone().filter(sound).ok_or_else(|| {
+    let fleet = about.fleet.clone().filter(sound).ok_or_else(|| {
         wrong(format!("is an MCAP file, but no log of Echelon: it has no topic {}", Topics::CAST))
     })?;
     let mut manifest = match &about.manifest {
         Some(text) => serde_json::from_str(text)
             .map_err(|error| wrong(format!("holds a manifest that cannot be read: {error}")))?,
-        None => guessed(&cast, &about),
+        None => guessed(&fleet, &about),
     };
     let scene = about.scene.clone().unwrap_or_default();
     let ours = output::scratch()?;
     let copy = ours.try_clone().map_err(Error::io("write", path))?;
-    let mut writer = Writer::create((ours, path), &cast, (&scene, &manifest), false)?;
+    let mut writer = Writer::create((ours, path), &fleet, (&scene, &manifest), false)?;
     let (mut pending, mut batch, mut count) = (Pending::default(), vec![], 0);
     let mut span = [0.0; 2];
     let mut take = |pending: &mut Pending, until: u64| -> Result<bool, Error> {
-        while let Some(moment) = pending.pop(until, &cast) {
-            let Ok(moment) = moment else { return Ok(false) };
-            let time = moment.snapshot.time;
+        while let Some(record) = pending.pop(until, &fleet) {
+            let Ok(record) = record else { return Ok(false) };
+            let time = record.snapshot.time;
             span = if count == 0 { [time; 2] } else { [span[0], time] };
-            batch.push(moment);
+            batch.push(record);
             count += 1;
             if batch.len() == BATCH {
                 writer.push(&mut batch, &[])?;
@@ -117,18 +119,18 @@ pub(super) fn import(file: &File, path: &Path) -> Result<Imported, Error> {
 }
 
 /// What can be said of a run whose manifest was left out.
-fn guessed(cast: &Cast, about: &About) -> Manifest {
-    let name = |robot: usize| cast.members.get(robot).map_or_else(String::new, |member| member.name.clone());
+fn guessed(fleet: &FleetInfo, about: &About) -> Manifest {
+    let name = |robot: usize| fleet.robots.get(robot).map_or_else(String::new, |member| member.name.clone());
     Manifest {
         format: manifest::FORMAT,
         program: "unknown".to_owned(),
         commit: None,
-        title: cast.title.clone(),
+        title: fleet.title.clone(),
         seed: 0,
         period: about.times[1] - about.times[0],
-        duration: cast.duration,
-        robots: cast.members.iter().map(|member| member.name.clone()).collect(),
-        edges: cast.edges.iter().map(|edge| [name(edge.leader), name(edge.follower)]).collect(),
+        duration: fleet.duration,
+        robots: fleet.robots.iter().map(|member| member.name.clone()).collect(),
+        edges: fleet.edges.iter().map(|edge| [name(edge.leader), name(edge.follower)]).collect(),
         status: Status::Interrupted,
         samples: about.samples,
         digest: None,
@@ -171,7 +173,7 @@ impl About {
                 Item::Message { header, data } => {
                     let Some(kind) = about.channels.get(&header.channel_id) else { return Ok(true) };
                     match kind {
-                        Channel::Cast => about.cast = record::read::<Stage>(&data).map(|stage| stage.0),
+                        Channel::FleetInfo => about.fleet = record::read::<Stage>(&data).map(|stage| stage.0),
                         Channel::Sample => {
                             if let Some(time) = about.times.get_mut(about.samples as usize) {
                                 *time = header.log_time as f64 * 1e-9;
@@ -193,12 +195,12 @@ impl About {
 
     /// Whose a channel is by its topic, where what was written about it was left out.
     fn find(&mut self, topics: &[(u16, String, String)]) {
-        let Some(cast) = &self.cast else { return };
+        let Some(fleet) = &self.fleet else { return };
         let place = |kind: Channel, topic: &str| match kind {
-            Channel::Robot(_) => cast.members.iter().position(|member| Topics::robot(member) == topic),
-            Channel::Edge(_) => cast.edges.iter().position(|edge| Topics::edge(cast, *edge) == topic),
-            Channel::Look(_) => cast.edges.iter().position(|edge| Topics::looks(cast, *edge) == topic),
-            Channel::Prop(_) => cast.props.iter().position(|prop| Topics::prop(prop) == topic),
+            Channel::Robot(_) => fleet.robots.iter().position(|member| Topics::robot(member) == topic),
+            Channel::Edge(_) => fleet.edges.iter().position(|edge| Topics::edge(fleet, *edge) == topic),
+            Channel::Look(_) => fleet.edges.iter().position(|edge| Topics::looks(fleet, *edge) == topic),
+            Channel::Prop(_) => fleet.props.iter().position(|prop| Topics::prop(prop) == topic),
             _ => Some(0),
         };
         for (id, schema, topic) in topics {
@@ -237,7 +239,7 @@ impl About {
 #[derive(Default)]
 struct Pending {
     /// By time, ns.
-    moments: BTreeMap<u64, Parts>,
+    records: BTreeMap<u64, Parts>,
     /// Where props are that have not moved since.
     props: BTreeMap<usize, Placement>,
 }
@@ -248,7 +250,7 @@ struct Parts {
     robots: BTreeMap<usize, RobotState>,
     edges: BTreeMap<usize, EdgeState>,
     props: BTreeMap<usize, Placement>,
-    frames: Vec<Frame>,
+    frames: Vec<MeasurementRecord>,
     contacts: Vec<Contact>,
     sample: Option<Sample>,
 }
@@ -259,21 +261,23 @@ struct NotWhole;
 impl Pending {
     /// Takes a message in; whether it makes sense.
     fn add(&mut self, channel: Channel, header: &MessageHeader, data: &[u8]) -> bool {
-        if matches!(channel, Channel::Cast) {
+        if matches!(channel, Channel::FleetInfo) {
             return true;
         }
-        let parts = self.moments.entry(header.log_time).or_default();
+        let parts = self.records.entry(header.log_time).or_default();
         let mut put = || -> Option<()> {
             match channel {
                 Channel::Robot(index) => drop(parts.robots.insert(index, record::read(data)?)),
                 Channel::Edge(index) => drop(parts.edges.insert(index, record::read(data)?)),
                 Channel::Prop(index) => drop(parts.props.insert(index, record::read(data)?)),
-                Channel::Look(index) => parts.frames.push(Frame { edge: index, ..record::read(data)? }),
+                Channel::Look(index) => {
+                    parts.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
+                }
                 Channel::Contact => {
                     parts.contacts.push(record::read::<Touch>(data)?.contact);
                 }
                 Channel::Sample => parts.sample = Some(record::read(data)?),
-                Channel::Cast => {}
+                Channel::FleetInfo => {}
             }
             Some(())
         };
@@ -281,15 +285,15 @@ impl Pending {
     }
 
     /// The first moment before `until` ns, to which nothing more can come, if it is whole; `None` where there is none.
-    fn pop(&mut self, until: u64, cast: &Cast) -> Option<Result<Moment, NotWhole>> {
-        let first = self.moments.first_entry().filter(|entry| *entry.key() < until)?;
-        Some(first.remove().whole(&mut self.props, cast).ok_or(NotWhole))
+    fn pop(&mut self, until: u64, fleet: &FleetInfo) -> Option<Result<StepRecord, NotWhole>> {
+        let first = self.records.first_entry().filter(|entry| *entry.key() < until)?;
+        Some(first.remove().whole(&mut self.props, fleet).ok_or(NotWhole))
     }
 }
 
 impl Parts {
     /// The moment, if all of it is there.
-    fn whole(self, placed: &mut BTreeMap<usize, Placement>, cast: &Cast) -> Option<Moment> {
+    fn whole(self, placed: &mut BTreeMap<usize, Placement>, fleet: &FleetInfo) -> Option<StepRecord> {
         let sample = self.sample?;
         placed.extend(self.props);
         let counts = [
@@ -301,16 +305,16 @@ impl Parts {
         ];
         counts.iter().all(|(told, found)| *told == *found as u64).then_some(())?;
         let inside = |last: Option<&usize>, count: usize| last.is_none_or(|last| *last < count);
-        let fits = inside(self.robots.keys().next_back(), cast.members.len())
-            && inside(self.edges.keys().next_back(), cast.edges.len())
-            && inside(placed.keys().next_back(), cast.props.len())
-            && self.frames.iter().all(|frame| frame.edge < cast.edges.len());
-        let mut moment = Moment { contacts: self.contacts, frames: self.frames, ..Moment::default() };
-        moment.snapshot.time = sample.time;
-        moment.snapshot.robots = self.robots.into_values().collect();
-        moment.snapshot.props = placed.values().copied().collect();
-        moment.edges = self.edges.into_values().collect();
-        fits.then_some(moment)
+        let fits = inside(self.robots.keys().next_back(), fleet.robots.len())
+            && inside(self.edges.keys().next_back(), fleet.edges.len())
+            && inside(placed.keys().next_back(), fleet.props.len())
+            && self.frames.iter().all(|frame| frame.edge < fleet.edges.len());
+        let mut record = StepRecord { contacts: self.contacts, frames: self.frames, ..StepRecord::default() };
+        record.snapshot.time = sample.time;
+        record.snapshot.robots = self.robots.into_values().collect();
+        record.snapshot.props = placed.values().copied().collect();
+        record.edges = self.edges.into_values().collect();
+        fits.then_some(record)
     }
 }
 

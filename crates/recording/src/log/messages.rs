@@ -2,7 +2,8 @@
 
 use super::record::{Fields, Record};
 use vocabulary::{
-    Condition, Contact, EdgeState, FACES, Frame, Outcome, Placement, Relative, RobotState, Sight, Thing,
+    Condition, Contact, EdgeState, EntityId, FACES, MeasurementRecord, Outcome, Placement, Relative,
+    RobotState, TrackingState,
 };
 
 fn words<T: Copy, const N: usize>(all: [T; N], name: impl Fn(T) -> &'static str) -> [(T, &'static str); N] {
@@ -47,7 +48,7 @@ impl Record for EdgeState {
     const NAME: &'static str = "EdgeState";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
-        use Sight::{Coasting, Lost, Tracking, Truth, Waiting};
+        use TrackingState::{Coasting, Lost, Tracking, Truth, Waiting};
         let Relative { distance, bearing, view_angle } = &mut self.relative;
         f.number("distance_m", distance)?;
         f.number("bearing_rad", bearing)?;
@@ -69,20 +70,24 @@ impl Record for EdgeState {
         f.number("seen_bearing_rad", bearing)?;
         f.number("seen_view_angle_rad", view_angle)?;
         f.number("age_s", &mut self.age)?;
-        f.choice("sight", &mut self.sight, &words([Truth, Waiting, Tracking, Coasting, Lost], Sight::name))?;
+        f.choice(
+            "sight",
+            &mut self.sight,
+            &words([Truth, Waiting, Tracking, Coasting, Lost], TrackingState::name),
+        )?;
         f.flag("limited", &mut self.limited)?;
         f.flag("too_close", &mut self.too_close)
     }
 }
 
 /// One look of an edge: its index is that of its channel.
-impl Record for Frame {
+impl Record for MeasurementRecord {
     const NAME: &'static str = "Look";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
         use Outcome::{Ambiguous, Dropped, Missed, Rejected, Used};
         let outcomes = words([Used, Rejected, Ambiguous, Missed, Dropped], Outcome::name);
-        let look = &mut self.sighting;
+        let look = &mut self.measurement;
         f.choice("outcome", &mut self.outcome, &outcomes)?;
         f.number("stamp_s", &mut look.stamp)?;
         f.number("arrival_s", &mut self.arrival)?;
@@ -157,7 +162,7 @@ impl Default for Touch {
     fn default() -> Self {
         let contact = Contact {
             number: 0,
-            things: [Thing::Ground; 2],
+            things: [EntityId::Ground; 2],
             begin: 0.0,
             end: 0.0,
             open: false,
@@ -178,19 +183,19 @@ enum Kind {
 
 const KINDS: [(Kind, &str); 3] = [(Kind::Ground, "ground"), (Kind::Robot, "robot"), (Kind::Prop, "prop")];
 
-fn thing<F: Fields>(f: &mut F, names: [&'static str; 2], thing: &mut Thing) -> Option<()> {
+fn thing<F: Fields>(f: &mut F, names: [&'static str; 2], thing: &mut EntityId) -> Option<()> {
     let (mut kind, mut index) = match *thing {
-        Thing::Ground => (Kind::Ground, 0),
-        Thing::Robot(index) => (Kind::Robot, index as u64),
-        Thing::Prop(index) => (Kind::Prop, index as u64),
+        EntityId::Ground => (Kind::Ground, 0),
+        EntityId::Robot(index) => (Kind::Robot, index as u64),
+        EntityId::Prop(index) => (Kind::Prop, index as u64),
     };
     f.choice(names[0], &mut kind, &KINDS)?;
     f.count(names[1], &mut index)?;
     let index = usize::try_from(index).ok()?;
     *thing = match kind {
-        Kind::Ground => Thing::Ground,
-        Kind::Robot => Thing::Robot(index),
-        Kind::Prop => Thing::Prop(index),
+        Kind::Ground => EntityId::Ground,
+        Kind::Robot => EntityId::Robot(index),
+        Kind::Prop => EntityId::Prop(index),
     };
     Some(())
 }

@@ -33,7 +33,7 @@ pub use pictures::{Photo, Roll};
 pub(crate) use pipe::Pipe;
 pub use read::{Log, Moments};
 
-use vocabulary::{Cast, Edge, Member, Prop};
+use vocabulary::{Edge, FleetInfo, Prop, RobotInfo};
 
 /// Name of the file in a run folder.
 pub const FILE: &str = "log.mcap";
@@ -55,20 +55,20 @@ impl Topics {
     const CONTACTS: &str = "/contacts";
     const SAMPLES: &str = "/samples";
 
-    fn robot(member: &Member) -> String {
+    fn robot(member: &RobotInfo) -> String {
         format!("/robot/{}/state", member.name)
     }
 
-    fn edge(cast: &Cast, edge: Edge) -> String {
-        format!("/edge/{}/state", Self::pair(cast, edge))
+    fn edge(fleet: &FleetInfo, edge: Edge) -> String {
+        format!("/edge/{}/state", Self::pair(fleet, edge))
     }
 
-    fn looks(cast: &Cast, edge: Edge) -> String {
-        format!("/edge/{}/looks", Self::pair(cast, edge))
+    fn looks(fleet: &FleetInfo, edge: Edge) -> String {
+        format!("/edge/{}/looks", Self::pair(fleet, edge))
     }
 
-    fn pair(cast: &Cast, edge: Edge) -> String {
-        let name = |robot: usize| cast.members.get(robot).map_or("", |member| &*member.name);
+    fn pair(fleet: &FleetInfo, edge: Edge) -> String {
+        let name = |robot: usize| fleet.robots.get(robot).map_or("", |member| &*member.name);
         format!("{}/{}", name(edge.leader), name(edge.follower))
     }
 

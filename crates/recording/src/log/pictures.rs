@@ -1,7 +1,7 @@
 //! What cameras on robots saw: taken where they are drawn, so that no simulation knows of it.
 
 use std::sync::{Arc, Mutex, PoisonError};
-use vocabulary::{Eyes, Grey, Lens, Shot, Snapshot};
+use vocabulary::{CameraModel, CameraRenderer, Grey, Shot, Snapshot};
 
 /// Pictures of a camera in a second of simulation, at most.
 const RATE: f64 = 5.0;
@@ -25,7 +25,7 @@ pub struct Roll(Arc<Mutex<Vec<Photo>>>);
 
 impl Roll {
     /// Eyes that see what `eyes` see, and leave some of it here.
-    pub fn through(&self, eyes: Box<dyn Eyes>) -> Box<dyn Eyes> {
+    pub fn through(&self, eyes: Box<dyn CameraRenderer>) -> Box<dyn CameraRenderer> {
         Box::new(Through { eyes, roll: self.clone(), next: Vec::new() })
     }
 
@@ -36,13 +36,13 @@ impl Roll {
 }
 
 struct Through {
-    eyes: Box<dyn Eyes>,
+    eyes: Box<dyn CameraRenderer>,
     roll: Roll,
     /// When the next picture of each robot is due, s.
     next: Vec<f64>,
 }
 
-impl Eyes for Through {
+impl CameraRenderer for Through {
     fn look(&mut self, snapshot: &Snapshot, shots: &[Shot], pictures: &mut Vec<Grey>) -> Result<(), String> {
         self.eyes.look(snapshot, shots, pictures)?;
         self.next.resize(snapshot.robots.len(), 0.0);
@@ -68,12 +68,12 @@ impl Eyes for Through {
 }
 
 impl Photo {
-    /// Appends the picture to `out` as PNG, in its place in the whole picture of `lens`, black around it, and as bright as
+    /// Appends the picture to `out` as PNG, in its place in the whole picture of `camera_model`, black around it, and as bright as
     /// screens want it; `None` where it makes no picture.
-    pub(super) fn png(&self, lens: &Lens, out: &mut Vec<u8>) -> Option<()> {
-        let (across, down) = (lens.width as usize, lens.height as usize);
+    pub(super) fn png(&self, camera_model: &CameraModel, out: &mut Vec<u8>) -> Option<()> {
+        let (across, down) = (camera_model.width as usize, camera_model.height as usize);
         let mut pixels = vec![0; across.checked_mul(down)?];
-        let corner = [0, 1].map(|k| (lens.centre[k] - self.centre[k]).round() as i64);
+        let corner = [0, 1].map(|k| (camera_model.centre[k] - self.centre[k]).round() as i64);
         let bright: Vec<u8> =
             (0..=255_u8).map(|v| (255.0 * (f64::from(v) / 255.0).powf(1.0 / 2.2)) as u8).collect();
         let width = self.picture.width as usize;
@@ -87,7 +87,7 @@ impl Photo {
                 }
             }
         }
-        let mut encoder = png::Encoder::new(out, lens.width, lens.height);
+        let mut encoder = png::Encoder::new(out, camera_model.width, camera_model.height);
         encoder.set_color(png::ColorType::Grayscale);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_compression(png::Compression::Fast);

@@ -7,7 +7,7 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
-use vocabulary::{Cast, Moment};
+use vocabulary::{FleetInfo, StepRecord};
 
 /// A batch, and so a chunk, is about this long, s.
 const SPAN: f64 = 1.0;
@@ -18,7 +18,7 @@ const WAITING: usize = 4;
 
 /// Moments of a stretch of time, and what cameras saw in it.
 struct Batch {
-    moments: Vec<Moment>,
+    records: Vec<StepRecord>,
     photos: Vec<Photo>,
 }
 
@@ -28,10 +28,10 @@ type Written = Result<Writer, Error>;
 /// Hands moments to the thread that writes them.
 pub(crate) struct Pipe {
     work: Option<(SyncSender<Batch>, JoinHandle<Written>)>,
-    batch: Vec<Moment>,
+    batch: Vec<StepRecord>,
     /// Batches come back empty, so that their memory is used again.
-    used: Receiver<Vec<Moment>>,
-    spare: Vec<Moment>,
+    used: Receiver<Vec<StepRecord>>,
+    spare: Vec<StepRecord>,
     weight: usize,
     roll: Roll,
 }
@@ -40,19 +40,19 @@ impl Pipe {
     /// Writes what is known before the run, and waits for moments.
     pub(crate) fn create(
         path: &Path,
-        (cast, scene): (&Cast, &str),
+        (fleet, scene): (&FleetInfo, &str),
         manifest: &Manifest,
         roll: Roll,
     ) -> Result<Self, Error> {
         let file = File::create(path).map_err(Error::io("create", path))?;
-        let mut writer = Writer::create((file, path), cast, (scene, manifest), true)?;
+        let mut writer = Writer::create((file, path), fleet, (scene, manifest), true)?;
         let (sender, receiver) = sync_channel::<Batch>(WAITING);
         let (back, used) = sync_channel(WAITING);
         let write = move || {
             for mut batch in receiver {
-                writer.push(&mut batch.moments, &batch.photos)?;
+                writer.push(&mut batch.records, &batch.photos)?;
                 // Where nobody waits for it, it is dropped.
-                let _ = back.try_send(batch.moments);
+                let _ = back.try_send(batch.records);
             }
             Ok(writer)
         };
@@ -63,31 +63,31 @@ impl Pipe {
     }
 
     /// Takes a moment; waits where many batches are on their way.
-    pub(crate) fn push(&mut self, moment: &Moment) -> Result<(), Error> {
-        self.weight += 1 + moment.snapshot.robots.len() + moment.edges.len();
+    pub(crate) fn push(&mut self, record: &StepRecord) -> Result<(), Error> {
+        self.weight += 1 + record.snapshot.robots.len() + record.edges.len();
         let own = match self.spare.pop() {
             Some(mut spare) => {
-                copy(&mut spare, moment);
+                copy(&mut spare, record);
                 spare
             }
-            None => moment.clone(),
+            None => record.clone(),
         };
         self.batch.push(own);
         let began = self.batch.first().map_or(0.0, |first| first.snapshot.time);
         // The half keeps a sum of periods from falling just short.
-        let period = (moment.snapshot.time - began) / (self.batch.len() - 1).max(1) as f64;
-        let long = moment.snapshot.time - began > SPAN - 1.5 * period;
+        let period = (record.snapshot.time - began) / (self.batch.len() - 1).max(1) as f64;
+        let long = record.snapshot.time - began > SPAN - 1.5 * period;
         if long && self.batch.len() > 1 || self.weight >= MOST { self.send() } else { Ok(()) }
     }
 
     fn send(&mut self) -> Result<(), Error> {
         self.weight = 0;
-        let moments = std::mem::take(&mut self.batch);
+        let records = std::mem::take(&mut self.batch);
         while let Ok(used) = self.used.try_recv() {
             self.spare.extend(used);
         }
         let Some((sender, _)) = &self.work else { return Ok(()) };
-        if sender.send(Batch { moments, photos: self.roll.take() }).is_err() {
+        if sender.send(Batch { records, photos: self.roll.take() }).is_err() {
             // The thread has ended, which it does by an error only.
             self.join()?;
         }
@@ -111,7 +111,7 @@ impl Pipe {
 }
 
 /// Copies into memory that is there.
-fn copy(to: &mut Moment, from: &Moment) {
+fn copy(to: &mut StepRecord, from: &StepRecord) {
     to.snapshot.time = from.snapshot.time;
     to.snapshot.robots.clone_from(&from.snapshot.robots);
     to.snapshot.props.clone_from(&from.snapshot.props);

@@ -15,7 +15,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{Cast, EdgeState, Frame, Moment, Placement, RobotState};
+use vocabulary::{EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState, StepRecord};
 
 /// A recorded run. A copy shares everything with the original.
 #[derive(Debug, Clone)]
@@ -29,7 +29,7 @@ struct Inside {
     path: PathBuf,
     manifest: Manifest,
     scene: String,
-    cast: Cast,
+    fleet: FleetInfo,
     channels: HashMap<u16, Channel>,
     chunks: Vec<Chunk>,
     whole: bool,
@@ -48,7 +48,7 @@ pub(super) enum Channel {
     Look(usize),
     Contact,
     Sample,
-    Cast,
+    FleetInfo,
 }
 
 impl Log {
@@ -94,7 +94,7 @@ impl Log {
             path: path.to_owned(),
             manifest,
             scene,
-            cast: Cast::default(),
+            fleet: FleetInfo::default(),
             channels: HashMap::new(),
             chunks: outline.chunks,
             whole: outline.whole,
@@ -113,7 +113,7 @@ impl Log {
         };
         let mut channels = HashMap::new();
         let mut schemas = HashMap::new();
-        let mut cast = None;
+        let mut fleet = None;
         for item in records(&self.unpack(first)?) {
             match item {
                 Chunked::Schema { header, .. } => {
@@ -126,17 +126,17 @@ impl Log {
                     channels.extend(kind.map(|kind| (channel.id, kind)));
                 }
                 Chunked::Message { header, data }
-                    if matches!(channels.get(&header.channel_id), Some(Channel::Cast)) =>
+                    if matches!(channels.get(&header.channel_id), Some(Channel::FleetInfo)) =>
                 {
-                    cast = record::read::<Stage>(&data).map(|stage| stage.0);
+                    fleet = record::read::<Stage>(&data).map(|stage| stage.0);
                 }
                 _ => {}
             }
         }
-        let cast = cast.filter(sound).ok_or_else(|| broken("holds a cast that cannot be read"))?;
+        let fleet = fleet.filter(sound).ok_or_else(|| broken("holds a cast that cannot be read"))?;
         let lost = || Error::Log { path: PathBuf::new(), message: String::new() };
         let inside = Arc::get_mut(&mut self.inside).ok_or_else(lost)?;
-        (inside.channels, inside.cast) = (channels, cast);
+        (inside.channels, inside.fleet) = (channels, fleet);
         if inside.manifest.status == Status::Running {
             let samples = self.samples();
             if let Some(inside) = Arc::get_mut(&mut self.inside) {
@@ -190,8 +190,8 @@ impl Log {
     }
 
     /// Robots, edges, props, ground.
-    pub fn cast(&self) -> &Cast {
-        &self.inside.cast
+    pub fn fleet(&self) -> &FleetInfo {
+        &self.inside.fleet
     }
 
     /// Whether the file came to its end; else it was cut off, or is still being written.
@@ -200,7 +200,7 @@ impl Log {
     }
 
     /// All moments in the order of time.
-    pub fn moments(&self) -> Moments {
+    pub fn records(&self) -> Moments {
         self.after_chunks(0)
     }
 
@@ -208,24 +208,24 @@ impl Log {
     pub fn moments_from(&self, time: f64) -> Moments {
         let begun = |chunk: &Chunk| chunk.begin as f64 * 1e-9 <= time + 1e-9;
         // The first chunk holds no moments; a stamp is rounded, so the chunk before may end with the one asked for.
-        let mut moments = self.after_chunks(self.inside.chunks.partition_point(begun).saturating_sub(2));
-        moments.from = time;
-        moments
+        let mut records = self.after_chunks(self.inside.chunks.partition_point(begun).saturating_sub(2));
+        records.from = time;
+        records
     }
 
     /// The last moment at or before `time` s; the first one if there is none before.
     ///
     /// # Errors
     /// [`Error::Log`] where the file is damaged there.
-    pub fn at(&self, time: f64) -> Result<Option<Moment>, Error> {
+    pub fn at(&self, time: f64) -> Result<Option<StepRecord>, Error> {
         let begun = |chunk: &Chunk| chunk.begin as f64 * 1e-9 <= time + 1e-9;
         let mut last = None;
-        for moment in self.after_chunks(self.inside.chunks.partition_point(begun).saturating_sub(2)) {
-            let moment = moment?;
-            if moment.snapshot.time > time && last.is_some() {
+        for record in self.after_chunks(self.inside.chunks.partition_point(begun).saturating_sub(2)) {
+            let record = record?;
+            if record.snapshot.time > time && last.is_some() {
                 break;
             }
-            last = Some(moment);
+            last = Some(record);
         }
         Ok(last)
     }
@@ -279,10 +279,10 @@ impl Channel {
             RobotState::NAME => Some(Self::Robot(index)),
             EdgeState::NAME => Some(Self::Edge(index)),
             Placement::NAME => Some(Self::Prop(index)),
-            Frame::NAME => Some(Self::Look(index)),
+            MeasurementRecord::NAME => Some(Self::Look(index)),
             Touch::NAME => Some(Self::Contact),
             Sample::NAME => Some(Self::Sample),
-            Stage::NAME => Some(Self::Cast),
+            Stage::NAME => Some(Self::FleetInfo),
             _ => None,
         }
     }
@@ -293,19 +293,19 @@ impl Channel {
 pub struct Moments {
     log: Log,
     next: usize,
-    ready: VecDeque<Moment>,
+    ready: VecDeque<StepRecord>,
     from: f64,
     fault: Option<Error>,
 }
 
 impl Iterator for Moments {
-    type Item = Result<Moment, Error>;
+    type Item = Result<StepRecord, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
-            if let Some(moment) = self.ready.pop_front() {
-                if moment.snapshot.time >= self.from {
-                    return Some(Ok(moment));
+            if let Some(record) = self.ready.pop_front() {
+                if record.snapshot.time >= self.from {
+                    return Some(Ok(record));
                 }
                 continue;
             }
@@ -323,17 +323,17 @@ impl Iterator for Moments {
 
 impl Moments {
     fn unpack(&mut self, chunk: Chunk) -> Result<(), Error> {
-        let mut moment = Moment::default();
+        let mut record = StepRecord::default();
         let mut props: Vec<Placement> = vec![];
         let bytes = self.log.unpack(chunk)?;
         for item in records(&bytes) {
             let Chunked::Message { header, data } = item else { continue };
             let Some(channel) = self.log.inside.channels.get(&header.channel_id) else { continue };
             let closed =
-                take(*channel, &data, &mut moment, &mut props).ok_or_else(|| self.damaged(&header))?;
+                take(*channel, &data, &mut record, &mut props).ok_or_else(|| self.damaged(&header))?;
             if closed {
-                moment.snapshot.props.clone_from(&props);
-                self.ready.push_back(std::mem::take(&mut moment));
+                record.snapshot.props.clone_from(&props);
+                self.ready.push_back(std::mem::take(&mut record));
             }
         }
         Ok(())
@@ -348,38 +348,38 @@ impl Moments {
     }
 }
 
-/// Takes a message into `moment`; whether that closes it. `None` where the message makes no sense there.
-fn take(channel: Channel, data: &[u8], moment: &mut Moment, props: &mut Vec<Placement>) -> Option<bool> {
+/// Takes a message into `record`; whether that closes it. `None` where the message makes no sense there.
+fn take(channel: Channel, data: &[u8], record: &mut StepRecord, props: &mut Vec<Placement>) -> Option<bool> {
     match channel {
         Channel::Robot(index) => {
-            let robots = &mut moment.snapshot.robots;
+            let robots = &mut record.snapshot.robots;
             (robots.len() == index).then_some(())?;
             robots.push(record::read(data)?);
         }
         Channel::Edge(index) => {
-            (moment.edges.len() == index).then_some(())?;
-            moment.edges.push(record::read(data)?);
+            (record.edges.len() == index).then_some(())?;
+            record.edges.push(record::read(data)?);
         }
         Channel::Prop(index) => {
             let place = record::read(data)?;
             if index == props.len() { props.push(place) } else { *props.get_mut(index)? = place }
         }
-        Channel::Look(index) => moment.frames.push(Frame { edge: index, ..record::read(data)? }),
-        Channel::Contact => moment.contacts.push(record::read::<Touch>(data)?.contact),
+        Channel::Look(index) => record.frames.push(MeasurementRecord { edge: index, ..record::read(data)? }),
+        Channel::Contact => record.contacts.push(record::read::<Touch>(data)?.contact),
         Channel::Sample => {
             let sample: Sample = record::read(data)?;
-            moment.snapshot.time = sample.time;
+            record.snapshot.time = sample.time;
             let counts = [
-                (sample.robots, moment.snapshot.robots.len()),
-                (sample.edges, moment.edges.len()),
+                (sample.robots, record.snapshot.robots.len()),
+                (sample.edges, record.edges.len()),
                 (sample.props, props.len()),
-                (sample.contacts, moment.contacts.len()),
-                (sample.looks, moment.frames.len()),
+                (sample.contacts, record.contacts.len()),
+                (sample.looks, record.frames.len()),
             ];
             counts.iter().all(|(told, found)| *told == *found as u64).then_some(())?;
             return Some(true);
         }
-        Channel::Cast => {}
+        Channel::FleetInfo => {}
     }
     Some(false)
 }

@@ -6,7 +6,7 @@ use foxglove::messages::{
     TriangleListPrimitive, Vector3, line_primitive::Type,
 };
 use std::f64::consts::TAU;
-use vocabulary::{Cast, Member, Mobility, Placement, Prop, Solid, Terrain};
+use vocabulary::{FleetInfo, Mobility, Placement, Prop, RobotInfo, Solid, Terrain};
 
 /// The frame in which all others are.
 pub(super) const WORLD: &str = "world";
@@ -15,7 +15,7 @@ const RING: f64 = 0.25;
 /// Points along a side of the ground, at most.
 const GROUND: usize = 128;
 
-pub(super) fn robot_frame(member: &Member) -> String {
+pub(super) fn robot_frame(member: &RobotInfo) -> String {
     format!("robot/{}", member.name)
 }
 
@@ -40,14 +40,14 @@ fn pose(x: f64, y: f64, z: f64) -> Pose {
 }
 
 /// Everything that is drawn once.
-pub(super) fn entities(cast: &Cast, colours: &[Color]) -> Vec<SceneEntity> {
-    let robots = cast.members.iter().zip(colours).map(|(member, colour)| robot(member, *colour));
-    let rings = cast.edges.iter().filter_map(|edge| {
-        let (follower, colour) = (cast.members.get(edge.follower)?, colours.get(edge.follower)?);
+pub(super) fn entities(fleet: &FleetInfo, colours: &[Color]) -> Vec<SceneEntity> {
+    let robots = fleet.robots.iter().zip(colours).map(|(member, colour)| robot(member, *colour));
+    let rings = fleet.edges.iter().filter_map(|edge| {
+        let (follower, colour) = (fleet.robots.get(edge.follower)?, colours.get(edge.follower)?);
         Some(ring(&format!("{}/set-point", robot_frame(follower)), *colour))
     });
-    let props = cast.props.iter().map(prop);
-    let ground = cast.terrain.iter().map(|terrain| ground(terrain));
+    let props = fleet.props.iter().map(prop);
+    let ground = fleet.terrain.iter().map(|terrain| ground(terrain));
     robots.chain(rings).chain(props).chain(ground).collect()
 }
 
@@ -61,7 +61,7 @@ fn locked(frame: &str) -> SceneEntity {
 }
 
 /// A body as boxes: hull and cabin, so that front and back are plain, on four wheels, its name above.
-fn robot(member: &Member, colour: Color) -> SceneEntity {
+fn robot(member: &RobotInfo, colour: Color) -> SceneEntity {
     let body = &member.body;
     let cube = |x: f64, y: f64, z: f64, size: [f64; 3], color: Color| CubePrimitive {
         pose: Some(pose(x, y, z)),

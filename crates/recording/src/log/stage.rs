@@ -3,14 +3,15 @@
 use super::record::{Fields, Record};
 use std::sync::Arc;
 use vocabulary::{
-    Body, Cast, Edge, Lens, Light, Member, Mobility, Mount, Placement, Prop, Shell, Solid, Terrain,
+    Body, CameraModel, CameraMount, Edge, FleetInfo, Light, Mobility, Placement, Prop, RobotInfo, Shell,
+    Solid, Terrain,
 };
 
-/// [`Cast`] with a list of fields.
+/// [`FleetInfo`] with a list of fields.
 #[derive(Default)]
-pub(super) struct Stage(pub(super) Cast);
+pub(super) struct Stage(pub(super) FleetInfo);
 
-struct Actor(Member);
+struct Actor(RobotInfo);
 struct Pair(Edge);
 struct Scenery(Prop);
 struct Land(Terrain);
@@ -18,7 +19,7 @@ struct Tags(Shell);
 
 impl Default for Actor {
     fn default() -> Self {
-        Self(Member::new("", false, Body::default()))
+        Self(RobotInfo::new("", false, Body::default()))
     }
 }
 
@@ -67,28 +68,28 @@ impl Record for Stage {
     const NAME: &'static str = "Cast";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
-        let cast = &mut self.0;
-        f.text("title", &mut cast.title)?;
-        f.text("caption", &mut cast.caption)?;
-        f.number("duration_s", &mut cast.duration)?;
-        let Light { sun_elevation, sun_azimuth, haze_from } = &mut cast.light;
+        let fleet = &mut self.0;
+        f.text("title", &mut fleet.title)?;
+        f.text("caption", &mut fleet.caption)?;
+        f.number("duration_s", &mut fleet.duration)?;
+        let Light { sun_elevation, sun_azimuth, haze_from } = &mut fleet.light;
         f.number("sun_elevation_rad", sun_elevation)?;
         f.number("sun_azimuth_rad", sun_azimuth)?;
         f.number("haze_from_m", haze_from)?;
-        f.flag("looks", &mut cast.looks)?;
-        let mut members = std::mem::take(&mut cast.members).into_iter().map(Actor).collect();
-        let mut edges = cast.edges.iter().copied().map(Pair).collect();
-        let mut props = std::mem::take(&mut cast.props).into_iter().map(Scenery).collect();
-        let mut land = cast.terrain.iter().map(|land| Land(Terrain::clone(land))).collect();
+        f.flag("looks", &mut fleet.looks)?;
+        let mut members = std::mem::take(&mut fleet.robots).into_iter().map(Actor).collect();
+        let mut edges = fleet.edges.iter().copied().map(Pair).collect();
+        let mut props = std::mem::take(&mut fleet.props).into_iter().map(Scenery).collect();
+        let mut land = fleet.terrain.iter().map(|land| Land(Terrain::clone(land))).collect();
         let told = f
             .each("members", &mut members)
             .and_then(|()| f.each("edges", &mut edges))
             .and_then(|()| f.each("props", &mut props))
             .and_then(|()| f.each("terrain", &mut land));
-        cast.members = members.into_iter().map(|Actor(member)| member).collect();
-        cast.edges = edges.into_iter().map(|Pair(edge)| edge).collect();
-        cast.props = props.into_iter().map(|Scenery(prop)| prop).collect();
-        cast.terrain = land.into_iter().next().map(|Land(land)| Arc::new(land));
+        fleet.robots = members.into_iter().map(|Actor(member)| member).collect();
+        fleet.edges = edges.into_iter().map(|Pair(edge)| edge).collect();
+        fleet.props = props.into_iter().map(|Scenery(prop)| prop).collect();
+        fleet.terrain = land.into_iter().next().map(|Land(land)| Arc::new(land));
         told
     }
 }
@@ -97,7 +98,7 @@ impl Record for Actor {
     const NAME: &'static str = "Member";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
-        let Member { name, leads, body, shell, mount, lens } = &mut self.0;
+        let RobotInfo { name, leads, body, shell, camera_mount, camera_model } = &mut self.0;
         f.text("name", name)?;
         f.flag("leads", leads)?;
         let Body { length, width, height, wheelbase, track, wheel_radius } = body;
@@ -110,10 +111,10 @@ impl Record for Actor {
         let mut shells = shell.iter().copied().map(Tags).collect();
         f.each("shell", &mut shells)?;
         *shell = shells.first().map(|Tags(shell)| *shell);
-        let Mount { forward, height } = mount;
+        let CameraMount { forward, height } = camera_mount;
         f.number("camera_forward_m", forward)?;
         f.number("camera_height_m", height)?;
-        let Lens { width, height, focal, centre, distortion } = lens;
+        let CameraModel { width, height, focal, centre, distortion } = camera_model;
         whole(f, "picture_width_px", width)?;
         whole(f, "picture_height_px", height)?;
         f.number("focal_px", focal)?;
@@ -207,10 +208,10 @@ impl Record for Land {
 }
 
 /// Whether nothing in a cast that was read leads out of it.
-pub(super) fn sound(cast: &Cast) -> bool {
-    let there = |robot: usize| robot < cast.members.len();
-    let edges = cast.edges.iter().all(|edge| there(edge.leader) && there(edge.follower));
-    let land = cast.terrain.as_ref().is_none_or(|land| {
+pub(super) fn sound(fleet: &FleetInfo) -> bool {
+    let there = |robot: usize| robot < fleet.robots.len();
+    let edges = fleet.edges.iter().all(|edge| there(edge.leader) && there(edge.follower));
+    let land = fleet.terrain.as_ref().is_none_or(|land| {
         let points = land.columns.checked_mul(land.rows);
         let filled = |values: &[f64]| points == Some(values.len()) && values.iter().all(|v| v.is_finite());
         land.columns >= 2

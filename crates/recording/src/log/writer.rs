@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
-use vocabulary::{Cast, EdgeState, Frame, Moment, Placement, RobotState};
+use vocabulary::{EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState, StepRecord};
 
 /// Where a message goes: its channel, which sample it belongs to and when that was.
 #[derive(Clone, Copy, Default)]
@@ -97,7 +97,7 @@ impl Channels {
 /// Writes a log.
 pub(super) struct Writer {
     to: Channels,
-    cast: Cast,
+    fleet: FleetInfo,
     drawing: Option<Drawing>,
     robots: Vec<u16>,
     edges: Vec<u16>,
@@ -114,7 +114,7 @@ impl Writer {
     /// Writes what is known before the run into `file`; errors speak of `path`. Without drawings, where nobody will look.
     pub(super) fn create(
         (file, path): (File, &Path),
-        cast: &Cast,
+        fleet: &FleetInfo,
         (scene, manifest): (&str, &Manifest),
         drawn: bool,
     ) -> Result<Self, Error> {
@@ -131,16 +131,16 @@ impl Writer {
         to.file
             .write_metadata(&Metadata { name: super::NAME.to_owned(), metadata })
             .map_err(Error::table(path))?;
-        let names = cast.members.iter().map(|m| &*m.name).chain(cast.props.iter().map(|p| &*p.name));
+        let names = fleet.robots.iter().map(|m| &*m.name).chain(fleet.props.iter().map(|p| &*p.name));
         to.file
             .write_metadata(&Metadata { name: "ros2".to_owned(), metadata: ros::legal(names) })
             .map_err(Error::table(path))?;
         to.attach("scene.toml", "application/toml", scene)?;
         to.attach("manifest.json", "application/json", &text(manifest, path)?)?;
         let stage = to.add_own::<Stage>(Topics::CAST, 0)?;
-        to.put_own(stage, Stamp::default(), &mut Stage(cast.clone()))?;
+        to.put_own(stage, Stamp::default(), &mut Stage(fleet.clone()))?;
         let mut writer = Self {
-            drawing: if drawn { Some(Drawing::begin(cast, &mut to)?) } else { None },
+            drawing: if drawn { Some(Drawing::begin(fleet, &mut to)?) } else { None },
             robots: vec![],
             edges: vec![],
             looks: vec![],
@@ -149,7 +149,7 @@ impl Writer {
             samples: to.add_own::<Sample>(Topics::SAMPLES, 0)?,
             number: 0,
             placed: vec![],
-            cast: cast.clone(),
+            fleet: fleet.clone(),
             to,
         };
         writer.add_channels()?;
@@ -158,31 +158,31 @@ impl Writer {
     }
 
     fn add_channels(&mut self) -> Result<(), Error> {
-        let Self { to, cast, .. } = self;
-        for (index, member) in cast.members.iter().enumerate() {
+        let Self { to, fleet, .. } = self;
+        for (index, member) in fleet.robots.iter().enumerate() {
             self.robots.push(to.add_own::<RobotState>(&Topics::robot(member), index)?);
         }
-        for (index, edge) in cast.edges.iter().enumerate() {
-            self.edges.push(to.add_own::<EdgeState>(&Topics::edge(cast, *edge), index)?);
-            if cast.looks {
-                self.looks.push(to.add_own::<Frame>(&Topics::looks(cast, *edge), index)?);
+        for (index, edge) in fleet.edges.iter().enumerate() {
+            self.edges.push(to.add_own::<EdgeState>(&Topics::edge(fleet, *edge), index)?);
+            if fleet.looks {
+                self.looks.push(to.add_own::<MeasurementRecord>(&Topics::looks(fleet, *edge), index)?);
             }
         }
-        for (index, prop) in cast.props.iter().enumerate() {
+        for (index, prop) in fleet.props.iter().enumerate() {
             self.props.push(to.add_own::<Placement>(&Topics::prop(prop), index)?);
         }
         Ok(())
     }
 
     /// Writes moments, and what cameras saw on the way, as one chunk.
-    pub(super) fn push(&mut self, moments: &mut [Moment], photos: &[Photo]) -> Result<(), Error> {
+    pub(super) fn push(&mut self, records: &mut [StepRecord], photos: &[Photo]) -> Result<(), Error> {
         self.placed.clear();
         let mut photos = photos.iter().peekable();
-        for moment in moments {
-            while let Some(photo) = photos.next_if(|photo| photo.time <= moment.snapshot.time) {
+        for record in records {
+            while let Some(photo) = photos.next_if(|photo| photo.time <= record.snapshot.time) {
                 self.photo(photo)?;
             }
-            self.moment(moment)?;
+            self.record(record)?;
         }
         photos.try_for_each(|photo| self.photo(photo))?;
         self.to.flush()
@@ -192,17 +192,17 @@ impl Writer {
         self.drawing.as_mut().map_or(Ok(()), |drawing| drawing.photo(photo, &mut self.to))
     }
 
-    fn moment(&mut self, moment: &mut Moment) -> Result<(), Error> {
-        let stamp = Stamp { number: self.number, time: moment.snapshot.time };
+    fn record(&mut self, record: &mut StepRecord) -> Result<(), Error> {
+        let stamp = Stamp { number: self.number, time: record.snapshot.time };
         let to = &mut self.to;
-        self.drawing.as_mut().map_or(Ok(()), |drawing| drawing.moment(stamp, moment, to))?;
-        for (channel, robot) in self.robots.iter().zip(&mut moment.snapshot.robots) {
+        self.drawing.as_mut().map_or(Ok(()), |drawing| drawing.record(stamp, record, to))?;
+        for (channel, robot) in self.robots.iter().zip(&mut record.snapshot.robots) {
             to.put_own(*channel, stamp, robot)?;
         }
-        for (channel, edge) in self.edges.iter().zip(&mut moment.edges) {
+        for (channel, edge) in self.edges.iter().zip(&mut record.edges) {
             to.put_own(*channel, stamp, edge)?;
         }
-        for (index, (channel, prop)) in self.props.iter().zip(&mut moment.snapshot.props).enumerate() {
+        for (index, (channel, prop)) in self.props.iter().zip(&mut record.snapshot.props).enumerate() {
             match self.placed.get_mut(index) {
                 Some(placed) if same(placed, prop) => continue,
                 Some(placed) => *placed = *prop,
@@ -210,23 +210,23 @@ impl Writer {
             }
             to.put_own(*channel, stamp, prop)?;
         }
-        for contact in &moment.contacts {
-            let names = contact.things.map(|thing| self.cast.name(thing).to_owned());
+        for contact in &record.contacts {
+            let names = contact.things.map(|thing| self.fleet.name(thing).to_owned());
             to.put_own(self.contacts, stamp, &mut Touch { contact: *contact, names })?;
         }
-        for frame in &mut moment.frames {
+        for frame in &mut record.frames {
             if let Some(channel) = self.looks.get(frame.edge) {
                 to.put_own(*channel, stamp, frame)?;
             }
         }
         let mut sample = Sample {
             number: self.number,
-            time: moment.snapshot.time,
-            robots: moment.snapshot.robots.len() as u64,
-            edges: moment.edges.len() as u64,
-            props: moment.snapshot.props.len() as u64,
-            contacts: moment.contacts.len() as u64,
-            looks: moment.frames.len() as u64,
+            time: record.snapshot.time,
+            robots: record.snapshot.robots.len() as u64,
+            edges: record.edges.len() as u64,
+            props: record.snapshot.props.len() as u64,
+            contacts: record.contacts.len() as u64,
+            looks: record.frames.len() as u64,
         };
         self.number += 1;
         to.put_own(self.samples, stamp, &mut sample)

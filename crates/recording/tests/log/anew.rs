@@ -5,7 +5,7 @@ use recording::Status;
 use recording::log::{FILE, Log};
 use std::fs;
 use std::path::Path;
-use vocabulary::Moment;
+use vocabulary::StepRecord;
 
 /// How another program writes a log anew.
 #[derive(Default, Clone, Copy)]
@@ -70,7 +70,7 @@ fn rewrite(from: &Path, to: &Path, how: Anew) {
 #[test]
 fn what_another_program_wrote_anew_is_read() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (moments, manifest) = record(folder.path(), 250, Status::Complete);
+    let (records, manifest) = record(folder.path(), 250, Status::Complete);
     let original = folder.path().join(FILE);
     assert_eq!(Log::open(&original).expect("a log").remark(), None);
     let copy = folder.path().join("copy.mcap");
@@ -88,21 +88,21 @@ fn what_another_program_wrote_anew_is_read() {
         let log = Log::open(&copy).expect("a log");
         assert_eq!((log.manifest(), log.scene()), (&manifest, "schema = 1\ntitle = \"x\"\n"));
         assert!(log.remark().is_some_and(|remark| remark.contains(how.library)), "{:?}", log.remark());
-        let read: Vec<Moment> = log.moments().map(|m| m.expect("a moment")).collect();
-        assert_eq!(read.len(), moments.len());
-        for (read, moment) in read.iter().zip(&moments) {
-            assert!(same_but_for_order(read, moment, how.by_topic));
+        let read: Vec<StepRecord> = log.records().map(|m| m.expect("a moment")).collect();
+        assert_eq!(read.len(), records.len());
+        for (read, record) in read.iter().zip(&records) {
+            assert!(same_but_for_order(read, record, how.by_topic));
         }
         assert_eq!(log.path(), copy);
     }
 }
 
 /// Frames of one moment stand in the order of their topics where the file does.
-fn same_but_for_order(a: &Moment, b: &Moment, by_topic: bool) -> bool {
-    let sorted = |moment: &Moment| {
-        let mut moment = moment.clone();
-        moment.frames.sort_by_key(|frame| if by_topic { frame.edge } else { 0 });
-        moment
+fn same_but_for_order(a: &StepRecord, b: &StepRecord, by_topic: bool) -> bool {
+    let sorted = |record: &StepRecord| {
+        let mut record = record.clone();
+        record.frames.sort_by_key(|frame| if by_topic { frame.edge } else { 0 });
+        record
     };
     same(&sorted(a), &sorted(b))
 }
@@ -111,7 +111,7 @@ fn same_but_for_order(a: &Moment, b: &Moment, by_topic: bool) -> bool {
 #[test]
 fn what_another_program_left_out_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (moments, _) = record(folder.path(), 250, Status::Complete);
+    let (records, _) = record(folder.path(), 250, Status::Complete);
     let (original, copy) = (folder.path().join(FILE), folder.path().join("copy.mcap"));
     let other = Anew { library: "mcap go v1.7", ..Anew::default() };
     rewrite(&original, &copy, Anew { attachments: true, ..other });
@@ -120,7 +120,7 @@ fn what_another_program_left_out_is_told() {
     assert!(remark.contains("its scene and its manifest"), "{remark}");
     assert_eq!((log.scene(), log.manifest().digest.as_ref(), log.manifest().samples), ("", None, 250));
     assert_eq!(log.manifest().robots, ["ann", "bob", "cy"]);
-    assert_eq!(log.moments().flatten().count(), moments.len());
+    assert_eq!(log.records().flatten().count(), records.len());
     rewrite(&original, &copy, Anew { without: Some("/robot/bob/state"), ..other });
     let remark = Log::open(&copy).expect("a log").remark().map(str::to_owned).expect("a remark");
     assert!(remark.contains("of its 250 samples the first 0 are whole"), "{remark}");
@@ -132,7 +132,7 @@ fn what_another_program_left_out_is_told() {
     assert!(remark.contains("of 2.49 s it holds 1.00 to 2.00 s"), "{remark}");
     assert!((log.begins() - 1.0).abs() < 1e-9, "{}", log.begins());
     assert_eq!((log.manifest().samples, log.manifest().digest.as_ref()), (201, None));
-    let first = log.moments().next().expect("one").expect("whole");
+    let first = log.records().next().expect("one").expect("whole");
     assert_eq!(first.snapshot.time, log.begins());
     rewrite(&original, &copy, Anew { without: Some("/cast"), ..other });
     let refused = Log::open(&copy).expect_err("no cast").to_string();
@@ -142,6 +142,6 @@ fn what_another_program_left_out_is_told() {
     let bytes = fs::read(&copy).expect("a log");
     fs::write(&copy, &bytes[..bytes.len() / 2]).expect("written");
     let log = Log::open(&copy).expect("a log");
-    let count = log.moments().flatten().count();
+    let count = log.records().flatten().count();
     assert!(count > 80 && count < 170, "{count}");
 }

@@ -6,8 +6,8 @@ use std::path::Path;
 use std::sync::Arc;
 use vocabulary::Judging;
 use vocabulary::{
-    Body, Cast, Condition, Contact, Edge, EdgeState, Frame, Member, Mobility, Moment, Outcome, Placement,
-    Prop, RobotState, Shell, Sight, Snapshot, Solid, Terrain, Thing,
+    Body, Condition, Contact, Edge, EdgeState, EntityId, FleetInfo, MeasurementRecord, Mobility, Outcome,
+    Placement, Prop, RobotInfo, RobotState, Shell, Snapshot, Solid, StepRecord, Terrain, TrackingState,
 };
 
 /// Numbers without rule, special ones among them (SplitMix64).
@@ -39,10 +39,10 @@ impl Numbers {
     }
 }
 
-pub(crate) fn cast() -> Cast {
-    let member = |name: &str, leads| Member {
+pub(crate) fn fleet() -> FleetInfo {
+    let member = |name: &str, leads| RobotInfo {
         shell: Some(Shell::PAPER.tagged(3)),
-        ..Member::new(name, leads, Body::default())
+        ..RobotInfo::new(name, leads, Body::default())
     };
     let solids = [
         Solid::Block { size: [1.0, 0.5, 0.3] },
@@ -57,13 +57,13 @@ pub(crate) fn cast() -> Cast {
         mobility: [Mobility::Fixed, Mobility::Loose, Mobility::Guided][k % 3],
     };
     let heights = (0..12).map(f64::from).collect();
-    Cast {
+    FleetInfo {
         title: "a title — with signs".into(),
         caption: "K = 5".into(),
         duration: 30.0,
-        members: vec![
+        robots: vec![
             member("ann", true),
-            Member { shell: None, ..member("bob", false) },
+            RobotInfo { shell: None, ..member("bob", false) },
             member("cy", false),
         ],
         edges: vec![Edge { leader: 0, follower: 1 }, Edge { leader: 1, follower: 2 }],
@@ -77,13 +77,13 @@ pub(crate) fn cast() -> Cast {
             heights,
             grip: vec![],
         })),
-        ..Cast::default()
+        ..FleetInfo::default()
     }
 }
 
-pub(crate) fn moment(cast: &Cast, k: u32, n: &mut Numbers) -> Moment {
+pub(crate) fn step_record(fleet: &FleetInfo, k: u32, n: &mut Numbers) -> StepRecord {
     let mut robot = RobotState::default();
-    let robots = cast.members.iter().map(|_| {
+    let robots = fleet.robots.iter().map(|_| {
         [robot.motion.pose.x, robot.motion.pose.y, robot.motion.pose.heading] = n.many();
         [robot.motion.speed, robot.motion.acceleration, robot.motion.turn_rate] = n.many();
         [robot.attitude.height, robot.attitude.roll, robot.attitude.pitch, robot.camera_pan] = n.many();
@@ -103,14 +103,22 @@ pub(crate) fn moment(cast: &Cast, k: u32, n: &mut Numbers) -> Moment {
         [edge.asked.acceleration, edge.asked.turn_rate] = n.many();
         [edge.applied.acceleration, edge.applied.turn_rate] = n.many();
         edge.estimate = n.many();
-        edge.sight =
-            [Sight::Truth, Sight::Waiting, Sight::Tracking, Sight::Coasting, Sight::Lost][n.below(5)];
+        edge.sight = [
+            TrackingState::Truth,
+            TrackingState::Waiting,
+            TrackingState::Tracking,
+            TrackingState::Coasting,
+            TrackingState::Lost,
+        ][n.below(5)];
         (edge.limited, edge.too_close) = (n.below(2) == 1, n.below(2) == 1);
         edge
     };
     let contact = |n: &mut Numbers| Contact {
         number: n.whole(),
-        things: [Thing::Robot(n.below(3)), [Thing::Prop(2), Thing::Ground, Thing::Robot(1)][n.below(3)]],
+        things: [
+            EntityId::Robot(n.below(3)),
+            [EntityId::Prop(2), EntityId::Ground, EntityId::Robot(1)][n.below(3)],
+        ],
         begin: n.next(),
         end: n.next(),
         open: n.below(2) == 1,
@@ -119,10 +127,15 @@ pub(crate) fn moment(cast: &Cast, k: u32, n: &mut Numbers) -> Moment {
         impulse: n.next(),
     };
     let look = |n: &mut Numbers| {
-        let mut frame = Frame { edge: n.below(2), arrival: n.next(), pan: n.next(), ..Frame::default() };
-        frame.sighting.stamp = n.next();
-        frame.sighting.deviation = n.many();
-        [frame.sighting.relative.distance, frame.truth.bearing] = n.many();
+        let mut frame = MeasurementRecord {
+            edge: n.below(2),
+            arrival: n.next(),
+            pan: n.next(),
+            ..MeasurementRecord::default()
+        };
+        frame.measurement.stamp = n.next();
+        frame.measurement.deviation = n.many();
+        [frame.measurement.relative.distance, frame.truth.bearing] = n.many();
         frame.outcome =
             [Outcome::Used, Outcome::Rejected, Outcome::Ambiguous, Outcome::Missed, Outcome::Dropped]
                 [n.below(5)];
@@ -134,20 +147,20 @@ pub(crate) fn moment(cast: &Cast, k: u32, n: &mut Numbers) -> Moment {
         frame
     };
     // Some props stand for a while.
-    let props = cast.props.iter().enumerate().map(|(i, prop)| {
+    let props = fleet.props.iter().enumerate().map(|(i, prop)| {
         if i % 2 == 0 || k.is_multiple_of(7) {
             prop.placement
         } else {
             Placement { position: n.many(), rotation: n.many() }
         }
     });
-    Moment {
+    StepRecord {
         snapshot: Snapshot { time: f64::from(k) * 0.01 + 1e-13, robots, props: props.collect() },
         edges: (0..2).map(|_| edge(n)).collect(),
         contacts: (0..n.below(3)).map(|_| contact(n)).collect(),
         // Looks are told in the order of their edges.
         frames: {
-            let mut looks: Vec<Frame> = (0..n.below(3)).map(|_| look(n)).collect();
+            let mut looks: Vec<MeasurementRecord> = (0..n.below(3)).map(|_| look(n)).collect();
             looks.sort_by_key(|look| look.edge);
             looks
         },
@@ -170,17 +183,17 @@ pub(crate) fn options() -> RunOptions {
 }
 
 /// Records `count` moments in `folder`; they, and what the manifest says.
-pub(crate) fn record(folder: &Path, count: u32, status: Status) -> (Vec<Moment>, Manifest) {
-    let (cast, mut numbers) = (cast(), Numbers(7));
-    let moments: Vec<Moment> = (0..count).map(|k| moment(&cast, k, &mut numbers)).collect();
-    let mut recorder = Recorder::create(folder, &cast, options()).expect("a recorder");
-    for moment in &moments {
-        recorder.push(moment).expect("recorded");
+pub(crate) fn record(folder: &Path, count: u32, status: Status) -> (Vec<StepRecord>, Manifest) {
+    let (fleet, mut numbers) = (fleet(), Numbers(7));
+    let records: Vec<StepRecord> = (0..count).map(|k| step_record(&fleet, k, &mut numbers)).collect();
+    let mut recorder = Recorder::create(folder, &fleet, options()).expect("a recorder");
+    for record in &records {
+        recorder.push(record).expect("recorded");
     }
-    (moments, recorder.finish(status).expect("finished").0)
+    (records, recorder.finish(status).expect("finished").0)
 }
 
 /// Bit for bit but for payloads of NaN, of which there are none: `{:?}` tells −0 from 0 and prints all digits.
-pub(crate) fn same(a: &Moment, b: &Moment) -> bool {
+pub(crate) fn same(a: &StepRecord, b: &StepRecord) -> bool {
     a == b && format!("{a:?}") == format!("{b:?}")
 }

@@ -1,29 +1,29 @@
 //! Logs as this program writes them.
 
-use crate::common::{Numbers, cast, options, record, same};
+use crate::common::{Numbers, fleet, options, record, same};
 use metrics::Digest;
 use recording::log::{FILE, Log, compare};
 use recording::{Error, Recorder, RunOptions, Status};
 use std::fs;
 use std::path::Path;
-use vocabulary::Moment;
+use vocabulary::StepRecord;
 
 #[test]
 fn everything_comes_back_bit_for_bit() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (moments, manifest) = record(folder.path(), 450, Status::Complete);
+    let (records, manifest) = record(folder.path(), 450, Status::Complete);
     let log = Log::open(&folder.path().join(FILE)).expect("a log");
     assert!(log.whole());
-    assert_eq!((log.cast(), log.manifest()), (&cast(), &manifest));
+    assert_eq!((log.fleet(), log.manifest()), (&fleet(), &manifest));
     assert_eq!(log.scene(), options().scene);
-    let back: Vec<Moment> = log.moments().map(|moment| moment.expect("sound")).collect();
-    assert_eq!(back.len(), moments.len());
-    for (a, b) in back.iter().zip(&moments) {
+    let back: Vec<StepRecord> = log.records().map(|record| record.expect("sound")).collect();
+    assert_eq!(back.len(), records.len());
+    for (a, b) in back.iter().zip(&records) {
         assert!(same(a, b), "{a:?}\n{b:?}");
     }
     let mut digest = Digest::default();
-    for moment in &back {
-        digest.push(moment);
+    for record in &back {
+        digest.push(record);
     }
     assert_eq!(Some(digest.text()), manifest.digest);
 }
@@ -31,16 +31,16 @@ fn everything_comes_back_bit_for_bit() {
 #[test]
 fn any_time_is_found_without_reading_what_lies_before() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (moments, _) = record(folder.path(), 450, Status::Complete);
+    let (records, _) = record(folder.path(), 450, Status::Complete);
     let log = Log::open(&folder.path().join(FILE)).expect("a log");
     for (time, want) in
         [(-1.0, 0), (0.0, 0), (0.015, 1), (0.995, 99), (1.0, 99), (2.5, 249), (3.997, 399), (99.0, 449)]
     {
         let at = log.at(time).expect("sound").expect("a moment");
-        assert!(same(&at, &moments[want]), "{time} s gives {}", at.snapshot.time);
-        let on: Vec<Moment> = log.moments_from(time).map(|moment| moment.expect("sound")).collect();
-        let first = moments.iter().position(|moment| moment.snapshot.time >= time).unwrap_or(moments.len());
-        assert_eq!(on.len(), moments.len() - first, "from {time} s");
+        assert!(same(&at, &records[want]), "{time} s gives {}", at.snapshot.time);
+        let on: Vec<StepRecord> = log.moments_from(time).map(|record| record.expect("sound")).collect();
+        let first = records.iter().position(|record| record.snapshot.time >= time).unwrap_or(records.len());
+        assert_eq!(on.len(), records.len() - first, "from {time} s");
     }
 }
 
@@ -48,7 +48,7 @@ fn any_time_is_found_without_reading_what_lies_before() {
 #[test]
 fn a_log_reads_up_to_its_last_whole_chunk() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (moments, _) = record(folder.path(), 450, Status::Complete);
+    let (records, _) = record(folder.path(), 450, Status::Complete);
     let bytes = fs::read(folder.path().join(FILE)).expect("a log");
     let path = folder.path().join("cut.mcap");
     let mut lengths = std::collections::BTreeSet::new();
@@ -64,8 +64,8 @@ fn a_log_reads_up_to_its_last_whole_chunk() {
             }
             Err(other) => panic!("{other}"),
         };
-        let back: Vec<Moment> = log.moments().map(|moment| moment.expect("sound")).collect();
-        assert!(back.iter().zip(&moments).all(|(a, b)| same(a, b)));
+        let back: Vec<StepRecord> = log.records().map(|record| record.expect("sound")).collect();
+        assert!(back.iter().zip(&records).all(|(a, b)| same(a, b)));
         if log.manifest().status == Status::Running {
             assert_eq!(log.manifest().samples, back.len() as u64);
         }
@@ -80,7 +80,7 @@ fn a_log_reads_up_to_its_last_whole_chunk() {
 #[test]
 fn damage_is_told_or_does_not_matter() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (moments, _) = record(folder.path(), 120, Status::Complete);
+    let (records, _) = record(folder.path(), 120, Status::Complete);
     let mut bytes = fs::read(folder.path().join(FILE)).expect("a log");
     let path = folder.path().join("damaged.mcap");
     let (mut numbers, mut told) = (Numbers(3), 0);
@@ -94,9 +94,9 @@ fn damage_is_told_or_does_not_matter() {
                 told += 1;
             }
             Ok(log) => {
-                let back: Result<Vec<Moment>, Error> = log.moments().collect();
+                let back: Result<Vec<StepRecord>, Error> = log.records().collect();
                 match back {
-                    Ok(back) => assert!(back.iter().zip(&moments).all(|(a, b)| same(a, b)), "byte {place}"),
+                    Ok(back) => assert!(back.iter().zip(&records).all(|(a, b)| same(a, b)), "byte {place}"),
                     Err(_) => told += 1,
                 }
             }
@@ -138,14 +138,14 @@ fn what_is_no_log_of_ours_says_what_it_is_instead() {
 #[test]
 fn the_first_difference_is_named() {
     let folders = [tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("a folder")];
-    let (mut moments, _) = record(folders[0].path(), 150, Status::Complete);
-    moments[120].edges[1].applied.turn_rate = 0.5;
-    moments[130].edges[1].applied.turn_rate =
-        f64::from_bits(moments[130].edges[1].applied.turn_rate.to_bits() ^ 1);
-    moments.pop();
-    let mut recorder = Recorder::create(folders[1].path(), &cast(), options()).expect("a recorder");
-    for moment in &moments {
-        recorder.push(moment).expect("recorded");
+    let (mut records, _) = record(folders[0].path(), 150, Status::Complete);
+    records[120].edges[1].applied.turn_rate = 0.5;
+    records[130].edges[1].applied.turn_rate =
+        f64::from_bits(records[130].edges[1].applied.turn_rate.to_bits() ^ 1);
+    records.pop();
+    let mut recorder = Recorder::create(folders[1].path(), &fleet(), options()).expect("a recorder");
+    for record in &records {
+        recorder.push(record).expect("recorded");
     }
     recorder.finish(Status::Interrupted).expect("finished");
     let [a, b] = folders.each_ref().map(|folder| Log::open(&folder.path().join(FILE)).expect("a log"));
@@ -161,7 +161,7 @@ fn the_first_difference_is_named() {
 #[test]
 fn a_run_without_log_has_none() {
     let folder = tempfile::tempdir().expect("a folder");
-    let recorder = Recorder::create(folder.path(), &cast(), RunOptions { no_log: true, ..options() });
+    let recorder = Recorder::create(folder.path(), &fleet(), RunOptions { no_log: true, ..options() });
     recorder.expect("a recorder").finish(Status::Complete).expect("finished");
     assert!(!folder.path().join(FILE).exists());
 }

@@ -141,12 +141,12 @@ impl Track {
 
     fn description(&self) -> Vec<u8> {
         let short = |n: u32| (n as u16).to_be_bytes();
-        let profile: Vec<u8> = self.sequence.get(1..4).unwrap_or(&[66, 0, 31]).to_vec();
+        let trajectory: Vec<u8> = self.sequence.get(1..4).unwrap_or(&[66, 0, 31]).to_vec();
         let parameters = boxed(
             *b"avcC",
             &[
                 &[1],
-                &profile,
+                &trajectory,
                 // Lengths of four bytes; one sequence and one picture parameter set.
                 &[0xff, 0xe1],
                 &short(self.sequence.len() as u32),

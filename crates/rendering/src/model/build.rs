@@ -2,7 +2,7 @@
 
 use super::{Mesh, shell, wheel};
 use glam::Vec3;
-use vocabulary::{Body, Member, Shell};
+use vocabulary::{Body, RobotInfo, Shell};
 
 /// Measures of the model.
 const HALF_HULL: f32 = 0.08;
@@ -26,7 +26,7 @@ pub(crate) struct Build {
 }
 
 impl Build {
-    pub(crate) fn new(member: &Member) -> Self {
+    pub(crate) fn new(member: &RobotInfo) -> Self {
         let body = sane(&member.body);
         let radius = body.wheel_radius as f32;
         let tall = radius / wheel::RADIUS;
@@ -37,7 +37,7 @@ impl Build {
         Self {
             body,
             wheel: Vec3::new(tall, wide.clamp(0.45 * tall, 1.7 * tall), tall),
-            camera: Vec3::new(within(member.mount.forward), 0.0, within(member.mount.height)),
+            camera: Vec3::new(within(member.camera_mount.forward), 0.0, within(member.camera_mount.height)),
             head: shell::size(&shell.unwrap_or_else(|| Shell::fitting(&body))) as f32,
             shell,
             high: f64::from(radius) > 0.24 * body.height,
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn the_default_body_is_as_modelled() {
-        let build = Build::new(&Member::new("a", true, Body::default()));
+        let build = Build::new(&RobotInfo::new("a", true, Body::default()));
         assert_eq!(build.wheel, Vec3::ONE);
         assert!(build.camera.distance(Vec3::new(0.105, 0.0, 0.30)) < 1e-6 && build.head == 1.0);
         assert!((build.top() - 0.34).abs() < 1e-6 && (size(&build.body) - 1.0).abs() < 1e-12);
@@ -194,7 +194,7 @@ mod tests {
         let car =
             Body { length: 4.5, width: 1.8, height: 1.45, wheelbase: 2.7, track: 1.55, wheel_radius: 0.32 };
         for body in [truck, car] {
-            let build = Build::new(&Member::new("a", true, body));
+            let build = Build::new(&RobotInfo::new("a", true, body));
             let mesh = super::super::ghost(&Build { shell: None, ..build });
             let most = |k: usize| mesh.vertices.iter().map(|v| v.position[k]).fold(f32::MIN, f32::max);
             assert!((most(2) - body.height as f32).abs() < 0.02 * body.height as f32, "{}", most(2));
@@ -207,7 +207,7 @@ mod tests {
             }
         }
         let (truck, car) =
-            (Build::new(&Member::new("a", true, truck)), Build::new(&Member::new("a", true, car)));
+            (Build::new(&RobotInfo::new("a", true, truck)), Build::new(&RobotInfo::new("a", true, car)));
         assert!(truck.head == 1.0 && truck.high && car.head == 4.0 && !car.high);
         assert!((0.036 * truck.wheel.y - 0.1).abs() < 0.01);
     }

@@ -82,10 +82,10 @@ impl Mesh {
         }
     }
 
-    /// A turned shape around the y axis: `profile` lists [y, radius] from right (−y) to left (+y).
+    /// A turned shape around the y axis: `trajectory` lists [y, radius] from right (−y) to left (+y).
     pub(crate) fn turned(
         &mut self,
-        profile: &[[f32; 2]],
+        trajectory: &[[f32; 2]],
         sides: usize,
         material: impl Fn(usize) -> Material,
     ) {
@@ -93,7 +93,7 @@ impl Mesh {
             let turn = Vec2::from_angle(std::f32::consts::TAU * (k % sides) as f32 / sides as f32);
             Vec3::new(turn.x * radius, y, turn.y * radius)
         };
-        for (s, pair) in profile.windows(2).enumerate() {
+        for (s, pair) in trajectory.windows(2).enumerate() {
             for k in 0..sides {
                 let corners = [at(pair[0], k), at(pair[0], k + 1), at(pair[1], k + 1), at(pair[1], k)];
                 self.quad([corners[0], corners[3], corners[2], corners[1]], material(s));
@@ -169,7 +169,7 @@ mod tests {
             (
                 super::super::body(
                     super::super::Detail::Full,
-                    &super::super::Build::new(&vocabulary::Member::new(
+                    &super::super::Build::new(&vocabulary::RobotInfo::new(
                         "a",
                         true,
                         vocabulary::Body::default(),

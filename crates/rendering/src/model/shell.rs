@@ -144,17 +144,17 @@ pub(super) fn camera(detail: Detail) -> Mesh {
     }
     mesh.cuboid([-0.0225, -0.012, -0.004], [-0.0221, 0.012, 0.004], Material::Metal);
     let from = mesh.vertices.len();
-    let mut lens = Mesh::default();
-    lens.turned(&[[-0.002, 0.0145], [0.016, 0.0145], [0.016, 0.011], [0.012, 0.0]], 12, |s| {
+    let mut camera_model = Mesh::default();
+    camera_model.turned(&[[-0.002, 0.0145], [0.016, 0.0145], [0.016, 0.011], [0.012, 0.0]], 12, |s| {
         if s < 2 { Material::Metal } else { Material::Glass }
     });
     // Turned shapes stand along y; the lens looks along x.
-    for vertex in &mut lens.vertices {
+    for vertex in &mut camera_model.vertices {
         let turn = |[x, y, z]: [f32; 3]| [y, -x, z];
         vertex.position = turn(vertex.position);
         vertex.normal = turn(vertex.normal);
     }
-    mesh.append(&lens, Vec3::new(0.016, 0.0, 0.0));
+    mesh.append(&camera_model, Vec3::new(0.016, 0.0, 0.0));
     mesh.smooth(from, 0.7);
     mesh
 }
@@ -162,7 +162,7 @@ pub(super) fn camera(detail: Detail) -> Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::{Body, FACES, Member};
+    use vocabulary::{Body, FACES, RobotInfo};
 
     /// Corners of the black squares, found by their cells, are where the shell has them.
     #[test]
@@ -173,7 +173,7 @@ mod tests {
             Shell::PAPER.scaled(4.0).at(1.3, 1.8),
             Shell { lean: 0.4, face_height: 0.2, ..Shell::PAPER },
         ] {
-            let member = Member { shell: Some(shell.tagged(3)), ..Member::new("a", true, body) };
+            let member = RobotInfo { shell: Some(shell.tagged(3)), ..RobotInfo::new("a", true, body) };
             let mesh = faces(&Build::new(&member));
             assert_eq!(mesh.vertices.len(), 6 * FACES);
             for (face, corners) in mesh.vertices.chunks_exact(6).enumerate() {

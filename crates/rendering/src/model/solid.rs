@@ -22,10 +22,10 @@ fn cone() -> Mesh {
     upright(&[[0.0, 0.0], [0.0, 1.0], [0.035, 0.965], [0.045, 0.80], [0.985, 0.055], [1.0, 0.0]])
 }
 
-/// A turned shape that stands: `profile` lists [z, radius] from the foot up.
-fn upright(profile: &[[f32; 2]]) -> Mesh {
+/// A turned shape that stands: `trajectory` lists [z, radius] from the foot up.
+fn upright(trajectory: &[[f32; 2]]) -> Mesh {
     let mut mesh = Mesh::default();
-    mesh.turned(profile, SIDES, |_| Material::Paint);
+    mesh.turned(trajectory, SIDES, |_| Material::Paint);
     for vertex in &mut mesh.vertices {
         // Turned shapes lie along y.
         let raise = |[x, y, z]: [f32; 3]| [x, -z, y];

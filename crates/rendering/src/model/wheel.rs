@@ -13,7 +13,7 @@ const LUGS: usize = 15;
 pub(super) fn wheel(plain: bool, lugs: bool) -> Mesh {
     let mut mesh = Mesh::default();
     let half = 0.018;
-    let profile = [
+    let trajectory = [
         [-half, 0.0],
         [-half, 0.034],
         [-0.014, RADIUS],
@@ -28,7 +28,7 @@ pub(super) fn wheel(plain: bool, lugs: bool) -> Mesh {
         mesh.turned(&[[half, 0.028], [half + 0.002, 0.0]], 5, |_| Material::Metal);
         return mesh;
     }
-    mesh.turned(&profile, 18, |s| if s == 6 { Material::Plastic } else { Material::Tyre });
+    mesh.turned(&trajectory, 18, |s| if s == 6 { Material::Plastic } else { Material::Tyre });
     mesh.smooth(0, 0.7);
     if lugs {
         tread(&mut mesh);

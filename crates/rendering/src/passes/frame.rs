@@ -6,10 +6,10 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4};
 use wgpu::{BindGroup, BindGroupLayout, Device, ShaderStages};
 
-/// Mirrors `Frame` of the shaders.
+/// Mirrors `FrameUniforms` of the shaders.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Frame {
+pub(crate) struct FrameUniforms {
     pub(crate) clip_from_local: [[f32; 4]; 4],
     pub(crate) shadow_from_local: [[f32; 4]; 4],
     pub(crate) eye: [f32; 4],
@@ -22,7 +22,7 @@ pub(crate) struct Frame {
     pub(crate) spare: [f32; 4],
 }
 
-impl Frame {
+impl FrameUniforms {
     /// The frame of `camera` with positions relative to `origin`.
     pub(crate) fn new(camera: &Camera, origin: DVec3, shadow_from_local: Mat4) -> Self {
         let middle = camera.forward + camera.right * camera.shift.x + camera.up * camera.shift.y;
@@ -78,7 +78,7 @@ impl FrameGroups {
         Self { view_layout, light_layout, view, light, uniform }
     }
 
-    pub(crate) fn fill(&mut self, device: &Device, queue: &wgpu::Queue, frames: &[Frame]) {
+    pub(crate) fn fill(&mut self, device: &Device, queue: &wgpu::Queue, frames: &[FrameUniforms]) {
         let bytes: &[u8] = bytemuck::cast_slice(frames);
         if bytes.len() as u64 > self.uniform.size() {
             (self.uniform, self.view) =
@@ -89,7 +89,7 @@ impl FrameGroups {
 
     /// Where view `index` starts in the uniform.
     pub(crate) fn offset(index: usize) -> u32 {
-        (index * size_of::<Frame>()) as u32
+        (index * size_of::<FrameUniforms>()) as u32
     }
 }
 
@@ -97,14 +97,14 @@ impl FrameGroups {
 fn views(device: &Device, layout: &BindGroupLayout, count: u64) -> (wgpu::Buffer, BindGroup) {
     let uniform = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("frame"),
-        size: count * size_of::<Frame>() as u64,
+        size: count * size_of::<FrameUniforms>() as u64,
         usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
     let one = wgpu::BufferBinding {
         buffer: &uniform,
         offset: 0,
-        size: std::num::NonZeroU64::new(size_of::<Frame>() as u64),
+        size: std::num::NonZeroU64::new(size_of::<FrameUniforms>() as u64),
     };
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("frame"),
@@ -123,7 +123,7 @@ fn view_layout(device: &Device) -> BindGroupLayout {
             ty: wgpu::BindingType::Buffer {
                 ty: wgpu::BufferBindingType::Uniform,
                 has_dynamic_offset: true,
-                min_binding_size: std::num::NonZeroU64::new(size_of::<Frame>() as u64),
+                min_binding_size: std::num::NonZeroU64::new(size_of::<FrameUniforms>() as u64),
             },
             count: None,
         }],

@@ -64,18 +64,18 @@ fn every_shader_is_valid() {
 #[test]
 fn the_frame_is_the_shaders_frame() {
     let (size, offsets) = shape(&module("ground"), "Frame");
-    assert_eq!(size as usize, size_of::<frame::Frame>());
+    assert_eq!(size as usize, size_of::<frame::FrameUniforms>());
     let ours = [
-        offset_of!(frame::Frame, clip_from_local),
-        offset_of!(frame::Frame, shadow_from_local),
-        offset_of!(frame::Frame, eye),
-        offset_of!(frame::Frame, right),
-        offset_of!(frame::Frame, up),
-        offset_of!(frame::Frame, forward),
-        offset_of!(frame::Frame, sun),
-        offset_of!(frame::Frame, ground),
-        offset_of!(frame::Frame, terrain),
-        offset_of!(frame::Frame, spare),
+        offset_of!(frame::FrameUniforms, clip_from_local),
+        offset_of!(frame::FrameUniforms, shadow_from_local),
+        offset_of!(frame::FrameUniforms, eye),
+        offset_of!(frame::FrameUniforms, right),
+        offset_of!(frame::FrameUniforms, up),
+        offset_of!(frame::FrameUniforms, forward),
+        offset_of!(frame::FrameUniforms, sun),
+        offset_of!(frame::FrameUniforms, ground),
+        offset_of!(frame::FrameUniforms, terrain),
+        offset_of!(frame::FrameUniforms, spare),
     ];
     assert_eq!(offsets.iter().map(|o| *o as usize).collect::<Vec<_>>(), ours);
     // Views share a buffer at offsets that every adapter accepts.

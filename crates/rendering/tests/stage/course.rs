@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 use vocabulary::{
-    Attitude, Body, Cast, Condition, Contact, Member, Mobility, Moment, Placement, Pose, Prop, Solid,
-    Terrain, Thing,
+    Attitude, Body, Condition, Contact, EntityId, FleetInfo, Mobility, Placement, Pose, Prop, RobotInfo,
+    Solid, StepRecord, Terrain,
 };
 
 /// Big wheels on 1/10 of a truck.
@@ -82,30 +82,30 @@ pub(crate) fn hills() -> Terrain {
 }
 
 /// Puts every prop of a cast on its terrain.
-fn settle(cast: &mut Cast) {
-    let Some(terrain) = cast.terrain.clone() else { return };
-    for prop in &mut cast.props {
+fn settle(fleet: &mut FleetInfo) {
+    let Some(terrain) = fleet.terrain.clone() else { return };
+    for prop in &mut fleet.props {
         let [x, y, z] = prop.placement.position;
         prop.placement.position = [x, y, z + terrain.at(x, y).height];
     }
 }
 
 /// Gives a cast bodies, and hills and props to drive among.
-pub(crate) fn furnish(cast: &mut Cast, body: Body, hilly: bool, with_props: bool) {
-    for (k, member) in cast.members.iter_mut().enumerate() {
-        *member = Member::new(member.name.clone(), member.leads, body);
+pub(crate) fn furnish(fleet: &mut FleetInfo, body: Body, hilly: bool, with_props: bool) {
+    for (k, member) in fleet.robots.iter_mut().enumerate() {
+        *member = RobotInfo::new(member.name.clone(), member.leads, body);
         member.shell = member.shell.map(|shell| shell.tagged(k));
     }
-    cast.terrain = hilly.then(|| Arc::new(hills()));
-    cast.props = if with_props { props() } else { vec![] };
-    settle(cast);
+    fleet.terrain = hilly.then(|| Arc::new(hills()));
+    fleet.props = if with_props { props() } else { vec![] };
+    settle(fleet);
 }
 
 /// A contact at a place.
 pub(crate) fn touch(number: u64, begin: f64, place: [f64; 3]) -> Contact {
     Contact {
         number,
-        things: [Thing::Robot(0), Thing::Prop(0)],
+        things: [EntityId::Robot(0), EntityId::Prop(0)],
         begin,
         end: begin,
         open: true,
@@ -116,13 +116,13 @@ pub(crate) fn touch(number: u64, begin: f64, place: [f64; 3]) -> Contact {
 }
 
 /// Robots as they stand on the terrain of a cast, and its props where they start.
-pub(crate) fn grounded(cast: &Cast, mut moment: Moment) -> Moment {
-    moment.snapshot.props = cast.props.iter().map(|p| p.placement).collect();
-    for (robot, member) in moment.snapshot.robots.iter_mut().zip(&cast.members) {
+pub(crate) fn grounded(fleet: &FleetInfo, mut record: StepRecord) -> StepRecord {
+    record.snapshot.props = fleet.props.iter().map(|p| p.placement).collect();
+    for (robot, member) in record.snapshot.robots.iter_mut().zip(&fleet.robots) {
         for wheel in &mut robot.wheels {
             wheel.rotation *= 0.045 / member.body.wheel_radius;
         }
-        let Some(terrain) = &cast.terrain else { continue };
+        let Some(terrain) = &fleet.terrain else { continue };
         let pose = robot.motion.pose;
         let at = |forward: f64, left: f64| {
             let [x, y] = pose.world_from_body(forward, left);
@@ -136,16 +136,16 @@ pub(crate) fn grounded(cast: &Cast, mut moment: Moment) -> Moment {
         robot.attitude =
             Attitude { height: rear, roll: left.atan2(2.0 * half), pitch: -(front - rear).atan2(base) };
     }
-    moment
+    record
 }
 
 /// A moment of the same robots farther apart.
-pub(crate) fn enlarge(moment: &mut Moment, scale: f64) {
-    for robot in &mut moment.snapshot.robots {
+pub(crate) fn enlarge(record: &mut StepRecord, scale: f64) {
+    for robot in &mut record.snapshot.robots {
         let pose = &mut robot.motion.pose;
         (pose.x, pose.y) = (scale * pose.x, scale * pose.y);
     }
-    for edge in &mut moment.edges {
+    for edge in &mut record.edges {
         edge.relative.distance *= scale;
         edge.set_point[0] *= scale;
         edge.error[0] *= scale;
@@ -153,9 +153,9 @@ pub(crate) fn enlarge(moment: &mut Moment, scale: f64) {
 }
 
 /// Lays a robot on its roof.
-pub(crate) fn overturn(cast: &Cast, moment: &mut Moment, robot: usize) {
-    let state = &mut moment.snapshot.robots[robot];
+pub(crate) fn overturn(fleet: &FleetInfo, record: &mut StepRecord, robot: usize) {
+    let state = &mut record.snapshot.robots[robot];
     state.attitude.roll = 2.9;
-    state.attitude.height += cast.members[robot].body.height + 0.1;
+    state.attitude.height += fleet.robots[robot].body.height + 0.1;
     state.condition = Condition::Overturned;
 }

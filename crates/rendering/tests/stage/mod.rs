@@ -2,7 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use vocabulary::{
-    Body, Cast, Edge, EdgeState, Member, Moment, Motion, Pose, Relative, RobotState, Snapshot, Wheel, wrap,
+    Body, Edge, EdgeState, FleetInfo, Motion, Pose, Relative, RobotInfo, RobotState, Snapshot, StepRecord,
+    Wheel, wrap,
 };
 
 /// What the lead robot drives.
@@ -31,7 +32,7 @@ impl Path {
 #[derive(Debug, Clone)]
 pub(crate) struct Play {
     /// Who is on stage.
-    pub(crate) cast: Cast,
+    pub(crate) fleet: FleetInfo,
     goals: Vec<[f64; 2]>,
     path: Path,
 }
@@ -55,22 +56,22 @@ impl Play {
             goals.push(goal);
         }
         let name = |k: usize| if k == 0 { "leader".to_owned() } else { format!("follower-{k}") };
-        let member = |k| Play::tagged(Member::new(name(k), k == 0, Body::default()), k);
-        let cast = Cast {
+        let member = |k| Play::tagged(RobotInfo::new(name(k), k == 0, Body::default()), k);
+        let fleet = FleetInfo {
             title: "Holding a shape".into(),
             caption: "output feedback, observer · k = (5, 5), β = 5, ε = 0.001".into(),
             duration: 30.0,
-            members: (0..robots).map(member).collect(),
+            robots: (0..robots).map(member).collect(),
             edges,
-            ..Cast::default()
+            ..FleetInfo::default()
         };
-        Self { cast, goals, path }
+        Self { fleet, goals, path }
     }
 
     /// A member with the tags of its place.
-    fn tagged(member: Member, place: usize) -> Member {
+    fn tagged(member: RobotInfo, place: usize) -> RobotInfo {
         let shell = member.shell.map(|shell| shell.tagged(place));
-        Member { shell, ..member }
+        RobotInfo { shell, ..member }
     }
 
     fn lead(&self, time: f64) -> [f64; 2] {
@@ -82,10 +83,10 @@ impl Play {
     }
 
     fn place(&self, robot: usize, time: f64) -> [f64; 2] {
-        let Some(k) = self.cast.edges.iter().position(|e| e.follower == robot) else {
+        let Some(k) = self.fleet.edges.iter().position(|e| e.follower == robot) else {
             return self.lead(time);
         };
-        let leader = self.pose(self.cast.edges[k].leader, time);
+        let leader = self.pose(self.fleet.edges[k].leader, time);
         let [distance, bearing] = self.goals[k];
         let off = 0.5 * (-time / 3.0).exp();
         let (sin, cos) = (bearing + 0.5 * off).sin_cos();
@@ -96,7 +97,7 @@ impl Play {
         // Differences through a chain of leaders would double the work at every link: one heading for all is enough there.
         let h = 0.02;
         let [x, y] = self.place(robot, time);
-        let (a, b) = if self.cast.edges.len() > 12 {
+        let (a, b) = if self.fleet.edges.len() > 12 {
             (self.lead(time - h), self.lead(time + h))
         } else {
             (self.place(robot, time - h), self.place(robot, time + h))
@@ -105,8 +106,8 @@ impl Play {
     }
 
     /// The moment at `time`, s.
-    pub(crate) fn at(&self, time: f64) -> Moment {
-        let robots: Vec<_> = (0..self.cast.members.len()).map(|k| self.robot(k, time)).collect();
+    pub(crate) fn at(&self, time: f64) -> StepRecord {
+        let robots: Vec<_> = (0..self.fleet.robots.len()).map(|k| self.robot(k, time)).collect();
         let edge = |(edge, goal): (&Edge, &[f64; 2])| {
             let (leader, follower) = (robots[edge.leader].motion.pose, robots[edge.follower].motion.pose);
             let (dx, dy) = (follower.x - leader.x, follower.y - leader.y);
@@ -118,8 +119,8 @@ impl Play {
             let error = [goal[0] - relative.distance, wrap(goal[1] - relative.bearing)];
             EdgeState { relative, set_point: *goal, error, ..EdgeState::default() }
         };
-        let edges = self.cast.edges.iter().zip(&self.goals).map(edge).collect();
-        Moment { snapshot: Snapshot { time, robots, props: vec![] }, edges, ..Moment::default() }
+        let edges = self.fleet.edges.iter().zip(&self.goals).map(edge).collect();
+        StepRecord { snapshot: Snapshot { time, robots, props: vec![] }, edges, ..StepRecord::default() }
     }
 
     fn robot(&self, robot: usize, time: f64) -> RobotState {
@@ -136,7 +137,7 @@ impl Play {
 
     /// A trail up to and including `time`.
     pub(crate) fn trail(&self, time: f64) -> rendering::Trail {
-        let mut trail = rendering::Trail::new(&self.cast);
+        let mut trail = rendering::Trail::new(&self.fleet);
         for k in 0..=(time * 30.0) as i32 {
             trail.push(&self.at(f64::from(k) / 30.0));
         }

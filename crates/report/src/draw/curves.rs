@@ -34,12 +34,12 @@ impl<'a> Curve<'a> {
 
     /// All edges of a run; of many, a few by name and the others as a crowd.
     pub(crate) fn all(run: &'a Trace) -> Vec<Self> {
-        let few = run.cast.edges.len() < NAMED;
-        let mut worst: Vec<usize> = (0..run.cast.edges.len()).collect();
+        let few = run.fleet.edges.len() < NAMED;
+        let mut worst: Vec<usize> = (0..run.fleet.edges.len()).collect();
         worst.sort_by(|a, b| run.settled(*b).unwrap_or(0.0).total_cmp(&run.settled(*a).unwrap_or(0.0)));
         let (first, last) = (worst.first().copied(), worst.last().copied());
         let named = |edge: usize| few || Some(edge) == first || Some(edge) == last;
-        let mut curves: Vec<Self> = (0..run.cast.edges.len())
+        let mut curves: Vec<Self> = (0..run.fleet.edges.len())
             .map(|edge| Curve {
                 name: if named(edge) { run.follower(edge).to_owned() } else { String::new() },
                 run,
@@ -80,7 +80,7 @@ impl<'a> Curve<'a> {
 
     /// Speeds of the follower, m/s.
     fn speeds(&self) -> Vec<f64> {
-        let robot = self.run.cast.edges.get(self.edge).and_then(|e| self.run.robots.get(e.follower));
+        let robot = self.run.fleet.edges.get(self.edge).and_then(|e| self.run.robots.get(e.follower));
         robot.into_iter().flatten().map(|m| m.speed).collect()
     }
 
@@ -89,7 +89,7 @@ impl<'a> Curve<'a> {
     }
 
     fn limits(&self) -> Option<Limits> {
-        let edge = self.run.cast.edges.get(self.edge)?;
+        let edge = self.run.fleet.edges.get(self.edge)?;
         Some(self.run.scene.robots.get(edge.follower)?.vehicle.limits())
     }
 }

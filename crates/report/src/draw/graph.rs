@@ -9,12 +9,12 @@ use std::fmt::Write;
 /// leader's frame: x forward, y left, m.
 pub(crate) fn places(run: &Trace, sample: usize) -> Vec<[f64; 2]> {
     let pose = |robot: usize| run.robots.get(robot).and_then(|m| m.get(sample)).map(|m| m.pose);
-    let first = run.cast.members.iter().position(|m| m.leads).unwrap_or(0);
+    let first = run.fleet.robots.iter().position(|m| m.leads).unwrap_or(0);
     let origin = pose(first).unwrap_or_default();
     let (sin, cos) = origin.heading.sin_cos();
     let mut places: Vec<Option<[f64; 2]>> = run
-        .cast
-        .members
+        .fleet
+        .robots
         .iter()
         .enumerate()
         .map(|(robot, member)| {
@@ -24,8 +24,8 @@ pub(crate) fn places(run: &Trace, sample: usize) -> Vec<[f64; 2]> {
         })
         .collect();
     // A formation is a forest: every round places the followers of those placed before.
-    for _ in 0..run.cast.members.len() {
-        for (index, edge) in run.cast.edges.iter().enumerate() {
+    for _ in 0..run.fleet.robots.len() {
+        for (index, edge) in run.fleet.edges.iter().enumerate() {
             let leader = places.get(edge.leader).copied().flatten();
             let row = run.edges.get(index).and_then(|rows| rows.get(sample));
             if let (Some([x, y]), Some(row), Some(place)) = (leader, row, places.get_mut(edge.follower)) {
@@ -40,7 +40,7 @@ pub(crate) fn places(run: &Trace, sample: usize) -> Vec<[f64; 2]> {
 /// Largest distance of a robot from where the set points want it, at a sample, in the first leader's frame, m.
 pub(crate) fn farthest(run: &Trace, sample: usize) -> Option<f64> {
     let pose = |robot: usize| run.robots.get(robot).and_then(|m| m.get(sample)).map(|m| m.pose);
-    let origin = pose(run.cast.members.iter().position(|m| m.leads).unwrap_or(0))?;
+    let origin = pose(run.fleet.robots.iter().position(|m| m.leads).unwrap_or(0))?;
     let (sin, cos) = origin.heading.sin_cos();
     let off = |(robot, place): (usize, &[f64; 2])| {
         let pose = pose(robot)?;
@@ -57,7 +57,7 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
     let places = places(run, sample);
     // The page is looked at along the leader's heading: forward is up.
     let page: Vec<[f64; 2]> = places.iter().map(|[x, y]| [-y, *x]).collect();
-    let count = run.cast.members.len();
+    let count = run.fleet.robots.len();
     let (radius, labels) = match count {
         0..NAMED => (6.5, true),
         NAMED..16 => (5.5, true),
@@ -68,10 +68,10 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
         Plan { margin: if labels { [46.0, 9.0] } else { [8.0; 2] }, height: 75.0, ..Plan::default() };
     let middle = page.iter().map(|p| p[0]).sum::<f64>() / count.max(1) as f64;
     let mut csv = String::from("leader,follower,distance_m,bearing_rad,bearing_deg\n");
-    for (index, edge) in run.cast.edges.iter().enumerate() {
+    for (index, edge) in run.fleet.edges.iter().enumerate() {
         let Some(row) = run.edges.get(index).and_then(|rows| rows.get(sample)) else { continue };
         let [distance, bearing] = row.set_point;
-        let name = |robot: usize| run.cast.members.get(robot).map_or("", |m| m.name.as_str());
+        let name = |robot: usize| run.fleet.robots.get(robot).map_or("", |m| m.name.as_str());
         let _ = writeln!(
             csv,
             "{},{},{},{},{}",
@@ -97,7 +97,7 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
         }
     }
     let signs = signs(run);
-    for (robot, member) in run.cast.members.iter().enumerate() {
+    for (robot, member) in run.fleet.robots.iter().enumerate() {
         let Some(at) = page.get(robot).copied() else { continue };
         plan.nodes.push(Node {
             at,
@@ -120,7 +120,7 @@ fn signs(run: &Trace) -> Vec<String> {
             number => number.to_owned(),
         }
     };
-    let signs: Vec<String> = run.cast.members.iter().map(|member| sign(&member.name)).collect();
+    let signs: Vec<String> = run.fleet.robots.iter().map(|member| sign(&member.name)).collect();
     let mut different = signs.clone();
     different.sort();
     different.dedup();

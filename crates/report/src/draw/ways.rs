@@ -13,7 +13,7 @@ const LEAST: f64 = 3.2;
 
 /// The ways of all robots.
 pub(crate) fn trajectories(run: &Trace) -> (Drawn, f64) {
-    let crowd = run.cast.members.len() > CROWD;
+    let crowd = run.fleet.robots.len() > CROWD;
     let mut plan = Plan {
         axes: Some(["x (m)".to_owned(), "y (m)".to_owned()]),
         height: 90.0,
@@ -21,7 +21,7 @@ pub(crate) fn trajectories(run: &Trace) -> (Drawn, f64) {
         ..Plan::default()
     };
     for (robot, motions) in run.robots.iter().enumerate() {
-        let leads = run.cast.members.get(robot).is_some_and(|m| m.leads);
+        let leads = run.fleet.robots.get(robot).is_some_and(|m| m.leads);
         plan.tracks.push(Track {
             points: motions.iter().map(|m| [m.pose.x, m.pose.y]).collect(),
             colour: run.colours.get(robot).copied().unwrap_or_default(),
@@ -41,7 +41,7 @@ pub(crate) fn trajectories(run: &Trace) -> (Drawn, f64) {
         }
     }
     names(run, &times, (scale, factor), &mut plan);
-    let columns = run.robots.iter().zip(&run.cast.members).flat_map(|(motions, member)| {
+    let columns = run.robots.iter().zip(&run.fleet.robots).flat_map(|(motions, member)| {
         let column = |what: &str, value: fn(&vocabulary::Motion) -> f64| {
             (format!("{} {what}", member.name), motions.iter().map(value).collect())
         };
@@ -64,9 +64,9 @@ fn scale(plan: &Plan) -> f64 {
 
 /// How much larger than they are robots have to be drawn to be seen, in steps, and may be without lying over each other.
 fn enlargement(run: &Trace, scale: f64, times: &[f64]) -> f64 {
-    let length = run.cast.members.iter().map(|m| m.body.length).fold(0.0, f64::max).max(1e-3);
+    let length = run.fleet.robots.iter().map(|m| m.body.length).fold(0.0, f64::max).max(1e-3);
     let free = times.iter().map(|time| nearest(run, run.sample_at(*time))).fold(f64::INFINITY, f64::min);
-    let most = if run.cast.members.len() > CROWD { 2.0 } else { 4.0 };
+    let most = if run.fleet.robots.len() > CROWD { 2.0 } else { 4.0 };
     let fits = [4.0, 3.0, 2.0, 1.5].into_iter().find(|f| *f <= most && f * length <= 0.75 * free);
     let most = fits.unwrap_or(1.0);
     [1.0, 1.5, 2.0, 3.0, 4.0].into_iter().find(|f| f * length * scale >= LEAST).unwrap_or(most).min(most)
@@ -95,7 +95,7 @@ fn marked(end: f64, crowd: bool) -> Vec<f64> {
 fn mark(run: &Trace, time: f64, factor: f64, plan: &mut Plan) {
     let sample = run.sample_at(time);
     let pose = |robot: usize| Some(run.robots.get(robot)?.get(sample)?.pose);
-    for edge in &run.cast.edges {
+    for edge in &run.fleet.edges {
         if let (Some(a), Some(b)) = (pose(edge.leader), pose(edge.follower)) {
             plan.tracks.push(Track {
                 points: vec![[a.x, a.y], [b.x, b.y]],
@@ -105,7 +105,7 @@ fn mark(run: &Trace, time: f64, factor: f64, plan: &mut Plan) {
             });
         }
     }
-    for (robot, member) in run.cast.members.iter().enumerate() {
+    for (robot, member) in run.fleet.robots.iter().enumerate() {
         let Some(pose) = pose(robot) else { continue };
         let colour = run.colours.get(robot).copied().unwrap_or_default();
         let filled = if member.leads { 0.85 } else { 0.55 };
@@ -127,7 +127,7 @@ fn outline(pose: Pose, body: &Body, factor: f64) -> Vec<[f64; 2]> {
 
 /// The first robot that leads, or the first of all.
 fn guide(run: &Trace) -> usize {
-    run.cast.members.iter().position(|m| m.leads).unwrap_or(0)
+    run.fleet.robots.iter().position(|m| m.leads).unwrap_or(0)
 }
 
 /// +1 where the guide turns left on the whole, −1 where it turns right.
@@ -167,7 +167,7 @@ fn clock(run: &Trace, time: f64, magnified: f64, plan: &mut Plan) {
     let Some(motion) = run.robots.get(robot).and_then(|m| m.get(run.sample_at(time))) else { return };
     let text = if time == 0.0 { "t = 0".to_owned() } else { format!("{} s", plain(time)) };
     let side = beside(motion.pose, -turn(run));
-    let body = run.cast.members.get(robot).map_or_else(Body::default, |m| m.body);
+    let body = run.fleet.robots.get(robot).map_or_else(Body::default, |m| m.body);
     let off = clear(motion.pose, &body, side, magnified);
     plan.notes.push(Note { at: [motion.pose.x, motion.pose.y], text, side, off, colour: None });
 }
@@ -186,7 +186,7 @@ const FREE: f64 = 9.0;
 /// Names beside ways, halfway between two marked times, on the inside of the turn; on the outside where the guide's
 /// times would be in the way.
 fn names(run: &Trace, times: &[f64], (scale, factor): (f64, f64), plan: &mut Plan) {
-    let few = run.cast.members.len() < NAMED;
+    let few = run.fleet.robots.len() < NAMED;
     let end = run.times.last().copied().unwrap_or(0.0);
     let middle = times.len() / 2;
     let at = match times.get(middle).zip(times.get(middle + 1)) {
@@ -197,7 +197,7 @@ fn names(run: &Trace, times: &[f64], (scale, factor): (f64, f64), plan: &mut Pla
     let pose = |robot: usize| run.robots.get(robot).and_then(|m| m.get(sample)).map(|m| m.pose);
     let Some(first) = pose(guide(run)) else { return };
     let (mut notes, mut astray): (Vec<Note>, bool) = (vec![], false);
-    for (robot, member) in run.cast.members.iter().enumerate().filter(|(_, m)| few || m.leads) {
+    for (robot, member) in run.fleet.robots.iter().enumerate().filter(|(_, m)| few || m.leads) {
         let Some(pose) = pose(robot) else { continue };
         let (sin, cos) = first.heading.sin_cos();
         let inward = turn(run) * ((pose.y - first.y) * cos - (pose.x - first.x) * sin) * scale;
@@ -215,7 +215,7 @@ fn names(run: &Trace, times: &[f64], (scale, factor): (f64, f64), plan: &mut Pla
             Side::Below => [0.0, -away],
         };
         let distance = |other: Pose| (pose.x + dx - other.x).hypot(pose.y + dy - other.y);
-        astray |= (0..run.cast.members.len())
+        astray |= (0..run.fleet.robots.len())
             .filter(|other| *other != robot)
             .filter_map(|other| run.robots.get(other)?.get(sample))
             .any(|other| distance(other.pose) < dx.hypot(dy));

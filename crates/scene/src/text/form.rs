@@ -1,7 +1,7 @@
 //! Forms: what a value may look like. Each reads its value, says what is wrong with it, and describes itself to
 //! the JSON Schema, so that the reader and the schema cannot disagree.
 
-use crate::text::{Node, Reading, Value};
+use crate::text::{Node, Reporter, Value};
 use serde_json::{Value as Json, json};
 use std::{
     f64::consts::{PI, TAU},
@@ -15,7 +15,7 @@ pub(crate) trait Form {
     type Out;
 
     /// The value, or `None` after a note on what is wrong with it.
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Self::Out>;
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out>;
 
     /// Its JSON Schema.
     fn schema(&self) -> Json;
@@ -78,10 +78,10 @@ impl Number {
 impl Form for Number {
     type Out = f64;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<f64> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<f64> {
         let value = node.as_number().filter(|value| self.holds(*value));
         if value.is_none() {
-            reading.wrong(node, &self.expected());
+            reporter.wrong(node, &self.expected());
         }
         value
     }
@@ -123,12 +123,13 @@ pub(crate) const fn angle_of_turns(turns: f64) -> Angle {
 impl Form for Angle {
     type Out = f64;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<f64> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<f64> {
         let value = node.as_number().or_else(|| node.as_text().and_then(angle_of_text));
         let value = value.filter(|v| *v >= self.low - ROUNDING && *v <= self.high + ROUNDING);
         if value.is_none() {
             let [low, high] = [self.low, self.high].map(|bound| (bound.to_degrees() * 1e6).round() / 1e6);
-            reading.wrong(node, &format!("an angle, in rad or as \"135 deg\", from {low} deg to {high} deg"));
+            reporter
+                .wrong(node, &format!("an angle, in rad or as \"135 deg\", from {low} deg to {high} deg"));
         }
         let value = value?.clamp(self.low, self.high);
         Some(if self.wrapped { wrap(value) } else { value })
@@ -166,7 +167,7 @@ pub(crate) const fn integer<T: TryFrom<u64>>(low: u64, high: u64) -> Integer<T> 
 impl<T: TryFrom<u64>> Form for Integer<T> {
     type Out = T;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<T> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<T> {
         let Self(low, high, _) = *self;
         let value = match node.value {
             Value::Integer(value) => u64::try_from(value).ok().filter(|value| (low..=high).contains(value)),
@@ -176,7 +177,7 @@ impl<T: TryFrom<u64>> Form for Integer<T> {
         if value.is_none() {
             let expected =
                 if low == high { low.to_string() } else { format!("a whole number from {low} to {high}") };
-            reading.wrong(node, &expected);
+            reporter.wrong(node, &expected);
         }
         value
     }
@@ -197,11 +198,11 @@ pub(crate) const fn flag() -> Flag {
 impl Form for Flag {
     type Out = bool;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<bool> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<bool> {
         if let Value::Flag(flag) = node.value {
             return Some(flag);
         }
-        reading.wrong(node, "true or false");
+        reporter.wrong(node, "true or false");
         None
     }
 
@@ -221,10 +222,10 @@ pub(crate) const fn text(most: usize) -> Text {
 impl Form for Text {
     type Out = String;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<String> {
         let value = node.as_text().filter(|text| text.chars().count() <= self.0);
         if value.is_none() {
-            reading.wrong(node, &format!("text of at most {} characters", self.0));
+            reporter.wrong(node, &format!("text of at most {} characters", self.0));
         }
         value.map(str::to_owned)
     }
@@ -245,8 +246,8 @@ pub(crate) const fn optional<F: Form>(form: F) -> Optional<F> {
 impl<F: Form> Form for Optional<F> {
     type Out = Option<F::Out>;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Self::Out> {
-        self.0.read(node, reading).map(Some)
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out> {
+        self.0.read(node, reporter).map(Some)
     }
 
     fn schema(&self) -> Json {

@@ -1,7 +1,7 @@
 //! Tables: which keys there are, what each means, its form and its default, all said once.
 
 use crate::text::{
-    Form, Node, Place, Reading, Value,
+    Form, Node, Reporter, Span, Value,
     node::Entry,
     words::{did_you_mean, nearest, quoted},
 };
@@ -11,14 +11,14 @@ use std::marker::PhantomData;
 /// A value and where it was found.
 #[derive(Debug, Clone)]
 pub(crate) struct Found<T> {
-    pub(crate) place: Place,
+    pub(crate) place: Span,
     pub(crate) value: T,
 }
 
 /// What was found, or else a default, as if it stood at `place`.
 pub(crate) fn found_or<T>(
     found: Option<Found<T>>,
-    place: Place,
+    place: Span,
     default: impl FnOnce() -> T,
 ) -> Option<Found<T>> {
     found.or_else(|| Some(Found { place, value: default() }))
@@ -29,7 +29,7 @@ pub(crate) fn one_of<T>(
     node: &Node,
     first: (&str, Option<Found<T>>),
     second: (&str, Option<Found<T>>),
-    reading: &mut Reading,
+    reporter: &mut Reporter,
 ) -> Option<(Found<T>, bool)> {
     match (first.1, second.1) {
         (Some(found), None) => Some((found, false)),
@@ -38,7 +38,7 @@ pub(crate) fn one_of<T>(
             // A key that is there but was wrong has its own note already.
             let given = [first.0, second.0].iter().filter(|key| node.get(key).is_some()).count();
             if given != 1 {
-                reading.note(node.place, format!("give either `{}` or `{}` here", first.0, second.0));
+                reporter.report(node.place, format!("give either `{}` or `{}` here", first.0, second.0));
             }
             None
         }
@@ -51,13 +51,13 @@ pub(crate) trait Keys: Sized {
     const ABOUT: &'static str;
 
     /// Reads every known key.
-    fn read(table: &mut TableReader<'_>, reading: &mut Reading) -> Self;
+    fn read(table: &mut TableReader<'_>, reporter: &mut Reporter) -> Self;
 
     /// The JSON Schema of every known key.
     fn fields() -> Vec<Field>;
 
     /// Every key that was read, and where its value stands.
-    fn places(&self) -> Vec<(&'static str, Place)>;
+    fn places(&self) -> Vec<(&'static str, Span)>;
 }
 
 /// What one table of a file says of something in which every key has a default; made by [`settings!`].
@@ -88,23 +88,23 @@ pub(crate) struct Field {
 
 /// Reads the keys of one table and remembers which, so as to find those that nobody knows.
 pub(crate) struct TableReader<'n> {
-    place: Place,
+    place: Span,
     entries: &'n [Entry],
     known: Vec<&'static str>,
 }
 
 impl<'n> TableReader<'n> {
     /// A reader of `node`, or `None` after a note that it is no table.
-    pub(crate) fn of(node: &'n Node, reading: &mut Reading) -> Option<Self> {
+    pub(crate) fn of(node: &'n Node, reporter: &mut Reporter) -> Option<Self> {
         if let Value::Table(entries) = &node.value {
             return Some(Self { place: node.place, entries, known: vec![] });
         }
-        reading.wrong(node, "a table");
+        reporter.wrong(node, "a table");
         None
     }
 
     /// Where the table stands.
-    pub(crate) fn place(&self) -> Place {
+    pub(crate) fn place(&self) -> Span {
         self.place
     }
 
@@ -114,29 +114,29 @@ impl<'n> TableReader<'n> {
         key: &'static str,
         form: &F,
         required: bool,
-        reading: &mut Reading,
+        reporter: &mut Reporter,
     ) -> Option<Found<F::Out>> {
         self.known.push(key);
         let Some(entry) = self.entries.iter().find(|entry| entry.key == key) else {
             if required {
-                reading.note(self.place, format!("`{key}` is missing"));
+                reporter.report(self.place, format!("`{key}` is missing"));
             }
             return None;
         };
-        let value = reading.inside(key, |reading| form.read(&entry.node, reading))?;
+        let value = reporter.inside(key, |reporter| form.read(&entry.node, reporter))?;
         Some(Found { place: entry.node.place, value })
     }
 
     /// Notes the keys that were not asked for.
-    pub(crate) fn finish(self, reading: &mut Reading) {
+    pub(crate) fn finish(self, reporter: &mut Reporter) {
         for entry in self.entries.iter().filter(|entry| !self.known.contains(&entry.key.as_str())) {
-            if reading.is_full() {
+            if reporter.is_full() {
                 return;
             }
             let known = self.known.iter().copied();
             let hint = nearest(&entry.key, known.clone()).map_or_else(String::new, did_you_mean);
             let message = format!("unknown key `{}`{hint} (known here: {})", entry.key, quoted(known));
-            reading.note(entry.place, message);
+            reporter.report(entry.place, message);
         }
     }
 }
@@ -152,10 +152,10 @@ pub(crate) const fn table<K: Keys>() -> Table<K> {
 impl<K: Keys> Form for Table<K> {
     type Out = K;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<K> {
-        let mut table = TableReader::of(node, reading)?;
-        let keys = K::read(&mut table, reading);
-        table.finish(reading);
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<K> {
+        let mut table = TableReader::of(node, reporter)?;
+        let keys = K::read(&mut table, reporter);
+        table.finish(reporter);
         Some(keys)
     }
 
@@ -206,10 +206,10 @@ macro_rules! keys {
         impl $crate::text::Keys for $name {
             const ABOUT: &'static str = concat!($($about, " "),*);
 
-            fn read(table: &mut $crate::text::keys::TableReader<'_>, reading: &mut $crate::text::Reading) -> Self {
+            fn read(table: &mut $crate::text::keys::TableReader<'_>, reporter: &mut $crate::text::Reporter) -> Self {
                 Self { $( $key: {
                     let required = $crate::text::keys::keys!(@required $need);
-                    let found = table.take(stringify!($key), &$form, required, reading);
+                    let found = table.take(stringify!($key), &$form, required, reporter);
                     $crate::text::keys::keys!(@found $need found, table $(, $default)?)
                 }, )+ }
             }
@@ -224,7 +224,7 @@ macro_rules! keys {
                 }, )+ ]
             }
 
-            fn places(&self) -> Vec<(&'static str, $crate::text::Place)> {
+            fn places(&self) -> Vec<(&'static str, $crate::text::Span)> {
                 let all = [ $( (stringify!($key), self.$key.as_ref().map(|found| found.place)), )+ ];
                 all.into_iter().filter_map(|(key, place)| Some((key, place?))).collect()
             }

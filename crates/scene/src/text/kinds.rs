@@ -1,7 +1,7 @@
 //! Tables of which one key says what other keys there are.
 
 use crate::text::{
-    Form, Keys, Node, Reading,
+    Form, Keys, Node, Reporter,
     keys::{Field, TableReader, object},
     words::not_a_word,
 };
@@ -19,14 +19,14 @@ pub(crate) struct Kinds<T: 'static> {
 pub(crate) struct Kind<T> {
     word: &'static str,
     about: &'static str,
-    read: fn(&Node, &mut TableReader<'_>, &mut Reading) -> Option<T>,
+    read: fn(&Node, &mut TableReader<'_>, &mut Reporter) -> Option<T>,
     fields: fn() -> Vec<Field>,
 }
 
 /// Keys that a kind brings, and what they make.
 pub(crate) trait KindKeys<T>: Keys {
     /// What they make, or `None` after a note.
-    fn make(self, node: &Node, reading: &mut Reading) -> Option<T>;
+    fn make(self, node: &Node, reporter: &mut Reporter) -> Option<T>;
 }
 
 /// The kind called `word` with the keys of `K`.
@@ -34,20 +34,20 @@ pub(crate) const fn kind<T, K: KindKeys<T>>(word: &'static str) -> Kind<T> {
     Kind {
         word,
         about: K::ABOUT,
-        read: |node, table, reading| K::read(table, reading).make(node, reading),
+        read: |node, table, reporter| K::read(table, reporter).make(node, reporter),
         fields: K::fields,
     }
 }
 
 impl<T> Kinds<T> {
     /// Reads the kind of `table`, whose node is `node`, and the keys it brings.
-    pub(crate) fn take(&self, node: &Node, table: &mut TableReader<'_>, reading: &mut Reading) -> Taken<T> {
-        let found = table.take(self.key, &KindForm(self.all), self.usual.is_none(), reading);
+    pub(crate) fn take(&self, node: &Node, table: &mut TableReader<'_>, reporter: &mut Reporter) -> Taken<T> {
+        let found = table.take(self.key, &KindForm(self.all), self.usual.is_none(), reporter);
         let kind = match (found, node.get(self.key)) {
             (None, None) => self.all.iter().find(|kind| Some(kind.word) == self.usual),
             (found, _) => found.map(|found| found.value),
         };
-        kind.map_or(Taken::Unknown, |kind| Taken::Known((kind.read)(node, table, reading)))
+        kind.map_or(Taken::Unknown, |kind| Taken::Known((kind.read)(node, table, reporter)))
     }
 
     /// Each kind's table, with `shared` keys that all of them have besides.
@@ -78,10 +78,10 @@ pub(crate) enum Taken<T> {
 impl<T> Form for Kinds<T> {
     type Out = T;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<T> {
-        let mut table = TableReader::of(node, reading)?;
-        let Taken::Known(made) = self.take(node, &mut table, reading) else { return None };
-        table.finish(reading);
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<T> {
+        let mut table = TableReader::of(node, reporter)?;
+        let Taken::Known(made) = self.take(node, &mut table, reporter) else { return None };
+        table.finish(reporter);
         made
     }
 
@@ -96,10 +96,10 @@ struct KindForm<T: 'static>(&'static [Kind<T>]);
 impl<T> Form for KindForm<T> {
     type Out = &'static Kind<T>;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<&'static Kind<T>> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<&'static Kind<T>> {
         let found = self.0.iter().find(|kind| node.as_text() == Some(kind.word));
         if found.is_none() {
-            not_a_word(node, self.0.iter().map(|kind| kind.word), reading);
+            not_a_word(node, self.0.iter().map(|kind| kind.word), reporter);
         }
         found
     }

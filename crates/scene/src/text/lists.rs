@@ -1,6 +1,6 @@
 //! Forms made of other forms: pairs and lists.
 
-use crate::text::{Form, Node, Reading, Value};
+use crate::text::{Form, Node, Reporter, Value};
 use serde_json::{Value as Json, json};
 
 /// [distance, bearing], or one value for both.
@@ -14,10 +14,10 @@ pub(crate) const fn pair<F: Form<Out = f64>>(form: F) -> Pair<F> {
 impl<F: Form<Out = f64>> Form for Pair<F> {
     type Out = [f64; 2];
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<[f64; 2]> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<[f64; 2]> {
         match &node.value {
-            Value::List(_) => couple(&self.0, &self.0).read(node, reading),
-            _ => self.0.read(node, reading).map(|both| [both, both]),
+            Value::List(_) => couple(&self.0, &self.0).read(node, reporter),
+            _ => self.0.read(node, reporter).map(|both| [both, both]),
         }
     }
 
@@ -37,14 +37,14 @@ pub(crate) const fn couple<F: Form, G: Form<Out = F::Out>>(first: F, second: G) 
 impl<F: Form, G: Form<Out = F::Out>> Form for Couple<F, G> {
     type Out = [F::Out; 2];
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Self::Out> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out> {
         if let Value::List(items) = &node.value
             && let [first, second] = items.as_slice()
         {
-            let (first, second) = (self.0.read(first, reading), self.1.read(second, reading));
+            let (first, second) = (self.0.read(first, reporter), self.1.read(second, reporter));
             return Some([first?, second?]);
         }
-        reading.wrong(node, "a list of two values");
+        reporter.wrong(node, "a list of two values");
         None
     }
 
@@ -66,15 +66,15 @@ pub(crate) const fn triple<F, G, H>(first: F, second: G, third: H) -> Triple<F, 
 impl<F: Form<Out = f64>, G: Form<Out = f64>, H: Form<Out = f64>> Form for Triple<F, G, H> {
     type Out = [f64; 3];
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<[f64; 3]> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<[f64; 3]> {
         if let Value::List(items) = &node.value
             && let [first, second, third] = items.as_slice()
         {
-            let (first, second) = (self.0.read(first, reading), self.1.read(second, reading));
-            let third = self.2.read(third, reading);
+            let (first, second) = (self.0.read(first, reporter), self.1.read(second, reporter));
+            let third = self.2.read(third, reporter);
             return Some([first?, second?, third?]);
         }
-        reading.wrong(node, "a list of three values");
+        reporter.wrong(node, "a list of three values");
         None
     }
 
@@ -99,15 +99,15 @@ pub(crate) const fn list<F: Form>(form: F, least: usize, most: usize) -> List<F>
 impl<F: Form> Form for List<F> {
     type Out = Vec<F::Out>;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Self::Out> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out> {
         match &node.value {
             Value::List(items) if (self.least..=self.most).contains(&items.len()) => {
                 // All are read before giving up, so that every fault is told.
-                let read: Vec<_> = items.iter().map(|item| self.form.read(item, reading)).collect();
+                let read: Vec<_> = items.iter().map(|item| self.form.read(item, reporter)).collect();
                 read.into_iter().collect()
             }
             _ => {
-                reading.wrong(node, &format!("a list of {} to {} values", self.least, self.most));
+                reporter.wrong(node, &format!("a list of {} to {} values", self.least, self.most));
                 None
             }
         }
@@ -123,8 +123,8 @@ impl<F: Form> Form for List<F> {
 impl<F: Form> Form for &F {
     type Out = F::Out;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<F::Out> {
-        (*self).read(node, reading)
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<F::Out> {
+        (*self).read(node, reporter)
     }
 
     fn schema(&self) -> Json {

@@ -5,12 +5,12 @@ pub(crate) mod keys;
 pub(crate) mod kinds;
 pub(crate) mod lists;
 pub(crate) mod node;
-pub(crate) mod reading;
+pub(crate) mod reporter;
 pub(crate) mod words;
 
 pub(crate) use form::{Form, angle, angle_of_turns, angle_within, flag, integer, number, optional, text};
 pub(crate) use keys::{Found, Keys, Part, keys, settings, table};
 pub(crate) use lists::{couple, list, pair, triple};
 pub(crate) use node::{Node, Value};
-pub(crate) use reading::{Place, Reading};
+pub(crate) use reporter::{Reporter, Span};
 pub(crate) use words::words;

@@ -1,6 +1,6 @@
 //! The tree of a TOML text, each value with its place.
 
-use crate::text::{Place, Reading};
+use crate::text::{Reporter, Span};
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 use unicode_normalization::UnicodeNormalization;
@@ -8,7 +8,7 @@ use unicode_normalization::UnicodeNormalization;
 /// A value and where it stands.
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
-    pub(crate) place: Place,
+    pub(crate) place: Span,
     pub(crate) value: Value,
 }
 
@@ -29,13 +29,13 @@ pub(crate) enum Value {
 pub(crate) struct Entry {
     pub(crate) key: String,
     /// Where the key stands.
-    pub(crate) place: Place,
+    pub(crate) place: Span,
     pub(crate) node: Node,
 }
 
 impl Node {
-    /// The tree of a whole file; syntax errors go to `reading`.
-    pub(crate) fn parse_document(text: &str, source: usize, reading: &mut Reading) -> Option<Self> {
+    /// The tree of a whole file; syntax errors go to `reporter`.
+    pub(crate) fn parse_document(text: &str, source: usize, reporter: &mut Reporter) -> Option<Self> {
         let (table, errors) = DeTable::parse_recoverable(text);
         let mut last_line = None;
         for error in &errors {
@@ -43,7 +43,7 @@ impl Node {
             let line = text.get(..span.start).map(|before| before.matches('\n').count());
             // What follows on the same line is mostly a consequence of the first error there.
             if line != last_line {
-                reading.note(place(source, 0, &span), format!("not TOML: {}", error.message()));
+                reporter.report(place(source, 0, &span), format!("not TOML: {}", error.message()));
             }
             last_line = line;
         }
@@ -114,7 +114,7 @@ impl Node {
     }
 
     /// Says of all of it that it stands at `place`.
-    pub(crate) fn stand_at(&mut self, place: Place) {
+    pub(crate) fn stand_at(&mut self, place: Span) {
         self.place = place;
         match &mut self.value {
             Value::List(items) => items.iter_mut().for_each(|item| item.stand_at(place)),
@@ -158,11 +158,11 @@ fn shorten(text: &str) -> String {
     text.chars().take(39).chain(['…']).collect()
 }
 
-fn place(source: usize, offset: usize, span: &Range<usize>) -> Place {
-    Place { source, start: offset + span.start, end: offset + span.end }
+fn place(source: usize, offset: usize, span: &Range<usize>) -> Span {
+    Span { source, start: offset + span.start, end: offset + span.end }
 }
 
-fn from_table(table: &DeTable<'_>, at: Place, offset: usize) -> Node {
+fn from_table(table: &DeTable<'_>, at: Span, offset: usize) -> Node {
     let entries = table.iter().map(|(key, value)| Entry {
         key: composed(key.get_ref()),
         place: place(at.source, offset, &key.span()),
@@ -171,7 +171,7 @@ fn from_table(table: &DeTable<'_>, at: Place, offset: usize) -> Node {
     Node { place: at, value: Value::Table(entries.collect()) }
 }
 
-fn from_value(value: &DeValue<'_>, at: Place, offset: usize) -> Node {
+fn from_value(value: &DeValue<'_>, at: Span, offset: usize) -> Node {
     let value = match value {
         DeValue::String(text) => Value::Text(composed(text)),
         DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {

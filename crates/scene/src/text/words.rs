@@ -1,6 +1,6 @@
 //! Keys and values that are one of a few words, and the nearest of them to a misspelt one.
 
-use crate::text::{Form, Node, Reading};
+use crate::text::{Form, Node, Reporter};
 use serde_json::{Value as Json, json};
 
 /// A form that takes one of a few words.
@@ -16,10 +16,10 @@ impl<T: Copy + PartialEq> Words<T> {
 impl<T: Copy + 'static> Form for Words<T> {
     type Out = T;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<T> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<T> {
         let found = self.0.iter().find(|(word, ..)| node.as_text() == Some(*word));
         if found.is_none() {
-            not_a_word(node, self.0.iter().map(|(word, ..)| *word), reading);
+            not_a_word(node, self.0.iter().map(|(word, ..)| *word), reporter);
         }
         found.map(|(_, value, _)| *value)
     }
@@ -35,11 +35,11 @@ impl<T: Copy + 'static> Form for Words<T> {
 pub(crate) fn not_a_word<'a>(
     node: &Node,
     words: impl Iterator<Item = &'a str> + Clone,
-    reading: &mut Reading,
+    reporter: &mut Reporter,
 ) {
     let near = node.as_text().and_then(|text| nearest(text, words.clone()));
-    reading.wrong(node, &format!("one of {}", quoted(words)));
-    reading.append_to_last(&near.map_or_else(String::new, did_you_mean));
+    reporter.wrong(node, &format!("one of {}", quoted(words)));
+    reporter.append_to_last(&near.map_or_else(String::new, did_you_mean));
 }
 
 /// The words in backquotes, separated by commas.

@@ -2,7 +2,7 @@
 
 use super::stage::ViewForm;
 use crate::text::{
-    Form, Node, Part, Reading, Value, couple, flag, integer, list, number, optional, settings, table, text,
+    Form, Node, Part, Reporter, Value, couple, flag, integer, list, number, optional, settings, table, text,
     words,
 };
 use serde_json::{Value as Json, json};
@@ -98,8 +98,8 @@ struct ShotForm;
 impl Form for ShotForm {
     type Out = Shot;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<Shot> {
-        table::<ShotPart>().read(node, reading).map(|part| part.complete(&ShotPart::default()))
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Shot> {
+        table::<ShotPart>().read(node, reporter).map(|part| part.complete(&ShotPart::default()))
     }
 
     fn schema(&self) -> Json {
@@ -113,20 +113,20 @@ struct LayoutForm;
 impl Form for LayoutForm {
     type Out = String;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<String> {
         let Some(text) = node.as_text() else {
-            reading.wrong(node, "views joined by '+', such as \"snake+top\"");
+            reporter.wrong(node, "views joined by '+', such as \"snake+top\"");
             return None;
         };
         let parts: Vec<&str> = text.split('+').collect();
         if parts.len() > 4 {
-            reading
-                .note(node.place, format!("{} views are too many for one picture: at most 4", parts.len()));
+            reporter
+                .report(node.place, format!("{} views are too many for one picture: at most 4", parts.len()));
             return None;
         }
         let known = parts.iter().all(|part| {
             let part = Node { place: node.place, value: Value::Text(part.trim().to_owned()) };
-            ViewForm.read(&part, reading).is_some()
+            ViewForm.read(&part, reporter).is_some()
         });
         known.then(|| text.to_owned())
     }

@@ -3,7 +3,8 @@
 
 use super::VehicleKind;
 use crate::text::{
-    Form, Node, Reading, Value, angle, couple, flag, keys, number, pair, settings, table, words, words::Words,
+    Form, Node, Reporter, Value, angle, couple, flag, keys, number, pair, settings, table, words,
+    words::Words,
 };
 use serde::Serialize;
 use serde_json::{Value as Json, json};
@@ -147,16 +148,16 @@ keys! {
 impl Form for StartForm {
     type Out = ObserverStart;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<ObserverStart> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<ObserverStart> {
         if !matches!(node.value, Value::Table(_)) {
-            return MEASURED.read(node, reading);
+            return MEASURED.read(node, reporter);
         }
-        let keys = table::<StartKeys>().read(node, reading)?;
+        let keys = table::<StartKeys>().read(node, reporter)?;
         match (keys.at, keys.offset) {
             (Some(at), None) => Some(ObserverStart::At(at.value)),
             (None, Some(offset)) => Some(ObserverStart::Offset(offset.value)),
             _ => {
-                reading.note(node.place, "`start` takes either `at` or `offset`, as [distance, bearing]");
+                reporter.report(node.place, "`start` takes either `at` or `offset`, as [distance, bearing]");
                 None
             }
         }

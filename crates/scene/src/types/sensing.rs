@@ -1,7 +1,7 @@
 //! What robots know of their leaders, and the cameras and shells they know it by.
 
 use crate::text::{
-    Form, Found, Node, Reading, Value, angle, angle_within, couple, flag, form::Number, integer, number,
+    Form, Found, Node, Reporter, Value, angle, angle_within, couple, flag, form::Number, integer, number,
     optional, settings, table, words,
 };
 use serde_json::{Value as Json, json};
@@ -75,13 +75,13 @@ pub(crate) struct SensingForm;
 impl Form for SensingForm {
     type Out = SensingPart;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<SensingPart> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<SensingPart> {
         match &node.value {
             Value::Text(_) => {
-                let value = SensingKind::form().read(node, reading)?;
+                let value = SensingKind::form().read(node, reporter)?;
                 Some(SensingPart { kind: Some(Found { place: node.place, value }), ..SensingPart::default() })
             }
-            _ => table::<SensingPart>().read(node, reading),
+            _ => table::<SensingPart>().read(node, reporter),
         }
     }
 

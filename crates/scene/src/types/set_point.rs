@@ -1,7 +1,7 @@
 //! What one channel of a set point does in time.
 
 use crate::text::{
-    Form, Found, Node, Reading, Value, angle, angle_within, form::Number, keys, list, number, table,
+    Form, Found, Node, Reporter, Value, angle, angle_within, form::Number, keys, list, number, table,
 };
 use serde::Serialize;
 use serde_json::{Value as Json, json};
@@ -56,7 +56,7 @@ impl Channel {
 /// Defines the form `$form` of a channel out of the forms of a value that holds, of a value that is passed through,
 /// and of an amplitude.
 macro_rules! channel {
-    ($(#[doc = $doc:literal])* $form:ident, $wave:ident, $passage:ident, $held:expr, $passed:expr, $amplitude:expr) => {
+    ($(#[doc = $doc:literal])* $form:ident, $wave:ident, $interpolant:ident, $held:expr, $passed:expr, $amplitude:expr) => {
         keys! {
             /// A sinusoid: mean + amplitude · sin(rate · t).
             struct $wave {
@@ -71,7 +71,7 @@ macro_rules! channel {
 
         keys! {
             /// A smooth passage from one value to another.
-            struct $passage {
+            struct $interpolant {
                 /// Value before, m or rad; in a list the one where the last passage ended, if left out.
                 from: f64 = $passed, optional;
                 /// Value after, m or rad.
@@ -89,25 +89,25 @@ macro_rules! channel {
         impl Form for $form {
             type Out = Channel;
 
-            fn read(&self, node: &Node, reading: &mut Reading) -> Option<Channel> {
+            fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Channel> {
                 let passages = match &node.value {
                     Value::Table(_) if node.get("mean").is_some() || node.get("to").is_none() => {
-                        let keys = table::<$wave>().read(node, reading)?;
+                        let keys = table::<$wave>().read(node, reporter)?;
                         let (mean, amplitude, rate) = (keys.mean?.value, keys.amplitude?.value, keys.rate?.value);
                         return Some(Channel::Sinusoid { mean, amplitude, rate });
                     }
-                    Value::Table(_) => vec![table::<$passage>().read(node, reading)?],
-                    Value::List(_) => list(table::<$passage>(), 1, 1000).read(node, reading)?,
-                    _ => return $held.read(node, reading).map(Channel::Constant),
+                    Value::Table(_) => vec![table::<$interpolant>().read(node, reporter)?],
+                    Value::List(_) => list(table::<$interpolant>(), 1, 1000).read(node, reporter)?,
+                    _ => return $held.read(node, reporter).map(Channel::Constant),
                 };
                 let passages = passages.into_iter().map(|p| Some((p.from, p.to?.value, p.start?, p.over?.value)));
-                chain(node, passages.collect::<Option<Vec<_>>>()?, reading)
+                chain(node, passages.collect::<Option<Vec<_>>>()?, reporter)
             }
 
             fn schema(&self) -> Json {
-                let passage = table::<$passage>();
+                let interpolant = table::<$interpolant>();
                 json!({ "anyOf": [
-                    $held.schema(), table::<$wave>().schema(), passage.schema(), list(passage, 1, 1000).schema(),
+                    $held.schema(), table::<$wave>().schema(), interpolant.schema(), list(interpolant, 1, 1000).schema(),
                 ] })
             }
         }
@@ -127,24 +127,25 @@ channel!(
 const DISTANCE: Number = number("m").above(0.0).up_to(1000.0);
 
 /// One passage as it was read: from, to, start, over.
-type Passage = (Option<Found<f64>>, f64, Found<f64>, f64);
+type StepInterpolant = (Option<Found<f64>>, f64, Found<f64>, f64);
 
 /// Passages in the order of time, each from where the last one ended.
-fn chain(node: &Node, passages: Vec<Passage>, reading: &mut Reading) -> Option<Channel> {
+fn chain(node: &Node, passages: Vec<StepInterpolant>, reporter: &mut Reporter) -> Option<Channel> {
     let mut ramps: Vec<Ramp> = Vec::with_capacity(passages.len());
     for (from, to, start, over) in passages {
         let last = ramps.last();
         let Some(value) = from.as_ref().map(|from| from.value).or(last.map(|last| last.to)) else {
-            reading.note(node.place, "`from` is missing: the first passage has to say where it starts");
+            reporter.report(node.place, "`from` is missing: the first passage has to say where it starts");
             return None;
         };
         if let Some(last) = last {
             if start.value < last.start + last.over {
                 let free = last.start + last.over;
-                reading.note(start.place, format!("this starts before the last passage ends at {free} s"));
+                reporter.report(start.place, format!("this starts before the last passage ends at {free} s"));
             }
             if let Some(from) = from.filter(|from| from.value != last.to) {
-                reading.note(from.place, format!("`from` must be {}, where the last passage ended", last.to));
+                reporter
+                    .report(from.place, format!("`from` must be {}, where the last passage ended", last.to));
             }
         }
         ramps.push(Ramp { from: value, to, start: start.value, over });

@@ -1,6 +1,6 @@
 //! What pictures need beyond the robots.
 
-use crate::text::{Form, Node, Reading, angle, angle_within, number, settings, words::not_a_word};
+use crate::text::{Form, Node, Reporter, angle, angle_within, number, settings, words::not_a_word};
 use serde_json::{Value as Json, json};
 use std::f64::consts::{FRAC_PI_2, PI};
 use vocabulary::Light;
@@ -38,12 +38,12 @@ pub(super) struct ViewForm;
 impl Form for ViewForm {
     type Out = String;
 
-    fn read(&self, node: &Node, reading: &mut Reading) -> Option<String> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<String> {
         let name = node
             .as_text()
             .filter(|name| VIEWS.contains(name) || ROBOT_VIEWS.iter().any(|v| name.starts_with(v)));
         if name.is_none() {
-            not_a_word(node, VIEWS.into_iter().chain(["follow:<robot>", "camera:<robot>"]), reading);
+            not_a_word(node, VIEWS.into_iter().chain(["follow:<robot>", "camera:<robot>"]), reporter);
         }
         name.map(str::to_owned)
     }

@@ -3,7 +3,7 @@
 use crate::{BuildError, Simulation, build};
 use formation::certificate::chain::{LinearEdge, NotLinear, Response, down_the_chain, frequencies, growth};
 use scene::Scene;
-use vocabulary::Drive;
+use vocabulary::MotionInput;
 
 /// Numbers of followers in a row that are told.
 pub const LENGTHS: [usize; 4] = [1, 7, 20, 100];
@@ -53,12 +53,12 @@ impl EdgeGain {
 pub fn gains(scene: &Scene) -> Result<Vec<EdgeGain>, BuildError> {
     let simulation = Simulation::new(build(scene)?);
     let formation = simulation.formation();
-    let robots = simulation.cast().members.len();
+    let robots = simulation.fleet().robots.len();
     // What every robot does, and how many edges and responses lie above it.
-    let mut above: Vec<Option<(Drive, Vec<usize>)>> = vec![None; robots];
-    for (robot, profile) in formation.leads() {
-        let drive = profile.at(scene.time.duration);
-        above[*robot] = Some((Drive { acceleration: 0.0, turn_acceleration: 0.0, ..drive }, vec![]));
+    let mut above: Vec<Option<(MotionInput, Vec<usize>)>> = vec![None; robots];
+    for (robot, trajectory) in formation.leads() {
+        let drive = trajectory.at(scene.time.duration);
+        above[*robot] = Some((MotionInput { acceleration: 0.0, turn_acceleration: 0.0, ..drive }, vec![]));
     }
     let mut edges: Vec<Option<LinearEdge>> = vec![None; formation.edges().len()];
     let mut all: Vec<EdgeGain> = Vec::new();

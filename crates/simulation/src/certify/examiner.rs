@@ -4,10 +4,10 @@ use crate::step::{Simulation, Timing};
 use formation::certificate::{
     Circumstances, Constants, Finding, Instant, Outcome, Premise, Statement, Witness, certify,
 };
-use formation::{EdgeLaw, Estimate, LawKind, SetPointCourse, Switching};
+use formation::{EdgeLaw, Estimate, LawKind, SetPointTrajectory, Switching};
 use metrics::{CertificateMetrics, StatementMetrics};
 use scene::Scene;
-use vocabulary::{Cast, Drive, Edge, Moment, Thing};
+use vocabulary::{Edge, EntityId, FleetInfo, MotionInput, StepRecord};
 
 /// A change of a held command below this is rounding, m/s² or rad/s.
 const STEADY: f64 = 1e-9;
@@ -39,10 +39,10 @@ impl Certificate {
     }
 
     /// The certificate as `metrics.json` holds it.
-    pub fn metrics(&self, cast: &Cast) -> CertificateMetrics {
-        let name = |robot: usize| cast.name(Thing::Robot(robot)).to_owned();
+    pub fn metrics(&self, fleet: &FleetInfo) -> CertificateMetrics {
+        let name = |robot: usize| fleet.name(EntityId::Robot(robot)).to_owned();
         let (leader, follower) =
-            cast.edges.get(self.edge).map_or((0, 0), |edge| (edge.leader, edge.follower));
+            fleet.edges.get(self.edge).map_or((0, 0), |edge| (edge.leader, edge.follower));
         let statement = |finding: &Finding| StatementMetrics {
             statement: finding.statement.name().to_owned(),
             source: finding.statement.source().to_owned(),
@@ -78,14 +78,14 @@ pub struct Examiner {
     wheels: Vec<bool>,
     timing: Timing,
     period: f64,
-    last: Vec<Drive>,
+    last: Vec<MotionInput>,
     keeps: bool,
 }
 
 /// An edge since its law last changed.
 struct Stretch {
     witness: Witness,
-    set_point: SetPointCourse,
+    set_point: SetPointTrajectory,
     looks: bool,
     rough_leader: Option<f64>,
     final_error: [f64; 2],
@@ -124,7 +124,7 @@ impl Examiner {
 
     fn begin(scene: &Scene, simulation: &Simulation, keeps: bool) -> Self {
         let wheels: Vec<bool> = scene.robots.iter().map(|robot| robot.vehicle.kind.has_wheels()).collect();
-        let leads = &simulation.cast().members;
+        let leads = &simulation.fleet().robots;
         Self {
             edges: simulation.formation().laws().iter().map(|law| Stretch::of(law, keeps)).collect(),
             closed: Vec::new(),
@@ -139,8 +139,8 @@ impl Examiner {
 
     /// Takes in the moment that `simulation` has just come to.
     pub fn push(&mut self, simulation: &Simulation) {
-        let (moment, formation) = (simulation.moment(), simulation.formation());
-        let drives = self.drives(simulation, moment);
+        let (record, formation) = (simulation.record(), simulation.formation());
+        let drives = self.drives(simulation, record);
         for (index, (edge, law)) in formation.edges().iter().zip(formation.laws()).enumerate() {
             if !self.edges[index].fits(law) {
                 let over = std::mem::replace(&mut self.edges[index], Stretch::of(law, self.keeps));
@@ -148,10 +148,10 @@ impl Examiner {
                     self.closed.push(self.certificate(index, *edge, &over));
                 }
             }
-            let rough = self.jumps(simulation, *edge, &drives).then_some(moment.snapshot.time);
+            let rough = self.jumps(simulation, *edge, &drives).then_some(record.snapshot.time);
             let stretch = &mut self.edges[index];
             stretch.rough_leader = stretch.rough_leader.or(rough);
-            stretch.final_error = moment.edges[index].error;
+            stretch.final_error = record.edges[index].error;
             stretch.witness.push(&instant(simulation, index, *edge, law, &drives));
         }
         self.last = drives;
@@ -202,24 +202,29 @@ impl Examiner {
 
     /// How every robot moves: what is prescribed where it is driven exactly, else what it does, and the change of its
     /// turn rate since the sample before.
-    fn drives(&self, simulation: &Simulation, moment: &Moment) -> Vec<Drive> {
+    fn drives(&self, simulation: &Simulation, record: &StepRecord) -> Vec<MotionInput> {
         let motion = |(robot, state): (usize, &vocabulary::RobotState)| {
             let m = &state.motion;
             let before = self.last.get(robot).map_or(m.turn_rate, |last| last.turn_rate);
             let turn_acceleration = (m.turn_rate - before) / self.period;
-            Drive { speed: m.speed, acceleration: m.acceleration, turn_rate: m.turn_rate, turn_acceleration }
+            MotionInput {
+                speed: m.speed,
+                acceleration: m.acceleration,
+                turn_rate: m.turn_rate,
+                turn_acceleration,
+            }
         };
-        let mut drives: Vec<Drive> = moment.snapshot.robots.iter().enumerate().map(motion).collect();
-        for (robot, profile) in simulation.formation().leads() {
+        let mut drives: Vec<MotionInput> = record.snapshot.robots.iter().enumerate().map(motion).collect();
+        for (robot, trajectory) in simulation.formation().leads() {
             if !self.leads_on_wheels.get(*robot).copied().unwrap_or(true) {
-                drives[*robot] = profile.at(moment.snapshot.time);
+                drives[*robot] = trajectory.at(record.snapshot.time);
             }
         }
         drives
     }
 
     /// Whether an edge's leader has just done what no smooth leader does: it follows, and its command stepped.
-    fn jumps(&self, simulation: &Simulation, edge: Edge, drives: &[Drive]) -> bool {
+    fn jumps(&self, simulation: &Simulation, edge: Edge, drives: &[MotionInput]) -> bool {
         let formation = simulation.formation();
         let Some(above) = formation.edges().iter().position(|other| other.follower == edge.leader) else {
             return false;
@@ -227,7 +232,7 @@ impl Examiner {
         if self.timing == Timing::Continuous {
             let law = &formation.laws()[above].law;
             let sign = law.kind != LawKind::FullState && law.switching == Switching::Sign;
-            return sign || simulation.moment().edges[above].limited;
+            return sign || simulation.record().edges[above].limited;
         }
         let (Some(last), Some(now)) = (self.last.get(edge.leader), drives.get(edge.leader)) else {
             return false;
@@ -238,11 +243,17 @@ impl Examiner {
 }
 
 /// One edge at the moment that `simulation` has just come to.
-fn instant(simulation: &Simulation, index: usize, edge: Edge, law: &EdgeLaw, drives: &[Drive]) -> Instant {
-    let moment = simulation.moment();
-    let (state, time) = (&moment.edges[index], moment.snapshot.time);
+fn instant(
+    simulation: &Simulation,
+    index: usize,
+    edge: Edge,
+    law: &EdgeLaw,
+    drives: &[MotionInput],
+) -> Instant {
+    let record = simulation.record();
+    let (state, time) = (&record.edges[index], record.snapshot.time);
     let limits = simulation.formation().limits(edge.follower);
-    let speed = moment.snapshot.robots[edge.follower].motion.speed;
+    let speed = record.snapshot.robots[edge.follower].motion.speed;
     let observes = law.law.kind == LawKind::OutputFeedback;
     Instant {
         time,

@@ -13,5 +13,5 @@ pub use examiner::{Certificate, Examiner};
 pub use formation::certificate::chain::NotLinear;
 pub use formation::certificate::discretisation::{Channel, Discretisation, LongestPeriod};
 pub use formation::certificate::{Constants, Finding, Outcome, Premise, Row, Statement};
-pub use formation::holdable::Unholdable;
+pub use formation::feasible::Infeasible;
 pub use past::{rows, so_far};

@@ -4,20 +4,20 @@ use crate::build::edge_law;
 use formation::certificate::{Circumstances, Finding, Instant, Row, Witness, certify};
 use formation::{Estimate, LawKind};
 use scene::{Follow, Mode, Role, Scene, SensingKind};
-use vocabulary::{Drive, Edge, Moment, Motion, SetPoint, wrap};
+use vocabulary::{Edge, Motion, MotionInput, SetPoint, StepRecord, wrap};
 
-/// What the theorems say of edge number `index` along `moments`, so far, and the quantities they speak of.
+/// What the theorems say of edge number `index` along `records`, so far, and the quantities they speak of.
 pub fn so_far(
-    moments: &[&Moment],
+    records: &[&StepRecord],
     (index, edge): (usize, Edge),
     follow: &Follow,
     scene: &Scene,
 ) -> (Vec<Finding>, Vec<Row>) {
-    let witness = witness(moments, (index, edge), follow);
+    let witness = witness(records, (index, edge), follow);
     let wheels = |robot: usize| scene.robots.get(robot).is_some_and(|robot| robot.vehicle.kind.has_wheels());
     let leads = scene.robots.get(edge.leader).is_none_or(|robot| matches!(robot.role, Role::Lead { .. }));
     let held = scene.time.mode != Mode::Continuous;
-    let first = moments.first().map(|moment| moment.snapshot.time);
+    let first = records.first().map(|record| record.snapshot.time);
     let circumstances = Circumstances {
         held: held.then_some(scene.time.period),
         sampled_measurement: scene.time.mode == Mode::Measured,
@@ -29,25 +29,25 @@ pub fn so_far(
     (certify(&witness, &circumstances), witness.rows().to_vec())
 }
 
-/// The quantities of edge number `index` along `moments`, which may be thinned; its law is that of `follow`. Rates of set
+/// The quantities of edge number `index` along `records`, which may be thinned; its law is that of `follow`. Rates of set
 /// points and of turn rates are differences from moment to moment.
-pub fn rows(moments: &[&Moment], (index, edge): (usize, Edge), follow: &Follow) -> Vec<Row> {
-    witness(moments, (index, edge), follow).rows().to_vec()
+pub fn rows(records: &[&StepRecord], (index, edge): (usize, Edge), follow: &Follow) -> Vec<Row> {
+    witness(records, (index, edge), follow).rows().to_vec()
 }
 
-fn witness(moments: &[&Moment], (index, edge): (usize, Edge), follow: &Follow) -> Witness {
+fn witness(records: &[&StepRecord], (index, edge): (usize, Edge), follow: &Follow) -> Witness {
     let law = edge_law(follow);
     let mut witness = Witness::new(law.law, law.observer).keeping();
     let observes = law.law.kind == LawKind::OutputFeedback;
     let mut before: Option<(f64, Motion, [f64; 2])> = None;
-    for moment in moments {
-        let robots = &moment.snapshot.robots;
+    for record in records {
+        let robots = &record.snapshot.robots;
         let (Some(state), Some(leader), Some(follower)) =
-            (moment.edges.get(index), robots.get(edge.leader), robots.get(edge.follower))
+            (record.edges.get(index), robots.get(edge.leader), robots.get(edge.follower))
         else {
             continue;
         };
-        let (time, motion, value) = (moment.snapshot.time, leader.motion, state.set_point);
+        let (time, motion, value) = (record.snapshot.time, leader.motion, state.set_point);
         let (turned, moved) = before.map_or((0.0, [0.0; 2]), |(then, last, point)| {
             let step = (time - then).max(1e-9);
             let moved = [value[0] - point[0], wrap(value[1] - point[1])].map(|d| d / step);
@@ -58,7 +58,7 @@ fn witness(moments: &[&Moment], (index, edge): (usize, Edge), follow: &Follow) -
             time,
             relative: state.relative,
             follower_speed: follower.motion.speed.max(1e-6),
-            leader: Drive {
+            leader: MotionInput {
                 speed: motion.speed,
                 acceleration: motion.acceleration,
                 turn_rate: motion.turn_rate,

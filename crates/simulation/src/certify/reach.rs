@@ -1,8 +1,8 @@
 //! Which set points followers can hold while their leader drives its path: the set of (distance, bearing) within limits.
 
-use formation::holdable::{Unholdable, held, unholdable_now};
+use formation::feasible::{Infeasible, held, unholdable_now};
 use scene::{Role, Scene};
-use vocabulary::{Drive, Limits};
+use vocabulary::{Limits, MotionInput};
 
 use crate::{BuildError, Simulation, build};
 
@@ -23,7 +23,7 @@ pub struct Reach {
     /// The set point of the scene, [m, rad], and what stands against it, if anything does.
     pub set_point: [f64; 2],
     /// What stands against the set point.
-    pub refused: Option<Unholdable>,
+    pub refused: Option<Infeasible>,
     /// Distance to which was looked, m.
     pub far: f64,
 }
@@ -36,7 +36,7 @@ pub struct Ray {
     /// Every distance from the least one to this can be held, m.
     pub distance: f64,
     /// What ends it; `None` where nothing does up to the distance looked to.
-    pub end: Option<Unholdable>,
+    pub end: Option<Infeasible>,
 }
 
 /// The set points that can be held, of every edge; leaders that follow are taken to hold their own.
@@ -46,18 +46,18 @@ pub struct Ray {
 pub fn reach(scene: &Scene) -> Result<Vec<Reach>, BuildError> {
     let simulation = Simulation::new(build(scene)?);
     let formation = simulation.formation();
-    let robots = simulation.cast().members.len();
+    let robots = simulation.fleet().robots.len();
     let times: Vec<f64> =
         (0..=INSTANTS).map(|k| scene.time.duration * f64::from(k) / f64::from(INSTANTS)).collect();
-    let mut paths: Vec<Vec<Drive>> = vec![Vec::new(); robots];
-    for (robot, profile) in formation.leads() {
-        paths[*robot] = times.iter().map(|time| profile.at(*time)).collect();
+    let mut paths: Vec<Vec<MotionInput>> = vec![Vec::new(); robots];
+    for (robot, trajectory) in formation.leads() {
+        paths[*robot] = times.iter().map(|time| trajectory.at(*time)).collect();
     }
     let mut all: Vec<Option<Reach>> = vec![None; formation.edges().len()];
     for &index in formation.graph().evaluation_order() {
         let (edge, law) = (formation.edges()[index], &formation.laws()[index]);
         let path = &paths[edge.leader];
-        let own: Vec<Drive> = path
+        let own: Vec<MotionInput> = path
             .iter()
             .zip(&times)
             .map(|(leader, time)| held(place(law.set_point.at(*time).value), leader))
@@ -98,20 +98,20 @@ fn place([distance, bearing]: [f64; 2]) -> [f64; 2] {
 }
 
 /// A path without what repeats itself.
-fn distinct(path: &[Drive]) -> Vec<Drive> {
-    let mut out: Vec<Drive> = path.to_vec();
+fn distinct(path: &[MotionInput]) -> Vec<MotionInput> {
+    let mut out: Vec<MotionInput> = path.to_vec();
     out.dedup();
     out
 }
 
 struct Judge {
-    path: Vec<Drive>,
+    path: Vec<MotionInput>,
     limits: Limits,
     distance_min: f64,
 }
 
 impl Judge {
-    fn against(&self, distance: f64, bearing: f64) -> Option<Unholdable> {
+    fn against(&self, distance: f64, bearing: f64) -> Option<Infeasible> {
         let place = place([distance, bearing]);
         self.path.iter().find_map(|leader| unholdable_now(place, leader, &self.limits, self.distance_min))
     }

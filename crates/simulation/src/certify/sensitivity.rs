@@ -144,14 +144,14 @@ pub fn sensitivities(
 fn settled(scene: &Scene, look: &(impl Fn() -> bool + Sync)) -> Result<Option<Vec<[f64; 2]>>, BuildError> {
     let mut simulation = Simulation::new(build(scene)?);
     let from = simulation.len() - (simulation.len() as f64 * LATE) as u64;
-    let mut squares = vec![[0.0; 2]; simulation.cast().edges.len()];
+    let mut squares = vec![[0.0; 2]; simulation.fleet().edges.len()];
     let mut samples = 0;
-    while let Some(moment) = simulation.next_moment() {
-        if simulation_sample(moment, scene.time.period) < from {
+    while let Some(record) = simulation.next_record() {
+        if simulation_sample(record, scene.time.period) < from {
             continue;
         }
         samples += 1;
-        for (sum, edge) in squares.iter_mut().zip(&moment.edges) {
+        for (sum, edge) in squares.iter_mut().zip(&record.edges) {
             sum[0] += edge.error[0] * edge.error[0];
             sum[1] += edge.error[1] * edge.error[1];
         }
@@ -160,8 +160,8 @@ fn settled(scene: &Scene, look: &(impl Fn() -> bool + Sync)) -> Result<Option<Ve
     Ok(look().then(|| squares.into_iter().map(mean).collect()))
 }
 
-fn simulation_sample(moment: &vocabulary::Moment, period: f64) -> u64 {
-    (moment.snapshot.time / period).round() as u64
+fn simulation_sample(record: &vocabulary::StepRecord, period: f64) -> u64 {
+    (record.snapshot.time / period).round() as u64
 }
 
 /// `work` on every item, on all cores; results in the order of the items, whoever did them.

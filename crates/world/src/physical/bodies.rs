@@ -10,10 +10,10 @@ use rapier3d_f64::parry::bounding_volume::BoundingVolume;
 use rapier3d_f64::prelude::{
     ActiveCollisionTypes, BroadPhaseBvh, CCDSolver, Collider, ColliderBuilder, ColliderSet, ContactPair,
     ImpulseJointSet, IntegrationParameters, IslandManager, MassProperties, MultibodyJointSet, NarrowPhase,
-    PhysicsPipeline, Pose as Frame, QueryFilter, Ray, RigidBodyBuilder, RigidBodyHandle, RigidBodySet,
+    PhysicsPipeline, Pose as Isometry, QueryFilter, Ray, RigidBodyBuilder, RigidBodyHandle, RigidBodySet,
     Rotation, SharedShape, SoftBodySet, Vector,
 };
-use vocabulary::{Attitude, Body, GRAVITY, Mobility, Motion, Placement, Pose, Solid, Surface, Thing};
+use vocabulary::{Attitude, Body, EntityId, GRAVITY, Mobility, Motion, Placement, Pose, Solid, Surface};
 
 /// Bodies whose nearest points are closer than this touch, m.
 const TOUCHING: f64 = 1e-4;
@@ -75,7 +75,7 @@ impl Bodies {
     pub(super) fn new(terrain: Option<&vocabulary::Terrain>) -> Self {
         let mut colliders = ColliderSet::new();
         for part in ground(terrain) {
-            colliders.insert(part.friction(0.7).user_data(mark(Thing::Ground)));
+            colliders.insert(part.friction(0.7).user_data(mark(EntityId::Ground)));
         }
         Self {
             pipeline: PhysicsPipeline::new(),
@@ -160,7 +160,7 @@ impl Bodies {
             .friction(prop.friction)
             .restitution(prop.restitution)
             .mass(prop.mass)
-            .user_data(mark(Thing::Prop(index)))
+            .user_data(mark(EntityId::Prop(index)))
             .active_collision_types(ActiveCollisionTypes::all());
         let handle = match prop.prop.mobility {
             Mobility::Fixed => None,
@@ -201,7 +201,7 @@ impl Bodies {
     }
 
     /// Where a guided body is at the end of the coming step.
-    pub(super) fn place(&mut self, body: RigidBodyHandle, frame: Frame) {
+    pub(super) fn place(&mut self, body: RigidBodyHandle, frame: Isometry) {
         self.set[body].set_next_kinematic_position(frame);
     }
 
@@ -266,7 +266,7 @@ impl Bodies {
     pub(super) fn props_near(&self, body: RigidBodyHandle, reach: f64) -> bool {
         let Some(collider) = self.set[body].colliders().first() else { return false };
         let around = self.colliders[*collider].compute_aabb().loosened(reach);
-        let is_prop = |_, collider: &Collider| matches!(thing_of(collider), Thing::Prop(_));
+        let is_prop = |_, collider: &Collider| matches!(thing_of(collider), EntityId::Prop(_));
         let filter = QueryFilter::new().predicate(&is_prop);
         self.query(filter).intersect_aabb_conservative(around).next().is_some()
     }
@@ -275,13 +275,13 @@ impl Bodies {
     /// stands on, and the body that bears it.
     pub(super) fn prop_under(
         &self,
-        mount: Vector,
+        camera_mount: Vector,
         up: Vector,
         above: f64,
         below: f64,
     ) -> Option<(f64, Footing, Option<RigidBodyHandle>)> {
-        let is_prop = |_, collider: &Collider| matches!(thing_of(collider), Thing::Prop(_));
-        let ray = Ray::new(mount + up * above, -up);
+        let is_prop = |_, collider: &Collider| matches!(thing_of(collider), EntityId::Prop(_));
+        let ray = Ray::new(camera_mount + up * above, -up);
         let query = self.query(QueryFilter::new().predicate(&is_prop));
         let (hit, at) = query.cast_ray_and_get_normal(&ray, above + below, true)?;
         // A ray that starts inside a prop has no ground under it: the body runs into that prop.
@@ -314,7 +314,9 @@ impl Bodies {
         let colliders = [&self.colliders[pair.collider1], &self.colliders[pair.collider2]];
         let mut things = colliders.map(thing_of);
         // What lies on the ground is no collision, except a robot's body.
-        if things.contains(&Thing::Ground) && !things.iter().any(|thing| matches!(thing, Thing::Robot(_))) {
+        if things.contains(&EntityId::Ground)
+            && !things.iter().any(|thing| matches!(thing, EntityId::Robot(_)))
+        {
             return None;
         }
         let impulse = pair.total_impulse_magnitude();
@@ -349,15 +351,15 @@ fn shell(index: usize, body: &Body, clearance: f64) -> ColliderBuilder {
         .density(0.0)
         .friction(friction)
         .restitution(restitution)
-        .user_data(mark(Thing::Robot(index)))
+        .user_data(mark(EntityId::Robot(index)))
 }
 
 /// The collider of a solid, and where its frame is in the solid's.
-fn solid(solid: &Solid) -> (SharedShape, Frame) {
-    let raised = |height: f64| Frame::from_translation(Vector::new(0.0, 0.0, 0.5 * height));
+fn solid(solid: &Solid) -> (SharedShape, Isometry) {
+    let raised = |height: f64| Isometry::from_translation(Vector::new(0.0, 0.0, 0.5 * height));
     // rapier's cylinders and cones stand along y.
     let stood = |height: f64| {
-        Frame::from_parts(
+        Isometry::from_parts(
             Vector::new(0.0, 0.0, 0.5 * height),
             Rotation::from_axis_angle(Vector::X, std::f64::consts::FRAC_PI_2),
         )
@@ -377,45 +379,45 @@ fn solid(solid: &Solid) -> (SharedShape, Frame) {
                 at(1.0, 1.0, 1.0),
             ];
             let hull = SharedShape::convex_hull(&corners);
-            (hull.unwrap_or_else(|| SharedShape::cuboid(0.5 * l, 0.5 * w, 0.5 * h)), Frame::identity())
+            (hull.unwrap_or_else(|| SharedShape::cuboid(0.5 * l, 0.5 * w, 0.5 * h)), Isometry::identity())
         }
     }
 }
 
 /// A thing as a number that a collider carries.
-fn mark(thing: Thing) -> u128 {
+fn mark(thing: EntityId) -> u128 {
     match thing {
-        Thing::Ground => 0,
-        Thing::Robot(index) => 1 + 2 * index as u128,
-        Thing::Prop(index) => 2 + 2 * index as u128,
+        EntityId::Ground => 0,
+        EntityId::Robot(index) => 1 + 2 * index as u128,
+        EntityId::Prop(index) => 2 + 2 * index as u128,
     }
 }
 
-fn thing_of(collider: &Collider) -> Thing {
+fn thing_of(collider: &Collider) -> EntityId {
     match collider.user_data {
-        0 => Thing::Ground,
-        odd if odd % 2 == 1 => Thing::Robot((odd / 2) as usize),
-        even => Thing::Prop((even / 2 - 1) as usize),
+        0 => EntityId::Ground,
+        odd if odd % 2 == 1 => EntityId::Robot((odd / 2) as usize),
+        even => EntityId::Prop((even / 2 - 1) as usize),
     }
 }
 
-fn frame_of(placement: &Placement) -> Frame {
+fn frame_of(placement: &Placement) -> Isometry {
     let [x, y, z, w] = placement.rotation;
-    Frame::from_parts(Vector::from(placement.position), Rotation::from_xyzw(x, y, z, w).normalize())
+    Isometry::from_parts(Vector::from(placement.position), Rotation::from_xyzw(x, y, z, w).normalize())
 }
 
 /// Upright at a pose.
-pub(super) fn upright(pose: Pose, height: f64) -> Frame {
+pub(super) fn upright(pose: Pose, height: f64) -> Isometry {
     frame_of(&Placement::upright(pose, height))
 }
 
 /// At a pose, with its wheels on a surface.
-pub(super) fn on_surface(pose: Pose, surface: &Surface) -> Frame {
+pub(super) fn on_surface(pose: Pose, surface: &Surface) -> Isometry {
     let Attitude { height, roll, pitch } = attitude_on(pose.heading, surface);
     let turn = Rotation::from_rotation_z(pose.heading)
         * Rotation::from_rotation_y(pitch)
         * Rotation::from_rotation_x(roll);
-    Frame::from_parts(Vector::new(pose.x, pose.y, height), turn)
+    Isometry::from_parts(Vector::new(pose.x, pose.y, height), turn)
 }
 
 /// How a body stands on a surface.

@@ -5,24 +5,25 @@
 mod bodies;
 mod car;
 mod ground;
-mod passage;
+mod interpolant;
 mod watch;
 
 use crate::touch::{Touch, Touches};
 use crate::{Handling, Unicycle, Unicycles, Wheeled, World, prescribed::prescribed};
 use bodies::Bodies;
 use car::{Car, Surroundings};
-use passage::Record;
+use interpolant::Record;
 use rapier3d_f64::prelude::RigidBodyHandle;
 use rayon::prelude::*;
 use std::sync::Arc;
 use vocabulary::{
-    Command, Contact, Mobility, Motion, Passage, Placement, Pose, Profile, Prop, Snapshot, Solid, Terrain,
+    Command, Contact, Mobility, Motion, Placement, Pose, Prop, Snapshot, Solid, StepInterpolant, Terrain,
+    Trajectory,
 };
 
 /// A robot on stage.
 #[derive(Debug, Clone)]
-pub struct Actor {
+pub struct RobotSetup {
     /// Start, limits, body, and the motion of a lead robot.
     pub robot: Unicycle,
     /// The vehicle it is; a unicycle without mass, moved exactly, where there is none.
@@ -37,7 +38,7 @@ pub struct PropBody {
     /// kg, of one that is loose.
     pub mass: f64,
     /// The motion of one that is guided, from its placement.
-    pub path: Option<Arc<dyn Profile>>,
+    pub path: Option<Arc<dyn Trajectory>>,
     /// Coefficient of friction.
     pub friction: f64,
     /// Coefficient of restitution.
@@ -46,9 +47,9 @@ pub struct PropBody {
 
 /// All that is on stage at the start.
 #[derive(Debug, Clone)]
-pub struct Stage {
+pub struct WorldSetup {
     /// Robots.
-    pub actors: Vec<Actor>,
+    pub actors: Vec<RobotSetup>,
     /// Props.
     pub props: Vec<PropBody>,
     /// The lie of the land; flat where there is none.
@@ -86,7 +87,7 @@ const MOST_PARTS: f64 = 100.0;
 #[derive(Debug, Clone)]
 struct Guided {
     body: RigidBodyHandle,
-    path: Arc<dyn Profile>,
+    path: Arc<dyn Trajectory>,
     /// At the start of the current advance.
     pose: Pose,
     height: f64,
@@ -99,8 +100,8 @@ const PARALLEL_FROM: usize = 64;
 
 impl Physical {
     /// Robots and props at their starts, at time 0.
-    pub fn new(stage: Stage) -> Self {
-        let Stage { actors, props, terrain, step } = stage;
+    pub fn new(stage: WorldSetup) -> Self {
+        let WorldSetup { actors, props, terrain, step } = stage;
         let mut bodies = Bodies::new(terrain.as_deref());
         let ideals = Unicycles::new(actors.iter().map(|actor| actor.robot.clone()).collect());
         let surroundings = Surroundings { terrain, props: !props.is_empty() };
@@ -257,12 +258,12 @@ impl World for Physical {
         &self.snapshot
     }
 
-    fn adopt(&mut self, handling: &[Handling]) {
-        self.ideals.adopt(handling);
+    fn apply_parameters(&mut self, handling: &[Handling]) {
+        self.ideals.apply_parameters(handling);
         self.copy_unicycles();
         for car in &mut self.cars {
             let Some(Handling { limits, wheels: Some(vehicle) }) = handling.get(car.index) else { continue };
-            car.adopt(*limits, vehicle.clone());
+            car.apply_parameters(*limits, vehicle.clone());
             self.bodies.sweep(car.body, vehicle, self.step);
         }
     }
@@ -301,7 +302,7 @@ impl World for Physical {
     }
 }
 
-impl Passage for Physical {
+impl StepInterpolant for Physical {
     fn duration(&self) -> f64 {
         self.ideals.duration()
     }
@@ -313,10 +314,10 @@ impl Passage for Physical {
         }
     }
 
-    fn kink(&self, robot: usize) -> Option<f64> {
+    fn saturation_time(&self, robot: usize) -> Option<f64> {
         match self.cars.binary_search_by_key(&robot, |car| car.index) {
             Ok(_) => None,
-            Err(_) => self.ideals.kink(robot),
+            Err(_) => self.ideals.saturation_time(robot),
         }
     }
 }

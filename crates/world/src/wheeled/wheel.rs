@@ -143,12 +143,18 @@ impl Mounting {
 
     /// How far the spring is compressed from rest where `up` is its axis and `surface` and `normal` are those of the
     /// ground's plane, m; `None` where it does not reach the ground.
-    pub fn compression(&self, mount: Vector, up: Vector, surface: Vector, normal: Vector) -> Option<f64> {
+    pub fn compression(
+        &self,
+        camera_mount: Vector,
+        up: Vector,
+        surface: Vector,
+        normal: Vector,
+    ) -> Option<f64> {
         let slant = up.dot(normal);
         if slant < TIPPED {
             return None;
         }
-        let compression = (surface - mount).dot(normal) / slant;
+        let compression = (surface - camera_mount).dot(normal) / slant;
         (compression > self.droop).then_some(compression)
     }
 }

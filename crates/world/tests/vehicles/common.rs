@@ -3,7 +3,7 @@
 pub(crate) use crate::truck::truck;
 use std::sync::Arc;
 use vocabulary::{Body, Command, Limits, Motion, Pose, Snapshot};
-use world::{Actor, Drivetrain, Physical, Stage, Unicycle, Wheeled, World};
+use world::{Drivetrain, Physical, RobotSetup, Unicycle, Wheeled, World, WorldSetup};
 
 /// A robot with two driven wheels.
 pub(crate) fn differential() -> Wheeled {
@@ -23,21 +23,21 @@ pub(crate) fn differential() -> Wheeled {
 }
 
 /// A vehicle at a pose with a speed.
-pub(crate) fn actor(vehicle: &Wheeled, pose: Pose, speed: f64) -> Actor {
+pub(crate) fn actor(vehicle: &Wheeled, pose: Pose, speed: f64) -> RobotSetup {
     let robot = Unicycle { pose, speed, limits: vehicle.limits, body: vehicle.body, lead: None };
-    Actor { robot, wheels: Some(Arc::new(vehicle.clone())) }
+    RobotSetup { robot, wheels: Some(Arc::new(vehicle.clone())) }
 }
 
 /// A unicycle at a pose with a speed.
-pub(crate) fn unicycle(pose: Pose, speed: f64) -> Actor {
+pub(crate) fn unicycle(pose: Pose, speed: f64) -> RobotSetup {
     let truck = truck();
     let robot = Unicycle { pose, speed, limits: truck.limits, body: truck.body, lead: None };
-    Actor { robot, wheels: None }
+    RobotSetup { robot, wheels: None }
 }
 
 /// A flat world with these robots.
-pub(crate) fn flat(actors: Vec<Actor>) -> Stage {
-    Stage { actors, props: vec![], terrain: None, step: 0.005 }
+pub(crate) fn flat(actors: Vec<RobotSetup>) -> WorldSetup {
+    WorldSetup { actors, props: vec![], terrain: None, step: 0.005 }
 }
 
 /// A run of one world, sample by sample.
@@ -46,7 +46,7 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    pub(crate) fn new(stage: Stage) -> Self {
+    pub(crate) fn new(stage: WorldSetup) -> Self {
         Self { world: Physical::new(stage) }
     }
 

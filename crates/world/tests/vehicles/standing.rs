@@ -2,8 +2,8 @@
 
 use crate::common::{actor, differential, flat, truck};
 use std::sync::Arc;
-use vocabulary::{Command, Condition, Drive, Motion, Pose, Profile, RobotState, Terrain};
-use world::{Actor, Physical, Stage, Wheeled, World};
+use vocabulary::{Command, Condition, Motion, MotionInput, Pose, RobotState, Terrain, Trajectory};
+use world::{Physical, RobotSetup, Wheeled, World, WorldSetup};
 
 /// At this speed in m/s until a time in s, then evenly down to rest within a second.
 #[derive(Debug)]
@@ -16,12 +16,16 @@ impl Stop {
     }
 }
 
-impl Profile for Stop {
-    fn at(&self, time: f64) -> Drive {
+impl Trajectory for Stop {
+    fn at(&self, time: f64) -> MotionInput {
         let Self(speed, until) = *self;
         let left = (1.0 - (time - until)).clamp(0.0, 1.0);
         let slows = left > 0.0 && left < 1.0;
-        Drive { speed: speed * left, acceleration: if slows { -speed } else { 0.0 }, ..Drive::default() }
+        MotionInput {
+            speed: speed * left,
+            acceleration: if slows { -speed } else { 0.0 },
+            ..MotionInput::default()
+        }
     }
 }
 
@@ -47,13 +51,13 @@ fn lead(
     time: f64,
     look: impl Fn(&RobotState),
 ) -> Motion {
-    let Actor { mut robot, wheels } = actor(vehicle, Pose::new(0.0, 0.0, heading), 0.0);
+    let RobotSetup { mut robot, wheels } = actor(vehicle, Pose::new(0.0, 0.0, heading), 0.0);
     let path = Arc::new(path);
     robot.lead = Some(path.clone());
-    let stage = Stage { terrain: Some(slope(rise)), ..flat(vec![Actor { robot, wheels }]) };
+    let stage = WorldSetup { terrain: Some(slope(rise)), ..flat(vec![RobotSetup { robot, wheels }]) };
     let mut world = Physical::new(stage);
     for k in 0..(time * 100.0) as u32 {
-        let Drive { acceleration, turn_rate, .. } = path.at(f64::from(k) * 0.01);
+        let MotionInput { acceleration, turn_rate, .. } = path.at(f64::from(k) * 0.01);
         world.apply(&[Command { acceleration, turn_rate }]);
         world.advance(0.01);
         look(&world.snapshot().robots[0]);

@@ -3,8 +3,8 @@
 use crate::common::{Run, actor, differential, flat, truck, unicycle};
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use vocabulary::{Command, Contact, Mobility, Placement, Pose, Prop, Snapshot, Solid, Thing};
-use world::{Physical, PropBody, Stage, Wheeled, World};
+use vocabulary::{Command, Contact, EntityId, Mobility, Placement, Pose, Prop, Snapshot, Solid};
+use world::{Physical, PropBody, Wheeled, World, WorldSetup};
 
 const FORWARD: Command = Command { acceleration: 0.0, turn_rate: 0.0 };
 
@@ -47,7 +47,7 @@ fn a_head_on_collision_balances_momentum() {
     let speeds = run.world.snapshot().robots.iter().map(|r| r.motion.speed).collect::<Vec<_>>();
     let change = still.mass * (1.5 - speeds[0]);
     assert!((contacts[0].impulse / change - 1.0).abs() < 0.10, "{} N s, not {change}", contacts[0].impulse);
-    assert_eq!(contacts[0].things, [Thing::Robot(0), Thing::Robot(1)]);
+    assert_eq!(contacts[0].things, [EntityId::Robot(0), EntityId::Robot(1)]);
     assert!(contacts[0].normal[0] > 0.99 && (contacts[0].place[0] - 1.0).abs() < 0.2, "{contacts:?}");
     assert!((speeds[0] - speeds[1]).abs() < 0.05, "{speeds:?}");
 }
@@ -91,7 +91,8 @@ fn free_contacts_conserve_momentum() {
 fn nobody_tunnels_at_ten_metres_a_second() {
     let fast = Wheeled { limits: vocabulary::Limits { speed_max: 12.0, ..truck().limits }, ..truck() };
     let wall = prop(Solid::Block { size: [0.02, 4.0, 0.5] }, Pose::new(2.0, 0.0, 0.0), None);
-    let mut run = Run::new(Stage { props: vec![wall], ..flat(vec![actor(&fast, Pose::default(), 10.0)]) });
+    let mut run =
+        Run::new(WorldSetup { props: vec![wall], ..flat(vec![actor(&fast, Pose::default(), 10.0)]) });
     let contacts = told(&mut run, FORWARD, 1.0);
     let places = contacts.iter().map(|contact| contact.place[0]);
     assert!(places.clone().count() > 0 && places.clone().all(|x| (x - 1.99).abs() < 0.06), "{contacts:?}");
@@ -102,7 +103,8 @@ fn nobody_tunnels_at_ten_metres_a_second() {
 #[test]
 fn a_crate_is_pushed_and_a_ramp_is_climbed() {
     let ramp = prop(Solid::Wedge { size: [2.0, 1.5, 0.25] }, Pose::new(2.0, 0.0, 0.0), None);
-    let mut run = Run::new(Stage { props: vec![ramp], ..flat(vec![actor(&truck(), Pose::default(), 1.0)]) });
+    let mut run =
+        Run::new(WorldSetup { props: vec![ramp], ..flat(vec![actor(&truck(), Pose::default(), 1.0)]) });
     run.hold(FORWARD, 2.3, |_| {});
     let robot = &run.world.snapshot().robots[0];
     let slope = (0.25_f64 / 2.0).atan();
@@ -110,10 +112,10 @@ fn a_crate_is_pushed_and_a_ramp_is_climbed() {
     assert!((robot.attitude.height - (robot.motion.pose.x - 1.0) * 0.125).abs() < 0.02, "{robot:?}");
     let crate_ = prop(Solid::Block { size: [0.3, 0.3, 0.3] }, Pose::new(1.5, 0.0, 0.0), Some(1.0));
     let mut run =
-        Run::new(Stage { props: vec![crate_], ..flat(vec![actor(&truck(), Pose::default(), 1.0)]) });
+        Run::new(WorldSetup { props: vec![crate_], ..flat(vec![actor(&truck(), Pose::default(), 1.0)]) });
     let contacts = told(&mut run, FORWARD, 2.5);
     assert!(run.world.snapshot().props[0].position[0] > 1.9, "{:?}", run.world.snapshot().props);
-    assert_eq!(contacts[0].things, [Thing::Robot(0), Thing::Prop(0)]);
+    assert_eq!(contacts[0].things, [EntityId::Robot(0), EntityId::Prop(0)]);
 }
 
 /// Unicycles have no mass, but their contacts are found.
@@ -121,12 +123,12 @@ fn a_crate_is_pushed_and_a_ramp_is_climbed() {
 fn unicycles_touch_too() {
     let pillar = prop(Solid::Cylinder { radius: 0.1, height: 1.0 }, Pose::new(1.5, 0.0, 0.0), None);
     let actors = vec![unicycle(Pose::default(), 1.0), unicycle(Pose::new(3.0, 0.0, PI), 0.5)];
-    let mut run = Run::new(Stage { props: vec![pillar], ..flat(actors) });
+    let mut run = Run::new(WorldSetup { props: vec![pillar], ..flat(actors) });
     let contacts = told(&mut run, FORWARD, 2.5);
-    let with = |things: [Thing; 2]| contacts.iter().filter(|c| c.things == things).count();
-    assert_eq!(with([Thing::Robot(0), Thing::Prop(0)]), 1, "{contacts:?}");
-    assert_eq!(with([Thing::Robot(0), Thing::Robot(1)]), 1, "{contacts:?}");
-    let first = contacts.iter().find(|c| c.things == [Thing::Robot(0), Thing::Prop(0)]).unwrap();
+    let with = |things: [EntityId; 2]| contacts.iter().filter(|c| c.things == things).count();
+    assert_eq!(with([EntityId::Robot(0), EntityId::Prop(0)]), 1, "{contacts:?}");
+    assert_eq!(with([EntityId::Robot(0), EntityId::Robot(1)]), 1, "{contacts:?}");
+    let first = contacts.iter().find(|c| c.things == [EntityId::Robot(0), EntityId::Prop(0)]).unwrap();
     assert!((first.begin - (1.4 - 0.395)).abs() < 0.02, "{first:?}");
 }
 
@@ -135,24 +137,26 @@ fn unicycles_touch_too() {
 fn props_that_meet_are_told_too() {
     let box_ = prop(Solid::Block { size: [0.3, 0.3, 0.3] }, Pose::new(1.0, 0.0, 0.0), Some(0.5));
     let pillar = prop(Solid::Cylinder { radius: 0.2, height: 1.0 }, Pose::new(1.8, 0.0, 0.0), None);
-    let mut run =
-        Run::new(Stage { props: vec![box_, pillar], ..flat(vec![actor(&truck(), Pose::default(), 1.0)]) });
+    let mut run = Run::new(WorldSetup {
+        props: vec![box_, pillar],
+        ..flat(vec![actor(&truck(), Pose::default(), 1.0)])
+    });
     let contacts = told(&mut run, FORWARD, 2.0);
     let between =
-        contacts.iter().find(|c| c.things == [Thing::Prop(0), Thing::Prop(1)]).expect("the crate hits");
+        contacts.iter().find(|c| c.things == [EntityId::Prop(0), EntityId::Prop(1)]).expect("the crate hits");
     assert!(
         between.impulse > 0.1 && !between.of_robot() && (between.place[0] - 1.6).abs() < 0.03,
         "{between:?}"
     );
-    assert!(contacts.iter().all(|c| c.things[1] != Thing::Ground), "{contacts:?}");
+    assert!(contacts.iter().all(|c| c.things[1] != EntityId::Ground), "{contacts:?}");
 }
 
 #[derive(Debug)]
 struct Circle;
 
-impl vocabulary::Profile for Circle {
-    fn at(&self, _: f64) -> vocabulary::Drive {
-        vocabulary::Drive { speed: 0.9, turn_rate: 0.3, ..vocabulary::Drive::default() }
+impl vocabulary::Trajectory for Circle {
+    fn at(&self, _: f64) -> vocabulary::MotionInput {
+        vocabulary::MotionInput { speed: 0.9, turn_rate: 0.3, ..vocabulary::MotionInput::default() }
     }
 }
 
@@ -162,7 +166,8 @@ fn a_guided_prop_keeps_going() {
     let mut cart = prop(Solid::Block { size: [0.8, 0.5, 0.6] }, Pose::new(0.0, -3.0, 0.0), None);
     cart.prop.mobility = Mobility::Guided;
     cart.path = Some(std::sync::Arc::new(Circle));
-    let mut run = Run::new(Stage { props: vec![cart], ..flat(vec![actor(&truck(), Pose::default(), 0.0)]) });
+    let mut run =
+        Run::new(WorldSetup { props: vec![cart], ..flat(vec![actor(&truck(), Pose::default(), 0.0)]) });
     let quarter = std::f64::consts::FRAC_PI_2 / 0.3;
     for _ in 0..(quarter / 0.01).round() as usize {
         run.world.apply(&[FORWARD]);
@@ -178,7 +183,7 @@ fn a_guided_prop_keeps_going() {
     );
 }
 
-fn crowd(count: usize) -> Stage {
+fn crowd(count: usize) -> WorldSetup {
     let kinds = [truck(), differential()];
     let place = |k: usize| Pose::new((k % 12) as f64 * 0.9, (k / 12) as f64 * 0.9, k as f64);
     flat((0..count).map(|k| actor(&kinds[k % 2], place(k), 1.0)).collect())
@@ -244,9 +249,9 @@ proptest! {
 #[derive(Debug)]
 struct Steady(f64);
 
-impl vocabulary::Profile for Steady {
-    fn at(&self, _: f64) -> vocabulary::Drive {
-        vocabulary::Drive { speed: self.0, ..vocabulary::Drive::default() }
+impl vocabulary::Trajectory for Steady {
+    fn at(&self, _: f64) -> vocabulary::MotionInput {
+        vocabulary::MotionInput { speed: self.0, ..vocabulary::MotionInput::default() }
     }
 }
 
@@ -259,7 +264,7 @@ fn a_fast_guided_block_meets_a_loose_one() {
         guided.prop.mobility = Mobility::Guided;
         guided.path = Some(std::sync::Arc::new(Steady(speed)));
         let loose = prop(block, Pose::new(2.0, 0.0, 0.0), Some(1.0));
-        let mut world = Physical::new(Stage { props: vec![guided, loose], ..flat(vec![]) });
+        let mut world = Physical::new(WorldSetup { props: vec![guided, loose], ..flat(vec![]) });
         let mut touched = 0;
         for _ in 0..(300.0 / speed) as usize {
             world.apply(&[]);
@@ -277,16 +282,16 @@ fn a_fast_guided_block_meets_a_loose_one() {
 fn a_fast_turning_arm_meets_a_loose_block() {
     #[derive(Debug)]
     struct Turns;
-    impl vocabulary::Profile for Turns {
-        fn at(&self, _: f64) -> vocabulary::Drive {
-            vocabulary::Drive { turn_rate: 20.0, ..vocabulary::Drive::default() }
+    impl vocabulary::Trajectory for Turns {
+        fn at(&self, _: f64) -> vocabulary::MotionInput {
+            vocabulary::MotionInput { turn_rate: 20.0, ..vocabulary::MotionInput::default() }
         }
     }
     let mut arm = prop(Solid::Block { size: [8.0, 0.05, 0.5] }, Pose::default(), None);
     arm.prop.mobility = Mobility::Guided;
     arm.path = Some(std::sync::Arc::new(Turns));
     let block = prop(Solid::Block { size: [0.1, 0.1, 0.1] }, Pose::new(0.0, 3.5, 0.0), Some(1.0));
-    let mut world = Physical::new(Stage { props: vec![arm, block], ..flat(vec![]) });
+    let mut world = Physical::new(WorldSetup { props: vec![arm, block], ..flat(vec![]) });
     for _ in 0..15 {
         world.apply(&[]);
         world.advance(0.01);
@@ -303,7 +308,7 @@ fn a_thousand_kilometres_out_things_stand_and_drive_as_at_home() {
     let crate_ =
         prop(Solid::Block { size: [0.3, 0.3, 0.3] }, Pose::new(far[0], far[1] + 2.0, 0.3), Some(1.0));
     let car = actor(&truck(), Pose::new(far[0], far[1], 0.0), 1.0);
-    let mut run = Run { world: Physical::new(Stage { props: vec![crate_], ..flat(vec![car]) }) };
+    let mut run = Run { world: Physical::new(WorldSetup { props: vec![crate_], ..flat(vec![car]) }) };
     run.hold(FORWARD, 5.0, |_| {});
     let snapshot = run.world.snapshot();
     let [x, y, z] = snapshot.props[0].position;

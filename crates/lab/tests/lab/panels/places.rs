@@ -9,7 +9,7 @@ use lab::desk::{Choice, Tool};
 use lab::panels::{branches, edge, formation, log};
 use lab::session::forecast::Forecast;
 use lab::symbols;
-use vocabulary::Thing;
+use vocabulary::EntityId;
 
 #[test]
 fn the_tree_shows_who_follows_whom() {
@@ -90,7 +90,7 @@ fn a_robot_has_a_menu() {
 #[test]
 fn an_edge_shows_what_is_wanted_and_what_is() {
     let desk = desk(THREE, 40);
-    let state = desk.moment().expect("a moment").edges[0];
+    let state = desk.record().expect("a moment").edges[0];
     let mut panel = panel(desk, edge::show);
     assert_says(&panel, &["leader → left", &format!("is {:.3} m", state.relative.distance)]);
     assert_says(&panel, &[&format!("is {:.1}°", state.relative.bearing.to_degrees()), "error "]);
@@ -156,7 +156,7 @@ fn an_edge_tells_what_comes() {
     desk.forecast = Some(Forecast {
         span: [0.0, 6.0],
         late_error: vec![[0.012, 0.1], [0.5, 0.5]],
-        contact: Some((3.21, [Thing::Robot(1), Thing::Robot(2)])),
+        contact: Some((3.21, [EntityId::Robot(1), EntityId::Robot(2)])),
         ..Forecast::default()
     });
     let mut panel = panel(desk, edge::show);

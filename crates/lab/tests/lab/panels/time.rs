@@ -174,10 +174,10 @@ fn curves_are_those_of_the_run() {
     assert_eq!(of("branch 1,left,distance_error_m,"), 101, "each sample once");
     assert_eq!(of("branch 1,leader,speed_m_s,"), 101, "leaders have a speed");
     assert!(of("\"a, b\",left,distance_error_m,") > 45, "and what the other branch has of its own");
-    let moment = rig.desk.moment().expect("a moment");
+    let record = rig.desk.record().expect("a moment");
     let last = rows.iter().rfind(|row| row.starts_with("branch 1,right,bearing_error_deg,")).expect("a row");
     let degrees: f64 = last.rsplit(',').next().and_then(|value| value.parse().ok()).expect("a value");
-    assert!((degrees - moment.edges[1].error[1].to_degrees()).abs() < 1e-9);
+    assert!((degrees - record.edges[1].error[1].to_degrees()).abs() < 1e-9);
     let mut twice: Vec<&str> =
         rows.iter().filter_map(|row| row.rsplit_once(',').map(|(key, _)| key)).collect();
     let count = twice.len();

@@ -26,13 +26,13 @@ static TABLE: LazyLock<Vec<[f64; 2]>> = LazyLock::new(|| {
 });
 
 /// How a bell curve around a place is shared among the tag's cells in one direction, and how that changes with the place.
-pub(super) struct Profile {
+pub(super) struct EdgeProfile {
     first: usize,
     count: usize,
     shares: [[f64; 3]; TAG_CELLS],
 }
 
-impl Profile {
+impl EdgeProfile {
     /// Around `at` (cells from the middle of the tag), with a standard deviation of `soft` cells. The outermost cells go
     /// on for ever.
     pub(super) fn new(at: f64, soft: f64) -> Self {
@@ -89,7 +89,7 @@ mod tests {
         for (at, soft) in [(-4.7, 0.3), (0.0, 0.2), (1.37, 0.5), (4.9, 0.9), (2.0, 0.01)] {
             let shares = |at, soft| {
                 let mut out = [[0.0; 3]; TAG_CELLS];
-                Profile::new(at, soft).shares().for_each(|(k, share)| out[k] = share);
+                EdgeProfile::new(at, soft).shares().for_each(|(k, share)| out[k] = share);
                 out
             };
             let (here, h) = (shares(at, soft), 1e-3);

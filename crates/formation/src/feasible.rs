@@ -3,11 +3,11 @@
 //! A follower that keeps its place in the leader's frame moves like a point of a rigid body. With the leader at v and ω,
 //! the place [x, y] moves at (v − ω y, ω x) in the leader's frame and turns with ω.
 
-use vocabulary::{Drive, Limits};
+use vocabulary::{Limits, MotionInput};
 
 /// Why a place cannot be held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unholdable {
+pub enum Infeasible {
     /// It is nearer than the law allows.
     TooClose,
     /// It would have to drive slower than it can.
@@ -27,47 +27,47 @@ pub fn unholdable(
     (speed, turn_rate): (f64, f64),
     limits: &Limits,
     distance_min: f64,
-) -> Option<Unholdable> {
-    unholdable_now(place, &Drive { speed, turn_rate, ..Drive::default() }, limits, distance_min)
+) -> Option<Infeasible> {
+    unholdable_now(place, &MotionInput { speed, turn_rate, ..MotionInput::default() }, limits, distance_min)
 }
 
 /// As [`unholdable`], of a leader that is about to drive or turn faster or slower.
 pub fn unholdable_now(
     place: [f64; 2],
-    leader: &Drive,
+    leader: &MotionInput,
     limits: &Limits,
     distance_min: f64,
-) -> Option<Unholdable> {
+) -> Option<Infeasible> {
     let [x, y] = place;
     if x.hypot(y) < distance_min {
-        return Some(Unholdable::TooClose);
+        return Some(Infeasible::TooClose);
     }
     let (needed, moving) = (held(place, leader), leader.speed > limits.speed_min);
     // A leader at rest is followed at rest, as near as the limits allow; followers drive forward only, and where the
     // place moves backwards they would have to turn round.
     if moving && (needed.speed < limits.speed_min || leader.speed - leader.turn_rate * y < 0.0) {
-        return Some(Unholdable::TooSlow);
+        return Some(Infeasible::TooSlow);
     }
     if needed.speed > limits.speed_max {
-        return Some(Unholdable::TooFast);
+        return Some(Infeasible::TooFast);
     }
     if needed.turn_rate.abs() > limits.turn_rate_at(needed.speed.max(limits.speed_min)) {
-        return Some(Unholdable::TooTight);
+        return Some(Infeasible::TooTight);
     }
-    (needed.acceleration.abs() > limits.acceleration_max).then_some(Unholdable::TooHard)
+    (needed.acceleration.abs() > limits.acceleration_max).then_some(Infeasible::TooHard)
 }
 
 /// How a follower moves that keeps its `place`, [forward, left] of its leader in m. The change of its turn rate is the
 /// leader's: exact while the leader turns steadily.
-pub fn held(place: [f64; 2], leader: &Drive) -> Drive {
+pub fn held(place: [f64; 2], leader: &MotionInput) -> MotionInput {
     let [x, y] = place;
     let (ahead, aside) = (leader.speed - leader.turn_rate * y, leader.turn_rate * x);
     let speed = ahead.hypot(aside);
     if speed <= f64::EPSILON {
-        return Drive { speed, acceleration: 0.0, ..*leader };
+        return MotionInput { speed, acceleration: 0.0, ..*leader };
     }
     let slope = [leader.acceleration - leader.turn_acceleration * y, leader.turn_acceleration * x];
-    Drive {
+    MotionInput {
         speed,
         acceleration: (ahead * slope[0] + aside * slope[1]) / speed,
         // The place's direction turns in the leader's frame, too.
@@ -85,7 +85,7 @@ mod tests {
         for place in [[-2.0, 0.0], [1.0, 5.0], [0.0, -30.0]] {
             assert_eq!(unholdable(place, (1.0, 0.0), &Limits::PAPER, 0.1), None);
         }
-        assert_eq!(unholdable([0.05, 0.0], (1.0, 0.0), &Limits::PAPER, 0.1), Some(Unholdable::TooClose));
+        assert_eq!(unholdable([0.05, 0.0], (1.0, 0.0), &Limits::PAPER, 0.1), Some(Infeasible::TooClose));
     }
 
     #[test]
@@ -94,14 +94,14 @@ mod tests {
         let place = |distance: f64, bearing: f64| [distance * bearing.cos(), distance * bearing.sin()];
         let at = |d, b: f64| unholdable(place(d, b.to_radians()), (1.0, 0.3), &Limits::PAPER, 0.1);
         assert_eq!(at(2.0, -135.0), None);
-        assert_eq!(at(3.0, -90.0), Some(Unholdable::TooFast));
-        assert_eq!(at(3.4, 90.0), Some(Unholdable::TooSlow));
+        assert_eq!(at(3.0, -90.0), Some(Infeasible::TooFast));
+        assert_eq!(at(3.4, 90.0), Some(Infeasible::TooSlow));
     }
 
     #[test]
     fn steered_wheels_cannot_turn_tightly() {
         let car = Limits { curvature_max: 1.0 / 0.6, ..Limits::PAPER };
-        assert_eq!(unholdable([-0.3, 2.5], (1.0, 0.35), &car, 0.1), Some(Unholdable::TooTight));
+        assert_eq!(unholdable([-0.3, 2.5], (1.0, 0.35), &car, 0.1), Some(Infeasible::TooTight));
         assert_eq!(unholdable([-0.3, -1.0], (1.0, 0.35), &car, 0.1), None);
     }
 
@@ -109,7 +109,7 @@ mod tests {
     #[test]
     fn a_place_behind_a_leader_that_changes_its_mind_moves_as_it_is_said_to() {
         let place = [-1.2, 0.8];
-        let leader = Drive { speed: 1.0, acceleration: 0.4, turn_rate: 0.3, turn_acceleration: -0.5 };
+        let leader = MotionInput { speed: 1.0, acceleration: 0.4, turn_rate: 0.3, turn_acceleration: -0.5 };
         // The leader's pose by the same midpoint rule as a fine integration.
         let at = |t: f64| {
             let steps = 2000;
@@ -144,10 +144,10 @@ mod tests {
         };
         let judge = |limits: Limits| unholdable_now(place, &leader, &limits, 0.1);
         assert_eq!(judge(just(1.001)), None);
-        assert_eq!(judge(just(0.999)), Some(Unholdable::TooHard));
+        assert_eq!(judge(just(0.999)), Some(Infeasible::TooHard));
         let tight = |share: f64| Limits { turn_rate_max: share * turn_rate.abs(), ..just(2.0) };
-        assert_eq!((judge(tight(1.001)), judge(tight(0.999))), (None, Some(Unholdable::TooTight)));
+        assert_eq!((judge(tight(1.001)), judge(tight(0.999))), (None, Some(Infeasible::TooTight)));
         let fast = |share: f64| Limits { speed_max: share * speed, ..just(2.0) };
-        assert_eq!((judge(fast(1.001)), judge(fast(0.999))), (None, Some(Unholdable::TooFast)));
+        assert_eq!((judge(fast(1.001)), judge(fast(0.999))), (None, Some(Infeasible::TooFast)));
     }
 }

@@ -1,6 +1,6 @@
 //! One row of a run: the truth, and what every edge wanted, knew and did. Pictures and records are made of it.
 
-use crate::{Command, Contact, Frame, Relative, Sight, Snapshot, nearest_turn, wrap};
+use crate::{Command, Contact, MeasurementRecord, Relative, Snapshot, TrackingState, nearest_turn, wrap};
 
 /// One edge at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -10,7 +10,7 @@ pub struct EdgeState {
     /// Relative position as the follower took it: the truth where it is told the truth.
     pub seen: Relative,
     /// How well it knows where its leader is.
-    pub sight: Sight,
+    pub sight: TrackingState,
     /// Time since the last look that corrected the estimate, s; 0 where it is told the truth.
     pub age: f64,
     /// Wanted [distance in m, bearing in rad].
@@ -33,18 +33,18 @@ pub struct EdgeState {
 
 /// Snapshot and edges of one instant.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Moment {
+pub struct StepRecord {
     /// The truth about the robots.
     pub snapshot: Snapshot,
-    /// One entry per edge, in the order of [`crate::Cast::edges`].
+    /// One entry per edge, in the order of [`crate::FleetInfo::edges`].
     pub edges: Vec<EdgeState>,
     /// Contacts that are open, or that ended since the moment before.
     pub contacts: Vec<Contact>,
     /// Looks at leaders that arrived since the moment before.
-    pub frames: Vec<Frame>,
+    pub frames: Vec<MeasurementRecord>,
 }
 
-impl Moment {
+impl StepRecord {
     /// The moment at `share` (0 to 1) of the way from `a` to `b`, for pictures between two control samples.
     ///
     /// Positions, angles and errors are interpolated linearly; commands and flags are those of `a`.
@@ -74,12 +74,12 @@ mod tests {
         let at = |time, heading| {
             let mut robot = RobotState::default();
             robot.motion.pose = Pose::new(time, 0.0, heading);
-            Moment {
+            StepRecord {
                 snapshot: Snapshot { time, robots: vec![robot], ..Snapshot::default() },
-                ..Moment::default()
+                ..StepRecord::default()
             }
         };
-        let middle = Moment::between(&at(0.0, 3.0), &at(1.0, -3.0), 0.5);
+        let middle = StepRecord::between(&at(0.0, 3.0), &at(1.0, -3.0), 0.5);
         let pose = middle.snapshot.robots[0].motion.pose;
         assert!((pose.x - 0.5).abs() < 1e-15 && (pose.heading.abs() - std::f64::consts::PI).abs() < 1e-12);
     }

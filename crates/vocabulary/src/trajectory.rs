@@ -2,7 +2,7 @@
 
 /// Speed and turn rate at an instant, each with its time derivative.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Drive {
+pub struct MotionInput {
     /// v, m/s.
     pub speed: f64,
     /// dv/dt, m/s².
@@ -14,7 +14,7 @@ pub struct Drive {
 }
 
 /// A motion prescribed as a function of time.
-pub trait Profile: std::fmt::Debug + Send + Sync {
+pub trait Trajectory: std::fmt::Debug + Send + Sync {
     /// The motion at `time` in s from the start of the run; finite for every finite time.
-    fn at(&self, time: f64) -> Drive;
+    fn at(&self, time: f64) -> MotionInput;
 }

@@ -9,13 +9,13 @@ const MOST_NOTES: usize = 100;
 
 /// Where something stands: bytes `start..end` of one of the texts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
-pub(crate) struct Place {
+pub(crate) struct Span {
     pub(crate) source: usize,
     pub(crate) start: usize,
     pub(crate) end: usize,
 }
 
-impl Place {
+impl Span {
     /// Its first character.
     pub(crate) fn first(self) -> Self {
         Self { end: self.start, ..self }
@@ -28,9 +28,9 @@ struct Source {
 }
 
 /// Texts read and faults found while a scene is loaded.
-pub(crate) struct Reading {
+pub(crate) struct Reporter {
     sources: Vec<Source>,
-    notes: Vec<(Place, String)>,
+    notes: Vec<(Span, String)>,
     /// Key whose value is being read.
     key: String,
     /// Folder in which the tables of a scene are looked for.
@@ -39,7 +39,7 @@ pub(crate) struct Reading {
     pub(crate) files: Vec<PathBuf>,
 }
 
-impl Reading {
+impl Reporter {
     pub(crate) fn new(folder: &Path) -> Self {
         Self { sources: vec![], notes: vec![], key: String::new(), folder: folder.to_owned(), files: vec![] }
     }
@@ -55,7 +55,7 @@ impl Reading {
         self.folder.join(name)
     }
 
-    pub(crate) fn note(&mut self, place: Place, message: impl Into<String>) {
+    pub(crate) fn report(&mut self, place: Span, message: impl Into<String>) {
         if !self.is_full() {
             self.notes.push((place, message.into()));
         }
@@ -65,7 +65,7 @@ impl Reading {
     pub(crate) fn wrong(&mut self, node: &Node, expected: &str) {
         let subject = if self.key.is_empty() { "this".to_owned() } else { format!("`{}`", self.key) };
         let found = node.describe(self.shown(node.place));
-        self.note(node.place, format!("{subject} must be {expected}, not {found}"));
+        self.report(node.place, format!("{subject} must be {expected}, not {found}"));
     }
 
     /// Does `work` as part of reading the value of `key`.
@@ -104,7 +104,7 @@ impl Reading {
     }
 
     /// Moves the notes from number `first` on that stand outside of `place` there, with `why` added.
-    pub(crate) fn gather(&mut self, first: usize, place: Place, why: &str) {
+    pub(crate) fn gather(&mut self, first: usize, place: Span, why: &str) {
         for (at, message) in self.notes.iter_mut().skip(first) {
             if at.source != place.source || at.start < place.start || at.end > place.end {
                 *at = place;
@@ -114,11 +114,11 @@ impl Reading {
     }
 
     /// The text at a place.
-    pub(crate) fn shown(&self, place: Place) -> &str {
+    pub(crate) fn shown(&self, place: Span) -> &str {
         self.sources.get(place.source).and_then(|s| s.text.get(place.start..place.end)).unwrap_or("")
     }
 
-    fn diagnostic(&self, place: Place, message: &str) -> Diagnostic {
+    fn diagnostic(&self, place: Span, message: &str) -> Diagnostic {
         let message = readable(message).into_owned();
         let Some(source) = self.sources.get(place.source) else {
             return Diagnostic {

@@ -4,14 +4,14 @@ use crate::{Body, Region, Rigid, RobotState, Shell, Snapshot};
 
 /// Where a camera sits on a robot: it turns about an upright axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mount {
+pub struct CameraMount {
     /// Of its axis ahead of the robot's reference point, m.
     pub forward: f64,
     /// Of the optical centre over the ground, m.
     pub height: f64,
 }
 
-impl Mount {
+impl CameraMount {
     /// The mount that fits a body: over the front of its shell.
     pub fn fitting(body: &Body) -> Self {
         let shell = Shell::fitting(body);
@@ -63,7 +63,7 @@ pub struct Grey {
 }
 
 /// Takes pictures of a world: implemented by whoever can draw.
-pub trait Eyes: Send {
+pub trait CameraRenderer: Send {
     /// Takes all `shots` of the same instant, one picture each in `pictures`.
     ///
     /// # Errors
@@ -78,12 +78,12 @@ mod tests {
 
     #[test]
     fn a_camera_that_looks_ahead_sees_right_on_the_right_and_down_below() {
-        let mount = Mount { forward: 0.1, height: 0.3 };
+        let camera_mount = CameraMount { forward: 0.1, height: 0.3 };
         let robot = RobotState {
             motion: Motion { pose: Pose::new(1.0, 2.0, std::f64::consts::FRAC_PI_2), ..Motion::default() },
             ..RobotState::default()
         };
-        let seen = mount.world_from_camera(&robot).inverse().apply([1.5, 4.1, 0.2]);
+        let seen = camera_mount.world_from_camera(&robot).inverse().apply([1.5, 4.1, 0.2]);
         for (got, want) in seen.iter().zip([0.5, 0.1, 2.0]) {
             assert!((got - want).abs() < 1e-12, "{seen:?}");
         }

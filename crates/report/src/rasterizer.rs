@@ -28,12 +28,12 @@ pub enum PressError {
 
 /// Prints sheets.
 #[derive(Debug, Clone)]
-pub struct Press(Arc<usvg::fontdb::Database>);
+pub struct Rasterizer(Arc<usvg::fontdb::Database>);
 
 /// Pixels of SVG in an inch.
 const PIXELS: f32 = 96.0;
 
-impl Press {
+impl Rasterizer {
     /// With these fonts (OpenType) and no others.
     pub fn new(fonts: &[&'static [u8]]) -> Self {
         let mut all = usvg::fontdb::Database::new();
@@ -115,7 +115,7 @@ mod tests {
     fn a_sheet_has_its_size_in_both() {
         let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"85mm\" height=\"42.5mm\" viewBox=\"0 0 2 1\">\
                    <rect width=\"2\" height=\"1\"/></svg>";
-        let press = Press::new(&[]);
+        let press = Rasterizer::new(&[]);
         let png = press.png(svg, 300.0).expect("a picture");
         let side = |at: usize| u32::from_be_bytes([png[at], png[at + 1], png[at + 2], png[at + 3]]);
         assert_eq!([side(16), side(20)], [1004, 502]);

@@ -3,7 +3,7 @@
 /// A pinhole camera with Brown-Conrady distortion. The middle of the top left pixel is (0, 0), x to the right, y down; in
 /// the camera's frame x is to the right, y down and z ahead, as OpenCV has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lens {
+pub struct CameraModel {
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
@@ -16,14 +16,14 @@ pub struct Lens {
     pub distortion: [f64; 5],
 }
 
-impl Default for Lens {
+impl Default for CameraModel {
     /// 640 by 480 pixels, 50° across.
     fn default() -> Self {
         Self::pinhole(640, 480, 50_f64.to_radians())
     }
 }
 
-impl Lens {
+impl CameraModel {
     /// Without distortion, its axis through the middle of the picture; `field_of_view` across, rad.
     pub fn pinhole(width: u32, height: u32, field_of_view: f64) -> Self {
         Self {
@@ -86,7 +86,7 @@ impl Lens {
         guess
     }
 
-    /// Derivative of [`Lens::distorted`], rows for its two components.
+    /// Derivative of [`CameraModel::distorted`], rows for its two components.
     pub fn slope(&self, [x, y]: [f64; 2]) -> [[f64; 2]; 2] {
         let [k1, k2, p1, p2, k3] = self.distortion;
         let r2 = x * x + y * y;
@@ -121,8 +121,8 @@ pub struct Region {
 
 impl Region {
     /// All of a picture.
-    pub fn whole(lens: &Lens) -> Self {
-        Self { x: 0, y: 0, width: lens.width, height: lens.height }
+    pub fn whole(camera_model: &CameraModel) -> Self {
+        Self { x: 0, y: 0, width: camera_model.width, height: camera_model.height }
     }
 }
 
@@ -132,32 +132,33 @@ mod tests {
 
     #[test]
     fn the_default_camera_has_the_focal_length_that_is_written_about_it() {
-        let lens = Lens::pinhole(640, 480, 50_f64.to_radians());
-        assert!((lens.focal - 686.2).abs() < 0.1);
-        assert_eq!(lens.project([0.0, 0.0, 2.0]), Some([319.5, 239.5]));
-        assert_eq!(lens.project([0.0, 0.0, -2.0]), None);
+        let camera_model = CameraModel::pinhole(640, 480, 50_f64.to_radians());
+        assert!((camera_model.focal - 686.2).abs() < 0.1);
+        assert_eq!(camera_model.project([0.0, 0.0, 2.0]), Some([319.5, 239.5]));
+        assert_eq!(camera_model.project([0.0, 0.0, -2.0]), None);
     }
 
     #[test]
     fn distortion_is_undone() {
-        let lens = Lens {
+        let camera_model = CameraModel {
             distortion: [-0.28, 0.09, 1e-3, -7e-4, -0.01],
-            ..Lens::pinhole(640, 480, 60_f64.to_radians())
+            ..CameraModel::pinhole(640, 480, 60_f64.to_radians())
         };
         for (u, v) in (0..8).flat_map(|u| (0..6).map(move |v| (f64::from(u) * 91.0, f64::from(v) * 95.0))) {
-            let [x, y] = lens.direction([u, v]);
-            let back = lens.project([x, y, 1.0]).expect("in front");
+            let [x, y] = camera_model.direction([u, v]);
+            let back = camera_model.project([x, y, 1.0]).expect("in front");
             assert!((back[0] - u).abs() < 1e-9 && (back[1] - v).abs() < 1e-9, "{u} {v}: {back:?}");
         }
     }
 
     #[test]
     fn the_slope_is_the_derivative() {
-        let lens = Lens { distortion: [-0.3, 0.1, 2e-3, -1e-3, 0.02], ..Lens::pinhole(640, 480, 1.0) };
+        let camera_model =
+            CameraModel { distortion: [-0.3, 0.1, 2e-3, -1e-3, 0.02], ..CameraModel::pinhole(640, 480, 1.0) };
         let (at, h) = ([0.31, -0.22], 1e-6);
-        let slope = lens.slope(at);
+        let slope = camera_model.slope(at);
         for (k, [dx, dy]) in [[h, 0.0], [0.0, h]].into_iter().enumerate() {
-            let moved = |sign: f64| lens.distorted([at[0] + sign * dx, at[1] + sign * dy]);
+            let moved = |sign: f64| camera_model.distorted([at[0] + sign * dx, at[1] + sign * dy]);
             let (a, b) = (moved(1.0), moved(-1.0));
             for (row, (a, b)) in slope.iter().zip(a.into_iter().zip(b)) {
                 assert!((row[k] - (a - b) / (2.0 * h)).abs() < 1e-8);

@@ -2,14 +2,14 @@
 //!
 //! The curve is the interpolating cubic spline over chord length: its curvature is continuous, so the turn rate is.
 
-use super::{Bend, Pace, bend::sharpest, tridiagonal::Tridiagonal};
+use super::{Bend, SpeedSchedule, bend::sharpest, tridiagonal::Tridiagonal};
 use kurbo::{CubicBez, ParamCurve, ParamCurveArclen, ParamCurveDeriv, Point, Vec2};
 use thiserror::Error;
-use vocabulary::{Drive, Pose, Profile};
+use vocabulary::{MotionInput, Pose, Trajectory};
 
 /// Why points make no curve.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum WayError {
+pub enum SplinePathError {
     /// Fewer points than a curve needs.
     #[error("a way needs at least {needed} different points, this one has {given}")]
     TooFew {
@@ -25,12 +25,12 @@ pub enum WayError {
 
 /// A curve and how fast it is driven.
 #[derive(Debug, Clone)]
-pub struct Way {
+pub struct SplinePath {
     pieces: Vec<CubicBez>,
     /// Arc length from the start to the start of each piece, and the whole length at the end, m.
     lengths: Vec<f64>,
     closed: bool,
-    pace: Pace,
+    pace: SpeedSchedule,
 }
 
 /// Rounds of a closed way that are looked at while its speed changes.
@@ -40,15 +40,15 @@ const ACCURACY: f64 = 1e-10;
 /// As a share of a length: no closer than numbers are to each other.
 const RELATIVE_ACCURACY: f64 = 1e-12;
 
-impl Way {
+impl SplinePath {
     /// Through `points` in m (back to the first if `closed`).
     ///
     /// # Errors
-    /// [`WayError`] for too few or repeated points.
-    pub fn new(points: &[[f64; 2]], closed: bool, pace: Pace) -> Result<Self, WayError> {
+    /// [`SplinePathError`] for too few or repeated points.
+    pub fn new(points: &[[f64; 2]], closed: bool, pace: SpeedSchedule) -> Result<Self, SplinePathError> {
         let needed = if closed { 3 } else { 2 };
         if points.len() < needed {
-            return Err(WayError::TooFew { needed, given: points.len() });
+            return Err(SplinePathError::TooFew { needed, given: points.len() });
         }
         let pieces = spline(points, closed)?;
         let mut lengths = vec![0.0];
@@ -114,11 +114,11 @@ impl Way {
     }
 }
 
-impl Profile for Way {
-    fn at(&self, time: f64) -> Drive {
+impl Trajectory for SplinePath {
+    fn at(&self, time: f64) -> MotionInput {
         let [travelled, speed, acceleration] = self.pace.at(time);
         let [curvature, change] = self.curvature(travelled);
-        Drive {
+        MotionInput {
             speed,
             acceleration,
             turn_rate: speed * curvature,
@@ -134,14 +134,14 @@ fn accuracy(piece: &CubicBez) -> f64 {
 }
 
 /// The interpolating C² cubic spline as Bézier pieces: periodic if closed, natural if open.
-fn spline(points: &[[f64; 2]], closed: bool) -> Result<Vec<CubicBez>, WayError> {
+fn spline(points: &[[f64; 2]], closed: bool) -> Result<Vec<CubicBez>, SplinePathError> {
     let mut knots: Vec<Point> = points.iter().map(|p| Point::new(p[0], p[1])).collect();
     if closed {
         knots.push(knots[0]);
     }
     let chords: Vec<f64> = knots.windows(2).map(|w| w[0].distance(w[1])).collect();
     if let Some(k) = chords.iter().position(|c| *c < 1e-9) {
-        return Err(WayError::Repeated(k + 1));
+        return Err(SplinePathError::Repeated(k + 1));
     }
     let tangents = tangents(&knots, &chords, closed);
     let piece = |k: usize| {
@@ -189,13 +189,13 @@ mod tests {
     use super::super::Hermite;
     use super::*;
 
-    fn pace(rows: Vec<[f64; 2]>) -> Pace {
-        Pace::over_time(Hermite::new(rows).expect("rows"))
+    fn pace(rows: Vec<[f64; 2]>) -> SpeedSchedule {
+        SpeedSchedule::over_time(Hermite::new(rows).expect("rows"))
     }
 
-    fn oval() -> Way {
+    fn oval() -> SplinePath {
         let points = [[0.0, 0.0], [4.0, -1.0], [8.0, 0.0], [8.0, 4.0], [4.0, 5.0], [0.0, 4.0]];
-        Way::new(&points, true, pace(vec![[0.0, 0.5], [5.0, 1.2]])).expect("an oval")
+        SplinePath::new(&points, true, pace(vec![[0.0, 0.5], [5.0, 1.2]])).expect("an oval")
     }
 
     /// Driving the profile from the start of the curve must stay on the curve.
@@ -217,7 +217,7 @@ mod tests {
         assert!((x - start.x).hypot(y - start.y) < 1e-3, "{x} {y}");
     }
 
-    fn travelled_time(way: &Way, travelled: f64) -> f64 {
+    fn travelled_time(way: &SplinePath, travelled: f64) -> f64 {
         let (mut low, mut high) = (0.0, 100.0);
         for _ in 0..60 {
             let middle = f64::midpoint(low, high);
@@ -239,8 +239,12 @@ mod tests {
 
     #[test]
     fn the_turn_rate_is_continuous_over_knots_and_zero_beyond_an_open_end() {
-        let way = Way::new(&[[0.0, 0.0], [2.0, 1.0], [4.0, -1.0], [6.0, 0.0]], false, pace(vec![[0.0, 1.0]]))
-            .expect("a way");
+        let way = SplinePath::new(
+            &[[0.0, 0.0], [2.0, 1.0], [4.0, -1.0], [6.0, 0.0]],
+            false,
+            pace(vec![[0.0, 1.0]]),
+        )
+        .expect("a way");
         for length in &way.lengths {
             let (a, b) = (way.at(length - 1e-7).turn_rate, way.at(length + 1e-7).turn_rate);
             assert!((a - b).abs() < 1e-5, "{a} {b} at {length}");
@@ -250,9 +254,9 @@ mod tests {
 
     #[test]
     fn bad_points_are_named() {
-        let too_few = Way::new(&[[0.0, 0.0]], false, pace(vec![[0.0, 1.0]])).expect_err("one point");
-        assert_eq!(too_few, WayError::TooFew { needed: 2, given: 1 });
-        let repeated = Way::new(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]], false, pace(vec![[0.0, 1.0]]));
+        let too_few = SplinePath::new(&[[0.0, 0.0]], false, pace(vec![[0.0, 1.0]])).expect_err("one point");
+        assert_eq!(too_few, SplinePathError::TooFew { needed: 2, given: 1 });
+        let repeated = SplinePath::new(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]], false, pace(vec![[0.0, 1.0]]));
         assert_eq!(repeated.expect_err("a repeated point").to_string(), "way-points 2 and 3 are the same");
     }
 }

@@ -1,6 +1,6 @@
 //! Who is on stage: everything about a run that does not change while it runs and that a picture needs.
 
-use crate::{Edge, Lens, Mount, Prop, Shell, Surface, Terrain, Thing};
+use crate::{CameraModel, CameraMount, Edge, EntityId, Prop, Shell, Surface, Terrain};
 use std::sync::Arc;
 
 /// Outer measures of a robot's body, for drawing and clearance.
@@ -32,7 +32,7 @@ impl Default for Body {
 
 /// One robot on stage.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Member {
+pub struct RobotInfo {
     /// Unique name.
     pub name: String,
     /// Whether it follows nobody.
@@ -42,16 +42,23 @@ pub struct Member {
     /// What its followers recognise it by; `None` for a robot that carries nothing.
     pub shell: Option<Shell>,
     /// Where its camera sits.
-    pub mount: Mount,
+    pub camera_mount: CameraMount,
     /// What its camera sees.
-    pub lens: Lens,
+    pub camera_model: CameraModel,
 }
 
-impl Member {
+impl RobotInfo {
     /// A robot with the shell and camera that fit its body, the shell blank.
     pub fn new(name: impl Into<String>, leads: bool, body: Body) -> Self {
-        let (shell, lens) = (Some(Shell::fitting(&body)), Lens::default());
-        Self { name: name.into(), leads, body, shell, mount: Mount::fitting(&body), lens }
+        let (shell, camera_model) = (Some(Shell::fitting(&body)), CameraModel::default());
+        Self {
+            name: name.into(),
+            leads,
+            body,
+            shell,
+            camera_mount: CameraMount::fitting(&body),
+            camera_model,
+        }
     }
 }
 
@@ -75,7 +82,7 @@ impl Default for Light {
 
 /// Robots, edges, surroundings and words of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Cast {
+pub struct FleetInfo {
     /// Title of the scene.
     pub title: String,
     /// Law and gains in one line.
@@ -85,7 +92,7 @@ pub struct Cast {
     /// Sun and air.
     pub light: Light,
     /// In the order of the snapshots.
-    pub members: Vec<Member>,
+    pub robots: Vec<RobotInfo>,
     /// In the order of the edge states.
     pub edges: Vec<Edge>,
     /// Whether any follower looks at its leader instead of being told the truth.
@@ -96,13 +103,13 @@ pub struct Cast {
     pub terrain: Option<Arc<Terrain>>,
 }
 
-impl Cast {
+impl FleetInfo {
     /// Name of a robot or prop; "ground", or empty for an index out of range.
-    pub fn name(&self, thing: Thing) -> &str {
+    pub fn name(&self, thing: EntityId) -> &str {
         match thing {
-            Thing::Robot(index) => self.members.get(index).map_or("", |member| &member.name),
-            Thing::Prop(index) => self.props.get(index).map_or("", |prop| &prop.name),
-            Thing::Ground => "ground",
+            EntityId::Robot(index) => self.robots.get(index).map_or("", |member| &member.name),
+            EntityId::Prop(index) => self.props.get(index).map_or("", |prop| &prop.name),
+            EntityId::Ground => "ground",
         }
     }
 

@@ -4,7 +4,7 @@ use crate::{FACES, Region, Relative};
 
 /// One look at a leader: what a sensor reports of one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Sighting {
+pub struct Measurement {
     /// The instant of the look, s from the start of the run.
     pub stamp: f64,
     /// Relative position as measured.
@@ -15,7 +15,7 @@ pub struct Sighting {
 
 /// How well a follower knows where its leader is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Sight {
+pub enum TrackingState {
     /// It is told the truth at every instant.
     #[default]
     Truth,
@@ -29,7 +29,7 @@ pub enum Sight {
     Lost,
 }
 
-impl Sight {
+impl TrackingState {
     /// One word for it.
     pub fn name(self) -> &'static str {
         match self {
@@ -78,11 +78,11 @@ impl Outcome {
 
 /// One look at a leader as it goes into the record.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Frame {
+pub struct MeasurementRecord {
     /// Index of the edge.
     pub edge: usize,
     /// The look; only its stamp counts where the leader was not recognised.
-    pub sighting: Sighting,
+    pub measurement: Measurement,
     /// When it reached the follower, s from the start of the run.
     pub arrival: f64,
     /// What came of it.
@@ -97,7 +97,7 @@ pub struct Frame {
     pub pan: f64,
 }
 
-impl Frame {
+impl MeasurementRecord {
     /// How many faces were seen.
     pub fn faces(&self) -> usize {
         self.tags.iter().flatten().count()

@@ -6,7 +6,7 @@ use world::Handling;
 
 /// What holds from one control sample on, until something else does.
 #[derive(Debug, Clone)]
-pub struct Regime {
+pub struct ParameterSet {
     /// Laws, observers and set points, per edge.
     pub laws: Vec<EdgeLaw>,
     /// Limits and drivers, per robot.
@@ -15,14 +15,14 @@ pub struct Regime {
 
 /// A regime, and from when on it holds.
 #[derive(Debug, Clone)]
-pub struct Turn {
+pub struct ScheduledChange {
     /// From the first control sample at or after this, s.
     pub at: f64,
     /// What holds from then on.
-    pub regime: Regime,
+    pub parameters: ParameterSet,
 }
 
-impl Regime {
+impl ParameterSet {
     /// What a run begins with.
     pub fn of(setup: &Setup) -> Self {
         let actors = setup.stage.actors.iter();

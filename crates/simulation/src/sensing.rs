@@ -2,44 +2,51 @@
 
 use crate::step::ObserverStart;
 use formation::{EdgeLaw, Estimate, Formation, Own, Tracker};
-use perception::sensors::{Belief, Senses, Watch};
+use perception::sensors::{Belief, SensorConfig, SensorState};
 use std::sync::{Arc, Mutex, PoisonError};
-use vocabulary::{Edge, Eyes, Frame, Observation, Outcome, Passage, Relative, Sight, Snapshot};
+use vocabulary::{
+    CameraRenderer, Edge, MeasurementRecord, Observation, Outcome, Relative, Snapshot, StepInterpolant,
+    TrackingState,
+};
 use world::World;
 
 /// Senses, estimates and eyes of all followers that are not told the truth.
 #[derive(Clone)]
-pub(crate) struct Lookout {
-    senses: Arc<Senses>,
-    watch: Watch,
+pub(crate) struct SensingPipeline {
+    sensor_config: Arc<SensorConfig>,
+    sensor_state: SensorState,
     trackers: Vec<Tracker>,
     beliefs: Vec<Belief>,
     starts: Vec<ObserverStart>,
     /// Everything as it was a period ago.
     before: Snapshot,
     /// Shared by copies of a run, which take turns.
-    eyes: Option<Arc<Mutex<Box<dyn Eyes>>>>,
+    eyes: Option<Arc<Mutex<Box<dyn CameraRenderer>>>>,
 }
 
-impl Lookout {
-    pub(crate) fn new(senses: Arc<Senses>, starts: Vec<ObserverStart>, snapshot: &Snapshot) -> Self {
-        let edges = senses.sensors().len();
+impl SensingPipeline {
+    pub(crate) fn new(
+        sensor_config: Arc<SensorConfig>,
+        starts: Vec<ObserverStart>,
+        snapshot: &Snapshot,
+    ) -> Self {
+        let edges = sensor_config.sensors().len();
         Self {
-            watch: senses.start(snapshot),
+            sensor_state: sensor_config.start(snapshot),
             trackers: vec![Tracker::default(); edges],
-            beliefs: vec![Belief { relative: None, sight: Sight::Waiting }; edges],
+            beliefs: vec![Belief { relative: None, sight: TrackingState::Waiting }; edges],
             starts,
             before: snapshot.clone(),
             eyes: None,
-            senses,
+            sensor_config,
         }
     }
 
     pub(crate) fn need_eyes(&self) -> bool {
-        self.senses.need_eyes()
+        self.sensor_config.need_eyes()
     }
 
-    pub(crate) fn open(&mut self, eyes: Box<dyn Eyes>) {
+    pub(crate) fn open(&mut self, eyes: Box<dyn CameraRenderer>) {
         self.eyes = Some(Arc::new(Mutex::new(eyes)));
     }
 
@@ -47,7 +54,7 @@ impl Lookout {
     pub(crate) fn begin(&mut self, snapshot: &Snapshot, time: f64, period: f64) {
         self.before.clone_from(snapshot);
         self.before.time = time;
-        self.senses.turn_cameras(&mut self.watch, &self.beliefs, period);
+        self.sensor_config.turn_cameras(&mut self.sensor_state, &self.beliefs, period);
     }
 
     /// Carries estimates on over a period that has passed, by what the followers themselves did in it.
@@ -66,19 +73,25 @@ impl Lookout {
         formation: &Formation,
         world: &dyn World,
         time: f64,
-        frames: &mut Vec<Frame>,
+        frames: &mut Vec<MeasurementRecord>,
     ) -> Result<(), String> {
         let mut now = world.snapshot().clone();
         now.time = time;
         {
             let mut eyes = self.eyes.as_ref().map(|eyes| eyes.lock().unwrap_or_else(PoisonError::into_inner));
-            let eyes = eyes.as_mut().map(|eyes| eyes.as_mut() as &mut dyn Eyes);
+            let eyes = eyes.as_mut().map(|eyes| eyes.as_mut() as &mut dyn CameraRenderer);
             let period = (&self.before, &now);
-            self.senses.take_looks(&mut self.watch, period, world as &dyn Passage, &self.beliefs, eyes)?;
+            self.sensor_config.take_looks(
+                &mut self.sensor_state,
+                period,
+                world as &dyn StepInterpolant,
+                &self.beliefs,
+                eyes,
+            )?;
         }
         frames.clear();
         for (index, law) in formation.laws().iter().enumerate() {
-            for mut frame in Senses::arrived(&mut self.watch, index, time) {
+            for mut frame in SensorConfig::arrived(&mut self.sensor_state, index, time) {
                 self.trackers[index].put(law, &mut frame, self.starts[index]);
                 frames.push(frame);
             }
@@ -89,9 +102,10 @@ impl Lookout {
 
     fn believe(&mut self, formation: &Formation) {
         for ((belief, tracker), law) in self.beliefs.iter_mut().zip(&self.trackers).zip(formation.laws()) {
-            *belief = law.looks.as_ref().map_or(Belief { relative: None, sight: Sight::Truth }, |looks| {
-                Belief { relative: tracker.relative(), sight: tracker.sight(looks) }
-            });
+            *belief =
+                law.looks.as_ref().map_or(Belief { relative: None, sight: TrackingState::Truth }, |looks| {
+                    Belief { relative: tracker.relative(), sight: tracker.sight(looks) }
+                });
         }
     }
 
@@ -116,7 +130,7 @@ impl Lookout {
 
     /// Time since the look that an edge's estimate rests on, s, and where the follower's camera points.
     pub(crate) fn age_and_pan(&self, edge: usize) -> (f64, f64) {
-        (self.trackers[edge].age(), self.senses.pan(&self.watch, edge))
+        (self.trackers[edge].age(), self.sensor_config.pan(&self.sensor_state, edge))
     }
 
     pub(crate) fn disturb(&mut self, edge: usize, rates: [f64; 2]) {
@@ -128,14 +142,14 @@ impl Lookout {
 
 /// Puts looks into an estimate.
 trait Put {
-    fn put(&mut self, law: &EdgeLaw, frame: &mut Frame, start: ObserverStart);
+    fn put(&mut self, law: &EdgeLaw, frame: &mut MeasurementRecord, start: ObserverStart);
 }
 
 impl Put for Tracker {
-    fn put(&mut self, law: &EdgeLaw, frame: &mut Frame, start: ObserverStart) {
+    fn put(&mut self, law: &EdgeLaw, frame: &mut MeasurementRecord, start: ObserverStart) {
         let (Some(looks), Outcome::Used) = (&law.looks, frame.outcome) else { return };
         let first = self.relative().is_none();
-        frame.outcome = self.take(looks, &frame.sighting);
+        frame.outcome = self.take(looks, &frame.measurement);
         let (true, Some(seen)) = (first, self.relative()) else { return };
         match start {
             ObserverStart::Offset([0.0, 0.0]) => {}

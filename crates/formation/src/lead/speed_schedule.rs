@@ -4,7 +4,7 @@ use super::Hermite;
 
 /// Speed along a curve.
 #[derive(Debug, Clone)]
-pub struct Pace(Given);
+pub struct SpeedSchedule(Given);
 
 #[derive(Debug, Clone)]
 enum Given {
@@ -20,7 +20,7 @@ enum Given {
 /// Slowest speed over distance, m/s: at rest, time would not go on.
 const SLOWEST: f64 = 1e-3;
 
-impl Pace {
+impl SpeedSchedule {
     /// Speed in m/s over time in s.
     pub fn over_time(speed: Hermite) -> Self {
         Self(Given::Time(speed))
@@ -122,12 +122,12 @@ mod tests {
 
     #[test]
     fn a_pace_over_distance_is_its_own_derivative() {
-        let profile = Hermite::new(vec![[0.0, 0.5], [2.0, 1.5], [5.0, 0.8]]).expect("rows");
-        let pace = Pace::over_distance(profile.clone());
+        let trajectory = Hermite::new(vec![[0.0, 0.5], [2.0, 1.5], [5.0, 0.8]]).expect("rows");
+        let pace = SpeedSchedule::over_distance(trajectory.clone());
         let h = 1e-4;
         for t in [0.5, 1.2, 2.5, 4.0, 9.0] {
             let [s, v, a] = pace.at(t);
-            assert!((profile.at(s)[0] - v).abs() < 1e-9);
+            assert!((trajectory.at(s)[0] - v).abs() < 1e-9);
             assert!((pace.when(s).expect("it comes there") - t).abs() < 1e-6);
             assert!(((pace.at(t + h)[0] - pace.at(t - h)[0]) / (2.0 * h) - v).abs() < 1e-5, "speed at {t}");
             assert!(
@@ -139,7 +139,8 @@ mod tests {
 
     #[test]
     fn it_is_known_when_a_distance_is_behind() {
-        let pace = Pace::over_time(Hermite::new(vec![[0.0, 0.5], [4.0, 1.5], [6.0, 0.0]]).expect("rows"));
+        let pace =
+            SpeedSchedule::over_time(Hermite::new(vec![[0.0, 0.5], [4.0, 1.5], [6.0, 0.0]]).expect("rows"));
         for t in [0.3, 3.0, 5.5] {
             assert!((pace.when(pace.at(t)[0]).expect("it comes there") - t).abs() < 1e-9, "{t}");
         }
@@ -148,7 +149,7 @@ mod tests {
 
     #[test]
     fn standing_still_is_not_possible() {
-        let pace = Pace::over_distance(Hermite::new(vec![[0.0, 0.0]]).expect("rows"));
+        let pace = SpeedSchedule::over_distance(Hermite::new(vec![[0.0, 0.0]]).expect("rows"));
         assert_eq!(pace.at(10.0)[1], SLOWEST);
     }
 }
