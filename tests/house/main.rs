@@ -1,6 +1,7 @@
 //! House rules that a compiler does not check.
 
 mod measures;
+mod picture;
 
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
