@@ -1,11 +1,11 @@
 //! The numbers behind the paper's figures held against the independent solutions, and claims that turn when runs do.
 
 use report::{Case, Ran, Report, Tracer, Variant, paper, paper_jobs};
-use scene::LawKind;
 use simulation::{Simulation, build};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::LazyLock;
+use vocabulary::LawKind;
 
 /// All runs behind the figures.
 static RUNS: LazyLock<Vec<Ran>> = LazyLock::new(|| {

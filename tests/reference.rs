@@ -4,16 +4,17 @@
 //! `reference.py` made the golden files, and those of the folder named by `ECHELON_REFERENCE_DIR` if it is set.
 
 use formation::lead::AnalyticTrajectory;
-use formation::{
-    EdgeLaw, Formation, Graph, Law, LawKind, Observer, ScalarTrajectory, SetPointTrajectory, Switching,
-};
+use formation::{EdgeLaw, Formation, Graph, Law, Observer, SetPointTrajectory, Switching};
 use serde::Deserialize;
-use simulation::{ObserverStart, Setup, Simulation, Timing};
+use simulation::{Setup, Simulation};
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{Body, FleetInfo, Limits, Pose, RobotInfo, StepRecord, Trajectory, wrap};
+use vocabulary::{
+    Body, FleetInfo, LawKind, Limits, ObserverStart, Pose, RobotInfo, ScalarTrajectory, StepRecord, TimeMode,
+    Trajectory, wrap,
+};
 use world::{RobotSetup, Unicycle, WorldSetup};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
@@ -167,7 +168,7 @@ impl Case {
                 ..FleetInfo::default()
             },
             sensor_config: None,
-            observer_starts: vec![ObserverStart::Offset([0.0; 2]); self.edges.len()],
+            observer_starts: vec![ObserverStart::Measured; self.edges.len()],
             stage: WorldSetup { actors, props: vec![], terrain: None, step: 0.005 },
             stop_at_contact: false,
             formation: Formation::new(
@@ -177,10 +178,10 @@ impl Case {
                 vec![(0, lead.clone())],
                 self.period,
             ),
-            timing: match &*self.mode {
-                "continuous" => Timing::Continuous,
-                "sampled" => Timing::Sampled,
-                "measured" => Timing::Measured,
+            mode: match &*self.mode {
+                "continuous" => TimeMode::Continuous,
+                "sampled" => TimeMode::Sampled,
+                "measured" => TimeMode::Measured,
                 other => return Err(format!("unknown mode {other}").into()),
             },
             period: self.period,

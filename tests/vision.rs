@@ -66,7 +66,7 @@ fn the_second_estimator_holds_them_too() {
     let mut scene = scene("vision-cars-circle-three", 20.0, SensingKind::Noise);
     for robot in &mut scene.robots {
         if let Role::Follow(follow) = &mut robot.role {
-            follow.observer.kind = scene::ObserverKind::Unscented;
+            follow.observer.kind = vocabulary::ObserverKind::Unscented;
         }
     }
     let [distance, bearing] = worst_rms(&records(start(&scene)), 8.0);

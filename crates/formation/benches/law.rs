@@ -2,9 +2,9 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use formation::relative::Geometry;
-use formation::{Estimate, Law, LawInput, LawKind, Observer, Switching};
+use formation::{Estimate, Law, LawInput, Observer, Switching};
 use std::hint::black_box;
-use vocabulary::{EdgeSample, MotionInput, Relative, SetPoint, Track};
+use vocabulary::{EdgeSample, LawKind, MotionInput, Relative, SetPoint, Track};
 
 fn relative(t: f64) -> Relative {
     Relative { distance: 2.1 + 0.3 * t, bearing: -2.3 - 0.2 * t, view_angle: -2.2 + 0.4 * t }

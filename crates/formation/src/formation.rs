@@ -1,14 +1,14 @@
 //! All edges of a formation together: from what every follower sees to what every robot shall do.
 
 use crate::graph::Graph;
-use crate::law::{Law, LawInput, LawKind};
+use crate::law::{Law, LawInput};
 use crate::looks::LookLaw;
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
 use crate::set_point::SetPointTrajectory;
 use std::sync::Arc;
 use vocabulary::{
-    Command, Edge, Limits, MotionInput, Observation, SetPoint, TrackingState, Trajectory, wrap,
+    Command, Edge, LawKind, Limits, MotionInput, Observation, SetPoint, TrackingState, Trajectory, wrap,
 };
 
 /// Parameters of one edge.

@@ -7,18 +7,7 @@
 
 use crate::relative::Geometry;
 use nalgebra::Vector2;
-use vocabulary::{Command, MotionInput, SetPoint};
-
-/// What a law is allowed to know.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LawKind {
-    /// FSFB, eq 20: knows its leader's speed, acceleration, turn rate and its change.
-    FullState,
-    /// RSFB, eq 22: knows ds/dt.
-    RobustState,
-    /// OFB, eq 42: knows s only; ds/dt comes from the high-gain observer.
-    OutputFeedback,
-}
+use vocabulary::{Command, LawKind, MotionInput, SetPoint};
 
 /// How the robust term switches (eq 23).
 #[derive(Debug, Clone, Copy, PartialEq)]

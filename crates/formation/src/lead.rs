@@ -11,8 +11,7 @@ pub use hermite::Hermite;
 pub use speed_schedule::SpeedSchedule;
 pub use spline_path::{SplinePath, SplinePathError};
 
-use crate::set_point::ScalarTrajectory;
-use vocabulary::{MotionInput, Trajectory};
+use vocabulary::{MotionInput, ScalarTrajectory, Trajectory};
 
 /// Speed and turn rate as functions of time: constant, circle, sinusoids, figure eight.
 #[derive(Debug, Clone)]

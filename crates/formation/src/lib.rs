@@ -21,7 +21,7 @@ pub mod set_point;
 
 pub use formation::{EdgeLaw, Formation, FormationState};
 pub use graph::{Graph, GraphError};
-pub use law::{Law, LawInput, LawKind, Switching};
-pub use looks::{LookLaw, Method, Own, Tracker};
+pub use law::{Law, LawInput, Switching};
+pub use looks::{LookLaw, Own, Tracker};
 pub use observer::{Estimate, Observer};
-pub use set_point::{Ramp, ScalarTrajectory, SetPointTrajectory};
+pub use set_point::SetPointTrajectory;

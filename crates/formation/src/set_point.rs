@@ -1,74 +1,6 @@
 //! Set points that move in time, with first and second derivative.
 
-use vocabulary::SetPoint;
-
-/// A smooth change of a value: quintic, so that value, rate and acceleration are continuous.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ramp {
-    /// When it begins, s.
-    pub start: f64,
-    /// How long it takes, s; positive.
-    pub over: f64,
-    /// The value it ends at.
-    pub to: f64,
-}
-
-/// A value over time.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ScalarTrajectory {
-    /// Always the same.
-    Constant(f64),
-    /// `mean + amplitude · sin(rate · t)`.
-    Sinusoid {
-        /// In the unit of the value.
-        mean: f64,
-        /// In the unit of the value.
-        amplitude: f64,
-        /// rad/s.
-        rate: f64,
-    },
-    /// A first value and ramps from it, in the order of their start.
-    Ramps {
-        /// Before the first ramp.
-        from: f64,
-        /// In the order of time.
-        ramps: Vec<Ramp>,
-    },
-}
-
-impl ScalarTrajectory {
-    /// Value, first and second derivative at `t` s.
-    pub fn at(&self, t: f64) -> [f64; 3] {
-        match self {
-            Self::Constant(value) => [*value, 0.0, 0.0],
-            Self::Sinusoid { mean, amplitude, rate } => wave(*mean, *amplitude, *rate, t),
-            Self::Ramps { from, ramps } => {
-                let mut out = [*from, 0.0, 0.0];
-                for ramp in ramps.iter().take_while(|r| r.start <= t) {
-                    out = ramp.at(out[0], t);
-                }
-                out
-            }
-        }
-    }
-}
-
-/// Value, first and second derivative of `mean + amplitude · sin(rate · t)`.
-pub(crate) fn wave(mean: f64, amplitude: f64, rate: f64, t: f64) -> [f64; 3] {
-    let (sin, cos) = (rate * t).sin_cos();
-    [mean + amplitude * sin, amplitude * rate * cos, -amplitude * rate * rate * sin]
-}
-
-impl Ramp {
-    fn at(&self, from: f64, t: f64) -> [f64; 3] {
-        let u = ((t - self.start) / self.over).clamp(0.0, 1.0);
-        let rise = self.to - from;
-        let value = u * u * u * (10.0 + u * (6.0 * u - 15.0));
-        let rate = 30.0 * u * u * (1.0 - u) * (1.0 - u);
-        let acceleration = 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u);
-        [from + rise * value, rise * rate / self.over, rise * acceleration / (self.over * self.over)]
-    }
-}
+use vocabulary::{ScalarTrajectory, SetPoint};
 
 /// The set point of an edge over time.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,15 +28,16 @@ impl SetPointTrajectory {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use vocabulary::Ramp;
 
     fn courses() -> [ScalarTrajectory; 3] {
         [
             ScalarTrajectory::Constant(2.0),
             ScalarTrajectory::Sinusoid { mean: 2.0, amplitude: 0.3, rate: 0.7 },
-            ScalarTrajectory::Ramps {
-                from: 2.0,
-                ramps: vec![Ramp { start: 1.0, over: 2.0, to: 3.0 }, Ramp { start: 4.0, over: 1.5, to: 1.0 }],
-            },
+            ScalarTrajectory::Ramps(vec![
+                Ramp { from: 2.0, to: 3.0, start: 1.0, over: 2.0 },
+                Ramp { from: 3.0, to: 1.0, start: 4.0, over: 1.5 },
+            ]),
         ]
     }
 

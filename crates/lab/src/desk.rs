@@ -5,11 +5,11 @@ use crate::session::draft::Draft;
 use crate::session::forecast::Forecast;
 use crate::session::history::History;
 use crate::session::runner::{News, Order};
-use scene::{Channel, Follow, Role, Scene};
+use scene::{Follow, Role, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{EdgeState, StepRecord, wrap};
+use vocabulary::{EdgeState, ScalarTrajectory, StepRecord, wrap};
 
 /// What is selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -252,8 +252,8 @@ impl Desk {
     pub fn set_point(&self, edge: usize) -> Option<[f64; 2]> {
         let (_, _, follow) = self.follower(edge)?;
         let now = self.record().and_then(|record| Some(record.edges.get(edge)?.set_point));
-        let value = |channel: &Channel, now: Option<f64>| match channel {
-            Channel::Constant(value) => Some(*value),
+        let value = |channel: &ScalarTrajectory, now: Option<f64>| match channel {
+            ScalarTrajectory::Constant(value) => Some(*value),
             _ => now,
         };
         Some([value(&follow.distance, now.map(|n| n[0]))?, value(&follow.bearing, now.map(|n| n[1]))?])

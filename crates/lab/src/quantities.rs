@@ -4,10 +4,10 @@ use crate::desk::Desk;
 use crate::session::history::History;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
 use formation::relative::Geometry;
-use scene::{Follow, LawKind};
+use scene::Follow;
 use simulation::certify::{Row, rows};
 use std::fmt::Write;
-use vocabulary::{Edge, EdgeState, Snapshot, StepRecord};
+use vocabulary::{Edge, EdgeState, LawKind, Snapshot, StepRecord};
 
 /// What a plot shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

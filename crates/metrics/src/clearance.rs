@@ -6,7 +6,7 @@ use parry3d_f64::math::{Pose as Isometry, Rotation, Vector};
 use parry3d_f64::query::distance;
 use parry3d_f64::shape::{Cone, Cuboid, Cylinder, Shape};
 use std::f64::consts::FRAC_PI_2;
-use vocabulary::{Body, EntityId, FleetInfo, Placement, RobotState, Snapshot, Solid};
+use vocabulary::{Body, Contact, EntityId, FleetInfo, Placement, RobotState, Snapshot, Solid};
 
 /// The room between a robot and something else.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,6 +89,21 @@ impl Clearance {
                         least[k] = Some(Room { clearance, nearest: other, time: snapshot.time });
                     }
                 }
+            }
+        }
+    }
+
+    /// Takes in a contact: between two samples a fast body comes and goes unseen by snapshots.
+    pub fn touch(&mut self, contact: &Contact) {
+        let hull = |thing: EntityId| self.shapes.iter().position(|hull| hull.thing == thing);
+        let [Some(i), Some(j)] = contact.things.map(hull) else { return };
+        let (a, b) = (&self.shapes[i], &self.shapes[j]);
+        if a.drives_over(b) || b.drives_over(a) {
+            return;
+        }
+        for (k, nearest) in [(i, b.thing), (j, a.thing)] {
+            if k < self.robots && known(&self.least, k) > 0.0 {
+                self.least[k] = Some(Room { clearance: 0.0, nearest, time: contact.begin });
             }
         }
     }
@@ -232,6 +247,32 @@ mod tests {
         let mut clearance = Clearance::new(fleet);
         clearance.push(snapshot);
         clearance.least().to_vec()
+    }
+
+    /// A fast body that was past a robot at every sample touched it all the same.
+    #[test]
+    fn a_contact_between_two_samples_leaves_no_room() {
+        let fleet = fleet(2, &[Solid::Block { size: [0.3; 3] }]);
+        let mut clearance = Clearance::new(&fleet);
+        clearance.push(&snapshot(&[Pose::default(), Pose::new(9.0, 0.0, 0.0)], &[Pose::new(0.0, 1.0, 0.0)]));
+        assert!(clearance.least()[0].is_some_and(|room| room.clearance > 0.5));
+        let things = [EntityId::Robot(0), EntityId::Prop(0)];
+        let contact = Contact {
+            number: 0,
+            things,
+            begin: 0.6,
+            end: 0.6,
+            open: false,
+            place: [0.0; 3],
+            normal: [1.0, 0.0, 0.0],
+            impulse: 0.0,
+        };
+        clearance.touch(&contact);
+        let room = Room { clearance: 0.0, nearest: things[1], time: 0.6 };
+        assert_eq!(clearance.least()[0], Some(room));
+        assert!(clearance.least()[1].is_some_and(|room| room.clearance > 1.0));
+        clearance.touch(&Contact { things: [EntityId::Robot(1), EntityId::Ground], ..contact });
+        assert!(clearance.least()[1].is_some_and(|room| room.clearance > 1.0));
     }
 
     #[test]

@@ -173,6 +173,9 @@ impl MetricsBuilder {
             self.conditions[index] = robot.condition;
         }
         self.clearance.push(&record.snapshot);
+        for contact in &record.contacts {
+            self.clearance.touch(contact);
+        }
         self.contacts.push(&record.contacts);
         self.samples += 1;
         self.time = time;

@@ -3,7 +3,8 @@
 use crate::trace::Trace;
 use crate::variant::{LAWS, Variant, constants_apart, laws_apart, of, short};
 use crate::words::quantity;
-use scene::{Diagnostics, LawKind, Scene, shipped};
+use scene::{Diagnostics, Scene, shipped};
+use vocabulary::LawKind;
 
 /// Which scene a run belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

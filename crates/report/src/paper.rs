@@ -8,7 +8,7 @@ use crate::laws::Comparison;
 use crate::tables;
 use crate::trace::Trace;
 use crate::variant::Variant;
-use scene::LawKind;
+use vocabulary::LawKind;
 
 /// Edge of follower 1, whom the paper's figures show.
 const FOLLOWER: usize = 0;

@@ -10,8 +10,9 @@ use crate::tables;
 use crate::trace::Trace;
 use crate::variant::{LAWS, Variant, constants_apart, laws_apart, short};
 use crate::words::round;
-use scene::{LawKind, Role, Scene};
+use scene::{Role, Scene};
 use simulation::verdict::verdict;
+use vocabulary::LawKind;
 
 /// All figures but the drawn one of the runs of [`crate::scene_jobs`].
 pub fn of_scene(scene: &Scene, runs: &[Ran]) -> Report {

@@ -6,7 +6,7 @@ use crate::paper::constants;
 use crate::trace::Trace;
 use crate::variant::Variant;
 use crate::words::{digits, quantity};
-use scene::LawKind;
+use vocabulary::LawKind;
 
 fn words(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()

@@ -1,6 +1,7 @@
 //! A scene with another law or another observer constant for all its followers: what comparisons are made of.
 
-use scene::{LawKind, Mode, Role, Scene, SensingKind, VehicleKind};
+use scene::{Role, Scene, SensingKind, VehicleKind};
+use vocabulary::{LawKind, TimeMode};
 
 /// What differs from the scene as it is written.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -93,7 +94,7 @@ pub(crate) fn constants_apart(scene: &Scene) -> Option<&'static str> {
         Some("drawing for cameras over and over takes minutes: `echelon budget --epsilon` does it")
     } else if followers().any(|follow| follow.sensing.kind != SensingKind::Truth) {
         Some("ε follows from the noise of looks: `echelon budget --epsilon` compares")
-    } else if scene.time.mode == Mode::Continuous {
+    } else if scene.time.mode == TimeMode::Continuous {
         Some("continuous time takes steps of an eighth of ε, and small ones do not come to an end")
     } else if scene.robots.len() > MANY {
         Some("there are too many robots to run the scene over and over")

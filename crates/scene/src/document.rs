@@ -1,14 +1,15 @@
 //! The keys of a scene file, as they are written.
 
+use crate::text::words::word;
 use crate::{
-    Channel, Path,
+    Path,
     ground::{GroundForm, GroundKeys},
     groups::{GroupMember, MembersForm},
     names::{NameForm, POSE},
     path_form::PATH,
     patterns::{PatternForm, PatternKeys},
     prop_form::{MOST_PROPS, PropForm, PropKeys},
-    text::{angle_within, flag, form::Number, integer, keys, list, number, table, text, words},
+    text::{angle_within, flag, form::Number, integer, keys, list, number, table, text},
     types::{
         BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, LawPart, ObserverPart, PhysicsPart,
         SensingForm, SensingPart, TimePart, VehiclePart, ViewsPart, VisionPart,
@@ -16,6 +17,7 @@ use crate::{
     vehicle::VehicleForm,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
+use vocabulary::{ScalarTrajectory, words};
 
 /// Version of the format of scene files.
 pub(crate) const SCHEMA_VERSION: u64 = 1;
@@ -87,9 +89,9 @@ keys! {
         /// Name of the robot that is followed.
         leader: String = NameForm::WHOLE, optional;
         /// Wanted distance from the leader, m: a number, a sinusoid, or smooth passages.
-        distance: Channel = DistanceForm, optional;
+        distance: ScalarTrajectory = DistanceForm, optional;
         /// Wanted bearing, seen from the leader's heading, left positive: an angle, a sinusoid, or smooth passages.
-        bearing: Channel = BearingForm, optional;
+        bearing: ScalarTrajectory = BearingForm, optional;
         /// Speed of a follower at the start, m/s; its `speed_min` if left out.
         speed: f64 = SPEED, optional;
         /// What differs from the scene's `vehicle`.
@@ -111,7 +113,7 @@ keys! {
     /// wings, right first.
     struct GroupKeys {
         /// Shape of the group.
-        shape: Shape = Shape::form(), required;
+        shape: Shape = word::<Shape>(), required;
         /// Number of places, the leader's included.
         count: usize = integer::<usize>(2, MOST_ROBOTS as u64), required;
         /// Start of the robots' names.
@@ -126,7 +128,7 @@ keys! {
         /// Distance between neighbours, m.
         distance: f64 = number("m").above(0.0).up_to(1000.0), or(2.0);
         /// Whom the robots follow.
-        follows: Follows = Follows::form(), or(Follows::Neighbour);
+        follows: Follows = word::<Follows>(), or(Follows::Neighbour);
         /// Bearing of a neighbour in shapes `v` and `diamond`.
         angle: f64 = angle_within(FRAC_PI_2, PI), or(0.75 * PI);
         /// Followers start at most this far from their places along each axis, m, by the scene's seed; 0 starts in
@@ -159,9 +161,9 @@ keys! {
         /// Name of the robot that it follows, in place of the shape's.
         leader: String = NameForm::WHOLE, optional;
         /// Wanted distance from the robot it follows, m, in place of the shape's.
-        distance: Channel = DistanceForm, optional;
+        distance: ScalarTrajectory = DistanceForm, optional;
         /// Wanted bearing, in place of the shape's.
-        bearing: Channel = BearingForm, optional;
+        bearing: ScalarTrajectory = BearingForm, optional;
         /// What differs from the group's `vehicle`.
         vehicle: VehiclePart = VehicleForm, optional;
         /// What differs from the group's `law`.

@@ -1,7 +1,7 @@
 //! Groups become robots.
 
 use crate::{
-    Channel, Follow, Law, Observer, Robot, Role, Sensing, Vehicle,
+    Follow, Law, Observer, Robot, Role, Sensing, Vehicle,
     document::{Follows, GroupKeys, MOST_ROBOTS, MemberKeys},
     graph::{Named, check_known},
     robots::{Defaults, Draft, check_distance, check_path, start_pose, start_speed},
@@ -19,7 +19,7 @@ use rand_chacha::{
     rand_core::{Rng, SeedableRng},
 };
 use serde_json::{Value as Json, json};
-use vocabulary::{Pose, wrap};
+use vocabulary::{Pose, ScalarTrajectory, wrap};
 
 /// What is different about one robot of a group.
 #[derive(Debug, Clone)]
@@ -168,9 +168,9 @@ struct Spot {
 
 impl Spot {
     /// Wanted distance and bearing there, of a robot of which `member` may say otherwise.
-    fn set_point(&self, member: Option<&MemberKeys>) -> (Channel, Channel) {
-        let said = |found: Option<&Found<Channel>>, value| {
-            found.map_or(Channel::Constant(value), |found| found.value.clone())
+    fn set_point(&self, member: Option<&MemberKeys>) -> (ScalarTrajectory, ScalarTrajectory) {
+        let said = |found: Option<&Found<ScalarTrajectory>>, value| {
+            found.map_or(ScalarTrajectory::Constant(value), |found| found.value.clone())
         };
         (
             said(member.and_then(|keys| keys.distance.as_ref()), self.distance),

@@ -43,8 +43,7 @@ pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
 pub use shipped::{SHIPPED, Shipped, nearest_shipped, shipped};
 pub use types::{
-    Change, Channel, Compensation, Environment, Expect, Film, Follow, Ground, Law, LawKind, Mode, Noise,
-    Observer, ObserverKind, ObserverStart, OnContact, Patch, Path, Physics, Plot, Prop, PropMotion, Ramp,
-    Relief, Robot, Role, Scene, Sensing, SensingKind, Shot, SpeedProfile, Switching, Time, Vehicle,
-    VehicleKind, Views, Vision,
+    Change, Compensation, Environment, Expect, Film, Follow, Ground, Law, Noise, Observer, OnContact, Patch,
+    Path, Physics, Plot, Prop, PropMotion, Relief, Robot, Role, Scene, Sensing, SensingKind, Shot,
+    SpeedProfile, SwitchingKind, Time, Vehicle, VehicleKind, Views, Vision,
 };

@@ -72,9 +72,9 @@ impl Scene {
     }
 }
 
-/// The shipped scene that a path names, where there is no file.
+/// The shipped scene that a path names, where there is no file; a folder of that name is none.
 fn named(path: &Path) -> Option<&'static Shipped> {
-    path.to_str().and_then(shipped).filter(|_| !path.exists())
+    path.to_str().and_then(shipped).filter(|_| !path.exists() || path.is_dir())
 }
 
 /// What to say of a file that is not there where a shipped scene may be meant.

@@ -1,7 +1,7 @@
 //! From the keys of a file to the checked scene: parts put together and held against each other.
 
 use crate::{
-    Expect, Film, Mode, Prop, Robot, Scene, Shot, Time, Views,
+    Expect, Film, Prop, Robot, Scene, Shot, Time, Views,
     document::{Document, GroupKeys, RobotKeys},
     graph::{check_graph, check_known},
     ground::ground,
@@ -17,6 +17,7 @@ use crate::{
     vehicle::{check_meaning, usual_kind},
 };
 use std::collections::HashSet;
+use vocabulary::TimeMode;
 
 /// The checked scene, or `None` after notes.
 pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) -> Option<Scene> {
@@ -152,7 +153,7 @@ fn check_continuous(
     level: bool,
     reporter: &mut Reporter,
 ) {
-    let Some(mode) = part.mode.as_ref().filter(|mode| mode.value == Mode::Continuous) else { return };
+    let Some(mode) = part.mode.as_ref().filter(|mode| mode.value == TimeMode::Continuous) else { return };
     let mut robots = drafts.iter().filter_map(|draft| draft.robot.as_ref());
     let wheels =
         robots.find(|robot| robot.vehicle.kind.has_wheels()).map(|robot| (&robot.name, "has wheels"));

@@ -2,7 +2,7 @@
 
 use crate::document::Shape;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use vocabulary::wrap;
+use vocabulary::{Word, wrap};
 
 /// A place behind another one; both count from 0, place 0 being the leader's.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +21,7 @@ impl Shape {
             Self::Circle if count < 3 => "at least 3 places",
             _ => return None,
         };
-        Some(format!("shape `{}` needs {needs}, not {count}", Self::form().word_of(self)))
+        Some(format!("shape `{}` needs {needs}, not {count}", self.word()))
     }
 
     /// Who place `place` ≥ 1 of `count` follows, and at which bearing; `angle` in rad is that of the wings.

@@ -1,14 +1,16 @@
 //! What followers can and cannot see: shells, cameras and the looks that are possible.
 
 use crate::{
-    Channel, Follow, LawKind, Mode, Robot, Role, Sensing, SensingKind, Vision,
+    Follow, Robot, Role, Sensing, Vision,
     robots::Draft,
     text::{Found, Reporter, Span, words::quoted},
     types::{SensingKind as Kind, TimePart, VisionPart},
 };
 use std::collections::HashMap;
 use std::f64::consts::PI;
-use vocabulary::{CameraModel, CameraMount, FACES, Pose, Shell, TAGS, wrap};
+use vocabulary::{
+    CameraModel, CameraMount, FACES, LawKind, Pose, ScalarTrajectory, Shell, TAGS, TimeMode, Word, wrap,
+};
 
 /// Robots whose shells the tag family can tell apart.
 const MOST_SHELLS: usize = TAGS / FACES;
@@ -103,9 +105,9 @@ pub(crate) fn check_sight(said: &Said<'_>, drafts: &[Draft], reporter: &mut Repo
 }
 
 fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Span, reporter: &mut Reporter) {
-    let word = SensingKind::form().word_of(follow.sensing.kind);
+    let word = follow.sensing.kind.word();
     if follow.law.kind != LawKind::OutputFeedback {
-        let law = LawKind::form().word_of(follow.law.kind);
+        let law = follow.law.kind.word();
         let message = format!(
             "`{}` uses the `{law}` law, which has to know more than looks tell; with sensing `{word}` its law must be \
              `output-feedback`",
@@ -113,9 +115,8 @@ fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Span, repor
         );
         reporter.report(place, message);
     }
-    if let Some(mode) = said.time.mode.as_ref().filter(|mode| mode.value == Mode::Continuous) {
-        let words =
-            quoted([Mode::Sampled, Mode::Measured].into_iter().map(|mode| Mode::form().word_of(mode)));
+    if let Some(mode) = said.time.mode.as_ref().filter(|mode| mode.value == TimeMode::Continuous) {
+        let words = quoted([TimeMode::Sampled, TimeMode::Measured].into_iter().map(|mode| mode.word()));
         let message = format!(
             "mode `continuous` knows no looks, but `{}` senses by `{word}`; use one of {words}",
             robot.name
@@ -193,7 +194,8 @@ fn check_visible(
         reporter.report(place, message);
         return;
     }
-    let (Channel::Constant(distance), Channel::Constant(bearing)) = (&follow.distance, &follow.bearing)
+    let (ScalarTrajectory::Constant(distance), ScalarTrajectory::Constant(bearing)) =
+        (&follow.distance, &follow.bearing)
     else {
         return;
     };

@@ -1,5 +1,6 @@
 //! How a vehicle is written, made complete, and held against itself and the step of the physics.
 
+use crate::text::words::word;
 use crate::{
     Vehicle, VehicleKind,
     text::{Form, Found, Keys, Node, Part, Reporter, Span, Value, table, words::quoted},
@@ -7,7 +8,7 @@ use crate::{
 };
 use serde::{Serializer, ser};
 use serde_json::{Value as Json, json};
-use vocabulary::GRAVITY;
+use vocabulary::{GRAVITY, Word};
 
 /// Keys that every kind has.
 const EVERYBODY: [&str; 11] = [
@@ -40,7 +41,7 @@ impl Form for VehicleForm {
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<VehiclePart> {
         match &node.value {
             Value::Text(_) => {
-                let value = VehicleKind::form().read(node, reporter)?;
+                let value = word::<VehicleKind>().read(node, reporter)?;
                 Some(VehiclePart { kind: Some(Found { place: node.place, value }), ..VehiclePart::default() })
             }
             _ => table::<VehiclePart>().read(node, reporter),
@@ -62,13 +63,13 @@ impl Form for VehicleForm {
             let values = made.iter().filter(|(kind, _)| applies(key, *kind)).map(|(kind, values)| {
                 // JSON has no infinity.
                 let value = if values[key].is_null() { "inf".to_owned() } else { values[key].to_string() };
-                format!("{} {value}", VehicleKind::form().word_of(*kind))
+                format!("{} {value}", kind.word())
             });
             let values = values.collect::<Vec<_>>().join(", ");
             let about = property["description"].as_str().unwrap_or_default();
             property["description"] = json!(format!("{about} Default: {values}."));
         }
-        json!({ "anyOf": [VehicleKind::form().schema(), schema] })
+        json!({ "anyOf": [word::<VehicleKind>().schema(), schema] })
     }
 }
 
@@ -115,8 +116,8 @@ pub(crate) fn usual_kind(scene: &VehiclePart) -> VehicleKind {
 pub(crate) fn check_meaning(part: &VehiclePart, kind: VehicleKind, reporter: &mut Reporter) {
     for (key, place) in part.places().into_iter().filter(|(key, _)| !applies(key, kind)) {
         let others = VehicleKind::ALL.into_iter().filter(|other| applies(key, *other));
-        let others = quoted(others.map(|other| VehicleKind::form().word_of(other)));
-        let kind = VehicleKind::form().word_of(kind);
+        let others = quoted(others.map(|other| other.word()));
+        let kind = kind.word();
         reporter.report(
             place,
             format!("`{key}` means nothing for a vehicle of kind `{kind}`; it is for {others}"),

@@ -1,7 +1,8 @@
 //! Ways of lead robots, tables beside the scene, and groups.
 
-use scene::{Channel, Path, Role, Scene, SpeedProfile};
+use scene::{Path, Role, Scene, SpeedProfile};
 use std::{f64::consts::PI, fs};
+use vocabulary::ScalarTrajectory;
 
 fn lead(path: &str) -> String {
     format!("schema = 1\ntitle = \"t\"\n[[robots]]\nname = \"a\"\npose = [0, 0, 0]\npath = {path}\n")
@@ -144,8 +145,8 @@ fn groups_without_scatter_start_in_formation() {
             let leader = &scene.robots[scene.index_of(&follow.leader).unwrap()];
             let (dx, dy) = (robot.pose.x - leader.pose.x, robot.pose.y - leader.pose.y);
             let bearing = vocabulary::wrap(dy.atan2(dx) - leader.pose.heading);
-            let Channel::Constant(wanted) = follow.bearing else { panic!("a constant bearing") };
-            let Channel::Constant(distance) = follow.distance else { panic!("a constant distance") };
+            let ScalarTrajectory::Constant(wanted) = follow.bearing else { panic!("a constant bearing") };
+            let ScalarTrajectory::Constant(distance) = follow.distance else { panic!("a constant distance") };
             assert!((dx.hypot(dy) - distance).abs() < 1e-9, "{shape}: {}", robot.name);
             assert!(if follows == "leader" { follow.leader == "robot-1" } else { distance == 2.0 });
             assert!(vocabulary::wrap(bearing - wanted).abs() < 1e-9, "{shape}: {}", robot.name);

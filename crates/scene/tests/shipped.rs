@@ -1,8 +1,9 @@
 //! The scenes that are shipped: each loads, goes through text and back unchanged, and fits the schema.
 
-use scene::{Channel, Override, Path, Role, Scene, schema};
+use scene::{Override, Path, Role, Scene, schema};
 use serde_json::Value as Json;
 use std::{f64::consts::PI, path::PathBuf};
+use vocabulary::ScalarTrajectory;
 
 fn scenes() -> Vec<PathBuf> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
@@ -106,8 +107,8 @@ fn a_small_scene_has_the_papers_values() {
         panic!("the leader is to drive the paper's circle");
     };
     let Role::Follow(follow) = &scene.robots[1].role else { panic!("robot 1 is to follow") };
-    assert_eq!((follow.speed, &follow.distance), (0.01, &Channel::Constant(2.0)));
-    assert_eq!(follow.bearing, Channel::Constant(-0.75 * PI));
+    assert_eq!((follow.speed, &follow.distance), (0.01, &ScalarTrajectory::Constant(2.0)));
+    assert_eq!(follow.bearing, ScalarTrajectory::Constant(-0.75 * PI));
     assert_eq!((follow.law.k, follow.law.beta, follow.law.slope), ([5.0; 2], [5.0; 2], [24.53; 2]));
     assert_eq!((follow.observer.epsilon, follow.observer.alpha1), ([0.001; 2], [2.0; 2]));
     let limits = scene.robots[1].vehicle.limits();
@@ -128,7 +129,7 @@ fn groups_become_robots_near_their_places() {
             Role::Lead { .. } => None,
         })
         .collect();
-    let wing = |leader, side: f64| (leader, Channel::Constant(side * 0.75 * PI));
+    let wing = |leader, side: f64| (leader, ScalarTrajectory::Constant(side * 0.75 * PI));
     assert_eq!(
         leaders,
         [

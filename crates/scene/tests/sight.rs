@@ -1,7 +1,8 @@
 //! What followers see: read, completed, and refused where it cannot be.
 
-use scene::{ObserverKind, Role, Scene, SensingKind};
+use scene::{Role, Scene, SensingKind};
 use std::path::Path;
+use vocabulary::ObserverKind;
 
 /// Two robots, the second a follower; `more` goes to the top, `follower` into its table.
 fn text(more: &str, follower: &str, bearing: &str) -> String {

@@ -4,10 +4,10 @@ use crate::caption::caption;
 use crate::error::{BuildError, EPSILON_MIN};
 use crate::parameters::{ParameterSet, ScheduledChange};
 use crate::stage::{handling, stage};
-use crate::step::{ObserverStart, Setup, Timing};
-use formation::{EdgeLaw, Formation, Graph, LookLaw, Method, ScalarTrajectory, SetPointTrajectory};
+use crate::step::Setup;
+use formation::{EdgeLaw, Formation, Graph, LookLaw, SetPointTrajectory};
 use perception::sensors::{CameraSettings, NoiseModel, Sensor, SensorConfig, Source};
-use scene::{Channel, Follow, OnContact, Role, Scene, SensingKind};
+use scene::{Follow, OnContact, Role, Scene, SensingKind, SwitchingKind};
 use std::sync::Arc;
 use vocabulary::{Edge, FleetInfo, Light, RobotInfo};
 use world::WorldSetup;
@@ -57,12 +57,8 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
         },
         formation: Formation::new(graph, laws, limits, leads, scene.time.period),
         stage,
-        observer_starts: followers.iter().map(|(_, follow)| observer_start(follow)).collect(),
-        timing: match scene.time.mode {
-            scene::Mode::Continuous => Timing::Continuous,
-            scene::Mode::Sampled => Timing::Sampled,
-            scene::Mode::Measured => Timing::Measured,
-        },
+        observer_starts: followers.iter().map(|(_, follow)| follow.observer.start).collect(),
+        mode: scene.time.mode,
         stop_at_contact: scene.physics.on_contact != OnContact::Record,
         period: scene.time.period,
         duration: scene.time.duration,
@@ -83,10 +79,11 @@ fn turn(change: &scene::Change) -> Result<ScheduledChange, BuildError> {
 }
 
 fn check_stiffness(scene: &Scene, followers: &[(&str, &Follow)]) -> Result<(), BuildError> {
-    if scene.time.mode != scene::Mode::Continuous {
+    if scene.time.mode != vocabulary::TimeMode::Continuous {
         return Ok(());
     }
-    for (name, follow) in followers.iter().filter(|(_, f)| f.law.kind == scene::LawKind::OutputFeedback) {
+    for (name, follow) in followers.iter().filter(|(_, f)| f.law.kind == vocabulary::LawKind::OutputFeedback)
+    {
         let [a, b] = follow.observer.epsilon;
         if a.min(b) < EPSILON_MIN {
             return Err(BuildError::Stiff { robot: (*name).to_owned(), epsilon: a.min(b) });
@@ -106,25 +103,18 @@ pub(crate) fn edge_law(follow: &Follow) -> EdgeLaw {
     let (law, observer) = (&follow.law, observer(follow));
     EdgeLaw {
         law: formation::Law {
-            kind: match law.kind {
-                scene::LawKind::FullState => formation::LawKind::FullState,
-                scene::LawKind::RobustState => formation::LawKind::RobustState,
-                scene::LawKind::OutputFeedback => formation::LawKind::OutputFeedback,
-            },
+            kind: law.kind,
             gain: law.k,
             robust_gain: law.beta,
             switching: match law.switching {
-                scene::Switching::Tanh => formation::Switching::Tanh(law.slope),
-                scene::Switching::Sign => formation::Switching::Sign,
+                SwitchingKind::Tanh => formation::Switching::Tanh(law.slope),
+                SwitchingKind::Sign => formation::Switching::Sign,
             },
             distance_min: law.distance_min,
         },
         observer,
         looks: look_law(follow, observer),
-        set_point: SetPointTrajectory {
-            distance: course(&follow.distance),
-            bearing: course(&follow.bearing),
-        },
+        set_point: SetPointTrajectory { distance: follow.distance.clone(), bearing: follow.bearing.clone() },
     }
 }
 
@@ -140,10 +130,7 @@ fn observer(follow: &Follow) -> formation::Observer {
 
 fn look_law(follow: &Follow, observer: formation::Observer) -> Option<LookLaw> {
     (follow.sensing.kind != SensingKind::Truth).then_some(LookLaw {
-        method: match follow.observer.kind {
-            scene::ObserverKind::HighGain => Method::HighGain,
-            scene::ObserverKind::Unscented => Method::Unscented,
-        },
+        method: follow.observer.kind,
         observer,
         adaptive: follow.observer.adaptive,
         disturbance: follow.observer.disturbance,
@@ -200,25 +187,4 @@ fn sensor_config(
     let (things, ground) = ((members, props.as_slice()), stage.terrain.clone());
     let sensor_config = SensorConfig::new(edges, sensors.collect(), things, ground, camera, scene.seed);
     sensor_config.look().then(|| Arc::new(sensor_config))
-}
-
-fn course(channel: &Channel) -> ScalarTrajectory {
-    match channel {
-        Channel::Constant(value) => ScalarTrajectory::Constant(*value),
-        Channel::Sinusoid { mean, amplitude, rate } => {
-            ScalarTrajectory::Sinusoid { mean: *mean, amplitude: *amplitude, rate: *rate }
-        }
-        Channel::Ramps(ramps) => ScalarTrajectory::Ramps {
-            from: ramps.first().map_or(0.0, |r| r.from),
-            ramps: ramps.iter().map(|r| formation::Ramp { start: r.start, over: r.over, to: r.to }).collect(),
-        },
-    }
-}
-
-fn observer_start(follow: &Follow) -> ObserverStart {
-    match follow.observer.start {
-        scene::ObserverStart::Measured => ObserverStart::Offset([0.0; 2]),
-        scene::ObserverStart::Offset(offset) => ObserverStart::Offset(offset),
-        scene::ObserverStart::At(at) => ObserverStart::At(at),
-    }
 }

@@ -1,7 +1,7 @@
 //! A scene's laws in one line, for pictures and reports.
 
-use scene::{Follow, LawKind, Mode, ObserverKind, Role, Scene, SensingKind, Switching};
-use vocabulary::counted;
+use scene::{Follow, Role, Scene, SensingKind, SwitchingKind};
+use vocabulary::{LawKind, ObserverKind, TimeMode, counted};
 
 /// Law, gains and timing of a scene in one line; ranges where gains of followers differ, "mixed" where their laws do.
 pub fn caption(scene: &Scene) -> String {
@@ -15,8 +15,8 @@ pub fn caption(scene: &Scene) -> String {
     if !robust.is_empty() {
         parts.push(format!("β {}", range(&robust, |follow| follow.law.beta)));
         parts.push(match common(&robust, |follow| follow.law.switching) {
-            Some(Switching::Tanh) => format!("tanh slope {}", range(&robust, |follow| follow.law.slope)),
-            Some(Switching::Sign) => "sign".to_owned(),
+            Some(SwitchingKind::Tanh) => format!("tanh slope {}", range(&robust, |follow| follow.law.slope)),
+            Some(SwitchingKind::Sign) => "sign".to_owned(),
             None => "tanh or sign".to_owned(),
         });
     }
@@ -44,9 +44,9 @@ pub fn caption(scene: &Scene) -> String {
     let every = format!("every {} ms", short(scene.time.period * 1e3));
     parts.push(match scene.time.mode {
         _ if !looking.is_empty() => every,
-        Mode::Continuous => "continuous time".to_owned(),
-        Mode::Sampled => every,
-        Mode::Measured => format!("{every}, sampled measurement"),
+        TimeMode::Continuous => "continuous time".to_owned(),
+        TimeMode::Sampled => every,
+        TimeMode::Measured => format!("{every}, sampled measurement"),
     });
     match scene.changes.len() {
         0 => {}

@@ -3,8 +3,8 @@
 //! Classical Runge-Kutta with a step well below the observers' time constants; speeds stop at their bounds after
 //! every step. It costs about 1/ε evaluations per simulated second, which is the price of continuous time.
 
-use formation::{Estimate, Formation, FormationState, LawKind};
-use vocabulary::{EdgeSample, Motion, Observation, Pose, Relative, wrap};
+use formation::{Estimate, Formation, FormationState};
+use vocabulary::{EdgeSample, LawKind, Motion, Observation, Pose, Relative, wrap};
 use world::{Unicycles, World};
 
 /// Longest step, s.

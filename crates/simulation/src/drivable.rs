@@ -142,11 +142,13 @@ impl fmt::Display for Undrivable {
         let needed = rounded(self.radius());
         if self.point.is_some() {
             // An infinite curvature gives a radius of 0.
-            let radius = rounded(self.curvature().recip());
+            let radius = self.curvature().recip();
+            let apart = if radius > 0.0 { "move the points apart, or " } else { "" };
             write!(
                 f,
-                ": the curve through the points has a radius of {radius} m there and needs at least {needed} m; move \
-                 the points apart, or add some that lead round"
+                ": the curve through the points has a radius of {} m there and needs at least {needed} m; {apart}add \
+                 points that lead round",
+                rounded(radius)
             )?;
         } else {
             write!(f, ": bend it along a radius of at least {needed} m")?;

@@ -24,4 +24,4 @@ pub use drivable::Undrivable;
 pub use error::BuildError;
 pub use fault::{Fault, NotFinite};
 pub use parameters::{ParameterSet, ScheduledChange};
-pub use step::{ObserverStart, Setup, Simulation, Timing};
+pub use step::{Setup, Simulation};

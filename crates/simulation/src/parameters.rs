@@ -1,7 +1,8 @@
 //! What a run goes by that may change on the way: laws, set points, limits. All else stays as it began.
 
 use crate::step::Setup;
-use formation::{EdgeLaw, LawKind};
+use formation::EdgeLaw;
+use vocabulary::LawKind;
 use world::Handling;
 
 /// What holds from one control sample on, until something else does.

@@ -1,12 +1,11 @@
 //! Followers that look: what they see, when it reaches them, and what they make of it.
 
-use crate::step::ObserverStart;
 use formation::{EdgeLaw, Estimate, Formation, Own, Tracker};
 use perception::sensors::{Belief, SensorConfig, SensorState};
 use std::sync::{Arc, Mutex, PoisonError};
 use vocabulary::{
-    CameraRenderer, Edge, MeasurementRecord, Observation, Outcome, Relative, Snapshot, StepInterpolant,
-    TrackingState,
+    CameraRenderer, Edge, MeasurementRecord, Observation, ObserverStart, Outcome, Relative, Snapshot,
+    StepInterpolant, TrackingState,
 };
 use world::World;
 
@@ -152,7 +151,7 @@ impl Put for Tracker {
         frame.outcome = self.take(looks, &frame.measurement);
         let (true, Some(seen)) = (first, self.relative()) else { return };
         match start {
-            ObserverStart::Offset([0.0, 0.0]) => {}
+            ObserverStart::Measured | ObserverStart::Offset([0.0, 0.0]) => {}
             ObserverStart::Offset(offset) => self.disturb(offset, [0.0; 2]),
             ObserverStart::At([distance, bearing]) => {
                 self.disturb([distance - seen.distance, vocabulary::wrap(bearing - seen.bearing)], [0.0; 2]);

@@ -2,11 +2,10 @@
 
 use crate::drivable::{Motion, Undrivable, undrivable};
 use crate::error::BuildError;
-use formation::ScalarTrajectory;
 use formation::lead::{AnalyticTrajectory, Hermite, SpeedSchedule, SplinePath, SplinePathError, Table};
 use scene::{Compensation, Path, PropMotion, Role, Scene, SpeedProfile, VehicleKind};
 use std::sync::Arc;
-use vocabulary::{Limits, Mobility, Placement, Pose, Prop, Trajectory};
+use vocabulary::{Limits, Mobility, Placement, Pose, Prop, ScalarTrajectory, Trajectory};
 use world::wheeled::tyre::Tyre;
 use world::{Drivetrain, Handling, PropBody, RobotSetup, Unicycle, Wheeled, WorldSetup};
 

@@ -4,26 +4,16 @@ use crate::continuous::Continuous;
 use crate::fault::{Fault, not_finite};
 use crate::parameters::{ParameterSet, ScheduledChange, sample_at, wakes};
 use crate::sensing::SensingPipeline;
-use formation::{Estimate, Formation, FormationState, LawKind};
+use formation::{Estimate, Formation, FormationState};
 use perception::sensors::SensorConfig;
 use std::collections::VecDeque;
 use std::f64::consts::PI;
 use std::sync::Arc;
 use vocabulary::{
-    CameraRenderer, Contact, EdgeState, FleetInfo, MeasurementRecord, Observation, Relative, StepRecord, wrap,
+    CameraRenderer, Contact, EdgeState, FleetInfo, LawKind, MeasurementRecord, Observation, ObserverStart,
+    Relative, StepRecord, TimeMode, wrap,
 };
 use world::{Physical, Unicycles, World, WorldSetup};
-
-/// How law and observer act in time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Timing {
-    /// Law and observer act in continuous time.
-    Continuous,
-    /// The law is held over a period; the observer sees the plant in between.
-    Sampled,
-    /// As sampled, but the observer sees samples only.
-    Measured,
-}
 
 /// A run put together, before its first step.
 #[derive(Debug, Clone)]
@@ -39,7 +29,7 @@ pub struct Setup {
     /// How followers sense their leaders; `None` where all are told the truth.
     pub sensor_config: Option<Arc<SensorConfig>>,
     /// How law and observer act in time.
-    pub timing: Timing,
+    pub mode: TimeMode,
     /// Whether the run ends where bodies touch.
     pub stop_at_contact: bool,
     /// Control period, s.
@@ -50,22 +40,13 @@ pub struct Setup {
     pub changes: Vec<ScheduledChange>,
 }
 
-/// Where the observer of one edge starts, [m, rad].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ObserverStart {
-    /// The first measurement plus this.
-    Offset([f64; 2]),
-    /// Here.
-    At([f64; 2]),
-}
-
 /// A run under way. The same setup gives the same moments, bit for bit.
 pub struct Simulation {
     pub(crate) fleet: FleetInfo,
     pub(crate) formation: Formation,
     pub(crate) state: FormationState,
     pub(crate) plant: Plant,
-    pub(crate) timing: Timing,
+    pub(crate) mode: TimeMode,
     pub(crate) period: f64,
     pub(crate) observations: Vec<Observation>,
     pub(crate) sensing: Option<SensingPipeline>,
@@ -94,7 +75,7 @@ impl Simulation {
     /// A run at time 0, nothing evaluated yet.
     pub fn new(setup: Setup) -> Self {
         let edges = setup.formation.edges().len();
-        let plant = Plant::new(setup.stage, setup.timing, &setup.formation);
+        let plant = Plant::new(setup.stage, setup.mode, &setup.formation);
         let world = plant.world();
         let mut observations = Vec::with_capacity(edges);
         perception::observe(world.snapshot(), setup.formation.edges(), &mut observations);
@@ -115,7 +96,7 @@ impl Simulation {
             formation: setup.formation,
             state,
             plant,
-            timing: setup.timing,
+            mode: setup.mode,
             period: setup.period,
             observations,
             sensing,
@@ -203,8 +184,8 @@ impl Simulation {
             Plant::Held(world) => {
                 world.advance(self.period);
                 let world: &dyn World = world.as_ref();
-                match self.timing {
-                    Timing::Measured => self.follow_samples(),
+                match self.mode {
+                    TimeMode::Measured => self.follow_samples(),
                     _ => follow(&self.formation, &mut self.state, world),
                 }
                 if let Some(sensing) = &mut self.sensing {
@@ -319,17 +300,17 @@ impl Simulation {
 
 impl Plant {
     /// Unicycles on an empty plane are moved exactly; all else is moved by forces.
-    fn new(stage: WorldSetup, timing: Timing, formation: &Formation) -> Self {
+    fn new(stage: WorldSetup, mode: TimeMode, formation: &Formation) -> Self {
         let ideal = stage.props.is_empty()
             && stage.terrain.is_none()
             && stage.actors.iter().all(|a| a.wheels.is_none());
-        if !ideal && timing != Timing::Continuous {
+        if !ideal && mode != TimeMode::Continuous {
             return Self::Held(Box::new(Physical::new(stage)));
         }
         let world = Unicycles::new(stage.actors.into_iter().map(|actor| actor.robot).collect());
-        match timing {
-            Timing::Continuous => Self::Continuous(Box::new(Continuous::new(world, formation))),
-            Timing::Sampled | Timing::Measured => Self::Held(Box::new(world)),
+        match mode {
+            TimeMode::Continuous => Self::Continuous(Box::new(Continuous::new(world, formation))),
+            TimeMode::Sampled | TimeMode::Measured => Self::Held(Box::new(world)),
         }
     }
 
@@ -376,6 +357,7 @@ fn follow(formation: &Formation, state: &mut FormationState, world: &dyn World) 
 
 fn first_estimate(seen: &Relative, start: ObserverStart) -> Estimate {
     let output = match start {
+        ObserverStart::Measured => [seen.distance, seen.bearing],
         ObserverStart::Offset([distance, bearing]) => [seen.distance + distance, seen.bearing + bearing],
         ObserverStart::At(at) => at,
     };

@@ -7,9 +7,10 @@
 use crate::{BuildError, Simulation, build};
 use cobyla::{RhoBeg, StopTols, minimize};
 use metrics::{Metrics, MetricsBuilder};
-use scene::{LawKind, Role, Scene};
+use scene::{Role, Scene};
 use std::cell::RefCell;
 use thiserror::Error;
+use vocabulary::LawKind;
 
 /// Gains of every follower, the same for distance and bearing.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -30,8 +30,12 @@ fn a_way_that_turns_back_is_refused_with_its_point_and_what_helps() {
     let told = refusal(&waypoints(&[[0.0, 0.0], [4.0, 0.0], [0.0, 0.0]]), "");
     assert!(told.contains("`ann`") && told.contains("point 2, [4, 0]"), "{told}");
     assert!(told.contains("turns back on the spot") && told.contains("a radius of 0 m there"), "{told}");
-    assert!(told.contains("needs at least 0.087 m; move the points apart, or add some"), "{told}");
+    assert!(told.contains("needs at least 0.087 m; add points that lead round"), "{told}");
+    let patrol = [[0.0, 0.0], [4.0, 0.0], [0.0, 0.0], [4.0, 0.0], [0.0, 0.0]];
+    let told = refusal(&waypoints(&patrol), "");
+    assert!(told.contains("turns back on the spot") && told.contains("a radius of 0 m there"), "{told}");
     let told = refusal(&waypoints(&turn(170.0)), "");
+    assert!(told.contains("move the points apart, or add points that lead round"), "{told}");
     assert!(told.contains("point 2, [4, 0]") && told.contains("allows 11.5 rad/s"), "{told}");
     assert!(told.contains("or go at no more than 0.1"), "{told}");
     let closed =

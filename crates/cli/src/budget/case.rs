@@ -1,8 +1,9 @@
 //! What is compared: ways of sensing, observers, observer constants; and the scene changed to each.
 
 use crate::failure::Failure;
-use scene::{Follow, LawKind, Mode, ObserverKind, Role, Scene, SensingKind};
+use scene::{Follow, Role, Scene, SensingKind};
 use simulation::Setup;
+use vocabulary::{LawKind, ObserverKind, TimeMode};
 
 /// How followers sense in one run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -125,7 +126,7 @@ pub(crate) fn check(scene: &Scene) -> Result<(), Failure> {
              kind = \"output-feedback\" }}` for it, or --set robots.{name}.law.kind=output-feedback"
         )));
     }
-    if scene.time.mode == Mode::Continuous {
+    if scene.time.mode == TimeMode::Continuous {
         let text = "mode `continuous` knows no looks: use --set time.mode=sampled";
         return Err(Failure::Usage(text.to_owned()));
     }

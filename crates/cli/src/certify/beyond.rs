@@ -3,13 +3,13 @@
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Progress;
-use scene::{Follow, LawKind, Role, Scene, SensingKind, Switching};
+use scene::{Follow, Role, Scene, SensingKind, SwitchingKind};
 use simulation::certify::chain::{self, EdgeGain};
 use simulation::certify::reach::{self, Reach};
 use simulation::certify::sensitivity::{self, Sensitivities};
 use simulation::certify::{Channel, Discretisation, LongestPeriod};
 use std::sync::atomic::{AtomicU64, Ordering};
-use vocabulary::counted;
+use vocabulary::{LawKind, counted};
 
 /// All of it.
 pub(super) struct Beyond {
@@ -88,7 +88,7 @@ fn chart(scene: &Scene) -> Option<Chart> {
     let (name, follow) = followers(scene).find(|(_, follow)| follow.law.kind == LawKind::OutputFeedback)?;
     let (k, observer) = (follow.law.k[0], &follow.observer);
     // The slope of the sign is not a number; near its set point only K acts then.
-    let smooth = follow.law.switching == Switching::Tanh;
+    let smooth = follow.law.switching == SwitchingKind::Tanh;
     let steep = if smooth { follow.law.beta[0] * follow.law.slope[0] } else { 0.0 };
     let channel =
         Channel { gain: k, stiffness: k * k + steep, alpha1: observer.alpha1[0], alpha2: observer.alpha2[0] };

@@ -4,11 +4,11 @@
 //! deviation [δv, δω] follow the errors [δℓ, δψ] and the follower's own deviation, which is what the next one follows.
 
 use crate::formation::EdgeLaw;
-use crate::law::{Law, LawInput, LawKind, Switching};
+use crate::law::{Law, LawInput, Switching};
 use crate::observer::Estimate;
 use crate::relative::Geometry;
 use nalgebra::{Complex, DMatrix, Matrix2, SVector};
-use vocabulary::{EdgeSample, MotionInput, Relative, SetPoint, wrap};
+use vocabulary::{EdgeSample, LawKind, MotionInput, Relative, SetPoint, wrap};
 
 /// What one edge makes of its leader's deviation [δv in m/s, δω in rad/s] at one frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,7 +4,8 @@ use super::constants::Constants;
 use super::premise::{Premise, Spell};
 use super::tally::{Room, Tally};
 use super::witness::Witness;
-use crate::law::{LawKind, Switching};
+use crate::law::Switching;
+use vocabulary::LawKind;
 
 /// What the theorems state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

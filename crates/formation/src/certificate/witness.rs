@@ -3,11 +3,11 @@
 use super::boundary::BoundaryLayer;
 use super::constants::Constants;
 use super::ledger::Ledger;
-use crate::law::{Law, LawKind, Switching};
+use crate::law::{Law, Switching};
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
 use nalgebra::Vector2;
-use vocabulary::{MotionInput, Relative, SetPoint, wrap};
+use vocabulary::{LawKind, MotionInput, Relative, SetPoint, wrap};
 
 /// One edge at one control sample, as it truly was.
 #[derive(Debug, Clone, Copy, PartialEq)]

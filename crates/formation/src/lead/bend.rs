@@ -22,6 +22,9 @@ const PARTS: u32 = 32;
 /// A point at which a piece stands still but for this share of its length is one at which it turns on the spot.
 const STILL: f64 = 1e-4;
 
+/// A radius below this share of a piece's length is that of a turn on the spot.
+const ON_THE_SPOT: f64 = 1e-6;
+
 /// Parameter and |curvature|, 1/m, of the sharpest place of a piece.
 pub(super) fn sharpest(piece: &CubicBez) -> (f64, f64) {
     let at = |k: u32| f64::from(k) / f64::from(PARTS);
@@ -64,5 +67,6 @@ fn bend(piece: &CubicBez, u: f64) -> f64 {
     let still = d1.hypot() <= STILL * (piece.p3 - piece.p0).hypot();
     // Where it is slowest, what changes its direction is all that there is.
     let bent = if still { d2.hypot() / d1.hypot2() } else { d1.cross(d2).abs() / d1.hypot().powi(3) };
-    if bent.is_nan() { f64::INFINITY } else { bent }
+    let sharp = bent * ON_THE_SPOT * (piece.p3 - piece.p0).hypot() > 1.0;
+    if sharp || bent.is_nan() { f64::INFINITY } else { bent }
 }

@@ -12,22 +12,13 @@ use crate::observer::{Estimate, Observer};
 use high_gain::HighGain;
 use std::collections::VecDeque;
 use unscented::Unscented;
-use vocabulary::{Measurement, Outcome, Relative, TrackingState, wrap};
-
-/// How looks become an estimate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
-    /// The high-gain observer.
-    HighGain,
-    /// The dual unscented Kalman filter.
-    Unscented,
-}
+use vocabulary::{Measurement, ObserverKind, Outcome, Relative, TrackingState, wrap};
 
 /// Parameters of an estimate from looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LookLaw {
     /// How looks become an estimate.
-    pub method: Method,
+    pub method: ObserverKind,
     /// ε, α and ℓ_min.
     pub observer: Observer,
     /// Whether ε follows from how certain the looks are.
@@ -160,8 +151,8 @@ impl Tracker {
         let own = self.past.iter().find(|s| look.stamp <= s.until).or(self.past.back());
         let speed = own.map_or(0.0, |s| s.own.speed);
         let belief = match law.method {
-            Method::HighGain => Belief::HighGain(HighGain::at(look)),
-            Method::Unscented => Belief::Unscented(Box::new(Unscented::at(law, look, speed))),
+            ObserverKind::HighGain => Belief::HighGain(HighGain::at(look)),
+            ObserverKind::Unscented => Belief::Unscented(Box::new(Unscented::at(law, look, speed))),
         };
         self.settle(law, look.stamp, belief);
     }
@@ -232,10 +223,10 @@ impl Tracker {
 }
 
 impl Belief {
-    fn is_of(&self, method: Method) -> bool {
+    fn is_of(&self, method: ObserverKind) -> bool {
         match self {
-            Self::HighGain(_) => method == Method::HighGain,
-            Self::Unscented(_) => method == Method::Unscented,
+            Self::HighGain(_) => method == ObserverKind::HighGain,
+            Self::Unscented(_) => method == ObserverKind::Unscented,
         }
     }
 

@@ -42,7 +42,7 @@ impl Pair {
     }
 }
 
-fn law(method: Method) -> LookLaw {
+fn law(method: ObserverKind) -> LookLaw {
     LookLaw {
         method,
         observer: Observer { epsilon: [0.03; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 },
@@ -136,7 +136,7 @@ const QUIET: [f64; 3] = [1e-5, 1e-5, 1e-5];
 
 #[test]
 fn exact_looks_are_followed_and_latency_costs_next_to_nothing() {
-    for method in [Method::HighGain, Method::Unscented] {
+    for method in [ObserverKind::HighGain, ObserverKind::Unscented] {
         for late in [0, 1, 3] {
             let shown = run(&law(method), QUIET, late, |_, _| true);
             assert!(
@@ -154,7 +154,7 @@ fn exact_looks_are_followed_and_latency_costs_next_to_nothing() {
 
 #[test]
 fn a_third_of_the_looks_may_be_missing() {
-    for method in [Method::HighGain, Method::Unscented] {
+    for method in [ObserverKind::HighGain, ObserverKind::Unscented] {
         let shown = run(&law(method), QUIET, 3, |k, _| noise(k as u64 + 7_000) > -0.7);
         assert!(shown.worst[0] < 2e-2 && shown.worst[1] < 2e-2, "{method:?}: {:?}", shown.worst);
     }
@@ -163,7 +163,7 @@ fn a_third_of_the_looks_may_be_missing() {
 /// One flipped heading in ten looks: an observer that believed it would see 30 rad/s.
 #[test]
 fn outliers_are_not_believed() {
-    for method in [Method::HighGain, Method::Unscented] {
+    for method in [ObserverKind::HighGain, ObserverKind::Unscented] {
         let shown = run(&law(method), [2e-3, 8e-3, 5e-4], 1, |k, look| {
             if k % 30 == 0 && k > 60 {
                 look.relative.bearing = wrap(look.relative.bearing + 0.6);
@@ -177,7 +177,7 @@ fn outliers_are_not_believed() {
 
 #[test]
 fn a_leader_that_is_truly_elsewhere_is_believed_at_the_third_look() {
-    let law = law(Method::HighGain);
+    let law = law(ObserverKind::HighGain);
     let mut tracker = Tracker::default();
     let look = |stamp, distance| Measurement {
         stamp,
@@ -197,7 +197,7 @@ fn a_leader_that_is_truly_elsewhere_is_believed_at_the_third_look() {
 
 #[test]
 fn noise_sets_the_time_constant() {
-    let law = LookLaw { adaptive: true, ..law(Method::HighGain) };
+    let law = LookLaw { adaptive: true, ..law(ObserverKind::HighGain) };
     let worst = |deviation| run(&law, deviation, 1, |_, _| true).rates[1];
     let (quiet, loud) = (worst([2e-4, 8e-4, 1e-4]), worst([2e-3, 8e-3, 5e-4]));
     // Ten times the noise costs less than ten times the error, as ε grows with it.
@@ -211,7 +211,7 @@ fn noise_sets_the_time_constant() {
 /// The last look before the leader is hidden is bad, and says so: the prediction that follows must not run away.
 #[test]
 fn a_look_that_doubts_itself_moves_little() {
-    let law = LookLaw { adaptive: true, ..law(Method::HighGain) };
+    let law = LookLaw { adaptive: true, ..law(ObserverKind::HighGain) };
     let sure = [1e-3, 1e-3, 1e-4];
     let doubtful = sure.map(|d| 5.0 * d);
     let rate = |deviation: [f64; 3]| {
@@ -232,7 +232,7 @@ fn a_look_that_doubts_itself_moves_little() {
 /// A leader that is out of sight for a second is still there: it is taken to go on as it went.
 #[test]
 fn a_hidden_leader_is_followed_by_how_it_went() {
-    for method in [Method::HighGain, Method::Unscented] {
+    for method in [ObserverKind::HighGain, ObserverKind::Unscented] {
         let law = LookLaw { hold: 2.0, adaptive: true, ..law(method) };
         let shown = run(&law, QUIET, 1, |k, _| !(410..510).contains(&k));
         // A tenth of what it drives in that second.
@@ -242,7 +242,7 @@ fn a_hidden_leader_is_followed_by_how_it_went() {
 
 #[test]
 fn sight_is_lost_with_time_and_comes_back() {
-    let law = law(Method::HighGain);
+    let law = law(ObserverKind::HighGain);
     let mut tracker = Tracker::default();
     assert_eq!((tracker.sight(&law), tracker.relative()), (TrackingState::Waiting, None));
     let look = |stamp| Measurement {
@@ -268,7 +268,7 @@ fn sight_is_lost_with_time_and_comes_back() {
 #[test]
 fn no_look_breaks_it() {
     let odd = [0.0, -1.0, 1e9, f64::NAN, f64::INFINITY, 1e-9];
-    for method in [Method::HighGain, Method::Unscented] {
+    for method in [ObserverKind::HighGain, ObserverKind::Unscented] {
         let law = law(method);
         let mut tracker = Tracker::default();
         for (k, (a, b)) in odd.iter().flat_map(|a| odd.iter().map(move |b| (*a, *b))).enumerate() {

@@ -6,7 +6,7 @@ use crate::desk::Desk;
 use crate::symbols;
 use crate::tidy::fixed;
 use eframe::egui::{self, DragValue, RichText, Ui, WidgetInfo};
-use scene::Channel;
+use vocabulary::ScalarTrajectory;
 
 /// The selected edge.
 pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
@@ -17,8 +17,8 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     ui.label(RichText::new(format!("{} → {name}", follow.leader)).strong());
     let state = desk.shown().and_then(|record| record.edges.get(edge).copied());
     let now = state.map_or([0.0; 2], |state| state.set_point);
-    let value = |channel: &Channel, now: f64| match channel {
-        Channel::Constant(value) => *value,
+    let value = |channel: &ScalarTrajectory, now: f64| match channel {
+        ScalarTrajectory::Constant(value) => *value,
         _ => now,
     };
     let (distance, bearing) = (value(&follow.distance, now[0]), value(&follow.bearing, now[1]));
@@ -46,7 +46,10 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     if new_distance != distance || (new_degrees - bearing.to_degrees()).abs() > 1e-9 {
         out.push(Action::SetPoint { edge, distance: new_distance, bearing: new_degrees.to_radians() });
     }
-    if !matches!((&follow.distance, &follow.bearing), (Channel::Constant(_), Channel::Constant(_))) {
+    if !matches!(
+        (&follow.distance, &follow.bearing),
+        (ScalarTrajectory::Constant(_), ScalarTrajectory::Constant(_))
+    ) {
         ui.weak("It moves in time; what you set here stays.");
     }
     let mut mirror = desk.mirror;

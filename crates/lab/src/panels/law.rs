@@ -6,7 +6,8 @@ use crate::action::Action;
 use crate::desk::Desk;
 use crate::symbols;
 use eframe::egui::{ComboBox, Ui};
-use scene::{Law, LawKind, Observer, ObserverKind, Switching, VehicleKind};
+use scene::{Law, Observer, SwitchingKind, VehicleKind};
+use vocabulary::{LawKind, ObserverKind};
 
 const LAWS: [(LawKind, &str, &str, &str); 3] = [
     (LawKind::FullState, "Full state feedback", "full-state", "Knows its leader's motion (eq 20)."),
@@ -41,7 +42,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     if law.kind != LawKind::FullState {
         ROBUST.two(ui, law.beta, default.beta, apart, out);
         switching(ui, law, out);
-        if law.switching == Switching::Tanh {
+        if law.switching == SwitchingKind::Tanh {
             SLOPE.two(ui, law.slope, default.slope, apart, out);
         }
     }
@@ -148,12 +149,12 @@ fn law_kind(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
 fn switching(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         for (kind, word, name, tip) in [
-            (Switching::Tanh, "tanh", "tanh", "β tanh(κ e), as in the paper's simulations"),
-            (Switching::Sign, "sign", "sign", "β sign(e), as in the theorems; it chatters when sampled"),
+            (SwitchingKind::Tanh, "tanh", "tanh", "β tanh(κ e), as in the paper's simulations"),
+            (SwitchingKind::Sign, "sign", "sign", "β sign(e), as in the theorems; it chatters when sampled"),
         ] {
             let label = ui.selectable_label(law.switching == kind, name).on_hover_text(tip);
             if label.clicked() && law.switching != kind {
-                out.push(tune("Switching term", "law.switching", format!("{word:?}")));
+                out.push(tune("SwitchingKind term", "law.switching", format!("{word:?}")));
                 out.push(Action::Rest);
             }
         }

@@ -13,4 +13,3 @@ pub(crate) use keys::{Found, Keys, Part, keys, settings, table};
 pub(crate) use lists::{couple, list, pair, triple};
 pub(crate) use node::{Node, Value};
 pub(crate) use reporter::{Reporter, Span};
-pub(crate) use words::words;

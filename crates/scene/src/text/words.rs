@@ -2,15 +2,14 @@
 
 use crate::text::{Form, Node, Reporter};
 use serde_json::{Value as Json, json};
+use vocabulary::Word;
 
 /// A form that takes one of a few words.
 pub(crate) struct Words<T: 'static>(pub(crate) &'static [(&'static str, T, &'static str)]);
 
-impl<T: Copy + PartialEq> Words<T> {
-    /// The word for `value`.
-    pub(crate) fn word_of(&self, value: T) -> &'static str {
-        self.0.iter().find(|(_, known, _)| *known == value).map_or("", |(word, ..)| word)
-    }
+/// The form that takes the words of `T`.
+pub(crate) const fn word<T: Word>() -> Words<T> {
+    Words(T::WORDS)
 }
 
 impl<T: Copy + 'static> Form for Words<T> {
@@ -60,28 +59,3 @@ pub(crate) fn nearest<'a>(text: &str, words: impl Iterator<Item = &'a str>) -> O
 pub(crate) fn did_you_mean(word: &str) -> String {
     format!(", did you mean `{word}`?")
 }
-
-/// Defines a public enum whose variants are words of a scene file: its type, its form and how it is written. After a bar
-/// stands another word that is read for the same.
-macro_rules! words {
-    (
-        $(#[doc = $about:literal])*
-        $vis:vis enum $name:ident {
-            $( $(#[doc = $doc:literal])* $variant:ident = $word:literal $(| $other:literal)?, )+
-        }
-    ) => {
-        $(#[doc = $about])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-        $vis enum $name { $( $(#[doc = $doc])* #[serde(rename = $word)] $variant, )+ }
-
-        impl $name {
-            pub(crate) const fn form() -> $crate::text::words::Words<Self> {
-                $crate::text::words::Words(&[$(
-                    ($word, Self::$variant, concat!($($doc),*)),
-                    $( ($other, Self::$variant, concat!("As `", $word, "`.")), )?
-                )+])
-            }
-        }
-    };
-}
-pub(crate) use words;

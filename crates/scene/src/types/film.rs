@@ -1,11 +1,12 @@
 //! How a film is made: measures, cards, and the storyboard.
 
 use super::stage::ViewForm;
+use crate::text::words::word;
 use crate::text::{
     Form, Node, Part, Reporter, Value, couple, flag, integer, list, number, optional, settings, table, text,
-    words,
 };
 use serde_json::{Value as Json, json};
+use vocabulary::words;
 
 /// Longest card, s.
 const CARD: f64 = 60.0;
@@ -49,7 +50,7 @@ settings! {
         /// Whether the set points stand in that line.
         pub set_points: bool = false, flag();
         /// What is plotted beside the view as the run goes, at most four.
-        pub plots: Vec<Plot> = vec![], list(Plot::form(), 0, 4);
+        pub plots: Vec<Plot> = vec![], list(word::<Plot>(), 0, 4);
         /// Elements of pictures to leave out, such as "labels", "inset", "ghosts".
         pub without: Vec<String> = vec![], list(text(40), 0, 40);
     }

@@ -3,11 +3,11 @@
 
 use super::VehicleKind;
 use crate::text::{
-    Form, Node, Reporter, Value, angle, couple, flag, keys, number, pair, settings, table, words,
-    words::Words,
+    Form, Node, Reporter, Value, angle, couple, flag, keys, number, pair, settings, table,
+    words::{Words, word},
 };
-use serde::Serialize;
 use serde_json::{Value as Json, json};
+use vocabulary::{LawKind, ObserverKind, ObserverStart, words};
 
 settings! {
     /// Parameters of a control law. A pair is for [distance, bearing]; one value stands for both. On wheels the gains that
@@ -15,13 +15,13 @@ settings! {
     #[derive(Copy)]
     pub struct Law from LawPart {
         /// Which law.
-        pub kind: LawKind = LawKind::OutputFeedback, LawKind::form();
+        pub kind: LawKind = LawKind::OutputFeedback, word::<LawKind>();
         /// Gains K = diag(k1, k2), 1/s.
         pub k: [f64; 2] = [5.0; 2], pair(number("1/s").above(0.0));
         /// Gains of the switching term (β), [m/s², rad/s²].
         pub beta: [f64; 2] = [5.0; 2], pair(number("m/s² or rad/s²").from(0.0));
         /// Form of the switching term.
-        pub switching: Switching = Switching::Tanh, Switching::form();
+        pub switching: SwitchingKind = SwitchingKind::Tanh, word::<SwitchingKind>();
         /// Slope of tanh, [1/m, 1/rad].
         pub slope: [f64; 2] = [24.53; 2], pair(number("1/m or 1/rad").above(0.0));
         /// Least distance used in divisions (ℓ_min), m.
@@ -30,20 +30,8 @@ settings! {
 }
 
 words! {
-    /// Which law a follower uses; the paper's own words are read for the same.
-    pub enum LawKind {
-        /// Knows its leader's motion (eq 20).
-        FullState = "full-state" | "fsfb",
-        /// Knows the rates of distance and bearing, not its leader's motion (eq 22).
-        RobustState = "robust-state" | "rsfb",
-        /// Knows distance and bearing only (eq 42).
-        OutputFeedback = "output-feedback" | "ofb",
-    }
-}
-
-words! {
     /// Form of the switching term.
-    pub enum Switching {
+    pub enum SwitchingKind {
         /// β tanh(slope · e), as in the paper's simulations.
         Tanh = "tanh",
         /// β sign(e), as in the paper's theorems.
@@ -62,7 +50,7 @@ settings! {
         /// α2 of s² + α1 s + α2; above 0 for stability.
         pub alpha2: [f64; 2] = [1.0; 2], pair(number("").above(0.0));
         /// How looks at the leader become an estimate; looks come with every sensing but `truth`.
-        pub kind: ObserverKind = ObserverKind::HighGain, ObserverKind::form();
+        pub kind: ObserverKind = ObserverKind::HighGain, word::<ObserverKind>();
         /// With looks: whether ε follows from how certain each look is, ε⁵ = 3σ²T/(32 δ²), instead of being `epsilon`; true
         /// where `epsilon` is not written.
         pub adaptive: bool = true, flag();
@@ -72,16 +60,6 @@ settings! {
         pub gate: f64 = 6.0, number("").above(0.0).up_to(1e6);
         /// Where the estimate of [distance, bearing] starts; that of their rates starts at 0.
         pub start: ObserverStart = ObserverStart::Measured, StartForm;
-    }
-}
-
-words! {
-    /// How looks at the leader become an estimate of [distance, bearing] and of their rates.
-    pub enum ObserverKind {
-        /// The high-gain observer, carried on by eqs 31-32 and corrected by each look.
-        HighGain = "high-gain",
-        /// Two unscented Kalman filters, one for the relative position and one for the leader's speed and turn rate.
-        Unscented = "unscented",
     }
 }
 
@@ -113,19 +91,6 @@ impl Observer {
         };
         Self { epsilon: [epsilon; 2], ..Self::default() }
     }
-}
-
-/// Where the estimate of [distance in m, bearing in rad] starts.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ObserverStart {
-    /// At the first measurement, s(0).
-    #[default]
-    Measured,
-    /// At these values.
-    At([f64; 2]),
-    /// At the first measurement plus these.
-    Offset([f64; 2]),
 }
 
 /// "measured", { at = […] } or { offset = […] }.

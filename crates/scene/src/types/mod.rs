@@ -21,13 +21,12 @@ pub use change::Change;
 pub use expect::Expect;
 pub use film::{Film, Plot, Shot};
 pub use ground::{Ground, Noise, Patch, Relief};
-pub use law::{Law, LawKind, Observer, ObserverKind, ObserverStart, Switching};
+pub use law::{Law, Observer, SwitchingKind};
 pub use path::{Path, SpeedProfile};
 pub use prop::{Prop, PropMotion};
 pub use robot::{Follow, Robot, Role};
-pub use run::{Mode, OnContact, Physics, Time};
+pub use run::{OnContact, Physics, Time};
 pub use sensing::{Sensing, SensingKind, Vision};
-pub use set_point::{Channel, Ramp};
 pub use stage::{Environment, Views};
 pub use vehicle::{Compensation, Vehicle, VehicleKind};
 

@@ -1,9 +1,9 @@
 //! Robots and their roles.
 
-use super::{Channel, Law, Observer, Path, Sensing, Vehicle};
+use super::{Law, Observer, Path, Sensing, Vehicle};
 use crate::vehicle::written;
 use serde::{Serialize, Serializer};
-use vocabulary::Pose;
+use vocabulary::{Pose, ScalarTrajectory};
 
 /// One robot.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -44,9 +44,9 @@ pub struct Follow {
     /// Speed at the start, m/s, within the vehicle's limits.
     pub speed: f64,
     /// Wanted distance, m.
-    pub distance: Channel,
+    pub distance: ScalarTrajectory,
     /// Wanted bearing, rad: direction to the follower seen from the leader's heading, left positive.
-    pub bearing: Channel,
+    pub bearing: ScalarTrajectory,
     /// Control law.
     pub law: Law,
     /// Observer; used by the output-feedback law only.

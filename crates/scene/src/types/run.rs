@@ -1,6 +1,8 @@
 //! The run as a whole: its time and its physics.
 
-use crate::text::{number, settings, words};
+use crate::text::words::word;
+use crate::text::{number, settings};
+use vocabulary::{TimeMode, words};
 
 settings! {
     /// Length, control period and mode of a run.
@@ -11,19 +13,7 @@ settings! {
         /// Control period, s; at most the duration.
         pub period: f64 = 0.01, number("s").from(1e-5).up_to(1e5);
         /// How law and observer act between control samples.
-        pub mode: Mode = Mode::Sampled, Mode::form();
-    }
-}
-
-words! {
-    /// How law and observer act in time.
-    pub enum Mode {
-        /// Law and observer act in continuous time; unicycles only.
-        Continuous = "continuous",
-        /// The law is evaluated every period and held; the observer sees the plant between samples.
-        Sampled = "sampled",
-        /// As sampled, but the observer sees samples only.
-        Measured = "measured",
+        pub mode: TimeMode = TimeMode::Sampled, word::<TimeMode>();
     }
 }
 
@@ -34,7 +24,7 @@ settings! {
         /// Step of the physics, s.
         pub step: f64 = 0.005, number("s").from(1e-4).up_to(0.02);
         /// What a contact of two bodies does to the run.
-        pub on_contact: OnContact = OnContact::Record, OnContact::form();
+        pub on_contact: OnContact = OnContact::Record, word::<OnContact>();
     }
 }
 

@@ -1,11 +1,13 @@
 //! What robots know of their leaders, and the cameras and shells they know it by.
 
+use crate::text::words::word;
 use crate::text::{
     Form, Found, Node, Reporter, Value, angle, angle_within, couple, flag, form::Number, integer, number,
-    optional, settings, table, words,
+    optional, settings, table,
 };
 use serde_json::{Value as Json, json};
 use std::f64::consts::PI;
+use vocabulary::words;
 
 /// rad.
 const DEGREE: f64 = PI / 180.0;
@@ -16,7 +18,7 @@ settings! {
     #[derive(Copy)]
     pub struct Sensing from SensingPart {
         /// Where observations come from.
-        pub kind: SensingKind = SensingKind::Truth, SensingKind::form();
+        pub kind: SensingKind = SensingKind::Truth, word::<SensingKind>();
         /// Looks a second; need not fit the control period.
         pub rate: f64 = 30.0, number("1/s").from(0.1).up_to(1000.0);
         /// Time from a look until the follower has it, s.
@@ -78,7 +80,7 @@ impl Form for SensingForm {
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<SensingPart> {
         match &node.value {
             Value::Text(_) => {
-                let value = SensingKind::form().read(node, reporter)?;
+                let value = word::<SensingKind>().read(node, reporter)?;
                 Some(SensingPart { kind: Some(Found { place: node.place, value }), ..SensingPart::default() })
             }
             _ => table::<SensingPart>().read(node, reporter),
@@ -86,7 +88,7 @@ impl Form for SensingForm {
     }
 
     fn schema(&self) -> Json {
-        json!({ "anyOf": [SensingKind::form().schema(), table::<SensingPart>().schema()] })
+        json!({ "anyOf": [word::<SensingKind>().schema(), table::<SensingPart>().schema()] })
     }
 }
 

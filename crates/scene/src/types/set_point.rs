@@ -3,55 +3,10 @@
 use crate::text::{
     Form, Found, Node, Reporter, Value, angle, angle_within, form::Number, keys, list, number, table,
 };
-use serde::Serialize;
+
 use serde_json::{Value as Json, json};
 use std::f64::consts::{PI, TAU};
-
-/// Wanted distance in m, or wanted bearing in rad, as a function of time.
-///
-/// A wanted distance is never below the law's `distance_min`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Channel {
-    /// Always this.
-    Constant(f64),
-    /// mean + amplitude · sin(rate · t).
-    Sinusoid {
-        /// m or rad.
-        mean: f64,
-        /// m or rad.
-        amplitude: f64,
-        /// rad/s.
-        rate: f64,
-    },
-    /// Smooth passages from value to value, in the order of time, never overlapping, each from where the last one
-    /// ended; at least one.
-    Ramps(Vec<Ramp>),
-}
-
-/// A smooth passage between two values.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Ramp {
-    /// Value before the passage, m or rad; a bearing may lie up to a whole turn from 0, to go round behind.
-    pub from: f64,
-    /// Value after it, m or rad.
-    pub to: f64,
-    /// When it starts, s, not below 0.
-    pub start: f64,
-    /// How long it takes, s, above 0.
-    pub over: f64,
-}
-
-impl Channel {
-    /// The least value at any time, m or rad.
-    pub fn least(&self) -> f64 {
-        match self {
-            Self::Constant(value) => *value,
-            Self::Sinusoid { mean, amplitude, .. } => mean - amplitude.abs(),
-            Self::Ramps(ramps) => ramps.iter().map(|r| r.from.min(r.to)).fold(f64::INFINITY, f64::min),
-        }
-    }
-}
+use vocabulary::{Ramp, ScalarTrajectory};
 
 /// Defines the form `$form` of a channel out of the forms of a value that holds, of a value that is passed through,
 /// and of an amplitude.
@@ -87,18 +42,18 @@ macro_rules! channel {
         pub(crate) struct $form;
 
         impl Form for $form {
-            type Out = Channel;
+            type Out = ScalarTrajectory;
 
-            fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Channel> {
+            fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<ScalarTrajectory> {
                 let passages = match &node.value {
                     Value::Table(_) if node.get("mean").is_some() || node.get("to").is_none() => {
                         let keys = table::<$wave>().read(node, reporter)?;
                         let (mean, amplitude, rate) = (keys.mean?.value, keys.amplitude?.value, keys.rate?.value);
-                        return Some(Channel::Sinusoid { mean, amplitude, rate });
+                        return Some(ScalarTrajectory::Sinusoid { mean, amplitude, rate });
                     }
                     Value::Table(_) => vec![table::<$interpolant>().read(node, reporter)?],
                     Value::List(_) => list(table::<$interpolant>(), 1, 1000).read(node, reporter)?,
-                    _ => return $held.read(node, reporter).map(Channel::Constant),
+                    _ => return $held.read(node, reporter).map(ScalarTrajectory::Constant),
                 };
                 let passages = passages.into_iter().map(|p| Some((p.from, p.to?.value, p.start?, p.over?.value)));
                 chain(node, passages.collect::<Option<Vec<_>>>()?, reporter)
@@ -130,7 +85,7 @@ const DISTANCE: Number = number("m").above(0.0).up_to(1000.0);
 type StepInterpolant = (Option<Found<f64>>, f64, Found<f64>, f64);
 
 /// Passages in the order of time, each from where the last one ended.
-fn chain(node: &Node, passages: Vec<StepInterpolant>, reporter: &mut Reporter) -> Option<Channel> {
+fn chain(node: &Node, passages: Vec<StepInterpolant>, reporter: &mut Reporter) -> Option<ScalarTrajectory> {
     let mut ramps: Vec<Ramp> = Vec::with_capacity(passages.len());
     for (from, to, start, over) in passages {
         let last = ramps.last();
@@ -150,5 +105,5 @@ fn chain(node: &Node, passages: Vec<StepInterpolant>, reporter: &mut Reporter) -
         }
         ramps.push(Ramp { from: value, to, start: start.value, over });
     }
-    Some(Channel::Ramps(ramps))
+    Some(ScalarTrajectory::Ramps(ramps))
 }

@@ -1,7 +1,8 @@
 //! What a robot is and what it can do.
 
-use crate::text::{angle_within, form::Number, number, settings, words};
-use vocabulary::{Body, GRAVITY, Limits};
+use crate::text::words::word;
+use crate::text::{angle_within, form::Number, number, settings};
+use vocabulary::{Body, GRAVITY, Limits, words};
 
 /// A measure of a body.
 const MEASURE: Number = number("m").above(0.0).up_to(100.0);
@@ -21,7 +22,7 @@ settings! {
     #[derive(Copy)]
     pub struct Vehicle from VehiclePart {
         /// How it moves, and which values it has where nothing else is said.
-        pub kind: VehicleKind = VehicleKind::Unicycle, VehicleKind::form();
+        pub kind: VehicleKind = VehicleKind::Unicycle, word::<VehicleKind>();
         /// Slowest forward speed of a follower, m/s; above 0, since the law is singular at rest.
         pub speed_min: f64 = Limits::PAPER.speed_min, number("m/s").above(0.0).up_to(100.0);
         /// Fastest forward speed, m/s; above `speed_min`.
@@ -83,7 +84,7 @@ settings! {
         /// Time constant of the brakes, s.
         pub brake_lag: f64 = 0.05, LAG;
         /// What is done about the actuators' lags.
-        pub compensation: Compensation = Compensation::Lead, Compensation::form();
+        pub compensation: Compensation = Compensation::Lead, word::<Compensation>();
         /// Feedback on the speed, 1/s: acceleration asked for per error of speed.
         pub speed_gain: f64 = 4.0, number("1/s").from(0.0).up_to(1000.0);
         /// Feedback on the turn rate: share of its error that is added to what is asked for.

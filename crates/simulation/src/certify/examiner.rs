@@ -1,13 +1,13 @@
 //! Goes along with a run and certifies its edges.
 
-use crate::step::{Simulation, Timing};
+use crate::step::Simulation;
 use formation::certificate::{
     Circumstances, Constants, Finding, Instant, Outcome, Premise, Statement, Witness, certify,
 };
-use formation::{EdgeLaw, Estimate, LawKind, SetPointTrajectory, Switching};
+use formation::{EdgeLaw, Estimate, SetPointTrajectory, Switching};
 use metrics::{CertificateMetrics, StatementMetrics};
 use scene::Scene;
-use vocabulary::{Edge, EntityId, FleetInfo, MotionInput, StepRecord};
+use vocabulary::{Edge, EntityId, FleetInfo, LawKind, MotionInput, StepRecord, TimeMode};
 
 /// A change of a held command below this is rounding, m/s² or rad/s.
 const STEADY: f64 = 1e-9;
@@ -76,7 +76,7 @@ pub struct Examiner {
     closed: Vec<Certificate>,
     leads_on_wheels: Vec<bool>,
     wheels: Vec<bool>,
-    timing: Timing,
+    mode: TimeMode,
     period: f64,
     last: Vec<MotionInput>,
     keeps: bool,
@@ -130,7 +130,7 @@ impl Examiner {
             closed: Vec::new(),
             leads_on_wheels: leads.iter().zip(&wheels).map(|(m, wheels)| m.leads && *wheels).collect(),
             wheels,
-            timing: simulation.timing,
+            mode: simulation.mode,
             period: simulation.period(),
             last: Vec::new(),
             keeps,
@@ -179,8 +179,8 @@ impl Examiner {
         let witness = &stretch.witness;
         let wheels = |robot: usize| self.wheels.get(robot).copied().unwrap_or(false);
         let circumstances = Circumstances {
-            held: (self.timing != Timing::Continuous).then_some(self.period),
-            sampled_measurement: self.timing == Timing::Measured,
+            held: (self.mode != TimeMode::Continuous).then_some(self.period),
+            sampled_measurement: self.mode == TimeMode::Measured,
             looks: stretch.looks,
             wheels: wheels(edge.leader) || wheels(edge.follower),
             rough_leader: stretch.rough_leader,
@@ -229,7 +229,7 @@ impl Examiner {
         let Some(above) = formation.edges().iter().position(|other| other.follower == edge.leader) else {
             return false;
         };
-        if self.timing == Timing::Continuous {
+        if self.mode == TimeMode::Continuous {
             let law = &formation.laws()[above].law;
             let sign = law.kind != LawKind::FullState && law.switching == Switching::Sign;
             return sign || simulation.record().edges[above].limited;

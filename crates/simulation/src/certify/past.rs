@@ -1,10 +1,10 @@
 //! The quantities of the theorems of a run that is over, or of what is kept of it: from moments alone.
 
 use crate::build::edge_law;
+use formation::Estimate;
 use formation::certificate::{Circumstances, Finding, Instant, Row, Witness, certify};
-use formation::{Estimate, LawKind};
-use scene::{Follow, Mode, Role, Scene, SensingKind};
-use vocabulary::{Edge, Motion, MotionInput, SetPoint, StepRecord, wrap};
+use scene::{Follow, Role, Scene, SensingKind};
+use vocabulary::{Edge, LawKind, Motion, MotionInput, SetPoint, StepRecord, TimeMode, wrap};
 
 /// What the theorems say of edge number `index` along `records`, so far, and the quantities they speak of.
 pub fn so_far(
@@ -16,11 +16,11 @@ pub fn so_far(
     let witness = witness(records, (index, edge), follow);
     let wheels = |robot: usize| scene.robots.get(robot).is_some_and(|robot| robot.vehicle.kind.has_wheels());
     let leads = scene.robots.get(edge.leader).is_none_or(|robot| matches!(robot.role, Role::Lead { .. }));
-    let held = scene.time.mode != Mode::Continuous;
+    let held = scene.time.mode != TimeMode::Continuous;
     let first = records.first().map(|record| record.snapshot.time);
     let circumstances = Circumstances {
         held: held.then_some(scene.time.period),
-        sampled_measurement: scene.time.mode == Mode::Measured,
+        sampled_measurement: scene.time.mode == TimeMode::Measured,
         looks: follow.sensing.kind != SensingKind::Truth,
         wheels: wheels(edge.leader) || wheels(edge.follower),
         // A leader that follows is told its commands period by period.

@@ -87,7 +87,9 @@ pub fn moving(scene: &Scene) -> bool {
     scene.robots.iter().any(|robot| match &robot.role {
         Role::Lead { .. } => false,
         Role::Follow(follow) => {
-            let still = |channel: &scene::Channel| matches!(channel, scene::Channel::Constant(_));
+            let still = |channel: &vocabulary::ScalarTrajectory| {
+                matches!(channel, vocabulary::ScalarTrajectory::Constant(_))
+            };
             !still(&follow.distance) || !still(&follow.bearing)
         }
     })

@@ -1,7 +1,8 @@
 //! How the settled error answers to every gain: the scene run again with each gain a little larger and a little smaller.
 
 use crate::{BuildError, Simulation, build};
-use scene::{Follow, LawKind, Role, Scene, Switching};
+use scene::{Follow, Role, Scene, SwitchingKind};
+use vocabulary::LawKind;
 
 /// A gain is changed by this share, up and down.
 const SHARE: f64 = 0.02;
@@ -58,7 +59,7 @@ impl Gain {
             Self::K(_) => true,
             Self::Beta(_) => follow.law.kind != LawKind::FullState,
             Self::Slope(_) => {
-                follow.law.kind != LawKind::FullState && follow.law.switching == Switching::Tanh
+                follow.law.kind != LawKind::FullState && follow.law.switching == SwitchingKind::Tanh
             }
             Self::Epsilon(_) | Self::Alpha1(_) | Self::Alpha2(_) => {
                 follow.law.kind == LawKind::OutputFeedback

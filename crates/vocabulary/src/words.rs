@@ -1,0 +1,34 @@
+//! Choices that have a word in scene files, logs and messages.
+
+/// A choice of a few, each with its word.
+pub trait Word: Copy + PartialEq + 'static {
+    /// Words with what they stand for and what that means. Where two words stand for the same, the first is the name.
+    const WORDS: &'static [(&'static str, Self, &'static str)];
+
+    /// The word for this choice.
+    fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, known, _)| *known == self).map_or("", |(word, ..)| word)
+    }
+}
+
+/// Defines a public enum whose variants have words. After a bar stands another word for the same.
+#[macro_export]
+macro_rules! words {
+    (
+        $(#[doc = $about:literal])*
+        $vis:vis enum $name:ident {
+            $( $(#[doc = $doc:literal])* $variant:ident = $word:literal $(| $other:literal)?, )+
+        }
+    ) => {
+        $(#[doc = $about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+        $vis enum $name { $( $(#[doc = $doc])* #[serde(rename = $word)] $variant, )+ }
+
+        impl $crate::Word for $name {
+            const WORDS: &'static [(&'static str, Self, &'static str)] = &[$(
+                ($word, Self::$variant, concat!($($doc),*)),
+                $( ($other, Self::$variant, concat!("As `", $word, "`.")), )?
+            )+];
+        }
+    };
+}
