@@ -206,3 +206,19 @@ fn the_clock_is_read_by_the_program_only() {
         assert!(allowed || !words.iter().any(|w| text.contains(w)), "{} reads the clock", path.display());
     }
 }
+
+/// Numbers are narrowed where pixels and drawings are made, nowhere before.
+#[test]
+fn numbers_are_f64_until_they_are_drawn() {
+    let wide = ["scene", "formation", "world", "metrics", "simulation"];
+    for (path, text) in sources(&["rs"]) {
+        let member = path.components().skip_while(|c| c.as_os_str() != "crates").nth(1);
+        if member.is_some_and(|m| wide.iter().any(|name| m.as_os_str() == *name)) {
+            let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+            for line in code {
+                let found = line.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == "f32");
+                assert!(!found, "{}: {line}", path.display());
+            }
+        }
+    }
+}
