@@ -3,8 +3,8 @@
 use crate::caption::caption;
 use crate::error::{BuildError, EPSILON_MIN};
 use crate::parameters::{ParameterSet, ScheduledChange};
+use crate::setup::Setup;
 use crate::stage::{handling, stage};
-use crate::step::Setup;
 use formation::{EdgeLaw, Formation, Graph, LookLaw, SetPointTrajectory};
 use perception::sensors::{CameraSettings, NoiseModel, Sensor, SensorConfig, Source};
 use scene::{Follow, OnContact, Role, Scene, SensingKind, SwitchingKind};

@@ -1,7 +1,9 @@
 //! What a run goes by that may change on the way: laws, set points, limits. All else stays as it began.
 
-use crate::step::Setup;
+use crate::setup::Setup;
 use formation::EdgeLaw;
+use std::collections::VecDeque;
+use std::sync::Arc;
 use vocabulary::LawKind;
 use world::Handling;
 
@@ -14,7 +16,7 @@ pub struct ParameterSet {
     pub handling: Vec<Handling>,
 }
 
-/// A regime, and from when on it holds.
+/// A set of parameters, and from when on it holds.
 #[derive(Debug, Clone)]
 pub struct ScheduledChange {
     /// From the first control sample at or after this, s.
@@ -60,4 +62,10 @@ mod tests {
         }
         assert!((0..100_000).all(|k| sample_at(k as f64 * 0.01, 0.01) == k));
     }
+}
+
+/// Changes by the samples at which they take hold.
+pub(crate) fn pending(changes: &[ScheduledChange], period: f64) -> VecDeque<(u64, Arc<ParameterSet>)> {
+    let turn = |turn: &ScheduledChange| (sample_at(turn.at, period), Arc::new(turn.parameters.clone()));
+    changes.iter().map(turn).collect()
 }

@@ -1,6 +1,6 @@
 //! Goes along with a run and certifies its edges.
 
-use crate::step::Simulation;
+use crate::simulation::Simulation;
 use formation::certificate::{
     Circumstances, Constants, Finding, Instant, Outcome, Premise, Statement, Witness, certify,
 };

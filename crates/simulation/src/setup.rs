@@ -1,0 +1,33 @@
+//! Everything that a run starts from.
+
+use crate::parameters::ScheduledChange;
+use formation::Formation;
+use perception::sensors::SensorConfig;
+use std::sync::Arc;
+use vocabulary::{FleetInfo, ObserverStart, TimeMode};
+use world::WorldSetup;
+
+/// A run put together, before its first step.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    /// Names, bodies and edges.
+    pub fleet: FleetInfo,
+    /// Graph, laws, set points, lead motions.
+    pub formation: Formation,
+    /// Robots, props and ground at the start.
+    pub stage: WorldSetup,
+    /// Where observers start: added to the first measurement [m, rad], or in its place.
+    pub observer_starts: Vec<ObserverStart>,
+    /// How followers sense their leaders; `None` where all are told the truth.
+    pub sensor_config: Option<Arc<SensorConfig>>,
+    /// How law and observer act in time.
+    pub mode: TimeMode,
+    /// Whether the run ends where bodies touch.
+    pub stop_at_contact: bool,
+    /// Control period, s.
+    pub period: f64,
+    /// Length of the run, s.
+    pub duration: f64,
+    /// What changes on the way, in the order of time.
+    pub changes: Vec<ScheduledChange>,
+}

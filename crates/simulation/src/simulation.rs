@@ -1,0 +1,229 @@
+//! A run under way: its state, what may be asked of it, and what may be changed while it goes.
+
+use crate::fault::Fault;
+use crate::parameters::{ParameterSet, pending, sample_at};
+use crate::plant::Plant;
+use crate::sensing::SensingPipeline;
+use crate::setup::Setup;
+use crate::step::step;
+use formation::{EdgeLaw, Estimate, Formation, FormationState};
+use std::collections::VecDeque;
+use std::sync::Arc;
+use vocabulary::{
+    CameraRenderer, EdgeState, FleetInfo, MeasurementRecord, Observation, ObserverStart, Relative,
+    StepRecord, TimeMode,
+};
+
+/// A run under way. The same setup gives the same moments, bit for bit.
+pub struct Simulation {
+    pub(crate) fleet: FleetInfo,
+    pub(crate) formation: Formation,
+    pub(crate) state: FormationState,
+    pub(crate) plant: Plant,
+    pub(crate) mode: TimeMode,
+    pub(crate) period: f64,
+    pub(crate) observations: Vec<Observation>,
+    pub(crate) sensing: Option<SensingPipeline>,
+    pub(crate) frames: Vec<MeasurementRecord>,
+    pub(crate) record: StepRecord,
+    /// The moment before, over which the next is written.
+    pub(crate) spare: StepRecord,
+    pub(crate) sample: u64,
+    pub(crate) last_sample: u64,
+    pub(crate) stop_at_contact: bool,
+    pub(crate) stopped: bool,
+    pub(crate) fault: Option<Fault>,
+    /// What is to change, and at which sample.
+    pub(crate) changes: VecDeque<(u64, Arc<ParameterSet>)>,
+    /// What changes at the next sample.
+    pub(crate) adopted: Option<Arc<ParameterSet>>,
+}
+
+impl Simulation {
+    /// A run at time 0, nothing evaluated yet.
+    pub fn new(setup: Setup) -> Self {
+        let edges = setup.formation.edges().len();
+        let plant = Plant::new(setup.stage, setup.mode, &setup.formation);
+        let world = plant.world();
+        let mut observations = Vec::with_capacity(edges);
+        perception::observe(world.snapshot(), setup.formation.edges(), &mut observations);
+        let start = |(o, s): (&Observation, &ObserverStart)| first_estimate(&o.relative, *s);
+        let state =
+            setup.formation.start(observations.iter().zip(&setup.observer_starts).map(start).collect());
+        let record = StepRecord {
+            snapshot: world.snapshot().clone(),
+            edges: vec![EdgeState::default(); edges],
+            ..StepRecord::default()
+        };
+        let changes = pending(&setup.changes, setup.period);
+        let sensing = setup.sensor_config.map(|sensor_config| {
+            SensingPipeline::new(sensor_config, setup.observer_starts.clone(), world.snapshot())
+        });
+        Self {
+            fleet: setup.fleet,
+            formation: setup.formation,
+            state,
+            plant,
+            mode: setup.mode,
+            period: setup.period,
+            observations,
+            sensing,
+            frames: Vec::new(),
+            spare: record.clone(),
+            record,
+            sample: 0,
+            last_sample: sample_at(setup.duration, setup.period),
+            stop_at_contact: setup.stop_at_contact,
+            stopped: false,
+            fault: None,
+            changes,
+            adopted: None,
+        }
+    }
+
+    /// The next control sample: what is measured, what is decided, what is applied. `None` when the run is over.
+    pub fn next_record(&mut self) -> Option<&StepRecord> {
+        step(self).then_some(&self.record)
+    }
+
+    /// Names, bodies and edges of the run.
+    pub fn fleet(&self) -> &FleetInfo {
+        &self.fleet
+    }
+
+    /// Graph, laws and set points of the run.
+    pub fn formation(&self) -> &Formation {
+        &self.formation
+    }
+
+    /// Control samples in the whole run, the one at time 0 included.
+    pub fn len(&self) -> u64 {
+        self.last_sample + 1
+    }
+
+    /// Whether the run ended before its time because bodies touched.
+    pub fn stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// Whether cameras on robots take pictures, for which the run needs [`Simulation::attach_cameras`].
+    pub fn needs_cameras(&self) -> bool {
+        self.sensing.as_ref().is_some_and(SensingPipeline::need_eyes)
+    }
+
+    /// Who draws what the cameras on robots see.
+    pub fn attach_cameras(&mut self, eyes: Box<dyn CameraRenderer>) {
+        if let Some(sensing) = &mut self.sensing {
+            sensing.open(eyes);
+        }
+    }
+
+    /// Why the run ended before its time, where it did so of itself.
+    pub fn fault(&self) -> Option<&Fault> {
+        self.fault.as_ref()
+    }
+
+    /// Never: a run has at least its first sample.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Control period, s.
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// From the next sample on the laws, set points and limits of `setup` hold, until something else does. Poses, time,
+    /// motions of lead robots and what observers believe stay; changes that are to come stay too. `setup` is that of a
+    /// scene which this run's scene leads to while it goes, see [`scene::Scene::sets_to`]; any other is not taken.
+    pub fn apply_parameters(&mut self, setup: &Setup) {
+        let fits = setup.formation.edges() == self.formation.edges()
+            && setup.fleet.robots.len() == self.fleet.robots.len();
+        debug_assert!(fits, "the setup of another formation");
+        if fits {
+            self.adopted = Some(Arc::new(ParameterSet::of(setup)));
+        }
+    }
+
+    /// The changes of `setup` that are due at the next sample or later take the place of those that were to come.
+    pub fn reschedule(&mut self, setup: &Setup) {
+        self.changes = pending(&setup.changes, self.period);
+        self.changes.retain(|(sample, _)| *sample >= self.sample);
+    }
+
+    /// The last moment, as it was when it was computed.
+    pub fn record(&self) -> &StepRecord {
+        &self.record
+    }
+
+    /// Followers are told the truth from now on, whatever their sensors: to look ahead where pictures cannot be drawn.
+    pub fn trust(&mut self) {
+        self.sensing = None;
+        let limits = (0..self.fleet.robots.len()).map(|robot| *self.formation.limits(robot)).collect();
+        self.formation.apply_parameters(trusting(self.formation.laws()), limits);
+        let told = |parameters: &ParameterSet| ParameterSet {
+            laws: trusting(&parameters.laws),
+            ..parameters.clone()
+        };
+        self.adopted = self.adopted.take().map(|parameters| Arc::new(told(&parameters)));
+        for (_, parameters) in &mut self.changes {
+            *parameters = Arc::new(told(parameters));
+        }
+    }
+
+    /// Number of the next control sample, from 0; its time is this times the period.
+    pub fn sample(&self) -> u64 {
+        self.sample
+    }
+
+    /// Goes on until `duration` s at least.
+    pub fn extend_to(&mut self, duration: f64) {
+        self.last_sample = self.last_sample.max(sample_at(duration, self.period));
+        self.fleet.duration = self.fleet.duration.max(duration);
+    }
+
+    /// Adds to the rates an edge's observer estimates, [m/s, rad/s]: to watch it recover.
+    pub fn disturb_observer(&mut self, edge: usize, by: [f64; 2]) {
+        if let Some(estimate) = self.state.estimates.get_mut(edge) {
+            estimate.rates[0] += by[0];
+            estimate.rates[1] += by[1];
+        }
+        if let Some(sensing) = &mut self.sensing {
+            sensing.disturb(edge, by);
+        }
+    }
+
+    /// A copy of the whole run as it stands: it goes on to the same future, bit for bit.
+    #[must_use]
+    pub fn save(&self) -> Self {
+        Self {
+            fleet: self.fleet.clone(),
+            formation: self.formation.clone(),
+            state: self.state.clone(),
+            plant: self.plant.save(),
+            observations: self.observations.clone(),
+            sensing: self.sensing.clone(),
+            frames: self.frames.clone(),
+            record: self.record.clone(),
+            spare: self.spare.clone(),
+            fault: self.fault.clone(),
+            changes: self.changes.clone(),
+            adopted: self.adopted.clone(),
+            ..*self
+        }
+    }
+}
+
+/// Laws of followers that are told the truth.
+fn trusting(laws: &[EdgeLaw]) -> Vec<EdgeLaw> {
+    laws.iter().map(|law| EdgeLaw { looks: None, ..law.clone() }).collect()
+}
+
+fn first_estimate(seen: &Relative, start: ObserverStart) -> Estimate {
+    let output = match start {
+        ObserverStart::Measured => [seen.distance, seen.bearing],
+        ObserverStart::Offset([distance, bearing]) => [seen.distance + distance, seen.bearing + bearing],
+        ObserverStart::At(at) => at,
+    };
+    Estimate { output, rates: [0.0; 2] }
+}
