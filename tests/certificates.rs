@@ -1,10 +1,10 @@
 //! Certificates against independent answers: SciPy's P0, and cases in which every statement's outcome is known.
 
 use formation::Observer;
-use formation::certificate::{BoundaryLayer, Outcome, Premise, Statement};
+use formation::certificate::{BoundaryLayer, Premise, Statement, StatementOutcome};
 use scene::{Override, Scene};
 use simulation::certify::chain::gains;
-use simulation::certify::{Certificate, Channel, Discretisation, Examiner};
+use simulation::certify::{Certificate, ChannelSensitivity, Discretisation, Examiner};
 use simulation::{Simulation, build};
 use std::path::Path;
 
@@ -72,7 +72,7 @@ fn certificate(set: &[&str]) -> Certificate {
     certificates(IDEAL, set).remove(0)
 }
 
-fn outcome(certificate: &Certificate, statement: Statement) -> Outcome {
+fn outcome(certificate: &Certificate, statement: Statement) -> StatementOutcome {
     certificate.finding(statement).expect("a finding").outcome()
 }
 
@@ -88,7 +88,7 @@ fn theorem_4_2_holds_where_all_its_premises_are_met() {
     let smooth = certificate(&["time.duration=0.9"]);
     for statement in ROBUST {
         let finding = smooth.finding(statement).expect("a finding");
-        assert_eq!(finding.outcome(), Outcome::Holds, "{finding:?}");
+        assert_eq!(finding.outcome(), StatementOutcome::Holds, "{finding:?}");
     }
     assert_eq!(unmet(&smooth, Statement::Epsilon), ["no-observer"]);
     let whole = certificate(&[]);
@@ -115,7 +115,7 @@ fn v_falls_by_r_k_r() {
 fn a_beta_below_what_the_leader_does_is_violated_from_the_start() {
     // ‖g_v V_i‖ is 0.5 behind a leader at 1 m/s.
     let certificate = certificate(&["law.beta=0.3"]);
-    assert_eq!(outcome(&certificate, Statement::RobustGain), Outcome::Violated(0.0));
+    assert_eq!(outcome(&certificate, Statement::RobustGain), StatementOutcome::Violated(0.0));
     assert_eq!(unmet(&certificate, Statement::NonNegative), ["robust-gain"]);
     let end = certificate.witness.rows().last().expect("rows");
     assert!((end.margin - (0.3 - end.effect)).abs() < 1e-2 && (end.effect - 0.5).abs() < 0.01, "{end:?}");
@@ -151,7 +151,7 @@ fn output_feedback_is_trapped_in_time_and_its_bound_is_kept() {
         [Statement::RobustGain, Statement::Epsilon, Statement::ObserverDecrease, Statement::Trapped]
     {
         let finding = certificate.finding(statement).expect("a finding");
-        assert_eq!(finding.outcome(), Outcome::Holds, "{finding:?} {constants:?}");
+        assert_eq!(finding.outcome(), StatementOutcome::Holds, "{finding:?} {constants:?}");
     }
     let end = certificate.witness.rows().last().expect("rows");
     assert!(
@@ -169,7 +169,7 @@ fn output_feedback_is_trapped_in_time_and_its_bound_is_kept() {
 #[test]
 fn an_epsilon_above_what_the_proof_takes_is_told() {
     let certificate = certificate(&["law.kind=output-feedback", "observer.epsilon=0.5"]);
-    assert_eq!(outcome(&certificate, Statement::Epsilon), Outcome::Violated(0.0));
+    assert_eq!(outcome(&certificate, Statement::Epsilon), StatementOutcome::Violated(0.0));
     assert!(unmet(&certificate, Statement::UltimateBound).contains(&"epsilon"));
 }
 
@@ -255,7 +255,7 @@ fn the_stability_chart_is_right_about_measured_runs() {
         let late = rows.len() * 3 / 4;
         rows[late..].iter().map(|row| row.filtered).fold(0.0, f64::max) < 0.1
     };
-    let channel = Channel { gain: 5.0, stiffness: 25.0 + 5.0 * 24.53, alpha1: 2.0, alpha2: 1.0 };
+    let channel = ChannelSensitivity { gain: 5.0, stiffness: 25.0 + 5.0 * 24.53, alpha1: 2.0, alpha2: 1.0 };
     for (period, stable) in [(0.02, true), (0.04, true), (0.12, false), (0.15, false)] {
         assert_eq!(channel.growth(Discretisation::Ramp, 0.01, period) < 1.0, stable, "chart at {period} s");
         assert_eq!(settles(period), stable, "run at {period} s");

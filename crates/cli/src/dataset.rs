@@ -19,7 +19,7 @@ use camera::{FollowerCamera, Taken};
 use folder::Folder;
 use light::{Exposure, Wanted, gather};
 use perception::imaging::Optics;
-use perception::sensors::{CameraSettings, Sensor, SensorConfig, Source};
+use perception::sensors::{CameraSettings, Sensor, SensorConfig, SensorKind};
 use rendering::{AdapterChoice, Gpu, GpuCameraRenderer};
 use scene::{Role, Scene};
 use serde_json::{Value, json};
@@ -154,7 +154,7 @@ fn follower_camera(scene: &Scene, fleet: &FleetInfo, edge: Edge, whole: bool) ->
 
 /// What knows what stands in the way of whom; nobody looks with it.
 fn sensor_config(scene: &Scene, fleet: &FleetInfo) -> SensorConfig {
-    let truth = Sensor { source: Source::Truth, rate: 1.0, latency: 0.0, drop: 0.0, tilt: 0.0 };
+    let truth = Sensor { source: SensorKind::Truth, rate: 1.0, latency: 0.0, drop: 0.0, tilt: 0.0 };
     let sensors = fleet.edges.iter().map(|_| truth).collect();
     let things = (fleet.robots.as_slice(), fleet.props.as_slice());
     SensorConfig::new(

@@ -53,12 +53,12 @@ impl Trajectory for AnalyticTrajectory {
 
 /// Speed and turn rate read from a table, smooth between its rows and constant outside them.
 #[derive(Debug, Clone)]
-pub struct Table {
+pub struct TabulatedTrajectory {
     speed: Hermite,
     turn_rate: Hermite,
 }
 
-impl Table {
+impl TabulatedTrajectory {
     /// From rows of [time s, speed m/s, turn rate rad/s] with strictly growing times; `None` without rows.
     pub fn new(rows: &[[f64; 3]]) -> Option<Self> {
         let channel = |i: usize| Hermite::new(rows.iter().map(|r| [r[0], r[i]]).collect());
@@ -66,7 +66,7 @@ impl Table {
     }
 }
 
-impl Trajectory for Table {
+impl Trajectory for TabulatedTrajectory {
     fn at(&self, time: f64) -> MotionInput {
         let ([speed, acceleration], [turn_rate, turn_acceleration]) =
             (self.speed.at(time), self.turn_rate.at(time));
@@ -106,7 +106,8 @@ mod tests {
 
     #[test]
     fn table_rows_are_met_and_derivatives_match() {
-        let table = Table::new(&[[0.0, 1.0, 0.0], [2.0, 1.5, 0.3], [3.0, 1.5, -0.2]]).expect("rows");
+        let table =
+            TabulatedTrajectory::new(&[[0.0, 1.0, 0.0], [2.0, 1.5, 0.3], [3.0, 1.5, -0.2]]).expect("rows");
         assert_eq!(table.at(2.0).speed, 1.5);
         assert_eq!(table.at(9.0), MotionInput { speed: 1.5, turn_rate: -0.2, ..MotionInput::default() });
         let h = 1e-6;

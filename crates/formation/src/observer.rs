@@ -18,7 +18,7 @@ mod stretch;
 use crate::relative::Geometry;
 use nalgebra::{Matrix4, Vector4};
 pub(crate) use stretch::input_effect;
-use stretch::{DEGREE, Poly, Stretch, mean, shifted};
+use stretch::{DEGREE, Poly, PolynomialPiece, mean, shifted};
 use vocabulary::{EdgeSample, Relative, TRACK_NODES, Track, wrap};
 
 /// Parameters of the observer; every pair is [distance, bearing].
@@ -81,7 +81,7 @@ impl Observer {
         if track.duration <= 0.0 {
             return *estimate;
         }
-        let stretch = Stretch::of_track(track, self.distance_min);
+        let stretch = PolynomialPiece::of_track(track, self.distance_min);
         self.solve(estimate, &stretch, &track.samples[TRACK_NODES - 1].relative)
     }
 
@@ -97,10 +97,10 @@ impl Observer {
         if duration <= 0.0 {
             return *estimate;
         }
-        self.solve(estimate, &Stretch::of_samples(before, after, duration, self.distance_min), after)
+        self.solve(estimate, &PolynomialPiece::of_samples(before, after, duration, self.distance_min), after)
     }
 
-    fn solve(&self, estimate: &Estimate, stretch: &Stretch, end: &Relative) -> Estimate {
+    fn solve(&self, estimate: &Estimate, stretch: &PolynomialPiece, end: &Relative) -> Estimate {
         let start = self.deviation(estimate, stretch);
         let terminal = if self.stiffness() * stretch.duration > STIFF {
             self.exponential(start, stretch)
@@ -116,7 +116,7 @@ impl Observer {
     }
 
     /// [d1/ε, d2] at the start, the bearing's innovation wrapped.
-    fn deviation(&self, estimate: &Estimate, stretch: &Stretch) -> Vector4<f64> {
+    fn deviation(&self, estimate: &Estimate, stretch: &PolynomialPiece) -> Vector4<f64> {
         let slope = stretch.measurement.map(|p| p[1] / stretch.duration);
         Vector4::new(
             (estimate.output[0] - stretch.measurement[0][0]) / self.epsilon[0],
@@ -133,7 +133,7 @@ impl Observer {
     }
 
     /// The deviation at the end by its power series in time, in as many equal steps as keep it convergent.
-    fn series(&self, start: Vector4<f64>, stretch: &Stretch) -> Vector4<f64> {
+    fn series(&self, start: Vector4<f64>, stretch: &PolynomialPiece) -> Vector4<f64> {
         let steps = (self.stiffness() * stretch.duration / SERIES_REACH).ceil().max(1.0);
         let share = 1.0 / steps;
         let mut x = start;
@@ -171,7 +171,7 @@ impl Observer {
 
     /// The deviation at the end where the observer is much faster than the stretch: its polynomial solution, plus
     /// what is left of the transient with g_s frozen at its mean.
-    fn exponential(&self, start: Vector4<f64>, stretch: &Stretch) -> Vector4<f64> {
+    fn exponential(&self, start: Vector4<f64>, stretch: &PolynomialPiece) -> Vector4<f64> {
         let column = stretch.rate_column.map(|p| mean(&p));
         let particular = self.polynomial_solution(stretch, &column);
         let at_end: Vector4<f64> = particular.iter().sum();
@@ -192,7 +192,11 @@ impl Observer {
     }
 
     /// Coefficients q_k of the polynomial that solves the system: (k + 1) q_(k+1)/h = M q_k + b_k, from the top down.
-    fn polynomial_solution(&self, stretch: &Stretch, column: &[f64; 2]) -> [Vector4<f64>; DEGREE + 1] {
+    fn polynomial_solution(
+        &self,
+        stretch: &PolynomialPiece,
+        column: &[f64; 2],
+    ) -> [Vector4<f64>; DEGREE + 1] {
         let mut q = [Vector4::zeros(); DEGREE + 1];
         let mut above = Vector4::zeros();
         for k in (0..=DEGREE).rev() {
@@ -326,7 +330,7 @@ mod tests {
         let observer = observer(4.0 * h / 35.0);
         let first = sample(0.0, 3.0, -2.0).relative;
         let start = Estimate { output: [first.distance, first.bearing], rates: [0.1, 0.2] };
-        let stretch = Stretch::of_track(&track(h), 0.1);
+        let stretch = PolynomialPiece::of_track(&track(h), 0.1);
         let x = observer.deviation(&start, &stretch);
         let apart = observer.series(x, &stretch) - observer.exponential(x, &stretch);
         assert!(apart.amax() < 1e-6, "{apart}");

@@ -5,7 +5,7 @@ use crate::session::history::History;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
 use formation::relative::Geometry;
 use scene::Follow;
-use simulation::certify::{Row, rows};
+use simulation::certify::{WitnessRow, rows};
 use std::fmt::Write;
 use vocabulary::{Edge, EdgeState, LawKind, Snapshot, StepRecord};
 
@@ -161,7 +161,7 @@ fn certified(
     edge: (usize, Edge),
     follow: &Follow,
 ) -> Option<Vec<[f64; 2]>> {
-    let value: fn(&Row) -> f64 = match quantity {
+    let value: fn(&WitnessRow) -> f64 = match quantity {
         // What the first samples ask for would flatten all that follows.
         Quantity::RobustMargin => |row| row.margin.max(LEAST_MARGIN),
         Quantity::Lyapunov => |row| row.v,

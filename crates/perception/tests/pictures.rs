@@ -3,7 +3,7 @@
 mod synthetic;
 
 use perception::detect::{Detector, Locus, Tag, recognise, sharpen};
-use perception::imaging::{Optics, Purpose, Sensor, noise_stream};
+use perception::imaging::{ImageSensor, Optics, Purpose, noise_stream};
 use perception::pose::{Prior, locate};
 use synthetic::{Scenes, sensor};
 use vocabulary::{CameraModel, Grey, Region, wrap};
@@ -37,7 +37,7 @@ fn corners_are_where_they_should_be_and_in_order() {
 /// and how many of those and of all there were.
 fn errors(
     views: &mut Scenes,
-    sensor: &mut Sensor,
+    sensor: &mut ImageSensor,
     told: &Optics,
     distance: f64,
     scenes: u64,
@@ -100,7 +100,7 @@ fn other_cameras_do_as_well() {
     for (name, camera_model, blur, noise) in cameras {
         let mut views = Scenes::seeded(3);
         views.camera_model = camera_model;
-        let mut sensor = Sensor::new(Optics { camera_model, blur, noise });
+        let mut sensor = ImageSensor::new(Optics { camera_model, blur, noise });
         let told = Optics { camera_model, ..usual };
         let (errors, n, _) = errors(&mut views, &mut sensor, &told, 3.0, 30);
         println!("{name}: {errors:?}");

@@ -5,7 +5,7 @@ use crate::{
     document::{Document, MOST_ROBOTS},
     overrides::Origin,
     resolve::resolve_robots,
-    sets::{Difference, refusal},
+    sets::{ParameterDifference, refusal},
     text::{Form, Node, Reporter, Span, Value, table},
 };
 
@@ -105,7 +105,7 @@ fn change(at: f64, item: &Node, tree: &mut Node, before: &Scene, reporter: &mut 
     // What is found elsewhere was right before this change.
     reporter.gather(first, place, &format!(", by the change at {at} s"));
     let robots = robots.filter(|_| reporter.notes() == first)?;
-    let mut found = Difference::default();
+    let mut found = ParameterDifference::default();
     found.note_robots(&before.robots, &robots);
     // One robot speaks for all.
     if let Some(path) = found.obstacles.first() {

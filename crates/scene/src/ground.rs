@@ -9,7 +9,7 @@ use crate::{
         form::Number,
         integer, keys,
         keys::{TableReader, one_of},
-        kinds::{KindKeys, Kinds, Taken, kind},
+        kinds::{KindFound, KindKeys, Kinds, kind},
         list, number, table,
     },
 };
@@ -132,22 +132,22 @@ keys! {
 
 /// A relief as it is written; without its seed, if that is the scene's.
 #[derive(Debug)]
-struct Written {
+struct WrittenGround {
     relief: Relief,
     seeded: bool,
 }
 
-impl KindKeys<Written> for FlatKeys {
-    fn make(self, _: &Node, _: &mut Reporter) -> Option<Written> {
-        Some(Written { relief: Relief::Flat { cell: self.cell?.value }, seeded: true })
+impl KindKeys<WrittenGround> for FlatKeys {
+    fn make(self, _: &Node, _: &mut Reporter) -> Option<WrittenGround> {
+        Some(WrittenGround { relief: Relief::Flat { cell: self.cell?.value }, seeded: true })
     }
 }
 
 /// Checks noise and hands it on as the kind that `relief` makes of it.
 macro_rules! noise {
     ($keys:ident, $relief:path) => {
-        impl KindKeys<Written> for $keys {
-            fn make(self, _: &Node, reporter: &mut Reporter) -> Option<Written> {
+        impl KindKeys<WrittenGround> for $keys {
+            fn make(self, _: &Node, reporter: &mut Reporter) -> Option<WrittenGround> {
                 let (region, cell) = (self.region?, self.cell?);
                 let noise = Noise {
                     amplitude: self.amplitude?.value,
@@ -157,7 +157,7 @@ macro_rules! noise {
                     cell: cell.value,
                 };
                 check_noise(&noise, cell.place, region.place, reporter)?;
-                Some(Written { relief: $relief(noise), seeded: self.seed.is_some() })
+                Some(WrittenGround { relief: $relief(noise), seeded: self.seed.is_some() })
             }
         }
     };
@@ -190,8 +190,8 @@ fn check_points(region: [f64; 4], cell: f64, place: Span, reporter: &mut Reporte
     None
 }
 
-impl KindKeys<Written> for TableKeys {
-    fn make(self, node: &Node, reporter: &mut Reporter) -> Option<Written> {
+impl KindKeys<WrittenGround> for TableKeys {
+    fn make(self, node: &Node, reporter: &mut Reporter) -> Option<WrittenGround> {
         let (heights, from_file) = one_of(node, ("heights", self.heights), ("file", self.file), reporter)?;
         if !from_file {
             let wanted = heights.value.first().map(Vec::len);
@@ -207,12 +207,12 @@ impl KindKeys<Written> for TableKeys {
         }
         let relief =
             Relief::Table { origin: self.origin?.value, cell: self.cell?.value, heights: heights.value };
-        Some(Written { relief, seeded: true })
+        Some(WrittenGround { relief, seeded: true })
     }
 }
 
 /// Kinds of ground.
-const RELIEF: Kinds<Written> = Kinds {
+const RELIEF: Kinds<WrittenGround> = Kinds {
     key: "kind",
     usual: Some("flat"),
     all: &[
@@ -229,7 +229,7 @@ pub(crate) struct GroundForm;
 /// The ground as it is written.
 #[derive(Debug, Clone)]
 pub(crate) struct GroundKeys {
-    written: Arc<Written>,
+    written: Arc<WrittenGround>,
     friction: f64,
     patches: Vec<Found<Patch>>,
 }
@@ -239,7 +239,7 @@ impl Form for GroundForm {
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<GroundKeys> {
         let mut table = TableReader::of(node, reporter)?;
-        let Taken::Known(written) = RELIEF.take(node, &mut table, reporter) else { return None };
+        let KindFound::Known(written) = RELIEF.take(node, &mut table, reporter) else { return None };
         let shared = SharedKeys::read(&mut table, reporter);
         table.finish(reporter);
         let patches = shared.patches?.value.into_iter().map(|keys| {

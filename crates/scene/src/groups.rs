@@ -4,7 +4,7 @@ use crate::{
     Follow, Law, Observer, Robot, Role, Sensing, Vehicle,
     document::{Follows, GroupKeys, MOST_ROBOTS, MemberKeys},
     graph::{Named, check_known},
-    robots::{Defaults, Draft, check_distance, check_path, start_pose, start_speed},
+    robots::{Defaults, RobotDraft, check_distance, check_path, start_pose, start_speed},
     text::{
         Form, Found, Keys, Node, Part, Reporter, Value,
         node::Entry,
@@ -58,7 +58,7 @@ pub(crate) fn expand(
     group: &Group<'_>,
     seed: u64,
     defaults: &Defaults,
-    drafts: &mut Vec<Draft>,
+    drafts: &mut Vec<RobotDraft>,
     reporter: &mut Reporter,
 ) -> Option<()> {
     let keys = group.keys;
@@ -155,7 +155,7 @@ struct Outfit {
 }
 
 /// A place in a group.
-struct Spot {
+struct GroupSpot {
     /// [forward, left] of the group's leader, m.
     at: [f64; 2],
     /// Place that is followed.
@@ -166,7 +166,7 @@ struct Spot {
     bearing: f64,
 }
 
-impl Spot {
+impl GroupSpot {
     /// Wanted distance and bearing there, of a robot of which `member` may say otherwise.
     fn set_point(&self, member: Option<&MemberKeys>) -> (ScalarTrajectory, ScalarTrajectory) {
         let said = |found: Option<&Found<ScalarTrajectory>>, value| {
@@ -270,11 +270,11 @@ impl Group<'_> {
     }
 
     /// All places; the first is the leader's.
-    fn spots(&self, count: usize) -> Option<Vec<Spot>> {
+    fn spots(&self, count: usize) -> Option<Vec<GroupSpot>> {
         let keys = self.keys;
         let (shape, follows) = (keys.shape.as_ref()?.value, keys.follows.as_ref()?.value);
         let (spacing, angle) = (keys.distance.as_ref()?.value, keys.angle.as_ref()?.value);
-        let mut spots = vec![Spot { at: [0.0; 2], follows: 0, distance: 0.0, bearing: 0.0 }];
+        let mut spots = vec![GroupSpot { at: [0.0; 2], follows: 0, distance: 0.0, bearing: 0.0 }];
         for place in 1..count {
             let step = shape.step(place, count, angle);
             let [x, y] = spots.get(step.leader)?.at;
@@ -284,7 +284,7 @@ impl Group<'_> {
                 Follows::Neighbour => (step.leader, spacing, step.bearing),
                 Follows::Leader => (0, x.hypot(y), wrap(y.atan2(x))),
             };
-            spots.push(Spot { at: [x, y], follows, distance, bearing });
+            spots.push(GroupSpot { at: [x, y], follows, distance, bearing });
         }
         Some(spots)
     }
@@ -305,12 +305,12 @@ impl Group<'_> {
     }
 
     /// Appends the robot in `place`, counted from 0.
-    fn push(&self, place: usize, robot: Robot, leader: Option<Found<String>>, drafts: &mut Vec<Draft>) {
+    fn push(&self, place: usize, robot: Robot, leader: Option<Found<String>>, drafts: &mut Vec<RobotDraft>) {
         let said = self.own_name(place).or(self.keys.name.as_ref());
         let at = said.map_or(self.node.place, |name| name.place);
         let name = Some(Found { place: at, value: robot.name.clone() });
         // Leaders that the shape gives exist, and the one outside has been looked up; one that is written has not.
-        drafts.push(Draft { named: Named { name, leader }, number: None, robot: Some(robot) });
+        drafts.push(RobotDraft { named: Named { name, leader }, number: None, robot: Some(robot) });
     }
 
     /// The vehicle of the group's own leader, with notes on what is for robots that follow.
@@ -333,7 +333,7 @@ impl Group<'_> {
         &self,
         usual: &Vehicle,
         defaults: &Defaults,
-        drafts: &mut Vec<Draft>,
+        drafts: &mut Vec<RobotDraft>,
         reporter: &mut Reporter,
     ) -> Option<(String, Pose)> {
         let keys = self.keys;

@@ -44,6 +44,6 @@ pub use overrides::{Override, OverrideError};
 pub use shipped::{SHIPPED, Shipped, nearest_shipped, shipped};
 pub use types::{
     Change, Compensation, Environment, Expect, Film, Follow, Ground, Law, Noise, Observer, OnContact, Patch,
-    Path, Physics, Plot, Prop, PropMotion, Relief, Robot, Role, Scene, Sensing, SensingKind, Shot,
+    Path, Physics, Plot, PropMotion, PropSpec, Relief, Robot, Role, Scene, Sensing, SensingKind, Shot,
     SpeedProfile, SwitchingKind, Time, Vehicle, VehicleKind, Views, Vision,
 };

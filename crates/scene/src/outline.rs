@@ -11,11 +11,11 @@ const ROUNDING: f64 = 1e-9;
 pub(crate) struct Outline {
     /// Middle and direction.
     pose: Pose,
-    form: Form,
+    form: OutlineForm,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Form {
+enum OutlineForm {
     /// Half of [length, width], m.
     Box([f64; 2]),
     /// Radius, m.
@@ -28,14 +28,14 @@ impl Outline {
         let body = robot.vehicle.body();
         let [x, y] = robot.pose.world_from_body(0.5 * body.wheelbase, 0.0);
         let pose = Pose::new(x, y, robot.pose.heading);
-        Self { pose, form: Form::Box([0.5 * body.length, 0.5 * body.width]) }
+        Self { pose, form: OutlineForm::Box([0.5 * body.length, 0.5 * body.width]) }
     }
 
     /// Of a solid at a pose.
     pub(crate) fn of_solid(solid: Solid, pose: Pose) -> Self {
         let form = match solid {
-            Solid::Block { size } | Solid::Wedge { size } => Form::Box([0.5 * size[0], 0.5 * size[1]]),
-            Solid::Cylinder { radius, .. } | Solid::Cone { radius, .. } => Form::Disc(radius),
+            Solid::Block { size } | Solid::Wedge { size } => OutlineForm::Box([0.5 * size[0], 0.5 * size[1]]),
+            Solid::Cylinder { radius, .. } | Solid::Cone { radius, .. } => OutlineForm::Disc(radius),
         };
         Self { pose, form }
     }
@@ -48,8 +48,8 @@ impl Outline {
     /// Largest distance from the middle, m.
     fn reach(&self) -> f64 {
         match self.form {
-            Form::Box([length, width]) => length.hypot(width),
-            Form::Disc(radius) => radius,
+            OutlineForm::Box([length, width]) => length.hypot(width),
+            OutlineForm::Disc(radius) => radius,
         }
     }
 
@@ -70,10 +70,10 @@ impl Outline {
         // Convex shapes are apart where some line divides them: along a side of a box, or across the way from a disc's
         // middle to the box's nearest point.
         match (self.form, other.form) {
-            (Form::Box(_), Form::Box(_)) => !self.beside(other) && !other.beside(self),
-            (Form::Box(half), Form::Disc(radius)) => self.covers_near(half, other.pose, radius),
-            (Form::Disc(radius), Form::Box(half)) => other.covers_near(half, self.pose, radius),
-            (Form::Disc(_), Form::Disc(_)) => true,
+            (OutlineForm::Box(_), OutlineForm::Box(_)) => !self.beside(other) && !other.beside(self),
+            (OutlineForm::Box(half), OutlineForm::Disc(radius)) => self.covers_near(half, other.pose, radius),
+            (OutlineForm::Disc(radius), OutlineForm::Box(half)) => other.covers_near(half, self.pose, radius),
+            (OutlineForm::Disc(_), OutlineForm::Disc(_)) => true,
         }
     }
 
@@ -86,7 +86,9 @@ impl Outline {
 
     /// Whether a side of this box divides it from another box.
     fn beside(&self, other: &Self) -> bool {
-        let (Form::Box(half), Form::Box([length, width])) = (self.form, other.form) else { return false };
+        let (OutlineForm::Box(half), OutlineForm::Box([length, width])) = (self.form, other.form) else {
+            return false;
+        };
         let [forward, left] = self.seen([other.pose.x - self.pose.x, other.pose.y - self.pose.y]);
         let (sin, cos) = (other.pose.heading - self.pose.heading).sin_cos();
         let [sin, cos] = [sin.abs(), cos.abs()];

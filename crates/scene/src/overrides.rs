@@ -62,7 +62,7 @@ impl fmt::Display for Override {
 
 /// A part of a path and where it stands.
 #[derive(Clone, Copy)]
-struct Part<'a> {
+struct PathPart<'a> {
     text: &'a str,
     place: Span,
 }
@@ -87,7 +87,7 @@ impl Override {
         let parts = path.split('.').map(|text| {
             let place = Span { source, start, end: start + text.len() };
             start += text.len() + 1;
-            Part { text: text.trim(), place: whole.unwrap_or(place) }
+            PathPart { text: text.trim(), place: whole.unwrap_or(place) }
         });
         put_in_scene(root, &parts.collect::<Vec<_>>(), value, reporter);
     }
@@ -110,7 +110,7 @@ pub(crate) struct Origin {
 }
 
 /// Puts `value` at `path`. Robots that a group makes are reached as if they stood in `robots`.
-fn put_in_scene(root: &mut Node, path: &[Part<'_>], value: Node, reporter: &mut Reporter) {
+fn put_in_scene(root: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Reporter) {
     let [list, name, rest @ ..] = path else { return put(root, path, value, reporter) };
     let groups = root.items("groups");
     if list.text != "robots" || groups.is_empty() || find(root.items("robots"), name.text).is_ok() {
@@ -123,7 +123,7 @@ fn put_in_scene(root: &mut Node, path: &[Part<'_>], value: Node, reporter: &mut 
         return;
     };
     let inside: Vec<_> =
-        [Part { text: "members", place: list.place }, Part { text: &key, place: name.place }]
+        [PathPart { text: "members", place: list.place }, PathPart { text: &key, place: name.place }]
             .into_iter()
             .chain(rest.iter().copied())
             .collect();
@@ -141,7 +141,7 @@ fn unknown_robot(root: &Node, name: &str) -> String {
     format!("there is no robot called `{name}`{hint}")
 }
 
-fn put(node: &mut Node, path: &[Part<'_>], value: Node, reporter: &mut Reporter) {
+fn put(node: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Reporter) {
     let [part, rest @ ..] = path else {
         *node = value;
         return;

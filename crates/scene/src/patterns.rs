@@ -7,7 +7,7 @@ use crate::{
     text::{
         Form, Found, Keys, Node, Reporter, integer, keys,
         keys::TableReader,
-        kinds::{KindKeys, Kinds, Taken, kind},
+        kinds::{KindFound, KindKeys, Kinds, kind},
         number,
     },
 };
@@ -87,12 +87,12 @@ pub(crate) enum Layout {
     /// Just there.
     Placed(Vec<(Solid, Pose)>),
     /// Strewn by a seed.
-    Field(Field),
+    Field(PatternField),
 }
 
 /// Props strewn by a seed.
 #[derive(Debug, Clone)]
-pub(crate) struct Field {
+pub(crate) struct PatternField {
     pub(crate) count: Found<usize>,
     /// The scene's if `None`.
     pub(crate) seed: Option<u64>,
@@ -143,7 +143,7 @@ impl KindKeys<Layout> for GateKeys {
 
 impl KindKeys<Layout> for FieldKeys {
     fn make(self, _: &Node, _: &mut Reporter) -> Option<Layout> {
-        Some(Layout::Field(Field {
+        Some(Layout::Field(PatternField {
             count: self.count?,
             seed: self.seed.map(|seed| seed.value),
             region: self.region?.value,
@@ -197,7 +197,7 @@ impl Form for PatternForm {
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<PatternKeys> {
         let mut table = TableReader::of(node, reporter)?;
-        let Taken::Known(layout) = PATTERNS.take(node, &mut table, reporter) else { return None };
+        let KindFound::Known(layout) = PATTERNS.take(node, &mut table, reporter) else { return None };
         let shared = SharedKeys::read(&mut table, reporter);
         table.finish(reporter);
         Some(PatternKeys {

@@ -9,7 +9,7 @@ use crate::{
         form::Number,
         keys,
         keys::TableReader,
-        kinds::{Kind, KindKeys, Kinds, Taken, kind},
+        kinds::{KindFound, KindKeys, KindOption, Kinds, kind},
         lists::Triple,
         number, triple,
     },
@@ -130,11 +130,11 @@ impl KindKeys<Measured> for WallKeys {
     }
 }
 
-const BLOCK: Kind<Measured> = kind::<_, BlockKeys>("block");
-const CYLINDER: Kind<Measured> = kind::<_, CylinderKeys>("cylinder");
-const CONE: Kind<Measured> = kind::<_, ConeKeys>("cone");
-const RAMP: Kind<Measured> = kind::<_, RampKeys>("ramp");
-const WALL: Kind<Measured> = kind::<_, WallKeys>("wall");
+const BLOCK: KindOption<Measured> = kind::<_, BlockKeys>("block");
+const CYLINDER: KindOption<Measured> = kind::<_, CylinderKeys>("cylinder");
+const CONE: KindOption<Measured> = kind::<_, ConeKeys>("cone");
+const RAMP: KindOption<Measured> = kind::<_, RampKeys>("ramp");
+const WALL: KindOption<Measured> = kind::<_, WallKeys>("wall");
 
 /// Shapes of props.
 const SHAPES: Kinds<Measured> =
@@ -185,7 +185,7 @@ impl Form for PropForm {
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<PropKeys> {
         let mut table = TableReader::of(node, reporter)?;
-        let Taken::Known(measured) = SHAPES.take(node, &mut table, reporter) else { return None };
+        let KindFound::Known(measured) = SHAPES.take(node, &mut table, reporter) else { return None };
         let shared = SharedKeys::read(&mut table, reporter);
         table.finish(reporter);
         Some(PropKeys {

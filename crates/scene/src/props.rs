@@ -1,9 +1,9 @@
 //! From the keys of props and patterns to props on the ground.
 
 use crate::{
-    Ground, Prop, PropMotion, Robot,
+    Ground, PropMotion, PropSpec, Robot,
     outline::Outline,
-    patterns::{Field, Layout, PatternKeys},
+    patterns::{Layout, PatternField, PatternKeys},
     prop_form::{MOST_PROPS, PropKeys},
     robots::start_pose,
     text::{Found, Node, Reporter, Span},
@@ -21,16 +21,16 @@ const FIRST_STREAM: u64 = 1 << 32;
 const TRIES: usize = 300;
 
 /// A prop and where its name is written.
-pub(crate) type Placed = Found<Prop>;
+pub(crate) type Placed = Found<PropSpec>;
 
 /// What props are put among.
-pub(crate) struct Stage<'a> {
+pub(crate) struct PropStage<'a> {
     pub(crate) ground: Option<&'a Ground>,
     pub(crate) robots: &'a [&'a Robot],
     pub(crate) seed: u64,
 }
 
-impl Stage<'_> {
+impl PropStage<'_> {
     /// All props, those of patterns after the others.
     pub(crate) fn props(
         &self,
@@ -86,7 +86,7 @@ impl Stage<'_> {
         }
         let (friction, restitution) = (keys.friction, keys.restitution);
         let name = keys.name.value.clone();
-        let prop = Prop { name, solid, pose, elevation, motion, friction, restitution };
+        let prop = PropSpec { name, solid, pose, elevation, motion, friction, restitution };
         Some(Found { place: keys.name.place, value: prop })
     }
 
@@ -113,7 +113,7 @@ impl Stage<'_> {
         };
         for (number, (solid, pose)) in spots.into_iter().enumerate() {
             let motion = keys.mass.map_or(PropMotion::Fixed, |mass| PropMotion::Loose { mass });
-            let prop = Prop {
+            let prop = PropSpec {
                 name: format!("{}-{}", keys.name.value, number + 1),
                 solid,
                 pose,
@@ -129,7 +129,7 @@ impl Stage<'_> {
     /// Places of a field's props: drawn one by one, those too close to something drawn again.
     fn strew(
         &self,
-        field: &Field,
+        field: &PatternField,
         index: u64,
         placed: &[Placed],
         reporter: &mut Reporter,

@@ -35,7 +35,7 @@ pub(crate) fn make(noise: &Noise, octaves: u32) -> Terrain {
     let mut terrain = level(noise.region, noise.cell);
     let [x0, y0, x1, y1] = noise.region;
     let layers: Vec<_> = (0..octaves)
-        .map(|octave| Layer::new(noise, octave, noise.wavelength / f64::from(1u32 << octave)))
+        .map(|octave| ReliefLayer::new(noise, octave, noise.wavelength / f64::from(1u32 << octave)))
         .collect();
     let fade = |at: f64, from: f64, to: f64| {
         let width = noise.wavelength.min(0.5 * (to - from));
@@ -55,14 +55,14 @@ pub(crate) fn make(noise: &Noise, octaves: u32) -> Terrain {
 }
 
 /// One layer of gradient noise: a lattice with a slope and a height at each of its points.
-struct Layer {
+struct ReliefLayer {
     spacing: f64,
     columns: usize,
     /// [slope along x, slope along y, height] per point.
     points: Vec<[f64; 3]>,
 }
 
-impl Layer {
+impl ReliefLayer {
     /// Waves of about `length` m.
     fn new(noise: &Noise, octave: u32, length: f64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(noise.seed);

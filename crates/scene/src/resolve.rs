@@ -1,13 +1,13 @@
 //! From the keys of a file to the checked scene: parts put together and held against each other.
 
 use crate::{
-    Expect, Film, Prop, Robot, Scene, Shot, Time, Views,
+    Expect, Film, PropSpec, Robot, Scene, Shot, Time, Views,
     document::{Document, GroupKeys, RobotKeys},
     graph::{check_graph, check_known},
     ground::ground,
     groups::{Group, expand},
-    props::{Placed, Stage},
-    robots::{Defaults, Draft, draft},
+    props::{Placed, PropStage},
+    robots::{Defaults, RobotDraft, draft},
     sight::{Said, check_sight, number},
     start::check_start,
     text::{Found, Node, Part, Reporter, Span},
@@ -39,7 +39,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) 
     check_graph(drafts.iter().map(|draft| &draft.named), reporter);
     let (props, patterns) = (document.props?.value, document.patterns?.value);
     let standing: Vec<_> = drafts.iter().filter_map(|draft| draft.robot.as_ref()).collect();
-    let stage = Stage { ground: ground.as_ref(), robots: &standing, seed };
+    let stage = PropStage { ground: ground.as_ref(), robots: &standing, seed };
     let props = stage.props(&props, &patterns, root, reporter);
     check_names(&drafts, &props, reporter);
     let vision_part = document.vision?.value;
@@ -132,11 +132,11 @@ fn expect(part: &ExpectPart, reporter: &mut Reporter) -> Expect {
 }
 
 /// Notes props that are called as a robot or another prop.
-fn check_names(drafts: &[Draft], props: &[Placed], reporter: &mut Reporter) {
+fn check_names(drafts: &[RobotDraft], props: &[Placed], reporter: &mut Reporter) {
     let robots: HashSet<_> =
         drafts.iter().filter_map(|draft| Some(&draft.named.name.as_ref()?.value)).collect();
     let mut seen = HashSet::new();
-    for Placed { place, value: Prop { name, .. } } in props {
+    for Placed { place, value: PropSpec { name, .. } } in props {
         if robots.contains(name) {
             reporter.report(*place, format!("there are a robot and a prop called `{name}`"));
         } else if !seen.insert(name) {
@@ -148,7 +148,7 @@ fn check_names(drafts: &[Draft], props: &[Placed], reporter: &mut Reporter) {
 /// Notes what continuous time cannot carry.
 fn check_continuous(
     part: &TimePart,
-    drafts: &[Draft],
+    drafts: &[RobotDraft],
     props: &[Placed],
     level: bool,
     reporter: &mut Reporter,
@@ -175,7 +175,7 @@ fn drafts(
     seed: u64,
     defaults: &Defaults,
     reporter: &mut Reporter,
-) -> Vec<Draft> {
+) -> Vec<RobotDraft> {
     let nodes = root.items("robots");
     let mut drafts: Vec<_> =
         robots.iter().zip(nodes).map(|(keys, node)| draft(keys, node, defaults, reporter)).collect();
@@ -212,12 +212,12 @@ fn time(part: &TimePart, reporter: &mut Reporter) -> Time {
     time
 }
 
-fn views(part: &ViewsPart, drafts: &[Draft], reporter: &mut Reporter) -> Views {
+fn views(part: &ViewsPart, drafts: &[RobotDraft], reporter: &mut Reporter) -> Views {
     check_view(part.default.as_ref().map(|found| (found.place, found.value.as_str())), drafts, reporter);
     part.complete(&ViewsPart::default())
 }
 
-fn film(part: &FilmPart, duration: f64, drafts: &[Draft], reporter: &mut Reporter) -> Film {
+fn film(part: &FilmPart, duration: f64, drafts: &[RobotDraft], reporter: &mut Reporter) -> Film {
     let view = part.view.as_ref().and_then(|found| Some((found.place, found.value.as_deref()?)));
     check_view(view, drafts, reporter);
     if let Some(size) = part.size.as_ref().filter(|size| size.value.iter().any(|side| side % 2 == 1)) {
@@ -231,7 +231,7 @@ fn film(part: &FilmPart, duration: f64, drafts: &[Draft], reporter: &mut Reporte
 }
 
 /// Gives every shot its beginning and end. Whether the run is long enough matters once it is filmed: [`Film::beyond`].
-fn shots(shots: &mut [Shot], (place, duration): (Span, f64), drafts: &[Draft], reporter: &mut Reporter) {
+fn shots(shots: &mut [Shot], (place, duration): (Span, f64), drafts: &[RobotDraft], reporter: &mut Reporter) {
     let begins: Vec<Option<f64>> = shots.iter().map(|shot| shot.from).collect();
     let mut now = 0.0;
     for (k, shot) in shots.iter_mut().enumerate() {
@@ -256,7 +256,7 @@ fn shots(shots: &mut [Shot], (place, duration): (Span, f64), drafts: &[Draft], r
 }
 
 /// Notes a view of a robot which is not there.
-fn check_view(view: Option<(Span, &str)>, drafts: &[Draft], reporter: &mut Reporter) {
+fn check_view(view: Option<(Span, &str)>, drafts: &[RobotDraft], reporter: &mut Reporter) {
     if let Some((place, view)) = view
         && let Some(name) = ROBOT_VIEWS.iter().find_map(|start| view.strip_prefix(start))
     {

@@ -6,7 +6,7 @@ use crate::{
     graph::Named,
     text::{Found, Node, Part, Reporter, Span},
     types::{LawPart, ObserverPart, SensingPart, VehiclePart},
-    vehicle::{Written, vehicle},
+    vehicle::{WrittenVehicle, vehicle},
 };
 use vocabulary::Pose;
 
@@ -33,7 +33,7 @@ impl Defaults {
         let nothing = VehiclePart::default();
         let own = own.map_or(&nothing, |found| &found.value);
         let place = self.step_place.unwrap_or(place);
-        vehicle(&Written { own, scene: &self.vehicle, step: self.step, place }, reporter)
+        vehicle(&WrittenVehicle { own, scene: &self.vehicle, step: self.step, place }, reporter)
     }
 
     /// The observer of a robot or group that says `own` of it.
@@ -51,7 +51,7 @@ impl Defaults {
 }
 
 /// A robot as far as it could be made out, and where it came from.
-pub(crate) struct Draft {
+pub(crate) struct RobotDraft {
     pub(crate) named: Named,
     /// The number it is given in the file.
     pub(crate) number: Option<Found<usize>>,
@@ -60,9 +60,14 @@ pub(crate) struct Draft {
 }
 
 /// The robot of one table.
-pub(crate) fn draft(keys: &RobotKeys, node: &Node, defaults: &Defaults, reporter: &mut Reporter) -> Draft {
+pub(crate) fn draft(
+    keys: &RobotKeys,
+    node: &Node,
+    defaults: &Defaults,
+    reporter: &mut Reporter,
+) -> RobotDraft {
     let named = Named { name: keys.name.clone(), leader: keys.leader.clone() };
-    Draft { named, number: keys.number.clone(), robot: robot(keys, node, defaults, reporter) }
+    RobotDraft { named, number: keys.number.clone(), robot: robot(keys, node, defaults, reporter) }
 }
 
 fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reporter: &mut Reporter) -> Option<Robot> {

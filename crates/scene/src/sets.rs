@@ -22,7 +22,7 @@ const DRIVING: [&str; 10] = [
 
 /// What differs between two scenes.
 #[derive(Debug, Default)]
-pub(crate) struct Difference {
+pub(crate) struct ParameterDifference {
     /// Overrides that lead from the one to the other.
     pub(crate) sets: Vec<String>,
     /// Paths of what cannot change while a run goes.
@@ -44,7 +44,7 @@ impl Scene {
     /// # Errors
     /// One message for everything that differs and cannot change while a run goes.
     pub fn sets_to(&self, other: &Self) -> Result<Vec<String>, Vec<String>> {
-        let mut found = Difference::default();
+        let mut found = ParameterDifference::default();
         found.note_rest(self, other);
         found.note_robots(&self.robots, &other.robots);
         if found.obstacles.is_empty() {
@@ -55,7 +55,7 @@ impl Scene {
     }
 }
 
-impl Difference {
+impl ParameterDifference {
     /// All but robots and changes.
     fn note_rest(&mut self, a: &Scene, b: &Scene) {
         for (key, same) in [

@@ -6,7 +6,7 @@ use vocabulary::{Word, wrap};
 
 /// A place behind another one; both count from 0, place 0 being the leader's.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Step {
+pub(crate) struct ShapeStep {
     /// Place that is followed.
     pub(crate) leader: usize,
     /// Bearing from there, rad in (−π, π].
@@ -25,9 +25,9 @@ impl Shape {
     }
 
     /// Who place `place` ≥ 1 of `count` follows, and at which bearing; `angle` in rad is that of the wings.
-    pub(crate) fn step(self, place: usize, count: usize, angle: f64) -> Step {
+    pub(crate) fn step(self, place: usize, count: usize, angle: f64) -> ShapeStep {
         if self == Self::Column {
-            return Step { leader: place - 1, bearing: PI };
+            return ShapeStep { leader: place - 1, bearing: PI };
         }
         // Wings take turns: odd places stand on the right, where bearings are negative.
         let side = if place % 2 == 1 { -1.0 } else { 1.0 };
@@ -45,7 +45,7 @@ impl Shape {
             // A chord of the circle points half a step further round than the one before it ended.
             Self::Circle => FRAC_PI_2 + TAU / count as f64 * (along_wing as f64 - 0.5),
         };
-        Step { leader: place.saturating_sub(2), bearing: wrap(side * bearing) }
+        ShapeStep { leader: place.saturating_sub(2), bearing: wrap(side * bearing) }
     }
 }
 

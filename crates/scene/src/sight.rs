@@ -2,7 +2,7 @@
 
 use crate::{
     Follow, Robot, Role, Sensing, Vision,
-    robots::Draft,
+    robots::RobotDraft,
     text::{Found, Reporter, Span, words::quoted},
     types::{SensingKind as Kind, TimePart, VisionPart},
 };
@@ -47,7 +47,7 @@ impl Vision {
 }
 
 /// Numbers for the robots that name none: the lowest that are free.
-pub(crate) fn number(drafts: &mut [Draft], reporter: &mut Reporter) {
+pub(crate) fn number(drafts: &mut [RobotDraft], reporter: &mut Reporter) {
     let mut taken: HashMap<usize, String> = HashMap::new();
     for draft in drafts.iter() {
         let (Some(number), Some(name)) = (&draft.number, &draft.named.name) else { continue };
@@ -78,7 +78,7 @@ pub(crate) struct Said<'a> {
 }
 
 /// Notes looks that cannot be.
-pub(crate) fn check_sight(said: &Said<'_>, drafts: &[Draft], reporter: &mut Reporter) {
+pub(crate) fn check_sight(said: &Said<'_>, drafts: &[RobotDraft], reporter: &mut Reporter) {
     let robots: HashMap<&str, &Robot> = drafts
         .iter()
         .filter_map(|draft| draft.robot.as_ref())

@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// A body at its start.
-struct Body<'a> {
+struct Footprint<'a> {
     name: &'a str,
     place: Span,
     is_prop: bool,
@@ -27,7 +27,7 @@ pub(crate) fn check_start<'a>(
     let height = |x, y| ground.terrain.as_ref().map_or(0.0, |terrain| terrain.at(x, y).height);
     let robots = robots.map(|(place, robot)| {
         let foot = height(robot.pose.x, robot.pose.y);
-        Body {
+        Footprint {
             name: &robot.name,
             place,
             is_prop: false,
@@ -35,7 +35,7 @@ pub(crate) fn check_start<'a>(
             heights: [foot, foot + robot.vehicle.height],
         }
     });
-    let props = props.iter().map(|Placed { place, value: prop }| Body {
+    let props = props.iter().map(|Placed { place, value: prop }| Footprint {
         name: &prop.name,
         place: *place,
         is_prop: true,
@@ -59,7 +59,7 @@ pub(crate) fn check_start<'a>(
     }
 }
 
-impl Body<'_> {
+impl Footprint<'_> {
     fn meets(&self, other: &Self) -> bool {
         !(self.is_prop && other.is_prop)
             && self.heights[0] < other.heights[1]

@@ -83,7 +83,7 @@ pub(crate) fn written<S: Serializer>(vehicle: &Vehicle, serializer: S) -> Result
 }
 
 /// Where a robot's vehicle is written, and what it is driven by.
-pub(crate) struct Written<'a> {
+pub(crate) struct WrittenVehicle<'a> {
     /// The robot's or group's own words.
     pub(crate) own: &'a VehiclePart,
     /// The scene's words for all.
@@ -95,14 +95,14 @@ pub(crate) struct Written<'a> {
 }
 
 /// The vehicle that is written, with notes where its values contradict each other.
-pub(crate) fn vehicle(written: &Written<'_>, reporter: &mut Reporter) -> Vehicle {
+pub(crate) fn vehicle(written: &WrittenVehicle<'_>, reporter: &mut Reporter) -> Vehicle {
     let nothing = VehiclePart::default();
     let usual = usual_kind(written.scene);
     let kind = written.own.kind.as_ref().map_or(usual, |found| found.value);
     check_meaning(written.own, kind, reporter);
     let scene = if kind == usual { written.scene } else { &nothing };
     let vehicle = written.own.complete_with(scene, Vehicle::ready_made(kind));
-    let check = Check { written: &Written { scene, ..*written }, vehicle };
+    let check = Check { written: &WrittenVehicle { scene, ..*written }, vehicle };
     check.run(reporter);
     vehicle
 }
@@ -127,7 +127,7 @@ pub(crate) fn check_meaning(part: &VehiclePart, kind: VehicleKind, reporter: &mu
 
 /// A vehicle under inspection.
 struct Check<'a> {
-    written: &'a Written<'a>,
+    written: &'a WrittenVehicle<'a>,
     vehicle: Vehicle,
 }
 
@@ -148,7 +148,7 @@ impl Check<'_> {
 
     /// Notes `message` at the first of `keys` that is written.
     fn report(&self, keys: &[&str], message: String, reporter: &mut Reporter) {
-        let Written { own, scene, place, .. } = *self.written;
+        let WrittenVehicle { own, scene, place, .. } = *self.written;
         let written = [own.places(), scene.places()].concat();
         let find = |key: &&str| written.iter().find(|(written, _)| written == key);
         reporter.report(keys.iter().find_map(find).map_or(place, |(_, place)| *place), message);

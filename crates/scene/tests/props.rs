@@ -1,6 +1,6 @@
 //! Props and patterns: shapes, places, names, and room for everybody.
 
-use scene::{Override, Path, Prop, PropMotion, Scene};
+use scene::{Override, Path, PropMotion, PropSpec, Scene};
 use std::f64::consts::FRAC_PI_2;
 use vocabulary::Solid;
 
@@ -21,7 +21,7 @@ fn load(keys: &str, change: Option<&str>) -> Scene {
 }
 
 #[track_caller]
-fn props(keys: &str) -> Vec<Prop> {
+fn props(keys: &str) -> Vec<PropSpec> {
     load(keys, None).props
 }
 

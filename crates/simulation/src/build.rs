@@ -6,7 +6,7 @@ use crate::parameters::{ParameterSet, ScheduledChange};
 use crate::setup::Setup;
 use crate::stage::{handling, stage};
 use formation::{EdgeLaw, Formation, Graph, LookLaw, SetPointTrajectory};
-use perception::sensors::{CameraSettings, NoiseModel, Sensor, SensorConfig, Source};
+use perception::sensors::{CameraSettings, NoiseModel, Sensor, SensorConfig, SensorKind};
 use scene::{Follow, OnContact, Role, Scene, SensingKind, SwitchingKind};
 use std::sync::Arc;
 use vocabulary::{Edge, FleetInfo, Light, RobotInfo};
@@ -158,14 +158,14 @@ fn sensor_config(
         let upright = level && firm(edge.leader) && firm(edge.follower);
         Sensor {
             source: match sensing.kind {
-                SensingKind::Truth => Source::Truth,
-                SensingKind::Noise => Source::Noise(NoiseModel {
+                SensingKind::Truth => SensorKind::Truth,
+                SensingKind::Noise => SensorKind::Noise(NoiseModel {
                     deviation: [sensing.distance_noise, sensing.bearing_noise, sensing.view_noise],
                     bias: [sensing.distance_bias, sensing.bearing_bias, sensing.view_bias],
                     correlation: sensing.correlation,
                 }),
-                SensingKind::Geometric => Source::Geometric { pixel_noise: sensing.pixel_noise },
-                SensingKind::Camera => Source::Camera,
+                SensingKind::Geometric => SensorKind::Geometric { pixel_noise: sensing.pixel_noise },
+                SensingKind::Camera => SensorKind::Camera,
             },
             rate: sensing.rate,
             latency: sensing.latency,

@@ -22,11 +22,11 @@ pub fn caption(scene: &Scene) -> String {
     }
     let observed: Vec<_> = all.iter().copied().filter(|follow| observer(follow).is_some()).collect();
     match common(&observed, observer) {
-        Some(Some(Observer::Epsilon)) => {
+        Some(Some(ObserverWords::Epsilon)) => {
             parts.push(format!("ε {} s", range(&observed, |follow| follow.observer.epsilon)));
         }
-        Some(Some(Observer::Noise)) => parts.push("ε from noise".to_owned()),
-        Some(Some(Observer::Unscented)) => parts.push("dual unscented filter".to_owned()),
+        Some(Some(ObserverWords::Noise)) => parts.push("ε from noise".to_owned()),
+        Some(Some(ObserverWords::Unscented)) => parts.push("dual unscented filter".to_owned()),
         Some(None) => {}
         None if observed.is_empty() => {}
         None => parts.push("mixed observers".to_owned()),
@@ -77,19 +77,19 @@ fn looks(follow: &Follow) -> bool {
 
 /// What is worth saying of an observer.
 #[derive(Clone, Copy, PartialEq)]
-enum Observer {
+enum ObserverWords {
     Epsilon,
     Noise,
     Unscented,
 }
 
-fn observer(follow: &Follow) -> Option<Observer> {
+fn observer(follow: &Follow) -> Option<ObserverWords> {
     if looks(follow) && follow.observer.kind == ObserverKind::Unscented {
-        Some(Observer::Unscented)
+        Some(ObserverWords::Unscented)
     } else if looks(follow) && follow.observer.adaptive {
-        Some(Observer::Noise)
+        Some(ObserverWords::Noise)
     } else {
-        (follow.law.kind == LawKind::OutputFeedback).then_some(Observer::Epsilon)
+        (follow.law.kind == LawKind::OutputFeedback).then_some(ObserverWords::Epsilon)
     }
 }
 

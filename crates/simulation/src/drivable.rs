@@ -8,14 +8,14 @@ use vocabulary::{Limits, MotionInput, Trajectory};
 
 /// A motion along a path.
 #[derive(Debug, Clone)]
-pub(crate) enum Motion {
+pub(crate) enum PathMotion {
     /// Along a curve.
     SplinePath(std::sync::Arc<SplinePath>),
     /// Any other.
     Free(std::sync::Arc<dyn Trajectory>),
 }
 
-impl Motion {
+impl PathMotion {
     /// Speed and turn rate over time.
     pub(crate) fn trajectory(&self) -> std::sync::Arc<dyn Trajectory> {
         match self {
@@ -48,14 +48,14 @@ const INSTANTS: u32 = 4096;
 const SLACK: f64 = 1.0 + 1e-9;
 
 /// Holds a motion against `limits` between two times, s.
-pub(crate) fn undrivable(motion: &Motion, limits: &Limits, [from, to]: [f64; 2]) -> Option<Undrivable> {
+pub(crate) fn undrivable(motion: &PathMotion, limits: &Limits, [from, to]: [f64; 2]) -> Option<Undrivable> {
     let judge = |time: f64, point: Option<(usize, [f64; 2])>, speed: f64, turn_rate: f64| {
         let bound = limits.turn_rate_at(speed) * SLACK;
         // What is not a number is not within a bound either.
         let fits = turn_rate <= bound && speed <= limits.speed_max * SLACK;
         (!fits).then_some(Undrivable { time, point, speed, turn_rate, limits: *limits, step: None })
     };
-    if let Motion::SplinePath(way) = motion {
+    if let PathMotion::SplinePath(way) = motion {
         let bends = way.bends(to).into_iter().filter(|bend| bend.time >= from && bend.speed > 0.0);
         let worst = bends.filter_map(|bend| {
             judge(bend.time, Some((bend.point, bend.place)), bend.speed, bend.speed * bend.curvature)

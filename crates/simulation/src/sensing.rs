@@ -1,7 +1,7 @@
 //! Followers that look: what they see, when it reaches them, and what they make of it.
 
 use formation::{EdgeLaw, Estimate, Formation, Own, Tracker};
-use perception::sensors::{Belief, SensorConfig, SensorState};
+use perception::sensors::{LeaderPrediction, SensorConfig, SensorState};
 use std::sync::{Arc, Mutex, PoisonError};
 use vocabulary::{
     CameraRenderer, Edge, MeasurementRecord, Observation, ObserverStart, Outcome, Relative, Snapshot,
@@ -15,7 +15,7 @@ pub(crate) struct SensingPipeline {
     sensor_config: Arc<SensorConfig>,
     sensor_state: SensorState,
     trackers: Vec<Tracker>,
-    beliefs: Vec<Belief>,
+    beliefs: Vec<LeaderPrediction>,
     starts: Vec<ObserverStart>,
     /// Everything as it was a period ago.
     before: Snapshot,
@@ -33,7 +33,7 @@ impl SensingPipeline {
         Self {
             sensor_state: sensor_config.start(snapshot),
             trackers: vec![Tracker::default(); edges],
-            beliefs: vec![Belief { relative: None, sight: TrackingState::Waiting }; edges],
+            beliefs: vec![LeaderPrediction { relative: None, sight: TrackingState::Waiting }; edges],
             starts,
             before: snapshot.clone(),
             eyes: None,
@@ -101,9 +101,11 @@ impl SensingPipeline {
 
     fn believe(&mut self, formation: &Formation) {
         for ((belief, tracker), law) in self.beliefs.iter_mut().zip(&self.trackers).zip(formation.laws()) {
-            *belief =
-                law.looks.as_ref().map_or(Belief { relative: None, sight: TrackingState::Truth }, |looks| {
-                    Belief { relative: tracker.relative(), sight: tracker.sight(looks) }
+            *belief = law
+                .looks
+                .as_ref()
+                .map_or(LeaderPrediction { relative: None, sight: TrackingState::Truth }, |looks| {
+                    LeaderPrediction { relative: tracker.relative(), sight: tracker.sight(looks) }
                 });
         }
     }

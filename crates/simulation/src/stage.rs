@@ -1,8 +1,10 @@
 //! The stage of a scene: its robots, props and ground as the world takes them.
 
-use crate::drivable::{Motion, Undrivable, undrivable};
+use crate::drivable::{PathMotion, Undrivable, undrivable};
 use crate::error::BuildError;
-use formation::lead::{AnalyticTrajectory, Hermite, SpeedSchedule, SplinePath, SplinePathError, Table};
+use formation::lead::{
+    AnalyticTrajectory, Hermite, SpeedSchedule, SplinePath, SplinePathError, TabulatedTrajectory,
+};
 use scene::{Compensation, Path, PropMotion, Role, Scene, SpeedProfile, VehicleKind};
 use std::sync::Arc;
 use vocabulary::{Limits, Mobility, Placement, Pose, Prop, ScalarTrajectory, Trajectory};
@@ -38,7 +40,7 @@ fn actor(scene: &Scene, index: usize) -> Result<RobotSetup, BuildError> {
 }
 
 /// Holds the motion of a lead robot against its limits, and against those that it has after each change.
-fn check_drivable(scene: &Scene, index: usize, motion: &Motion) -> Result<(), BuildError> {
+fn check_drivable(scene: &Scene, index: usize, motion: &PathMotion) -> Result<(), BuildError> {
     let robot = &scene.robots[index];
     let changed = scene.changes.iter().map(|change| (change.at, change.then.robots[index].vehicle.limits()));
     let mut limits: Vec<_> = [(0.0, robot.vehicle.limits())].into_iter().chain(changed).collect();
@@ -99,7 +101,7 @@ fn wheeled(vehicle: &scene::Vehicle) -> Wheeled {
 /// A guided prop turns by no more than this in a physics step, rad.
 const TURN_A_STEP: f64 = 0.1;
 
-fn body(scene: &Scene, prop: &scene::Prop) -> Result<PropBody, BuildError> {
+fn body(scene: &Scene, prop: &scene::PropSpec) -> Result<PropBody, BuildError> {
     let (mobility, mass, path) = match &prop.motion {
         PropMotion::Fixed => (Mobility::Fixed, 1.0, None),
         PropMotion::Loose { mass } => (Mobility::Loose, *mass, None),
@@ -130,7 +132,7 @@ fn body(scene: &Scene, prop: &scene::Prop) -> Result<PropBody, BuildError> {
 }
 
 /// The motion along a path, and where it has to start if the path says so.
-fn course(path: &Path) -> Result<(Motion, Option<Pose>), SplinePathError> {
+fn course(path: &Path) -> Result<(PathMotion, Option<Pose>), SplinePathError> {
     let trajectory: Arc<dyn Trajectory> = match path {
         Path::Constant { speed, turn_rate } | Path::Circle { speed, turn_rate } => {
             Arc::new(AnalyticTrajectory::constant(*speed, *turn_rate))
@@ -159,15 +161,15 @@ fn course(path: &Path) -> Result<(Motion, Option<Pose>), SplinePathError> {
         Path::Waypoints { points, closed, speed } => {
             let way = SplinePath::new(points, *closed, pace(speed))?;
             let start = way.start();
-            return Ok((Motion::SplinePath(Arc::new(way)), Some(start)));
+            return Ok((PathMotion::SplinePath(Arc::new(way)), Some(start)));
         }
         // A checked table has rows; one without would stand still.
-        Path::Table { rows } => Table::new(rows).map_or_else(
+        Path::Table { rows } => TabulatedTrajectory::new(rows).map_or_else(
             || Arc::new(AnalyticTrajectory::constant(0.0, 0.0)) as Arc<dyn Trajectory>,
             |t| Arc::new(t),
         ),
     };
-    Ok((Motion::Free(trajectory), None))
+    Ok((PathMotion::Free(trajectory), None))
 }
 
 fn pace(speed: &SpeedProfile) -> SpeedSchedule {

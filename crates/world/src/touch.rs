@@ -8,7 +8,7 @@ const PARTED: f64 = 0.1;
 
 /// One touch of two things at an instant.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Touch {
+pub(crate) struct BodyContact {
     /// The two, in order.
     pub(crate) things: [EntityId; 2],
     /// Where, m.
@@ -44,8 +44,8 @@ impl Touches {
     }
 
     /// Takes in a touch at `time`.
-    pub(crate) fn touch(&mut self, time: f64, touch: &Touch) {
-        let Touch { things, place, normal, impulse } = *touch;
+    pub(crate) fn touch(&mut self, time: f64, touch: &BodyContact) {
+        let BodyContact { things, place, normal, impulse } = *touch;
         if let Some(contact) = self.open.get(&things).and_then(|index| self.contacts.get_mut(*index)) {
             contact.end = time;
             contact.impulse += impulse;
@@ -77,8 +77,8 @@ impl Touches {
     /// Finds the robots of a flat world whose outlines overlap.
     pub(crate) fn find<'b>(&mut self, snapshot: &Snapshot, body: impl Fn(usize) -> &'b Body) {
         self.forget_ended();
-        let outline = |index: usize| Outline::of(&snapshot.robots[index].motion.pose, body(index));
-        let outlines: Vec<Outline> = (0..snapshot.robots.len()).map(outline).collect();
+        let outline = |index: usize| BodyOutline::of(&snapshot.robots[index].motion.pose, body(index));
+        let outlines: Vec<BodyOutline> = (0..snapshot.robots.len()).map(outline).collect();
         let mut order: Vec<usize> = (0..outlines.len()).collect();
         order.sort_by(|&a, &b| outlines[a].left().total_cmp(&outlines[b].left()));
         let mut found = Vec::new();
@@ -89,7 +89,7 @@ impl Touches {
                 }
                 if let Some((place, normal)) = outlines[i.min(j)].overlap(&outlines[i.max(j)]) {
                     let things = [EntityId::Robot(i.min(j)), EntityId::Robot(i.max(j))];
-                    found.push(Touch { things, place, normal, impulse: 0.0 });
+                    found.push(BodyContact { things, place, normal, impulse: 0.0 });
                 }
             }
         }
@@ -103,7 +103,7 @@ impl Touches {
 
 /// A rectangle on the plane.
 #[derive(Debug, Clone, Copy)]
-struct Outline {
+struct BodyOutline {
     middle: [f64; 2],
     /// Unit vectors along and across.
     axes: [[f64; 2]; 2],
@@ -113,7 +113,7 @@ struct Outline {
     reach: f64,
 }
 
-impl Outline {
+impl BodyOutline {
     fn of(pose: &Pose, body: &Body) -> Self {
         let (sin, cos) = pose.heading.sin_cos();
         let ahead = body.wheelbase / 2.0;

@@ -30,7 +30,7 @@ pub struct Unicycle {
 pub struct Unicycles {
     robots: Vec<Unicycle>,
     snapshot: Snapshot,
-    steps: Vec<Step>,
+    steps: Vec<UnicycleStep>,
     touches: Touches,
     started: f64,
     duration: f64,
@@ -38,7 +38,7 @@ pub struct Unicycles {
 
 /// How one robot moves over the current step.
 #[derive(Debug, Clone, Copy, Default)]
-struct Step {
+struct UnicycleStep {
     start: Motion,
     sin: f64,
     cos: f64,
@@ -56,7 +56,7 @@ impl Unicycles {
             RobotState { motion, ..RobotState::default() }
         };
         let snapshot = Snapshot { time: 0.0, robots: robots.iter().map(state).collect(), props: vec![] };
-        let steps = vec![Step::default(); robots.len()];
+        let steps = vec![UnicycleStep::default(); robots.len()];
         Self { robots, snapshot, steps, touches: Touches::default(), started: 0.0, duration: 0.0 }
     }
 
@@ -76,7 +76,7 @@ impl Unicycles {
         self.started = self.snapshot.time;
         self.duration = duration;
         for (index, robot) in self.robots.iter().enumerate() {
-            self.steps[index] = Step::begin(&self.snapshot.robots[index].motion, robot, duration);
+            self.steps[index] = UnicycleStep::begin(&self.snapshot.robots[index].motion, robot, duration);
         }
         for index in 0..self.robots.len() {
             let end = self.motion_of(index, duration);
@@ -156,7 +156,7 @@ impl StepInterpolant for Unicycles {
     }
 }
 
-impl Step {
+impl UnicycleStep {
     fn begin(start: &Motion, robot: &Unicycle, duration: f64) -> Self {
         let (sin, cos) = start.pose.heading.sin_cos();
         let mut step = Self { start: *start, sin, cos, saturation_time: None };

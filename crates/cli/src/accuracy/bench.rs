@@ -6,7 +6,7 @@ use crate::dataset::camera::{CORNER_NOISE, errors, relative_pose};
 use crate::dataset::view::{FaceView, region_around};
 use crate::failure::Failure;
 use perception::detect::{Detector, Locus, Tag, recognise_expected};
-use perception::imaging::{Optics, Purpose, Sensor, noise_stream};
+use perception::imaging::{ImageSensor, Optics, Purpose, noise_stream};
 use perception::pose::{Prior, Rig, SeenFace, locate};
 use rendering::{Gpu, GpuCameraRenderer};
 use std::time::Instant;
@@ -24,7 +24,7 @@ const ELSEWHERE: f64 = 2.0;
 pub(crate) struct Bench {
     pub(crate) fleet: FleetInfo,
     eyes: GpuCameraRenderer,
-    sensor: Sensor,
+    sensor: ImageSensor,
     detector: Watched,
     seed: u64,
 }
@@ -77,7 +77,7 @@ impl Bench {
         };
         Ok(Self {
             eyes: GpuCameraRenderer::new(gpu, &fleet)?,
-            sensor: Sensor::new(Optics {
+            sensor: ImageSensor::new(Optics {
                 camera_model: fleet.robots[FOLLOWER].camera_model,
                 ..Optics::default()
             }),

@@ -7,7 +7,7 @@ use scene::{Follow, Role, Scene, SensingKind, SwitchingKind};
 use simulation::certify::chain::{self, EdgeGain};
 use simulation::certify::reach::{self, Reach};
 use simulation::certify::sensitivity::{self, Sensitivities};
-use simulation::certify::{Channel, Discretisation, LongestPeriod};
+use simulation::certify::{ChannelSensitivity, Discretisation, LongestPeriod};
 use std::sync::atomic::{AtomicU64, Ordering};
 use vocabulary::{LawKind, counted};
 
@@ -24,7 +24,7 @@ pub(super) struct Beyond {
 pub(super) struct Chart {
     /// Its name.
     pub(super) follower: String,
-    pub(super) channel: Channel,
+    pub(super) channel: ChannelSensitivity,
     /// Of the scene, s.
     pub(super) epsilon: f64,
     /// Of the scene, s.
@@ -90,8 +90,12 @@ fn chart(scene: &Scene) -> Option<Chart> {
     // The slope of the sign is not a number; near its set point only K acts then.
     let smooth = follow.law.switching == SwitchingKind::Tanh;
     let steep = if smooth { follow.law.beta[0] * follow.law.slope[0] } else { 0.0 };
-    let channel =
-        Channel { gain: k, stiffness: k * k + steep, alpha1: observer.alpha1[0], alpha2: observer.alpha2[0] };
+    let channel = ChannelSensitivity {
+        gain: k,
+        stiffness: k * k + steep,
+        alpha1: observer.alpha1[0],
+        alpha2: observer.alpha2[0],
+    };
     let epsilons: Vec<f64> = (0..=48).map(|i| 1e-4 * 10_f64.powf(f64::from(i) / 12.0)).collect();
     let border = |how: Discretisation| {
         let at = |epsilon: &f64| channel.longest_period(how, *epsilon, PERIODS);

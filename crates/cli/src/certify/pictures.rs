@@ -4,7 +4,7 @@ use super::Report;
 use super::beyond::{Beyond, Chart, PERIODS};
 use figures::{Axis, Figure, Guide, Key, Marker, Panel, Rgb, Scale, Series, Stroke};
 use simulation::certify::chain::LENGTHS;
-use simulation::certify::{LongestPeriod, Row};
+use simulation::certify::{LongestPeriod, WitnessRow};
 
 /// Curves that are shown, at most.
 const MOST_EDGES: usize = 6;
@@ -41,7 +41,7 @@ fn axis(label: &str, scale: Scale) -> Axis {
 /// The margin of β, P and V, and W with its trap.
 fn over_time(report: &Report<'_>) -> Figure {
     let colours = colours(report);
-    let panel = |label: &str, scale: Scale, named: bool, value: fn(&Row) -> f64| {
+    let panel = |label: &str, scale: Scale, named: bool, value: fn(&WitnessRow) -> f64| {
         let mut series = vec![];
         for (k, certificate) in report.certificates.iter().take(MOST_EDGES).enumerate() {
             let rows = certificate.witness.rows();

@@ -5,7 +5,8 @@ use super::beyond::{Beyond, Chart};
 use crate::print::say;
 use simulation::certify::chain::{LENGTHS, Point};
 use simulation::certify::{
-    Certificate, Constants, Discretisation, Finding, Infeasible, LongestPeriod, NotLinear, Outcome, Statement,
+    Certificate, Constants, Discretisation, Infeasible, LongestPeriod, NotLinear, Statement,
+    StatementFinding, StatementOutcome,
 };
 use std::path::PathBuf;
 
@@ -61,7 +62,7 @@ fn edge(report: &Report<'_>, certificate: &Certificate) {
     if let Some(constants) = &certificate.constants {
         let met = certificate
             .finding(Statement::UltimateBound)
-            .is_some_and(|finding| finding.outcome() != Outcome::PremiseNotMet);
+            .is_some_and(|finding| finding.outcome() != StatementOutcome::PremiseNotMet);
         numbers(constants, report.bound, met);
     }
 }
@@ -95,17 +96,17 @@ fn row(cells: impl Iterator<Item = String>) -> String {
     cells.collect::<Vec<_>>().concat()
 }
 
-fn cell(finding: &Finding) -> String {
+fn cell(finding: &StatementFinding) -> String {
     match (finding.outcome(), finding.against, finding.margin) {
-        (Outcome::Holds, ..) => "✓".to_owned(),
-        (Outcome::Violated(at), ..) => format!("✗ {at:.2} s"),
-        (Outcome::PremiseNotMet, Some(spell), _) => format!("– (✗ {:.2} s)", spell.first),
-        (Outcome::PremiseNotMet, None, Some(_)) => "– (✓)".to_owned(),
-        (Outcome::PremiseNotMet, None, None) => "–".to_owned(),
+        (StatementOutcome::Holds, ..) => "✓".to_owned(),
+        (StatementOutcome::Violated(at), ..) => format!("✗ {at:.2} s"),
+        (StatementOutcome::PremiseNotMet, Some(spell), _) => format!("– (✗ {:.2} s)", spell.first),
+        (StatementOutcome::PremiseNotMet, None, Some(_)) => "– (✓)".to_owned(),
+        (StatementOutcome::PremiseNotMet, None, None) => "–".to_owned(),
     }
 }
 
-fn statement(finding: &Finding) {
+fn statement(finding: &StatementFinding) {
     let margin =
         finding.margin.map_or_else(String::new, |margin| format!(", least margin {}", short(margin)));
     let when = finding.against.map_or_else(String::new, |spell| {
@@ -118,12 +119,12 @@ fn statement(finding: &Finding) {
         }
     });
     let outcome = match finding.outcome() {
-        Outcome::Holds => format!("holds{margin}"),
-        Outcome::Violated(_) => format!("violated {when}{margin}"),
-        Outcome::PremiseNotMet => "premise not met".to_owned(),
+        StatementOutcome::Holds => format!("holds{margin}"),
+        StatementOutcome::Violated(_) => format!("violated {when}{margin}"),
+        StatementOutcome::PremiseNotMet => "premise not met".to_owned(),
     };
     say(&format!("  {:<14} {:<32} {outcome}", finding.statement.source(), finding.statement.words()));
-    if finding.outcome() == Outcome::PremiseNotMet {
+    if finding.outcome() == StatementOutcome::PremiseNotMet {
         let reasons: Vec<String> = finding.unmet.iter().map(simulation::certify::Premise::words).collect();
         for line in wrapped(&reasons, 84) {
             say(&format!("{:51}{line}", ""));

@@ -3,7 +3,7 @@
 use crate::dataset::view::{FaceView, region_around, walls_hide};
 use crate::dataset::words::{Labelled, camera, carrier, found, frame};
 use perception::detect::{Detector, Locus, Tag, identify, recognise, sharpen};
-use perception::imaging::{Optics, Purpose, Sensor, noise_stream};
+use perception::imaging::{ImageSensor, Optics, Purpose, noise_stream};
 use perception::pose::{PoseEstimate, Prior, Rig, locate};
 use perception::sensors::SensorConfig;
 use serde_json::{Value, json};
@@ -19,7 +19,7 @@ const POINTS: u32 = 5;
 /// A follower's camera.
 pub(crate) struct FollowerCamera {
     pub(crate) edge: Edge,
-    pub(crate) sensor: Sensor,
+    pub(crate) sensor: ImageSensor,
     detector: Locus,
     /// How far bodies are expected to tilt against each other, rad.
     tilt: f64,
@@ -36,7 +36,7 @@ pub(crate) struct Taken<'a> {
 
 impl FollowerCamera {
     pub(crate) fn new(edge: Edge, optics: Optics, tilt: f64, whole: bool) -> Self {
-        Self { edge, sensor: Sensor::new(optics), detector: Locus::new(), tilt, whole }
+        Self { edge, sensor: ImageSensor::new(optics), detector: Locus::new(), tilt, whole }
     }
 
     pub(crate) fn describe(&self, fleet: &FleetInfo) -> Value {

@@ -46,12 +46,12 @@ pub enum NotLinear {
     NoSteadyMotion,
 }
 
-struct Edge<'a> {
+struct ChainLink<'a> {
     law: &'a EdgeLaw,
     set_point: SetPoint,
 }
 
-impl Edge<'_> {
+impl ChainLink<'_> {
     /// dx/dt and ω_j.
     fn rate(&self, x: &State, leader: &MotionInput) -> (State, f64) {
         let relative = Relative { distance: x[0], bearing: x[1], view_angle: x[2] };
@@ -139,7 +139,7 @@ impl LinearEdge {
             return Err(NotLinear::Sign);
         }
         let set_point = SetPoint { value: law.set_point.at(0.0).value, ..SetPoint::default() };
-        let edge = Edge { law, set_point };
+        let edge = ChainLink { law, set_point };
         let size = if law.law.kind == LawKind::OutputFeedback { 8 } else { 4 };
         let guess = near(&law.law, &set_point, leader).ok_or(NotLinear::NoSteadyMotion)?;
         let x = edge.settle(guess, leader, size).ok_or(NotLinear::NoSteadyMotion)?;

@@ -7,7 +7,7 @@ use nalgebra::{Matrix4, SMatrix, Vector4};
 
 /// One channel of a sampled loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Channel {
+pub struct ChannelSensitivity {
     /// k, 1/s.
     pub gain: f64,
     /// What acts on e: k² + β slope, 1/s².
@@ -77,7 +77,7 @@ impl Discretisation {
     }
 }
 
-impl Channel {
+impl ChannelSensitivity {
     /// The observer with what acts on it: d/dt of [ê₁, ε ê₂, y, dy/dt, w].
     fn observer(&self, epsilon: f64) -> Augmented {
         let mut m = Augmented::zeros();
@@ -173,7 +173,8 @@ pub enum LongestPeriod {
 mod tests {
     use super::*;
 
-    const PAPER: Channel = Channel { gain: 5.0, stiffness: 25.0 + 5.0 * 24.53, alpha1: 2.0, alpha2: 1.0 };
+    const PAPER: ChannelSensitivity =
+        ChannelSensitivity { gain: 5.0, stiffness: 25.0 + 5.0 * 24.53, alpha1: 2.0, alpha2: 1.0 };
 
     /// The trap of ε = 1 ms at 10 ms: −1000/s over 10 ms grows ninefold by Euler, 291-fold by Runge-Kutta.
     #[test]

@@ -2,7 +2,7 @@
 
 use super::constants::Constants;
 use super::premise::{Premise, Spell};
-use super::tally::{Room, Tally};
+use super::tally::{Margin, Tally};
 use super::witness::Witness;
 use crate::law::Switching;
 use vocabulary::LawKind;
@@ -80,7 +80,7 @@ impl Statement {
 
 /// What became of a statement.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Outcome {
+pub enum StatementOutcome {
     /// At every sample.
     Holds,
     /// Not at this time, s, for the first time.
@@ -89,7 +89,7 @@ pub enum Outcome {
     PremiseNotMet,
 }
 
-impl Outcome {
+impl StatementOutcome {
     /// One word for it, for machines.
     pub fn name(self) -> &'static str {
         match self {
@@ -113,7 +113,7 @@ pub struct Against {
 
 /// A statement held against a run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
+pub struct StatementFinding {
     /// What is stated.
     pub statement: Statement,
     /// What it rests on and what was not so.
@@ -125,13 +125,13 @@ pub struct Finding {
     pub margin: Option<f64>,
 }
 
-impl Finding {
+impl StatementFinding {
     /// Holds, violated, or premise not met.
-    pub fn outcome(&self) -> Outcome {
+    pub fn outcome(&self) -> StatementOutcome {
         match (self.unmet.is_empty(), self.against) {
-            (false, _) => Outcome::PremiseNotMet,
-            (true, Some(against)) => Outcome::Violated(against.first),
-            (true, None) => Outcome::Holds,
+            (false, _) => StatementOutcome::PremiseNotMet,
+            (true, Some(against)) => StatementOutcome::Violated(against.first),
+            (true, None) => StatementOutcome::Holds,
         }
     }
 }
@@ -152,19 +152,19 @@ pub struct Circumstances {
 }
 
 /// All statements, held against what a witness has seen.
-pub fn certify(witness: &Witness, circumstances: &Circumstances) -> Vec<Finding> {
-    let view = View { witness, circumstances, constants: Constants::of(witness) };
+pub fn certify(witness: &Witness, circumstances: &Circumstances) -> Vec<StatementFinding> {
+    let view = FindingView { witness, circumstances, constants: Constants::of(witness) };
     Statement::ALL.into_iter().map(|statement| view.finding(statement)).collect()
 }
 
-struct View<'a> {
+struct FindingView<'a> {
     witness: &'a Witness,
     circumstances: &'a Circumstances,
     constants: Option<Constants>,
 }
 
-impl View<'_> {
-    fn finding(&self, statement: Statement) -> Finding {
+impl FindingView<'_> {
+    fn finding(&self, statement: Statement) -> StatementFinding {
         let kind = self.witness.law().kind;
         let robust = kind != LawKind::FullState;
         let observes = kind == LawKind::OutputFeedback && self.constants.is_some();
@@ -174,7 +174,7 @@ impl View<'_> {
         };
         if !applies {
             let premise = if robust { Premise::NoObserver } else { Premise::FullState };
-            return Finding { statement, unmet: vec![premise], against: None, margin: None };
+            return StatementFinding { statement, unmet: vec![premise], against: None, margin: None };
         }
         let unmet = self.unmet(statement);
         let ledger = self.witness.ledger();
@@ -192,11 +192,11 @@ impl View<'_> {
             Statement::Trapped => self.trapped(),
             Statement::UltimateBound => self.in_the_end(),
         };
-        Finding { statement, unmet, against, margin }
+        StatementFinding { statement, unmet, against, margin }
     }
 
     /// Samples at which a room is below zero, and its least value.
-    fn throughout(&self, room: &Room) -> (Option<Against>, Option<f64>) {
+    fn throughout(&self, room: &Margin) -> (Option<Against>, Option<f64>) {
         let spell = room.below.spell(self.witness.ledger().samples);
         let against =
             |spell: Spell| Against { first: spell.first, last: spell.last, throughout: spell.share >= 1.0 };

@@ -1,8 +1,8 @@
 //! What the statements need to know of an edge, gathered as it goes: flat in time, however long the run.
 
 use super::constants::Constants;
-use super::tally::{Event, Largest, Outside, OutsideLate, Room, Tally};
-use super::witness::Row;
+use super::tally::{BoundEvent, Largest, Margin, Outside, OutsideLate, Tally};
+use super::witness::WitnessRow;
 
 /// V may rise from sample to sample by this share of its largest value: what is left of the trapezoids' error.
 const ROUNDING: f64 = 1e-6;
@@ -28,8 +28,8 @@ pub(super) struct Ledger {
     pub(super) span: [f64; 2],
     pub(super) peaks: Peaks,
     /// Of Lemma 4.1, without the last sample, whose margin is not known before the next.
-    margin: Room,
-    pub(super) p: Room,
+    margin: Margin,
+    pub(super) p: Margin,
     pub(super) v: Falls,
     pub(super) w: Falls,
     pub(super) trapped: OutsideLate,
@@ -42,7 +42,7 @@ pub(super) struct Ledger {
     pub(super) chatters: Tally,
     pub(super) at_speed_bound: Tally,
     pub(super) too_close: Tally,
-    last: Row,
+    last: WitnessRow,
 }
 
 /// Whether a quantity falls from sample to sample.
@@ -57,7 +57,7 @@ impl Falls {
     /// From a value to the next, where something lies above a bound.
     fn note(&mut self, time: f64, [before, now]: [f64; 2], above: f64, bound: f64) {
         self.largest = self.largest.max(before.abs()).max(now.abs());
-        let event = Event { time, values: [now - before, above] };
+        let event = BoundEvent { time, values: [now - before, above] };
         self.rises.note(event, [ROUNDING * self.largest, bound]);
         self.least.note(event, bound);
     }
@@ -70,7 +70,7 @@ impl Falls {
 
 impl Ledger {
     /// Takes in the next sample and what is now known of the one before; then come the bounds.
-    pub(super) fn push(&mut self, row: &Row, before: Option<&Row>) {
+    pub(super) fn push(&mut self, row: &WitnessRow, before: Option<&WitnessRow>) {
         if let Some(before) = before {
             self.margin.note(before.time, before.margin);
         } else {
@@ -91,7 +91,7 @@ impl Ledger {
     }
 
     /// Takes in what depends on bounds, as they are with the sample that was pushed last.
-    pub(super) fn judge(&mut self, before: Option<&Row>, constants: Option<&Constants>) {
+    pub(super) fn judge(&mut self, before: Option<&WitnessRow>, constants: Option<&Constants>) {
         let row = self.last;
         if let Some(before) = before {
             // Where no observer runs, V has to fall everywhere.
@@ -104,7 +104,7 @@ impl Ledger {
         }
         let known = constants.rho > 0.0;
         self.trapped.note(row.time, row.w, constants.trap, known.then_some(constants.t_epsilon));
-        let event = Event { time: row.time, values: [row.whole(), f64::INFINITY] };
+        let event = BoundEvent { time: row.time, values: [row.whole(), f64::INFINITY] };
         self.end.note(event, [constants.delta_0, 0.0]);
         let first = before.is_none();
         let least = |least: f64, now: f64| if first { now } else { least.min(now) };
@@ -113,7 +113,7 @@ impl Ledger {
     }
 
     /// The room of Lemma 4.1.
-    pub(super) fn margin(&self) -> Room {
+    pub(super) fn margin(&self) -> Margin {
         let mut margin = self.margin;
         if self.samples > 0 {
             margin.note(self.last.time, self.last.margin);

@@ -19,6 +19,6 @@ pub mod witness;
 
 pub use boundary::BoundaryLayer;
 pub use constants::Constants;
-pub use finding::{Against, Circumstances, Finding, Outcome, Statement, certify};
+pub use finding::{Against, Circumstances, Statement, StatementFinding, StatementOutcome, certify};
 pub use premise::{Premise, Spell};
-pub use witness::{Instant, Row, Witness};
+pub use witness::{Instant, Witness, WitnessRow};

@@ -29,12 +29,12 @@ impl Tally {
 
 /// A value below zero at some samples, and its least.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Room {
+pub(super) struct Margin {
     pub(super) below: Tally,
     pub(super) least: Option<f64>,
 }
 
-impl Room {
+impl Margin {
     pub(super) fn note(&mut self, time: f64, room: f64) {
         self.below.note(time, room < 0.0);
         self.least = Some(self.least.map_or(room, |least| least.min(room)));
@@ -43,12 +43,12 @@ impl Room {
 
 /// A sample with two values, each of which has to lie above a bound for it to count.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Event {
+pub(super) struct BoundEvent {
     pub(super) time: f64,
     pub(super) values: [f64; 2],
 }
 
-impl Event {
+impl BoundEvent {
     fn above(&self, bounds: [f64; 2]) -> bool {
         self.values[0] > bounds[0] && self.values[1] > bounds[1]
     }
@@ -68,14 +68,14 @@ const MOST: usize = 2048;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Outside {
     /// In the order of time; none is covered by one before it.
-    first: Vec<Event>,
+    first: Vec<BoundEvent>,
     /// In the order of time; none is covered by one after it.
-    last: Vec<Event>,
+    last: Vec<BoundEvent>,
 }
 
 impl Outside {
     /// Takes in the next event, with the bounds as they are now.
-    pub(super) fn note(&mut self, event: Event, bounds: [f64; 2]) {
+    pub(super) fn note(&mut self, event: BoundEvent, bounds: [f64; 2]) {
         self.first.retain(|known| known.above(bounds));
         self.last.retain(|known| known.above(bounds));
         if !event.above(bounds) {
@@ -90,7 +90,7 @@ impl Outside {
     }
 
     /// Takes in an event from before all others, with the bounds as they are now.
-    fn note_before(&mut self, event: Event, bounds: [f64; 2]) {
+    fn note_before(&mut self, event: BoundEvent, bounds: [f64; 2]) {
         if !event.above(bounds) {
             return;
         }
@@ -119,10 +119,10 @@ impl Outside {
 /// The largest first value of events whose second lies above a bound that rises until the end; in the order of the
 /// second value.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Largest(Vec<Event>);
+pub(super) struct Largest(Vec<BoundEvent>);
 
 impl Largest {
-    pub(super) fn note(&mut self, event: Event, bound: f64) {
+    pub(super) fn note(&mut self, event: BoundEvent, bound: f64) {
         self.0.retain(|known| known.values[1] > bound && !event.covers(known));
         if event.values[1] > bound && !self.0.iter().any(|known| known.covers(&event)) {
             let place = self.0.partition_point(|known| known.values[1] < event.values[1]);
@@ -140,7 +140,7 @@ impl Largest {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct OutsideLate {
     /// Before that time as it is now: they count only if it falls to them.
-    early: Vec<Event>,
+    early: Vec<BoundEvent>,
     late: Outside,
     largest: Option<f64>,
 }
@@ -148,7 +148,7 @@ pub(super) struct OutsideLate {
 impl OutsideLate {
     /// Takes in the next value; `from` is `None` while the time is not known at all.
     pub(super) fn note(&mut self, time: f64, value: f64, bound: f64, from: Option<f64>) {
-        let event = Event { time, values: [value, f64::INFINITY] };
+        let event = BoundEvent { time, values: [value, f64::INFINITY] };
         if from.is_none_or(|from| time < from) {
             self.early.push(event);
         } else {
@@ -179,7 +179,7 @@ impl OutsideLate {
 }
 
 /// Of too many events, leaves out every other one of the later half, or of the earlier half.
-fn thin(events: &mut Vec<Event>, later: bool) {
+fn thin(events: &mut Vec<BoundEvent>, later: bool) {
     if events.len() <= MOST {
         return;
     }
@@ -206,7 +206,7 @@ mod tests {
             let mut all = vec![];
             for (k, [a, b, da, db]) in (0..).zip(events) {
                 bounds = [bounds[0] + da * 0.2, bounds[1] + db * 0.2];
-                let event = Event { time: f64::from(k), values: [a, b] };
+                let event = BoundEvent { time: f64::from(k), values: [a, b] };
                 outside.note(event, bounds);
                 largest.note(event, bounds[1]);
                 all.push(event);
@@ -247,9 +247,9 @@ mod tests {
         let (mut outside, mut largest) = (Outside::default(), Largest::default());
         for k in 0..10_000 {
             let rising = f64::from(k);
-            outside.note(Event { time: rising, values: [rising, 1.0] }, [-1.0, 0.0]);
-            outside.note(Event { time: rising, values: [-rising, 2.0] }, [-1e9, 0.0]);
-            largest.note(Event { time: rising, values: [rising, -rising] }, -1e9);
+            outside.note(BoundEvent { time: rising, values: [rising, 1.0] }, [-1.0, 0.0]);
+            outside.note(BoundEvent { time: rising, values: [-rising, 2.0] }, [-1e9, 0.0]);
+            largest.note(BoundEvent { time: rising, values: [rising, -rising] }, -1e9);
         }
         assert!(outside.first.len() <= MOST && outside.last.len() <= MOST && largest.0.len() <= MOST);
     }

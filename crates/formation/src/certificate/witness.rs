@@ -37,7 +37,7 @@ pub struct Instant {
 /// The quantities of the theorems at one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a premise of its own, none excludes another")]
-pub struct Row {
+pub struct WitnessRow {
     /// s.
     pub time: f64,
     /// ‖e‖, of metres and radians together as in the paper.
@@ -72,7 +72,7 @@ pub struct Row {
     pub chatters: bool,
 }
 
-impl Row {
+impl WitnessRow {
     /// ‖r‖/‖η‖, which σ₁ bounds.
     pub(super) fn reach(&self) -> f64 {
         self.filtered / self.observer_error
@@ -91,9 +91,9 @@ pub struct Witness {
     observer: Observer,
     layer: Option<BoundaryLayer>,
     ledger: Ledger,
-    last_row: Option<Row>,
+    last_row: Option<WitnessRow>,
     /// Every sample, where they are kept.
-    rows: Option<Vec<Row>>,
+    rows: Option<Vec<WitnessRow>>,
     last: Option<Sums>,
     first_error: [f64; 2],
     initial: f64,
@@ -157,7 +157,7 @@ impl Witness {
     }
 
     /// All samples so far; none unless it is [`Self::keeping`] them.
-    pub fn rows(&self) -> &[Row] {
+    pub fn rows(&self) -> &[WitnessRow] {
         self.rows.as_deref().unwrap_or_default()
     }
 
@@ -208,7 +208,7 @@ impl Witness {
             before.effect_rate = before.effect_rate.max(slope);
             before.margin = margin(&self.law, before);
         }
-        let mut row = Row {
+        let mut row = WitnessRow {
             time: now.time,
             error: error.norm(),
             error_rate: error_rate.norm(),
@@ -318,7 +318,7 @@ fn log_cosh(x: f64) -> f64 {
 }
 
 /// β − ‖g_v V_i‖ − ‖d(g_v V_i)/dt‖/k₁₂ (Lemma 4.1), β the smaller of the two.
-fn margin(law: &Law, row: &Row) -> f64 {
+fn margin(law: &Law, row: &WitnessRow) -> f64 {
     let [k, beta] = [law.gain, law.robust_gain].map(|pair| pair[0].min(pair[1]));
     beta - row.effect - row.effect_rate / k
 }

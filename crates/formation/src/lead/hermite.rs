@@ -32,9 +32,9 @@ impl Hermite {
     /// Value and slope at `t`.
     pub fn at(&self, t: f64) -> [f64; 2] {
         match self.place(t) {
-            Place::Before => [self.points[0][1], 0.0],
-            Place::After => [self.points[self.points.len() - 1][1], 0.0],
-            Place::Within(k, u) => {
+            Interval::Before => [self.points[0][1], 0.0],
+            Interval::After => [self.points[self.points.len() - 1][1], 0.0],
+            Interval::Within(k, u) => {
                 let [a, b, c, d] = self.cubic(k);
                 let h = self.points[k + 1][0] - self.points[k][0];
                 [a + u * (b + u * (c + u * d)), (b + u * (2.0 * c + u * 3.0 * d)) / h]
@@ -55,22 +55,22 @@ impl Hermite {
     fn integral_from_first(&self, t: f64) -> f64 {
         let last = self.points.len() - 1;
         match self.place(t) {
-            Place::Before => (t - self.points[0][0]) * self.points[0][1],
-            Place::After => self.integrals[last] + (t - self.points[last][0]) * self.points[last][1],
-            Place::Within(k, u) => self.integrals[k] + self.area(k, u),
+            Interval::Before => (t - self.points[0][0]) * self.points[0][1],
+            Interval::After => self.integrals[last] + (t - self.points[last][0]) * self.points[last][1],
+            Interval::Within(k, u) => self.integrals[k] + self.area(k, u),
         }
     }
 
-    fn place(&self, t: f64) -> Place {
+    fn place(&self, t: f64) -> Interval {
         let after = self.points.partition_point(|p| p[0] <= t);
         if after == 0 {
-            return Place::Before;
+            return Interval::Before;
         }
         if after == self.points.len() {
-            return Place::After;
+            return Interval::After;
         }
         let (a, b) = (self.points[after - 1][0], self.points[after][0]);
-        Place::Within(after - 1, (t - a) / (b - a))
+        Interval::Within(after - 1, (t - a) / (b - a))
     }
 
     /// Coefficients of 1, u, u², u³ on interval `k`, u from 0 to 1.
@@ -86,7 +86,7 @@ impl Hermite {
     }
 }
 
-enum Place {
+enum Interval {
     Before,
     Within(usize, f64),
     After,

@@ -56,7 +56,7 @@ pub struct Own {
 
 /// A stretch of the follower's own past.
 #[derive(Debug, Clone, Copy)]
-struct Stretch {
+struct OwnMotion {
     from: f64,
     until: f64,
     own: Own,
@@ -64,7 +64,7 @@ struct Stretch {
 
 /// An estimate at an instant.
 #[derive(Debug, Clone)]
-enum Belief {
+enum EdgeEstimator {
     HighGain(HighGain),
     Unscented(Box<Unscented>),
 }
@@ -73,11 +73,11 @@ enum Belief {
 #[derive(Debug, Clone, Default)]
 pub struct Tracker {
     now: f64,
-    past: VecDeque<Stretch>,
+    past: VecDeque<OwnMotion>,
     /// What was believed right after the last look, at its instant.
-    anchor: Option<(f64, Belief)>,
+    anchor: Option<(f64, EdgeEstimator)>,
     /// The same, carried on to now.
-    current: Option<Belief>,
+    current: Option<EdgeEstimator>,
     /// Looks that were not believed, one after the other.
     rejected: u32,
 }
@@ -90,7 +90,7 @@ const STUBBORN: u32 = 3;
 impl Tracker {
     /// Carries the estimate on over a period that has passed.
     pub fn advance(&mut self, law: &LookLaw, own: Own, period: f64) {
-        let stretch = Stretch { from: self.now, until: self.now + period, own };
+        let stretch = OwnMotion { from: self.now, until: self.now + period, own };
         let coasting = law.coasts(self.age());
         if let Some(belief) = &mut self.current {
             belief.predict(law, own, (0.0, period), coasting);
@@ -151,14 +151,14 @@ impl Tracker {
         let own = self.past.iter().find(|s| look.stamp <= s.until).or(self.past.back());
         let speed = own.map_or(0.0, |s| s.own.speed);
         let belief = match law.method {
-            ObserverKind::HighGain => Belief::HighGain(HighGain::at(look)),
-            ObserverKind::Unscented => Belief::Unscented(Box::new(Unscented::at(law, look, speed))),
+            ObserverKind::HighGain => EdgeEstimator::HighGain(HighGain::at(look)),
+            ObserverKind::Unscented => EdgeEstimator::Unscented(Box::new(Unscented::at(law, look, speed))),
         };
         self.settle(law, look.stamp, belief);
     }
 
     /// What is believed at `stamp` becomes the anchor, and is carried on to now.
-    fn settle(&mut self, law: &LookLaw, stamp: f64, belief: Belief) {
+    fn settle(&mut self, law: &LookLaw, stamp: f64, belief: EdgeEstimator) {
         let mut current = belief.clone();
         self.replay(law, &mut current, stamp, self.now);
         self.anchor = Some((stamp, belief));
@@ -166,7 +166,7 @@ impl Tracker {
     }
 
     /// Carries `belief` from one instant to another by what the follower did.
-    fn replay(&self, law: &LookLaw, belief: &mut Belief, from: f64, until: f64) {
+    fn replay(&self, law: &LookLaw, belief: &mut EdgeEstimator, from: f64, until: f64) {
         for stretch in self.past.iter().filter(|s| s.until > from && s.from < until) {
             let (start, end) = (from.max(stretch.from), until.min(stretch.until));
             let coasting = law.coasts(stretch.from - from);
@@ -178,7 +178,7 @@ impl Tracker {
     pub fn disturb(&mut self, output: [f64; 2], rates: [f64; 2]) {
         let beliefs = self.anchor.iter_mut().map(|(_, belief)| belief).chain(&mut self.current);
         for belief in beliefs {
-            if let Belief::HighGain(belief) = belief {
+            if let EdgeEstimator::HighGain(belief) = belief {
                 for k in 0..2 {
                     belief.estimate.output[k] += output[k];
                     belief.estimate.rates[k] += rates[k];
@@ -222,7 +222,7 @@ impl Tracker {
     }
 }
 
-impl Belief {
+impl EdgeEstimator {
     fn is_of(&self, method: ObserverKind) -> bool {
         match self {
             Self::HighGain(_) => method == ObserverKind::HighGain,

@@ -11,7 +11,7 @@ pub(super) const DEGREE: usize = TRACK_NODES - 1;
 pub(super) type Poly = [f64; DEGREE + 1];
 
 /// What the observer meets over a stretch of time, as polynomials.
-pub(super) struct Stretch {
+pub(super) struct PolynomialPiece {
     pub(super) duration: f64,
     /// p, [m, rad].
     pub(super) measurement: [Poly; 2],
@@ -21,7 +21,7 @@ pub(super) struct Stretch {
     pub(super) forcing: [Poly; 2],
 }
 
-impl Stretch {
+impl PolynomialPiece {
     pub(super) fn of_track(track: &Track, distance_min: f64) -> Self {
         let h = track.duration;
         let origin = track.samples[0].relative;

@@ -6,7 +6,7 @@ use crate::desk::Desk;
 use crate::panels::curves;
 use crate::quantities::Quantity;
 use eframe::egui::{RichText, Ui};
-use simulation::certify::{Finding, Outcome, Premise, so_far};
+use simulation::certify::{Premise, StatementFinding, StatementOutcome, so_far};
 
 /// Moments that are looked at, at most.
 const MOST: usize = 2000;
@@ -17,9 +17,9 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         for finding in &findings {
             let mark = match finding.outcome() {
-                Outcome::Holds => "✓",
-                Outcome::Violated(_) => "✗",
-                Outcome::PremiseNotMet => "–",
+                StatementOutcome::Holds => "✓",
+                StatementOutcome::Violated(_) => "✗",
+                StatementOutcome::PremiseNotMet => "–",
             };
             let text = RichText::new(format!("{mark} {}", finding.statement.source())).small();
             ui.label(text).on_hover_text(words(finding));
@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
 }
 
 /// What the theorems say of the follower that is chosen, or else of the first.
-fn findings(desk: &Desk) -> Option<Vec<Finding>> {
+fn findings(desk: &Desk) -> Option<Vec<StatementFinding>> {
     let (history, scene) = (desk.history.as_ref()?, desk.scene_now()?);
     let chosen = desk.chosen_robot();
     let edges = &history.fleet().edges;
@@ -40,14 +40,14 @@ fn findings(desk: &Desk) -> Option<Vec<Finding>> {
 }
 
 /// A finding in words.
-fn words(finding: &Finding) -> String {
+fn words(finding: &StatementFinding) -> String {
     let outcome = match (finding.outcome(), finding.against) {
-        (Outcome::Holds, _) => "holds so far".to_owned(),
-        (Outcome::Violated(from), Some(spell)) => {
+        (StatementOutcome::Holds, _) => "holds so far".to_owned(),
+        (StatementOutcome::Violated(from), Some(spell)) => {
             format!("violated from {from:.2} s, last at {:.2} s", spell.last)
         }
-        (Outcome::Violated(from), None) => format!("violated from {from:.2} s"),
-        (Outcome::PremiseNotMet, _) => {
+        (StatementOutcome::Violated(from), None) => format!("violated from {from:.2} s"),
+        (StatementOutcome::PremiseNotMet, _) => {
             let reasons: Vec<String> = finding.unmet.iter().map(Premise::words).collect();
             format!("premise not met:\n{}", reasons.join("\n"))
         }

@@ -61,7 +61,7 @@ pub fn sharpen(picture: &Grey, region: Region, optics: &Optics, tags: &mut [Tag]
     if picture.values.len() != picture.width as usize * picture.height as usize {
         return;
     }
-    let view = View {
+    let view = TagView {
         picture,
         camera_model: &optics.camera_model,
         corner: [f64::from(region.x), f64::from(region.y)],
@@ -77,13 +77,13 @@ pub fn sharpen(picture: &Grey, region: Region, optics: &Optics, tags: &mut [Tag]
 }
 
 /// A picture and how its pixels lie in the ideal one.
-struct View<'a> {
+struct TagView<'a> {
     picture: &'a Grey,
     camera_model: &'a CameraModel,
     corner: [f64; 2],
 }
 
-impl View<'_> {
+impl TagView<'_> {
     fn ideal(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         if !self.camera_model.distorts() {
             return [x, y];
@@ -104,13 +104,13 @@ impl View<'_> {
 }
 
 /// A pixel, in units of the tag's size from the tag's middle, and its light.
-struct Sample {
+struct PixelSample {
     at: [f64; 2],
     light: f64,
 }
 
 /// Corners, and the deviation they should have.
-fn fitted(view: &View<'_>, blur: f64, tag: &Tag) -> Option<([[f64; 2]; 4], f64)> {
+fn fitted(view: &TagView<'_>, blur: f64, tag: &Tag) -> Option<([[f64; 2]; 4], f64)> {
     let cells = cells(tag.id)?;
     let start = tag.corners.map(|c| view.ideal(c));
     let middle = [0, 1].map(|k| start.iter().map(|c| c[k]).sum::<f64>() / 4.0);
@@ -174,11 +174,11 @@ fn placed(h: &Matrix3<f64>) -> Option<[[f64; 2]; 4]> {
 
 /// Pixels that show the tag, `corners` being where it is in the picture.
 fn samples(
-    view: &View<'_>,
+    view: &TagView<'_>,
     h: &Matrix3<f64>,
     corners: &[[f64; 2]; 4],
     normal: impl Fn([f64; 2]) -> [f64; 2],
-) -> Option<Vec<Sample>> {
+) -> Option<Vec<PixelSample>> {
     let back = h.try_inverse()?;
     let span = |k: usize, size: u32| {
         let at = corners.map(|c| c[k]);
@@ -200,7 +200,7 @@ fn samples(
             let inside = (p.x / p.z).abs().max((p.y / p.z).abs()) < 0.5 * TAG_CELLS as f64 + 0.5;
             if inside && p.z > 0.0 {
                 let light = f64::from(*view.picture.values.get(y * view.picture.width as usize + x)?);
-                samples.push(Sample { at, light });
+                samples.push(PixelSample { at, light });
             }
         }
     }
@@ -245,7 +245,7 @@ fn shade(back: &Matrix3<f64>, cells: &Cells, blur: f64, [x, y]: [f64; 2]) -> Opt
 }
 
 /// Light of black and what white has more, by a straight line through pixels and tag.
-fn contrast(samples: &[Sample], h: &Matrix3<f64>, cells: &Cells, blur: f64) -> Option<[f64; 2]> {
+fn contrast(samples: &[PixelSample], h: &Matrix3<f64>, cells: &Cells, blur: f64) -> Option<[f64; 2]> {
     let back = h.try_inverse()?;
     let mut sums = [0.0; 5];
     for sample in samples.iter().step_by(3) {
@@ -274,7 +274,7 @@ struct Round {
 }
 
 fn round(
-    samples: &[Sample],
+    samples: &[PixelSample],
     h: &Matrix3<f64>,
     cells: &Cells,
     (blur, told): (f64, f64),

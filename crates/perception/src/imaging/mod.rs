@@ -5,7 +5,7 @@ mod glass;
 mod noise;
 
 pub use exposure::gather;
-pub use noise::{Purpose, Stream, noise_stream};
+pub use noise::{NoiseStream, Purpose, noise_stream};
 
 use glass::{Glass, between};
 use vocabulary::{CameraModel, Grey, Region};
@@ -30,7 +30,7 @@ impl Default for Optics {
 
 /// What part of the ideal pinhole picture a region of the sensor's picture is made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Source {
+pub struct IdealPicture {
     /// What to draw; starts at (0, 0).
     pub region: Region,
     /// Principal point in it, pixels: the lens's, counted from the region's corner, which may be outside the frame.
@@ -41,7 +41,7 @@ pub struct Source {
 
 /// Makes a sensor's pictures out of ideal ones.
 #[derive(Debug, Clone)]
-pub struct Sensor {
+pub struct ImageSensor {
     optics: Optics,
     glass: Option<Glass>,
     /// Weights of the blur from the middle out.
@@ -54,7 +54,7 @@ pub struct Sensor {
 /// Blur that is wider is cut to this, pixels.
 const WIDEST_BLUR: f64 = 4.0;
 
-impl Sensor {
+impl ImageSensor {
     /// Prepares for pictures through `optics`; blur and noise that are negative or no numbers count as none.
     pub fn new(optics: Optics) -> Self {
         let sigma = if optics.blur > 0.0 { optics.blur.min(WIDEST_BLUR) } else { 0.0 };
@@ -77,7 +77,7 @@ impl Sensor {
     }
 
     /// What part of the ideal picture `region` of the sensor's picture is made from.
-    pub fn source(&self, region: Region) -> Source {
+    pub fn source(&self, region: Region) -> IdealPicture {
         let [mut low, mut high] = self.drawn_in(region);
         if let Some(glass) = &self.glass {
             let mut ideal = [[i32::MAX; 2], [i32::MIN; 2]];
@@ -102,12 +102,12 @@ impl Sensor {
         }
         let size = [0, 1].map(|k| high[k].saturating_sub(low[k]).max(1) as u32);
         let centre = [0, 1].map(|k| self.optics.camera_model.centre[k] - f64::from(low[k]));
-        Source { region: Region { x: 0, y: 0, width: size[0], height: size[1] }, centre, corner: low }
+        IdealPicture { region: Region { x: 0, y: 0, width: size[0], height: size[1] }, centre, corner: low }
     }
 
-    /// Makes `picture` of `region` out of the ideal picture of its [`Sensor::source`]. Leaves it empty if the ideal
+    /// Makes `picture` of `region` out of the ideal picture of its [`ImageSensor::source`]. Leaves it empty if the ideal
     /// picture is not of that size.
-    pub fn expose(&mut self, ideal: &Grey, region: Region, stream: &mut Stream, picture: &mut Grey) {
+    pub fn expose(&mut self, ideal: &Grey, region: Region, stream: &mut NoiseStream, picture: &mut Grey) {
         let source = self.source(region);
         let (width, height) = (ideal.width as usize, ideal.height as usize);
         picture.values.clear();

@@ -22,13 +22,13 @@ pub enum Purpose {
 
 /// A stream of random numbers.
 #[derive(Debug, Clone)]
-pub struct Stream {
+pub struct NoiseStream {
     source: ChaCha8Rng,
 }
 
 /// The stream that belongs to a seed, a robot, a frame and a purpose.
-pub fn noise_stream(seed: u64, robot: usize, frame: u64, purpose: Purpose) -> Stream {
-    Stream::new(seed, robot, frame, purpose)
+pub fn noise_stream(seed: u64, robot: usize, frame: u64, purpose: Purpose) -> NoiseStream {
+    NoiseStream::new(seed, robot, frame, purpose)
 }
 
 /// Steps of the table of the normal distribution.
@@ -44,7 +44,7 @@ static QUANTILES: LazyLock<Vec<f32>> = LazyLock::new(|| {
     nodes.iter().map(|x| (x / deviation) as f32).collect()
 });
 
-impl Stream {
+impl NoiseStream {
     /// See [`noise_stream`].
     pub fn new(seed: u64, robot: usize, frame: u64, purpose: Purpose) -> Self {
         let mut key = [0; 32];

@@ -2,7 +2,7 @@
 
 use super::*;
 
-fn drawn(source: &Source, light: impl Fn(f64, f64) -> f64) -> Grey {
+fn drawn(source: &IdealPicture, light: impl Fn(f64, f64) -> f64) -> Grey {
     let Region { width, height, .. } = source.region;
     let at = |k: u32| {
         let (x, y) = (f64::from(k % width), f64::from(k / width));
@@ -12,7 +12,7 @@ fn drawn(source: &Source, light: impl Fn(f64, f64) -> f64) -> Grey {
 }
 
 fn taken(optics: Optics, region: Region, light: impl Fn(f64, f64) -> f64) -> Grey {
-    let mut sensor = Sensor::new(optics);
+    let mut sensor = ImageSensor::new(optics);
     let ideal = drawn(&sensor.source(region), light);
     let mut picture = Grey::default();
     sensor.expose(&ideal, region, &mut noise_stream(1, 0, 0, Purpose::Pixels), &mut picture);
@@ -90,7 +90,7 @@ fn a_region_is_a_part_of_the_whole() {
 
 #[test]
 fn an_ideal_picture_of_the_wrong_size_gives_none() {
-    let mut sensor = Sensor::new(Optics::default());
+    let mut sensor = ImageSensor::new(Optics::default());
     let mut picture = Grey::default();
     let mut stream = noise_stream(1, 0, 0, Purpose::Pixels);
     sensor.expose(&Grey::default(), REGION, &mut stream, &mut picture);

@@ -1,6 +1,6 @@
 //! Poses from exact and from noisy corners, against bounds and an oracle.
 
-use super::trial::{View, Views};
+use super::trial::{PoseView, Views};
 use super::*;
 use proptest::prelude::*;
 
@@ -34,7 +34,7 @@ fn a_distorting_lens_is_undone() {
     for _ in 0..100 {
         let mut view = views.next(1.0..4.0);
         view.rig.camera_model.distortion = [-0.28, 0.09, 1e-3, -7e-4, -0.01];
-        let view = View::of(view.rig, view.pose);
+        let view = PoseView::of(view.rig, view.pose);
         if !view.faces.is_empty() {
             let found = locate(&view.rig, &view.seen(), 0.1, &FLAT, None).expect("a pose");
             assert!(off(&found.pose, &view.pose) < 1e-8);
@@ -52,7 +52,7 @@ fn calibration(seed: u64, prior: Prior, trials: usize) -> (f64, f64) {
         let (x, y) = (view.pose.x, view.pose.y);
         let z = prior.height.hypot(prior.tilt * x.hypot(y)) * views.normal();
         let body = Rigid::turned([x, y, z], view.pose.heading, pitch, roll);
-        let view = View::tilted(view.rig, view.pose, &body);
+        let view = PoseView::tilted(view.rig, view.pose, &body);
         if view.faces.len() < 2 {
             continue;
         }
@@ -184,11 +184,11 @@ fn posit_and_sqpnp_agree() {
 fn a_sighting_has_the_spread_of_its_noise() {
     let mut views = Views::seeded(51);
     let view = views.next(2.5..2.6);
-    let view = View::of(view.rig, Pose::new(2.4, 0.3, 0.9));
+    let view = PoseView::of(view.rig, Pose::new(2.4, 0.3, 0.9));
     let truth = Relative::between(view.pose, Pose::default());
     let (mut squares, mut said, n) = ([0.0; 3], [0.0; 3], 1500.0);
     for _ in 0..1500 {
-        let noisy = View::of(view.rig, view.pose).noisy(0.15, &mut views);
+        let noisy = PoseView::of(view.rig, view.pose).noisy(0.15, &mut views);
         let found = locate(&noisy.rig, &noisy.seen(), 0.15, &FLAT, None).expect("a pose");
         let (relative, deviation) = found.measurement();
         let errors = [

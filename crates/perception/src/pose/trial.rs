@@ -1,15 +1,15 @@
 //! Random views of the paper's shell, for tests.
 
 use super::{Match, Rig, SeenFace};
-use crate::imaging::{Purpose, Stream};
+use crate::imaging::{NoiseStream, Purpose};
 use std::ops::Range;
 use vocabulary::{Body, CameraModel, CameraMount, FACES, Pose, Rigid, Shell, wrap};
 
 pub(crate) struct Views {
-    stream: Stream,
+    stream: NoiseStream,
 }
 
-pub(crate) struct View {
+pub(crate) struct PoseView {
     pub(crate) rig: Rig,
     pub(crate) pose: Pose,
     /// Leader's body in the camera.
@@ -20,7 +20,7 @@ pub(crate) struct View {
 
 impl Views {
     pub(crate) fn seeded(seed: u64) -> Self {
-        Self { stream: Stream::new(seed, 0, 0, Purpose::Pixels) }
+        Self { stream: NoiseStream::new(seed, 0, 0, Purpose::Pixels) }
     }
 
     pub(crate) fn uniform(&mut self, range: Range<f64>) -> f64 {
@@ -33,7 +33,7 @@ impl Views {
 
     /// A leader at a distance from `range` (m), somewhere ahead, with any heading; the camera turned towards it but for
     /// a few degrees.
-    pub(crate) fn next(&mut self, range: Range<f64>) -> View {
+    pub(crate) fn next(&mut self, range: Range<f64>) -> PoseView {
         let (distance, bearing) = (self.uniform(range), self.uniform(-0.8..0.8));
         let pose =
             Pose::new(distance * bearing.cos(), distance * bearing.sin(), wrap(self.uniform(-3.1..3.1)));
@@ -41,11 +41,11 @@ impl Views {
         let body_from_camera = CameraMount::fitting(&Body::default()).body_from_camera(pan);
         let rig =
             Rig { shell: Shell::PAPER.tagged(3), camera_model: CameraModel::default(), body_from_camera };
-        View::of(rig, pose)
+        PoseView::of(rig, pose)
     }
 }
 
-impl View {
+impl PoseView {
     pub(crate) fn of(rig: Rig, pose: Pose) -> Self {
         let body = Rigid::turned([pose.x, pose.y, 0.0], pose.heading, 0.0, 0.0);
         Self::tilted(rig, pose, &body)
@@ -86,7 +86,7 @@ impl View {
     }
 }
 
-pub(crate) fn matches_of(view: &View) -> Vec<Match> {
+pub(crate) fn matches_of(view: &PoseView) -> Vec<Match> {
     view.faces
         .iter()
         .flat_map(|(face, corners)| {

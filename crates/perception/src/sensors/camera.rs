@@ -1,8 +1,8 @@
 //! Pictures: where to look, what the sensor makes of the light, and the tags in it.
 
-use super::{Look, SensorConfig, all_faces, pan};
+use super::{Exposure, SensorConfig, all_faces, pan};
 use crate::detect::{Locus, recognise_expected};
-use crate::imaging::{Optics, Purpose, Sensor, gather, noise_stream};
+use crate::imaging::{ImageSensor, Optics, Purpose, gather, noise_stream};
 use crate::pose::SeenFace;
 use vocabulary::{CameraModel, CameraRenderer, FACES, Grey, Region, Rigid, Shot, Snapshot};
 
@@ -40,7 +40,7 @@ impl Default for CameraSettings {
 }
 
 /// What was found in one picture.
-pub(super) struct Seen {
+pub(super) struct CameraDetection {
     pub(super) region: Region,
     pub(super) faces: Vec<SeenFace>,
 }
@@ -49,14 +49,14 @@ pub(super) struct Seen {
 #[derive(Default)]
 pub(super) struct CameraPipeline {
     /// One for each thread.
-    benches: Vec<Bench>,
+    benches: Vec<DetectorBench>,
 }
 
 /// Where one picture after the other is developed.
 #[derive(Default)]
-struct Bench {
+struct DetectorBench {
     /// By lens: robots may have different ones.
-    sensors: Vec<Sensor>,
+    sensors: Vec<ImageSensor>,
     detector: Locus,
     picture: Grey,
 }
@@ -76,23 +76,23 @@ impl std::fmt::Debug for CameraPipeline {
 
 impl CameraPipeline {
     /// As many benches as threads can work on `pictures` at once, at least one.
-    fn benches(&mut self, pictures: usize) -> &mut [Bench] {
+    fn benches(&mut self, pictures: usize) -> &mut [DetectorBench] {
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         let wanted = threads.min(pictures).max(1);
         while self.benches.len() < wanted {
-            self.benches.push(Bench::default());
+            self.benches.push(DetectorBench::default());
         }
         &mut self.benches[..wanted]
     }
 }
 
-impl Bench {
+impl DetectorBench {
     /// The sensor behind a lens.
-    fn sensor(&mut self, camera_model: &CameraModel, model: &CameraSettings) -> &mut Sensor {
+    fn sensor(&mut self, camera_model: &CameraModel, model: &CameraSettings) -> &mut ImageSensor {
         let optics = Optics { camera_model: *camera_model, blur: model.blur, noise: model.noise };
         let known = self.sensors.iter().position(|sensor| *sensor.optics() == optics);
         let index = known.unwrap_or_else(|| {
-            self.sensors.push(Sensor::new(optics));
+            self.sensors.push(ImageSensor::new(optics));
             self.sensors.len() - 1
         });
         &mut self.sensors[index]
@@ -103,9 +103,9 @@ impl Bench {
         &mut self,
         model: &CameraSettings,
         sensor_config: &SensorConfig,
-        look: &Look<'_>,
+        look: &Exposure<'_>,
         (region, light): (Region, &Grey),
-    ) -> Seen {
+    ) -> CameraDetection {
         let mut random = noise_stream(sensor_config.seed, look.follower, look.number, Purpose::Pixels);
         let mut picture = std::mem::take(&mut self.picture);
         let sensor = self.sensor(&sensor_config.kits[look.follower].camera_model, model);
@@ -117,7 +117,7 @@ impl Bench {
             recognise_expected(&mut self.detector, (&picture, region), &optics, &shell, expected)
         });
         self.picture = picture;
-        Seen { region, faces }
+        CameraDetection { region, faces }
     }
 }
 
@@ -134,22 +134,22 @@ impl CameraSettings {
     pub(super) fn see(
         &self,
         sensor_config: &SensorConfig,
-        looks: &[&Look<'_>],
+        looks: &[&Exposure<'_>],
         period: (&Snapshot, &Snapshot),
         (eyes, camera_pipeline): (&mut dyn CameraRenderer, &mut CameraPipeline),
-    ) -> Result<Vec<Seen>, String> {
+    ) -> Result<Vec<CameraDetection>, String> {
         let regions: Vec<Region> = looks.iter().map(|look| self.region(sensor_config, look)).collect();
         let benches = camera_pipeline.benches(looks.len());
         let pictures = self.light(sensor_config, looks, &regions, period, (eyes, &mut benches[0]))?;
         let jobs: Vec<_> = looks.iter().zip(regions.into_iter().zip(&pictures)).collect();
         let threads = benches.len();
-        let mut found: Vec<Option<Seen>> = jobs.iter().map(|_| None).collect();
+        let mut found: Vec<Option<CameraDetection>> = jobs.iter().map(|_| None).collect();
         // Every thread takes every so manieth picture; who develops it makes no difference to what is found.
         std::thread::scope(|scope| {
             let mut work = Vec::new();
             for (first, bench) in benches.iter_mut().enumerate() {
                 let own = jobs.iter().enumerate().skip(first).step_by(threads);
-                let task = move || -> Vec<(usize, Seen)> {
+                let task = move || -> Vec<(usize, CameraDetection)> {
                     own.map(|(k, (look, (region, light)))| {
                         (k, bench.develop(self, sensor_config, look, (*region, light)))
                     })
@@ -173,13 +173,13 @@ impl CameraSettings {
     fn light(
         &self,
         sensor_config: &SensorConfig,
-        looks: &[&Look<'_>],
+        looks: &[&Exposure<'_>],
         regions: &[Region],
         (before, after): (&Snapshot, &Snapshot),
-        (eyes, bench): (&mut dyn CameraRenderer, &mut Bench),
+        (eyes, bench): (&mut dyn CameraRenderer, &mut DetectorBench),
     ) -> Result<Vec<Grey>, String> {
         let mut shots = |snapshot: &Snapshot| -> Vec<Shot> {
-            let shot = |(look, region): (&&Look<'_>, &Region)| {
+            let shot = |(look, region): (&&Exposure<'_>, &Region)| {
                 let kit = &sensor_config.kits[look.follower];
                 let source = bench.sensor(&kit.camera_model, self).source(*region);
                 Shot {
@@ -217,7 +217,7 @@ impl CameraSettings {
     }
 
     /// Where the leader is expected to be seen; the whole picture where that is not known.
-    fn region(&self, sensor_config: &SensorConfig, look: &Look<'_>) -> Region {
+    fn region(&self, sensor_config: &SensorConfig, look: &Exposure<'_>) -> Region {
         let camera_model = &sensor_config.kits[look.follower].camera_model;
         let whole = Region::whole(camera_model);
         if self.whole_frames || !look.seen {
@@ -235,7 +235,7 @@ fn checked(pictures: &[Grey], wanted: usize) -> Result<(), String> {
 }
 
 /// The leader's frame in the camera's, as the follower expects it.
-fn camera_from_expected(sensor_config: &SensorConfig, look: &Look<'_>) -> Option<Rigid> {
+fn camera_from_expected(sensor_config: &SensorConfig, look: &Exposure<'_>) -> Option<Rigid> {
     let pose = pan::leader_pose(&look.expected?);
     let body_from_leader = Rigid::turned([pose.x, pose.y, 0.0], pose.heading, 0.0, 0.0);
     let pan = look.snapshot.robots.get(look.follower)?.camera_pan;
@@ -244,7 +244,7 @@ fn camera_from_expected(sensor_config: &SensorConfig, look: &Look<'_>) -> Option
 }
 
 /// How many faces can surely be read where the leader is expected; `None` where that is not known.
-fn readable(sensor_config: &SensorConfig, look: &Look<'_>) -> Option<usize> {
+fn readable(sensor_config: &SensorConfig, look: &Exposure<'_>) -> Option<usize> {
     let (leader, follower) = (sensor_config.kits.get(look.leader)?, sensor_config.kits.get(look.follower)?);
     let (shell, from_leader) = (leader.shell?, camera_from_expected(sensor_config, look)?);
     let surely = |face: usize| {
@@ -259,7 +259,7 @@ fn readable(sensor_config: &SensorConfig, look: &Look<'_>) -> Option<usize> {
 const SURELY: (f64, f64) = (0.55, 2.0);
 
 /// Smallest and largest column and row of the leader's tags where the follower expects them.
-fn expected(sensor_config: &SensorConfig, look: &Look<'_>) -> Option<[[f64; 2]; 2]> {
+fn expected(sensor_config: &SensorConfig, look: &Exposure<'_>) -> Option<[[f64; 2]; 2]> {
     let camera_from_leader = camera_from_expected(sensor_config, look)?;
     let (leader, follower) = (sensor_config.kits.get(look.leader)?, sensor_config.kits.get(look.follower)?);
     let shell = leader.shell?;

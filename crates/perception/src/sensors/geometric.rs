@@ -1,7 +1,7 @@
 //! Tags as a camera would see them, calculated: no picture is drawn.
 
-use super::{Look, SensorConfig, all_faces, sightline::hidden};
-use crate::imaging::Stream;
+use super::{Exposure, SensorConfig, all_faces, sightline::hidden};
+use crate::imaging::NoiseStream;
 use crate::pose::SeenFace;
 
 /// Pixels that a cell needs, seen from ahead and at the steepest angle at which a tag is still read.
@@ -14,9 +14,9 @@ const MARGIN: f64 = 4.0;
 /// Corners of the tags that can be read, each coordinate with an error of `pixel_noise` pixels standard deviation.
 pub(super) fn faces(
     sensor_config: &SensorConfig,
-    look: &Look<'_>,
+    look: &Exposure<'_>,
     pixel_noise: f64,
-    random: &mut Stream,
+    random: &mut NoiseStream,
 ) -> Vec<SeenFace> {
     let (Some(leader), Some(follower)) =
         (sensor_config.kits.get(look.leader), sensor_config.kits.get(look.follower))

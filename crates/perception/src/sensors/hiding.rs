@@ -1,6 +1,6 @@
 //! What is hidden from whom, for those who know the truth.
 
-use super::{Look, SensorConfig, sightline};
+use super::{Exposure, SensorConfig, sightline};
 use vocabulary::Snapshot;
 
 impl SensorConfig {
@@ -13,7 +13,7 @@ impl SensorConfig {
         from: [f64; 3],
         to: [f64; 3],
     ) -> bool {
-        let look = Look {
+        let look = Exposure {
             edge: 0,
             leader: watched,
             follower: watcher,

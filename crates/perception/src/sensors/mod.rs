@@ -26,7 +26,7 @@ use vocabulary::{
 
 /// Where the looks of one follower come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Source {
+pub enum SensorKind {
     /// It is told the truth at every instant, and does not look.
     Truth,
     /// The truth with errors.
@@ -44,7 +44,7 @@ pub enum Source {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensor {
     /// Where its looks come from.
-    pub source: Source,
+    pub source: SensorKind,
     /// Looks a second.
     pub rate: f64,
     /// From a look until the follower has it, s.
@@ -57,7 +57,7 @@ pub struct Sensor {
 
 /// What a robot is seen by and sees with.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Kit {
+pub(crate) struct EdgeHardware {
     pub(crate) body: Body,
     pub(crate) shell: Option<Shell>,
     pub(crate) camera_mount: CameraMount,
@@ -69,7 +69,7 @@ pub(crate) struct Kit {
 pub struct SensorConfig {
     edges: Vec<Edge>,
     sensors: Vec<Sensor>,
-    pub(crate) kits: Vec<Kit>,
+    pub(crate) kits: Vec<EdgeHardware>,
     pub(crate) props: Vec<Prop>,
     pub(crate) terrain: Option<std::sync::Arc<Terrain>>,
     camera: CameraSettings,
@@ -98,7 +98,7 @@ struct EdgeWatch {
 
 /// What a follower believes, for its camera to follow.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Belief {
+pub struct LeaderPrediction {
     /// Where it believes itself to be relative to its leader.
     pub relative: Option<Relative>,
     /// How well it knows.
@@ -106,7 +106,7 @@ pub struct Belief {
 }
 
 /// One look as it is taken.
-pub(crate) struct Look<'a> {
+pub(crate) struct Exposure<'a> {
     pub(crate) edge: usize,
     pub(crate) leader: usize,
     pub(crate) follower: usize,
@@ -138,7 +138,7 @@ impl SensorConfig {
         seed: u64,
     ) -> Self {
         debug_assert_eq!(edges.len(), sensors.len());
-        let kit = |m: &RobotInfo| Kit {
+        let kit = |m: &RobotInfo| EdgeHardware {
             body: m.body,
             shell: m.shell,
             camera_mount: m.camera_mount,
@@ -162,12 +162,12 @@ impl SensorConfig {
 
     /// Whether any follower looks at all.
     pub fn look(&self) -> bool {
-        self.sensors.iter().any(|sensor| sensor.source != Source::Truth)
+        self.sensors.iter().any(|sensor| sensor.source != SensorKind::Truth)
     }
 
     /// Whether any follower needs pictures.
     pub fn need_eyes(&self) -> bool {
-        self.sensors.iter().any(|sensor| sensor.source == Source::Camera)
+        self.sensors.iter().any(|sensor| sensor.source == SensorKind::Camera)
     }
 
     /// The state before the first look: cameras point at the leaders as they stand.
@@ -200,7 +200,7 @@ impl SensorConfig {
         sensor_state: &mut SensorState,
         (before, after): (&Snapshot, &Snapshot),
         interpolant: &(impl StepInterpolant + ?Sized),
-        beliefs: &[Belief],
+        beliefs: &[LeaderPrediction],
         mut eyes: Option<&mut (dyn CameraRenderer + '_)>,
     ) -> Result<(), String> {
         while let Some((instant, due)) = self.next_looks(sensor_state, after.time) {
@@ -210,9 +210,9 @@ impl SensorConfig {
                 1.0
             };
             let snapshot = self.instant(sensor_state, (before, after), interpolant, share);
-            let looks: Vec<Look<'_>> = due
+            let looks: Vec<Exposure<'_>> = due
                 .iter()
-                .map(|&edge| Look {
+                .map(|&edge| Exposure {
                     edge,
                     leader: self.edges[edge].leader,
                     follower: self.edges[edge].follower,
@@ -246,7 +246,7 @@ impl SensorConfig {
     fn next_looks(&self, sensor_state: &SensorState, until: f64) -> Option<(f64, Vec<usize>)> {
         let due = |edge: usize| {
             let sensor = &self.sensors[edge];
-            (sensor.source != Source::Truth).then(|| sensor_state.edges[edge].looks as f64 / sensor.rate)
+            (sensor.source != SensorKind::Truth).then(|| sensor_state.edges[edge].looks as f64 / sensor.rate)
         };
         let all = 0..self.sensors.len();
         let instant = all.clone().filter_map(due).fold(f64::INFINITY, f64::min);
@@ -282,9 +282,9 @@ impl SensorConfig {
     fn frame(
         &self,
         sensor_state: &mut SensorState,
-        look: &Look<'_>,
+        look: &Exposure<'_>,
         stamp: f64,
-        picture: Option<camera::Seen>,
+        picture: Option<camera::CameraDetection>,
     ) -> MeasurementRecord {
         let sensor = &self.sensors[look.edge];
         let robot = |index: usize| &look.snapshot.robots[index];
@@ -305,26 +305,26 @@ impl SensorConfig {
         }
         let mut random = stream(Purpose::Errors);
         match (sensor.source, picture) {
-            (Source::Noise(model), _) => {
+            (SensorKind::Noise(model), _) => {
                 let drift = &mut sensor_state.edges[look.edge].drift;
                 frame.measurement = model.measurement(stamp, &truth, 1.0 / sensor.rate, drift, &mut random);
                 frame.outcome = Outcome::Used;
             }
-            (Source::Geometric { pixel_noise }, _) => {
+            (SensorKind::Geometric { pixel_noise }, _) => {
                 let faces = geometric::faces(self, look, pixel_noise, &mut random);
                 self.locate(look, &faces, pixel_noise, &mut frame);
             }
-            (Source::Camera, Some(seen)) => {
+            (SensorKind::Camera, Some(seen)) => {
                 frame.region = seen.region;
                 self.locate(look, &seen.faces, camera::CORNER_NOISE, &mut frame);
             }
-            (Source::Camera | Source::Truth, _) => {}
+            (SensorKind::Camera | SensorKind::Truth, _) => {}
         }
         frame
     }
 
     /// The pose of the leader from the faces seen.
-    fn locate(&self, look: &Look<'_>, faces: &[SeenFace], deviation: f64, frame: &mut MeasurementRecord) {
+    fn locate(&self, look: &Exposure<'_>, faces: &[SeenFace], deviation: f64, frame: &mut MeasurementRecord) {
         for seen in faces {
             if let Some(tag) = frame.tags.get_mut(seen.face) {
                 *tag = Some(seen.corners);
@@ -340,7 +340,7 @@ impl SensorConfig {
     }
 
     /// What the follower looks at and with.
-    fn rig(&self, look: &Look<'_>) -> Option<Rig> {
+    fn rig(&self, look: &Exposure<'_>) -> Option<Rig> {
         let kit = self.kits.get(look.follower)?;
         let pan = look.snapshot.robots.get(look.follower)?.camera_pan;
         Some(Rig {
@@ -353,16 +353,16 @@ impl SensorConfig {
     /// Takes the pictures of all looks that need one; `None` for those that do not.
     fn pictures(
         &self,
-        looks: &[Look<'_>],
+        looks: &[Exposure<'_>],
         period: (&Snapshot, &Snapshot),
         (eyes, camera_pipeline): (Option<&mut (dyn CameraRenderer + '_)>, &mut CameraPipeline),
-    ) -> Result<Vec<Option<camera::Seen>>, String> {
-        let by_camera = |look: &Look<'_>| self.sensors[look.edge].source == Source::Camera;
+    ) -> Result<Vec<Option<camera::CameraDetection>>, String> {
+        let by_camera = |look: &Exposure<'_>| self.sensors[look.edge].source == SensorKind::Camera;
         if !looks.iter().any(by_camera) {
             return Ok(looks.iter().map(|_| None).collect());
         }
         let eyes = eyes.ok_or("cameras are to take pictures, and nobody is there to draw them")?;
-        let wanted: Vec<&Look<'_>> = looks.iter().filter(|look| by_camera(look)).collect();
+        let wanted: Vec<&Exposure<'_>> = looks.iter().filter(|look| by_camera(look)).collect();
         let mut seen = self.camera.see(self, &wanted, period, (eyes, camera_pipeline))?.into_iter();
         Ok(looks.iter().map(|look| if by_camera(look) { seen.next() } else { None }).collect())
     }
@@ -382,7 +382,7 @@ impl SensorConfig {
     }
 
     /// Turns all cameras for a period to come towards where leaders are believed to be.
-    pub fn turn_cameras(&self, sensor_state: &mut SensorState, beliefs: &[Belief], period: f64) {
+    pub fn turn_cameras(&self, sensor_state: &mut SensorState, beliefs: &[LeaderPrediction], period: f64) {
         for ((edge, state), belief) in self.edges.iter().zip(&mut sensor_state.edges).zip(beliefs) {
             state.pan.turn(belief, self.kits[edge.follower].camera_mount.forward, &self.camera, period);
         }
@@ -394,7 +394,7 @@ impl SensorConfig {
     }
 
     /// The shell's frames as a follower's camera sees them.
-    pub(crate) fn camera_from_leader(&self, look: &Look<'_>) -> Option<Rigid> {
+    pub(crate) fn camera_from_leader(&self, look: &Exposure<'_>) -> Option<Rigid> {
         let follower = look.snapshot.robots.get(look.follower)?;
         let leader = look.snapshot.robots.get(look.leader)?;
         let camera_mount = self.kits.get(look.follower)?.camera_mount;

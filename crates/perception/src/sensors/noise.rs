@@ -1,6 +1,6 @@
 //! The truth with errors.
 
-use crate::imaging::Stream;
+use crate::imaging::NoiseStream;
 use vocabulary::{Measurement, Relative, wrap};
 
 /// Errors of looks at the truth, each of [distance in m, bearing in rad, view angle in rad].
@@ -29,7 +29,7 @@ impl NoiseModel {
         truth: &Relative,
         interval: f64,
         drift: &mut Drift,
-        random: &mut Stream,
+        random: &mut NoiseStream,
     ) -> Measurement {
         let fresh = [0, 1, 2].map(|_| f64::from(random.normal()));
         let keep = if self.correlation > 0.0 { (-interval / self.correlation).exp() } else { 0.0 };

@@ -1,6 +1,6 @@
 //! The camera on its mast: it turns towards the leader, and searches when it has lost it.
 
-use super::{Belief, CameraSettings};
+use super::{CameraSettings, LeaderPrediction};
 use vocabulary::{Pose, Relative, TrackingState, wrap};
 
 /// Where a camera points over the period that has passed, and how it searches.
@@ -34,7 +34,13 @@ impl Pan {
     }
 
     /// Turns for a period of `period` s, no faster and no farther than it can.
-    pub(super) fn turn(&mut self, belief: &Belief, forward: f64, camera: &CameraSettings, period: f64) {
+    pub(super) fn turn(
+        &mut self,
+        belief: &LeaderPrediction,
+        forward: f64,
+        camera: &CameraSettings,
+        period: f64,
+    ) {
         let most = camera.pan_rate * period;
         self.from = self.to;
         let wanted = match (belief.relative, belief.sight) {
@@ -90,11 +96,21 @@ mod tests {
         let camera = CameraSettings { pan_rate: 1.0, pan_max: 1.0, ..CameraSettings::default() };
         let mut pan = Pan::at(0.0, &camera);
         let ahead = Relative { distance: 2.0, bearing: -2.0, view_angle: std::f64::consts::PI - 0.5 };
-        pan.turn(&Belief { relative: Some(ahead), sight: TrackingState::Tracking }, 0.0, &camera, 0.1);
+        pan.turn(
+            &LeaderPrediction { relative: Some(ahead), sight: TrackingState::Tracking },
+            0.0,
+            &camera,
+            0.1,
+        );
         assert!((pan.between(1.0) + 0.1).abs() < 1e-12, "{pan:?}");
         let mut seen = [0.0_f64; 2];
         for _ in 0..100 {
-            pan.turn(&Belief { relative: Some(ahead), sight: TrackingState::Lost }, 0.0, &camera, 0.1);
+            pan.turn(
+                &LeaderPrediction { relative: Some(ahead), sight: TrackingState::Lost },
+                0.0,
+                &camera,
+                0.1,
+            );
             assert!((pan.between(1.0) - pan.between(0.0)).abs() < 0.1 + 1e-12);
             seen = [seen[0].min(pan.between(1.0)), seen[1].max(pan.between(1.0))];
         }

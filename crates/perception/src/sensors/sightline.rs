@@ -1,10 +1,15 @@
 //! What stands between a camera and a tag.
 
-use super::{Kit, Look, SensorConfig};
+use super::{EdgeHardware, Exposure, SensorConfig};
 use vocabulary::{Placement, Rigid, Solid};
 
 /// Whether anything but the two robots concerned hides `to` from `from`, both in the world's frame, m.
-pub(super) fn hidden(sensor_config: &SensorConfig, look: &Look<'_>, from: [f64; 3], to: [f64; 3]) -> bool {
+pub(super) fn hidden(
+    sensor_config: &SensorConfig,
+    look: &Exposure<'_>,
+    from: [f64; 3],
+    to: [f64; 3],
+) -> bool {
     let others = look.snapshot.robots.iter().zip(&sensor_config.kits).enumerate();
     let mut others = others.filter(|(index, _)| *index != look.leader && *index != look.follower);
     if others.any(|(_, (robot, kit))| robot_hides(kit, &robot.world_from_body(), from, to)) {
@@ -27,7 +32,7 @@ pub(super) fn hidden(sensor_config: &SensorConfig, look: &Look<'_>, from: [f64; 
 const GROUND_STEPS: u32 = 40;
 
 /// A robot is a box for its body and a cylinder for its shell.
-fn robot_hides(kit: &Kit, frame: &Rigid, from: [f64; 3], to: [f64; 3]) -> bool {
+fn robot_hides(kit: &EdgeHardware, frame: &Rigid, from: [f64; 3], to: [f64; 3]) -> bool {
     let back = frame.inverse();
     let (a, b) = (back.apply(from), back.apply(to));
     let body = kit.body;

@@ -1,5 +1,5 @@
 //! Pictures of a shell with tags, cast ray by ray: 8 by 8 of them to a pixel, in linear light.
-use perception::imaging::{Optics, Purpose, Sensor, Source, Stream, noise_stream};
+use perception::imaging::{IdealPicture, ImageSensor, NoiseStream, Optics, Purpose, noise_stream};
 use perception::pose::Rig;
 use vocabulary::{
     Body, CameraModel, CameraMount, FACES, Grey, Pose, Region, Rigid, Shell, TAG_CELLS, tag_cell, wrap,
@@ -22,7 +22,7 @@ pub(crate) struct Scene {
 }
 
 pub(crate) struct Scenes {
-    stream: Stream,
+    stream: NoiseStream,
     pub(crate) camera_model: CameraModel,
 }
 
@@ -132,7 +132,7 @@ impl Scene {
     }
 
     /// The ideal picture a sensor needs.
-    pub(crate) fn ideal(&self, source: &Source) -> Grey {
+    pub(crate) fn ideal(&self, source: &IdealPicture) -> Grey {
         let shell = &self.rig.shell;
         let frames: Vec<_> = (0..FACES)
             .map(|face| self.camera_from_body.after(&shell.body_from_face(face)).inverse())
@@ -188,7 +188,7 @@ impl Scene {
     }
 
     /// What a sensor makes of it.
-    pub(crate) fn picture(&self, sensor: &mut Sensor, region: Region, frame: u64) -> Grey {
+    pub(crate) fn picture(&self, sensor: &mut ImageSensor, region: Region, frame: u64) -> Grey {
         let ideal = self.ideal(&sensor.source(region));
         let mut picture = Grey::default();
         sensor.expose(&ideal, region, &mut noise_stream(1, 0, frame, Purpose::Pixels), &mut picture);
@@ -196,6 +196,6 @@ impl Scene {
     }
 }
 
-pub(crate) fn sensor(camera_model: CameraModel) -> Sensor {
-    Sensor::new(Optics { camera_model, ..Optics::default() })
+pub(crate) fn sensor(camera_model: CameraModel) -> ImageSensor {
+    ImageSensor::new(Optics { camera_model, ..Optics::default() })
 }

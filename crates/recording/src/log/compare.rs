@@ -1,6 +1,6 @@
 //! Holds two logs against each other, moment by moment and bit by bit.
 
-use super::messages::Touch;
+use super::messages::ContactRecord;
 use super::read::Log;
 use super::record::{self, Fields, Record};
 use crate::Error;
@@ -109,7 +109,7 @@ fn bits(record: &mut StepRecord, out: &mut Vec<u8>) {
         record::write(prop, out);
     }
     for contact in &record.contacts {
-        record::write(&mut Touch { contact: *contact, ..Touch::default() }, out);
+        record::write(&mut ContactRecord { contact: *contact, ..ContactRecord::default() }, out);
     }
     for frame in &mut record.frames {
         out.extend(frame.edge.to_le_bytes());
@@ -144,7 +144,9 @@ impl Comparison {
                 *known = peak;
             }
             if !before && self.first.is_none() {
-                let text = |q: Option<&Quantity>| q.map_or_else(|| "not there".to_owned(), Quantity::text);
+                let text = |q: Option<&ComparedQuantity>| {
+                    q.map_or_else(|| "not there".to_owned(), ComparedQuantity::text)
+                };
                 self.first = Some(Difference {
                     sample: self.samples,
                     time,
@@ -159,11 +161,11 @@ impl Comparison {
 }
 
 /// How far two are apart; `None` where they are the same bit for bit.
-fn apart(a: Option<&Quantity>, b: Option<&Quantity>) -> Option<f64> {
+fn apart(a: Option<&ComparedQuantity>, b: Option<&ComparedQuantity>) -> Option<f64> {
     let (Some(a), Some(b)) = (a, b) else { return Some(f64::INFINITY) };
     match (&a.value, &b.value) {
-        (Value::Number(p), Value::Number(q)) if p.to_bits() == q.to_bits() => None,
-        (Value::Number(p), Value::Number(q)) => {
+        (ComparedValue::Number(p), ComparedValue::Number(q)) if p.to_bits() == q.to_bits() => None,
+        (ComparedValue::Number(p), ComparedValue::Number(q)) => {
             let angle = a.name.ends_with("_rad");
             let difference = if angle { wrap(p - q) } else { p - q }.abs();
             Some(if difference.is_nan() { f64::INFINITY } else { difference })
@@ -173,32 +175,32 @@ fn apart(a: Option<&Quantity>, b: Option<&Quantity>) -> Option<f64> {
 }
 
 #[derive(Debug, PartialEq)]
-enum Value {
+enum ComparedValue {
     Number(f64),
     Word(String),
 }
 
-struct Quantity {
+struct ComparedQuantity {
     of: String,
     name: &'static str,
     place: Place,
-    value: Value,
+    value: ComparedValue,
 }
 
-impl Quantity {
+impl ComparedQuantity {
     fn text(&self) -> String {
         match &self.value {
-            Value::Number(number) => number.to_string(),
-            Value::Word(word) => word.clone(),
+            ComparedValue::Number(number) => number.to_string(),
+            ComparedValue::Word(word) => word.clone(),
         }
     }
 }
 
 /// All quantities of a moment, by edge, robot, prop, contact and look.
-fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<Quantity> {
+fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     let mut all = Collector { of: "sample".to_owned(), table: 0, field: 0, found: vec![] };
     let mut record = record.clone();
-    all.add("time_s", Value::Number(record.snapshot.time));
+    all.add("time_s", ComparedValue::Number(record.snapshot.time));
     let name = |robot: usize| fleet.robots.get(robot).map_or("?", |member| &*member.name);
     let pair = |edge: usize| {
         fleet
@@ -219,7 +221,7 @@ fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<Quantity> {
     for contact in &record.contacts {
         let [first, second] = contact.things.map(|thing| fleet.name(thing).to_owned());
         let of = format!("contact of {first} and {second}");
-        all.collect(4, of, &mut Touch { contact: *contact, names: [first, second] });
+        all.collect(4, of, &mut ContactRecord { contact: *contact, names: [first, second] });
     }
     for frame in &mut record.frames {
         all.collect(5, format!("look of {}", pair(frame.edge)), frame);
@@ -231,7 +233,7 @@ struct Collector {
     of: String,
     table: usize,
     field: usize,
-    found: Vec<Quantity>,
+    found: Vec<ComparedQuantity>,
 }
 
 impl Collector {
@@ -241,15 +243,20 @@ impl Collector {
         let _ = record.list(self);
     }
 
-    fn add(&mut self, name: &'static str, value: Value) {
-        self.found.push(Quantity { of: self.of.clone(), name, place: (self.table, self.field), value });
+    fn add(&mut self, name: &'static str, value: ComparedValue) {
+        self.found.push(ComparedQuantity {
+            of: self.of.clone(),
+            name,
+            place: (self.table, self.field),
+            value,
+        });
         self.field += 1;
     }
 }
 
 impl Fields for Collector {
     fn number(&mut self, name: &'static str, value: &mut f64) -> Option<()> {
-        self.add(name, Value::Number(*value));
+        self.add(name, ComparedValue::Number(*value));
         Some(())
     }
 
@@ -257,28 +264,28 @@ impl Fields for Collector {
         let field = self.field;
         for value in values {
             self.field = field;
-            self.add(name, Value::Number(*value));
+            self.add(name, ComparedValue::Number(*value));
         }
         Some(())
     }
 
     fn series(&mut self, name: &'static str, values: &mut Vec<f64>) -> Option<()> {
-        self.add(name, Value::Word(format!("{values:?}")));
+        self.add(name, ComparedValue::Word(format!("{values:?}")));
         Some(())
     }
 
     fn count(&mut self, name: &'static str, value: &mut u64) -> Option<()> {
-        self.add(name, Value::Number(*value as f64));
+        self.add(name, ComparedValue::Number(*value as f64));
         Some(())
     }
 
     fn flag(&mut self, name: &'static str, value: &mut bool) -> Option<()> {
-        self.add(name, Value::Word(value.to_string()));
+        self.add(name, ComparedValue::Word(value.to_string()));
         Some(())
     }
 
     fn text(&mut self, name: &'static str, value: &mut String) -> Option<()> {
-        self.add(name, Value::Word(value.clone()));
+        self.add(name, ComparedValue::Word(value.clone()));
         Some(())
     }
 
@@ -289,7 +296,7 @@ impl Fields for Collector {
         all: &[(T, &'static str)],
     ) -> Option<()> {
         let word = all.iter().find(|(one, _)| one == value).map_or("?", |(_, word)| word);
-        self.add(name, Value::Word(word.to_owned()));
+        self.add(name, ComparedValue::Word(word.to_owned()));
         Some(())
     }
 

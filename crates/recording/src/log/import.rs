@@ -4,11 +4,11 @@
 //! log of ours in a file without a name, and read from there: a moment that comes back is the moment that was recorded, bit
 //! for bit, or is not there.
 
-use super::messages::{Sample, Touch};
+use super::messages::{ContactRecord, SampleNumber};
 use super::outline::{LONGEST, parse};
-use super::read::Channel;
+use super::read::LogChannel;
 use super::record;
-use super::stage::{Stage, sound};
+use super::stage::{FleetRecord, sound};
 use super::writer::Writer;
 use super::{FORMAT, NAME, Topics};
 use crate::manifest;
@@ -39,7 +39,7 @@ struct About {
     manifest: Option<String>,
     scene: Option<String>,
     fleet: Option<FleetInfo>,
-    channels: HashMap<u16, Channel>,
+    channels: HashMap<u16, LogChannel>,
     /// Samples, and the times of the first two, s.
     samples: u64,
     times: [f64; 2],
@@ -163,7 +163,7 @@ impl About {
                 Item::Channel(channel) => {
                     let Some(schema) = schemas.get(&channel.schema_id) else { return Ok(true) };
                     let index = channel.metadata.get("index").and_then(|text| text.parse().ok());
-                    if let Some(kind) = Channel::of(schema, index.unwrap_or(0)) {
+                    if let Some(kind) = LogChannel::of(schema, index.unwrap_or(0)) {
                         about.channels.insert(channel.id, kind);
                     }
                     if index.is_none() {
@@ -173,8 +173,10 @@ impl About {
                 Item::Message { header, data } => {
                     let Some(kind) = about.channels.get(&header.channel_id) else { return Ok(true) };
                     match kind {
-                        Channel::FleetInfo => about.fleet = record::read::<Stage>(&data).map(|stage| stage.0),
-                        Channel::Sample => {
+                        LogChannel::FleetInfo => {
+                            about.fleet = record::read::<FleetRecord>(&data).map(|stage| stage.0)
+                        }
+                        LogChannel::Sample => {
                             if let Some(time) = about.times.get_mut(about.samples as usize) {
                                 *time = header.log_time as f64 * 1e-9;
                             }
@@ -196,16 +198,16 @@ impl About {
     /// Whose a channel is by its topic, where what was written about it was left out.
     fn find(&mut self, topics: &[(u16, String, String)]) {
         let Some(fleet) = &self.fleet else { return };
-        let place = |kind: Channel, topic: &str| match kind {
-            Channel::Robot(_) => fleet.robots.iter().position(|member| Topics::robot(member) == topic),
-            Channel::Edge(_) => fleet.edges.iter().position(|edge| Topics::edge(fleet, *edge) == topic),
-            Channel::Look(_) => fleet.edges.iter().position(|edge| Topics::looks(fleet, *edge) == topic),
-            Channel::Prop(_) => fleet.props.iter().position(|prop| Topics::prop(prop) == topic),
+        let place = |kind: LogChannel, topic: &str| match kind {
+            LogChannel::Robot(_) => fleet.robots.iter().position(|member| Topics::robot(member) == topic),
+            LogChannel::Edge(_) => fleet.edges.iter().position(|edge| Topics::edge(fleet, *edge) == topic),
+            LogChannel::Look(_) => fleet.edges.iter().position(|edge| Topics::looks(fleet, *edge) == topic),
+            LogChannel::Prop(_) => fleet.props.iter().position(|prop| Topics::prop(prop) == topic),
             _ => Some(0),
         };
         for (id, schema, topic) in topics {
-            let kind = Channel::of(schema, 0);
-            match kind.and_then(|kind| place(kind, topic)).and_then(|index| Channel::of(schema, index)) {
+            let kind = LogChannel::of(schema, 0);
+            match kind.and_then(|kind| place(kind, topic)).and_then(|index| LogChannel::of(schema, index)) {
                 Some(kind) => self.channels.insert(*id, kind),
                 None => self.channels.remove(id),
             };
@@ -252,7 +254,7 @@ struct Parts {
     props: BTreeMap<usize, Placement>,
     frames: Vec<MeasurementRecord>,
     contacts: Vec<Contact>,
-    sample: Option<Sample>,
+    sample: Option<SampleNumber>,
 }
 
 /// A moment lacks something.
@@ -260,24 +262,24 @@ struct NotWhole;
 
 impl Pending {
     /// Takes a message in; whether it makes sense.
-    fn add(&mut self, channel: Channel, header: &MessageHeader, data: &[u8]) -> bool {
-        if matches!(channel, Channel::FleetInfo) {
+    fn add(&mut self, channel: LogChannel, header: &MessageHeader, data: &[u8]) -> bool {
+        if matches!(channel, LogChannel::FleetInfo) {
             return true;
         }
         let parts = self.records.entry(header.log_time).or_default();
         let mut put = || -> Option<()> {
             match channel {
-                Channel::Robot(index) => drop(parts.robots.insert(index, record::read(data)?)),
-                Channel::Edge(index) => drop(parts.edges.insert(index, record::read(data)?)),
-                Channel::Prop(index) => drop(parts.props.insert(index, record::read(data)?)),
-                Channel::Look(index) => {
+                LogChannel::Robot(index) => drop(parts.robots.insert(index, record::read(data)?)),
+                LogChannel::Edge(index) => drop(parts.edges.insert(index, record::read(data)?)),
+                LogChannel::Prop(index) => drop(parts.props.insert(index, record::read(data)?)),
+                LogChannel::Look(index) => {
                     parts.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
                 }
-                Channel::Contact => {
-                    parts.contacts.push(record::read::<Touch>(data)?.contact);
+                LogChannel::Contact => {
+                    parts.contacts.push(record::read::<ContactRecord>(data)?.contact);
                 }
-                Channel::Sample => parts.sample = Some(record::read(data)?),
-                Channel::FleetInfo => {}
+                LogChannel::Sample => parts.sample = Some(record::read(data)?),
+                LogChannel::FleetInfo => {}
             }
             Some(())
         };

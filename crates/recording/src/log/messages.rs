@@ -153,12 +153,12 @@ impl Record for Placement {
 }
 
 /// A contact and the names of who takes part.
-pub(super) struct Touch {
+pub(super) struct ContactRecord {
     pub(super) contact: Contact,
     pub(super) names: [String; 2],
 }
 
-impl Default for Touch {
+impl Default for ContactRecord {
     fn default() -> Self {
         let contact = Contact {
             number: 0,
@@ -175,32 +175,33 @@ impl Default for Touch {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum EntityKind {
     Ground,
     Robot,
     Prop,
 }
 
-const KINDS: [(Kind, &str); 3] = [(Kind::Ground, "ground"), (Kind::Robot, "robot"), (Kind::Prop, "prop")];
+const KINDS: [(EntityKind, &str); 3] =
+    [(EntityKind::Ground, "ground"), (EntityKind::Robot, "robot"), (EntityKind::Prop, "prop")];
 
 fn thing<F: Fields>(f: &mut F, names: [&'static str; 2], thing: &mut EntityId) -> Option<()> {
     let (mut kind, mut index) = match *thing {
-        EntityId::Ground => (Kind::Ground, 0),
-        EntityId::Robot(index) => (Kind::Robot, index as u64),
-        EntityId::Prop(index) => (Kind::Prop, index as u64),
+        EntityId::Ground => (EntityKind::Ground, 0),
+        EntityId::Robot(index) => (EntityKind::Robot, index as u64),
+        EntityId::Prop(index) => (EntityKind::Prop, index as u64),
     };
     f.choice(names[0], &mut kind, &KINDS)?;
     f.count(names[1], &mut index)?;
     let index = usize::try_from(index).ok()?;
     *thing = match kind {
-        Kind::Ground => EntityId::Ground,
-        Kind::Robot => EntityId::Robot(index),
-        Kind::Prop => EntityId::Prop(index),
+        EntityKind::Ground => EntityId::Ground,
+        EntityKind::Robot => EntityId::Robot(index),
+        EntityKind::Prop => EntityId::Prop(index),
     };
     Some(())
 }
 
-impl Record for Touch {
+impl Record for ContactRecord {
     const NAME: &'static str = "Contact";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
@@ -226,7 +227,7 @@ impl Record for Touch {
 
 /// Closes a moment: all messages before it that carry its sequence number belong to it, and nothing is missing.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Sample {
+pub(super) struct SampleNumber {
     pub(super) number: u64,
     pub(super) time: f64,
     pub(super) robots: u64,
@@ -236,7 +237,7 @@ pub(super) struct Sample {
     pub(super) looks: u64,
 }
 
-impl Record for Sample {
+impl Record for SampleNumber {
     const NAME: &'static str = "Sample";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {

@@ -48,7 +48,7 @@ pub(super) fn body(file: &mut &File, start: u64, length: u64) -> std::io::Result
 
 /// What stands outside the chunks, and where those are.
 #[derive(Default)]
-pub(super) struct Outline {
+pub(super) struct ChunkOutline {
     pub(super) format: Option<String>,
     pub(super) manifest: Option<String>,
     pub(super) scene: Option<String>,
@@ -58,7 +58,7 @@ pub(super) struct Outline {
     pub(super) foreign: bool,
 }
 
-impl Outline {
+impl ChunkOutline {
     /// Goes through the records of a file.
     pub(super) fn of(file: &mut File, path: &Path) -> Result<Self, Error> {
         let io = |source| Error::io("read", path)(source);

@@ -4,10 +4,10 @@
 
 use super::FORMAT;
 use super::import::{Imported, import};
-use super::messages::{Sample, Touch};
-use super::outline::{Chunk, LONGEST, Outline, body, parse};
+use super::messages::{ContactRecord, SampleNumber};
+use super::outline::{Chunk, ChunkOutline, LONGEST, body, parse};
 use super::record::{self, Record};
-use super::stage::{Stage, sound};
+use super::stage::{FleetRecord, sound};
 use crate::{Error, Manifest, Status};
 use mcap::records::{MessageHeader, Record as Chunked, op};
 use std::collections::{HashMap, VecDeque};
@@ -30,7 +30,7 @@ struct Inside {
     manifest: Manifest,
     scene: String,
     fleet: FleetInfo,
-    channels: HashMap<u16, Channel>,
+    channels: HashMap<u16, LogChannel>,
     chunks: Vec<Chunk>,
     whole: bool,
     /// What another program did with the file, if one did.
@@ -41,7 +41,7 @@ struct Inside {
 
 /// What a channel's messages are.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Channel {
+pub(super) enum LogChannel {
     Robot(usize),
     Edge(usize),
     Prop(usize),
@@ -59,10 +59,10 @@ impl Log {
     /// [`Error::Output`] where it cannot be read.
     pub fn open(path: &Path) -> Result<Self, Error> {
         let mut file = File::open(path).map_err(Error::io("open", path))?;
-        let outline = Outline::of(&mut file, path)?;
+        let outline = ChunkOutline::of(&mut file, path)?;
         if outline.foreign {
             let Imported { mut file, begins, remark } = import(&file, path)?;
-            let outline = Outline::of(&mut file, path)?;
+            let outline = ChunkOutline::of(&mut file, path)?;
             return Self::of_ours(file, path, outline, (begins, Some(remark)));
         }
         Self::of_ours(file, path, outline, (0.0, None))
@@ -72,7 +72,7 @@ impl Log {
     fn of_ours(
         file: File,
         path: &Path,
-        outline: Outline,
+        outline: ChunkOutline,
         (begins, remark): (f64, Option<String>),
     ) -> Result<Self, Error> {
         let wrong = |message: &str| Error::Log { path: path.to_owned(), message: message.to_owned() };
@@ -122,13 +122,13 @@ impl Log {
                 Chunked::Channel(channel) => {
                     let index = channel.metadata.get("index").and_then(|text| text.parse().ok());
                     let kind =
-                        schemas.get(&channel.schema_id).zip(index).and_then(|(n, k)| Channel::of(n, k));
+                        schemas.get(&channel.schema_id).zip(index).and_then(|(n, k)| LogChannel::of(n, k));
                     channels.extend(kind.map(|kind| (channel.id, kind)));
                 }
                 Chunked::Message { header, data }
-                    if matches!(channels.get(&header.channel_id), Some(Channel::FleetInfo)) =>
+                    if matches!(channels.get(&header.channel_id), Some(LogChannel::FleetInfo)) =>
                 {
-                    fleet = record::read::<Stage>(&data).map(|stage| stage.0);
+                    fleet = record::read::<FleetRecord>(&data).map(|stage| stage.0);
                 }
                 _ => {}
             }
@@ -152,7 +152,9 @@ impl Log {
             let Ok(bytes) = self.unpack(*chunk) else { continue };
             let number = |item: Chunked<'_>| match item {
                 Chunked::Message { header, data } => match self.inside.channels.get(&header.channel_id) {
-                    Some(Channel::Sample) => record::read::<Sample>(&data).map(|sample| sample.number),
+                    Some(LogChannel::Sample) => {
+                        record::read::<SampleNumber>(&data).map(|sample| sample.number)
+                    }
                     _ => None,
                 },
                 _ => None,
@@ -273,16 +275,16 @@ fn records(mut bytes: &[u8]) -> impl Iterator<Item = Chunked<'_>> {
     })
 }
 
-impl Channel {
+impl LogChannel {
     pub(super) fn of(schema: &str, index: usize) -> Option<Self> {
         match schema.strip_prefix(record::PACKAGE)?.strip_prefix('.')? {
             RobotState::NAME => Some(Self::Robot(index)),
             EdgeState::NAME => Some(Self::Edge(index)),
             Placement::NAME => Some(Self::Prop(index)),
             MeasurementRecord::NAME => Some(Self::Look(index)),
-            Touch::NAME => Some(Self::Contact),
-            Sample::NAME => Some(Self::Sample),
-            Stage::NAME => Some(Self::FleetInfo),
+            ContactRecord::NAME => Some(Self::Contact),
+            SampleNumber::NAME => Some(Self::Sample),
+            FleetRecord::NAME => Some(Self::FleetInfo),
             _ => None,
         }
     }
@@ -349,25 +351,32 @@ impl Moments {
 }
 
 /// Takes a message into `record`; whether that closes it. `None` where the message makes no sense there.
-fn take(channel: Channel, data: &[u8], record: &mut StepRecord, props: &mut Vec<Placement>) -> Option<bool> {
+fn take(
+    channel: LogChannel,
+    data: &[u8],
+    record: &mut StepRecord,
+    props: &mut Vec<Placement>,
+) -> Option<bool> {
     match channel {
-        Channel::Robot(index) => {
+        LogChannel::Robot(index) => {
             let robots = &mut record.snapshot.robots;
             (robots.len() == index).then_some(())?;
             robots.push(record::read(data)?);
         }
-        Channel::Edge(index) => {
+        LogChannel::Edge(index) => {
             (record.edges.len() == index).then_some(())?;
             record.edges.push(record::read(data)?);
         }
-        Channel::Prop(index) => {
+        LogChannel::Prop(index) => {
             let place = record::read(data)?;
             if index == props.len() { props.push(place) } else { *props.get_mut(index)? = place }
         }
-        Channel::Look(index) => record.frames.push(MeasurementRecord { edge: index, ..record::read(data)? }),
-        Channel::Contact => record.contacts.push(record::read::<Touch>(data)?.contact),
-        Channel::Sample => {
-            let sample: Sample = record::read(data)?;
+        LogChannel::Look(index) => {
+            record.frames.push(MeasurementRecord { edge: index, ..record::read(data)? })
+        }
+        LogChannel::Contact => record.contacts.push(record::read::<ContactRecord>(data)?.contact),
+        LogChannel::Sample => {
+            let sample: SampleNumber = record::read(data)?;
             record.snapshot.time = sample.time;
             let counts = [
                 (sample.robots, record.snapshot.robots.len()),
@@ -379,7 +388,7 @@ fn take(channel: Channel, data: &[u8], record: &mut StepRecord, props: &mut Vec<
             counts.iter().all(|(told, found)| *told == *found as u64).then_some(())?;
             return Some(true);
         }
-        Channel::FleetInfo => {}
+        LogChannel::FleetInfo => {}
     }
     Some(false)
 }

@@ -39,7 +39,7 @@ pub(super) trait Fields {
 /// Appends `record` to `out`.
 pub(super) fn write<T: Record>(record: &mut T, out: &mut Vec<u8>) {
     // What writes never refuses.
-    let _ = record.list(&mut Writer { out, field: 0 });
+    let _ = record.list(&mut FieldWriter { out, field: 0 });
 }
 
 /// The record in `data`, all of it.
@@ -54,7 +54,7 @@ const VARINT: u32 = 0;
 const FIXED: u32 = 1;
 const BYTES: u32 = 2;
 
-struct Writer<'a> {
+struct FieldWriter<'a> {
     out: &'a mut Vec<u8>,
     field: u32,
 }
@@ -67,7 +67,7 @@ fn put_varint(out: &mut Vec<u8>, mut value: u64) {
     out.push(value as u8);
 }
 
-impl Writer<'_> {
+impl FieldWriter<'_> {
     fn tag(&mut self, wire: u32) {
         put_varint(self.out, u64::from(self.field << 3 | wire));
     }
@@ -92,7 +92,7 @@ impl Writer<'_> {
     }
 }
 
-impl Fields for Writer<'_> {
+impl Fields for FieldWriter<'_> {
     fn number(&mut self, _: &'static str, value: &mut f64) -> Option<()> {
         self.field += 1;
         if value.to_bits() != 0 {

@@ -9,10 +9,10 @@ use vocabulary::{
 
 /// [`FleetInfo`] with a list of fields.
 #[derive(Default)]
-pub(super) struct Stage(pub(super) FleetInfo);
+pub(super) struct FleetRecord(pub(super) FleetInfo);
 
 struct Actor(RobotInfo);
-struct Pair(Edge);
+struct EdgeRecord(Edge);
 struct Scenery(Prop);
 struct Land(Terrain);
 struct Tags(Shell);
@@ -23,7 +23,7 @@ impl Default for Actor {
     }
 }
 
-impl Default for Pair {
+impl Default for EdgeRecord {
     fn default() -> Self {
         Self(Edge { leader: 0, follower: 0 })
     }
@@ -64,7 +64,7 @@ where
     Some(())
 }
 
-impl Record for Stage {
+impl Record for FleetRecord {
     const NAME: &'static str = "Cast";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
@@ -78,7 +78,7 @@ impl Record for Stage {
         f.number("haze_from_m", haze_from)?;
         f.flag("looks", &mut fleet.looks)?;
         let mut members = std::mem::take(&mut fleet.robots).into_iter().map(Actor).collect();
-        let mut edges = fleet.edges.iter().copied().map(Pair).collect();
+        let mut edges = fleet.edges.iter().copied().map(EdgeRecord).collect();
         let mut props = std::mem::take(&mut fleet.props).into_iter().map(Scenery).collect();
         let mut land = fleet.terrain.iter().map(|land| Land(Terrain::clone(land))).collect();
         let told = f
@@ -87,7 +87,7 @@ impl Record for Stage {
             .and_then(|()| f.each("props", &mut props))
             .and_then(|()| f.each("terrain", &mut land));
         fleet.robots = members.into_iter().map(|Actor(member)| member).collect();
-        fleet.edges = edges.into_iter().map(|Pair(edge)| edge).collect();
+        fleet.edges = edges.into_iter().map(|EdgeRecord(edge)| edge).collect();
         fleet.props = props.into_iter().map(|Scenery(prop)| prop).collect();
         fleet.terrain = land.into_iter().next().map(|Land(land)| Arc::new(land));
         told
@@ -142,7 +142,7 @@ impl Record for Tags {
     }
 }
 
-impl Record for Pair {
+impl Record for EdgeRecord {
     const NAME: &'static str = "Edge";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
@@ -152,15 +152,19 @@ impl Record for Pair {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Form {
+enum SolidForm {
     Block,
     Cylinder,
     Cone,
     Wedge,
 }
 
-const FORMS: [(Form, &str); 4] =
-    [(Form::Block, "block"), (Form::Cylinder, "cylinder"), (Form::Cone, "cone"), (Form::Wedge, "wedge")];
+const FORMS: [(SolidForm, &str); 4] = [
+    (SolidForm::Block, "block"),
+    (SolidForm::Cylinder, "cylinder"),
+    (SolidForm::Cone, "cone"),
+    (SolidForm::Wedge, "wedge"),
+];
 
 const MOBILITIES: [(Mobility, &str); 3] =
     [(Mobility::Fixed, "fixed"), (Mobility::Loose, "loose"), (Mobility::Guided, "guided")];
@@ -172,20 +176,20 @@ impl Record for Scenery {
         let Prop { name, solid, placement, mobility } = &mut self.0;
         f.text("name", name)?;
         let (mut form, mut size) = match *solid {
-            Solid::Block { size } => (Form::Block, size),
-            Solid::Wedge { size } => (Form::Wedge, size),
-            Solid::Cylinder { radius, height } => (Form::Cylinder, [radius, radius, height]),
-            Solid::Cone { radius, height } => (Form::Cone, [radius, radius, height]),
+            Solid::Block { size } => (SolidForm::Block, size),
+            Solid::Wedge { size } => (SolidForm::Wedge, size),
+            Solid::Cylinder { radius, height } => (SolidForm::Cylinder, [radius, radius, height]),
+            Solid::Cone { radius, height } => (SolidForm::Cone, [radius, radius, height]),
         };
         f.choice("form", &mut form, &FORMS)?;
         // Length, width, height; of round things the radius twice.
         f.numbers("size_m", &mut size)?;
         let [radius, _, height] = size;
         *solid = match form {
-            Form::Block => Solid::Block { size },
-            Form::Wedge => Solid::Wedge { size },
-            Form::Cylinder => Solid::Cylinder { radius, height },
-            Form::Cone => Solid::Cone { radius, height },
+            SolidForm::Block => Solid::Block { size },
+            SolidForm::Wedge => Solid::Wedge { size },
+            SolidForm::Cylinder => Solid::Cylinder { radius, height },
+            SolidForm::Cone => Solid::Cone { radius, height },
         };
         f.numbers("position_m", &mut placement.position)?;
         f.numbers("rotation_xyzw", &mut placement.rotation)?;

@@ -1,10 +1,10 @@
 //! Writes the file: what is known before the run, a chunk after every batch of moments, what is known after it.
 
 use super::drawing::Drawing;
-use super::messages::{Sample, Touch};
+use super::messages::{ContactRecord, SampleNumber};
 use super::pictures::Photo;
 use super::record::{self, Record};
-use super::stage::Stage;
+use super::stage::FleetRecord;
 use super::{FORMAT, OURS, Topics, ros};
 use crate::{Error, Manifest};
 use mcap::records::{MessageHeader, Metadata};
@@ -137,16 +137,16 @@ impl Writer {
             .map_err(Error::table(path))?;
         to.attach("scene.toml", "application/toml", scene)?;
         to.attach("manifest.json", "application/json", &text(manifest, path)?)?;
-        let stage = to.add_own::<Stage>(Topics::CAST, 0)?;
-        to.put_own(stage, Stamp::default(), &mut Stage(fleet.clone()))?;
+        let stage = to.add_own::<FleetRecord>(Topics::CAST, 0)?;
+        to.put_own(stage, Stamp::default(), &mut FleetRecord(fleet.clone()))?;
         let mut writer = Self {
             drawing: if drawn { Some(Drawing::begin(fleet, &mut to)?) } else { None },
             robots: vec![],
             edges: vec![],
             looks: vec![],
             props: vec![],
-            contacts: to.add_own::<Touch>(Topics::CONTACTS, 0)?,
-            samples: to.add_own::<Sample>(Topics::SAMPLES, 0)?,
+            contacts: to.add_own::<ContactRecord>(Topics::CONTACTS, 0)?,
+            samples: to.add_own::<SampleNumber>(Topics::SAMPLES, 0)?,
             number: 0,
             placed: vec![],
             fleet: fleet.clone(),
@@ -212,14 +212,14 @@ impl Writer {
         }
         for contact in &record.contacts {
             let names = contact.things.map(|thing| self.fleet.name(thing).to_owned());
-            to.put_own(self.contacts, stamp, &mut Touch { contact: *contact, names })?;
+            to.put_own(self.contacts, stamp, &mut ContactRecord { contact: *contact, names })?;
         }
         for frame in &mut record.frames {
             if let Some(channel) = self.looks.get(frame.edge) {
                 to.put_own(*channel, stamp, frame)?;
             }
         }
-        let mut sample = Sample {
+        let mut sample = SampleNumber {
             number: self.number,
             time: record.snapshot.time,
             robots: record.snapshot.robots.len() as u64,

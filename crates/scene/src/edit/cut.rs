@@ -1,13 +1,13 @@
 //! Lines taken out of a text. What is left stands as it stood, comment lines above all.
 
 use super::EditError;
-use super::find::{Step, item_at};
+use super::find::{PathStep, item_at};
 use std::ops::Range;
 use toml_edit::{Document, DocumentMut, Item, Table};
 
 /// Takes out what the steps lead to.
-pub(super) fn cut(document: &mut DocumentMut, steps: &[Step]) -> Result<(), EditError> {
-    let [before @ .., Step::Key(key)] = steps else {
+pub(super) fn cut(document: &mut DocumentMut, steps: &[PathStep]) -> Result<(), EditError> {
+    let [before @ .., PathStep::Key(key)] = steps else {
         return Err(EditError::new("this is an item of a list: it is removed by its name"));
     };
     let read = read(document)?;
@@ -18,15 +18,15 @@ pub(super) fn cut(document: &mut DocumentMut, steps: &[Step]) -> Result<(), Edit
         if let Some((key, item)) = table.get_key_value(key) {
             lines_of(text, key.span(), item, &mut gone);
         }
-        let member = matches!(before, [.., Step::Key(key), Step::Key(_)] if key == "members");
+        let member = matches!(before, [.., PathStep::Key(key), PathStep::Key(_)] if key == "members");
         if member && table.len() == 1 {
             gone.extend(table.span().map(|span| lines(text, &span)));
         }
         return take_out(document, text, gone);
     }
     let parent = before.iter().try_fold(document.as_item_mut(), |item, step| match step {
-        Step::Key(key) => item.get_mut(key),
-        Step::Item(index) => item.get_mut(*index),
+        PathStep::Key(key) => item.get_mut(key),
+        PathStep::Item(index) => item.get_mut(*index),
     });
     if let Some(Item::Value(toml_edit::Value::InlineTable(table))) = parent {
         table.remove(key);
@@ -36,7 +36,7 @@ pub(super) fn cut(document: &mut DocumentMut, steps: &[Step]) -> Result<(), Edit
 }
 
 /// Takes out the item of a list that the steps lead to, with the comment lines right above it.
-pub(super) fn cut_item(document: &mut DocumentMut, steps: &[Step]) -> Result<(), EditError> {
+pub(super) fn cut_item(document: &mut DocumentMut, steps: &[PathStep]) -> Result<(), EditError> {
     let read = read(document)?;
     if let Some(Item::Table(table)) = item_at(read.as_item(), steps) {
         let text = read.raw();
@@ -47,7 +47,7 @@ pub(super) fn cut_item(document: &mut DocumentMut, steps: &[Step]) -> Result<(),
         }
         return take_out(document, text, gone);
     }
-    let [Step::Key(list), Step::Item(index)] = steps else {
+    let [PathStep::Key(list), PathStep::Item(index)] = steps else {
         return Err(EditError::new("this is no item of a list"));
     };
     if let Some(list) = document.get_mut(list).and_then(Item::as_array_mut) {

@@ -10,7 +10,7 @@ use toml_edit::{Item, Table};
 
 /// A part of a path that has been looked up.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Step {
+pub(super) enum PathStep {
     /// Into a table.
     Key(String),
     /// Into a list.
@@ -18,7 +18,7 @@ pub(super) enum Step {
 }
 
 /// What the parts of `path` mean in the text; keys need not be there yet.
-pub(super) fn steps(root: &Table, path: &str) -> Result<Vec<Step>, EditError> {
+pub(super) fn steps(root: &Table, path: &str) -> Result<Vec<PathStep>, EditError> {
     let mut parts: Vec<String> = path.split('.').map(|part| composed(part.trim())).collect();
     if parts.iter().any(String::is_empty) {
         return Err(EditError::new(format!("`{path}` is no path: write it as law.k")));
@@ -33,35 +33,35 @@ pub(super) fn steps(root: &Table, path: &str) -> Result<Vec<Step>, EditError> {
     {
         parts.splice(..2, ["groups".to_owned(), group.to_string(), "members".to_owned(), key]);
     }
-    let mut steps: Vec<Step> = Vec::with_capacity(parts.len());
+    let mut steps: Vec<PathStep> = Vec::with_capacity(parts.len());
     let mut at: Option<&Item> = None;
     for part in parts {
         let list = at.filter(|item| item.is_array_of_tables() || item.is_array());
         if list.is_some() {
-            let Some(Step::Key(key)) = steps.last() else {
+            let Some(PathStep::Key(key)) = steps.last() else {
                 return Err(EditError::new(format!("`{path}` leads into a list of lists")));
             };
             let found = if steps.len() == 1 { index_of(root, key, &part) } else { part.parse().ok() };
             let index = found.filter(|index| list.is_some_and(|list| list.get(*index).is_some()));
             let index = index.ok_or_else(|| EditError::new(nothing_called(root, key, &part)))?;
             at = at.and_then(|item| item.get(index));
-            steps.push(Step::Item(index));
+            steps.push(PathStep::Item(index));
         } else {
             at = if steps.is_empty() { root.get(&part) } else { at.and_then(|item| item.get(&part)) };
-            if steps.len() == 1 && steps == [Step::Key("robots".to_owned())] && at.is_none() {
+            if steps.len() == 1 && steps == [PathStep::Key("robots".to_owned())] && at.is_none() {
                 return Err(EditError::new(nothing_called(root, "robots", &part)));
             }
-            steps.push(Step::Key(part));
+            steps.push(PathStep::Key(part));
         }
     }
     Ok(steps)
 }
 
 /// What the steps lead to.
-pub(super) fn item_at<'a>(root: &'a Item, steps: &[Step]) -> Option<&'a Item> {
+pub(super) fn item_at<'a>(root: &'a Item, steps: &[PathStep]) -> Option<&'a Item> {
     steps.iter().try_fold(root, |item, step| match step {
-        Step::Key(key) => item.get(key),
-        Step::Item(index) => item.get(*index),
+        PathStep::Key(key) => item.get(key),
+        PathStep::Item(index) => item.get(*index),
     })
 }
 

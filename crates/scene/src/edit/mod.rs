@@ -7,7 +7,7 @@ mod put;
 mod rename;
 
 use crate::{names::NameForm, text::node::composed};
-use find::{Step, item_at, items, made_by_group, names, steps};
+use find::{PathStep, item_at, items, made_by_group, names, steps};
 use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
 
 /// The text of a scene that can be edited.
@@ -76,7 +76,7 @@ impl SceneText {
         // Half an edit is none.
         let mut edited = self.document.clone();
         for key in self.superseded(&steps, &value) {
-            cut::cut(&mut edited, &[steps.as_slice(), &[Step::Key(key)]].concat())?;
+            cut::cut(&mut edited, &[steps.as_slice(), &[PathStep::Key(key)]].concat())?;
         }
         put::put(edited.as_item_mut(), &steps, 0, value)?;
         self.document = edited;
@@ -170,7 +170,7 @@ impl SceneText {
     }
 
     /// Keys of the table with a head at the end of the steps that `value` in its place does not have.
-    fn superseded(&self, steps: &[Step], value: &Value) -> Vec<String> {
+    fn superseded(&self, steps: &[PathStep], value: &Value) -> Vec<String> {
         let Some(Item::Table(table)) = item_at(self.document.as_item(), steps) else { return vec![] };
         let stays = |key: &str| match value {
             Value::InlineTable(new) => new.contains_key(key),

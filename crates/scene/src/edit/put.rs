@@ -1,19 +1,19 @@
 //! Values put where paths lead, and tables made where there are none yet.
 
-use super::find::Step;
+use super::find::PathStep;
 use super::merge::{merge, settle};
 use super::{EditError, table_of};
 use toml_edit::{ArrayOfTables, Item, Table, Value};
 
 /// Puts `value` where the steps from number `depth` on lead from `item`.
-pub(super) fn put(item: &mut Item, steps: &[Step], depth: usize, value: Value) -> Result<(), EditError> {
+pub(super) fn put(item: &mut Item, steps: &[PathStep], depth: usize, value: Value) -> Result<(), EditError> {
     let key = match steps.get(depth) {
         None => return replace(item, steps, value),
-        Some(Step::Item(index)) => {
+        Some(PathStep::Item(index)) => {
             let item = item.get_mut(*index).ok_or_else(|| EditError::new("the list is shorter"))?;
             return put(item, steps, depth + 1, value);
         }
-        Some(Step::Key(key)) => key,
+        Some(PathStep::Key(key)) => key,
     };
     spell_out(item, depth.checked_sub(1).and_then(|before| steps.get(before)));
     let position = if depth == 0 { Some(settings_position(item)) } else { None };
@@ -37,9 +37,9 @@ pub(super) fn put(item: &mut Item, steps: &[Step], depth: usize, value: Value) -
 
 /// The table that the step at `depth` leads to, as it is usually written: settings of the scene and members of groups
 /// under a head of their own, others within a line.
-fn made(steps: &[Step], depth: usize, position: Option<isize>) -> Item {
+fn made(steps: &[PathStep], depth: usize, position: Option<isize>) -> Item {
     let key = |depth: usize| match steps.get(depth) {
-        Some(Step::Key(key)) => Some(key.as_str()),
+        Some(PathStep::Key(key)) => Some(key.as_str()),
         _ => None,
     };
     let in_group = key(0) == Some("groups");
@@ -70,12 +70,12 @@ fn settings_position(root: &Item) -> isize {
 }
 
 /// Whether the word of a kind may stand here for a table of that kind.
-pub(super) fn has_kinds(key: Option<&Step>) -> bool {
-    matches!(key, Some(Step::Key(key)) if key == "vehicle" || key == "sensing")
+pub(super) fn has_kinds(key: Option<&PathStep>) -> bool {
+    matches!(key, Some(PathStep::Key(key)) if key == "vehicle" || key == "sensing")
 }
 
 /// Makes what is the word of its kind a table of that kind.
-fn spell_out(item: &mut Item, key: Option<&Step>) {
+fn spell_out(item: &mut Item, key: Option<&PathStep>) {
     if let Item::Value(old @ Value::String(_)) = item
         && has_kinds(key)
     {
@@ -93,13 +93,13 @@ fn tidy(item: &mut Item) {
     }
 }
 
-fn replace(item: &mut Item, steps: &[Step], value: Value) -> Result<(), EditError> {
+fn replace(item: &mut Item, steps: &[PathStep], value: Value) -> Result<(), EditError> {
     match (item, value) {
         (Item::Value(old), value) => merge(old, value),
         (Item::Table(table), Value::InlineTable(new)) => {
             for (key, value) in new {
                 let item = table.entry(&key).or_insert(Item::None);
-                replace(item, &[Step::Key(key.clone())], value)?;
+                replace(item, &[PathStep::Key(key.clone())], value)?;
             }
         }
         (Item::Table(table), value @ Value::String(_)) if has_kinds(steps.last()) => {

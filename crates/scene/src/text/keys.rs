@@ -142,14 +142,14 @@ impl<'n> TableReader<'n> {
 }
 
 /// The form of a table with the keys of `K`.
-pub(crate) struct Table<K>(PhantomData<K>);
+pub(crate) struct TableForm<K>(PhantomData<K>);
 
 /// The form of a table with the keys of `K`.
-pub(crate) const fn table<K: Keys>() -> Table<K> {
-    Table(PhantomData)
+pub(crate) const fn table<K: Keys>() -> TableForm<K> {
+    TableForm(PhantomData)
 }
 
-impl<K: Keys> Form for Table<K> {
+impl<K: Keys> Form for TableForm<K> {
     type Out = K;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<K> {

@@ -12,11 +12,11 @@ pub(crate) struct Kinds<T: 'static> {
     pub(crate) key: &'static str,
     /// Word that is meant where the key is missing.
     pub(crate) usual: Option<&'static str>,
-    pub(crate) all: &'static [Kind<T>],
+    pub(crate) all: &'static [KindOption<T>],
 }
 
 /// One kind: its word, and the keys it brings.
-pub(crate) struct Kind<T> {
+pub(crate) struct KindOption<T> {
     word: &'static str,
     about: &'static str,
     read: fn(&Node, &mut TableReader<'_>, &mut Reporter) -> Option<T>,
@@ -30,8 +30,8 @@ pub(crate) trait KindKeys<T>: Keys {
 }
 
 /// The kind called `word` with the keys of `K`.
-pub(crate) const fn kind<T, K: KindKeys<T>>(word: &'static str) -> Kind<T> {
-    Kind {
+pub(crate) const fn kind<T, K: KindKeys<T>>(word: &'static str) -> KindOption<T> {
+    KindOption {
         word,
         about: K::ABOUT,
         read: |node, table, reporter| K::read(table, reporter).make(node, reporter),
@@ -41,18 +41,23 @@ pub(crate) const fn kind<T, K: KindKeys<T>>(word: &'static str) -> Kind<T> {
 
 impl<T> Kinds<T> {
     /// Reads the kind of `table`, whose node is `node`, and the keys it brings.
-    pub(crate) fn take(&self, node: &Node, table: &mut TableReader<'_>, reporter: &mut Reporter) -> Taken<T> {
+    pub(crate) fn take(
+        &self,
+        node: &Node,
+        table: &mut TableReader<'_>,
+        reporter: &mut Reporter,
+    ) -> KindFound<T> {
         let found = table.take(self.key, &KindForm(self.all), self.usual.is_none(), reporter);
         let kind = match (found, node.get(self.key)) {
             (None, None) => self.all.iter().find(|kind| Some(kind.word) == self.usual),
             (found, _) => found.map(|found| found.value),
         };
-        kind.map_or(Taken::Unknown, |kind| Taken::Known((kind.read)(node, table, reporter)))
+        kind.map_or(KindFound::Unknown, |kind| KindFound::Known((kind.read)(node, table, reporter)))
     }
 
     /// Each kind's table, with `shared` keys that all of them have besides.
     pub(crate) fn schema_with(&self, shared: fn() -> Vec<Field>) -> Json {
-        let one = |kind: &Kind<T>| {
+        let one = |kind: &KindOption<T>| {
             let fields = (kind.fields)().into_iter().chain(shared());
             let mut schema = object(kind.about, fields.collect());
             schema["properties"][self.key] = json!({ "const": kind.word, "description": kind.about.trim() });
@@ -68,7 +73,7 @@ impl<T> Kinds<T> {
 }
 
 /// What became of reading a kind.
-pub(crate) enum Taken<T> {
+pub(crate) enum KindFound<T> {
     /// Its keys were read, and made this, or `None` after a note.
     Known(Option<T>),
     /// Nobody knows which keys there are.
@@ -80,7 +85,7 @@ impl<T> Form for Kinds<T> {
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<T> {
         let mut table = TableReader::of(node, reporter)?;
-        let Taken::Known(made) = self.take(node, &mut table, reporter) else { return None };
+        let KindFound::Known(made) = self.take(node, &mut table, reporter) else { return None };
         table.finish(reporter);
         made
     }
@@ -91,12 +96,12 @@ impl<T> Form for Kinds<T> {
 }
 
 /// The word of a kind.
-struct KindForm<T: 'static>(&'static [Kind<T>]);
+struct KindForm<T: 'static>(&'static [KindOption<T>]);
 
 impl<T> Form for KindForm<T> {
-    type Out = &'static Kind<T>;
+    type Out = &'static KindOption<T>;
 
-    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<&'static Kind<T>> {
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<&'static KindOption<T>> {
         let found = self.0.iter().find(|kind| node.as_text() == Some(kind.word));
         if found.is_none() {
             not_a_word(node, self.0.iter().map(|kind| kind.word), reporter);

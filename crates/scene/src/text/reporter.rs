@@ -22,14 +22,14 @@ impl Span {
     }
 }
 
-struct Source {
+struct SourceText {
     origin: String,
     text: String,
 }
 
 /// Texts read and faults found while a scene is loaded.
 pub(crate) struct Reporter {
-    sources: Vec<Source>,
+    sources: Vec<SourceText>,
     notes: Vec<(Span, String)>,
     /// Key whose value is being read.
     key: String,
@@ -46,7 +46,7 @@ impl Reporter {
 
     /// Keeps a text, so that places in it can be shown; returns its number.
     pub(crate) fn add_source(&mut self, origin: String, text: &str) -> usize {
-        self.sources.push(Source { origin, text: text.to_owned() });
+        self.sources.push(SourceText { origin, text: text.to_owned() });
         self.sources.len() - 1
     }
 

@@ -23,7 +23,7 @@ pub use film::{Film, Plot, Shot};
 pub use ground::{Ground, Noise, Patch, Relief};
 pub use law::{Law, Observer, SwitchingKind};
 pub use path::{Path, SpeedProfile};
-pub use prop::{Prop, PropMotion};
+pub use prop::{PropMotion, PropSpec};
 pub use robot::{Follow, Robot, Role};
 pub use run::{OnContact, Physics, Time};
 pub use sensing::{Sensing, SensingKind, Vision};
@@ -62,7 +62,7 @@ pub struct Scene {
     /// All robots in the order of the file, groups in place of their members, at least one. Names are unique.
     pub robots: Vec<Robot>,
     /// Solid things that are no robots, those of patterns after the others. Names are unique, among robots too.
-    pub props: Vec<Prop>,
+    pub props: Vec<PropSpec>,
     /// What changes while the run goes, in the order of time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<Change>,

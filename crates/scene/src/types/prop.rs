@@ -6,7 +6,7 @@ use vocabulary::{Pose, Solid};
 
 /// A solid thing on stage.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Prop {
+pub struct PropSpec {
     /// Unique name, among robots too.
     pub name: String,
     /// Its shape.
@@ -40,11 +40,11 @@ pub enum PropMotion {
     },
 }
 
-impl Serialize for Prop {
+impl Serialize for PropSpec {
     /// As an entry of `[[props]]`.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
-        struct Entry<'a> {
+        struct PropEntry<'a> {
             name: &'a str,
             shape: &'a str,
             size: Option<[f64; 3]>,
@@ -68,7 +68,7 @@ impl Serialize for Prop {
             PropMotion::Loose { mass } => (Some(*mass), None),
             PropMotion::Guided { path } => (None, Some(path)),
         };
-        let entry = Entry {
+        let entry = PropEntry {
             name: &self.name,
             shape,
             size,

@@ -2,7 +2,8 @@
 
 use crate::simulation::Simulation;
 use formation::certificate::{
-    Circumstances, Constants, Finding, Instant, Outcome, Premise, Statement, Witness, certify,
+    Circumstances, Constants, Instant, Premise, Statement, StatementFinding, StatementOutcome, Witness,
+    certify,
 };
 use formation::{EdgeLaw, Estimate, SetPointTrajectory, Switching};
 use metrics::{CertificateMetrics, StatementMetrics};
@@ -20,7 +21,7 @@ pub struct Certificate {
     /// First and last sample, s.
     pub span: [f64; 2],
     /// All statements of the paper.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<StatementFinding>,
     /// Constants of section 4.3; `None` unless the law is output feedback.
     pub constants: Option<Constants>,
     /// What it is made of.
@@ -34,7 +35,7 @@ pub struct Certificate {
 
 impl Certificate {
     /// The finding about a statement.
-    pub fn finding(&self, statement: Statement) -> Option<&Finding> {
+    pub fn finding(&self, statement: Statement) -> Option<&StatementFinding> {
         self.findings.iter().find(|finding| finding.statement == statement)
     }
 
@@ -43,7 +44,7 @@ impl Certificate {
         let name = |robot: usize| fleet.name(EntityId::Robot(robot)).to_owned();
         let (leader, follower) =
             fleet.edges.get(self.edge).map_or((0, 0), |edge| (edge.leader, edge.follower));
-        let statement = |finding: &Finding| StatementMetrics {
+        let statement = |finding: &StatementFinding| StatementMetrics {
             statement: finding.statement.name().to_owned(),
             source: finding.statement.source().to_owned(),
             outcome: finding.outcome().name().to_owned(),
@@ -65,13 +66,13 @@ impl Certificate {
 
     /// Whether every statement holds or is not claimed.
     pub fn unbroken(&self) -> bool {
-        !self.findings.iter().any(|finding| matches!(finding.outcome(), Outcome::Violated(_)))
+        !self.findings.iter().any(|finding| matches!(finding.outcome(), StatementOutcome::Violated(_)))
     }
 }
 
 /// Goes along with a run.
 pub struct Examiner {
-    edges: Vec<Stretch>,
+    edges: Vec<HeldStretch>,
     /// Stretches that are over.
     closed: Vec<Certificate>,
     leads_on_wheels: Vec<bool>,
@@ -83,7 +84,7 @@ pub struct Examiner {
 }
 
 /// An edge since its law last changed.
-struct Stretch {
+struct HeldStretch {
     witness: Witness,
     set_point: SetPointTrajectory,
     looks: bool,
@@ -91,7 +92,7 @@ struct Stretch {
     final_error: [f64; 2],
 }
 
-impl Stretch {
+impl HeldStretch {
     fn of(law: &EdgeLaw, keeps: bool) -> Self {
         let witness = Witness::new(law.law, law.observer);
         Self {
@@ -126,7 +127,7 @@ impl Examiner {
         let wheels: Vec<bool> = scene.robots.iter().map(|robot| robot.vehicle.kind.has_wheels()).collect();
         let leads = &simulation.fleet().robots;
         Self {
-            edges: simulation.formation().laws().iter().map(|law| Stretch::of(law, keeps)).collect(),
+            edges: simulation.formation().laws().iter().map(|law| HeldStretch::of(law, keeps)).collect(),
             closed: Vec::new(),
             leads_on_wheels: leads.iter().zip(&wheels).map(|(m, wheels)| m.leads && *wheels).collect(),
             wheels,
@@ -143,7 +144,7 @@ impl Examiner {
         let drives = self.drives(simulation, record);
         for (index, (edge, law)) in formation.edges().iter().zip(formation.laws()).enumerate() {
             if !self.edges[index].fits(law) {
-                let over = std::mem::replace(&mut self.edges[index], Stretch::of(law, self.keeps));
+                let over = std::mem::replace(&mut self.edges[index], HeldStretch::of(law, self.keeps));
                 if over.witness.span().is_some() {
                     self.closed.push(self.certificate(index, *edge, &over));
                 }
@@ -175,7 +176,7 @@ impl Examiner {
         Some(self.certificate(edge, *simulation.formation().edges().get(edge)?, stretch))
     }
 
-    fn certificate(&self, index: usize, edge: Edge, stretch: &Stretch) -> Certificate {
+    fn certificate(&self, index: usize, edge: Edge, stretch: &HeldStretch) -> Certificate {
         let witness = &stretch.witness;
         let wheels = |robot: usize| self.wheels.get(robot).copied().unwrap_or(false);
         let circumstances = Circumstances {

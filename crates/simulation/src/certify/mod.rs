@@ -11,7 +11,9 @@ pub mod sensitivity;
 
 pub use examiner::{Certificate, Examiner};
 pub use formation::certificate::chain::NotLinear;
-pub use formation::certificate::discretisation::{Channel, Discretisation, LongestPeriod};
-pub use formation::certificate::{Constants, Finding, Outcome, Premise, Row, Statement};
+pub use formation::certificate::discretisation::{ChannelSensitivity, Discretisation, LongestPeriod};
+pub use formation::certificate::{
+    Constants, Premise, Statement, StatementFinding, StatementOutcome, WitnessRow,
+};
 pub use formation::feasible::Infeasible;
 pub use past::{rows, so_far};

@@ -2,7 +2,7 @@
 
 use crate::build::edge_law;
 use formation::Estimate;
-use formation::certificate::{Circumstances, Finding, Instant, Row, Witness, certify};
+use formation::certificate::{Circumstances, Instant, StatementFinding, Witness, WitnessRow, certify};
 use scene::{Follow, Role, Scene, SensingKind};
 use vocabulary::{Edge, LawKind, Motion, MotionInput, SetPoint, StepRecord, TimeMode, wrap};
 
@@ -12,7 +12,7 @@ pub fn so_far(
     (index, edge): (usize, Edge),
     follow: &Follow,
     scene: &Scene,
-) -> (Vec<Finding>, Vec<Row>) {
+) -> (Vec<StatementFinding>, Vec<WitnessRow>) {
     let witness = witness(records, (index, edge), follow);
     let wheels = |robot: usize| scene.robots.get(robot).is_some_and(|robot| robot.vehicle.kind.has_wheels());
     let leads = scene.robots.get(edge.leader).is_none_or(|robot| matches!(robot.role, Role::Lead { .. }));
@@ -31,7 +31,7 @@ pub fn so_far(
 
 /// The quantities of edge number `index` along `records`, which may be thinned; its law is that of `follow`. Rates of set
 /// points and of turn rates are differences from moment to moment.
-pub fn rows(records: &[&StepRecord], (index, edge): (usize, Edge), follow: &Follow) -> Vec<Row> {
+pub fn rows(records: &[&StepRecord], (index, edge): (usize, Edge), follow: &Follow) -> Vec<WitnessRow> {
     witness(records, (index, edge), follow).rows().to_vec()
 }
 

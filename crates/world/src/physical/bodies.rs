@@ -4,7 +4,7 @@
 use super::PropBody;
 use super::ground::ground;
 use crate::Wheeled;
-use crate::touch::Touch;
+use crate::touch::BodyContact;
 use crate::wheeled::wheel::{Carriage, Footing};
 use rapier3d_f64::parry::bounding_volume::BoundingVolume;
 use rapier3d_f64::prelude::{
@@ -305,12 +305,12 @@ impl Bodies {
     }
 
     /// The touches of robots and props.
-    pub(super) fn touches(&self) -> Vec<Touch> {
+    pub(super) fn touches(&self) -> Vec<BodyContact> {
         self.narrow_phase.contact_pairs().filter_map(|pair| self.touch(pair)).collect()
     }
 
     /// The touch of a pair, if it touches and is not a prop on the ground.
-    fn touch(&self, pair: &ContactPair) -> Option<Touch> {
+    fn touch(&self, pair: &ContactPair) -> Option<BodyContact> {
         let colliders = [&self.colliders[pair.collider1], &self.colliders[pair.collider2]];
         let mut things = colliders.map(thing_of);
         // What lies on the ground is no collision, except a robot's body.
@@ -338,7 +338,7 @@ impl Bodies {
             normal = -normal;
         }
         let place = frame.transform_point(sum / count).to_array();
-        Some(Touch { things, place, normal: normal.to_array(), impulse })
+        Some(BodyContact { things, place, normal: normal.to_array(), impulse })
     }
 }
 

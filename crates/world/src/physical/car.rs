@@ -1,7 +1,7 @@
 //! One wheeled vehicle in the physical world: its driver, its four wheels, and what stands under them.
 
 use super::bodies::Bodies;
-use super::watch::Watch;
+use super::watch::StuckDetector;
 use crate::guide::{chase, stands, waits, wanted_speed};
 use crate::wheeled::driver::{Driver, Effort, Pace, WINDOW};
 use crate::wheeled::tyre::Brush;
@@ -44,7 +44,7 @@ pub(super) struct Car {
     pub(super) driver: Driver,
     brushes: [Brush; 4],
     pub(super) wheels: [Wheel; 4],
-    pub(super) watch: Watch,
+    pub(super) watch: StuckDetector,
     /// Of all wheels and the air in this physics step.
     pub(super) push: Push,
     /// What the wheels do to the loose props they stand on: body, force, place.
@@ -74,7 +74,7 @@ impl Car {
             driver: Driver { target: speed, slowest, ..Driver::default() },
             brushes: [Brush::default(); 4],
             wheels: [Wheel::default(); 4],
-            watch: Watch::default(),
+            watch: StuckDetector::default(),
             push: Push::default(),
             reactions: Vec::new(),
             vehicle,

@@ -6,13 +6,13 @@ use vocabulary::{Motion, Pose, nearest_turn, wrap};
 
 /// Knots of all vehicles, step by step.
 #[derive(Debug, Clone)]
-pub(super) struct Record {
+pub(super) struct MotionHistory {
     cars: usize,
     knots: Vec<Knot>,
     step: f64,
 }
 
-impl Record {
+impl MotionHistory {
     pub(super) fn new(cars: &[Car], bodies: &Bodies) -> Self {
         let knots = cars.iter().map(|car| bodies.knot(car.body)).collect();
         Self { cars: cars.len(), knots, step: 1.0 }

@@ -8,11 +8,11 @@ mod ground;
 mod interpolant;
 mod watch;
 
-use crate::touch::{Touch, Touches};
+use crate::touch::{BodyContact, Touches};
 use crate::{Handling, Unicycle, Unicycles, Wheeled, World, prescribed::prescribed};
 use bodies::Bodies;
 use car::{Car, Surroundings};
-use interpolant::Record;
+use interpolant::MotionHistory;
 use rapier3d_f64::prelude::RigidBodyHandle;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -71,7 +71,7 @@ pub struct Physical {
     surroundings: Surroundings,
     snapshot: Snapshot,
     touches: Touches,
-    record: Record,
+    record: MotionHistory,
     step: f64,
     /// Size of the smallest thing that can be run into, m.
     smallest: f64,
@@ -127,7 +127,7 @@ impl Physical {
                 guided.push(Guided { body, path: path.clone(), pose, height, size });
             }
         }
-        let record = Record::new(&cars, &bodies);
+        let record = MotionHistory::new(&cars, &bodies);
         let movable = props.iter().filter(|prop| prop.prop.mobility == Mobility::Loose);
         let movable = movable.map(|prop| smaller_side(&prop.prop.solid));
         let robots = actors.iter().map(|actor| actor.robot.body.length.min(actor.robot.body.width));
@@ -216,7 +216,7 @@ impl Physical {
     }
 
     fn find_touches(&mut self, time: f64) {
-        let mut found: Vec<Touch> = self.bodies.touches();
+        let mut found: Vec<BodyContact> = self.bodies.touches();
         found.sort_by_key(|touch| touch.things);
         for touch in &found {
             self.touches.touch(time, touch);

@@ -20,12 +20,12 @@ const DEEP: f64 = 1.0;
 
 /// Since when something is wrong with a vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Watch {
+pub(super) struct StuckDetector {
     tilted: Option<f64>,
     pulling: Option<f64>,
 }
 
-impl Watch {
+impl StuckDetector {
     /// The vehicle's condition at `time`, `below` m under its surface; its target speed is `ahead` of its speed by that
     /// share of what it can be, and it is `told` to go at that speed, m/s.
     pub(super) fn look(
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     fn after(seconds: f64, roll: f64, speed: f64, [ahead, told]: [f64; 2], below: f64) -> Condition {
-        let mut watch = Watch::default();
+        let mut watch = StuckDetector::default();
         let (motion, attitude) =
             (Motion { speed, ..Motion::default() }, Attitude { roll, ..Attitude::default() });
         let mut condition = Condition::Able;
