@@ -156,11 +156,11 @@ fn follower_camera(scene: &Scene, fleet: &FleetInfo, edge: Edge, whole: bool) ->
 fn sensor_config(scene: &Scene, fleet: &FleetInfo) -> SensorConfig {
     let truth = Sensor { source: SensorKind::Truth, rate: 1.0, latency: 0.0, drop: 0.0, tilt: 0.0 };
     let sensors = fleet.edges.iter().map(|_| truth).collect();
-    let things = (fleet.robots.as_slice(), fleet.props.as_slice());
     SensorConfig::new(
         &fleet.edges,
         sensors,
-        things,
+        &fleet.robots,
+        &fleet.props,
         fleet.terrain.clone(),
         CameraSettings::default(),
         scene.seed,

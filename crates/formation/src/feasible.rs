@@ -24,7 +24,7 @@ pub enum Infeasible {
 /// m/s and turns at `turn_rate` rad/s; `distance_min` m is the law's. Margins are shares of the limits.
 pub fn unholdable(
     place: [f64; 2],
-    (speed, turn_rate): (f64, f64),
+    [speed, turn_rate]: [f64; 2],
     limits: &Limits,
     distance_min: f64,
 ) -> Option<Infeasible> {
@@ -83,16 +83,16 @@ mod tests {
     #[test]
     fn on_a_straight_line_every_place_can_be_held() {
         for place in [[-2.0, 0.0], [1.0, 5.0], [0.0, -30.0]] {
-            assert_eq!(unholdable(place, (1.0, 0.0), &Limits::PAPER, 0.1), None);
+            assert_eq!(unholdable(place, [1.0, 0.0], &Limits::PAPER, 0.1), None);
         }
-        assert_eq!(unholdable([0.05, 0.0], (1.0, 0.0), &Limits::PAPER, 0.1), Some(Infeasible::TooClose));
+        assert_eq!(unholdable([0.05, 0.0], [1.0, 0.0], &Limits::PAPER, 0.1), Some(Infeasible::TooClose));
     }
 
     #[test]
     fn a_bend_is_too_fast_outside_and_too_slow_inside() {
         // The paper's circle: 1.1 m/s and 0.3 rad/s; the outer follower needs 1.486 m/s of 1.6.
         let place = |distance: f64, bearing: f64| [distance * bearing.cos(), distance * bearing.sin()];
-        let at = |d, b: f64| unholdable(place(d, b.to_radians()), (1.0, 0.3), &Limits::PAPER, 0.1);
+        let at = |d, b: f64| unholdable(place(d, b.to_radians()), [1.0, 0.3], &Limits::PAPER, 0.1);
         assert_eq!(at(2.0, -135.0), None);
         assert_eq!(at(3.0, -90.0), Some(Infeasible::TooFast));
         assert_eq!(at(3.4, 90.0), Some(Infeasible::TooSlow));
@@ -101,8 +101,8 @@ mod tests {
     #[test]
     fn steered_wheels_cannot_turn_tightly() {
         let car = Limits { curvature_max: 1.0 / 0.6, ..Limits::PAPER };
-        assert_eq!(unholdable([-0.3, 2.5], (1.0, 0.35), &car, 0.1), Some(Infeasible::TooTight));
-        assert_eq!(unholdable([-0.3, -1.0], (1.0, 0.35), &car, 0.1), None);
+        assert_eq!(unholdable([-0.3, 2.5], [1.0, 0.35], &car, 0.1), Some(Infeasible::TooTight));
+        assert_eq!(unholdable([-0.3, -1.0], [1.0, 0.35], &car, 0.1), None);
     }
 
     /// Speed, turn rate and acceleration of a place, by finite differences of where it is.

@@ -94,8 +94,8 @@ impl Recorder {
         let log = if options.no_log {
             None
         } else {
-            let (path, known) = (folder.join(log::FILE), (fleet, &*options.scene));
-            Some(Pipe::create(&path, known, &manifest, options.roll)?)
+            let path = folder.join(log::FILE);
+            Some(Pipe::create(&path, fleet, &options.scene, &manifest, options.roll)?)
         };
         let recorder = Self {
             folder: folder.to_owned(),

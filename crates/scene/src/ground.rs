@@ -192,7 +192,7 @@ fn check_points(region: [f64; 4], cell: f64, place: Span, reporter: &mut Reporte
 
 impl KindKeys<WrittenGround> for TableKeys {
     fn make(self, node: &Node, reporter: &mut Reporter) -> Option<WrittenGround> {
-        let (heights, from_file) = one_of(node, ("heights", self.heights), ("file", self.file), reporter)?;
+        let (heights, from_file) = one_of(node, ["heights", "file"], [self.heights, self.file], reporter)?;
         if !from_file {
             let wanted = heights.value.first().map(Vec::len);
             let rows = heights.value.iter().zip(node.items("heights")).enumerate();

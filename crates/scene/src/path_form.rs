@@ -128,7 +128,7 @@ impl Form for SpeedForm {
             return SPEED.read(node, reporter).map(SpeedProfile::Constant);
         }
         let keys = table::<SpeedKeys>().read(node, reporter)?;
-        let (rows, along_time) = one_of(node, ("distance", keys.distance), ("time", keys.time), reporter)?;
+        let (rows, along_time) = one_of(node, ["distance", "time"], [keys.distance, keys.time], reporter)?;
         check_rising(rows.value.iter().map(|row| row[0]), rows.place, reporter);
         // Travel stops for good where a profile over distance stands at 0.
         if !along_time && rows.value.iter().any(|row| row[1] == 0.0) {
@@ -174,7 +174,7 @@ impl KindKeys<Path> for CircleKeys {
     fn make(self, node: &Node, reporter: &mut Reporter) -> Option<Path> {
         let speed = self.speed?.value;
         let (size, by_turn_rate) =
-            one_of(node, ("radius", self.radius), ("turn_rate", self.turn_rate), reporter)?;
+            one_of(node, ["radius", "turn_rate"], [self.radius, self.turn_rate], reporter)?;
         if by_turn_rate && let Some(direction) = self.direction {
             reporter.report(
                 direction.place,
@@ -198,7 +198,7 @@ impl KindKeys<Path> for CircleKeys {
 impl KindKeys<Path> for FigureEightKeys {
     fn make(self, node: &Node, reporter: &mut Reporter) -> Option<Path> {
         let speed = self.speed?.value;
-        let (size, by_period) = one_of(node, ("length", self.length), ("period", self.period), reporter)?;
+        let (size, by_period) = one_of(node, ["length", "period"], [self.length, self.period], reporter)?;
         Some(Path::FigureEight { speed, length: if by_period { speed * size.value } else { size.value } })
     }
 }
@@ -230,7 +230,7 @@ impl KindKeys<Path> for WaypointsKeys {
 
 impl KindKeys<Path> for TableKeys {
     fn make(self, node: &Node, reporter: &mut Reporter) -> Option<Path> {
-        let (rows, from_file) = one_of(node, ("rows", self.rows), ("file", self.file), reporter)?;
+        let (rows, from_file) = one_of(node, ["rows", "file"], [self.rows, self.file], reporter)?;
         if !from_file {
             check_rising(rows.value.iter().map(|row| row[0]), rows.place, reporter);
         }

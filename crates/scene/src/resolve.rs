@@ -225,13 +225,13 @@ fn film(part: &FilmPart, duration: f64, drafts: &[RobotDraft], reporter: &mut Re
     }
     let mut film = part.complete(&FilmPart::default());
     if let Some(place) = part.shots.as_ref().map(|found| found.place) {
-        shots(&mut film.shots, (place, duration), drafts, reporter);
+        shots(&mut film.shots, place, duration, drafts, reporter);
     }
     film
 }
 
 /// Gives every shot its beginning and end. Whether the run is long enough matters once it is filmed: [`Film::beyond`].
-fn shots(shots: &mut [Shot], (place, duration): (Span, f64), drafts: &[RobotDraft], reporter: &mut Reporter) {
+fn shots(shots: &mut [Shot], place: Span, duration: f64, drafts: &[RobotDraft], reporter: &mut Reporter) {
     let begins: Vec<Option<f64>> = shots.iter().map(|shot| shot.from).collect();
     let mut now = 0.0;
     for (k, shot) in shots.iter_mut().enumerate() {

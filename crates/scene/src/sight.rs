@@ -99,7 +99,7 @@ pub(crate) fn check_sight(said: &Said<'_>, drafts: &[RobotDraft], reporter: &mut
             if !inside {
                 inside = check_shell(said, robot, name.place, reporter);
             }
-            check_visible(said, follow, (leader, robot), name.place, reporter);
+            check_visible(said, follow, [leader, robot], name.place, reporter);
         }
     }
 }
@@ -182,7 +182,7 @@ fn check_shell(said: &Said<'_>, robot: &Robot, place: Span, reporter: &mut Repor
 fn check_visible(
     said: &Said<'_>,
     follow: &Follow,
-    (leader, robot): (&Robot, &Robot),
+    [leader, robot]: [&Robot; 2],
     place: Span,
     reporter: &mut Reporter,
 ) {

@@ -39,7 +39,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     };
     let members: Vec<RobotInfo> = scene.robots.iter().map(member).collect();
     Ok(Setup {
-        sensor_config: sensor_config(scene, &followers, (&edges, &members), &stage),
+        sensor_config: sensor_config(scene, &followers, &edges, &members, &stage),
         fleet: FleetInfo {
             title: scene.title.clone(),
             caption: caption(scene),
@@ -148,7 +148,8 @@ const TILT: f64 = 2.0 * std::f64::consts::PI / 180.0;
 fn sensor_config(
     scene: &Scene,
     followers: &[(&str, &Follow)],
-    (edges, members): (&[Edge], &[RobotInfo]),
+    edges: &[Edge],
+    robots: &[RobotInfo],
     stage: &WorldSetup,
 ) -> Option<Arc<SensorConfig>> {
     let level = stage.terrain.is_none();
@@ -184,7 +185,14 @@ fn sensor_config(
         whole_frames: vision.whole_frames,
     };
     let props: Vec<_> = stage.props.iter().map(|prop| prop.prop.clone()).collect();
-    let (things, ground) = ((members, props.as_slice()), stage.terrain.clone());
-    let sensor_config = SensorConfig::new(edges, sensors.collect(), things, ground, camera, scene.seed);
+    let sensor_config = SensorConfig::new(
+        edges,
+        sensors.collect(),
+        robots,
+        &props,
+        stage.terrain.clone(),
+        camera,
+        scene.seed,
+    );
     sensor_config.look().then(|| Arc::new(sensor_config))
 }

@@ -79,7 +79,7 @@ impl SensingPipeline {
         {
             let mut eyes = self.eyes.as_ref().map(|eyes| eyes.lock().unwrap_or_else(PoisonError::into_inner));
             let eyes = eyes.as_mut().map(|eyes| eyes.as_mut() as &mut dyn CameraRenderer);
-            let period = (&self.before, &now);
+            let period = [&self.before, &now];
             self.sensor_config.take_looks(
                 &mut self.sensor_state,
                 period,

@@ -162,7 +162,7 @@ impl Bench {
         let shell = self.detector.shell;
         self.detector.foreign = 0;
         let clock = Instant::now();
-        let faces = recognise_expected(&mut self.detector, (&picture, region), &optics, &shell, expected);
+        let faces = recognise_expected(&mut self.detector, &picture, region, &optics, &shell, expected);
         times[2] = milliseconds(clock);
         let strayed = faces.iter().filter(|seen| strays(seen, &shell, &optics, camera_from_body)).count();
         Ok(Found { faces, wrong: self.detector.foreign, strayed, times })

@@ -97,7 +97,7 @@ impl ChainLink<'_> {
         let column = |k: usize| {
             let mut shift = State::zeros();
             shift[k] = STEP;
-            slope(self.rate(&(x + shift), leader), self.rate(&(x - shift), leader))
+            slope([x + shift, x - shift].map(|x| self.rate(&x, leader)))
         };
         (0..size).map(column).collect()
     }
@@ -125,7 +125,7 @@ impl ChainLink<'_> {
 /// Step of central differences.
 const STEP: f64 = 1e-6;
 
-fn slope(after: (State, f64), before: (State, f64)) -> (State, f64) {
+fn slope([after, before]: [(State, f64); 2]) -> (State, f64) {
     ((after.0 - before.0) / (2.0 * STEP), (after.1 - before.1) / (2.0 * STEP))
 }
 
@@ -152,7 +152,7 @@ impl LinearEdge {
                 change(&mut moved, h);
                 edge.rate(&x, &moved)
             };
-            slope(at(STEP), at(-STEP))
+            slope([STEP, -STEP].map(at))
         };
         let speeds = [by_leader(|d, h| d.speed += h), by_leader(|d, h| d.turn_rate += h)];
         let accelerations =

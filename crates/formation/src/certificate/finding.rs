@@ -1,6 +1,7 @@
 //! Statements of the theorems held against what an edge went through.
 
 use super::constants::Constants;
+use super::ledger::Falls;
 use super::premise::{Premise, Spell};
 use super::tally::{Margin, Tally};
 use super::witness::Witness;
@@ -183,10 +184,10 @@ impl FindingView<'_> {
             Statement::NonNegative => self.throughout(&ledger.p),
             Statement::TrackingDecrease => {
                 let bound = self.constants.filter(|_| self.observes()).map_or(0.0, |c| c.sigma_1);
-                some_of(ledger.v.found(bound))
+                some_of(&ledger.v, bound)
             }
             Statement::ObserverDecrease => {
-                some_of(self.constants.map_or((None, None), |c| ledger.w.found(c.trap)))
+                self.constants.map_or((None, None), |c| some_of(&ledger.w, c.trap))
             }
             Statement::Epsilon => self.constant(|c| c.epsilon_1 - c.epsilon),
             Statement::Trapped => self.trapped(),
@@ -292,6 +293,7 @@ impl FindingView<'_> {
 }
 
 /// From a first to a last sample, and never all of them: each speaks of the step to the next.
-fn some_of((ends, margin): (Option<[f64; 2]>, Option<f64>)) -> (Option<Against>, Option<f64>) {
+fn some_of(falls: &Falls, bound: f64) -> (Option<Against>, Option<f64>) {
+    let (ends, margin) = falls.found(bound);
     (ends.map(|[first, last]| Against { first, last, throughout: false }), margin)
 }

@@ -29,6 +29,7 @@ const ON_THE_SPOT: f64 = 1e-6;
 pub(super) fn sharpest(piece: &CubicBez) -> (f64, f64) {
     let at = |k: u32| f64::from(k) / f64::from(PARTS);
     let bent = |u: f64| bend(piece, u);
+    let larger = |a: (f64, f64), b: (f64, f64)| if b.1 > a.1 { b } else { a };
     let top = (0..=PARTS).map(|k| (at(k), bent(at(k)))).fold((0.0, -1.0), larger);
     let (mut low, mut high) = ((top.0 - at(1)).max(0.0), (top.0 + at(1)).min(1.0));
     for _ in 0..40 {
@@ -37,10 +38,6 @@ pub(super) fn sharpest(piece: &CubicBez) -> (f64, f64) {
     }
     let middle = f64::midpoint(low, high);
     slowest(piece).map(|u| (u, bent(u))).chain([(middle, bent(middle))]).fold(top, larger)
-}
-
-fn larger(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
-    if b.1 > a.1 { b } else { a }
 }
 
 /// Parameters inside a piece at which it goes slower than just before and after: a needle's eye of a bend hides there.

@@ -93,7 +93,7 @@ impl Tracker {
         let stretch = OwnMotion { from: self.now, until: self.now + period, own };
         let coasting = law.coasts(self.age());
         if let Some(belief) = &mut self.current {
-            belief.predict(law, own, (0.0, period), coasting);
+            belief.predict(law, own, [0.0, period], coasting);
         }
         self.past.push_back(stretch);
         self.now += period;
@@ -170,7 +170,7 @@ impl Tracker {
         for stretch in self.past.iter().filter(|s| s.until > from && s.from < until) {
             let (start, end) = (from.max(stretch.from), until.min(stretch.until));
             let coasting = law.coasts(stretch.from - from);
-            belief.predict(law, stretch.own, (start - stretch.from, end - start), coasting);
+            belief.predict(law, stretch.own, [start - stretch.from, end - start], coasting);
         }
     }
 
@@ -231,7 +231,7 @@ impl EdgeEstimator {
     }
 
     /// Carries it on over `duration` s of a stretch that began `since` s before.
-    fn predict(&mut self, law: &LookLaw, own: Own, (since, duration): (f64, f64), coasting: bool) {
+    fn predict(&mut self, law: &LookLaw, own: Own, [since, duration]: [f64; 2], coasting: bool) {
         let own = Own { speed: own.speed + own.acceleration * since, ..own };
         match self {
             Self::HighGain(belief) => belief.predict(law, own, duration, coasting),

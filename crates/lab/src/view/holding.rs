@@ -43,7 +43,7 @@ impl Wanted {
     }
 
     fn refuses_at(&self, place: [f64; 2], (speed, turn_rate): (f64, f64)) -> bool {
-        let why = unholdable(place, (speed, turn_rate), &self.limits, self.distance_min);
+        let why = unholdable(place, [speed, turn_rate], &self.limits, self.distance_min);
         if why.is_some() {
             return true;
         }

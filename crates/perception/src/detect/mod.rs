@@ -46,13 +46,14 @@ pub fn recognise(
     optics: &Optics,
     shell: &Shell,
 ) -> Vec<SeenFace> {
-    recognise_expected(detector, (picture, region), optics, shell, FACES)
+    recognise_expected(detector, picture, region, optics, shell, FACES)
 }
 
 /// The same where no more than `expected` faces can be seen: once they are found, the shade is not searched.
 pub fn recognise_expected(
     detector: &mut dyn Detector,
-    (picture, region): (&Grey, Region),
+    picture: &Grey,
+    region: Region,
     optics: &Optics,
     shell: &Shell,
     expected: usize,

@@ -128,7 +128,7 @@ fn fitted(view: &TagView<'_>, blur: f64, tag: &Tag) -> Option<([[f64; 2]; 4], f6
     let mut spread = f64::INFINITY;
     let (mut corners, mut deviation) = (start, 0.0);
     for _ in 0..ROUNDS {
-        let round = round(&samples, &h, &cells, (blur, told), light, spread)?;
+        let round = round(&samples, &h, &cells, [blur, told], light, spread)?;
         h += round.step;
         light = std::array::from_fn(|k| light[k] + round.light[k]);
         spread = round.spread;
@@ -277,7 +277,7 @@ fn round(
     samples: &[PixelSample],
     h: &Matrix3<f64>,
     cells: &Cells,
-    (blur, told): (f64, f64),
+    [blur, told]: [f64; 2],
     light: [f64; 4],
     spread: f64,
 ) -> Option<Round> {

@@ -104,7 +104,8 @@ impl DetectorBench {
         model: &CameraSettings,
         sensor_config: &SensorConfig,
         look: &Exposure<'_>,
-        (region, light): (Region, &Grey),
+        region: Region,
+        light: &Grey,
     ) -> CameraDetection {
         let mut random = noise_stream(sensor_config.seed, look.follower, look.number, Purpose::Pixels);
         let mut picture = std::mem::take(&mut self.picture);
@@ -114,7 +115,7 @@ impl DetectorBench {
         let shell = sensor_config.kits[look.leader].shell;
         let expected = readable(sensor_config, look).unwrap_or(FACES);
         let faces = shell.map_or_else(Vec::new, |shell| {
-            recognise_expected(&mut self.detector, (&picture, region), &optics, &shell, expected)
+            recognise_expected(&mut self.detector, &picture, region, &optics, &shell, expected)
         });
         self.picture = picture;
         CameraDetection { region, faces }
@@ -135,12 +136,13 @@ impl CameraSettings {
         &self,
         sensor_config: &SensorConfig,
         looks: &[&Exposure<'_>],
-        period: (&Snapshot, &Snapshot),
-        (eyes, camera_pipeline): (&mut dyn CameraRenderer, &mut CameraPipeline),
+        period: [&Snapshot; 2],
+        eyes: &mut dyn CameraRenderer,
+        camera_pipeline: &mut CameraPipeline,
     ) -> Result<Vec<CameraDetection>, String> {
         let regions: Vec<Region> = looks.iter().map(|look| self.region(sensor_config, look)).collect();
         let benches = camera_pipeline.benches(looks.len());
-        let pictures = self.light(sensor_config, looks, &regions, period, (eyes, &mut benches[0]))?;
+        let pictures = self.light(sensor_config, looks, &regions, period, eyes, &mut benches[0])?;
         let jobs: Vec<_> = looks.iter().zip(regions.into_iter().zip(&pictures)).collect();
         let threads = benches.len();
         let mut found: Vec<Option<CameraDetection>> = jobs.iter().map(|_| None).collect();
@@ -151,7 +153,7 @@ impl CameraSettings {
                 let own = jobs.iter().enumerate().skip(first).step_by(threads);
                 let task = move || -> Vec<(usize, CameraDetection)> {
                     own.map(|(k, (look, (region, light)))| {
-                        (k, bench.develop(self, sensor_config, look, (*region, light)))
+                        (k, bench.develop(self, sensor_config, look, *region, light))
                     })
                     .collect()
                 };
@@ -175,8 +177,9 @@ impl CameraSettings {
         sensor_config: &SensorConfig,
         looks: &[&Exposure<'_>],
         regions: &[Region],
-        (before, after): (&Snapshot, &Snapshot),
-        (eyes, bench): (&mut dyn CameraRenderer, &mut DetectorBench),
+        [before, after]: [&Snapshot; 2],
+        eyes: &mut dyn CameraRenderer,
+        bench: &mut DetectorBench,
     ) -> Result<Vec<Grey>, String> {
         let mut shots = |snapshot: &Snapshot| -> Vec<Shot> {
             let shot = |(look, region): (&&Exposure<'_>, &Region)| {

@@ -9,7 +9,7 @@ impl SensorConfig {
     pub fn hides(
         &self,
         snapshot: &Snapshot,
-        (watcher, watched): (usize, usize),
+        [watcher, watched]: [usize; 2],
         from: [f64; 3],
         to: [f64; 3],
     ) -> bool {

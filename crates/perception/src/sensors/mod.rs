@@ -132,7 +132,8 @@ impl SensorConfig {
     pub fn new(
         edges: &[Edge],
         sensors: Vec<Sensor>,
-        (members, props): (&[RobotInfo], &[Prop]),
+        robots: &[RobotInfo],
+        props: &[Prop],
         terrain: Option<std::sync::Arc<Terrain>>,
         camera: CameraSettings,
         seed: u64,
@@ -147,7 +148,7 @@ impl SensorConfig {
         Self {
             edges: edges.to_vec(),
             sensors,
-            kits: members.iter().map(kit).collect(),
+            kits: robots.iter().map(kit).collect(),
             props: props.to_vec(),
             terrain,
             camera,
@@ -198,7 +199,7 @@ impl SensorConfig {
     pub fn take_looks(
         &self,
         sensor_state: &mut SensorState,
-        (before, after): (&Snapshot, &Snapshot),
+        [before, after]: [&Snapshot; 2],
         interpolant: &(impl StepInterpolant + ?Sized),
         beliefs: &[LeaderPrediction],
         mut eyes: Option<&mut (dyn CameraRenderer + '_)>,
@@ -209,7 +210,7 @@ impl SensorConfig {
             } else {
                 1.0
             };
-            let snapshot = self.instant(sensor_state, (before, after), interpolant, share);
+            let snapshot = self.instant(sensor_state, [before, after], interpolant, share);
             let looks: Vec<Exposure<'_>> = due
                 .iter()
                 .map(|&edge| Exposure {
@@ -225,8 +226,9 @@ impl SensorConfig {
                 .collect();
             let pictures = self.pictures(
                 &looks,
-                (before, after),
-                (eyes.as_deref_mut(), &mut sensor_state.camera_pipeline),
+                [before, after],
+                eyes.as_deref_mut(),
+                &mut sensor_state.camera_pipeline,
             )?;
             for (look, picture) in looks.iter().zip(pictures) {
                 let frame = self.frame(sensor_state, look, instant, picture);
@@ -259,7 +261,7 @@ impl SensorConfig {
     fn instant(
         &self,
         sensor_state: &SensorState,
-        (before, after): (&Snapshot, &Snapshot),
+        [before, after]: [&Snapshot; 2],
         interpolant: &(impl StepInterpolant + ?Sized),
         share: f64,
     ) -> Snapshot {
@@ -354,8 +356,9 @@ impl SensorConfig {
     fn pictures(
         &self,
         looks: &[Exposure<'_>],
-        period: (&Snapshot, &Snapshot),
-        (eyes, camera_pipeline): (Option<&mut (dyn CameraRenderer + '_)>, &mut CameraPipeline),
+        period: [&Snapshot; 2],
+        eyes: Option<&mut (dyn CameraRenderer + '_)>,
+        camera_pipeline: &mut CameraPipeline,
     ) -> Result<Vec<Option<camera::CameraDetection>>, String> {
         let by_camera = |look: &Exposure<'_>| self.sensors[look.edge].source == SensorKind::Camera;
         if !looks.iter().any(by_camera) {
@@ -363,7 +366,7 @@ impl SensorConfig {
         }
         let eyes = eyes.ok_or("cameras are to take pictures, and nobody is there to draw them")?;
         let wanted: Vec<&Exposure<'_>> = looks.iter().filter(|look| by_camera(look)).collect();
-        let mut seen = self.camera.see(self, &wanted, period, (eyes, camera_pipeline))?.into_iter();
+        let mut seen = self.camera.see(self, &wanted, period, eyes, camera_pipeline)?.into_iter();
         Ok(looks.iter().map(|look| if by_camera(look) { seen.next() } else { None }).collect())
     }
 

@@ -68,7 +68,7 @@ pub(super) fn import(file: &File, path: &Path) -> Result<Imported, Error> {
     let scene = about.scene.clone().unwrap_or_default();
     let ours = output::scratch()?;
     let copy = ours.try_clone().map_err(Error::io("write", path))?;
-    let mut writer = Writer::create((ours, path), &fleet, (&scene, &manifest), false)?;
+    let mut writer = Writer::create(ours, path, &fleet, &scene, &manifest, false)?;
     let (mut pending, mut batch, mut count) = (Pending::default(), vec![], 0);
     let mut span = [0.0; 2];
     let mut take = |pending: &mut Pending, until: u64| -> Result<bool, Error> {

@@ -40,12 +40,13 @@ impl Pipe {
     /// Writes what is known before the run, and waits for moments.
     pub(crate) fn create(
         path: &Path,
-        (fleet, scene): (&FleetInfo, &str),
+        fleet: &FleetInfo,
+        scene: &str,
         manifest: &Manifest,
         roll: Roll,
     ) -> Result<Self, Error> {
         let file = File::create(path).map_err(Error::io("create", path))?;
-        let mut writer = Writer::create((file, path), fleet, (scene, manifest), true)?;
+        let mut writer = Writer::create(file, path, fleet, scene, manifest, true)?;
         let (sender, receiver) = sync_channel::<Batch>(WAITING);
         let (back, used) = sync_channel(WAITING);
         let write = move || {

@@ -63,9 +63,9 @@ impl Log {
         if outline.foreign {
             let Imported { mut file, begins, remark } = import(&file, path)?;
             let outline = ChunkOutline::of(&mut file, path)?;
-            return Self::of_ours(file, path, outline, (begins, Some(remark)));
+            return Self::of_ours(file, path, outline, begins, Some(remark));
         }
-        Self::of_ours(file, path, outline, (0.0, None))
+        Self::of_ours(file, path, outline, 0.0, None)
     }
 
     /// Opens a file that is laid as ours are.
@@ -73,7 +73,8 @@ impl Log {
         file: File,
         path: &Path,
         outline: ChunkOutline,
-        (begins, remark): (f64, Option<String>),
+        begins: f64,
+        remark: Option<String>,
     ) -> Result<Self, Error> {
         let wrong = |message: &str| Error::Log { path: path.to_owned(), message: message.to_owned() };
         let Some(format) = outline.format else {

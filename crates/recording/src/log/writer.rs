@@ -113,9 +113,11 @@ pub(super) struct Writer {
 impl Writer {
     /// Writes what is known before the run into `file`; errors speak of `path`. Without drawings, where nobody will look.
     pub(super) fn create(
-        (file, path): (File, &Path),
+        file: File,
+        path: &Path,
         fleet: &FleetInfo,
-        (scene, manifest): (&str, &Manifest),
+        scene: &str,
+        manifest: &Manifest,
         drawn: bool,
     ) -> Result<Self, Error> {
         let options = WriteOptions::new()

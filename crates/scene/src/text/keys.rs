@@ -27,18 +27,18 @@ pub(crate) fn found_or<T>(
 /// Whichever of two keys is given, and whether it was the second; a note if none or both are.
 pub(crate) fn one_of<T>(
     node: &Node,
-    first: (&str, Option<Found<T>>),
-    second: (&str, Option<Found<T>>),
+    keys: [&str; 2],
+    found: [Option<Found<T>>; 2],
     reporter: &mut Reporter,
 ) -> Option<(Found<T>, bool)> {
-    match (first.1, second.1) {
-        (Some(found), None) => Some((found, false)),
-        (None, Some(found)) => Some((found, true)),
+    match found {
+        [Some(found), None] => Some((found, false)),
+        [None, Some(found)] => Some((found, true)),
         _ => {
             // A key that is there but was wrong has its own note already.
-            let given = [first.0, second.0].iter().filter(|key| node.get(key).is_some()).count();
+            let given = keys.iter().filter(|key| node.get(key).is_some()).count();
             if given != 1 {
-                reporter.report(node.place, format!("give either `{}` or `{}` here", first.0, second.0));
+                reporter.report(node.place, format!("give either `{}` or `{}` here", keys[0], keys[1]));
             }
             None
         }
