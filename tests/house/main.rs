@@ -31,16 +31,18 @@ fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// Whom each crate may use among our own; everybody else may not.
-const ARROWS: [(&str, &[&str]); 14] = [
+const ARROWS: [(&str, &[&str]); 15] = [
     ("vocabulary", &[]),
     ("output", &[]),
+    ("film", &["vocabulary", "output"]),
     ("scene", &["vocabulary"]),
     ("formation", &["vocabulary"]),
     ("world", &["vocabulary"]),
     ("perception", &["vocabulary"]),
     ("metrics", &["vocabulary"]),
     ("recording", &["vocabulary", "metrics", "output"]),
-    ("rendering", &["vocabulary", "output"]),
+    // Its tests, examples and benches write pictures and films with `film`.
+    ("rendering", &["vocabulary", "film"]),
     ("figures", &[]),
     ("simulation", &["vocabulary", "scene", "formation", "world", "perception", "metrics"]),
     ("report", &["vocabulary", "scene", "simulation", "metrics", "figures"]),
@@ -54,6 +56,7 @@ const ARROWS: [(&str, &[&str]); 14] = [
             "simulation",
             "metrics",
             "recording",
+            "film",
             "rendering",
             "figures",
         ],
@@ -68,6 +71,7 @@ const ARROWS: [(&str, &[&str]); 14] = [
             "simulation",
             "metrics",
             "recording",
+            "film",
             "rendering",
             "figures",
             "report",
@@ -84,7 +88,7 @@ const LEAVES: [(&str, &[&str]); 10] = [
     ("mcap", &["recording"]),
     ("foxglove", &["recording"]),
     ("clap", &["cli"]),
-    ("openh264", &["rendering"]),
+    ("openh264", &["film"]),
     ("rapier3d-f64", &["world"]),
     ("resvg", &["report"]),
     ("svg2pdf", &["report"]),

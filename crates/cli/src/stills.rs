@@ -124,7 +124,7 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
 }
 
 fn write(path: &Path, picture: &Picture, texts: &[(&str, &str)]) -> Result<(), Failure> {
-    Ok(rendering::png::write(path, picture, texts)?)
+    Ok(film::png::write(path, picture, texts)?)
 }
 
 /// Pictures in rows, white between them.

@@ -86,7 +86,7 @@ impl Lab {
 
     /// A picture brings back the scene, the time and the view that made it.
     pub(crate) fn open_picture(&mut self, path: &Path) {
-        let texts = match rendering::png::read_texts(path) {
+        let texts = match film::png::read_texts(path) {
             Ok(texts) => texts,
             Err(error) => return self.desk.fault(error.to_string()),
         };

@@ -86,7 +86,7 @@ impl Lab {
             let rgba = image.pixels.iter().flat_map(egui::Color32::to_array).collect();
             let picture = vocabulary::Picture { width, height, rgba };
             let texts = [("Software", concat!("echelon ", env!("CARGO_PKG_VERSION")))];
-            let written = rendering::png::write(&path, &picture, &texts);
+            let written = film::png::write(&path, &picture, &texts);
             // A window that is closed does not wait for it.
             let _ = sender.send(match written {
                 Ok(()) => Ok(format!("Written: {}", path.display())),

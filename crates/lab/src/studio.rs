@@ -1,6 +1,7 @@
 //! Pictures and films, drawn on a thread of their own so that the window never waits for them.
 
-use rendering::{Error, Film, FilmKind, Gpu, Layout, Renderer, Style, Trail, png};
+use film::{Film, FilmKind, png};
+use rendering::{Gpu, Layout, Renderer, Style, Trail};
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{
@@ -71,6 +72,17 @@ pub enum Told {
     Written(PathBuf),
     /// A file could not be made, and why.
     Failed(String),
+}
+
+/// Why a picture or a film could not be made.
+#[derive(Debug, thiserror::Error)]
+enum StudioError {
+    /// It could not be drawn.
+    #[error(transparent)]
+    Rendering(#[from] rendering::Error),
+    /// It could not be written.
+    #[error(transparent)]
+    Film(#[from] film::Error),
 }
 
 /// The thread and its channels.
@@ -155,7 +167,7 @@ struct Reel {
 
 impl Work {
     /// Does a job; the file that is complete with it.
-    fn take(&mut self, job: Job) -> Result<Option<PathBuf>, Error> {
+    fn take(&mut self, job: Job) -> Result<Option<PathBuf>, StudioError> {
         match job {
             Job::Picture { path, fleet, size, trail, shot, texts } => {
                 let drawer = self.drawer(&fleet, size)?;
@@ -193,13 +205,16 @@ impl Work {
                 done.map(|()| None)
             }
             Job::End => match self.film.take() {
-                Some(reel) if reel.film.frames() > 0 => reel.film.finish().map(|()| Some(reel.path)),
+                Some(reel) if reel.film.frames() > 0 => {
+                    reel.film.finish()?;
+                    Ok(Some(reel.path))
+                }
                 _ => Ok(None),
             },
         }
     }
 
-    fn frame(&mut self, shot: &Shot) -> Result<(), Error> {
+    fn frame(&mut self, shot: &Shot) -> Result<(), StudioError> {
         let Some(mut reel) = self.film.take() else { return Ok(()) };
         let drawer = self.drawer(&reel.fleet, reel.size)?;
         drawer.retitle(&shot.words[0], &shot.words[1]);
@@ -209,7 +224,7 @@ impl Work {
         Ok(())
     }
 
-    fn drawer(&mut self, fleet: &Arc<FleetInfo>, size: (u32, u32)) -> Result<&mut Renderer, Error> {
+    fn drawer(&mut self, fleet: &Arc<FleetInfo>, size: (u32, u32)) -> Result<&mut Renderer, StudioError> {
         let fitting = self.drawer.take().filter(|(known, _)| Arc::ptr_eq(known, fleet));
         let drawer = match fitting {
             Some(drawer) => drawer,

@@ -13,7 +13,8 @@ mod stage;
 
 use course::{TRUCK, furnish};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use rendering::{AdapterChoice, Film, FilmKind, Gpu, GpuCameraRenderer, Layout, Renderer, Style};
+use film::{Film, FilmKind};
+use rendering::{AdapterChoice, Gpu, GpuCameraRenderer, Layout, Renderer, Style};
 use sight::shots;
 use stage::{Path, Play};
 use vocabulary::{Region, Shot};
@@ -71,7 +72,7 @@ fn film(criterion: &mut Criterion) {
         let mut renderer = Renderer::new(&gpu, &play.fleet, 1280, 720, 4).expect("a renderer");
         b.iter_batched(
             || play.trail(0.0),
-            |mut trail| -> Result<(), rendering::Error> {
+            |mut trail| -> Result<(), Box<dyn std::error::Error>> {
                 let mut film = Film::create(&folder.path().join("a.mp4"), FilmKind::Mp4, 1280, 720, 30.0)?;
                 for record in &records {
                     trail.push(record);
@@ -82,7 +83,7 @@ fn film(criterion: &mut Criterion) {
                 if let Some(picture) = renderer.finish()? {
                     film.push(picture)?;
                 }
-                film.finish()
+                Ok(film.finish()?)
             },
             BatchSize::PerIteration,
         );

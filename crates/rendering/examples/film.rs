@@ -3,11 +3,12 @@
 #[path = "../tests/stage/mod.rs"]
 mod stage;
 
-use rendering::{AdapterChoice, Film, FilmKind, Gpu, Layout, Renderer, Style};
+use film::{Film, FilmKind};
+use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style};
 use stage::{Path, Play};
 use std::time::Instant;
 
-fn main() -> Result<(), rendering::Error> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = Instant::now();
     let words: Vec<String> = std::env::args().skip(1).collect();
     let word = |k: usize, other: &str| words.get(k).cloned().unwrap_or_else(|| other.to_owned());

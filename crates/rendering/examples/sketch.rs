@@ -9,8 +9,9 @@ mod course;
 mod stage;
 
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded};
+use film::png;
 use rendering::{
-    AdapterChoice, Area, Arrow, Ghost, Gpu, Layout, Renderer, Ring, Sketch, Spot, Stroke, Style, Trail, png,
+    AdapterChoice, Area, Arrow, Ghost, Gpu, Layout, Renderer, Ring, Sketch, Spot, Stroke, Style, Trail,
     robot_colours,
 };
 use stage::{Path, Play};
@@ -67,7 +68,7 @@ fn sketched(play: &Play, at: &dyn Fn(f64) -> StepRecord, time: f64, size: f64) -
     sketch
 }
 
-fn main() -> Result<(), rendering::Error> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let word = |k: usize, other: &str| words.get(k).cloned().unwrap_or_else(|| other.to_owned());
     let number = |k: usize, other: f64| words.get(k).and_then(|w| w.parse().ok()).unwrap_or(other);
@@ -103,5 +104,5 @@ fn main() -> Result<(), rendering::Error> {
     let interactive = word(9, "") == "interactive";
     let style = Style { sketch: sketched(&play, &at, time, scale), interactive, ..Style::default() };
     let picture = renderer.draw(&trail, &at(time), &layout, &style)?;
-    png::write(word(0, "sketch.png").as_ref(), &picture, &[("Adapter", &gpu.description())])
+    Ok(png::write(word(0, "sketch.png").as_ref(), &picture, &[("Adapter", &gpu.description())])?)
 }

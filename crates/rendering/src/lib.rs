@@ -1,7 +1,7 @@
-//! Moments to pictures and films.
+//! Step records to pictures.
 //!
 //! ```no_run
-//! use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, View, png};
+//! use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, View};
 //! # fn shown(fleet: &vocabulary::FleetInfo, records: &[vocabulary::StepRecord]) -> Result<(), rendering::Error> {
 //! let gpu = Gpu::open(&AdapterChoice::Auto)?;
 //! let mut renderer = Renderer::new(&gpu, fleet, 1280, 720, 4)?;
@@ -11,7 +11,7 @@
 //! }
 //! if let Some(last) = records.last() {
 //!     let picture = renderer.draw(&trail, last, &Layout::single(View::Snake), &Style::default())?;
-//!     png::write("last.png".as_ref(), &picture, &[("Adapter", &gpu.description())])?;
+//!     println!("{} bytes by {}", picture.rgba.len(), gpu.description());
 //! }
 //! # Ok(())
 //! # }
@@ -33,7 +33,6 @@ mod drape;
 mod encode;
 mod error;
 mod eyes;
-mod film;
 mod flash;
 mod floor;
 mod glide;
@@ -47,7 +46,6 @@ mod palette;
 mod passes;
 mod pick;
 mod plan;
-pub mod png;
 mod props;
 mod renderer;
 mod room;
@@ -67,7 +65,6 @@ mod world;
 pub use composition::Composition;
 pub use error::Error;
 pub use eyes::GpuCameraRenderer;
-pub use film::{Film, FilmKind};
 pub use gpu::{AdapterChoice, AdapterInfo, Gpu, adapters};
 pub use letters::FONT;
 pub use palette::robot_colours;

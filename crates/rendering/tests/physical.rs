@@ -414,7 +414,7 @@ fn golden_course() {
     let picture = renderer.draw(&trail, &last, &Layout::single(View::Snake), &style).unwrap();
     let file = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/course.png");
     if std::env::var_os("ECHELON_BLESS").is_some() {
-        return rendering::png::write(&file, &picture, &[]).unwrap();
+        return film::png::write(&file, &picture, &[]).unwrap();
     }
     let wanted = image::open(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display())).to_rgb8();
     let rgb = picture.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();

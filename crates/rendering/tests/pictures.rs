@@ -221,7 +221,7 @@ fn bad_input_is_refused_with_reasons() {
 fn golden(name: &str, picture: &Picture) {
     let file = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/{name}.png"));
     if std::env::var_os("ECHELON_BLESS").is_some() {
-        return rendering::png::write(&file, picture, &[]).unwrap();
+        return film::png::write(&file, picture, &[]).unwrap();
     }
     let wanted = image::open(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display())).to_rgb8();
     let rgb = picture.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();

@@ -6,7 +6,8 @@ use super::{Subject, ready, stop};
 use crate::failure::Failure;
 use crate::playback::{Playback, Source};
 use crate::run::PROGRAM;
-use rendering::{FilmKind, Gpu, Layout, Renderer, Style, png};
+use film::{FilmKind, png};
+use rendering::{Gpu, Layout, Renderer, Style};
 use report::{Case, Film, Job, Ran, Report, Shot, add_picture, find};
 use vocabulary::FleetInfo;
 
@@ -79,7 +80,7 @@ pub(super) fn draw(
     let mut renderer = Renderer::new(gpu, &fleet, FILM[0], FILM[1], 4)?;
     let file = format!("{}.mp4", show.name);
     let path = folder.place(&file);
-    let mut film = rendering::Film::create(&path, FilmKind::Mp4, FILM[0], FILM[1], RATE)?;
+    let mut film = film::Film::create(&path, FilmKind::Mp4, FILM[0], FILM[1], RATE)?;
     let mut playback = Playback::new(&fleet, Source::Run(Box::new(simulation)));
     let mut shot = show.shot.as_ref();
     for frame in 0..show.frames() {

@@ -1,6 +1,6 @@
 //! A folder of numbered pictures.
 
-use super::Sink;
+use crate::frame_sink::FrameSink;
 use crate::{Error, png};
 use output::DraftFolder;
 use std::fs::File;
@@ -8,13 +8,13 @@ use std::path::Path;
 use vocabulary::Picture;
 
 /// The folder under its temporary name.
-pub(super) struct Sequence {
+pub(crate) struct Sequence {
     folder: DraftFolder,
     count: u32,
 }
 
 impl Sequence {
-    pub(super) fn create(path: &Path) -> Result<Self, Error> {
+    pub(crate) fn create(path: &Path) -> Result<Self, Error> {
         // Pictures of an older, longer film would stay among the new ones.
         if std::fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some()) {
             return Err(output::Error::Occupied { path: path.to_owned(), what: None }.into());
@@ -23,7 +23,7 @@ impl Sequence {
     }
 }
 
-impl Sink for Sequence {
+impl FrameSink for Sequence {
     fn add(&mut self, picture: &Picture) -> Result<(), Error> {
         let name = format!("frame-{:05}.png", self.count);
         self.count += 1;

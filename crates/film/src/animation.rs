@@ -1,7 +1,8 @@
 //! Animated GIF, frame by frame, each with a palette of its own.
 
-use super::{Format, Sink};
 use crate::Error;
+use crate::frame_sink::FrameSink;
+use crate::video_format::VideoFormat;
 use output::Draft;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -12,7 +13,7 @@ use vocabulary::Picture;
 const SPEED: i32 = 12;
 
 /// The encoder and its file.
-pub(super) struct Animation {
+pub(crate) struct Animation {
     encoder: gif::Encoder<BufWriter<File>>,
     file: Draft,
     rate: f64,
@@ -20,7 +21,7 @@ pub(super) struct Animation {
 }
 
 impl Animation {
-    pub(super) fn create(path: &Path, format: Format) -> Result<Self, Error> {
+    pub(crate) fn create(path: &Path, format: VideoFormat) -> Result<Self, Error> {
         let mut file = Draft::new(path)?;
         let out = BufWriter::new(file.file().try_clone().map_err(|e| Error::write(path, e))?);
         let failed = |e| failed(&file, e);
@@ -43,7 +44,7 @@ fn failed(file: &Draft, error: gif::EncodingError) -> Error {
     }
 }
 
-impl Sink for Animation {
+impl FrameSink for Animation {
     fn add(&mut self, picture: &Picture) -> Result<(), Error> {
         let mut rgba = picture.rgba.clone();
         let mut frame =

@@ -9,22 +9,22 @@ use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Two files beside the film.
-pub(super) struct Kept {
+pub(crate) struct KeptFrames {
     goal: PathBuf,
     frames: BufWriter<File>,
     journal: BufWriter<File>,
     /// Frames in them that make whole groups.
-    pub(super) found: Found,
+    pub(crate) found: FilmJournal,
     groups: bool,
 }
 
 /// What an earlier program has left.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Found {
+pub(crate) struct FilmJournal {
     /// Size of every frame, and whether playing can start at it.
-    pub(super) sizes: Vec<(u32, bool)>,
+    pub(crate) sizes: Vec<(u32, bool)>,
     /// Sequence and picture parameters of the encoder.
-    pub(super) parameters: [Vec<u8>; 2],
+    pub(crate) parameters: [Vec<u8>; 2],
 }
 
 fn paths(goal: &Path) -> [PathBuf; 2] {
@@ -32,10 +32,10 @@ fn paths(goal: &Path) -> [PathBuf; 2] {
     ["frames", "journal"].map(|ending| goal.with_file_name(format!(".{name}.{ending}")))
 }
 
-impl Kept {
+impl KeptFrames {
     /// Opens what there is of the film `goal` that was made of the same (`made_of`, one line), or begins anew; `group` is
     /// the number of frames in a group.
-    pub(super) fn open(goal: &Path, made_of: &str, group: usize) -> Result<Self, Error> {
+    pub(crate) fn open(goal: &Path, made_of: &str, group: usize) -> Result<Self, Error> {
         let failed = |e: std::io::Error| Error::write(goal, e);
         let [frames, journal] = paths(goal);
         let open = |path: &Path| {
@@ -64,20 +64,20 @@ impl Kept {
     }
 
     /// Adds a frame.
-    pub(super) fn add(&mut self, frame: &[u8], key: bool) -> Result<(), Error> {
+    pub(crate) fn add(&mut self, frame: &[u8], key: bool) -> Result<(), Error> {
         let failed = |e: std::io::Error| Error::write(&self.goal, e);
         self.frames.write_all(frame).map_err(failed)?;
         self.journal.write_all(line(frame.len() as u32, key).as_bytes()).map_err(failed)
     }
 
     /// The encoder's parameters are known.
-    pub(super) fn parameters(&mut self, parameters: [&[u8]; 2]) -> Result<(), Error> {
+    pub(crate) fn parameters(&mut self, parameters: [&[u8]; 2]) -> Result<(), Error> {
         let failed = |e: std::io::Error| Error::write(&self.goal, e);
         self.journal.write_all(parameter_line(parameters).as_bytes()).map_err(failed)
     }
 
     /// A group is whole: it is on disk before the journal says so.
-    pub(super) fn close_group(&mut self) -> Result<(), Error> {
+    pub(crate) fn close_group(&mut self) -> Result<(), Error> {
         let failed = |e: std::io::Error| Error::write(&self.goal, e);
         self.frames.flush().and_then(|()| self.journal.flush()).map_err(failed)?;
         self.groups = true;
@@ -85,7 +85,7 @@ impl Kept {
     }
 
     /// All frames, from the first on.
-    pub(super) fn read_all(&mut self) -> Result<BufReader<&File>, Error> {
+    pub(crate) fn read_all(&mut self) -> Result<BufReader<&File>, Error> {
         let failed = |e: std::io::Error| Error::write(&self.goal, e);
         self.frames.flush().and_then(|()| self.journal.flush()).map_err(failed)?;
         let mut file = self.frames.get_ref();
@@ -94,12 +94,12 @@ impl Kept {
     }
 
     /// The film is done: nothing has to be kept.
-    pub(super) fn remove(mut self) {
+    pub(crate) fn remove(mut self) {
         self.groups = false;
     }
 }
 
-impl Drop for Kept {
+impl Drop for KeptFrames {
     fn drop(&mut self) {
         if !self.groups {
             // What cannot be removed will be found and begun anew.
@@ -111,7 +111,7 @@ impl Drop for Kept {
 }
 
 /// Frames of the film `goal` that are kept in whole groups of `group`, whatever it is made of.
-pub(super) fn frames(goal: &Path, group: usize) -> u64 {
+pub(crate) fn frames(goal: &Path, group: usize) -> u64 {
     let [frames, journal] = paths(goal);
     let text = std::fs::read_to_string(journal).unwrap_or_default();
     let length = std::fs::metadata(frames).map_or(0, |about| about.len());
@@ -131,7 +131,7 @@ fn parameter_line(parameters: [&[u8]; 2]) -> String {
     format!("p {} {}\n", hex(parameters[0]), hex(parameters[1]))
 }
 
-fn written(found: &Found, made_of: &str) -> String {
+fn written(found: &FilmJournal, made_of: &str) -> String {
     let mut text = format!("{HEAD}\n{made_of}\n");
     if !found.sizes.is_empty() {
         text.push_str(&parameter_line([&found.parameters[0], &found.parameters[1]]));
@@ -141,9 +141,9 @@ fn written(found: &Found, made_of: &str) -> String {
 }
 
 /// What a journal says of whole groups; `length` bytes of frames are there.
-fn read(text: &str, made_of: &str, group: usize, length: u64) -> Option<Found> {
+fn read(text: &str, made_of: &str, group: usize, length: u64) -> Option<FilmJournal> {
     let rest = text.strip_prefix(HEAD)?.strip_prefix('\n')?.strip_prefix(made_of)?.strip_prefix('\n')?;
-    let mut found = Found::default();
+    let mut found = FilmJournal::default();
     // The last line may be cut off.
     for line in rest.split_inclusive('\n').filter_map(|line| line.strip_suffix('\n')) {
         let mut words = line.split(' ');

@@ -1,7 +1,8 @@
 //! Raw pictures through a pipe to an ffmpeg of the machine.
 
-use super::{Format, Sink};
 use crate::Error;
+use crate::frame_sink::FrameSink;
+use crate::video_format::VideoFormat;
 use output::Draft;
 use std::ffi::{OsStr, OsString};
 use std::io::{ErrorKind, Read, Write};
@@ -11,7 +12,7 @@ use std::thread::JoinHandle;
 use vocabulary::Picture;
 
 /// The running program.
-pub(super) struct Ffmpeg {
+pub(crate) struct Ffmpeg {
     child: Child,
     /// What it says about failures; read aside, lest a full pipe stop it.
     words: Option<JoinHandle<String>>,
@@ -21,7 +22,7 @@ pub(super) struct Ffmpeg {
 }
 
 impl Ffmpeg {
-    pub(super) fn create(path: &Path, format: Format) -> Result<Self, Error> {
+    pub(crate) fn create(path: &Path, format: VideoFormat) -> Result<Self, Error> {
         let program = find(std::env::var_os("PATH").as_deref())?;
         // ffmpeg would report an unwritable folder only after the first picture.
         let file = Draft::new(path)?;
@@ -54,7 +55,7 @@ impl Ffmpeg {
     }
 }
 
-impl Sink for Ffmpeg {
+impl FrameSink for Ffmpeg {
     fn add(&mut self, picture: &Picture) -> Result<(), Error> {
         let written = self.child.stdin.as_mut().map(|pipe| pipe.write_all(&picture.rgba));
         if matches!(written, Some(Ok(()))) { Ok(()) } else { Err(self.failure()) }
@@ -87,7 +88,7 @@ fn find(search: Option<&OsStr>) -> Result<PathBuf, Error> {
 }
 
 /// Raw pictures on standard input to a film in `file`.
-fn arguments(format: Format, file: &Path) -> Vec<OsString> {
+fn arguments(format: VideoFormat, file: &Path) -> Vec<OsString> {
     let size = format!("{}x{}", format.width, format.height);
     let rate = format.rate.to_string();
     let words = ["-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba", "-s", &size, "-r", &rate];
@@ -125,7 +126,7 @@ mod tests {
 
     #[test]
     fn it_is_told_size_rate_and_file() {
-        let words = arguments(Format { width: 640, height: 360, rate: 29.97 }, Path::new("a film.webm"));
+        let words = arguments(VideoFormat { width: 640, height: 360, rate: 29.97 }, Path::new("a film.webm"));
         let after = |name: &str| words.iter().skip_while(|w| *w != name).nth(1).and_then(|w| w.to_str());
         assert_eq!([after("-s"), after("-r"), after("-i")], [Some("640x360"), Some("29.97"), Some("-")]);
         let colours = ["-color_primaries", "-color_trc", "-colorspace", "-color_range"].map(after);

@@ -8,7 +8,7 @@ const TICKS: u32 = 1000;
 
 /// Sizes of the frames so far, and the parameter sets of the encoder.
 #[derive(Debug)]
-pub(super) struct Track {
+pub(crate) struct Mp4Track {
     width: u32,
     height: u32,
     /// Ticks a second.
@@ -20,14 +20,14 @@ pub(super) struct Track {
     picture: Vec<u8>,
 }
 
-impl Track {
-    pub(super) fn new(width: u32, height: u32, rate: f64) -> Self {
+impl Mp4Track {
+    pub(crate) fn new(width: u32, height: u32, rate: f64) -> Self {
         let clock = (rate * f64::from(TICKS)).round() as u32;
         Self { width, height, clock, sizes: vec![], keys: vec![], sequence: vec![], picture: vec![] }
     }
 
     /// With frames that are there already.
-    pub(super) fn going_on(mut self, found: &super::kept::Found) -> Self {
+    pub(crate) fn going_on(mut self, found: &crate::kept_frames::FilmJournal) -> Self {
         [self.sequence, self.picture] = found.parameters.clone();
         for (size, key) in &found.sizes {
             self.sizes.push(*size);
@@ -39,16 +39,16 @@ impl Track {
     }
 
     /// Sequence and picture parameters of the encoder.
-    pub(super) fn parameters(&self) -> [&[u8]; 2] {
+    pub(crate) fn parameters(&self) -> [&[u8]; 2] {
         [&self.sequence, &self.picture]
     }
 
-    pub(super) fn frames(&self) -> usize {
+    pub(crate) fn frames(&self) -> usize {
         self.sizes.len()
     }
 
     /// Takes in a frame in the encoder's format (start codes) and returns it in the file's (lengths).
-    pub(super) fn add(&mut self, stream: &[u8], key: bool) -> Vec<u8> {
+    pub(crate) fn add(&mut self, stream: &[u8], key: bool) -> Vec<u8> {
         let mut frame = Vec::with_capacity(stream.len() + 16);
         for unit in units(stream) {
             match unit[0] & 31 {
@@ -70,7 +70,7 @@ impl Track {
     }
 
     /// Everything in front of the frames, which then follow in one piece.
-    pub(super) fn head(&self) -> Vec<u8> {
+    pub(crate) fn head(&self) -> Vec<u8> {
         let kind = boxed(*b"ftyp", &[b"isom", &512_u32.to_be_bytes(), b"isomiso2avc1mp41"]);
         let frames: u64 = self.sizes.iter().map(|s| u64::from(*s)).sum();
         // The place of the frames depends on the index's length, not on its content.
@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn start_codes_become_lengths() {
-        let mut track = Track::new(64, 32, 30.0);
+        let mut track = Mp4Track::new(64, 32, 30.0);
         let stream = [0, 0, 0, 1, 0x67, 66, 0, 31, 0, 0, 0, 1, 0x68, 9, 0, 0, 1, 0x65, 7, 8];
         assert_eq!(track.add(&stream, true), [0, 0, 0, 3, 0x65, 7, 8]);
         assert_eq!(

@@ -1,8 +1,9 @@
 //! H.264 by the built-in encoder. Frames go to a file as they come, so that memory stays flat.
 
-use super::kept::Kept;
-use super::{Format, Sink, mp4};
-use crate::Error;
+use crate::frame_sink::FrameSink;
+use crate::kept_frames::KeptFrames;
+use crate::video_format::VideoFormat;
+use crate::{Error, mp4};
 use openh264::encoder::{
     Complexity, Encoder, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, RateControlMode, UsageType,
     VuiConfig,
@@ -16,13 +17,13 @@ use std::path::{Path, PathBuf};
 use vocabulary::Picture;
 
 /// Encoder, frames so far, and where they are.
-pub(super) struct H264 {
+pub(crate) struct H264 {
     encoder: Option<Encoder>,
     planes: Planes,
-    format: Format,
+    format: VideoFormat,
     store: Store,
     goal: PathBuf,
-    track: mp4::Track,
+    track: mp4::Mp4Track,
 }
 
 /// Where frames wait for the end of the film.
@@ -30,33 +31,33 @@ enum Store {
     /// In a file without a name, so that nothing is left of it however the program ends.
     Hidden(BufWriter<File>),
     /// In files from which a later program can go on.
-    Kept(Box<Kept>),
+    Kept(Box<KeptFrames>),
 }
 
 /// Seconds of a group of frames: playing can start at each, and so can going on with a film.
 const GROUP: f64 = 2.0;
 
 impl H264 {
-    pub(super) fn create(path: &Path, format: Format) -> Result<Self, Error> {
+    pub(crate) fn create(path: &Path, format: VideoFormat) -> Result<Self, Error> {
         let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let file = tempfile::tempfile_in(folder).map_err(|e| Error::write(path, e))?;
         let store = Store::Hidden(BufWriter::with_capacity(1 << 18, file));
-        let track = mp4::Track::new(format.width, format.height, format.rate);
+        let track = mp4::Mp4Track::new(format.width, format.height, format.rate);
         Ok(Self::with(path, format, store, track))
     }
 
     /// Goes on with a film that was made of the same; how many frames there are.
-    pub(super) fn resume(path: &Path, format: Format, made_of: &str) -> Result<(Self, u64), Error> {
-        let Format { width, height, rate } = format;
+    pub(crate) fn resume(path: &Path, format: VideoFormat, made_of: &str) -> Result<(Self, u64), Error> {
+        let VideoFormat { width, height, rate } = format;
         // A film goes on only with the colours that it began with.
         let made_of = format!("{width}x{height} {rate} BT.709 {made_of}");
-        let kept = Kept::open(path, &made_of, group(rate))?;
-        let track = mp4::Track::new(width, height, rate).going_on(&kept.found);
+        let kept = KeptFrames::open(path, &made_of, group(rate))?;
+        let track = mp4::Mp4Track::new(width, height, rate).going_on(&kept.found);
         let frames = kept.found.sizes.len() as u64;
         Ok((Self::with(path, format, Store::Kept(Box::new(kept)), track), frames))
     }
 
-    fn with(path: &Path, format: Format, store: Store, track: mp4::Track) -> Self {
+    fn with(path: &Path, format: VideoFormat, store: Store, track: mp4::Mp4Track) -> Self {
         let planes = Planes::new(format.width as usize, format.height as usize);
         Self { encoder: None, planes, format, store, goal: path.to_owned(), track }
     }
@@ -86,11 +87,11 @@ impl H264 {
 }
 
 /// Frames of a group in a film of `rate` frames a second.
-pub(super) fn group(rate: f64) -> usize {
+pub(crate) fn group(rate: f64) -> usize {
     (GROUP * rate).round().max(1.0) as usize
 }
 
-fn encoder(format: &Format) -> Result<Encoder, Error> {
+fn encoder(format: &VideoFormat) -> Result<Encoder, Error> {
     let config = EncoderConfig::new()
         .max_frame_rate(FrameRate::from_hz(format.rate as f32))
         .rate_control_mode(RateControlMode::Off)
@@ -112,7 +113,7 @@ fn refused(error: &openh264::Error) -> Error {
     Error::Encode(format!("H.264: {error}"))
 }
 
-impl Sink for H264 {
+impl FrameSink for H264 {
     fn add(&mut self, picture: &Picture) -> Result<(), Error> {
         let number = self.track.frames();
         // The first of a group is encoded as if it were the first of all, so that a film can go on there.

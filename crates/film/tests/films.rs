@@ -1,6 +1,6 @@
 //! Films: their boxes, their timing, and what is left behind when something goes wrong.
 
-use rendering::{Error, Film, FilmKind};
+use film::{Error, Film, FilmKind};
 use std::path::Path;
 use vocabulary::Picture;
 
@@ -9,7 +9,7 @@ fn picture(width: u32, height: u32, k: u32) -> Picture {
     Picture { width, height, rgba: (0..width * height).flat_map(pixel).collect() }
 }
 
-fn film(path: &Path, kind: FilmKind, frames: u32, rate: f64) -> Result<(), Error> {
+fn write_film(path: &Path, kind: FilmKind, frames: u32, rate: f64) -> Result<(), Error> {
     let mut film = Film::create(path, kind, 128, 96, rate)?;
     for k in 0..frames {
         film.push(picture(128, 96, k))?;
@@ -47,7 +47,7 @@ fn leftovers(folder: &Path) -> Vec<String> {
 fn an_mp4_has_every_frame_at_its_time() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.mp4");
-    film(&path, FilmKind::Mp4, 50, 25.0).unwrap();
+    write_film(&path, FilmKind::Mp4, 50, 25.0).unwrap();
     let bytes = std::fs::read(&path).unwrap();
     let media = find(&bytes, &[b"moov", b"trak", b"mdia"]).unwrap();
     let header = find(media, &[b"mdhd"]).unwrap();
@@ -74,7 +74,7 @@ fn an_mp4_has_every_frame_at_its_time() {
 fn the_parameter_sets_are_in_the_index() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.mp4");
-    film(&path, FilmKind::Mp4, 3, 30.0).unwrap();
+    write_film(&path, FilmKind::Mp4, 3, 30.0).unwrap();
     let bytes = std::fs::read(&path).unwrap();
     let description = find(&bytes, &[b"moov", b"trak", b"mdia", b"minf", b"stbl", b"stsd"]).unwrap();
     let start = description.windows(4).position(|w| w == b"avcC").unwrap() + 4;
@@ -90,7 +90,7 @@ fn the_parameter_sets_are_in_the_index() {
 fn a_gif_keeps_time_on_the_whole() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.gif");
-    film(&path, FilmKind::Gif, 31, 30.0).unwrap();
+    write_film(&path, FilmKind::Gif, 31, 30.0).unwrap();
     let mut decoder = gif_decoder(&path);
     let (mut frames, mut hundredths) = (0, 0);
     while let Some(frame) = decoder.read_next_frame().unwrap() {
@@ -108,11 +108,11 @@ fn gif_decoder(path: &Path) -> gif::Decoder<std::fs::File> {
 fn a_sequence_is_a_folder_of_numbered_pictures() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("frames");
-    film(&path, FilmKind::PngSequence, 3, 30.0).unwrap();
+    write_film(&path, FilmKind::PngSequence, 3, 30.0).unwrap();
     let mut names = leftovers(&path);
     names.sort();
     assert_eq!(names, ["frame-00000.png", "frame-00001.png", "frame-00002.png"]);
-    let error = film(&path, FilmKind::PngSequence, 1, 30.0).unwrap_err();
+    let error = write_film(&path, FilmKind::PngSequence, 1, 30.0).unwrap_err();
     assert!(error.is_usage() && error.to_string().contains("holds other files"), "{error}");
 }
 
@@ -157,18 +157,18 @@ fn what_cannot_be_filmed_is_refused_with_the_fix() {
 fn a_png_keeps_its_words() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");
-    rendering::png::write(&path, &picture(40, 30, 2), &[("Scene", "three in a row")]).unwrap();
+    film::png::write(&path, &picture(40, 30, 2), &[("Scene", "three in a row")]).unwrap();
     let bytes = std::fs::read(&path).unwrap();
     assert!(bytes.windows(14).any(|w| w == b"three in a row"));
     let read = image::open(&path).unwrap().to_rgba8();
     assert_eq!(read.into_raw(), picture(40, 30, 2).rgba);
-    let error = rendering::png::write(Path::new("/nowhere/a.png"), &picture(40, 30, 2), &[]).unwrap_err();
+    let error = film::png::write(Path::new("/nowhere/a.png"), &picture(40, 30, 2), &[]).unwrap_err();
     assert!(!error.is_usage());
 }
 
 /// The first `to` frames of a film that another program may go on with; how many were there.
 fn kept(path: &Path, made_of: &str, to: u32) -> (Film, u64) {
-    let (mut film, done) = Film::resume(path, (128, 96), 10.0, made_of).unwrap();
+    let (mut film, done) = Film::resume(path, 128, 96, 10.0, made_of).unwrap();
     for k in done as u32..to {
         film.push(picture(128, 96, k)).unwrap();
     }
@@ -179,7 +179,7 @@ fn kept(path: &Path, made_of: &str, to: u32) -> (Film, u64) {
 fn an_interrupted_film_goes_on_and_is_the_same_in_the_end() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
-    film(&path("whole.mp4"), FilmKind::Mp4, 70, 10.0).unwrap();
+    write_film(&path("whole.mp4"), FilmKind::Mp4, 70, 10.0).unwrap();
     let whole = std::fs::read(path("whole.mp4")).unwrap();
 
     // A program that is killed leaves whole groups of two seconds.
@@ -214,7 +214,7 @@ fn a_film_of_something_else_begins_anew_and_two_programs_keep_apart() {
     drop(kept(&path, "one", 30).0);
     let (other, done) = kept(&path, "another", 5);
     assert_eq!(done, 0);
-    assert!(matches!(Film::resume(&path, (128, 96), 10.0, "another"), Err(Error::Busy(_))));
+    assert!(matches!(Film::resume(&path, 128, 96, 10.0, "another"), Err(Error::Busy(_))));
     drop(other);
     // Less than a group is nothing to go on with.
     assert_eq!(leftovers(folder.path()), Vec::<String>::new());
