@@ -84,13 +84,11 @@ impl Desk {
         edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
     ) -> Result<Effect, String> {
         let (Some((_, there)), Some(draft)) = (self.there(), &self.draft) else { return Ok(Effect::None) };
-        let settled = Past::of(&draft.check(&there)?, self.time());
-        let text = draft.edited(&there, |text| settled.settle(text).and_then(|()| edit(text)))?;
-        if text == there {
-            return Ok(Effect::None);
-        }
+        let settled = Past::of(&draft.read(&there)?, self.time());
+        let edited = draft.edited(&there, |text| settled.settle(text).and_then(|()| edit(text)))?;
+        let Some(edited) = edited else { return Ok(Effect::None) };
         self.fork();
-        self.draft.as_mut().map_or(Ok(Effect::None), |draft| draft.replace(what, text))
+        Ok(self.draft.as_mut().map_or(Effect::None, |draft| draft.put(what, edited)))
     }
 
     /// Lets the run take what has become of the scene.
@@ -107,9 +105,13 @@ impl Desk {
             }
             Effect::Retune => {
                 self.note(what);
-                if let Some(draft) = &self.draft {
-                    self.sent.push((Arc::clone(draft.scene()), draft.text().to_owned()));
-                    self.orders.push(Order::Change(Arc::clone(draft.scene())));
+                let Some(draft) = &mut self.draft else { return };
+                match draft.take_checked() {
+                    Ok(checked) => {
+                        self.sent.push((Arc::clone(draft.scene()), draft.text().to_owned()));
+                        self.orders.push(Order::Change(Box::new(checked)));
+                    }
+                    Err(fault) => self.fault(fault),
                 }
             }
             Effect::Restart(_) => {

@@ -1,6 +1,7 @@
 //! The scene as text that is being worked on: edits, undo, and what an edit means for the run.
 
-use scene::{Scene, SceneText};
+use super::checked_scene::CheckedScene;
+use scene::{Environment, Expect, Film, Scene, SceneText, Views};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -14,7 +15,11 @@ pub struct Draft {
     /// Names the scene in messages, and where its tables are looked for.
     home: PathBuf,
     text: String,
+    /// The text as it is edited, where it has been parsed.
+    document: Option<SceneText>,
     scene: Arc<Scene>,
+    /// What the scene builds, until the run takes it.
+    checked: Option<CheckedScene>,
     saved: String,
     undo: Vec<Step>,
     redo: Vec<Step>,
@@ -26,6 +31,13 @@ struct Step {
     scene: Arc<Scene>,
     /// What was done from here on, for people.
     what: String,
+}
+
+/// Another text of a scene, and the scene that it is.
+#[derive(Debug)]
+pub struct EditedScene {
+    text: String,
+    checked: CheckedScene,
 }
 
 /// What an edit means for the run.
@@ -49,8 +61,17 @@ impl Draft {
     pub fn new(text: String, path: Option<PathBuf>, home: &Path) -> Result<Self, String> {
         let home = path.clone().unwrap_or_else(|| home.to_owned());
         let scene = Scene::parse(&text, &home, &[]).map_err(|faults| faults.to_string())?.scene;
-        let scene = Arc::new(scene);
-        Ok(Self { path, home, saved: text.clone(), text, scene, undo: Vec::new(), redo: Vec::new() })
+        Ok(Self {
+            path,
+            home,
+            saved: text.clone(),
+            text,
+            document: None,
+            scene: Arc::new(scene),
+            checked: None,
+            undo: Vec::new(),
+            redo: Vec::new(),
+        })
     }
 
     /// The text as it stands.
@@ -89,12 +110,21 @@ impl Draft {
         what: &str,
         edit: impl FnOnce(&mut SceneText) -> Result<(), String>,
     ) -> Result<Effect, String> {
-        let mut text = SceneText::parse(&self.text).map_err(|error| error.to_string())?;
-        edit(&mut text)?;
-        self.replace(what, text.text())
+        // Taken out, so that an edit that fails half-way leaves nothing behind.
+        let mut document = match self.document.take() {
+            Some(document) => document,
+            None => SceneText::parse(&self.text).map_err(|error| error.to_string())?,
+        };
+        edit(&mut document)?;
+        let text = document.text();
+        // A document with new tables is parsed again: only then do later edits find them where a reader would.
+        let kept = text.lines().count() == self.text.lines().count();
+        let effect = self.replace(what, text)?;
+        self.document = kept.then_some(document);
+        Ok(effect)
     }
 
-    /// Another text with an edit, which is not put in place.
+    /// Another text with an edit, which is not put in place, and its scene; `None` where the edit changes nothing.
     ///
     /// # Errors
     /// Why the edit cannot be, in words.
@@ -102,22 +132,42 @@ impl Draft {
         &self,
         text: &str,
         edit: impl FnOnce(&mut SceneText) -> Result<(), String>,
-    ) -> Result<String, String> {
-        let mut text = SceneText::parse(text).map_err(|error| error.to_string())?;
-        edit(&mut text)?;
-        let text = text.text();
-        self.check(&text)?;
-        Ok(text)
+    ) -> Result<Option<EditedScene>, String> {
+        let mut document = SceneText::parse(text).map_err(|error| error.to_string())?;
+        edit(&mut document)?;
+        let edited = document.text();
+        if edited == text {
+            return Ok(None);
+        }
+        let checked = self.check(&edited)?;
+        Ok(Some(EditedScene { text: edited, checked }))
+    }
+
+    /// The scene of a text.
+    ///
+    /// # Errors
+    /// All that is wrong with the text.
+    pub fn read(&self, text: &str) -> Result<Scene, String> {
+        Ok(Scene::parse(text, &self.home, &[]).map_err(|faults| faults.to_string())?.scene)
     }
 
     /// The scene of a text, if it can run.
     ///
     /// # Errors
     /// All that is wrong with the text.
-    pub fn check(&self, text: &str) -> Result<Scene, String> {
-        let scene = Scene::parse(text, &self.home, &[]).map_err(|faults| faults.to_string())?.scene;
-        simulation::build(&scene).map_err(|error| error.to_string())?;
-        Ok(scene)
+    pub fn check(&self, text: &str) -> Result<CheckedScene, String> {
+        CheckedScene::new(Arc::new(self.read(text)?)).map_err(|error| error.to_string())
+    }
+
+    /// The scene with what it builds, for the run; built anew only where the text was not checked just now.
+    ///
+    /// # Errors
+    /// Why the scene cannot run, in words.
+    pub fn take_checked(&mut self) -> Result<CheckedScene, String> {
+        match self.checked.take() {
+            Some(checked) => Ok(checked),
+            None => CheckedScene::new(Arc::clone(&self.scene)).map_err(|error| error.to_string()),
+        }
     }
 
     /// Puts another text in place.
@@ -128,13 +178,22 @@ impl Draft {
         if text == self.text {
             return Ok(Effect::None);
         }
-        let scene = self.check(&text)?;
-        let effect = self.effect_of(&scene);
+        let checked = self.check(&text)?;
+        Ok(self.put(what, EditedScene { text, checked }))
+    }
+
+    /// Puts an edited text in place.
+    pub fn put(&mut self, what: &str, edited: EditedScene) -> Effect {
+        let EditedScene { text, checked } = edited;
+        let (effect, set) = self.effect_of(checked.scene());
         let before = Step {
             text: std::mem::replace(&mut self.text, text),
-            scene: std::mem::replace(&mut self.scene, Arc::new(scene)),
+            scene: std::mem::replace(&mut self.scene, Arc::clone(checked.scene())),
             what: what.to_owned(),
         };
+        self.document = None;
+        // What is not taken by a run that goes on is not kept.
+        self.checked = (effect == Effect::Retune).then(|| checked.compared(Arc::clone(&before.scene), set));
         let goes_on = what.ends_with('…')
             && self.redo.is_empty()
             && self.undo.last().is_some_and(|last| last.what == what);
@@ -145,7 +204,7 @@ impl Draft {
             }
         }
         self.redo.clear();
-        Ok(effect)
+        effect
     }
 
     /// Goes to the text of another branch: what was done on this one cannot be undone there.
@@ -153,7 +212,12 @@ impl Draft {
     /// # Errors
     /// All that is wrong with the text; then nothing has changed.
     pub fn turn_to(&mut self, text: String) -> Result<(), String> {
-        self.replace("", text)?;
+        if text != self.text {
+            // It ran before, so it need not be built to know that it can.
+            self.scene = Arc::new(self.read(&text)?);
+            self.text = text;
+            (self.document, self.checked) = (None, None);
+        }
         self.undo.clear();
         self.redo.clear();
         Ok(())
@@ -209,7 +273,8 @@ impl Draft {
     }
 
     fn swap(&mut self, step: Step) -> (Step, Effect) {
-        let effect = if step.text == self.text { Effect::None } else { self.effect_of(&step.scene) };
+        let effect = if step.text == self.text { Effect::None } else { self.effect_of(&step.scene).0 };
+        (self.document, self.checked) = (None, None);
         let now = Step {
             text: std::mem::replace(&mut self.text, step.text),
             scene: std::mem::replace(&mut self.scene, step.scene),
@@ -218,26 +283,31 @@ impl Draft {
         (now, effect)
     }
 
-    fn effect_of(&self, scene: &Scene) -> Effect {
-        let dressed = Scene {
-            // What was past may have become what is.
-            changes: scene.changes.clone(),
-            title: scene.title.clone(),
-            description: scene.description.clone(),
-            environment: scene.environment,
-            views: scene.views.clone(),
-            film: scene.film.clone(),
-            expect: scene.expect,
-            ..Scene::clone(&self.scene)
+    /// What another scene means for the run, and the overrides that lead to it where the run can take it.
+    fn effect_of(&self, scene: &Scene) -> (Effect, Vec<String>) {
+        let redressed = dress(&self.scene) != dress(scene);
+        let sets = if redressed {
+            let (title, description, environment, views, film, expect) = dress(scene);
+            let dressed = Scene {
+                title: title.clone(),
+                description: description.clone(),
+                environment: *environment,
+                views: views.clone(),
+                film: film.clone(),
+                expect: *expect,
+                ..Scene::clone(&self.scene)
+            };
+            dressed.sets_to(scene)
+        } else {
+            self.scene.sets_to(scene)
         };
-        let redressed = dressed != Scene { changes: scene.changes.clone(), ..Scene::clone(&self.scene) };
         // What was past may have become what is, and what is to come depends on what is. Else changes are as they were.
         let [before, after] = [&self.scene.changes, &scene.changes];
         let left = &before[before.len().saturating_sub(after.len())..];
         let same = |(a, b): (&scene::Change, &scene::Change)| (a.at, &a.set) == (b.at, &b.set);
         let timed = left.iter().map(|change| change.at).eq(after.iter().map(|change| change.at));
         let scripted = left.iter().zip(after).all(same);
-        match dressed.sets_to(scene) {
+        let effect = match &sets {
             Ok(set) if !timed || (set.is_empty() && !scripted) => {
                 Effect::Restart("its changes are others".to_owned())
             }
@@ -247,6 +317,13 @@ impl Draft {
             Ok(_) if redressed => Effect::Restart("the scene is another".to_owned()),
             Ok(_) => Effect::Retune,
             Err(standing) => Effect::Restart(standing.join(", ")),
-        }
+        };
+        (effect, sets.unwrap_or_default())
     }
+}
+
+/// What of a scene changes how its run looks or is judged, and not the run.
+fn dress(scene: &Scene) -> (&String, &String, &Environment, &Views, &Film, &Expect) {
+    let Scene { title, description, environment, views, film, expect, .. } = scene;
+    (title, description, environment, views, film, expect)
 }

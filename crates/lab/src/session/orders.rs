@@ -1,6 +1,7 @@
 //! What crosses between the window and the thread of the run.
 
 use super::branches::Change;
+use super::checked_scene::CheckedScene;
 use recording::log::Log;
 use rendering::Gpu;
 use scene::Scene;
@@ -34,7 +35,7 @@ pub enum Order {
     /// One sample, then stand.
     Step,
     /// The parameters of this scene hold from the next sample on.
-    Change(Arc<Scene>),
+    Change(Box<CheckedScene>),
     /// A new branch that leaves another before a sample, and goes on by itself.
     Fork {
         /// The branch that is left.

@@ -1,6 +1,7 @@
 //! The thread on which the run goes. Orders come in, news go out; neither side waits for the other.
 
 use super::branches::Branches;
+use super::checked_scene::CheckedScene;
 use super::forecast::Crystal;
 pub use super::orders::{News, Order};
 use metrics::Digest;
@@ -208,7 +209,7 @@ impl Work {
                 self.playing = false;
                 self.step();
             }
-            Order::Change(scene) => self.change(scene),
+            Order::Change(checked) => self.change(&checked),
             Order::Fork { from, sample, name } => self.fork(from, sample, name),
             Order::Switch(branch) => {
                 if self.branches.as_ref().is_some_and(|branches| branch < branches.list().len()) {
@@ -323,9 +324,9 @@ impl Work {
         self.look_ahead(true);
     }
 
-    fn change(&mut self, scene: Arc<Scene>) {
+    fn change(&mut self, checked: &CheckedScene) {
         let Some(branches) = &mut self.branches else { return };
-        match branches.change(self.active, scene) {
+        match branches.change(self.active, checked) {
             Ok(Some(change)) => self.tell(News::Changed(self.active, change)),
             Ok(None) => {}
             Err(standing) => self.tell(News::Refused(standing)),

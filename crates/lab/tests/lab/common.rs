@@ -3,6 +3,7 @@
 use lab::action::Action;
 use lab::desk::Desk;
 use lab::session::branches::Change;
+use lab::session::checked_scene::CheckedScene;
 use lab::session::forecast::Crystal;
 use lab::session::runner::{News, Order, Runner};
 use scene::{Scene, SceneText};
@@ -58,6 +59,11 @@ bearing = \"-135 deg\"
 pub(crate) fn scene(text: &str) -> Arc<Scene> {
     let loaded = Scene::parse(text, "t.toml", &[]).unwrap_or_else(|faults| panic!("{faults}\n{text}"));
     Arc::new(loaded.scene)
+}
+
+/// A scene with what it builds.
+pub(crate) fn checked(text: &str) -> Box<CheckedScene> {
+    Box::new(CheckedScene::new(scene(text)).expect("a run"))
 }
 
 /// A text with other values.

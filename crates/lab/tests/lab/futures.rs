@@ -5,9 +5,11 @@ use crate::deeds::{gains, point, set, tune};
 use lab::action::Action;
 use lab::desk::Desk;
 use lab::session::branches::{Branches, Change};
+use lab::session::checked_scene::builds;
 use lab::session::draft::Effect;
 use lab::session::runner::{News, Order};
 use simulation::Simulation;
+use std::sync::Arc;
 
 #[test]
 fn an_edit_in_the_past_makes_another_future() {
@@ -85,7 +87,7 @@ fn edits_that_the_run_takes_one_by_one_are_remembered_one_by_one() {
         desk.act(&tune("law.k", gain));
         let Some(Order::Change(changed)) = desk.orders.pop() else { panic!("no change") };
         let mut branches = Branches::open(scene(THREE), |_| ()).expect("a run");
-        let change = branches.change(0, changed).expect("a change").expect("something new");
+        let change = branches.change(0, &changed).expect("a change").expect("something new");
         let time = sample as f64 * 0.01;
         changes.push(Change { sample, time, ..change });
     }
@@ -183,4 +185,31 @@ fn undo_in_the_past_takes_back_what_holds_there() {
     assert_eq!(gains(&rig.desk), [6.0; 2]);
     rig.act(&[Action::Branch(0)]);
     assert_eq!(rig.text(), text);
+}
+
+/// The window checked what a hand moved by building it, and the run built it again.
+#[test]
+fn a_value_that_is_dragged_is_built_once() {
+    let mut desk = desk(THREE, 60);
+    let first = desk.scene().cloned().expect("a scene");
+    let mut branches = Branches::open(Arc::clone(&first), |_| ()).expect("a run");
+    for (drag, distance) in (1..).zip([2.1, 2.2, 2.3]) {
+        branches.advance(0).expect("a sample");
+        let before = builds();
+        desk.act(&Action::SetPoint { edge: 0, distance, bearing: 2.3 });
+        let Some(Order::Change(checked)) = desk.orders.pop() else { panic!("no change") };
+        let change = branches.change(0, &checked).expect("a change").expect("something new");
+        assert_eq!(builds() - before, 1, "at {distance} m");
+        // What was compared when it was checked is what the run would find.
+        let earlier = branches.list()[0].changes.iter().rev().nth(1).map_or(&first, |change| &change.scene);
+        assert_eq!(earlier.sets_to(&change.scene).as_ref(), Ok(&change.set));
+        assert_eq!(branches.list()[0].changes.len(), drag);
+        desk.hear(News::Changed(0, change));
+    }
+    // In the past, too, where it makes a branch.
+    desk.act(&Action::Seek(0.3));
+    let before = builds();
+    desk.act(&Action::SetPoint { edge: 0, distance: 3.0, bearing: 2.3 });
+    assert!(matches!(desk.orders.as_slice(), [.., Order::Fork { .. }, Order::Change(_)]));
+    assert_eq!(builds() - before, 1);
 }

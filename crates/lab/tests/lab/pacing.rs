@@ -1,6 +1,6 @@
 //! However the run is paced, by steps or in strides, with or without somebody who listens, it is the same run.
 
-use crate::common::{Rig, THREE, Told, run, scene, with};
+use crate::common::{Rig, THREE, Told, checked, run, scene, with};
 use lab::action::Action;
 use lab::session::branches::script;
 use lab::session::runner::{News, Order};
@@ -31,7 +31,7 @@ fn in_strides(text: &str, changed: &str, paces: [f64; 2]) -> Told {
     let mut rig = Rig::new(text);
     stride(&mut rig, paces[0], 70);
     rig.runner.order(Order::Fork { from: 0, sample: 60, name: "back".to_owned() });
-    rig.runner.order(Order::Change(scene(changed)));
+    rig.runner.order(Order::Change(checked(changed)));
     stride(&mut rig, paces[1], 130);
     rig.runner.order(Order::Fork { from: 1, sample: 120, name: "end".to_owned() });
     rig.told(2)
@@ -41,7 +41,7 @@ fn by_steps(text: &str, changed: &str) -> Told {
     let mut rig = Rig::new(text);
     // Opening a scene gives its first sample.
     rig.steps(59);
-    rig.runner.order(Order::Change(scene(changed)));
+    rig.runner.order(Order::Change(checked(changed)));
     rig.steps(60);
     rig.told(0)
 }
@@ -108,7 +108,7 @@ fn a_run_that_is_over_says_why_and_stands() {
 #[test]
 fn a_scene_that_cannot_run_is_refused() {
     let mut rig = Rig::new(THREE);
-    rig.runner.order(Order::Change(scene(&with(THREE, &[("seed", "8")]))));
+    rig.runner.order(Order::Change(checked(&with(THREE, &[("seed", "8")]))));
     rig.settle();
     let notice = rig.desk.notice.take().expect("a notice");
     assert!(notice.contains("`seed` cannot change while a run goes"), "{notice}");
