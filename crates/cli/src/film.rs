@@ -21,7 +21,7 @@ use metrics::MetricsBuilder;
 use output::Place;
 use plots::Plots;
 pub(crate) use preset::Preset;
-use rendering::{Gpu, Room, Show};
+use rendering::{Gpu, Overlays, ReservedSpace};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -138,7 +138,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     let mut plots = Plots::new(fleet, job.duration);
     let plain = studio.style.clone();
     // Where a line or a panel comes and goes, no camera moves.
-    let room = Room { panel: plain.inset, rows: board.rows(fleet.edges.len()) };
+    let room = ReservedSpace { panel: plain.inset, rows: board.rows(fleet.edges.len()) };
     // A run that ends before its time has fewer frames than its storyboard.
     let (mut index, mut shot, mut shown) = (0, 0, f64::NEG_INFINITY);
     while index < frames && !interrupt::asked() {
@@ -157,7 +157,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
             for element in frame.without {
                 style.set(element, false)?;
             }
-            style.show = Show {
+            style.show = Overlays {
                 card: words::card(&frame, &job.description, fleet, || playback.metrics()),
                 line: words::line(&frame, fleet, &record),
                 plots: plots.shown(frame.plots),

@@ -29,7 +29,7 @@ pub enum Action {
     /// Keep the camera with a robot; `None` lets it go.
     Follow(Option<usize>),
     /// Look from a view called this.
-    View(String),
+    Viewpoint(String),
     /// Show what a robot's camera sees in a corner; `None` for nothing.
     Inset(Option<usize>),
     /// Change values of the scene, each a dotted path and TOML.

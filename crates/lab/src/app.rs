@@ -255,7 +255,7 @@ impl Lab {
         }
         match action {
             Action::Follow(robot) => self.viewport.follow(robot, &self.desk),
-            Action::View(view) => self.viewport.look(&view),
+            Action::Viewpoint(view) => self.viewport.look(&view),
             Action::Inset(robot) => {
                 let now = &mut self.viewport.style.picture_in_picture;
                 *now = if *now == robot { None } else { robot };

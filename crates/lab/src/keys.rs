@@ -110,7 +110,7 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, covered: bool, out: &mut Vec<Ac
     for (key, view) in
         [(Key::Num1, "snake"), (Key::Num2, "snake-eye"), (Key::Num3, "top"), (Key::Num4, "orbit")]
     {
-        take(none, key, Action::View(view.to_owned()));
+        take(none, key, Action::Viewpoint(view.to_owned()));
     }
     take(none, Key::T, Action::Theme);
     take(none, Key::P, Action::Picture);
@@ -118,7 +118,7 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, covered: bool, out: &mut Vec<Ac
     take(none, Key::K, Action::KeepRun);
     take(none, Key::F1, Action::Help);
     if let Some((robot, name)) = chosen(desk) {
-        take(none, Key::Num5, Action::View(format!("camera:{name}")));
+        take(none, Key::Num5, Action::Viewpoint(format!("camera:{name}")));
         take(none, Key::G, Action::Follow(Some(robot)));
         take(none, Key::I, Action::Inset(Some(robot)));
         take(none, Key::Delete, Action::RemoveRobot(name));

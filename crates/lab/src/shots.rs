@@ -4,7 +4,7 @@ use crate::app::Lab;
 use crate::keep::free;
 use crate::studio::{Job, RATE, Shot};
 use eframe::egui;
-use rendering::{Layout, Sketch, Style};
+use rendering::{Annotations, Style, ViewLayout};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use vocabulary::counted;
@@ -46,8 +46,8 @@ impl Lab {
         let Some(view) = &self.desk.film_from else { return Some(shot) };
         let fleet = self.desk.history.as_ref()?.fleet();
         let names: Vec<String> = fleet.robots.iter().map(|member| member.name.clone()).collect();
-        let style = Style { sketch: Sketch::default(), inset: true, ..shot.style };
-        Some(Shot { layout: Layout::parse(view, &names).unwrap_or(shot.layout), style, ..shot })
+        let style = Style { sketch: Annotations::default(), inset: true, ..shot.style };
+        Some(Shot { layout: ViewLayout::parse(view, &names).unwrap_or(shot.layout), style, ..shot })
     }
 
     pub(crate) fn picture(&mut self) {
@@ -149,9 +149,9 @@ impl Lab {
 }
 
 /// Where a picture was taken from, in the words of `--view`.
-fn words_of(layout: &rendering::Layout, named: &str) -> String {
+fn words_of(layout: &rendering::ViewLayout, named: &str) -> String {
     match layout.views.first() {
-        Some(rendering::View::Fixed { eye, target, field_of_view }) => {
+        Some(rendering::Viewpoint::Fixed { eye, target, field_of_view }) => {
             let numbers = eye.iter().chain(target).map(|x| format!("{x:.4}")).collect::<Vec<_>>().join(",");
             format!("fixed:{numbers},{:.3}", field_of_view.to_degrees().clamp(5.0, 120.0))
         }

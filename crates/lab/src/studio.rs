@@ -1,7 +1,7 @@
 //! Pictures and films, drawn on a thread of their own so that the window never waits for them.
 
 use film::{Film, FilmKind, png};
-use rendering::{Gpu, Layout, Renderer, Style, Trail};
+use rendering::{Gpu, Renderer, Style, Trail, ViewLayout};
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{
@@ -20,7 +20,7 @@ pub struct Shot {
     /// What is drawn.
     pub record: Arc<StepRecord>,
     /// From where.
-    pub layout: Layout,
+    pub layout: ViewLayout,
     /// And how.
     pub style: Style,
     /// Title and caption.

@@ -4,7 +4,7 @@
 mod stage;
 
 use film::{Film, FilmKind};
-use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style};
+use rendering::{AdapterChoice, Gpu, Renderer, Style, ViewLayout};
 use stage::{Path, Play};
 use std::time::Instant;
 
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (width, height) = (number(5, 1280.0) as u32, number(6, 720.0) as u32);
     let rate = number(4, 30.0);
     let mut renderer = Renderer::new(&gpu, &play.fleet, width, height, 4)?;
-    let layout = Layout::parse(&word(1, "snake"), &names)?;
+    let layout = ViewLayout::parse(&word(1, "snake"), &names)?;
     let (mut trail, style) = (play.trail(0.0), Style::default());
     let file = word(0, "film.mp4");
     let path: &std::path::Path = file.as_ref();

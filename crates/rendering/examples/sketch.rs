@@ -11,28 +11,28 @@ mod stage;
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded};
 use film::png;
 use rendering::{
-    AdapterChoice, Area, Arrow, Ghost, Gpu, Layout, Renderer, Ring, Sketch, Spot, Stroke, Style, Trail,
-    robot_colours,
+    AdapterChoice, AnnotationArrow, AnnotationStroke, Annotations, Ghost, Gpu, Renderer, Ring, ShadedArea,
+    StrokePoint, Style, Trail, ViewLayout, robot_colours,
 };
 use stage::{Path, Play};
 use vocabulary::{Body, Pose, StepRecord};
 
 /// Every kind of thing, `size` times as large as for small robots.
-fn sketched(play: &Play, at: &dyn Fn(f64) -> StepRecord, time: f64, size: f64) -> Sketch {
+fn sketched(play: &Play, at: &dyn Fn(f64) -> StepRecord, time: f64, size: f64) -> Annotations {
     let now = at(time);
     let colours = robot_colours(&play.fleet);
     let pose = |record: &StepRecord, k: usize| record.snapshot.robots[k].motion.pose;
     let place = |p: Pose| [p.x, p.y];
-    let mut sketch = Sketch::default();
+    let mut sketch = Annotations::default();
     let ahead: Vec<StepRecord> = (0..=60).map(|k| at(time + 0.1 * f64::from(k))).collect();
     let last = ahead.len() - 1;
     for (robot, colour) in colours.iter().enumerate() {
         let places: Vec<_> = ahead.iter().map(|m| place(pose(m, robot))).collect();
         let colour = if robot == 0 { [0.89, 0.70, 0.25] } else { *colour };
-        let mut stroke = Stroke::fading(&places, colour, 0.9);
+        let mut stroke = AnnotationStroke::fading(&places, colour, 0.9);
         if robot == 1 {
             for spot in &mut stroke.spots[18..30] {
-                *spot = Spot { colour: [1.0, 0.18, 0.12], alpha: 0.95, ..*spot };
+                *spot = StrokePoint { colour: [1.0, 0.18, 0.12], alpha: 0.95, ..*spot };
             }
         }
         stroke.dashed = robot % 2 == 0;
@@ -48,7 +48,7 @@ fn sketched(play: &Play, at: &dyn Fn(f64) -> StepRecord, time: f64, size: f64) -
     sketch.rings.push(Ring::new(beside(1, -0.9, 0.9), 0.2 * size, colour(1)).hovered());
     sketch.rings.push(Ring::new(beside(1, -1.8, 0.9), 0.2 * size, colour(1)));
     sketch.rings.push(Ring { glow: 0.5, ..Ring::new(beside(2, 0.13, 0.0), 0.36 * size, [1.0; 3]) });
-    let arrow = |from: [f64; 2], to: [f64; 2]| Arrow {
+    let arrow = |from: [f64; 2], to: [f64; 2]| AnnotationArrow {
         from,
         to,
         gaps: [0.3 * size; 2],
@@ -64,7 +64,7 @@ fn sketched(play: &Play, at: &dyn Fn(f64) -> StepRecord, time: f64, size: f64) -
         0.55 * ((1.0 - x.hypot(y)) * 3.0).clamp(0.0, 1.0)
     };
     let alphas: Vec<_> = (0..columns * columns).map(alpha).collect();
-    sketch.areas.push(Area::field(corner, step, columns, &alphas, [0.93, 0.25, 0.2], true));
+    sketch.areas.push(ShadedArea::field(corner, step, columns, &alphas, [0.93, 0.25, 0.2], true));
     sketch
 }
 
@@ -97,7 +97,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         trail.push(&at(f64::from(k) / 30.0));
     }
     let names: Vec<_> = play.fleet.robots.iter().map(|m| m.name.clone()).collect();
-    let layout = Layout::parse(&word(1, "snake"), &names)?;
+    let layout = ViewLayout::parse(&word(1, "snake"), &names)?;
     let gpu = Gpu::open(&AdapterChoice::Auto)?;
     let mut renderer =
         Renderer::new(&gpu, &play.fleet, number(5, 1280.0) as u32, number(6, 800.0) as u32, 4)?;

@@ -11,7 +11,7 @@ mod stage;
 
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded, overturn, touch};
 use film::png;
-use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail};
+use rendering::{AdapterChoice, Gpu, Renderer, Style, Trail, ViewLayout};
 use sight::looks;
 use stage::{Path, Play};
 use std::time::Instant;
@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         &without.split(',').filter(|w| !w.is_empty() && *w != "detections").collect::<Vec<_>>(),
     )?;
     style.scale = number(7, 1.0);
-    let layout = Layout::parse(&word(1, "snake"), &names)?;
+    let layout = ViewLayout::parse(&word(1, "snake"), &names)?;
     let mut record = record(&play, scale, wreck, time);
     looks(&play.fleet, &mut record);
     style.detections = !without.contains("detections");

@@ -1,10 +1,10 @@
 //! Cameras: where each view stands, solved from what it has to show.
 
-use crate::View;
+use crate::Viewpoint;
 use crate::carried::carried;
 use crate::floor::Floor;
 use crate::glide::between;
-use crate::room::{Bound, Room, eye};
+use crate::room::{Bound, FreeSpace, eye};
 use crate::snake::snake;
 use crate::steady::{Extent, Steady};
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
@@ -40,27 +40,27 @@ pub(crate) const REACH: f64 = 0.28;
 impl Camera {
     /// The camera of `view`, which keeps robots in `room` where it can.
     pub(crate) fn of(
-        view: &View,
+        view: &Viewpoint,
         steady: &Steady,
         snapshot: &Snapshot,
         (fleet, floor): (&FleetInfo, &Floor),
-        room: &Room,
+        room: &FreeSpace,
     ) -> Self {
         let aspect = room.aspect();
         let mut camera = match view {
-            View::Snake => snake(steady, room),
-            View::SnakeEye => snake_eye(steady, aspect),
-            View::Top => top(steady, room),
-            View::Orbit => orbit(steady, snapshot.time, fleet.edges.is_empty(), room),
-            View::Follow(robot) => follow(steady, snapshot, &fleet.edges, *robot, aspect),
-            View::Camera(robot) => return carried(snapshot, fleet, *robot, aspect),
-            View::Fixed { eye, target, field_of_view } => {
+            Viewpoint::Snake => snake(steady, room),
+            Viewpoint::SnakeEye => snake_eye(steady, aspect),
+            Viewpoint::Top => top(steady, room),
+            Viewpoint::Orbit => orbit(steady, snapshot.time, fleet.edges.is_empty(), room),
+            Viewpoint::Follow(robot) => follow(steady, snapshot, &fleet.edges, *robot, aspect),
+            Viewpoint::Camera(robot) => return carried(snapshot, fleet, *robot, aspect),
+            Viewpoint::Fixed { eye, target, field_of_view } => {
                 let [mut eye, target] = [eye, target].map(|place| DVec3::from_array(*place));
                 // Somebody has put it there: it stays, unless the floor is in the way.
                 eye.z = eye.z.max(floor.height(eye.truncate()) + LEAST_OVER_FLOOR);
                 return Self::looking(eye, target, *field_of_view, aspect);
             }
-            View::Between(from, to, share) => {
+            Viewpoint::Between(from, to, share) => {
                 let [from, to] =
                     [from, to].map(|view| Self::of(view, steady, snapshot, (fleet, floor), room));
                 return between(&from, &to, *share, steady);
@@ -233,7 +233,7 @@ fn snake_eye(steady: &Steady, aspect: f64) -> Camera {
     camera
 }
 
-fn top(steady: &Steady, room: &Room) -> Camera {
+fn top(steady: &Steady, room: &FreeSpace) -> Camera {
     let extent = steady.formation();
     let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
     // A circle around the formation, so that turning does not zoom.
@@ -255,7 +255,7 @@ fn top(steady: &Steady, room: &Room) -> Camera {
     }
 }
 
-fn orbit(steady: &Steady, time: f64, alone: bool, room: &Room) -> Camera {
+fn orbit(steady: &Steady, time: f64, alone: bool, room: &FreeSpace) -> Camera {
     let extent = steady.formation();
     let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
     let grown = extent.grown(REACH * extent.size);

@@ -1,9 +1,9 @@
 //! Sketches as paint on the ground.
 
-use crate::paint::{Painter, STEP};
+use crate::paint::{DecalBuilder, STEP};
 use crate::palette::{self, Rgb};
-use crate::passes::decal::{Corner, Form};
-use crate::{Area, Arrow, Ring, Sketch, Spot, Stroke};
+use crate::passes::decal::{DecalForm, DecalVertex};
+use crate::{AnnotationArrow, AnnotationStroke, Annotations, Ring, ShadedArea, StrokePoint};
 use glam::DVec2;
 
 /// A dash and its gap, pixels at scale 1, and the share of the dash.
@@ -17,9 +17,9 @@ const GLOW: f64 = 16.0;
 /// A line seen at a low angle is widened on the ground to this many times the width it has elsewhere, not more.
 const WIDEST: f64 = 6.0;
 
-impl Painter<'_> {
+impl DecalBuilder<'_> {
     /// Everything of a sketch that lies on the ground, where robots are up to `size` times as large as the default one.
-    pub(crate) fn sketch(&mut self, sketch: &Sketch, size: f64) {
+    pub(crate) fn sketch(&mut self, sketch: &Annotations, size: f64) {
         for area in &sketch.areas {
             self.area(area);
         }
@@ -39,23 +39,24 @@ impl Painter<'_> {
     }
 
     /// A corner of a spot.
-    fn chalk(&self, place: DVec2, form: Form, shape: [f32; 2], spot: &Spot) -> Corner {
+    fn chalk(&self, place: DVec2, form: DecalForm, shape: [f32; 2], spot: &StrokePoint) -> DecalVertex {
         self.corner(place, form, shape, spot.colour, spot.alpha.clamp(0.0, 1.0))
     }
 
-    fn stroke(&mut self, run: &[Spot], stroke: &Stroke, rim: Option<(f64, f32)>) {
+    fn stroke(&mut self, run: &[StrokePoint], stroke: &AnnotationStroke, rim: Option<(f64, f32)>) {
         let mut spots = self.thinned(run);
         if let Some((_, alpha)) = rim {
             for spot in &mut spots {
-                *spot = Spot { colour: palette::INK, alpha: spot.alpha * alpha, ..*spot };
+                *spot = StrokePoint { colour: palette::INK, alpha: spot.alpha * alpha, ..*spot };
             }
         }
-        let stroke = Stroke { spots: vec![], pixels: stroke.pixels + rim.map_or(0.0, |r| r.0), ..*stroke };
+        let stroke =
+            AnnotationStroke { spots: vec![], pixels: stroke.pixels + rim.map_or(0.0, |r| r.0), ..*stroke };
         let Some(middle) = spots.get(spots.len() / 2).filter(|_| spots.len() > 1) else { return };
         let dash = even(DASH.0 * self.stage_scale * self.pixel(place(middle)));
-        let form = if stroke.dashed { Form::Dashes(DASH.1) } else { Form::Solid };
+        let form = if stroke.dashed { DecalForm::Dashes(DASH.1) } else { DecalForm::Solid };
         let mut along = 0.0;
-        let mut before: Option<[Corner; 2]> = None;
+        let mut before: Option<[DecalVertex; 2]> = None;
         for k in 0..spots.len() {
             let at = place(&spots[k]);
             let ends = [spots[k.saturating_sub(1)], spots[(k + 1).min(spots.len() - 1)]].map(|s| place(&s));
@@ -72,7 +73,7 @@ impl Painter<'_> {
     }
 
     /// Half the width of a line on the ground, m, with half a pixel more for its smooth edge.
-    fn half_width(&self, at: DVec2, side: DVec2, stroke: &Stroke) -> f64 {
+    fn half_width(&self, at: DVec2, side: DVec2, stroke: &AnnotationStroke) -> f64 {
         let pixel = self.pixel(at);
         // Foreshortened, what is across a line on the ground is aslant in the picture: only its part across counts there.
         let (aside, ahead) = (self.apart(at, side), self.apart(at, -side.perp()));
@@ -83,10 +84,10 @@ impl Painter<'_> {
     }
 
     /// Spots that are more than a pixel apart: less gives a line no direction. The last one stays.
-    fn thinned(&self, run: &[Spot]) -> Vec<Spot> {
-        let mut kept: Vec<Spot> = Vec::with_capacity(run.len());
+    fn thinned(&self, run: &[StrokePoint]) -> Vec<StrokePoint> {
+        let mut kept: Vec<StrokePoint> = Vec::with_capacity(run.len());
         for (k, spot) in run.iter().enumerate() {
-            let near = |last: &Spot| {
+            let near = |last: &StrokePoint| {
                 let at = place(spot);
                 place(last).distance(at) < self.pixel(at).max(1e-3)
             };
@@ -105,7 +106,7 @@ impl Painter<'_> {
         let pixel = self.pixel(at);
         let scaled = self.stage_scale * pixel;
         let reach = ring.radius.max(ring.least * scaled);
-        let mut disc = |reach: f64, form: Form, colour: Rgb, alpha: f32| {
+        let mut disc = |reach: f64, form: DecalForm, colour: Rgb, alpha: f32| {
             if alpha > 0.0 && reach.is_finite() {
                 self.patch(at, DVec2::X * reach, DVec2::Y * reach, form, colour, alpha.min(1.0));
             }
@@ -115,26 +116,26 @@ impl Painter<'_> {
         let wide = ring.pixels * scaled + pixel;
         let glow = reach + GLOW * scaled;
         let bright = mix(ring.colour, palette::PAPER, 0.55 * ring.glow.clamp(0.0, 1.0));
-        disc(glow, Form::Glow(((reach - 0.5 * wide) / glow) as f32), ring.colour, ring.glow);
-        disc(reach, Form::Ring(0.0), ring.colour, ring.fill);
+        disc(glow, DecalForm::Glow(((reach - 0.5 * wide) / glow) as f32), ring.colour, ring.glow);
+        disc(reach, DecalForm::Ring(0.0), ring.colour, ring.fill);
         // A dark rim here too.
         let rim = reach + 0.5 * RIM.0 * scaled;
-        disc(rim, Form::Ring(hole(rim, wide + RIM.0 * scaled)), palette::INK, RIM.1 * ring.alpha);
-        disc(reach, Form::Ring(hole(reach, wide)), bright, ring.alpha);
-        disc(5.4 * scaled, Form::Ring(0.0), palette::INK, RIM.1 * ring.dot);
-        disc(4.2 * scaled, Form::Ring(0.0), bright, ring.dot);
+        disc(rim, DecalForm::Ring(hole(rim, wide + RIM.0 * scaled)), palette::INK, RIM.1 * ring.alpha);
+        disc(reach, DecalForm::Ring(hole(reach, wide)), bright, ring.alpha);
+        disc(5.4 * scaled, DecalForm::Ring(0.0), palette::INK, RIM.1 * ring.dot);
+        disc(4.2 * scaled, DecalForm::Ring(0.0), bright, ring.dot);
     }
 
-    fn area(&mut self, area: &Area) {
+    fn area(&mut self, area: &ShadedArea) {
         let middle = area.corners.len() / 2;
         let Some(first) = area.corners.iter().skip(middle).find(|spot| sound(spot)) else { return };
         let unit = even(STRIPE.0 * self.stage_scale * self.pixel(place(first))) * std::f64::consts::SQRT_2;
-        let form = if area.hatched { Form::Stripes(STRIPE.1) } else { Form::Solid };
+        let form = if area.hatched { DecalForm::Stripes(STRIPE.1) } else { DecalForm::Solid };
         // Whole stripes from a place near the robots, so that they stay where they are.
         let start = ((self.origin.x - self.origin.y) / unit).floor();
         let stripe = |at: DVec2| ((at.x - at.y) / unit - start) as f32;
         for triangle in area.corners.chunks_exact(3).filter(|t| t.iter().all(sound)) {
-            let corner = |spot: &Spot| {
+            let corner = |spot: &StrokePoint| {
                 let at = place(spot);
                 let shape = if area.hatched { [stripe(at), 0.0] } else { [0.0; 2] };
                 self.chalk(at, form, shape, spot)
@@ -144,7 +145,7 @@ impl Painter<'_> {
         }
     }
 
-    fn pointer(&mut self, arrow: &Arrow, size: f64) {
+    fn pointer(&mut self, arrow: &AnnotationArrow, size: f64) {
         let (from, to) = (DVec2::from_array(arrow.from), DVec2::from_array(arrow.to));
         let length = from.distance(to) - arrow.gaps[0] - arrow.gaps[1];
         if !(length > 0.02 * size && length.is_finite()) {
@@ -163,11 +164,11 @@ fn mix(from: Rgb, to: Rgb, share: f32) -> Rgb {
     std::array::from_fn(|k| from[k] + (to[k] - from[k]) * share)
 }
 
-fn place(spot: &Spot) -> DVec2 {
+fn place(spot: &StrokePoint) -> DVec2 {
     DVec2::from_array(spot.at)
 }
 
-fn sound(spot: &Spot) -> bool {
+fn sound(spot: &StrokePoint) -> bool {
     spot.at.iter().all(|x| x.is_finite()) && spot.colour.iter().chain([&spot.alpha]).all(|x| x.is_finite())
 }
 

@@ -1,16 +1,16 @@
 //! From a moment to what its picture consists of: origin, light, frames and words.
 
-use crate::View;
+use crate::Viewpoint;
 use crate::camera::Camera;
 use crate::floor::Deck;
 use crate::inset::{clearness, inset};
-use crate::labels::{Window, Words, ring_boxes, robot_boxes, view_words};
+use crate::labels::{LabelPlacer, Window, ring_boxes, robot_boxes, view_words};
 use crate::letters::Letters;
-use crate::paint::Stage;
+use crate::paint::DecalContext;
 use crate::passes::frame::FrameUniforms;
 use crate::passes::ground::TILE;
 use crate::passes::shadow::{ShadowPass, SunView, sun_view};
-use crate::plan::{Area, Plan, overlap};
+use crate::plan::{Area, PicturePlan, overlap};
 use crate::show::{line_place, show};
 use glam::{DVec2, DVec3};
 use vocabulary::{FleetInfo, Light, RobotInfo, RobotState, StepRecord};
@@ -66,7 +66,7 @@ fn robots_within(fleet: &FleetInfo, record: &StepRecord) -> Option<(DVec3, f64)>
 }
 
 /// The view that the sun of a stage has of all robots and the props around them.
-pub(crate) fn sun_over(stage: &Stage<'_>) -> SunView {
+pub(crate) fn sun_over(stage: &DecalContext<'_>) -> SunView {
     match robots_within(stage.fleet, stage.record) {
         Some((middle, _)) => sun_view(stage.sun, middle - stage.origin, stage.shadowed.1),
         None => sun_view(stage.sun, DVec3::ZERO, 1.0),
@@ -75,12 +75,12 @@ pub(crate) fn sun_over(stage: &Stage<'_>) -> SunView {
 
 /// Depth up to which props are seen through: just short of the nearest robot that is in the picture. Where somebody
 /// has put the eye, or above all, they stay as they are.
-fn veiled(camera: &Camera, stage: &Stage<'_>, view: &View) -> f64 {
-    if matches!(view, View::Top | View::Camera(_) | View::Fixed { .. }) {
+fn veiled(camera: &Camera, stage: &DecalContext<'_>, view: &Viewpoint) -> f64 {
+    if matches!(view, Viewpoint::Top | Viewpoint::Camera(_) | Viewpoint::Fixed { .. }) {
         return f64::NEG_INFINITY;
     }
     let nearest = |index: usize, state: &RobotState| {
-        if matches!(view, View::Follow(robot) if *robot != index) {
+        if matches!(view, Viewpoint::Follow(robot) if *robot != index) {
             return f64::INFINITY;
         }
         let pose = state.motion.pose;
@@ -96,16 +96,16 @@ fn veiled(camera: &Camera, stage: &Stage<'_>, view: &View) -> f64 {
 const MOST_LOOKED_FOR: usize = 500;
 
 /// Which decks hide most of a robot. Others stay as they are: who looks at a ramp wants to see it.
-pub(crate) fn veiled_decks(camera: &Camera, stage: &Stage<'_>, view: &View) -> Vec<bool> {
+pub(crate) fn veiled_decks(camera: &Camera, stage: &DecalContext<'_>, view: &Viewpoint) -> Vec<bool> {
     let robots = &stage.record.snapshot.robots;
     let decks = &stage.floor.decks;
     if decks.is_empty()
         || robots.len() > MOST_LOOKED_FOR
-        || matches!(view, View::Top | View::Camera(_) | View::Fixed { .. })
+        || matches!(view, Viewpoint::Top | Viewpoint::Camera(_) | Viewpoint::Fixed { .. })
     {
         return vec![false; decks.len()];
     }
-    let looked_for = |k: &usize| !matches!(view, View::Follow(robot) if robot != k);
+    let looked_for = |k: &usize| !matches!(view, Viewpoint::Follow(robot) if robot != k);
     let all = robots.iter().zip(&stage.fleet.robots).enumerate().filter(|(k, _)| looked_for(k));
     let spots: Vec<_> = all.map(|(_, (robot, member))| spots(robot, member)).collect();
     let hides = |deck: &Deck| {
@@ -127,8 +127,8 @@ fn spots(robot: &RobotState, member: &RobotInfo) -> [DVec3; 5] {
 
 pub(crate) fn frame(
     camera: &Camera,
-    stage: &Stage<'_>,
-    view: &View,
+    stage: &DecalContext<'_>,
+    view: &Viewpoint,
     sun: &SunView,
     shadow: &ShadowPass,
 ) -> FrameUniforms {
@@ -155,12 +155,12 @@ const UNSEEN: f32 = 0.02;
 /// Text and flat shapes of the whole picture, and the panels that lie over views: that of errors, and a film's line.
 pub(crate) fn words<'a>(
     letters: &'a mut Letters,
-    stage: &Stage<'_>,
-    plan: &Plan,
+    stage: &DecalContext<'_>,
+    plan: &PicturePlan,
     windows: &[Window<'_>],
     size: (u32, u32),
-) -> (Words<'a>, Vec<Area>) {
-    let mut words = Words::new(letters, stage.style.scale);
+) -> (LabelPlacer<'a>, Vec<Area>) {
+    let mut words = LabelPlacer::new(letters, stage.style.scale);
     let shown = &stage.style.show;
     let left = plan.left;
     let said = shown.line.as_ref().filter(|line| line.opacity > 0.0);

@@ -4,11 +4,11 @@ use crate::compose::{local_origin, shadowed, towards_sun, words};
 use crate::floor::Floor;
 use crate::labels::{Window, detail, ring_boxes, robot_boxes};
 use crate::letters::Letters;
-use crate::paint::Stage;
+use crate::paint::DecalContext;
 use crate::palette::robot_colours;
-use crate::plan::{Plan, area, overlap};
+use crate::plan::{PicturePlan, area, overlap};
 use crate::renderer::cameras;
-use crate::{Layout, Style, Trail, View};
+use crate::{Style, Trail, ViewLayout, Viewpoint};
 use vocabulary::{FleetInfo, StepRecord};
 
 /// Rectangles of a picture: left, top, width and height in pixels from its upper left corner.
@@ -33,16 +33,16 @@ impl Composition {
     pub fn new(
         fleet: &FleetInfo,
         (trail, record): (&Trail, &StepRecord),
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
         size: (u32, u32),
     ) -> Self {
         let mut letters = Letters::new();
         let floor = Floor::new(fleet);
         let colours = robot_colours(fleet);
-        let plan = Plan::new(&mut letters, fleet, layout, style, size);
+        let plan = PicturePlan::new(&mut letters, fleet, layout, style, size);
         let cameras = cameras(&plan, trail, record, fleet, &floor);
-        let stage = Stage {
+        let stage = DecalContext {
             fleet,
             floor: &floor,
             colours: &colours,
@@ -66,7 +66,7 @@ impl Composition {
             ..Self::default()
         };
         for (view, window) in plan.views.iter().zip(&windows) {
-            if !matches!(view, View::Camera(_)) {
+            if !matches!(view, Viewpoint::Camera(_)) {
                 let seen =
                     |boxes: Vec<[f32; 4]>| boxes.into_iter().filter(|b| overlap(b, &area(&window.tile)));
                 composition.robots.extend(seen(robot_boxes(&stage, *window)));

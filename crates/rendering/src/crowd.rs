@@ -3,7 +3,7 @@
 use crate::Ghost;
 use crate::camera::Camera;
 use crate::model::Build;
-use crate::paint::{Stage, flat};
+use crate::paint::{DecalContext, flat};
 use crate::palette::{Rgb, linear};
 use crate::passes::robot::{Crowd, Instance, Squad};
 use glam::{DVec3, Mat3, Mat4, Vec3};
@@ -35,10 +35,10 @@ impl RobotModels {
 }
 
 /// All copies of the models in a picture.
-pub(crate) fn crowd(stage: &Stage<'_>, robot_models: &RobotModels) -> Crowd {
+pub(crate) fn crowd(stage: &DecalContext<'_>, robot_models: &RobotModels) -> Crowd {
     let mut crowd = Crowd { squads: vec![Squad::default(); robot_models.builds.len()], ..Crowd::default() };
     for (index, (robot, member)) in stage.record.snapshot.robots.iter().zip(&stage.fleet.robots).enumerate() {
-        let mut look = Look::new(member, index, stage.colours[index]);
+        let mut look = RobotAppearance::new(member, index, stage.colours[index]);
         let pose = robot.motion.pose;
         look.marks[2] = (stage.floor.height(flat(&pose)) - stage.origin.z) as f32;
         let kind = robot_models.of[index];
@@ -55,7 +55,7 @@ pub(crate) fn crowd(stage: &Stage<'_>, robot_models: &RobotModels) -> Crowd {
 /// What of a crowd a camera on robot `own` may see: not the head it sits in.
 pub(crate) fn part(
     all: &Crowd,
-    stage: &Stage<'_>,
+    stage: &DecalContext<'_>,
     robot_models: &RobotModels,
     camera: &Camera,
     own: usize,
@@ -87,12 +87,12 @@ pub(crate) fn part(
 }
 
 /// Colour and number of a robot.
-struct Look {
+struct RobotAppearance {
     colour: Rgb,
     marks: [f32; 4],
 }
 
-impl Look {
+impl RobotAppearance {
     fn new(member: &RobotInfo, index: usize, colour: Rgb) -> Self {
         let tag = member.shell.and_then(|shell| shell.first_tag).map_or(-1.0, f32::from);
         Self { colour, marks: [roof_number(member, index), f32::from(u8::from(member.leads)), 0.0, tag] }
@@ -125,7 +125,13 @@ fn local_from_body(pose: &Pose, attitude: &Attitude, origin: DVec3) -> Mat4 {
 }
 
 /// Body and wheels of a robot, and its camera.
-fn stand(squad: &mut Squad, robot: &RobotState, build: &Build, look: &Look, origin: DVec3) -> Instance {
+fn stand(
+    squad: &mut Squad,
+    robot: &RobotState,
+    build: &Build,
+    look: &RobotAppearance,
+    origin: DVec3,
+) -> Instance {
     let body = &build.body;
     let base = local_from_body(&robot.motion.pose, &robot.attitude, origin);
     squad.bodies.push(look.instance(base, 1.0));
@@ -150,7 +156,7 @@ fn stand(squad: &mut Squad, robot: &RobotState, build: &Build, look: &Look, orig
     look.instance(camera, 1.0)
 }
 
-fn ghosts(crowd: &mut Crowd, stage: &Stage<'_>, robot_models: &RobotModels) {
+fn ghosts(crowd: &mut Crowd, stage: &DecalContext<'_>, robot_models: &RobotModels) {
     let now = stage.record.snapshot.time;
     for row in &stage.trail.ghosts {
         let age = now - row.time;
@@ -164,7 +170,7 @@ fn ghosts(crowd: &mut Crowd, stage: &Stage<'_>, robot_models: &RobotModels) {
             let late = ((crate::trail::RIBBON - age) / 1.5).clamp(0.0, 1.0);
             let alpha = GHOST * stage.detail * (away * late) as f32;
             if alpha > 0.01 {
-                let look = Look::new(member, index, stage.colours[index]);
+                let look = RobotAppearance::new(member, index, stage.colours[index]);
                 let base = local_from_body(pose, &lying(stage, pose), stage.origin);
                 crowd.squads[robot_models.of[index]].ghosts.push(look.instance(base, alpha));
             }
@@ -173,18 +179,18 @@ fn ghosts(crowd: &mut Crowd, stage: &Stage<'_>, robot_models: &RobotModels) {
 }
 
 /// The bodies of a sketch.
-fn sketched(crowd: &mut Crowd, stage: &Stage<'_>, robot_models: &RobotModels) {
+fn sketched(crowd: &mut Crowd, stage: &DecalContext<'_>, robot_models: &RobotModels) {
     for Ghost { robot, pose, alpha } in &stage.style.sketch.ghosts {
         let finite = [pose.x, pose.y, pose.heading].iter().all(|x| x.is_finite());
         let Some(member) = stage.fleet.robots.get(*robot).filter(|_| finite) else { continue };
-        let look = Look::new(member, *robot, stage.colours[*robot]);
+        let look = RobotAppearance::new(member, *robot, stage.colours[*robot]);
         let base = local_from_body(pose, &lying(stage, pose), stage.origin);
         crowd.squads[robot_models.of[*robot]].ghosts.push(look.instance(base, alpha.clamp(0.0, 1.0)));
     }
 }
 
 /// How a body stands that has all its wheels on the ground at a pose.
-fn lying(stage: &Stage<'_>, pose: &Pose) -> Attitude {
+fn lying(stage: &DecalContext<'_>, pose: &Pose) -> Attitude {
     if stage.floor.is_plane() {
         return Attitude::default();
     }

@@ -1,8 +1,8 @@
 //! What a follower made of its camera's last picture, drawn over its view: tags, region, and the leader's shell where
 //! the estimate has it.
 
-use crate::labels::{Ink, Window, Words};
-use crate::paint::Stage;
+use crate::labels::{Ink, LabelPlacer, Window};
+use crate::paint::DecalContext;
 use crate::palette::{Rgb, hex};
 use crate::view::Tile;
 use glam::Vec2;
@@ -28,8 +28,8 @@ fn colour(outcome: Outcome) -> Rgb {
 }
 
 /// Draws in pixels of a camera's picture.
-struct Sketch<'a, 'b, 'c> {
-    words: &'a mut Words<'b>,
+struct DetectionOverlay<'a, 'b, 'c> {
+    words: &'a mut LabelPlacer<'b>,
     window: Window<'c>,
     camera_model: CameraModel,
     /// How far the camera has turned to the left of its leader since the look, rad.
@@ -46,7 +46,7 @@ fn turned([x, y]: [f64; 2], turn: f64) -> Option<[f64; 2]> {
 
 /// How far the camera has turned to the left of its leader since a look, rad: what was seen then is drawn over what is
 /// seen now.
-fn turn_since(stage: &Stage<'_>, edge: &Edge, frame: &MeasurementRecord) -> f64 {
+fn turn_since(stage: &DecalContext<'_>, edge: &Edge, frame: &MeasurementRecord) -> f64 {
     let robots = &stage.record.snapshot.robots;
     let (Some(own), Some(leader), Some(member)) =
         (robots.get(edge.follower), robots.get(edge.leader), stage.fleet.robots.get(edge.follower))
@@ -62,7 +62,7 @@ fn turn_since(stage: &Stage<'_>, edge: &Edge, frame: &MeasurementRecord) -> f64 
     wrap(bearing(&frame.truth, frame.pan) - bearing(&now, own.camera_pan))
 }
 
-impl Sketch<'_, '_, '_> {
+impl DetectionOverlay<'_, '_, '_> {
     /// Where a direction of the look (x/z right, y/z down) is seen, pixels of the whole picture.
     fn at(&self, direction: [f64; 2]) -> Option<Vec2> {
         turned(direction, self.turn).map(|[x, y]| self.window.direction(x, -y))
@@ -145,7 +145,12 @@ fn estimated(frame: &MeasurementRecord, follower: &RobotInfo) -> Rigid {
 }
 
 /// Whose camera a view is through, and what it found.
-pub(crate) fn camera_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robot: usize) {
+pub(crate) fn camera_words(
+    words: &mut LabelPlacer<'_>,
+    stage: &DecalContext<'_>,
+    window: Window<'_>,
+    robot: usize,
+) {
     let Some(member) = stage.fleet.robots.get(robot) else { return };
     if stage.style.detections {
         detections(words, stage, window, robot);
@@ -156,7 +161,7 @@ pub(crate) fn camera_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Win
 }
 
 /// Everything about the last look of each edge of a robot, over the view of its camera.
-fn detections(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robot: usize) {
+fn detections(words: &mut LabelPlacer<'_>, stage: &DecalContext<'_>, window: Window<'_>, robot: usize) {
     let now = stage.record.snapshot.time;
     let mut row = 0.0;
     for (index, edge) in stage.fleet.edges.iter().enumerate().filter(|(_, edge)| edge.follower == robot) {
@@ -173,7 +178,7 @@ fn detections(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robo
         let ink = colour(frame.outcome);
         // Thin in a small picture, where thick lines would cover what they tell of.
         let width = words.scaled(1.6 * (window.tile.width as f32 / words.scaled(640.0)).clamp(0.55, 1.0));
-        let mut sketch = Sketch {
+        let mut sketch = DetectionOverlay {
             words,
             window,
             camera_model: follower.camera_model,
@@ -193,7 +198,7 @@ fn detections(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, robo
     }
 }
 
-fn region(sketch: &mut Sketch<'_, '_, '_>, frame: &MeasurementRecord) {
+fn region(sketch: &mut DetectionOverlay<'_, '_, '_>, frame: &MeasurementRecord) {
     let r = frame.region;
     if r.width == 0 || r.height == 0 {
         return;
@@ -206,7 +211,7 @@ fn region(sketch: &mut Sketch<'_, '_, '_>, frame: &MeasurementRecord) {
 }
 
 /// The numbers of the tags, in their middles.
-fn ids(sketch: &mut Sketch<'_, '_, '_>, frame: &MeasurementRecord, leader: &RobotInfo, ink: Rgb) {
+fn ids(sketch: &mut DetectionOverlay<'_, '_, '_>, frame: &MeasurementRecord, leader: &RobotInfo, ink: Rgb) {
     let Some(first) = leader.shell.and_then(|shell| shell.first_tag) else { return };
     for (face, corners) in frame.tags.iter().enumerate() {
         let Some(corners) = corners else { continue };
@@ -229,10 +234,10 @@ fn ids(sketch: &mut Sketch<'_, '_, '_>, frame: &MeasurementRecord, leader: &Robo
 }
 
 /// Numbers and outcome of a look in two lines at the foot of a tile.
-fn report(words: &mut Words<'_>, tile: Tile, leader: &str, frame: &MeasurementRecord, row: &mut f32) {
+fn report(words: &mut LabelPlacer<'_>, tile: Tile, leader: &str, frame: &MeasurementRecord, row: &mut f32) {
     let told = Ink { colour: colour(frame.outcome), ..Ink::LIGHT };
     let left = tile.x as f32 + words.scaled(10.0);
-    let mut line = |words: &mut Words<'_>, text: String, bold: bool, ink: Ink| {
+    let mut line = |words: &mut LabelPlacer<'_>, text: String, bold: bool, ink: Ink| {
         let y = tile.y as f32 + tile.height as f32 - words.scaled(30.0 + 16.0 * *row);
         let size =
             if words.width(&text, 12.0, bold) > tile.width as f32 - words.scaled(20.0) { 9.0 } else { 12.0 };
@@ -295,7 +300,7 @@ mod tests {
         let (trail, style) = (Trail::new(&fleet), Style::default());
         for rates in [[0.0; 3], [0.0, 1.5, 0.0], [1.0, -1.5, 0.0], [0.8, 0.0, 0.0], [0.3, 0.2, 0.8]] {
             let (then, now) = (record(0.45, rates), record(0.5, rates));
-            let stage = Stage {
+            let stage = DecalContext {
                 fleet: &fleet,
                 floor: &Floor::new(&fleet),
                 colours: &[vocabulary::colours::LEAD; 2],

@@ -2,7 +2,7 @@
 //! and where decks begin.
 
 use crate::floor::{Deck, Floor};
-use crate::passes::decal::Corner;
+use crate::passes::decal::DecalVertex;
 use glam::{DVec2, DVec3};
 use vocabulary::Terrain;
 
@@ -25,12 +25,12 @@ pub(crate) struct Eye {
 
 /// Lays triangles of corners, relative to `origin`, on the floor; `eye` as for [`drape`].
 pub(crate) fn lay(
-    corners: Vec<Corner>,
+    corners: Vec<DecalVertex>,
     floor: &Floor,
     onto: Onto,
     origin: DVec3,
     eye: Option<Eye>,
-) -> Vec<Corner> {
+) -> Vec<DecalVertex> {
     let on_ground = match &floor.terrain {
         Some(terrain) => drape(&corners, terrain, origin, eye),
         None => corners,
@@ -39,7 +39,7 @@ pub(crate) fn lay(
 }
 
 /// Puts what lies on the ground under decks on top of them.
-fn raise(corners: &[Corner], decks: &[Deck], onto: Onto, origin: DVec3) -> Vec<Corner> {
+fn raise(corners: &[DecalVertex], decks: &[Deck], onto: Onto, origin: DVec3) -> Vec<DecalVertex> {
     let mut out = Vec::with_capacity(corners.len() * 2);
     for triangle in corners.chunks_exact(3) {
         let places = [0, 1, 2].map(|k| place(&triangle[k], origin));
@@ -69,14 +69,20 @@ fn raise(corners: &[Corner], decks: &[Deck], onto: Onto, origin: DVec3) -> Vec<C
 }
 
 /// Cuts a convex piece along the sides of a deck and where it comes out of the deck, and lifts what is under it.
-fn cut_out(piece: Vec<Corner>, raised: bool, deck: &Deck, origin: DVec3, cut: &mut Vec<(Vec<Corner>, bool)>) {
+fn cut_out(
+    piece: Vec<DecalVertex>,
+    raised: bool,
+    deck: &Deck,
+    origin: DVec3,
+    cut: &mut Vec<(Vec<DecalVertex>, bool)>,
+) {
     let mut rest = piece;
     for (at, inward) in deck.sides() {
         let (outside, inside) = split(&rest, |corner| (place(corner, origin) - at).dot(inward));
         cut.extend((outside.len() > 2).then_some((outside, raised)));
         rest = inside;
     }
-    let over = |corner: &Corner| {
+    let over = |corner: &DecalVertex| {
         let gap = deck.height(place(corner, origin)) - origin.z - f64::from(corner.position[2]);
         // Where they meet the deck is above.
         if gap.abs() < 1e-6 { 0.0 } else { gap }
@@ -89,22 +95,22 @@ fn cut_out(piece: Vec<Corner>, raised: bool, deck: &Deck, origin: DVec3, cut: &m
     };
     cut.extend((above.len() > 2).then_some((above, raised)));
     if under.len() > 2 {
-        let lift = |corner: Corner| {
+        let lift = |corner: DecalVertex| {
             let height = deck.height(place(&corner, origin)) - origin.z;
-            Corner { position: [corner.position[0], corner.position[1], height as f32], ..corner }
+            DecalVertex { position: [corner.position[0], corner.position[1], height as f32], ..corner }
         };
         cut.push((under.into_iter().map(lift).collect(), true));
     }
 }
 
-fn place(corner: &Corner, origin: DVec3) -> DVec2 {
+fn place(corner: &DecalVertex, origin: DVec3) -> DVec2 {
     let [x, y, _] = corner.position.map(f64::from);
     DVec2::new(x, y) + origin.truncate()
 }
 
 /// Lays triangles of corners, relative to `origin`, on the terrain; the farther from `eye` they are, the farther from
 /// it they may lie: the shader pulls them nearer by more.
-fn drape(corners: &[Corner], terrain: &Terrain, origin: DVec3, eye: Option<Eye>) -> Vec<Corner> {
+fn drape(corners: &[DecalVertex], terrain: &Terrain, origin: DVec3, eye: Option<Eye>) -> Vec<DecalVertex> {
     let mut out = Vec::with_capacity(corners.len() * 2);
     for triangle in corners.chunks_exact(3) {
         let raised = [0, 1, 2].map(|k| lifted(triangle[k], terrain, origin));
@@ -127,12 +133,12 @@ fn drape(corners: &[Corner], terrain: &Terrain, origin: DVec3, eye: Option<Eye>)
 }
 
 /// A place in cells of the grid.
-fn cells(corner: &Corner, terrain: &Terrain, origin: DVec3) -> DVec2 {
+fn cells(corner: &DecalVertex, terrain: &Terrain, origin: DVec3) -> DVec2 {
     (place(corner, origin) - DVec2::from_array(terrain.origin)) / terrain.cell
 }
 
 /// Whether a triangle that was lifted by its corners lies in the ground all over.
-fn level(triangle: &[Corner; 3], terrain: &Terrain, origin: DVec3, eye: Option<Eye>) -> bool {
+fn level(triangle: &[DecalVertex; 3], terrain: &Terrain, origin: DVec3, eye: Option<Eye>) -> bool {
     let at = triangle.map(|corner| DVec3::from_array(corner.position.map(f64::from)) + origin);
     let size = (at[0].max(at[1]).max(at[2]) - at[0].min(at[1]).min(at[2])).truncate();
     let middle = (at[0] + at[1] + at[2]) / 3.0;
@@ -165,8 +171,8 @@ fn plain(at: &[DVec3; 3], bound: f64, terrain: &Terrain) -> bool {
 }
 
 /// A convex piece cut along whole numbers of cells in one direction; beyond the field there is nothing to cut.
-fn slice(piece: Vec<Corner>, across: DVec2, terrain: &Terrain, origin: DVec3) -> Vec<Vec<Corner>> {
-    let at = |corner: &Corner| cells(corner, terrain, origin).dot(across);
+fn slice(piece: Vec<DecalVertex>, across: DVec2, terrain: &Terrain, origin: DVec3) -> Vec<Vec<DecalVertex>> {
+    let at = |corner: &DecalVertex| cells(corner, terrain, origin).dot(across);
     let (low, high) = piece
         .iter()
         .map(at)
@@ -196,7 +202,7 @@ fn bounds(across: DVec2, terrain: &Terrain) -> [f64; 2] {
 }
 
 /// The parts of a convex piece below and above zero of `side`.
-fn split(piece: &[Corner], side: impl Fn(&Corner) -> f64) -> (Vec<Corner>, Vec<Corner>) {
+fn split(piece: &[DecalVertex], side: impl Fn(&DecalVertex) -> f64) -> (Vec<DecalVertex>, Vec<DecalVertex>) {
     let (mut below, mut above) = (Vec::with_capacity(piece.len() + 1), Vec::with_capacity(piece.len() + 1));
     for (k, corner) in piece.iter().enumerate() {
         let next = &piece[(k + 1) % piece.len()];
@@ -216,9 +222,9 @@ fn split(piece: &[Corner], side: impl Fn(&Corner) -> f64) -> (Vec<Corner>, Vec<C
     (below, above)
 }
 
-fn mixed(a: &Corner, b: &Corner, share: f32) -> Corner {
+fn mixed(a: &DecalVertex, b: &DecalVertex, share: f32) -> DecalVertex {
     let mix = |p: f32, q: f32| p + (q - p) * share;
-    Corner {
+    DecalVertex {
         position: std::array::from_fn(|k| mix(a.position[k], b.position[k])),
         kind: a.kind,
         shape: std::array::from_fn(|k| mix(a.shape[k], b.shape[k])),
@@ -226,10 +232,10 @@ fn mixed(a: &Corner, b: &Corner, share: f32) -> Corner {
     }
 }
 
-fn lifted(corner: Corner, terrain: &Terrain, origin: DVec3) -> Corner {
+fn lifted(corner: DecalVertex, terrain: &Terrain, origin: DVec3) -> DecalVertex {
     let [x, y, _] = corner.position;
     let height = terrain.at(f64::from(x) + origin.x, f64::from(y) + origin.y).height - origin.z;
-    Corner { position: [x, y, height as f32], ..corner }
+    DecalVertex { position: [x, y, height as f32], ..corner }
 }
 
 #[cfg(test)]
@@ -243,7 +249,7 @@ mod tests {
         let heights: Vec<_> = (0..25).map(|k| f64::from((k * 7) % 5) * 0.2).collect();
         let terrain = Terrain { origin: [-1.0, -1.0], cell: 0.5, columns: 5, rows: 5, heights, grip: vec![] };
         let origin = DVec3::new(20.0, 0.0, 0.0);
-        let corner = |x: f64, y: f64, u: f32| Corner {
+        let corner = |x: f64, y: f64, u: f32| DecalVertex {
             position: [(x - origin.x) as f32, y as f32, 0.0],
             kind: [0.0; 2],
             shape: [u, 0.0],
@@ -283,7 +289,7 @@ mod tests {
         let floor = Floor::new(&fleet);
         assert_eq!(floor.decks.len(), 3);
         let origin = DVec3::new(20.0, 0.0, 0.0);
-        let corner = |x: f64, y: f64| Corner {
+        let corner = |x: f64, y: f64| DecalVertex {
             position: [(x - origin.x) as f32, y as f32, 0.0],
             kind: [0.0; 2],
             shape: [0.0; 2],
@@ -314,7 +320,7 @@ mod tests {
     fn on_a_plane_nothing_is_cut() {
         let heights: Vec<_> = (0..100).map(|k| f64::from(k % 10) * 0.03).collect();
         let terrain = Terrain { origin: [0.0; 2], cell: 0.1, columns: 10, rows: 10, heights, grip: vec![] };
-        let corner = |x: f32, y: f32| Corner {
+        let corner = |x: f32, y: f32| DecalVertex {
             position: [x, y, 0.0],
             kind: [0.0; 2],
             shape: [0.0; 2],

@@ -6,14 +6,14 @@ use crate::floor::Floor;
 use crate::letters::Letters;
 use crate::model::Detail;
 use crate::passes::Canvas;
-use crate::passes::decal::{Corner, Layer};
+use crate::passes::decal::{DecalLayer, DecalVertex};
 use crate::passes::frame::FrameUniforms;
 use crate::passes::overlay::{OverlayPass, Shapes};
 use crate::passes::prop::Copies;
 use crate::passes::robot::Crowd;
-use crate::passes::text::{Line, TextPass};
+use crate::passes::text::{TextLine, TextPass};
 use crate::target::Attachments;
-use crate::world::{SceneView, World};
+use crate::world::{SceneView, WorldPasses};
 use crate::{Error, Gpu, view::Tile};
 use std::iter::once;
 use std::ops::Range;
@@ -28,7 +28,7 @@ const PLAIN_ABOVE: usize = 24;
 /// Every pass with what it keeps on the device.
 #[derive(Debug)]
 pub(crate) struct Passes {
-    pub(crate) world: World,
+    pub(crate) world: WorldPasses,
     overlay: OverlayPass,
     text: TextPass,
     /// What the shadow map was drawn from: while nothing moves it stays.
@@ -48,7 +48,7 @@ pub(crate) struct Prepared {
     /// Which decks hide a robot in each view.
     pub(crate) veiled: Vec<Vec<bool>>,
     /// Corners of each view.
-    pub(crate) decals: Vec<[(Layer, Range<u32>); 5]>,
+    pub(crate) decals: Vec<[(DecalLayer, Range<u32>); 5]>,
     /// Whether a view shows ghosts: near the ground they would veil what is behind them.
     pub(crate) ghosts: Vec<bool>,
     pub(crate) shapes: Shapes,
@@ -74,7 +74,7 @@ impl Prepared {
 
 /// What a picture is drawn into.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Surface<'a> {
+pub(crate) struct EncodeTarget<'a> {
     pub(crate) target: &'a wgpu::TextureView,
     pub(crate) attachments: &'a Attachments,
     pub(crate) size: (u32, u32),
@@ -93,7 +93,7 @@ impl Passes {
         let robots = fleet.robots.len();
         let side = if robots > 12 || !fleet.props.is_empty() { 2048 } else { 1024 };
         Self {
-            world: World::new(gpu, canvas, fleet, (robot_models, floor), (detail, side)),
+            world: WorldPasses::new(gpu, canvas, fleet, (robot_models, floor), (detail, side)),
             overlay: OverlayPass::new(&gpu.device, flat),
             text: TextPass::new(&gpu.device, &gpu.queue, flat),
             shadowed: None,
@@ -107,8 +107,8 @@ impl Passes {
         (width, height): (u32, u32),
         frames: &[FrameUniforms],
         prepared: &mut Prepared,
-        corners: &[Corner],
-        (lines, letters): (&[Line], &mut Letters),
+        corners: &[DecalVertex],
+        (lines, letters): (&[TextLine], &mut Letters),
     ) -> Result<(), Error> {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let (crowds, props) =
@@ -131,7 +131,7 @@ impl Passes {
     pub(crate) fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        surface: Surface<'_>,
+        surface: EncodeTarget<'_>,
         prepared: &Prepared,
     ) -> Result<(), Error> {
         if !prepared.shadowed {
@@ -141,7 +141,12 @@ impl Passes {
         self.encode_overlay(encoder, surface.target, prepared)
     }
 
-    fn encode_world(&self, encoder: &mut wgpu::CommandEncoder, surface: Surface<'_>, prepared: &Prepared) {
+    fn encode_world(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        surface: EncodeTarget<'_>,
+        prepared: &Prepared,
+    ) {
         let mut pass = surface.attachments.begin(encoder, surface.target, STONE);
         for (index, tile) in prepared.tiles.iter().enumerate() {
             let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);

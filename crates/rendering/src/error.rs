@@ -20,7 +20,7 @@ pub enum Error {
     Device(String),
     /// A view that does not exist.
     #[error("unknown view {given:?}{}; views are {valid}, and several joined by '+'", .nearest.as_ref().map_or(String::new(), |n| format!(" (did you mean {n:?}?)")))]
-    View {
+    Viewpoint {
         /// What was asked for.
         given: String,
         /// The valid name nearest to it.

@@ -6,14 +6,14 @@ use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun};
 use crate::crowd::{RobotModels, crowd, part};
 use crate::floor::Floor;
 use crate::model::Detail;
-use crate::paint::{Stage, shade};
+use crate::paint::{DecalContext, shade};
 use crate::palette::{Rgb, robot_colours};
-use crate::passes::decal::{Corner, Layer};
+use crate::passes::decal::{DecalLayer, DecalVertex};
 use crate::passes::prop::Copies;
 use crate::passes::robot::Crowd;
 use crate::props::props;
-use crate::view::{Tile, View};
-use crate::world::{SceneView, World};
+use crate::view::{Tile, Viewpoint};
+use crate::world::{SceneView, WorldPasses};
 use crate::{Error, Gpu, Style, Trail};
 use std::iter::once;
 use std::ops::Range;
@@ -34,14 +34,14 @@ pub struct GpuCameraRenderer {
     floor: Floor,
     trail: Trail,
     style: Style,
-    world: World,
+    world: WorldPasses,
     /// Old to new.
     atlases: Vec<Atlas>,
     size: f64,
 }
 
 /// What one shot shows.
-struct Scene {
+struct CameraScene {
     camera: Camera,
     crowd: Crowd,
     props: Copies,
@@ -55,7 +55,7 @@ impl GpuCameraRenderer {
     /// [`Error::Device`] where the device fails.
     pub fn new(gpu: &Gpu, fleet: &FleetInfo) -> Result<Self, Error> {
         let (robot_models, floor) = (RobotModels::new(fleet), Floor::new(fleet));
-        let world = World::new(gpu, CANVAS, fleet, (&robot_models, &floor), (Detail::Coarse, SHADOWS));
+        let world = WorldPasses::new(gpu, CANVAS, fleet, (&robot_models, &floor), (Detail::Coarse, SHADOWS));
         gpu.check()?;
         Ok(Self {
             gpu: gpu.clone(),
@@ -91,7 +91,7 @@ impl GpuCameraRenderer {
         let Some(first) = shots.first() else { return Ok(()) };
         let (tiles, size) = self.places(shots)?;
         let record = StepRecord { snapshot: snapshot.clone(), ..StepRecord::default() };
-        let stage = Stage {
+        let stage = DecalContext {
             fleet: &self.fleet,
             floor: &self.floor,
             colours: &self.colours,
@@ -106,20 +106,20 @@ impl GpuCameraRenderer {
         };
         let sun = sun_over(&stage);
         let (mut all, mut things) = (crowd(&stage, &self.robot_models), props(&stage));
-        let mut corners: Vec<Corner> = Vec::new();
+        let mut corners: Vec<DecalVertex> = Vec::new();
         let under = shade(&stage, &Camera::shot(first)).map(|(layer, more)| {
             let from = corners.len() as u32;
             corners.extend(more);
             (layer, from..corners.len() as u32)
         });
         let mut frames = Vec::with_capacity(shots.len());
-        let mut scenes: Vec<Scene> = Vec::with_capacity(shots.len());
+        let mut scenes: Vec<CameraScene> = Vec::with_capacity(shots.len());
         for (shot, tile) in shots.iter().zip(&tiles) {
             let camera = Camera::shot(shot);
-            let mut frame = frame(&camera, &stage, &View::Camera(shot.robot), &sun, &self.world.shadow);
+            let mut frame = frame(&camera, &stage, &Viewpoint::Camera(shot.robot), &sun, &self.world.shadow);
             frame.ground[1] = shot.exposure as f32;
             frames.push(frame);
-            scenes.push(Scene {
+            scenes.push(CameraScene {
                 camera,
                 crowd: part(&all, &stage, &self.robot_models, &camera, shot.robot),
                 props: things.part(&camera, stage.origin),
@@ -167,8 +167,8 @@ impl GpuCameraRenderer {
         &self,
         atlas: usize,
         (crowd, props): (&Crowd, &Copies),
-        scenes: &[Scene],
-        under: &[(Layer, Range<u32>)],
+        scenes: &[CameraScene],
+        under: &[(DecalLayer, Range<u32>)],
     ) -> wgpu::SubmissionIndex {
         let atlas = &self.atlases[atlas];
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

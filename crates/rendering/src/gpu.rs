@@ -76,12 +76,12 @@ pub struct Gpu {
     /// Its queue.
     pub queue: wgpu::Queue,
     info: AdapterInfo,
-    fault: Arc<Mutex<Fault>>,
+    fault: Arc<Mutex<DeviceFault>>,
 }
 
 /// What a device has complained of.
 #[derive(Debug, Default)]
-struct Fault {
+struct DeviceFault {
     /// Since somebody asked last.
     error: Option<String>,
     /// For ever.
@@ -118,7 +118,7 @@ impl Gpu {
     /// replaces what the device does about errors, by default to end the process, and every renderer on the device takes
     /// this or a clone of it. Errors of others on that device surface in the next draw, too.
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue, info: &Info) -> Self {
-        let fault = Arc::new(Mutex::new(Fault::default()));
+        let fault = Arc::new(Mutex::new(DeviceFault::default()));
         let seen = Arc::clone(&fault);
         device.on_uncaptured_error(Arc::new(move |error| {
             held(&seen).error.get_or_insert_with(|| error.to_string());
@@ -153,7 +153,7 @@ impl Gpu {
     }
 }
 
-fn held(fault: &Mutex<Fault>) -> MutexGuard<'_, Fault> {
+fn held(fault: &Mutex<DeviceFault>) -> MutexGuard<'_, DeviceFault> {
     fault.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

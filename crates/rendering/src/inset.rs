@@ -1,7 +1,7 @@
 //! The charts in the corner: distance and bearing error of each edge over the whole run so far.
 
-use crate::labels::{Ink, MARGIN, Words};
-use crate::paint::Stage;
+use crate::labels::{Ink, LabelPlacer, MARGIN};
+use crate::paint::DecalContext;
 use crate::plan::{Area, overlap};
 use crate::view::Tile;
 use glam::Vec2;
@@ -13,7 +13,7 @@ const SMALL: [f32; 2] = [200.0, 106.0];
 
 /// What one chart shows, by its index in an error.
 #[derive(Debug, Clone, Copy)]
-struct Quantity {
+struct ChartedError {
     index: usize,
     title: &'static str,
     unit: &'static str,
@@ -25,9 +25,9 @@ struct Quantity {
     most: f32,
 }
 
-const QUANTITIES: [Quantity; 2] = [
-    Quantity { index: 0, title: "distance error", unit: " m", factor: 1.0, least: 0.02, most: f32::MAX },
-    Quantity {
+const QUANTITIES: [ChartedError; 2] = [
+    ChartedError { index: 0, title: "distance error", unit: " m", factor: 1.0, least: 0.02, most: f32::MAX },
+    ChartedError {
         index: 1,
         title: "bearing error",
         unit: "°",
@@ -38,7 +38,7 @@ const QUANTITIES: [Quantity; 2] = [
 ];
 
 /// Where the panel is in a tile; nothing where it would fill the tile.
-pub(crate) fn panel(words: &Words<'_>, tile: Tile) -> Option<Area> {
+pub(crate) fn panel(words: &LabelPlacer<'_>, tile: Tile) -> Option<Area> {
     let margin = words.scaled(MARGIN);
     let (wide, high) = (tile.width as f32, tile.height as f32);
     let place = |[width, height]: [f32; 2], most: f32| {
@@ -76,7 +76,7 @@ impl Axes {
 const NEAR: f32 = 12.0;
 
 /// How much of a panel shows that shall hide none of `robots`: it fades where one comes near.
-pub(crate) fn clearness(words: &Words<'_>, panel: &Area, robots: &[Area]) -> f32 {
+pub(crate) fn clearness(words: &LabelPlacer<'_>, panel: &Area, robots: &[Area]) -> f32 {
     let near = words.scaled(NEAR);
     let gap = |robot: &Area| {
         let aside = |k: usize| (robot[k] - panel[k] - panel[k + 2]).max(panel[k] - robot[k] - robot[k + 2]);
@@ -87,7 +87,7 @@ pub(crate) fn clearness(words: &Words<'_>, panel: &Area, robots: &[Area]) -> f32
 }
 
 /// Draws the panel and both charts over one time axis.
-pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, panel: Area, clear: f32) {
+pub(crate) fn inset(words: &mut LabelPlacer<'_>, stage: &DecalContext<'_>, panel: Area, clear: f32) {
     words.reserve(panel);
     let radius = words.scaled(7.0);
     words.shapes.panel(panel, radius, [0.98, 0.98, 0.97, 0.86 * clear]);
@@ -123,7 +123,7 @@ pub(crate) fn inset(words: &mut Words<'_>, stage: &Stage<'_>, panel: Area, clear
 }
 
 /// The largest error so far, in shown units.
-fn largest(stage: &Stage<'_>, quantity: &Quantity) -> f32 {
+fn largest(stage: &DecalContext<'_>, quantity: &ChartedError) -> f32 {
     let now = stage.record.edges.iter().map(|e| e.error[quantity.index] as f32);
     let past = stage.trail.errors.entries.iter().flat_map(|(_, e)| e.iter()).map(|e| e[quantity.index]);
     let sizes = past.chain(now).map(|e| e.abs() * quantity.factor).filter(|e| e.is_finite());
@@ -136,7 +136,7 @@ fn ceiling(most: f32) -> f32 {
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|n| n * power).find(|n| *n >= most * 0.999).unwrap_or(most)
 }
 
-fn frame(words: &mut Words<'_>, axes: &Axes, quantity: &Quantity, limit: f32, large: bool) {
+fn frame(words: &mut LabelPlacer<'_>, axes: &Axes, quantity: &ChartedError, limit: f32, large: bool) {
     let thin = words.scaled(1.0);
     let ink = |alpha: f32| [0.07, 0.09, 0.11, alpha * axes.clear];
     for (height, alpha) in [(axes.top, 0.15), (axes.zero, 0.55), (axes.bottom, 0.15)] {
@@ -170,7 +170,7 @@ fn frame(words: &mut Words<'_>, axes: &Axes, quantity: &Quantity, limit: f32, la
     }
 }
 
-fn curves(words: &mut Words<'_>, stage: &Stage<'_>, axes: &Axes, quantity: &Quantity) {
+fn curves(words: &mut LabelPlacer<'_>, stage: &DecalContext<'_>, axes: &Axes, quantity: &ChartedError) {
     let now = stage.record.snapshot.time;
     let wide = words.scaled(if stage.fleet.edges.len() > 12 { 1.0 } else { 1.6 });
     let pick = |error: f32| error * quantity.factor;

@@ -4,13 +4,13 @@ use crate::camera::Camera;
 use crate::detections::camera_words;
 use crate::letters::{Block, Letters, Measure, line_height};
 use crate::model::Build;
-use crate::paint::{RING, Stage};
+use crate::paint::{DecalContext, RING};
 use crate::palette::{self, Rgb};
 use crate::passes::overlay::Shapes;
-use crate::passes::text::Line;
+use crate::passes::text::TextLine;
 use crate::plan::{Area, area, overlap};
 use crate::trail::set_points;
-use crate::{View, view::Tile};
+use crate::{Viewpoint, view::Tile};
 use glam::{DVec2, DVec3, Vec2};
 use vocabulary::{Condition, RobotInfo, RobotState};
 
@@ -18,8 +18,8 @@ use vocabulary::{Condition, RobotInfo, RobotState};
 pub(crate) const MARGIN: f32 = 24.0;
 
 /// Collects lines of text and refuses what would overlap.
-pub(crate) struct Words<'a> {
-    pub(crate) lines: Vec<Line>,
+pub(crate) struct LabelPlacer<'a> {
+    pub(crate) lines: Vec<TextLine>,
     pub(crate) shapes: Shapes,
     /// Where names, edges and coordinates were written.
     pub(crate) labels: Vec<Area>,
@@ -61,7 +61,7 @@ impl Window<'_> {
     }
 }
 
-impl<'a> Words<'a> {
+impl<'a> LabelPlacer<'a> {
     pub(crate) fn new(letters: &'a mut Letters, scale: f64) -> Self {
         Self {
             lines: Vec::new(),
@@ -125,7 +125,7 @@ impl<'a> Words<'a> {
     fn push(&mut self, text: String, at: [f32; 2], size: f32, bold: bool, ink: Ink, block: Option<Block>) {
         let size = self.scaled(size);
         let Ink { colour, alpha, halo } = ink;
-        self.lines.push(Line { text, at, size, bold, block, colour, alpha, halo });
+        self.lines.push(TextLine { text, at, size, bold, block, colour, alpha, halo });
     }
 
     /// Writes a centred line at the first of `places` that is free and inside `within`.
@@ -182,18 +182,23 @@ fn inside(area: &Area, tile: &Tile) -> bool {
 }
 
 /// Names, edges, scale bar and coordinates of one view.
-pub(crate) fn view_words(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>, view: &View) {
-    if let View::Camera(robot) = view {
+pub(crate) fn view_words(
+    words: &mut LabelPlacer<'_>,
+    stage: &DecalContext<'_>,
+    window: Window<'_>,
+    view: &Viewpoint,
+) {
+    if let Viewpoint::Camera(robot) = view {
         return camera_words(words, stage, window, *robot);
     }
     reserve_robots(words, stage, window);
-    if matches!(view, View::Top) && stage.style.grid {
+    if matches!(view, Viewpoint::Top) && stage.style.grid {
         scale_bar(words, window);
     }
     if stage.style.names {
         names(words, stage, window);
     }
-    if stage.style.labels && stage.detail > 0.0 && !matches!(view, View::SnakeEye) {
+    if stage.style.labels && stage.detail > 0.0 && !matches!(view, Viewpoint::SnakeEye) {
         edges(words, stage, window);
     }
     if stage.style.grid {
@@ -210,7 +215,7 @@ fn middle(robot: &RobotState, member: &RobotInfo) -> (DVec3, f64) {
     (DVec3::new(x, y, robot.attitude.height + 0.15 * size * upright), size)
 }
 
-fn reserve_robots(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
+fn reserve_robots(words: &mut LabelPlacer<'_>, stage: &DecalContext<'_>, window: Window<'_>) {
     for (robot, member) in stage.record.snapshot.robots.iter().zip(&stage.fleet.robots) {
         let (middle, size) = middle(robot, member);
         if let Some(at) = window.pixel(middle) {
@@ -231,7 +236,7 @@ fn trouble(condition: Condition) -> Option<&'static str> {
     }
 }
 
-fn names(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
+fn names(words: &mut LabelPlacer<'_>, stage: &DecalContext<'_>, window: Window<'_>) {
     let crowded = stage.fleet.robots.len() > 24;
     for (robot, member) in stage.record.snapshot.robots.iter().zip(&stage.fleet.robots) {
         let trouble = trouble(robot.condition);
@@ -253,7 +258,7 @@ fn names(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
     }
 }
 
-fn edges(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
+fn edges(words: &mut LabelPlacer<'_>, stage: &DecalContext<'_>, window: Window<'_>) {
     let place = |k: usize| {
         let pose = stage.record.snapshot.robots.get(k)?.motion.pose;
         window.pixel(stage.on_floor(pose.x, pose.y))
@@ -287,7 +292,7 @@ fn round_length(wanted: f64) -> f64 {
     [5.0, 2.0, 1.0].into_iter().map(|n| n * power).find(|n| *n <= wanted).unwrap_or(power)
 }
 
-fn scale_bar(words: &mut Words<'_>, window: Window<'_>) {
+fn scale_bar(words: &mut LabelPlacer<'_>, window: Window<'_>) {
     let tile = window.tile;
     let metre = 1.0 / window.camera.metres_per_pixel(DVec3::ZERO, f64::from(tile.height)) as f32;
     let length = round_length(0.22 * f64::from(tile.width) / f64::from(metre));
@@ -309,7 +314,7 @@ fn scale_bar(words: &mut Words<'_>, window: Window<'_>) {
 }
 
 /// The rectangle of the picture that holds each robot, mast and shell included.
-pub(crate) fn robot_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Area> {
+pub(crate) fn robot_boxes(stage: &DecalContext<'_>, window: Window<'_>) -> Vec<Area> {
     let robots = stage.record.snapshot.robots.iter().zip(&stage.fleet.robots);
     let area = |(robot, member): (&RobotState, &RobotInfo)| {
         let body = member.body;
@@ -332,7 +337,7 @@ pub(crate) fn robot_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Area> {
 }
 
 /// The rectangles of the picture that hold the rings at set points.
-pub(crate) fn ring_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Area> {
+pub(crate) fn ring_boxes(stage: &DecalContext<'_>, window: Window<'_>) -> Vec<Area> {
     let reach = RING * stage.size;
     let ring = |[x, y]: [f64; 2]| {
         let around = (0..8).map(|k| {
@@ -349,7 +354,7 @@ pub(crate) fn ring_boxes(stage: &Stage<'_>, window: Window<'_>) -> Vec<Area> {
 }
 
 /// Coordinates where the strong lines of the ground cross.
-fn coordinates(words: &mut Words<'_>, stage: &Stage<'_>, window: Window<'_>) {
+fn coordinates(words: &mut LabelPlacer<'_>, stage: &DecalContext<'_>, window: Window<'_>) {
     let level = stage.trail.steady.formation().ground[0];
     let Some(centre) = ground_ahead(window.camera, level) else { return };
     for area in robot_boxes(stage, window) {
@@ -406,7 +411,7 @@ mod tests {
             ..StepRecord::default()
         };
         let (trail, style) = (Trail::new(&fleet), Style::default());
-        let stage = Stage {
+        let stage = DecalContext {
             fleet: &fleet,
             floor: &Floor::new(&fleet),
             colours: &[vocabulary::colours::LEAD],

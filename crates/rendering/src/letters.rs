@@ -36,7 +36,7 @@ pub(crate) struct Measure {
 
 type Key = (String, u32, bool, Option<(u32, usize, bool)>);
 
-struct Shape {
+struct ShapedText {
     buffer: Buffer,
     measure: Measure,
     used: u64,
@@ -45,7 +45,7 @@ struct Shape {
 /// Texts that are shaped.
 #[derive(Default)]
 pub(crate) struct Shaped {
-    texts: HashMap<Key, Shape>,
+    texts: HashMap<Key, ShapedText>,
 }
 
 impl Shaped {
@@ -88,7 +88,7 @@ impl Letters {
             }
             let width = buffer.layout_runs().map(|run| run.line_w).fold(0.0, f32::max);
             let measure = Measure { width, rows: buffer.layout_runs().count().max(1) };
-            Shape { buffer, measure, used }
+            ShapedText { buffer, measure, used }
         });
         entry.used = used;
         entry.measure

@@ -17,7 +17,7 @@
 //! # }
 //! ```
 //!
-//! A [`Trail`] remembers the past, a [`Renderer`] draws a moment on top of it from the views of a [`Layout`].
+//! A [`Trail`] remembers the past, a [`Renderer`] draws a moment on top of it from the views of a [`ViewLayout`].
 //! The world is f64; positions are narrowed to f32 relative to an origin near the robots. Pictures are sRGB.
 //! The same records give the same picture, byte for byte, on the same adapter.
 
@@ -70,9 +70,9 @@ pub use letters::FONT;
 pub use palette::robot_colours;
 pub use pick::Picked;
 pub use renderer::Renderer;
-pub use show::{Card, Curve, Line, Plot, Room, Show};
+pub use show::{Card, CurvePanel, Overlays, PanelCurve, ReservedSpace, Subtitle};
 pub use sightline::Sightline;
-pub use sketch::{Area, Arrow, Ghost, Ring, Sketch, Spot, Stroke};
+pub use sketch::{AnnotationArrow, AnnotationStroke, Annotations, Ghost, Ring, ShadedArea, StrokePoint};
 pub use style::Style;
 pub use trail::{Trail, set_points};
-pub use view::{FreeCamera, Layout, Tile, View};
+pub use view::{FreeCamera, Tile, ViewLayout, Viewpoint};

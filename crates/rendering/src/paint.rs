@@ -4,10 +4,10 @@ use crate::camera::Camera;
 use crate::drape::{Eye, Onto, lay};
 use crate::floor::Floor;
 use crate::palette::{self, Rgb};
-use crate::passes::decal::{Corner, Form, Layer};
+use crate::passes::decal::{DecalForm, DecalLayer, DecalVertex};
 use crate::thin::thinned;
 use crate::trail::{RIBBON, Trail, set_points};
-use crate::{Style, View};
+use crate::{Style, Viewpoint};
 use glam::{DVec2, DVec3};
 use vocabulary::{Body, FleetInfo, Pose, StepRecord};
 
@@ -27,7 +27,7 @@ const RUBBER: Rgb = [0.05, 0.05, 0.055];
 
 /// What the painters look at.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stage<'a> {
+pub(crate) struct DecalContext<'a> {
     pub(crate) fleet: &'a FleetInfo,
     pub(crate) floor: &'a Floor,
     pub(crate) colours: &'a [Rgb],
@@ -45,7 +45,7 @@ pub(crate) struct Stage<'a> {
     pub(crate) detail: f32,
 }
 
-impl Stage<'_> {
+impl DecalContext<'_> {
     /// The point of the floor at (x, y), m.
     pub(crate) fn on_floor(&self, x: f64, y: f64) -> DVec3 {
         DVec3::new(x, y, self.floor.height(DVec2::new(x, y)))
@@ -53,8 +53,8 @@ impl Stage<'_> {
 }
 
 /// Collects corners; points are world coordinates on the ground.
-pub(crate) struct Painter<'a> {
-    pub(crate) corners: Vec<Corner>,
+pub(crate) struct DecalBuilder<'a> {
+    pub(crate) corners: Vec<DecalVertex>,
     pub(crate) camera: &'a Camera,
     height: f64,
     /// Pixels of a line that is one wide at scale 1.
@@ -67,17 +67,17 @@ pub(crate) struct Painter<'a> {
 
 /// All decals of one view on a tile `height` pixels high, layer by layer, in the order in which they are drawn.
 pub(crate) fn paint(
-    stage: &Stage<'_>,
-    view: &View,
+    stage: &DecalContext<'_>,
+    view: &Viewpoint,
     camera: &Camera,
     height: f64,
-) -> [(Layer, Vec<Corner>); 5] {
-    let laid = |onto: Onto, fill: &dyn Fn(&mut Painter<'_>)| {
-        let mut painter = Painter::new(stage, camera, height);
+) -> [(DecalLayer, Vec<DecalVertex>); 5] {
+    let laid = |onto: Onto, fill: &dyn Fn(&mut DecalBuilder<'_>)| {
+        let mut painter = DecalBuilder::new(stage, camera, height);
         fill(&mut painter);
         painter.laid(onto)
     };
-    let painted = |fill: &dyn Fn(&mut Painter<'_>)| laid(Onto::Floor, fill);
+    let painted = |fill: &dyn Fn(&mut DecalBuilder<'_>)| laid(Onto::Floor, fill);
     let style = stage.style;
     // Decks are shaded by themselves.
     let shadows = laid(Onto::Ground, &|painter| {
@@ -96,36 +96,36 @@ pub(crate) fn paint(
         }
     });
     if style.contacts {
-        let mut flashes = Painter::new(stage, camera, height);
+        let mut flashes = DecalBuilder::new(stage, camera, height);
         flashes.flashes(stage);
         over.append(&mut flashes.corners);
     }
     let lines = painted(&|painter| painter.lines(stage, view));
     let sketch = painted(&|painter| painter.sketch(&style.sketch, stage.size));
     [
-        (Layer::Paint, lines),
-        (Layer::Sketch, sketch),
-        (Layer::Shadow, shadows),
-        (Layer::Paint, feet),
-        (Layer::Over, over),
+        (DecalLayer::Paint, lines),
+        (DecalLayer::Annotations, sketch),
+        (DecalLayer::Shadow, shadows),
+        (DecalLayer::Paint, feet),
+        (DecalLayer::Over, over),
     ]
 }
 
 /// Shadows and the dark at the foot of things alone, for any number of cameras on robots.
-pub(crate) fn shade(stage: &Stage<'_>, camera: &Camera) -> [(Layer, Vec<Corner>); 2] {
-    let laid = |onto: Onto, fill: &dyn Fn(&mut Painter<'_>)| {
-        let mut painter = Painter::new(stage, camera, 480.0);
+pub(crate) fn shade(stage: &DecalContext<'_>, camera: &Camera) -> [(DecalLayer, Vec<DecalVertex>); 2] {
+    let laid = |onto: Onto, fill: &dyn Fn(&mut DecalBuilder<'_>)| {
+        let mut painter = DecalBuilder::new(stage, camera, 480.0);
         fill(&mut painter);
         lay(painter.corners, stage.floor, onto, stage.origin, None)
     };
     let shadows = laid(Onto::Ground, &|painter| painter.shadows(stage));
     let mut feet = laid(Onto::Ground, &|painter| painter.deck_feet(stage));
     feet.append(&mut laid(Onto::Floor, &|painter| painter.feet(stage)));
-    [(Layer::Shadow, shadows), (Layer::Paint, feet)]
+    [(DecalLayer::Shadow, shadows), (DecalLayer::Paint, feet)]
 }
 
-impl<'a> Painter<'a> {
-    fn new(stage: &Stage<'a>, camera: &'a Camera, height: f64) -> Self {
+impl<'a> DecalBuilder<'a> {
+    fn new(stage: &DecalContext<'a>, camera: &'a Camera, height: f64) -> Self {
         Self {
             corners: Vec::new(),
             camera,
@@ -139,9 +139,9 @@ impl<'a> Painter<'a> {
     }
 }
 
-impl Painter<'_> {
+impl DecalBuilder<'_> {
     /// Paint, over which shadows fall.
-    fn lines(&mut self, stage: &Stage<'_>, view: &View) {
+    fn lines(&mut self, stage: &DecalContext<'_>, view: &Viewpoint) {
         let style = stage.style;
         if style.contacts {
             self.scuffs(stage);
@@ -157,13 +157,13 @@ impl Painter<'_> {
             self.set_points(stage);
         }
         // From close behind a robot the lines would cover the road.
-        if style.edges && !matches!(view, View::SnakeEye) {
+        if style.edges && !matches!(view, Viewpoint::SnakeEye) {
             self.edges(stage);
         }
     }
 
     /// The corners as they lie on the floor.
-    fn laid(self, onto: Onto) -> Vec<Corner> {
+    fn laid(self, onto: Onto) -> Vec<DecalVertex> {
         let slack = if self.quick { 3.0 } else { 1.0 };
         let eye = self.camera.perspective.then_some(Eye { at: self.camera.eye, slack });
         lay(self.corners, self.floor, onto, self.origin, eye)
@@ -184,10 +184,22 @@ impl Painter<'_> {
         self.pixel_at(self.on(place))
     }
 
-    pub(crate) fn corner(&self, at: DVec2, form: Form, shape: [f32; 2], colour: Rgb, alpha: f32) -> Corner {
+    pub(crate) fn corner(
+        &self,
+        at: DVec2,
+        form: DecalForm,
+        shape: [f32; 2],
+        colour: Rgb,
+        alpha: f32,
+    ) -> DecalVertex {
         let local = at.extend(0.0) - self.origin;
         let [r, g, b] = colour;
-        Corner { position: local.as_vec3().to_array(), kind: form.code(), shape, colour: [r, g, b, alpha] }
+        DecalVertex {
+            position: local.as_vec3().to_array(),
+            kind: form.code(),
+            shape,
+            colour: [r, g, b, alpha],
+        }
     }
 
     /// A parallelogram around `middle`.
@@ -196,7 +208,7 @@ impl Painter<'_> {
         middle: DVec2,
         along: DVec2,
         across: DVec2,
-        form: Form,
+        form: DecalForm,
         colour: Rgb,
         alpha: f32,
     ) {
@@ -217,7 +229,7 @@ impl Painter<'_> {
         let across = along.perp().normalize();
         // Lines that run across the picture are foreshortened: at least two pixels, or they would crumble.
         let half = (0.5 * width).max(1.5 * self.stage_scale / self.pixels_per_metre(middle, across));
-        self.patch(middle, along, across * half, Form::Solid, colour, alpha);
+        self.patch(middle, along, across * half, DecalForm::Solid, colour, alpha);
     }
 
     /// How long a metre along `direction` appears at `place`, pixels.
@@ -257,7 +269,7 @@ impl Painter<'_> {
             if let Some((.., other)) = before.filter(|(_, sides, _)| sides & beyond == 0) {
                 let edge = |k: usize, half: f64, u: f32| {
                     let place = points[k].0 + side(k) * (shift + half * f64::from(u));
-                    self.corner(place, Form::Solid, [u, 0.0], colour, points[k].1)
+                    self.corner(place, DecalForm::Solid, [u, 0.0], colour, points[k].1)
                 };
                 let quad = [
                     edge(k - 1, other, -1.0),
@@ -272,7 +284,7 @@ impl Painter<'_> {
         self.corners.extend(added);
     }
 
-    fn marks(&mut self, stage: &Stage<'_>) {
+    fn marks(&mut self, stage: &DecalContext<'_>) {
         let entries = &stage.trail.marks.entries;
         for (robot, member) in stage.fleet.robots.iter().enumerate() {
             let points: Vec<_> = entries
@@ -296,7 +308,7 @@ impl Painter<'_> {
     }
 
     /// Dots under robots that are only a few pixels long, so that a crowd keeps its colours.
-    fn dots(&mut self, stage: &Stage<'_>) {
+    fn dots(&mut self, stage: &DecalContext<'_>) {
         let robots = stage.record.snapshot.robots.iter().zip(&stage.fleet.robots).zip(stage.colours);
         for ((robot, member), colour) in robots {
             let middle = flat(&robot.motion.pose);
@@ -305,12 +317,12 @@ impl Painter<'_> {
             if alpha > 0.0 {
                 let colour = if member.leads { palette::GOLD } else { *colour };
                 let radius = 6.5 * pixel;
-                self.patch(middle, DVec2::X * radius, DVec2::Y * radius, Form::Ring(0.0), colour, alpha);
+                self.patch(middle, DVec2::X * radius, DVec2::Y * radius, DecalForm::Ring(0.0), colour, alpha);
             }
         }
     }
 
-    fn ribbons(&mut self, stage: &Stage<'_>) {
+    fn ribbons(&mut self, stage: &DecalContext<'_>) {
         let now = stage.record.snapshot.time;
         for (robot, state) in stage.record.snapshot.robots.iter().enumerate() {
             let colour = stage.colours[robot];
@@ -325,19 +337,19 @@ impl Painter<'_> {
         }
     }
 
-    fn set_points(&mut self, stage: &Stage<'_>) {
+    fn set_points(&mut self, stage: &DecalContext<'_>) {
         let goals = set_points(stage.fleet, stage.record);
         for (edge, goal) in stage.fleet.edges.iter().zip(goals) {
             let Some(goal) = goal.map(DVec2::from_array) else { continue };
             let colour = stage.colours[edge.follower];
             let reach = RING * stage.size;
             let alpha = 0.16 * stage.detail;
-            self.patch(goal, DVec2::X * reach, DVec2::Y * reach, Form::Ring(0.0), colour, alpha);
+            self.patch(goal, DVec2::X * reach, DVec2::Y * reach, DecalForm::Ring(0.0), colour, alpha);
             self.ring(goal, reach, colour, 0.35 + 0.6 * stage.detail);
         }
     }
 
-    fn errors(&mut self, stage: &Stage<'_>) {
+    fn errors(&mut self, stage: &DecalContext<'_>) {
         let goals = set_points(stage.fleet, stage.record);
         for (edge, goal) in stage.fleet.edges.iter().zip(goals) {
             let robot = stage.record.snapshot.robots.get(edge.follower);
@@ -361,7 +373,7 @@ impl Painter<'_> {
     fn ring(&mut self, middle: DVec2, reach: f64, colour: Rgb, alpha: f32) {
         let thin = (3.6 * self.pixel(middle)).max(0.096 * reach);
         let hole = (1.0 - thin / reach).clamp(0.0, 1.0) as f32;
-        self.patch(middle, DVec2::X * reach, DVec2::Y * reach, Form::Ring(hole), colour, alpha);
+        self.patch(middle, DVec2::X * reach, DVec2::Y * reach, DecalForm::Ring(hole), colour, alpha);
     }
 
     /// An arrow, larger by `rim` m on all sides.
@@ -375,14 +387,14 @@ impl Painter<'_> {
         let pixel = self.stage_scale * self.pixel(to);
         let half = (0.018 * size).max(1.7 * pixel) + rim;
         let (start, end) = (from - ahead * rim, foot - ahead * rim);
-        self.patch(0.5 * (start + end), 0.5 * (end - start), across * half, Form::Solid, colour, alpha);
+        self.patch(0.5 * (start + end), 0.5 * (end - start), across * half, DecalForm::Solid, colour, alpha);
         let wide = 0.5 * head + 1.6 * rim;
         let tip = [to + ahead * (2.2 * rim), end + across * wide, end - across * wide];
-        let corners = tip.map(|place| self.corner(place, Form::Solid, [0.0; 2], colour, alpha));
+        let corners = tip.map(|place| self.corner(place, DecalForm::Solid, [0.0; 2], colour, alpha));
         self.corners.extend(corners);
     }
 
-    fn edges(&mut self, stage: &Stage<'_>) {
+    fn edges(&mut self, stage: &DecalContext<'_>) {
         if stage.detail <= 0.0 {
             return;
         }

@@ -2,7 +2,7 @@
 
 use crate::model::Build;
 use crate::paint::RING;
-use crate::sightline::{Ray, Sightline};
+use crate::sightline::{Sightline, ViewRay};
 use crate::trail::{set_points, sizes};
 use glam::{DVec2, DVec3};
 use vocabulary::{FleetInfo, RobotInfo, RobotState, StepRecord};
@@ -49,7 +49,7 @@ pub(crate) fn pick(
 /// not be met.
 fn depth(
     sight: &Sightline,
-    ray: &Ray,
+    ray: &ViewRay,
     robot: &RobotState,
     member: &RobotInfo,
     pixel: DVec2,
@@ -57,7 +57,7 @@ fn depth(
     let body = &member.body;
     let frame = robot.world_from_body();
     let back = frame.inverse();
-    let local = Ray {
+    let local = ViewRay {
         from: DVec3::from_array(back.apply(ray.from.to_array())),
         along: DVec3::from_array(back.turn(ray.along.to_array())),
     };
@@ -74,7 +74,7 @@ fn depth(
 }
 
 /// How far along a ray a box is.
-fn entered(ray: &Ray, low: DVec3, high: DVec3) -> Option<f64> {
+fn entered(ray: &ViewRay, low: DVec3, high: DVec3) -> Option<f64> {
     let (a, b) = ((low - ray.from) / ray.along, (high - ray.from) / ray.along);
     let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
     (enter <= leave && leave > 0.0).then_some(enter.max(0.0))
@@ -128,7 +128,7 @@ fn beside(point: DVec2, from: DVec2, to: DVec2) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::View;
+    use crate::Viewpoint;
     use crate::camera::Camera;
     use crate::floor::Floor;
     use crate::view::Tile;
@@ -151,7 +151,7 @@ mod tests {
     fn sight(eye: [f64; 3], to: [f64; 3]) -> Sightline {
         let camera = Camera::looking(DVec3::from_array(eye), DVec3::from_array(to), 0.7, 2.0);
         let tile = Tile { x: 30, y: 10, width: 800, height: 400 };
-        Sightline::new(View::Snake, tile, camera, Floor::default())
+        Sightline::new(Viewpoint::Snake, tile, camera, Floor::default())
     }
 
     #[test]

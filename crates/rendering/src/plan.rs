@@ -2,12 +2,12 @@
 
 use crate::Style;
 use crate::inset::panel;
-use crate::labels::{Ink, MARGIN, Words};
+use crate::labels::{Ink, LabelPlacer, MARGIN};
 use crate::letters::{Block, Letters, line_height};
 use crate::palette;
-use crate::room::Room;
+use crate::room::FreeSpace;
 use crate::show::line_room;
-use crate::view::{Layout, Tile, View, corner};
+use crate::view::{Tile, ViewLayout, Viewpoint, corner};
 use vocabulary::FleetInfo;
 
 /// A rectangle of the picture: left, top, width, height; pixels.
@@ -34,8 +34,8 @@ struct Heading {
 
 /// The views of a picture, and everything in it that has its place before a camera is chosen.
 #[derive(Debug, Clone)]
-pub(crate) struct Plan {
-    pub(crate) views: Vec<View>,
+pub(crate) struct PicturePlan {
+    pub(crate) views: Vec<Viewpoint>,
     pub(crate) tiles: Vec<Tile>,
     /// How many of the views, the last, lie over others.
     pub(crate) upper: usize,
@@ -50,11 +50,11 @@ pub(crate) struct Plan {
     scale: f32,
 }
 
-impl Plan {
+impl PicturePlan {
     pub(crate) fn new(
         letters: &mut Letters,
         fleet: &FleetInfo,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
         size: (u32, u32),
     ) -> Self {
@@ -65,11 +65,11 @@ impl Plan {
             let aspect =
                 f64::from(member.camera_model.width.max(1)) / f64::from(member.camera_model.height.max(1));
             tiles.push(corner(first, aspect, 24.0 * style.scale));
-            views.push(View::Camera(robot));
+            views.push(Viewpoint::Camera(robot));
             upper = 1;
         }
-        let mut words = Words::new(letters, style.scale);
-        let carried = |view: &View| matches!(view, View::Camera(_));
+        let mut words = LabelPlacer::new(letters, style.scale);
+        let carried = |view: &Viewpoint| matches!(view, Viewpoint::Camera(_));
         let titled = !views.iter().all(carried);
         let small = tiles.get(tiles.len() - upper).map(area);
         let mut plan = Self {
@@ -106,21 +106,21 @@ impl Plan {
     }
 
     /// Pixels that a title may take across.
-    fn free_width(&self, words: &Words<'_>) -> f32 {
+    fn free_width(&self, words: &LabelPlacer<'_>) -> f32 {
         let margin = words.scaled(MARGIN);
         let whole = self.left.0 as f32 - 2.0 * margin;
         let small = self.tiles.get(self.tiles.len() - self.upper).map(|tile| tile.x as f32 - 2.0 * margin);
         // The scale bar of a view from above stands in the corner on the right.
         let right = |tile: &Tile| tile.y == 0 && tile.x + tile.width == self.left.0;
         let bars =
-            self.tiles.iter().zip(&self.views).filter(|(tile, view)| **view == View::Top && right(tile));
+            self.tiles.iter().zip(&self.views).filter(|(tile, view)| **view == Viewpoint::Top && right(tile));
         let bar = bars.map(|(tile, _)| whole - 0.24 * tile.width as f32 - margin).reduce(f32::min);
         let free = whole.min(small.unwrap_or(whole)).min(bar.unwrap_or(whole));
         free.max(0.3 * whole).max(1.0)
     }
 
     /// What is left for the robots in a tile.
-    pub(crate) fn room(&self, index: usize) -> Room {
+    pub(crate) fn room(&self, index: usize) -> FreeSpace {
         let tile = self.tiles[index];
         // Only what lies over the tile; a small picture in a corner has none of that.
         let lower = index + self.upper < self.tiles.len();
@@ -131,11 +131,15 @@ impl Plan {
             let [left, top] = [x - tile.x as f32 - apart, y - tile.y as f32 - apart];
             [left, top, width + 2.0 * apart, height + 2.0 * apart].map(f64::from)
         });
-        Room::new([f64::from(tile.width), f64::from(tile.height)], grown.collect(), f64::from(self.scale))
+        FreeSpace::new(
+            [f64::from(tile.width), f64::from(tile.height)],
+            grown.collect(),
+            f64::from(self.scale),
+        )
     }
 
     /// Title, law and time, at the corners of the whole picture; `sky` is how far down the sky reaches, pixels.
-    pub(crate) fn write(&self, words: &mut Words<'_>, time: f64, sky: f32) {
+    pub(crate) fn write(&self, words: &mut LabelPlacer<'_>, time: f64, sky: f32) {
         for Heading { text, size, bold, block, area } in &self.headings {
             words.reserve(*area);
             let first = area[1] + 0.5 * line_height(words.scaled(*size));
@@ -170,7 +174,7 @@ fn time_text(time: f64) -> String {
 }
 
 /// Title and caption, one under the other, within `free` pixels.
-fn headings(words: &mut Words<'_>, fleet: &FleetInfo, free: f32) -> Vec<Heading> {
+fn headings(words: &mut LabelPlacer<'_>, fleet: &FleetInfo, free: f32) -> Vec<Heading> {
     let margin = words.scaled(MARGIN);
     let mut top = margin - words.scaled(2.0);
     let mut all = Vec::new();
@@ -191,7 +195,7 @@ fn headings(words: &mut Words<'_>, fleet: &FleetInfo, free: f32) -> Vec<Heading>
 }
 
 /// Where the clock is: wide enough for any time of the run, so that it takes the same room all the time.
-fn clock(words: &mut Words<'_>, fleet: &FleetInfo, (_, height): (u32, u32)) -> Area {
+fn clock(words: &mut LabelPlacer<'_>, fleet: &FleetInfo, (_, height): (u32, u32)) -> Area {
     let margin = words.scaled(MARGIN);
     let (width, high) = (words.width(&time_text(fleet.duration), CLOCK, true), words.scaled(28.0));
     [margin, height as f32 - margin - words.scaled(8.0) - 0.5 * high, width, high]

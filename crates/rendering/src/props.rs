@@ -1,9 +1,9 @@
 //! Where the props of a moment stand, and what they are made of.
 
 use crate::camera::Camera;
-use crate::paint::Stage;
+use crate::paint::DecalContext;
 use crate::palette::{Rgb, hex, linear};
-use crate::passes::prop::{Copies, Look};
+use crate::passes::prop::{Copies, PropAppearance};
 use crate::passes::robot::Instance;
 use glam::{DQuat, DVec3, Mat4};
 use vocabulary::{Mobility, Placement, Prop, Solid};
@@ -18,7 +18,9 @@ const BARREL: Rgb = hex(0x00a8_7a42);
 const GUIDED: Rgb = hex(0x00a5_434c);
 
 /// Every prop of the cast with its index and its place: that of the moment, else the one where it starts.
-pub(crate) fn placed<'a>(stage: &Stage<'a>) -> impl Iterator<Item = (usize, &'a Prop, Placement)> + use<'a> {
+pub(crate) fn placed<'a>(
+    stage: &DecalContext<'a>,
+) -> impl Iterator<Item = (usize, &'a Prop, Placement)> + use<'a> {
     let now = &stage.record.snapshot.props;
     let all = stage.fleet.props.iter().enumerate();
     all.map(|(k, prop)| (k, prop, now.get(k).copied().unwrap_or(prop.placement))).filter(|(.., p)| sound(p))
@@ -45,7 +47,7 @@ pub(crate) fn corners(prop: &Prop, placement: &Placement) -> [DVec3; 8] {
 }
 
 /// All copies of the solids in a picture.
-pub(crate) fn props(stage: &Stage<'_>) -> Copies {
+pub(crate) fn props(stage: &DecalContext<'_>) -> Copies {
     let mut copies = Copies::default();
     for (_, prop, placement) in placed(stage).filter(|(k, ..)| !stage.floor.is_deck(*k)) {
         let ground = stage.floor.height(DVec3::from_array(placement.position).truncate());
@@ -75,18 +77,18 @@ impl Copies {
     }
 }
 
-fn look(prop: &Prop) -> Look {
+fn look(prop: &Prop) -> PropAppearance {
     match (prop.solid, prop.mobility) {
-        (Solid::Block { .. }, Mobility::Fixed) => Look::Concrete,
-        (Solid::Block { .. }, Mobility::Loose) => Look::Timber,
-        (Solid::Block { .. }, Mobility::Guided) => Look::Machine,
-        (Solid::Cylinder { .. }, _) => Look::Pillar,
-        (Solid::Cone { .. }, _) => Look::Cone,
-        (Solid::Wedge { .. }, _) => Look::Ramp,
+        (Solid::Block { .. }, Mobility::Fixed) => PropAppearance::Concrete,
+        (Solid::Block { .. }, Mobility::Loose) => PropAppearance::Timber,
+        (Solid::Block { .. }, Mobility::Guided) => PropAppearance::Machine,
+        (Solid::Cylinder { .. }, _) => PropAppearance::Pillar,
+        (Solid::Cone { .. }, _) => PropAppearance::Cone,
+        (Solid::Wedge { .. }, _) => PropAppearance::Ramp,
     }
 }
 
-fn instance(stage: &Stage<'_>, prop: &Prop, placement: &Placement, ground: f64) -> Instance {
+fn instance(stage: &DecalContext<'_>, prop: &Prop, placement: &Placement, ground: f64) -> Instance {
     let scale = match prop.solid {
         Solid::Block { size } | Solid::Wedge { size } => DVec3::from_array(size),
         Solid::Cylinder { radius, height } | Solid::Cone { radius, height } => {

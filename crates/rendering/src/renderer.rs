@@ -3,19 +3,19 @@
 use crate::camera::Camera;
 use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun, veiled_decks, words};
 use crate::crowd::{RobotModels, crowd, part};
-use crate::encode::{Passes, Prepared, Surface};
+use crate::encode::{EncodeTarget, Passes, Prepared};
 use crate::floor::Floor;
 use crate::labels::{Window, detail};
 use crate::letters::Letters;
-use crate::paint::{Stage, paint};
+use crate::paint::{DecalContext, paint};
 use crate::palette::{Rgb, robot_colours};
 use crate::passes::Canvas;
-use crate::passes::decal::{Corner, Layer};
+use crate::passes::decal::{DecalLayer, DecalVertex};
 use crate::pick::pick;
-use crate::plan::Plan;
+use crate::plan::PicturePlan;
 use crate::props::props;
 use crate::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
-use crate::{Error, Gpu, Layout, Picked, Sightline, Style, Trail, View};
+use crate::{Error, Gpu, Picked, Sightline, Style, Trail, ViewLayout, Viewpoint};
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 use vocabulary::{FleetInfo, Picture, StepRecord};
@@ -123,7 +123,7 @@ impl Renderer {
         &mut self,
         trail: &Trail,
         record: &StepRecord,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
     ) -> Result<Picture, Error> {
         let (slot, submission) = self.submit(trail, record, layout, style)?;
@@ -139,7 +139,7 @@ impl Renderer {
         &mut self,
         trail: &Trail,
         record: &StepRecord,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
     ) -> Result<Option<Picture>, Error> {
         let next = self.submit(trail, record, layout, style)?;
@@ -165,7 +165,7 @@ impl Renderer {
         target: &wgpu::TextureView,
         trail: &Trail,
         record: &StepRecord,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
     ) -> Result<wgpu::SubmissionIndex, Error> {
         self.encoded((trail, record), layout, style, target, None)
@@ -175,7 +175,7 @@ impl Renderer {
         &mut self,
         trail: &Trail,
         record: &StepRecord,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
     ) -> Result<(usize, wgpu::SubmissionIndex), Error> {
         let slot = self.waiting.as_ref().map_or(0, |(busy, _)| 1 - busy);
@@ -193,7 +193,7 @@ impl Renderer {
     fn encoded(
         &mut self,
         (trail, record): (&Trail, &StepRecord),
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
         target: &wgpu::TextureView,
         read: Option<usize>,
@@ -219,7 +219,7 @@ impl Renderer {
         &mut self,
         trail: &Trail,
         record: &StepRecord,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
     ) -> Result<Prepared, Error> {
         self.check(record)?;
@@ -228,7 +228,7 @@ impl Renderer {
         let cameras = cameras(&plan, trail, record, &self.fleet, &self.floor);
         // Cameras on robots see nothing that is drawn to explain.
         let bare = Style { shadows: style.shadows, ..Style::bare() };
-        let stage = Stage {
+        let stage = DecalContext {
             fleet: &self.fleet,
             floor: &self.floor,
             colours: &self.colours,
@@ -244,22 +244,22 @@ impl Renderer {
         let (crowd, props) = (crowd(&stage, &self.robot_models), props(&stage));
         let sun = sun_over(&stage);
         let shadow = &self.passes.world.shadow;
-        let stage_of = |view: &View| match view {
-            View::Camera(_) => Stage { style: &bare, ..stage },
+        let stage_of = |view: &Viewpoint| match view {
+            Viewpoint::Camera(_) => DecalContext { style: &bare, ..stage },
             _ => stage,
         };
         let seen = || views.iter().zip(&cameras);
         let frames: Vec<_> =
             seen().map(|(view, camera)| frame(camera, &stage_of(view), view, &sun, shadow)).collect();
-        let own = |(view, camera): (&View, &Camera)| match view {
-            View::Camera(robot) => Some(part(&crowd, &stage, &self.robot_models, camera, *robot)),
+        let own = |(view, camera): (&Viewpoint, &Camera)| match view {
+            Viewpoint::Camera(robot) => Some(part(&crowd, &stage, &self.robot_models, camera, *robot)),
             _ => None,
         };
         let own = seen().map(own).collect();
         let mut corners = Vec::new();
         let mut decals = Vec::new();
         for ((view, camera), tile) in seen().zip(tiles) {
-            let add = |(layer, more): (Layer, Vec<Corner>)| {
+            let add = |(layer, more): (DecalLayer, Vec<DecalVertex>)| {
                 let first = corners.len() as u32;
                 corners.extend(more);
                 (layer, first..corners.len() as u32)
@@ -271,7 +271,8 @@ impl Renderer {
         let letters = self.letters.get_mut().unwrap_or_else(PoisonError::into_inner);
         let (words, _) = words(letters, &stage, &plan, &windows, self.size);
         let (lines, shapes) = (words.lines, words.shapes);
-        let ghosts = views.iter().map(|view| !matches!(view, View::SnakeEye | View::Camera(_))).collect();
+        let ghosts =
+            views.iter().map(|view| !matches!(view, Viewpoint::SnakeEye | Viewpoint::Camera(_))).collect();
         let veiled = seen().map(|(view, camera)| veiled_decks(camera, &stage, view)).collect();
         let mut prepared = Prepared {
             crowd,
@@ -299,7 +300,7 @@ impl Renderer {
         &self,
         trail: &Trail,
         record: &StepRecord,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
     ) -> Result<Vec<Sightline>, Error> {
         self.check(record)?;
@@ -325,14 +326,14 @@ impl Renderer {
         self.letters.lock().unwrap_or_else(PoisonError::into_inner).lacks(texts.into_iter())
     }
 
-    fn plan(&self, layout: &Layout, style: &Style) -> Plan {
+    fn plan(&self, layout: &ViewLayout, style: &Style) -> PicturePlan {
         let mut letters = self.letters.lock().unwrap_or_else(PoisonError::into_inner);
-        Plan::new(&mut letters, &self.fleet, layout, style, self.size)
+        PicturePlan::new(&mut letters, &self.fleet, layout, style, self.size)
     }
 
     /// A target with all that drawing into it takes.
-    fn surface<'a>(&'a self, target: &'a wgpu::TextureView) -> Surface<'a> {
-        Surface { target, attachments: &self.attachments, size: self.size }
+    fn surface<'a>(&'a self, target: &'a wgpu::TextureView) -> EncodeTarget<'a> {
+        EncodeTarget { target, attachments: &self.attachments, size: self.size }
     }
 
     fn check(&self, record: &StepRecord) -> Result<(), Error> {
@@ -349,13 +350,13 @@ impl Renderer {
 
 /// The cameras of a picture's views.
 pub(crate) fn cameras(
-    plan: &Plan,
+    plan: &PicturePlan,
     trail: &Trail,
     record: &StepRecord,
     fleet: &FleetInfo,
     floor: &Floor,
 ) -> Vec<Camera> {
-    let camera = |(k, view): (usize, &View)| {
+    let camera = |(k, view): (usize, &Viewpoint)| {
         Camera::of(view, &trail.steady, &record.snapshot, (fleet, floor), &plan.room(k))
     };
     plan.views.iter().enumerate().map(camera).collect()

@@ -12,7 +12,7 @@ pub(crate) struct Bound {
 
 /// What words leave of a tile.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Room {
+pub(crate) struct FreeSpace {
     /// Pixels across and down.
     size: [f64; 2],
     /// Rectangles that are taken: left, top, width, height; pixels from the tile's upper left corner.
@@ -24,7 +24,7 @@ pub(crate) struct Room {
 /// Whatever is taken, this share of the height is left in the middle.
 const MIDDLE: f64 = 0.25;
 
-impl Room {
+impl FreeSpace {
     pub(crate) fn new(size: [f64; 2], taken: Vec<[f64; 4]>, scale: f64) -> Self {
         Self { size, taken, scale }
     }
@@ -40,7 +40,7 @@ impl Room {
     }
 
     /// The lowest and the highest normalised height (−1 bottom, 1 top) between which words leave all of the width, but for
-    /// those of [`Room::corners`].
+    /// those of [`FreeSpace::corners`].
     pub(crate) fn rows(&self) -> [f64; 2] {
         let mut rows = [-1.0_f64, 1.0];
         for taken in self.taken.iter().filter(|taken| !self.bulky(**taken)) {
@@ -223,11 +223,11 @@ mod tests {
         let panel = [930.0, 520.0, 340.0, 190.0];
         let title = [20.0, 20.0, 500.0, 50.0];
         for size in [[1280.0, 720.0], [720.0, 1280.0], [640.0, 720.0]] {
-            let (plain, free) = Room::new(size, vec![], 1.0).disc();
+            let (plain, free) = FreeSpace::new(size, vec![], 1.0).disc();
             assert!(plain[0].abs() < 1e-9 && plain[1].abs() < 1e-9);
             assert!((free * 0.5 * size[1] - (0.5 * size[0].min(size[1]) - 10.0)).abs() < 1e-6);
             let taken = vec![panel.map(|v| v * size[0] / 1280.0), title.map(|v| v * size[0] / 1280.0)];
-            let (middle, radius) = Room::new(size, taken.clone(), 1.0).disc();
+            let (middle, radius) = FreeSpace::new(size, taken.clone(), 1.0).disc();
             assert!(radius <= free && radius > 0.6 * free, "{radius} of {free}");
             let [x, y] = [0.5 * size[0] * (1.0 + middle[0]), 0.5 * size[1] * (1.0 - middle[1])];
             for [left, top, width, height] in taken {
@@ -239,13 +239,16 @@ mod tests {
 
     #[test]
     fn words_at_the_top_and_at_the_bottom_leave_rows() {
-        let room =
-            Room::new([1280.0, 720.0], vec![[10.0, 10.0, 600.0, 62.0], [900.0, 504.0, 370.0, 206.0]], 1.0);
+        let room = FreeSpace::new(
+            [1280.0, 720.0],
+            vec![[10.0, 10.0, 600.0, 62.0], [900.0, 504.0, 370.0, 206.0]],
+            1.0,
+        );
         let [bottom, top] = room.rows();
         assert!((bottom + 0.4).abs() < 1e-9 && (top - 0.8).abs() < 1e-9);
         assert_eq!(room.corners().count(), 0);
         // A large picture in a corner is passed aslant.
-        let room = Room::new([1280.0, 720.0], vec![[872.0, 24.0, 384.0, 288.0]], 1.0);
+        let room = FreeSpace::new([1280.0, 720.0], vec![[872.0, 24.0, 384.0, 288.0]], 1.0);
         assert_eq!(room.rows(), [-1.0, 1.0]);
         let [corner] = room.corners().collect::<Vec<_>>()[..] else { panic!("no corner") };
         assert!(corner.across > 0.0 && corner.up > 0.0 && corner.most > 0.0);

@@ -1,9 +1,9 @@
 //! Shadows on the ground, and the dark where things stand on it.
 
 use crate::model::Build;
-use crate::paint::{Painter, Stage};
+use crate::paint::{DecalBuilder, DecalContext};
 use crate::palette::Rgb;
-use crate::passes::decal::Form;
+use crate::passes::decal::DecalForm;
 use crate::props::{corners, placed, turn};
 use glam::{DMat3, DVec2, DVec3};
 use std::collections::BTreeMap;
@@ -17,9 +17,9 @@ const FOOT: f64 = 0.16;
 /// A parallelogram on the ground: its middle and half its sides.
 type Patch = [DVec2; 3];
 
-impl Painter<'_> {
+impl DecalBuilder<'_> {
     /// Patches that surely hold all shadows: few pixels look at the shadow map.
-    pub(crate) fn shadows(&mut self, stage: &Stage<'_>) {
+    pub(crate) fn shadows(&mut self, stage: &DecalContext<'_>) {
         // What the sun gives, of all the light on flat ground: shadows under a low sun are faint.
         let share = 2.063 * stage.sun.z / (2.063 * stage.sun.z + 0.41);
         let alpha = (0.80 * share) as f32;
@@ -27,7 +27,7 @@ impl Painter<'_> {
         let mut patches: Vec<Patch> = robots.map(|(r, m)| robot_shadow(stage, r, m)).collect();
         if stage.fleet.props.is_empty() {
             for [middle, along, across] in patches {
-                self.patch(middle, along, across, Form::Shadow, SHADE, alpha);
+                self.patch(middle, along, across, DecalForm::Shadow, SHADE, alpha);
             }
             return;
         }
@@ -42,13 +42,13 @@ impl Painter<'_> {
                 let low = DVec2::new(first as f64, row as f64) * cell;
                 let high = DVec2::new((last + 1) as f64, (row + 1) as f64) * cell;
                 let half = (high - low) * 0.5;
-                self.patch(low + half, DVec2::X * half.x, DVec2::Y * half.y, Form::Shadow, SHADE, alpha);
+                self.patch(low + half, DVec2::X * half.x, DVec2::Y * half.y, DecalForm::Shadow, SHADE, alpha);
             }
         }
     }
 
     /// The dark under bodies, wheels and props.
-    pub(crate) fn feet(&mut self, stage: &Stage<'_>) {
+    pub(crate) fn feet(&mut self, stage: &DecalContext<'_>) {
         for (_, prop, place) in placed(stage).filter(|(k, ..)| !stage.floor.is_deck(*k)) {
             let height = stage.floor.height(DVec3::from_array(place.position).truncate());
             self.foot(height, prop, &place);
@@ -59,7 +59,7 @@ impl Painter<'_> {
     }
 
     /// The dark around decks, on the ground alone.
-    pub(crate) fn deck_feet(&mut self, stage: &Stage<'_>) {
+    pub(crate) fn deck_feet(&mut self, stage: &DecalContext<'_>) {
         for deck in &stage.floor.decks {
             let prop = &stage.fleet.props[deck.prop];
             let height = stage.floor.ground(DVec3::from_array(prop.placement.position).truncate());
@@ -67,7 +67,7 @@ impl Painter<'_> {
         }
     }
 
-    fn tyres(&mut self, stage: &Stage<'_>, robot: &RobotState, member: &RobotInfo) {
+    fn tyres(&mut self, stage: &DecalContext<'_>, robot: &RobotState, member: &RobotInfo) {
         let (pose, body) = (robot.motion.pose, member.body);
         let ahead = DVec2::from_angle(pose.heading);
         let place = |forward, left| DVec2::from_array(pose.world_from_body(forward, left));
@@ -77,7 +77,7 @@ impl Painter<'_> {
         // A body that lies on its roof touches the ground with that.
         let near = if upright > 0.3 { fade(gap(middle)) } else { 0.7 };
         let sides = (ahead * (0.62 * body.length), ahead.perp() * (0.78 * body.width));
-        self.patch(middle, sides.0, sides.1, Form::SoftBox(0.35), [0.0; 3], 0.50 * near);
+        self.patch(middle, sides.0, sides.1, DecalForm::SoftBox(0.35), [0.0; 3], 0.50 * near);
         if upright < 0.3 {
             return;
         }
@@ -88,7 +88,7 @@ impl Painter<'_> {
             let raised = wheel_height(robot, x * body.wheelbase, y * body.track) - stage.floor.height(at);
             let near = fade((raised / size).max(0.0));
             let across = ahead.perp() * (0.85 * size);
-            self.patch(at, ahead * (1.25 * size), across, Form::Blob, [0.0; 3], 0.85 * near);
+            self.patch(at, ahead * (1.25 * size), across, DecalForm::Blob, [0.0; 3], 0.85 * near);
         }
     }
 
@@ -113,7 +113,7 @@ impl Painter<'_> {
             }
             Solid::Cylinder { radius, .. } | Solid::Cone { radius, .. } => {
                 let reach = radius + 1.4 * margin;
-                let shape = Form::Blob;
+                let shape = DecalForm::Blob;
                 self.patch(at.truncate(), ahead * reach, aside * reach, shape, [0.0; 3], 1.2 * alpha);
             }
         }
@@ -141,7 +141,7 @@ impl Painter<'_> {
                 let at = |di: usize, dj: usize| {
                     let place = middle + axes[0] * along[i + di] + axes[1] * across[j + dj];
                     let shape = [rising[i + di], shapes[j + dj]];
-                    self.corner(place, Form::SoftBox(0.25), shape, [0.0; 3], alpha)
+                    self.corner(place, DecalForm::SoftBox(0.25), shape, [0.0; 3], alpha)
                 };
                 let quad = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
                 self.corners.extend([0, 1, 2, 0, 2, 3].map(|k| quad[k]));
@@ -161,7 +161,7 @@ fn wheel_height(robot: &RobotState, forward: f64, left: f64) -> f64 {
     tilt.height - forward * tilt.pitch.sin() + left * tilt.roll.sin() * tilt.pitch.cos()
 }
 
-fn robot_shadow(stage: &Stage<'_>, robot: &RobotState, member: &RobotInfo) -> Patch {
+fn robot_shadow(stage: &DecalContext<'_>, robot: &RobotState, member: &RobotInfo) -> Patch {
     let build = Build::new(member);
     let away = -stage.sun.truncate() / stage.sun.z;
     let [x, y] = robot.motion.pose.world_from_body(0.15 * member.body.length, 0.0);
@@ -175,7 +175,7 @@ fn robot_shadow(stage: &Stage<'_>, robot: &RobotState, member: &RobotInfo) -> Pa
 }
 
 /// Where the shadow of a prop may fall, along the sun.
-fn prop_shadow(stage: &Stage<'_>, prop: &Prop, place: &Placement) -> Option<Patch> {
+fn prop_shadow(stage: &DecalContext<'_>, prop: &Prop, place: &Placement) -> Option<Patch> {
     let away = -stage.sun.truncate() / stage.sun.z;
     let ahead = away.normalize_or(DVec2::X);
     let foot = DVec3::from_array(place.position);

@@ -1,6 +1,6 @@
 //! What films add to pictures: cards, a line at the bottom, plots beside the view.
 
-use crate::labels::{Ink, Words};
+use crate::labels::{Ink, LabelPlacer};
 use crate::letters::{Block, line_height};
 use crate::palette::{self, Rgb};
 use crate::plan::Area;
@@ -8,20 +8,20 @@ use glam::Vec2;
 
 /// What is shown over and beside the views of a picture.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Show {
+pub struct Overlays {
     /// Large words over a darkened picture.
     pub card: Option<Card>,
     /// Words at the bottom of the views.
-    pub line: Option<Line>,
+    pub line: Option<Subtitle>,
     /// Plots beside the views, or below them where the picture is higher than wide; from top to bottom.
-    pub plots: Vec<Plot>,
+    pub plots: Vec<CurvePanel>,
     /// What cameras leave room for though this picture may not have it.
-    pub room: Room,
+    pub room: ReservedSpace,
 }
 
 /// What other pictures of a film have, so that a camera does not move where it comes or goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Room {
+pub struct ReservedSpace {
     /// The chart of errors.
     pub panel: bool,
     /// Rows of the line at the bottom.
@@ -41,7 +41,7 @@ pub struct Card {
 
 /// Words at the bottom of the views.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Line {
+pub struct Subtitle {
     /// Rows, the first uppermost.
     pub rows: Vec<String>,
     /// 0 is not there, 1 is all there.
@@ -50,7 +50,7 @@ pub struct Line {
 
 /// Curves over time.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Plot {
+pub struct CurvePanel {
     /// Quantity and unit.
     pub label: String,
     /// Time from its left to its right end, s.
@@ -60,12 +60,12 @@ pub struct Plot {
     /// Whether zero stands in the middle.
     pub centred: bool,
     /// The curves.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<PanelCurve>,
 }
 
 /// A curve of one robot.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Curve {
+pub struct PanelCurve {
     /// Its robot, by its index: the curve has its colour.
     pub robot: usize,
     /// [time in s, value], in the order of time.
@@ -76,7 +76,7 @@ pub struct Curve {
 const BESIDE: f64 = 0.30;
 const BELOW: f64 = 0.34;
 
-impl Show {
+impl Overlays {
     /// Width and height that are left for the views of a picture, pixels; even, as they were.
     pub(crate) fn left_over(&self, (width, height): (u32, u32)) -> (u32, u32) {
         let keep = |side: u32, share: f64| ((f64::from(side) * (1.0 - share)).round() as u32 & !1).max(16);
@@ -90,8 +90,8 @@ impl Show {
 
 /// Plots and line, in front of the views, and the card in front of all.
 pub(crate) fn show(
-    words: &mut Words<'_>,
-    show: &Show,
+    words: &mut LabelPlacer<'_>,
+    show: &Overlays,
     colours: &[Rgb],
     (views, picture): ((u32, u32), (u32, u32)),
 ) {
@@ -113,7 +113,12 @@ pub(crate) fn show(
     }
 }
 
-fn plots(words: &mut Words<'_>, plots: &[Plot], colours: &[Rgb], [x, y, width, height]: [f32; 4]) {
+fn plots(
+    words: &mut LabelPlacer<'_>,
+    plots: &[CurvePanel],
+    colours: &[Rgb],
+    [x, y, width, height]: [f32; 4],
+) {
     let [red, green, blue] = palette::PAPER;
     words.shapes.panel([x, y, width, height], 0.0, [red, green, blue, 1.0]);
     let margin = words.scaled(20.0);
@@ -125,8 +130,8 @@ fn plots(words: &mut Words<'_>, plots: &[Plot], colours: &[Rgb], [x, y, width, h
 }
 
 fn one_plot(
-    words: &mut Words<'_>,
-    plot: &Plot,
+    words: &mut LabelPlacer<'_>,
+    plot: &CurvePanel,
     colours: &[Rgb],
     [x, y, width, height]: [f32; 4],
     timed: bool,
@@ -192,7 +197,7 @@ fn one_plot(
 }
 
 /// The range that a plot shows: round, over all its values.
-fn range(plot: &Plot) -> [f64; 2] {
+fn range(plot: &CurvePanel) -> [f64; 2] {
     let values = plot.curves.iter().flat_map(|c| &c.points).map(|p| p[1]).filter(|v| v.is_finite());
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
     if plot.centred || low > high {
@@ -233,7 +238,7 @@ const LINE: f32 = 17.0;
 const LINE_ROWS: usize = 2;
 
 /// The rows of a line at the bottom: each with its room and the lines it takes, and the size of its letters.
-fn line_rows(words: &mut Words<'_>, said: &Line, width: f32) -> (Vec<(Block, f32, usize)>, f32) {
+fn line_rows(words: &mut LabelPlacer<'_>, said: &Subtitle, width: f32) -> (Vec<(Block, f32, usize)>, f32) {
     let most = 0.9 * width;
     let widest = said.rows.iter().map(|row| words.width(row, LINE, true)).fold(1.0_f32, f32::max);
     // A little too long, it is smaller; much too long, it wraps.
@@ -247,7 +252,7 @@ fn line_rows(words: &mut Words<'_>, said: &Line, width: f32) -> (Vec<(Block, f32
 }
 
 /// The panel behind `rows` lines of a line at the bottom, `wide` pixels across.
-fn line_panel(words: &Words<'_>, [width, height]: [f32; 2], wide: f32, rows: usize) -> Area {
+fn line_panel(words: &LabelPlacer<'_>, [width, height]: [f32; 2], wide: f32, rows: usize) -> Area {
     let pad = words.scaled(12.0);
     let high = words.scaled(1.45 * LINE) * rows as f32 + pad;
     // Clear of the clock in the corner.
@@ -256,14 +261,14 @@ fn line_panel(words: &Words<'_>, [width, height]: [f32; 2], wide: f32, rows: usi
 }
 
 /// Where a line at the bottom is.
-pub(crate) fn line_place(words: &mut Words<'_>, said: &Line, views: [f32; 2]) -> Area {
+pub(crate) fn line_place(words: &mut LabelPlacer<'_>, said: &Subtitle, views: [f32; 2]) -> Area {
     let (rows, _) = line_rows(words, said, views[0]);
     let wide = rows.iter().map(|row| row.1).fold(1.0, f32::max);
     line_panel(words, views, wide, rows.iter().map(|row| row.2).sum())
 }
 
 /// Where a line at the bottom is or may come to be in the film.
-pub(crate) fn line_room(words: &mut Words<'_>, show: &Show, views: [f32; 2]) -> Option<Area> {
+pub(crate) fn line_room(words: &mut LabelPlacer<'_>, show: &Overlays, views: [f32; 2]) -> Option<Area> {
     let said = show.line.as_ref().map(|said| line_place(words, said, views));
     let kept = (show.room.rows > 0).then(|| line_panel(words, views, 0.9 * views[0], show.room.rows));
     match (said, kept) {
@@ -275,7 +280,7 @@ pub(crate) fn line_room(words: &mut Words<'_>, show: &Show, views: [f32; 2]) -> 
     }
 }
 
-fn line(words: &mut Words<'_>, said: &Line, views: [f32; 2]) {
+fn line(words: &mut LabelPlacer<'_>, said: &Subtitle, views: [f32; 2]) {
     let alpha = said.opacity as f32;
     let (rows, size) = line_rows(words, said, views[0]);
     let place = line_place(words, said, views);
@@ -296,7 +301,7 @@ const CARD: [(f32, usize); 2] = [(40.0, 2), (20.0, 3)];
 /// A row of a card is not wider than this at scale 1, pixels: longer ones are hard to read.
 const CARD_WIDTH: f32 = 800.0;
 
-fn card(words: &mut Words<'_>, shown: &Card, [width, height]: [f32; 2]) {
+fn card(words: &mut LabelPlacer<'_>, shown: &Card, [width, height]: [f32; 2]) {
     let alpha = shown.opacity as f32;
     let [r, g, b] = palette::INK;
     // What is written below the card is not to be read through it.
@@ -340,8 +345,8 @@ mod tests {
 
     #[test]
     fn plots_take_a_side_and_leave_even_sizes() {
-        let show = Show { plots: vec![Plot::default()], ..Show::default() };
-        assert_eq!(Show::default().left_over((1280, 720)), (1280, 720));
+        let show = Overlays { plots: vec![CurvePanel::default()], ..Overlays::default() };
+        assert_eq!(Overlays::default().left_over((1280, 720)), (1280, 720));
         assert_eq!(show.left_over((1280, 720)), (896, 720));
         let (width, height) = show.left_over((1080, 1920));
         assert!(width == 1080 && height % 2 == 0 && height < 1300);
@@ -349,11 +354,11 @@ mod tests {
 
     #[test]
     fn ranges_are_round_and_hold_every_value() {
-        let plot = |values: &[f64], centred: bool| Plot {
+        let plot = |values: &[f64], centred: bool| CurvePanel {
             centred,
             least: 0.02,
-            curves: vec![Curve { robot: 0, points: values.iter().map(|v| [0.0, *v]).collect() }],
-            ..Plot::default()
+            curves: vec![PanelCurve { robot: 0, points: values.iter().map(|v| [0.0, *v]).collect() }],
+            ..CurvePanel::default()
         };
         assert_eq!(range(&plot(&[0.001, -0.003], true)), [-0.02, 0.02]);
         assert_eq!(range(&plot(&[0.3, -0.1], true)), [-0.5, 0.5]);

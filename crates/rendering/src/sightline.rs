@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::floor::Floor;
-use crate::view::{FreeCamera, Tile, View};
+use crate::view::{FreeCamera, Tile, Viewpoint};
 use glam::{DVec2, DVec3};
 
 /// Nothing is looked for farther away than this, m.
@@ -12,7 +12,7 @@ const FAR: f64 = 2_000.0;
 /// numbers are between two of them; places are in the world frame, m.
 #[derive(Debug, Clone)]
 pub struct Sightline {
-    view: View,
+    view: Viewpoint,
     tile: Tile,
     camera: Camera,
     floor: Floor,
@@ -20,25 +20,25 @@ pub struct Sightline {
 
 /// A half line from the eye.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Ray {
+pub(crate) struct ViewRay {
     pub(crate) from: DVec3,
     /// Not of unit length: one deep.
     pub(crate) along: DVec3,
 }
 
-impl Ray {
+impl ViewRay {
     pub(crate) fn at(&self, far: f64) -> DVec3 {
         self.from + self.along * far
     }
 }
 
 impl Sightline {
-    pub(crate) fn new(view: View, tile: Tile, camera: Camera, floor: Floor) -> Self {
+    pub(crate) fn new(view: Viewpoint, tile: Tile, camera: Camera, floor: Floor) -> Self {
         Self { view, tile, camera, floor }
     }
 
     /// The view.
-    pub fn view(&self) -> &View {
+    pub fn view(&self) -> &Viewpoint {
         &self.view
     }
 
@@ -99,7 +99,7 @@ impl Sightline {
             camera.up.y.atan2(camera.up.x)
         };
         let pitch = (-camera.forward.z).clamp(-1.0, 1.0).asin();
-        let middle = Ray { from: camera.eye, along: camera.forward };
+        let middle = ViewRay { from: camera.eye, along: camera.forward };
         if !camera.perspective {
             let depth = self.depth(&middle).unwrap_or(camera.eye.z);
             let field_of_view = FreeCamera::FIELD_OF_VIEW;
@@ -120,7 +120,7 @@ impl Sightline {
     }
 
     /// The ray that is seen at a pixel.
-    pub(crate) fn ray(&self, [x, y]: [f64; 2]) -> Ray {
+    pub(crate) fn ray(&self, [x, y]: [f64; 2]) -> ViewRay {
         let camera = &self.camera;
         let right = 2.0 * (x - f64::from(self.tile.x)) / f64::from(self.tile.width) - 1.0;
         let up = 1.0 - 2.0 * (y - f64::from(self.tile.y)) / f64::from(self.tile.height);
@@ -128,13 +128,13 @@ impl Sightline {
         if camera.perspective {
             let [aside, above] = (seen + camera.shift).to_array();
             let along = camera.forward + camera.right * aside + camera.up * above;
-            return Ray { from: camera.eye, along };
+            return ViewRay { from: camera.eye, along };
         }
-        Ray { from: camera.eye + camera.right * seen.x + camera.up * seen.y, along: camera.forward }
+        ViewRay { from: camera.eye + camera.right * seen.x + camera.up * seen.y, along: camera.forward }
     }
 
     /// How far along a ray the floor is.
-    pub(crate) fn depth(&self, ray: &Ray) -> Option<f64> {
+    pub(crate) fn depth(&self, ray: &ViewRay) -> Option<f64> {
         if self.floor.is_plane() {
             let far = -ray.from.z / ray.along.z;
             return (ray.along.z < -1e-9 && far > 0.0 && far < FAR).then_some(far);
@@ -188,7 +188,7 @@ mod tests {
     const TILE: Tile = Tile { x: 100, y: 40, width: 640, height: 360 };
 
     fn line(camera: Camera, floor: Floor) -> Sightline {
-        Sightline::new(View::Snake, TILE, camera, floor)
+        Sightline::new(Viewpoint::Snake, TILE, camera, floor)
     }
 
     fn looking(eye: [f64; 3]) -> Camera {
@@ -253,7 +253,7 @@ mod tests {
         for camera in [pitched, looking([0.0, 0.0, 0.4]), parallel()] {
             let sight = line(camera, Floor::default());
             let view = sight.free().view();
-            let View::Fixed { eye, target, field_of_view } = view else { panic!("{view:?}") };
+            let Viewpoint::Fixed { eye, target, field_of_view } = view else { panic!("{view:?}") };
             let [eye, target] = [eye, target].map(DVec3::from_array);
             let free = line(Camera::looking(eye, target, field_of_view, 640.0 / 360.0), Floor::default());
             for pixel in [[101.0, 399.0], [420.0, 220.0], [700.0, 300.0], [739.0, 399.0]] {

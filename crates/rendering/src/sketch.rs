@@ -5,20 +5,20 @@ use vocabulary::Pose;
 /// Things on the ground, in the order in which they are drawn. They lie under the robots and follow the floor as
 /// ribbons do; what has places or colours that are not finite is left out.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Sketch {
+pub struct Annotations {
     /// Shaded ground.
-    pub areas: Vec<Area>,
+    pub areas: Vec<ShadedArea>,
     /// Arrows from place to place.
-    pub arrows: Vec<Arrow>,
+    pub arrows: Vec<AnnotationArrow>,
     /// Lines, such as paths to come.
-    pub strokes: Vec<Stroke>,
+    pub strokes: Vec<AnnotationStroke>,
     /// Rings, such as handles.
     pub rings: Vec<Ring>,
     /// Faint bodies of robots where they are not; as other ghosts, not seen from just above the ground.
     pub ghosts: Vec<Ghost>,
 }
 
-impl Sketch {
+impl Annotations {
     /// Whether there is nothing to draw.
     pub fn is_empty(&self) -> bool {
         self.areas.is_empty()
@@ -31,7 +31,7 @@ impl Sketch {
 
 /// A place with its colour, of a line or an area.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spot {
+pub struct StrokePoint {
     /// In the world, m.
     pub at: [f64; 2],
     /// sRGB, 0 to 1 a channel.
@@ -42,9 +42,9 @@ pub struct Spot {
 
 /// A smooth line through places; colour and opacity change evenly from each to the next.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stroke {
+pub struct AnnotationStroke {
     /// From one end to the other.
-    pub spots: Vec<Spot>,
+    pub spots: Vec<StrokePoint>,
     /// Width in pixels at scale 1, however far it is.
     pub pixels: f64,
     /// Width on the ground where that is more, m.
@@ -53,9 +53,9 @@ pub struct Stroke {
     pub dashed: bool,
 }
 
-impl Stroke {
+impl AnnotationStroke {
     /// A thin line.
-    pub fn new(spots: Vec<Spot>) -> Self {
+    pub fn new(spots: Vec<StrokePoint>) -> Self {
         Self { spots, pixels: 3.0, metres: 0.0, dashed: false }
     }
 
@@ -65,7 +65,7 @@ impl Stroke {
         // Slowly at first, so that most of the line is well seen.
         let spot = |(k, at): (usize, &[f64; 2])| {
             let share = k as f32 / last;
-            Spot { at: *at, colour, alpha: alpha * (1.0 - share * share) }
+            StrokePoint { at: *at, colour, alpha: alpha * (1.0 - share * share) }
         };
         Self::new(places.iter().enumerate().map(spot).collect())
     }
@@ -115,14 +115,14 @@ impl Ring {
 
 /// Shaded ground, triangle by triangle.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Area {
+pub struct ShadedArea {
     /// Three of them are a triangle. An edge is soft where the opacity goes down to 0 towards it.
-    pub corners: Vec<Spot>,
+    pub corners: Vec<StrokePoint>,
     /// Stripes over the tint.
     pub hatched: bool,
 }
 
-impl Area {
+impl ShadedArea {
     /// The area of a field of opacities, row by row in squares of `step` m from the lower left `origin` (m, world frame);
     /// what lies between is even. Squares without any opacity are left out.
     pub fn field(
@@ -134,7 +134,7 @@ impl Area {
         hatched: bool,
     ) -> Self {
         let rows = alphas.len() / columns.max(1);
-        let spot = |column: usize, row: usize| Spot {
+        let spot = |column: usize, row: usize| StrokePoint {
             at: [origin[0] + column as f64 * step, origin[1] + row as f64 * step],
             colour,
             alpha: alphas[row * columns + column],
@@ -158,7 +158,7 @@ impl Area {
 
 /// A straight arrow on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Arrow {
+pub struct AnnotationArrow {
     /// Where it starts, m, world frame.
     pub from: [f64; 2],
     /// Where it points, m, world frame.
@@ -189,15 +189,15 @@ mod tests {
     #[test]
     fn a_field_is_shaded_where_it_is_opaque() {
         let alphas = [0.0, 0.0, 0.0, 0.0, 0.0, 0.5];
-        let area = Area::field([1.0, 2.0], 0.5, 3, &alphas, [1.0; 3], true);
+        let area = ShadedArea::field([1.0, 2.0], 0.5, 3, &alphas, [1.0; 3], true);
         assert_eq!(area.corners.len(), 6);
         assert!(area.corners.iter().all(|s| s.at[0] >= 1.5 && s.at[1] <= 2.5));
-        assert!(Area::field([0.0; 2], 1.0, 0, &[], [1.0; 3], false).corners.is_empty());
+        assert!(ShadedArea::field([0.0; 2], 1.0, 0, &[], [1.0; 3], false).corners.is_empty());
     }
 
     #[test]
     fn what_is_to_come_fades() {
-        let stroke = Stroke::fading(&[[0.0; 2], [1.0, 0.0], [2.0, 0.0]], [1.0; 3], 0.8);
+        let stroke = AnnotationStroke::fading(&[[0.0; 2], [1.0, 0.0], [2.0, 0.0]], [1.0; 3], 0.8);
         let alphas: Vec<_> = stroke.spots.iter().map(|s| s.alpha).collect();
         assert!(alphas[0] == 0.8 && alphas[1] > 0.5 && alphas[2] == 0.0);
     }

@@ -1,13 +1,13 @@
 //! The snake view: behind and above a formation, low for a small one and higher for a wide one, so that it fills its room.
 
 use crate::camera::{Camera, NEAREST, REACH, corners, sides};
-use crate::room::{Bound, Room};
+use crate::room::{Bound, FreeSpace};
 use crate::steady::Steady;
 use glam::DVec3;
 
 /// How the snake view is composed, from looking at pictures: as it is for small formations, and as it is at the most for
 /// wide ones, which would lie in a thin band of the picture if nobody looked down on them.
-struct Form {
+struct SnakeComposition {
     /// Where the horizon stands, as a share of the height from the top; negative above the picture.
     horizon: f64,
     /// Share of the width the formation may take.
@@ -17,8 +17,8 @@ struct Form {
 }
 
 const FIELD_OF_VIEW: f64 = 0.8029;
-const LOW: Form = Form { horizon: 0.10, width: 0.70, top: 0.30 };
-const HIGH: Form = Form { horizon: -1.9, width: 0.90, top: 0.90 };
+const LOW: SnakeComposition = SnakeComposition { horizon: 0.10, width: 0.70, top: 0.30 };
+const HIGH: SnakeComposition = SnakeComposition { horizon: -1.9, width: 0.90, top: 0.90 };
 /// Normalised height down to which the formation stays; higher where words are.
 const BOTTOM: f64 = -0.52;
 /// How wide a formation is at which the eye begins to rise, and at which it is as high as it may be: m of robots of the
@@ -27,7 +27,7 @@ const WIDE: [f64; 2] = [5.0, 26.0];
 /// From this share of the way up on, the formation may take all the room there is.
 const ALL_ROOM: f64 = 0.6;
 
-impl Form {
+impl SnakeComposition {
     /// On the way from the low to the high one.
     fn at(share: f64) -> Self {
         let mix = |low: f64, high: f64, share: f64| low + (high - low) * share;
@@ -41,14 +41,14 @@ impl Form {
 }
 
 /// Its camera.
-pub(crate) fn snake(steady: &Steady, room: &Room) -> Camera {
+pub(crate) fn snake(steady: &Steady, room: &FreeSpace) -> Camera {
     let extent = steady.formation();
     let places = corners(&extent, REACH * extent.size);
     let [bottom, over] = room.rows();
     let bottom = bottom.max(BOTTOM);
     let tangent = (0.5 * FIELD_OF_VIEW).tan();
     let at = |share: f64| {
-        let form = Form::at(share);
+        let form = SnakeComposition::at(share);
         let pitch = ((1.0 - 2.0 * form.horizon) * tangent).atan();
         let camera = Camera::pitched(extent.frame.heading, pitch, tangent, room.aspect());
         (camera, sides(form.width, [bottom, form.top.min(over)]))
@@ -103,7 +103,7 @@ mod tests {
             &StepRecord { snapshot: Snapshot { robots, ..Snapshot::default() }, ..StepRecord::default() },
             &[],
         );
-        let camera = snake(&steady, &Room::new(size, vec![], 1.0));
+        let camera = snake(&steady, &FreeSpace::new(size, vec![], 1.0));
         let points: Vec<_> =
             places.iter().map(|[x, y]| camera.project(DVec3::new(*x, *y, 0.0)).expect("seen")).collect();
         let range = |of: fn(&glam::DVec2) -> f64| {

@@ -24,9 +24,9 @@ const SLIDE: [f64; 2] = [0.052, 0.35];
 #[derive(Debug, Clone)]
 pub struct Trail {
     pub(crate) steady: Steady,
-    pub(crate) ribbons: VecDeque<Row>,
-    pub(crate) ghosts: VecDeque<Row>,
-    pub(crate) marks: Thinning<Arc<[Mark]>>,
+    pub(crate) ribbons: VecDeque<PoseRow>,
+    pub(crate) ghosts: VecDeque<PoseRow>,
+    pub(crate) marks: Thinning<Arc<[SkidMark]>>,
     /// Contacts by their first sight, old to new.
     pub(crate) touches: VecDeque<Contact>,
     /// Contacts up to this number are known or forgotten.
@@ -43,14 +43,14 @@ pub struct Trail {
 
 /// The poses of all robots at a time.
 #[derive(Debug, Clone)]
-pub(crate) struct Row {
+pub(crate) struct PoseRow {
     pub(crate) time: f64,
     pub(crate) poses: Arc<[Pose]>,
 }
 
 /// Where a robot drove, and how much it slid there: 0 to 1.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Mark {
+pub(crate) struct SkidMark {
     pub(crate) pose: Pose,
     pub(crate) slide: f32,
 }
@@ -103,8 +103,9 @@ impl Trail {
         }
         self.slide(record);
         let (before, slides) = (&self.before, &self.slides);
-        let marks =
-            || before.iter().zip(slides).map(|(pose, slide)| Mark { pose: *pose, slide: *slide }).collect();
+        let marks = || {
+            before.iter().zip(slides).map(|(pose, slide)| SkidMark { pose: *pose, slide: *slide }).collect()
+        };
         if self.marks.push(time, marks) {
             self.slides.fill(0.0);
         }
@@ -175,12 +176,12 @@ pub fn set_points(fleet: &FleetInfo, record: &StepRecord) -> Vec<Option<[f64; 2]
     (0..fleet.edges.len()).map(place).collect()
 }
 
-fn keep(rows: &mut VecDeque<Row>, time: f64, every: f64, span: f64, poses: impl Fn() -> Arc<[Pose]>) {
+fn keep(rows: &mut VecDeque<PoseRow>, time: f64, every: f64, span: f64, poses: impl Fn() -> Arc<[Pose]>) {
     // Whole multiples of the spacing, so that what is kept does not hang on where the run began.
     let due =
         rows.back().is_none_or(|last| (time / every + 1e-9).floor() > (last.time / every + 1e-9).floor());
     if due {
-        rows.push_back(Row { time, poses: poses() });
+        rows.push_back(PoseRow { time, poses: poses() });
     }
     // One row beyond the span, so that a ribbon's end can be cut between two rows.
     while rows.get(1).is_some_and(|second| second.time < time - span) {
@@ -258,7 +259,7 @@ mod tests {
         // What is its own, bytes.
         let rows = copy.ribbons.len() + copy.ghosts.len();
         let entries = copy.marks.entries.len() + copy.errors.entries.len();
-        let own = rows * size_of::<Row>() + entries * size_of::<(f64, Arc<[Mark]>)>();
+        let own = rows * size_of::<PoseRow>() + entries * size_of::<(f64, Arc<[SkidMark]>)>();
         assert!(own < 30_000, "{own}");
     }
 

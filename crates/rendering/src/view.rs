@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// A place to look from.
 #[derive(Debug, Clone, PartialEq)]
-pub enum View {
+pub enum Viewpoint {
     /// Behind and above the formation, along the lead robot's smoothed heading.
     Snake,
     /// A hand's breadth above the ground behind the last robot.
@@ -29,7 +29,7 @@ pub enum View {
         field_of_view: f64,
     },
     /// On the way from one view to another, at a share of it from 0 to 1; neither is through a camera on a robot.
-    Between(Box<View>, Box<View>, f64),
+    Between(Box<Viewpoint>, Box<Viewpoint>, f64),
 }
 
 /// A camera in somebody's hand: it looks at a place from some way off and never leans.
@@ -56,11 +56,11 @@ impl FreeCamera {
     pub const DISTANCES: [f64; 2] = [0.3, 400.0];
 
     /// The view through it. Where the floor is in the way, the eye is drawn above it.
-    pub fn view(&self) -> View {
+    pub fn view(&self) -> Viewpoint {
         // Not quite straight down: what looks straight down has no heading.
         let pitch = self.pitch.clamp(1e-6 - FRAC_PI_2, FRAC_PI_2 - 1e-6);
         let away = [self.heading.cos() * pitch.cos(), self.heading.sin() * pitch.cos(), -pitch.sin()];
-        View::Fixed {
+        Viewpoint::Fixed {
             eye: std::array::from_fn(|k| self.target[k] - self.distance * away[k]),
             target: self.target,
             field_of_view: self.field_of_view,
@@ -88,12 +88,12 @@ impl FreeCamera {
 
 const PLAIN: [&str; 5] = ["snake", "snake-eye", "top", "orbit", "fixed"];
 
-impl View {
+impl Viewpoint {
     /// The view called `text` of a scene whose robots are called `names`: `snake`, `snake-eye`, `top`, `orbit`,
     /// `follow:NAME`, `camera:NAME`, `fixed` or `fixed:ex,ey,ez,tx,ty,tz[,degrees]`.
     ///
     /// # Errors
-    /// [`Error::View`] with the valid forms and the nearest of them.
+    /// [`Error::Viewpoint`] with the valid forms and the nearest of them.
     pub fn parse(text: &str, names: &[String]) -> Result<Self, Error> {
         let text = text.trim();
         let view = match text {
@@ -116,12 +116,12 @@ impl View {
     }
 }
 
-fn fixed(numbers: &str) -> Option<View> {
+fn fixed(numbers: &str) -> Option<Viewpoint> {
     let n: Vec<f64> = numbers.split(',').map(|s| s.trim().parse().ok()).collect::<Option<_>>()?;
     let degrees = n.get(6).copied().unwrap_or(40.0);
     let sound = n.iter().all(|x| x.is_finite()) && (5.0..=120.0).contains(&degrees);
     let apart = n.len() >= 6 && (0..3).any(|k| (n[k] - n[k + 3]).abs() > 1e-6);
-    (sound && apart && n.len() <= 7).then(|| View::Fixed {
+    (sound && apart && n.len() <= 7).then(|| Viewpoint::Fixed {
         eye: [n[0], n[1], n[2]],
         target: [n[3], n[4], n[5]],
         field_of_view: degrees.to_radians(),
@@ -137,7 +137,7 @@ fn unknown(given: &str, names: &[String]) -> Error {
         let more = if all.len() > 6 { ", …" } else { "" };
         format!("{}{more}", all[..all.len().min(6)].join(", "))
     };
-    Error::View {
+    Error::Viewpoint {
         given: given.to_owned(),
         nearest: nearest(given, valid),
         valid: format!(
@@ -151,9 +151,9 @@ fn unknown(given: &str, names: &[String]) -> Error {
 
 /// One to four views in one picture.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Layout {
+pub struct ViewLayout {
     /// From left to right, then down.
-    pub views: Vec<View>,
+    pub views: Vec<Viewpoint>,
 }
 
 /// A rectangle of pixels of the picture.
@@ -169,18 +169,19 @@ pub struct Tile {
     pub height: u32,
 }
 
-impl Layout {
+impl ViewLayout {
     /// A single view.
-    pub fn single(view: View) -> Self {
+    pub fn single(view: Viewpoint) -> Self {
         Self { views: vec![view] }
     }
 
     /// Views joined by '+', at most four.
     ///
     /// # Errors
-    /// [`Error::View`] for the first that is unknown, [`Error::TooManyViews`] for more than four.
+    /// [`Error::Viewpoint`] for the first that is unknown, [`Error::TooManyViews`] for more than four.
     pub fn parse(text: &str, names: &[String]) -> Result<Self, Error> {
-        let views = text.split('+').map(|part| View::parse(part, names)).collect::<Result<Vec<_>, _>>()?;
+        let views =
+            text.split('+').map(|part| Viewpoint::parse(part, names)).collect::<Result<Vec<_>, _>>()?;
         if views.len() > 4 {
             return Err(Error::TooManyViews(views.len()));
         }
@@ -230,21 +231,21 @@ mod tests {
     #[test]
     fn views_are_found_by_name() {
         let names = ["leader".to_owned(), "follower-1".to_owned()];
-        assert_eq!(View::parse("follow:follower-1", &names).ok(), Some(View::Follow(1)));
+        assert_eq!(Viewpoint::parse("follow:follower-1", &names).ok(), Some(Viewpoint::Follow(1)));
         assert_eq!(
-            Layout::parse("snake+top", &names).ok().map(|l| l.views),
-            Some(vec![View::Snake, View::Top])
+            ViewLayout::parse("snake+top", &names).ok().map(|l| l.views),
+            Some(vec![Viewpoint::Snake, Viewpoint::Top])
         );
-        assert!(matches!(View::parse("fixed:0,-5,3,0,0,0", &names), Ok(View::Fixed { .. })));
-        assert!(View::parse("fixed:0,0,0,0,0,0", &names).is_err());
-        assert_eq!(View::parse("camera:leader", &names).ok(), Some(View::Camera(0)));
-        let error = View::parse("camera:nobody", &names).unwrap_err().to_string();
+        assert!(matches!(Viewpoint::parse("fixed:0,-5,3,0,0,0", &names), Ok(Viewpoint::Fixed { .. })));
+        assert!(Viewpoint::parse("fixed:0,0,0,0,0,0", &names).is_err());
+        assert_eq!(Viewpoint::parse("camera:leader", &names).ok(), Some(Viewpoint::Camera(0)));
+        let error = Viewpoint::parse("camera:nobody", &names).unwrap_err().to_string();
         assert!(error.contains("camera:follower-1"), "{error}");
     }
 
     #[test]
     fn an_unknown_view_names_the_nearest() {
-        let error = View::parse("snaek", &["leader".to_owned()]).unwrap_err();
+        let error = Viewpoint::parse("snaek", &["leader".to_owned()]).unwrap_err();
         assert!(error.is_usage());
         let text = error.to_string();
         assert!(text.contains("did you mean \"snake\"") && text.contains("follow:leader"), "{text}");
@@ -263,14 +264,14 @@ mod tests {
         assert!(near.distance == 5.0 && near.target == [2.0, 2.0, 0.0]);
         assert!(camera.zoomed(1e-9, None).distance == 0.3 && camera.zoomed(1e9, None).distance == 400.0);
         let down = camera.turned(0.1, 9.0);
-        let View::Fixed { eye, target, .. } = down.view() else { panic!("no place") };
+        let Viewpoint::Fixed { eye, target, .. } = down.view() else { panic!("no place") };
         assert!((eye[2] - 10.0).abs() < 1e-9);
         assert!(((target[1] - eye[1]).atan2(target[0] - eye[0]) - 2.1).abs() < 1e-6);
     }
 
     #[test]
     fn two_views_lie_above_each_other_in_a_high_picture() {
-        let layout = Layout { views: vec![View::Snake, View::Top] };
+        let layout = ViewLayout { views: vec![Viewpoint::Snake, Viewpoint::Top] };
         let places = |w, h| layout.tiles(w, h).iter().map(|t| [t.x, t.y]).collect::<Vec<_>>();
         assert_eq!(places(1280, 720), [[0, 0], [640, 0]]);
         assert_eq!(places(720, 1280), [[0, 0], [0, 640]]);
@@ -279,7 +280,7 @@ mod tests {
     #[test]
     fn tiles_cover_the_picture() {
         for count in 1..=4 {
-            let layout = Layout { views: vec![View::Top; count] };
+            let layout = ViewLayout { views: vec![Viewpoint::Top; count] };
             let area: u32 = layout.tiles(1281, 721).iter().map(|t| t.width * t.height).sum();
             assert_eq!(area, 1281 * 721);
         }

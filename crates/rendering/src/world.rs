@@ -8,7 +8,7 @@ use crate::letters::digits;
 use crate::model::Detail;
 use crate::passes::Canvas;
 use crate::passes::asphalt::Asphalt;
-use crate::passes::decal::{Corner, DecalPass, Layer};
+use crate::passes::decal::{DecalLayer, DecalPass, DecalVertex};
 use crate::passes::frame::{FrameGroups, FrameUniforms};
 use crate::passes::ground::GroundPass;
 use crate::passes::prop::{Copies, PropPass, Veil};
@@ -22,7 +22,7 @@ use vocabulary::FleetInfo;
 
 /// Every pass with what it keeps on the device.
 #[derive(Debug)]
-pub(crate) struct World {
+pub(crate) struct WorldPasses {
     groups: FrameGroups,
     models: Models,
     pub(crate) shadow: ShadowPass,
@@ -48,14 +48,14 @@ pub(crate) struct SceneView<'a> {
     /// Which decks hide a robot.
     pub(crate) veiled: &'a [bool],
     /// Paint and shadows on the floor, in order.
-    pub(crate) under: &'a [(Layer, Range<u32>)],
+    pub(crate) under: &'a [(DecalLayer, Range<u32>)],
     /// Paint that shows through the robots.
-    pub(crate) over: Option<&'a (Layer, Range<u32>)>,
+    pub(crate) over: Option<&'a (DecalLayer, Range<u32>)>,
     /// Whether it shows ghosts.
     pub(crate) ghosts: bool,
 }
 
-impl World {
+impl WorldPasses {
     /// `shadows` is the side of the shadow map in texels.
     pub(crate) fn new(
         gpu: &Gpu,
@@ -98,7 +98,7 @@ impl World {
         frames: &[FrameUniforms],
         crowds: impl Iterator<Item = &'a mut Crowd>,
         props: impl Iterator<Item = &'a mut Copies>,
-        corners: &[Corner],
+        corners: &[DecalVertex],
     ) {
         let (device, queue) = (&gpu.device, &gpu.queue);
         self.groups.fill(device, queue, frames);

@@ -4,7 +4,8 @@
 mod stage;
 
 use rendering::{
-    AdapterChoice, Area, Arrow, Ghost, Gpu, Layout, Renderer, Ring, Sketch, Spot, Stroke, Style, View,
+    AdapterChoice, AnnotationArrow, AnnotationStroke, Annotations, Ghost, Gpu, Renderer, Ring, ShadedArea,
+    StrokePoint, Style, ViewLayout, Viewpoint,
 };
 use stage::{Path, Play};
 use std::sync::{Arc, OnceLock};
@@ -20,15 +21,15 @@ fn gpu() -> &'static Gpu {
     GPU.get_or_init(|| Gpu::open(&wanted()).expect("tests of pictures need a graphics adapter"))
 }
 
-fn draw(play: &Play, view: View, sketch: Sketch) -> Picture {
+fn draw(play: &Play, view: Viewpoint, sketch: Annotations) -> Picture {
     let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     let style = Style { sketch, ..Style::bare() };
-    renderer.draw(&play.trail(2.0), &play.at(2.0), &Layout::single(view), &style).unwrap()
+    renderer.draw(&play.trail(2.0), &play.at(2.0), &ViewLayout::single(view), &style).unwrap()
 }
 
 /// Straight down on the x-y plane, 9 m high, with +x up and +y to the left.
-fn plan() -> View {
-    View::Fixed { eye: [0.0, 0.0, 9.0], target: [0.0, 0.0, 0.0], field_of_view: 0.6 }
+fn plan() -> Viewpoint {
+    Viewpoint::Fixed { eye: [0.0, 0.0, 9.0], target: [0.0, 0.0, 0.0], field_of_view: 0.6 }
 }
 
 fn pixel([x, y]: [f64; 2]) -> [f64; 2] {
@@ -47,18 +48,21 @@ fn excess(picture: &Picture, at: [f64; 2], reach: i64, [more, less]: [usize; 2])
 const REDDER: [usize; 2] = [0, 1];
 const GREENER: [usize; 2] = [1, 0];
 
-fn spot(at: [f64; 2], colour: [f32; 3], alpha: f32) -> Spot {
-    Spot { at, colour, alpha }
+fn spot(at: [f64; 2], colour: [f32; 3], alpha: f32) -> StrokePoint {
+    StrokePoint { at, colour, alpha }
 }
 
-fn across(dashed: bool) -> Sketch {
+fn across(dashed: bool) -> Annotations {
     let spots = vec![
         spot([-2.0, 2.5], RED, 1.0),
         spot([-2.0, 0.0], RED, 1.0),
         spot([-2.0, -0.1], GREEN, 1.0),
         spot([-2.0, -2.5], GREEN, 1.0),
     ];
-    Sketch { strokes: vec![Stroke { dashed, ..Stroke::new(spots) }], ..Sketch::default() }
+    Annotations {
+        strokes: vec![AnnotationStroke { dashed, ..AnnotationStroke::new(spots) }],
+        ..Annotations::default()
+    }
 }
 
 #[test]
@@ -90,14 +94,15 @@ fn dashes_have_gaps() {
 fn a_stroke_fades_and_keeps_its_width_when_it_is_far() {
     let play = Play::new(1, Path::Straight);
     let places: Vec<_> = (0..=40).map(|k| [-2.0, 2.5 - 0.125 * f64::from(k)]).collect();
-    let stroke = Stroke::fading(&places, RED, 1.0);
-    let picture = draw(&play, plan(), Sketch { strokes: vec![stroke], ..Sketch::default() });
+    let stroke = AnnotationStroke::fading(&places, RED, 1.0);
+    let picture = draw(&play, plan(), Annotations { strokes: vec![stroke], ..Annotations::default() });
     let at = |y: f64| excess(&picture, [-2.0, y], 1, REDDER);
     assert!(at(2.0) > at(-1.5) + 40 && at(-1.5) > 30 && at(-2.45) < 30);
     // Ten times as high, still as wide.
-    let far = View::Fixed { eye: [0.0, 0.0, 90.0], target: [0.0; 3], field_of_view: 0.6 };
+    let far = Viewpoint::Fixed { eye: [0.0, 0.0, 90.0], target: [0.0; 3], field_of_view: 0.6 };
     let places = [[-20.0, 25.0], [-20.0, -25.0]].map(|at| spot(at, RED, 1.0));
-    let sketch = Sketch { strokes: vec![Stroke::new(places.to_vec())], ..Sketch::default() };
+    let sketch =
+        Annotations { strokes: vec![AnnotationStroke::new(places.to_vec())], ..Annotations::default() };
     let picture = draw(&play, far, sketch);
     assert!(excess(&picture, [-2.0, 1.5], 1, REDDER) > 100);
 }
@@ -106,10 +111,14 @@ fn a_stroke_fades_and_keeps_its_width_when_it_is_far() {
 #[test]
 fn a_stroke_is_as_wide_aslant() {
     let play = Play::new(1, Path::Straight);
-    let view = || View::Fixed { eye: [-8.0, 0.0, 2.2], target: [0.0, 0.0, 0.0], field_of_view: 0.5 };
+    let view = || Viewpoint::Fixed { eye: [-8.0, 0.0, 2.2], target: [0.0, 0.0, 0.0], field_of_view: 0.5 };
     for [from, to] in [[[-1.0, 1.5], [-1.0, -1.5]], [[0.5, 1.5], [-1.5, -1.5]], [[-1.5, 1.5], [0.5, -1.5]]] {
         let spots = vec![spot(from, RED, 1.0), spot(to, RED, 1.0)];
-        let picture = draw(&play, view(), Sketch { strokes: vec![Stroke::new(spots)], ..Sketch::default() });
+        let picture = draw(
+            &play,
+            view(),
+            Annotations { strokes: vec![AnnotationStroke::new(spots)], ..Annotations::default() },
+        );
         let red = |x: u32, y: u32| {
             let [r, g, _] = picture.rgb(x, y).unwrap().map(i32::from);
             r - g > 70
@@ -129,7 +138,7 @@ fn what_is_not_finite_is_left_out() {
     sketch.strokes[0].spots[1].at[0] = f64::NAN;
     sketch.rings.push(Ring::new([f64::NAN, 0.0], 0.3, RED).selected());
     sketch.rings.push(Ring::new([0.0, 0.0], f64::INFINITY, RED).selected());
-    sketch.arrows.push(Arrow {
+    sketch.arrows.push(AnnotationArrow {
         from: [0.0; 2],
         to: [f64::INFINITY; 2],
         gaps: [0.0; 2],
@@ -138,7 +147,7 @@ fn what_is_not_finite_is_left_out() {
     });
     sketch.ghosts.push(Ghost { robot: 9, pose: Pose::default(), alpha: 1.0 });
     sketch.ghosts.push(Ghost { robot: 1, pose: Pose::new(f64::NAN, 0.0, 0.0), alpha: 1.0 });
-    sketch.areas.push(Area { corners: vec![spot([f64::NAN; 2], RED, 1.0); 4], hatched: true });
+    sketch.areas.push(ShadedArea { corners: vec![spot([f64::NAN; 2], RED, 1.0); 4], hatched: true });
     let picture = draw(&play, plan(), sketch);
     assert!(excess(&picture, [-2.0, -1.5], 1, GREENER) > 120);
     assert!(excess(&picture, [-2.0, 1.5], 1, REDDER) < 20);
@@ -149,12 +158,13 @@ fn rings_areas_and_arrows_are_where_they_say() {
     let play = Play::new(1, Path::Straight);
     let ring = Ring::new([-1.0, -2.0], 0.5, GREEN);
     let triangle = [[-2.0, 3.0], [-2.0, 1.0], [0.0, 3.0]].map(|at| spot(at, RED, 0.5)).to_vec();
-    let arrow = Arrow { from: [1.0, 2.0], to: [1.0, -2.0], gaps: [0.5; 2], colour: RED, alpha: 1.0 };
-    let sketch = Sketch {
+    let arrow =
+        AnnotationArrow { from: [1.0, 2.0], to: [1.0, -2.0], gaps: [0.5; 2], colour: RED, alpha: 1.0 };
+    let sketch = Annotations {
         rings: vec![ring],
-        areas: vec![Area { corners: triangle, hatched: false }],
+        areas: vec![ShadedArea { corners: triangle, hatched: false }],
         arrows: vec![arrow],
-        ..Sketch::default()
+        ..Annotations::default()
     };
     let picture = draw(&play, plan(), sketch.clone());
     assert!(
@@ -163,7 +173,7 @@ fn rings_areas_and_arrows_are_where_they_say() {
     assert!(excess(&picture, [-1.6, 2.4], 1, REDDER) > 50 && excess(&picture, [-0.4, 1.4], 1, REDDER) < 20);
     assert!(excess(&picture, [1.0, 0.0], 1, REDDER) > 150 && excess(&picture, [1.0, -1.8], 1, REDDER) < 20);
     // Selected, it has a middle and shines beyond itself.
-    let lit = draw(&play, plan(), Sketch { rings: vec![ring.selected()], ..sketch });
+    let lit = draw(&play, plan(), Annotations { rings: vec![ring.selected()], ..sketch });
     assert!(excess(&lit, [-1.0, -2.0], 1, GREENER) > 60);
     assert!(excess(&lit, [-0.43, -2.0], 0, GREENER) > excess(&picture, [-0.43, -2.0], 0, GREENER) + 8);
 }
@@ -172,9 +182,10 @@ fn rings_areas_and_arrows_are_where_they_say() {
 fn robots_stand_on_a_sketch() {
     let play = Play::new(3, Path::Straight);
     let pose = play.at(2.0).snapshot.robots[0].motion.pose;
-    let view = View::Fixed { eye: [pose.x, pose.y, 5.0], target: [pose.x, pose.y, 0.0], field_of_view: 0.6 };
+    let view =
+        Viewpoint::Fixed { eye: [pose.x, pose.y, 5.0], target: [pose.x, pose.y, 0.0], field_of_view: 0.6 };
     let ring = Ring { fill: 1.0, ..Ring::new([pose.x, pose.y], 0.8, RED) };
-    let picture = draw(&play, view, Sketch { rings: vec![ring], ..Sketch::default() });
+    let picture = draw(&play, view, Annotations { rings: vec![ring], ..Annotations::default() });
     let red = |x: u32, y: u32| {
         let [r, g, _] = picture.rgb(x, y).unwrap().map(i32::from);
         r - g > 60
@@ -187,8 +198,8 @@ fn robots_stand_on_a_sketch() {
 fn ghosts_stand_where_they_are_put() {
     let play = Play::new(3, Path::Straight);
     let ghost = Ghost { robot: 1, pose: Pose::new(-1.0, -2.0, 1.0), alpha: 0.6 };
-    let plain = draw(&play, plan(), Sketch::default());
-    let picture = draw(&play, plan(), Sketch { ghosts: vec![ghost], ..Sketch::default() });
+    let plain = draw(&play, plan(), Annotations::default());
+    let picture = draw(&play, plan(), Annotations { ghosts: vec![ghost], ..Annotations::default() });
     let [x, y] = pixel([-1.0, -2.0]).map(|p| p as u32);
     let near = |x: u32, y: u32| {
         x.abs_diff(pixel([-1.0, -2.0])[0] as u32) < 40 && y.abs_diff(pixel([-1.0, -2.0])[1] as u32) < 40
@@ -199,13 +210,19 @@ fn ghosts_stand_where_they_are_put() {
 }
 
 /// All that a sketch can have, around the robots.
-fn everything() -> Sketch {
+fn everything() -> Annotations {
     let corners = vec![spot([-3.0, -3.0], RED, 1.0), spot([3.0, -3.0], RED, 1.0), spot([0.0, 3.0], RED, 1.0)];
-    Sketch {
-        areas: vec![Area { corners, hatched: true }],
+    Annotations {
+        areas: vec![ShadedArea { corners, hatched: true }],
         rings: vec![Ring::new([0.0; 2], 1.0, GREEN).selected()],
         ghosts: vec![Ghost { robot: 0, pose: Pose::new(1.0, 1.0, 0.0), alpha: 0.5 }],
-        arrows: vec![Arrow { from: [-2.0, 0.0], to: [2.0, 0.0], gaps: [0.0; 2], colour: RED, alpha: 1.0 }],
+        arrows: vec![AnnotationArrow {
+            from: [-2.0, 0.0],
+            to: [2.0, 0.0],
+            gaps: [0.0; 2],
+            colour: RED,
+            alpha: 1.0,
+        }],
         ..across(true)
     }
 }
@@ -213,10 +230,12 @@ fn everything() -> Sketch {
 #[test]
 fn cameras_on_robots_do_not_see_it() {
     let play = Play::new(3, Path::Straight);
-    let view = || View::Camera(1);
-    assert_eq!(draw(&play, view(), everything()), draw(&play, view(), Sketch::default()));
-    assert!(!everything().is_empty() && Sketch::default().is_empty());
-    assert!(draw(&play, View::Snake, everything()) != draw(&play, View::Snake, Sketch::default()));
+    let view = || Viewpoint::Camera(1);
+    assert_eq!(draw(&play, view(), everything()), draw(&play, view(), Annotations::default()));
+    assert!(!everything().is_empty() && Annotations::default().is_empty());
+    assert!(
+        draw(&play, Viewpoint::Snake, everything()) != draw(&play, Viewpoint::Snake, Annotations::default())
+    );
 }
 
 #[test]
@@ -227,15 +246,15 @@ fn on_hills_a_stroke_is_hidden_behind_the_hill_and_seen_on_it() {
     let heights = (0..41 * 41).map(height).collect();
     let terrain = Terrain { origin: [-5.0; 2], cell: 0.25, columns: 41, rows: 41, heights, grip: vec![] };
     play.fleet.terrain = Some(Arc::new(terrain));
-    let view = || View::Fixed { eye: [-4.0, 0.5, 1.2], target: [2.0, 0.5, 0.5], field_of_view: 0.7 };
-    let line = |x: f64| Sketch {
-        strokes: vec![Stroke {
+    let view = || Viewpoint::Fixed { eye: [-4.0, 0.5, 1.2], target: [2.0, 0.5, 0.5], field_of_view: 0.7 };
+    let line = |x: f64| Annotations {
+        strokes: vec![AnnotationStroke {
             metres: 0.1,
-            ..Stroke::new(vec![spot([x, -1.0], RED, 1.0), spot([x, 2.0], RED, 1.0)])
+            ..AnnotationStroke::new(vec![spot([x, -1.0], RED, 1.0), spot([x, 2.0], RED, 1.0)])
         }],
-        ..Sketch::default()
+        ..Annotations::default()
     };
-    let plain = draw(&play, view(), Sketch::default());
+    let plain = draw(&play, view(), Annotations::default());
     let changed = |x: f64| {
         let picture = draw(&play, view(), line(x));
         picture.rgba.chunks(4).zip(plain.rgba.chunks(4)).filter(|(a, b)| a != b).count()
@@ -251,10 +270,11 @@ fn sightlines_agree_with_the_picture() {
     let play = Play::new(3, Path::Eight);
     let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     let (trail, record) = (play.trail(5.0), play.at(5.0));
-    let layout = Layout { views: vec![View::Snake, View::Top, View::Orbit] };
+    let layout = ViewLayout { views: vec![Viewpoint::Snake, Viewpoint::Top, Viewpoint::Orbit] };
     let at = record.snapshot.robots[1].motion.pose.world_from_body(0.13, 0.7);
     let ring = Ring { pixels: 6.0, ..Ring::new(at, 0.0, RED) };
-    let style = Style { sketch: Sketch { rings: vec![ring], ..Sketch::default() }, ..Style::bare() };
+    let style =
+        Style { sketch: Annotations { rings: vec![ring], ..Annotations::default() }, ..Style::bare() };
     let picture = renderer.draw(&trail, &record, &layout, &style).unwrap();
     let sights = renderer.sightlines(&trail, &record, &layout, &style).unwrap();
     assert_eq!(sights.len(), 3);
@@ -272,7 +292,7 @@ fn sightlines_agree_with_the_picture() {
         let picked = renderer.pick(&sight, &record, [x, y]);
         assert_eq!(picked.first(), Some(&rendering::Picked::Robot(1)), "{:?}", sight.view());
         // Taken over by a hand, the robot stays where it was.
-        let free = Layout { views: vec![sight.free().view()] };
+        let free = ViewLayout { views: vec![sight.free().view()] };
         let whole = renderer.sightlines(&trail, &record, &free, &style).unwrap();
         let before = [x - f64::from(sight.tile().x), y - f64::from(sight.tile().y)];
         let factor = f64::from(SIZE.1) / f64::from(sight.tile().height);

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::playback::{Playback, Source};
 use crate::run::PROGRAM;
 use film::{FilmKind, png};
-use rendering::{Gpu, Layout, Renderer, Style};
+use rendering::{Gpu, Renderer, Style, ViewLayout};
 use report::{Case, Film, Job, Ran, Report, Shot, add_picture, find};
 use vocabulary::FleetInfo;
 
@@ -109,16 +109,16 @@ pub(super) fn draw(
 }
 
 /// The view of the scene; the paper's is the snake's.
-fn layout(show: &Show, fleet: &FleetInfo) -> Result<Layout, Failure> {
+fn layout(show: &Show, fleet: &FleetInfo) -> Result<ViewLayout, Failure> {
     let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
     let view = if show.case == Case::Own { show.job.scene.views.default.as_str() } else { "snake" };
-    Ok(Layout::parse(view, &names)?)
+    Ok(ViewLayout::parse(view, &names)?)
 }
 
 fn picture(
     show: &Show,
     (stem, time): (&str, f64),
-    (gpu, fleet, layout): (&Gpu, &FleetInfo, &Layout),
+    (gpu, fleet, layout): (&Gpu, &FleetInfo, &ViewLayout),
     playback: &mut Playback,
     runs: &[Ran],
     report: &mut Report,

@@ -98,7 +98,7 @@ fn menu(ui: &mut Ui, name: &str, robot: usize, out: &mut Vec<Action>) {
         ui.close();
     }
     if ui.button("See through its camera").clicked() {
-        out.push(Action::View(format!("camera:{name}")));
+        out.push(Action::Viewpoint(format!("camera:{name}")));
         ui.close();
     }
     if ui.button("Remove").clicked() {

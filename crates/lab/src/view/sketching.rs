@@ -3,7 +3,9 @@
 use super::holding;
 use crate::desk::{Choice, Desk};
 use crate::session::forecast::{Forecast, Place, Trouble};
-use rendering::{Area, Arrow, Ghost, Ring, Sketch, Spot, Stroke, set_points};
+use rendering::{
+    AnnotationArrow, AnnotationStroke, Annotations, Ghost, Ring, ShadedArea, StrokePoint, set_points,
+};
 use std::sync::Arc;
 use vocabulary::{FleetInfo, StepRecord};
 
@@ -30,8 +32,8 @@ pub struct Hand {
 }
 
 /// The sketch of what is looked at.
-pub fn sketch(desk: &Desk, record: &StepRecord, hand: &Hand) -> Sketch {
-    let mut sketch = Sketch::default();
+pub fn sketch(desk: &Desk, record: &StepRecord, hand: &Hand) -> Annotations {
+    let mut sketch = Annotations::default();
     let Some(history) = &desk.history else { return sketch };
     let fleet = Arc::clone(history.fleet());
     let colours = rendering::robot_colours(&fleet);
@@ -48,22 +50,23 @@ pub fn sketch(desk: &Desk, record: &StepRecord, hand: &Hand) -> Sketch {
         && let Some(state) = record.snapshot.robots.get(robot)
     {
         let from = [state.motion.pose.x, state.motion.pose.y];
-        sketch.arrows.push(Arrow { from, to, gaps: [0.3, 0.0], colour: ACCENT, alpha: 0.95 });
+        sketch.arrows.push(AnnotationArrow { from, to, gaps: [0.3, 0.0], colour: ACCENT, alpha: 0.95 });
     }
     sketch
 }
 
 /// Ground that the follower of an edge cannot hold.
-fn refused(desk: &Desk, edge: usize, record: &StepRecord, sketch: &mut Sketch) {
+fn refused(desk: &Desk, edge: usize, record: &StepRecord, sketch: &mut Annotations) {
     let Some((leader, field)) = holding::field(desk, edge, record) else { return };
     let half = 0.5 * (field.side - 1) as f64 * field.step;
-    let area = Area::field([-half; 2], field.step, field.side, &scaled(&field.alphas, 0.34), REFUSED, true);
+    let area =
+        ShadedArea::field([-half; 2], field.step, field.side, &scaled(&field.alphas, 0.34), REFUSED, true);
     // The field is the leader's; rows run ahead, columns to the left.
     let turned = area.corners.into_iter().map(|spot| {
         let [left, ahead] = spot.at;
-        Spot { at: leader.world_from_body(ahead, left), ..spot }
+        StrokePoint { at: leader.world_from_body(ahead, left), ..spot }
     });
-    sketch.areas.push(Area { corners: turned.collect(), hatched: true });
+    sketch.areas.push(ShadedArea { corners: turned.collect(), hatched: true });
 }
 
 fn scaled(alphas: &[f32], by: f32) -> Vec<f32> {
@@ -71,7 +74,7 @@ fn scaled(alphas: &[f32], by: f32) -> Vec<f32> {
 }
 
 /// Paths of branches that are not looked at.
-fn others(desk: &Desk, colours: &[[f32; 3]], sketch: &mut Sketch) {
+fn others(desk: &Desk, colours: &[[f32; 3]], sketch: &mut Annotations) {
     let Some(history) = &desk.history else { return };
     for branch in (0..history.branches()).filter(|branch| *branch != desk.branch) {
         let from = desk.branches.get(branch).and_then(|face| face.parent).map_or(0.0, |(_, time)| time);
@@ -81,9 +84,13 @@ fn others(desk: &Desk, colours: &[[f32; 3]], sketch: &mut Sketch) {
         for (robot, colour) in colours.iter().enumerate() {
             let spots = records.iter().filter_map(|record| {
                 let pose = record.snapshot.robots.get(robot)?.motion.pose;
-                Some(Spot { at: [pose.x, pose.y], colour: light(*colour), alpha: 0.55 })
+                Some(StrokePoint { at: [pose.x, pose.y], colour: light(*colour), alpha: 0.55 })
             });
-            sketch.strokes.push(Stroke { dashed: true, pixels: 1.6, ..Stroke::new(spots.collect()) });
+            sketch.strokes.push(AnnotationStroke {
+                dashed: true,
+                pixels: 1.6,
+                ..AnnotationStroke::new(spots.collect())
+            });
         }
         if let Some(record) = history.at(branch, desk.time()) {
             let ghost = |(robot, state): (usize, &vocabulary::RobotState)| Ghost {
@@ -97,7 +104,7 @@ fn others(desk: &Desk, colours: &[[f32; 3]], sketch: &mut Sketch) {
 }
 
 /// The next seconds, and where the formation will be.
-fn future(forecast: &Forecast, colours: &[[f32; 3]], fleet: &FleetInfo, sketch: &mut Sketch) {
+fn future(forecast: &Forecast, colours: &[[f32; 3]], fleet: &FleetInfo, sketch: &mut Annotations) {
     for (robot, path) in forecast.paths.iter().enumerate() {
         // Paler than the ribbons, which are the past.
         let colour = light(colours.get(robot).copied().unwrap_or([0.6; 3])).map(|c| 0.4 + 0.6 * c);
@@ -106,15 +113,15 @@ fn future(forecast: &Forecast, colours: &[[f32; 3]], fleet: &FleetInfo, sketch: 
             let share = k as f32 / last;
             let fade = 0.95 * (1.0 - 0.75 * share * share);
             match place.trouble {
-                Trouble::None => Spot { at: place.at, colour, alpha: fade },
+                Trouble::None => StrokePoint { at: place.at, colour, alpha: fade },
                 Trouble::Limited | Trouble::Contact => {
-                    Spot { at: place.at, colour: ALARM, alpha: fade.max(0.8) }
+                    StrokePoint { at: place.at, colour: ALARM, alpha: fade.max(0.8) }
                 }
             }
         };
         let spots = path.iter().enumerate().map(spot).collect();
         let pixels = if path.iter().any(|p| p.trouble == Trouble::Contact) { 3.0 } else { 2.2 };
-        sketch.strokes.push(Stroke { pixels, ..Stroke::new(spots) });
+        sketch.strokes.push(AnnotationStroke { pixels, ..AnnotationStroke::new(spots) });
     }
     // Where they stand in the end; in a crowd the paths say enough.
     if fleet.robots.len() <= 30 {
@@ -129,7 +136,7 @@ fn handles(
     fleet: &FleetInfo,
     (record, colours): (&StepRecord, &[[f32; 3]]),
     hand: &Hand,
-    sketch: &mut Sketch,
+    sketch: &mut Annotations,
 ) {
     for (edge, at) in set_points(fleet, record).into_iter().enumerate() {
         let Some(at) = at else { continue };

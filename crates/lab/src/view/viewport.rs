@@ -8,7 +8,7 @@ use crate::desk::{Desk, Tool};
 use crate::tidy::fixed;
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, TextureId, Ui, Vec2};
 use eframe::egui_wgpu::RenderState;
-use rendering::{Error, Gpu, Layout, Renderer, Sightline, Style, Trail, View};
+use rendering::{Error, Gpu, Renderer, Sightline, Style, Trail, ViewLayout, Viewpoint};
 use std::sync::Arc;
 use vocabulary::{FleetInfo, StepRecord};
 
@@ -56,7 +56,7 @@ impl Stage {
         &mut self,
         gpu: &Gpu,
         (trail, record): (&Trail, &StepRecord),
-        (layout, style): (&Layout, &Style),
+        (layout, style): (&ViewLayout, &Style),
         [title, caption]: &[String; 2],
     ) -> Result<(), Error> {
         let (width, height) = self.renderer.size();
@@ -83,7 +83,7 @@ pub(super) struct Shown {
     words: [String; 2],
     time: f64,
     goals: Vec<[f64; 2]>,
-    layout: Layout,
+    layout: ViewLayout,
     style: Style,
     size: (u32, u32),
 }
@@ -137,12 +137,12 @@ impl Viewport {
     }
 
     /// Views of the picture.
-    pub fn layout(&self, fleet: &FleetInfo, record: &StepRecord) -> Layout {
+    pub fn layout(&self, fleet: &FleetInfo, record: &StepRecord) -> ViewLayout {
         if let Some(held) = &self.held {
-            return Layout::single(held.view(&record.snapshot));
+            return ViewLayout::single(held.view(&record.snapshot));
         }
         let names: Vec<String> = fleet.robots.iter().map(|member| member.name.clone()).collect();
-        Layout::parse(&self.view, &names).unwrap_or_else(|_| Layout::single(View::Snake))
+        ViewLayout::parse(&self.view, &names).unwrap_or_else(|_| ViewLayout::single(Viewpoint::Snake))
     }
 
     /// The style of a picture with all that explains it.

@@ -1,16 +1,16 @@
 //! Paint on the ground, in the order in which it lies there.
 
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, Stream, developed, shader};
+use super::{Canvas, Recipe, StreamBuffer, developed, shader};
 use bytemuck::{Pod, Zeroable};
 use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "decal");
 
-/// Mirrors `Corner` of the shader.
+/// Mirrors `DecalVertex` of the shader.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Corner {
+pub(crate) struct DecalVertex {
     pub(crate) position: [f32; 3],
     pub(crate) kind: [f32; 2],
     pub(crate) shape: [f32; 2],
@@ -19,7 +19,7 @@ pub(crate) struct Corner {
 
 /// How a decal's edge is formed; see `coverage` in the shader.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Form {
+pub(crate) enum DecalForm {
     /// Full between its long sides.
     Solid,
     /// A ring whose hole has this share of the radius.
@@ -28,9 +28,9 @@ pub(crate) enum Form {
     Blob,
     /// A box that is full up to this share of its sides.
     SoftBox(f32),
-    /// As dark as the shadow map says: for corners of [`Layer::Shadow`].
+    /// As dark as the shadow map says: for corners of [`DecalLayer::Shadow`].
     Shadow,
-    /// A band along which dashes fill this share of every unit: for corners of [`Layer::Sketch`], as are the next.
+    /// A band along which dashes fill this share of every unit: for corners of [`DecalLayer::Annotations`], as are the next.
     Dashes(f32),
     /// Stripes that fill this share of every unit.
     Stripes(f32),
@@ -40,18 +40,18 @@ pub(crate) enum Form {
 
 /// What corners a view has, in the order in which they are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Layer {
+pub(crate) enum DecalLayer {
     /// Paint on the ground.
     Paint,
     /// What somebody draws there to explain.
-    Sketch,
+    Annotations,
     /// Cast shadows over it.
     Shadow,
     /// What shows through the robots.
     Over,
 }
 
-impl Form {
+impl DecalForm {
     pub(crate) fn code(self) -> [f32; 2] {
         match self {
             Self::Solid | Self::Shadow => [0.0, 0.0],
@@ -74,7 +74,7 @@ pub(crate) struct DecalPass {
     /// Apart from paint, which has fewer forms to tell apart; monochrome cameras see none.
     sketch: Option<wgpu::RenderPipeline>,
     shadow: wgpu::RenderPipeline,
-    corners: Stream,
+    corners: StreamBuffer,
 }
 
 impl DecalPass {
@@ -88,7 +88,7 @@ impl DecalPass {
             source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout],
             buffers: &[VertexBufferLayout {
-                array_stride: size_of::<Corner>() as u64,
+                array_stride: size_of::<DecalVertex>() as u64,
                 step_mode: VertexStepMode::Vertex,
                 attributes: &Self::ATTRIBUTES,
             }],
@@ -106,21 +106,26 @@ impl DecalPass {
             sketch: (!canvas.mono)
                 .then(|| Recipe { label: "sketch", entry: "sketch", ..paint }.build(device)),
             shadow: Recipe { label: "shadow decal", entry: shadow, ..paint }.build(device),
-            corners: Stream::new(device, "decals", wgpu::BufferUsages::VERTEX),
+            corners: StreamBuffer::new(device, "decals", wgpu::BufferUsages::VERTEX),
         }
     }
 
-    pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, corners: &[Corner]) {
+    pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, corners: &[DecalVertex]) {
         self.corners.fill(device, queue, bytemuck::cast_slice(corners));
     }
 
     /// Draws corners of one view.
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, corners: &std::ops::Range<u32>, layer: Layer) {
+    pub(crate) fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        corners: &std::ops::Range<u32>,
+        layer: DecalLayer,
+    ) {
         let pipeline = match layer {
-            Layer::Paint => Some(&self.paint),
-            Layer::Sketch => self.sketch.as_ref(),
-            Layer::Shadow => Some(&self.shadow),
-            Layer::Over => Some(&self.over),
+            DecalLayer::Paint => Some(&self.paint),
+            DecalLayer::Annotations => self.sketch.as_ref(),
+            DecalLayer::Shadow => Some(&self.shadow),
+            DecalLayer::Over => Some(&self.over),
         };
         if let (Some(pipeline), false) = (pipeline, corners.is_empty()) {
             pass.set_pipeline(pipeline);

@@ -175,13 +175,13 @@ impl Recipe<'_> {
 
 /// A buffer that is filled anew for every picture and grows as needed.
 #[derive(Debug)]
-pub(crate) struct Stream {
+pub(crate) struct StreamBuffer {
     buffer: Buffer,
     usage: BufferUsages,
     label: &'static str,
 }
 
-impl Stream {
+impl StreamBuffer {
     pub(crate) fn new(device: &Device, label: &'static str, usage: BufferUsages) -> Self {
         let usage = usage | BufferUsages::COPY_DST;
         Self { buffer: Self::make(device, label, usage, 4096), usage, label }
@@ -218,8 +218,8 @@ pub(crate) fn constant(
     label: &'static str,
     usage: BufferUsages,
     bytes: &[u8],
-) -> Stream {
-    let mut stream = Stream::new(device, label, usage);
+) -> StreamBuffer {
+    let mut stream = StreamBuffer::new(device, label, usage);
     stream.fill(device, queue, bytes);
     stream
 }

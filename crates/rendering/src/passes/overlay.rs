@@ -1,16 +1,16 @@
 //! Flat shapes in front of the picture: panels, curves, marks.
 
-use super::{Canvas, Recipe, Stream, shader};
+use super::{Canvas, Recipe, StreamBuffer, shader};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec2;
 use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
 
 pub(crate) const SHADER: &str = shader!("overlay");
 
-/// Mirrors `Corner` of the shader.
+/// Mirrors `OverlayVertex` of the shader.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Corner {
+pub(crate) struct OverlayVertex {
     pub(crate) position: [f32; 2],
     pub(crate) offset: [f32; 2],
     pub(crate) half_size: [f32; 3],
@@ -20,7 +20,7 @@ pub(crate) struct Corner {
 /// Shapes of a picture, in pixels from its upper left.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Shapes {
-    pub(crate) corners: Vec<Corner>,
+    pub(crate) corners: Vec<OverlayVertex>,
 }
 
 impl Shapes {
@@ -43,7 +43,7 @@ impl Shapes {
         let reach = half + Vec2::ONE;
         for (u, v) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
             let offset = reach * Vec2::new(u, v);
-            self.corners.push(Corner {
+            self.corners.push(OverlayVertex {
                 position: (middle + along * offset.x + across * offset.y).to_array(),
                 offset: offset.to_array(),
                 half_size: [half.x, half.y, radius],
@@ -57,7 +57,7 @@ impl Shapes {
 #[derive(Debug)]
 pub(crate) struct OverlayPass {
     pipeline: wgpu::RenderPipeline,
-    corners: Stream,
+    corners: StreamBuffer,
     screen: wgpu::Buffer,
     group: wgpu::BindGroup,
 }
@@ -96,7 +96,7 @@ impl OverlayPass {
             source: SHADER,
             groups: &[&layout],
             buffers: &[VertexBufferLayout {
-                array_stride: size_of::<Corner>() as u64,
+                array_stride: size_of::<OverlayVertex>() as u64,
                 step_mode: VertexStepMode::Vertex,
                 attributes: &Self::ATTRIBUTES,
             }],
@@ -104,7 +104,12 @@ impl OverlayPass {
             ..Default::default()
         }
         .build(device);
-        Self { pipeline, corners: Stream::new(device, "overlay", wgpu::BufferUsages::VERTEX), screen, group }
+        Self {
+            pipeline,
+            corners: StreamBuffer::new(device, "overlay", wgpu::BufferUsages::VERTEX),
+            screen,
+            group,
+        }
     }
 
     pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, size: [f32; 2], shapes: &Shapes) {

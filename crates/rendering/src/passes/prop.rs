@@ -3,7 +3,7 @@
 use super::asphalt::Asphalt;
 use super::frame::FrameGroups;
 use super::robot::{Instance, Models};
-use super::{Canvas, Recipe, Stream, constant, developed, shader};
+use super::{Canvas, Recipe, StreamBuffer, constant, developed, shader};
 use crate::model::solids;
 use std::ops::Range;
 use wgpu::{Device, Queue};
@@ -12,7 +12,7 @@ pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/robot",
 
 /// How a prop is painted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Look {
+pub(crate) enum PropAppearance {
     Concrete,
     Timber,
     Machine,
@@ -21,7 +21,7 @@ pub(crate) enum Look {
     Ramp,
 }
 
-impl Look {
+impl PropAppearance {
     /// The shader's entry point of each look and the index of its solid, in the order of the copies.
     const ALL: [(&str, usize); 6] =
         [("concrete", 0), ("timber", 0), ("machine", 0), ("pillar", 1), ("cone", 2), ("ramp", 3)];
@@ -33,9 +33,9 @@ pub(crate) struct Copies {
     /// Where they begin among all that are on the device.
     pub(crate) first: u32,
     /// By look.
-    pub(crate) others: [Vec<Instance>; Look::ALL.len()],
+    pub(crate) others: [Vec<Instance>; PropAppearance::ALL.len()],
     /// What robots drive on, in the order of the floor's decks.
-    pub(crate) decks: Vec<(Look, Instance)>,
+    pub(crate) decks: Vec<(PropAppearance, Instance)>,
 }
 
 impl Copies {
@@ -65,10 +65,10 @@ pub(crate) struct PropPass {
     firm: Vec<wgpu::RenderPipeline>,
     /// Whether what is seen through leaves samples to what comes later.
     coverage: bool,
-    vertices: Stream,
-    indices: Stream,
+    vertices: StreamBuffer,
+    indices: StreamBuffer,
     solids: Vec<Range<u32>>,
-    instances: Stream,
+    instances: StreamBuffer,
 }
 
 impl PropPass {
@@ -105,7 +105,7 @@ impl PropPass {
         };
         let firm = Recipe { label: "deck", colour: Some((canvas, None)), coverage: false, ..recipe };
         let build = |recipe: Recipe<'_>| {
-            Look::ALL.map(|(entry, _)| Recipe { entry, ..recipe }.build(device)).to_vec()
+            PropAppearance::ALL.map(|(entry, _)| Recipe { entry, ..recipe }.build(device)).to_vec()
         };
         Self {
             pipelines: build(recipe),
@@ -114,7 +114,7 @@ impl PropPass {
             vertices: constant(device, queue, "prop corners", wgpu::BufferUsages::VERTEX, corners),
             indices: constant(device, queue, "prop triangles", wgpu::BufferUsages::INDEX, triangles),
             solids: solids.to_vec(),
-            instances: Stream::new(device, "props", wgpu::BufferUsages::VERTEX),
+            instances: StreamBuffer::new(device, "props", wgpu::BufferUsages::VERTEX),
         }
     }
 
@@ -198,7 +198,7 @@ impl PropPass {
         prepare: impl Fn(&mut wgpu::RenderPass<'_>, usize),
     ) {
         let mut first = copies.first;
-        for (look, ((_, solid), copies)) in Look::ALL.iter().zip(&copies.others).enumerate() {
+        for (look, ((_, solid), copies)) in PropAppearance::ALL.iter().zip(&copies.others).enumerate() {
             let last = first + copies.len() as u32;
             if last > first {
                 prepare(pass, look);
@@ -219,7 +219,7 @@ impl PropPass {
         for (k, (look, _)) in copies.decks.iter().enumerate() {
             if prepare(pass, k) {
                 let at = (first + k) as u32;
-                pass.draw_indexed(self.solids[Look::ALL[*look as usize].1].clone(), 0, at..at + 1);
+                pass.draw_indexed(self.solids[PropAppearance::ALL[*look as usize].1].clone(), 0, at..at + 1);
             }
         }
     }

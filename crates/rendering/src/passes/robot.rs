@@ -1,7 +1,7 @@
 //! Robots and their ghosts: a few models, drawn as often as there are copies.
 
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, Stream, constant, developed, mipped, shader, shrink, textured};
+use super::{Canvas, Recipe, StreamBuffer, constant, developed, mipped, shader, shrink, textured};
 use crate::model::{self, Build, Detail, Vertex};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
@@ -50,7 +50,7 @@ impl Crowd {
 
 /// Where the meshes of a squad are.
 #[derive(Debug)]
-struct Kit {
+struct MeshRanges {
     body: Range<u32>,
     faces: Range<u32>,
     wheel: Range<u32>,
@@ -60,11 +60,11 @@ struct Kit {
 /// Models on the device, and the copies of this picture.
 #[derive(Debug)]
 pub(crate) struct Models {
-    vertices: Stream,
-    indices: Stream,
-    kits: Vec<Kit>,
+    vertices: StreamBuffer,
+    indices: StreamBuffer,
+    kits: Vec<MeshRanges>,
     camera: Range<u32>,
-    instances: Stream,
+    instances: StreamBuffer,
 }
 
 impl Models {
@@ -99,7 +99,7 @@ impl Models {
         };
         let wheels = [false, true].map(|lugs| add(model::wheel(detail, lugs)));
         let camera = add(model::camera(detail));
-        let kit = |build: &Build| Kit {
+        let kit = |build: &Build| MeshRanges {
             body: add(model::body(detail, build)),
             faces: add(model::faces(build)),
             wheel: wheels[usize::from(build.lugs())].clone(),
@@ -112,7 +112,7 @@ impl Models {
             indices: constant(device, queue, "triangles", wgpu::BufferUsages::INDEX, triangles),
             kits,
             camera,
-            instances: Stream::new(device, "instances", wgpu::BufferUsages::VERTEX),
+            instances: StreamBuffer::new(device, "instances", wgpu::BufferUsages::VERTEX),
         }
     }
 

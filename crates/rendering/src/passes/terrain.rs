@@ -2,7 +2,7 @@
 
 use super::asphalt::Asphalt;
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, Stream, constant, developed, shader};
+use super::{Canvas, Recipe, StreamBuffer, constant, developed, shader};
 use crate::camera::Camera;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -15,10 +15,10 @@ pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/asphalt
 /// How far the ground goes on beyond the field, m: to where the view ends.
 const BEYOND: f64 = 560.0;
 
-/// Mirrors `Point` of the shader.
+/// Mirrors `TerrainVertex` of the shader.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Point {
+pub(crate) struct TerrainVertex {
     pub(crate) position: [f32; 3],
     pub(crate) normal: [f32; 3],
     pub(crate) grip: f32,
@@ -29,8 +29,8 @@ pub(crate) struct Point {
 pub(crate) struct TerrainPass {
     dry: wgpu::RenderPipeline,
     slick: wgpu::RenderPipeline,
-    points: Stream,
-    triangles: Stream,
+    points: StreamBuffer,
+    triangles: StreamBuffer,
     /// Those that grip come first.
     pieces: Vec<Piece>,
 }
@@ -63,7 +63,7 @@ impl TerrainPass {
             source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout, &asphalt.layout],
             buffers: &[VertexBufferLayout {
-                array_stride: size_of::<Point>() as u64,
+                array_stride: size_of::<TerrainVertex>() as u64,
                 step_mode: VertexStepMode::Vertex,
                 attributes: &Self::ATTRIBUTES,
             }],
@@ -114,7 +114,7 @@ impl TerrainPass {
 const PIECE: f64 = 12.0;
 
 /// Triangles by the piece they belong to, those that grip before those that do not, and the pieces.
-fn parted(triangles: &[u32], points: &[Point], terrain: &Terrain) -> (Vec<u32>, Vec<Piece>) {
+fn parted(triangles: &[u32], points: &[TerrainVertex], terrain: &Terrain) -> (Vec<u32>, Vec<Piece>) {
     let corner = |k: u32| DVec3::from_array(points[k as usize].position.map(f64::from));
     let key = |t: &[u32]| {
         let slick = t.iter().any(|k| points[*k as usize].grip < 1.0);
@@ -144,7 +144,7 @@ fn parted(triangles: &[u32], points: &[Point], terrain: &Terrain) -> (Vec<u32>, 
 }
 
 /// Points relative to the terrain's origin, one more around the field on all sides, and triangles between them.
-fn mesh(terrain: &Terrain) -> (Vec<Point>, Vec<u32>) {
+fn mesh(terrain: &Terrain) -> (Vec<TerrainVertex>, Vec<u32>) {
     let (columns, rows) = (terrain.columns + 2, terrain.rows + 2);
     let mut points = Vec::with_capacity(columns * rows);
     for row in 0..rows {
@@ -160,7 +160,7 @@ fn mesh(terrain: &Terrain) -> (Vec<Point>, Vec<u32>) {
 const MOST_MERGED: usize = 64;
 
 /// Two triangles for every cell; level cells that grip alike are drawn together.
-fn faces(points: &[Point], columns: usize, rows: usize) -> Vec<u32> {
+fn faces(points: &[TerrainVertex], columns: usize, rows: usize) -> Vec<u32> {
     let wide = columns - 1;
     let mut done = vec![false; wide * (rows - 1)];
     let mut triangles = Vec::new();
@@ -194,14 +194,14 @@ fn faces(points: &[Point], columns: usize, rows: usize) -> Vec<u32> {
 }
 
 /// Whether a cell is level and grips like the first point of another.
-fn level(points: &[Point], columns: usize, i: usize, j: usize, other: [usize; 2]) -> bool {
+fn level(points: &[TerrainVertex], columns: usize, i: usize, j: usize, other: [usize; 2]) -> bool {
     let like = points[other[1] * columns + other[0]];
     let corners = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)].map(|(i, j)| points[j * columns + i]);
     corners.iter().all(|p| p.normal[2] == 1.0 && p.position[2] == like.position[2] && p.grip == like.grip)
 }
 
 /// A point by its place in the grid that is one wider than the field.
-fn point(terrain: &Terrain, column: usize, row: usize) -> Point {
+fn point(terrain: &Terrain, column: usize, row: usize) -> TerrainVertex {
     let held = |k: usize, count: usize| k.clamp(1, count) - 1;
     let (i, j) = (held(column, terrain.columns), held(row, terrain.rows));
     let height = |i: usize, j: usize| terrain.heights[j * terrain.columns + i];
@@ -219,7 +219,7 @@ fn point(terrain: &Terrain, column: usize, row: usize) -> Point {
     let normal = Vec3::new(-dx as f32, -dy as f32, 1.0).normalize();
     let place = [along(column, terrain.columns), along(row, terrain.rows), height(i, j)];
     let grip = terrain.grip.get(j * terrain.columns + i).copied().unwrap_or(1.0);
-    Point { position: place.map(|x| x as f32), normal: normal.to_array(), grip: grip as f32 }
+    TerrainVertex { position: place.map(|x| x as f32), normal: normal.to_array(), grip: grip as f32 }
 }
 
 #[cfg(test)]

@@ -94,7 +94,17 @@ fn vertices_are_the_shaders_vertices() {
     let props = module("prop");
     agree(&props, "Corner", corner.attributes, size_of::<Vertex>());
     agree(&props, "Instance", instance.attributes, size_of::<robot::Instance>());
-    agree(&module("terrain"), "Point", &terrain::TerrainPass::ATTRIBUTES, size_of::<terrain::Point>());
-    agree(&module("decal"), "Corner", &decal::DecalPass::ATTRIBUTES, size_of::<decal::Corner>());
-    agree(&module("overlay"), "Corner", &overlay::OverlayPass::ATTRIBUTES, size_of::<overlay::Corner>());
+    agree(
+        &module("terrain"),
+        "TerrainVertex",
+        &terrain::TerrainPass::ATTRIBUTES,
+        size_of::<terrain::TerrainVertex>(),
+    );
+    agree(&module("decal"), "DecalVertex", &decal::DecalPass::ATTRIBUTES, size_of::<decal::DecalVertex>());
+    agree(
+        &module("overlay"),
+        "OverlayVertex",
+        &overlay::OverlayPass::ATTRIBUTES,
+        size_of::<overlay::OverlayVertex>(),
+    );
 }

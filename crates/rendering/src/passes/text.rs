@@ -11,7 +11,7 @@ use wgpu::{Device, Queue, TextureFormat};
 
 /// A text in a picture.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Line {
+pub(crate) struct TextLine {
     pub(crate) text: String,
     /// Left end of the text and middle of its first line, pixels.
     pub(crate) at: [f32; 2],
@@ -68,7 +68,7 @@ impl TextPass {
         &mut self,
         (device, queue): (&Device, &Queue),
         size: [u32; 2],
-        lines: &[Line],
+        lines: &[TextLine],
         letters: &mut Letters,
     ) -> Result<(), glyphon::PrepareError> {
         for line in lines {
@@ -92,11 +92,11 @@ impl TextPass {
         &mut self,
         device: &Device,
         queue: &Queue,
-        lines: &[Line],
+        lines: &[TextLine],
         letters: &mut Letters,
     ) -> Result<(), glyphon::PrepareError> {
         let (fonts, shaped) = letters.parts();
-        let find = |line: &Line| shaped.find(&line.text, line.size, line.bold, line.block);
+        let find = |line: &TextLine| shaped.find(&line.text, line.size, line.bold, line.block);
         let mut areas = Vec::new();
         for line in lines {
             if let Some(buffer) = find(line) {
@@ -116,7 +116,7 @@ impl TextPass {
     }
 }
 
-fn area<'a>(line: &Line, buffer: &'a Buffer, shift: [f32; 2], colour: Rgb, alpha: f32) -> TextArea<'a> {
+fn area<'a>(line: &TextLine, buffer: &'a Buffer, shift: [f32; 2], colour: Rgb, alpha: f32) -> TextArea<'a> {
     let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;
     TextArea {
         buffer,
@@ -130,7 +130,7 @@ fn area<'a>(line: &Line, buffer: &'a Buffer, shift: [f32; 2], colour: Rgb, alpha
     }
 }
 
-fn halo<'a>(areas: &mut Vec<TextArea<'a>>, line: &Line, buffer: &'a Buffer) {
+fn halo<'a>(areas: &mut Vec<TextArea<'a>>, line: &TextLine, buffer: &'a Buffer) {
     let (strength, colour) = line.halo;
     if strength <= 0.0 {
         return;

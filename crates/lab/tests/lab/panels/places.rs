@@ -62,7 +62,7 @@ fn a_robot_dropped_on_another_follows_it() {
 fn a_robot_has_a_menu() {
     for (item, action) in [
         ("Follow with the camera", Action::Follow(Some(1))),
-        ("See through its camera", Action::View("camera:left".to_owned())),
+        ("See through its camera", Action::Viewpoint("camera:left".to_owned())),
         ("Remove", Action::RemoveRobot("left".to_owned())),
     ] {
         let mut panel = panel(desk(THREE, 5), formation::show);
