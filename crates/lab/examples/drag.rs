@@ -2,9 +2,9 @@
 //! work in the window and on the thread of the run, ms.
 
 use lab::action::Action;
-use lab::desk::Desk;
+use lab::app_state::AppState;
 use lab::session::branches::Branches;
-use lab::session::runner::{News, Order};
+use lab::session::runner::{RunEvent, RunRequest};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -14,29 +14,29 @@ fn main() -> Result<(), String> {
     let name = words.first().map_or("figure-eight-seven", String::as_str);
     let drags = words.get(1).and_then(|word| word.parse().ok()).unwrap_or(200);
     let shipped = scene::shipped(name).ok_or("no such scene")?;
-    let mut desk = Desk::new();
-    desk.open(shipped.text.to_owned(), None, Path::new("scene.toml"))?;
-    desk.orders.clear();
-    let scene = Arc::clone(desk.scene().ok_or("no scene")?);
+    let mut app_state = AppState::new();
+    app_state.open(shipped.text.to_owned(), None, Path::new("scene.toml"))?;
+    app_state.requests.clear();
+    let scene = Arc::clone(app_state.scene().ok_or("no scene")?);
     let mut run = Branches::open(scene, |_| ()).map_err(|error| error.to_string())?;
     let simulation = run.list()[0].simulation();
     let (fleet, period) = (Arc::new(simulation.fleet().clone()), simulation.period());
-    desk.hear(News::Opened { fleet, period });
+    app_state.handle_event(RunEvent::Opened { fleet, period });
     let (mut window, mut thread) = (Vec::new(), Vec::new());
     for drag in 0..drags {
         let record = run.advance(0).ok_or("the run has ended")?.clone();
-        desk.hear(News::Moments(0, vec![record]));
+        app_state.handle_event(RunEvent::Records(0, vec![record]));
         let distance = 2.0 + 0.001 * f64::from(drag);
         let began = Instant::now();
-        desk.act(&Action::SetPoint { edge: 0, distance, bearing: 2.3 });
+        app_state.act(&Action::SetPoint { edge: 0, distance, bearing: 2.3 });
         window.push(began.elapsed().as_secs_f64());
-        for order in std::mem::take(&mut desk.orders) {
-            if let Order::Change(checked) = order {
+        for request in std::mem::take(&mut app_state.requests) {
+            if let RunRequest::Change(checked) = request {
                 let began = Instant::now();
                 let change = run.change(0, &checked)?;
                 drop(checked);
                 thread.push(began.elapsed().as_secs_f64());
-                desk.hear(News::Changed(0, change.ok_or("nothing has changed")?));
+                app_state.handle_event(RunEvent::Changed(0, change.ok_or("nothing has changed")?));
             }
         }
     }

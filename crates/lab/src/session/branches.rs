@@ -33,16 +33,16 @@ pub struct Branch {
     /// Branch and control sample at which it leaves its parent.
     pub parent: Option<(usize, u64)>,
     /// What was changed, from time 0 on, in the order of the samples.
-    pub changes: Vec<Change>,
+    pub changes: Vec<BranchChange>,
     simulation: Simulation,
     digest: Digest,
-    marks: Vec<Rc<Mark>>,
+    marks: Vec<Rc<SavedState>>,
     mark_every: u64,
 }
 
 /// Parameters that hold from a control sample on.
 #[derive(Debug, Clone)]
-pub struct Change {
+pub struct BranchChange {
     /// The first sample that is decided with them.
     pub sample: u64,
     /// s.
@@ -54,7 +54,7 @@ pub struct Change {
 }
 
 /// A branch as it stood before a sample.
-struct Mark {
+struct SavedState {
     simulation: Simulation,
     digest: Digest,
 }
@@ -69,7 +69,7 @@ impl Branches {
         // A laboratory runs on for as long as somebody looks.
         simulation.extend_to(FOR_EVER);
         ready(&mut simulation);
-        let mark = Rc::new(Mark { simulation: simulation.save(), digest: Digest::default() });
+        let mark = Rc::new(SavedState { simulation: simulation.save(), digest: Digest::default() });
         let mark_every = (MARK_EVERY / simulation.period()).ceil().max(1.0) as u64;
         let trunk = Branch {
             name: "main".to_owned(),
@@ -98,7 +98,7 @@ impl Branches {
     ///
     /// # Errors
     /// What of the scene cannot change while a run goes, in words.
-    pub fn change(&mut self, branch: usize, checked: &CheckedScene) -> Result<Option<Change>, String> {
+    pub fn change(&mut self, branch: usize, checked: &CheckedScene) -> Result<Option<BranchChange>, String> {
         let base = Arc::clone(&self.scene);
         match self.list.get_mut(branch) {
             Some(branch) => branch.change(&base, checked),
@@ -125,7 +125,7 @@ impl Branch {
     }
 
     fn mark(&mut self) {
-        let mark = Mark { simulation: self.simulation.save(), digest: self.digest.clone() };
+        let mark = SavedState { simulation: self.simulation.save(), digest: self.digest.clone() };
         self.marks.push(Rc::new(mark));
         if self.marks.len() > MOST_MARKS {
             self.mark_every *= 2;
@@ -135,19 +135,20 @@ impl Branch {
     }
 
     /// Takes the parameters of `scene`; what of them is new. Changes before the same sample become one.
-    fn change(&mut self, base: &Arc<Scene>, checked: &CheckedScene) -> Result<Option<Change>, String> {
+    fn change(&mut self, base: &Arc<Scene>, checked: &CheckedScene) -> Result<Option<BranchChange>, String> {
         let sample = self.simulation.sample();
         let earlier = self.changes.partition_point(|change| change.sample < sample);
         let again = earlier < self.changes.len();
         let before = self.changes[..earlier].last().map_or(base, |last| &last.scene);
         let set = checked.set_from(before).map_err(|standing| standing.join("\n"))?;
         let scene = Arc::clone(checked.scene());
-        let change = Change { sample, time: sample as f64 * self.simulation.period(), scene, set };
+        let change = BranchChange { sample, time: sample as f64 * self.simulation.period(), scene, set };
         let new = (!change.set.is_empty()).then(|| change.clone());
         if base.changes.is_empty() {
             self.simulation.apply_parameters(checked.setup());
         } else {
-            let changes: Vec<Change> = self.changes[..earlier].iter().cloned().chain(new.clone()).collect();
+            let changes: Vec<BranchChange> =
+                self.changes[..earlier].iter().cloned().chain(new.clone()).collect();
             self.simulation.reschedule(&planned(base, &changes)?);
         }
         self.changes.truncate(earlier);
@@ -197,7 +198,7 @@ impl Branch {
 }
 
 /// The run of a scene that has changes of its own, with those of a branch among them: whichever is later holds.
-fn planned(base: &Scene, changes: &[Change]) -> Result<Setup, String> {
+fn planned(base: &Scene, changes: &[BranchChange]) -> Result<Setup, String> {
     let last = changes.last().map_or(0.0, |change| change.time);
     let text =
         script(&base.to_toml(), &base.changes, changes, base.time.duration.max(last + base.time.period))?;
@@ -213,7 +214,7 @@ fn planned(base: &Scene, changes: &[Change]) -> Result<Setup, String> {
 pub fn script(
     base: &str,
     own: &[scene::Change],
-    changes: &[Change],
+    changes: &[BranchChange],
     duration: f64,
 ) -> Result<String, String> {
     let mut text = SceneText::parse(base).map_err(|error| error.to_string())?;

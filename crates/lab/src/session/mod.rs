@@ -2,8 +2,9 @@
 
 pub mod branches;
 pub mod checked_scene;
-pub mod draft;
-pub mod forecast;
 pub mod history;
-pub mod orders;
+pub mod prediction;
+pub mod run_event;
+pub mod run_request;
 pub mod runner;
+pub mod scene_draft;

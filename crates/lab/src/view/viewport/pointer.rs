@@ -1,10 +1,10 @@
 //! The pointer in the view: what it is over, what it drags, what a click means.
 
-use super::camera::HeldCamera;
-use super::viewport::Viewport;
+use super::Viewport;
 use crate::action::Action;
-use crate::desk::{Choice, Desk, Tool};
+use crate::app_state::{AppState, Selection, Tool};
 use crate::tidy::snap;
+use crate::view::camera::HeldCamera;
 use eframe::egui::{self, Pos2, Rect, Ui, Vec2};
 use rendering::{Picked, Sightline, set_points};
 use std::sync::Arc;
@@ -29,7 +29,7 @@ impl Viewport {
         &mut self,
         ui: &Ui,
         response: &egui::Response,
-        (desk, record): (&Desk, &Arc<StepRecord>),
+        (app_state, record): (&AppState, &Arc<StepRecord>),
         rect: Rect,
         out: &mut Vec<Action>,
     ) {
@@ -37,12 +37,12 @@ impl Viewport {
         let pixel = |pos: Pos2| [pos.x - rect.left(), pos.y - rect.top()].map(|x| f64::from(x * pixels));
         let Some(sight) = self.stage.as_ref().and_then(|stage| stage.sight.clone()) else { return };
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        self.hover(desk, record, (&sight, pointer.map(pixel)), f64::from(pixels * GRASP));
+        self.hover(app_state, record, (&sight, pointer.map(pixel)), f64::from(pixels * GRASP));
         if response.drag_started() {
             // What was pressed counts, wherever the pointer is by now.
             let origin = ui.input(|input| input.pointer.press_origin());
-            self.hover(desk, record, (&sight, origin.or(pointer).map(pixel)), f64::from(pixels * GRASP));
-            self.begin_drag(ui, desk);
+            self.hover(app_state, record, (&sight, origin.or(pointer).map(pixel)), f64::from(pixels * GRASP));
+            self.begin_drag(ui, app_state);
         }
         let share = |delta: Vec2| [delta.x, delta.y].map(|x| f64::from(x / rect.height().max(1.0)));
         if let (Some(drag), Some(pos)) = (self.drag, released_at(ui).or(response.interact_pointer_pos())) {
@@ -64,7 +64,7 @@ impl Viewport {
                 }
                 Drag::SetPoint(edge) => {
                     if let Some(place) = sight.ground(pixel(pos)) {
-                        out.extend(dragged(ui, desk, record, edge, place));
+                        out.extend(dragged(ui, app_state, record, edge, place));
                     }
                 }
                 Drag::Connect(robot) => {
@@ -76,31 +76,33 @@ impl Viewport {
             self.end_drag(out);
         }
         self.wheel(ui, response, (&sight, pointer.map(pixel)), record);
-        self.clicks(response, desk, (&sight, pointer.map(pixel)), out);
+        self.clicks(response, app_state, (&sight, pointer.map(pixel)), out);
     }
 
     /// What is under the pointer.
     fn hover(
         &mut self,
-        desk: &Desk,
+        app_state: &AppState,
         record: &StepRecord,
         (sight, pixel): (&Sightline, Option<[f64; 2]>),
         grasp: f64,
     ) {
-        self.hand.over = None;
+        self.hand.dialog = None;
         self.hand.robot = None;
         let (Some(pixel), Some(stage)) = (pixel, &self.stage) else { return };
         let near = set_points(&stage.fleet, record).into_iter().enumerate().filter_map(|(edge, at)| {
             let [x, y] = sight.pixel_of_ground(at?)?;
             let away = (x - pixel[0]).hypot(y - pixel[1]);
-            let radius = super::sketching::RING / sight.metres_per_pixel([at?[0], at?[1], 0.0]).max(1e-9);
+            let radius =
+                crate::view::annotations::RING / sight.metres_per_pixel([at?[0], at?[1], 0.0]).max(1e-9);
             (away < grasp.max(0.8 * radius)).then_some((away, edge))
         });
         // The set point that is selected comes before those that it lies under.
-        let first =
-            |(away, edge): &(f64, usize)| if desk.chosen_edge() == Some(*edge) { 0.5 * away } else { *away };
-        if desk.tool == Tool::Hand {
-            self.hand.over = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
+        let first = |(away, edge): &(f64, usize)| {
+            if app_state.chosen_edge() == Some(*edge) { 0.5 * away } else { *away }
+        };
+        if app_state.tool == Tool::Hand {
+            self.hand.dialog = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
         }
         let robot = stage.renderer.pick(sight, record, pixel).into_iter().find_map(|picked| match picked {
             Picked::Robot(robot) => Some(robot),
@@ -109,12 +111,12 @@ impl Viewport {
         self.hand.robot = robot;
     }
 
-    fn begin_drag(&mut self, ui: &Ui, desk: &Desk) {
+    fn begin_drag(&mut self, ui: &Ui, app_state: &AppState) {
         let (right, shift) = ui.input(|input| {
             let pointer = &input.pointer;
             (pointer.secondary_down() || pointer.middle_down(), input.modifiers.shift)
         });
-        self.drag = Some(match (right, desk.tool, self.hand.robot, self.hand.over) {
+        self.drag = Some(match (right, app_state.tool, self.hand.robot, self.hand.dialog) {
             (true, ..) => Drag::Pan,
             (_, Tool::Connect, Some(robot), _) => Drag::Connect(robot),
             (_, Tool::Hand, _, Some(edge)) => Drag::SetPoint(edge),
@@ -130,7 +132,7 @@ impl Viewport {
         match self.drag.take() {
             Some(Drag::SetPoint(edge)) => {
                 out.push(Action::Rest);
-                out.push(Action::Choose(Choice::Edge(edge)));
+                out.push(Action::Choose(Selection::Edge(edge)));
             }
             Some(Drag::Connect(follower)) => {
                 if let Some(leader) = self.hand.robot.filter(|leader| *leader != follower) {
@@ -167,7 +169,7 @@ impl Viewport {
     fn clicks(
         &self,
         response: &egui::Response,
-        desk: &Desk,
+        app_state: &AppState,
         (sight, pixel): (&Sightline, Option<[f64; 2]>),
         out: &mut Vec<Action>,
     ) {
@@ -177,22 +179,22 @@ impl Viewport {
                 out.push(Action::Follow(Some(robot)));
             }
         } else if response.clicked() {
-            match (desk.tool, sight.ground(pixel)) {
+            match (app_state.tool, sight.ground(pixel)) {
                 (Tool::Pillar, Some(place)) => out.push(Action::AddProp("pillar", place)),
-                _ => out.extend(self.chosen(sight, desk, pixel)),
+                _ => out.extend(self.chosen(sight, app_state, pixel)),
             }
         }
     }
 
-    fn chosen(&self, sight: &Sightline, desk: &Desk, pixel: [f64; 2]) -> Option<Action> {
-        if let Some(edge) = self.hand.over {
-            return Some(Action::Choose(Choice::Edge(edge)));
+    fn chosen(&self, sight: &Sightline, app_state: &AppState, pixel: [f64; 2]) -> Option<Action> {
+        if let Some(edge) = self.hand.dialog {
+            return Some(Action::Choose(Selection::Edge(edge)));
         }
         let stage = self.stage.as_ref()?;
-        let picked = stage.renderer.pick(sight, &*desk.record()?, pixel).into_iter().next()?;
+        let picked = stage.renderer.pick(sight, &*app_state.record()?, pixel).into_iter().next()?;
         Some(Action::Choose(match picked {
-            Picked::Robot(robot) => Choice::Robot(robot),
-            Picked::Edge(edge) | Picked::SetPoint(edge) => Choice::Edge(edge),
+            Picked::Robot(robot) => Selection::Robot(robot),
+            Picked::Edge(edge) | Picked::SetPoint(edge) => Selection::Edge(edge),
         }))
     }
 
@@ -220,12 +222,18 @@ fn released_at(ui: &Ui) -> Option<Pos2> {
 }
 
 /// What a set point that is dragged to a place asks for.
-fn dragged(ui: &Ui, desk: &Desk, record: &StepRecord, edge: usize, place: [f64; 2]) -> Option<Action> {
-    let ends = *desk.history.as_ref()?.fleet().edges.get(edge)?;
+fn dragged(
+    ui: &Ui,
+    app_state: &AppState,
+    record: &StepRecord,
+    edge: usize,
+    place: [f64; 2],
+) -> Option<Action> {
+    let ends = *app_state.history.as_ref()?.fleet().edges.get(edge)?;
     let leader = record.snapshot.robots.get(ends.leader)?.motion.pose;
     let [dx, dy] = [place[0] - leader.x, place[1] - leader.y];
     let (distance, bearing) = (dx.hypot(dy), wrap(dy.atan2(dx) - leader.heading));
-    let least = desk.follower(edge).map_or(0.1, |(_, _, follow)| follow.law.distance_min);
+    let least = app_state.follower(edge).map_or(0.1, |(_, _, follow)| follow.law.distance_min);
     let (free, whole) = ui.input(|input| (input.modifiers.shift, input.modifiers.command));
     let [distance, bearing] = if free {
         [distance, bearing]
@@ -233,7 +241,7 @@ fn dragged(ui: &Ui, desk: &Desk, record: &StepRecord, edge: usize, place: [f64; 
         [snap(distance, STEPS[0]), wrap(snap(bearing.to_degrees(), STEPS[1]).to_radians())]
     };
     let distance = distance.max(least.max(0.1));
-    let [now_distance, now_bearing] = desk.set_point(edge)?;
+    let [now_distance, now_bearing] = app_state.set_point(edge)?;
     if (distance - now_distance).abs() < 1e-9 && wrap(bearing - now_bearing).abs() < 1e-9 {
         return None;
     }

@@ -1,19 +1,19 @@
 //! Ground on which the follower of an edge could not keep its place, for shading.
 
-use crate::desk::Desk;
-use crate::session::forecast::Forecast;
+use crate::app_state::AppState;
+use crate::session::prediction::Prediction;
 use formation::feasible::unholdable;
 use vocabulary::{Limits, Pose, StepRecord};
 
 /// Side of a square of the field, m, and squares on a side.
 const STEP: f64 = 0.25;
 const SIDE: usize = 49;
-/// Moments of the leader's way that are looked at.
+/// Records of the leader's way that are looked at.
 const GLANCES: usize = 12;
 
 /// Where a set point cannot be, in the leader's frame: a field of opacities from 0 to 1.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Field {
+pub struct FeasibilityMap {
     /// Row by row from behind to ahead, each from the right to the left; share of what stands against it.
     pub alphas: Vec<f32>,
     /// Squares on a side.
@@ -24,7 +24,7 @@ pub struct Field {
 
 /// What an edge asks of a place.
 #[derive(Debug, Clone)]
-pub struct Wanted {
+pub struct PlaceConstraints {
     /// The follower's limits.
     pub limits: Limits,
     /// Least distance of its law, m.
@@ -35,7 +35,7 @@ pub struct Wanted {
     pub others: Vec<([f64; 2], f64)>,
 }
 
-impl Wanted {
+impl PlaceConstraints {
     /// What stands against a place while the leader drives at one of `motions` (m/s, rad/s); `None` if nothing does.
     pub fn refuses(&self, place: [f64; 2], motions: &[(f64, f64)]) -> bool {
         self.others.iter().any(|(at, near)| (place[0] - at[0]).hypot(place[1] - at[1]) < *near)
@@ -56,12 +56,12 @@ impl Wanted {
 }
 
 /// The field around the leader of `edge`.
-pub fn field(desk: &Desk, edge: usize, record: &StepRecord) -> Option<(Pose, Field)> {
-    let history = desk.history.as_ref()?;
+pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(Pose, FeasibilityMap)> {
+    let history = app_state.history.as_ref()?;
     let fleet = history.fleet();
     let ends = *fleet.edges.get(edge)?;
-    let (robot, _, follow) = desk.follower(edge)?;
-    let scene = desk.scene_now()?;
+    let (robot, _, follow) = app_state.follower(edge)?;
+    let scene = app_state.scene_now()?;
     let vehicle = &scene.robots.get(robot)?.vehicle;
     let leader = record.snapshot.robots.get(ends.leader)?;
     let looks = follow.sensing.kind != scene::SensingKind::Truth;
@@ -78,26 +78,26 @@ pub fn field(desk: &Desk, edge: usize, record: &StepRecord) -> Option<(Pose, Fie
         let [distance, bearing] = record.edges.get(k)?.set_point;
         Some(([distance * bearing.cos(), distance * bearing.sin()], reach))
     });
-    let wanted = Wanted {
+    let wanted = PlaceConstraints {
         limits: vehicle.limits(),
         distance_min: follow.law.distance_min,
         sight: looks.then_some([far, scene.vision.pan_max + half_picture]),
         others: places.chain([([0.0; 2], reach)]).collect(),
     };
     let motions =
-        motions(desk.forecast.as_ref(), ends.leader, (leader.motion.speed, leader.motion.turn_rate));
+        motions(app_state.prediction.as_ref(), ends.leader, (leader.motion.speed, leader.motion.turn_rate));
     Some((leader.motion.pose, shade(&wanted, &motions)))
 }
 
 /// How the leader drives now and on its way to come.
-fn motions(forecast: Option<&Forecast>, leader: usize, now: (f64, f64)) -> Vec<(f64, f64)> {
-    let ahead = forecast.and_then(|forecast| forecast.motions.get(leader)).map_or(&[][..], |all| all);
+fn motions(prediction: Option<&Prediction>, leader: usize, now: (f64, f64)) -> Vec<(f64, f64)> {
+    let ahead = prediction.and_then(|prediction| prediction.motions.get(leader)).map_or(&[][..], |all| all);
     let every = (ahead.len() / GLANCES).max(1);
     [now].into_iter().chain(ahead.iter().step_by(every).copied()).collect()
 }
 
 /// The field of what is wanted.
-pub fn shade(wanted: &Wanted, motions: &[(f64, f64)]) -> Field {
+pub fn shade(wanted: &PlaceConstraints, motions: &[(f64, f64)]) -> FeasibilityMap {
     let half = 0.5 * (SIDE - 1) as f64 * STEP;
     let mut alphas = Vec::with_capacity(SIDE * SIDE);
     for row in 0..SIDE {
@@ -109,22 +109,22 @@ pub fn shade(wanted: &Wanted, motions: &[(f64, f64)]) -> Field {
             alphas.push(if wanted.refuses(place, motions) { rim } else { 0.0 });
         }
     }
-    Field { alphas, side: SIDE, step: STEP }
+    FeasibilityMap { alphas, side: SIDE, step: STEP }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn wanted() -> Wanted {
-        Wanted { limits: Limits::PAPER, distance_min: 0.1, sight: None, others: vec![] }
+    fn wanted() -> PlaceConstraints {
+        PlaceConstraints { limits: Limits::PAPER, distance_min: 0.1, sight: None, others: vec![] }
     }
 
     #[test]
     fn a_straight_way_leaves_all_ground_and_a_bend_takes_the_outside() {
         let free = shade(&wanted(), &[(1.0, 0.0)]);
         let taken = shade(&wanted(), &[(1.0, 0.3)]);
-        let count = |field: &Field| field.alphas.iter().filter(|a| **a > 0.0).count();
+        let count = |field: &FeasibilityMap| field.alphas.iter().filter(|a| **a > 0.0).count();
         // What is nearer than the law allows is one square.
         assert_eq!(count(&free), 1);
         assert!(count(&taken) > 300);
@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn who_looks_has_to_see() {
-        let looking = Wanted { sight: Some([4.0, 2.0]), ..wanted() };
+        let looking = PlaceConstraints { sight: Some([4.0, 2.0]), ..wanted() };
         assert!(looking.refuses([-4.5, 0.0], &[(1.0, 0.0)]), "too far");
         assert!(looking.refuses([2.0, 0.0], &[(1.0, 0.0)]), "behind the camera");
         assert!(!looking.refuses([-2.0, 1.0], &[(1.0, 0.0)]));
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn nobody_stands_where_another_does() {
-        let crowded = Wanted { others: vec![([-1.0, 1.0], 0.5)], ..wanted() };
+        let crowded = PlaceConstraints { others: vec![([-1.0, 1.0], 0.5)], ..wanted() };
         assert!(crowded.refuses([-1.2, 1.2], &[(1.0, 0.0)]) && !crowded.refuses([-2.0, 1.0], &[(1.0, 0.0)]));
     }
 }

@@ -19,13 +19,13 @@ const LATE: f64 = 0.1;
 
 /// The next seconds of a run.
 #[derive(Debug, Clone, Default)]
-pub struct Forecast {
+pub struct Prediction {
     /// The branch it is of.
     pub branch: usize,
     /// Where it begins and ends, s.
     pub span: [f64; 2],
     /// One path per robot.
-    pub paths: Vec<Vec<Place>>,
+    pub paths: Vec<Vec<PathPoint>>,
     /// Speed, m/s, and turn rate, rad/s, of every robot at the places of its path.
     pub motions: Vec<Vec<(f64, f64)>>,
     /// Where every robot ends.
@@ -44,7 +44,7 @@ pub struct Forecast {
 
 /// A robot's place on its way.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
+pub struct PathPoint {
     /// m, world frame.
     pub at: [f64; 2],
     /// What is wrong there.
@@ -64,23 +64,23 @@ pub enum Trouble {
 }
 
 /// The thread that looks ahead. The newest question counts; older ones are dropped.
-pub struct Crystal {
-    questions: Sender<Question>,
+pub struct Predictor {
+    questions: Sender<PredictionRequest>,
     open: Arc<AtomicUsize>,
 }
 
-struct Question {
+struct PredictionRequest {
     branch: usize,
     run: Simulation,
     seconds: f64,
     number: usize,
 }
 
-impl Crystal {
-    /// Starts the thread; forecasts come out of the receiver, and `wake` is called for each.
-    pub fn start(wake: impl Fn() + Send + 'static) -> (Self, Receiver<Forecast>) {
-        let (questions, inbox) = channel::<Question>();
-        let (outbox, forecasts) = channel();
+impl Predictor {
+    /// Starts the thread; predictions come out of the receiver, and `wake` is called for each.
+    pub fn start(wake: impl Fn() + Send + 'static) -> (Self, Receiver<Prediction>) {
+        let (questions, inbox) = channel::<PredictionRequest>();
+        let (outbox, predictions) = channel();
         let open = Arc::new(AtomicUsize::new(0));
         let left = Arc::clone(&open);
         let work = move || {
@@ -91,20 +91,20 @@ impl Crystal {
                     taken += 1;
                 }
                 let newer = || left.load(Relaxed) > taken;
-                let forecast = ahead(question, &newer);
+                let prediction = ahead(question, &newer);
                 left.fetch_sub(taken, Relaxed);
-                if forecast.is_some_and(|forecast| outbox.send(forecast).is_err()) {
+                if prediction.is_some_and(|prediction| outbox.send(prediction).is_err()) {
                     return;
                 }
                 wake();
             }
         };
-        // Without a thread there are no forecasts, and all else goes on.
+        // Without a thread there are no predictions, and all else goes on.
         let _ = std::thread::Builder::new().name("ahead".to_owned()).spawn(work);
-        (Self { questions, open }, forecasts)
+        (Self { questions, open }, predictions)
     }
 
-    /// Whether a forecast is under way.
+    /// Whether a prediction is under way.
     pub fn busy(&self) -> bool {
         self.open.load(Relaxed) > 0
     }
@@ -114,16 +114,16 @@ impl Crystal {
         static NUMBER: AtomicUsize = AtomicUsize::new(0);
         self.open.fetch_add(1, Relaxed);
         let number = NUMBER.fetch_add(1, Relaxed);
-        if self.questions.send(Question { branch, run, seconds, number }).is_err() {
+        if self.questions.send(PredictionRequest { branch, run, seconds, number }).is_err() {
             self.open.fetch_sub(1, Relaxed);
         }
     }
 }
 
 /// Runs ahead; `None` where a newer question has come after a good part of the work.
-fn ahead(question: Question, newer: &dyn Fn() -> bool) -> Option<Forecast> {
+fn ahead(question: PredictionRequest, newer: &dyn Fn() -> bool) -> Option<Prediction> {
     let began = Instant::now();
-    let Question { branch, mut run, seconds, number } = question;
+    let PredictionRequest { branch, mut run, seconds, number } = question;
     // Pictures for cameras cannot be drawn ahead: there a follower is told the truth.
     if run.needs_cameras() {
         run.trust();
@@ -131,24 +131,24 @@ fn ahead(question: Question, newer: &dyn Fn() -> bool) -> Option<Forecast> {
     let period = run.period();
     let samples = (seconds / period).round().max(1.0) as u64;
     let start = run.sample() as f64 * period;
-    let mut teller = Teller::new(&run, samples, [start, start + samples as f64 * period]);
+    let mut builder = PredictionBuilder::new(&run, samples, [start, start + samples as f64 * period]);
     for k in 0..samples {
         let Some(record) = run.next_record() else {
-            teller.end(run.record());
+            builder.end(run.record());
             break;
         };
-        teller.take(k, record);
+        builder.take(k, record);
         // What is half done is finished: under a stream of questions there would be no answer at all.
         if k == samples / 4 && newer() && began.elapsed().as_millis() > 60 {
             return None;
         }
     }
-    Some(Forecast { branch, number, took: began.elapsed().as_secs_f64(), ..teller.out })
+    Some(Prediction { branch, number, took: began.elapsed().as_secs_f64(), ..builder.out })
 }
 
-/// Makes a forecast of moments.
-struct Teller {
-    out: Forecast,
+/// Makes a prediction of records.
+struct PredictionBuilder {
+    out: Prediction,
     stride: u64,
     samples: u64,
     room_every: u64,
@@ -157,17 +157,17 @@ struct Teller {
     trouble: Vec<Trouble>,
 }
 
-impl Teller {
+impl PredictionBuilder {
     fn new(run: &Simulation, samples: u64, span: [f64; 2]) -> Self {
         let fleet = run.fleet();
         let robots = fleet.robots.len();
         Self {
-            out: Forecast {
+            out: Prediction {
                 span,
                 paths: vec![Vec::new(); robots],
                 motions: vec![Vec::new(); robots],
                 late_error: vec![[0.0; 2]; fleet.edges.len()],
-                ..Forecast::default()
+                ..Prediction::default()
             },
             stride: samples.div_ceil(MOST_POINTS as u64).max(1),
             samples,
@@ -201,7 +201,7 @@ impl Teller {
             paths.zip(record.snapshot.robots.iter().zip(&mut self.trouble))
         {
             let motion = robot.motion;
-            path.push(Place { at: [motion.pose.x, motion.pose.y], trouble: std::mem::take(trouble) });
+            path.push(PathPoint { at: [motion.pose.x, motion.pose.y], trouble: std::mem::take(trouble) });
             motions.push((motion.speed, motion.turn_rate));
         }
     }

@@ -1,13 +1,13 @@
 //! How fast the window is: measured while it is used, printed when it is closed.
 
 use crate::action::Action;
-use crate::desk::Desk;
-use crate::session::forecast::Forecast;
+use crate::app_state::AppState;
+use crate::session::prediction::Prediction;
 use std::time::{Duration, Instant};
 
 /// Figures of the speed of a window.
 #[derive(Debug, Default)]
-pub(crate) struct Timing {
+pub(crate) struct FrameTimings {
     /// When the window was asked for, and how long until its first 3D picture was on its way.
     started: Option<Instant>,
     first: Option<Duration>,
@@ -16,8 +16,8 @@ pub(crate) struct Timing {
     /// Between the starts of frames, ms.
     between: Vec<f32>,
     last: Option<Instant>,
-    forecasts: Vec<f32>,
-    /// When a set point was moved whose forecast has not come back.
+    predictions: Vec<f32>,
+    /// When a set point was moved whose prediction has not come back.
     asked: Option<Instant>,
     answered: Vec<f32>,
     pictures: u64,
@@ -26,7 +26,7 @@ pub(crate) struct Timing {
 /// Frames that are remembered.
 const MOST: usize = 100_000;
 
-impl Timing {
+impl FrameTimings {
     /// For a window that was asked for at `began`.
     pub(crate) fn since(began: Instant) -> Self {
         Self { started: Some(began), ..Self::default() }
@@ -54,16 +54,16 @@ impl Timing {
         }
     }
 
-    pub(crate) fn forecast(&mut self, forecast: &Forecast) {
-        if self.forecasts.len() < MOST {
-            self.forecasts.push(1e3 * forecast.took as f32);
+    pub(crate) fn prediction(&mut self, prediction: &Prediction) {
+        if self.predictions.len() < MOST {
+            self.predictions.push(1e3 * prediction.took as f32);
         }
         if let Some(asked) = self.asked.take() {
             self.answered.push(1e3 * asked.elapsed().as_secs_f32());
         }
     }
 
-    pub(crate) fn print(&self, desk: &Desk) {
+    pub(crate) fn print(&self, app_state: &AppState) {
         use std::io::Write;
         let mut out = std::io::stdout();
         if let Some(first) = self.first {
@@ -73,7 +73,7 @@ impl Timing {
         for (name, values) in [
             ("work in a frame", &self.frames),
             ("from frame to frame", &self.between),
-            ("a look ahead", &self.forecasts),
+            ("a look ahead", &self.predictions),
             ("from a change to its look ahead", &self.answered),
         ] {
             let mut sorted = values.clone();
@@ -87,6 +87,6 @@ impl Timing {
             }
         }
         let _ = writeln!(out, "3D pictures: {}", self.pictures);
-        let _ = writeln!(out, "branches: {}, t = {:.2} s", desk.branches.len(), desk.time());
+        let _ = writeln!(out, "branches: {}, t = {:.2} s", app_state.branches.len(), app_state.time());
     }
 }

@@ -1,8 +1,8 @@
 //! What is drawn on the ground to explain: the future, handles, other branches, ground that cannot be held.
 
-use super::holding;
-use crate::desk::{Choice, Desk};
-use crate::session::forecast::{Forecast, Place, Trouble};
+use super::feasibility;
+use crate::app_state::{AppState, Selection};
+use crate::session::prediction::{PathPoint, Prediction, Trouble};
 use rendering::{
     AnnotationArrow, AnnotationStroke, Annotations, Ghost, Ring, ShadedArea, StrokePoint, set_points,
 };
@@ -22,7 +22,7 @@ pub const RING: f64 = 0.25;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Hand {
     /// The edge whose set point is under the pointer.
-    pub over: Option<usize>,
+    pub dialog: Option<usize>,
     /// The edge whose set point is dragged.
     pub held: Option<usize>,
     /// The robot under the pointer.
@@ -32,20 +32,22 @@ pub struct Hand {
 }
 
 /// The sketch of what is looked at.
-pub fn sketch(desk: &Desk, record: &StepRecord, hand: &Hand) -> Annotations {
+pub fn sketch(app_state: &AppState, record: &StepRecord, hand: &Hand) -> Annotations {
     let mut sketch = Annotations::default();
-    let Some(history) = &desk.history else { return sketch };
+    let Some(history) = &app_state.history else { return sketch };
     let fleet = Arc::clone(history.fleet());
     let colours = rendering::robot_colours(&fleet);
     if let Some(held) = hand.held {
-        refused(desk, held, record, &mut sketch);
+        refused(app_state, held, record, &mut sketch);
     }
-    others(desk, &colours, &mut sketch);
-    let present = desk.cursor.is_none();
-    if let Some(forecast) = desk.forecast.as_ref().filter(|f| present && f.branch == desk.branch) {
-        future(forecast, &colours, &fleet, &mut sketch);
+    others(app_state, &colours, &mut sketch);
+    let present = app_state.cursor.is_none();
+    if let Some(prediction) =
+        app_state.prediction.as_ref().filter(|f| present && f.branch == app_state.branch)
+    {
+        future(prediction, &colours, &fleet, &mut sketch);
     }
-    handles(desk, &fleet, (record, &colours), hand, &mut sketch);
+    handles(app_state, &fleet, (record, &colours), hand, &mut sketch);
     if let Some((robot, to)) = hand.connecting
         && let Some(state) = record.snapshot.robots.get(robot)
     {
@@ -56,8 +58,8 @@ pub fn sketch(desk: &Desk, record: &StepRecord, hand: &Hand) -> Annotations {
 }
 
 /// Ground that the follower of an edge cannot hold.
-fn refused(desk: &Desk, edge: usize, record: &StepRecord, sketch: &mut Annotations) {
-    let Some((leader, field)) = holding::field(desk, edge, record) else { return };
+fn refused(app_state: &AppState, edge: usize, record: &StepRecord, sketch: &mut Annotations) {
+    let Some((leader, field)) = feasibility::field(app_state, edge, record) else { return };
     let half = 0.5 * (field.side - 1) as f64 * field.step;
     let area =
         ShadedArea::field([-half; 2], field.step, field.side, &scaled(&field.alphas, 0.34), REFUSED, true);
@@ -74,13 +76,13 @@ fn scaled(alphas: &[f32], by: f32) -> Vec<f32> {
 }
 
 /// Paths of branches that are not looked at.
-fn others(desk: &Desk, colours: &[[f32; 3]], sketch: &mut Annotations) {
-    let Some(history) = &desk.history else { return };
-    for branch in (0..history.branches()).filter(|branch| *branch != desk.branch) {
-        let from = desk.branches.get(branch).and_then(|face| face.parent).map_or(0.0, |(_, time)| time);
+fn others(app_state: &AppState, colours: &[[f32; 3]], sketch: &mut Annotations) {
+    let Some(history) = &app_state.history else { return };
+    for branch in (0..history.branches()).filter(|branch| *branch != app_state.branch) {
+        let from = app_state.branches.get(branch).and_then(|face| face.parent).map_or(0.0, |(_, time)| time);
         // What is long past would cover the ground.
-        let from = from.max(desk.time() - 12.0);
-        let records = history.between(branch, [from, desk.time() + 12.0], 160);
+        let from = from.max(app_state.time() - 12.0);
+        let records = history.between(branch, [from, app_state.time() + 12.0], 160);
         for (robot, colour) in colours.iter().enumerate() {
             let spots = records.iter().filter_map(|record| {
                 let pose = record.snapshot.robots.get(robot)?.motion.pose;
@@ -92,7 +94,7 @@ fn others(desk: &Desk, colours: &[[f32; 3]], sketch: &mut Annotations) {
                 ..AnnotationStroke::new(spots.collect())
             });
         }
-        if let Some(record) = history.at(branch, desk.time()) {
+        if let Some(record) = history.at(branch, app_state.time()) {
             let ghost = |(robot, state): (usize, &vocabulary::RobotState)| Ghost {
                 robot,
                 pose: state.motion.pose,
@@ -104,12 +106,12 @@ fn others(desk: &Desk, colours: &[[f32; 3]], sketch: &mut Annotations) {
 }
 
 /// The next seconds, and where the formation will be.
-fn future(forecast: &Forecast, colours: &[[f32; 3]], fleet: &FleetInfo, sketch: &mut Annotations) {
-    for (robot, path) in forecast.paths.iter().enumerate() {
+fn future(prediction: &Prediction, colours: &[[f32; 3]], fleet: &FleetInfo, sketch: &mut Annotations) {
+    for (robot, path) in prediction.paths.iter().enumerate() {
         // Paler than the ribbons, which are the past.
         let colour = light(colours.get(robot).copied().unwrap_or([0.6; 3])).map(|c| 0.4 + 0.6 * c);
         let last = path.len().saturating_sub(1).max(1) as f32;
-        let spot = |(k, place): (usize, &Place)| {
+        let spot = |(k, place): (usize, &PathPoint)| {
             let share = k as f32 / last;
             let fade = 0.95 * (1.0 - 0.75 * share * share);
             match place.trouble {
@@ -126,13 +128,13 @@ fn future(forecast: &Forecast, colours: &[[f32; 3]], fleet: &FleetInfo, sketch: 
     // Where they stand in the end; in a crowd the paths say enough.
     if fleet.robots.len() <= 30 {
         let ghost = |(robot, pose): (usize, &vocabulary::Pose)| Ghost { robot, pose: *pose, alpha: 0.30 };
-        sketch.ghosts.extend(forecast.end.iter().enumerate().map(ghost));
+        sketch.ghosts.extend(prediction.end.iter().enumerate().map(ghost));
     }
 }
 
 /// Rings to grasp, and a ring under what is selected.
 fn handles(
-    desk: &Desk,
+    app_state: &AppState,
     fleet: &FleetInfo,
     (record, colours): (&StepRecord, &[[f32; 3]]),
     hand: &Hand,
@@ -143,9 +145,9 @@ fn handles(
         let follower = fleet.edges[edge].follower;
         let ring =
             Ring { least: 17.0, ..Ring::new(at, RING * size(fleet, follower), light(colours[follower])) };
-        if hand.held == Some(edge) || desk.chosen_edge() == Some(edge) {
+        if hand.held == Some(edge) || app_state.chosen_edge() == Some(edge) {
             sketch.rings.push(ring.selected());
-        } else if hand.over == Some(edge) {
+        } else if hand.dialog == Some(edge) {
             sketch.rings.push(ring.hovered());
         }
     }
@@ -155,7 +157,7 @@ fn handles(
         let at = pose.world_from_body(0.5 * body.wheelbase, 0.0);
         Some(Ring { pixels: 2.0, ..Ring::new(at, 0.62 * body.length, ACCENT) })
     };
-    if let Choice::Robot(robot) = desk.choice {
+    if let Selection::Robot(robot) = app_state.selection {
         sketch.rings.extend(under(robot));
     }
     if let Some(robot) = hand.robot {

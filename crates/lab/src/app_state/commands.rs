@@ -1,9 +1,9 @@
 //! What actions mean for the scene and its run. Files, pictures and the window itself are the window's.
 
+use super::{AppState, Tool};
 use crate::action::Action;
-use crate::desk::{Desk, Tool};
-use crate::session::branches::Change;
-use crate::session::runner::Order;
+use crate::session::branches::BranchChange;
+use crate::session::runner::RunRequest;
 use crate::tidy::{fixed, tidy};
 use scene::{Role, SceneText};
 use vocabulary::{Relative, wrap};
@@ -43,7 +43,7 @@ fn changes_the_scene(action: &Action) -> bool {
     )
 }
 
-impl Desk {
+impl AppState {
     /// Does what can be done without files and without a window; whether that was all.
     pub fn act(&mut self, action: &Action) -> bool {
         match action {
@@ -53,7 +53,7 @@ impl Desk {
             Action::Back(seconds) => self.seek(self.time() - seconds),
             Action::Pace(pace) => {
                 self.pace = pace.clamp(0.1, 50.0);
-                self.orders.push(Order::Pace(self.pace));
+                self.requests.push(RunRequest::Pace(self.pace));
             }
             Action::Seek(time) => self.seek(*time),
             Action::Present => self.cursor = None,
@@ -68,16 +68,16 @@ impl Desk {
                     face.name.clone_from(name);
                 }
             }
-            Action::Choose(choice) => self.choice = *choice,
+            Action::Choose(selection) => self.selection = *selection,
             Action::ForAll(all) => self.for_all = *all,
             Action::Mirror(on) => self.mirror = *on,
             Action::FilmFrom(view) => self.film_from.clone_from(view),
             Action::Take(tool) => self.tool = if self.tool == *tool { Tool::Hand } else { *tool },
             Action::Ahead(seconds) => {
                 self.ahead = seconds.clamp(0.0, 60.0);
-                self.orders.push(Order::Ahead(self.ahead));
+                self.requests.push(RunRequest::Ahead(self.ahead));
                 if self.ahead == 0.0 {
-                    self.forecast = None;
+                    self.prediction = None;
                 }
             }
             Action::Restart => self.restart(0.0),
@@ -137,7 +137,7 @@ impl Desk {
             self.seek(next);
         } else {
             self.playing = false;
-            self.orders.push(Order::Step);
+            self.requests.push(RunRequest::Step);
         }
     }
 
@@ -151,7 +151,7 @@ impl Desk {
         if self.in_the_past() {
             return self.undo_past();
         }
-        let step = self.draft.as_mut().and_then(crate::session::draft::Draft::undo);
+        let step = self.draft.as_mut().and_then(crate::session::scene_draft::SceneDraft::undo);
         if let Some((what, effect)) = step {
             self.take(&format!("Undo: {}", what.trim_end_matches('…')), &effect);
         }
@@ -161,7 +161,7 @@ impl Desk {
         if self.in_the_past() {
             return self.note("Nothing was taken back here: what came later is on the branch that has it");
         }
-        let step = self.draft.as_mut().and_then(crate::session::draft::Draft::redo);
+        let step = self.draft.as_mut().and_then(crate::session::scene_draft::SceneDraft::redo);
         if let Some((what, effect)) = step {
             self.take(&format!("Redo: {}", what.trim_end_matches('…')), &effect);
         }
@@ -358,7 +358,7 @@ impl Desk {
 }
 
 /// A change in few words: what holds for several robots is said once.
-pub fn words(change: &Change) -> String {
+pub fn words(change: &BranchChange) -> String {
     let mut said: Vec<(String, Vec<&str>)> = Vec::new();
     for set in &change.set {
         let (robot, what) =

@@ -16,7 +16,7 @@ pub const RATE: f64 = 30.0;
 
 /// How something is seen.
 #[derive(Clone)]
-pub struct Shot {
+pub struct FrameSpec {
     /// What is drawn.
     pub record: Arc<StepRecord>,
     /// From where.
@@ -27,8 +27,8 @@ pub struct Shot {
     pub words: [String; 2],
 }
 
-/// What is asked of the studio.
-pub enum Job {
+/// What is asked of the exporter.
+pub enum ExportJob {
     /// A picture.
     Picture {
         /// Its file.
@@ -40,7 +40,7 @@ pub enum Job {
         /// The past.
         trail: Box<Trail>,
         /// What is seen.
-        shot: Box<Shot>,
+        shot: Box<FrameSpec>,
         /// What the file tells besides.
         texts: Vec<(&'static str, String)>,
     },
@@ -58,16 +58,16 @@ pub enum Job {
     /// The past is another: somebody changed the branch.
     Trail(Box<Trail>),
     /// What has happened since the last frame.
-    Moments(Vec<Arc<StepRecord>>),
+    Records(Vec<Arc<StepRecord>>),
     /// The next frame.
-    Frame(Box<Shot>),
+    Frame(Box<FrameSpec>),
     /// The film ends.
     End,
 }
 
-/// What the studio tells.
+/// What the exporter tells.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Told {
+pub enum ExportEvent {
     /// A file is complete.
     Written(PathBuf),
     /// A file could not be made, and why.
@@ -76,7 +76,7 @@ pub enum Told {
 
 /// Why a picture or a film could not be made.
 #[derive(Debug, thiserror::Error)]
-enum StudioError {
+enum ExportError {
     /// It could not be drawn.
     #[error(transparent)]
     Rendering(#[from] rendering::Error),
@@ -86,14 +86,14 @@ enum StudioError {
 }
 
 /// The thread and its channels.
-pub struct Studio {
-    jobs: Option<Sender<Job>>,
-    told: Receiver<Told>,
+pub struct Exporter {
+    jobs: Option<Sender<ExportJob>>,
+    told: Receiver<ExportEvent>,
     waiting: Arc<AtomicUsize>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Studio {
+impl Exporter {
     /// Starts the thread; `wake` is called when it has something to tell.
     pub fn start(gpu: Gpu, wake: impl Fn() + Send + 'static) -> Self {
         let (jobs, inbox) = channel();
@@ -101,28 +101,28 @@ impl Studio {
         let waiting = Arc::new(AtomicUsize::new(0));
         let left = Arc::clone(&waiting);
         let work = move || {
-            let mut work = Work { gpu, drawer: None, film: None };
+            let mut work = ExportWorker { gpu, drawer: None, film: None };
             while let Ok(job) = inbox.recv() {
                 let done = work.take(job);
                 left.fetch_sub(1, Relaxed);
                 let word = match done {
                     Ok(None) => continue,
-                    Ok(Some(path)) => Told::Written(path),
-                    Err(error) => Told::Failed(error.to_string()),
+                    Ok(Some(path)) => ExportEvent::Written(path),
+                    Err(error) => ExportEvent::Failed(error.to_string()),
                 };
                 // Where nobody listens any more, the last film is still finished.
                 let _ = outbox.send(word);
                 wake();
             }
             // The window was closed in the middle of a film: what there is of it is kept.
-            let _ = work.take(Job::End);
+            let _ = work.take(ExportJob::End);
         };
         let thread = std::thread::Builder::new().name("studio".to_owned()).spawn(work).ok();
         Self { jobs: Some(jobs), told, waiting, thread }
     }
 
     /// Asks for something.
-    pub fn ask(&self, job: Job) {
+    pub fn ask(&self, job: ExportJob) {
         if let Some(jobs) = &self.jobs {
             self.waiting.fetch_add(1, Relaxed);
             let _ = jobs.send(job);
@@ -130,7 +130,7 @@ impl Studio {
     }
 
     /// What it has to tell, if anything.
-    pub fn told(&self) -> Option<Told> {
+    pub fn told(&self) -> Option<ExportEvent> {
         self.told.try_recv().ok()
     }
 
@@ -140,7 +140,7 @@ impl Studio {
     }
 }
 
-impl Drop for Studio {
+impl Drop for Exporter {
     fn drop(&mut self) {
         self.jobs = None;
         if let Some(thread) = self.thread.take() {
@@ -150,14 +150,14 @@ impl Drop for Studio {
 }
 
 /// The state of the thread.
-struct Work {
+struct ExportWorker {
     gpu: Gpu,
     drawer: Option<(Arc<FleetInfo>, Renderer)>,
-    film: Option<Reel>,
+    film: Option<OpenFilm>,
 }
 
 /// A film under way.
-struct Reel {
+struct OpenFilm {
     path: PathBuf,
     film: Film,
     fleet: Arc<FleetInfo>,
@@ -165,11 +165,11 @@ struct Reel {
     trail: Trail,
 }
 
-impl Work {
+impl ExportWorker {
     /// Does a job; the file that is complete with it.
-    fn take(&mut self, job: Job) -> Result<Option<PathBuf>, StudioError> {
+    fn take(&mut self, job: ExportJob) -> Result<Option<PathBuf>, ExportError> {
         match job {
-            Job::Picture { path, fleet, size, trail, shot, texts } => {
+            ExportJob::Picture { path, fleet, size, trail, shot, texts } => {
                 let drawer = self.drawer(&fleet, size)?;
                 drawer.retitle(&shot.words[0], &shot.words[1]);
                 let picture = drawer.draw(&trail, &shot.record, &shot.layout, &shot.style)?;
@@ -177,18 +177,18 @@ impl Work {
                 png::write(&path, &picture, &texts)?;
                 Ok(Some(path))
             }
-            Job::Begin { path, fleet, size, trail } => {
+            ExportJob::Begin { path, fleet, size, trail } => {
                 let film = Film::create(&path, FilmKind::of(&path, false)?, size.0, size.1, RATE)?;
-                self.film = Some(Reel { path, film, fleet, size, trail: *trail });
+                self.film = Some(OpenFilm { path, film, fleet, size, trail: *trail });
                 Ok(None)
             }
-            Job::Trail(trail) => {
+            ExportJob::Trail(trail) => {
                 if let Some(reel) = &mut self.film {
                     reel.trail = *trail;
                 }
                 Ok(None)
             }
-            Job::Moments(records) => {
+            ExportJob::Records(records) => {
                 if let Some(reel) = &mut self.film {
                     for record in &records {
                         reel.trail.push(record);
@@ -196,7 +196,7 @@ impl Work {
                 }
                 Ok(None)
             }
-            Job::Frame(shot) => {
+            ExportJob::Frame(shot) => {
                 let done = self.frame(&shot);
                 if done.is_err() {
                     // Nothing half is left: a film that is dropped removes its file.
@@ -204,7 +204,7 @@ impl Work {
                 }
                 done.map(|()| None)
             }
-            Job::End => match self.film.take() {
+            ExportJob::End => match self.film.take() {
                 Some(reel) if reel.film.frames() > 0 => {
                     reel.film.finish()?;
                     Ok(Some(reel.path))
@@ -214,7 +214,7 @@ impl Work {
         }
     }
 
-    fn frame(&mut self, shot: &Shot) -> Result<(), StudioError> {
+    fn frame(&mut self, shot: &FrameSpec) -> Result<(), ExportError> {
         let Some(mut reel) = self.film.take() else { return Ok(()) };
         let drawer = self.drawer(&reel.fleet, reel.size)?;
         drawer.retitle(&shot.words[0], &shot.words[1]);
@@ -224,7 +224,7 @@ impl Work {
         Ok(())
     }
 
-    fn drawer(&mut self, fleet: &Arc<FleetInfo>, size: (u32, u32)) -> Result<&mut Renderer, StudioError> {
+    fn drawer(&mut self, fleet: &Arc<FleetInfo>, size: (u32, u32)) -> Result<&mut Renderer, ExportError> {
         let fitting = self.drawer.take().filter(|(known, _)| Arc::ptr_eq(known, fleet));
         let drawer = match fitting {
             Some(drawer) => drawer,

@@ -1,73 +1,60 @@
 //! Pictures and films of what is seen.
 
-use crate::app::Lab;
-use crate::keep::free;
-use crate::studio::{Job, RATE, Shot};
+use super::LabApp;
+use super::film_capture::FilmCapture;
+use crate::exporter::{ExportJob, FrameSpec, RATE};
+use crate::kept_run::free;
 use eframe::egui;
 use rendering::{Annotations, Style, ViewLayout};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
-use vocabulary::counted;
 
-/// A film under way.
-pub(crate) struct Filming {
-    path: PathBuf,
-    /// Time of the next frame, s, and the branch.
-    next: f64,
-    branch: usize,
-    /// Moments up to this time have been sent, s.
-    sent: f64,
-    frames: u64,
-}
-
-impl Filming {
-    /// How far it is, in words.
-    pub(crate) fn words(&self, waiting: usize) -> String {
-        format!("{}: {}, {waiting} waiting", self.path.display(), counted(self.frames, "frame"))
-    }
-}
-
-impl Lab {
+impl LabApp {
     /// What is seen now, for a picture `size` large.
-    pub(crate) fn shot(&self, record: &Arc<vocabulary::StepRecord>, size: (u32, u32)) -> Option<Shot> {
-        let fleet = self.desk.history.as_ref()?.fleet();
+    pub(crate) fn shot(&self, record: &Arc<vocabulary::StepRecord>, size: (u32, u32)) -> Option<FrameSpec> {
+        let fleet = self.app_state.history.as_ref()?.fleet();
         let scale = (f64::from(size.1) / 720.0).max(0.5);
-        Some(Shot {
+        Some(FrameSpec {
             record: Arc::clone(record),
             layout: self.viewport.layout(fleet, record),
-            style: self.viewport.dressed(&self.desk, record, scale),
-            words: self.desk.words(),
+            style: self.viewport.dressed(&self.app_state, record, scale),
+            words: self.app_state.words(),
         })
     }
 
     /// What a film shows now: what is seen, or the view that was chosen for it, without what only the hand needs.
-    pub(crate) fn film_shot(&self, record: &Arc<vocabulary::StepRecord>) -> Option<Shot> {
+    pub(crate) fn film_shot(&self, record: &Arc<vocabulary::StepRecord>) -> Option<FrameSpec> {
         let shot = self.shot(record, (1280, 720))?;
-        let Some(view) = &self.desk.film_from else { return Some(shot) };
-        let fleet = self.desk.history.as_ref()?.fleet();
+        let Some(view) = &self.app_state.film_from else { return Some(shot) };
+        let fleet = self.app_state.history.as_ref()?.fleet();
         let names: Vec<String> = fleet.robots.iter().map(|member| member.name.clone()).collect();
         let style = Style { sketch: Annotations::default(), inset: true, ..shot.style };
-        Some(Shot { layout: ViewLayout::parse(view, &names).unwrap_or(shot.layout), style, ..shot })
+        Some(FrameSpec { layout: ViewLayout::parse(view, &names).unwrap_or(shot.layout), style, ..shot })
     }
 
     pub(crate) fn picture(&mut self) {
         let size = (1920, 1080);
-        let (Some(record), Some(history)) = (self.desk.record(), &self.desk.history) else { return };
-        let time = self.desk.time();
-        let Some(trail) = history.trail(self.desk.branch, time).cloned() else { return };
+        let (Some(record), Some(history)) = (self.app_state.record(), &self.app_state.history) else {
+            return;
+        };
+        let time = self.app_state.time();
+        let Some(trail) = history.trail(self.app_state.branch, time).cloned() else { return };
         let (fleet, Some(shot)) = (Arc::clone(history.fleet()), self.shot(&record, size)) else { return };
         let path = free(Path::new("."), &self.name(), "png");
-        let home =
-            self.desk.draft.as_ref().map_or_else(String::new, |draft| draft.home().display().to_string());
+        let home = self
+            .app_state
+            .draft
+            .as_ref()
+            .map_or_else(String::new, |draft| draft.home().display().to_string());
         let texts = vec![
             ("Software", concat!("echelon ", env!("CARGO_PKG_VERSION")).to_owned()),
-            ("Scene", self.desk.script().unwrap_or_default()),
+            ("Scene", self.app_state.script().unwrap_or_default()),
             ("Home", home),
             ("Time", format!("{time:?}")),
             ("View", words_of(&shot.layout, &self.viewport.view)),
             ("Adapter", self.viewport.gpu().description()),
         ];
-        self.studio.ask(Job::Picture {
+        self.exporter.ask(ExportJob::Picture {
             path,
             fleet,
             size,
@@ -96,53 +83,58 @@ impl Lab {
         });
     }
     pub(crate) fn begin_film(&mut self) {
-        let time = self.desk.end();
-        let branch = self.desk.branch;
-        let Some(history) = &self.desk.history else { return };
+        let time = self.app_state.end();
+        let branch = self.app_state.branch;
+        let Some(history) = &self.app_state.history else { return };
         let Some(trail) = history.trail(branch, time).cloned() else { return };
         let fleet = Arc::clone(history.fleet());
         let path = free(Path::new("."), &self.name(), "mp4");
-        self.studio.ask(Job::Begin { path: path.clone(), fleet, size: (1280, 720), trail: Box::new(trail) });
-        self.desk.note(format!("Filming to {}", path.display()));
-        let next = time + self.desk.pace / RATE;
-        self.film = Some(Filming { path, next, branch, sent: time, frames: 0 });
+        self.exporter.ask(ExportJob::Begin {
+            path: path.clone(),
+            fleet,
+            size: (1280, 720),
+            trail: Box::new(trail),
+        });
+        self.app_state.note(format!("Filming to {}", path.display()));
+        let next = time + self.app_state.pace / RATE;
+        self.film = Some(FilmCapture { path, next, branch, sent: time, frames: 0 });
     }
 
     pub(crate) fn end_film(&mut self) {
         if let Some(film) = self.film.take() {
             if film.frames == 0 {
-                self.desk.note("Nothing was filmed: the run stood still");
+                self.app_state.note("Nothing was filmed: the run stood still");
             }
-            self.studio.ask(Job::End);
+            self.exporter.ask(ExportJob::End);
         }
     }
 
     /// Frames of a film that are due, at even steps of simulated time whatever the window's pace.
     pub(crate) fn film_on(&mut self) {
         let Some(mut film) = self.film.take() else { return };
-        let Some(history) = &self.desk.history else { return };
-        if film.branch != self.desk.branch {
-            film.branch = self.desk.branch;
+        let Some(history) = &self.app_state.history else { return };
+        if film.branch != self.app_state.branch {
+            film.branch = self.app_state.branch;
             let time = history.end(film.branch);
             (film.next, film.sent) = (time, time);
             if let Some(trail) = history.trail(film.branch, time).cloned() {
-                self.studio.ask(Job::Trail(Box::new(trail)));
+                self.exporter.ask(ExportJob::Trail(Box::new(trail)));
             }
         }
         let end = history.end(film.branch);
         let mut jobs = Vec::new();
         while film.next <= end + 1e-9 {
             let Some(record) = history.at(film.branch, film.next) else { break };
-            jobs.push(Job::Moments(history.since(film.branch, [film.sent, film.next])));
+            jobs.push(ExportJob::Records(history.since(film.branch, [film.sent, film.next])));
             film.sent = film.next;
             if let Some(shot) = self.film_shot(&record) {
-                jobs.push(Job::Frame(Box::new(shot)));
+                jobs.push(ExportJob::Frame(Box::new(shot)));
                 film.frames += 1;
             }
-            film.next += self.desk.pace / RATE;
+            film.next += self.app_state.pace / RATE;
         }
         for job in jobs {
-            self.studio.ask(job);
+            self.exporter.ask(job);
         }
         self.film = Some(film);
     }

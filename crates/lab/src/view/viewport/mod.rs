@@ -1,11 +1,13 @@
 //! The 3D view in its tile: drawn when something in it has changed, and under the hand.
 
-use super::camera::HeldCamera;
-use super::hand::Drag;
-use super::sketching::{Hand, sketch};
+mod pointer;
+
+use self::pointer::Drag;
 use crate::action::Action;
-use crate::desk::{Desk, Tool};
+use crate::app_state::{AppState, Tool};
 use crate::tidy::fixed;
+use crate::view::annotations::{Hand, sketch};
+use crate::view::camera::HeldCamera;
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, TextureId, Ui, Vec2};
 use eframe::egui_wgpu::RenderState;
 use rendering::{Error, Gpu, Renderer, Sightline, Style, Trail, ViewLayout, Viewpoint};
@@ -19,14 +21,14 @@ const SIZES: [u32; 2] = [16, 8192];
 pub struct Viewport {
     pub(super) state: RenderState,
     pub(super) gpu: Gpu,
-    pub(super) stage: Option<Stage>,
+    pub(super) stage: Option<ViewRenderer>,
     /// What is looked from: a named view, or the camera in the hand.
     pub view: String,
     pub(super) held: Option<HeldCamera>,
     /// What is drawn besides the scene; its sketch is made anew for each picture.
     pub style: Style,
     pub(super) hand: Hand,
-    pub(super) drag: Option<Drag>,
+    drag: Option<Drag>,
     /// Samples a pixel.
     pub(super) samples: u32,
     /// Why nothing can be drawn.
@@ -38,7 +40,7 @@ pub struct Viewport {
 }
 
 /// What draws the robots of one run.
-pub(super) struct Stage {
+pub(super) struct ViewRenderer {
     pub(super) fleet: Arc<FleetInfo>,
     pub(super) renderer: Renderer,
     pub(super) texture: wgpu::Texture,
@@ -46,11 +48,11 @@ pub(super) struct Stage {
     /// Draws what stands still with more samples, where the first draws with one.
     pub(super) finer: Option<Renderer>,
     /// What was drawn last, and whether as well as can be.
-    pub(super) shown: Option<(Shown, bool)>,
+    pub(super) shown: Option<(DrawnFrame, bool)>,
     pub(super) sight: Option<Sightline>,
 }
 
-impl Stage {
+impl ViewRenderer {
     /// Draws with all samples.
     fn fine(
         &mut self,
@@ -78,7 +80,7 @@ impl Stage {
 
 /// What a picture was made of: where nothing of it has changed, it stands.
 #[derive(PartialEq)]
-pub(super) struct Shown {
+pub(super) struct DrawnFrame {
     branch: usize,
     words: [String; 2],
     time: f64,
@@ -123,8 +125,8 @@ impl Viewport {
     }
 
     /// Keeps the camera with a robot; `None` lets it go.
-    pub fn follow(&mut self, robot: Option<usize>, desk: &Desk) {
-        let Some(record) = desk.record() else { return };
+    pub fn follow(&mut self, robot: Option<usize>, app_state: &AppState) {
+        let Some(record) = app_state.record() else { return };
         if self.held.is_none() {
             self.take_camera(&record, robot);
         }
@@ -146,23 +148,23 @@ impl Viewport {
     }
 
     /// The style of a picture with all that explains it.
-    pub fn dressed(&self, desk: &Desk, record: &StepRecord, scale: f64) -> Style {
-        Style { scale, sketch: sketch(desk, record, &self.hand), ..self.style.clone() }
+    pub fn dressed(&self, app_state: &AppState, record: &StepRecord, scale: f64) -> Style {
+        Style { scale, sketch: sketch(app_state, record, &self.hand), ..self.style.clone() }
     }
 
     /// The view in all the room there is.
-    pub fn show(&mut self, ui: &mut Ui, desk: &DeskView<'_>, out: &mut Vec<Action>) {
+    pub fn show(&mut self, ui: &mut Ui, app_state: &ViewInput<'_>, out: &mut Vec<Action>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "3D view"));
         self.rect = rect;
-        let Some(record) = desk.record.clone() else {
+        let Some(record) = app_state.record.clone() else {
             return centred(ui, rect, "Open a scene: Ctrl O, or drop a file here.");
         };
-        self.under_hand(ui, &response, (desk.desk, &record), rect, out);
+        self.under_hand(ui, &response, (app_state.app_state, &record), rect, out);
         let pixels = ui.pixels_per_point();
         let size =
             [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(SIZES[0], SIZES[1]));
-        if let Err(error) = self.draw(desk, &record, (size[0], size[1]), f64::from(pixels)) {
+        if let Err(error) = self.draw(app_state, &record, (size[0], size[1]), f64::from(pixels)) {
             self.fault = Some(error.to_string());
         }
         if let Some(fault) = &self.fault {
@@ -176,21 +178,21 @@ impl Viewport {
             let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
             ui.painter().image(stage.id, rect, whole, Color32::WHITE);
         }
-        self.readout(ui, desk.desk, &record, rect);
+        self.readout(ui, app_state.app_state, &record, rect);
     }
 
     fn draw(
         &mut self,
-        desk: &DeskView<'_>,
+        app_state: &ViewInput<'_>,
         record: &Arc<StepRecord>,
         size: (u32, u32),
         pixels: f64,
     ) -> Result<(), Error> {
-        let fleet = Arc::clone(desk.fleet);
+        let fleet = Arc::clone(app_state.fleet);
         // Text keeps its size on small views, and grows with the density of the screen.
         let scale = (0.92 * pixels).clamp(0.5, 6.0);
         let layout = self.layout(&fleet, record);
-        let style = Style { interactive: true, ..self.dressed(desk.desk, record, scale) };
+        let style = Style { interactive: true, ..self.dressed(app_state.app_state, record, scale) };
         if self.stage.as_ref().is_none_or(|stage| !Arc::ptr_eq(&stage.fleet, &fleet)) {
             self.set_stage(&fleet, size)?;
         }
@@ -207,16 +209,16 @@ impl Viewport {
             );
             stage.shown = None;
         }
-        let shown = Shown {
-            branch: desk.desk.branch,
-            words: desk.desk.words(),
+        let shown = DrawnFrame {
+            branch: app_state.app_state.branch,
+            words: app_state.app_state.words(),
             time: record.snapshot.time,
             goals: record.edges.iter().map(|edge| edge.set_point).collect(),
             layout: layout.clone(),
             style: style.clone(),
             size,
         };
-        let Some(trail) = desk.trail else { return Ok(()) };
+        let Some(trail) = app_state.trail else { return Ok(()) };
         match &stage.shown {
             Some((last, true)) if *last == shown => return Ok(()),
             Some((last, false)) if *last == shown => {
@@ -251,7 +253,7 @@ impl Viewport {
         }
         let id = drawer.register_native_texture(&self.state.device, &view, wgpu::FilterMode::Nearest);
         drop(drawer);
-        self.stage = Some(Stage {
+        self.stage = Some(ViewRenderer {
             fleet: Arc::clone(fleet),
             renderer,
             texture,
@@ -270,7 +272,7 @@ impl Viewport {
     }
 
     /// Numbers beside the ring that is dragged, and what the tool does.
-    fn readout(&self, ui: &Ui, desk: &Desk, record: &StepRecord, rect: Rect) {
+    fn readout(&self, ui: &Ui, app_state: &AppState, record: &StepRecord, rect: Rect) {
         let font = egui::FontId::proportional(14.0);
         let plate = |text: String, at: Pos2, align: egui::Align2| {
             let galley = ui.painter().layout_no_wrap(text, font.clone(), Color32::WHITE);
@@ -279,7 +281,7 @@ impl Viewport {
             ui.painter().galley(place.min + Vec2::new(8.0, 5.0), galley, Color32::WHITE);
         };
         if let Some(edge) = self.hand.held
-            && let Some([distance, bearing]) = desk.set_point(edge)
+            && let Some([distance, bearing]) = app_state.set_point(edge)
             && let Some(pos) = ui.input(|input| input.pointer.latest_pos())
         {
             let text = format!("{} m   {}°", fixed(distance, 2), fixed(bearing.to_degrees(), 1));
@@ -287,7 +289,7 @@ impl Viewport {
             let text = if error > 0.02 { format!("{text}\nnow {} m off", fixed(error, 2)) } else { text };
             plate(text, pos + Vec2::new(18.0, -14.0), egui::Align2::LEFT_BOTTOM);
         }
-        let hint = match desk.tool {
+        let hint = match app_state.tool {
             Tool::Hand => return,
             Tool::Connect => "Drag from a robot to the one that it shall follow. Esc ends it.",
             Tool::Pillar => "Click on the ground to place a pillar. Esc ends it.",
@@ -296,10 +298,10 @@ impl Viewport {
     }
 }
 
-/// What the view needs of the desk, borrowed in parts.
-pub struct DeskView<'a> {
+/// What the view needs of the state, borrowed in parts.
+pub struct ViewInput<'a> {
     /// All of it.
-    pub desk: &'a Desk,
+    pub app_state: &'a AppState,
     /// Who is on stage.
     pub fleet: &'a Arc<FleetInfo>,
     /// What is looked at.

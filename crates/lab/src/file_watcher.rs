@@ -10,7 +10,7 @@ use std::time::{Duration, SystemTime};
 const EVERY: Duration = Duration::from_millis(400);
 
 /// Looks at one file again and again, on a thread of its own.
-pub(crate) struct Watch {
+pub(crate) struct FileWatcher {
     seen: Arc<Mutex<Seen>>,
     changed: Arc<AtomicBool>,
     stopped: Arc<AtomicBool>,
@@ -19,7 +19,7 @@ pub(crate) struct Watch {
 /// The file, and when it was written last.
 type Seen = Option<(PathBuf, Option<SystemTime>)>;
 
-impl Watch {
+impl FileWatcher {
     /// Starts the thread; `wake` is called when the file has changed, or when `stop` says that the program shall end.
     pub(crate) fn start(wake: impl Fn() + Send + 'static, stop: Option<fn() -> bool>) -> Self {
         let seen = Arc::new(Mutex::new(None));

@@ -1,14 +1,14 @@
 //! The text under work: what is one step back, and what never happens to it.
 
 use crate::common::{THREE, with};
-use lab::session::draft::{Draft, Effect};
+use lab::session::scene_draft::{Effect, SceneDraft};
 use std::path::{Path, PathBuf};
 
-fn draft() -> Draft {
-    Draft::new(THREE.to_owned(), None, Path::new("t.toml")).expect("a scene")
+fn draft() -> SceneDraft {
+    SceneDraft::new(THREE.to_owned(), None, Path::new("t.toml")).expect("a scene")
 }
 
-fn set(draft: &mut Draft, what: &str, path: &str, value: &str) -> Result<Effect, String> {
+fn set(draft: &mut SceneDraft, what: &str, path: &str, value: &str) -> Result<Effect, String> {
     draft.edit(what, |text| text.set(path, value).map_err(|error| error.to_string()))
 }
 
@@ -69,7 +69,7 @@ fn other_changes_of_a_scene_are_another_run() {
     };
     let effect = |text: String| {
         let before = scripted("3.0", "2.0", "law.beta=5");
-        Draft::new(before, None, Path::new("t.toml")).expect("a scene").replace("File", text)
+        SceneDraft::new(before, None, Path::new("t.toml")).expect("a scene").replace("File", text)
     };
     assert_eq!(effect(scripted("4.0", "2.0", "law.beta=5")), Ok(Effect::Retune));
     for other in [
@@ -112,7 +112,7 @@ fn bad_text_keeps_everything() {
         assert_eq!((draft.undoes(), draft.redoes()), (Some("Gain"), Some("Gain")));
     }
     assert!(draft.edit("Bad", |_| Err("no".to_owned())).is_err_and(|fault| fault == "no"));
-    assert!(Draft::new("schema = 1".to_owned(), None, Path::new("t.toml")).is_err());
+    assert!(SceneDraft::new("schema = 1".to_owned(), None, Path::new("t.toml")).is_err());
 }
 
 #[test]

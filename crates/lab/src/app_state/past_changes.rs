@@ -4,12 +4,12 @@
 use scene::{Scene, SceneText};
 
 /// Changes that are past.
-pub(crate) struct Past {
+pub(crate) struct PastChanges {
     set: Vec<String>,
     time: f64,
 }
 
-impl Past {
+impl PastChanges {
     /// The changes of `scene` that hold at `time`, s.
     pub(crate) fn of(scene: &Scene, time: f64) -> Self {
         let due = scene.changes.iter().filter(|change| change.at <= time + 1e-9);
@@ -51,7 +51,7 @@ mod tests {
             [[changes]]\nat = 4.0\nset = [\"robots.b.distance=3.0\"]\n";
         let scene = Scene::parse(text, "past.toml", &[]).expect("a scene").scene;
         let mut edited = SceneText::parse(text).expect("text");
-        Past::of(&scene, 2.5).settle(&mut edited).expect("settled");
+        PastChanges::of(&scene, 2.5).settle(&mut edited).expect("settled");
         let text = edited.text();
         assert!(text.contains("distance = 1.5 # mine") && !text.contains("at = 2.0"), "{text}");
         let scene = Scene::parse(&text, "past.toml", &[]).expect("still a scene").scene;

@@ -1,38 +1,26 @@
 //! Edits and the run: what an edit makes of it, and the branches that edits in the past begin.
 
-use crate::desk::Desk;
-use crate::past::Past;
-use crate::session::branches::{Change, script};
-use crate::session::draft::{Draft, Effect};
+use super::AppState;
+use super::branch_info::BranchInfo;
+use super::past_changes::PastChanges;
+use crate::session::branches::{BranchChange, script};
 use crate::session::history::History;
-use crate::session::runner::Order;
+use crate::session::runner::RunRequest;
+use crate::session::scene_draft::{Effect, SceneDraft};
 use std::sync::Arc;
 
-/// A branch as the window knows it.
-#[derive(Debug, Clone)]
-pub struct BranchFace {
-    /// What it is called.
-    pub name: String,
-    /// Branch and time at which it leaves its parent, s.
-    pub parent: Option<(usize, f64)>,
-    /// What was changed on it, from time 0 on.
-    pub changes: Vec<Change>,
-    /// The scene's text from a sample on.
-    texts: Vec<(u64, String)>,
-}
-
-impl Desk {
+impl AppState {
     /// Edits the scene, and lets the run take it.
     pub fn edit(
         &mut self,
         what: &str,
         edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
     ) -> bool {
-        let past = self.in_the_past();
+        let past_changes = self.in_the_past();
         let time = self.time();
         let done = match &mut self.draft {
-            Some(draft) if !past => {
-                let settled = Past::of(draft.scene(), time);
+            Some(draft) if !past_changes => {
+                let settled = PastChanges::of(draft.scene(), time);
                 draft.edit(what, |text| settled.settle(text).and_then(|()| edit(text)))
             }
             Some(_) => self.edit_past(what, edit),
@@ -84,7 +72,7 @@ impl Desk {
         edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
     ) -> Result<Effect, String> {
         let (Some((_, there)), Some(draft)) = (self.there(), &self.draft) else { return Ok(Effect::None) };
-        let settled = Past::of(&draft.read(&there)?, self.time());
+        let settled = PastChanges::of(&draft.read(&there)?, self.time());
         let edited = draft.edited(&there, |text| settled.settle(text).and_then(|()| edit(text)))?;
         let Some(edited) = edited else { return Ok(Effect::None) };
         self.fork();
@@ -98,7 +86,7 @@ impl Desk {
             Effect::Dress => {
                 self.note(what);
                 if let (Some(scene), Some(history)) =
-                    (self.draft.as_ref().map(Draft::scene), &mut self.history)
+                    (self.draft.as_ref().map(SceneDraft::scene), &mut self.history)
                 {
                     history.dress(scene);
                 }
@@ -109,7 +97,7 @@ impl Desk {
                 match draft.take_checked() {
                     Ok(checked) => {
                         self.sent.push((Arc::clone(draft.scene()), draft.text().to_owned()));
-                        self.orders.push(Order::Change(Box::new(checked)));
+                        self.requests.push(RunRequest::Change(Box::new(checked)));
                     }
                     Err(fault) => self.fault(fault),
                 }
@@ -126,7 +114,7 @@ impl Desk {
     pub fn fork(&mut self) {
         let Some((sample, text)) = self.there() else { return };
         let name = format!("branch {}", self.branches.len() + self.forks);
-        self.orders.push(Order::Fork { from: self.branch, sample, name });
+        self.requests.push(RunRequest::Fork { from: self.branch, sample, name });
         self.forks += 1;
         // The scene is again what it was there.
         if let Some(draft) = &mut self.draft {
@@ -148,8 +136,8 @@ impl Desk {
         }
         self.branch = branch;
         self.cursor = None;
-        self.forecast = None;
-        self.orders.push(Order::Switch(branch));
+        self.prediction = None;
+        self.requests.push(RunRequest::Switch(branch));
         let text = self.branches[branch].text_at(u64::MAX, &self.base);
         if let Some(draft) = &mut self.draft {
             let _ = draft.turn_to(text);
@@ -171,7 +159,7 @@ impl Desk {
         branch: usize,
         (from, sample): (usize, u64),
         name: String,
-        changes: Vec<Change>,
+        changes: Vec<BranchChange>,
     ) {
         let Some(history) = &mut self.history else { return };
         history.fork(from, sample);
@@ -182,12 +170,12 @@ impl Desk {
         self.forks = self.forks.saturating_sub(1);
         let left = self.branches.get(from).map_or("", |branch| &branch.name);
         let what = format!("{name} leaves {left} here");
-        self.branches.push(BranchFace { name, parent: Some((from, time)), changes, texts });
+        self.branches.push(BranchInfo { name, parent: Some((from, time)), changes, texts });
         (self.branch, self.cursor) = (branch, None);
         self.note(what);
     }
 
-    pub(crate) fn changed(&mut self, branch: usize, change: &Change) {
+    pub(crate) fn changed(&mut self, branch: usize, change: &BranchChange) {
         // The draft may have gone on since.
         let sent = self.sent.iter().position(|(scene, _)| Arc::ptr_eq(scene, &change.scene));
         let sent = sent.and_then(|sent| self.sent.drain(..=sent).next_back());
@@ -200,18 +188,5 @@ impl Desk {
                 face.changes.push(change.clone());
             }
         }
-    }
-}
-
-impl BranchFace {
-    /// The first.
-    pub(crate) fn trunk() -> Self {
-        Self { name: "main".to_owned(), parent: None, changes: Vec::new(), texts: Vec::new() }
-    }
-
-    /// The scene's text as it held before a sample.
-    fn text_at(&self, sample: u64, base: &str) -> String {
-        let last = self.texts.iter().filter(|(at, _)| *at < sample).max_by_key(|(at, _)| *at);
-        last.map_or_else(|| base.to_owned(), |(_, text)| text.clone())
     }
 }

@@ -10,7 +10,7 @@ use vocabulary::counted;
 
 /// What was seen in the window.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Seen {
+pub struct SeenRun {
     /// Samples of the run.
     pub samples: u64,
     /// Their digest.
@@ -25,7 +25,7 @@ pub fn keep(
     text: &str,
     home: &Path,
     folder: &Path,
-    seen: &Seen,
+    seen: &SeenRun,
     gpu: Option<&Gpu>,
 ) -> Result<String, String> {
     let scene = Scene::parse(text, home, &[]).map_err(|faults| faults.to_string())?.scene;

@@ -1,24 +1,24 @@
 //! Runs that were recorded: to look through, to play, and to take up where one looks.
 
-use crate::desk::{Choice, Desk};
-use crate::session::draft::Draft;
-use crate::session::runner::Order;
+use super::{AppState, Selection};
+use crate::session::runner::RunRequest;
+use crate::session::scene_draft::SceneDraft;
 use recording::log::Log;
 use scene::{Role, Scene, SensingKind};
 use std::path::Path;
 use std::sync::Arc;
 
-impl Desk {
+impl AppState {
     /// Opens a run that was recorded, to look through it; its files are looked for at `home`.
     ///
     /// # Errors
-    /// All that is wrong with its scene; then the desk is as before.
+    /// All that is wrong with its scene; then the state is as before.
     pub fn open_recorded(&mut self, log: Log, home: &Path) -> Result<(), String> {
-        self.draft = Some(Draft::new(log.scene().to_owned(), None, home)?);
-        self.choice = Choice::Nothing;
+        self.draft = Some(SceneDraft::new(log.scene().to_owned(), None, home)?);
+        self.selection = Selection::Nothing;
         self.begin();
         (self.recorded, self.playing) = (true, false);
-        self.orders.push(Order::Recorded(Box::new(log)));
+        self.requests.push(RunRequest::Recorded(Box::new(log)));
         Ok(())
     }
 
@@ -33,13 +33,13 @@ impl Desk {
             self.restart(until);
             return self.note("The scene runs anew from here on: what cameras saw is drawn again");
         }
-        self.orders.push(Order::TakeUp { scene, gpu: None });
-        self.orders.push(Order::Ahead(self.ahead));
+        self.requests.push(RunRequest::ResumeRecording { scene, gpu: None });
+        self.requests.push(RunRequest::Ahead(self.ahead));
         self.note("What was recorded is taken up: the scene runs anew, unseen, as far as that came");
     }
 
     /// A recorded run was taken up.
-    pub(crate) fn taken_up(&mut self, same: bool) {
+    pub(crate) fn recording_resumed(&mut self, same: bool) {
         if same {
             return self.note("It is the same run, bit for bit: what changes from here on is a branch of it");
         }

@@ -1,10 +1,16 @@
 //! What the window knows: scene, past, present and what is selected. It decides what an action means, without a window.
 
-use crate::futures::BranchFace;
-use crate::session::draft::Draft;
-use crate::session::forecast::Forecast;
+mod branch_info;
+pub mod commands;
+mod edits;
+mod past_changes;
+mod recorded;
+
 use crate::session::history::History;
-use crate::session::runner::{News, Order};
+use crate::session::prediction::Prediction;
+use crate::session::runner::{RunEvent, RunRequest};
+use crate::session::scene_draft::SceneDraft;
+pub use branch_info::BranchInfo;
 use scene::{Channel, Follow, Role, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -13,7 +19,7 @@ use vocabulary::{EdgeState, StepRecord, wrap};
 
 /// What is selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Choice {
+pub enum Selection {
     /// Nothing.
     #[default]
     Nothing,
@@ -37,7 +43,7 @@ pub enum Tool {
 
 /// A line of the log.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Event {
+pub struct LogEntry {
     /// Simulated time, s.
     pub time: f64,
     /// What happened.
@@ -51,13 +57,13 @@ const MOST_EVENTS: usize = 2000;
 
 /// What the window knows.
 #[expect(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
-pub struct Desk {
+pub struct AppState {
     /// The scene under work; `None` where none could be opened.
-    pub draft: Option<Draft>,
+    pub draft: Option<SceneDraft>,
     /// Everything simulated.
     pub history: Option<History>,
     /// The branches, as in the history.
-    pub branches: Vec<BranchFace>,
+    pub branches: Vec<BranchInfo>,
     /// The branch that is looked at, which is the one that goes on.
     pub branch: usize,
     /// The time that is looked at, s; `None` for the present.
@@ -69,11 +75,11 @@ pub struct Desk {
     /// Simulated seconds per second.
     pub pace: f64,
     /// What is selected.
-    pub choice: Choice,
+    pub selection: Selection,
     /// What clicks do.
     pub tool: Tool,
-    /// The newest forecast.
-    pub forecast: Option<Forecast>,
+    /// The newest prediction.
+    pub prediction: Option<Prediction>,
     /// How far to look ahead, s.
     pub ahead: f64,
     /// Whether a change of a gain is for all followers.
@@ -83,7 +89,7 @@ pub struct Desk {
     /// The view that films are taken from; `None` is what is seen.
     pub film_from: Option<String>,
     /// What happened.
-    pub log: Vec<Event>,
+    pub log: Vec<LogEntry>,
     /// A message in place, until it is dismissed.
     pub notice: Option<String>,
     /// Where what happens is printed, too.
@@ -101,11 +107,11 @@ pub struct Desk {
     /// Changes that this text has itself.
     pub(crate) own: Vec<scene::Change>,
     /// For the thread of the run.
-    pub orders: Vec<Order>,
+    pub requests: Vec<RunRequest>,
 }
 
-impl Desk {
-    /// An empty desk.
+impl AppState {
+    /// A state with no scene.
     pub fn new() -> Self {
         Self {
             draft: None,
@@ -116,9 +122,9 @@ impl Desk {
             playing: true,
             recorded: false,
             pace: 1.0,
-            choice: Choice::Nothing,
+            selection: Selection::Nothing,
             tool: Tool::Hand,
-            forecast: None,
+            prediction: None,
             ahead: 6.0,
             for_all: true,
             mirror: false,
@@ -132,24 +138,24 @@ impl Desk {
             first: None,
             chosen: None,
             own: Vec::new(),
-            orders: Vec::new(),
+            requests: Vec::new(),
         }
     }
 
     /// Opens a scene from its text; `path` is where it is saved, `home` where its files are looked for.
     ///
     /// # Errors
-    /// All that is wrong with the text; then the desk is as before.
+    /// All that is wrong with the text; then the state is as before.
     pub fn open(&mut self, text: String, path: Option<PathBuf>, home: &Path) -> Result<(), String> {
-        self.draft = Some(Draft::new(text, path, home)?);
-        self.choice = Choice::Nothing;
+        self.draft = Some(SceneDraft::new(text, path, home)?);
+        self.selection = Selection::Nothing;
         self.restart(0.0);
         Ok(())
     }
 
     /// The scene as it stands.
     pub fn scene(&self) -> Option<&Arc<Scene>> {
-        self.draft.as_ref().map(Draft::scene)
+        self.draft.as_ref().map(SceneDraft::scene)
     }
 
     /// Runs the scene as it stands from time 0, at once up to `until` s.
@@ -157,9 +163,9 @@ impl Desk {
         self.begin();
         self.recorded = false;
         let Some(draft) = &self.draft else { return };
-        self.orders.push(Order::Open { scene: Arc::clone(draft.scene()), gpu: None, until });
-        self.orders.push(Order::Ahead(self.ahead));
-        self.orders.push(Order::Play(self.playing));
+        self.requests.push(RunRequest::Open { scene: Arc::clone(draft.scene()), gpu: None, until });
+        self.requests.push(RunRequest::Ahead(self.ahead));
+        self.requests.push(RunRequest::Play(self.playing));
     }
 
     pub(crate) fn begin(&mut self) {
@@ -197,7 +203,7 @@ impl Desk {
             .map_or_else(Default::default, |scene| [scene.title.clone(), simulation::caption(scene)])
     }
 
-    /// The moment that is looked at.
+    /// The record that is shown.
     pub fn record(&self) -> Option<Arc<StepRecord>> {
         let history = self.history.as_ref()?;
         match self.cursor {
@@ -206,7 +212,7 @@ impl Desk {
         }
     }
 
-    /// The moment that is looked at, with set points as they are wanted now: a run that stands shows what a hand moves.
+    /// The record that is shown, with set points as they are wanted now: a run that stands shows what a hand moves.
     pub fn shown(&self) -> Option<Arc<StepRecord>> {
         let record = self.record()?;
         if self.cursor.is_some() || self.playing {
@@ -261,10 +267,10 @@ impl Desk {
 
     /// The edge that is selected, or that of the robot that is.
     pub fn chosen_edge(&self) -> Option<usize> {
-        match self.choice {
-            Choice::Edge(edge) => Some(edge),
-            Choice::Robot(robot) => self.edge_of(robot),
-            Choice::Nothing => None,
+        match self.selection {
+            Selection::Edge(edge) => Some(edge),
+            Selection::Robot(robot) => self.edge_of(robot),
+            Selection::Nothing => None,
         }
     }
 
@@ -276,10 +282,10 @@ impl Desk {
 
     /// The robot that is selected, or the follower of the edge that is.
     pub fn chosen_robot(&self) -> Option<usize> {
-        match self.choice {
-            Choice::Robot(robot) => Some(robot),
-            Choice::Edge(edge) => self.history.as_ref()?.fleet().edges.get(edge).map(|edge| edge.follower),
-            Choice::Nothing => None,
+        match self.selection {
+            Selection::Robot(robot) => Some(robot),
+            Selection::Edge(edge) => self.history.as_ref()?.fleet().edges.get(edge).map(|edge| edge.follower),
+            Selection::Nothing => None,
         }
     }
 
@@ -305,7 +311,7 @@ impl Desk {
         // What goes on under a hand is one line.
         let again = text.ends_with('…') && self.log.last().is_some_and(|last| last.text == text);
         if !again {
-            self.log.push(Event { time, text, fault });
+            self.log.push(LogEntry { time, text, fault });
         }
         if self.log.len() > MOST_EVENTS {
             self.log.remove(0);
@@ -329,7 +335,7 @@ impl Desk {
     pub fn pause(&mut self) {
         if self.playing {
             self.playing = false;
-            self.orders.push(Order::Play(false));
+            self.requests.push(RunRequest::Play(false));
         }
     }
 
@@ -342,39 +348,39 @@ impl Desk {
             return;
         }
         self.cursor = None;
-        self.orders.push(Order::Play(true));
+        self.requests.push(RunRequest::Play(true));
     }
 
     /// Takes in what the thread of the run tells.
-    pub fn hear(&mut self, news: News) {
-        match news {
-            News::Opened { fleet, period } => {
+    pub fn handle_event(&mut self, run_event: RunEvent) {
+        match run_event {
+            RunEvent::Opened { fleet, period } => {
                 self.history = Some(History::new(fleet, period));
-                self.branches = vec![BranchFace::trunk()];
-                (self.branch, self.cursor, self.forecast, self.forks) = (0, None, None, 0);
+                self.branches = vec![BranchInfo::trunk()];
+                (self.branch, self.cursor, self.prediction, self.forks) = (0, None, None, 0);
                 self.cursor = self.recorded.then_some(0.0);
                 self.check_choice();
             }
-            News::Moments(branch, records) => {
+            RunEvent::Records(branch, records) => {
                 if let Some(history) = &mut self.history {
                     for record in records {
                         history.push(branch, record);
                     }
                 }
             }
-            News::Forked { branch, from, sample, name, changes } => {
+            RunEvent::Forked { branch, from, sample, name, changes } => {
                 self.forked(branch, (from, sample), name, changes);
             }
-            News::Changed(branch, change) => self.changed(branch, &change),
-            News::TakenUp(same) => self.taken_up(same),
-            News::Told { .. } => {}
-            News::Stands(why) => {
+            RunEvent::Changed(branch, change) => self.changed(branch, &change),
+            RunEvent::RecordingResumed(same) => self.recording_resumed(same),
+            RunEvent::Summary { .. } => {}
+            RunEvent::Stopped(why) => {
                 self.playing = false;
                 if let Some(why) = why {
                     self.fault(why);
                 }
             }
-            News::Refused(why) => self.fault(why),
+            RunEvent::Refused(why) => self.fault(why),
         }
     }
 
@@ -384,16 +390,16 @@ impl Desk {
         let named = |name: &String| fleet.robots.iter().position(|member| member.name == *name);
         let robot = self.chosen.as_ref().and_then(named);
         let edge = robot.and_then(|robot| fleet.edges.iter().position(|edge| edge.follower == robot));
-        self.choice = match (robot, edge, self.choice) {
-            (Some(_), Some(edge), Choice::Edge(_)) => Choice::Edge(edge),
-            (Some(robot), ..) => Choice::Robot(robot),
-            (None, ..) if self.chosen.is_none() && !fleet.edges.is_empty() => Choice::Edge(0),
-            _ => Choice::Nothing,
+        self.selection = match (robot, edge, self.selection) {
+            (Some(_), Some(edge), Selection::Edge(_)) => Selection::Edge(edge),
+            (Some(robot), ..) => Selection::Robot(robot),
+            (None, ..) if self.chosen.is_none() && !fleet.edges.is_empty() => Selection::Edge(0),
+            _ => Selection::Nothing,
         };
     }
 }
 
-impl Default for Desk {
+impl Default for AppState {
     fn default() -> Self {
         Self::new()
     }

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 /// Where this window keeps its work.
 #[derive(Debug)]
-pub struct WorkKept {
+pub struct Autosave {
     file: Option<PathBuf>,
     written: String,
 }
 
 /// Work that another window has left.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Left {
+pub struct RecoverableWork {
     /// The file that holds it.
     pub file: PathBuf,
     /// The scene it belongs to.
@@ -24,7 +24,7 @@ pub struct Left {
 /// First line of a kept text: the scene it belongs to.
 const HEAD: &str = "# unsaved work on ";
 
-impl WorkKept {
+impl Autosave {
     /// Keeps work in `folder`; `None` where there is none to keep it in.
     pub fn new(folder: Option<&Path>) -> Self {
         let file = folder.map(|folder| folder.join(format!("work-{}.toml", std::process::id())));
@@ -62,7 +62,7 @@ impl WorkKept {
 }
 
 /// The newest work in `folder` of a window that is gone; `alive` says whether a process is.
-pub fn left(folder: &Path, alive: impl Fn(u32) -> bool) -> Option<Left> {
+pub fn left(folder: &Path, alive: impl Fn(u32) -> bool) -> Option<RecoverableWork> {
     let files = fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
     let orphaned = files.filter(|file| {
         let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -74,7 +74,7 @@ pub fn left(folder: &Path, alive: impl Fn(u32) -> bool) -> Option<Left> {
     let (head, text) = text.split_once('\n')?;
     let path = head.strip_prefix(HEAD)?.trim();
     let path = (!path.is_empty()).then(|| PathBuf::from(path));
-    Some(Left { file: newest, path, text: text.to_owned() })
+    Some(RecoverableWork { file: newest, path, text: text.to_owned() })
 }
 
 /// Whether a process runs, as far as that can be told.
@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn work_is_kept_until_it_is_done_and_found_when_its_window_is_gone() {
         let folder = tempfile::tempdir().expect("a folder");
-        let mut kept = WorkKept::new(Some(folder.path()));
+        let mut kept = Autosave::new(Some(folder.path()));
         kept.keep("schema = 1\n", Some(Path::new("scenes/a.toml"))).expect("kept");
         assert_eq!(left(folder.path(), |_| true), None);
         let found = left(folder.path(), |_| false).expect("left");

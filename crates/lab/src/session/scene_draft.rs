@@ -9,7 +9,7 @@ use std::sync::Arc;
 const MOST_STEPS: usize = 500;
 
 /// A scene file under work.
-pub struct Draft {
+pub struct SceneDraft {
     /// Where it is saved; `None` for one that never was.
     pub path: Option<PathBuf>,
     /// Names the scene in messages, and where its tables are looked for.
@@ -21,12 +21,12 @@ pub struct Draft {
     /// What the scene builds, until the run takes it.
     checked: Option<CheckedScene>,
     saved: String,
-    undo: Vec<Step>,
-    redo: Vec<Step>,
+    undo: Vec<UndoStep>,
+    redo: Vec<UndoStep>,
 }
 
 /// A state to go back to.
-struct Step {
+struct UndoStep {
     text: String,
     scene: Arc<Scene>,
     /// What was done from here on, for people.
@@ -53,7 +53,7 @@ pub enum Effect {
     Restart(String),
 }
 
-impl Draft {
+impl SceneDraft {
     /// A scene from its text; `path` is where it is saved.
     ///
     /// # Errors
@@ -186,7 +186,7 @@ impl Draft {
     pub fn put(&mut self, what: &str, edited: EditedScene) -> Effect {
         let EditedScene { text, checked } = edited;
         let (effect, set) = self.effect_of(checked.scene());
-        let before = Step {
+        let before = UndoStep {
             text: std::mem::replace(&mut self.text, text),
             scene: std::mem::replace(&mut self.scene, Arc::clone(checked.scene())),
             what: what.to_owned(),
@@ -272,10 +272,10 @@ impl Draft {
         self.redo.last().map(|step| step.what.trim_end_matches('…'))
     }
 
-    fn swap(&mut self, step: Step) -> (Step, Effect) {
+    fn swap(&mut self, step: UndoStep) -> (UndoStep, Effect) {
         let effect = if step.text == self.text { Effect::None } else { self.effect_of(&step.scene).0 };
         (self.document, self.checked) = (None, None);
-        let now = Step {
+        let now = UndoStep {
             text: std::mem::replace(&mut self.text, step.text),
             scene: std::mem::replace(&mut self.scene, step.scene),
             what: step.what,

@@ -1,26 +1,11 @@
-//! What lies over the panels: notices, the menu of scenes, shortcuts, hints, questions.
+//! Draws what lies over the panels: notices, the menu of scenes, shortcuts, hints, questions.
 
+use super::dialog::Dialog;
+use super::{BARE, LabApp};
 use crate::action::Action;
-use crate::app::{BARE, Lab};
 use eframe::egui::{self, Context, Ui};
 
-/// What lies over the view.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) enum Over {
-    /// Nothing.
-    #[default]
-    Nothing,
-    /// The menu of scenes.
-    Gallery,
-    /// The shortcuts.
-    Help,
-    /// The question before unsaved work is closed.
-    Closing,
-    /// The question before another scene takes the place of unsaved work.
-    Leaving,
-}
-
-impl Lab {
+impl LabApp {
     /// A line under the bar: work that a crash has left.
     pub(crate) fn notices(&mut self, ui: &mut Ui, out: &mut Vec<Action>) {
         if let Some(left) = &self.left {
@@ -42,7 +27,7 @@ impl Lab {
 
     /// What went wrong, over the view, so that nothing moves under the pointer.
     fn show_notice(&self, ctx: &Context, out: &mut Vec<Action>) {
-        let Some(notice) = self.desk.notice.clone() else { return };
+        let Some(notice) = self.app_state.notice.clone() else { return };
         let view = self.viewport.rect;
         let wide = (view.width() - 40.0).clamp(260.0, 760.0);
         egui::Area::new(egui::Id::unique("notice"))
@@ -73,25 +58,25 @@ impl Lab {
         };
         let room = ctx.content_rect().size();
         let large = egui::vec2((room.x - 60.0).min(1000.0), room.y - 110.0);
-        match self.over {
-            Over::Nothing => {}
-            Over::Gallery => {
+        match self.dialog {
+            Dialog::Nothing => {}
+            Dialog::Gallery => {
                 window("Scenes").open(&mut open).default_size(large).show(ctx, |ui| {
                     self.gallery.show(ui, &self.recent, out);
                 });
             }
-            Over::Help => {
+            Dialog::Help => {
                 window("Shortcuts")
                     .open(&mut open)
                     .resizable(false)
                     .default_height(large.y)
                     .show(ctx, crate::keys::page);
             }
-            Over::Closing => self.ask_before_closing(ctx, out),
-            Over::Leaving => self.ask_before_leaving(ctx, out),
+            Dialog::Closing => self.ask_before_closing(ctx, out),
+            Dialog::Leaving => self.ask_before_leaving(ctx, out),
         }
         if !open {
-            self.over = Over::Nothing;
+            self.dialog = Dialog::Nothing;
         }
         self.show_notice(ctx, out);
         if self.hints && self.viewport.rect.width() > 460.0 {
@@ -127,17 +112,17 @@ impl Lab {
             ui.horizontal(|ui| {
                 if ui.button("Save and close").clicked() {
                     out.push(Action::Save);
-                    self.over = Over::Nothing;
+                    self.dialog = Dialog::Nothing;
                     ctx.send_viewport_cmd(egui::ViewportCommand::Close);
                 }
                 if ui.button("Close without saving").clicked() {
-                    self.kept.done();
-                    self.desk.draft = None;
-                    self.over = Over::Nothing;
+                    self.autosave.done();
+                    self.app_state.draft = None;
+                    self.dialog = Dialog::Nothing;
                     ctx.send_viewport_cmd(egui::ViewportCommand::Close);
                 }
                 if ui.button("Stay").clicked() {
-                    self.over = Over::Nothing;
+                    self.dialog = Dialog::Nothing;
                 }
             });
         });
@@ -151,12 +136,12 @@ impl Lab {
                     (ui.button("Save and open").clicked(), ui.button("Open without saving").clicked());
                 let stay = ui.button("Stay").clicked();
                 if save || go || stay {
-                    self.over = Over::Nothing;
+                    self.dialog = Dialog::Nothing;
                     let next = self.next.take();
                     if save {
                         out.push(Action::Save);
                     }
-                    if go && let Some(draft) = &mut self.desk.draft {
+                    if go && let Some(draft) = &mut self.app_state.draft {
                         draft.abandon();
                     }
                     if !stay {
