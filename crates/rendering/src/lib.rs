@@ -21,58 +21,32 @@
 //! The world is f64; positions are narrowed to f32 relative to an origin near the robots. Pictures are sRGB.
 //! The same records give the same picture, byte for byte, on the same adapter.
 
-mod atlas;
+mod annotation;
 mod camera;
-mod carried;
-mod chalk;
 mod compose;
 mod composition;
-mod crowd;
-mod detections;
-mod drape;
-mod encode;
 mod error;
-mod eyes;
-mod flash;
-mod floor;
-mod glide;
 mod gpu;
-mod inset;
-mod labels;
-mod letters;
-mod model;
-mod paint;
+mod ground;
 mod palette;
-mod passes;
-mod pick;
-mod plan;
-mod props;
+mod picture_context;
+mod picture_plan;
 mod renderer;
-mod room;
-mod shade;
-mod show;
-mod sightline;
-mod sketch;
-mod snake;
-mod steady;
 mod style;
-mod target;
-mod thin;
-mod trail;
-mod view;
-mod world;
 
+pub use annotation::annotations::{
+    AnnotationArrow, AnnotationStroke, Annotations, Ghost, Ring, ShadedArea, StrokePoint,
+};
+pub use annotation::letters::FONT;
+pub use annotation::overlays::{Card, CurvePanel, Overlays, PanelCurve, ReservedSpace, Subtitle};
+pub use camera::pick::Picked;
+pub use camera::sightline::Sightline;
+pub use camera::viewpoint::{FreeCamera, Tile, ViewLayout, Viewpoint};
 pub use composition::Composition;
 pub use error::Error;
-pub use eyes::GpuCameraRenderer;
+pub use gpu::camera_renderer::GpuCameraRenderer;
 pub use gpu::{AdapterChoice, AdapterInfo, Gpu, adapters};
-pub use letters::FONT;
+pub use ground::trail::{Trail, set_points};
 pub use palette::robot_colours;
-pub use pick::Picked;
 pub use renderer::Renderer;
-pub use show::{Card, CurvePanel, Overlays, PanelCurve, ReservedSpace, Subtitle};
-pub use sightline::Sightline;
-pub use sketch::{AnnotationArrow, AnnotationStroke, Annotations, Ghost, Ring, ShadedArea, StrokePoint};
 pub use style::Style;
-pub use trail::{Trail, set_points};
-pub use view::{FreeCamera, Tile, ViewLayout, Viewpoint};

@@ -1,20 +1,21 @@
 //! Moments to pictures.
 
+use crate::annotation::labels::{Window, detail};
+use crate::annotation::letters::Letters;
 use crate::camera::Camera;
+use crate::camera::pick::pick;
 use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun, veiled_decks, words};
-use crate::crowd::{RobotModels, crowd, part};
-use crate::encode::{EncodeTarget, Passes, Prepared};
-use crate::floor::Floor;
-use crate::labels::{Window, detail};
-use crate::letters::Letters;
-use crate::paint::{DecalContext, paint};
+use crate::gpu::encode::{EncodeTarget, Passes, Prepared};
+use crate::gpu::passes::Canvas;
+use crate::gpu::passes::decal::{DecalLayer, DecalVertex};
+use crate::gpu::props::props;
+use crate::gpu::robot_models::{RobotModels, crowd, part};
+use crate::gpu::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
+use crate::ground::decal_builder::build_decals;
+use crate::ground::floor::Floor;
 use crate::palette::{Rgb, robot_colours};
-use crate::passes::Canvas;
-use crate::passes::decal::{DecalLayer, DecalVertex};
-use crate::pick::pick;
-use crate::plan::PicturePlan;
-use crate::props::props;
-use crate::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
+use crate::picture_context::PictureContext;
+use crate::picture_plan::PicturePlan;
 use crate::{Error, Gpu, Picked, Sightline, Style, Trail, ViewLayout, Viewpoint};
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -228,7 +229,7 @@ impl Renderer {
         let cameras = cameras(&plan, trail, record, &self.fleet, &self.floor);
         // Cameras on robots see nothing that is drawn to explain.
         let bare = Style { shadows: style.shadows, ..Style::bare() };
-        let stage = DecalContext {
+        let context = PictureContext {
             fleet: &self.fleet,
             floor: &self.floor,
             colours: &self.colours,
@@ -237,22 +238,22 @@ impl Renderer {
             style,
             origin: local_origin(record),
             sun: towards_sun(&self.fleet.light),
-            size: trail.steady.formation().size,
+            size: trail.smoothed.formation().size,
             shadowed: shadowed(&self.fleet, record),
             detail: detail(self.fleet.robots.len()),
         };
-        let (crowd, props) = (crowd(&stage, &self.robot_models), props(&stage));
-        let sun = sun_over(&stage);
+        let (crowd, props) = (crowd(&context, &self.robot_models), props(&context));
+        let sun = sun_over(&context);
         let shadow = &self.passes.world.shadow;
-        let stage_of = |view: &Viewpoint| match view {
-            Viewpoint::Camera(_) => DecalContext { style: &bare, ..stage },
-            _ => stage,
+        let context_of = |view: &Viewpoint| match view {
+            Viewpoint::Camera(_) => PictureContext { style: &bare, ..context },
+            _ => context,
         };
         let seen = || views.iter().zip(&cameras);
         let frames: Vec<_> =
-            seen().map(|(view, camera)| frame(camera, &stage_of(view), view, &sun, shadow)).collect();
+            seen().map(|(view, camera)| frame(camera, &context_of(view), view, &sun, shadow)).collect();
         let own = |(view, camera): (&Viewpoint, &Camera)| match view {
-            Viewpoint::Camera(robot) => Some(part(&crowd, &stage, &self.robot_models, camera, *robot)),
+            Viewpoint::Camera(robot) => Some(part(&crowd, &context, &self.robot_models, camera, *robot)),
             _ => None,
         };
         let own = seen().map(own).collect();
@@ -264,16 +265,16 @@ impl Renderer {
                 corners.extend(more);
                 (layer, first..corners.len() as u32)
             };
-            decals.push(paint(&stage_of(view), view, camera, f64::from(tile.height)).map(add));
+            decals.push(build_decals(&context_of(view), view, camera, f64::from(tile.height)).map(add));
         }
         let windows: Vec<_> =
             cameras.iter().zip(tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
         let letters = self.letters.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let (words, _) = words(letters, &stage, &plan, &windows, self.size);
+        let (words, _) = words(letters, &context, &plan, &windows, self.size);
         let (lines, shapes) = (words.lines, words.shapes);
         let ghosts =
             views.iter().map(|view| !matches!(view, Viewpoint::SnakeEye | Viewpoint::Camera(_))).collect();
-        let veiled = seen().map(|(view, camera)| veiled_decks(camera, &stage, view)).collect();
+        let veiled = seen().map(|(view, camera)| veiled_decks(camera, &context, view)).collect();
         let mut prepared = Prepared {
             crowd,
             cameras,
@@ -357,7 +358,7 @@ pub(crate) fn cameras(
     floor: &Floor,
 ) -> Vec<Camera> {
     let camera = |(k, view): (usize, &Viewpoint)| {
-        Camera::of(view, &trail.steady, &record.snapshot, (fleet, floor), &plan.room(k))
+        Camera::of(view, &trail.smoothed, &record.snapshot, (fleet, floor), &plan.room(k))
     };
     plan.views.iter().enumerate().map(camera).collect()
 }

@@ -18,7 +18,7 @@ macro_rules! elements {
             /// The robot through whose camera a small picture in the corner is seen, by its index.
             pub picture_in_picture: Option<usize>,
             /// What is drawn on the ground to explain; views through cameras do not show it.
-            pub sketch: Annotations,
+            pub annotations: Annotations,
             /// What films add: cards, a line, plots.
             pub show: Overlays,
             /// Quicker pictures, for a window: ribbons and tyre marks have fewer points, within half a pixel of where they
@@ -33,7 +33,7 @@ macro_rules! elements {
                     scale: 1.0,
                     detections: false,
                     picture_in_picture: None,
-                    sketch: Annotations::default(),
+                    annotations: Annotations::default(),
                     show: Overlays::default(),
                     interactive: false,
                 }

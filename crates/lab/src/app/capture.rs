@@ -28,7 +28,7 @@ impl LabApp {
         let Some(view) = &self.app_state.film_from else { return Some(shot) };
         let fleet = self.app_state.history.as_ref()?.fleet();
         let names: Vec<String> = fleet.robots.iter().map(|member| member.name.clone()).collect();
-        let style = Style { sketch: Annotations::default(), inset: true, ..shot.style };
+        let style = Style { annotations: Annotations::default(), inset: true, ..shot.style };
         Some(FrameSpec { layout: ViewLayout::parse(view, &names).unwrap_or(shot.layout), style, ..shot })
     }
 

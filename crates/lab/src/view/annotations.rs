@@ -31,34 +31,34 @@ pub struct Hand {
     pub connecting: Option<(usize, [f64; 2])>,
 }
 
-/// The sketch of what is looked at.
-pub fn sketch(app_state: &AppState, record: &StepRecord, hand: &Hand) -> Annotations {
-    let mut sketch = Annotations::default();
-    let Some(history) = &app_state.history else { return sketch };
+/// The annotations of what is shown.
+pub fn annotations(app_state: &AppState, record: &StepRecord, hand: &Hand) -> Annotations {
+    let mut annotations = Annotations::default();
+    let Some(history) = &app_state.history else { return annotations };
     let fleet = Arc::clone(history.fleet());
     let colours = rendering::robot_colours(&fleet);
     if let Some(held) = hand.held {
-        refused(app_state, held, record, &mut sketch);
+        refused(app_state, held, record, &mut annotations);
     }
-    others(app_state, &colours, &mut sketch);
+    others(app_state, &colours, &mut annotations);
     let present = app_state.cursor.is_none();
     if let Some(prediction) =
         app_state.prediction.as_ref().filter(|f| present && f.branch == app_state.branch)
     {
-        future(prediction, &colours, &fleet, &mut sketch);
+        future(prediction, &colours, &fleet, &mut annotations);
     }
-    handles(app_state, &fleet, (record, &colours), hand, &mut sketch);
+    handles(app_state, &fleet, (record, &colours), hand, &mut annotations);
     if let Some((robot, to)) = hand.connecting
         && let Some(state) = record.snapshot.robots.get(robot)
     {
         let from = [state.motion.pose.x, state.motion.pose.y];
-        sketch.arrows.push(AnnotationArrow { from, to, gaps: [0.3, 0.0], colour: ACCENT, alpha: 0.95 });
+        annotations.arrows.push(AnnotationArrow { from, to, gaps: [0.3, 0.0], colour: ACCENT, alpha: 0.95 });
     }
-    sketch
+    annotations
 }
 
 /// Ground that the follower of an edge cannot hold.
-fn refused(app_state: &AppState, edge: usize, record: &StepRecord, sketch: &mut Annotations) {
+fn refused(app_state: &AppState, edge: usize, record: &StepRecord, annotations: &mut Annotations) {
     let Some((leader, field)) = feasibility::field(app_state, edge, record) else { return };
     let half = 0.5 * (field.side - 1) as f64 * field.step;
     let area =
@@ -68,7 +68,7 @@ fn refused(app_state: &AppState, edge: usize, record: &StepRecord, sketch: &mut 
         let [left, ahead] = spot.at;
         StrokePoint { at: leader.world_from_body(ahead, left), ..spot }
     });
-    sketch.areas.push(ShadedArea { corners: turned.collect(), hatched: true });
+    annotations.areas.push(ShadedArea { corners: turned.collect(), hatched: true });
 }
 
 fn scaled(alphas: &[f32], by: f32) -> Vec<f32> {
@@ -76,7 +76,7 @@ fn scaled(alphas: &[f32], by: f32) -> Vec<f32> {
 }
 
 /// Paths of branches that are not looked at.
-fn others(app_state: &AppState, colours: &[[f32; 3]], sketch: &mut Annotations) {
+fn others(app_state: &AppState, colours: &[[f32; 3]], annotations: &mut Annotations) {
     let Some(history) = &app_state.history else { return };
     for branch in (0..history.branches()).filter(|branch| *branch != app_state.branch) {
         let from = app_state.branches.get(branch).and_then(|face| face.parent).map_or(0.0, |(_, time)| time);
@@ -88,7 +88,7 @@ fn others(app_state: &AppState, colours: &[[f32; 3]], sketch: &mut Annotations) 
                 let pose = record.snapshot.robots.get(robot)?.motion.pose;
                 Some(StrokePoint { at: [pose.x, pose.y], colour: light(*colour), alpha: 0.55 })
             });
-            sketch.strokes.push(AnnotationStroke {
+            annotations.strokes.push(AnnotationStroke {
                 dashed: true,
                 pixels: 1.6,
                 ..AnnotationStroke::new(spots.collect())
@@ -100,13 +100,13 @@ fn others(app_state: &AppState, colours: &[[f32; 3]], sketch: &mut Annotations) 
                 pose: state.motion.pose,
                 alpha: 0.22,
             };
-            sketch.ghosts.extend(record.snapshot.robots.iter().enumerate().map(ghost));
+            annotations.ghosts.extend(record.snapshot.robots.iter().enumerate().map(ghost));
         }
     }
 }
 
 /// The next seconds, and where the formation will be.
-fn future(prediction: &Prediction, colours: &[[f32; 3]], fleet: &FleetInfo, sketch: &mut Annotations) {
+fn future(prediction: &Prediction, colours: &[[f32; 3]], fleet: &FleetInfo, annotations: &mut Annotations) {
     for (robot, path) in prediction.paths.iter().enumerate() {
         // Paler than the ribbons, which are the past.
         let colour = light(colours.get(robot).copied().unwrap_or([0.6; 3])).map(|c| 0.4 + 0.6 * c);
@@ -123,12 +123,12 @@ fn future(prediction: &Prediction, colours: &[[f32; 3]], fleet: &FleetInfo, sket
         };
         let spots = path.iter().enumerate().map(spot).collect();
         let pixels = if path.iter().any(|p| p.trouble == Trouble::Contact) { 3.0 } else { 2.2 };
-        sketch.strokes.push(AnnotationStroke { pixels, ..AnnotationStroke::new(spots) });
+        annotations.strokes.push(AnnotationStroke { pixels, ..AnnotationStroke::new(spots) });
     }
     // Where they stand in the end; in a crowd the paths say enough.
     if fleet.robots.len() <= 30 {
         let ghost = |(robot, pose): (usize, &vocabulary::Pose)| Ghost { robot, pose: *pose, alpha: 0.30 };
-        sketch.ghosts.extend(prediction.end.iter().enumerate().map(ghost));
+        annotations.ghosts.extend(prediction.end.iter().enumerate().map(ghost));
     }
 }
 
@@ -138,7 +138,7 @@ fn handles(
     fleet: &FleetInfo,
     (record, colours): (&StepRecord, &[[f32; 3]]),
     hand: &Hand,
-    sketch: &mut Annotations,
+    annotations: &mut Annotations,
 ) {
     for (edge, at) in set_points(fleet, record).into_iter().enumerate() {
         let Some(at) = at else { continue };
@@ -146,9 +146,9 @@ fn handles(
         let ring =
             Ring { least: 17.0, ..Ring::new(at, RING * size(fleet, follower), light(colours[follower])) };
         if hand.held == Some(edge) || app_state.chosen_edge() == Some(edge) {
-            sketch.rings.push(ring.selected());
+            annotations.rings.push(ring.selected());
         } else if hand.dialog == Some(edge) {
-            sketch.rings.push(ring.hovered());
+            annotations.rings.push(ring.hovered());
         }
     }
     let under = |robot: usize| {
@@ -158,10 +158,10 @@ fn handles(
         Some(Ring { pixels: 2.0, ..Ring::new(at, 0.62 * body.length, ACCENT) })
     };
     if let Selection::Robot(robot) = app_state.selection {
-        sketch.rings.extend(under(robot));
+        annotations.rings.extend(under(robot));
     }
     if let Some(robot) = hand.robot {
-        sketch.rings.extend(under(robot).map(|ring| Ring { alpha: 0.5, ..ring }));
+        annotations.rings.extend(under(robot).map(|ring| Ring { alpha: 0.5, ..ring }));
     }
 }
 

@@ -6,7 +6,7 @@ use self::pointer::Drag;
 use crate::action::Action;
 use crate::app_state::{AppState, Tool};
 use crate::tidy::fixed;
-use crate::view::annotations::{Hand, sketch};
+use crate::view::annotations::{Hand, annotations};
 use crate::view::camera::HeldCamera;
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, TextureId, Ui, Vec2};
 use eframe::egui_wgpu::RenderState;
@@ -25,7 +25,7 @@ pub struct Viewport {
     /// What is looked from: a named view, or the camera in the hand.
     pub view: String,
     pub(super) held: Option<HeldCamera>,
-    /// What is drawn besides the scene; its sketch is made anew for each picture.
+    /// What is drawn besides the scene; its annotations are made anew for each picture.
     pub style: Style,
     pub(super) hand: Hand,
     drag: Option<Drag>,
@@ -149,7 +149,7 @@ impl Viewport {
 
     /// The style of a picture with all that explains it.
     pub fn dressed(&self, app_state: &AppState, record: &StepRecord, scale: f64) -> Style {
-        Style { scale, sketch: sketch(app_state, record, &self.hand), ..self.style.clone() }
+        Style { scale, annotations: annotations(app_state, record, &self.hand), ..self.style.clone() }
     }
 
     /// The view in all the room there is.
