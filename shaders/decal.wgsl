@@ -1,6 +1,6 @@
 // Paint on the ground: tyre marks, ribbons, rings, arrows, edges, and over them shadows and contact patches.
 
-struct Corner {
+struct DecalVertex {
     // Relative to the local origin, m.
     @location(0) position: vec3<f32>,
     // x: kind; y: inner radius of a ring or softness of a blob.
@@ -20,7 +20,7 @@ struct Varying {
 }
 
 @vertex
-fn vertex(in: Corner) -> Varying {
+fn vertex(in: DecalVertex) -> Varying {
     var clip = frame.clip_from_local * vec4<f32>(in.position, 1.0);
     if frame.spare.y > 0.5 {
         // On hills and decks depth is tested: a little nearer than the floor in which it lies.

@@ -8,7 +8,7 @@ struct Screen {
 
 @group(0) @binding(0) var<uniform> screen: Screen;
 
-struct Corner {
+struct OverlayVertex {
     // Pixels from the upper left.
     @location(0) position: vec2<f32>,
     // Where this corner is in the shape, in pixels from its middle.
@@ -26,7 +26,7 @@ struct Varying {
 }
 
 @vertex
-fn vertex(in: Corner) -> Varying {
+fn vertex(in: OverlayVertex) -> Varying {
     let at = in.position / screen.size * vec2<f32>(2.0, -2.0) + vec2<f32>(-1.0, 1.0);
     return Varying(vec4<f32>(at, 0.0, 1.0), in.offset, in.half_size, in.colour);
 }

@@ -1,6 +1,6 @@
 // Ground that is not flat: the asphalt of the flat ground, shaded by its slopes, glossy and pale where it is slippery.
 
-struct Point {
+struct TerrainVertex {
     // Relative to the terrain's own origin, m.
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
@@ -15,7 +15,7 @@ struct Varying {
 }
 
 @vertex
-fn vertex(in: Point) -> Varying {
+fn vertex(in: TerrainVertex) -> Varying {
     let local = in.position + frame.terrain.xyz;
     return Varying(frame.clip_from_local * vec4<f32>(local, 1.0), local, in.normal, in.grip);
 }

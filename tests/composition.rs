@@ -1,6 +1,6 @@
 //! What pictures of the scenes cover: words and panels lie where no robot, set point or label is, in every view and size.
 
-use rendering::{Composition, Layout, Line, Plot, Room, Show, Style, Trail};
+use rendering::{Composition, CurvePanel, Overlays, ReservedSpace, Style, Subtitle, Trail, ViewLayout};
 use scene::Scene;
 use simulation::{Simulation, build};
 use std::path::Path;
@@ -41,7 +41,7 @@ fn composed(
 ) -> Composition {
     let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
     let style = Style { scale: Style::scale_for(size.0, size.1), ..style.clone() };
-    Composition::new(fleet, (&at.0, &at.1), &Layout::parse(view, &names).expect("a view"), &style, size)
+    Composition::new(fleet, (&at.0, &at.1), &ViewLayout::parse(view, &names).expect("a view"), &style, size)
 }
 
 fn overlap(a: &[f32; 4], b: &[f32; 4]) -> bool {
@@ -118,13 +118,13 @@ fn nothing_lies_under_panels_and_captions() {
 /// Films add a line at the bottom, plots beside the view, and small pictures in a corner.
 #[test]
 fn nothing_lies_under_what_films_add() {
-    let line = |rows: usize| Line {
+    let line = |rows: usize| Subtitle {
         rows: vec!["robot-2  2.00 m  −135°   ·   robot-3  2.00 m  135°".into(); rows],
         opacity: 1.0,
     };
-    let room = |rows: usize| Room { panel: true, rows };
-    let said = |rows: usize| Show { line: Some(line(rows)), room: room(rows), ..Show::default() };
-    let plotted = Show { plots: vec![Plot::default(); 2], room: room(0), ..Show::default() };
+    let room = |rows: usize| ReservedSpace { panel: true, rows };
+    let said = |rows: usize| Overlays { line: Some(line(rows)), room: room(rows), ..Overlays::default() };
+    let plotted = Overlays { plots: vec![CurvePanel::default(); 2], room: room(0), ..Overlays::default() };
     let mut wrong = Vec::new();
     for (name, seconds) in [("seven-v", 8.0), ("circle-three", 10.0), ("vision-seven-v", 6.0)] {
         let (fleet, all) = shown(name, seconds, 100);
@@ -177,7 +177,7 @@ fn the_panel_makes_way_where_a_camera_cannot() {
     }
     assert!(there > 50 && gone > 50, "there {there}, gone {gone}");
     let card = rendering::Card { title: "A V".into(), rows: vec![], opacity: 1.0 };
-    let titled = Style { show: Show { card: Some(card), ..Show::default() }, ..Style::default() };
+    let titled = Style { show: Overlays { card: Some(card), ..Overlays::default() }, ..Style::default() };
     assert!(composed(&fleet, &all[0], "snake", &titled, (1280, 720)).panels.is_empty());
 }
 

@@ -1,7 +1,7 @@
 //! The same scene, seed and build: the same digest, whether or not pictures are drawn and on whatever thread.
 
 use metrics::Digest;
-use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, View};
+use rendering::{AdapterChoice, Gpu, Renderer, Style, Trail, ViewLayout, Viewpoint};
 use scene::Scene;
 use simulation::{Simulation, build};
 use std::path::Path;
@@ -82,7 +82,8 @@ fn drawn(name: &str) -> String {
     let fleet = drawn.fleet().clone();
     let gpu = Gpu::open(&AdapterChoice::Auto).expect("an adapter; see `echelon doctor`");
     let mut renderer = Renderer::new(&gpu, &fleet, 160, 90, 4).expect("a renderer");
-    let (mut trail, layout, style) = (Trail::new(&fleet), Layout::single(View::Snake), Style::default());
+    let (mut trail, layout, style) =
+        (Trail::new(&fleet), ViewLayout::single(Viewpoint::Snake), Style::default());
     let mut sum = Digest::default();
     let mut step = 0;
     while let Some(record) = drawn.next_record() {

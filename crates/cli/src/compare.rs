@@ -250,7 +250,7 @@ fn look(
         let path = folder.join(Path::new(name).with_extension("difference.png"));
         let picture = side_by_side(&shown.wanted, &shown.found, &shown.map);
         replaced.look(&path);
-        let written = rendering::png::write(&path, &picture, &[("Software", crate::run::PROGRAM)]);
+        let written = film::png::write(&path, &picture, &[("Software", crate::run::PROGRAM)]);
         // What came out is told, whatever becomes of a file.
         *lost = lost.take().or(written.err().map(Failure::from));
     }
@@ -300,7 +300,7 @@ fn flat(picture: &RgbaImage, ground: u8) -> RgbImage {
 /// What drew two pictures, where their files say so and it was not the same.
 fn adapters(wanted: &Path, found: &Path) -> Option<[String; 2]> {
     let drawn = |path: &Path| {
-        let texts = rendering::png::read_texts(path).ok()?;
+        let texts = film::png::read_texts(path).ok()?;
         texts.into_iter().find(|(key, _)| key == "Adapter").map(|(_, adapter)| adapter)
     };
     let both = [drawn(wanted)?, drawn(found)?];

@@ -74,6 +74,13 @@ impl From<rendering::Error> for Failure {
     }
 }
 
+impl From<film::Error> for Failure {
+    fn from(error: film::Error) -> Self {
+        let text = error.to_string();
+        if error.is_usage() { Self::Usage(text) } else { Self::Machine(text) }
+    }
+}
+
 impl From<recording::Error> for Failure {
     fn from(error: recording::Error) -> Self {
         let text = error.to_string();

@@ -16,11 +16,12 @@ use crate::print::{json, note, say};
 use crate::progress::Progress;
 use crate::replaced::Replaced;
 use board::Board;
+use film::{Film, FilmKind};
 use metrics::MetricsBuilder;
 use output::Place;
 use plots::Plots;
 pub(crate) use preset::Preset;
-use rendering::{Film, FilmKind, Gpu, Room, Show};
+use rendering::{Gpu, Overlays, ReservedSpace};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -110,7 +111,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     let Job { path, name, fleet, settings, .. } = &job;
     let rate = job.fps.unwrap_or(settings.fps);
     if !(1.0..=240.0).contains(&rate) {
-        return Err(rendering::Error::FrameRate(rate).into());
+        return Err(film::Error::FrameRate(rate).into());
     }
     let view = settings.view.as_deref().unwrap_or(job.view);
     let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
@@ -137,7 +138,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     let mut plots = Plots::new(fleet, job.duration);
     let plain = studio.style.clone();
     // Where a line or a panel comes and goes, no camera moves.
-    let room = Room { panel: plain.inset, rows: board.rows(fleet.edges.len()) };
+    let room = ReservedSpace { panel: plain.inset, rows: board.rows(fleet.edges.len()) };
     // A run that ends before its time has fewer frames than its storyboard.
     let (mut index, mut shot, mut shown) = (0, 0, f64::NEG_INFINITY);
     while index < frames && !interrupt::asked() {
@@ -156,7 +157,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
             for element in frame.without {
                 style.set(element, false)?;
             }
-            style.show = Show {
+            style.show = Overlays {
                 card: words::card(&frame, &job.description, fleet, || playback.metrics()),
                 line: words::line(&frame, fleet, &record),
                 plots: plots.shown(frame.plots),
@@ -213,7 +214,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
 }
 
 /// A disk that refuses a film, with what it keeps of it.
-fn refused(error: rendering::Error, job: &Job<'_>, kind: FilmKind, rate: f64) -> Failure {
+fn refused(error: film::Error, job: &Job<'_>, kind: FilmKind, rate: f64) -> Failure {
     let kept = if kind == FilmKind::Mp4 { Film::kept(&job.path, rate) } else { 0 };
     let text = match (kind, kept) {
         (FilmKind::Mp4, 0) => "nothing of the film is kept yet".to_owned(),
@@ -252,9 +253,9 @@ fn begin(job: &Job<'_>, kind: FilmKind, studio: &Studio, rate: f64) -> Result<(F
     let made_of = format!("{:032x}", whole.digest128());
     if job.fresh {
         // What belongs to another film is begun anew.
-        drop(Film::resume(&job.path, (width, height), rate, &format!("not {made_of}"))?);
+        drop(Film::resume(&job.path, width, height, rate, &format!("not {made_of}"))?);
     }
-    Ok(Film::resume(&job.path, (width, height), rate, &made_of)?)
+    Ok(Film::resume(&job.path, width, height, rate, &made_of)?)
 }
 
 #[cfg(test)]

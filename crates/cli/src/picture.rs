@@ -3,7 +3,7 @@
 use crate::args::PictureArgs;
 use crate::failure::Failure;
 use crate::print::note;
-use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, View};
+use rendering::{AdapterChoice, Gpu, Renderer, Style, ViewLayout, Viewpoint};
 use std::collections::BTreeSet;
 use vocabulary::FleetInfo;
 
@@ -11,7 +11,7 @@ use vocabulary::FleetInfo;
 pub(crate) struct Studio {
     pub(crate) gpu: Gpu,
     pub(crate) renderer: Renderer,
-    pub(crate) layout: Layout,
+    pub(crate) layout: ViewLayout,
     pub(crate) style: Style,
     pub(crate) size: [u32; 2],
     /// Characters of names that no font has, which has been told.
@@ -27,11 +27,11 @@ impl Studio {
         size: [u32; 2],
     ) -> Result<Self, Failure> {
         let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
-        let layout = Layout::parse(args.view.as_deref().unwrap_or(view), &names)?;
+        let layout = ViewLayout::parse(args.view.as_deref().unwrap_or(view), &names)?;
         let size = args.size.unwrap_or(size);
         let mut style = Style::without(&args.without)?;
         style.detections = args.overlay || args.inset_camera.is_some();
-        let cameras = layout.views.iter().any(|view| matches!(view, View::Camera(_)));
+        let cameras = layout.views.iter().any(|view| matches!(view, Viewpoint::Camera(_)));
         if args.overlay && !cameras && args.inset_camera.is_none() {
             note(
                 "--overlay shows in views through cameras only: add --view camera:ROBOT or --inset-camera ROBOT",
@@ -41,9 +41,9 @@ impl Studio {
         }
         if let Some(robot) = &args.inset_camera {
             // The same words and the same mistakes as in a view.
-            let view = Layout::parse(&format!("camera:{robot}"), &names)?;
+            let view = ViewLayout::parse(&format!("camera:{robot}"), &names)?;
             style.picture_in_picture = view.views.iter().find_map(|view| match view {
-                View::Camera(index) => Some(*index),
+                Viewpoint::Camera(index) => Some(*index),
                 _ => None,
             });
         }

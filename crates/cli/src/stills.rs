@@ -14,7 +14,7 @@ use crate::progress::Progress;
 use crate::replaced::Replaced;
 use clap::Args;
 use output::Place;
-use rendering::{Layout, Style};
+use rendering::{Style, ViewLayout};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use vocabulary::{Picture, StepRecord};
@@ -75,7 +75,7 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     let sheet = sheet(&tiles, args.columns);
     let mut big = rendering::Renderer::new(&small.gpu, &fleet, large[0], large[1], args.picture.samples)?;
     let aspect = f64::from(large[0]) / f64::from(large[1]);
-    let layout = Layout::single(strobe::view(&records, &fleet, aspect));
+    let layout = ViewLayout::single(strobe::view(&records, &fleet, aspect));
     let style = Style {
         ghosts: false,
         labels: false,
@@ -124,7 +124,7 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
 }
 
 fn write(path: &Path, picture: &Picture, texts: &[(&str, &str)]) -> Result<(), Failure> {
-    Ok(rendering::png::write(path, picture, texts)?)
+    Ok(film::png::write(path, picture, texts)?)
 }
 
 /// Pictures in rows, white between them.

@@ -23,14 +23,14 @@ pub(crate) const TICK: f64 = 2.6;
 pub(crate) const GREY: &str = "#6b6f76";
 
 /// A panel's place on the sheet.
-struct Area {
+struct PanelArea {
     left: f64,
     top: f64,
     width: f64,
     height: f64,
 }
 
-impl Area {
+impl PanelArea {
     fn x(&self, share: f64) -> f64 {
         self.left + share * self.width
     }
@@ -74,7 +74,7 @@ pub(crate) fn draw(figure: &Figure) -> String {
         top += HEAD;
         svg.text([MARGIN, top - 5.0], &panel.axis.label, Anchor::Start, "");
         for (number, (across, left, width)) in columns.iter().enumerate() {
-            let area = Area { left: *left, top, width: *width, height };
+            let area = PanelArea { left: *left, top, width: *width, height };
             let (rulers, outermost) = ((across, &rulers[index]), number + 1 == columns.len());
             if let Some(zoom) = figure.zoom.filter(|_| outermost) {
                 shade(&mut svg, &area, across, zoom);
@@ -112,7 +112,7 @@ fn columns(figure: &Figure, left: f64, along: f64) -> Vec<(Ruler, f64, f64)> {
 }
 
 /// The part of the axis that is magnified elsewhere.
-fn shade(svg: &mut Svg, area: &Area, across: &Ruler, zoom: [f64; 2]) {
+fn shade(svg: &mut Svg, area: &PanelArea, across: &Ruler, zoom: [f64; 2]) {
     let [from, to] = zoom.map(|x| across.at(x).map_or(0.0, |at| area.x(at.clamp(0.0, 1.0))));
     svg.rect([from, area.top], [to - from, area.height], "fill=\"#0072b2\" fill-opacity=\"0.12\"");
 }
@@ -169,7 +169,7 @@ pub(crate) fn keys(svg: &mut Svg, keys: &[Key], [left, top]: [f64; 2], sheet: f6
 }
 
 /// Axes, ticks, and faint lines across from the labelled ones.
-fn frame(svg: &mut Svg, area: &Area, across: &Ruler, ticks: &[Tick], (last, first): (bool, bool)) {
+fn frame(svg: &mut Svg, area: &PanelArea, across: &Ruler, ticks: &[Tick], (last, first): (bool, bool)) {
     let thin = "stroke=\"#1e1e22\" stroke-width=\"0.5\" fill=\"none\"";
     for tick in ticks {
         let y = area.y(tick.at);
@@ -206,7 +206,7 @@ fn frame(svg: &mut Svg, area: &Area, across: &Ruler, ticks: &[Tick], (last, firs
 }
 
 /// Lines and bands, which lie under the curves, or their names, which lie over them.
-fn guides(svg: &mut Svg, panel: &Panel, area: &Area, (across, up): (&Ruler, &Ruler), names: bool) {
+fn guides(svg: &mut Svg, panel: &Panel, area: &PanelArea, (across, up): (&Ruler, &Ruler), names: bool) {
     let dashes = format!("stroke=\"{GREY}\" stroke-width=\"0.6\" stroke-dasharray=\"1.2 1.6\"");
     // A halo keeps names readable where curves pass under them.
     let fill = format!("fill=\"{GREY}\" stroke=\"#fff\" stroke-width=\"2\" paint-order=\"stroke\"");
@@ -242,7 +242,12 @@ fn guides(svg: &mut Svg, panel: &Panel, area: &Area, (across, up): (&Ruler, &Rul
 }
 
 /// Draws a curve; where it ends, if any of it is to be seen.
-fn series(svg: &mut Svg, series: &Series, area: &Area, (across, up): (&Ruler, &Ruler)) -> Option<[f64; 2]> {
+fn series(
+    svg: &mut Svg,
+    series: &Series,
+    area: &PanelArea,
+    (across, up): (&Ruler, &Ruler),
+) -> Option<[f64; 2]> {
     let colour = ink(series.colour);
     let edges = [area.left, area.top, area.right(), area.bottom()];
     let (mut d, mut end, mut run, mut shown) = (String::new(), None, vec![], vec![]);
@@ -325,7 +330,7 @@ fn marker(svg: &mut Svg, marker: Marker, [x, y]: [f64; 2], colour: &str) {
 }
 
 /// Names right of the panel, level with where their curves end.
-fn names_at(svg: &mut Svg, all: &[Series], ends: &[Option<[f64; 2]>], area: &Area) {
+fn names_at(svg: &mut Svg, all: &[Series], ends: &[Option<[f64; 2]>], area: &PanelArea) {
     let named: Vec<(&Series, [f64; 2])> = all
         .iter()
         .zip(ends)

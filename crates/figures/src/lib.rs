@@ -14,7 +14,7 @@ mod plan;
 mod svg;
 mod trim;
 
-pub use plan::{Arrow, Node, Note, Outline, Plan, Side, Track};
+pub use plan::{Arrow, Note, Plan, PlanNode, PlanOutline, PlanPath, Side};
 pub use svg::Rgb;
 
 /// How values lie along an axis.

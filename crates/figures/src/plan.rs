@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 /// A way over the plane.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Track {
+pub struct PlanPath {
     /// [x, y].
     pub points: Vec<[f64; 2]>,
     /// Its colour.
@@ -22,7 +22,7 @@ pub struct Track {
 
 /// A closed shape.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Outline {
+pub struct PlanOutline {
     /// Corners, [x, y].
     pub points: Vec<[f64; 2]>,
     /// Its colour.
@@ -46,7 +46,7 @@ pub struct Arrow {
 
 /// A disc with a word in it.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Node {
+pub struct PlanNode {
     /// Its middle, [x, y].
     pub at: [f64; 2],
     /// What stands in it.
@@ -96,13 +96,13 @@ pub struct Plan {
     /// Labels of the axes; a map without has no frame.
     pub axes: Option<[String; 2]>,
     /// Ways.
-    pub tracks: Vec<Track>,
+    pub tracks: Vec<PlanPath>,
     /// Shapes over them.
-    pub outlines: Vec<Outline>,
+    pub outlines: Vec<PlanOutline>,
     /// Arrows over those.
     pub arrows: Vec<Arrow>,
     /// Discs over those.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<PlanNode>,
     /// Words over everything.
     pub notes: Vec<Note>,
     /// What strokes stand for, over the map.
@@ -271,7 +271,7 @@ fn arrow(svg: &mut Svg, arrow: &Arrow, on: &Projection) {
     svg.path(&format!("{}Z", path(&triangle)), &format!("fill=\"{colour}\""));
 }
 
-fn disc(svg: &mut Svg, node: &Node, [x, y]: [f64; 2]) {
+fn disc(svg: &mut Svg, node: &PlanNode, [x, y]: [f64; 2]) {
     let (r, colour) = (node.radius, ink(node.colour));
     let around = format!("M{}a{r} {r} 0 1 0 {d} 0a{r} {r} 0 1 0 -{d} 0Z", point([x - r, y]), d = 2.0 * r);
     let fill = if node.filled { colour.as_str() } else { "#fff" };

@@ -1,6 +1,6 @@
 //! Everything a person can ask the lab for. Clicks, keys and panels all end here, so each can be done in several ways.
 
-use crate::desk::{Choice, Tool};
+use crate::app_state::{Selection, Tool};
 use std::path::PathBuf;
 
 /// One thing to do.
@@ -25,11 +25,11 @@ pub enum Action {
     /// Call a branch something else.
     NameBranch(usize, String),
     /// Select something.
-    Choose(Choice),
+    Choose(Selection),
     /// Keep the camera with a robot; `None` lets it go.
     Follow(Option<usize>),
     /// Look from a view called this.
-    View(String),
+    Viewpoint(String),
     /// Show what a robot's camera sees in a corner; `None` for nothing.
     Inset(Option<usize>),
     /// Change values of the scene, each a dotted path and TOML.

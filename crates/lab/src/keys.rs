@@ -1,7 +1,7 @@
 //! Keyboard shortcuts: one table for what keys do and for the page that lists them.
 
 use crate::action::Action;
-use crate::desk::{Choice, Desk, Tool};
+use crate::app_state::{AppState, Selection, Tool};
 use crate::session::history::History;
 use eframe::egui::{self, Key, KeyboardShortcut, Modifiers};
 use std::f64::consts::PI;
@@ -71,7 +71,7 @@ pub const LIST: &[(&str, &[Shortcut])] = &[
 
 /// What keys ask for in this frame; nothing while a text is written, and nothing behind a menu or, where the view is
 /// `covered`, a window.
-pub fn pressed(ctx: &egui::Context, desk: &Desk, covered: bool, out: &mut Vec<Action>) {
+pub fn pressed(ctx: &egui::Context, app_state: &AppState, covered: bool, out: &mut Vec<Action>) {
     commands(ctx, out);
     if covered && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
         out.push(Action::Dismiss);
@@ -79,8 +79,8 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, covered: bool, out: &mut Vec<Ac
     if ctx.egui_wants_keyboard_input() || covered || egui::Popup::is_any_open(ctx) {
         return;
     }
-    nudges(ctx, desk, out);
-    let period = desk.history.as_ref().map_or(0.01, History::period);
+    nudges(ctx, app_state, out);
+    let period = app_state.history.as_ref().map_or(0.01, History::period);
     let mut take = |modifiers: Modifiers, key: Key, action: Action| {
         if ctx.input_mut(|input| input.consume_key(modifiers, key)) {
             out.push(action);
@@ -95,14 +95,14 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, covered: bool, out: &mut Vec<Ac
     take(shift, Key::Home, Action::Restart);
     take(none, Key::Home, Action::Seek(0.0));
     take(none, Key::End, Action::Present);
-    take(none, Key::Comma, Action::Pace(slower(desk.pace)));
-    take(none, Key::Period, Action::Pace(faster(desk.pace)));
+    take(none, Key::Comma, Action::Pace(slower(app_state.pace)));
+    take(none, Key::Period, Action::Pace(faster(app_state.pace)));
     take(none, Key::B, Action::Fork);
-    take(none, Key::OpenBracket, Action::Branch(desk.branch.saturating_sub(1)));
-    take(none, Key::CloseBracket, Action::Branch(desk.branch + 1));
-    take(none, Key::Tab, Action::Choose(next(desk, 1)));
-    take(shift, Key::Tab, Action::Choose(next(desk, -1)));
-    take(none, Key::M, Action::Mirror(!desk.mirror));
+    take(none, Key::OpenBracket, Action::Branch(app_state.branch.saturating_sub(1)));
+    take(none, Key::CloseBracket, Action::Branch(app_state.branch + 1));
+    take(none, Key::Tab, Action::Choose(next(app_state, 1)));
+    take(shift, Key::Tab, Action::Choose(next(app_state, -1)));
+    take(none, Key::M, Action::Mirror(!app_state.mirror));
     take(none, Key::Insert, Action::AddRobot);
     take(none, Key::C, Action::Take(Tool::Connect));
     take(none, Key::O, Action::Take(Tool::Pillar));
@@ -110,15 +110,15 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, covered: bool, out: &mut Vec<Ac
     for (key, view) in
         [(Key::Num1, "snake"), (Key::Num2, "snake-eye"), (Key::Num3, "top"), (Key::Num4, "orbit")]
     {
-        take(none, key, Action::View(view.to_owned()));
+        take(none, key, Action::Viewpoint(view.to_owned()));
     }
     take(none, Key::T, Action::Theme);
     take(none, Key::P, Action::Picture);
     take(none, Key::F, Action::Film);
     take(none, Key::K, Action::KeepRun);
     take(none, Key::F1, Action::Help);
-    if let Some((robot, name)) = chosen(desk) {
-        take(none, Key::Num5, Action::View(format!("camera:{name}")));
+    if let Some((robot, name)) = chosen(app_state) {
+        take(none, Key::Num5, Action::Viewpoint(format!("camera:{name}")));
         take(none, Key::G, Action::Follow(Some(robot)));
         take(none, Key::I, Action::Inset(Some(robot)));
         take(none, Key::Delete, Action::RemoveRobot(name));
@@ -129,15 +129,15 @@ pub fn pressed(ctx: &egui::Context, desk: &Desk, covered: bool, out: &mut Vec<Ac
 }
 
 /// Keys that move the selected set point.
-fn nudges(ctx: &egui::Context, desk: &Desk, out: &mut Vec<Action>) {
-    if let Some(edge) = desk.chosen_edge() {
+fn nudges(ctx: &egui::Context, app_state: &AppState, out: &mut Vec<Action>) {
+    if let Some(edge) = app_state.chosen_edge() {
         // Every press of a frame counts, and all of them are one move.
         let times =
             |key: Key| ctx.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as f64;
         let metres = 0.1 * (times(Key::S) - times(Key::W));
         let degrees = 5.0 * (times(Key::A) - times(Key::D));
         if metres != 0.0 || degrees != 0.0 {
-            out.extend(nudged(desk, edge, [metres, degrees]));
+            out.extend(nudged(app_state, edge, [metres, degrees]));
         }
     }
 }
@@ -160,24 +160,24 @@ fn commands(ctx: &egui::Context, out: &mut Vec<Action>) {
     take(Key::Equals, Action::Shape { scale: 1.1, turn: 0.0 });
 }
 
-fn chosen(desk: &Desk) -> Option<(usize, String)> {
-    let robot = desk.chosen_robot()?;
-    Some((robot, desk.history.as_ref()?.fleet().robots.get(robot)?.name.clone()))
+fn chosen(app_state: &AppState) -> Option<(usize, String)> {
+    let robot = app_state.chosen_robot()?;
+    Some((robot, app_state.history.as_ref()?.fleet().robots.get(robot)?.name.clone()))
 }
 
 /// The edge after or before the one that is selected.
-fn next(desk: &Desk, by: i64) -> Choice {
-    let edges = desk.history.as_ref().map_or(0, |history| history.fleet().edges.len()) as i64;
+fn next(app_state: &AppState, by: i64) -> Selection {
+    let edges = app_state.history.as_ref().map_or(0, |history| history.fleet().edges.len()) as i64;
     if edges == 0 {
-        return Choice::Nothing;
+        return Selection::Nothing;
     }
-    let now = desk.chosen_edge().map_or(if by > 0 { -1 } else { 0 }, |edge| edge as i64);
-    Choice::Edge((now + by).rem_euclid(edges) as usize)
+    let now = app_state.chosen_edge().map_or(if by > 0 { -1 } else { 0 }, |edge| edge as i64);
+    Selection::Edge((now + by).rem_euclid(edges) as usize)
 }
 
 /// A set point moved by m and degrees.
-fn nudged(desk: &Desk, edge: usize, [metres, degrees]: [f64; 2]) -> Option<Action> {
-    let [distance, bearing] = desk.set_point(edge)?;
+fn nudged(app_state: &AppState, edge: usize, [metres, degrees]: [f64; 2]) -> Option<Action> {
+    let [distance, bearing] = app_state.set_point(edge)?;
     let bearing = vocabulary::wrap(bearing + degrees / 180.0 * PI);
     Some(Action::SetPoint { edge, distance: (distance + metres).max(0.1), bearing })
 }

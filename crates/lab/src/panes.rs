@@ -1,9 +1,9 @@
 //! How panels share the window: a tree of tiles that a person rearranges, and that is remembered.
 
 use crate::action::Action;
-use crate::desk::Desk;
+use crate::app_state::AppState;
 use crate::panels;
-use crate::quantities::Quantity;
+use crate::quantities::PlotQuantity;
 use eframe::egui::{Ui, WidgetText};
 use egui_tiles::{Behavior, Linear, LinearDir, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
 use rendering::Style;
@@ -109,7 +109,7 @@ pub fn toggle(tree: &mut Tree<Pane>, name: &str) {
 /// What draws the panels.
 pub struct Panels<'a> {
     /// What they show.
-    pub desk: &'a Desk,
+    pub app_state: &'a AppState,
     /// What is drawn in the view.
     pub style: &'a Style,
     /// How far a film is.
@@ -172,32 +172,44 @@ impl Panels<'_> {
 }
 
 fn show(ui: &mut Ui, pane: Pane, panels: &mut Panels<'_>) {
-    let (desk, out) = (panels.desk, &mut *panels.out);
+    let (app_state, out) = (panels.app_state, &mut *panels.out);
     match pane.name() {
-        "Formation" => panels::formation::show(ui, desk, out),
-        "Edge" => panels::edge::show(ui, desk, out),
-        "Law" => panels::law::show(ui, desk, out),
-        "Observer" => panels::law::observer(ui, desk, out),
-        "Sensing" => panels::sensing::show(ui, desk, out),
-        "Limits" => panels::world::limits(ui, desk, out),
-        "World" => panels::world::surroundings(ui, desk, out),
-        "Film" => panels::film::show(ui, desk, panels.style, panels.filming, out),
-        "Branches" => panels::branches::show(ui, desk, out),
-        "Log" => panels::log::show(ui, desk, out),
+        "Formation" => panels::formation::show(ui, app_state, out),
+        "Edge" => panels::edge::show(ui, app_state, out),
+        "Law" => panels::law::show(ui, app_state, out),
+        "Observer" => panels::law::observer(ui, app_state, out),
+        "Sensing" => panels::sensing::show(ui, app_state, out),
+        "Limits" => panels::world::limits(ui, app_state, out),
+        "World" => panels::world::surroundings(ui, app_state, out),
+        "Film" => panels::film::show(ui, app_state, panels.style, panels.filming, out),
+        "Branches" => panels::branches::show(ui, app_state, out),
+        "Log" => panels::log::show(ui, app_state, out),
         "Errors" => {
-            panels::curves::show(ui, desk, &[Quantity::DistanceError, Quantity::BearingError], out);
+            panels::curves::show(
+                ui,
+                app_state,
+                &[PlotQuantity::DistanceError, PlotQuantity::BearingError],
+                out,
+            );
         }
-        "Commands" => panels::curves::show(ui, desk, &[Quantity::Acceleration, Quantity::TurnRate], out),
-        "Speeds" => panels::curves::show(ui, desk, &[Quantity::Speed], out),
+        "Commands" => {
+            panels::curves::show(ui, app_state, &[PlotQuantity::Acceleration, PlotQuantity::TurnRate], out)
+        }
+        "Speeds" => panels::curves::show(ui, app_state, &[PlotQuantity::Speed], out),
         "Observer error" => {
-            let both = [Quantity::DistanceRateError, Quantity::BearingRateError];
-            panels::curves::show(ui, desk, &both, out);
+            let both = [PlotQuantity::DistanceRateError, PlotQuantity::BearingRateError];
+            panels::curves::show(ui, app_state, &both, out);
         }
         "Energy" => {
-            panels::curves::show(ui, desk, &[Quantity::TrackingEnergy, Quantity::ObserverEnergy], out);
+            panels::curves::show(
+                ui,
+                app_state,
+                &[PlotQuantity::TrackingEnergy, PlotQuantity::ObserverEnergy],
+                out,
+            );
         }
-        "Certificates" => panels::certificates::show(ui, desk, out),
-        "Room" => panels::curves::show(ui, desk, &[Quantity::Clearance], out),
+        "Certificates" => panels::certificates::show(ui, app_state, out),
+        "Room" => panels::curves::show(ui, app_state, &[PlotQuantity::Clearance], out),
         _ => {}
     }
 }

@@ -1,6 +1,6 @@
-//! Curves over time: what is plotted and what is exported, made of moments in one place.
+//! Curves over time: what is plotted and what is exported, made of records in one place.
 
-use crate::desk::Desk;
+use crate::app_state::AppState;
 use crate::session::history::History;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
 use formation::relative::Geometry;
@@ -11,7 +11,7 @@ use vocabulary::{Edge, EdgeState, LawKind, Snapshot, StepRecord};
 
 /// What a plot shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
+pub enum PlotQuantity {
     /// Error of the distance, m.
     DistanceError,
     /// Error of the bearing, degrees.
@@ -38,7 +38,7 @@ pub enum Quantity {
     Lyapunov,
 }
 
-impl Quantity {
+impl PlotQuantity {
     /// All of them, in the order of the panels.
     pub const ALL: [Self; 12] = [
         Self::DistanceError,
@@ -99,7 +99,7 @@ impl Quantity {
 
 /// A curve of one robot on one branch.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Curve {
+pub struct QuantityCurve {
     /// The branch.
     pub branch: usize,
     /// The robot; `None` for what belongs to all.
@@ -114,36 +114,41 @@ const FLOOR: f64 = 1e-18;
 const LEAST_MARGIN: f64 = -20.0;
 
 /// The curves of a quantity in a span of time, of all branches, the one that is looked at last.
-pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> Vec<Curve> {
-    let Some(history) = &desk.history else { return Vec::new() };
-    let mut order: Vec<usize> = (0..history.branches()).filter(|b| *b != desk.branch).collect();
-    order.push(desk.branch);
+pub fn curves(
+    app_state: &AppState,
+    quantity: PlotQuantity,
+    span: [f64; 2],
+    most: usize,
+) -> Vec<QuantityCurve> {
+    let Some(history) = &app_state.history else { return Vec::new() };
+    let mut order: Vec<usize> = (0..history.branches()).filter(|b| *b != app_state.branch).collect();
+    order.push(app_state.branch);
     let mut all = Vec::new();
     for branch in order {
         // What a branch shares with the one that is looked at is drawn once.
-        let own = desk.branches.get(branch).and_then(|b| b.parent).map_or(span[0], |(_, time)| time);
-        let from = if branch == desk.branch { span[0] } else { own.max(span[0]) };
-        if quantity == Quantity::Clearance {
+        let own = app_state.branches.get(branch).and_then(|b| b.parent).map_or(span[0], |(_, time)| time);
+        let from = if branch == app_state.branch { span[0] } else { own.max(span[0]) };
+        if quantity == PlotQuantity::Clearance {
             let points = history.rooms(branch, [from, span[1]]);
-            all.push(Curve { branch, robot: None, points });
+            all.push(QuantityCurve { branch, robot: None, points });
             continue;
         }
         let records = history.between(branch, [from, span[1]], most);
         for (edge, ends) in history.fleet().edges.iter().enumerate() {
-            let Some((_, _, follow)) = desk.follower(edge) else { continue };
+            let Some((_, _, follow)) = app_state.follower(edge) else { continue };
             if let Some(points) = certified(quantity, &records, (edge, *ends), follow) {
-                all.push(Curve { branch, robot: Some(ends.follower), points });
+                all.push(QuantityCurve { branch, robot: Some(ends.follower), points });
                 continue;
             }
             let point = |m: &&StepRecord| Some([m.snapshot.time, value(quantity, m, (edge, *ends), follow)?]);
             let points = records.iter().filter_map(point).collect();
-            all.push(Curve { branch, robot: Some(ends.follower), points });
+            all.push(QuantityCurve { branch, robot: Some(ends.follower), points });
         }
-        if quantity == Quantity::Speed {
+        if quantity == PlotQuantity::Speed {
             for (robot, _) in history.fleet().robots.iter().enumerate().filter(|(_, member)| member.leads) {
                 let speed =
                     |m: &&StepRecord| Some([m.snapshot.time, m.snapshot.robots.get(robot)?.motion.speed]);
-                all.push(Curve {
+                all.push(QuantityCurve {
                     branch,
                     robot: Some(robot),
                     points: records.iter().filter_map(speed).collect(),
@@ -154,26 +159,26 @@ pub fn curves(desk: &Desk, quantity: Quantity, span: [f64; 2], most: usize) -> V
     all
 }
 
-/// Quantities that go by how a run came to be: they need all moments. `None` for others.
+/// Quantities that go by how a run came to be: they need all records. `None` for others.
 fn certified(
-    quantity: Quantity,
+    quantity: PlotQuantity,
     records: &[&StepRecord],
     edge: (usize, Edge),
     follow: &Follow,
 ) -> Option<Vec<[f64; 2]>> {
     let value: fn(&WitnessRow) -> f64 = match quantity {
         // What the first samples ask for would flatten all that follows.
-        Quantity::RobustMargin => |row| row.margin.max(LEAST_MARGIN),
-        Quantity::Lyapunov => |row| row.v,
+        PlotQuantity::RobustMargin => |row| row.margin.max(LEAST_MARGIN),
+        PlotQuantity::Lyapunov => |row| row.v,
         _ => return None,
     };
     let rows = if follow.law.kind == LawKind::FullState { vec![] } else { rows(records, edge, follow) };
     Some(rows.iter().map(|row| [row.time, value(row)]).filter(|p| p[1].is_finite()).collect())
 }
 
-/// A quantity of an edge at a moment; `None` where there is none.
+/// A quantity of an edge in a record; `None` where there is none.
 fn value(
-    quantity: Quantity,
+    quantity: PlotQuantity,
     record: &StepRecord,
     (index, edge): (usize, Edge),
     follow: &Follow,
@@ -182,18 +187,18 @@ fn value(
     let rates = || true_rates(&record.snapshot, edge, state, follow.law.distance_min);
     let observes = follow.law.kind == LawKind::OutputFeedback;
     let value = match quantity {
-        Quantity::DistanceError => state.error[0],
-        Quantity::BearingError => state.error[1].to_degrees(),
-        Quantity::Acceleration => state.applied.acceleration,
-        Quantity::TurnRate => state.applied.turn_rate,
-        Quantity::Speed => record.snapshot.robots.get(edge.follower)?.motion.speed,
-        Quantity::DistanceRateError => rates()?[0] - state.rates[0],
-        Quantity::BearingRateError => (rates()?[1] - state.rates[1]).to_degrees(),
-        Quantity::TrackingEnergy => {
+        PlotQuantity::DistanceError => state.error[0],
+        PlotQuantity::BearingError => state.error[1].to_degrees(),
+        PlotQuantity::Acceleration => state.applied.acceleration,
+        PlotQuantity::TurnRate => state.applied.turn_rate,
+        PlotQuantity::Speed => record.snapshot.robots.get(edge.follower)?.motion.speed,
+        PlotQuantity::DistanceRateError => rates()?[0] - state.rates[0],
+        PlotQuantity::BearingRateError => (rates()?[1] - state.rates[1]).to_degrees(),
+        PlotQuantity::TrackingEnergy => {
             let rates = rates()?;
             tracking_energy(state.error, [-rates[0], -rates[1]], follow.law.k).max(FLOOR).log10()
         }
-        Quantity::ObserverEnergy if observes => {
+        PlotQuantity::ObserverEnergy if observes => {
             let rates = rates()?;
             let seen = [state.relative.distance, state.relative.bearing];
             let error = ObserverError {
@@ -205,7 +210,10 @@ fn value(
             };
             observer_energy(&error).max(FLOOR).log10()
         }
-        Quantity::ObserverEnergy | Quantity::Clearance | Quantity::RobustMargin | Quantity::Lyapunov => {
+        PlotQuantity::ObserverEnergy
+        | PlotQuantity::Clearance
+        | PlotQuantity::RobustMargin
+        | PlotQuantity::Lyapunov => {
             return None;
         }
     };
@@ -221,16 +229,16 @@ fn true_rates(snapshot: &Snapshot, edge: Edge, state: &EdgeState, distance_min: 
 }
 
 /// Bounds of a quantity, of the follower that is selected, for grey lines.
-pub fn bounds(desk: &Desk, quantity: Quantity) -> Vec<f64> {
-    let robot = desk.chosen_robot().or_else(|| desk.follower(0).map(|(robot, ..)| robot));
-    let vehicle = robot.and_then(|robot| Some(desk.scene_now()?.robots.get(robot)?.vehicle));
+pub fn bounds(app_state: &AppState, quantity: PlotQuantity) -> Vec<f64> {
+    let robot = app_state.chosen_robot().or_else(|| app_state.follower(0).map(|(robot, ..)| robot));
+    let vehicle = robot.and_then(|robot| Some(app_state.scene_now()?.robots.get(robot)?.vehicle));
     let Some(vehicle) = vehicle else { return Vec::new() };
     let both = |most: f64| vec![-most, most];
     let mut bounds = match quantity {
-        Quantity::Acceleration => both(vehicle.acceleration_max),
-        Quantity::TurnRate => both(vehicle.turn_rate_max),
-        Quantity::Speed => vec![vehicle.speed_min, vehicle.speed_max],
-        Quantity::Clearance | Quantity::RobustMargin => vec![0.0],
+        PlotQuantity::Acceleration => both(vehicle.acceleration_max),
+        PlotQuantity::TurnRate => both(vehicle.turn_rate_max),
+        PlotQuantity::Speed => vec![vehicle.speed_min, vehicle.speed_max],
+        PlotQuantity::Clearance | PlotQuantity::RobustMargin => vec![0.0],
         _ => Vec::new(),
     };
     bounds.retain(|bound| bound.is_finite());
@@ -238,7 +246,7 @@ pub fn bounds(desk: &Desk, quantity: Quantity) -> Vec<f64> {
 }
 
 /// The curves as a tidy table: branch, robot, quantity, time, value.
-pub fn csv(desk: &Desk) -> String {
+pub fn csv(app_state: &AppState) -> String {
     let mut text = String::from("branch,robot,quantity,time_s,value\n");
     let quoted = |name: &str| {
         if name.contains([',', '"', '\n']) {
@@ -247,10 +255,10 @@ pub fn csv(desk: &Desk) -> String {
             name.to_owned()
         }
     };
-    for quantity in Quantity::ALL {
-        for curve in curves(desk, quantity, [0.0, f64::INFINITY], usize::MAX) {
-            let branch = desk.branches.get(curve.branch).map_or("", |b| &b.name);
-            let fleet = desk.history.as_ref().map(History::fleet);
+    for quantity in PlotQuantity::ALL {
+        for curve in curves(app_state, quantity, [0.0, f64::INFINITY], usize::MAX) {
+            let branch = app_state.branches.get(curve.branch).map_or("", |b| &b.name);
+            let fleet = app_state.history.as_ref().map(History::fleet);
             let robot = curve.robot.and_then(|robot| fleet?.robots.get(robot)).map_or("", |m| &m.name);
             let head = format!("{},{},{}", quoted(branch), quoted(robot), quantity.column());
             for [time, value] in curve.points {
@@ -263,23 +271,23 @@ pub fn csv(desk: &Desk) -> String {
 }
 
 /// The curves as a figure for print.
-pub fn svg(desk: &Desk) -> String {
+pub fn svg(app_state: &AppState) -> String {
     use figures::{Axis, Figure, Guide, Panel, Series};
-    let fleet = desk.history.as_ref().map(|history| history.fleet().clone());
+    let fleet = app_state.history.as_ref().map(|history| history.fleet().clone());
     let colours = fleet.as_ref().map(|fleet| rendering::robot_colours(fleet)).unwrap_or_default();
     let shown = [
-        Quantity::DistanceError,
-        Quantity::BearingError,
-        Quantity::Acceleration,
-        Quantity::TurnRate,
-        Quantity::Speed,
-        Quantity::Clearance,
+        PlotQuantity::DistanceError,
+        PlotQuantity::BearingError,
+        PlotQuantity::Acceleration,
+        PlotQuantity::TurnRate,
+        PlotQuantity::Speed,
+        PlotQuantity::Clearance,
     ];
     let panels = shown.into_iter().map(|quantity| {
-        let series = curves(desk, quantity, [0.0, f64::INFINITY], 600).into_iter().map(|curve| {
+        let series = curves(app_state, quantity, [0.0, f64::INFINITY], 600).into_iter().map(|curve| {
             let name = curve.robot.and_then(|r| fleet.as_ref()?.robots.get(r)).map_or("all", |m| &m.name);
-            let active = curve.branch == desk.branch;
-            let branch = desk.branches.get(curve.branch).map_or("", |b| &b.name);
+            let active = curve.branch == app_state.branch;
+            let branch = app_state.branches.get(curve.branch).map_or("", |b| &b.name);
             Series {
                 name: if active { name.to_owned() } else { format!("{name}, {branch}") },
                 colour: curve.robot.and_then(|r| colours.get(r).copied()).unwrap_or([0.3; 3]),
@@ -289,11 +297,12 @@ pub fn svg(desk: &Desk) -> String {
             }
         });
         let axis = Axis { label: quantity.axis().to_owned(), ..Axis::default() };
-        let guides = bounds(desk, quantity).into_iter().map(|at| Guide::Level(at, String::new())).collect();
+        let guides =
+            bounds(app_state, quantity).into_iter().map(|at| Guide::Level(at, String::new())).collect();
         Panel { axis, series: series.collect(), guides }
     });
     Figure {
-        title: desk.scene().map_or_else(String::new, |scene| scene.title.clone()),
+        title: app_state.scene().map_or_else(String::new, |scene| scene.title.clone()),
         axis: Axis { label: "time (s)".to_owned(), ..Axis::default() },
         panels: panels.collect(),
         ..Figure::default()

@@ -1,7 +1,7 @@
 //! Opening the window, and closing it without losing anything.
 
 use crate::Error;
-use crate::app::Lab;
+use crate::app::LabApp;
 use crate::lost;
 use eframe::egui::ViewportBuilder;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
@@ -63,7 +63,7 @@ pub fn open(options: Options) -> Result<(), Error> {
             NAME,
             native,
             Box::new(move |context| {
-                let lab = Lab::new(context, &options, (began, why))?;
+                let lab = LabApp::new(context, &options, (began, why))?;
                 Ok(Box::new(lab))
             }),
         )

@@ -13,7 +13,8 @@ mod stage;
 
 use course::{TRUCK, furnish};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use rendering::{AdapterChoice, Film, FilmKind, Gpu, GpuCameraRenderer, Layout, Renderer, Style};
+use film::{Film, FilmKind};
+use rendering::{AdapterChoice, Gpu, GpuCameraRenderer, Renderer, Style, ViewLayout};
 use sight::shots;
 use stage::{Path, Play};
 use vocabulary::{Region, Shot};
@@ -46,7 +47,7 @@ fn frames(criterion: &mut Criterion) {
             let play = Play::new(robots, Path::named("eight"));
             let Ok(mut renderer) = Renderer::new(&gpu, &play.fleet, width, height, samples) else { continue };
             let (trail, record, style) = (play.trail(12.0), play.at(12.0), Style::default());
-            let Ok(layout) = Layout::parse(view, &[]) else { continue };
+            let Ok(layout) = ViewLayout::parse(view, &[]) else { continue };
             group.bench_function(
                 format!("{view}, {robots} robots, {width}x{height}, {samples} samples"),
                 |b| {
@@ -63,7 +64,7 @@ fn film(criterion: &mut Criterion) {
     let play = Play::new(3, Path::named("eight"));
     let count = 45_u32;
     let records: Vec<_> = (0..count).map(|k| play.at(f64::from(k) / 30.0)).collect();
-    let layout = Layout::single(rendering::View::Snake);
+    let layout = ViewLayout::single(rendering::Viewpoint::Snake);
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut group = criterion.benchmark_group("film");
     group.sample_size(10).throughput(Throughput::Elements(u64::from(count)));
@@ -71,7 +72,7 @@ fn film(criterion: &mut Criterion) {
         let mut renderer = Renderer::new(&gpu, &play.fleet, 1280, 720, 4).expect("a renderer");
         b.iter_batched(
             || play.trail(0.0),
-            |mut trail| -> Result<(), rendering::Error> {
+            |mut trail| -> Result<(), Box<dyn std::error::Error>> {
                 let mut film = Film::create(&folder.path().join("a.mp4"), FilmKind::Mp4, 1280, 720, 30.0)?;
                 for record in &records {
                     trail.push(record);
@@ -82,7 +83,7 @@ fn film(criterion: &mut Criterion) {
                 if let Some(picture) = renderer.finish()? {
                     film.push(picture)?;
                 }
-                film.finish()
+                Ok(film.finish()?)
             },
             BatchSize::PerIteration,
         );

@@ -12,7 +12,8 @@ mod sight;
 mod stage;
 
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded};
-use rendering::{AdapterChoice, Gpu, GpuCameraRenderer, png};
+use film::png;
+use rendering::{AdapterChoice, Gpu, GpuCameraRenderer};
 use sight::{region_around, shots};
 use stage::{Path, Play};
 use std::time::Instant;
@@ -22,7 +23,7 @@ fn median(
     eyes: &mut GpuCameraRenderer,
     snapshot: &Snapshot,
     shots: &[Shot],
-) -> Result<String, rendering::Error> {
+) -> Result<String, Box<dyn std::error::Error>> {
     let mut pictures = Vec::new();
     let mut times = Vec::new();
     for _ in 0..61 {
@@ -52,7 +53,7 @@ fn sheet(pictures: &[Grey]) -> Picture {
     Picture { width: 2 * width, height: rows * height, rgba }
 }
 
-fn main() -> Result<(), rendering::Error> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let word = |k: usize, other: &str| words.get(k).cloned().unwrap_or_else(|| other.to_owned());
     let number = |k: usize, other: f64| words.get(k).and_then(|w| w.parse().ok()).unwrap_or(other);
@@ -93,5 +94,5 @@ fn main() -> Result<(), rendering::Error> {
     println!("{} shots of 640x480: {}", whole.len(), median(&mut eyes, &record.snapshot, &whole)?);
     let mut pictures = Vec::new();
     eyes.take(&record.snapshot, &whole, &mut pictures)?;
-    png::write(word(0, "eyes.png").as_ref(), &sheet(&pictures[..pictures.len().min(4)]), &[])
+    Ok(png::write(word(0, "eyes.png").as_ref(), &sheet(&pictures[..pictures.len().min(4)]), &[])?)
 }

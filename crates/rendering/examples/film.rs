@@ -3,11 +3,12 @@
 #[path = "../tests/stage/mod.rs"]
 mod stage;
 
-use rendering::{AdapterChoice, Film, FilmKind, Gpu, Layout, Renderer, Style};
+use film::{Film, FilmKind};
+use rendering::{AdapterChoice, Gpu, Renderer, Style, ViewLayout};
 use stage::{Path, Play};
 use std::time::Instant;
 
-fn main() -> Result<(), rendering::Error> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = Instant::now();
     let words: Vec<String> = std::env::args().skip(1).collect();
     let word = |k: usize, other: &str| words.get(k).cloned().unwrap_or_else(|| other.to_owned());
@@ -18,7 +19,7 @@ fn main() -> Result<(), rendering::Error> {
     let (width, height) = (number(5, 1280.0) as u32, number(6, 720.0) as u32);
     let rate = number(4, 30.0);
     let mut renderer = Renderer::new(&gpu, &play.fleet, width, height, 4)?;
-    let layout = Layout::parse(&word(1, "snake"), &names)?;
+    let layout = ViewLayout::parse(&word(1, "snake"), &names)?;
     let (mut trail, style) = (play.trail(0.0), Style::default());
     let file = word(0, "film.mp4");
     let path: &std::path::Path = file.as_ref();

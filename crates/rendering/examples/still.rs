@@ -10,7 +10,8 @@ mod sight;
 mod stage;
 
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded, overturn, touch};
-use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, png};
+use film::png;
+use rendering::{AdapterChoice, Gpu, Renderer, Style, Trail, ViewLayout};
 use sight::looks;
 use stage::{Path, Play};
 use std::time::Instant;
@@ -45,7 +46,7 @@ fn record(play: &Play, scale: f64, wreck: f64, time: f64) -> StepRecord {
     record
 }
 
-fn main() -> Result<(), rendering::Error> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = Instant::now();
     let words: Vec<String> = std::env::args().skip(1).collect();
     let word = |k: usize, other: &str| words.get(k).cloned().unwrap_or_else(|| other.to_owned());
@@ -69,7 +70,7 @@ fn main() -> Result<(), rendering::Error> {
         &without.split(',').filter(|w| !w.is_empty() && *w != "detections").collect::<Vec<_>>(),
     )?;
     style.scale = number(7, 1.0);
-    let layout = Layout::parse(&word(1, "snake"), &names)?;
+    let layout = ViewLayout::parse(&word(1, "snake"), &names)?;
     let mut record = record(&play, scale, wreck, time);
     looks(&play.fleet, &mut record);
     style.detections = !without.contains("detections");

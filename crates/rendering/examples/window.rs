@@ -9,7 +9,7 @@ mod course;
 mod stage;
 
 use course::{CAR, enlarge, furnish, grounded};
-use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail};
+use rendering::{AdapterChoice, Gpu, Renderer, Style, Trail, ViewLayout};
 use stage::{Path, Play};
 use std::time::{Duration, Instant};
 use vocabulary::{Body, StepRecord};
@@ -60,7 +60,7 @@ fn main() -> Result<(), rendering::Error> {
     println!("clone: {:.1} µs", start.elapsed().as_secs_f64() * 1e6 / copies.len() as f64);
     let mut now = 60.0;
     let gpu = Gpu::open(&AdapterChoice::Auto)?;
-    let layout = Layout::parse(&word(3, "snake"), &[])?;
+    let layout = ViewLayout::parse(&word(3, "snake"), &[])?;
     let styled = |list: &str| -> Result<Style, rendering::Error> {
         let names: Vec<_> = list.split(',').filter(|w| !w.is_empty() && !w.starts_with('(')).collect();
         Ok(Style { interactive: list == "(interactive)", ..Style::without(&names)? })

@@ -1,17 +1,17 @@
 //! From a moment to what its picture consists of: origin, light, frames and words.
 
-use crate::View;
+use crate::Viewpoint;
+use crate::annotation::inset::{clearness, inset};
+use crate::annotation::labels::{LabelPlacer, Window, ring_boxes, robot_boxes, view_words};
+use crate::annotation::letters::Letters;
+use crate::annotation::overlays::{line_place, show};
 use crate::camera::Camera;
-use crate::floor::Deck;
-use crate::inset::{clearness, inset};
-use crate::labels::{Window, Words, ring_boxes, robot_boxes, view_words};
-use crate::letters::Letters;
-use crate::paint::Stage;
-use crate::passes::frame::FrameUniforms;
-use crate::passes::ground::TILE;
-use crate::passes::shadow::{ShadowPass, SunView, sun_view};
-use crate::plan::{Area, Plan, overlap};
-use crate::show::{line_place, show};
+use crate::gpu::passes::frame::FrameUniforms;
+use crate::gpu::passes::ground::TILE;
+use crate::gpu::passes::shadow::{ShadowPass, SunView, sun_view};
+use crate::ground::floor::DrivableSurface;
+use crate::picture_context::PictureContext;
+use crate::picture_plan::{Area, PicturePlan, overlap};
 use glam::{DVec2, DVec3};
 use vocabulary::{FleetInfo, Light, RobotInfo, RobotState, StepRecord};
 
@@ -61,26 +61,26 @@ fn robots_within(fleet: &FleetInfo, record: &StepRecord) -> Option<(DVec3, f64)>
     };
     let low = places().fold(DVec3::INFINITY, DVec3::min);
     let high = places().fold(DVec3::NEG_INFINITY, DVec3::max);
-    let size = fleet.robots.iter().map(|m| crate::model::size(&m.body)).fold(1.0, f64::max);
+    let size = fleet.robots.iter().map(|m| crate::gpu::model::size(&m.body)).fold(1.0, f64::max);
     low.is_finite().then(|| ((low + high) * 0.5, (0.5 * low.distance(high) + 0.8 * size).min(40.0)))
 }
 
 /// The view that the sun of a stage has of all robots and the props around them.
-pub(crate) fn sun_over(stage: &Stage<'_>) -> SunView {
-    match robots_within(stage.fleet, stage.record) {
-        Some((middle, _)) => sun_view(stage.sun, middle - stage.origin, stage.shadowed.1),
-        None => sun_view(stage.sun, DVec3::ZERO, 1.0),
+pub(crate) fn sun_over(context: &PictureContext<'_>) -> SunView {
+    match robots_within(context.fleet, context.record) {
+        Some((middle, _)) => sun_view(context.sun, middle - context.origin, context.shadowed.1),
+        None => sun_view(context.sun, DVec3::ZERO, 1.0),
     }
 }
 
 /// Depth up to which props are seen through: just short of the nearest robot that is in the picture. Where somebody
 /// has put the eye, or above all, they stay as they are.
-fn veiled(camera: &Camera, stage: &Stage<'_>, view: &View) -> f64 {
-    if matches!(view, View::Top | View::Camera(_) | View::Fixed { .. }) {
+fn veiled(camera: &Camera, context: &PictureContext<'_>, view: &Viewpoint) -> f64 {
+    if matches!(view, Viewpoint::Top | Viewpoint::Camera(_) | Viewpoint::Fixed { .. }) {
         return f64::NEG_INFINITY;
     }
     let nearest = |index: usize, state: &RobotState| {
-        if matches!(view, View::Follow(robot) if *robot != index) {
+        if matches!(view, Viewpoint::Follow(robot) if *robot != index) {
             return f64::INFINITY;
         }
         let pose = state.motion.pose;
@@ -88,30 +88,32 @@ fn veiled(camera: &Camera, stage: &Stage<'_>, view: &View) -> f64 {
         let seen = camera.project(place).is_some_and(|p| p.abs().max_element() < 1.0);
         if seen { camera.view_from_world(place).z } else { f64::INFINITY }
     };
-    let robots = stage.record.snapshot.robots.iter().enumerate();
-    robots.map(|(k, robot)| nearest(k, robot)).fold(f64::INFINITY, f64::min) - 0.9 * stage.size
+    let robots = context.record.snapshot.robots.iter().enumerate();
+    robots.map(|(k, robot)| nearest(k, robot)).fold(f64::INFINITY, f64::min) - 0.9 * context.size
 }
 
 /// In a larger formation no robot is looked for behind decks.
 const MOST_LOOKED_FOR: usize = 500;
 
 /// Which decks hide most of a robot. Others stay as they are: who looks at a ramp wants to see it.
-pub(crate) fn veiled_decks(camera: &Camera, stage: &Stage<'_>, view: &View) -> Vec<bool> {
-    let robots = &stage.record.snapshot.robots;
-    let decks = &stage.floor.decks;
-    if decks.is_empty()
+pub(crate) fn veiled_decks(camera: &Camera, context: &PictureContext<'_>, view: &Viewpoint) -> Vec<bool> {
+    let robots = &context.record.snapshot.robots;
+    let drivables = &context.floor.drivables;
+    if drivables.is_empty()
         || robots.len() > MOST_LOOKED_FOR
-        || matches!(view, View::Top | View::Camera(_) | View::Fixed { .. })
+        || matches!(view, Viewpoint::Top | Viewpoint::Camera(_) | Viewpoint::Fixed { .. })
     {
-        return vec![false; decks.len()];
+        return vec![false; drivables.len()];
     }
-    let looked_for = |k: &usize| !matches!(view, View::Follow(robot) if robot != k);
-    let all = robots.iter().zip(&stage.fleet.robots).enumerate().filter(|(k, _)| looked_for(k));
+    let looked_for = |k: &usize| !matches!(view, Viewpoint::Follow(robot) if robot != k);
+    let all = robots.iter().zip(&context.fleet.robots).enumerate().filter(|(k, _)| looked_for(k));
     let spots: Vec<_> = all.map(|(_, (robot, member))| spots(robot, member)).collect();
-    let hides = |deck: &Deck| {
-        spots.iter().any(|of| of.iter().filter(|spot| deck.hides(camera.eye, **spot)).count() > of.len() / 2)
+    let hides = |drivable: &DrivableSurface| {
+        spots
+            .iter()
+            .any(|of| of.iter().filter(|spot| drivable.hides(camera.eye, **spot)).count() > of.len() / 2)
     };
-    decks.iter().map(hides).collect()
+    drivables.iter().map(hides).collect()
 }
 
 /// Five places on a robot, half-way up.
@@ -127,25 +129,25 @@ fn spots(robot: &RobotState, member: &RobotInfo) -> [DVec3; 5] {
 
 pub(crate) fn frame(
     camera: &Camera,
-    stage: &Stage<'_>,
-    view: &View,
+    context: &PictureContext<'_>,
+    view: &Viewpoint,
     sun: &SunView,
     shadow: &ShadowPass,
 ) -> FrameUniforms {
-    let mut frame = FrameUniforms::new(camera, stage.origin, sun.shadow_from_local);
-    let [x, y, z] = stage.sun.as_vec3().to_array();
+    let mut frame = FrameUniforms::new(camera, context.origin, sun.shadow_from_local);
+    let [x, y, z] = context.sun.as_vec3().to_array();
     // A large formation is seen from farther away and would drown in it.
-    let haze = (stage.fleet.light.haze_from.max(0.1) * (0.2 * camera.eye.z).max(1.0)) as f32;
-    frame.sun = [x, y, z, if stage.style.shadows { shadow.penumbra(sun) } else { 0.0 }];
-    if let Some(terrain) = &stage.fleet.terrain {
+    let haze = (context.fleet.light.haze_from.max(0.1) * (0.2 * camera.eye.z).max(1.0)) as f32;
+    frame.sun = [x, y, z, if context.style.shadows { shadow.penumbra(sun) } else { 0.0 }];
+    if let Some(terrain) = &context.fleet.terrain {
         let [x, y] = terrain.origin;
-        frame.terrain = (DVec3::new(x, y, 0.0) - stage.origin).as_vec3().extend(1.0).to_array();
+        frame.terrain = (DVec3::new(x, y, 0.0) - context.origin).as_vec3().extend(1.0).to_array();
     }
     frame.spare[2] = shadow.clearance(sun);
-    frame.spare[1] = f32::from(u8::from(!stage.floor.is_plane()));
-    let veiled = veiled(camera, stage, view);
+    frame.spare[1] = f32::from(u8::from(!context.floor.is_plane()));
+    let veiled = veiled(camera, context, view);
     frame.spare[0] = if veiled.is_finite() { veiled as f32 } else { -1e6 };
-    frame.ground = [1.0 / haze, 0.0, f32::from(u8::from(stage.style.grid)), 0.0];
+    frame.ground = [1.0 / haze, 0.0, f32::from(u8::from(context.style.grid)), 0.0];
     frame
 }
 
@@ -155,13 +157,13 @@ const UNSEEN: f32 = 0.02;
 /// Text and flat shapes of the whole picture, and the panels that lie over views: that of errors, and a film's line.
 pub(crate) fn words<'a>(
     letters: &'a mut Letters,
-    stage: &Stage<'_>,
-    plan: &Plan,
+    context: &PictureContext<'_>,
+    plan: &PicturePlan,
     windows: &[Window<'_>],
     size: (u32, u32),
-) -> (Words<'a>, Vec<Area>) {
-    let mut words = Words::new(letters, stage.style.scale);
-    let shown = &stage.style.show;
+) -> (LabelPlacer<'a>, Vec<Area>) {
+    let mut words = LabelPlacer::new(letters, context.style.scale);
+    let shown = &context.style.show;
     let left = plan.left;
     let said = shown.line.as_ref().filter(|line| line.opacity > 0.0);
     let said = said.map(|line| (line_place(&mut words, line, [left.0 as f32, left.1 as f32]), line.opacity));
@@ -173,22 +175,22 @@ pub(crate) fn words<'a>(
         words.framed(window.tile);
     }
     let sky = windows.first().map_or(0.0, |w| 0.5 * (1.0 - w.camera.horizon()) * f64::from(w.tile.height));
-    plan.write(&mut words, stage.record.snapshot.time, sky as f32);
+    plan.write(&mut words, context.record.snapshot.time, sky as f32);
     let mut panels: Vec<_> = said.iter().map(|(line, _)| *line).collect();
     if let (Some(place), Some(first)) = (plan.panel, lower.first()) {
-        let hidden = [robot_boxes(stage, *first), ring_boxes(stage, *first)].concat();
+        let hidden = [robot_boxes(context, *first), ring_boxes(context, *first)].concat();
         // An empty panel under a card would only be a stain; and what a film says is worth more.
         let carded = shown.card.as_ref().map_or(0.0, |card| card.opacity);
         let told = said.filter(|(line, _)| overlap(line, &place)).map_or(0.0, |(_, opacity)| opacity);
         let clear = clearness(&words, &place, &hidden) * ((1.0 - carded) * (1.0 - told)) as f32;
         if clear > UNSEEN {
-            inset(&mut words, stage, place, clear);
+            inset(&mut words, context, place, clear);
             panels.push(place);
         }
     }
     for (view, window) in plan.views.iter().zip(windows) {
-        view_words(&mut words, stage, *window, view);
+        view_words(&mut words, context, *window, view);
     }
-    show(&mut words, shown, stage.colours, (left, size));
+    show(&mut words, shown, context.colours, (left, size));
     (words, panels)
 }

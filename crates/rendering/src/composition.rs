@@ -1,14 +1,14 @@
 //! Where things are in a picture, without drawing it: what words and panels cover, and what they should not.
 
+use crate::annotation::labels::{Window, detail, ring_boxes, robot_boxes};
+use crate::annotation::letters::Letters;
 use crate::compose::{local_origin, shadowed, towards_sun, words};
-use crate::floor::Floor;
-use crate::labels::{Window, detail, ring_boxes, robot_boxes};
-use crate::letters::Letters;
-use crate::paint::Stage;
+use crate::ground::floor::Floor;
 use crate::palette::robot_colours;
-use crate::plan::{Plan, area, overlap};
+use crate::picture_context::PictureContext;
+use crate::picture_plan::{PicturePlan, area, overlap};
 use crate::renderer::cameras;
-use crate::{Layout, Style, Trail, View};
+use crate::{Style, Trail, ViewLayout, Viewpoint};
 use vocabulary::{FleetInfo, StepRecord};
 
 /// Rectangles of a picture: left, top, width and height in pixels from its upper left corner.
@@ -33,16 +33,16 @@ impl Composition {
     pub fn new(
         fleet: &FleetInfo,
         (trail, record): (&Trail, &StepRecord),
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
         size: (u32, u32),
     ) -> Self {
         let mut letters = Letters::new();
         let floor = Floor::new(fleet);
         let colours = robot_colours(fleet);
-        let plan = Plan::new(&mut letters, fleet, layout, style, size);
+        let plan = PicturePlan::new(&mut letters, fleet, layout, style, size);
         let cameras = cameras(&plan, trail, record, fleet, &floor);
-        let stage = Stage {
+        let context = PictureContext {
             fleet,
             floor: &floor,
             colours: &colours,
@@ -51,13 +51,13 @@ impl Composition {
             style,
             origin: local_origin(record),
             sun: towards_sun(&fleet.light),
-            size: trail.steady.formation().size,
+            size: trail.smoothed.formation().size,
             shadowed: shadowed(fleet, record),
             detail: detail(fleet.robots.len()),
         };
         let windows: Vec<_> =
             cameras.iter().zip(&plan.tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
-        let (words, panels) = words(&mut letters, &stage, &plan, &windows, size);
+        let (words, panels) = words(&mut letters, &context, &plan, &windows, size);
         let views: Vec<_> = plan.tiles.iter().map(area).collect();
         let mut composition = Self {
             panels: [&panels, &views[views.len() - plan.upper..]].concat(),
@@ -66,11 +66,11 @@ impl Composition {
             ..Self::default()
         };
         for (view, window) in plan.views.iter().zip(&windows) {
-            if !matches!(view, View::Camera(_)) {
+            if !matches!(view, Viewpoint::Camera(_)) {
                 let seen =
                     |boxes: Vec<[f32; 4]>| boxes.into_iter().filter(|b| overlap(b, &area(&window.tile)));
-                composition.robots.extend(seen(robot_boxes(&stage, *window)));
-                composition.set_points.extend(seen(ring_boxes(&stage, *window)));
+                composition.robots.extend(seen(robot_boxes(&context, *window)));
+                composition.set_points.extend(seen(ring_boxes(&context, *window)));
             }
         }
         Self { views, ..composition }

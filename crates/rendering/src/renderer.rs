@@ -1,21 +1,22 @@
 //! Moments to pictures.
 
+use crate::annotation::labels::{Window, detail};
+use crate::annotation::letters::Letters;
 use crate::camera::Camera;
+use crate::camera::pick::pick;
 use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun, veiled_decks, words};
-use crate::crowd::{RobotModels, crowd, part};
-use crate::encode::{Passes, Prepared, Surface};
-use crate::floor::Floor;
-use crate::labels::{Window, detail};
-use crate::letters::Letters;
-use crate::paint::{Stage, paint};
+use crate::gpu::encode::{EncodeTarget, Passes, Prepared};
+use crate::gpu::passes::Canvas;
+use crate::gpu::passes::decal::{DecalLayer, DecalVertex};
+use crate::gpu::props::props;
+use crate::gpu::robot_models::{RobotModels, crowd, part};
+use crate::gpu::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
+use crate::ground::decal_builder::build_decals;
+use crate::ground::floor::Floor;
 use crate::palette::{Rgb, robot_colours};
-use crate::passes::Canvas;
-use crate::passes::decal::{Corner, Layer};
-use crate::pick::pick;
-use crate::plan::Plan;
-use crate::props::props;
-use crate::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
-use crate::{Error, Gpu, Layout, Picked, Sightline, Style, Trail, View};
+use crate::picture_context::PictureContext;
+use crate::picture_plan::PicturePlan;
+use crate::{Error, Gpu, Picked, Sightline, Style, Trail, ViewLayout, Viewpoint};
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 use vocabulary::{FleetInfo, Picture, StepRecord};
@@ -123,7 +124,7 @@ impl Renderer {
         &mut self,
         trail: &Trail,
         record: &StepRecord,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
     ) -> Result<Picture, Error> {
         let (slot, submission) = self.submit(trail, record, layout, style)?;
@@ -139,7 +140,7 @@ impl Renderer {
         &mut self,
         trail: &Trail,
         record: &StepRecord,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
     ) -> Result<Option<Picture>, Error> {
         let next = self.submit(trail, record, layout, style)?;
@@ -165,7 +166,7 @@ impl Renderer {
         target: &wgpu::TextureView,
         trail: &Trail,
         record: &StepRecord,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
     ) -> Result<wgpu::SubmissionIndex, Error> {
         self.encoded((trail, record), layout, style, target, None)
@@ -175,7 +176,7 @@ impl Renderer {
         &mut self,
         trail: &Trail,
         record: &StepRecord,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
     ) -> Result<(usize, wgpu::SubmissionIndex), Error> {
         let slot = self.waiting.as_ref().map_or(0, |(busy, _)| 1 - busy);
@@ -193,7 +194,7 @@ impl Renderer {
     fn encoded(
         &mut self,
         (trail, record): (&Trail, &StepRecord),
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
         target: &wgpu::TextureView,
         read: Option<usize>,
@@ -219,7 +220,7 @@ impl Renderer {
         &mut self,
         trail: &Trail,
         record: &StepRecord,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
     ) -> Result<Prepared, Error> {
         self.check(record)?;
@@ -228,7 +229,7 @@ impl Renderer {
         let cameras = cameras(&plan, trail, record, &self.fleet, &self.floor);
         // Cameras on robots see nothing that is drawn to explain.
         let bare = Style { shadows: style.shadows, ..Style::bare() };
-        let stage = Stage {
+        let context = PictureContext {
             fleet: &self.fleet,
             floor: &self.floor,
             colours: &self.colours,
@@ -237,42 +238,43 @@ impl Renderer {
             style,
             origin: local_origin(record),
             sun: towards_sun(&self.fleet.light),
-            size: trail.steady.formation().size,
+            size: trail.smoothed.formation().size,
             shadowed: shadowed(&self.fleet, record),
             detail: detail(self.fleet.robots.len()),
         };
-        let (crowd, props) = (crowd(&stage, &self.robot_models), props(&stage));
-        let sun = sun_over(&stage);
+        let (crowd, props) = (crowd(&context, &self.robot_models), props(&context));
+        let sun = sun_over(&context);
         let shadow = &self.passes.world.shadow;
-        let stage_of = |view: &View| match view {
-            View::Camera(_) => Stage { style: &bare, ..stage },
-            _ => stage,
+        let context_of = |view: &Viewpoint| match view {
+            Viewpoint::Camera(_) => PictureContext { style: &bare, ..context },
+            _ => context,
         };
         let seen = || views.iter().zip(&cameras);
         let frames: Vec<_> =
-            seen().map(|(view, camera)| frame(camera, &stage_of(view), view, &sun, shadow)).collect();
-        let own = |(view, camera): (&View, &Camera)| match view {
-            View::Camera(robot) => Some(part(&crowd, &stage, &self.robot_models, camera, *robot)),
+            seen().map(|(view, camera)| frame(camera, &context_of(view), view, &sun, shadow)).collect();
+        let own = |(view, camera): (&Viewpoint, &Camera)| match view {
+            Viewpoint::Camera(robot) => Some(part(&crowd, &context, &self.robot_models, camera, *robot)),
             _ => None,
         };
         let own = seen().map(own).collect();
         let mut corners = Vec::new();
         let mut decals = Vec::new();
         for ((view, camera), tile) in seen().zip(tiles) {
-            let add = |(layer, more): (Layer, Vec<Corner>)| {
+            let add = |(layer, more): (DecalLayer, Vec<DecalVertex>)| {
                 let first = corners.len() as u32;
                 corners.extend(more);
                 (layer, first..corners.len() as u32)
             };
-            decals.push(paint(&stage_of(view), view, camera, f64::from(tile.height)).map(add));
+            decals.push(build_decals(&context_of(view), view, camera, f64::from(tile.height)).map(add));
         }
         let windows: Vec<_> =
             cameras.iter().zip(tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
         let letters = self.letters.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let (words, _) = words(letters, &stage, &plan, &windows, self.size);
+        let (words, _) = words(letters, &context, &plan, &windows, self.size);
         let (lines, shapes) = (words.lines, words.shapes);
-        let ghosts = views.iter().map(|view| !matches!(view, View::SnakeEye | View::Camera(_))).collect();
-        let veiled = seen().map(|(view, camera)| veiled_decks(camera, &stage, view)).collect();
+        let ghosts =
+            views.iter().map(|view| !matches!(view, Viewpoint::SnakeEye | Viewpoint::Camera(_))).collect();
+        let veiled = seen().map(|(view, camera)| veiled_decks(camera, &context, view)).collect();
         let mut prepared = Prepared {
             crowd,
             cameras,
@@ -299,7 +301,7 @@ impl Renderer {
         &self,
         trail: &Trail,
         record: &StepRecord,
-        layout: &Layout,
+        layout: &ViewLayout,
         style: &Style,
     ) -> Result<Vec<Sightline>, Error> {
         self.check(record)?;
@@ -325,14 +327,14 @@ impl Renderer {
         self.letters.lock().unwrap_or_else(PoisonError::into_inner).lacks(texts.into_iter())
     }
 
-    fn plan(&self, layout: &Layout, style: &Style) -> Plan {
+    fn plan(&self, layout: &ViewLayout, style: &Style) -> PicturePlan {
         let mut letters = self.letters.lock().unwrap_or_else(PoisonError::into_inner);
-        Plan::new(&mut letters, &self.fleet, layout, style, self.size)
+        PicturePlan::new(&mut letters, &self.fleet, layout, style, self.size)
     }
 
     /// A target with all that drawing into it takes.
-    fn surface<'a>(&'a self, target: &'a wgpu::TextureView) -> Surface<'a> {
-        Surface { target, attachments: &self.attachments, size: self.size }
+    fn surface<'a>(&'a self, target: &'a wgpu::TextureView) -> EncodeTarget<'a> {
+        EncodeTarget { target, attachments: &self.attachments, size: self.size }
     }
 
     fn check(&self, record: &StepRecord) -> Result<(), Error> {
@@ -349,14 +351,14 @@ impl Renderer {
 
 /// The cameras of a picture's views.
 pub(crate) fn cameras(
-    plan: &Plan,
+    plan: &PicturePlan,
     trail: &Trail,
     record: &StepRecord,
     fleet: &FleetInfo,
     floor: &Floor,
 ) -> Vec<Camera> {
-    let camera = |(k, view): (usize, &View)| {
-        Camera::of(view, &trail.steady, &record.snapshot, (fleet, floor), &plan.room(k))
+    let camera = |(k, view): (usize, &Viewpoint)| {
+        Camera::of(view, &trail.smoothed, &record.snapshot, (fleet, floor), &plan.room(k))
     };
     plan.views.iter().enumerate().map(camera).collect()
 }

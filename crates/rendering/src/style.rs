@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::error::nearest;
-use crate::{Show, Sketch};
+use crate::{Annotations, Overlays};
 
 macro_rules! elements {
     ($($(#[$doc:meta])* $field:ident = $name:literal,)*) => {
@@ -18,9 +18,9 @@ macro_rules! elements {
             /// The robot through whose camera a small picture in the corner is seen, by its index.
             pub picture_in_picture: Option<usize>,
             /// What is drawn on the ground to explain; views through cameras do not show it.
-            pub sketch: Sketch,
+            pub annotations: Annotations,
             /// What films add: cards, a line, plots.
-            pub show: Show,
+            pub show: Overlays,
             /// Quicker pictures, for a window: ribbons and tyre marks have fewer points, within half a pixel of where they
             /// are in others, and follow hills less closely.
             pub interactive: bool,
@@ -33,8 +33,8 @@ macro_rules! elements {
                     scale: 1.0,
                     detections: false,
                     picture_in_picture: None,
-                    sketch: Sketch::default(),
-                    show: Show::default(),
+                    annotations: Annotations::default(),
+                    show: Overlays::default(),
                     interactive: false,
                 }
             }

@@ -5,7 +5,7 @@ mod course;
 mod stage;
 
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded, hills, overturn, prop, props, touch};
-use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, View};
+use rendering::{AdapterChoice, Gpu, Renderer, Style, Trail, ViewLayout, Viewpoint};
 use stage::{Path, Play};
 use std::sync::{Arc, OnceLock};
 use vocabulary::{Body, FleetInfo, Mobility, Picture, Solid, StepRecord, Terrain};
@@ -19,20 +19,20 @@ fn gpu() -> &'static Gpu {
 }
 
 /// The picture of a moment whose past is that moment alone.
-fn snap(fleet: &FleetInfo, record: &StepRecord, view: View, style: &Style) -> Picture {
+fn snap(fleet: &FleetInfo, record: &StepRecord, view: Viewpoint, style: &Style) -> Picture {
     let mut trail = Trail::new(fleet);
     trail.push(record);
     shot(fleet, &trail, record, view, style)
 }
 
-fn shot(fleet: &FleetInfo, trail: &Trail, record: &StepRecord, view: View, style: &Style) -> Picture {
+fn shot(fleet: &FleetInfo, trail: &Trail, record: &StepRecord, view: Viewpoint, style: &Style) -> Picture {
     let mut renderer = Renderer::new(gpu(), fleet, SIZE.0, SIZE.1, 4).unwrap();
-    renderer.draw(trail, record, &Layout::single(view), style).unwrap()
+    renderer.draw(trail, record, &ViewLayout::single(view), style).unwrap()
 }
 
 /// Straight down on the x-y plane from 9 m over `ground`.
-fn plan(ground: f64) -> View {
-    View::Fixed { eye: [6.0, 0.0, 9.0 + ground], target: [6.0, 0.0, ground], field_of_view: 0.6 }
+fn plan(ground: f64) -> Viewpoint {
+    Viewpoint::Fixed { eye: [6.0, 0.0, 9.0 + ground], target: [6.0, 0.0, ground], field_of_view: 0.6 }
 }
 
 /// The pixel of a point on the ground in [`plan`], whose picture has +x up and +y to the left.
@@ -142,7 +142,7 @@ fn a_level_terrain_looks_like_the_plain_from_as_high_above() {
     let mut fleet = play.fleet.clone();
     let style = Style::without(&["caption", "names"]).unwrap();
     let flat = shot(&fleet, &play.trail(6.0), &play.at(6.0), plan(0.0), &style);
-    let view = |ground: f64| View::Fixed {
+    let view = |ground: f64| Viewpoint::Fixed {
         eye: [-3.0, -2.0, 2.0 + ground],
         target: [3.0, 1.0, ground],
         field_of_view: 0.7,
@@ -169,7 +169,7 @@ fn a_level_terrain_looks_like_the_plain_from_as_high_above() {
 fn a_hill_hides_what_is_behind_it() {
     let (mut fleet, record) = straight();
     let hidden = record.snapshot.robots[2].motion.pose;
-    let view = || View::Fixed {
+    let view = || Viewpoint::Fixed {
         eye: [hidden.x - 6.0, hidden.y, 0.5],
         target: [hidden.x, hidden.y, 0.1],
         field_of_view: 0.4,
@@ -235,11 +235,11 @@ fn a_flash_shows_through_what_is_in_front() {
 fn what_stands_before_the_robots_is_seen_through() {
     let (mut fleet, record) = straight();
     let warm = |[r, g, b]: [i32; 3]| r > g + 12 && g > b + 12;
-    let clear = snap(&fleet, &record, View::Snake, &Style::bare());
+    let clear = snap(&fleet, &record, Viewpoint::Snake, &Style::bare());
     let plain = count(&clear, warm);
     let last = record.snapshot.robots[1].motion.pose;
     fleet.props = vec![prop(Solid::Block { size: [0.1, 9.0, 1.2] }, Mobility::Fixed, last.x - 1.4, 0.0, 0.0)];
-    let veiled = snap(&fleet, &record, View::Snake, &Style::bare());
+    let veiled = snap(&fleet, &record, Viewpoint::Snake, &Style::bare());
     let hidden = differ(&veiled, &clear, 12);
     assert!(hidden > 5_000, "the wall is there: {hidden}");
     let found = count(&veiled, warm);
@@ -305,7 +305,7 @@ fn a_platform_is_like_higher_ground() {
 #[test]
 fn what_robots_drive_on_is_not_darkened() {
     let (fleet, record) = on_a_platform();
-    for view in [View::Snake, View::SnakeEye, View::Follow(1)] {
+    for view in [Viewpoint::Snake, Viewpoint::SnakeEye, Viewpoint::Follow(1)] {
         let name = format!("{view:?}");
         let picture = snap(&fleet, &record, view, &Style::bare());
         for x in [40, 160, 480, 600] {
@@ -323,7 +323,7 @@ fn a_platform_before_a_robot_is_seen_through() {
         let mut trail = Trail::new(&fleet);
         trail.push(&record);
         let mut renderer = Renderer::new(gpu(), &fleet, SIZE.0, SIZE.1, samples).unwrap();
-        let layout = Layout::single(View::Follow(1));
+        let layout = ViewLayout::single(Viewpoint::Follow(1));
         let picture = renderer.draw(&trail, &record, &layout, &Style::bare()).unwrap();
         assert!(picture.rgba.chunks_exact(4).all(|p| p[3] == 255));
         count(&picture, |[r, g, b]| r > g + 12 && g > b + 25)
@@ -348,7 +348,9 @@ fn bodies_of_all_sizes_are_in_the_picture() {
         }
         let mut record = play.at(9.0);
         enlarge(&mut record, scale);
-        for view in [View::Snake, View::Top, View::Orbit, View::SnakeEye, View::Follow(1)] {
+        for view in
+            [Viewpoint::Snake, Viewpoint::Top, Viewpoint::Orbit, Viewpoint::SnakeEye, Viewpoint::Follow(1)]
+        {
             let name = format!("{view:?}");
             let picture = snap(&play.fleet, &record, view, &Style::bare());
             let found = count(&picture, |[r, g, b]| r > g + 30 && g > b + 40);
@@ -368,7 +370,9 @@ fn robots_on_hills_are_in_the_picture() {
     play.fleet.props.clear();
     let record = grounded(&play.fleet, play.at(9.0));
     assert!(record.snapshot.robots[0].attitude.height > 25.0);
-    for view in [View::Snake, View::Top, View::Orbit, View::SnakeEye, View::Follow(1)] {
+    for view in
+        [Viewpoint::Snake, Viewpoint::Top, Viewpoint::Orbit, Viewpoint::SnakeEye, Viewpoint::Follow(1)]
+    {
         let name = format!("{view:?}");
         let picture = snap(&play.fleet, &record, view, &Style::bare());
         let found = count(&picture, |[r, g, b]| r > g + 30 && g > b + 40);
@@ -381,9 +385,9 @@ fn trouble_is_named() {
     let (fleet, mut record) = straight();
     let style = Style { names: true, ..Style::bare() };
     let alarm = |c: [i32; 3]| c[0] > 200 && (120..190).contains(&c[1]) && c[2] < 170 && c[0] - c[2] > 60;
-    let before = count(&snap(&fleet, &record, View::Snake, &style), alarm);
+    let before = count(&snap(&fleet, &record, Viewpoint::Snake, &style), alarm);
     overturn(&fleet, &mut record, 2);
-    let after = count(&snap(&fleet, &record, View::Snake, &style), alarm);
+    let after = count(&snap(&fleet, &record, Viewpoint::Snake, &style), alarm);
     assert!(after > before + 40, "{before} {after}");
 }
 
@@ -411,10 +415,10 @@ fn golden_course() {
     }
     let mut renderer = Renderer::new(gpu(), &play.fleet, 216, 122, 4).unwrap();
     let style = Style { scale: 0.6, ..Style::default() };
-    let picture = renderer.draw(&trail, &last, &Layout::single(View::Snake), &style).unwrap();
+    let picture = renderer.draw(&trail, &last, &ViewLayout::single(Viewpoint::Snake), &style).unwrap();
     let file = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/course.png");
     if std::env::var_os("ECHELON_BLESS").is_some() {
-        return rendering::png::write(&file, &picture, &[]).unwrap();
+        return film::png::write(&file, &picture, &[]).unwrap();
     }
     let wanted = image::open(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display())).to_rgb8();
     let rgb = picture.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();

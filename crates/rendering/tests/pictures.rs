@@ -6,7 +6,7 @@
 mod sight;
 mod stage;
 
-use rendering::{AdapterChoice, Error, Gpu, Layout, Renderer, Style, View};
+use rendering::{AdapterChoice, Error, Gpu, Renderer, Style, ViewLayout, Viewpoint};
 use stage::{Path, Play};
 use std::sync::OnceLock;
 use vocabulary::{Contact, EntityId, Picture, Pose, StepRecord};
@@ -19,14 +19,14 @@ fn gpu() -> &'static Gpu {
     GPU.get_or_init(|| Gpu::open(&wanted()).expect("tests of pictures need a graphics adapter"))
 }
 
-fn draw(play: &Play, view: View, time: f64, style: &Style) -> Picture {
+fn draw(play: &Play, view: Viewpoint, time: f64, style: &Style) -> Picture {
     let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
-    renderer.draw(&play.trail(time), &play.at(time), &Layout::single(view), style).unwrap()
+    renderer.draw(&play.trail(time), &play.at(time), &ViewLayout::single(view), style).unwrap()
 }
 
 /// Straight down on the x-y plane, 9 m high: pixels are easily computed.
-fn plan() -> View {
-    View::Fixed { eye: [6.0, 0.0, 9.0], target: [6.0, 0.0, 0.0], field_of_view: 0.6 }
+fn plan() -> Viewpoint {
+    Viewpoint::Fixed { eye: [6.0, 0.0, 9.0], target: [6.0, 0.0, 0.0], field_of_view: 0.6 }
 }
 
 /// The pixel of a point on the ground in [`plan`], whose picture has +x up and +y to the left.
@@ -77,7 +77,7 @@ fn robots_stand_where_they_are_in_their_colours() {
 #[test]
 fn the_sky_is_above_and_the_ground_below() {
     let play = Play::new(3, Path::Straight);
-    let picture = draw(&play, View::Snake, 12.0, &Style::bare());
+    let picture = draw(&play, Viewpoint::Snake, 12.0, &Style::bare());
     for x in [5, 320, 634] {
         let [r, _, b] = picture.rgb(x, 4).unwrap();
         assert!(b > r && b > 190, "sky at {x}");
@@ -89,9 +89,16 @@ fn the_sky_is_above_and_the_ground_below() {
 #[test]
 fn no_picture_is_black_or_clipped() {
     let play = Play::new(7, Path::named("eight"));
-    let single = [View::Snake, View::SnakeEye, View::Top, View::Orbit, View::Follow(3), plan()];
-    let split = Layout { views: single[..3].to_vec() };
-    for view in single.into_iter().map(Layout::single).chain([split]) {
+    let single = [
+        Viewpoint::Snake,
+        Viewpoint::SnakeEye,
+        Viewpoint::Top,
+        Viewpoint::Orbit,
+        Viewpoint::Follow(3),
+        plan(),
+    ];
+    let split = ViewLayout { views: single[..3].to_vec() };
+    for view in single.into_iter().map(ViewLayout::single).chain([split]) {
         let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
         let picture = renderer.draw(&play.trail(9.0), &play.at(9.0), &view, &Style::default()).unwrap();
         let pixels = picture.rgba.chunks_exact(4);
@@ -138,7 +145,7 @@ fn every_element_can_be_switched_off() {
         let (mut trail, mut record) = (play.trail(1.9), play.at(2.0));
         record.contacts = vec![touch(record.snapshot.robots[0].motion.pose)];
         trail.push(&record);
-        renderer.draw(&trail, &record, &Layout::single(View::Snake), style).unwrap()
+        renderer.draw(&trail, &record, &ViewLayout::single(Viewpoint::Snake), style).unwrap()
     };
     let full = draw(&Style::default());
     for name in Style::ELEMENTS {
@@ -150,20 +157,22 @@ fn every_element_can_be_switched_off() {
 #[test]
 fn a_crowd_is_drawn_without_its_labels() {
     let play = Play::new(100, Path::Straight);
-    let full = draw(&play, View::Snake, 2.0, &Style::default());
+    let full = draw(&play, Viewpoint::Snake, 2.0, &Style::default());
     let quiet = Style::without(&["labels", "edges", "ghosts", "names"]).unwrap();
-    assert_eq!(draw(&play, View::Snake, 2.0, &quiet), full);
+    assert_eq!(draw(&play, Viewpoint::Snake, 2.0, &quiet), full);
 }
 
 #[test]
 fn the_same_moments_give_the_same_bytes() {
     let play = Play::new(7, Path::Eight);
-    let layout = Layout::parse("snake+top", &[]).unwrap();
+    let layout = ViewLayout::parse("snake+top", &[]).unwrap();
     let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     let trail = play.trail(6.0);
     let first = renderer.draw(&trail, &play.at(6.0), &layout, &Style::default()).unwrap();
     // Other pictures in between, and the pipelined way, must not show.
-    renderer.draw(&play.trail(3.0), &play.at(3.0), &Layout::single(View::Top), &Style::default()).unwrap();
+    renderer
+        .draw(&play.trail(3.0), &play.at(3.0), &ViewLayout::single(Viewpoint::Top), &Style::default())
+        .unwrap();
     assert_eq!(renderer.draw(&trail, &play.at(6.0), &layout, &Style::default()).unwrap(), first);
     assert!(renderer.draw_next(&trail, &play.at(6.0), &layout, &Style::default()).unwrap().is_none());
     assert_eq!(
@@ -193,7 +202,7 @@ fn a_formation_far_from_the_origin_looks_the_same() {
             last = if shifted { away(&record) } else { record };
             trail.push(&last);
         }
-        pictures.push(renderer.draw(&trail, &last, &Layout::single(View::Snake), &style).unwrap());
+        pictures.push(renderer.draw(&trail, &last, &ViewLayout::single(Viewpoint::Snake), &style).unwrap());
     }
     let differ = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 3;
     let count = pictures[0].rgba.iter().zip(&pictures[1].rgba).filter(|p| differ(*p)).count();
@@ -210,8 +219,12 @@ fn bad_input_is_refused_with_reasons() {
     assert!(matches!(Renderer::new(gpu(), &play.fleet, 64, 64, 3), Err(Error::Samples(3))));
     let mut renderer = Renderer::new(gpu(), &play.fleet, 64, 64, 1).unwrap();
     let other = Play::new(2, Path::Straight);
-    let error =
-        renderer.draw(&other.trail(0.0), &other.at(0.0), &Layout::single(View::Top), &Style::default());
+    let error = renderer.draw(
+        &other.trail(0.0),
+        &other.at(0.0),
+        &ViewLayout::single(Viewpoint::Top),
+        &Style::default(),
+    );
     assert!(matches!(error, Err(Error::FleetInfo { what: "robots", got: 2, want: 3 })));
     let error = Gpu::open(&AdapterChoice::from("voodoo")).unwrap_err();
     assert!(!error.is_usage() && error.to_string().contains("mesa-vulkan-drivers"), "{error}");
@@ -221,7 +234,7 @@ fn bad_input_is_refused_with_reasons() {
 fn golden(name: &str, picture: &Picture) {
     let file = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/{name}.png"));
     if std::env::var_os("ECHELON_BLESS").is_some() {
-        return rendering::png::write(&file, picture, &[]).unwrap();
+        return film::png::write(&file, picture, &[]).unwrap();
     }
     let wanted = image::open(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display())).to_rgb8();
     let rgb = picture.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
@@ -235,8 +248,9 @@ fn golden_pictures() {
     let play = Play::new(3, Path::Eight);
     let mut renderer = Renderer::new(gpu(), &play.fleet, 216, 122, 4).unwrap();
     let style = Style { scale: 0.6, ..Style::default() };
-    for (name, view) in [("snake", View::Snake), ("top", View::Top), ("orbit", View::Orbit)] {
-        let picture = renderer.draw(&play.trail(5.0), &play.at(5.0), &Layout::single(view), &style).unwrap();
+    for (name, view) in [("snake", Viewpoint::Snake), ("top", Viewpoint::Top), ("orbit", Viewpoint::Orbit)] {
+        let picture =
+            renderer.draw(&play.trail(5.0), &play.at(5.0), &ViewLayout::single(view), &style).unwrap();
         golden(name, &picture);
     }
 }
@@ -252,11 +266,11 @@ fn views_through_cameras_show_what_the_robot_sees() {
     let bare = Style { shadows: true, ..Style::bare() };
     let marked = Style { detections: true, ..bare.clone() };
     let inside = Style { picture_in_picture: Some(1), ..bare.clone() };
-    let draw = |view: View, style: &Style| {
+    let draw = |view: Viewpoint, style: &Style| {
         let mut renderer = Renderer::new(gpu(), &play.fleet, 640, 480, 4).unwrap();
-        renderer.draw(&play.trail(12.0), &record, &Layout::single(view), style).unwrap()
+        renderer.draw(&play.trail(12.0), &record, &ViewLayout::single(view), style).unwrap()
     };
-    let (plain, drawn) = (draw(View::Camera(1), &bare), draw(View::Camera(1), &marked));
+    let (plain, drawn) = (draw(Viewpoint::Camera(1), &bare), draw(Viewpoint::Camera(1), &marked));
     for [x, y] in corners {
         let at = |picture: &Picture| picture.rgb(x.round() as u32, y.round() as u32).unwrap();
         let [r, g, b] = at(&drawn).map(i32::from);
@@ -282,8 +296,11 @@ fn the_arrow_to_a_set_point_shows_through_its_robot() {
     // Straight above the robot, which is in the middle of the picture.
     let count = |style: &Style, time: f64| {
         let pose = play.at(time).snapshot.robots[1].motion.pose;
-        let view =
-            View::Fixed { eye: [pose.x, pose.y, 5.0], target: [pose.x, pose.y, 0.0], field_of_view: 0.6 };
+        let view = Viewpoint::Fixed {
+            eye: [pose.x, pose.y, 5.0],
+            target: [pose.x, pose.y, 0.0],
+            field_of_view: 0.6,
+        };
         let picture = draw(&play, view, time, style);
         let (x, y) = (SIZE.0 / 2, SIZE.1 / 2);
         let near = (x - 8..=x + 8).flat_map(|x| (y - 8..=y + 8).map(move |y| (x, y)));
@@ -335,7 +352,7 @@ fn shadows_fall_away_from_the_sun() {
 #[test]
 fn haze_covers_distant_ground_and_spares_what_is_near() {
     let mut play = Play::new(3, Path::Straight);
-    let picture = |play: &Play| draw(play, View::Snake, 12.0, &Style::bare());
+    let picture = |play: &Play| draw(play, Viewpoint::Snake, 12.0, &Style::bare());
     let clear = picture(&play);
     play.fleet.light.haze_from = 8.0;
     let hazy = picture(&play);

@@ -3,7 +3,7 @@
 #[expect(dead_code, reason = "shared with other tests")]
 mod stage;
 
-use rendering::{AdapterChoice, Error, Gpu, Layout, Renderer, Style, View};
+use rendering::{AdapterChoice, Error, Gpu, Renderer, Style, ViewLayout, Viewpoint};
 use stage::{Path, Play};
 use vocabulary::Picture;
 use wgpu::{Limits, TextureFormat, TextureUsages};
@@ -60,7 +60,7 @@ fn bytes(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<u8> {
 }
 
 fn drawn(gpu: &Gpu, play: &Play, samples: u32, format: TextureFormat) -> (Vec<u8>, Picture) {
-    let layout = Layout { views: vec![View::Snake, View::Top] };
+    let layout = ViewLayout { views: vec![Viewpoint::Snake, Viewpoint::Top] };
     let mut renderer = Renderer::with_format(gpu, &play.fleet, SIZE.0, SIZE.1, samples, format).unwrap();
     let texture = target(gpu, SIZE, format);
     let (trail, record, style) = (play.trail(3.0), play.at(3.0), Style::default());
@@ -99,7 +99,7 @@ fn renderers_share_a_device() {
     let mut both = plays.each_ref().map(|play| {
         Renderer::with_format(&gpu, &play.fleet, SIZE.0, SIZE.1, 4, TextureFormat::Rgba8Unorm).unwrap()
     });
-    let layout = Layout { views: vec![View::Snake, View::Top] };
+    let layout = ViewLayout { views: vec![Viewpoint::Snake, Viewpoint::Top] };
     for _ in 0..2 {
         for ((renderer, play), alone) in both.iter_mut().zip(&plays).zip(&alone) {
             assert!(renderer.draw(&play.trail(3.0), &play.at(3.0), &layout, &style).unwrap() == *alone);
@@ -113,7 +113,7 @@ fn what_does_not_fit_is_an_error_and_the_next_is_drawn() {
     let play = Play::new(3, Path::Eight);
     let mut renderer = Renderer::new(&gpu, &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     let (trail, record, style) = (play.trail(1.0), play.at(1.0), Style::default());
-    let layout = Layout::single(View::Snake);
+    let layout = ViewLayout::single(Viewpoint::Snake);
     let view = |size, format| target(&gpu, size, format).create_view(&wgpu::TextureViewDescriptor::default());
     for (size, format) in [((64, 64), TextureFormat::Rgba8Unorm), (SIZE, TextureFormat::Rgba8UnormSrgb)] {
         let error = renderer.draw_into(&view(size, format), &trail, &record, &layout, &style).unwrap_err();
@@ -131,7 +131,7 @@ fn a_lost_device_is_an_error_every_time() {
     let texture = target(&gpu, SIZE, TextureFormat::Rgba8Unorm);
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
     let (trail, record, style) = (play.trail(1.0), play.at(1.0), Style::default());
-    let layout = Layout::single(View::Snake);
+    let layout = ViewLayout::single(Viewpoint::Snake);
     renderer.draw_into(&view, &trail, &record, &layout, &style).unwrap();
     gpu.device.destroy();
     // What is already on the way may still arrive.
@@ -153,7 +153,7 @@ fn memory_stays_bounded_while_a_window_is_dragged() {
     let play = Play::new(3, Path::Eight);
     let mut renderer = Renderer::new(&gpu, &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     let held = || gpu.device.generate_allocator_report().map_or(0, |r| r.total_allocated_bytes);
-    let (trail, layout) = (play.trail(1.0), Layout::single(View::Snake));
+    let (trail, layout) = (play.trail(1.0), ViewLayout::single(Viewpoint::Snake));
     let mut after = Vec::new();
     for k in 0..240_u32 {
         let size = (200 + (k * 7) % 60, 120 + (k * 5) % 40);
@@ -182,8 +182,10 @@ fn a_picture_does_not_hang_on_the_one_before() {
     // Still from another side, moved, failed and then drawn, and still again.
     let small = target(&gpu, (32, 32), TextureFormat::Rgba8Unorm);
     let small = small.create_view(&wgpu::TextureViewDescriptor::default());
-    for (time, view) in [(3.0, View::Snake), (3.0, View::Orbit), (3.4, View::Orbit), (3.4, View::Top)] {
-        let (record, layout) = (play.at(time), Layout::single(view));
+    for (time, view) in
+        [(3.0, Viewpoint::Snake), (3.0, Viewpoint::Orbit), (3.4, Viewpoint::Orbit), (3.4, Viewpoint::Top)]
+    {
+        let (record, layout) = (play.at(time), ViewLayout::single(view));
         let fresh = Renderer::new(&gpu, &play.fleet, SIZE.0, SIZE.1, 4)
             .and_then(|mut renderer| renderer.draw(&trail, &record, &layout, &style))
             .unwrap();
@@ -200,10 +202,10 @@ fn quick_pictures_look_like_others() {
     let play = Play::new(7, Path::Eight);
     let mut renderer = Renderer::new(&gpu, &play.fleet, 800, 560, 4).unwrap();
     let (trail, record) = (play.trail(40.0), play.at(40.0));
-    for view in [View::Snake, View::Orbit, View::Top] {
+    for view in [Viewpoint::Snake, Viewpoint::Orbit, Viewpoint::Top] {
         let mut draw = |interactive: bool| {
             let style = Style { interactive, ..Style::default() };
-            renderer.draw(&trail, &record, &Layout::single(view.clone()), &style).unwrap()
+            renderer.draw(&trail, &record, &ViewLayout::single(view.clone()), &style).unwrap()
         };
         let (whole, quick) = (draw(false), draw(true));
         let apart: Vec<_> = whole.rgba.iter().zip(&quick.rgba).map(|(a, b)| a.abs_diff(*b)).collect();

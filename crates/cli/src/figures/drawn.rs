@@ -6,7 +6,8 @@ use super::{Subject, ready, stop};
 use crate::failure::Failure;
 use crate::playback::{Playback, Source};
 use crate::run::PROGRAM;
-use rendering::{FilmKind, Gpu, Layout, Renderer, Style, png};
+use film::{FilmKind, png};
+use rendering::{Gpu, Renderer, Style, ViewLayout};
 use report::{Case, Film, Job, Ran, Report, Shot, add_picture, find};
 use vocabulary::FleetInfo;
 
@@ -79,7 +80,7 @@ pub(super) fn draw(
     let mut renderer = Renderer::new(gpu, &fleet, FILM[0], FILM[1], 4)?;
     let file = format!("{}.mp4", show.name);
     let path = folder.place(&file);
-    let mut film = rendering::Film::create(&path, FilmKind::Mp4, FILM[0], FILM[1], RATE)?;
+    let mut film = film::Film::create(&path, FilmKind::Mp4, FILM[0], FILM[1], RATE)?;
     let mut playback = Playback::new(&fleet, Source::Run(Box::new(simulation)));
     let mut shot = show.shot.as_ref();
     for frame in 0..show.frames() {
@@ -108,16 +109,16 @@ pub(super) fn draw(
 }
 
 /// The view of the scene; the paper's is the snake's.
-fn layout(show: &Show, fleet: &FleetInfo) -> Result<Layout, Failure> {
+fn layout(show: &Show, fleet: &FleetInfo) -> Result<ViewLayout, Failure> {
     let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
     let view = if show.case == Case::Own { show.job.scene.views.default.as_str() } else { "snake" };
-    Ok(Layout::parse(view, &names)?)
+    Ok(ViewLayout::parse(view, &names)?)
 }
 
 fn picture(
     show: &Show,
     (stem, time): (&str, f64),
-    (gpu, fleet, layout): (&Gpu, &FleetInfo, &Layout),
+    (gpu, fleet, layout): (&Gpu, &FleetInfo, &ViewLayout),
     playback: &mut Playback,
     runs: &[Ran],
     report: &mut Report,

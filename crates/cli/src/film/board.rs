@@ -2,7 +2,7 @@
 
 use super::words::set_point_rows;
 use crate::failure::Failure;
-use rendering::{Layout, View};
+use rendering::{ViewLayout, Viewpoint};
 use scene::{Film, Plot, Shot};
 
 /// How long a card comes and goes, s of the film; and a line at the bottom.
@@ -21,16 +21,16 @@ struct Cut {
     from: f64,
     to: f64,
     shot: Shot,
-    layout: Layout,
+    layout: ViewLayout,
     /// The single view before it, where the camera moves from there.
-    glides_from: Option<View>,
+    glides_from: Option<Viewpoint>,
 }
 
 /// One frame.
 pub(super) struct FramePlan<'a> {
     /// s of the run.
     pub(super) time: f64,
-    pub(super) layout: Layout,
+    pub(super) layout: ViewLayout,
     pub(super) line: &'a str,
     pub(super) set_points: bool,
     pub(super) plots: &'a [Plot],
@@ -122,7 +122,7 @@ impl Board {
 
 impl Cut {
     fn new(shot: Shot, view: &str, names: &[String]) -> Result<Self, Failure> {
-        let layout = Layout::parse(view, names)?;
+        let layout = ViewLayout::parse(view, names)?;
         let (from, to) = (shot.from.unwrap_or(0.0), shot.to.unwrap_or(0.0));
         Ok(Self { from, to, shot, layout, glides_from: None })
     }
@@ -141,7 +141,7 @@ impl Cut {
         let layout = match (&self.glides_from, single(&self.layout)) {
             (Some(from), Some(to)) if seconds < self.shot.glide => {
                 let share = smooth(seconds / self.shot.glide);
-                Layout::single(View::Between(Box::new(from.clone()), Box::new(to.clone()), share))
+                ViewLayout::single(Viewpoint::Between(Box::new(from.clone()), Box::new(to.clone()), share))
             }
             _ => self.layout.clone(),
         };
@@ -160,9 +160,9 @@ impl Cut {
 }
 
 /// The one view of a layout, where a camera can move to and from.
-fn single(layout: &Layout) -> Option<&View> {
+fn single(layout: &ViewLayout) -> Option<&Viewpoint> {
     match layout.views.as_slice() {
-        [View::Camera(_)] => None,
+        [Viewpoint::Camera(_)] => None,
         [view] => Some(view),
         _ => None,
     }
@@ -195,7 +195,7 @@ mod tests {
         let board = board(vec![], 0.0, 0.0);
         assert_eq!(board.frames(30.0), 300);
         assert_eq!((board.at(0, 30.0).time, board.at(150, 30.0).time), (0.0, 5.0));
-        assert_eq!(board.at(7, 30.0).layout, Layout::single(View::Snake));
+        assert_eq!(board.at(7, 30.0).layout, ViewLayout::single(Viewpoint::Snake));
     }
 
     #[test]
@@ -206,7 +206,7 @@ mod tests {
         assert_eq!((board.at(0, 10.0).time, board.at(9, 10.0).time), (0.0, 0.0));
         assert!((board.at(20, 10.0).time - 1.0).abs() < 1e-12);
         // A jump in time is a cut: no camera goes through it.
-        assert_eq!(board.at(30, 10.0).layout, Layout::single(View::Top));
+        assert_eq!(board.at(30, 10.0).layout, ViewLayout::single(Viewpoint::Top));
         assert!((board.at(34, 10.0).time - 4.1).abs() < 1e-12);
         assert!(board.last_card(10.0) == 70 && board.at(70, 10.0).cards[1] > 0.0);
         assert!(board.at(69, 10.0).cards[1] == 0.0);
@@ -218,8 +218,8 @@ mod tests {
     fn the_camera_moves_where_time_goes_on() {
         let board = board(vec![shot(0.0, 2.0, "snake", 1.0), shot(2.0, 6.0, "top", 1.0)], 0.0, 0.0);
         let share = |frame: u64| match &board.at(frame, 10.0).layout.views[0] {
-            View::Between(from, to, share) => {
-                assert_eq!((&**from, &**to), (&View::Snake, &View::Top));
+            Viewpoint::Between(from, to, share) => {
+                assert_eq!((&**from, &**to), (&Viewpoint::Snake, &Viewpoint::Top));
                 *share
             }
             _ => 1.0,

@@ -1,6 +1,6 @@
 //! What is plotted beside the view: quantities of edges, collected frame by frame.
 
-use rendering::{Curve, Plot as Shown};
+use rendering::{CurvePanel as Shown, PanelCurve};
 use scene::Plot;
 use vocabulary::{Edge, FleetInfo, StepRecord};
 
@@ -59,7 +59,7 @@ impl Plots {
             Plot::Distance => ("distance (m)", 0.2, false),
         };
         let curves = self.edges.iter().zip(&self.curves[index]);
-        let curves = curves.map(|(edge, points)| Curve { robot: edge.follower, points: points.clone() });
+        let curves = curves.map(|(edge, points)| PanelCurve { robot: edge.follower, points: points.clone() });
         let span = [0.0, self.duration];
         Some(Shown { label: label.to_owned(), span, least, centred, curves: curves.collect() })
     }

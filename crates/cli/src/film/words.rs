@@ -2,7 +2,7 @@
 
 use super::board::FramePlan;
 use metrics::{EdgeMetrics, Metrics};
-use rendering::{Card, Line};
+use rendering::{Card, Subtitle};
 use vocabulary::{EntityId, FleetInfo, StepRecord};
 
 /// Set points that are told one by one.
@@ -70,7 +70,7 @@ fn results(metrics: &Metrics) -> Vec<String> {
 }
 
 /// The line at the bottom of a frame, if there is one.
-pub(super) fn line(frame: &FramePlan<'_>, fleet: &FleetInfo, record: &StepRecord) -> Option<Line> {
+pub(super) fn line(frame: &FramePlan<'_>, fleet: &FleetInfo, record: &StepRecord) -> Option<Subtitle> {
     let mut rows = Vec::new();
     if !frame.line.is_empty() {
         rows.push(frame.line.to_owned());
@@ -78,7 +78,7 @@ pub(super) fn line(frame: &FramePlan<'_>, fleet: &FleetInfo, record: &StepRecord
     if frame.set_points {
         rows.extend(set_points(fleet, record));
     }
-    (!rows.is_empty() && frame.line_opacity > 0.0).then_some(Line { rows, opacity: frame.line_opacity })
+    (!rows.is_empty() && frame.line_opacity > 0.0).then_some(Subtitle { rows, opacity: frame.line_opacity })
 }
 
 /// Where the followers should be, now.

@@ -1,6 +1,6 @@
 //! All of a run in one picture, as under a stroboscope: pictures from one place, and of each what moved.
 
-use rendering::View;
+use rendering::Viewpoint;
 use vocabulary::{FleetInfo, Picture, StepRecord};
 
 /// Vertical field of view, rad.
@@ -17,7 +17,7 @@ const MOVED: i32 = 26;
 const FAINT: f32 = 0.5;
 
 /// A place from which all moments are seen, as near as can be.
-pub(super) fn view(records: &[StepRecord], fleet: &FleetInfo, aspect: f64) -> View {
+pub(super) fn view(records: &[StepRecord], fleet: &FleetInfo, aspect: f64) -> Viewpoint {
     let mut points = Vec::new();
     for record in records {
         for (robot, member) in record.snapshot.robots.iter().zip(&fleet.robots) {
@@ -30,11 +30,11 @@ pub(super) fn view(records: &[StepRecord], fleet: &FleetInfo, aspect: f64) -> Vi
     points.retain(|p| p.iter().all(|x| x.is_finite()));
     let looks = (0..HEADINGS).map(|k| std::f64::consts::TAU * k as f64 / HEADINGS as f64);
     let nearest = looks.map(|heading| stand(&points, heading, aspect)).min_by(|a, b| a.1.total_cmp(&b.1));
-    nearest.map_or(View::Top, |(view, _)| view)
+    nearest.map_or(Viewpoint::Top, |(view, _)| view)
 }
 
 /// The nearest place from which all points are seen when looking along `heading`, and how far its eye is from them.
-fn stand(points: &[[f64; 3]], heading: f64, aspect: f64) -> (View, f64) {
+fn stand(points: &[[f64; 3]], heading: f64, aspect: f64) -> (Viewpoint, f64) {
     let (sin, cos) = heading.sin_cos();
     let forward = [cos * PITCH.cos(), sin * PITCH.cos(), -PITCH.sin()];
     let right = [sin, -cos, 0.0];
@@ -55,7 +55,7 @@ fn stand(points: &[[f64; 3]], heading: f64, aspect: f64) -> (View, f64) {
     let eye = [0, 1, 2].map(|k| right[k] * across + up[k] * rise + forward[k] * along);
     let target = [0, 1, 2].map(|k| eye[k] + 10.0 * forward[k]);
     let middle = points.iter().map(|p| dot(*p, forward)).sum::<f64>() / points.len().max(1) as f64;
-    (View::Fixed { eye, target, field_of_view: FIELD }, middle - along)
+    (Viewpoint::Fixed { eye, target, field_of_view: FIELD }, middle - along)
 }
 
 /// What moved in any of the pictures, on what did not; earlier pictures fainter.
@@ -111,7 +111,7 @@ mod tests {
     fn every_point_is_in_the_picture() {
         let points = [[0.0, 0.0, 0.0], [12.0, 0.5, 0.0], [5.0, -2.0, 0.4]];
         for heading in [0.0, 1.0, 2.5] {
-            let (View::Fixed { eye, target, .. }, _) = stand(&points, heading, 1.6) else {
+            let (Viewpoint::Fixed { eye, target, .. }, _) = stand(&points, heading, 1.6) else {
                 panic!("a place")
             };
             let forward = [0, 1, 2].map(|k| (target[k] - eye[k]) / 10.0);

@@ -171,7 +171,7 @@ fn endings_are_documented_as_they_are_taken() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/films.md");
     let page = fs::read_to_string(page).expect("a page");
     let (_, help, _) = told(&echelon(Path::new("."), &["film", "--help"]));
-    for ending in rendering::FilmKind::BUILT_IN.iter().chain(&rendering::FilmKind::BY_FFMPEG) {
+    for ending in film::FilmKind::BUILT_IN.iter().chain(&film::FilmKind::BY_FFMPEG) {
         assert!(page.contains(&format!("`.{ending}`")), "{ending} is not in docs/films.md");
         assert!(help.contains(&format!(".{ending}")), "{ending} is not in: {help}");
     }

@@ -92,7 +92,7 @@ fn every_view_a_scene_may_name_can_be_drawn() {
     assert!(views.len() >= 5, "{views:?}");
     let names = ["ann".to_owned()];
     for view in views {
-        rendering::View::parse(&view, &names).unwrap_or_else(|e| panic!("{view}: {e}"));
+        rendering::Viewpoint::parse(&view, &names).unwrap_or_else(|e| panic!("{view}: {e}"));
     }
 }
 
@@ -123,7 +123,7 @@ fn views_and_elements_are_documented_as_they_are_taken() {
     assert!(help.contains(&format!("any of {elements} ")), "{help}");
     // The error is made of the list that is taken.
     let names = ["ROBOT".to_owned()];
-    let error = rendering::View::parse("nowhere", &names).expect_err("no view").to_string();
+    let error = rendering::Viewpoint::parse("nowhere", &names).expect_err("no view").to_string();
     let (_, views) = error.split_once("views are ").expect("a list");
     let (views, _) = views.rsplit_once(", and several").expect("its end");
     let mut views: Vec<&str> = views.split(", ").collect();
@@ -133,6 +133,6 @@ fn views_and_elements_are_documented_as_they_are_taken() {
         assert!(help.contains(view), "{view} is not in: {help}");
         assert!(page.contains(&format!("`{view}`")), "{view} is not in docs/start.md");
         let example = view.replace("ex,ey,ez,tx,ty,tz[,degrees]", "0,-12,6,0,3,0,30");
-        rendering::View::parse(&example, &names).expect(view);
+        rendering::Viewpoint::parse(&example, &names).expect(view);
     }
 }

@@ -2,18 +2,18 @@
 
 use super::naming;
 use crate::action::Action;
-use crate::desk::Desk;
+use crate::app_state::AppState;
 use crate::tidy::fixed;
 use eframe::egui::{self, RichText, Role, Ui, WidgetInfo};
 
 /// All branches.
-pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     if ui.button("Branch here").on_hover_text("Leave this branch at the time you look at (B)").clicked() {
         out.push(Action::Fork);
     }
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
-        for (index, branch) in desk.branches.iter().enumerate() {
-            let chosen = index == desk.branch;
+        for (index, branch) in app_state.branches.iter().enumerate() {
+            let chosen = index == app_state.branch;
             let response = ui.selectable_label(chosen, &branch.name);
             response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &branch.name));
             if response.clicked() {
@@ -23,12 +23,13 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
                 out.push(Action::NameBranch(index, name));
             }
             if let Some((parent, time)) = branch.parent {
-                let from = desk.branches.get(parent).map_or("", |parent| &parent.name);
+                let from = app_state.branches.get(parent).map_or("", |parent| &parent.name);
                 ui.weak(format!("leaves {from} at {} s", fixed(time, 2)));
             }
             let own = branch.parent.map_or(0.0, |(_, time)| time);
             for change in branch.changes.iter().filter(|change| change.time >= own) {
-                let text = format!("{} s  {}", fixed(change.time, 2), crate::deeds::words(change));
+                let text =
+                    format!("{} s  {}", fixed(change.time, 2), crate::app_state::commands::words(change));
                 ui.label(RichText::new(text).small().weak());
             }
         }

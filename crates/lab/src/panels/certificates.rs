@@ -2,9 +2,9 @@
 
 use super::nothing;
 use crate::action::Action;
-use crate::desk::Desk;
+use crate::app_state::AppState;
 use crate::panels::curves;
-use crate::quantities::Quantity;
+use crate::quantities::PlotQuantity;
 use eframe::egui::{RichText, Ui};
 use simulation::certify::{Premise, StatementFinding, StatementOutcome, so_far};
 
@@ -12,8 +12,8 @@ use simulation::certify::{Premise, StatementFinding, StatementOutcome, so_far};
 const MOST: usize = 2000;
 
 /// Statements, then curves.
-pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let Some(findings) = findings(desk) else { return nothing(ui, "Nobody follows anybody.") };
+pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    let Some(findings) = findings(app_state) else { return nothing(ui, "Nobody follows anybody.") };
     ui.horizontal_wrapped(|ui| {
         for finding in &findings {
             let mark = match finding.outcome() {
@@ -25,17 +25,17 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
             ui.label(text).on_hover_text(words(finding));
         }
     });
-    curves::show(ui, desk, &[Quantity::RobustMargin, Quantity::Lyapunov], out);
+    curves::show(ui, app_state, &[PlotQuantity::RobustMargin, PlotQuantity::Lyapunov], out);
 }
 
 /// What the theorems say of the follower that is chosen, or else of the first.
-fn findings(desk: &Desk) -> Option<Vec<StatementFinding>> {
-    let (history, scene) = (desk.history.as_ref()?, desk.scene_now()?);
-    let chosen = desk.chosen_robot();
+fn findings(app_state: &AppState) -> Option<Vec<StatementFinding>> {
+    let (history, scene) = (app_state.history.as_ref()?, app_state.scene_now()?);
+    let chosen = app_state.chosen_robot();
     let edges = &history.fleet().edges;
     let index = edges.iter().position(|edge| Some(edge.follower) == chosen).unwrap_or(0);
-    let (edge, (_, _, follow)) = (*edges.get(index)?, desk.follower(index)?);
-    let records = history.between(desk.branch, [0.0, f64::INFINITY], MOST);
+    let (edge, (_, _, follow)) = (*edges.get(index)?, app_state.follower(index)?);
+    let records = history.between(app_state.branch, [0.0, f64::INFINITY], MOST);
     Some(so_far(&records, (index, edge), follow, scene).0)
 }
 

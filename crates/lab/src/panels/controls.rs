@@ -31,7 +31,7 @@ impl Range {
 
 /// A quantity of the scene behind a slider.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Row {
+pub(crate) struct SliderRow {
     pub(crate) symbol: Symbol,
     /// Its key, without the robot.
     pub(crate) key: &'static str,
@@ -39,7 +39,7 @@ pub(crate) struct Row {
     pub(crate) decimals: usize,
 }
 
-impl Row {
+impl SliderRow {
     /// A row for one value; the default is shown beside the way back to it.
     pub(crate) fn one(&self, ui: &mut Ui, value: f64, default: f64, out: &mut Vec<Action>) {
         self.frame(ui, value != default, &tidy(default), out, |ui, out| {

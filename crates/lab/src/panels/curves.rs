@@ -2,8 +2,8 @@
 
 use super::{colour, nothing};
 use crate::action::Action;
-use crate::desk::Desk;
-use crate::quantities::{Curve, Quantity, bounds, curves};
+use crate::app_state::AppState;
+use crate::quantities::{PlotQuantity, QuantityCurve, bounds, curves};
 use crate::tidy::fixed;
 use eframe::egui::{self, Color32, Id, Stroke, Ui};
 use egui_plot::{GridMark, HLine, HoverPosition, LineStyle, Plot, PlotPoint, VLine};
@@ -14,19 +14,25 @@ const MOST_POINTS: usize = 400;
 const OFF: f64 = 0.35;
 
 /// Plots of some quantities, one above the other.
-pub fn show(ui: &mut Ui, desk: &Desk, quantities: &[Quantity], out: &mut Vec<Action>) {
-    if desk.history.is_none() {
+pub fn show(ui: &mut Ui, app_state: &AppState, quantities: &[PlotQuantity], out: &mut Vec<Action>) {
+    if app_state.history.is_none() {
         return nothing(ui, "No scene is open.");
     }
     let gap = ui.spacing().item_spacing.y;
     let high = (ui.available_height() - gap * (quantities.len() - 1) as f32) / quantities.len() as f32;
     for (row, quantity) in quantities.iter().enumerate() {
-        plot(ui, desk, *quantity, (high, row + 1 == quantities.len()), out);
+        plot(ui, app_state, *quantity, (high, row + 1 == quantities.len()), out);
     }
 }
 
-fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool), out: &mut Vec<Action>) {
-    let end = desk
+fn plot(
+    ui: &mut Ui,
+    app_state: &AppState,
+    quantity: PlotQuantity,
+    (high, last): (f32, bool),
+    out: &mut Vec<Action>,
+) {
+    let end = app_state
         .history
         .as_ref()
         .map_or(0.0, |history| (0..history.branches()).map(|branch| history.end(branch)).fold(0.0, f64::max));
@@ -69,18 +75,18 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
             let value = if logarithmic { format!("{:.1e}", 10_f64.powf(at.y)) } else { fixed(at.y, 3) };
             Some(format!("{} s\n{value}", fixed(at.x, 2)))
         });
-    let all = curves(desk, quantity, [0.0, f64::INFINITY], MOST_POINTS);
+    let all = curves(app_state, quantity, [0.0, f64::INFINITY], MOST_POINTS);
     let colours: Vec<Color32> = all
         .iter()
-        .map(|curve| curve.robot.map_or(ui.visuals().text_color(), |robot| colour(desk, robot, ui)))
+        .map(|curve| curve.robot.map_or(ui.visuals().text_color(), |robot| colour(app_state, robot, ui)))
         .collect();
     let cursor = ui.visuals().strong_text_color();
-    let chosen = desk.chosen_robot();
+    let chosen = app_state.chosen_robot();
     let span = span(&all, quantity);
     let off = OFF * (span[1] - span[0]) / f64::from(high.max(30.0));
     let response = plot.show(ui, |plot| {
         plot.set_plot_bounds_y(span[0]..=span[1]);
-        for bound in bounds(desk, quantity) {
+        for bound in bounds(app_state, quantity) {
             let near = all.iter().flat_map(|c| &c.points).any(|p| p[1].abs() > 0.4 * bound.abs());
             // A bound that is far away would only flatten the curves.
             if near {
@@ -89,13 +95,13 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
                 );
             }
         }
-        plot.vline(VLine::new("now", desk.time()).color(cursor).width(1.0));
+        plot.vline(VLine::new("now", app_state.time()).color(cursor).width(1.0));
         plot.pointer_coordinate()
     });
     let transform = response.transform;
     let painter = ui.painter_at(*transform.frame());
     for (curve, colour) in all.iter().zip(colours) {
-        let active = curve.branch == desk.branch;
+        let active = curve.branch == app_state.branch;
         let wide = match (active, chosen.is_some() && chosen == curve.robot) {
             (true, true) => 2.2,
             (true, false) => 1.4,
@@ -134,7 +140,7 @@ fn plot(ui: &mut Ui, desk: &Desk, quantity: Quantity, (high, last): (f32, bool),
 }
 
 /// The largest value that lies beside the plot, if any does.
-fn peak(curves: &[Curve], [low, high]: [f64; 2]) -> Option<f64> {
+fn peak(curves: &[QuantityCurve], [low, high]: [f64; 2]) -> Option<f64> {
     let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]);
     values.filter(|value| *value < low || *value > high).max_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
@@ -193,11 +199,14 @@ fn straightened(points: &[[f64; 2]], [low, high]: [f64; 2], off: f64) -> Vec<[f6
 }
 
 /// What a plot shows of its values.
-fn span(curves: &[Curve], quantity: Quantity) -> [f64; 2] {
+fn span(curves: &[QuantityCurve], quantity: PlotQuantity) -> [f64; 2] {
     let mut values: Vec<f64> = curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]).collect();
     values.sort_by(f64::total_cmp);
     let (Some(low), Some(high)) = (values.first(), values.last()) else { return [-1.0, 1.0] };
-    let spiky = !matches!(quantity, Quantity::DistanceError | Quantity::BearingError | Quantity::Clearance);
+    let spiky = !matches!(
+        quantity,
+        PlotQuantity::DistanceError | PlotQuantity::BearingError | PlotQuantity::Clearance
+    );
     let beside = if spiky { (SPIKES * values.len() as f64) as usize } else { 0 };
     let low = values.get(beside).unwrap_or(low);
     let high = values.get(values.len() - 1 - beside).unwrap_or(high);

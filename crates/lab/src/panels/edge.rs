@@ -2,20 +2,21 @@
 
 use super::nobody;
 use crate::action::Action;
-use crate::desk::Desk;
+use crate::app_state::AppState;
 use crate::symbols;
 use crate::tidy::fixed;
 use eframe::egui::{self, DragValue, RichText, Ui, WidgetInfo};
 use vocabulary::ScalarTrajectory;
 
 /// The selected edge.
-pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let Some((edge, (_, name, follow))) = desk.chosen_edge().and_then(|e| Some((e, desk.follower(e)?)))
+pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    let Some((edge, (_, name, follow))) =
+        app_state.chosen_edge().and_then(|e| Some((e, app_state.follower(e)?)))
     else {
-        return nobody(ui, desk, "Click a follower or its edge.");
+        return nobody(ui, app_state, "Click a follower or its edge.");
     };
     ui.label(RichText::new(format!("{} → {name}", follow.leader)).strong());
-    let state = desk.shown().and_then(|record| record.edges.get(edge).copied());
+    let state = app_state.shown().and_then(|record| record.edges.get(edge).copied());
     let now = state.map_or([0.0; 2], |state| state.set_point);
     let value = |channel: &ScalarTrajectory, now: f64| match channel {
         ScalarTrajectory::Constant(value) => *value,
@@ -52,12 +53,14 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     ) {
         ui.weak("It moves in time; what you set here stays.");
     }
-    let mut mirror = desk.mirror;
+    let mut mirror = app_state.mirror;
     let tip = "The follower on the other side of the same leader moves too";
     if ui.checkbox(&mut mirror, "Mirror the other side").on_hover_text(tip).changed() {
         out.push(Action::Mirror(mirror));
     }
-    if desk.mirror && desk.set_point(edge).is_some_and(|place| desk.twin(edge, place).is_none()) {
+    if app_state.mirror
+        && app_state.set_point(edge).is_some_and(|place| app_state.twin(edge, place).is_none())
+    {
         ui.weak("Nobody stands at its mirror image.");
     }
     if let Some(state) = state {
@@ -67,7 +70,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         }
     }
     shape(ui, out);
-    ahead(ui, desk, edge);
+    ahead(ui, app_state, edge);
 }
 
 /// Scale and turn of the whole formation.
@@ -89,14 +92,16 @@ fn shape(ui: &mut Ui, out: &mut Vec<Action>) {
     });
 }
 
-/// What the forecast says of the edge.
-fn ahead(ui: &mut Ui, desk: &Desk, edge: usize) {
-    let Some(forecast) = desk.forecast.as_ref().filter(|forecast| forecast.branch == desk.branch) else {
+/// What the prediction says of the edge.
+fn ahead(ui: &mut Ui, app_state: &AppState, edge: usize) {
+    let Some(prediction) =
+        app_state.prediction.as_ref().filter(|prediction| prediction.branch == app_state.branch)
+    else {
         return;
     };
     ui.add_space(4.0);
-    let seconds = forecast.span[1] - forecast.span[0];
-    if let Some([distance, bearing]) = forecast.late_error.get(edge) {
+    let seconds = prediction.span[1] - prediction.span[0];
+    if let Some([distance, bearing]) = prediction.late_error.get(edge) {
         ui.label(format!(
             "in {} s: within {} m, {}°",
             fixed(seconds, 0),
@@ -104,8 +109,8 @@ fn ahead(ui: &mut Ui, desk: &Desk, edge: usize) {
             fixed(bearing.to_degrees(), 2)
         ));
     }
-    if let Some((time, things)) = &forecast.contact
-        && let Some(history) = &desk.history
+    if let Some((time, things)) = &prediction.contact
+        && let Some(history) = &app_state.history
     {
         let [a, b] = things.map(|thing| history.fleet().name(thing).to_owned());
         let text = format!("contact at {} s: {a} and {b}", fixed(*time, 1));

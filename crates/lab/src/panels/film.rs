@@ -1,7 +1,7 @@
 //! What is drawn, and pictures and films of it.
 
 use crate::action::Action;
-use crate::desk::Desk;
+use crate::app_state::AppState;
 use eframe::egui::{self, Slider, Ui, WidgetInfo};
 use rendering::Style;
 
@@ -20,7 +20,7 @@ const ELEMENTS: [(&str, &str); 10] = [
 ];
 
 /// Films, pictures and what they show.
-pub fn show(ui: &mut Ui, desk: &Desk, style: &Style, filming: Option<&str>, out: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, app_state: &AppState, style: &Style, filming: Option<&str>, out: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let text = if filming.is_some() { "■ End the film" } else { "● Film" };
         if ui.button(text).on_hover_text("An MP4 of what is seen, every moment of it (F)").clicked() {
@@ -40,9 +40,9 @@ pub fn show(ui: &mut Ui, desk: &Desk, style: &Style, filming: Option<&str>, out:
     if let Some(text) = filming {
         ui.label(text);
     }
-    from(ui, desk, out);
+    from(ui, app_state, out);
     ui.separator();
-    let mut ahead = desk.ahead;
+    let mut ahead = app_state.ahead;
     ui.horizontal(|ui| {
         ui.label("Look ahead");
         let response = ui.add(Slider::new(&mut ahead, 0.0..=20.0).suffix(" s").max_decimals(0));
@@ -62,21 +62,22 @@ pub fn show(ui: &mut Ui, desk: &Desk, style: &Style, filming: Option<&str>, out:
 }
 
 /// The view that films are taken from.
-fn from(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let names = desk.history.as_ref().map(|history| history.fleet().robots.iter().map(|m| m.name.clone()));
+fn from(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    let names =
+        app_state.history.as_ref().map(|history| history.fleet().robots.iter().map(|m| m.name.clone()));
     let robots: Vec<String> = names.map(Iterator::collect).unwrap_or_default();
-    let now = desk.film_from.as_deref().unwrap_or(SEEN);
+    let now = app_state.film_from.as_deref().unwrap_or(SEEN);
     ui.horizontal(|ui| {
         ui.label("Film from");
         let combo = egui::ComboBox::from_id_salt("film from").selected_text(now);
         let response = combo.show_ui(ui, |ui| {
-            if ui.selectable_label(desk.film_from.is_none(), SEEN).clicked() {
+            if ui.selectable_label(app_state.film_from.is_none(), SEEN).clicked() {
                 out.push(Action::FilmFrom(None));
             }
             let plain = ["snake", "snake-eye", "top", "orbit", "snake+top"].map(str::to_owned).into_iter();
             let bound = robots.iter().flat_map(|name| [format!("follow:{name}"), format!("camera:{name}")]);
             for view in plain.chain(bound.take(40)) {
-                if ui.selectable_label(desk.film_from.as_ref() == Some(&view), &view).clicked() {
+                if ui.selectable_label(app_state.film_from.as_ref() == Some(&view), &view).clicked() {
                     out.push(Action::FilmFrom(Some(view)));
                 }
             }

@@ -2,30 +2,30 @@
 
 use super::{colour, naming, nothing};
 use crate::action::Action;
-use crate::desk::{Choice, Desk, Tool};
+use crate::app_state::{AppState, Selection, Tool};
 use eframe::egui::{self, RichText, Role, Sense, Ui, WidgetInfo};
 use vocabulary::{FleetInfo, StepRecord};
 
 /// Robots as a tree.
-pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let Some(fleet) = desk.history.as_ref().map(|history| history.fleet().clone()) else {
+pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    let Some(fleet) = app_state.history.as_ref().map(|history| history.fleet().clone()) else {
         return nothing(ui, "No scene is open.");
     };
     ui.horizontal_wrapped(|ui| {
         if ui.button("+ Robot").on_hover_text("A robot that follows the selected one (Insert)").clicked() {
             out.push(Action::AddRobot);
         }
-        let connects = desk.tool == Tool::Connect;
+        let connects = app_state.tool == Tool::Connect;
         let tip = "Drag in the view from a robot to the one that it shall follow (C)";
         if ui.selectable_label(connects, "Connect").on_hover_text(tip).clicked() {
             out.push(Action::Take(if connects { Tool::Hand } else { Tool::Connect }));
         }
     });
-    let record = desk.shown();
+    let record = app_state.shown();
     let rows = order(&fleet);
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         for (robot, depth) in rows {
-            row(ui, desk, (&fleet, record.as_deref()), (robot, depth), out);
+            row(ui, app_state, (&fleet, record.as_deref()), (robot, depth), out);
         }
     });
 }
@@ -45,22 +45,24 @@ fn order(fleet: &FleetInfo) -> Vec<(usize, usize)> {
 
 fn row(
     ui: &mut Ui,
-    desk: &Desk,
+    app_state: &AppState,
     (fleet, record): (&FleetInfo, Option<&StepRecord>),
     (robot, depth): (usize, usize),
     out: &mut Vec<Action>,
 ) {
     let name = &fleet.robots[robot].name;
-    let chosen = desk.chosen_robot() == Some(robot);
+    let chosen = app_state.chosen_robot() == Some(robot);
     let response = ui
         .horizontal(|ui| {
             ui.add_space(14.0 * depth.min(8) as f32);
             let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), Sense::hover());
-            ui.painter().circle_filled(rect.center(), 5.0, colour(desk, robot, ui));
+            ui.painter().circle_filled(rect.center(), 5.0, colour(app_state, robot, ui));
             let text =
                 if chosen { RichText::new(name).color(egui::Color32::WHITE) } else { RichText::new(name) };
             let label = ui.add(egui::Button::selectable(chosen, text).sense(Sense::click_and_drag()));
-            if let Some(error) = desk.edge_of(robot).and_then(|edge| Some(record?.edges.get(edge)?.error)) {
+            if let Some(error) =
+                app_state.edge_of(robot).and_then(|edge| Some(record?.edges.get(edge)?.error))
+            {
                 let size = error[0].hypot(error[1]);
                 let text = format!("{} m", crate::tidy::fixed(error[0], 2));
                 let weak = RichText::new(text).small();
@@ -82,7 +84,7 @@ fn row(
         ui.painter().rect_stroke(response.rect, 3.0, stroke, egui::StrokeKind::Inside);
     }
     if response.clicked() {
-        out.push(Action::Choose(Choice::Robot(robot)));
+        out.push(Action::Choose(Selection::Robot(robot)));
     }
     if response.double_clicked() {
         out.push(Action::Follow(Some(robot)));
@@ -98,7 +100,7 @@ fn menu(ui: &mut Ui, name: &str, robot: usize, out: &mut Vec<Action>) {
         ui.close();
     }
     if ui.button("See through its camera").clicked() {
-        out.push(Action::View(format!("camera:{name}")));
+        out.push(Action::Viewpoint(format!("camera:{name}")));
         ui.close();
     }
     if ui.button("Remove").clicked() {

@@ -1,9 +1,9 @@
 //! Law, gains and observer.
 
-use super::controls::{Range, Row};
+use super::controls::{Range, SliderRow};
 use super::{chosen, nobody, nothing, tune};
 use crate::action::Action;
-use crate::desk::Desk;
+use crate::app_state::AppState;
 use crate::symbols;
 use eframe::egui::{ComboBox, Ui};
 use scene::{Law, Observer, SwitchingKind, VehicleKind};
@@ -15,26 +15,40 @@ const LAWS: [(LawKind, &str, &str, &str); 3] = [
     (LawKind::OutputFeedback, "Output feedback", "output-feedback", "Knows ℓ and ψ only (eq 42)."),
 ];
 
-const GAIN: Row = Row { symbol: symbols::GAIN, key: "law.k", range: Range::factors(0.1, 20.0), decimals: 3 };
-const ROBUST: Row =
-    Row { symbol: symbols::ROBUST, key: "law.beta", range: Range::linear(0.0, 20.0), decimals: 3 };
-const SLOPE: Row =
-    Row { symbol: symbols::SLOPE, key: "law.slope", range: Range::factors(1.0, 200.0), decimals: 2 };
-const EPSILON: Row =
-    Row { symbol: symbols::EPSILON, key: "observer.epsilon", range: Range::factors(1e-4, 1.0), decimals: 5 };
-const ALPHA_ONE: Row =
-    Row { symbol: symbols::ALPHA_ONE, key: "observer.alpha1", range: Range::factors(0.1, 10.0), decimals: 3 };
-const ALPHA_TWO: Row =
-    Row { symbol: symbols::ALPHA_TWO, key: "observer.alpha2", range: Range::factors(0.1, 10.0), decimals: 3 };
+const GAIN: SliderRow =
+    SliderRow { symbol: symbols::GAIN, key: "law.k", range: Range::factors(0.1, 20.0), decimals: 3 };
+const ROBUST: SliderRow =
+    SliderRow { symbol: symbols::ROBUST, key: "law.beta", range: Range::linear(0.0, 20.0), decimals: 3 };
+const SLOPE: SliderRow =
+    SliderRow { symbol: symbols::SLOPE, key: "law.slope", range: Range::factors(1.0, 200.0), decimals: 2 };
+const EPSILON: SliderRow = SliderRow {
+    symbol: symbols::EPSILON,
+    key: "observer.epsilon",
+    range: Range::factors(1e-4, 1.0),
+    decimals: 5,
+};
+const ALPHA_ONE: SliderRow = SliderRow {
+    symbol: symbols::ALPHA_ONE,
+    key: "observer.alpha1",
+    range: Range::factors(0.1, 10.0),
+    decimals: 3,
+};
+const ALPHA_TWO: SliderRow = SliderRow {
+    symbol: symbols::ALPHA_TWO,
+    key: "observer.alpha2",
+    range: Range::factors(0.1, 10.0),
+    decimals: 3,
+};
 
 /// The law of the follower that is selected.
-pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let Some((robot, name, follow)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge))
+pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    let Some((robot, name, follow)) =
+        app_state.chosen_edge().or(Some(0)).and_then(|edge| app_state.follower(edge))
     else {
-        return nobody(ui, desk, "Nobody follows: there is no law to tune.");
+        return nobody(ui, app_state, "Nobody follows: there is no law to tune.");
     };
-    scope(ui, desk, name, out);
-    let kind = vehicle(desk, robot);
+    scope(ui, app_state, name, out);
+    let kind = vehicle(app_state, robot);
     let (law, default) = (&follow.law, Law::fitting(kind));
     law_kind(ui, law, out);
     let apart = ui.data(|data| data.get_temp(apart_id()).unwrap_or(false));
@@ -53,17 +67,18 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
 }
 
 /// The observer of the follower that is selected.
-pub fn observer(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let Some((robot, name, follow)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge))
+pub fn observer(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    let Some((robot, name, follow)) =
+        app_state.chosen_edge().or(Some(0)).and_then(|edge| app_state.follower(edge))
     else {
-        return nobody(ui, desk, "Nobody follows: there is nothing to observe.");
+        return nobody(ui, app_state, "Nobody follows: there is nothing to observe.");
     };
     let looks = follow.sensing.kind != scene::SensingKind::Truth;
     if follow.law.kind != LawKind::OutputFeedback && !looks {
         return nothing(ui, "This law is told the rates. Output feedback observes them.");
     }
-    scope(ui, desk, name, out);
-    let (observer, default) = (&follow.observer, Observer::fitting(vehicle(desk, robot)));
+    scope(ui, app_state, name, out);
+    let (observer, default) = (&follow.observer, Observer::fitting(vehicle(app_state, robot)));
     if looks {
         let mut adaptive = observer.adaptive;
         if ui.checkbox(&mut adaptive, "ε follows from the noise of each look").changed() {
@@ -120,12 +135,12 @@ fn short(value: f64) -> String {
 }
 
 /// Whether changes are for all followers or for one.
-pub(crate) fn scope(ui: &mut Ui, desk: &Desk, name: &str, out: &mut Vec<Action>) {
+pub(crate) fn scope(ui: &mut Ui, app_state: &AppState, name: &str, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
-        if ui.selectable_label(desk.for_all, "All followers").clicked() {
+        if ui.selectable_label(app_state.for_all, "All followers").clicked() {
             out.push(Action::ForAll(true));
         }
-        if ui.selectable_label(!desk.for_all, format!("Only {name}")).clicked() {
+        if ui.selectable_label(!app_state.for_all, format!("Only {name}")).clicked() {
             out.push(Action::ForAll(false));
         }
     });
@@ -161,8 +176,9 @@ fn switching(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
     });
 }
 
-pub(crate) fn vehicle(desk: &Desk, robot: usize) -> VehicleKind {
-    desk.scene_now()
+pub(crate) fn vehicle(app_state: &AppState, robot: usize) -> VehicleKind {
+    app_state
+        .scene_now()
         .and_then(|scene| scene.robots.get(robot))
         .map_or(VehicleKind::Unicycle, |r| r.vehicle.kind)
 }

@@ -1,17 +1,17 @@
 //! What happened, newest last.
 
 use crate::action::Action;
-use crate::desk::Desk;
+use crate::app_state::AppState;
 use crate::tidy::fixed;
 use eframe::egui::{self, RichText, Ui};
 
 /// The log of events.
-pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    if desk.log.is_empty() {
+pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    if app_state.log.is_empty() {
         return super::nothing(ui, "Changes, branches and faults appear here.");
     }
     egui::ScrollArea::vertical().auto_shrink([false, false]).stick_to_bottom(true).show(ui, |ui| {
-        for event in &desk.log {
+        for event in &app_state.log {
             ui.horizontal_wrapped(|ui| {
                 let time = RichText::new(format!("{} s", fixed(event.time, 2))).monospace().weak();
                 if ui.link(time).on_hover_text("Look at this time").clicked() {

@@ -1,4 +1,4 @@
-//! Panels: each shows part of the desk and tells what a person asks for. None of them changes anything by itself.
+//! Panels: each shows part of the state and tells what a person asks for. None of them changes anything by itself.
 
 pub mod branches;
 pub mod certificates;
@@ -15,7 +15,7 @@ pub mod time_bar;
 pub mod world;
 
 use crate::action::Action;
-use crate::desk::Desk;
+use crate::app_state::AppState;
 use crate::tidy::tidy;
 use eframe::egui::{self, Color32, Popup, PopupCloseBehavior, Response, TextEdit, Ui};
 
@@ -65,13 +65,13 @@ pub(crate) fn take_focus(field: &Response, ui: &Ui) {
 }
 
 /// Says that there is nothing to show: no scene, or because of this.
-pub(crate) fn nobody(ui: &mut Ui, desk: &Desk, why: &str) {
-    nothing(ui, if desk.scene().is_none() { "No scene is open." } else { why });
+pub(crate) fn nobody(ui: &mut Ui, app_state: &AppState, why: &str) {
+    nothing(ui, if app_state.scene().is_none() { "No scene is open." } else { why });
 }
 
 /// The colour of a robot on light and dark ground.
-pub(crate) fn colour(desk: &Desk, robot: usize, ui: &Ui) -> Color32 {
-    let Some(history) = &desk.history else { return Color32::GRAY };
+pub(crate) fn colour(app_state: &AppState, robot: usize, ui: &Ui) -> Color32 {
+    let Some(history) = &app_state.history else { return Color32::GRAY };
     let colours = rendering::robot_colours(history.fleet());
     let leads = history.fleet().robots.get(robot).is_some_and(|member| member.leads);
     if leads && ui.visuals().dark_mode {

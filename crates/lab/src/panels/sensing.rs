@@ -1,10 +1,10 @@
 //! How followers sense their leaders.
 
-use super::controls::{Range, Row};
+use super::controls::{Range, SliderRow};
 use super::law::scope;
 use super::{chosen, nobody, tune};
 use crate::action::Action;
-use crate::desk::Desk;
+use crate::app_state::AppState;
 use crate::symbols;
 use eframe::egui::{ComboBox, Ui};
 use scene::{Sensing, SensingKind};
@@ -17,19 +17,23 @@ const KINDS: [(SensingKind, &str, &str, &str); 4] = [
     (SensingKind::Camera, "Camera", "camera", "Each follower's own pictures, drawn, searched for tags."),
 ];
 
-const RATE: Row =
-    Row { symbol: symbols::RATE, key: "sensing.rate", range: Range::factors(1.0, 100.0), decimals: 1 };
-const LATENCY: Row =
-    Row { symbol: symbols::LATENCY, key: "sensing.latency", range: Range::linear(0.0, 0.3), decimals: 3 };
-const DROPS: Row =
-    Row { symbol: symbols::DROPS, key: "sensing.drop", range: Range::linear(0.0, 0.9), decimals: 2 };
-const DISTANCE_NOISE: Row = Row {
+const RATE: SliderRow =
+    SliderRow { symbol: symbols::RATE, key: "sensing.rate", range: Range::factors(1.0, 100.0), decimals: 1 };
+const LATENCY: SliderRow = SliderRow {
+    symbol: symbols::LATENCY,
+    key: "sensing.latency",
+    range: Range::linear(0.0, 0.3),
+    decimals: 3,
+};
+const DROPS: SliderRow =
+    SliderRow { symbol: symbols::DROPS, key: "sensing.drop", range: Range::linear(0.0, 0.9), decimals: 2 };
+const DISTANCE_NOISE: SliderRow = SliderRow {
     symbol: symbols::DISTANCE_NOISE,
     key: "sensing.distance_noise",
     range: Range::linear(0.0, 0.1),
     decimals: 4,
 };
-const PIXEL_NOISE: Row = Row {
+const PIXEL_NOISE: SliderRow = SliderRow {
     symbol: symbols::PIXEL_NOISE,
     key: "sensing.pixel_noise",
     range: Range::linear(0.0, 2.0),
@@ -37,13 +41,13 @@ const PIXEL_NOISE: Row = Row {
 };
 
 /// Sensing of the follower that is selected.
-pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let Some((edge, (_, name, follow))) =
-        desk.chosen_edge().or(Some(0)).and_then(|edge| Some((edge, desk.follower(edge)?)))
+        app_state.chosen_edge().or(Some(0)).and_then(|edge| Some((edge, app_state.follower(edge)?)))
     else {
-        return nobody(ui, desk, "Nobody follows: nobody has to see.");
+        return nobody(ui, app_state, "Nobody follows: nobody has to see.");
     };
-    scope(ui, desk, name, out);
+    scope(ui, app_state, name, out);
     let (sensing, default) = (&follow.sensing, Sensing::default());
     kind(ui, sensing, out);
     if sensing.kind == SensingKind::Truth {
@@ -57,7 +61,7 @@ pub fn show(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
         SensingKind::Geometric => PIXEL_NOISE.one(ui, sensing.pixel_noise, default.pixel_noise, out),
         SensingKind::Truth | SensingKind::Camera => {}
     }
-    if let Some(state) = desk.record().and_then(|record| record.edges.get(edge).copied()) {
+    if let Some(state) = app_state.record().and_then(|record| record.edges.get(edge).copied()) {
         let word = match state.sight {
             TrackingState::Truth => "is told the truth",
             TrackingState::Waiting => "has not seen its leader yet",

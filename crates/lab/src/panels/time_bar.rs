@@ -2,7 +2,7 @@
 
 use super::icons::{Icon, button};
 use crate::action::Action;
-use crate::desk::Desk;
+use crate::app_state::AppState;
 use crate::tidy::fixed;
 use eframe::egui::containers::menu::{MenuConfig, SubMenuButton};
 use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInfo};
@@ -11,32 +11,35 @@ use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInf
 const MOST_ROWS: usize = 5;
 
 /// The bar at the top.
-pub fn show(ui: &mut Ui, desk: &Desk, filming: bool, out: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, app_state: &AppState, filming: bool, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
-        buttons(ui, desk, out);
+        buttons(ui, app_state, out);
         if ui.available_width() > 420.0 {
             ui.separator();
-            pace(ui, desk, out);
+            pace(ui, app_state, out);
             ui.separator();
         }
-        let text = format!("t = {} s", fixed(desk.time(), 2));
+        let text = format!("t = {} s", fixed(app_state.time(), 2));
         ui.add_sized([92.0, 20.0], egui::Label::new(RichText::new(text).monospace()))
             .on_hover_text("Simulated time that is seen");
         let tail = 214.0;
         // Where there is little room, the line of time comes first.
         let narrow = ui.available_width() < tail + 60.0;
         let wide = ui.available_width() - if narrow { 40.0 } else { tail };
-        line(ui, desk, wide.max(30.0), out);
+        line(ui, app_state, wide.max(30.0), out);
         if !narrow {
             buttons_of_work(ui, filming, out);
         }
-        menu(ui, desk, out);
+        menu(ui, app_state, out);
     });
 }
 
-fn buttons(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let (icon, name) =
-        if desk.playing && desk.history.is_some() { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
+fn buttons(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    let (icon, name) = if app_state.playing && app_state.history.is_some() {
+        (Icon::Pause, "Pause")
+    } else {
+        (Icon::Play, "Play")
+    };
     if button(ui, icon, "", name, None).on_hover_text(format!("{name} (Space)")).clicked() {
         out.push(Action::Toggle);
     }
@@ -49,8 +52,8 @@ fn buttons(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
     }
 }
 
-fn pace(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let mut pace = desk.pace;
+fn pace(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    let mut pace = app_state.pace;
     ui.spacing_mut().slider_width = 84.0;
     let slider = Slider::new(&mut pace, 0.1..=50.0)
         .logarithmic(true)
@@ -72,22 +75,22 @@ fn pace(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
 }
 
 /// The line of time. Every branch is a row of it; dragging looks at the past.
-fn line(ui: &mut Ui, desk: &Desk, wide: f32, out: &mut Vec<Action>) {
-    let rows = desk.branches.len().clamp(1, MOST_ROWS);
+fn line(ui: &mut Ui, app_state: &AppState, wide: f32, out: &mut Vec<Action>) {
+    let rows = app_state.branches.len().clamp(1, MOST_ROWS);
     let (rect, response) = ui.allocate_exact_size(egui::vec2(wide, 26.0), Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::slider(true, desk.time(), "Time line"));
-    let span = span(desk);
+    response.widget_info(|| WidgetInfo::slider(true, app_state.time(), "Time line"));
+    let span = span(app_state);
     let x_of = |time: f64| rect.left() + (time / span) as f32 * rect.width();
     let painter = ui.painter_at(rect.expand(1.0));
     let visuals = ui.visuals();
     painter.rect_filled(rect, 4.0, visuals.extreme_bg_color);
-    let first = desk.branches.len().saturating_sub(rows);
+    let first = app_state.branches.len().saturating_sub(rows);
     let high = (rect.height() - 6.0) / rows as f32;
-    for (row, (index, branch)) in desk.branches.iter().enumerate().skip(first).enumerate() {
+    for (row, (index, branch)) in app_state.branches.iter().enumerate().skip(first).enumerate() {
         let y = rect.top() + 3.0 + (row as f32 + 0.5) * high;
         let from = branch.parent.map_or(0.0, |(_, time)| time);
-        let end = desk.history.as_ref().map_or(0.0, |history| history.end(index));
-        let colour = branch_colour(index, desk.branch, visuals);
+        let end = app_state.history.as_ref().map_or(0.0, |history| history.end(index));
+        let colour = branch_colour(index, app_state.branch, visuals);
         let half = (0.36 * high).clamp(1.0, 5.0);
         let bar =
             egui::Rect::from_x_y_ranges(x_of(from)..=x_of(end).max(x_of(from) + 1.0), y - half..=y + half);
@@ -100,7 +103,7 @@ fn line(ui: &mut Ui, desk: &Desk, wide: f32, out: &mut Vec<Action>) {
             );
         }
     }
-    let x = x_of(desk.time());
+    let x = x_of(app_state.time());
     painter.line_segment(
         [egui::pos2(x, rect.top()), egui::pos2(x, rect.bottom())],
         Stroke::new(2.0, visuals.strong_text_color()),
@@ -117,10 +120,10 @@ fn line(ui: &mut Ui, desk: &Desk, wide: f32, out: &mut Vec<Action>) {
 }
 
 /// Seconds on the line: at least the scene's, and some more than there is.
-fn span(desk: &Desk) -> f64 {
-    let ends = (0..desk.branches.len()).filter_map(|k| Some(desk.history.as_ref()?.end(k)));
+fn span(app_state: &AppState) -> f64 {
+    let ends = (0..app_state.branches.len()).filter_map(|k| Some(app_state.history.as_ref()?.end(k)));
     let end = ends.fold(0.0, f64::max);
-    let planned = desk.scene().map_or(1.0, |scene| scene.time.duration);
+    let planned = app_state.scene().map_or(1.0, |scene| scene.time.duration);
     if end <= planned { planned } else { end * 1.02 }.max(1e-3)
 }
 
@@ -148,12 +151,12 @@ fn buttons_of_work(ui: &mut Ui, filming: bool, out: &mut Vec<Action>) {
 }
 
 /// Everything else.
-fn menu(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
+fn menu(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let more = button(ui, Icon::More, "", "More", None);
     // Items close the menu themselves; a click into its field does not.
     let stays = egui::PopupCloseBehavior::CloseOnClickOutside;
     egui::Popup::menu(&more).close_behavior(stays).show(|ui| {
-        let unsaved = desk.draft.as_ref().is_some_and(crate::session::draft::Draft::unsaved);
+        let unsaved = app_state.draft.as_ref().is_some_and(crate::session::scene_draft::SceneDraft::unsaved);
         for (text, action, on) in [
             ("Scenes   Ctrl O", Action::Gallery, true),
             ("Film   F", Action::Film, true),
@@ -162,10 +165,10 @@ fn menu(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
             (
                 "Reload from disk   Ctrl R",
                 Action::Reload,
-                desk.draft.as_ref().is_some_and(|d| d.path.is_some()),
+                app_state.draft.as_ref().is_some_and(|d| d.path.is_some()),
             ),
-            ("Undo   Ctrl Z", Action::Undo, desk.undoes().is_some()),
-            ("Redo   Ctrl Y", Action::Redo, desk.draft.as_ref().is_some_and(|d| d.redoes().is_some())),
+            ("Undo   Ctrl Z", Action::Undo, app_state.undoes().is_some()),
+            ("Redo   Ctrl Y", Action::Redo, app_state.draft.as_ref().is_some_and(|d| d.redoes().is_some())),
             ("Keep the run   K", Action::KeepRun, true),
             ("Curves as CSV", Action::CurvesCsv, true),
             ("Curves as SVG", Action::CurvesSvg, true),

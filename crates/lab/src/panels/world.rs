@@ -1,34 +1,34 @@
 //! Limits of the vehicles, obstacles, and light.
 
-use super::controls::{Range, Row};
+use super::controls::{Range, SliderRow};
 use super::law::scope;
 use super::{nobody, nothing};
 use crate::action::Action;
-use crate::desk::{Desk, Tool};
+use crate::app_state::{AppState, Tool};
 use crate::symbols;
 use crate::tidy::tidy;
 use eframe::egui::{self, Slider, Ui, WidgetInfo};
 use scene::Vehicle;
 
-const SPEED_MIN: Row = Row {
+const SPEED_MIN: SliderRow = SliderRow {
     symbol: symbols::SPEED_MIN,
     key: "vehicle.speed_min",
     range: Range { span: [0.01, 1.0], hard: [0.001, 100.0], logarithmic: true },
     decimals: 3,
 };
-const SPEED_MAX: Row = Row {
+const SPEED_MAX: SliderRow = SliderRow {
     symbol: symbols::SPEED_MAX,
     key: "vehicle.speed_max",
     range: Range::factors(0.5, 20.0),
     decimals: 2,
 };
-const TURN_MAX: Row = Row {
+const TURN_MAX: SliderRow = SliderRow {
     symbol: symbols::TURN_MAX,
     key: "vehicle.turn_rate_max",
     range: Range::factors(0.2, 20.0),
     decimals: 2,
 };
-const ACCELERATION_MAX: Row = Row {
+const ACCELERATION_MAX: SliderRow = SliderRow {
     symbol: symbols::ACCELERATION_MAX,
     key: "vehicle.acceleration_max",
     range: Range::factors(0.2, 50.0),
@@ -36,14 +36,17 @@ const ACCELERATION_MAX: Row = Row {
 };
 
 /// Limits of the follower that is selected.
-pub fn limits(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let Some((robot, name, _)) = desk.chosen_edge().or(Some(0)).and_then(|edge| desk.follower(edge)) else {
-        return nobody(ui, desk, "Nobody follows.");
+pub fn limits(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    let Some((robot, name, _)) =
+        app_state.chosen_edge().or(Some(0)).and_then(|edge| app_state.follower(edge))
+    else {
+        return nobody(ui, app_state, "Nobody follows.");
     };
-    let Some(vehicle) = desk.scene_now().and_then(|scene| scene.robots.get(robot)).map(|r| r.vehicle) else {
+    let Some(vehicle) = app_state.scene_now().and_then(|scene| scene.robots.get(robot)).map(|r| r.vehicle)
+    else {
         return;
     };
-    scope(ui, desk, name, out);
+    scope(ui, app_state, name, out);
     let default = Vehicle::ready_made(vehicle.kind);
     SPEED_MIN.one(ui, vehicle.speed_min, default.speed_min, out);
     SPEED_MAX.one(ui, vehicle.speed_max, default.speed_max, out);
@@ -63,10 +66,10 @@ pub fn limits(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
 }
 
 /// Obstacles and light.
-pub fn surroundings(ui: &mut Ui, desk: &Desk, out: &mut Vec<Action>) {
-    let Some(scene) = desk.scene() else { return nothing(ui, "No scene is open.") };
+pub fn surroundings(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    let Some(scene) = app_state.scene() else { return nothing(ui, "No scene is open.") };
     ui.horizontal(|ui| {
-        let pillar = desk.tool == Tool::Pillar;
+        let pillar = app_state.tool == Tool::Pillar;
         let tip = "Click on the ground to place a pillar (O)";
         if ui.selectable_label(pillar, "+ Pillar").on_hover_text(tip).clicked() {
             out.push(Action::Take(if pillar { Tool::Hand } else { Tool::Pillar }));

@@ -4,6 +4,7 @@
 //! every second or so, is kept as a saved simulation; going back starts from the one before and runs on to the sample
 //! asked for, which is the same run bit for bit.
 
+use super::checked_scene::{CheckedScene, build};
 use metrics::Digest;
 use scene::{Scene, SceneText};
 use simulation::{BuildError, Setup, Simulation};
@@ -32,16 +33,16 @@ pub struct Branch {
     /// Branch and control sample at which it leaves its parent.
     pub parent: Option<(usize, u64)>,
     /// What was changed, from time 0 on, in the order of the samples.
-    pub changes: Vec<Change>,
+    pub changes: Vec<BranchChange>,
     simulation: Simulation,
     digest: Digest,
-    marks: Vec<Rc<Mark>>,
+    marks: Vec<Rc<SavedState>>,
     mark_every: u64,
 }
 
 /// Parameters that hold from a control sample on.
 #[derive(Debug, Clone)]
-pub struct Change {
+pub struct BranchChange {
     /// The first sample that is decided with them.
     pub sample: u64,
     /// s.
@@ -53,7 +54,7 @@ pub struct Change {
 }
 
 /// A branch as it stood before a sample.
-struct Mark {
+struct SavedState {
     simulation: Simulation,
     digest: Digest,
 }
@@ -64,11 +65,11 @@ impl Branches {
     /// # Errors
     /// [`BuildError`] for a scene that cannot run.
     pub fn open(scene: Arc<Scene>, ready: impl FnOnce(&mut Simulation)) -> Result<Self, BuildError> {
-        let mut simulation = Simulation::new(simulation::build(&scene)?);
+        let mut simulation = Simulation::new(build(&scene)?);
         // A laboratory runs on for as long as somebody looks.
         simulation.extend_to(FOR_EVER);
         ready(&mut simulation);
-        let mark = Rc::new(Mark { simulation: simulation.save(), digest: Digest::default() });
+        let mark = Rc::new(SavedState { simulation: simulation.save(), digest: Digest::default() });
         let mark_every = (MARK_EVERY / simulation.period()).ceil().max(1.0) as u64;
         let trunk = Branch {
             name: "main".to_owned(),
@@ -97,10 +98,10 @@ impl Branches {
     ///
     /// # Errors
     /// What of the scene cannot change while a run goes, in words.
-    pub fn change(&mut self, branch: usize, scene: Arc<Scene>) -> Result<Option<Change>, String> {
+    pub fn change(&mut self, branch: usize, checked: &CheckedScene) -> Result<Option<BranchChange>, String> {
         let base = Arc::clone(&self.scene);
         match self.list.get_mut(branch) {
-            Some(branch) => branch.change(&base, scene),
+            Some(branch) => branch.change(&base, checked),
             None => Ok(None),
         }
     }
@@ -124,7 +125,7 @@ impl Branch {
     }
 
     fn mark(&mut self) {
-        let mark = Mark { simulation: self.simulation.save(), digest: self.digest.clone() };
+        let mark = SavedState { simulation: self.simulation.save(), digest: self.digest.clone() };
         self.marks.push(Rc::new(mark));
         if self.marks.len() > MOST_MARKS {
             self.mark_every *= 2;
@@ -134,24 +135,24 @@ impl Branch {
     }
 
     /// Takes the parameters of `scene`; what of them is new. Changes before the same sample become one.
-    fn change(&mut self, base: &Scene, scene: Arc<Scene>) -> Result<Option<Change>, String> {
+    fn change(&mut self, base: &Arc<Scene>, checked: &CheckedScene) -> Result<Option<BranchChange>, String> {
         let sample = self.simulation.sample();
-        let setup = simulation::build(&scene).map_err(|error| error.to_string())?;
         let earlier = self.changes.partition_point(|change| change.sample < sample);
         let again = earlier < self.changes.len();
         let before = self.changes[..earlier].last().map_or(base, |last| &last.scene);
-        let set = before.sets_to(&scene).map_err(|standing| standing.join("\n"))?;
-        let change = Change { sample, time: sample as f64 * self.simulation.period(), scene, set };
-        let mut changes = self.changes[..earlier].to_vec();
-        if !change.set.is_empty() {
-            changes.push(change.clone());
-        }
+        let set = checked.set_from(before).map_err(|standing| standing.join("\n"))?;
+        let scene = Arc::clone(checked.scene());
+        let change = BranchChange { sample, time: sample as f64 * self.simulation.period(), scene, set };
+        let new = (!change.set.is_empty()).then(|| change.clone());
         if base.changes.is_empty() {
-            self.simulation.apply_parameters(&setup);
+            self.simulation.apply_parameters(checked.setup());
         } else {
+            let changes: Vec<BranchChange> =
+                self.changes[..earlier].iter().cloned().chain(new.clone()).collect();
             self.simulation.reschedule(&planned(base, &changes)?);
         }
-        self.changes = changes;
+        self.changes.truncate(earlier);
+        self.changes.extend(new);
         Ok((again || !change.set.is_empty()).then_some(change))
     }
 
@@ -171,7 +172,7 @@ impl Branch {
         while simulation.sample() < until {
             let sample = simulation.sample();
             let due = changes.iter().filter(|change| change.sample == sample && base.changes.is_empty());
-            for setup in due.filter_map(|change| simulation::build(&change.scene).ok()) {
+            for setup in due.filter_map(|change| build(&change.scene).ok()) {
                 simulation.apply_parameters(&setup);
             }
             let Some(record) = simulation.next_record() else { break };
@@ -197,12 +198,12 @@ impl Branch {
 }
 
 /// The run of a scene that has changes of its own, with those of a branch among them: whichever is later holds.
-fn planned(base: &Scene, changes: &[Change]) -> Result<Setup, String> {
+fn planned(base: &Scene, changes: &[BranchChange]) -> Result<Setup, String> {
     let last = changes.last().map_or(0.0, |change| change.time);
     let text =
         script(&base.to_toml(), &base.changes, changes, base.time.duration.max(last + base.time.period))?;
     let scene = Scene::parse(&text, "", &[]).map_err(|faults| faults.to_string())?.scene;
-    simulation::build(&scene).map_err(|error| error.to_string())
+    build(&scene).map_err(|error| error.to_string())
 }
 
 /// The text of a scene that runs as a branch ran: `base`, which has changes `own`, with the branch's changes, for
@@ -213,7 +214,7 @@ fn planned(base: &Scene, changes: &[Change]) -> Result<Setup, String> {
 pub fn script(
     base: &str,
     own: &[scene::Change],
-    changes: &[Change],
+    changes: &[BranchChange],
     duration: f64,
 ) -> Result<String, String> {
     let mut text = SceneText::parse(base).map_err(|error| error.to_string())?;

@@ -1,13 +1,13 @@
-//! Everything simulated so far, branch by branch, so that it can be looked at again: moments, trails, and curves.
+//! Everything simulated so far, branch by branch, so that it can be looked at again: records, trails, and curves.
 
 use metrics::clearance::Clearance;
 use rendering::Trail;
 use std::sync::Arc;
 use vocabulary::{FleetInfo, StepRecord};
 
-/// Memory that the moments of a branch may take, bytes.
+/// Memory that the records of a branch may take, bytes.
 const MOST_BYTES: usize = 96 << 20;
-/// Moments of a branch, at most and at least, whatever their size.
+/// Records of a branch, at most and at least, whatever their size.
 const MOST_MOMENTS: usize = 20_000;
 const LEAST_MOMENTS: usize = 600;
 /// Between two trails that are kept, s; doubles when there are too many.
@@ -18,7 +18,7 @@ const MOST_TRAILS: usize = 40;
 pub struct History {
     fleet: Arc<FleetInfo>,
     period: f64,
-    past: Vec<Past>,
+    past: Vec<BranchHistory>,
     /// Measures room, before it has seen anything.
     clearance: Option<Clearance>,
     /// The trail that was asked for last, for the next question is near it.
@@ -27,7 +27,7 @@ pub struct History {
 
 /// The past of a branch, that of its parent before it left included.
 #[derive(Clone)]
-struct Past {
+struct BranchHistory {
     records: Vec<Arc<StepRecord>>,
     /// Only every so many samples are kept.
     stride: u64,
@@ -49,7 +49,7 @@ const MOST_ROOMS: usize = 20_000;
 impl History {
     /// Of a run of `fleet` with a control period in s.
     pub fn new(fleet: Arc<FleetInfo>, period: f64) -> Self {
-        let past = Past {
+        let past = BranchHistory {
             records: Vec::new(),
             stride: 1,
             head: None,
@@ -88,7 +88,7 @@ impl History {
         self.past.len()
     }
 
-    /// Takes in the next moment of a branch.
+    /// Takes in the next record of a branch.
     pub fn push(&mut self, branch: usize, record: StepRecord) {
         let sample = self.sample(record.snapshot.time);
         let most = self.most_moments();
@@ -108,7 +108,7 @@ impl History {
     pub fn fork(&mut self, from: usize, sample: u64) {
         let until = (sample as f64 - 0.5) * self.period;
         let Some(parent) = self.past.get(from) else { return };
-        let mut past = Past {
+        let mut past = BranchHistory {
             records: parent.records.iter().filter(|m| m.snapshot.time < until).cloned().collect(),
             stride: parent.stride,
             head: None,
@@ -127,17 +127,17 @@ impl History {
         (time / self.period).round().max(0.0) as u64
     }
 
-    /// The last moment of a branch.
+    /// The last record of a branch.
     pub fn head(&self, branch: usize) -> Option<&Arc<StepRecord>> {
         self.past.get(branch)?.head.as_ref()
     }
 
-    /// Time of the last moment of a branch, s.
+    /// Time of the last record of a branch, s.
     pub fn end(&self, branch: usize) -> f64 {
         self.head(branch).map_or(0.0, |record| record.snapshot.time)
     }
 
-    /// The moment of a branch at a time; between two that are kept, in between.
+    /// The record of a branch at a time; between two that are kept, in between.
     pub fn at(&self, branch: usize, time: f64) -> Option<Arc<StepRecord>> {
         let past = self.past.get(branch)?;
         let head = past.head.as_ref()?;
@@ -182,7 +182,7 @@ impl History {
         self.shown.as_ref().filter(|(of, _)| *of == branch).map(|(_, trail)| trail)
     }
 
-    /// Moments of a branch after one time and up to another, s.
+    /// Records of a branch after one time and up to another, s.
     pub fn since(&self, branch: usize, [after, until]: [f64; 2]) -> Vec<Arc<StepRecord>> {
         let Some(past) = self.past.get(branch) else { return Vec::new() };
         let first = past.records.partition_point(|m| m.snapshot.time <= after + 1e-9);
@@ -190,7 +190,7 @@ impl History {
         some.cloned().collect()
     }
 
-    /// At most `most` moments of a branch between two times, s, evenly over all of it.
+    /// At most `most` records of a branch between two times, s, evenly over all of it.
     pub fn between(&self, branch: usize, [from, to]: [f64; 2], most: usize) -> Vec<&StepRecord> {
         let Some(past) = self.past.get(branch) else { return Vec::new() };
         let first = past.records.partition_point(|m| m.snapshot.time < from).saturating_sub(1);
@@ -220,7 +220,7 @@ impl History {
     }
 }
 
-impl Past {
+impl BranchHistory {
     fn is_head(&self, time: f64) -> bool {
         self.head.as_ref().is_none_or(|head| time >= head.snapshot.time - 1e-9)
     }
@@ -275,7 +275,7 @@ impl Past {
         self.grow(start.cloned().unwrap_or_else(|| Trail::new(fleet)), time)
     }
 
-    /// A trail with the moments after it, up to a time.
+    /// A trail with the records after it, up to a time.
     fn grow(&self, mut trail: Trail, time: f64) -> Trail {
         let last = trail.time().unwrap_or(f64::NEG_INFINITY);
         let from = self.records.partition_point(|m| m.snapshot.time <= last);

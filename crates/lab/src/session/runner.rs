@@ -1,8 +1,10 @@
-//! The thread on which the run goes. Orders come in, news go out; neither side waits for the other.
+//! The thread on which the run goes. Requests come in, events go out; neither side waits for the other.
 
 use super::branches::Branches;
-use super::forecast::Crystal;
-pub use super::orders::{News, Order};
+use super::checked_scene::CheckedScene;
+use super::prediction::Predictor;
+pub use super::run_event::RunEvent;
+pub use super::run_request::RunRequest;
 use metrics::Digest;
 use recording::log::Log;
 use rendering::{Gpu, GpuCameraRenderer};
@@ -17,8 +19,8 @@ use vocabulary::{FleetInfo, StepRecord};
 
 /// The thread and its channels.
 pub struct Runner {
-    orders: Option<Sender<Order>>,
-    news: Receiver<News>,
+    requests: Option<Sender<RunRequest>>,
+    run_event: Receiver<RunEvent>,
     unread: Arc<AtomicUsize>,
     thread: Option<JoinHandle<()>>,
 }
@@ -35,14 +37,14 @@ const LOOK_EVERY: Duration = Duration::from_millis(300);
 const BEAT: Duration = Duration::from_millis(12);
 
 impl Runner {
-    /// Starts the thread; `wake` is called whenever there is news.
-    pub fn start(crystal: Crystal, wake: impl Fn() + Send + 'static) -> Self {
-        let (orders, inbox) = channel();
-        let (outbox, news) = channel();
+    /// Starts the thread; `wake` is called for every event.
+    pub fn start(predictor: Predictor, wake: impl Fn() + Send + 'static) -> Self {
+        let (requests, inbox) = channel();
+        let (outbox, run_event) = channel();
         let unread = Arc::new(AtomicUsize::new(0));
         let count = Arc::clone(&unread);
         let work = move || {
-            let mut work = Work {
+            let mut work = RunWorker {
                 inbox,
                 outbox,
                 unread: count,
@@ -53,35 +55,35 @@ impl Runner {
                 playing: false,
                 pace: 1.0,
                 owed: 0.0,
-                crystal,
+                predictor,
                 ahead: 0.0,
                 looked: None,
             };
             work.work();
         };
         let thread = std::thread::Builder::new().name("run".to_owned()).spawn(work).ok();
-        Self { orders: Some(orders), news, unread, thread }
+        Self { requests: Some(requests), run_event, unread, thread }
     }
 
     /// Asks for something.
-    pub fn order(&self, order: Order) {
-        if let Some(orders) = &self.orders {
+    pub fn request(&self, request: RunRequest) {
+        if let Some(requests) = &self.requests {
             // The thread ends only with the window.
-            let _ = orders.send(order);
+            let _ = requests.send(request);
         }
     }
 
-    /// The next piece of news, if there is one.
-    pub fn news(&self) -> Option<News> {
-        let news = self.news.try_recv().ok()?;
+    /// The next event, if there is one.
+    pub fn next_event(&self) -> Option<RunEvent> {
+        let run_event = self.run_event.try_recv().ok()?;
         self.unread.fetch_sub(1, Relaxed);
-        Some(news)
+        Some(run_event)
     }
 }
 
 impl Drop for Runner {
     fn drop(&mut self) {
-        self.orders = None;
+        self.requests = None;
         if let Some(thread) = self.thread.take() {
             // A panic over there has been printed already.
             let _ = thread.join();
@@ -90,9 +92,9 @@ impl Drop for Runner {
 }
 
 /// The state of the thread.
-struct Work {
-    inbox: Receiver<Order>,
-    outbox: Sender<News>,
+struct RunWorker {
+    inbox: Receiver<RunRequest>,
+    outbox: Sender<RunEvent>,
     unread: Arc<AtomicUsize>,
     wake: Box<dyn Fn() + Send>,
     branches: Option<Branches>,
@@ -103,30 +105,30 @@ struct Work {
     pace: f64,
     /// Simulated time that is due, s.
     owed: f64,
-    crystal: Crystal,
+    predictor: Predictor,
     ahead: f64,
     looked: Option<Instant>,
 }
 
-impl Work {
+impl RunWorker {
     fn work(&mut self) {
         let mut before = Instant::now();
         loop {
-            let order = if self.playing {
+            let request = if self.playing {
                 match self.inbox.try_recv() {
-                    Ok(order) => Some(order),
+                    Ok(request) => Some(request),
                     Err(TryRecvError::Empty) => None,
                     Err(TryRecvError::Disconnected) => return,
                 }
             } else {
                 match self.inbox.recv() {
-                    Ok(order) => Some(order),
+                    Ok(request) => Some(request),
                     Err(_) => return,
                 }
             };
-            if let Some(order) = order {
+            if let Some(request) = request {
                 let stood = !self.playing;
-                self.follow(order);
+                self.follow(request);
                 if stood {
                     before = Instant::now();
                 }
@@ -139,7 +141,7 @@ impl Work {
             self.owed = (self.owed + passed * self.pace).min(0.1 * self.pace.max(1.0));
             self.go_on();
             match self.inbox.recv_timeout(BEAT.saturating_sub(now.elapsed())) {
-                Ok(order) => self.follow(order),
+                Ok(request) => self.follow(request),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
             }
@@ -178,49 +180,49 @@ impl Work {
             let touched = || simulation.stopped().then(|| "The run stops here: bodies touched.".to_owned());
             simulation.fault().map(ToString::to_string).or_else(touched)
         });
-        self.tell(News::Stands(why));
+        self.tell(RunEvent::Stopped(why));
     }
 
     fn report(&mut self, records: Vec<StepRecord>) {
         if !records.is_empty() {
-            self.tell(News::Moments(self.active, records));
+            self.tell(RunEvent::Records(self.active, records));
         }
     }
 
-    fn tell(&self, news: News) {
+    fn tell(&self, run_event: RunEvent) {
         self.unread.fetch_add(1, Relaxed);
         // Where nobody listens any more, the inbox is closed too and the thread ends.
-        let _ = self.outbox.send(news);
+        let _ = self.outbox.send(run_event);
         (self.wake)();
     }
 
-    fn follow(&mut self, order: Order) {
-        match order {
-            Order::Open { scene, gpu, until } => self.open(scene, gpu.as_ref(), until),
-            Order::Recorded(log) => self.look_through(&log),
-            Order::TakeUp { scene, gpu } => self.take_up(scene, gpu.as_ref()),
-            Order::Play(on) => {
+    fn follow(&mut self, request: RunRequest) {
+        match request {
+            RunRequest::Open { scene, gpu, until } => self.open(scene, gpu.as_ref(), until),
+            RunRequest::Recorded(log) => self.look_through(&log),
+            RunRequest::ResumeRecording { scene, gpu } => self.take_up(scene, gpu.as_ref()),
+            RunRequest::Play(on) => {
                 self.playing = on && self.branches.is_some();
                 self.owed = 0.0;
             }
-            Order::Pace(pace) => self.pace = pace,
-            Order::Step => {
+            RunRequest::Pace(pace) => self.pace = pace,
+            RunRequest::Step => {
                 self.playing = false;
                 self.step();
             }
-            Order::Change(scene) => self.change(scene),
-            Order::Fork { from, sample, name } => self.fork(from, sample, name),
-            Order::Switch(branch) => {
+            RunRequest::Change(checked) => self.change(&checked),
+            RunRequest::Fork { from, sample, name } => self.fork(from, sample, name),
+            RunRequest::Switch(branch) => {
                 if self.branches.as_ref().is_some_and(|branches| branch < branches.list().len()) {
                     self.active = branch;
                     self.look_ahead(true);
                 }
             }
-            Order::Ahead(seconds) => {
+            RunRequest::Ahead(seconds) => {
                 self.ahead = seconds;
                 self.look_ahead(true);
             }
-            Order::Tell(branch) => self.told(branch),
+            RunRequest::Summarize(branch) => self.told(branch),
         }
     }
 
@@ -238,8 +240,8 @@ impl Work {
         });
         match (opened, blind) {
             (Ok(branches), None) => return Some(branches),
-            (Err(error), _) => self.tell(News::Refused(error.to_string())),
-            (Ok(_), Some(why)) => self.tell(News::Refused(why)),
+            (Err(error), _) => self.tell(RunEvent::Refused(error.to_string())),
+            (Ok(_), Some(why)) => self.tell(RunEvent::Refused(why)),
         }
         None
     }
@@ -253,7 +255,7 @@ impl Work {
         self.active = 0;
         self.owed = 0.0;
         self.branches = Some(branches);
-        self.tell(News::Opened { fleet, period });
+        self.tell(RunEvent::Opened { fleet, period });
         self.catch_up(until);
         self.look_ahead(true);
     }
@@ -262,7 +264,7 @@ impl Work {
     fn look_through(&mut self, log: &Log) {
         (self.branches, self.active, self.playing) = (None, 0, false);
         let (fleet, period) = (Arc::new(log.fleet().clone()), log.manifest().period);
-        self.tell(News::Opened { fleet, period });
+        self.tell(RunEvent::Opened { fleet, period });
         let (mut batch, mut digest, mut samples) = (Vec::new(), Digest::default(), 0);
         let mut fault = None;
         for record in log.records() {
@@ -281,7 +283,7 @@ impl Work {
         self.report(batch);
         self.recorded = (samples, digest.text());
         if let Some(fault) = fault {
-            self.tell(News::Refused(fault));
+            self.tell(RunEvent::Refused(fault));
         }
     }
 
@@ -293,7 +295,7 @@ impl Work {
         let same = branches.list()[0].digest() == *digest;
         (self.active, self.owed) = (0, 0.0);
         self.branches = Some(branches);
-        self.tell(News::TakenUp(same));
+        self.tell(RunEvent::RecordingResumed(same));
     }
 
     /// At least the first sample, and all up to `until` s, within a second of waiting.
@@ -323,12 +325,12 @@ impl Work {
         self.look_ahead(true);
     }
 
-    fn change(&mut self, scene: Arc<Scene>) {
+    fn change(&mut self, checked: &CheckedScene) {
         let Some(branches) = &mut self.branches else { return };
-        match branches.change(self.active, scene) {
-            Ok(Some(change)) => self.tell(News::Changed(self.active, change)),
+        match branches.change(self.active, checked) {
+            Ok(Some(change)) => self.tell(RunEvent::Changed(self.active, change)),
             Ok(None) => {}
-            Err(standing) => self.tell(News::Refused(standing)),
+            Err(standing) => self.tell(RunEvent::Refused(standing)),
         }
         self.look_ahead(true);
     }
@@ -342,7 +344,7 @@ impl Work {
         let here = (made.simulation().sample() > 0).then(|| made.simulation().record().clone());
         self.active = branch;
         self.owed = 0.0;
-        self.tell(News::Forked { branch, from, sample, name, changes });
+        self.tell(RunEvent::Forked { branch, from, sample, name, changes });
         self.report(here.into_iter().collect());
         self.look_ahead(true);
     }
@@ -352,18 +354,18 @@ impl Work {
             return;
         };
         let (changes, samples) = (made.changes.clone(), made.simulation().sample());
-        self.tell(News::Told { branch, changes, samples, digest: made.digest() });
+        self.tell(RunEvent::Summary { branch, changes, samples, digest: made.digest() });
     }
 
     /// Sends a copy of the run ahead: now, or when the last look is old enough and has come back.
     fn look_ahead(&mut self, now: bool) {
         let recent = self.looked.is_some_and(|at| at.elapsed() < LOOK_EVERY);
-        if self.ahead <= 0.0 || (!now && (recent || self.crystal.busy())) {
+        if self.ahead <= 0.0 || (!now && (recent || self.predictor.busy())) {
             return;
         }
         if let Some(branches) = &self.branches {
             let copy: Simulation = branches.list()[self.active].copy();
-            self.crystal.look(self.active, copy, self.ahead);
+            self.predictor.look(self.active, copy, self.ahead);
             self.looked = Some(Instant::now());
         }
     }

@@ -1,6 +1,6 @@
 //! A free camera that stays with a robot while it drives, or with a place.
 
-use rendering::{FreeCamera, View};
+use rendering::{FreeCamera, Viewpoint};
 use vocabulary::Snapshot;
 
 /// A drag across the height of the view turns by this, rad.
@@ -22,7 +22,7 @@ impl HeldCamera {
     }
 
     /// The view through it.
-    pub fn view(&self, snapshot: &Snapshot) -> View {
+    pub fn view(&self, snapshot: &Snapshot) -> Viewpoint {
         self.in_world(snapshot).view()
     }
 
@@ -95,9 +95,9 @@ mod tests {
         Snapshot { robots: vec![robot], ..Snapshot::default() }
     }
 
-    fn eye(view: &View) -> [f64; 3] {
+    fn eye(view: &Viewpoint) -> [f64; 3] {
         match view {
-            View::Fixed { eye, .. } => *eye,
+            Viewpoint::Fixed { eye, .. } => *eye,
             other => panic!("{other:?}"),
         }
     }

@@ -1,6 +1,6 @@
 //! Going back, changing something and running on is exact: the same samples, bit for bit, as one run that never stopped.
 
-use crate::common::{THREE, run, scene, with};
+use crate::common::{THREE, checked, run, scene, with};
 use lab::session::branches::{Branches, script};
 
 /// Samples between two saved states at first.
@@ -36,7 +36,7 @@ impl Hand {
 
     fn set(&mut self, sets: &[(&str, &str)]) {
         self.text = with(&self.text, sets);
-        self.all.change(self.branch, scene(&self.text)).expect("a change");
+        self.all.change(self.branch, &checked(&self.text)).expect("a change");
     }
 
     /// A branch off `from` with the text that holds there.
@@ -192,8 +192,8 @@ fn a_change_that_is_refused_changes_nothing() {
     let mut hand = Hand::new(THREE);
     hand.to(30);
     hand.set(&[("law.k", "5.0")]);
-    let other = scene(&with(&hand.text, &[("robots.left.pose", "[-3.0, 1.0, 0.0]")]));
-    let refusal = hand.all.change(0, other).expect_err("where it starts is past");
+    let other = checked(&with(&hand.text, &[("robots.left.pose", "[-3.0, 1.0, 0.0]")]));
+    let refusal = hand.all.change(0, &other).expect_err("where it starts is past");
     assert!(refusal.contains("pose"), "{refusal}");
     assert_eq!(hand.all.list()[0].changes.len(), 1, "what was changed before stays changed");
     hand.to(80);

@@ -1,10 +1,11 @@
-//! Scenes to test with, and a desk with a run behind it.
+//! Scenes to test with, and a state with a run behind it.
 
 use lab::action::Action;
-use lab::desk::Desk;
-use lab::session::branches::Change;
-use lab::session::forecast::Crystal;
-use lab::session::runner::{News, Order, Runner};
+use lab::app_state::AppState;
+use lab::session::branches::BranchChange;
+use lab::session::checked_scene::CheckedScene;
+use lab::session::prediction::Predictor;
+use lab::session::runner::{RunEvent, RunRequest, Runner};
 use scene::{Scene, SceneText};
 use simulation::Simulation;
 use std::path::Path;
@@ -60,6 +61,11 @@ pub(crate) fn scene(text: &str) -> Arc<Scene> {
     Arc::new(loaded.scene)
 }
 
+/// A scene with what it builds.
+pub(crate) fn checked(text: &str) -> Box<CheckedScene> {
+    Box::new(CheckedScene::new(scene(text)).expect("a run"))
+}
+
 /// A text with other values.
 pub(crate) fn with(text: &str, sets: &[(&str, &str)]) -> String {
     let mut text = SceneText::parse(text).expect("TOML");
@@ -69,33 +75,33 @@ pub(crate) fn with(text: &str, sets: &[(&str, &str)]) -> String {
     text.text()
 }
 
-/// A desk on which `samples` samples of a scene have arrived, and the run they are of.
-pub(crate) fn desk(text: &str, samples: usize) -> Desk {
-    let mut desk = Desk::new();
-    desk.playing = false;
-    desk.open(text.to_owned(), None, Path::new("t.toml")).expect("a scene");
-    let scene = Arc::clone(desk.scene().expect("a scene"));
+/// A state on which `samples` samples of a scene have arrived, and the run they are of.
+pub(crate) fn app_state(text: &str, samples: usize) -> AppState {
+    let mut app_state = AppState::new();
+    app_state.playing = false;
+    app_state.open(text.to_owned(), None, Path::new("t.toml")).expect("a scene");
+    let scene = Arc::clone(app_state.scene().expect("a scene"));
     let mut run = Simulation::new(simulation::build(&scene).expect("a run"));
     run.extend_to(1e6);
     let fleet = FleetInfo { duration: scene.time.duration, ..run.fleet().clone() };
     let period = run.period();
-    desk.hear(News::Opened { fleet: Arc::new(fleet), period });
+    app_state.handle_event(RunEvent::Opened { fleet: Arc::new(fleet), period });
     let records = (0..samples).map(|_| run.next_record().expect("a moment").clone()).collect();
-    desk.hear(News::Moments(0, records));
-    desk.orders.clear();
-    desk
+    app_state.handle_event(RunEvent::Records(0, records));
+    app_state.requests.clear();
+    app_state
 }
 
-/// A desk and the thread that runs what it asks for; nothing goes on but by orders.
+/// A state and the thread that runs what it asks for; nothing goes on but by requests.
 pub(crate) struct Rig {
-    pub(crate) desk: Desk,
+    pub(crate) app_state: AppState,
     pub(crate) runner: Runner,
     wakes: Receiver<()>,
 }
 
 /// What is known of a branch.
-pub(crate) struct Told {
-    pub(crate) changes: Vec<Change>,
+pub(crate) struct BranchSummary {
+    pub(crate) changes: Vec<BranchChange>,
     pub(crate) samples: u64,
     pub(crate) digest: String,
 }
@@ -104,46 +110,48 @@ impl Rig {
     /// A scene that stands after its first sample.
     pub(crate) fn new(text: &str) -> Self {
         let (wake, wakes) = channel();
-        let (crystal, _) = Crystal::start(|| ());
-        let runner = Runner::start(crystal, move || wake.send(()).unwrap_or(()));
-        let mut desk = Desk::new();
-        (desk.playing, desk.ahead) = (false, 0.0);
-        desk.open(text.to_owned(), None, Path::new("t.toml")).expect("a scene");
-        let mut rig = Self { desk, runner, wakes };
+        let (predictor, _) = Predictor::start(|| ());
+        let runner = Runner::start(predictor, move || wake.send(()).unwrap_or(()));
+        let mut app_state = AppState::new();
+        (app_state.playing, app_state.ahead) = (false, 0.0);
+        app_state.open(text.to_owned(), None, Path::new("t.toml")).expect("a scene");
+        let mut rig = Self { app_state, runner, wakes };
         rig.settle();
         rig
     }
 
-    /// The next piece of news.
-    pub(crate) fn next(&mut self) -> News {
+    /// The next event.
+    pub(crate) fn next(&mut self) -> RunEvent {
         loop {
-            if let Some(news) = self.runner.news() {
-                return news;
+            if let Some(run_event) = self.runner.next_event() {
+                return run_event;
             }
             self.wakes.recv_timeout(Duration::from_mins(1)).expect("news");
         }
     }
 
-    /// Sends what the desk has ordered, without waiting for what comes of it.
+    /// Sends what the state has requested, without waiting for what comes of it.
     pub(crate) fn send(&mut self) {
-        for order in self.desk.orders.drain(..) {
-            self.runner.order(order);
+        for request in self.app_state.requests.drain(..) {
+            self.runner.request(request);
         }
     }
 
-    /// Lets everything that is ordered be done, and the desk hear of it.
+    /// Lets everything that is requested be done, and the state take in what comes of it.
     pub(crate) fn settle(&mut self) {
         self.told(0);
     }
 
     /// What is known of a branch when everything that is ordered is done.
-    pub(crate) fn told(&mut self, branch: usize) -> Told {
+    pub(crate) fn told(&mut self, branch: usize) -> BranchSummary {
         self.send();
-        self.runner.order(Order::Tell(branch));
+        self.runner.request(RunRequest::Summarize(branch));
         loop {
             match self.next() {
-                News::Told { changes, samples, digest, .. } => return Told { changes, samples, digest },
-                news => self.desk.hear(news),
+                RunEvent::Summary { changes, samples, digest, .. } => {
+                    return BranchSummary { changes, samples, digest };
+                }
+                run_event => self.app_state.handle_event(run_event),
             }
         }
     }
@@ -151,7 +159,7 @@ impl Rig {
     /// Does things, one after the other, each when the one before is done.
     pub(crate) fn act(&mut self, actions: &[Action]) {
         for action in actions {
-            assert!(self.desk.act(action), "{action:?} is not the desk's");
+            assert!(self.app_state.act(action), "{action:?} is not the desk's");
             self.settle();
         }
     }
@@ -159,14 +167,14 @@ impl Rig {
     /// Samples of the branch that goes on.
     pub(crate) fn steps(&mut self, samples: usize) {
         for _ in 0..samples {
-            self.runner.order(Order::Step);
+            self.runner.request(RunRequest::Step);
         }
         self.settle();
     }
 
-    /// The text on the desk.
+    /// The text under edit.
     pub(crate) fn text(&self) -> &str {
-        self.desk.draft.as_ref().expect("a draft").text()
+        self.app_state.draft.as_ref().expect("a draft").text()
     }
 }
 

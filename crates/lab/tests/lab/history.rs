@@ -153,7 +153,7 @@ fn hours_fit_into_memory() {
     assert!((end - 500.0).abs() < 0.1, "{end} s");
 }
 
-/// A branch that leaves between two moments that are kept begins with the moment that the run gives it.
+/// A branch that leaves between two records that are kept begins with the moment that the run gives it.
 #[test]
 fn a_branch_of_a_thinned_past_begins_where_it_leaves() {
     let (mut history, mut record) = long(50_000);
@@ -187,7 +187,7 @@ fn curves_do_not_tremble_as_they_grow() {
         assert!(stay == old.len() || (stay == old.len().div_ceil(2) && times.len() < old.len()), "{times:?}");
         before = times;
     }
-    // A window that slides over the past shows the same moments of it.
+    // A window that slides over the past shows the same records of it.
     let window = |from: f64| history.between(0, [from, from + 4.0], 100);
     let inside = |from: f64| -> Vec<f64> {
         let times = window(from).into_iter().map(time);

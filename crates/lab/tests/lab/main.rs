@@ -2,13 +2,13 @@
 //! linking takes longer than testing.
 
 mod branches;
+mod commands;
 mod common;
-mod deeds;
-mod draft;
-mod forecast;
-mod futures;
+mod edits;
 mod history;
 mod pacing;
 mod panels;
+mod prediction;
 mod recorded;
+mod scene_draft;
 mod staying;

@@ -36,11 +36,11 @@ fn record(text: &str) -> tempfile::TempDir {
 fn opened(folder: &Path) -> Rig {
     let mut rig = Rig::new(THREE);
     let log = Log::open(&folder.join(FILE)).expect("a log");
-    rig.desk.open_recorded(log, &folder.join("scene.toml")).expect("a scene");
+    rig.app_state.open_recorded(log, &folder.join("scene.toml")).expect("a scene");
     rig.send();
-    while rig.desk.end() < 9.0 {
-        let news = rig.next();
-        rig.desk.hear(news);
+    while rig.app_state.end() < 9.0 {
+        let run_event = rig.next();
+        rig.app_state.handle_event(run_event);
     }
     rig
 }
@@ -49,30 +49,30 @@ fn opened(folder: &Path) -> Rig {
 fn a_recorded_run_is_all_there_and_stands_where_one_looks() {
     let folder = record(THREE);
     let mut rig = opened(folder.path());
-    assert!(rig.desk.recorded && rig.desk.cursor == Some(0.0) && !rig.desk.playing);
+    assert!(rig.app_state.recorded && rig.app_state.cursor == Some(0.0) && !rig.app_state.playing);
     let mut digest = metrics::Digest::default();
-    let history = rig.desk.history.as_ref().expect("a past");
+    let history = rig.app_state.history.as_ref().expect("a past");
     let all = history.between(0, [0.0, 20.0], usize::MAX);
     for record in &all {
         digest.push(record);
     }
     assert_eq!((all.len() as u64, digest.text()), run(THREE));
-    assert!(rig.desk.act(&Action::Seek(4.5)));
-    assert_eq!(rig.desk.record().expect("a moment").snapshot.time, 4.5);
-    assert!(rig.desk.act(&Action::Step));
-    assert!((rig.desk.time() - 4.51).abs() < 1e-9);
+    assert!(rig.app_state.act(&Action::Seek(4.5)));
+    assert_eq!(rig.app_state.record().expect("a moment").snapshot.time, 4.5);
+    assert!(rig.app_state.act(&Action::Step));
+    assert!((rig.app_state.time() - 4.51).abs() < 1e-9);
 }
 
 #[test]
 fn it_plays_by_the_clock_to_its_end_and_from_there_anew() {
     let folder = record(THREE);
     let mut rig = opened(folder.path());
-    assert!(rig.desk.act(&Action::Toggle) && rig.desk.roll(1.0));
-    assert!((rig.desk.time() - 1.0).abs() < 1e-12);
-    assert!(rig.desk.act(&Action::Pace(4.0)) && rig.desk.roll(1.0));
-    assert!((rig.desk.time() - 5.0).abs() < 1e-12);
-    assert!(!rig.desk.roll(2.0) && rig.desk.cursor.is_none() && !rig.desk.playing);
-    assert!(rig.desk.act(&Action::Toggle) && rig.desk.roll(0.1) && rig.desk.time() < 1.0);
+    assert!(rig.app_state.act(&Action::Toggle) && rig.app_state.roll(1.0));
+    assert!((rig.app_state.time() - 1.0).abs() < 1e-12);
+    assert!(rig.app_state.act(&Action::Pace(4.0)) && rig.app_state.roll(1.0));
+    assert!((rig.app_state.time() - 5.0).abs() < 1e-12);
+    assert!(!rig.app_state.roll(2.0) && rig.app_state.cursor.is_none() && !rig.app_state.playing);
+    assert!(rig.app_state.act(&Action::Toggle) && rig.app_state.roll(0.1) && rig.app_state.time() < 1.0);
 }
 
 /// A branch leaves the recording where one looks; the recording stays beside it.
@@ -82,25 +82,29 @@ fn a_recorded_run_has_branches() {
     let mut rig = opened(folder.path());
     let (samples, digest) = run(THREE);
     let set = Action::SetPoint { edge: 0, distance: 1.5, bearing: 2.356 };
-    assert!(rig.desk.act(&Action::Seek(2.0)));
+    assert!(rig.app_state.act(&Action::Seek(2.0)));
     rig.act(&[set]);
-    assert!(!rig.desk.recorded && rig.text().contains("1.5"));
-    assert_eq!((rig.desk.branches.len(), rig.desk.branch), (2, 1));
-    assert_eq!(rig.desk.branches[1].parent, Some((0, 2.0)));
-    assert!(rig.desk.log.iter().any(|event| event.text.contains("bit for bit")), "{:?}", rig.desk.log);
-    assert!((rig.desk.end() - 2.0).abs() < 0.05, "{}", rig.desk.end());
+    assert!(!rig.app_state.recorded && rig.text().contains("1.5"));
+    assert_eq!((rig.app_state.branches.len(), rig.app_state.branch), (2, 1));
+    assert_eq!(rig.app_state.branches[1].parent, Some((0, 2.0)));
+    assert!(
+        rig.app_state.log.iter().any(|event| event.text.contains("bit for bit")),
+        "{:?}",
+        rig.app_state.log
+    );
+    assert!((rig.app_state.end() - 2.0).abs() < 0.05, "{}", rig.app_state.end());
     rig.steps(30);
     let told = rig.told(1);
-    assert_eq!(run(&rig.desk.script().expect("a script")), (told.samples, told.digest));
+    assert_eq!(run(&rig.app_state.script().expect("a script")), (told.samples, told.digest));
     // What was recorded is still there, and goes on.
     let trunk = rig.told(0);
     assert_eq!((trunk.samples, trunk.digest), (samples, digest));
     rig.act(&[Action::Branch(0)]);
-    let end = rig.desk.end();
+    let end = rig.app_state.end();
     rig.steps(3);
-    assert!((rig.desk.end() - end - 0.03).abs() < 1e-9);
+    assert!((rig.app_state.end() - end - 0.03).abs() < 1e-9);
     rig.act(&[Action::Seek(1.0), Action::Fork]);
-    assert_eq!(rig.desk.branches[2].parent, Some((0, 1.0)));
+    assert_eq!(rig.app_state.branches[2].parent, Some((0, 1.0)));
 }
 
 /// A recording that does not come out again is not branched from: the scene begins anew.
@@ -108,16 +112,18 @@ fn a_recorded_run_has_branches() {
 fn a_recording_of_another_program_begins_anew() {
     let folder = record(THREE);
     let mut rig = opened(folder.path());
-    rig.desk
+    rig.app_state
         .draft
         .as_mut()
         .expect("a draft")
         .edit("other", |text| text.set("robots.left.law.k", "2.0").map_err(|e| e.to_string()))
         .expect("edited");
-    assert!(rig.desk.act(&Action::Seek(2.0)));
+    assert!(rig.app_state.act(&Action::Seek(2.0)));
     rig.act(&[Action::Fork]);
     rig.settle();
-    assert!(rig.desk.notice.as_ref().is_some_and(|notice| notice.contains("not run as it was recorded")));
-    assert_eq!(rig.desk.branches.len(), 1);
-    assert!(rig.desk.end() < 3.0);
+    assert!(
+        rig.app_state.notice.as_ref().is_some_and(|notice| notice.contains("not run as it was recorded"))
+    );
+    assert_eq!(rig.app_state.branches.len(), 1);
+    assert!(rig.app_state.end() < 3.0);
 }

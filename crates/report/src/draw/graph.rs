@@ -2,7 +2,7 @@
 
 use super::{Drawn, NAMED, number, quoted};
 use crate::trace::Trace;
-use figures::{Arrow, Node, Note, Plan, Side};
+use figures::{Arrow, Note, Plan, PlanNode, Side};
 use std::fmt::Write;
 
 /// Places of all robots at a sample if every follower stood at its set point with its leader's heading, in the first
@@ -99,7 +99,7 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
     let signs = signs(run);
     for (robot, member) in run.fleet.robots.iter().enumerate() {
         let Some(at) = page.get(robot).copied() else { continue };
-        plan.nodes.push(Node {
+        plan.nodes.push(PlanNode {
             at,
             name: if labels { signs[robot].clone() } else { String::new() },
             radius,

@@ -3,7 +3,7 @@
 use super::{Drawn, NAMED, stroke, table};
 use crate::trace::Trace;
 use crate::words::{digits, round};
-use figures::{Key, Note, Outline, Plan, Side, Stroke, Track};
+use figures::{Key, Note, Plan, PlanOutline, PlanPath, Side, Stroke};
 use vocabulary::{Body, Pose};
 
 /// Robots from which on no outlines between start and end are drawn.
@@ -22,7 +22,7 @@ pub(crate) fn trajectories(run: &Trace) -> (Drawn, f64) {
     };
     for (robot, motions) in run.robots.iter().enumerate() {
         let leads = run.fleet.robots.get(robot).is_some_and(|m| m.leads);
-        plan.tracks.push(Track {
+        plan.tracks.push(PlanPath {
             points: motions.iter().map(|m| [m.pose.x, m.pose.y]).collect(),
             colour: run.colours.get(robot).copied().unwrap_or_default(),
             stroke: if leads || crowd { Stroke::Solid } else { stroke(robot) },
@@ -97,11 +97,11 @@ fn mark(run: &Trace, time: f64, factor: f64, plan: &mut Plan) {
     let pose = |robot: usize| Some(run.robots.get(robot)?.get(sample)?.pose);
     for edge in &run.fleet.edges {
         if let (Some(a), Some(b)) = (pose(edge.leader), pose(edge.follower)) {
-            plan.tracks.push(Track {
+            plan.tracks.push(PlanPath {
                 points: vec![[a.x, a.y], [b.x, b.y]],
                 colour: [0.45; 3],
                 faint: true,
-                ..Track::default()
+                ..PlanPath::default()
             });
         }
     }
@@ -109,7 +109,7 @@ fn mark(run: &Trace, time: f64, factor: f64, plan: &mut Plan) {
         let Some(pose) = pose(robot) else { continue };
         let colour = run.colours.get(robot).copied().unwrap_or_default();
         let filled = if member.leads { 0.85 } else { 0.55 };
-        plan.outlines.push(Outline { points: outline(pose, &member.body, factor), colour, filled });
+        plan.outlines.push(PlanOutline { points: outline(pose, &member.body, factor), colour, filled });
     }
 }
 

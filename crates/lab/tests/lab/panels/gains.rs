@@ -1,11 +1,11 @@
 //! Law, observer, sensing and limits: rows of a symbol, a slider and a way back.
 
 use super::{asked, assert_says, click, drag, enter, panel, texts, tip, value};
-use crate::common::{THREE, desk, with};
+use crate::common::{THREE, app_state, with};
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use lab::action::Action;
-use lab::desk::{Choice, Desk};
+use lab::app_state::{AppState, Selection};
 use lab::panels::{law, sensing, world};
 use lab::symbols;
 
@@ -28,12 +28,12 @@ fn tuned(actions: &[Action], key: &str) -> f64 {
 
 /// Every slider of a panel shows its value, can be dragged and set, and goes back; every symbol explains itself.
 fn check_rows(
-    desk: impl Fn() -> Desk,
-    show: fn(&mut eframe::egui::Ui, &Desk, &mut Vec<Action>),
+    app_state: impl Fn() -> AppState,
+    show: fn(&mut eframe::egui::Ui, &AppState, &mut Vec<Action>),
     rows: &[(symbols::Symbol, &'static str, f64, f64)],
 ) {
     for (symbol, key, now, next) in rows {
-        let mut panel = panel(desk(), show);
+        let mut panel = panel(app_state(), show);
         let name = symbol.name;
         assert!((value(&panel, Role::Slider, name) - now).abs() < 1e-9, "{name}");
         let actions = drag(&mut panel, Role::Slider, name, [0.15, 0.3]);
@@ -66,7 +66,7 @@ fn check_rows(
 #[test]
 fn gains_are_shown_tuned_and_explained() {
     check_rows(
-        || desk(THREE, 5),
+        || app_state(THREE, 5),
         law::show,
         &[
             (symbols::GAIN, "law.k", 3.0, 4.5),
@@ -77,19 +77,19 @@ fn gains_are_shown_tuned_and_explained() {
 }
 
 fn scene_slope() -> f64 {
-    desk(THREE, 0).follower(0).map(|(_, _, follow)| follow.law.slope[0]).expect("a follower")
+    app_state(THREE, 0).follower(0).map(|(_, _, follow)| follow.law.slope[0]).expect("a follower")
 }
 
 #[test]
 fn what_is_dragged_is_tuned() {
-    let mut panel = panel(desk(THREE, 5), law::show);
+    let mut panel = panel(app_state(THREE, 5), law::show);
     for action in drag(&mut panel, Role::Slider, "Gain", [0.15, 0.35]) {
-        panel.state_mut().desk.act(&action);
+        panel.state_mut().app_state.act(&action);
     }
-    assert_eq!(panel.state().desk.notice, None);
-    assert_eq!(panel.state().desk.draft.as_ref().and_then(|draft| draft.undoes()), Some("Gain of all"));
+    assert_eq!(panel.state().app_state.notice, None);
+    assert_eq!(panel.state().app_state.draft.as_ref().and_then(|draft| draft.undoes()), Some("Gain of all"));
     panel.run();
-    let now = panel.state().desk.follower(1).map(|(_, _, follow)| follow.law.k[0]);
+    let now = panel.state().app_state.follower(1).map(|(_, _, follow)| follow.law.k[0]);
     assert_eq!(Some(value(&panel, Role::Slider, "Gain")), now);
     assert_ne!(now, Some(3.0));
 }
@@ -97,7 +97,7 @@ fn what_is_dragged_is_tuned() {
 #[test]
 fn gains_of_distance_and_bearing_come_apart() {
     let text = with(THREE, &[("law.k", "[4.0, 2.0]")]);
-    let mut panel = panel(desk(&text, 5), law::show);
+    let mut panel = panel(app_state(&text, 5), law::show);
     assert_eq!(value(&panel, Role::Slider, "Gain of the distance"), 4.0);
     assert_eq!(value(&panel, Role::Slider, "Gain of the bearing"), 2.0);
     panel.get_by_role_and_label(Role::Slider, "Gain of the bearing").set_value_accesskit(2.5);
@@ -112,23 +112,23 @@ fn gains_of_distance_and_bearing_come_apart() {
 
 #[test]
 fn one_follower_or_all() {
-    let mut panel = panel(desk(THREE, 5), law::show);
+    let mut panel = panel(app_state(THREE, 5), law::show);
     assert_eq!(click(&mut panel, Role::Button, "Only left"), [Action::ForAll(false)]);
     assert_eq!(click(&mut panel, Role::Button, "All followers"), [Action::ForAll(true)]);
-    panel.state_mut().desk.act(&Action::Choose(Choice::Robot(2)));
+    panel.state_mut().app_state.act(&Action::Choose(Selection::Robot(2)));
     panel.run();
     assert_says(&panel, &["Only right"]);
 }
 
 #[test]
 fn the_law_is_chosen_by_name() {
-    let mut panel = panel(desk(THREE, 5), law::show);
+    let mut panel = panel(app_state(THREE, 5), law::show);
     assert!(click(&mut panel, Role::ComboBox, "Law").is_empty());
     let actions = click(&mut panel, Role::Button, "Full state feedback");
     assert_eq!(values(&actions, "law.kind"), ["\"full-state\""]);
     assert_eq!(actions[1], Action::Rest);
     for action in &actions {
-        assert!(panel.state_mut().desk.act(action));
+        assert!(panel.state_mut().app_state.act(action));
     }
     panel.run();
     let law = panel.get_by_role_and_label(Role::ComboBox, "Law");
@@ -138,14 +138,14 @@ fn the_law_is_chosen_by_name() {
     for name in ["Robust state feedback", "Output feedback", "Full state feedback"] {
         click(&mut panel, Role::ComboBox, "Law");
         for action in click(&mut panel, Role::Button, name) {
-            assert!(panel.state_mut().desk.act(&action));
+            assert!(panel.state_mut().app_state.act(&action));
         }
         panel.run();
-        assert_eq!(panel.state().desk.notice, None, "{name}");
+        assert_eq!(panel.state().app_state.notice, None, "{name}");
         let law = panel.get_by_role_and_label(Role::ComboBox, "Law");
         assert_eq!(law.value().as_deref(), Some(name));
     }
-    let mut panel = self::panel(desk(THREE, 5), law::show);
+    let mut panel = self::panel(app_state(THREE, 5), law::show);
     assert_eq!(values(&click(&mut panel, Role::Button, "sign"), "law.switching"), ["\"sign\""]);
     assert!(click(&mut panel, Role::Button, "tanh").is_empty(), "it is so already");
 }
@@ -154,7 +154,7 @@ fn the_law_is_chosen_by_name() {
 fn the_observer_is_shown_tuned_and_explained() {
     let text = with(THREE, &[("observer.epsilon", "0.02"), ("observer.alpha1", "3.0")]);
     check_rows(
-        || desk(&text, 5),
+        || app_state(&text, 5),
         law::observer,
         &[
             (symbols::EPSILON, "observer.epsilon", 0.02, 0.05),
@@ -162,7 +162,7 @@ fn the_observer_is_shown_tuned_and_explained() {
             (symbols::ALPHA_TWO, "observer.alpha2", 1.0, 1.5),
         ],
     );
-    let mut panel = panel(desk(&text, 5), law::observer);
+    let mut panel = panel(app_state(&text, 5), law::observer);
     // s² + 3 s + 1 at ε = 0.02 s: (−3 ± √5) / 0.04.
     assert_says(&panel, &["Poles at −131 and −19.1 1/s"]);
     let actions = click(&mut panel, Role::Button, "Disturb it and begin again");
@@ -170,9 +170,9 @@ fn the_observer_is_shown_tuned_and_explained() {
         matches!(&actions[..], [Action::Set { values, .. }, Action::Restart] if values[0].0 == "observer.start")
     );
     let told = with(THREE, &[("law.kind", "full-state")]);
-    assert_says(&self::panel(desk(&told, 5), law::observer), &["This law is told the rates."]);
+    assert_says(&self::panel(app_state(&told, 5), law::observer), &["This law is told the rates."]);
     let looking = with(THREE, &[("sensing", "{ kind = \"noise\" }")]);
-    let mut panel = self::panel(desk(&looking, 5), law::observer);
+    let mut panel = self::panel(app_state(&looking, 5), law::observer);
     let actions = click(&mut panel, Role::CheckBox, "ε follows from the noise of each look");
     assert_eq!(values(&actions, "observer.adaptive").len(), 1);
 }
@@ -187,7 +187,7 @@ fn sensing_is_shown_tuned_and_explained() {
         )],
     );
     check_rows(
-        || desk(&text, 30),
+        || app_state(&text, 30),
         sensing::show,
         &[
             (symbols::RATE, "sensing.rate", 20.0, 25.0),
@@ -196,10 +196,14 @@ fn sensing_is_shown_tuned_and_explained() {
             (symbols::DISTANCE_NOISE, "sensing.distance_noise", 0.01, 0.02),
         ],
     );
-    assert_says(&panel(desk(&text, 60), sensing::show), &["left ", "last look", "ms ago"]);
+    assert_says(&panel(app_state(&text, 60), sensing::show), &["left ", "last look", "ms ago"]);
     let tags = with(THREE, &[("sensing", "{ kind = \"geometric\", pixel_noise = 0.3 }")]);
-    check_rows(|| desk(&tags, 5), sensing::show, &[(symbols::PIXEL_NOISE, "sensing.pixel_noise", 0.3, 0.5)]);
-    let mut panel = panel(desk(THREE, 5), sensing::show);
+    check_rows(
+        || app_state(&tags, 5),
+        sensing::show,
+        &[(symbols::PIXEL_NOISE, "sensing.pixel_noise", 0.3, 0.5)],
+    );
+    let mut panel = panel(app_state(THREE, 5), sensing::show);
     assert!(panel.query_by_role_and_label(Role::Slider, "Latency").is_none(), "the truth has none");
     for (name, kind) in [("Camera", "camera"), ("Noise", "noise"), ("Tags", "geometric"), ("Truth", "truth")]
     {
@@ -207,10 +211,10 @@ fn sensing_is_shown_tuned_and_explained() {
         let actions = click(&mut panel, Role::Button, name);
         assert_eq!(values(&actions, "sensing.kind"), [format!("{kind:?}")]);
         for action in actions {
-            assert!(panel.state_mut().desk.act(&action));
+            assert!(panel.state_mut().app_state.act(&action));
         }
         panel.run();
-        assert_eq!(panel.state().desk.notice, None, "{name}");
+        assert_eq!(panel.state().app_state.notice, None, "{name}");
         let sensing = panel.get_by_role_and_label(Role::ComboBox, "Sensing");
         assert_eq!(sensing.value().as_deref(), Some(name));
     }
@@ -220,10 +224,10 @@ fn sensing_is_shown_tuned_and_explained() {
 fn limits_are_shown_tuned_and_explained() {
     let text = with(THREE, &[("vehicle.speed_max", "1.8"), ("vehicle.acceleration_max", "3.0")]);
     let limit = |limit: fn(&scene::Vehicle) -> f64| {
-        limit(&desk(&text, 0).scene().expect("a scene").robots[1].vehicle)
+        limit(&app_state(&text, 0).scene().expect("a scene").robots[1].vehicle)
     };
     check_rows(
-        || desk(&text, 5),
+        || app_state(&text, 5),
         world::limits,
         &[
             (symbols::SPEED_MIN, "vehicle.speed_min", limit(|v| v.speed_min), 0.2),
@@ -232,7 +236,7 @@ fn limits_are_shown_tuned_and_explained() {
             (symbols::ACCELERATION_MAX, "vehicle.acceleration_max", 3.0, 5.0),
         ],
     );
-    let mut panel = panel(desk(THREE, 5), world::limits);
+    let mut panel = panel(app_state(THREE, 5), world::limits);
     assert_says(&panel, &["unbounded, as in the paper"]);
     let actions = click(&mut panel, Role::Button, "Bound it");
     assert_eq!(values(&actions, "vehicle.acceleration_max"), ["4.0"]);
@@ -242,7 +246,7 @@ fn limits_are_shown_tuned_and_explained() {
 #[test]
 fn numbers_can_be_typed() {
     for (text, value) in [("4.25", Some(4.25)), ("50", Some(50.0)), ("nonsense", None), ("-3", None)] {
-        let mut panel = panel(desk(THREE, 5), law::show);
+        let mut panel = panel(app_state(THREE, 5), law::show);
         let actions = enter(&mut panel, Role::SpinButton, "Gain", text);
         let tuned = values(&actions, "law.k").last().map(|value| value.parse::<f64>().expect("a number"));
         match value {

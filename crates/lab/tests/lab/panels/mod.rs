@@ -9,26 +9,29 @@ use eframe::egui::{self, Event, Ui, accesskit::Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use lab::action::Action;
-use lab::desk::Desk;
+use lab::app_state::AppState;
 
-/// A panel, its desk, and what was asked for.
+/// A panel, its state, and what was asked for.
 pub(crate) struct Bench {
-    pub(crate) desk: Desk,
+    pub(crate) app_state: AppState,
     pub(crate) out: Vec<Action>,
 }
 
 /// What draws a panel.
-type Show = dyn Fn(&mut Ui, &Desk, &mut Vec<Action>);
+type Show = dyn Fn(&mut Ui, &AppState, &mut Vec<Action>);
 
 pub(crate) type Panel = Harness<'static, Bench>;
 
 /// A panel as the window shows it. Every frame is looked through for letters without a face and widgets without a name.
-pub(crate) fn panel(desk: Desk, show: impl Fn(&mut Ui, &Desk, &mut Vec<Action>) + 'static) -> Panel {
-    let bench = Bench { desk, out: Vec::new() };
+pub(crate) fn panel(
+    app_state: AppState,
+    show: impl Fn(&mut Ui, &AppState, &mut Vec<Action>) + 'static,
+) -> Panel {
+    let bench = Bench { app_state, out: Vec::new() };
     let mut panel = Harness::builder()
         .with_size([520.0, 900.0])
         .with_context_setup(lab::look::dress)
-        .build_ui_state(move |ui, bench: &mut Bench| show(ui, &bench.desk, &mut bench.out), bench);
+        .build_ui_state(move |ui, bench: &mut Bench| show(ui, &bench.app_state, &mut bench.out), bench);
     panel.run();
     panel
 }
@@ -120,7 +123,7 @@ pub(crate) fn tip(panel: &mut Panel, sign: &str) -> Vec<String> {
 /// Whatever a tip or the page of shortcuts says can be drawn.
 #[test]
 fn every_letter_has_a_face() {
-    let all = panel(Desk::new(), |ui, _, _| {
+    let all = panel(AppState::new(), |ui, _, _| {
         for symbol in lab::symbols::ALL {
             symbol.tip(ui);
         }
@@ -131,7 +134,7 @@ fn every_letter_has_a_face() {
                 ui.label(shortcut.what);
             }
         }
-        for quantity in lab::quantities::Quantity::ALL {
+        for quantity in lab::quantities::PlotQuantity::ALL {
             ui.label(quantity.axis());
         }
     });
@@ -152,21 +155,24 @@ fn panels_without_a_scene_say_so() {
         ("world", Box::new(lab::panels::world::surroundings)),
         (
             "curves",
-            Box::new(|ui, desk, out| {
-                lab::panels::curves::show(ui, desk, &[lab::quantities::Quantity::Speed], out);
+            Box::new(|ui, app_state, out| {
+                lab::panels::curves::show(ui, app_state, &[lab::quantities::PlotQuantity::Speed], out);
             }),
         ),
     ];
     for (name, show) in shows {
-        let panel = panel(Desk::new(), show);
+        let panel = panel(AppState::new(), show);
         assert!(says(&panel, "No scene is open."), "{name}: {:?}", texts(&panel));
         assert!(panel.state().out.is_empty(), "{name}");
     }
     // These have something to show in any case.
-    let bar = panel(Desk::new(), |ui, desk, out| lab::panels::time_bar::show(ui, desk, false, out));
+    let bar =
+        panel(AppState::new(), |ui, app_state, out| lab::panels::time_bar::show(ui, app_state, false, out));
     assert_says(&bar, &["Play", "t = 0.00 s"]);
-    let film = panel(Desk::new(), move |ui, desk, out| lab::panels::film::show(ui, desk, &style, None, out));
+    let film = panel(AppState::new(), move |ui, app_state, out| {
+        lab::panels::film::show(ui, app_state, &style, None, out)
+    });
     assert_says(&film, &["Look ahead"]);
-    assert_says(&panel(Desk::new(), lab::panels::log::show), &["appear here"]);
-    assert_says(&panel(Desk::new(), lab::panels::branches::show), &["Branch here"]);
+    assert_says(&panel(AppState::new(), lab::panels::log::show), &["appear here"]);
+    assert_says(&panel(AppState::new(), lab::panels::branches::show), &["Branch here"]);
 }

@@ -1,19 +1,19 @@
 //! The tree of robots, the edge that is selected, branches and the log.
 
 use super::{asked, assert_says, click, enter, panel, says, texts, tip, value};
-use crate::common::{Rig, THREE, desk, with};
+use crate::common::{Rig, THREE, app_state, with};
 use eframe::egui::{self, Key, Modifiers, accesskit::Role};
 use egui_kittest::kittest::Queryable;
 use lab::action::Action;
-use lab::desk::{Choice, Tool};
+use lab::app_state::{Selection, Tool};
 use lab::panels::{branches, edge, formation, log};
-use lab::session::forecast::Forecast;
+use lab::session::prediction::Prediction;
 use lab::symbols;
 use vocabulary::EntityId;
 
 #[test]
 fn the_tree_shows_who_follows_whom() {
-    let panel = panel(desk(include_str!("../../../../../scenes/seven-v.toml"), 5), formation::show);
+    let panel = panel(app_state(include_str!("../../../../../scenes/seven-v.toml"), 5), formation::show);
     let place = |name| panel.get_by_role_and_label(Role::Button, name).rect().min;
     for (leader, follower) in [("robot-1", "robot-2"), ("robot-2", "robot-4"), ("robot-3", "robot-5")] {
         let (leader, follower) = (place(leader), place(follower));
@@ -26,17 +26,17 @@ fn the_tree_shows_who_follows_whom() {
 
 #[test]
 fn robots_are_selected_and_made_in_the_tree() {
-    let mut panel = panel(desk(THREE, 5), formation::show);
-    assert_eq!(click(&mut panel, Role::Button, "right"), [Action::Choose(Choice::Robot(2))]);
+    let mut panel = panel(app_state(THREE, 5), formation::show);
+    assert_eq!(click(&mut panel, Role::Button, "right"), [Action::Choose(Selection::Robot(2))]);
     assert_eq!(click(&mut panel, Role::Button, "+ Robot"), [Action::AddRobot]);
     assert_eq!(click(&mut panel, Role::Button, "Connect"), [Action::Take(Tool::Connect)]);
-    panel.state_mut().desk.act(&Action::Take(Tool::Connect));
+    panel.state_mut().app_state.act(&Action::Take(Tool::Connect));
     assert_eq!(click(&mut panel, Role::Button, "Connect"), [Action::Take(Tool::Hand)]);
 }
 
 #[test]
 fn a_robot_dropped_on_another_follows_it() {
-    let mut panel = panel(desk(THREE, 5), formation::show);
+    let mut panel = panel(app_state(THREE, 5), formation::show);
     let [from, to] =
         ["right", "left"].map(|name| panel.get_by_role_and_label(Role::Button, name).rect().center());
     for drop in [to, from] {
@@ -62,15 +62,15 @@ fn a_robot_dropped_on_another_follows_it() {
 fn a_robot_has_a_menu() {
     for (item, action) in [
         ("Follow with the camera", Action::Follow(Some(1))),
-        ("See through its camera", Action::View("camera:left".to_owned())),
+        ("See through its camera", Action::Viewpoint("camera:left".to_owned())),
         ("Remove", Action::RemoveRobot("left".to_owned())),
     ] {
-        let mut panel = panel(desk(THREE, 5), formation::show);
+        let mut panel = panel(app_state(THREE, 5), formation::show);
         panel.get_by_role_and_label(Role::Button, "left").click_secondary();
         assert!(asked(&mut panel).is_empty());
         assert_eq!(click(&mut panel, Role::Button, item), [action]);
     }
-    let mut panel = panel(desk(THREE, 5), formation::show);
+    let mut panel = panel(app_state(THREE, 5), formation::show);
     panel.get_by_role_and_label(Role::Button, "left").click_secondary();
     panel.run();
     panel.get_by_role(Role::TextInput).click();
@@ -89,9 +89,9 @@ fn a_robot_has_a_menu() {
 
 #[test]
 fn an_edge_shows_what_is_wanted_and_what_is() {
-    let desk = desk(THREE, 40);
-    let state = desk.record().expect("a moment").edges[0];
-    let mut panel = panel(desk, edge::show);
+    let app_state = app_state(THREE, 40);
+    let state = app_state.record().expect("a moment").edges[0];
+    let mut panel = panel(app_state, edge::show);
     assert_says(&panel, &["leader → left", &format!("is {:.3} m", state.relative.distance)]);
     assert_says(&panel, &[&format!("is {:.1}°", state.relative.bearing.to_degrees()), "error "]);
     assert_eq!(value(&panel, Role::SpinButton, "Distance"), 2.0);
@@ -100,7 +100,7 @@ fn an_edge_shows_what_is_wanted_and_what_is() {
         let tip = tip(&mut panel, symbol.sign).join("\n");
         assert!(tip.contains(symbol.equation) && tip.contains(symbol.growing), "{tip}");
     }
-    panel.state_mut().desk.choice = Choice::Robot(0);
+    panel.state_mut().app_state.selection = Selection::Robot(0);
     panel.run();
     assert_says(&panel, &["Click a follower or its edge."]);
 }
@@ -119,17 +119,17 @@ fn points(actions: &[Action]) -> Vec<(usize, f64, f64)> {
 #[test]
 fn set_points_are_typed_and_dragged() {
     for (text, distance) in [("1.5", 1.5), ("2.5 m", 2.5), ("1,25", 1.25)] {
-        let mut panel = panel(desk(THREE, 5), edge::show);
+        let mut panel = panel(app_state(THREE, 5), edge::show);
         let actions = enter(&mut panel, Role::SpinButton, "Distance", text);
         assert_eq!(points(&actions).first(), Some(&(0, distance, 135.0)), "{text}: {actions:?}");
         assert!(actions.contains(&Action::Rest), "{text}");
     }
     for (text, degrees) in [("-90", -90.0), ("−45°", -45.0), ("500", 180.0)] {
-        let mut panel = panel(desk(THREE, 5), edge::show);
+        let mut panel = panel(app_state(THREE, 5), edge::show);
         let actions = enter(&mut panel, Role::SpinButton, "Bearing", text);
         assert_eq!(points(&actions).first(), Some(&(0, 2.0, degrees)), "{text}: {actions:?}");
     }
-    let mut panel = panel(desk(THREE, 5), edge::show);
+    let mut panel = panel(app_state(THREE, 5), edge::show);
     let actions = enter(&mut panel, Role::SpinButton, "Distance", "far");
     assert!(points(&actions).is_empty(), "{actions:?}");
     let actions = super::drag(&mut panel, Role::SpinButton, "Distance", [0.5, 1.5]);
@@ -139,7 +139,7 @@ fn set_points_are_typed_and_dragged() {
 
 #[test]
 fn the_formation_is_mirrored_scaled_and_turned() {
-    let mut panel = panel(desk(THREE, 5), edge::show);
+    let mut panel = panel(app_state(THREE, 5), edge::show);
     assert_eq!(click(&mut panel, Role::CheckBox, "Mirror the other side"), [Action::Mirror(true)]);
     for (name, wanted) in
         [("+10 %", (1.1, 0.0)), ("−10 %", (1.0 / 1.1, 0.0)), ("↺ 5°", (1.0, 5.0)), ("↻ 5°", (1.0, -5.0))]
@@ -152,24 +152,24 @@ fn the_formation_is_mirrored_scaled_and_turned() {
 
 #[test]
 fn an_edge_tells_what_comes() {
-    let mut desk = desk(THREE, 5);
-    desk.forecast = Some(Forecast {
+    let mut app_state = app_state(THREE, 5);
+    app_state.prediction = Some(Prediction {
         span: [0.0, 6.0],
         late_error: vec![[0.012, 0.1], [0.5, 0.5]],
         contact: Some((3.21, [EntityId::Robot(1), EntityId::Robot(2)])),
-        ..Forecast::default()
+        ..Prediction::default()
     });
-    let mut panel = panel(desk, edge::show);
+    let mut panel = panel(app_state, edge::show);
     assert_says(&panel, &["in 6 s: within 0.012 m, 5.73°", "contact at 3.2 s: left and right"]);
-    if let Some(forecast) = &mut panel.state_mut().desk.forecast {
-        forecast.branch = 1;
+    if let Some(prediction) = &mut panel.state_mut().app_state.prediction {
+        prediction.branch = 1;
     }
     panel.run();
     assert!(!says(&panel, "contact"), "that is another branch's");
     let limited = with(THREE, &[("robots.left.vehicle.speed_max", "0.82")]);
-    assert_says(&self::panel(self::desk(&limited, 60), edge::show), &["a limit cuts the command"]);
+    assert_says(&self::panel(self::app_state(&limited, 60), edge::show), &["a limit cuts the command"]);
     let moving = include_str!("../../../../../scenes/moving-set-point.toml");
-    assert_says(&self::panel(self::desk(moving, 60), edge::show), &["It moves in time"]);
+    assert_says(&self::panel(self::app_state(moving, 60), edge::show), &["It moves in time"]);
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn branches_are_shown_with_their_changes() {
     let gain = Action::Tune { what: "Gain".to_owned(), key: "law.k", value: "5.0".to_owned() };
     rig.act(&[Action::Seek(0.2), gain]);
     rig.steps(10);
-    let mut panel = panel(rig.desk, branches::show);
+    let mut panel = panel(rig.app_state, branches::show);
     assert_says(&panel, &["main", "branch 1", "leaves main at 0.20 s", "law.k = [5.0, 5.0] of 2 robots"]);
     assert_eq!(click(&mut panel, Role::Button, "main"), [Action::Branch(0)]);
     assert_eq!(click(&mut panel, Role::Button, "Branch here"), [Action::Fork]);
@@ -196,11 +196,11 @@ fn branches_are_shown_with_their_changes() {
 
 #[test]
 fn the_log_leads_to_its_times() {
-    let mut desk = desk(THREE, 50);
-    desk.note("Gain of all…");
-    desk.act(&Action::Seek(0.2));
-    desk.fault("This cannot be");
-    let mut panel = panel(desk, log::show);
+    let mut app_state = app_state(THREE, 50);
+    app_state.note("Gain of all…");
+    app_state.act(&Action::Seek(0.2));
+    app_state.fault("This cannot be");
+    let mut panel = panel(app_state, log::show);
     assert_says(&panel, &["Gain of all", "This cannot be", "0.49 s"]);
     assert!(!says(&panel, "…"), "what goes on under a hand is over in the log");
     assert_eq!(click(&mut panel, Role::Link, "0.20 s"), [Action::Seek(0.2)]);

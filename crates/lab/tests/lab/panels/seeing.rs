@@ -1,17 +1,17 @@
 //! What is drawn and filmed, obstacles and light.
 
 use super::{Panel, asked, assert_says, click, drag, panel, value};
-use crate::common::{THREE, desk};
+use crate::common::{THREE, app_state};
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use lab::action::Action;
-use lab::desk::Tool;
+use lab::app_state::Tool;
 use lab::panels::{film, world};
 use rendering::Style;
 
 fn film(filming: Option<&'static str>) -> Panel {
     let style = Style::default();
-    panel(desk(THREE, 5), move |ui, desk, out| film::show(ui, desk, &style, filming, out))
+    panel(app_state(THREE, 5), move |ui, app_state, out| film::show(ui, app_state, &style, filming, out))
 }
 
 #[test]
@@ -66,16 +66,16 @@ fn name_of(name: &str) -> &'static str {
 #[test]
 fn obstacles_come_and_go() {
     let pillar = "\n[[props]]\nname = \"post\"\nshape = \"cylinder\"\nradius = 0.1\nheight = 0.5\npose = [5.0, 5.0, 0.0]\n";
-    let mut panel = panel(desk(&format!("{THREE}{pillar}"), 5), world::surroundings);
+    let mut panel = panel(app_state(&format!("{THREE}{pillar}"), 5), world::surroundings);
     assert_says(&panel, &["1 obstacle", "post"]);
     assert_eq!(click(&mut panel, Role::Button, "+ Pillar"), [Action::Take(Tool::Pillar)]);
     assert_eq!(click(&mut panel, Role::Button, "Remove post"), [Action::RemoveProp("post".to_owned())]);
-    assert_says(&self::panel(desk(THREE, 5), world::surroundings), &["no obstacles"]);
+    assert_says(&self::panel(app_state(THREE, 5), world::surroundings), &["no obstacles"]);
 }
 
 #[test]
 fn the_sun_moves_when_it_is_let_go() {
-    let mut panel = panel(desk(THREE, 5), world::surroundings);
+    let mut panel = panel(app_state(THREE, 5), world::surroundings);
     for (name, path) in
         [("Sun's height", "environment.sun_elevation"), ("Sun's direction", "environment.sun_azimuth")]
     {
@@ -84,10 +84,10 @@ fn the_sun_moves_when_it_is_let_go() {
         assert!(what == name && values[0].0 == path && values[0].1.ends_with(" deg\""), "{actions:?}");
         let before = value(&panel, Role::Slider, name);
         for action in actions {
-            assert!(panel.state_mut().desk.act(&action));
+            assert!(panel.state_mut().app_state.act(&action));
         }
         panel.run();
         assert_ne!(value(&panel, Role::Slider, name), before);
-        assert_eq!(panel.state().desk.notice, None);
+        assert_eq!(panel.state().app_state.notice, None);
     }
 }

@@ -1,16 +1,16 @@
 //! The bar of time, and curves over it.
 
 use super::{Panel, asked, assert_says, click, drag, panel, texts, value};
-use crate::common::{Rig, THREE, desk};
+use crate::common::{Rig, THREE, app_state};
 use eframe::egui::{Key, Modifiers, accesskit::Role, pos2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use lab::action::Action;
-use lab::desk::Desk;
+use lab::app_state::AppState;
 use lab::panels::{curves, time_bar};
-use lab::quantities::{Quantity, csv};
+use lab::quantities::{PlotQuantity, csv};
 
-fn bar(desk: Desk, filming: bool) -> Panel {
-    let mut bar = panel(desk, move |ui, desk, out| time_bar::show(ui, desk, filming, out));
+fn bar(app_state: AppState, filming: bool) -> Panel {
+    let mut bar = panel(app_state, move |ui, app_state, out| time_bar::show(ui, app_state, filming, out));
     bar.set_size([1200.0, 700.0].into());
     bar.run();
     bar
@@ -26,7 +26,7 @@ fn seeks(actions: &[Action]) -> Vec<f64> {
 
 #[test]
 fn the_run_is_played_from_the_bar() {
-    let mut bar = bar(desk(THREE, 101), false);
+    let mut bar = bar(app_state(THREE, 101), false);
     assert_says(&bar, &["t = 1.00 s"]);
     for (name, action) in [
         ("Play", Action::Toggle),
@@ -38,13 +38,13 @@ fn the_run_is_played_from_the_bar() {
     ] {
         assert_eq!(click(&mut bar, Role::Button, name), [action], "{name}");
     }
-    bar.state_mut().desk.playing = true;
+    bar.state_mut().app_state.playing = true;
     assert_eq!(click(&mut bar, Role::Button, "Pause"), [Action::Toggle]);
 }
 
 #[test]
 fn the_line_leads_to_the_past() {
-    let mut bar = bar(desk(THREE, 601), false);
+    let mut bar = bar(app_state(THREE, 601), false);
     assert_eq!(value(&bar, Role::Slider, "Time line"), 6.0);
     bar.get_by_role_and_label(Role::Slider, "Time line").click();
     // 9 s are planned.
@@ -52,19 +52,19 @@ fn the_line_leads_to_the_past() {
     assert!(times.len() == 1 && (times[0] - 4.5).abs() < 0.05, "{times:?}");
     let times = seeks(&drag(&mut bar, Role::Slider, "Time line", [0.6, 0.2]));
     assert!((times[times.len() - 1] - 1.8).abs() < 0.05, "{times:?}");
-    bar.state_mut().desk.act(&Action::Seek(2.5));
+    bar.state_mut().app_state.act(&Action::Seek(2.5));
     bar.run();
     assert_eq!(value(&bar, Role::Slider, "Time line"), 2.5);
     assert_says(&bar, &["t = 2.50 s"]);
     // A run that is longer than planned has room.
-    let mut long = self::bar(desk(THREE, 1001), false);
+    let mut long = self::bar(app_state(THREE, 1001), false);
     long.get_by_role_and_label(Role::Slider, "Time line").click();
     assert!((seeks(&asked(&mut long))[0] - 5.1).abs() < 0.05);
 }
 
 #[test]
 fn the_pace_is_set_and_finds_back_to_one() {
-    let mut bar = bar(desk(THREE, 5), false);
+    let mut bar = bar(app_state(THREE, 5), false);
     assert_eq!(value(&bar, Role::Slider, "Pace"), 1.0);
     bar.get_by_role_and_label(Role::Slider, "Pace").set_value_accesskit(4.0);
     assert_eq!(asked(&mut bar), [Action::Pace(4.0)]);
@@ -77,8 +77,8 @@ fn the_pace_is_set_and_finds_back_to_one() {
 
 #[test]
 fn more_is_in_a_menu() {
-    let open = |desk: Desk| {
-        let mut bar = bar(desk, false);
+    let open = |app_state: AppState| {
+        let mut bar = bar(app_state, false);
         assert!(click(&mut bar, Role::Button, "More").is_empty());
         bar
     };
@@ -89,7 +89,7 @@ fn more_is_in_a_menu() {
         ("Light or dark", Action::Theme),
         ("Shortcuts", Action::Help),
     ] {
-        let mut bar = open(desk(THREE, 5));
+        let mut bar = open(app_state(THREE, 5));
         bar.get_by_label_contains(name).click();
         assert_eq!(asked(&mut bar), [action], "{name}");
         assert!(bar.query_by_label_contains(name).is_none(), "it closes");
@@ -98,19 +98,19 @@ fn more_is_in_a_menu() {
     let words = ["Save scene", "Reload from disk", "Undo", "Redo"];
     let disabled =
         |bar: &Panel| words.map(|word| bar.get_by_label_contains(word).accesskit_node().is_disabled());
-    assert_eq!(disabled(&open(desk(THREE, 5))), [true; 4]);
-    let mut desk = desk(THREE, 5);
-    desk.act(&Action::Tune { what: "Gain".to_owned(), key: "law.k", value: "5.0".to_owned() });
-    let mut bar = open(desk);
+    assert_eq!(disabled(&open(app_state(THREE, 5))), [true; 4]);
+    let mut app_state = app_state(THREE, 5);
+    app_state.act(&Action::Tune { what: "Gain".to_owned(), key: "law.k", value: "5.0".to_owned() });
+    let mut bar = open(app_state);
     assert_eq!(disabled(&bar), [false, true, false, true]);
     bar.get_by_label_contains("Undo").click();
     assert_eq!(asked(&mut bar), [Action::Undo]);
-    let mut bar = open(self::desk(THREE, 5));
+    let mut bar = open(self::app_state(THREE, 5));
     bar.get_by_label_contains("Panels").click();
     bar.run();
     bar.get_by_role_and_label(Role::Button, "Sensing").click();
     assert_eq!(asked(&mut bar), [Action::Panel("Sensing")]);
-    let mut bar = open(self::desk(THREE, 5));
+    let mut bar = open(self::app_state(THREE, 5));
     bar.get_by_label_contains("Size").click();
     bar.run();
     bar.get_by_role_and_label(Role::Button, "150 %").click();
@@ -119,7 +119,7 @@ fn more_is_in_a_menu() {
 
 #[test]
 fn a_scene_is_saved_under_another_name() {
-    let mut bar = bar(desk(THREE, 5), false);
+    let mut bar = bar(app_state(THREE, 5), false);
     click(&mut bar, Role::Button, "More");
     bar.get_by_label_contains("Save as").click();
     bar.run();
@@ -134,7 +134,7 @@ fn a_scene_is_saved_under_another_name() {
 
 #[test]
 fn a_film_under_way_is_ended() {
-    let mut bar = bar(desk(THREE, 5), true);
+    let mut bar = bar(app_state(THREE, 5), true);
     assert_eq!(click(&mut bar, Role::Button, "Film"), [Action::Film]);
     bar.get_by_role_and_label(Role::Button, "Film").hover();
     bar.run_steps(8);
@@ -143,9 +143,10 @@ fn a_film_under_way_is_ended() {
 
 #[test]
 fn a_click_on_a_curve_looks_at_its_time() {
-    for quantity in Quantity::ALL {
-        let mut panel =
-            panel(desk(THREE, 601), move |ui, desk, out| curves::show(ui, desk, &[quantity], out));
+    for quantity in PlotQuantity::ALL {
+        let mut panel = panel(app_state(THREE, 601), move |ui, app_state, out| {
+            curves::show(ui, app_state, &[quantity], out)
+        });
         panel.set_size([400.0, 200.0].into());
         panel.run();
         let mut last = -1.0;
@@ -168,13 +169,13 @@ fn curves_are_those_of_the_run() {
     let gain = Action::Tune { what: "Gain".to_owned(), key: "law.k", value: "5.0".to_owned() };
     rig.act(&[Action::Seek(0.5), gain, Action::NameBranch(0, "a, b".to_owned())]);
     rig.steps(50);
-    let table = csv(&rig.desk);
+    let table = csv(&rig.app_state);
     let rows: Vec<&str> = table.lines().skip(1).collect();
     let of = |start: &str| rows.iter().filter(|row| row.starts_with(start)).count();
     assert_eq!(of("branch 1,left,distance_error_m,"), 101, "each sample once");
     assert_eq!(of("branch 1,leader,speed_m_s,"), 101, "leaders have a speed");
     assert!(of("\"a, b\",left,distance_error_m,") > 45, "and what the other branch has of its own");
-    let record = rig.desk.record().expect("a moment");
+    let record = rig.app_state.record().expect("a moment");
     let last = rows.iter().rfind(|row| row.starts_with("branch 1,right,bearing_error_deg,")).expect("a row");
     let degrees: f64 = last.rsplit(',').next().and_then(|value| value.parse().ok()).expect("a value");
     assert!((degrees - record.edges[1].error[1].to_degrees()).abs() < 1e-9);

@@ -1,0 +1,152 @@
+//! Pictures and films of what is seen.
+
+use super::LabApp;
+use super::film_capture::FilmCapture;
+use crate::exporter::{ExportJob, FrameSpec, RATE};
+use crate::kept_run::free;
+use eframe::egui;
+use rendering::{Annotations, Style, ViewLayout};
+use std::path::Path;
+use std::sync::Arc;
+
+impl LabApp {
+    /// What is seen now, for a picture `size` large.
+    pub(crate) fn shot(&self, record: &Arc<vocabulary::StepRecord>, size: (u32, u32)) -> Option<FrameSpec> {
+        let fleet = self.app_state.history.as_ref()?.fleet();
+        let scale = (f64::from(size.1) / 720.0).max(0.5);
+        Some(FrameSpec {
+            record: Arc::clone(record),
+            layout: self.viewport.layout(fleet, record),
+            style: self.viewport.dressed(&self.app_state, record, scale),
+            words: self.app_state.words(),
+        })
+    }
+
+    /// What a film shows now: what is seen, or the view that was chosen for it, without what only the hand needs.
+    pub(crate) fn film_shot(&self, record: &Arc<vocabulary::StepRecord>) -> Option<FrameSpec> {
+        let shot = self.shot(record, (1280, 720))?;
+        let Some(view) = &self.app_state.film_from else { return Some(shot) };
+        let fleet = self.app_state.history.as_ref()?.fleet();
+        let names: Vec<String> = fleet.robots.iter().map(|member| member.name.clone()).collect();
+        let style = Style { annotations: Annotations::default(), inset: true, ..shot.style };
+        Some(FrameSpec { layout: ViewLayout::parse(view, &names).unwrap_or(shot.layout), style, ..shot })
+    }
+
+    pub(crate) fn picture(&mut self) {
+        let size = (1920, 1080);
+        let (Some(record), Some(history)) = (self.app_state.record(), &self.app_state.history) else {
+            return;
+        };
+        let time = self.app_state.time();
+        let Some(trail) = history.trail(self.app_state.branch, time).cloned() else { return };
+        let (fleet, Some(shot)) = (Arc::clone(history.fleet()), self.shot(&record, size)) else { return };
+        let path = free(Path::new("."), &self.name(), "png");
+        let home = self
+            .app_state
+            .draft
+            .as_ref()
+            .map_or_else(String::new, |draft| draft.home().display().to_string());
+        let texts = vec![
+            ("Software", concat!("echelon ", env!("CARGO_PKG_VERSION")).to_owned()),
+            ("Scene", self.app_state.script().unwrap_or_default()),
+            ("Home", home),
+            ("Time", format!("{time:?}")),
+            ("View", words_of(&shot.layout, &self.viewport.view)),
+            ("Adapter", self.viewport.gpu().description()),
+        ];
+        self.exporter.ask(ExportJob::Picture {
+            path,
+            fleet,
+            size,
+            trail: Box::new(trail),
+            shot: Box::new(shot),
+            texts,
+        });
+    }
+
+    /// Writes a picture of the whole window.
+    pub(crate) fn window_picture(&mut self) {
+        let path = free(Path::new("."), &format!("{}-window", self.name()), "png");
+        let (sender, ctx) = (self.words.0.clone(), self.ctx.clone());
+        self.ctx.request_screenshot(move |image| {
+            let [width, height] = image.size.map(|side| side as u32);
+            let rgba = image.pixels.iter().flat_map(egui::Color32::to_array).collect();
+            let picture = vocabulary::Picture { width, height, rgba };
+            let texts = [("Software", concat!("echelon ", env!("CARGO_PKG_VERSION")))];
+            let written = film::png::write(&path, &picture, &texts);
+            // A window that is closed does not wait for it.
+            let _ = sender.send(match written {
+                Ok(()) => Ok(format!("Written: {}", path.display())),
+                Err(error) => Err(error.to_string()),
+            });
+            ctx.request_repaint();
+        });
+    }
+    pub(crate) fn begin_film(&mut self) {
+        let time = self.app_state.end();
+        let branch = self.app_state.branch;
+        let Some(history) = &self.app_state.history else { return };
+        let Some(trail) = history.trail(branch, time).cloned() else { return };
+        let fleet = Arc::clone(history.fleet());
+        let path = free(Path::new("."), &self.name(), "mp4");
+        self.exporter.ask(ExportJob::Begin {
+            path: path.clone(),
+            fleet,
+            size: (1280, 720),
+            trail: Box::new(trail),
+        });
+        self.app_state.note(format!("Filming to {}", path.display()));
+        let next = time + self.app_state.pace / RATE;
+        self.film = Some(FilmCapture { path, next, branch, sent: time, frames: 0 });
+    }
+
+    pub(crate) fn end_film(&mut self) {
+        if let Some(film) = self.film.take() {
+            if film.frames == 0 {
+                self.app_state.note("Nothing was filmed: the run stood still");
+            }
+            self.exporter.ask(ExportJob::End);
+        }
+    }
+
+    /// Frames of a film that are due, at even steps of simulated time whatever the window's pace.
+    pub(crate) fn film_on(&mut self) {
+        let Some(mut film) = self.film.take() else { return };
+        let Some(history) = &self.app_state.history else { return };
+        if film.branch != self.app_state.branch {
+            film.branch = self.app_state.branch;
+            let time = history.end(film.branch);
+            (film.next, film.sent) = (time, time);
+            if let Some(trail) = history.trail(film.branch, time).cloned() {
+                self.exporter.ask(ExportJob::Trail(Box::new(trail)));
+            }
+        }
+        let end = history.end(film.branch);
+        let mut jobs = Vec::new();
+        while film.next <= end + 1e-9 {
+            let Some(record) = history.at(film.branch, film.next) else { break };
+            jobs.push(ExportJob::Records(history.since(film.branch, [film.sent, film.next])));
+            film.sent = film.next;
+            if let Some(shot) = self.film_shot(&record) {
+                jobs.push(ExportJob::Frame(Box::new(shot)));
+                film.frames += 1;
+            }
+            film.next += self.app_state.pace / RATE;
+        }
+        for job in jobs {
+            self.exporter.ask(job);
+        }
+        self.film = Some(film);
+    }
+}
+
+/// Where a picture was taken from, in the words of `--view`.
+fn words_of(layout: &rendering::ViewLayout, named: &str) -> String {
+    match layout.views.first() {
+        Some(rendering::Viewpoint::Fixed { eye, target, field_of_view }) => {
+            let numbers = eye.iter().chain(target).map(|x| format!("{x:.4}")).collect::<Vec<_>>().join(",");
+            format!("fixed:{numbers},{:.3}", field_of_view.to_degrees().clamp(5.0, 120.0))
+        }
+        _ => named.to_owned(),
+    }
+}

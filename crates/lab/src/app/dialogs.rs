@@ -1,0 +1,155 @@
+//! Draws what lies over the panels: notices, the menu of scenes, shortcuts, hints, questions.
+
+use super::dialog::Dialog;
+use super::{BARE, LabApp};
+use crate::action::Action;
+use eframe::egui::{self, Context, Ui};
+
+impl LabApp {
+    /// A line under the bar: work that a crash has left.
+    pub(crate) fn notices(&mut self, ui: &mut Ui, out: &mut Vec<Action>) {
+        if let Some(left) = &self.left {
+            let name =
+                left.path.as_ref().map_or_else(|| "a scene".to_owned(), |path| path.display().to_string());
+            egui::Panel::top("left").frame(BARE).show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(format!("Unsaved work on {name} was left when Echelon ended last time."));
+                    if ui.button("Go on with it").clicked() {
+                        out.push(Action::Recover);
+                    }
+                    if ui.button("Forget it").clicked() {
+                        out.push(Action::Forget);
+                    }
+                });
+            });
+        }
+    }
+
+    /// What went wrong, over the view, so that nothing moves under the pointer.
+    fn show_notice(&self, ctx: &Context, out: &mut Vec<Action>) {
+        let Some(notice) = self.app_state.notice.clone() else { return };
+        let view = self.viewport.rect;
+        let wide = (view.width() - 40.0).clamp(260.0, 760.0);
+        egui::Area::new(egui::Id::unique("notice"))
+            .order(egui::Order::Foreground)
+            .fixed_pos(view.center_top() + egui::vec2(0.0, 12.0))
+            .pivot(egui::Align2::CENTER_TOP)
+            .show(ctx, |ui| {
+                egui::Frame::popup(ui.style()).show(ui, |ui| {
+                    ui.set_width(wide);
+                    let colour = ui.visuals().error_fg_color;
+                    egui::ScrollArea::vertical().max_height(180.0).show(ui, |ui| {
+                        let text = egui::RichText::new(notice).color(colour).monospace();
+                        ui.add(egui::Label::new(text).wrap());
+                    });
+                    if ui.button("Dismiss").on_hover_text("Esc").clicked() {
+                        out.push(Action::Dismiss);
+                    }
+                });
+            });
+    }
+
+    /// Windows over the view.
+    pub(crate) fn windows(&mut self, ctx: &Context, out: &mut Vec<Action>) {
+        let mut open = true;
+        let window = |name: &'static str| {
+            let middle = ctx.content_rect().center();
+            egui::Window::new(name).collapsible(false).pivot(egui::Align2::CENTER_CENTER).default_pos(middle)
+        };
+        let room = ctx.content_rect().size();
+        let large = egui::vec2((room.x - 60.0).min(1000.0), room.y - 110.0);
+        match self.dialog {
+            Dialog::Nothing => {}
+            Dialog::Gallery => {
+                window("Scenes").open(&mut open).default_size(large).show(ctx, |ui| {
+                    self.gallery.show(ui, &self.recent, out);
+                });
+            }
+            Dialog::Help => {
+                window("Shortcuts")
+                    .open(&mut open)
+                    .resizable(false)
+                    .default_height(large.y)
+                    .show(ctx, crate::keys::page);
+            }
+            Dialog::Closing => self.ask_before_closing(ctx, out),
+            Dialog::Leaving => self.ask_before_leaving(ctx, out),
+        }
+        if !open {
+            self.dialog = Dialog::Nothing;
+        }
+        self.show_notice(ctx, out);
+        if self.hints && self.viewport.rect.width() > 460.0 {
+            self.show_hints(ctx);
+        }
+    }
+
+    fn show_hints(&mut self, ctx: &Context) {
+        let mut open = true;
+        egui::Window::new("Three things to try")
+            .open(&mut open)
+            .collapsible(false)
+            .resizable(false)
+            .fixed_pos(self.viewport.rect.right_top() + egui::vec2(-12.0, 12.0))
+            .pivot(egui::Align2::RIGHT_TOP)
+            .default_width(300.0)
+            .show(ctx, |ui| {
+                ui.label(
+                    "1.  Drag the bright ring: the set point moves, and the thin lines show the future.",
+                );
+                ui.label("2.  Drag ε in the panel Observer, then press Shift Home, and watch it peak.");
+                ui.label("3.  Drag back on the line of time, change a gain, and play: a branch.");
+                if ui.button("Got it").clicked() {
+                    self.hints = false;
+                }
+            });
+        self.hints &= open;
+    }
+
+    fn ask_before_closing(&mut self, ctx: &Context, out: &mut Vec<Action>) {
+        egui::Modal::new(egui::Id::unique("closing")).show(ctx, |ui| {
+            ui.label("The scene has changes that are not saved.");
+            ui.horizontal(|ui| {
+                if ui.button("Save and close").clicked() {
+                    out.push(Action::Save);
+                    self.dialog = Dialog::Nothing;
+                    ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+                }
+                if ui.button("Close without saving").clicked() {
+                    self.autosave.done();
+                    self.app_state.draft = None;
+                    self.dialog = Dialog::Nothing;
+                    ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+                }
+                if ui.button("Stay").clicked() {
+                    self.dialog = Dialog::Nothing;
+                }
+            });
+        });
+    }
+
+    fn ask_before_leaving(&mut self, ctx: &Context, out: &mut Vec<Action>) {
+        egui::Modal::new(egui::Id::unique("leaving")).show(ctx, |ui| {
+            ui.label("The scene has changes that are not saved.");
+            ui.horizontal(|ui| {
+                let (save, go) =
+                    (ui.button("Save and open").clicked(), ui.button("Open without saving").clicked());
+                let stay = ui.button("Stay").clicked();
+                if save || go || stay {
+                    self.dialog = Dialog::Nothing;
+                    let next = self.next.take();
+                    if save {
+                        out.push(Action::Save);
+                    }
+                    if go && let Some(draft) = &mut self.app_state.draft {
+                        draft.abandon();
+                    }
+                    if !stay {
+                        // Where saving failed, the question comes again.
+                        out.extend(next);
+                    }
+                }
+            });
+        });
+    }
+}

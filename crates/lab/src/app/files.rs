@@ -1,0 +1,245 @@
+//! Scenes from and to disk: open, save, read again, recover, and runs that are kept.
+
+use super::LabApp;
+use super::dialog::Dialog;
+use crate::kept_run::{SeenRun, free, keep};
+use crate::session::scene_draft::SceneDraft;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Scenes opened before that are remembered.
+const MOST_RECENT: usize = 8;
+/// Between two times that unsaved work is put on disk.
+const KEEP_EVERY: Duration = Duration::from_secs(1);
+
+impl LabApp {
+    pub(crate) fn open(&mut self, path: &Path) {
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+            return self.open_picture(path);
+        }
+        let log = if path.is_dir() { path.join(recording::log::FILE) } else { path.to_owned() };
+        if path.is_dir() || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
+            return self.open_recorded(&log);
+        }
+        if let Some(shipped) = path.to_str().and_then(scene::shipped).filter(|_| !path.exists()) {
+            return self.open_shipped(shipped.name);
+        }
+        match std::fs::read_to_string(path) {
+            Ok(text) => {
+                if self.take_scene(text, Some(path.to_owned()), path) {
+                    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+                    self.recent.retain(|known| *known != path);
+                    self.recent.insert(0, path);
+                    self.recent.truncate(MOST_RECENT);
+                }
+            }
+            Err(error) => self.app_state.fault(format!("{} cannot be read: {error}", path.display())),
+        }
+    }
+
+    /// A run that was recorded, to look through.
+    fn open_recorded(&mut self, path: &Path) {
+        let log = match recording::log::Log::open(path) {
+            Ok(log) => log,
+            Err(error) => return self.app_state.fault(error.to_string()),
+        };
+        self.end_film();
+        // Beside the log lies what its scene was read from, if anything.
+        match self.app_state.open_recorded(log, &path.with_file_name("scene.toml")) {
+            Ok(()) => {
+                self.app_state.notice = None;
+                self.dialog = Dialog::Nothing;
+                self.viewport.look("snake");
+                self.file_watcher.look_at(None);
+                self.app_state.note(format!("As recorded in {}", path.display()));
+            }
+            Err(faults) => self.app_state.fault(faults),
+        }
+    }
+
+    pub(crate) fn open_shipped(&mut self, name: &str) {
+        if let Some(shipped) = scene::shipped(name) {
+            self.take_scene(shipped.text.to_owned(), None, Path::new(&format!("{name}.toml")));
+        }
+    }
+
+    /// A scene in place of the one that is open; where it cannot be opened, that one stays.
+    pub(crate) fn take_scene(&mut self, text: String, path: Option<PathBuf>, home: &Path) -> bool {
+        self.end_film();
+        match self.app_state.open(text, path.clone(), home) {
+            Ok(()) => {
+                self.app_state.notice = None;
+                self.dialog = Dialog::Nothing;
+                let view = self
+                    .app_state
+                    .scene()
+                    .map_or_else(|| "snake".to_owned(), |scene| scene.views.default.clone());
+                self.viewport.look(&view);
+                self.viewport.style.picture_in_picture = None;
+                self.file_watcher.look_at(path);
+                true
+            }
+            Err(faults) => {
+                self.app_state.fault(faults);
+                false
+            }
+        }
+    }
+
+    /// A picture brings back the scene, the time and the view that made it.
+    pub(crate) fn open_picture(&mut self, path: &Path) {
+        let texts = match film::png::read_texts(path) {
+            Ok(texts) => texts,
+            Err(error) => return self.app_state.fault(error.to_string()),
+        };
+        let of = |key: &str| texts.iter().find(|(known, _)| known == key).map(|(_, text)| text.clone());
+        let Some(scene) = of("Scene") else {
+            return self
+                .app_state
+                .fault(format!("{} was not made by the lab: it holds no scene", path.display()));
+        };
+        let home = of("Home").map_or_else(|| path.to_owned(), PathBuf::from);
+        if !self.take_scene(scene, None, &home) {
+            return;
+        }
+        if let Some(time) = of("Time").and_then(|time| time.parse::<f64>().ok()).filter(|t| t.is_finite()) {
+            self.app_state.playing = false;
+            self.app_state.requests.clear();
+            self.app_state.restart(time);
+        }
+        if let Some(view) = of("View") {
+            self.viewport.look(&view);
+        }
+        self.app_state.note(format!("As in {}", path.display()));
+    }
+
+    pub(crate) fn save(&mut self, path: Option<PathBuf>) {
+        let Some(draft) = &mut self.app_state.draft else { return };
+        // A scene that came with the program is saved beside where one works.
+        let own = || free(Path::new("."), &stem(draft.home()), "toml");
+        let path = path.or_else(|| draft.path.clone()).unwrap_or_else(own);
+        if path.exists() && draft.path.as_ref() != Some(&path) {
+            let text =
+                format!("{} is there already: choose another name, or remove it first", path.display());
+            return self.app_state.fault(text);
+        }
+        match output::write_whole(&path, draft.text().as_bytes()) {
+            Ok(()) => {
+                draft.saved_to(path.clone());
+                self.autosave.done();
+                self.app_state.notice = None;
+                self.file_watcher.look_at(Some(path.clone()));
+                self.app_state.note(format!("Saved: {}", path.display()));
+            }
+            Err(error) => self.app_state.fault(error.to_string()),
+        }
+    }
+
+    pub(crate) fn reload(&mut self) {
+        let Some(path) = self.app_state.draft.as_ref().and_then(|draft| draft.path.clone()) else { return };
+        match std::fs::read_to_string(&path) {
+            Ok(text) => self.take_text("Read again from disk", text),
+            Err(error) => self.app_state.fault(format!("{} cannot be read: {error}", path.display())),
+        }
+    }
+
+    pub(crate) fn take_text(&mut self, what: &str, text: String) {
+        let Some(draft) = &mut self.app_state.draft else { return };
+        match draft.replace(what, text) {
+            Ok(effect) => {
+                if let Some(path) = draft.path.clone() {
+                    draft.saved_to(path);
+                }
+                self.app_state.notice = None;
+                self.app_state.take(what, &effect);
+            }
+            Err(faults) => self.app_state.fault(faults),
+        }
+    }
+
+    pub(crate) fn changed_on_disk(&mut self) {
+        if self.app_state.draft.as_ref().is_some_and(SceneDraft::unsaved) {
+            let text = "The file has changed on disk, and there are changes here: Ctrl R takes the file, Ctrl S keeps yours.";
+            self.app_state.fault(text);
+        } else {
+            self.reload();
+        }
+    }
+
+    pub(crate) fn recover(&mut self) {
+        let Some(left) = self.left.take() else { return };
+        let home = left.path.clone().unwrap_or_else(|| PathBuf::from("scene.toml"));
+        let saved = left.path.as_ref().and_then(|path| std::fs::read_to_string(path).ok());
+        let text = saved.unwrap_or_else(|| left.text.clone());
+        if self.take_scene(text, left.path.clone(), &home) {
+            // The work is an edit of what is on disk, so that it can be undone.
+            if let Some(draft) = &mut self.app_state.draft {
+                match draft.replace("Work from before", left.text.clone()) {
+                    Ok(_) => self.app_state.restart(0.0),
+                    Err(faults) => return self.app_state.fault(faults),
+                }
+            }
+            let _ = std::fs::remove_file(&left.file);
+        }
+    }
+
+    pub(crate) fn forget(&mut self) {
+        if let Some(left) = self.left.take() {
+            let _ = std::fs::remove_file(left.file);
+        }
+    }
+
+    pub(crate) fn write_curves(&mut self, ending: &str, text: &str) {
+        let path = free(Path::new("."), &self.name(), ending);
+        match output::write_whole(&path, text.as_bytes()) {
+            Ok(()) => self.app_state.note(format!("Written: {}", path.display())),
+            Err(error) => self.app_state.fault(error.to_string()),
+        }
+    }
+
+    pub(crate) fn keep_run(&mut self, branch: usize, seen: SeenRun) {
+        if branch != self.app_state.branch {
+            return;
+        }
+        let text = match self.app_state.script() {
+            Ok(text) => text,
+            Err(why) => return self.app_state.fault(why),
+        };
+        let home = self.app_state.draft.as_ref().map_or_else(PathBuf::new, |draft| draft.home().to_owned());
+        let folder = free(Path::new("runs"), &format!("{}-lab", self.name()), "");
+        let (sender, gpu, ctx) = (self.words.0.clone(), self.viewport.gpu().clone(), self.ctx.clone());
+        self.app_state.note("The run is being written down");
+        let work = move || {
+            let word = keep(&text, &home, &folder, &seen, Some(&gpu));
+            // A window that is closed does not wait for it.
+            let _ = sender.send(word);
+            ctx.request_repaint();
+        };
+        if let Err(error) = std::thread::Builder::new().name("keep".to_owned()).spawn(work) {
+            self.app_state.fault(error.to_string());
+        }
+    }
+
+    pub(crate) fn keep_work(&mut self) {
+        let Some(draft) = &self.app_state.draft else { return };
+        if !draft.unsaved() {
+            return self.autosave.done();
+        }
+        let wait = KEEP_EVERY.saturating_sub(self.kept_at.elapsed());
+        if !wait.is_zero() {
+            return self.ctx.request_repaint_after(wait);
+        }
+        self.kept_at = Instant::now();
+        if let Err(why) = self.autosave.keep(draft.text(), draft.path.as_deref()) {
+            self.app_state.fault(why);
+        }
+    }
+
+    pub(crate) fn name(&self) -> String {
+        self.app_state.draft.as_ref().map_or_else(|| "scene".to_owned(), |draft| stem(draft.home()))
+    }
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}

@@ -1,0 +1,428 @@
+//! The window itself: it hears events, shows panels, and does what is asked for.
+
+mod capture;
+mod dialog;
+mod dialogs;
+mod files;
+mod film_capture;
+mod memory;
+
+use self::dialog::Dialog;
+use self::film_capture::FilmCapture;
+use self::memory::Memory;
+use crate::Error;
+use crate::action::Action;
+use crate::app_state::{AppState, Selection, Tool};
+use crate::autosave::{Autosave, RecoverableWork, alive, left};
+use crate::exporter::{ExportEvent, Exporter};
+use crate::file_watcher::FileWatcher;
+use crate::frame_timings::FrameTimings;
+use crate::gallery::{self, Gallery};
+use crate::kept_run::SeenRun;
+use crate::look;
+use crate::panels::time_bar;
+use crate::panes::{self, Pane, Panels};
+use crate::quantities;
+use crate::session::prediction::{Prediction, Predictor};
+use crate::session::runner::{RunEvent, RunRequest, Runner};
+use crate::session::scene_draft::SceneDraft;
+use crate::view::viewport::{ViewInput, Viewport};
+use crate::window::{NAME, Options};
+use eframe::egui::{self, Context, Ui};
+use egui_tiles::Tree;
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+use vocabulary::counted;
+
+/// The window.
+pub(crate) struct LabApp {
+    pub(crate) app_state: AppState,
+    pub(crate) runner: Runner,
+    pub(crate) predictions: Receiver<Prediction>,
+    pub(crate) viewport: Viewport,
+    pub(crate) exporter: Exporter,
+    pub(crate) tree: Tree<Pane>,
+    pub(crate) gallery: Gallery,
+    pub(crate) dialog: Dialog,
+    pub(crate) hints: bool,
+    title: String,
+    /// What waits for an answer about unsaved work.
+    pub(crate) next: Option<Action>,
+    pub(crate) recent: Vec<PathBuf>,
+    pub(crate) autosave: Autosave,
+    pub(crate) kept_at: Instant,
+    pub(crate) left: Option<RecoverableWork>,
+    pub(crate) file_watcher: FileWatcher,
+    pub(crate) film: Option<FilmCapture>,
+    pub(crate) words: (Sender<Word>, Receiver<Word>),
+    pub(crate) ctx: Context,
+    pub(crate) ended: Arc<Mutex<Option<Error>>>,
+    pub(crate) timings: FrameTimings,
+    pub(crate) print: bool,
+}
+
+/// A word from a thread: what was done, or why it could not be.
+type Word = Result<String, String>;
+
+impl LabApp {
+    pub(crate) fn new(
+        context: &eframe::CreationContext<'_>,
+        options: &Options,
+        (began, ended): (Instant, Arc<Mutex<Option<Error>>>),
+    ) -> Result<Self, String> {
+        let state = context.wgpu_render_state.as_ref().ok_or("there is no graphics device")?;
+        let ctx = context.egui_ctx.clone();
+        look::dress(&ctx);
+        let wake = || {
+            let ctx = ctx.clone();
+            move || ctx.request_repaint()
+        };
+        let (predictor, predictions) = Predictor::start(wake());
+        let viewport = Viewport::new(state);
+        let memory: Memory =
+            context.storage.and_then(|storage| eframe::get_value(storage, "memory")).unwrap_or_default();
+        ctx.set_zoom_factor(memory.scale.unwrap_or(1.0).clamp(0.5, 4.0));
+        let folder = eframe::storage_dir(NAME);
+        let mut lab = Self {
+            app_state: AppState::new(),
+            runner: Runner::start(predictor, wake()),
+            predictions,
+            exporter: Exporter::start(viewport.gpu().clone(), wake()),
+            viewport,
+            tree: memory.tree.filter(panes::sound).unwrap_or_else(panes::arrangement),
+            gallery: Gallery::default(),
+            dialog: Dialog::Nothing,
+            hints: !memory.hints_seen,
+            title: String::new(),
+            next: None,
+            recent: memory.recent,
+            autosave: Autosave::new(folder.as_deref()),
+            kept_at: Instant::now(),
+            left: folder.as_deref().and_then(|folder| left(folder, alive)),
+            file_watcher: FileWatcher::start(wake(), options.stop),
+            film: None,
+            words: channel(),
+            ctx: ctx.clone(),
+            ended,
+            timings: FrameTimings::since(began),
+            print: options.timings,
+        };
+        if let Some([width, height]) = options.size {
+            // A size that was asked for comes before the one that is remembered.
+            ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(egui::vec2(width, height)));
+        }
+        lab.app_state.playing = !options.paused;
+        lab.app_state.aloud = options.timings.then(std::io::stdout);
+        lab.open_first(options);
+        Ok(lab)
+    }
+
+    fn open_first(&mut self, options: &Options) {
+        match &options.scene {
+            Some(path) => self.open(path),
+            None => self.open_shipped(gallery::FIRST),
+        }
+        if let Some(fault) = self.app_state.notice.as_ref().filter(|_| self.app_state.draft.is_none()) {
+            // Whoever started it from a terminal looks there first.
+            let _ = writeln!(std::io::stderr(), "error: {fault}");
+        }
+        if !options.set.is_empty() && self.app_state.draft.is_some() {
+            let set = options.set.clone();
+            self.app_state.edit("Changes of the command line", |text| {
+                set.iter().try_for_each(|set| {
+                    let (path, value) = set.parts();
+                    text.set(path, value).map_err(|error| error.to_string())
+                })
+            });
+        }
+    }
+
+    fn poll_events(&mut self) {
+        while let Some(run_event) = self.runner.next_event() {
+            match run_event {
+                RunEvent::Summary { branch, changes: _, samples, digest } => {
+                    self.keep_run(branch, SeenRun { samples, digest });
+                }
+                RunEvent::Opened { .. } => {
+                    // Another run, or the same from the start: a film goes forward only.
+                    self.end_film();
+                    self.app_state.handle_event(run_event);
+                }
+                run_event => self.app_state.handle_event(run_event),
+            }
+        }
+        while let Ok(prediction) = self.predictions.try_recv() {
+            self.timings.prediction(&prediction);
+            if prediction.branch == self.app_state.branch && self.app_state.ahead > 0.0 {
+                self.app_state.prediction = Some(prediction);
+            }
+        }
+        while let Some(told) = self.exporter.told() {
+            match told {
+                ExportEvent::Written(path) => self.app_state.note(format!("Written: {}", path.display())),
+                ExportEvent::Failed(why) => {
+                    self.film = None;
+                    self.app_state.fault(why);
+                }
+            }
+        }
+        while let Ok(word) = self.words.1.try_recv() {
+            match word {
+                Ok(text) => self.app_state.note(text),
+                Err(text) => self.app_state.fault(text),
+            }
+        }
+        if self.file_watcher.changed() {
+            self.changed_on_disk();
+        }
+        self.film_on();
+        self.keep_work();
+    }
+
+    /// Sends what the state has requested.
+    fn send(&mut self) {
+        for request in std::mem::take(&mut self.app_state.requests) {
+            let request = match request {
+                RunRequest::ResumeRecording { scene, .. } => {
+                    RunRequest::ResumeRecording { scene, gpu: Some(self.viewport.gpu().clone()) }
+                }
+                RunRequest::Open { scene, until, .. } => {
+                    RunRequest::Open { scene, until, gpu: Some(self.viewport.gpu().clone()) }
+                }
+                request => request,
+            };
+            self.runner.request(request);
+        }
+    }
+
+    fn show(&mut self, ui: &mut Ui) -> Vec<Action> {
+        let mut out = Vec::new();
+        crate::keys::pressed(ui.ctx(), &self.app_state, self.dialog != Dialog::Nothing, &mut out);
+        let (branch, time) = (self.app_state.branch, self.app_state.time());
+        if let Some(history) = &mut self.app_state.history {
+            history.prepare_trail(branch, time);
+        }
+        let filming = self.film.as_ref().map(|film| film.words(self.exporter.waiting()));
+        egui::Panel::top("time").frame(BARE).show(ui, |ui| {
+            ui.add_space(3.0);
+            time_bar::show(ui, &self.app_state, filming.is_some(), &mut out);
+            ui.add_space(3.0);
+        });
+        self.notices(ui, &mut out);
+        let app_state = &self.app_state;
+        let style = self.viewport.style.clone();
+        let view_tile = Pane::named("View").and_then(|pane| self.tree.tiles.find_pane(&pane));
+        let viewport = &mut self.viewport;
+        let mut view = |ui: &mut Ui, out: &mut Vec<Action>| {
+            let empty = Arc::default();
+            let seen = ViewInput {
+                app_state,
+                fleet: app_state.history.as_ref().map_or(&empty, |history| history.fleet()),
+                record: app_state.shown(),
+                trail: app_state.history.as_ref().and_then(|history| history.trail(branch, time)),
+            };
+            viewport.show(ui, &seen, out);
+        };
+        let mut panels = Panels {
+            app_state,
+            style: &style,
+            filming: filming.as_deref(),
+            view: &mut view,
+            view_tile,
+            out: &mut out,
+        };
+        let tree = &mut self.tree;
+        egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| {
+            let room = ui.available_size();
+            // In a window as small as a hand there is room for the view alone.
+            if room.x < LEAST.x || room.y < LEAST.y {
+                (panels.view)(ui, panels.out);
+            } else {
+                tree.ui(&mut panels, ui);
+            }
+        });
+        self.windows(ui.ctx(), &mut out);
+        out
+    }
+
+    fn act(&mut self, action: Action) {
+        if self.app_state.act(&action) {
+            return;
+        }
+        match action {
+            Action::Follow(robot) => self.viewport.follow(robot, &self.app_state),
+            Action::Viewpoint(view) => self.viewport.look(&view),
+            Action::Inset(robot) => {
+                let now = &mut self.viewport.style.picture_in_picture;
+                *now = if *now == robot { None } else { robot };
+                self.viewport.style.detections = now.is_some();
+            }
+            Action::Element(name, on) => {
+                // The names are the panel's own.
+                let _ = self.viewport.style.set(name, on);
+            }
+            Action::Open(_) | Action::OpenShipped(_) if self.unsaved() => {
+                self.next = Some(action);
+                self.dialog = Dialog::Leaving;
+            }
+            Action::Open(path) => self.open(&path),
+            Action::OpenShipped(name) => self.open_shipped(name),
+            Action::Save => self.save(None),
+            Action::SaveAs(path) => self.save(Some(path)),
+            Action::Reload => self.reload(),
+            Action::Recover => self.recover(),
+            Action::Forget => self.forget(),
+            Action::Picture => self.picture(),
+            Action::WindowPicture => self.window_picture(),
+            Action::Film if self.film.is_some() => self.end_film(),
+            Action::Film if self.app_state.recorded => {
+                self.app_state.fault("A recorded run is filmed by: echelon replay RUN --film FILE");
+            }
+            Action::Film => self.begin_film(),
+            Action::KeepRun if self.app_state.recorded => {
+                self.app_state.fault("This run is recorded already")
+            }
+            Action::KeepRun => self.app_state.requests.push(RunRequest::Summarize(self.app_state.branch)),
+            Action::CurvesCsv => self.write_curves("csv", &quantities::csv(&self.app_state)),
+            Action::CurvesSvg => self.write_curves("svg", &quantities::svg(&self.app_state)),
+            Action::Panel(name) => panes::toggle(&mut self.tree, name),
+            Action::Theme => {
+                let dark = self.ctx.theme() == egui::Theme::Dark;
+                self.ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
+            }
+            Action::Scale(scale) => self.ctx.set_zoom_factor(scale.clamp(0.5, 4.0)),
+            Action::Help => self.toggle(Dialog::Help),
+            Action::Gallery => self.toggle(Dialog::Gallery),
+            Action::Dismiss => self.dismiss(),
+            _ => {}
+        }
+    }
+
+    pub(crate) fn unsaved(&self) -> bool {
+        self.app_state.draft.as_ref().is_some_and(SceneDraft::unsaved)
+    }
+
+    /// The window is called as its scene.
+    fn name_window(&mut self, ctx: &Context) {
+        let title = self.app_state.scene().map_or_else(String::new, |scene| scene.title.clone());
+        if title != self.title {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(format!("{title} — Echelon")));
+            self.title = title;
+        }
+    }
+
+    fn toggle(&mut self, dialog: Dialog) {
+        self.dialog = if self.dialog == dialog { Dialog::Nothing } else { dialog };
+    }
+
+    fn dismiss(&mut self) {
+        if self.dialog != Dialog::Nothing || self.hints {
+            (self.dialog, self.hints) = (Dialog::Nothing, false);
+        } else if self.app_state.notice.is_some() {
+            self.app_state.notice = None;
+        } else if self.app_state.tool != Tool::Hand {
+            self.app_state.tool = Tool::Hand;
+        } else {
+            self.app_state.selection = Selection::Nothing;
+        }
+    }
+
+    /// Somebody ended the program from outside: unsaved work is put on disk and offered at the next start.
+    fn interrupted(&mut self, ctx: &Context) {
+        if let Some(draft) = self.app_state.draft.take().filter(SceneDraft::unsaved)
+            && let Err(why) = self.autosave.keep(draft.text(), draft.path.as_deref())
+        {
+            self.app_state.fault(why);
+        }
+        *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(Error::Interrupted);
+        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+    }
+}
+
+/// The window is cleared in the colour of panels; to paint it once more costs as much as the robots on a processor.
+pub(crate) const BARE: egui::Frame =
+    egui::Frame { inner_margin: egui::Margin::symmetric(6, 2), ..egui::Frame::NONE };
+
+/// Room for panels, points.
+const LEAST: egui::Vec2 = egui::vec2(560.0, 340.0);
+
+impl eframe::App for LabApp {
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+
+    fn logic(&mut self, ctx: &Context, _: &mut eframe::Frame) {
+        self.poll_events();
+        let passed = ctx.input(|input| f64::from(input.stable_dt.min(0.1)));
+        if self.app_state.roll(passed) {
+            ctx.request_repaint();
+        }
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        for file in dropped {
+            self.act(Action::Open(file.path().to_owned()));
+        }
+        if let Some(why) = self.viewport.gpu().lost() {
+            let text = format!(
+                "the graphics device is gone: {why}; unsaved work is kept and offered at the next start"
+            );
+            *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(Error::Window(text));
+            self.app_state.draft = None;
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        if self.file_watcher.stopped() {
+            return self.interrupted(ctx);
+        }
+        self.name_window(ctx);
+        let asked = ctx.input(|input| input.viewport().close_requested());
+        if asked && self.unsaved() {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.dialog = Dialog::Closing;
+        }
+        self.send();
+    }
+
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let began = Instant::now();
+        let actions = self.show(ui);
+        for action in actions {
+            self.timings.asked(&action);
+            self.act(action);
+        }
+        self.send();
+        if !self.app_state.requests.is_empty() || ui.ctx().input(|input| input.pointer.any_down()) {
+            ui.ctx().request_repaint();
+        }
+        if self.viewport.rough() && !self.app_state.playing {
+            ui.ctx().request_repaint_after(Duration::from_millis(150));
+        }
+        self.timings.frame(began.elapsed(), frame.info().cpu_usage, self.viewport.pictures);
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        let memory = Memory {
+            tree: Some(self.tree.clone()),
+            recent: self.recent.clone(),
+            hints_seen: !self.hints,
+            scale: Some(self.ctx.zoom_factor()),
+        };
+        eframe::set_value(storage, "memory", &memory);
+    }
+
+    fn on_exit(&mut self) {
+        self.end_film();
+        if self.exporter.waiting() > 1 {
+            // Where nobody reads it, the film is finished all the same.
+            let _ = writeln!(
+                std::io::stderr(),
+                "finishing the film: {} to draw",
+                counted(self.exporter.waiting(), "frame")
+            );
+        }
+        if self.print {
+            self.timings.print(&self.app_state);
+        }
+    }
+}

@@ -1,0 +1,423 @@
+//! What actions mean for the scene and its run. Files, pictures and the window itself are the window's.
+
+use super::{AppState, Tool};
+use crate::action::Action;
+use crate::session::branches::BranchChange;
+use crate::session::runner::RunRequest;
+use crate::tidy::{fixed, tidy};
+use scene::{Role, SceneText};
+use vocabulary::{Relative, wrap};
+
+/// Where a new follower may stand behind its leader: m, degrees.
+const PLACES: [[f64; 2]; 8] = [
+    [2.0, -135.0],
+    [2.0, 135.0],
+    [2.0, 180.0],
+    [4.0, -135.0],
+    [4.0, 135.0],
+    [4.0, 180.0],
+    [6.0, -135.0],
+    [6.0, 135.0],
+];
+/// Mirror images may be this far apart, m and rad.
+const ALIKE: [f64; 2] = [0.05, 0.09];
+
+/// Whether an action asks for another scene.
+fn changes_the_scene(action: &Action) -> bool {
+    matches!(
+        action,
+        Action::Tune { .. }
+            | Action::Untune { .. }
+            | Action::Set { .. }
+            | Action::Reset { .. }
+            | Action::SetPoint { .. }
+            | Action::Shape { .. }
+            | Action::Connect { .. }
+            | Action::AddRobot
+            | Action::RemoveRobot(_)
+            | Action::RenameRobot(..)
+            | Action::AddProp(..)
+            | Action::RemoveProp(_)
+            | Action::Undo
+            | Action::Redo
+    )
+}
+
+impl AppState {
+    /// Does what can be done without files and without a window; whether that was all.
+    pub fn act(&mut self, action: &Action) -> bool {
+        match action {
+            Action::Toggle if self.playing => self.pause(),
+            Action::Toggle => self.play(),
+            Action::Step => self.step(),
+            Action::Back(seconds) => self.seek(self.time() - seconds),
+            Action::Pace(pace) => {
+                self.pace = pace.clamp(0.1, 50.0);
+                self.requests.push(RunRequest::Pace(self.pace));
+            }
+            Action::Seek(time) => self.seek(*time),
+            Action::Present => self.cursor = None,
+            Action::Branch(branch) => self.switch(*branch),
+            Action::Fork => {
+                self.leave_recording();
+                self.rest();
+                self.fork();
+            }
+            Action::NameBranch(branch, name) => {
+                if let Some(face) = self.branches.get_mut(*branch) {
+                    face.name.clone_from(name);
+                }
+            }
+            Action::Choose(selection) => self.selection = *selection,
+            Action::ForAll(all) => self.for_all = *all,
+            Action::Mirror(on) => self.mirror = *on,
+            Action::FilmFrom(view) => self.film_from.clone_from(view),
+            Action::Take(tool) => self.tool = if self.tool == *tool { Tool::Hand } else { *tool },
+            Action::Ahead(seconds) => {
+                self.ahead = seconds.clamp(0.0, 60.0);
+                self.requests.push(RunRequest::Ahead(self.ahead));
+                if self.ahead == 0.0 {
+                    self.prediction = None;
+                }
+            }
+            Action::Restart => self.restart(0.0),
+            Action::Rest => self.rest(),
+            _ => return self.edit_scene(action),
+        }
+        true
+    }
+
+    /// Does what changes the scene; whether that was it.
+    fn edit_scene(&mut self, action: &Action) -> bool {
+        if changes_the_scene(action) {
+            self.leave_recording();
+        }
+        match action {
+            Action::Tune { what, key, value } => self.tune(what, key, Some(value)),
+            Action::Untune { what, key } => self.tune(what, key, None),
+            Action::Set { what, values } => self.set(what, values),
+            Action::Reset { what, paths } => {
+                self.edit(what, |text| {
+                    paths.iter().try_for_each(|path| text.remove(path).map(drop).map_err(|e| e.to_string()))
+                });
+            }
+            Action::SetPoint { edge, distance, bearing } => self.move_set_point(*edge, [*distance, *bearing]),
+            Action::Shape { scale, turn } => self.reshape(*scale, *turn),
+            Action::Connect { leader, follower } => self.connect(*leader, *follower),
+            Action::AddRobot => self.add_robot(),
+            Action::RemoveRobot(name) => self.remove_robot(name),
+            Action::RenameRobot(old, new) => {
+                let (old, new) = (old.clone(), new.clone());
+                let done = self.edit(&format!("{old} is called {new}"), |text| {
+                    text.rename_robot(&old, &new).map_err(|error| error.to_string())
+                });
+                if done && self.chosen.as_ref() == Some(&old) {
+                    self.chosen = Some(new);
+                }
+            }
+            Action::AddProp(kind, place) => self.add_prop(kind, *place),
+            Action::RemoveProp(name) => {
+                self.edit(&format!("Without {name}"), |text| {
+                    text.remove_item("props", name).map_err(|error| error.to_string())
+                });
+            }
+            Action::Undo => self.undo(),
+            Action::Redo => self.redo(),
+            _ => return false,
+        }
+        true
+    }
+
+    fn step(&mut self) {
+        if self.recorded && self.cursor.is_none() {
+            return;
+        }
+        if let (Some(time), Some(history)) = (self.cursor, &self.history) {
+            let next = time + history.period();
+            self.seek(next);
+        } else {
+            self.playing = false;
+            self.requests.push(RunRequest::Step);
+        }
+    }
+
+    fn rest(&mut self) {
+        if let Some(draft) = &mut self.draft {
+            draft.rest();
+        }
+    }
+
+    fn undo(&mut self) {
+        if self.in_the_past() {
+            return self.undo_past();
+        }
+        let step = self.draft.as_mut().and_then(crate::session::scene_draft::SceneDraft::undo);
+        if let Some((what, effect)) = step {
+            self.take(&format!("Undo: {}", what.trim_end_matches('…')), &effect);
+        }
+    }
+
+    fn redo(&mut self) {
+        if self.in_the_past() {
+            return self.note("Nothing was taken back here: what came later is on the branch that has it");
+        }
+        let step = self.draft.as_mut().and_then(crate::session::scene_draft::SceneDraft::redo);
+        if let Some((what, effect)) = step {
+            self.take(&format!("Redo: {}", what.trim_end_matches('…')), &effect);
+        }
+    }
+
+    fn set(&mut self, what: &str, values: &[(String, String)]) {
+        self.edit(what, |text| {
+            values.iter().try_for_each(|(path, value)| text.set(path, value).map_err(|e| e.to_string()))
+        });
+    }
+
+    /// Sets a value of the follower that is selected, or of all followers; `None` is the default.
+    fn tune(&mut self, what: &str, key: &str, value: Option<&str>) {
+        let all = self.for_all;
+        let Some((_, name, _)) = self.chosen_edge().or(Some(0)).and_then(|edge| self.follower(edge)) else {
+            return;
+        };
+        let name = name.to_owned();
+        let followers: Vec<String> =
+            (0..).map_while(|edge| self.follower(edge).map(|(_, name, _)| name.to_owned())).collect();
+        let shown = value.map_or_else(|| "its default".to_owned(), str::to_owned);
+        let whose = if all { "all".to_owned() } else { name.clone() };
+        let what = match what.strip_suffix('…') {
+            Some(what) => format!("{what} of {whose}…"),
+            None => format!("{what} of {whose}: {shown}"),
+        };
+        self.edit(&what, |text| {
+            if all {
+                // What single robots and groups say of it would stand before what holds for all.
+                for name in &followers {
+                    clear(text, &format!("robots.{name}.{key}"))?;
+                }
+                for group in 0..text.count("groups") {
+                    clear(text, &format!("groups.{group}.{key}"))?;
+                }
+            }
+            let path = if all { key.to_owned() } else { format!("robots.{name}.{key}") };
+            match value {
+                Some(value) => text.set(&path, value).map_err(|error| error.to_string()),
+                None => clear(text, &path),
+            }
+        });
+    }
+
+    /// Moves a set point, and its mirror image where that is wanted.
+    fn move_set_point(&mut self, edge: usize, [distance, bearing]: [f64; 2]) {
+        let Some([_, name_and]) = self.names_of(edge) else { return };
+        let before = self.set_point(edge);
+        let mut moves = vec![(edge, [distance, bearing])];
+        if self.mirror
+            && let Some(twin) = before.and_then(|before| self.twin(edge, before))
+        {
+            moves.push((twin, [distance, -bearing]));
+        }
+        self.put_set_points(&format!("Set point of {name_and}…"), &moves);
+    }
+
+    fn put_set_points(&mut self, what: &str, moves: &[(usize, [f64; 2])]) {
+        let mut values = Vec::new();
+        for (edge, [distance, bearing]) in moves {
+            let Some([_, name]) = self.names_of(*edge) else { continue };
+            let least = self.follower(*edge).map_or(0.1, |(_, _, follow)| follow.law.distance_min);
+            values.push((format!("robots.{name}.distance"), tidy(distance.clamp(least, 1000.0))));
+            values.push((format!("robots.{name}.bearing"), degrees(*bearing)));
+        }
+        self.set(what, &values);
+    }
+
+    /// The edge on the other side of the same leader.
+    pub(crate) fn twin(&self, edge: usize, [distance, bearing]: [f64; 2]) -> Option<usize> {
+        let fleet = self.history.as_ref()?.fleet();
+        let leader = fleet.edges.get(edge)?.leader;
+        (0..fleet.edges.len()).filter(|other| *other != edge && fleet.edges[*other].leader == leader).find(
+            |other| {
+                self.set_point(*other).is_some_and(|[d, b]| {
+                    (d - distance).abs() < ALIKE[0] && wrap(b + bearing).abs() < ALIKE[1]
+                })
+            },
+        )
+    }
+
+    fn reshape(&mut self, scale: f64, turn: f64) {
+        let edges = self.history.as_ref().map_or(0, |history| history.fleet().edges.len());
+        let moved = |edge: usize| {
+            let [distance, bearing] = self.set_point(edge)?;
+            Some((edge, [distance * scale, wrap(bearing + turn)]))
+        };
+        let moves: Vec<_> = (0..edges).filter_map(moved).collect();
+        self.put_set_points("The whole formation…", &moves);
+    }
+
+    /// Names of leader and follower of an edge.
+    fn names_of(&self, edge: usize) -> Option<[String; 2]> {
+        let fleet = self.history.as_ref()?.fleet();
+        let ends = fleet.edges.get(edge)?;
+        Some([fleet.robots.get(ends.leader)?.name.clone(), fleet.robots.get(ends.follower)?.name.clone()])
+    }
+
+    /// Lets one robot follow another, from where it is now.
+    fn connect(&mut self, leader: usize, follower: usize) {
+        let Some(scene) = self.scene().cloned() else { return };
+        let (Some(ahead), Some(behind)) = (scene.robots.get(leader), scene.robots.get(follower)) else {
+            return;
+        };
+        if let Some(circle) = circle(&scene, leader, follower) {
+            return self.fault(format!(
+                "{} cannot follow {}: it would follow itself, {circle}",
+                behind.name, ahead.name
+            ));
+        }
+        let record = self.record();
+        let pose = |robot: usize, start: vocabulary::Pose| {
+            record.as_ref().and_then(|m| m.snapshot.robots.get(robot)).map_or(start, |r| r.motion.pose)
+        };
+        let now = Relative::between(pose(leader, ahead.pose), pose(follower, behind.pose));
+        let (name, ahead) = (behind.name.clone(), ahead.name.clone());
+        let leads = matches!(behind.role, Role::Lead { .. });
+        self.edit(&format!("{name} follows {ahead}"), |text| {
+            if leads {
+                clear(text, &format!("robots.{name}.path"))?;
+            }
+            for (key, value) in [
+                ("leader", format!("{ahead:?}")),
+                ("distance", tidy((now.distance * 20.0).round() / 20.0)),
+                ("bearing", degrees(now.bearing)),
+            ] {
+                text.set(&format!("robots.{name}.{key}"), &value).map_err(|error| error.to_string())?;
+            }
+            Ok(())
+        });
+    }
+
+    fn add_robot(&mut self) {
+        let Some(scene) = self.scene().cloned() else { return };
+        let chosen = self.chosen_robot().filter(|robot| *robot < scene.robots.len()).unwrap_or(0);
+        let Some(leader) = scene.robots.get(chosen) else { return };
+        let name = (1..=scene.robots.len() + 1)
+            .map(|n| format!("follower-{n}"))
+            .find(|name| scene.index_of(name).is_none());
+        let free = |place: &&[f64; 2]| {
+            let [x, y] = seen_from(leader.pose, **place);
+            let near = |robot: &scene::Robot| (robot.pose.x - x).hypot(robot.pose.y - y) < 1.0;
+            !scene.robots.iter().any(near)
+        };
+        let place = PLACES.iter().find(free).copied().unwrap_or([8.0, 180.0]);
+        let [x, y] = seen_from(leader.pose, place);
+        let speed = leader.vehicle.speed_max.min(0.5).max(leader.vehicle.speed_min);
+        let Some(name) = name else { return };
+        let lines = format!(
+            "name = {name:?}\npose = [{}, {}, \"{} deg\"]\nspeed = {}\nleader = {:?}\ndistance = {}\nbearing = \"{} deg\"\n",
+            tidy(x),
+            tidy(y),
+            tidy(leader.pose.heading.to_degrees()),
+            tidy(speed),
+            leader.name,
+            tidy(place[0]),
+            tidy(place[1]),
+        );
+        if self.edit(&format!("{name} follows {}", leader.name), |text| {
+            text.add_robot(&lines).map_err(|error| error.to_string())
+        }) {
+            self.chosen = Some(name);
+        }
+    }
+
+    fn remove_robot(&mut self, name: &str) {
+        let Some(scene) = self.scene().cloned() else { return };
+        let follows = |robot: &&scene::Robot| matches!(&robot.role, Role::Follow(f) if f.leader == name);
+        let left: Vec<&str> = scene.robots.iter().filter(follows).map(|robot| &*robot.name).collect();
+        if !left.is_empty() {
+            let (them, verb) = (left.join(", "), if left.len() == 1 { "follows" } else { "follow" });
+            return self
+                .fault(format!("{name} stays: {them} {verb} it. Connect {them} to another robot first."));
+        }
+        self.edit(&format!("Without {name}"), |text| {
+            text.remove_item("robots", name).map_err(|error| error.to_string())
+        });
+    }
+
+    fn add_prop(&mut self, kind: &str, [x, y]: [f64; 2]) {
+        let Some(scene) = self.scene().cloned() else { return };
+        let taken = |name: &String| scene.props.iter().any(|prop| prop.name == *name);
+        let name = (1..=scene.props.len() + 1).map(|n| format!("{kind}-{n}")).find(|name| !taken(name));
+        let name = name.unwrap_or_default();
+        let lines = format!(
+            "name = {name:?}\nshape = \"cylinder\"\nradius = 0.15\nheight = 0.6\npose = [{}, {}, 0.0]\n",
+            tidy(x),
+            tidy(y)
+        );
+        self.edit(&format!("{name} at {}, {} m", fixed(x, 1), fixed(y, 1)), |text| {
+            text.add_table("props", &lines).map_err(|error| error.to_string())
+        });
+    }
+}
+
+/// A change in few words: what holds for several robots is said once.
+pub fn words(change: &BranchChange) -> String {
+    let mut said: Vec<(String, Vec<&str>)> = Vec::new();
+    for set in &change.set {
+        let (robot, what) =
+            set.strip_prefix("robots.").and_then(|rest| rest.split_once('.')).unwrap_or(("", set));
+        let what = what.split_once('=').map_or_else(|| what.to_owned(), |(key, value)| said_of(key, value));
+        match said.iter_mut().find(|(known, _)| *known == what) {
+            Some((_, robots)) => robots.push(robot),
+            None => said.push((what, vec![robot])),
+        }
+    }
+    let one = |(what, robots): (String, Vec<&str>)| match robots.as_slice() {
+        [robot] => format!("{robot} {what}"),
+        many => format!("{what} of {} robots", many.len()),
+    };
+    said.into_iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// A value as people say it: angles in degrees, numbers short.
+fn said_of(key: &str, value: &str) -> String {
+    match value.parse::<f64>() {
+        Ok(angle) if key == "bearing" => format!("bearing = {}°", fixed(angle.to_degrees(), 1)),
+        Ok(number) => format!("{key} = {}", crate::tidy::plain(number)),
+        Err(_) => format!("{key} = {value}"),
+    }
+}
+
+/// Takes a key out; one that is not there is out already.
+fn clear(text: &mut SceneText, path: &str) -> Result<(), String> {
+    text.remove(path).map(drop).map_err(|error| error.to_string())
+}
+
+/// An angle as scenes write it.
+fn degrees(angle: f64) -> String {
+    let degrees = (angle.to_degrees() * 1000.0).round() / 1000.0;
+    // −180 is written 180.
+    let degrees = if degrees <= -180.0 { degrees + 360.0 } else { degrees };
+    format!("\"{} deg\"", crate::tidy::plain(degrees))
+}
+
+/// A place at a distance (m) and bearing (degrees) of a pose, m.
+fn seen_from(pose: vocabulary::Pose, [distance, bearing]: [f64; 2]) -> [f64; 2] {
+    let (sin, cos) = bearing.to_radians().sin_cos();
+    pose.world_from_body(distance * cos, distance * sin)
+}
+
+/// The circle that would close if `follower` followed `leader`, in names.
+fn circle(scene: &scene::Scene, leader: usize, follower: usize) -> Option<String> {
+    let wanted = &scene.robots.get(follower)?.name;
+    let mut names = vec![wanted.clone()];
+    let mut at = &scene.robots.get(leader)?.name;
+    for _ in 0..=scene.robots.len() {
+        names.push(at.clone());
+        if at == wanted {
+            return Some(names.join(" → "));
+        }
+        match &scene.robots.get(scene.index_of(at)?)?.role {
+            Role::Follow(follow) => at = &follow.leader,
+            Role::Lead { .. } => return None,
+        }
+    }
+    None
+}

@@ -1,0 +1,192 @@
+//! Edits and the run: what an edit makes of it, and the branches that edits in the past begin.
+
+use super::AppState;
+use super::branch_info::BranchInfo;
+use super::past_changes::PastChanges;
+use crate::session::branches::{BranchChange, script};
+use crate::session::history::History;
+use crate::session::runner::RunRequest;
+use crate::session::scene_draft::{Effect, SceneDraft};
+use std::sync::Arc;
+
+impl AppState {
+    /// Edits the scene, and lets the run take it.
+    pub fn edit(
+        &mut self,
+        what: &str,
+        edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
+    ) -> bool {
+        let past_changes = self.in_the_past();
+        let time = self.time();
+        let done = match &mut self.draft {
+            Some(draft) if !past_changes => {
+                let settled = PastChanges::of(draft.scene(), time);
+                draft.edit(what, |text| settled.settle(text).and_then(|()| edit(text)))
+            }
+            Some(_) => self.edit_past(what, edit),
+            None => return false,
+        };
+        match done {
+            Ok(effect) => self.take(what, &effect),
+            Err(fault) => {
+                self.fault(fault);
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Whether it is the past that is looked at, where an edit makes another future.
+    pub(crate) fn in_the_past(&self) -> bool {
+        self.forks == 0 && self.cursor.is_some_and(|time| time < self.end() - 1e-9)
+    }
+
+    /// What undo would take back: in the past, the last change that holds there.
+    pub fn undoes(&self) -> Option<String> {
+        let draft = self.draft.as_ref()?;
+        let what = if self.in_the_past() { draft.step_to(&self.there()?.1)?.0 } else { draft.undoes()? };
+        Some(what.trim_end_matches('…').to_owned())
+    }
+
+    /// Takes back the last change that holds where it is looked at: a future without it.
+    pub(crate) fn undo_past(&mut self) {
+        let step = self.there().zip(self.draft.as_ref()).and_then(|((_, there), draft)| {
+            let (what, before) = draft.step_to(&there)?;
+            Some((format!("Undo: {}", what.trim_end_matches('…')), before.to_owned()))
+        });
+        let Some((what, before)) = step else {
+            return self.note("Nothing was changed before this time");
+        };
+        self.fork();
+        let Some(draft) = &mut self.draft else { return };
+        match draft.replace(&what, before) {
+            Ok(effect) => self.take(&what, &effect),
+            Err(fault) => self.fault(fault),
+        }
+    }
+
+    /// In the past, an edit makes another future; one that cannot be makes none.
+    fn edit_past(
+        &mut self,
+        what: &str,
+        edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
+    ) -> Result<Effect, String> {
+        let (Some((_, there)), Some(draft)) = (self.there(), &self.draft) else { return Ok(Effect::None) };
+        let settled = PastChanges::of(&draft.read(&there)?, self.time());
+        let edited = draft.edited(&there, |text| settled.settle(text).and_then(|()| edit(text)))?;
+        let Some(edited) = edited else { return Ok(Effect::None) };
+        self.fork();
+        Ok(self.draft.as_mut().map_or(Effect::None, |draft| draft.put(what, edited)))
+    }
+
+    /// Lets the run take what has become of the scene.
+    pub fn take(&mut self, what: &str, effect: &Effect) {
+        match effect {
+            Effect::None => {}
+            Effect::Dress => {
+                self.note(what);
+                if let (Some(scene), Some(history)) =
+                    (self.draft.as_ref().map(SceneDraft::scene), &mut self.history)
+                {
+                    history.dress(scene);
+                }
+            }
+            Effect::Retune => {
+                self.note(what);
+                let Some(draft) = &mut self.draft else { return };
+                match draft.take_checked() {
+                    Ok(checked) => {
+                        self.sent.push((Arc::clone(draft.scene()), draft.text().to_owned()));
+                        self.requests.push(RunRequest::Change(Box::new(checked)));
+                    }
+                    Err(fault) => self.fault(fault),
+                }
+            }
+            Effect::Restart(_) => {
+                self.note(format!("{what} (the run begins anew)"));
+                let until = self.time();
+                self.restart(until);
+            }
+        }
+    }
+
+    /// Leaves the branch that is looked at, at the time that is looked at.
+    pub fn fork(&mut self) {
+        let Some((sample, text)) = self.there() else { return };
+        let name = format!("branch {}", self.branches.len() + self.forks);
+        self.requests.push(RunRequest::Fork { from: self.branch, sample, name });
+        self.forks += 1;
+        // The scene is again what it was there.
+        if let Some(draft) = &mut self.draft {
+            // It was a scene before.
+            let _ = draft.turn_to(text);
+        }
+    }
+
+    /// The sample after the time that is looked at, and the text of the scene there.
+    fn there(&self) -> Option<(u64, String)> {
+        let sample = self.history.as_ref()?.sample(self.time()) + 1;
+        Some((sample, self.branches.get(self.branch)?.text_at(sample, &self.base)))
+    }
+
+    /// Goes on with another branch.
+    pub fn switch(&mut self, branch: usize) {
+        if branch >= self.branches.len() || branch == self.branch {
+            return;
+        }
+        self.branch = branch;
+        self.cursor = None;
+        self.prediction = None;
+        self.requests.push(RunRequest::Switch(branch));
+        let text = self.branches[branch].text_at(u64::MAX, &self.base);
+        if let Some(draft) = &mut self.draft {
+            let _ = draft.turn_to(text);
+        }
+    }
+
+    /// The scene that runs as the branch that is looked at ran so far.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    pub fn script(&self) -> Result<String, String> {
+        let branch = self.branches.get(self.branch).ok_or("There is no run.")?;
+        let period = self.history.as_ref().map_or(0.01, History::period);
+        script(&self.base, &self.own, &branch.changes, self.end().max(period))
+    }
+
+    pub(crate) fn forked(
+        &mut self,
+        branch: usize,
+        (from, sample): (usize, u64),
+        name: String,
+        changes: Vec<BranchChange>,
+    ) {
+        let Some(history) = &mut self.history else { return };
+        history.fork(from, sample);
+        let time = (sample as f64 - 1.0) * history.period();
+        let texts = self.branches.get(from).map_or_else(Vec::new, |b| b.texts.clone());
+        let texts = texts.into_iter().filter(|(at, _)| *at < sample).collect();
+        self.branches.truncate(branch);
+        self.forks = self.forks.saturating_sub(1);
+        let left = self.branches.get(from).map_or("", |branch| &branch.name);
+        let what = format!("{name} leaves {left} here");
+        self.branches.push(BranchInfo { name, parent: Some((from, time)), changes, texts });
+        (self.branch, self.cursor) = (branch, None);
+        self.note(what);
+    }
+
+    pub(crate) fn changed(&mut self, branch: usize, change: &BranchChange) {
+        // The draft may have gone on since.
+        let sent = self.sent.iter().position(|(scene, _)| Arc::ptr_eq(scene, &change.scene));
+        let sent = sent.and_then(|sent| self.sent.drain(..=sent).next_back());
+        let text = sent.map(|(_, text)| text).or_else(|| Some(self.draft.as_ref()?.text().to_owned()));
+        if let Some(face) = self.branches.get_mut(branch) {
+            face.texts.retain(|(sample, _)| *sample != change.sample);
+            face.texts.extend(text.map(|text| (change.sample, text)));
+            face.changes.retain(|before| before.sample != change.sample);
+            if !change.set.is_empty() {
+                face.changes.push(change.clone());
+            }
+        }
+    }
+}

@@ -1,0 +1,406 @@
+//! What the window knows: scene, past, present and what is selected. It decides what an action means, without a window.
+
+mod branch_info;
+pub mod commands;
+mod edits;
+mod past_changes;
+mod recorded;
+
+use crate::session::history::History;
+use crate::session::prediction::Prediction;
+use crate::session::runner::{RunEvent, RunRequest};
+use crate::session::scene_draft::SceneDraft;
+pub use branch_info::BranchInfo;
+use scene::{Follow, Role, Scene};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use vocabulary::{EdgeState, ScalarTrajectory, StepRecord, wrap};
+
+/// What is selected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Selection {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// A robot, by its index.
+    Robot(usize),
+    /// An edge, by its index.
+    Edge(usize),
+}
+
+/// What clicks on the ground do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Tool {
+    /// Select, and drag set points.
+    #[default]
+    Hand,
+    /// Drag from a robot to the one that it shall follow.
+    Connect,
+    /// Place a pillar.
+    Pillar,
+}
+
+/// A line of the log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LogEntry {
+    /// Simulated time, s.
+    pub time: f64,
+    /// What happened.
+    pub text: String,
+    /// Whether it is a fault.
+    pub fault: bool,
+}
+
+/// Lines of the log that are kept.
+const MOST_EVENTS: usize = 2000;
+
+/// What the window knows.
+#[expect(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
+pub struct AppState {
+    /// The scene under work; `None` where none could be opened.
+    pub draft: Option<SceneDraft>,
+    /// Everything simulated.
+    pub history: Option<History>,
+    /// The branches, as in the history.
+    pub branches: Vec<BranchInfo>,
+    /// The branch that is looked at, which is the one that goes on.
+    pub branch: usize,
+    /// The time that is looked at, s; `None` for the present.
+    pub cursor: Option<f64>,
+    /// Whether the run goes.
+    pub playing: bool,
+    /// Whether the past was recorded earlier, and there is no run behind it.
+    pub recorded: bool,
+    /// Simulated seconds per second.
+    pub pace: f64,
+    /// What is selected.
+    pub selection: Selection,
+    /// What clicks do.
+    pub tool: Tool,
+    /// The newest prediction.
+    pub prediction: Option<Prediction>,
+    /// How far to look ahead, s.
+    pub ahead: f64,
+    /// Whether a change of a gain is for all followers.
+    pub for_all: bool,
+    /// Whether a set point's mirror image moves with it.
+    pub mirror: bool,
+    /// The view that films are taken from; `None` is what is seen.
+    pub film_from: Option<String>,
+    /// What happened.
+    pub log: Vec<LogEntry>,
+    /// A message in place, until it is dismissed.
+    pub notice: Option<String>,
+    /// Where what happens is printed, too.
+    pub aloud: Option<std::io::Stdout>,
+    /// Text of the scene at time 0 of the run.
+    pub(crate) base: String,
+    /// Branches that are asked for and not there yet.
+    pub(crate) forks: usize,
+    /// Scenes that the run was told to take, with their texts.
+    pub(crate) sent: Vec<(Arc<Scene>, String)>,
+    /// The scene of this text.
+    first: Option<Arc<Scene>>,
+    /// The robot that is selected, by its name, while a run begins anew.
+    pub(crate) chosen: Option<String>,
+    /// Changes that this text has itself.
+    pub(crate) own: Vec<scene::Change>,
+    /// For the thread of the run.
+    pub requests: Vec<RunRequest>,
+}
+
+impl AppState {
+    /// A state with no scene.
+    pub fn new() -> Self {
+        Self {
+            draft: None,
+            history: None,
+            branches: Vec::new(),
+            branch: 0,
+            cursor: None,
+            playing: true,
+            recorded: false,
+            pace: 1.0,
+            selection: Selection::Nothing,
+            tool: Tool::Hand,
+            prediction: None,
+            ahead: 6.0,
+            for_all: true,
+            mirror: false,
+            film_from: None,
+            log: Vec::new(),
+            aloud: None,
+            notice: None,
+            base: String::new(),
+            forks: 0,
+            sent: Vec::new(),
+            first: None,
+            chosen: None,
+            own: Vec::new(),
+            requests: Vec::new(),
+        }
+    }
+
+    /// Opens a scene from its text; `path` is where it is saved, `home` where its files are looked for.
+    ///
+    /// # Errors
+    /// All that is wrong with the text; then the state is as before.
+    pub fn open(&mut self, text: String, path: Option<PathBuf>, home: &Path) -> Result<(), String> {
+        self.draft = Some(SceneDraft::new(text, path, home)?);
+        self.selection = Selection::Nothing;
+        self.restart(0.0);
+        Ok(())
+    }
+
+    /// The scene as it stands.
+    pub fn scene(&self) -> Option<&Arc<Scene>> {
+        self.draft.as_ref().map(SceneDraft::scene)
+    }
+
+    /// Runs the scene as it stands from time 0, at once up to `until` s.
+    pub fn restart(&mut self, until: f64) {
+        self.begin();
+        self.recorded = false;
+        let Some(draft) = &self.draft else { return };
+        self.requests.push(RunRequest::Open { scene: Arc::clone(draft.scene()), gpu: None, until });
+        self.requests.push(RunRequest::Ahead(self.ahead));
+        self.requests.push(RunRequest::Play(self.playing));
+    }
+
+    pub(crate) fn begin(&mut self) {
+        let Some(draft) = &self.draft else { return };
+        draft.text().clone_into(&mut self.base);
+        self.first = Some(Arc::clone(draft.scene()));
+        self.chosen = self.chosen_name();
+        self.own.clone_from(&draft.scene().changes);
+        self.cursor = None;
+    }
+
+    /// The scene as it was written by the time that is looked at.
+    fn held(&self) -> Option<&Scene> {
+        let Some(time) = self.cursor else { return self.scene().map(|scene| &**scene) };
+        let changes = self.branches.get(self.branch).map_or(&[][..], |branch| &branch.changes);
+        let last = changes.iter().rfind(|change| change.time <= time + 1e-9);
+        last.map(|change| &*change.scene).or(self.first.as_deref())
+    }
+
+    fn chosen_name(&self) -> Option<String> {
+        let robot = self.chosen_robot()?;
+        Some(self.history.as_ref()?.fleet().robots.get(robot)?.name.clone())
+    }
+
+    /// The scene with what its own changes have made of it by the time that is looked at.
+    pub fn scene_now(&self) -> Option<&Scene> {
+        let (scene, time) = (self.held()?, self.time());
+        let due = scene.changes.iter().rfind(|change| change.at <= time + 1e-9);
+        Some(due.map_or(scene, |change| &change.then))
+    }
+
+    /// Title and caption of pictures: those of the scene as it stands.
+    pub fn words(&self) -> [String; 2] {
+        self.scene_now()
+            .map_or_else(Default::default, |scene| [scene.title.clone(), simulation::caption(scene)])
+    }
+
+    /// The record that is shown.
+    pub fn record(&self) -> Option<Arc<StepRecord>> {
+        let history = self.history.as_ref()?;
+        match self.cursor {
+            Some(time) => history.at(self.branch, time),
+            None => history.head(self.branch).cloned(),
+        }
+    }
+
+    /// The record that is shown, with set points as they are wanted now: a run that stands shows what a hand moves.
+    pub fn shown(&self) -> Option<Arc<StepRecord>> {
+        let record = self.record()?;
+        if self.cursor.is_some() || self.playing {
+            return Some(record);
+        }
+        let wanted: Vec<Option<[f64; 2]>> =
+            (0..record.edges.len()).map(|edge| self.set_point(edge)).collect();
+        let stale =
+            |(state, wanted): (&EdgeState, &Option<[f64; 2]>)| wanted.is_some_and(|w| w != state.set_point);
+        if !record.edges.iter().zip(&wanted).any(stale) {
+            return Some(record);
+        }
+        let mut record = StepRecord::clone(&record);
+        for (state, wanted) in record.edges.iter_mut().zip(wanted) {
+            state.set_point = wanted.unwrap_or(state.set_point);
+            let [distance, bearing] = state.set_point;
+            state.error = [distance - state.relative.distance, wrap(bearing - state.relative.bearing)];
+        }
+        Some(Arc::new(record))
+    }
+
+    /// The time that is looked at, s.
+    pub fn time(&self) -> f64 {
+        self.cursor.unwrap_or_else(|| self.end())
+    }
+
+    /// The last time of the branch, s.
+    pub fn end(&self) -> f64 {
+        self.history.as_ref().map_or(0.0, |history| history.end(self.branch))
+    }
+
+    /// The follower of an edge: its index among the robots, its name, and how it follows.
+    pub fn follower(&self, edge: usize) -> Option<(usize, &str, &Follow)> {
+        let scene = self.scene_now()?;
+        let followers = scene.robots.iter().enumerate().filter_map(|(index, robot)| match &robot.role {
+            Role::Follow(follow) => Some((index, &*robot.name, &**follow)),
+            Role::Lead { .. } => None,
+        });
+        followers.into_iter().nth(edge)
+    }
+
+    /// The set point of an edge as it is wanted now, m and rad.
+    pub fn set_point(&self, edge: usize) -> Option<[f64; 2]> {
+        let (_, _, follow) = self.follower(edge)?;
+        let now = self.record().and_then(|record| Some(record.edges.get(edge)?.set_point));
+        let value = |channel: &ScalarTrajectory, now: Option<f64>| match channel {
+            ScalarTrajectory::Constant(value) => Some(*value),
+            _ => now,
+        };
+        Some([value(&follow.distance, now.map(|n| n[0]))?, value(&follow.bearing, now.map(|n| n[1]))?])
+    }
+
+    /// The edge that is selected, or that of the robot that is.
+    pub fn chosen_edge(&self) -> Option<usize> {
+        match self.selection {
+            Selection::Edge(edge) => Some(edge),
+            Selection::Robot(robot) => self.edge_of(robot),
+            Selection::Nothing => None,
+        }
+    }
+
+    /// The edge on which a robot follows.
+    pub fn edge_of(&self, robot: usize) -> Option<usize> {
+        let fleet = self.history.as_ref()?.fleet();
+        fleet.edges.iter().position(|edge| edge.follower == robot)
+    }
+
+    /// The robot that is selected, or the follower of the edge that is.
+    pub fn chosen_robot(&self) -> Option<usize> {
+        match self.selection {
+            Selection::Robot(robot) => Some(robot),
+            Selection::Edge(edge) => self.history.as_ref()?.fleet().edges.get(edge).map(|edge| edge.follower),
+            Selection::Nothing => None,
+        }
+    }
+
+    /// Adds a line to the log.
+    pub fn note(&mut self, text: impl Into<String>) {
+        self.event(text.into(), false);
+    }
+
+    /// Adds a fault to the log and shows it.
+    pub fn fault(&mut self, text: impl Into<String>) {
+        let text = text.into();
+        self.notice = Some(text.clone());
+        self.event(text, true);
+    }
+
+    fn event(&mut self, text: String, fault: bool) {
+        let time = self.time();
+        if let Some(out) = &mut self.aloud {
+            let kind = if fault { "fault" } else { "log" };
+            // Where nobody reads any more, the window goes on.
+            let _ = writeln!(out, "{kind} {time:.2} s: {text}");
+        }
+        // What goes on under a hand is one line.
+        let again = text.ends_with('…') && self.log.last().is_some_and(|last| last.text == text);
+        if !again {
+            self.log.push(LogEntry { time, text, fault });
+        }
+        if self.log.len() > MOST_EVENTS {
+            self.log.remove(0);
+        }
+    }
+
+    /// Looks at a time of the branch, s.
+    pub fn seek(&mut self, time: f64) {
+        let end = self.end();
+        if time >= end {
+            self.cursor = None;
+        } else {
+            self.pause();
+            // Between two samples there is nothing to see.
+            let period = self.history.as_ref().map_or(0.01, History::period);
+            self.cursor = Some((time.max(0.0) / period).round() * period);
+        }
+    }
+
+    /// Lets the run stand.
+    pub fn pause(&mut self) {
+        if self.playing {
+            self.playing = false;
+            self.requests.push(RunRequest::Play(false));
+        }
+    }
+
+    /// Lets the run go, from the present.
+    pub fn play(&mut self) {
+        self.playing = true;
+        if self.recorded {
+            // From its end it begins anew.
+            self.cursor = self.cursor.or(Some(0.0));
+            return;
+        }
+        self.cursor = None;
+        self.requests.push(RunRequest::Play(true));
+    }
+
+    /// Takes in what the thread of the run tells.
+    pub fn handle_event(&mut self, run_event: RunEvent) {
+        match run_event {
+            RunEvent::Opened { fleet, period } => {
+                self.history = Some(History::new(fleet, period));
+                self.branches = vec![BranchInfo::trunk()];
+                (self.branch, self.cursor, self.prediction, self.forks) = (0, None, None, 0);
+                self.cursor = self.recorded.then_some(0.0);
+                self.check_choice();
+            }
+            RunEvent::Records(branch, records) => {
+                if let Some(history) = &mut self.history {
+                    for record in records {
+                        history.push(branch, record);
+                    }
+                }
+            }
+            RunEvent::Forked { branch, from, sample, name, changes } => {
+                self.forked(branch, (from, sample), name, changes);
+            }
+            RunEvent::Changed(branch, change) => self.changed(branch, &change),
+            RunEvent::RecordingResumed(same) => self.recording_resumed(same),
+            RunEvent::Summary { .. } => {}
+            RunEvent::Stopped(why) => {
+                self.playing = false;
+                if let Some(why) = why {
+                    self.fault(why);
+                }
+            }
+            RunEvent::Refused(why) => self.fault(why),
+        }
+    }
+
+    /// What was selected stays so by its name; what is not there any more is not.
+    fn check_choice(&mut self) {
+        let Some(fleet) = self.history.as_ref().map(History::fleet) else { return };
+        let named = |name: &String| fleet.robots.iter().position(|member| member.name == *name);
+        let robot = self.chosen.as_ref().and_then(named);
+        let edge = robot.and_then(|robot| fleet.edges.iter().position(|edge| edge.follower == robot));
+        self.selection = match (robot, edge, self.selection) {
+            (Some(_), Some(edge), Selection::Edge(_)) => Selection::Edge(edge),
+            (Some(robot), ..) => Selection::Robot(robot),
+            (None, ..) if self.chosen.is_none() && !fleet.edges.is_empty() => Selection::Edge(0),
+            _ => Selection::Nothing,
+        };
+    }
+}
+
+impl Default for AppState {
+    fn default() -> Self {
+        Self::new()
+    }
+}

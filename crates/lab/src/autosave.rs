@@ -1,0 +1,106 @@
+//! Unsaved work, safe on disk while it is being done, and offered again after a crash.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Where this window keeps its work.
+#[derive(Debug)]
+pub struct Autosave {
+    file: Option<PathBuf>,
+    written: String,
+}
+
+/// Work that another window has left.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RecoverableWork {
+    /// The file that holds it.
+    pub file: PathBuf,
+    /// The scene it belongs to.
+    pub path: Option<PathBuf>,
+    /// The text.
+    pub text: String,
+}
+
+/// First line of a kept text: the scene it belongs to.
+const HEAD: &str = "# unsaved work on ";
+
+impl Autosave {
+    /// Keeps work in `folder`; `None` where there is none to keep it in.
+    pub fn new(folder: Option<&Path>) -> Self {
+        let file = folder.map(|folder| folder.join(format!("work-{}.toml", std::process::id())));
+        Self { file, written: String::new() }
+    }
+
+    /// Puts the text on disk if it is new.
+    ///
+    /// # Errors
+    /// Why it cannot be kept, in words.
+    pub fn keep(&mut self, text: &str, path: Option<&Path>) -> Result<(), String> {
+        let Some(file) = &self.file else { return Ok(()) };
+        if text == self.written {
+            return Ok(());
+        }
+        text.clone_into(&mut self.written);
+        let place = path.map_or_else(String::new, |path| path.display().to_string());
+        if let Some(folder) = file.parent() {
+            fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        }
+        output::write_whole(file, format!("{HEAD}{place}\n{text}").as_bytes())
+            .map_err(|error| format!("unsaved work cannot be kept: {error}"))
+    }
+
+    /// There is nothing unsaved any more.
+    pub fn done(&mut self) {
+        if !self.written.is_empty() {
+            self.written.clear();
+            if let Some(file) = &self.file {
+                // What is not there need not be removed.
+                let _ = fs::remove_file(file);
+            }
+        }
+    }
+}
+
+/// The newest work in `folder` of a window that is gone; `alive` says whether a process is.
+pub fn left(folder: &Path, alive: impl Fn(u32) -> bool) -> Option<RecoverableWork> {
+    let files = fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
+    let orphaned = files.filter(|file| {
+        let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let number = name.strip_prefix("work-").and_then(|rest| rest.strip_suffix(".toml"));
+        number.and_then(|number| number.parse().ok()).is_some_and(|process| !alive(process))
+    });
+    let newest = orphaned.max_by_key(|file| fs::metadata(file).and_then(|meta| meta.modified()).ok())?;
+    let text = fs::read_to_string(&newest).ok()?;
+    let (head, text) = text.split_once('\n')?;
+    let path = head.strip_prefix(HEAD)?.trim();
+    let path = (!path.is_empty()).then(|| PathBuf::from(path));
+    Some(RecoverableWork { file: newest, path, text: text.to_owned() })
+}
+
+/// Whether a process runs, as far as that can be told.
+pub fn alive(process: u32) -> bool {
+    // One that has ended and is not yet buried has nothing to say any more.
+    let state = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    let dead = state
+        .rsplit(')')
+        .next()
+        .is_none_or(|rest| rest.trim().is_empty() || rest.trim().starts_with(['Z', 'X']));
+    process == std::process::id() || !dead
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_is_kept_until_it_is_done_and_found_when_its_window_is_gone() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut kept = Autosave::new(Some(folder.path()));
+        kept.keep("schema = 1\n", Some(Path::new("scenes/a.toml"))).expect("kept");
+        assert_eq!(left(folder.path(), |_| true), None);
+        let found = left(folder.path(), |_| false).expect("left");
+        assert_eq!((found.text.as_str(), found.path), ("schema = 1\n", Some(PathBuf::from("scenes/a.toml"))));
+        kept.done();
+        assert_eq!(left(folder.path(), |_| false), None);
+    }
+}

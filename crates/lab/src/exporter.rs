@@ -1,0 +1,237 @@
+//! Pictures and films, drawn on a thread of their own so that the window never waits for them.
+
+use film::{Film, FilmKind, png};
+use rendering::{Gpu, Renderer, Style, Trail, ViewLayout};
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{
+    Arc,
+    atomic::{AtomicUsize, Ordering::Relaxed},
+};
+use std::thread::JoinHandle;
+use vocabulary::{FleetInfo, StepRecord};
+
+/// Frames of a film a second.
+pub const RATE: f64 = 30.0;
+
+/// How something is seen.
+#[derive(Clone)]
+pub struct FrameSpec {
+    /// What is drawn.
+    pub record: Arc<StepRecord>,
+    /// From where.
+    pub layout: ViewLayout,
+    /// And how.
+    pub style: Style,
+    /// Title and caption.
+    pub words: [String; 2],
+}
+
+/// What is asked of the exporter.
+pub enum ExportJob {
+    /// A picture.
+    Picture {
+        /// Its file.
+        path: PathBuf,
+        /// Who is on stage.
+        fleet: Arc<FleetInfo>,
+        /// Width and height, pixels.
+        size: (u32, u32),
+        /// The past.
+        trail: Box<Trail>,
+        /// What is seen.
+        shot: Box<FrameSpec>,
+        /// What the file tells besides.
+        texts: Vec<(&'static str, String)>,
+    },
+    /// A film begins.
+    Begin {
+        /// Its file.
+        path: PathBuf,
+        /// Who is on stage.
+        fleet: Arc<FleetInfo>,
+        /// Width and height, pixels, even.
+        size: (u32, u32),
+        /// The past.
+        trail: Box<Trail>,
+    },
+    /// The past is another: somebody changed the branch.
+    Trail(Box<Trail>),
+    /// What has happened since the last frame.
+    Records(Vec<Arc<StepRecord>>),
+    /// The next frame.
+    Frame(Box<FrameSpec>),
+    /// The film ends.
+    End,
+}
+
+/// What the exporter tells.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ExportEvent {
+    /// A file is complete.
+    Written(PathBuf),
+    /// A file could not be made, and why.
+    Failed(String),
+}
+
+/// Why a picture or a film could not be made.
+#[derive(Debug, thiserror::Error)]
+enum ExportError {
+    /// It could not be drawn.
+    #[error(transparent)]
+    Rendering(#[from] rendering::Error),
+    /// It could not be written.
+    #[error(transparent)]
+    Film(#[from] film::Error),
+}
+
+/// The thread and its channels.
+pub struct Exporter {
+    jobs: Option<Sender<ExportJob>>,
+    told: Receiver<ExportEvent>,
+    waiting: Arc<AtomicUsize>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Exporter {
+    /// Starts the thread; `wake` is called when it has something to tell.
+    pub fn start(gpu: Gpu, wake: impl Fn() + Send + 'static) -> Self {
+        let (jobs, inbox) = channel();
+        let (outbox, told) = channel();
+        let waiting = Arc::new(AtomicUsize::new(0));
+        let left = Arc::clone(&waiting);
+        let work = move || {
+            let mut work = ExportWorker { gpu, drawer: None, film: None };
+            while let Ok(job) = inbox.recv() {
+                let done = work.take(job);
+                left.fetch_sub(1, Relaxed);
+                let word = match done {
+                    Ok(None) => continue,
+                    Ok(Some(path)) => ExportEvent::Written(path),
+                    Err(error) => ExportEvent::Failed(error.to_string()),
+                };
+                // Where nobody listens any more, the last film is still finished.
+                let _ = outbox.send(word);
+                wake();
+            }
+            // The window was closed in the middle of a film: what there is of it is kept.
+            let _ = work.take(ExportJob::End);
+        };
+        let thread = std::thread::Builder::new().name("studio".to_owned()).spawn(work).ok();
+        Self { jobs: Some(jobs), told, waiting, thread }
+    }
+
+    /// Asks for something.
+    pub fn ask(&self, job: ExportJob) {
+        if let Some(jobs) = &self.jobs {
+            self.waiting.fetch_add(1, Relaxed);
+            let _ = jobs.send(job);
+        }
+    }
+
+    /// What it has to tell, if anything.
+    pub fn told(&self) -> Option<ExportEvent> {
+        self.told.try_recv().ok()
+    }
+
+    /// Jobs that wait.
+    pub fn waiting(&self) -> usize {
+        self.waiting.load(Relaxed)
+    }
+}
+
+impl Drop for Exporter {
+    fn drop(&mut self) {
+        self.jobs = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The state of the thread.
+struct ExportWorker {
+    gpu: Gpu,
+    drawer: Option<(Arc<FleetInfo>, Renderer)>,
+    film: Option<OpenFilm>,
+}
+
+/// A film under way.
+struct OpenFilm {
+    path: PathBuf,
+    film: Film,
+    fleet: Arc<FleetInfo>,
+    size: (u32, u32),
+    trail: Trail,
+}
+
+impl ExportWorker {
+    /// Does a job; the file that is complete with it.
+    fn take(&mut self, job: ExportJob) -> Result<Option<PathBuf>, ExportError> {
+        match job {
+            ExportJob::Picture { path, fleet, size, trail, shot, texts } => {
+                let drawer = self.drawer(&fleet, size)?;
+                drawer.retitle(&shot.words[0], &shot.words[1]);
+                let picture = drawer.draw(&trail, &shot.record, &shot.layout, &shot.style)?;
+                let texts: Vec<(&str, &str)> = texts.iter().map(|(key, text)| (*key, &**text)).collect();
+                png::write(&path, &picture, &texts)?;
+                Ok(Some(path))
+            }
+            ExportJob::Begin { path, fleet, size, trail } => {
+                let film = Film::create(&path, FilmKind::of(&path, false)?, size.0, size.1, RATE)?;
+                self.film = Some(OpenFilm { path, film, fleet, size, trail: *trail });
+                Ok(None)
+            }
+            ExportJob::Trail(trail) => {
+                if let Some(reel) = &mut self.film {
+                    reel.trail = *trail;
+                }
+                Ok(None)
+            }
+            ExportJob::Records(records) => {
+                if let Some(reel) = &mut self.film {
+                    for record in &records {
+                        reel.trail.push(record);
+                    }
+                }
+                Ok(None)
+            }
+            ExportJob::Frame(shot) => {
+                let done = self.frame(&shot);
+                if done.is_err() {
+                    // Nothing half is left: a film that is dropped removes its file.
+                    self.film = None;
+                }
+                done.map(|()| None)
+            }
+            ExportJob::End => match self.film.take() {
+                Some(reel) if reel.film.frames() > 0 => {
+                    reel.film.finish()?;
+                    Ok(Some(reel.path))
+                }
+                _ => Ok(None),
+            },
+        }
+    }
+
+    fn frame(&mut self, shot: &FrameSpec) -> Result<(), ExportError> {
+        let Some(mut reel) = self.film.take() else { return Ok(()) };
+        let drawer = self.drawer(&reel.fleet, reel.size)?;
+        drawer.retitle(&shot.words[0], &shot.words[1]);
+        let picture = drawer.draw(&reel.trail, &shot.record, &shot.layout, &shot.style)?;
+        reel.film.push(picture)?;
+        self.film = Some(reel);
+        Ok(())
+    }
+
+    fn drawer(&mut self, fleet: &Arc<FleetInfo>, size: (u32, u32)) -> Result<&mut Renderer, ExportError> {
+        let fitting = self.drawer.take().filter(|(known, _)| Arc::ptr_eq(known, fleet));
+        let drawer = match fitting {
+            Some(drawer) => drawer,
+            None => (Arc::clone(fleet), Renderer::new(&self.gpu, fleet, size.0, size.1, 4)?),
+        };
+        let (_, renderer) = self.drawer.insert(drawer);
+        renderer.resize(size.0, size.1)?;
+        Ok(renderer)
+    }
+}

@@ -1,0 +1,73 @@
+//! A run of the lab, written down: run again from its scene and its changes, with tables and digest.
+
+use recording::log::Roll;
+use recording::{Recorder, RunOptions, Status};
+use rendering::{Gpu, GpuCameraRenderer};
+use scene::Scene;
+use simulation::Simulation;
+use std::path::{Path, PathBuf};
+use vocabulary::counted;
+
+/// What was seen in the window.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SeenRun {
+    /// Samples of the run.
+    pub samples: u64,
+    /// Their digest.
+    pub digest: String,
+}
+
+/// Runs the scene of `text` again and records it in `folder`; what it was, in words.
+///
+/// # Errors
+/// Why it could not be written, in words.
+pub fn keep(
+    text: &str,
+    home: &Path,
+    folder: &Path,
+    seen: &SeenRun,
+    gpu: Option<&Gpu>,
+) -> Result<String, String> {
+    let scene = Scene::parse(text, home, &[]).map_err(|faults| faults.to_string())?.scene;
+    let setup = simulation::build(&scene).map_err(|error| error.to_string())?;
+    let mut run = Simulation::new(setup);
+    let roll = Roll::default();
+    if run.needs_cameras() {
+        let gpu = gpu.ok_or("there is no adapter to draw what cameras see")?;
+        let eyes = GpuCameraRenderer::new(gpu, run.fleet()).map_err(|error| error.to_string())?;
+        run.attach_cameras(roll.through(Box::new(eyes)));
+    }
+    let options = RunOptions {
+        csv: false,
+        no_log: false,
+        roll,
+        force: false,
+        scene: scene.to_toml(),
+        program: concat!("echelon ", env!("CARGO_PKG_VERSION")).to_owned(),
+        commit: option_env!("ECHELON_COMMIT").map(str::to_owned),
+        seed: scene.seed,
+        period: scene.time.period,
+        judging: scene.judging(),
+    };
+    let mut recorder = Recorder::create(folder, run.fleet(), options).map_err(|error| error.to_string())?;
+    while let Some(record) = run.next_record() {
+        recorder.push(record).map_err(|error| error.to_string())?;
+    }
+    let (manifest, _) = recorder.finish(Status::Complete).map_err(|error| error.to_string())?;
+    let digest = manifest.digest.unwrap_or_default();
+    let (place, samples) = (folder.display(), counted(manifest.samples, "sample"));
+    if (manifest.samples, &*digest) == (seen.samples, &*seen.digest) {
+        Ok(format!("The run is in {place}: {samples}, digest {digest}, as seen here"))
+    } else {
+        Err(format!("{place} holds {samples} with digest {digest}, not what was seen here"))
+    }
+}
+
+/// The first of `stem-001.ending`, `stem-002.ending`, … in `folder` that is not there.
+pub fn free(folder: &Path, stem: &str, ending: &str) -> PathBuf {
+    let name = |number: u32| {
+        let dot = if ending.is_empty() { "" } else { "." };
+        folder.join(format!("{stem}-{number:03}{dot}{ending}"))
+    };
+    (1..=u32::MAX).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
+}

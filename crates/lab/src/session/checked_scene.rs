@@ -1,0 +1,72 @@
+//! A scene that can run, with the run that it builds: whoever checks a change has built it, and hands it over.
+
+use scene::Scene;
+use simulation::{BuildError, Setup};
+use std::cell::Cell;
+use std::sync::Arc;
+
+thread_local! {
+    static BUILDS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// A scene and what it builds.
+#[derive(Debug)]
+pub struct CheckedScene {
+    scene: Arc<Scene>,
+    setup: Setup,
+    /// The scene that it was compared with, and the overrides that lead from there to here.
+    before: Option<Arc<Scene>>,
+    set: Vec<String>,
+}
+
+impl CheckedScene {
+    /// Builds the run of a scene.
+    ///
+    /// # Errors
+    /// [`BuildError`] for a scene that cannot run.
+    pub fn new(scene: Arc<Scene>) -> Result<Self, BuildError> {
+        let setup = build(&scene)?;
+        Ok(Self { scene, setup, before: None, set: Vec::new() })
+    }
+
+    /// Keeps the overrides `set` that lead from `before` to this scene.
+    pub(crate) fn compared(self, before: Arc<Scene>, set: Vec<String>) -> Self {
+        Self { before: Some(before), set, ..self }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// The run that it builds.
+    pub fn setup(&self) -> &Setup {
+        &self.setup
+    }
+
+    /// The overrides that lead from `before` to this scene. Compares the two only where that has not been done: while a
+    /// run stands, every change of one sample is compared with the scene of the sample before.
+    ///
+    /// # Errors
+    /// As [`Scene::sets_to`].
+    pub(crate) fn set_from(&self, before: &Arc<Scene>) -> Result<Vec<String>, Vec<String>> {
+        match &self.before {
+            Some(known) if Arc::ptr_eq(known, before) => Ok(self.set.clone()),
+            _ => before.sets_to(&self.scene),
+        }
+    }
+}
+
+/// Builds the run of a scene, and counts it.
+///
+/// # Errors
+/// [`BuildError`] for a scene that cannot run.
+pub(crate) fn build(scene: &Scene) -> Result<Setup, BuildError> {
+    BUILDS.set(BUILDS.get() + 1);
+    simulation::build(scene)
+}
+
+/// How many runs this thread has built.
+pub fn builds() -> u64 {
+    BUILDS.get()
+}

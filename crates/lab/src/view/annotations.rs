@@ -1,0 +1,176 @@
+//! What is drawn on the ground to explain: the future, handles, other branches, ground that cannot be held.
+
+use super::feasibility;
+use crate::app_state::{AppState, Selection};
+use crate::session::prediction::{PathPoint, Prediction, Trouble};
+use rendering::{
+    AnnotationArrow, AnnotationStroke, Annotations, Ghost, Ring, ShadedArea, StrokePoint, set_points,
+};
+use std::sync::Arc;
+use vocabulary::{FleetInfo, StepRecord};
+
+/// Where something is wrong ahead.
+const ALARM: [f32; 3] = [0.90, 0.16, 0.10];
+/// The accent of the window.
+pub const ACCENT: [f32; 3] = [0.25, 0.62, 1.0];
+/// Ground that cannot be held.
+const REFUSED: [f32; 3] = [0.72, 0.10, 0.08];
+/// Radius of the ring at a set point for a robot of the usual size, m.
+pub const RING: f64 = 0.25;
+
+/// What the hand does, as far as it is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Hand {
+    /// The edge whose set point is under the pointer.
+    pub dialog: Option<usize>,
+    /// The edge whose set point is dragged.
+    pub held: Option<usize>,
+    /// The robot under the pointer.
+    pub robot: Option<usize>,
+    /// A connection being drawn: from a robot to a place, m.
+    pub connecting: Option<(usize, [f64; 2])>,
+}
+
+/// The annotations of what is shown.
+pub fn annotations(app_state: &AppState, record: &StepRecord, hand: &Hand) -> Annotations {
+    let mut annotations = Annotations::default();
+    let Some(history) = &app_state.history else { return annotations };
+    let fleet = Arc::clone(history.fleet());
+    let colours = rendering::robot_colours(&fleet);
+    if let Some(held) = hand.held {
+        refused(app_state, held, record, &mut annotations);
+    }
+    others(app_state, &colours, &mut annotations);
+    let present = app_state.cursor.is_none();
+    if let Some(prediction) =
+        app_state.prediction.as_ref().filter(|f| present && f.branch == app_state.branch)
+    {
+        future(prediction, &colours, &fleet, &mut annotations);
+    }
+    handles(app_state, &fleet, (record, &colours), hand, &mut annotations);
+    if let Some((robot, to)) = hand.connecting
+        && let Some(state) = record.snapshot.robots.get(robot)
+    {
+        let from = [state.motion.pose.x, state.motion.pose.y];
+        annotations.arrows.push(AnnotationArrow { from, to, gaps: [0.3, 0.0], colour: ACCENT, alpha: 0.95 });
+    }
+    annotations
+}
+
+/// Ground that the follower of an edge cannot hold.
+fn refused(app_state: &AppState, edge: usize, record: &StepRecord, annotations: &mut Annotations) {
+    let Some((leader, field)) = feasibility::field(app_state, edge, record) else { return };
+    let half = 0.5 * (field.side - 1) as f64 * field.step;
+    let area =
+        ShadedArea::field([-half; 2], field.step, field.side, &scaled(&field.alphas, 0.34), REFUSED, true);
+    // The field is the leader's; rows run ahead, columns to the left.
+    let turned = area.corners.into_iter().map(|spot| {
+        let [left, ahead] = spot.at;
+        StrokePoint { at: leader.world_from_body(ahead, left), ..spot }
+    });
+    annotations.areas.push(ShadedArea { corners: turned.collect(), hatched: true });
+}
+
+fn scaled(alphas: &[f32], by: f32) -> Vec<f32> {
+    alphas.iter().map(|alpha| alpha * by).collect()
+}
+
+/// Paths of branches that are not looked at.
+fn others(app_state: &AppState, colours: &[[f32; 3]], annotations: &mut Annotations) {
+    let Some(history) = &app_state.history else { return };
+    for branch in (0..history.branches()).filter(|branch| *branch != app_state.branch) {
+        let from = app_state.branches.get(branch).and_then(|face| face.parent).map_or(0.0, |(_, time)| time);
+        // What is long past would cover the ground.
+        let from = from.max(app_state.time() - 12.0);
+        let records = history.between(branch, [from, app_state.time() + 12.0], 160);
+        for (robot, colour) in colours.iter().enumerate() {
+            let spots = records.iter().filter_map(|record| {
+                let pose = record.snapshot.robots.get(robot)?.motion.pose;
+                Some(StrokePoint { at: [pose.x, pose.y], colour: light(*colour), alpha: 0.55 })
+            });
+            annotations.strokes.push(AnnotationStroke {
+                dashed: true,
+                pixels: 1.6,
+                ..AnnotationStroke::new(spots.collect())
+            });
+        }
+        if let Some(record) = history.at(branch, app_state.time()) {
+            let ghost = |(robot, state): (usize, &vocabulary::RobotState)| Ghost {
+                robot,
+                pose: state.motion.pose,
+                alpha: 0.22,
+            };
+            annotations.ghosts.extend(record.snapshot.robots.iter().enumerate().map(ghost));
+        }
+    }
+}
+
+/// The next seconds, and where the formation will be.
+fn future(prediction: &Prediction, colours: &[[f32; 3]], fleet: &FleetInfo, annotations: &mut Annotations) {
+    for (robot, path) in prediction.paths.iter().enumerate() {
+        // Paler than the ribbons, which are the past.
+        let colour = light(colours.get(robot).copied().unwrap_or([0.6; 3])).map(|c| 0.4 + 0.6 * c);
+        let last = path.len().saturating_sub(1).max(1) as f32;
+        let spot = |(k, place): (usize, &PathPoint)| {
+            let share = k as f32 / last;
+            let fade = 0.95 * (1.0 - 0.75 * share * share);
+            match place.trouble {
+                Trouble::None => StrokePoint { at: place.at, colour, alpha: fade },
+                Trouble::Limited | Trouble::Contact => {
+                    StrokePoint { at: place.at, colour: ALARM, alpha: fade.max(0.8) }
+                }
+            }
+        };
+        let spots = path.iter().enumerate().map(spot).collect();
+        let pixels = if path.iter().any(|p| p.trouble == Trouble::Contact) { 3.0 } else { 2.2 };
+        annotations.strokes.push(AnnotationStroke { pixels, ..AnnotationStroke::new(spots) });
+    }
+    // Where they stand in the end; in a crowd the paths say enough.
+    if fleet.robots.len() <= 30 {
+        let ghost = |(robot, pose): (usize, &vocabulary::Pose)| Ghost { robot, pose: *pose, alpha: 0.30 };
+        annotations.ghosts.extend(prediction.end.iter().enumerate().map(ghost));
+    }
+}
+
+/// Rings to grasp, and a ring under what is selected.
+fn handles(
+    app_state: &AppState,
+    fleet: &FleetInfo,
+    (record, colours): (&StepRecord, &[[f32; 3]]),
+    hand: &Hand,
+    annotations: &mut Annotations,
+) {
+    for (edge, at) in set_points(fleet, record).into_iter().enumerate() {
+        let Some(at) = at else { continue };
+        let follower = fleet.edges[edge].follower;
+        let ring =
+            Ring { least: 17.0, ..Ring::new(at, RING * size(fleet, follower), light(colours[follower])) };
+        if hand.held == Some(edge) || app_state.chosen_edge() == Some(edge) {
+            annotations.rings.push(ring.selected());
+        } else if hand.dialog == Some(edge) {
+            annotations.rings.push(ring.hovered());
+        }
+    }
+    let under = |robot: usize| {
+        let pose = record.snapshot.robots.get(robot)?.motion.pose;
+        let body = fleet.robots.get(robot)?.body;
+        let at = pose.world_from_body(0.5 * body.wheelbase, 0.0);
+        Some(Ring { pixels: 2.0, ..Ring::new(at, 0.62 * body.length, ACCENT) })
+    };
+    if let Selection::Robot(robot) = app_state.selection {
+        annotations.rings.extend(under(robot));
+    }
+    if let Some(robot) = hand.robot {
+        annotations.rings.extend(under(robot).map(|ring| Ring { alpha: 0.5, ..ring }));
+    }
+}
+
+/// How many times as large as the usual robot one is.
+fn size(fleet: &FleetInfo, robot: usize) -> f64 {
+    fleet.robots.get(robot).map_or(1.0, |member| member.body.length / 0.42)
+}
+
+/// A colour that stands out from asphalt.
+fn light(colour: [f32; 3]) -> [f32; 3] {
+    if colour.iter().sum::<f32>() < 0.6 { [0.90, 0.88, 0.84] } else { colour.map(|c| 0.2 + 0.8 * c) }
+}

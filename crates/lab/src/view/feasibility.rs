@@ -1,0 +1,146 @@
+//! Ground on which the follower of an edge could not keep its place, for shading.
+
+use crate::app_state::AppState;
+use crate::session::prediction::Prediction;
+use formation::feasible::unholdable;
+use vocabulary::{Limits, Pose, StepRecord};
+
+/// Side of a square of the field, m, and squares on a side.
+const STEP: f64 = 0.25;
+const SIDE: usize = 49;
+/// Records of the leader's way that are looked at.
+const GLANCES: usize = 12;
+
+/// Where a set point cannot be, in the leader's frame: a field of opacities from 0 to 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FeasibilityMap {
+    /// Row by row from behind to ahead, each from the right to the left; share of what stands against it.
+    pub alphas: Vec<f32>,
+    /// Squares on a side.
+    pub side: usize,
+    /// Side of a square, m.
+    pub step: f64,
+}
+
+/// What an edge asks of a place.
+#[derive(Debug, Clone)]
+pub struct PlaceConstraints {
+    /// The follower's limits.
+    pub limits: Limits,
+    /// Least distance of its law, m.
+    pub distance_min: f64,
+    /// How far it can see, m, and how far its camera turns with its picture, rad; `None` where it need not see.
+    pub sight: Option<[f64; 2]>,
+    /// Places of others in the leader's frame, m, and how near they may come, m.
+    pub others: Vec<([f64; 2], f64)>,
+}
+
+impl PlaceConstraints {
+    /// What stands against a place while the leader drives at one of `motions` (m/s, rad/s); `None` if nothing does.
+    pub fn refuses(&self, place: [f64; 2], motions: &[(f64, f64)]) -> bool {
+        self.others.iter().any(|(at, near)| (place[0] - at[0]).hypot(place[1] - at[1]) < *near)
+            || motions.iter().any(|motion| self.refuses_at(place, *motion))
+    }
+
+    fn refuses_at(&self, place: [f64; 2], (speed, turn_rate): (f64, f64)) -> bool {
+        let why = unholdable(place, [speed, turn_rate], &self.limits, self.distance_min);
+        if why.is_some() {
+            return true;
+        }
+        let Some([far, pan]) = self.sight else { return false };
+        // Where the follower heads, and where its leader is from there.
+        let heading = (turn_rate * place[0]).atan2(speed - turn_rate * place[1]);
+        let to_leader = (-place[1]).atan2(-place[0]);
+        place[0].hypot(place[1]) > far || vocabulary::wrap(to_leader - heading).abs() > pan
+    }
+}
+
+/// The field around the leader of `edge`.
+pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(Pose, FeasibilityMap)> {
+    let history = app_state.history.as_ref()?;
+    let fleet = history.fleet();
+    let ends = *fleet.edges.get(edge)?;
+    let (robot, _, follow) = app_state.follower(edge)?;
+    let scene = app_state.scene_now()?;
+    let vehicle = &scene.robots.get(robot)?.vehicle;
+    let leader = record.snapshot.robots.get(ends.leader)?;
+    let looks = follow.sensing.kind != scene::SensingKind::Truth;
+    let camera_model = &fleet.robots.get(robot)?.camera_model;
+    // A cell of a tag must be at least two pixels wide to be read.
+    let cell = fleet.robots.get(ends.leader)?.shell.as_ref().map_or(0.015, |shell| shell.cell);
+    let far = camera_model.focal * cell / 2.0;
+    let half_picture = (0.5 * f64::from(camera_model.width) / camera_model.focal).atan();
+    let body = &fleet.robots[robot].body;
+    let reach = body.length.hypot(body.width);
+    let others =
+        fleet.edges.iter().enumerate().filter(|(k, other)| *k != edge && other.leader == ends.leader);
+    let places = others.filter_map(|(k, _)| {
+        let [distance, bearing] = record.edges.get(k)?.set_point;
+        Some(([distance * bearing.cos(), distance * bearing.sin()], reach))
+    });
+    let wanted = PlaceConstraints {
+        limits: vehicle.limits(),
+        distance_min: follow.law.distance_min,
+        sight: looks.then_some([far, scene.vision.pan_max + half_picture]),
+        others: places.chain([([0.0; 2], reach)]).collect(),
+    };
+    let motions =
+        motions(app_state.prediction.as_ref(), ends.leader, (leader.motion.speed, leader.motion.turn_rate));
+    Some((leader.motion.pose, shade(&wanted, &motions)))
+}
+
+/// How the leader drives now and on its way to come.
+fn motions(prediction: Option<&Prediction>, leader: usize, now: (f64, f64)) -> Vec<(f64, f64)> {
+    let ahead = prediction.and_then(|prediction| prediction.motions.get(leader)).map_or(&[][..], |all| all);
+    let every = (ahead.len() / GLANCES).max(1);
+    [now].into_iter().chain(ahead.iter().step_by(every).copied()).collect()
+}
+
+/// The field of what is wanted.
+pub fn shade(wanted: &PlaceConstraints, motions: &[(f64, f64)]) -> FeasibilityMap {
+    let half = 0.5 * (SIDE - 1) as f64 * STEP;
+    let mut alphas = Vec::with_capacity(SIDE * SIDE);
+    for row in 0..SIDE {
+        for column in 0..SIDE {
+            let place = [row as f64 * STEP - half, column as f64 * STEP - half];
+            let away = place[0].hypot(place[1]) / half;
+            // It fades towards its rim, so that it is no square.
+            let rim = ((1.0 - away) / 0.2).clamp(0.0, 1.0) as f32;
+            alphas.push(if wanted.refuses(place, motions) { rim } else { 0.0 });
+        }
+    }
+    FeasibilityMap { alphas, side: SIDE, step: STEP }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wanted() -> PlaceConstraints {
+        PlaceConstraints { limits: Limits::PAPER, distance_min: 0.1, sight: None, others: vec![] }
+    }
+
+    #[test]
+    fn a_straight_way_leaves_all_ground_and_a_bend_takes_the_outside() {
+        let free = shade(&wanted(), &[(1.0, 0.0)]);
+        let taken = shade(&wanted(), &[(1.0, 0.3)]);
+        let count = |field: &FeasibilityMap| field.alphas.iter().filter(|a| **a > 0.0).count();
+        // What is nearer than the law allows is one square.
+        assert_eq!(count(&free), 1);
+        assert!(count(&taken) > 300);
+    }
+
+    #[test]
+    fn who_looks_has_to_see() {
+        let looking = PlaceConstraints { sight: Some([4.0, 2.0]), ..wanted() };
+        assert!(looking.refuses([-4.5, 0.0], &[(1.0, 0.0)]), "too far");
+        assert!(looking.refuses([2.0, 0.0], &[(1.0, 0.0)]), "behind the camera");
+        assert!(!looking.refuses([-2.0, 1.0], &[(1.0, 0.0)]));
+    }
+
+    #[test]
+    fn nobody_stands_where_another_does() {
+        let crowded = PlaceConstraints { others: vec![([-1.0, 1.0], 0.5)], ..wanted() };
+        assert!(crowded.refuses([-1.2, 1.2], &[(1.0, 0.0)]) && !crowded.refuses([-2.0, 1.0], &[(1.0, 0.0)]));
+    }
+}

@@ -1,0 +1,332 @@
+//! The 3D view in its tile: drawn when something in it has changed, and under the hand.
+
+mod pointer;
+
+use self::pointer::Drag;
+use crate::action::Action;
+use crate::app_state::{AppState, Tool};
+use crate::tidy::fixed;
+use crate::view::annotations::{Hand, annotations};
+use crate::view::camera::HeldCamera;
+use eframe::egui::{self, Color32, Pos2, Rect, Sense, TextureId, Ui, Vec2};
+use eframe::egui_wgpu::RenderState;
+use rendering::{Error, Gpu, Renderer, Sightline, Style, Trail, ViewLayout, Viewpoint};
+use std::sync::Arc;
+use vocabulary::{FleetInfo, StepRecord};
+
+/// Rooms for pixels of the view, both ways.
+const SIZES: [u32; 2] = [16, 8192];
+
+/// The 3D view.
+pub struct Viewport {
+    pub(super) state: RenderState,
+    pub(super) gpu: Gpu,
+    pub(super) stage: Option<ViewRenderer>,
+    /// What is looked from: a named view, or the camera in the hand.
+    pub view: String,
+    pub(super) held: Option<HeldCamera>,
+    /// What is drawn besides the scene; its annotations are made anew for each picture.
+    pub style: Style,
+    pub(super) hand: Hand,
+    drag: Option<Drag>,
+    /// Samples a pixel.
+    pub(super) samples: u32,
+    /// Why nothing can be drawn.
+    pub fault: Option<String>,
+    /// Pictures drawn so far.
+    pub pictures: u64,
+    /// Where it is in the window, points.
+    pub rect: Rect,
+}
+
+/// What draws the robots of one run.
+pub(super) struct ViewRenderer {
+    pub(super) fleet: Arc<FleetInfo>,
+    pub(super) renderer: Renderer,
+    pub(super) texture: wgpu::Texture,
+    pub(super) id: TextureId,
+    /// Draws what stands still with more samples, where the first draws with one.
+    pub(super) finer: Option<Renderer>,
+    /// What was drawn last, and whether as well as can be.
+    pub(super) shown: Option<(DrawnFrame, bool)>,
+    pub(super) sight: Option<Sightline>,
+}
+
+impl ViewRenderer {
+    /// Draws with all samples.
+    fn fine(
+        &mut self,
+        gpu: &Gpu,
+        (trail, record): (&Trail, &StepRecord),
+        (layout, style): (&ViewLayout, &Style),
+        [title, caption]: &[String; 2],
+    ) -> Result<(), Error> {
+        let (width, height) = self.renderer.size();
+        let finer = match self.finer.take() {
+            Some(mut finer) => {
+                finer.resize(width, height)?;
+                finer
+            }
+            None => {
+                Renderer::with_format(gpu, &self.fleet, width, height, 4, wgpu::TextureFormat::Rgba8Unorm)?
+            }
+        };
+        let finer = self.finer.insert(finer);
+        finer.retitle(title, caption);
+        let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        finer.draw_into(&view, trail, record, layout, style).map(drop)
+    }
+}
+
+/// What a picture was made of: where nothing of it has changed, it stands.
+#[derive(PartialEq)]
+pub(super) struct DrawnFrame {
+    branch: usize,
+    words: [String; 2],
+    time: f64,
+    goals: Vec<[f64; 2]>,
+    layout: ViewLayout,
+    style: Style,
+    size: (u32, u32),
+}
+
+impl Viewport {
+    /// A view that draws on the window's device.
+    pub fn new(state: &RenderState) -> Self {
+        let gpu = Gpu::from_device(state.device.clone(), state.queue.clone(), &state.adapter.get_info());
+        // A processor that draws has enough to do with one sample.
+        let samples = if gpu.info().software { 1 } else { 4 };
+        let style = Style { inset: false, ..Style::default() };
+        Self {
+            state: state.clone(),
+            gpu,
+            stage: None,
+            view: "snake".to_owned(),
+            held: None,
+            style,
+            hand: Hand::default(),
+            drag: None,
+            samples,
+            fault: None,
+            pictures: 0,
+            rect: Rect::ZERO,
+        }
+    }
+
+    /// The device, for whoever else draws.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Looks from a view called this.
+    pub fn look(&mut self, view: &str) {
+        view.clone_into(&mut self.view);
+        self.held = None;
+    }
+
+    /// Keeps the camera with a robot; `None` lets it go.
+    pub fn follow(&mut self, robot: Option<usize>, app_state: &AppState) {
+        let Some(record) = app_state.record() else { return };
+        if self.held.is_none() {
+            self.take_camera(&record, robot);
+        }
+        if let Some(held) = &mut self.held {
+            match robot {
+                Some(robot) => held.follow(robot),
+                None => held.let_go(&record.snapshot),
+            }
+        }
+    }
+
+    /// Views of the picture.
+    pub fn layout(&self, fleet: &FleetInfo, record: &StepRecord) -> ViewLayout {
+        if let Some(held) = &self.held {
+            return ViewLayout::single(held.view(&record.snapshot));
+        }
+        let names: Vec<String> = fleet.robots.iter().map(|member| member.name.clone()).collect();
+        ViewLayout::parse(&self.view, &names).unwrap_or_else(|_| ViewLayout::single(Viewpoint::Snake))
+    }
+
+    /// The style of a picture with all that explains it.
+    pub fn dressed(&self, app_state: &AppState, record: &StepRecord, scale: f64) -> Style {
+        Style { scale, annotations: annotations(app_state, record, &self.hand), ..self.style.clone() }
+    }
+
+    /// The view in all the room there is.
+    pub fn show(&mut self, ui: &mut Ui, app_state: &ViewInput<'_>, out: &mut Vec<Action>) {
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "3D view"));
+        self.rect = rect;
+        let Some(record) = app_state.record.clone() else {
+            return centred(ui, rect, "Open a scene: Ctrl O, or drop a file here.");
+        };
+        self.under_hand(ui, &response, (app_state.app_state, &record), rect, out);
+        let pixels = ui.pixels_per_point();
+        let size =
+            [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(SIZES[0], SIZES[1]));
+        if let Err(error) = self.draw(app_state, &record, (size[0], size[1]), f64::from(pixels)) {
+            self.fault = Some(error.to_string());
+        }
+        if let Some(fault) = &self.fault {
+            return centred(
+                ui,
+                rect,
+                &format!("The view cannot be drawn: {fault}\nYour scene and its run are kept."),
+            );
+        }
+        if let Some(stage) = &self.stage {
+            let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+            ui.painter().image(stage.id, rect, whole, Color32::WHITE);
+        }
+        self.readout(ui, app_state.app_state, &record, rect);
+    }
+
+    fn draw(
+        &mut self,
+        app_state: &ViewInput<'_>,
+        record: &Arc<StepRecord>,
+        size: (u32, u32),
+        pixels: f64,
+    ) -> Result<(), Error> {
+        let fleet = Arc::clone(app_state.fleet);
+        // Text keeps its size on small views, and grows with the density of the screen.
+        let scale = (0.92 * pixels).clamp(0.5, 6.0);
+        let layout = self.layout(&fleet, record);
+        let style = Style { interactive: true, ..self.dressed(app_state.app_state, record, scale) };
+        if self.stage.as_ref().is_none_or(|stage| !Arc::ptr_eq(&stage.fleet, &fleet)) {
+            self.set_stage(&fleet, size)?;
+        }
+        let Some(stage) = &mut self.stage else { return Ok(()) };
+        if stage.renderer.size() != size {
+            stage.renderer.resize(size.0, size.1)?;
+            stage.texture = texture(&self.state.device, size);
+            let view = stage.texture.create_view(&wgpu::TextureViewDescriptor::default());
+            self.state.renderer.write().update_egui_texture_from_wgpu_texture(
+                &self.state.device,
+                &view,
+                wgpu::FilterMode::Nearest,
+                stage.id,
+            );
+            stage.shown = None;
+        }
+        let shown = DrawnFrame {
+            branch: app_state.app_state.branch,
+            words: app_state.app_state.words(),
+            time: record.snapshot.time,
+            goals: record.edges.iter().map(|edge| edge.set_point).collect(),
+            layout: layout.clone(),
+            style: style.clone(),
+            size,
+        };
+        let Some(trail) = app_state.trail else { return Ok(()) };
+        match &stage.shown {
+            Some((last, true)) if *last == shown => return Ok(()),
+            Some((last, false)) if *last == shown => {
+                // Nothing moves any more: there is time for a better picture.
+                let fine = Style { interactive: false, ..style };
+                stage.fine(&self.gpu, (trail, record), (&layout, &fine), &shown.words)?;
+                stage.shown = Some((shown, true));
+                self.pictures += 1;
+                return Ok(());
+            }
+            _ => {}
+        }
+        let [title, caption] = &shown.words;
+        stage.renderer.retitle(title, caption);
+        stage.sight = stage.renderer.sightlines(trail, record, &layout, &style)?.into_iter().next();
+        let view = stage.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        stage.renderer.draw_into(&view, trail, record, &layout, &style)?;
+        stage.shown = Some((shown, self.samples > 1));
+        self.fault = None;
+        self.pictures += 1;
+        Ok(())
+    }
+
+    fn set_stage(&mut self, fleet: &Arc<FleetInfo>, size: (u32, u32)) -> Result<(), Error> {
+        let format = wgpu::TextureFormat::Rgba8Unorm;
+        let renderer = Renderer::with_format(&self.gpu, fleet, size.0, size.1, self.samples, format)?;
+        let texture = texture(&self.state.device, size);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut drawer = self.state.renderer.write();
+        if let Some(before) = self.stage.take() {
+            drawer.free_texture(&before.id);
+        }
+        let id = drawer.register_native_texture(&self.state.device, &view, wgpu::FilterMode::Nearest);
+        drop(drawer);
+        self.stage = Some(ViewRenderer {
+            fleet: Arc::clone(fleet),
+            renderer,
+            texture,
+            id,
+            finer: None,
+            shown: None,
+            sight: None,
+        });
+        Ok(())
+    }
+
+    /// Whether what is seen could be drawn better when nothing moves.
+    pub fn rough(&self) -> bool {
+        let shown = self.stage.as_ref().and_then(|stage| stage.shown.as_ref());
+        self.fault.is_none() && shown.is_some_and(|(_, fine)| !fine)
+    }
+
+    /// Numbers beside the ring that is dragged, and what the tool does.
+    fn readout(&self, ui: &Ui, app_state: &AppState, record: &StepRecord, rect: Rect) {
+        let font = egui::FontId::proportional(14.0);
+        let plate = |text: String, at: Pos2, align: egui::Align2| {
+            let galley = ui.painter().layout_no_wrap(text, font.clone(), Color32::WHITE);
+            let place = align.anchor_size(at, galley.size() + Vec2::new(16.0, 10.0));
+            ui.painter().rect_filled(place, 6.0, Color32::from_black_alpha(190));
+            ui.painter().galley(place.min + Vec2::new(8.0, 5.0), galley, Color32::WHITE);
+        };
+        if let Some(edge) = self.hand.held
+            && let Some([distance, bearing]) = app_state.set_point(edge)
+            && let Some(pos) = ui.input(|input| input.pointer.latest_pos())
+        {
+            let text = format!("{} m   {}°", fixed(distance, 2), fixed(bearing.to_degrees(), 1));
+            let error = record.edges.get(edge).map_or(0.0, |state| state.error[0].abs());
+            let text = if error > 0.02 { format!("{text}\nnow {} m off", fixed(error, 2)) } else { text };
+            plate(text, pos + Vec2::new(18.0, -14.0), egui::Align2::LEFT_BOTTOM);
+        }
+        let hint = match app_state.tool {
+            Tool::Hand => return,
+            Tool::Connect => "Drag from a robot to the one that it shall follow. Esc ends it.",
+            Tool::Pillar => "Click on the ground to place a pillar. Esc ends it.",
+        };
+        plate(hint.to_owned(), rect.center_top() + Vec2::new(0.0, 14.0), egui::Align2::CENTER_TOP);
+    }
+}
+
+/// What the view needs of the state, borrowed in parts.
+pub struct ViewInput<'a> {
+    /// All of it.
+    pub app_state: &'a AppState,
+    /// Who is on stage.
+    pub fleet: &'a Arc<FleetInfo>,
+    /// What is looked at.
+    pub record: Option<Arc<StepRecord>>,
+    /// The past of it.
+    pub trail: Option<&'a Trail>,
+}
+
+fn texture(device: &wgpu::Device, (width, height): (u32, u32)) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("3D view"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    })
+}
+
+fn centred(ui: &Ui, rect: Rect, text: &str) {
+    let font = egui::FontId::proportional(15.0);
+    let wide = (rect.width() - 40.0).max(60.0);
+    let galley = ui.painter().layout(text.to_owned(), font, ui.visuals().text_color(), wide);
+    let at = rect.center() - 0.5 * galley.size();
+    ui.painter().galley(at, galley, ui.visuals().text_color());
+}

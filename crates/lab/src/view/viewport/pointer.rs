@@ -1,0 +1,253 @@
+//! The pointer in the view: what it is over, what it drags, what a click means.
+
+use super::Viewport;
+use crate::action::Action;
+use crate::app_state::{AppState, Selection, Tool};
+use crate::tidy::snap;
+use crate::view::camera::HeldCamera;
+use eframe::egui::{self, Pos2, Rect, Ui, Vec2};
+use rendering::{Picked, Sightline, set_points};
+use std::sync::Arc;
+use vocabulary::{StepRecord, wrap};
+
+/// Steps of a set point under the hand: m and degrees.
+const STEPS: [f64; 2] = [0.1, 5.0];
+/// How near to a ring's middle the pointer grasps it, points.
+const GRASP: f32 = 16.0;
+/// What a button held down moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Drag {
+    Orbit,
+    Pan,
+    SetPoint(usize),
+    Connect(usize),
+}
+
+impl Viewport {
+    /// Everything the pointer does in the view.
+    pub(super) fn under_hand(
+        &mut self,
+        ui: &Ui,
+        response: &egui::Response,
+        (app_state, record): (&AppState, &Arc<StepRecord>),
+        rect: Rect,
+        out: &mut Vec<Action>,
+    ) {
+        let pixels = ui.pixels_per_point();
+        let pixel = |pos: Pos2| [pos.x - rect.left(), pos.y - rect.top()].map(|x| f64::from(x * pixels));
+        let Some(sight) = self.stage.as_ref().and_then(|stage| stage.sight.clone()) else { return };
+        let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
+        self.hover(app_state, record, (&sight, pointer.map(pixel)), f64::from(pixels * GRASP));
+        if response.drag_started() {
+            // What was pressed counts, wherever the pointer is by now.
+            let origin = ui.input(|input| input.pointer.press_origin());
+            self.hover(app_state, record, (&sight, origin.or(pointer).map(pixel)), f64::from(pixels * GRASP));
+            self.begin_drag(ui, app_state);
+        }
+        let share = |delta: Vec2| [delta.x, delta.y].map(|x| f64::from(x / rect.height().max(1.0)));
+        if let (Some(drag), Some(pos)) = (self.drag, released_at(ui).or(response.interact_pointer_pos())) {
+            let delta = response.drag_delta();
+            match drag {
+                Drag::Orbit | Drag::Pan if delta == Vec2::ZERO => {}
+                Drag::Orbit => {
+                    self.take_camera(record, None);
+                    if let Some(held) = &mut self.held {
+                        held.orbit(share(delta));
+                    }
+                }
+                Drag::Pan => {
+                    let (from, to) = (sight.ground(pixel(pos - delta)), sight.ground(pixel(pos)));
+                    self.take_camera(record, None);
+                    if let (Some(held), Some(from), Some(to)) = (&mut self.held, from, to) {
+                        held.pan(from, to);
+                    }
+                }
+                Drag::SetPoint(edge) => {
+                    if let Some(place) = sight.ground(pixel(pos)) {
+                        out.extend(dragged(ui, app_state, record, edge, place));
+                    }
+                }
+                Drag::Connect(robot) => {
+                    self.hand.connecting = sight.ground(pixel(pos)).map(|place| (robot, place));
+                }
+            }
+        }
+        if response.drag_stopped() {
+            self.end_drag(out);
+        }
+        self.wheel(ui, response, (&sight, pointer.map(pixel)), record);
+        self.clicks(response, app_state, (&sight, pointer.map(pixel)), out);
+    }
+
+    /// What is under the pointer.
+    fn hover(
+        &mut self,
+        app_state: &AppState,
+        record: &StepRecord,
+        (sight, pixel): (&Sightline, Option<[f64; 2]>),
+        grasp: f64,
+    ) {
+        self.hand.dialog = None;
+        self.hand.robot = None;
+        let (Some(pixel), Some(stage)) = (pixel, &self.stage) else { return };
+        let near = set_points(&stage.fleet, record).into_iter().enumerate().filter_map(|(edge, at)| {
+            let [x, y] = sight.pixel_of_ground(at?)?;
+            let away = (x - pixel[0]).hypot(y - pixel[1]);
+            let radius =
+                crate::view::annotations::RING / sight.metres_per_pixel([at?[0], at?[1], 0.0]).max(1e-9);
+            (away < grasp.max(0.8 * radius)).then_some((away, edge))
+        });
+        // The set point that is selected comes before those that it lies under.
+        let first = |(away, edge): &(f64, usize)| {
+            if app_state.chosen_edge() == Some(*edge) { 0.5 * away } else { *away }
+        };
+        if app_state.tool == Tool::Hand {
+            self.hand.dialog = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
+        }
+        let robot = stage.renderer.pick(sight, record, pixel).into_iter().find_map(|picked| match picked {
+            Picked::Robot(robot) => Some(robot),
+            _ => None,
+        });
+        self.hand.robot = robot;
+    }
+
+    fn begin_drag(&mut self, ui: &Ui, app_state: &AppState) {
+        let (right, shift) = ui.input(|input| {
+            let pointer = &input.pointer;
+            (pointer.secondary_down() || pointer.middle_down(), input.modifiers.shift)
+        });
+        self.drag = Some(match (right, app_state.tool, self.hand.robot, self.hand.dialog) {
+            (true, ..) => Drag::Pan,
+            (_, Tool::Connect, Some(robot), _) => Drag::Connect(robot),
+            (_, Tool::Hand, _, Some(edge)) => Drag::SetPoint(edge),
+            _ if shift => Drag::Pan,
+            _ => Drag::Orbit,
+        });
+        if let Some(Drag::SetPoint(edge)) = self.drag {
+            self.hand.held = Some(edge);
+        }
+    }
+
+    fn end_drag(&mut self, out: &mut Vec<Action>) {
+        match self.drag.take() {
+            Some(Drag::SetPoint(edge)) => {
+                out.push(Action::Rest);
+                out.push(Action::Choose(Selection::Edge(edge)));
+            }
+            Some(Drag::Connect(follower)) => {
+                if let Some(leader) = self.hand.robot.filter(|leader| *leader != follower) {
+                    out.push(Action::Connect { leader, follower });
+                }
+            }
+            _ => {}
+        }
+        self.hand.held = None;
+        self.hand.connecting = None;
+    }
+
+    fn wheel(
+        &mut self,
+        ui: &Ui,
+        response: &egui::Response,
+        (sight, pixel): (&Sightline, Option<[f64; 2]>),
+        record: &StepRecord,
+    ) {
+        if !response.hovered() {
+            return;
+        }
+        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        let factor = f64::from((-scroll * 0.004).exp() / pinch.max(1e-3));
+        if (factor - 1.0).abs() > 1e-4 {
+            let about = pixel.and_then(|pixel| sight.ground(pixel));
+            self.take_camera(record, None);
+            if let Some(held) = &mut self.held {
+                held.zoom(factor, about, &record.snapshot);
+            }
+        }
+    }
+
+    fn clicks(
+        &self,
+        response: &egui::Response,
+        app_state: &AppState,
+        (sight, pixel): (&Sightline, Option<[f64; 2]>),
+        out: &mut Vec<Action>,
+    ) {
+        let Some(pixel) = pixel else { return };
+        if response.double_clicked() {
+            if let Some(robot) = self.hand.robot {
+                out.push(Action::Follow(Some(robot)));
+            }
+        } else if response.clicked() {
+            match (app_state.tool, sight.ground(pixel)) {
+                (Tool::Pillar, Some(place)) => out.push(Action::AddProp("pillar", place)),
+                _ => out.extend(self.chosen(sight, app_state, pixel)),
+            }
+        }
+    }
+
+    fn chosen(&self, sight: &Sightline, app_state: &AppState, pixel: [f64; 2]) -> Option<Action> {
+        if let Some(edge) = self.hand.dialog {
+            return Some(Action::Choose(Selection::Edge(edge)));
+        }
+        let stage = self.stage.as_ref()?;
+        let picked = stage.renderer.pick(sight, &*app_state.record()?, pixel).into_iter().next()?;
+        Some(Action::Choose(match picked {
+            Picked::Robot(robot) => Selection::Robot(robot),
+            Picked::Edge(edge) | Picked::SetPoint(edge) => Selection::Edge(edge),
+        }))
+    }
+
+    /// The hand takes the camera over from a named view.
+    pub(super) fn take_camera(&mut self, record: &StepRecord, robot: Option<usize>) {
+        if self.held.is_some() {
+            return;
+        }
+        let Some(stage) = &self.stage else { return };
+        let lead = stage.fleet.robots.iter().position(|member| member.leads);
+        if let Some(sight) = &stage.sight {
+            self.held = Some(HeldCamera::take(sight.free(), robot.or(lead), &record.snapshot));
+        }
+    }
+}
+
+/// Where a button was let go in this frame: the pointer may be elsewhere by its end.
+fn released_at(ui: &Ui) -> Option<Pos2> {
+    ui.input(|input| {
+        input.events.iter().rev().find_map(|event| match event {
+            egui::Event::PointerButton { pos, pressed: false, .. } => Some(*pos),
+            _ => None,
+        })
+    })
+}
+
+/// What a set point that is dragged to a place asks for.
+fn dragged(
+    ui: &Ui,
+    app_state: &AppState,
+    record: &StepRecord,
+    edge: usize,
+    place: [f64; 2],
+) -> Option<Action> {
+    let ends = *app_state.history.as_ref()?.fleet().edges.get(edge)?;
+    let leader = record.snapshot.robots.get(ends.leader)?.motion.pose;
+    let [dx, dy] = [place[0] - leader.x, place[1] - leader.y];
+    let (distance, bearing) = (dx.hypot(dy), wrap(dy.atan2(dx) - leader.heading));
+    let least = app_state.follower(edge).map_or(0.1, |(_, _, follow)| follow.law.distance_min);
+    let (free, whole) = ui.input(|input| (input.modifiers.shift, input.modifiers.command));
+    let [distance, bearing] = if free {
+        [distance, bearing]
+    } else {
+        [snap(distance, STEPS[0]), wrap(snap(bearing.to_degrees(), STEPS[1]).to_radians())]
+    };
+    let distance = distance.max(least.max(0.1));
+    let [now_distance, now_bearing] = app_state.set_point(edge)?;
+    if (distance - now_distance).abs() < 1e-9 && wrap(bearing - now_bearing).abs() < 1e-9 {
+        return None;
+    }
+    Some(if whole {
+        Action::Shape { scale: distance / now_distance.max(1e-6), turn: wrap(bearing - now_bearing) }
+    } else {
+        Action::SetPoint { edge, distance, bearing }
+    })
+}

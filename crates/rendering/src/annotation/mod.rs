@@ -1,0 +1,8 @@
+//! What explains a picture: texts, charts, cards, and shapes on the ground.
+
+pub(crate) mod annotations;
+pub(crate) mod detections;
+pub(crate) mod inset;
+pub(crate) mod labels;
+pub(crate) mod letters;
+pub(crate) mod overlays;

@@ -1,0 +1,143 @@
+//! Text drawn last on the single-sample picture, from glyphs that [`Letters`] has shaped.
+
+use super::Canvas;
+use crate::annotation::letters::{Block, Letters, line_height};
+use crate::palette::Rgb;
+use glyphon::{
+    Buffer, Cache, Color, ColorMode, Resolution, SwashCache, TextArea, TextAtlas, TextBounds, TextRenderer,
+    Viewport,
+};
+use wgpu::{Device, Queue, TextureFormat};
+
+/// A text in a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TextLine {
+    pub(crate) text: String,
+    /// Left end of the text and middle of its first line, pixels.
+    pub(crate) at: [f32; 2],
+    /// Size of the font, pixels.
+    pub(crate) size: f32,
+    pub(crate) bold: bool,
+    /// Where it may have several lines.
+    pub(crate) block: Option<Block>,
+    pub(crate) colour: Rgb,
+    pub(crate) alpha: f32,
+    /// Opacity of the halo, and its colour.
+    pub(crate) halo: (f32, Rgb),
+}
+
+/// Atlas and pipeline.
+pub(crate) struct TextPass {
+    glyphs: SwashCache,
+    viewport: Viewport,
+    cache: Cache,
+    format: TextureFormat,
+    atlas: TextAtlas,
+    renderer: TextRenderer,
+}
+
+impl std::fmt::Debug for TextPass {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("TextPass").finish_non_exhaustive()
+    }
+}
+
+/// An atlas without any glyph, and what draws from it.
+fn blank(device: &Device, queue: &Queue, cache: &Cache, format: TextureFormat) -> (TextAtlas, TextRenderer) {
+    let mut atlas = TextAtlas::with_color_mode(device, queue, cache, format, ColorMode::Web);
+    let renderer = TextRenderer::new(&mut atlas, device, wgpu::MultisampleState::default(), None);
+    (atlas, renderer)
+}
+
+impl TextPass {
+    pub(crate) fn new(device: &Device, queue: &Queue, canvas: Canvas) -> Self {
+        let cache = Cache::new(device);
+        let (atlas, renderer) = blank(device, queue, &cache, canvas.format);
+        Self {
+            glyphs: SwashCache::new(),
+            viewport: Viewport::new(device, &cache),
+            cache,
+            format: canvas.format,
+            atlas,
+            renderer,
+        }
+    }
+
+    /// Makes `lines` ready to draw on a picture of `size` pixels; halos of all lines lie below all text.
+    pub(crate) fn fill(
+        &mut self,
+        (device, queue): (&Device, &Queue),
+        size: [u32; 2],
+        lines: &[TextLine],
+        letters: &mut Letters,
+    ) -> Result<(), glyphon::PrepareError> {
+        for line in lines {
+            letters.measure(&line.text, line.size, line.bold, line.block);
+        }
+        letters.forget();
+        self.viewport.update(queue, Resolution { width: size[0], height: size[1] });
+        // What the picture before had may make room.
+        self.atlas.trim();
+        match self.place(device, queue, lines, letters) {
+            // In hours of text of ever other sizes it is cut into pieces too small for anything.
+            Err(glyphon::PrepareError::AtlasFull) => {
+                (self.atlas, self.renderer) = blank(device, queue, &self.cache, self.format);
+                self.place(device, queue, lines, letters)
+            }
+            placed => placed,
+        }
+    }
+
+    fn place(
+        &mut self,
+        device: &Device,
+        queue: &Queue,
+        lines: &[TextLine],
+        letters: &mut Letters,
+    ) -> Result<(), glyphon::PrepareError> {
+        let (fonts, shaped) = letters.parts();
+        let find = |line: &TextLine| shaped.find(&line.text, line.size, line.bold, line.block);
+        let mut areas = Vec::new();
+        for line in lines {
+            if let Some(buffer) = find(line) {
+                halo(&mut areas, line, buffer);
+            }
+        }
+        for line in lines {
+            if let Some(buffer) = find(line) {
+                areas.push(area(line, buffer, [0.0, 0.0], line.colour, line.alpha));
+            }
+        }
+        self.renderer.prepare(device, queue, fonts, &mut self.atlas, &self.viewport, areas, &mut self.glyphs)
+    }
+
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) -> Result<(), glyphon::RenderError> {
+        self.renderer.render(&self.atlas, &self.viewport, pass)
+    }
+}
+
+fn area<'a>(line: &TextLine, buffer: &'a Buffer, shift: [f32; 2], colour: Rgb, alpha: f32) -> TextArea<'a> {
+    let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;
+    TextArea {
+        buffer,
+        // Whole pixels keep stems sharp and keep a still picture still.
+        left: line.at[0].round() + shift[0],
+        top: (line.at[1] - 0.5 * line_height(line.size)).round() + shift[1],
+        scale: 1.0,
+        bounds: TextBounds::default(),
+        default_color: Color::rgba(byte(colour[0]), byte(colour[1]), byte(colour[2]), byte(alpha)),
+        custom_glyphs: &[],
+    }
+}
+
+fn halo<'a>(areas: &mut Vec<TextArea<'a>>, line: &TextLine, buffer: &'a Buffer) {
+    let (strength, colour) = line.halo;
+    if strength <= 0.0 {
+        return;
+    }
+    let reach = (line.size / 13.0 * 1.4).max(1.0);
+    for k in 0..4 {
+        let (sin, cos) = (std::f32::consts::FRAC_PI_4 * (2 * k + 1) as f32).sin_cos();
+        areas.push(area(line, buffer, [reach * cos, reach * sin], colour, strength * line.alpha));
+    }
+}

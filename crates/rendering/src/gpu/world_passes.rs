@@ -1,0 +1,151 @@
+//! The passes that draw the world: ground and sky, paint, robots, props and their shadows.
+
+use crate::Gpu;
+use crate::annotation::letters::digits;
+use crate::camera::Camera;
+use crate::gpu::model::Detail;
+use crate::gpu::passes::Canvas;
+use crate::gpu::passes::asphalt::Asphalt;
+use crate::gpu::passes::decal::{DecalLayer, DecalPass, DecalVertex};
+use crate::gpu::passes::frame::{FrameGroups, FrameUniforms};
+use crate::gpu::passes::ground::GroundPass;
+use crate::gpu::passes::prop::{Copies, PropPass, Veil};
+use crate::gpu::passes::robot::{Crowd, Models, RobotPass};
+use crate::gpu::passes::shadow::ShadowPass;
+use crate::gpu::passes::sky::SkyPass;
+use crate::gpu::passes::tag::TagPass;
+use crate::gpu::passes::terrain::TerrainPass;
+use crate::gpu::robot_models::RobotModels;
+use crate::ground::floor::Floor;
+use std::ops::Range;
+use vocabulary::FleetInfo;
+
+/// Every pass with what it keeps on the device.
+#[derive(Debug)]
+pub(crate) struct WorldPasses {
+    groups: FrameGroups,
+    models: Models,
+    pub(crate) shadow: ShadowPass,
+    asphalt: Asphalt,
+    robot: RobotPass,
+    tag: TagPass,
+    ground: GroundPass,
+    /// In place of the flat ground.
+    terrain: Option<TerrainPass>,
+    prop: Option<PropPass>,
+    decal: DecalPass,
+    sky: SkyPass,
+}
+
+/// What there is to see in a view.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SceneView<'a> {
+    /// Of the view, among those uploaded.
+    pub(crate) index: usize,
+    pub(crate) camera: &'a Camera,
+    pub(crate) crowd: &'a Crowd,
+    pub(crate) props: &'a Copies,
+    /// Which decks hide a robot.
+    pub(crate) veiled: &'a [bool],
+    /// Paint and shadows on the floor, in order.
+    pub(crate) under: &'a [(DecalLayer, Range<u32>)],
+    /// Paint that shows through the robots.
+    pub(crate) over: Option<&'a (DecalLayer, Range<u32>)>,
+    /// Whether it shows ghosts.
+    pub(crate) ghosts: bool,
+}
+
+impl WorldPasses {
+    /// `shadows` is the side of the shadow map in texels.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        canvas: Canvas,
+        fleet: &FleetInfo,
+        (robot_models, floor): (&RobotModels, &Floor),
+        (detail, shadows): (Detail, u32),
+    ) -> Self {
+        let (device, queue) = (&gpu.device, &gpu.queue);
+        let map = ShadowPass::map(device, shadows);
+        let groups = FrameGroups::new(device, &map);
+        let asphalt = Asphalt::new(device, queue);
+        let terrain = fleet.terrain.as_deref();
+        // What is seen through needs an opacity, which a monochrome picture has not.
+        let veil = match (canvas.mono, floor.drivables.is_empty()) {
+            (true, _) => Veil::None,
+            (false, true) => Veil::All,
+            (false, false) => Veil::ButDecks,
+        };
+        let prop = || PropPass::new(device, queue, canvas, &groups, &asphalt, veil);
+        Self {
+            models: Models::new(device, queue, detail, &robot_models.builds),
+            robot: RobotPass::new(device, queue, canvas, &groups, digits()),
+            tag: TagPass::new(device, queue, canvas, &groups),
+            ground: GroundPass::new(device, canvas, &groups, &asphalt),
+            terrain: terrain.map(|t| TerrainPass::new(device, queue, canvas, &groups, &asphalt, t)),
+            prop: (!fleet.props.is_empty()).then(prop),
+            decal: DecalPass::new(device, canvas, &groups, !floor.is_plane()),
+            sky: SkyPass::new(device, canvas, &groups),
+            shadow: ShadowPass::new(device, &groups, map, shadows),
+            asphalt,
+            groups,
+        }
+    }
+
+    /// Brings a picture's data to the device; every crowd and all props are drawn from there.
+    pub(crate) fn upload<'a>(
+        &mut self,
+        gpu: &Gpu,
+        frames: &[FrameUniforms],
+        crowds: impl Iterator<Item = &'a mut Crowd>,
+        props: impl Iterator<Item = &'a mut Copies>,
+        corners: &[DecalVertex],
+    ) {
+        let (device, queue) = (&gpu.device, &gpu.queue);
+        self.groups.fill(device, queue, frames);
+        self.models.fill(device, queue, crowds);
+        if let Some(prop) = &mut self.prop {
+            prop.fill(device, queue, props);
+        }
+        self.decal.fill(device, queue, corners);
+    }
+
+    pub(crate) fn encode_shadow(&self, encoder: &mut wgpu::CommandEncoder, crowd: &Crowd, props: &Copies) {
+        let mut pass = self.shadow.begin(encoder, &self.groups);
+        self.models.draw_solid(&mut pass, crowd);
+        self.models.draw_faces(&mut pass, crowd);
+        if let Some(prop) = &self.prop {
+            prop.draw_solid(&mut pass, props);
+        }
+    }
+
+    /// Flat ground and sky are painted first and without depth: robots cover little of them, and on processors the
+    /// depth test of every pixel would cost more than shading the few that are hidden.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, sight: &SceneView<'_>) {
+        pass.set_bind_group(0, &self.groups.view, &[FrameGroups::offset(sight.index)]);
+        pass.set_bind_group(1, &self.groups.light, &[]);
+        self.sky.draw(pass);
+        match &self.terrain {
+            Some(terrain) => terrain.draw(pass, &self.asphalt, sight.camera),
+            None => self.ground.draw(pass, &self.asphalt),
+        }
+        if let Some(prop) = &self.prop {
+            prop.draw_decks(pass, &self.asphalt, sight.props, sight.veiled);
+        }
+        for (layer, corners) in sight.under {
+            self.decal.draw(pass, corners, *layer);
+        }
+        // Faces first: they hide much of the rest.
+        self.tag.draw(pass, &self.models, sight.crowd);
+        self.robot.draw_solid(pass, &self.models, sight.crowd);
+        // After the robots, which show through those in front of them.
+        if let Some(prop) = &self.prop {
+            prop.draw(pass, &self.asphalt, sight.props, sight.veiled);
+        }
+        if sight.ghosts {
+            self.robot.draw_ghosts(pass, &self.models, sight.crowd);
+        }
+        if let Some((layer, corners)) = sight.over {
+            self.decal.draw(pass, corners, *layer);
+        }
+    }
+}

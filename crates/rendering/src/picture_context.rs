@@ -1,0 +1,34 @@
+//! What everything that is drawn in a picture is made from.
+
+use crate::ground::floor::Floor;
+use crate::palette::Rgb;
+use crate::{Style, Trail};
+use glam::{DVec2, DVec3};
+use vocabulary::{FleetInfo, StepRecord};
+
+/// The record of a picture with everything that all its views share.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PictureContext<'a> {
+    pub(crate) fleet: &'a FleetInfo,
+    pub(crate) floor: &'a Floor,
+    pub(crate) colours: &'a [Rgb],
+    pub(crate) trail: &'a Trail,
+    pub(crate) record: &'a StepRecord,
+    pub(crate) style: &'a Style,
+    pub(crate) origin: DVec3,
+    /// Direction to the sun.
+    pub(crate) sun: DVec3,
+    /// How many times as large as the default body the largest is.
+    pub(crate) size: f64,
+    /// Middle and radius of what the shadow map covers, m.
+    pub(crate) shadowed: (DVec2, f64),
+    /// How clearly edges, labels, rings and ghosts show: 1 for small formations, 0 for large ones.
+    pub(crate) detail: f32,
+}
+
+impl PictureContext<'_> {
+    /// The point of the floor at (x, y), m.
+    pub(crate) fn on_floor(&self, x: f64, y: f64) -> DVec3 {
+        DVec3::new(x, y, self.floor.height(DVec2::new(x, y)))
+    }
+}
