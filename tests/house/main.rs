@@ -12,7 +12,8 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Normal dependencies of every workspace member on other packages.
+/// Dependencies of every workspace member on other packages: those of its library or program, of its tests, examples and
+/// benchmarks, and of its build script.
 fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--format-version=1", "--no-deps", "--offline"])
@@ -22,16 +23,15 @@ fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
     let metadata: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let mut all = BTreeMap::new();
     for package in metadata["packages"].as_array().expect("packages") {
-        let normal =
-            package["dependencies"].as_array().expect("a list").iter().filter(|d| d["kind"].is_null());
-        let names = normal.map(|d| d["name"].as_str().expect("a name").to_owned()).collect();
+        let all_kinds = package["dependencies"].as_array().expect("a list").iter();
+        let names = all_kinds.map(|d| d["name"].as_str().expect("a name").to_owned()).collect();
         all.insert(package["name"].as_str().expect("a name").to_owned(), names);
     }
     all
 }
 
 /// Whom each crate may use among our own; everybody else may not.
-const ARROWS: [(&str, &[&str]); 14] = [
+const ARROWS: [(&str, &[&str]); 15] = [
     ("vocabulary", &[]),
     ("output", &[]),
     ("scene", &["vocabulary"]),
@@ -42,8 +42,12 @@ const ARROWS: [(&str, &[&str]); 14] = [
     ("recording", &["vocabulary", "metrics", "output"]),
     ("rendering", &["vocabulary", "output"]),
     ("figures", &[]),
-    ("simulation", &["vocabulary", "scene", "formation", "world", "perception", "metrics"]),
-    ("report", &["vocabulary", "scene", "simulation", "metrics", "figures"]),
+    ("simulation", &["vocabulary", "scene", "formation", "world", "perception"]),
+    (
+        "studies",
+        &["vocabulary", "output", "metrics", "scene", "formation", "perception", "simulation", "recording"],
+    ),
+    ("report", &["vocabulary", "scene", "simulation", "studies", "metrics", "figures"]),
     (
         "lab",
         &[
@@ -52,6 +56,7 @@ const ARROWS: [(&str, &[&str]); 14] = [
             "scene",
             "formation",
             "simulation",
+            "studies",
             "metrics",
             "recording",
             "rendering",
@@ -64,8 +69,7 @@ const ARROWS: [(&str, &[&str]); 14] = [
             "vocabulary",
             "output",
             "scene",
-            "perception",
-            "simulation",
+            "studies",
             "metrics",
             "recording",
             "rendering",

@@ -3,7 +3,7 @@
 use crate::Outcome;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::junit::{self, Came, Case};
+use crate::junit::{self, Came, Check};
 use crate::print::{json, say};
 use crate::replaced::Replaced;
 use clap::Args;
@@ -104,11 +104,11 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
     let _report = junit::open(args.junit.as_deref(), args.json)?;
     let mut cases = vec![];
     let outcome = judge(args, &mut cases);
-    junit::close(args.junit.as_deref(), "pictures", cases, (outcome, began.elapsed()), args.quiet)
+    junit::close(args.junit.as_deref(), "pictures", cases, outcome, began.elapsed(), args.quiet)
 }
 
 /// Compares all pictures; `cases` are what became of them.
-fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
+fn judge(args: &CompareArgs, cases: &mut Vec<Check>) -> Outcome {
     let pairs = pairs(args)?;
     let _place = args.out.as_deref().map(Place::folder).transpose()?;
     interrupt::watch();
@@ -117,7 +117,7 @@ fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
     for (name, wanted, found) in pairs {
         if interrupt::asked() {
             let came = Came::Skipped("the comparison was interrupted".to_owned());
-            cases.push(Case { name, came, time: Some(Duration::ZERO) });
+            cases.push(Check { name, came, time: Some(Duration::ZERO) });
             continue;
         }
         let began = Instant::now();
@@ -128,7 +128,7 @@ fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
         };
         let pair = Pair { name, found: likeness };
         let came = if pair.passes(args.threshold) { Came::Fine } else { Came::Failed(pair.words()) };
-        cases.push(Case { name: pair.name.clone(), came, time: Some(began.elapsed()) });
+        cases.push(Check { name: pair.name.clone(), came, time: Some(began.elapsed()) });
         compared.push(pair);
     }
     let failed = compared.iter().filter(|pair| !pair.passes(args.threshold)).count();
@@ -250,7 +250,7 @@ fn look(
         let path = folder.join(Path::new(name).with_extension("difference.png"));
         let picture = side_by_side(&shown.wanted, &shown.found, &shown.map);
         replaced.look(&path);
-        let written = rendering::png::write(&path, &picture, &[("Software", crate::run::PROGRAM)]);
+        let written = rendering::png::write(&path, &picture, &[("Software", studies::PROGRAM)]);
         // What came out is told, whatever becomes of a file.
         *lost = lost.take().or(written.err().map(Failure::from));
     }

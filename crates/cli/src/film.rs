@@ -6,16 +6,17 @@ mod preset;
 mod words;
 
 use crate::Outcome;
-use crate::args::{FilmArgs, PictureArgs};
+use crate::args::{PictureArgs, SceneArgs};
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::load::{load, stem};
+use crate::load::{attach_cameras, load, stem};
 use crate::picture::Studio;
-use crate::playback::{Playback, Source};
+use crate::playback::Playback;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use crate::replaced::Replaced;
 use board::Board;
+use clap::Args;
 use metrics::MetricsBuilder;
 use output::Place;
 use plots::Plots;
@@ -24,7 +25,33 @@ use rendering::{Film, FilmKind, Gpu, Room, Show};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
+use studies::replay::RecordSource;
 use vocabulary::{FleetInfo, Judging, counted};
+
+#[derive(Debug, Args)]
+pub(crate) struct FilmArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    picture: PictureArgs,
+    /// Frames a second of simulation time
+    #[arg(long)]
+    fps: Option<f64>,
+    /// Film file: .mp4, .m4v or .gif (480x270, 10 frames a second where the scene says no other); without an ending, a
+    /// folder of PNG frames; .webm, .mkv, .mov, .avi, .mpg, .mpeg, .ogv, .ts, .flv and .wmv need ffmpeg. NAME.mp4 if left
+    /// out
+    #[arg(long, short, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Encode with the ffmpeg on PATH instead of the built-in encoder
+    #[arg(long)]
+    ffmpeg: bool,
+    /// Measures, cards and, where the scene has no storyboard, shots for a purpose
+    #[arg(long, value_enum, conflicts_with = "view")]
+    preset: Option<Preset>,
+    /// Begin anew where the same film was interrupted, instead of going on
+    #[arg(long)]
+    fresh: bool,
+}
 
 /// What a film is made of.
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
@@ -60,7 +87,7 @@ pub(crate) struct Job<'a> {
 
 /// What the laws of a scene become as its run goes.
 pub(crate) fn captions(scene: &scene::Scene) -> Vec<(f64, String)> {
-    scene.changes.iter().map(|change| (change.at, simulation::caption(&change.then))).collect()
+    scene.changes.iter().map(|change| (change.at, studies::caption(&change.then))).collect()
 }
 
 pub(crate) fn film(args: &FilmArgs) -> Outcome {
@@ -88,13 +115,13 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
         captions: captions(&scene),
     };
     shoot(job, |gpu| {
-        loaded.attach_cameras(Some(gpu), &args.scene)?;
-        Ok(Source::Run(Box::new(loaded.simulation)))
+        attach_cameras(&mut loaded, Some(gpu), &args.scene)?;
+        Ok(RecordSource::Run(Box::new(loaded.simulation)))
     })
 }
 
 /// Makes the film of what `source` tells; it may use the adapter that draws.
-pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
+pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<RecordSource, Failure>) -> Outcome {
     let began = Instant::now();
     let kind = FilmKind::of(&job.path, job.ffmpeg)?;
     if kind == FilmKind::Gif {
@@ -246,7 +273,7 @@ fn begin(job: &Job<'_>, kind: FilmKind, studio: &Studio, rate: f64) -> Result<(F
     }
     // The same film is made of the same run, by the same program on the same adapter, with the same words.
     let mut whole = xxhash_rust::xxh3::Xxh3::new();
-    let program = (crate::run::PROGRAM, option_env!("ECHELON_COMMIT"), studio.gpu.description());
+    let program = (studies::PROGRAM, studies::COMMIT, studio.gpu.description());
     whole.update(format!("{program:?}{:?}{:?}{:?}", studio.layout, studio.style, job.picture).as_bytes());
     whole.update(format!("{:?}{:?}{}", job.preset, job.settings, job.run).as_bytes());
     let made_of = format!("{:032x}", whole.digest128());

@@ -5,8 +5,8 @@ use crate::session::history::History;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
 use formation::relative::Geometry;
 use scene::{Follow, LawKind};
-use simulation::certify::{Row, rows};
 use std::fmt::Write;
+use studies::certify::{Row, rows};
 use vocabulary::{Edge, EdgeState, Snapshot, StepRecord};
 
 /// What a plot shows.

@@ -11,7 +11,7 @@ use crate::trace::Trace;
 use crate::variant::{LAWS, Variant, constants_apart, laws_apart, short};
 use crate::words::round;
 use scene::{LawKind, Role, Scene};
-use simulation::verdict::verdict;
+use studies::verdict::verdict;
 
 /// All figures but the drawn one of the runs of [`crate::scene_jobs`].
 pub fn of_scene(scene: &Scene, runs: &[Ran]) -> Report {

@@ -315,6 +315,11 @@ impl Simulation {
     pub fn period(&self) -> f64 {
         self.period
     }
+
+    /// When plant, law and observer act.
+    pub fn timing(&self) -> Timing {
+        self.timing
+    }
 }
 
 impl Plant {

@@ -4,10 +4,11 @@ use super::folder::Folder;
 use super::meter::Meter;
 use super::{Subject, ready, stop};
 use crate::failure::Failure;
-use crate::playback::{Playback, Source};
-use crate::run::PROGRAM;
+use crate::playback::Playback;
 use rendering::{FilmKind, Gpu, Layout, Renderer, Style, png};
 use report::{Case, Film, Job, Ran, Report, Shot, add_picture, find};
+use studies::PROGRAM;
+use studies::replay::RecordSource;
 use vocabulary::FleetInfo;
 
 /// A run to draw.
@@ -69,10 +70,11 @@ pub(super) fn draw(
     gpu: &Gpu,
     adapter: &str,
     runs: &[Ran],
-    (folder, meter): (&mut Folder, &mut Meter),
+    folder: &mut Folder,
+    meter: &mut Meter,
     report: &mut Report,
 ) -> Result<(), Failure> {
-    let simulation = ready(&show.job, Some(gpu), adapter)?;
+    let simulation = ready(&show.job, Some(gpu), adapter)?.simulation;
     let fleet = simulation.fleet().clone();
     let layout = layout(show, &fleet)?;
     let style = Style::without(&["caption", "inset", "labels"])?;
@@ -80,7 +82,7 @@ pub(super) fn draw(
     let file = format!("{}.mp4", show.name);
     let path = folder.place(&file);
     let mut film = rendering::Film::create(&path, FilmKind::Mp4, FILM[0], FILM[1], RATE)?;
-    let mut playback = Playback::new(&fleet, Source::Run(Box::new(simulation)));
+    let mut playback = Playback::new(&fleet, RecordSource::Run(Box::new(simulation)));
     let mut shot = show.shot.as_ref();
     for frame in 0..show.frames() {
         let time = frame as f64 * show.speed() / RATE;

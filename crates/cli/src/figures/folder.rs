@@ -1,12 +1,12 @@
 //! The folder of a set of figures: refused where it holds other things, every file in it whole or not there.
 
 use crate::failure::Failure;
-use crate::run::PROGRAM;
 use output::{Claim, write_whole};
 use report::{Ran, Report};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
+use studies::PROGRAM;
 
 /// The file that says whose folder it is, and what is in it.
 const MARK: &str = "claims.json";
@@ -54,7 +54,7 @@ impl Folder {
         let mut value = json!({
             "format": FORMAT,
             "program": PROGRAM,
-            "commit": option_env!("ECHELON_COMMIT"),
+            "commit": studies::COMMIT,
             "status": status,
             "files": there,
         });

@@ -3,7 +3,7 @@
 use super::drawn::Show;
 use super::{FiguresArgs, Subject};
 use crate::progress::Progress;
-use simulation::Simulation;
+use studies::SceneRun;
 use vocabulary::counted;
 
 /// What a frame of a film and a printed sheet weigh in samples of a few robots.
@@ -24,9 +24,9 @@ pub(super) struct Meter {
 }
 
 impl Meter {
-    pub(super) fn begin(args: &FiguresArgs, subject: &Subject, runs: &[Simulation], shows: &[Show]) -> Self {
+    pub(super) fn begin(args: &FiguresArgs, subject: &Subject, runs: &[SceneRun], shows: &[Show]) -> Self {
         let frames: u64 = shows.iter().map(Show::frames).sum();
-        let samples: u64 = runs.iter().map(Simulation::len).sum();
+        let samples: u64 = runs.iter().map(|run| run.simulation.len()).sum();
         let of = subject.own.as_ref().map_or("the paper", |(_, name)| name.as_str());
         let films = if shows.is_empty() { String::new() } else { format!(", {} films", shows.len()) };
         let films = if shows.len() == 1 { ", a film".to_owned() } else { films };

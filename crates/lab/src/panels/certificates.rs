@@ -6,7 +6,7 @@ use crate::desk::Desk;
 use crate::panels::curves;
 use crate::quantities::Quantity;
 use eframe::egui::{RichText, Ui};
-use simulation::certify::{Finding, Outcome, Premise, so_far};
+use studies::certify::{Finding, Outcome, Premise, so_far};
 
 /// Moments that are looked at, at most.
 const MOST: usize = 2000;
