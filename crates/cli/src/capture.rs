@@ -4,7 +4,7 @@ use crate::Outcome;
 use crate::args::{PictureArgs, SceneArgs, time};
 use crate::failure::Failure;
 use crate::load::{attach_cameras, load, stem};
-use crate::picture::Studio;
+use crate::picture::RenderSetup;
 use crate::playback::Playback;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
@@ -33,7 +33,7 @@ pub(crate) struct CaptureArgs {
 }
 
 /// What pictures are made of.
-pub(crate) struct Job<'a> {
+pub(crate) struct CaptureJob<'a> {
     pub(crate) picture: &'a PictureArgs,
     pub(crate) adapter: &'a str,
     /// Folder for the pictures.
@@ -56,7 +56,7 @@ pub(crate) struct Job<'a> {
 pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;
     let scene = loaded.scene.clone();
-    let job = Job {
+    let job = CaptureJob {
         picture: &args.picture,
         adapter: &args.scene.adapter,
         out: &args.out,
@@ -77,11 +77,14 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
 }
 
 /// Draws pictures of what `source` tells; it may use the adapter that draws.
-pub(crate) fn draw(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<RecordSource, Failure>) -> Outcome {
+pub(crate) fn draw(
+    job: &CaptureJob<'_>,
+    source: impl FnOnce(&Gpu) -> Result<RecordSource, Failure>,
+) -> Outcome {
     let times = times::within(job.at, job.duration)?;
     let _place = Place::folder(job.out)?;
-    let Job { fleet, name, .. } = job;
-    let mut studio = Studio::open((job.adapter, job.picture), fleet, job.view, job.settings.size)?;
+    let CaptureJob { fleet, name, .. } = job;
+    let mut studio = RenderSetup::open(job.adapter, job.picture, fleet, job.view, job.settings.size)?;
     let source = source(&studio.gpu)?;
     let adapter = studio.gpu.description();
     let mut playback = Playback::new(fleet, source);

@@ -15,7 +15,7 @@ use clap::Args;
 use folder::Folder;
 use meter::Meter;
 use rendering::{AdapterChoice, Gpu};
-use report::{Case, Job, Ran, Rasterizer, Report, Tracer};
+use report::{Case, FinishedRun, PlannedRun, Rasterizer, Report, Tracer};
 use scene::{Override, Scene};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -58,7 +58,7 @@ pub(crate) struct FiguresArgs {
 struct Subject {
     /// Of a scene of somebody's own: it, and its file's name.
     own: Option<(Scene, String)>,
-    jobs: Vec<Job>,
+    jobs: Vec<PlannedRun>,
 }
 
 pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
@@ -73,7 +73,7 @@ pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
     for job in &subject.jobs {
         prepared.push(ready(job, gpu.as_ref(), &args.adapter)?);
     }
-    let shows: Vec<drawn::Show> = gpu.as_ref().map_or_else(Vec::new, |_| drawn::shows(&subject));
+    let shows: Vec<drawn::FilmedRun> = gpu.as_ref().map_or_else(Vec::new, |_| drawn::shows(&subject));
     let mut folder = Folder::create(&args.out, args.force)?;
     let mut meter = Meter::begin(args, &subject, &prepared, &shows);
     let made = make(args, &subject, prepared, gpu.as_ref(), &shows, &mut folder, &mut meter);
@@ -98,11 +98,11 @@ pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
 
 fn subject(args: &FiguresArgs) -> Result<Subject, Failure> {
     let Some(path) = &args.scene else {
-        let jobs = report::paper_jobs().map_err(|errors| Failure::Usage(errors.to_string()))?;
+        let jobs = report::paper_runs().map_err(|errors| Failure::Usage(errors.to_string()))?;
         return Ok(Subject { own: None, jobs });
     };
     let scene = read(path, &with_seed(&args.set, args.seed)?)?;
-    Ok(Subject { jobs: report::scene_jobs(&scene), own: Some((scene, stem(path))) })
+    Ok(Subject { jobs: report::scene_runs(&scene), own: Some((scene, stem(path))) })
 }
 
 /// An adapter to draw with, or why there is none.
@@ -119,7 +119,7 @@ fn adapter(args: &FiguresArgs) -> Result<(Option<Gpu>, Option<String>), Failure>
 }
 
 /// A run before its first step.
-fn ready(job: &Job, gpu: Option<&Gpu>, adapter: &str) -> Result<SceneRun, Failure> {
+fn ready(job: &PlannedRun, gpu: Option<&Gpu>, adapter: &str) -> Result<SceneRun, Failure> {
     let mut run = build(job.scene.clone(), &job.name)?;
     cameras::attach(&mut run, gpu, adapter, None)?;
     Ok(run)
@@ -131,10 +131,10 @@ fn make(
     subject: &Subject,
     ready: Vec<SceneRun>,
     gpu: Option<&Gpu>,
-    shows: &[drawn::Show],
+    shows: &[drawn::FilmedRun],
     folder: &mut Folder,
     meter: &mut Meter,
-) -> Result<(Report, Vec<Ran>), Failure> {
+) -> Result<(Report, Vec<FinishedRun>), Failure> {
     let mut runs = vec![];
     for (job, ready) in subject.jobs.iter().zip(ready) {
         runs.push(run(job, ready, meter)?);
@@ -148,16 +148,16 @@ fn make(
             drawn::draw(show, gpu, &args.adapter, &runs, &mut *folder, &mut *meter, &mut report)?;
         }
     }
-    let press = Rasterizer::new(&[rendering::FONT]);
-    let printed = |error: report::PressError| Failure::Machine(error.to_string());
+    let rasterizer = Rasterizer::new(&[rendering::FONT]);
+    let printed = |error: report::RasterizerError| Failure::Machine(error.to_string());
     for item in &report.items {
         stop(meter)?;
         folder.write(&format!("{}.svg", item.stem), item.svg.as_bytes())?;
         folder.write(&format!("{}.csv", item.stem), item.csv.as_bytes())?;
-        let png = item.picture.clone().map_or_else(|| press.png(&item.svg, DPI).map_err(printed), Ok)?;
+        let png = item.picture.clone().map_or_else(|| rasterizer.png(&item.svg, DPI).map_err(printed), Ok)?;
         folder.write(&format!("{}.png", item.stem), &png)?;
-        folder.write(&format!("{}.pdf", item.stem), &press.pdf(&item.svg).map_err(printed)?)?;
-        meter.sheet();
+        folder.write(&format!("{}.pdf", item.stem), &rasterizer.pdf(&item.svg).map_err(printed)?)?;
+        meter.figure();
     }
     Ok((report, runs))
 }
@@ -165,7 +165,7 @@ fn make(
 /// Pixels an inch of figures.
 const DPI: f32 = 300.0;
 
-fn run(job: &Job, run: SceneRun, meter: &mut Meter) -> Result<Ran, Failure> {
+fn run(job: &PlannedRun, run: SceneRun, meter: &mut Meter) -> Result<FinishedRun, Failure> {
     let mut simulation = run.simulation;
     let colours = rendering::robot_colours(simulation.fleet());
     let mut tracer = Tracer::new(job.name.clone(), &job.scene, &simulation, &colours, job.transient);
@@ -177,7 +177,7 @@ fn run(job: &Job, run: SceneRun, meter: &mut Meter) -> Result<Ran, Failure> {
     if let Some(fault) = simulation.fault() {
         return Err(studies::Error::from(fault).into());
     }
-    Ok(Ran { case: job.case, variant: job.variant, trace: tracer.finish() })
+    Ok(FinishedRun { case: job.case, variant: job.variant, trace: tracer.finish() })
 }
 
 /// Fails where the program has been asked to stop.
@@ -199,7 +199,7 @@ fn versions(gpu: Option<&Gpu>) -> Vec<[String; 2]> {
 
 impl Subject {
     /// The scenes that are filmed: case, file name, and the job that runs it as it is written.
-    fn filmed(&self) -> Vec<(Case, &str, &Job)> {
+    fn filmed(&self) -> Vec<(Case, &str, &PlannedRun)> {
         let as_written = |case: Case| {
             // The paper's films are those of its own ε, which is the scenes'.
             let mut of = self.jobs.iter().filter(move |job| job.case == case);

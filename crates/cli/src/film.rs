@@ -10,7 +10,7 @@ use crate::args::{PictureArgs, SceneArgs};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::load::{attach_cameras, load, stem};
-use crate::picture::Studio;
+use crate::picture::RenderSetup;
 use crate::playback::Playback;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
@@ -55,7 +55,7 @@ pub(crate) struct FilmArgs {
 
 /// What a film is made of.
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
-pub(crate) struct Job<'a> {
+pub(crate) struct FilmJob<'a> {
     pub(crate) picture: &'a PictureArgs,
     pub(crate) adapter: &'a str,
     /// The film file.
@@ -94,7 +94,7 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;
     let name = stem(&args.scene.scene);
     let scene = loaded.scene.clone();
-    let job = Job {
+    let job = FilmJob {
         picture: &args.picture,
         adapter: &args.scene.adapter,
         path: args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.mp4"))),
@@ -121,7 +121,10 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
 }
 
 /// Makes the film of what `source` tells; it may use the adapter that draws.
-pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<RecordSource, Failure>) -> Outcome {
+pub(crate) fn shoot(
+    mut job: FilmJob<'_>,
+    source: impl FnOnce(&Gpu) -> Result<RecordSource, Failure>,
+) -> Outcome {
     let began = Instant::now();
     let kind = FilmKind::of(&job.path, job.ffmpeg)?;
     if kind == FilmKind::Gif {
@@ -134,7 +137,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Record
         FilmKind::PngSequence => Place::new_folder(&job.path)?,
         _ => Place::file(&job.path)?,
     };
-    let Job { path, name, fleet, settings, .. } = &job;
+    let FilmJob { path, name, fleet, settings, .. } = &job;
     let rate = job.fps.unwrap_or(settings.fps);
     if !(1.0..=240.0).contains(&rate) {
         return Err(rendering::Error::FrameRate(rate).into());
@@ -142,9 +145,9 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Record
     let view = settings.view.as_deref().unwrap_or(job.view);
     let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
     // Whoever names a view wants that one, from beginning to end.
-    let board = Board::new(settings, (job.picture.view.as_deref(), view), job.duration, &names)?;
+    let board = Board::new(settings, job.picture.view.as_deref(), view, job.duration, &names)?;
     let frames = board.frames(rate);
-    let mut studio = Studio::open((job.adapter, job.picture), fleet, view, settings.size)?;
+    let mut studio = RenderSetup::open(job.adapter, job.picture, fleet, view, settings.size)?;
     let told = settings.shots.iter().map(|shot| shot.line.as_str()).chain([job.description.as_str()]);
     studio.check_texts(told);
     let source = source(&studio.gpu)?;
@@ -240,7 +243,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Record
 }
 
 /// A disk that refuses a film, with what it keeps of it.
-fn refused(error: rendering::Error, job: &Job<'_>, kind: FilmKind, rate: f64) -> Failure {
+fn refused(error: rendering::Error, job: &FilmJob<'_>, kind: FilmKind, rate: f64) -> Failure {
     let kept = if kind == FilmKind::Mp4 { Film::kept(&job.path, rate) } else { 0 };
     let text = match (kind, kept) {
         (FilmKind::Mp4, 0) => "nothing of the film is kept yet".to_owned(),
@@ -266,7 +269,7 @@ fn lighten(settings: &mut scene::Film) {
 }
 
 /// A film to write, and how many frames of it are there.
-fn begin(job: &Job<'_>, kind: FilmKind, studio: &Studio, rate: f64) -> Result<(Film, u64), Failure> {
+fn begin(job: &FilmJob<'_>, kind: FilmKind, studio: &RenderSetup, rate: f64) -> Result<(Film, u64), Failure> {
     let [width, height] = studio.size;
     if kind != FilmKind::Mp4 {
         return Ok((Film::create(&job.path, kind, width, height, rate)?, 0));

@@ -94,7 +94,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
     }
     let source = || Ok(RecordSource::Log(Box::new(log.records())));
     if let Some(path) = &args.film {
-        let job = film::Job {
+        let job = film::FilmJob {
             picture: &args.picture,
             adapter: &args.adapter,
             path: path.clone(),
@@ -116,7 +116,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
         };
         return film::shoot(job, |_| source());
     }
-    let job = capture::Job {
+    let job = capture::CaptureJob {
         picture: &args.picture,
         adapter: &args.adapter,
         out: &args.out,

@@ -5,7 +5,7 @@ use crate::args::SceneArgs;
 use crate::cameras;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::junit::{self, Check};
+use crate::junit::{self, ReportedCheck};
 use crate::load::{load, stem};
 use crate::print::note;
 use crate::progress::Progress;
@@ -62,7 +62,7 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
 }
 
 /// Runs the scene; `cases` are what became of its expectations.
-fn judge(args: &RunArgs, cases: &mut Vec<Check>) -> Outcome {
+fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
     let mut run = load(&args.scene)?;
     for late in run.scene.late().iter().filter(|_| !args.scene.quiet && !args.scene.json) {
         note(&format!("note: {late}"));
@@ -96,7 +96,9 @@ fn judge(args: &RunArgs, cases: &mut Vec<Check>) -> Outcome {
     progress.end();
     if status == Status::Interrupted {
         let why = format!("the run was interrupted at {:.2} s", metrics.duration);
-        cases.extend(verdict(&scene, &metrics, false).iter().map(|finding| Check::unjudged(finding, &why)));
+        cases.extend(
+            verdict(&scene, &metrics, false).iter().map(|finding| ReportedCheck::unjudged(finding, &why)),
+        );
         written?;
         let place = folder.map_or_else(String::new, |f| format!(", recorded in {}", f.display()));
         return Err(Failure::Interrupted(format!(
@@ -104,7 +106,7 @@ fn judge(args: &RunArgs, cases: &mut Vec<Check>) -> Outcome {
             metrics.duration, scene.time.duration
         )));
     }
-    cases.extend(findings.iter().map(Check::of));
+    cases.extend(findings.iter().map(ReportedCheck::of));
     let summary =
         Summary { scene: &scene, metrics: &metrics, findings: &findings, digest, folder, wall, drawn, steps };
     let met = summary.met();

@@ -7,7 +7,7 @@ use crate::args::{PictureArgs, SceneArgs};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::load::{attach_cameras, load, stem};
-use crate::picture::Studio;
+use crate::picture::RenderSetup;
 use crate::playback::Playback;
 use crate::print::{json, say};
 use crate::progress::Progress;
@@ -52,7 +52,7 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     let tile = args.picture.size.unwrap_or(TILE);
     let large = args.picture.size.unwrap_or(STROBE);
     let view = loaded.scene.views.default.clone();
-    let mut small = Studio::open((&args.scene.adapter, &args.picture), &fleet, &view, tile)?;
+    let mut small = RenderSetup::open(&args.scene.adapter, &args.picture, &fleet, &view, tile)?;
     attach_cameras(&mut loaded, Some(&small.gpu), &args.scene)?;
     let duration = loaded.scene.time.duration;
 

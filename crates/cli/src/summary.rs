@@ -6,14 +6,14 @@ use metrics::Metrics;
 use scene::Scene;
 use serde_json::json;
 use std::path::PathBuf;
-use studies::verdict::Finding;
+use studies::verdict::JudgedExpectation;
 use vocabulary::counted;
 
 /// A run that reached its end.
 pub(crate) struct Summary<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) metrics: &'a Metrics,
-    pub(crate) findings: &'a [Finding],
+    pub(crate) findings: &'a [JudgedExpectation],
     pub(crate) digest: String,
     pub(crate) folder: Option<PathBuf>,
     /// s of wall time, simulation and recording.
@@ -26,7 +26,7 @@ pub(crate) struct Summary<'a> {
 impl Summary<'_> {
     /// Whether no expectation failed.
     pub(crate) fn met(&self) -> bool {
-        !self.findings.iter().any(Finding::failed)
+        !self.findings.iter().any(JudgedExpectation::failed)
     }
 }
 
@@ -182,7 +182,8 @@ pub(crate) fn failures(summary: &Summary<'_>) {
 }
 
 pub(crate) fn as_json(summary: &Summary<'_>) {
-    let finding = |f: &Finding| json!({ "key": f.key, "wanted": f.wanted, "found": f.found, "met": f.met });
+    let finding =
+        |f: &JudgedExpectation| json!({ "key": f.key, "wanted": f.wanted, "found": f.found, "met": f.met });
     json(&json!({
         "title": summary.scene.title,
         "seed": summary.scene.seed,

@@ -167,7 +167,8 @@ fn certified(
         Quantity::Lyapunov => |row| row.v,
         _ => return None,
     };
-    let rows = if follow.law.kind == LawKind::FullState { vec![] } else { rows(records, edge, follow) };
+    let rows =
+        if follow.law.kind == LawKind::FullState { vec![] } else { rows(records, edge.0, edge.1, follow) };
     Some(rows.iter().map(|row| [row.time, value(row)]).filter(|p| p[1].is_finite()).collect())
 }
 

@@ -1,7 +1,7 @@
 //! One run of a scene: stepped, recorded if asked for, certified, and judged by what the scene expects.
 
 use crate::certify::Examiner;
-use crate::verdict::{Finding, verdict};
+use crate::verdict::{JudgedExpectation, verdict};
 use crate::{Error, SceneRun};
 use metrics::{CertificateMetrics, Digest, Metrics, MetricsBuilder};
 use recording::{Finished, Recorder, Status};
@@ -22,7 +22,7 @@ pub struct JudgedRun {
     /// Of the trajectory.
     pub digest: String,
     /// The scene's expectations; none of a run that was interrupted.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<JudgedExpectation>,
     /// Whether everything that was to be recorded is on the disk.
     pub written: Result<(), recording::Error>,
 }
@@ -41,7 +41,7 @@ pub fn run(
     let SceneRun { scene, mut simulation } = run;
     let mut sink = match recorder {
         Some(recorder) => RecordSink::Disk(Box::new(recorder)),
-        None => RecordSink::Memory(Box::new(Sums {
+        None => RecordSink::Memory(Box::new(RunSums {
             metrics: MetricsBuilder::new(simulation.fleet(), scene.judging()),
             digest: Digest::default(),
         })),
@@ -60,7 +60,7 @@ pub fn run(
         }
     }
     let broken = match simulation.fault() {
-        Some(Fault::NotFinite(what)) => Some(Finding::not_finite(what)),
+        Some(Fault::NotFinite(what)) => Some(JudgedExpectation::not_finite(what)),
         Some(fault @ Fault::CameraRenderer(_)) => {
             let error = Error::from(fault);
             sink.abandon();
@@ -75,7 +75,7 @@ pub fn run(
     };
     let certificates = examiner.finish(&simulation);
     let certificates = certificates.iter().map(|c| c.metrics(simulation.fleet())).collect();
-    let findings: Vec<Finding> = match status {
+    let findings: Vec<JudgedExpectation> = match status {
         Status::Interrupted => vec![],
         _ => verdict(&scene, &sink.metrics(), status == Status::Complete).into_iter().chain(broken).collect(),
     };
@@ -86,10 +86,10 @@ pub fn run(
 /// Where records go: to a folder, or only into the sums that a verdict needs.
 enum RecordSink {
     Disk(Box<Recorder>),
-    Memory(Box<Sums>),
+    Memory(Box<RunSums>),
 }
 
-struct Sums {
+struct RunSums {
     metrics: MetricsBuilder,
     digest: Digest,
 }
@@ -123,12 +123,12 @@ impl RecordSink {
         self,
         status: Status,
         certificates: Vec<CertificateMetrics>,
-        findings: &[Finding],
+        findings: &[JudgedExpectation],
     ) -> (Metrics, String, Result<(), recording::Error>) {
         match self {
             Self::Disk(mut recorder) => {
                 recorder.certify(certificates);
-                recorder.judge(findings.iter().map(Finding::metrics).collect());
+                recorder.judge(findings.iter().map(JudgedExpectation::metrics).collect());
                 let Finished { metrics, digest, written } = recorder.conclude(status);
                 (metrics, digest, written.map(drop))
             }

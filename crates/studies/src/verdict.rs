@@ -6,7 +6,7 @@ use simulation::{NotFinite, short};
 
 /// One expectation and what became of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
+pub struct JudgedExpectation {
     /// The key in the scene's `[expect]`.
     pub key: &'static str,
     /// What was wanted, with unit.
@@ -17,7 +17,7 @@ pub struct Finding {
     pub met: Option<bool>,
 }
 
-impl Finding {
+impl JudgedExpectation {
     /// What every scene expects, and was not met.
     pub fn not_finite(fault: &NotFinite) -> Self {
         let wanted = "every number finite".to_owned();
@@ -38,20 +38,20 @@ impl Finding {
 }
 
 /// Everything that a scene asks of its run, in the order of its keys.
-pub fn verdict(scene: &Scene, metrics: &Metrics, completed: bool) -> Vec<Finding> {
+pub fn verdict(scene: &Scene, metrics: &Metrics, completed: bool) -> Vec<JudgedExpectation> {
     // Where the scene ends a run at a contact, that is its end.
     let stopped = scene.physics.on_contact == OnContact::Stop && metrics.contacts > 0;
     let mut findings = expectations(&scene.expect, metrics, completed || stopped);
     if scene.physics.on_contact == OnContact::Fail && !scene.expect.no_contact {
-        let mut more = Findings { metrics, list: Vec::new() };
+        let mut more = ExpectationJudge { metrics, list: Vec::new() };
         more.contacts("on_contact", "none, else the run fails".into(), |count| count == 0);
         findings.extend(more.list);
     }
     findings
 }
 
-fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Finding> {
-    let mut findings = Findings { metrics, list: Vec::new() };
+fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<JudgedExpectation> {
+    let mut findings = ExpectationJudge { metrics, list: Vec::new() };
     if expect.completed {
         let found = format!("{:.2} s", metrics.duration);
         findings.add("completed", "the whole run".into(), found, completed);
@@ -130,23 +130,23 @@ fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Find
 /// Robots that a finding names.
 const TOLD: usize = 4;
 
-struct Findings<'a> {
+struct ExpectationJudge<'a> {
     metrics: &'a Metrics,
-    list: Vec<Finding>,
+    list: Vec<JudgedExpectation>,
 }
 
 const ERROR_UNITS: [&str; 2] = ["m", "rad"];
 const RATE_UNITS: [&str; 2] = ["m/s", "rad/s"];
 
-impl Findings<'_> {
+impl ExpectationJudge<'_> {
     fn add(&mut self, key: &'static str, wanted: String, found: String, met: bool) {
-        self.list.push(Finding { key, wanted, found, met: Some(met) });
+        self.list.push(JudgedExpectation { key, wanted, found, met: Some(met) });
     }
 
     /// What the run does not show, since it ended before this time, s.
     fn add_unjudged(&mut self, key: &'static str, wanted: String, before: f64) {
         let found = format!("the run ended at {:.2} s, before {before} s", self.metrics.duration);
-        self.list.push(Finding { key, wanted, found, met: None });
+        self.list.push(JudgedExpectation { key, wanted, found, met: None });
     }
 
     fn contacts(&mut self, key: &'static str, wanted: String, met: impl Fn(usize) -> bool) {

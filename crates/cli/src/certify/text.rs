@@ -4,7 +4,7 @@ use super::CertifyReport;
 use crate::print::say;
 use std::path::PathBuf;
 use studies::certify::beyond::{Beyond, PERIODS, StabilityChart};
-use studies::certify::chain::{LENGTHS, Point};
+use studies::certify::chain::{GainPoint, LENGTHS};
 use studies::certify::{
     Certificate, Constants, Discretisation, Finding, Infeasible, LongestPeriod, NotLinear, Outcome, Statement,
 };
@@ -214,7 +214,7 @@ fn reach(report: &CertifyReport<'_>, beyond: &Beyond) {
         let [distance, bearing] = reach.set_point;
         let degrees = bearing.to_degrees();
         let near = reach.rays.iter().min_by(|a, b| {
-            let off = |ray: &studies::certify::reach::Ray| vocabulary::wrap(ray.bearing - bearing).abs();
+            let off = |ray: &studies::certify::reach::ReachRay| vocabulary::wrap(ray.bearing - bearing).abs();
             off(a).total_cmp(&off(b))
         });
         let along = near.map_or_else(String::new, |ray| match ray.end {
@@ -295,7 +295,7 @@ fn chain(report: &CertifyReport<'_>, beyond: &Beyond) {
             gain.depth
         ));
         let slow = gain.curve.iter().min_by(|a, b| {
-            let off = |p: &Point| (p.frequency / SLOW).ln().abs();
+            let off = |p: &GainPoint| (p.frequency / SLOW).ln().abs();
             off(a).total_cmp(&off(b))
         });
         let lengths: Vec<String> = LENGTHS

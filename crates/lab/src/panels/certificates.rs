@@ -36,7 +36,7 @@ fn findings(desk: &Desk) -> Option<Vec<Finding>> {
     let index = edges.iter().position(|edge| Some(edge.follower) == chosen).unwrap_or(0);
     let (edge, (_, _, follow)) = (*edges.get(index)?, desk.follower(index)?);
     let records = history.between(desk.branch, [0.0, f64::INFINITY], MOST);
-    Some(so_far(&records, (index, edge), follow, scene).0)
+    Some(so_far(&records, index, edge, follow, scene).0)
 }
 
 /// A finding in words.

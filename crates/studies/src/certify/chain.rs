@@ -20,12 +20,12 @@ pub struct EdgeGain {
     /// Followers from a lead robot to this one.
     pub depth: usize,
     /// Over frequency.
-    pub curve: Vec<Point>,
+    pub curve: Vec<GainPoint>,
 }
 
 /// Gains at one frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct GainPoint {
     /// rad/s.
     pub frequency: f64,
     /// |error of distance| per deviation of the own leader's speed, m per m/s.
@@ -41,7 +41,7 @@ pub struct Point {
 
 impl EdgeGain {
     /// Largest value over frequency, and where, rad/s.
-    pub fn peak(&self, value: impl Fn(&Point) -> f64) -> Option<(f64, f64)> {
+    pub fn peak(&self, value: impl Fn(&GainPoint) -> f64) -> Option<(f64, f64)> {
         self.curve.iter().map(|p| (value(p), p.frequency)).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 }
@@ -97,7 +97,7 @@ impl EdgeGain {
             let last_of = |followers: usize| {
                 down_the_chain(&vec![*own; followers]).map_or(f64::NAN, |error| error[(0, 0)].norm())
             };
-            Some(Point {
+            Some(GainPoint {
                 frequency,
                 own_leader: own.error[(0, 0)].norm(),
                 lead: down_the_chain(&responses)?[(0, 0)].norm(),

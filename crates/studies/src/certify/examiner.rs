@@ -71,7 +71,7 @@ impl Certificate {
 
 /// Goes along with a run.
 pub struct Examiner {
-    edges: Vec<Stretch>,
+    edges: Vec<CertifiedStretch>,
     /// Stretches that are over.
     closed: Vec<Certificate>,
     leads_on_wheels: Vec<bool>,
@@ -83,7 +83,7 @@ pub struct Examiner {
 }
 
 /// An edge since its law last changed.
-struct Stretch {
+struct CertifiedStretch {
     witness: Witness,
     set_point: SetPointTrajectory,
     looks: bool,
@@ -91,7 +91,7 @@ struct Stretch {
     final_error: [f64; 2],
 }
 
-impl Stretch {
+impl CertifiedStretch {
     fn of(law: &EdgeLaw, keeps: bool) -> Self {
         let witness = Witness::new(law.law, law.observer);
         Self {
@@ -126,7 +126,7 @@ impl Examiner {
         let wheels: Vec<bool> = scene.robots.iter().map(|robot| robot.vehicle.kind.has_wheels()).collect();
         let leads = &simulation.fleet().robots;
         Self {
-            edges: simulation.formation().laws().iter().map(|law| Stretch::of(law, keeps)).collect(),
+            edges: simulation.formation().laws().iter().map(|law| CertifiedStretch::of(law, keeps)).collect(),
             closed: Vec::new(),
             leads_on_wheels: leads.iter().zip(&wheels).map(|(m, wheels)| m.leads && *wheels).collect(),
             wheels,
@@ -143,7 +143,7 @@ impl Examiner {
         let drives = self.drives(simulation, record);
         for (index, (edge, law)) in formation.edges().iter().zip(formation.laws()).enumerate() {
             if !self.edges[index].fits(law) {
-                let over = std::mem::replace(&mut self.edges[index], Stretch::of(law, self.keeps));
+                let over = std::mem::replace(&mut self.edges[index], CertifiedStretch::of(law, self.keeps));
                 if over.witness.span().is_some() {
                     self.closed.push(self.certificate(index, *edge, &over));
                 }
@@ -175,7 +175,7 @@ impl Examiner {
         Some(self.certificate(edge, *simulation.formation().edges().get(edge)?, stretch))
     }
 
-    fn certificate(&self, index: usize, edge: Edge, stretch: &Stretch) -> Certificate {
+    fn certificate(&self, index: usize, edge: Edge, stretch: &CertifiedStretch) -> Certificate {
         let witness = &stretch.witness;
         let wheels = |robot: usize| self.wheels.get(robot).copied().unwrap_or(false);
         let circumstances = Circumstances {

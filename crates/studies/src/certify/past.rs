@@ -9,11 +9,12 @@ use vocabulary::{Edge, Motion, MotionInput, SetPoint, StepRecord, wrap};
 /// What the theorems say of edge number `index` along `records`, so far, and the quantities they speak of.
 pub fn so_far(
     records: &[&StepRecord],
-    (index, edge): (usize, Edge),
+    index: usize,
+    edge: Edge,
     follow: &Follow,
     scene: &Scene,
 ) -> (Vec<Finding>, Vec<Row>) {
-    let witness = witness(records, (index, edge), follow);
+    let witness = witness(records, index, edge, follow);
     let wheels = |robot: usize| scene.robots.get(robot).is_some_and(|robot| robot.vehicle.kind.has_wheels());
     let leads = scene.robots.get(edge.leader).is_none_or(|robot| matches!(robot.role, Role::Lead { .. }));
     let held = scene.time.mode != Mode::Continuous;
@@ -31,11 +32,11 @@ pub fn so_far(
 
 /// The quantities of edge number `index` along `records`, which may be thinned; its law is that of `follow`. Rates of set
 /// points and of turn rates are differences from moment to moment.
-pub fn rows(records: &[&StepRecord], (index, edge): (usize, Edge), follow: &Follow) -> Vec<Row> {
-    witness(records, (index, edge), follow).rows().to_vec()
+pub fn rows(records: &[&StepRecord], index: usize, edge: Edge, follow: &Follow) -> Vec<Row> {
+    witness(records, index, edge, follow).rows().to_vec()
 }
 
-fn witness(records: &[&StepRecord], (index, edge): (usize, Edge), follow: &Follow) -> Witness {
+fn witness(records: &[&StepRecord], index: usize, edge: Edge, follow: &Follow) -> Witness {
     let law = edge_law(follow);
     let mut witness = Witness::new(law.law, law.observer).keeping();
     let observes = law.law.kind == LawKind::OutputFeedback;

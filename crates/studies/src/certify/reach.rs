@@ -18,7 +18,7 @@ pub struct Reach {
     /// Index of the edge.
     pub edge: usize,
     /// In the order of bearings from −π on.
-    pub rays: Vec<Ray>,
+    pub rays: Vec<ReachRay>,
     /// The set point of the scene, [m, rad], and what stands against it, if anything does.
     pub set_point: [f64; 2],
     /// What stands against the set point.
@@ -29,7 +29,7 @@ pub struct Reach {
 
 /// One bearing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ray {
+pub struct ReachRay {
     /// rad.
     pub bearing: f64,
     /// Every distance from the least one to this can be held, m.
@@ -115,7 +115,7 @@ impl Judge {
         self.path.iter().find_map(|leader| unholdable_now(place, leader, &self.limits, self.distance_min))
     }
 
-    fn ray(&self, bearing: f64, far: f64) -> Ray {
+    fn ray(&self, bearing: f64, far: f64) -> ReachRay {
         // The least distance itself can be held by rounding only.
         let near = self.distance_min * (1.0 + 1e-9);
         let at = |k: u32| near + (far - near) * f64::from(k) / f64::from(DISTANCES);
@@ -130,8 +130,8 @@ impl Judge {
                 let middle = f64::midpoint(low, high);
                 if self.against(middle, bearing).is_none() { low = middle } else { high = middle }
             }
-            return Ray { bearing, distance: low, end: self.against(high, bearing) };
+            return ReachRay { bearing, distance: low, end: self.against(high, bearing) };
         }
-        Ray { bearing, distance: far, end: None }
+        ReachRay { bearing, distance: far, end: None }
     }
 }

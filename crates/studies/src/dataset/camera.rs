@@ -150,7 +150,7 @@ impl FollowerCamera {
         let camera_model = self.sensor.optics().camera_model;
         let rig =
             Rig { shell, camera_model, body_from_camera: camera_mount.body_from_camera(own.camera_pan) };
-        let region = self.region(&shell, &rig, (&own, &ahead));
+        let region = self.region(&shell, &rig, &own, &ahead);
         let part = cut(taken.picture, region);
         let optics = *self.sensor.optics();
         let faces = recognise(&mut self.detector, &part, region, &optics, &shell);
@@ -166,7 +166,7 @@ impl FollowerCamera {
         note
     }
 
-    fn region(&self, shell: &Shell, rig: &Rig, (own, ahead): (&RobotState, &RobotState)) -> Region {
+    fn region(&self, shell: &Shell, rig: &Rig, own: &RobotState, ahead: &RobotState) -> Region {
         if self.whole {
             return Region::whole(&rig.camera_model);
         }

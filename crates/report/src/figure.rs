@@ -1,25 +1,25 @@
 //! What a set of figures consists of, before it is written.
 
-use crate::claim::Claim;
+use crate::claim::FigureClaim;
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Item {
+pub struct ReportFigure {
     /// File name without its ending.
     pub stem: String,
     /// What is seen, in a sentence or two.
     pub caption: String,
-    /// The sheet.
+    /// The figure itself.
     pub svg: String,
     /// The numbers behind it.
     pub csv: String,
     /// What it is said to show.
-    pub claims: Vec<Claim>,
-    /// A drawn picture (PNG) in place of curves; the sheet then holds it.
+    pub claims: Vec<FigureClaim>,
+    /// A drawn picture (PNG) in place of curves; the SVG then holds it.
     pub picture: Option<Vec<u8>>,
 }
 
-impl Item {
+impl ReportFigure {
     /// A figure without claims.
     pub fn new(
         stem: impl Into<String>,
@@ -39,7 +39,7 @@ impl Item {
 
     /// With what it is said to show.
     #[must_use]
-    pub fn with(mut self, claims: Vec<Claim>) -> Self {
+    pub fn with(mut self, claims: Vec<FigureClaim>) -> Self {
         self.claims.extend(claims);
         self
     }
@@ -47,7 +47,7 @@ impl Item {
 
 /// A film, and what is to be seen in it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Film {
+pub struct ReportFilm {
     /// File name.
     pub file: String,
     /// What is seen.
@@ -58,7 +58,7 @@ pub struct Film {
 
 /// Rows of text under a head.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Table {
+pub struct ReportTable {
     /// What it shows.
     pub caption: String,
     /// Names of the columns.
@@ -75,11 +75,11 @@ pub struct Report {
     /// Under it.
     pub lead: String,
     /// Figures in order.
-    pub items: Vec<Item>,
+    pub items: Vec<ReportFigure>,
     /// Films.
-    pub films: Vec<Film>,
+    pub films: Vec<ReportFilm>,
     /// Numbers.
-    pub tables: Vec<Table>,
+    pub tables: Vec<ReportTable>,
     /// What was left out, and why.
     pub left_out: Vec<String>,
     /// What made it: name, version.
@@ -88,7 +88,7 @@ pub struct Report {
 
 impl Report {
     /// All claims in the order of the figures.
-    pub fn claims(&self) -> impl Iterator<Item = &Claim> {
+    pub fn claims(&self) -> impl Iterator<Item = &FigureClaim> {
         self.items.iter().flat_map(|item| &item.claims)
     }
 }

@@ -20,7 +20,7 @@ pub enum Case {
 
 /// One run to be done.
 #[derive(Debug, Clone)]
-pub struct Job {
+pub struct PlannedRun {
     /// Which scene it belongs to.
     pub case: Case,
     /// What differs from that scene.
@@ -35,7 +35,7 @@ pub struct Job {
 
 /// A run that has been done.
 #[derive(Clone)]
-pub struct Ran {
+pub struct FinishedRun {
     /// Which scene it belongs to.
     pub case: Case,
     /// What differs from that scene.
@@ -45,7 +45,7 @@ pub struct Ran {
 }
 
 /// The run of a case and a variant, if it has been done.
-pub fn find(runs: &[Ran], case: Case, variant: Variant) -> Option<&Trace> {
+pub fn find(runs: &[FinishedRun], case: Case, variant: Variant) -> Option<&Trace> {
     runs.iter().find(|ran| ran.case == case && ran.variant == variant).map(|ran| &ran.trace)
 }
 
@@ -74,7 +74,7 @@ impl Case {
     }
 }
 
-fn job(case: Case, scene: &Scene, variant: Variant, transient: f64) -> Job {
+fn job(case: Case, scene: &Scene, variant: Variant, transient: f64) -> PlannedRun {
     let scene = variant.give(scene);
     let law = of(&scene).map_or_else(
         || "no followers".to_owned(),
@@ -84,7 +84,7 @@ fn job(case: Case, scene: &Scene, variant: Variant, transient: f64) -> Job {
         },
     );
     let name = if variant == Variant::default() { "as written".to_owned() } else { law };
-    Job { case, variant, name: format!("{}{name}", case.word()), scene, transient }
+    PlannedRun { case, variant, name: format!("{}{name}", case.word()), scene, transient }
 }
 
 /// An observer constant as it is written: `0.001 s`.
@@ -97,7 +97,7 @@ pub(crate) fn plain(epsilon: f64) -> String {
 ///
 /// # Errors
 /// Never for scenes as they are shipped; what is wrong with them otherwise.
-pub fn paper_jobs() -> Result<Vec<Job>, Diagnostics> {
+pub fn paper_runs() -> Result<Vec<PlannedRun>, Diagnostics> {
     let mut jobs = vec![];
     for (case, name) in SCENES {
         let scene = Scene::parse(shipped(name).map_or("", |shipped| shipped.text), name, &[])?.scene;
@@ -127,7 +127,7 @@ pub(crate) fn constants(scene: &Scene) -> Vec<f64> {
 }
 
 /// The runs behind the figures of a scene: as it is written, with each of the three laws, with larger and smaller ε.
-pub fn scene_jobs(scene: &Scene) -> Vec<Job> {
+pub fn scene_runs(scene: &Scene) -> Vec<PlannedRun> {
     let slowest = constants(scene).first().map_or(0.0, |epsilon| SETTLED * epsilon);
     let transient = slowest.clamp(0.02 * scene.time.duration, 0.25 * scene.time.duration);
     let mut variants = vec![Variant::default()];
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn the_papers_runs_are_two_cases_by_three_laws_and_five_constants_and_seven_robots() {
-        let jobs = paper_jobs().expect("shipped scenes");
+        let jobs = paper_runs().expect("shipped scenes");
         assert_eq!(jobs.len(), 2 * (2 + 5) + 1);
         assert_eq!(jobs[0].name, "line, FSFB");
         assert!(jobs.iter().any(|job| job.name == "circle, OFB, ε = 0.001 s"));
@@ -159,10 +159,10 @@ mod tests {
             let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
             Scene::load(path, &[]).expect("a shipped scene").scene
         };
-        assert_eq!(scene_jobs(&scene("line-three.toml")).len(), 1 + 3 + 3);
-        assert_eq!(scene_jobs(&scene("cars-circle-three.toml")).len(), 1 + 3);
-        assert_eq!(scene_jobs(&scene("vision-circle-three.toml")).len(), 1);
-        assert_eq!(scene_jobs(&scene("hundred.toml")).len(), 1);
+        assert_eq!(scene_runs(&scene("line-three.toml")).len(), 1 + 3 + 3);
+        assert_eq!(scene_runs(&scene("cars-circle-three.toml")).len(), 1 + 3);
+        assert_eq!(scene_runs(&scene("vision-circle-three.toml")).len(), 1);
+        assert_eq!(scene_runs(&scene("hundred.toml")).len(), 1);
         assert_eq!(constants(&scene("line-three.toml")), [0.01, 0.001, 0.0001]);
     }
 }
