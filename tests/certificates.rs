@@ -3,10 +3,10 @@
 use formation::Observer;
 use formation::certificate::{BoundaryLayer, Premise, Statement, StatementOutcome};
 use scene::{Override, Scene};
-use simulation::certify::chain::gains;
-use simulation::certify::{Certificate, ChannelSensitivity, Discretisation, Examiner};
 use simulation::{Simulation, build};
 use std::path::Path;
+use studies::certify::chain::gains;
+use studies::certify::{Certificate, ChannelSensitivity, Discretisation, Examiner};
 
 /// Every row of `reference/lyapunov.csv`, which `reference/lyapunov.py` makes.
 #[test]
@@ -232,7 +232,7 @@ fn gains_down_a_chain_are_those_of_a_run() {
     for (gain, sum) in gains(&steady).expect("gains").iter().zip(sums) {
         let run = 2.0 * sum[0].hypot(sum[1]) / sum[2] / amplitude;
         assert!(gain.stable);
-        let near = |p: &&simulation::certify::chain::Point| (p.frequency / rate).ln().abs();
+        let near = |p: &&studies::certify::chain::GainPoint| (p.frequency / rate).ln().abs();
         let point = gain.curve.iter().min_by(|a, b| near(a).total_cmp(&near(b))).expect("a curve");
         assert!((run - point.lead).abs() < 0.03 * point.lead, "edge {}: {run} not {}", gain.edge, point.lead);
     }

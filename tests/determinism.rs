@@ -65,8 +65,24 @@ fn physics_is_equal_bit_for_bit_on_any_thread_and_after_a_save() {
 }
 
 #[test]
-fn modes_and_seeds_make_different_runs() {
+fn modes_make_different_runs() {
     assert_ne!(digest(simulation("seven-v.toml", "sampled")), digest(simulation("seven-v.toml", "measured")));
+}
+
+/// Noise of sensors belongs to the seed; a scene without any does not depend on it.
+#[test]
+fn seeds_make_different_runs_where_something_is_random() {
+    let seeded = |sensing: &str, seed: u64| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/circle-three.toml");
+        let overrides =
+            ["time.duration=2".to_owned(), format!("sensing.kind={sensing}"), format!("seed={seed}")]
+                .map(|o| o.parse().expect("an override"));
+        let scene = Scene::load(path, &overrides).expect("a scene").scene;
+        digest(Simulation::new(build(&scene).expect("a formation")))
+    };
+    assert_eq!(seeded("noise", 1), seeded("noise", 1));
+    assert_ne!(seeded("noise", 1), seeded("noise", 2));
+    assert_eq!(seeded("truth", 1), seeded("truth", 2));
 }
 
 #[test]

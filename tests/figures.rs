@@ -1,6 +1,6 @@
 //! The numbers behind the paper's figures held against the independent solutions, and claims that turn when runs do.
 
-use report::{Case, Ran, Report, Tracer, Variant, paper, paper_jobs};
+use report::{Case, FinishedRun, Report, Tracer, Variant, paper, paper_runs};
 use simulation::{Simulation, build};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,16 +8,16 @@ use std::sync::LazyLock;
 use vocabulary::LawKind;
 
 /// All runs behind the figures.
-static RUNS: LazyLock<Vec<Ran>> = LazyLock::new(|| {
-    let jobs = paper_jobs().expect("shipped scenes");
-    let run = |job: &report::Job| {
+static RUNS: LazyLock<Vec<FinishedRun>> = LazyLock::new(|| {
+    let jobs = paper_runs().expect("shipped scenes");
+    let run = |job: &report::PlannedRun| {
         let mut simulation = Simulation::new(build(&job.scene).expect("a scene that runs"));
         let colours = vec![[0.0; 3]; simulation.fleet().robots.len()];
         let mut tracer = Tracer::new(job.name.clone(), &job.scene, &simulation, &colours, job.transient);
         while let Some(record) = simulation.next_record() {
             tracer.push(record);
         }
-        Ran { case: job.case, variant: job.variant, trace: tracer.finish() }
+        FinishedRun { case: job.case, variant: job.variant, trace: tracer.finish() }
     };
     jobs.iter().map(run).collect()
 });
@@ -112,14 +112,14 @@ fn the_graph_of_seven_is_that_of_the_independent_solution() {
 }
 
 /// Whether the claims of a figure about a quantity hold, in order.
-fn verdicts(runs: &[Ran], stem: &str, quantity: &str) -> Vec<bool> {
+fn verdicts(runs: &[FinishedRun], stem: &str, quantity: &str) -> Vec<bool> {
     let report = paper(runs);
     let claims = report.claims().filter(|c| c.figure == stem && c.quantity.starts_with(quantity));
     claims.map(|claim| claim.holds).collect()
 }
 
 /// The runs with two variants of every case taken for each other.
-fn swapped(a: Variant, b: Variant) -> Vec<Ran> {
+fn swapped(a: Variant, b: Variant) -> Vec<FinishedRun> {
     let other = |variant| {
         if variant == a {
             b

@@ -1,13 +1,12 @@
 //! What a run keeps in memory does not grow with its length: bytes that live, counted by the allocator.
 
 use cap::Cap;
-use recording::log::Roll;
 use recording::{Recorder, RunOptions};
 use scene::Scene;
-use simulation::certify::Examiner;
 use simulation::{Simulation, build};
 use std::alloc::System;
-use vocabulary::Judging;
+use studies::certify::Examiner;
+use studies::run_options;
 
 #[global_allocator]
 static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
@@ -22,18 +21,7 @@ fn a_run_that_goes_on_takes_no_more_memory() {
         Scene::load(path, &["time.duration=150".parse().expect("an override")]).expect("a scene").scene;
     let mut simulation = Simulation::new(build(&scene).expect("a run"));
     let folder = tempfile::tempdir().expect("a folder");
-    let options = RunOptions {
-        csv: false,
-        no_log: true,
-        roll: Roll::default(),
-        force: false,
-        scene: String::new(),
-        program: String::new(),
-        commit: None,
-        seed: scene.seed,
-        period: scene.time.period,
-        judging: Judging { settling_band: [0.02; 2], settled_after: 0.0 },
-    };
+    let options = RunOptions { no_log: true, ..run_options(&scene) };
     let mut recorder =
         Recorder::create(&folder.path().join("run"), simulation.fleet(), options).expect("a recorder");
     let mut examiner = Examiner::new(&scene, &simulation);

@@ -13,26 +13,26 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Normal dependencies of every workspace member on other packages.
-fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
+/// Dependencies of every workspace member on other packages: those of its library or program, and, if asked for, of its
+/// tests, examples, benchmarks and build script.
+fn dependencies(all_kinds: bool) -> BTreeMap<String, BTreeSet<String>> {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--format-version=1", "--no-deps", "--offline"])
         .current_dir(root())
         .output()
         .expect("cargo metadata");
     let metadata: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let mut all = BTreeMap::new();
-    for package in metadata["packages"].as_array().expect("packages") {
-        let normal =
-            package["dependencies"].as_array().expect("a list").iter().filter(|d| d["kind"].is_null());
-        let names = normal.map(|d| d["name"].as_str().expect("a name").to_owned()).collect();
-        all.insert(package["name"].as_str().expect("a name").to_owned(), names);
-    }
-    all
+    let name = |value: &Value| value["name"].as_str().expect("a name").to_owned();
+    let uses = |package: &Value| {
+        let dependencies = package["dependencies"].as_array().expect("a list").iter();
+        dependencies.filter(|d| all_kinds || d["kind"].is_null()).map(name).collect()
+    };
+    let packages = metadata["packages"].as_array().expect("packages");
+    packages.iter().map(|package| (name(package), uses(package))).collect()
 }
 
 /// Whom each crate may use among our own; everybody else may not.
-const ARROWS: [(&str, &[&str]); 15] = [
+const ARROWS: [(&str, &[&str]); 16] = [
     ("vocabulary", &[]),
     ("output", &[]),
     ("film", &["vocabulary", "output"]),
@@ -45,8 +45,12 @@ const ARROWS: [(&str, &[&str]); 15] = [
     // Its tests, examples and benches write pictures and films with `film`.
     ("rendering", &["vocabulary", "film"]),
     ("figures", &[]),
-    ("simulation", &["vocabulary", "scene", "formation", "world", "perception", "metrics"]),
-    ("report", &["vocabulary", "scene", "simulation", "metrics", "figures"]),
+    ("simulation", &["vocabulary", "scene", "formation", "world", "perception"]),
+    (
+        "studies",
+        &["vocabulary", "output", "metrics", "scene", "formation", "perception", "simulation", "recording"],
+    ),
+    ("report", &["vocabulary", "scene", "simulation", "studies", "metrics", "figures"]),
     (
         "lab",
         &[
@@ -55,6 +59,7 @@ const ARROWS: [(&str, &[&str]); 15] = [
             "scene",
             "formation",
             "simulation",
+            "studies",
             "metrics",
             "recording",
             "film",
@@ -68,8 +73,7 @@ const ARROWS: [(&str, &[&str]); 15] = [
             "vocabulary",
             "output",
             "scene",
-            "perception",
-            "simulation",
+            "studies",
             "metrics",
             "recording",
             "film",
@@ -97,7 +101,7 @@ const LEAVES: [(&str, &[&str]); 10] = [
 
 #[test]
 fn arrows_point_one_way() {
-    let all = dependencies();
+    let all = dependencies(true);
     let ours: BTreeSet<&str> = ARROWS.iter().map(|(name, _)| *name).collect();
     for (name, uses) in &all {
         let Some((_, allowed)) = ARROWS.iter().find(|(member, _)| member == name) else {

@@ -13,7 +13,7 @@ type Uses = BTreeMap<String, BTreeSet<String>>;
 
 /// Our crates and which of them each uses; tests and fuzz targets use nearly all and are left out.
 fn ours() -> Uses {
-    let all = dependencies();
+    let all = dependencies(false);
     let drawn: BTreeSet<String> =
         all.keys().filter(|name| !["tests", "fuzz"].contains(&name.as_str())).cloned().collect();
     let among = |uses: &BTreeSet<String>| uses.intersection(&drawn).cloned().collect();

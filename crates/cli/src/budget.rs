@@ -2,95 +2,72 @@
 //! that are told the truth over corners of tags with more and more noise to pictures of cameras, with both observers; or,
 //! with `--epsilon`, with one observer constant after the other.
 
-mod case;
 mod files;
-mod measure;
 mod picture;
-mod scaling;
 mod table;
 
 use crate::Outcome;
-use crate::args::BudgetArgs;
+use crate::args::SceneArgs;
+use crate::cameras;
 use crate::failure::Failure;
-use crate::load::{Loaded, load, stem};
+use crate::interrupt;
+use crate::load::{load, stem};
 use crate::print::{note, say};
 use crate::progress::Progress;
-use crate::{eyes, interrupt};
-use case::{Case, Level, Observer};
-use measure::{Run, measure};
+use clap::Args;
 use output::Place;
 use rendering::{AdapterChoice, Gpu};
-use scene::Scene;
-use simulation::Simulation;
-use std::path::Path;
-use vocabulary::{FleetInfo, counted};
+use std::path::{Path, PathBuf};
+use studies::SceneRun;
+use studies::budget::{Budget, check, epsilon_cases, sensing_cases};
+use vocabulary::counted;
 
-/// A comparison, as far as it has come.
-pub(crate) struct Budget<'a> {
-    pub(crate) scene: &'a Scene,
-    pub(crate) fleet: FleetInfo,
-    /// Time from which errors count, s.
-    pub(crate) settled_after: f64,
-    /// Whether observer constants are compared instead of ways of sensing.
-    pub(crate) constants: bool,
-    pub(crate) runs: Vec<(Case, Run)>,
-    /// Adapter that drew for the cameras, if any did.
-    pub(crate) adapter: Option<String>,
-    /// Why there are no pictures of cameras, where there are none.
-    pub(crate) without_camera: Option<String>,
-    /// Whether all runs were made.
-    pub(crate) complete: bool,
+#[derive(Debug, Args)]
+pub(crate) struct BudgetArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Folder for budget.svg, budget.json and budget.csv, with --epsilon for epsilon.svg and so on; it may hold others
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Noises of a tag's corners to try, px
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        default_value = "0,0.02,0.05,0.1,0.2,0.5,1",
+        value_parser = pixels
+    )]
+    pixel_noise: Vec<f64>,
+    /// Compare observer constants ε instead, s, such as 0.001,0.003,0.01,0.03,0.1, with the one that follows from the
+    /// noise
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        conflicts_with = "pixel_noise",
+        value_parser = epsilon
+    )]
+    epsilon: Vec<f64>,
+    /// Leave out what needs pictures; with --epsilon, look by corners of tags instead
+    #[arg(long)]
+    no_camera: bool,
 }
 
-impl Budget<'_> {
-    /// Names of the edges.
-    pub(crate) fn edge(&self, index: usize) -> [&str; 2] {
-        let name = |robot: usize| self.fleet.robots.get(robot).map_or("", |m| m.name.as_str());
-        self.fleet.edges.get(index).map_or([""; 2], |edge| [name(edge.leader), name(edge.follower)])
-    }
+fn pixels(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| (0.0..=50.0).contains(v));
+    value.ok_or_else(|| "write pixels from 0 to 50, such as 0,0.1,0.5".to_owned())
+}
 
-    /// The run of a case, where it has come to that.
-    pub(crate) fn run(&self, level: Level, observer: Observer) -> Option<&Run> {
-        self.runs.iter().find(|(c, _)| *c == Case { level, observer }).map(|(_, run)| run)
-    }
-
-    /// The noises of corners that were tried, in order.
-    pub(crate) fn pixels(&self) -> Vec<f64> {
-        let mut all: Vec<f64> = self.runs.iter().filter_map(|(case, _)| case.level.pixels()).collect();
-        all.sort_by(f64::total_cmp);
-        all.dedup();
-        all
-    }
-
-    /// [pixels, value] of an edge over all noises of corners with an observer; without what has no value.
-    pub(crate) fn curve(
-        &self,
-        edge: usize,
-        observer: Observer,
-        value: impl Fn(&measure::Measured) -> Option<f64>,
-    ) -> Vec<[f64; 2]> {
-        let at = |pixels: f64| {
-            let run = self.run(Level::Pixels(pixels), observer)?;
-            Some([pixels, value(run.edges.get(edge)?)?])
-        };
-        self.pixels().into_iter().filter_map(at).collect()
-    }
-
-    /// The noise of corners that an edge's looks by camera stand for: by distance, bearing, view angle, and by all.
-    pub(crate) fn camera_as_pixels(&self, edge: usize) -> ([Option<f64>; 3], Option<f64>) {
-        let of = |channel: usize| {
-            let run = self.run(Level::Camera, Observer::HighGain)?;
-            let error = run.edges.get(edge)?.looks?[channel];
-            scaling::noise_of(&self.curve(edge, Observer::HighGain, |m| Some(m.looks?[channel])), error)
-        };
-        let each = [0, 1, 2].map(of);
-        (each, scaling::middle(&each))
-    }
+fn epsilon(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| (1e-6..=100.0).contains(v));
+    value.ok_or_else(|| "write seconds from 0.000001 to 100, such as 0.001,0.01,0.1".to_owned())
 }
 
 pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
-    let Loaded { scene, simulation } = load(&args.scene)?;
-    case::check(&scene)?;
+    let SceneRun { scene, simulation } = load(&args.scene)?;
+    check(&scene)?;
     let folder = args.out.as_deref();
     let _place = folder.map(Place::folder).transpose()?;
     let silent = args.scene.quiet || args.scene.json;
@@ -98,18 +75,15 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
     if let Some(why) = without_camera.as_ref().filter(|_| !args.no_camera) {
         note(why);
     }
-    let cases = cases(args, gpu.is_some(), &scene);
-    let settled_after = scene.judging().settled_after;
-    let mut budget = Budget {
-        scene: &scene,
-        fleet: simulation.fleet().clone(),
-        settled_after,
-        constants: !args.epsilon.is_empty(),
-        runs: vec![],
-        adapter: gpu.as_ref().map(Gpu::description),
-        without_camera,
-        complete: false,
+    let constants = !args.epsilon.is_empty();
+    let cases = if constants {
+        epsilon_cases(&args.epsilon, gpu.is_some(), &scene)
+    } else {
+        sensing_cases(&args.pixel_noise, gpu.is_some())
     };
+    let mut budget = Budget::new(&scene, simulation.fleet().clone(), constants);
+    budget.adapter = gpu.as_ref().map(Gpu::description);
+    budget.without_camera = without_camera;
     let each = simulation.len();
     let what = format!(
         "{} of {}, {} s each",
@@ -118,20 +92,11 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
         scene.time.duration
     );
     let progress = Progress::begin(&what, each.saturating_mul(cases.len() as u64), silent);
-    for (index, case) in cases.iter().enumerate() {
-        let mut simulation = Simulation::new(case.build(&scene)?);
-        eyes::open(&mut simulation, gpu.as_ref(), &args.scene.adapter, None)?;
-        let go_on = |step: u64| {
-            progress.at(index as u64 * each + step);
-            !interrupt::asked()
-        };
-        match measure(&mut simulation, settled_after, go_on).map_err(Failure::Machine)? {
-            Some(run) => budget.runs.push((*case, run)),
-            None => break,
-        }
-    }
+    budget.measure(&cases, &mut cameras::factory(gpu.as_ref()), |index, step| {
+        progress.at(index as u64 * each + step);
+        !interrupt::asked()
+    })?;
     progress.end();
-    budget.complete = budget.runs.len() == cases.len();
     finish(&budget, folder, args)?;
     if !budget.complete {
         let done =
@@ -169,34 +134,4 @@ fn camera(args: &BudgetArgs) -> Result<(Option<Gpu>, Option<String>), Failure> {
         Err(error) if args.scene.adapter != "auto" => Err(error.into()),
         Err(error) => Ok((None, Some(format!("no camera: {error}")))),
     }
-}
-
-/// What is run, in order.
-fn cases(args: &BudgetArgs, camera: bool, scene: &Scene) -> Vec<Case> {
-    if !args.epsilon.is_empty() {
-        let level = if camera { Level::Camera } else { Level::Pixels(pixels_of(scene)) };
-        let constants = sorted(&args.epsilon).into_iter().map(Some).chain([None]);
-        return constants.map(|constant| Case { level, observer: Observer::Constant(constant) }).collect();
-    }
-    let mut levels: Vec<Level> = sorted(&args.pixel_noise).into_iter().map(Level::Pixels).collect();
-    levels.extend(camera.then_some(Level::Camera));
-    let with = |observer: Observer| levels.iter().map(move |level| Case { level: *level, observer });
-    let truth = Case { level: Level::Truth, observer: Observer::HighGain };
-    [truth].into_iter().chain(with(Observer::HighGain)).chain(with(Observer::Unscented)).collect()
-}
-
-/// Noise of corners of the scene's first follower, px.
-fn pixels_of(scene: &Scene) -> f64 {
-    let noise = |robot: &scene::Robot| match &robot.role {
-        scene::Role::Follow(follow) => Some(follow.sensing.pixel_noise),
-        scene::Role::Lead { .. } => None,
-    };
-    scene.robots.iter().find_map(noise).unwrap_or(0.0)
-}
-
-fn sorted(values: &[f64]) -> Vec<f64> {
-    let mut values = values.to_vec();
-    values.sort_by(f64::total_cmp);
-    values.dedup();
-    values
 }

@@ -1,24 +1,40 @@
 //! `echelon capture`: pictures of a scene at given times.
 
 use crate::Outcome;
-use crate::args::{CaptureArgs, PictureArgs};
+use crate::args::{PictureArgs, SceneArgs, time};
 use crate::failure::Failure;
-use crate::load::{load, stem};
-use crate::picture::Studio;
-use crate::playback::{Playback, Source};
+use crate::load::{attach_cameras, load, stem};
+use crate::picture::RenderSetup;
+use crate::playback::Playback;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use crate::replaced::Replaced;
-use crate::{interrupt, run, times};
+use crate::{interrupt, times};
+use clap::Args;
 use film::png;
 use output::Place;
 use rendering::Gpu;
 use serde_json::json;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use studies::replay::RecordSource;
 use vocabulary::{FleetInfo, counted};
 
+#[derive(Debug, Args)]
+pub(crate) struct CaptureArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    picture: PictureArgs,
+    /// Times in s, such as 0,5,15; the end of the run if left out
+    #[arg(long, value_name = "TIMES", value_delimiter = ',', allow_negative_numbers = true, value_parser = time)]
+    at: Vec<f64>,
+    /// Folder for the pictures; it may hold others
+    #[arg(long, short, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+}
+
 /// What pictures are made of.
-pub(crate) struct Job<'a> {
+pub(crate) struct CaptureJob<'a> {
     pub(crate) picture: &'a PictureArgs,
     pub(crate) adapter: &'a str,
     /// Folder for the pictures.
@@ -41,7 +57,7 @@ pub(crate) struct Job<'a> {
 pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;
     let scene = loaded.scene.clone();
-    let job = Job {
+    let job = CaptureJob {
         picture: &args.picture,
         adapter: &args.scene.adapter,
         out: &args.out,
@@ -56,17 +72,20 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
         view: &scene.views.default,
     };
     draw(&job, |gpu| {
-        loaded.attach_cameras(Some(gpu), &args.scene)?;
-        Ok(Source::Run(Box::new(loaded.simulation)))
+        attach_cameras(&mut loaded, Some(gpu), &args.scene)?;
+        Ok(RecordSource::Run(Box::new(loaded.simulation)))
     })
 }
 
 /// Draws pictures of what `source` tells; it may use the adapter that draws.
-pub(crate) fn draw(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
+pub(crate) fn draw(
+    job: &CaptureJob<'_>,
+    source: impl FnOnce(&Gpu) -> Result<RecordSource, Failure>,
+) -> Outcome {
     let times = times::within(job.at, job.duration)?;
     let _place = Place::folder(job.out)?;
-    let Job { fleet, name, .. } = job;
-    let mut studio = Studio::open((job.adapter, job.picture), fleet, job.view, job.settings.size)?;
+    let CaptureJob { fleet, name, .. } = job;
+    let mut studio = RenderSetup::open(job.adapter, job.picture, fleet, job.view, job.settings.size)?;
     let source = source(&studio.gpu)?;
     let adapter = studio.gpu.description();
     let mut playback = Playback::new(fleet, source);
@@ -91,7 +110,7 @@ pub(crate) fn draw(job: &Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Fa
         let time_text = time.to_string();
         let scene_text = job.of.display().to_string();
         let metadata = [
-            ("Software", run::PROGRAM),
+            ("Software", studies::PROGRAM),
             ("Scene", &*scene_text),
             ("Time", &*time_text),
             ("Adapter", &*adapter),

@@ -7,18 +7,17 @@ mod text;
 
 use crate::args::SceneArgs;
 use crate::failure::Failure;
-use crate::load::{Loaded, load, stem};
+use crate::load::{attach_cameras, load, stem};
 use crate::print::json;
 use crate::progress::Progress;
-use crate::run::STRIDE;
 use crate::{Outcome, interrupt};
-use beyond::Beyond;
 use clap::Args;
 use output::Place;
 use scene::Scene;
-use simulation::certify::{Certificate, Examiner};
 use std::path::PathBuf;
 use std::time::Instant;
+use studies::certify::beyond::Beyond;
+use studies::certify::{Certificate, certificates};
 use vocabulary::{EntityId, FleetInfo};
 
 #[derive(Debug, Args)]
@@ -49,7 +48,7 @@ fn bound(text: &str) -> Result<f64, String> {
 }
 
 /// All that is known of a scene.
-pub(crate) struct Report<'a> {
+pub(crate) struct CertifyReport<'a> {
     scene: &'a Scene,
     fleet: FleetInfo,
     certificates: Vec<Certificate>,
@@ -58,7 +57,7 @@ pub(crate) struct Report<'a> {
     wall: f64,
 }
 
-impl Report<'_> {
+impl CertifyReport<'_> {
     /// "leader → follower".
     fn edge(&self, index: usize) -> String {
         let name = |robot: usize| self.fleet.name(EntityId::Robot(robot));
@@ -81,38 +80,27 @@ impl Report<'_> {
 
 pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     let began = Instant::now();
-    let mut loaded = load(&args.scene)?;
+    let mut run = load(&args.scene)?;
     let _place = args.out.as_deref().map(Place::folder).transpose()?;
-    loaded.attach_cameras(None, &args.scene)?;
-    let Loaded { scene, mut simulation } = loaded;
+    attach_cameras(&mut run, None, &args.scene)?;
     let quiet = args.scene.quiet || args.scene.json;
-    if simulation.fleet().edges.is_empty() {
+    let (scene, fleet) = (run.scene.clone(), run.simulation.fleet().clone());
+    if fleet.edges.is_empty() {
         let text =
             format!("{}: nobody follows anybody, so there is nothing to certify", args.scene.scene.display());
         return Err(Failure::Usage(text));
     }
     let what = format!("Certifying {}, {} s", stem(&args.scene.scene), scene.time.duration);
-    let progress = Progress::begin(&what, simulation.len(), quiet);
-    let mut examiner = Examiner::keeping(&scene, &simulation);
-    let mut step = 0;
-    while simulation.next_record().is_some() {
-        examiner.push(&simulation);
-        step += 1;
-        if step % STRIDE == 0 {
-            progress.at(step);
-            if interrupt::asked() {
-                return Err(Failure::Interrupted("nothing was certified".into()));
-            }
-        }
-    }
-    if let Some(fault) = simulation.fault() {
-        return Err(fault.into());
-    }
+    let progress = Progress::begin(&what, run.simulation.len(), quiet);
+    let certificates = certificates(run, |step| {
+        progress.at(step);
+        !interrupt::asked()
+    })?
+    .ok_or_else(nothing)?;
     progress.end();
-    let certificates = examiner.finish(&simulation);
     let beyond = (!args.paper_only).then(|| beyond::look(&scene, args.sensitivity, quiet)).transpose()?;
-    let fleet = simulation.fleet().clone();
-    let mut report = Report { scene: &scene, fleet, certificates, beyond, bound: args.bound, wall: 0.0 };
+    let mut report =
+        CertifyReport { scene: &scene, fleet, certificates, beyond, bound: args.bound, wall: 0.0 };
     report.wall = began.elapsed().as_secs_f64();
     let written =
         args.out.as_deref().map(|folder| files::write(folder, &report, args.scene.quiet)).transpose();
@@ -124,4 +112,9 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     // What came out is told, whatever becomes of a file.
     written?;
     if args.strict && !report.holds() { Err(Failure::Expectation) } else { Ok(()) }
+}
+
+/// A certificate that was interrupted.
+fn nothing() -> Failure {
+    Failure::Interrupted("nothing was certified".into())
 }

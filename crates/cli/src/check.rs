@@ -1,29 +1,50 @@
 //! `echelon check`: is a scene right?
 
 use crate::Outcome;
-use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::load::load_file;
 use crate::print::{note, say};
+use clap::Args;
+use scene::Override;
+use std::path::PathBuf;
+use studies::SceneRun;
 use vocabulary::counted;
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    /// Scene files, or names of scenes that come with the program
+    #[arg(value_name = "SCENE", required = true)]
+    scenes: Vec<PathBuf>,
+    /// Change a value of every scene
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<Override>,
+    /// Print the resolved scene, every default written out
+    #[arg(long)]
+    resolved: bool,
+}
 
 pub(crate) fn check(args: &CheckArgs) -> Outcome {
     let mut problems = Vec::new();
     for path in &args.scenes {
         match load_file(path, &args.set) {
-            Ok((scene, _)) if scene.film.beyond(scene.time.duration).is_some() => {
-                let beyond = scene.film.beyond(scene.time.duration).unwrap_or_default();
+            Ok(run) if run.scene.film.beyond(run.scene.time.duration).is_some() => {
+                let beyond = run.scene.film.beyond(run.scene.time.duration).unwrap_or_default();
                 problems.push(format!("{}: {beyond}", path.display()));
             }
-            Ok((scene, setup)) if args.resolved => {
-                say(&format!("# {}: {}", path.display(), counted(setup.fleet.robots.len(), "robot")));
-                say(&scene.to_toml());
+            Ok(run) if args.resolved => {
+                say(&format!(
+                    "# {}: {}",
+                    path.display(),
+                    counted(run.simulation.fleet().robots.len(), "robot")
+                ));
+                say(&run.scene.to_toml());
             }
-            Ok((scene, setup)) => {
+            Ok(SceneRun { scene, simulation }) => {
+                let fleet = simulation.fleet();
                 for late in scene.late() {
                     note(&format!("{}: note: {late}", path.display()));
                 }
-                let (robots, edges) = (setup.fleet.robots.len(), setup.fleet.edges.len());
+                let (robots, edges) = (fleet.robots.len(), fleet.edges.len());
                 let length = scene.time.duration;
                 let (robots, edges) = (counted(robots, "robot"), counted(edges, "edge"));
                 say(&format!("{}: good: {}; {robots} and {edges}, {length} s", path.display(), scene.title));

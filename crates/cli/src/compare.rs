@@ -3,7 +3,7 @@
 use crate::Outcome;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::junit::{self, Came, Case};
+use crate::junit::{self, Came, ReportedCheck};
 use crate::print::{json, say};
 use crate::replaced::Replaced;
 use clap::Args;
@@ -55,7 +55,7 @@ const PART: u32 = 32;
 const MOST_PIXELS: u64 = 200_000_000;
 
 /// Two pictures of one name.
-struct Pair {
+struct PicturePair {
     name: String,
     found: Result<Likeness, String>,
 }
@@ -73,7 +73,7 @@ struct Likeness {
     adapters: Option<[String; 2]>,
 }
 
-impl Pair {
+impl PicturePair {
     fn passes(&self, threshold: f64) -> bool {
         self.found.as_ref().is_ok_and(|likeness| likeness.least >= threshold)
     }
@@ -104,36 +104,36 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
     let _report = junit::open(args.junit.as_deref(), args.json)?;
     let mut cases = vec![];
     let outcome = judge(args, &mut cases);
-    junit::close(args.junit.as_deref(), "pictures", cases, (outcome, began.elapsed()), args.quiet)
+    junit::close(args.junit.as_deref(), "pictures", cases, outcome, began.elapsed(), args.quiet)
 }
 
 /// Compares all pictures; `cases` are what became of them.
-fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
+fn judge(args: &CompareArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
     let pairs = pairs(args)?;
     let _place = args.out.as_deref().map(Place::folder).transpose()?;
     interrupt::watch();
-    let (all, mut lost, mut replaced) = (pairs.len(), None, Replaced::default());
+    let (all, mut written) = (pairs.len(), DifferencePictures::default());
     let mut compared = Vec::with_capacity(all);
     for (name, wanted, found) in pairs {
         if interrupt::asked() {
             let came = Came::Skipped("the comparison was interrupted".to_owned());
-            cases.push(Case { name, came, time: Some(Duration::ZERO) });
+            cases.push(ReportedCheck { name, came, time: Some(Duration::ZERO) });
             continue;
         }
         let began = Instant::now();
         let likeness = match (wanted, found) {
-            (Some(wanted), Some(found)) => look(&wanted, &found, (&name, args), (&mut lost, &mut replaced))?,
+            (Some(wanted), Some(found)) => look(&wanted, &found, &name, args, &mut written)?,
             (Some(_), None) => Err(format!("is not in {}", args.found.display())),
             (None, _) => Err(format!("is not in {}", args.wanted.display())),
         };
-        let pair = Pair { name, found: likeness };
+        let pair = PicturePair { name, found: likeness };
         let came = if pair.passes(args.threshold) { Came::Fine } else { Came::Failed(pair.words()) };
-        cases.push(Case { name: pair.name.clone(), came, time: Some(began.elapsed()) });
+        cases.push(ReportedCheck { name: pair.name.clone(), came, time: Some(began.elapsed()) });
         compared.push(pair);
     }
     let failed = compared.iter().filter(|pair| !pair.passes(args.threshold)).count();
     if args.json {
-        let pair = |pair: &Pair| {
+        let pair = |pair: &PicturePair| {
             let l = pair.found.as_ref().ok();
             json!({
                 "name": pair.name, "passes": pair.passes(args.threshold), "fault": pair.found.as_ref().err(),
@@ -158,15 +158,23 @@ fn judge(args: &CompareArgs, cases: &mut Vec<Case>) -> Outcome {
             ));
         }
     }
-    replaced.tell(args.quiet);
+    written.replaced.tell(args.quiet);
     if compared.len() < all {
         let text = format!("{} of {} are compared", compared.len(), counted(all, "picture"));
         return Err(Failure::Interrupted(text));
     }
-    if let Some(failure) = lost {
+    if let Some(failure) = written.lost {
         return Err(failure);
     }
     if failed == 0 { Ok(()) } else { Err(Failure::Expectation) }
+}
+
+/// Pictures of differences that were written.
+#[derive(Default)]
+struct DifferencePictures {
+    /// The first that the disk refused.
+    lost: Option<Failure>,
+    replaced: Replaced,
 }
 
 /// A name, and the files on both sides that have it.
@@ -235,8 +243,9 @@ fn read(path: &Path) -> Result<RgbaImage, Failure> {
 fn look(
     wanted: &Path,
     found: &Path,
-    (name, args): (&str, &CompareArgs),
-    (lost, replaced): (&mut Option<Failure>, &mut Replaced),
+    name: &str,
+    args: &CompareArgs,
+    written: &mut DifferencePictures,
 ) -> Result<Result<Likeness, String>, Failure> {
     let (a, b) = (read(wanted)?, read(found)?);
     if a.dimensions() != b.dimensions() {
@@ -249,16 +258,16 @@ fn look(
     if let Some(folder) = args.out.as_ref().filter(|_| likeness.other > 0.0) {
         let path = folder.join(Path::new(name).with_extension("difference.png"));
         let picture = side_by_side(&shown.wanted, &shown.found, &shown.map);
-        replaced.look(&path);
-        let written = film::png::write(&path, &picture, &[("Software", crate::run::PROGRAM)]);
+        written.replaced.look(&path);
+        let outcome = film::png::write(&path, &picture, &[("Software", studies::PROGRAM)]);
         // What came out is told, whatever becomes of a file.
-        *lost = lost.take().or(written.err().map(Failure::from));
+        written.lost = written.lost.take().or(outcome.err().map(Failure::from));
     }
     Ok(Ok(likeness))
 }
 
 /// Two pictures on a ground, and how alike they are there.
-struct Shown {
+struct ComparedPictures {
     wanted: RgbImage,
     found: RgbImage,
     /// The unlikeness of every pixel.
@@ -268,13 +277,13 @@ struct Shown {
 
 /// Two pictures on the ground on which they are less alike, black or white: what is transparent shows the ground, and no
 /// opaque colour is like it on both.
-fn shown(wanted: &RgbaImage, found: &RgbaImage) -> Result<Shown, String> {
+fn shown(wanted: &RgbaImage, found: &RgbaImage) -> Result<ComparedPictures, String> {
     let on = |ground: u8| {
         let (wanted, found) = (flat(wanted, ground), flat(found, ground));
         let compared = rgb_hybrid_compare(&wanted, &found).map_err(|e| e.to_string())?;
         let map = compared.image.to_color_map().into_rgb8();
         let likeness = likeness_of(&wanted, &found, compared.score, &map);
-        Ok::<_, String>(Shown { wanted, found, map, likeness })
+        Ok::<_, String>(ComparedPictures { wanted, found, map, likeness })
     };
     let black = on(0)?;
     if [wanted, found].into_iter().all(|picture| picture.pixels().all(|p| p.0[3] == 255)) {

@@ -6,12 +6,12 @@ use crate::interrupt;
 use crate::print::{json, say};
 use crate::progress::Progress;
 use crate::recorded::Recorded;
-use crate::run::STRIDE;
 use clap::Args;
 use recording::log::{Comparison, compare};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
 use std::path::PathBuf;
+use studies::diff::differing_keys;
+use studies::run::STRIDE;
 use vocabulary::counted;
 
 #[derive(Debug, Args)]
@@ -113,27 +113,8 @@ fn keys(a: &Recorded, b: &Recorded) -> Vec<(String, [String; 2])> {
     let [Some(left), Some(right)] = trees else {
         return vec![("scene.toml".to_owned(), ["one text".to_owned(), "another".to_owned()])];
     };
-    let mut leaves: BTreeMap<String, [Option<String>; 2]> = BTreeMap::new();
-    for (side, tree) in [left, right].iter().enumerate() {
-        flatten(String::new(), tree, &mut |key, value| leaves.entry(key).or_default()[side] = Some(value));
-    }
     let text = |value: Option<String>| value.unwrap_or_else(|| "not there".to_owned());
-    leaves.into_iter().filter(|(_, [a, b])| a != b).map(|(key, pair)| (key, pair.map(text))).collect()
-}
-
-/// Leaves of a tree by path; things with names by their names, as `--set` has it.
-fn flatten(key: String, tree: &Value, put: &mut impl FnMut(String, String)) {
-    let below = |part: &str| if key.is_empty() { part.to_owned() } else { format!("{key}.{part}") };
-    match tree {
-        Value::Object(table) => table.iter().for_each(|(part, value)| flatten(below(part), value, put)),
-        Value::Array(list) if list.iter().any(Value::is_object) => {
-            for (index, value) in list.iter().enumerate() {
-                let name = value.get("name").and_then(Value::as_str);
-                flatten(below(&name.map_or_else(|| index.to_string(), str::to_owned)), value, put);
-            }
-        }
-        leaf => put(key, leaf.to_string()),
-    }
+    differing_keys([&left, &right]).into_iter().map(|found| (found.key, found.values.map(text))).collect()
 }
 
 /// A field's name without its unit, and the unit.

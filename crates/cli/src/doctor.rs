@@ -1,13 +1,20 @@
 //! `echelon doctor`: what this machine can draw and encode with, and what is missing.
 
 use crate::Outcome;
-use crate::args::DoctorArgs;
 use crate::failure::Failure;
 use crate::print::{json, say};
-use crate::run::PROGRAM;
+use clap::Args;
 use rendering::{AdapterChoice, Gpu, adapters};
 use serde_json::json;
 use std::process::Command;
+use studies::PROGRAM;
+
+#[derive(Debug, Args)]
+pub(crate) struct DoctorArgs {
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
 
 const NO_ADAPTER: &str = "no graphics adapter: install a driver, or the software one with \
     `apt-get install mesa-vulkan-drivers` (Debian, Ubuntu), `dnf install mesa-vulkan-drivers` (Fedora)";

@@ -58,11 +58,15 @@ impl Failure {
     }
 }
 
-impl From<&simulation::Fault> for Failure {
-    fn from(fault: &simulation::Fault) -> Self {
-        match fault {
-            simulation::Fault::CameraRenderer(text) => Self::Machine(text.clone()),
-            simulation::Fault::NotFinite(what) => Self::Broken(what.to_string()),
+impl From<studies::Error> for Failure {
+    fn from(error: studies::Error) -> Self {
+        match error {
+            studies::Error::Usage(text) => Self::Usage(text),
+            studies::Error::Build(error) => Self::Usage(error.to_string()),
+            studies::Error::NotFinite(what) => Self::Broken(what.to_string()),
+            studies::Error::Camera(text) => Self::Machine(text),
+            studies::Error::Output(error) => error.into(),
+            studies::Error::Recording(error) => error.into(),
         }
     }
 }

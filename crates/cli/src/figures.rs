@@ -8,19 +8,18 @@ mod tell;
 
 use crate::Outcome;
 use crate::failure::Failure;
-use crate::load::stem;
+use crate::load::{build, read, stem, with_seed};
 use crate::print::note;
-use crate::run::PROGRAM;
-use crate::{eyes, interrupt, recorded};
+use crate::{cameras, interrupt};
 use clap::Args;
 use folder::Folder;
 use meter::Meter;
 use rendering::{AdapterChoice, Gpu};
-use report::{Case, Job, Ran, Rasterizer, Report, Tracer};
+use report::{Case, FinishedRun, PlannedRun, Rasterizer, Report, Tracer};
 use scene::{Override, Scene};
-use simulation::Simulation;
 use std::path::PathBuf;
 use std::time::Instant;
+use studies::{COMMIT, PROGRAM, SceneRun};
 
 /// Figures for print, with what they show and whether it is so. Without a scene, those of the paper.
 #[derive(Debug, Args)]
@@ -59,7 +58,7 @@ pub(crate) struct FiguresArgs {
 struct Subject {
     /// Of a scene of somebody's own: it, and its file's name.
     own: Option<(Scene, String)>,
-    jobs: Vec<Job>,
+    jobs: Vec<PlannedRun>,
 }
 
 pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
@@ -70,14 +69,14 @@ pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
     if let Some(why) = without.as_ref().filter(|_| !args.no_pictures) {
         note(why);
     }
-    let mut simulations = vec![];
+    let mut prepared = vec![];
     for job in &subject.jobs {
-        simulations.push(ready(job, gpu.as_ref(), &args.adapter)?);
+        prepared.push(ready(job, gpu.as_ref(), &args.adapter)?);
     }
-    let shows: Vec<drawn::Show> = gpu.as_ref().map_or_else(Vec::new, |_| drawn::shows(&subject));
+    let shows: Vec<drawn::FilmedRun> = gpu.as_ref().map_or_else(Vec::new, |_| drawn::shows(&subject));
     let mut folder = Folder::create(&args.out, args.force)?;
-    let mut meter = Meter::begin(args, &subject, &simulations, &shows);
-    let made = make(args, &subject, simulations, (gpu.as_ref(), shows.as_slice()), &mut folder, &mut meter);
+    let mut meter = Meter::begin(args, &subject, &prepared, &shows);
+    let made = make(args, &subject, prepared, gpu.as_ref(), &shows, &mut folder, &mut meter);
     drop(meter);
     match made {
         Ok((mut report, runs)) => {
@@ -85,7 +84,7 @@ pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
             report.versions = versions(gpu.as_ref());
             folder.write("report.html", report::page(&report, rendering::FONT).as_bytes())?;
             folder.close("complete", Some((&report, runs.as_slice())))?;
-            tell::tell(args, &report, &runs, (&folder, began.elapsed().as_secs_f64()));
+            tell::tell(args, &report, &runs, &folder, began.elapsed().as_secs_f64());
             Ok(())
         }
         Err(failure) => {
@@ -99,17 +98,11 @@ pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
 
 fn subject(args: &FiguresArgs) -> Result<Subject, Failure> {
     let Some(path) = &args.scene else {
-        let jobs = report::paper_jobs().map_err(|errors| Failure::Usage(errors.to_string()))?;
+        let jobs = report::paper_runs().map_err(|errors| Failure::Usage(errors.to_string()))?;
         return Ok(Subject { own: None, jobs });
     };
-    let mut overrides = args.set.clone();
-    if let Some(seed) = args.seed {
-        let seed = format!("seed={seed}").parse();
-        overrides.push(seed.map_err(|e: scene::OverrideError| Failure::Usage(e.to_string()))?);
-    }
-    recorded::refuse(path)?;
-    let loaded = Scene::load(path, &overrides).map_err(|errors| Failure::Usage(errors.to_string()))?;
-    Ok(Subject { jobs: report::scene_jobs(&loaded.scene), own: Some((loaded.scene, stem(path))) })
+    let scene = read(path, &with_seed(&args.set, args.seed)?)?;
+    Ok(Subject { jobs: report::scene_runs(&scene), own: Some((scene, stem(path))) })
 }
 
 /// An adapter to draw with, or why there is none.
@@ -126,26 +119,25 @@ fn adapter(args: &FiguresArgs) -> Result<(Option<Gpu>, Option<String>), Failure>
 }
 
 /// A run before its first step.
-fn ready(job: &Job, gpu: Option<&Gpu>, adapter: &str) -> Result<Simulation, Failure> {
-    let setup =
-        simulation::build(&job.scene).map_err(|error| Failure::Usage(format!("{}: {error}", job.name)))?;
-    let mut simulation = Simulation::new(setup);
-    eyes::open(&mut simulation, gpu, adapter, None)?;
-    Ok(simulation)
+fn ready(job: &PlannedRun, gpu: Option<&Gpu>, adapter: &str) -> Result<SceneRun, Failure> {
+    let mut run = build(job.scene.clone(), &job.name)?;
+    cameras::attach(&mut run, gpu, adapter, None)?;
+    Ok(run)
 }
 
 /// Runs, draws and writes everything but the report.
 fn make(
     args: &FiguresArgs,
     subject: &Subject,
-    simulations: Vec<Simulation>,
-    (gpu, shows): (Option<&Gpu>, &[drawn::Show]),
+    ready: Vec<SceneRun>,
+    gpu: Option<&Gpu>,
+    shows: &[drawn::FilmedRun],
     folder: &mut Folder,
     meter: &mut Meter,
-) -> Result<(Report, Vec<Ran>), Failure> {
+) -> Result<(Report, Vec<FinishedRun>), Failure> {
     let mut runs = vec![];
-    for (job, simulation) in subject.jobs.iter().zip(simulations) {
-        runs.push(run(job, simulation, meter)?);
+    for (job, ready) in subject.jobs.iter().zip(ready) {
+        runs.push(run(job, ready, meter)?);
     }
     let mut report = match &subject.own {
         None => report::paper(&runs),
@@ -153,19 +145,19 @@ fn make(
     };
     if let Some(gpu) = gpu {
         for show in shows {
-            drawn::draw(show, gpu, &args.adapter, &runs, (&mut *folder, &mut *meter), &mut report)?;
+            drawn::draw(show, gpu, &args.adapter, &runs, &mut *folder, &mut *meter, &mut report)?;
         }
     }
-    let press = Rasterizer::new(&[rendering::FONT]);
-    let printed = |error: report::PressError| Failure::Machine(error.to_string());
+    let rasterizer = Rasterizer::new(&[rendering::FONT]);
+    let printed = |error: report::RasterizerError| Failure::Machine(error.to_string());
     for item in &report.items {
         stop(meter)?;
         folder.write(&format!("{}.svg", item.stem), item.svg.as_bytes())?;
         folder.write(&format!("{}.csv", item.stem), item.csv.as_bytes())?;
-        let png = item.picture.clone().map_or_else(|| press.png(&item.svg, DPI).map_err(printed), Ok)?;
+        let png = item.picture.clone().map_or_else(|| rasterizer.png(&item.svg, DPI).map_err(printed), Ok)?;
         folder.write(&format!("{}.png", item.stem), &png)?;
-        folder.write(&format!("{}.pdf", item.stem), &press.pdf(&item.svg).map_err(printed)?)?;
-        meter.sheet();
+        folder.write(&format!("{}.pdf", item.stem), &rasterizer.pdf(&item.svg).map_err(printed)?)?;
+        meter.figure();
     }
     Ok((report, runs))
 }
@@ -173,7 +165,8 @@ fn make(
 /// Pixels an inch of figures.
 const DPI: f32 = 300.0;
 
-fn run(job: &Job, mut simulation: Simulation, meter: &mut Meter) -> Result<Ran, Failure> {
+fn run(job: &PlannedRun, run: SceneRun, meter: &mut Meter) -> Result<FinishedRun, Failure> {
+    let mut simulation = run.simulation;
     let colours = rendering::robot_colours(simulation.fleet());
     let mut tracer = Tracer::new(job.name.clone(), &job.scene, &simulation, &colours, job.transient);
     while let Some(record) = simulation.next_record() {
@@ -182,9 +175,9 @@ fn run(job: &Job, mut simulation: Simulation, meter: &mut Meter) -> Result<Ran, 
         stop(meter)?;
     }
     if let Some(fault) = simulation.fault() {
-        return Err(fault.into());
+        return Err(studies::Error::from(fault).into());
     }
-    Ok(Ran { case: job.case, variant: job.variant, trace: tracer.finish() })
+    Ok(FinishedRun { case: job.case, variant: job.variant, trace: tracer.finish() })
 }
 
 /// Fails where the program has been asked to stop.
@@ -197,7 +190,7 @@ fn stop(meter: &Meter) -> Outcome {
 
 /// What made the figures.
 fn versions(gpu: Option<&Gpu>) -> Vec<[String; 2]> {
-    let commit = option_env!("ECHELON_COMMIT").unwrap_or("unknown");
+    let commit = COMMIT.unwrap_or("unknown");
     let drawn = gpu.map_or_else(|| "none".to_owned(), Gpu::description);
     [("made with", PROGRAM), ("commit", commit), ("pictures drawn with", &*drawn)]
         .map(|(name, value)| [name.to_owned(), value.to_owned()])
@@ -206,7 +199,7 @@ fn versions(gpu: Option<&Gpu>) -> Vec<[String; 2]> {
 
 impl Subject {
     /// The scenes that are filmed: case, file name, and the job that runs it as it is written.
-    fn filmed(&self) -> Vec<(Case, &str, &Job)> {
+    fn filmed(&self) -> Vec<(Case, &str, &PlannedRun)> {
         let as_written = |case: Case| {
             // The paper's films are those of its own ε, which is the scenes'.
             let mut of = self.jobs.iter().filter(move |job| job.case == case);

@@ -6,16 +6,17 @@ mod preset;
 mod words;
 
 use crate::Outcome;
-use crate::args::{FilmArgs, PictureArgs};
+use crate::args::{PictureArgs, SceneArgs};
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::load::{load, stem};
-use crate::picture::Studio;
-use crate::playback::{Playback, Source};
+use crate::load::{attach_cameras, load, stem};
+use crate::picture::RenderSetup;
+use crate::playback::Playback;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use crate::replaced::Replaced;
 use board::Board;
+use clap::Args;
 use film::{Film, FilmKind};
 use metrics::MetricsBuilder;
 use output::Place;
@@ -25,11 +26,37 @@ use rendering::{Gpu, Overlays, ReservedSpace};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
+use studies::replay::RecordSource;
 use vocabulary::{FleetInfo, Judging, counted};
+
+#[derive(Debug, Args)]
+pub(crate) struct FilmArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    picture: PictureArgs,
+    /// Frames a second of simulation time
+    #[arg(long)]
+    fps: Option<f64>,
+    /// Film file: .mp4, .m4v or .gif (480x270, 10 frames a second where the scene says no other); without an ending, a
+    /// folder of PNG frames; .webm, .mkv, .mov, .avi, .mpg, .mpeg, .ogv, .ts, .flv and .wmv need ffmpeg. NAME.mp4 if left
+    /// out
+    #[arg(long, short, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Encode with the ffmpeg on PATH instead of the built-in encoder
+    #[arg(long)]
+    ffmpeg: bool,
+    /// Measures, cards and, where the scene has no storyboard, shots for a purpose
+    #[arg(long, value_enum, conflicts_with = "view")]
+    preset: Option<Preset>,
+    /// Begin anew where the same film was interrupted, instead of going on
+    #[arg(long)]
+    fresh: bool,
+}
 
 /// What a film is made of.
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
-pub(crate) struct Job<'a> {
+pub(crate) struct FilmJob<'a> {
     pub(crate) picture: &'a PictureArgs,
     pub(crate) adapter: &'a str,
     /// The film file.
@@ -61,14 +88,14 @@ pub(crate) struct Job<'a> {
 
 /// What the laws of a scene become as its run goes.
 pub(crate) fn captions(scene: &scene::Scene) -> Vec<(f64, String)> {
-    scene.changes.iter().map(|change| (change.at, simulation::caption(&change.then))).collect()
+    scene.changes.iter().map(|change| (change.at, studies::caption(&change.then))).collect()
 }
 
 pub(crate) fn film(args: &FilmArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;
     let name = stem(&args.scene.scene);
     let scene = loaded.scene.clone();
-    let job = Job {
+    let job = FilmJob {
         picture: &args.picture,
         adapter: &args.scene.adapter,
         path: args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.mp4"))),
@@ -89,13 +116,16 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
         captions: captions(&scene),
     };
     shoot(job, |gpu| {
-        loaded.attach_cameras(Some(gpu), &args.scene)?;
-        Ok(Source::Run(Box::new(loaded.simulation)))
+        attach_cameras(&mut loaded, Some(gpu), &args.scene)?;
+        Ok(RecordSource::Run(Box::new(loaded.simulation)))
     })
 }
 
 /// Makes the film of what `source` tells; it may use the adapter that draws.
-pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source, Failure>) -> Outcome {
+pub(crate) fn shoot(
+    mut job: FilmJob<'_>,
+    source: impl FnOnce(&Gpu) -> Result<RecordSource, Failure>,
+) -> Outcome {
     let began = Instant::now();
     let kind = FilmKind::of(&job.path, job.ffmpeg)?;
     if kind == FilmKind::Gif {
@@ -108,7 +138,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
         FilmKind::PngSequence => Place::new_folder(&job.path)?,
         _ => Place::file(&job.path)?,
     };
-    let Job { path, name, fleet, settings, .. } = &job;
+    let FilmJob { path, name, fleet, settings, .. } = &job;
     let rate = job.fps.unwrap_or(settings.fps);
     if !(1.0..=240.0).contains(&rate) {
         return Err(film::Error::FrameRate(rate).into());
@@ -116,9 +146,9 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
     let view = settings.view.as_deref().unwrap_or(job.view);
     let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
     // Whoever names a view wants that one, from beginning to end.
-    let board = Board::new(settings, (job.picture.view.as_deref(), view), job.duration, &names)?;
+    let board = Board::new(settings, job.picture.view.as_deref(), view, job.duration, &names)?;
     let frames = board.frames(rate);
-    let mut studio = Studio::open((job.adapter, job.picture), fleet, view, settings.size)?;
+    let mut studio = RenderSetup::open(job.adapter, job.picture, fleet, view, settings.size)?;
     let told = settings.shots.iter().map(|shot| shot.line.as_str()).chain([job.description.as_str()]);
     studio.check_texts(told);
     let source = source(&studio.gpu)?;
@@ -214,7 +244,7 @@ pub(crate) fn shoot(mut job: Job<'_>, source: impl FnOnce(&Gpu) -> Result<Source
 }
 
 /// A disk that refuses a film, with what it keeps of it.
-fn refused(error: film::Error, job: &Job<'_>, kind: FilmKind, rate: f64) -> Failure {
+fn refused(error: film::Error, job: &FilmJob<'_>, kind: FilmKind, rate: f64) -> Failure {
     let kept = if kind == FilmKind::Mp4 { Film::kept(&job.path, rate) } else { 0 };
     let text = match (kind, kept) {
         (FilmKind::Mp4, 0) => "nothing of the film is kept yet".to_owned(),
@@ -240,14 +270,14 @@ fn lighten(settings: &mut scene::Film) {
 }
 
 /// A film to write, and how many frames of it are there.
-fn begin(job: &Job<'_>, kind: FilmKind, studio: &Studio, rate: f64) -> Result<(Film, u64), Failure> {
+fn begin(job: &FilmJob<'_>, kind: FilmKind, studio: &RenderSetup, rate: f64) -> Result<(Film, u64), Failure> {
     let [width, height] = studio.size;
     if kind != FilmKind::Mp4 {
         return Ok((Film::create(&job.path, kind, width, height, rate)?, 0));
     }
     // The same film is made of the same run, by the same program on the same adapter, with the same words.
     let mut whole = xxhash_rust::xxh3::Xxh3::new();
-    let program = (crate::run::PROGRAM, option_env!("ECHELON_COMMIT"), studio.gpu.description());
+    let program = (studies::PROGRAM, studies::COMMIT, studio.gpu.description());
     whole.update(format!("{program:?}{:?}{:?}{:?}", studio.layout, studio.style, job.picture).as_bytes());
     whole.update(format!("{:?}{:?}{}", job.preset, job.settings, job.run).as_bytes());
     let made_of = format!("{:032x}", whole.digest128());

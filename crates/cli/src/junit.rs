@@ -6,13 +6,13 @@ use crate::print;
 use crate::replaced::Replaced;
 use output::{Place, write_whole};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
-use simulation::verdict::Finding;
 use std::path::Path;
 use std::time::Duration;
+use studies::verdict::JudgedExpectation;
 use vocabulary::readable;
 
 /// One thing that was checked.
-pub(crate) struct Case {
+pub(crate) struct ReportedCheck {
     /// What was checked.
     pub(crate) name: String,
     pub(crate) came: Came,
@@ -32,9 +32,9 @@ pub(crate) enum Came {
     Broken(String),
 }
 
-impl Case {
+impl ReportedCheck {
     /// An expectation of a scene.
-    pub(crate) fn of(finding: &Finding) -> Self {
+    pub(crate) fn of(finding: &JudgedExpectation) -> Self {
         let came = match finding.met {
             Some(true) => Came::Fine,
             Some(false) => Came::Failed(format!("wanted {}, found {}", finding.wanted, finding.found)),
@@ -44,7 +44,7 @@ impl Case {
     }
 
     /// An expectation that nobody came to judge.
-    pub(crate) fn unjudged(finding: &Finding, why: &str) -> Self {
+    pub(crate) fn unjudged(finding: &JudgedExpectation, why: &str) -> Self {
         Self { came: Came::Skipped(why.to_owned()), ..Self::of(finding) }
     }
 }
@@ -75,8 +75,9 @@ pub(crate) fn open(path: Option<&Path>, json: bool) -> Result<Option<Place>, Fai
 pub(crate) fn close(
     path: Option<&Path>,
     name: &str,
-    mut cases: Vec<Case>,
-    (outcome, wall): (Outcome, Duration),
+    mut cases: Vec<ReportedCheck>,
+    outcome: Outcome,
+    wall: Duration,
     quiet: bool,
 ) -> Outcome {
     let Some(path) = path else { return outcome };
@@ -85,7 +86,7 @@ pub(crate) fn close(
     let cut = outcome.as_ref().err().and_then(Failure::text);
     if let Some(text) = cut {
         let came = Came::Broken(text.to_owned());
-        cases.push(Case { name: "the work comes to its end".to_owned(), came, time: None });
+        cases.push(ReportedCheck { name: "the work comes to its end".to_owned(), came, time: None });
     }
     let written = write(path, name, &cases, wall).map(|()| replaced.tell(quiet));
     match outcome {
@@ -99,7 +100,7 @@ pub(crate) fn close(
     }
 }
 
-fn write(path: &Path, name: &str, cases: &[Case], wall: Duration) -> Result<(), Failure> {
+fn write(path: &Path, name: &str, cases: &[ReportedCheck], wall: Duration) -> Result<(), Failure> {
     let name = allowed(name);
     let mut suite = TestSuite::new(name.as_str());
     suite.set_time(wall);
@@ -164,12 +165,12 @@ mod tests {
     fn what_failed_is_told_and_marked_up() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("report.xml");
-        let case = |name: &str, failure: Option<&str>| Case {
+        let case = |name: &str, failure: Option<&str>| ReportedCheck {
             name: name.into(),
             time: None,
             came: failure.map_or(Came::Fine, |text| Came::Failed(text.to_owned())),
         };
-        let open = Case {
+        let open = ReportedCheck {
             name: "open".into(),
             came: Came::Skipped("too short".into()),
             time: Some(Duration::from_millis(2500)),
@@ -199,7 +200,7 @@ mod tests {
     fn what_xml_does_not_allow_is_made_visible() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("report.xml");
-        let broken = Case {
+        let broken = ReportedCheck {
             name: "a\u{fffe}b\u{1b}[31mc".into(),
             came: Came::Broken("\u{ffff}\0 no".into()),
             time: None,

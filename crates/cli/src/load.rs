@@ -1,50 +1,56 @@
-//! From a scene file to a simulation.
+//! From a scene file to a run.
 
 use crate::args::SceneArgs;
-use crate::eyes::{self, Drawn};
+use crate::cameras::{self, DrawingCost};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::recorded;
 use rendering::Gpu;
 use scene::{Override, Scene};
-use simulation::{Setup, Simulation};
 use std::path::Path;
-
-/// A scene and its run, before the first step.
-pub(crate) struct Loaded {
-    pub(crate) scene: Scene,
-    pub(crate) simulation: Simulation,
-}
+use studies::SceneRun;
 
 /// Loads, checks and builds the scene of `args`.
-pub(crate) fn load(args: &SceneArgs) -> Result<Loaded, Failure> {
-    let mut overrides = args.set.clone();
-    if let Some(seed) = args.seed {
-        overrides.push(parse_seed(seed)?);
-    }
-    let (scene, setup) = load_file(&args.scene, &overrides)?;
+pub(crate) fn load(args: &SceneArgs) -> Result<SceneRun, Failure> {
+    let run = load_file(&args.scene, &with_seed(&args.set, args.seed)?)?;
     interrupt::watch();
-    Ok(Loaded { scene, simulation: Simulation::new(setup) })
-}
-
-impl Loaded {
-    /// Gives the robots' cameras someone to draw for them, where they take pictures: `gpu`, or the adapter of `args`.
-    pub(crate) fn attach_cameras(&mut self, gpu: Option<&Gpu>, args: &SceneArgs) -> Result<Drawn, Failure> {
-        eyes::open(&mut self.simulation, gpu, &args.adapter, None)
-    }
+    Ok(run)
 }
 
 /// Loads, checks and builds the scene at `path`.
-pub(crate) fn load_file(path: &Path, overrides: &[Override]) -> Result<(Scene, Setup), Failure> {
-    recorded::refuse(path)?;
-    let loaded = Scene::load(path, overrides).map_err(|errors| Failure::Usage(errors.to_string()))?;
-    let setup = simulation::build(&loaded.scene)
-        .map_err(|error| Failure::Usage(format!("{}: {error}", path.display())))?;
-    Ok((loaded.scene, setup))
+pub(crate) fn load_file(path: &Path, overrides: &[Override]) -> Result<SceneRun, Failure> {
+    build(read(path, overrides)?, &path.display())
 }
 
-fn parse_seed(seed: u64) -> Result<Override, Failure> {
-    format!("seed={seed}").parse().map_err(|e: scene::OverrideError| Failure::Usage(e.to_string()))
+/// Loads and checks the scene at `path`.
+pub(crate) fn read(path: &Path, overrides: &[Override]) -> Result<Scene, Failure> {
+    recorded::refuse(path)?;
+    let loaded = Scene::load(path, overrides).map_err(|errors| Failure::Usage(errors.to_string()))?;
+    Ok(loaded.scene)
+}
+
+/// Builds a scene; a fault names it by `name`.
+pub(crate) fn build(scene: Scene, name: &dyn std::fmt::Display) -> Result<SceneRun, Failure> {
+    SceneRun::new(scene).map_err(|error| Failure::Usage(format!("{name}: {error}")))
+}
+
+/// Gives the robots' cameras what draws for them, where they take pictures: `gpu`, or the adapter of `args`.
+pub(crate) fn attach_cameras(
+    run: &mut SceneRun,
+    gpu: Option<&Gpu>,
+    args: &SceneArgs,
+) -> Result<DrawingCost, Failure> {
+    cameras::attach(run, gpu, &args.adapter, None)
+}
+
+/// The overrides of a command line, with its seed as one of them.
+pub(crate) fn with_seed(set: &[Override], seed: Option<u64>) -> Result<Vec<Override>, Failure> {
+    let mut overrides = set.to_vec();
+    if let Some(seed) = seed {
+        let seed = format!("seed={seed}").parse();
+        overrides.push(seed.map_err(|e: scene::OverrideError| Failure::Usage(e.to_string()))?);
+    }
+    Ok(overrides)
 }
 
 /// The scene's file name without its ending.

@@ -3,6 +3,7 @@
 mod accuracy;
 mod args;
 mod budget;
+mod cameras;
 mod capture;
 mod certify;
 mod check;
@@ -10,7 +11,6 @@ mod compare;
 mod dataset;
 mod diff;
 mod doctor;
-mod eyes;
 mod failure;
 mod figures;
 mod film;
@@ -21,6 +21,7 @@ mod load;
 mod picture;
 mod playback;
 mod print;
+mod program;
 mod progress;
 mod quiet;
 mod recorded;
@@ -34,9 +35,9 @@ mod times;
 mod tune;
 mod welcome;
 
-use args::{Command, Program};
 use clap::Parser;
 use failure::Failure;
+use program::{Program, Subcommands};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -44,19 +45,19 @@ fn main() -> ExitCode {
     if matches!(
         program.command,
         Some(
-            Command::Run(_)
-                | Command::Replay(_)
-                | Command::Capture(_)
-                | Command::Lab(_)
-                | Command::Film(_)
-                | Command::Tune(_)
-                | Command::Budget(_)
-                | Command::Certify(_)
-                | Command::Stills(_)
-                | Command::Dataset(_)
-                | Command::Figures(_)
-                | Command::Accuracy(_)
-                | Command::Doctor(_)
+            Subcommands::Run(_)
+                | Subcommands::Replay(_)
+                | Subcommands::Capture(_)
+                | Subcommands::Lab(_)
+                | Subcommands::Film(_)
+                | Subcommands::Tune(_)
+                | Subcommands::Budget(_)
+                | Subcommands::Certify(_)
+                | Subcommands::Stills(_)
+                | Subcommands::Dataset(_)
+                | Subcommands::Figures(_)
+                | Subcommands::Accuracy(_)
+                | Subcommands::Doctor(_)
         )
     ) {
         quiet::restart_if_needed();
@@ -66,28 +67,28 @@ fn main() -> ExitCode {
             welcome::welcome();
             Ok(())
         }
-        Some(Command::Run(args)) => run::run(&args),
-        Some(Command::Replay(args)) => replay::replay(&args),
-        Some(Command::Diff(args)) => diff::diff(&args),
-        Some(Command::Lab(args)) => lab::lab(args),
-        Some(Command::Capture(args)) => capture::capture(&args),
-        Some(Command::Film(args)) => film::film(&args),
-        Some(Command::Tune(args)) => tune::tune(&args),
-        Some(Command::Budget(args)) => budget::budget(&args),
-        Some(Command::Stills(args)) => stills::stills(&args),
-        Some(Command::Compare(args)) => compare::compare(&args),
-        Some(Command::Certify(args)) => certify::certify(&args),
-        Some(Command::Dataset(args)) => dataset::dataset(&args),
-        Some(Command::Figures(args)) => figures::figures(&args),
-        Some(Command::Accuracy(args)) => accuracy::accuracy(&args),
-        Some(Command::Check(args)) => check::check(&args),
-        Some(Command::Scenes(args)) => scenes::scenes(&args),
-        Some(Command::Schema) => {
+        Some(Subcommands::Run(args)) => run::run(&args),
+        Some(Subcommands::Replay(args)) => replay::replay(&args),
+        Some(Subcommands::Diff(args)) => diff::diff(&args),
+        Some(Subcommands::Lab(args)) => lab::lab(args),
+        Some(Subcommands::Capture(args)) => capture::capture(&args),
+        Some(Subcommands::Film(args)) => film::film(&args),
+        Some(Subcommands::Tune(args)) => tune::tune(&args),
+        Some(Subcommands::Budget(args)) => budget::budget(&args),
+        Some(Subcommands::Stills(args)) => stills::stills(&args),
+        Some(Subcommands::Compare(args)) => compare::compare(&args),
+        Some(Subcommands::Certify(args)) => certify::certify(&args),
+        Some(Subcommands::Dataset(args)) => dataset::dataset(&args),
+        Some(Subcommands::Figures(args)) => figures::figures(&args),
+        Some(Subcommands::Accuracy(args)) => accuracy::accuracy(&args),
+        Some(Subcommands::Check(args)) => check::check(&args),
+        Some(Subcommands::Scenes(args)) => scenes::scenes(&args),
+        Some(Subcommands::Schema) => {
             print::schema();
             Ok(())
         }
-        Some(Command::Doctor(args)) => doctor::doctor(&args),
-        Some(Command::Completions { shell }) => {
+        Some(Subcommands::Doctor(args)) => doctor::doctor(&args),
+        Some(Subcommands::Completions { shell }) => {
             print::completions(shell);
             Ok(())
         }

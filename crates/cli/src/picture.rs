@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use vocabulary::FleetInfo;
 
 /// Everything that draws.
-pub(crate) struct Studio {
+pub(crate) struct RenderSetup {
     pub(crate) gpu: Gpu,
     pub(crate) renderer: Renderer,
     pub(crate) layout: ViewLayout,
@@ -18,10 +18,11 @@ pub(crate) struct Studio {
     lacks: BTreeSet<char>,
 }
 
-impl Studio {
+impl RenderSetup {
     /// Checks the words first and opens the adapter last, since that takes longest.
     pub(crate) fn open(
-        (adapter, args): (&str, &PictureArgs),
+        adapter: &str,
+        args: &PictureArgs,
         fleet: &FleetInfo,
         view: &str,
         size: [u32; 2],

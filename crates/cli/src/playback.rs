@@ -3,26 +3,16 @@
 use crate::failure::Failure;
 use crate::interrupt;
 use metrics::{Metrics, MetricsBuilder};
-use recording::log::Moments;
 use rendering::Trail;
-use simulation::Simulation;
-use vocabulary::Judging;
-use vocabulary::{FleetInfo, StepRecord};
+use studies::replay::RecordSource;
+use vocabulary::{FleetInfo, Judging, StepRecord};
 
 /// What nothing is judged by.
 const NOTHING: Judging = Judging { settling_band: [0.0; 2], settled_after: 0.0 };
 
-/// Where moments come from.
-pub(crate) enum Source {
-    /// They are made.
-    Run(Box<Simulation>),
-    /// They were recorded.
-    Log(Box<Moments>),
-}
-
 /// A source that is asked for growing times.
 pub(crate) struct Playback {
-    source: Source,
+    source: RecordSource,
     fault: Option<Failure>,
     trail: Trail,
     before: StepRecord,
@@ -34,7 +24,7 @@ pub(crate) struct Playback {
 
 impl Playback {
     /// At time 0 of a run by `fleet`.
-    pub(crate) fn new(fleet: &FleetInfo, source: Source) -> Self {
+    pub(crate) fn new(fleet: &FleetInfo, source: RecordSource) -> Self {
         let (before, after) = (StepRecord::default(), StepRecord::default());
         let mut playback = Self {
             source,
@@ -65,23 +55,13 @@ impl Playback {
 
     /// Takes the next moment; whether there was one.
     fn step(&mut self) -> bool {
-        match &mut self.source {
-            Source::Run(simulation) => {
-                if let Some(record) = simulation.next_record() {
-                    self.after.clone_from(record);
-                } else {
-                    self.fault = simulation.fault().map(Failure::from);
-                    return false;
-                }
+        match self.source.next_into(&mut self.after) {
+            Ok(true) => {}
+            Ok(false) => return false,
+            Err(error) => {
+                self.fault = Some(error.into());
+                return false;
             }
-            Source::Log(records) => match records.next() {
-                Some(Ok(record)) => self.after = record,
-                Some(Err(error)) => {
-                    self.fault = Some(error.into());
-                    return false;
-                }
-                None => return false,
-            },
         }
         self.trail.push(&self.after);
         if let Some(metrics) = &mut self.metrics {

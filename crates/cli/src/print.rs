@@ -1,6 +1,6 @@
 //! Printing, and the subcommands that only print.
 
-use crate::args::Program;
+use crate::program::Program;
 use clap::CommandFactory;
 use clap_complete::Shell;
 use std::borrow::Cow;

@@ -7,9 +7,9 @@ use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 /// Progress of one job.
-pub(crate) struct Progress(Shown);
+pub(crate) struct Progress(ProgressDisplay);
 
-enum Shown {
+enum ProgressDisplay {
     Nothing,
     Bar(ProgressBar),
     Lines { steps: u64, told: Cell<Instant> },
@@ -22,26 +22,26 @@ impl Progress {
     /// Begins a job of `steps` steps; silent where `quiet`.
     pub(crate) fn begin(what: &str, steps: u64, quiet: bool) -> Self {
         if quiet {
-            return Self(Shown::Nothing);
+            return Self(ProgressDisplay::Nothing);
         }
         if !std::io::stderr().is_terminal() {
             note(&format!("{what} …"));
-            return Self(Shown::Lines { steps, told: Cell::new(Instant::now()) });
+            return Self(ProgressDisplay::Lines { steps, told: Cell::new(Instant::now()) });
         }
         let bar = ProgressBar::new(steps).with_message(harmless(what).into_owned());
         if let Ok(style) = ProgressStyle::with_template("{msg} [{bar:30}] {percent:>3} %  {eta} left") {
             bar.set_style(style.progress_chars("━╸─"));
         }
         bar.enable_steady_tick(Duration::from_millis(200));
-        Self(Shown::Bar(bar))
+        Self(ProgressDisplay::Bar(bar))
     }
 
     /// Where the job is.
     pub(crate) fn at(&self, step: u64) {
         match &self.0 {
-            Shown::Nothing => {}
-            Shown::Bar(bar) => bar.set_position(step),
-            Shown::Lines { steps, told } => {
+            ProgressDisplay::Nothing => {}
+            ProgressDisplay::Bar(bar) => bar.set_position(step),
+            ProgressDisplay::Lines { steps, told } => {
                 if told.get().elapsed() >= PAUSE {
                     told.set(Instant::now());
                     note(&format!("{step} of {steps}"));
@@ -58,7 +58,7 @@ impl Progress {
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Shown::Bar(bar) = &self.0 {
+        if let ProgressDisplay::Bar(bar) = &self.0 {
             bar.finish_and_clear();
         }
     }

@@ -4,14 +4,13 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::print::note;
 use crate::progress::Progress;
-use crate::run::STRIDE;
 use crate::times::shown;
-use metrics::Digest;
 use recording::Manifest;
 use recording::log::{self, Log};
 use scene::Scene;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
+use studies::replay::{RunDigest, digest_of};
 use vocabulary::counted;
 
 /// A recorded run.
@@ -122,28 +121,27 @@ impl Recorded {
         Ok(loaded.scene)
     }
 
-    /// Samples and digest of the moments in its log, where it has one.
-    pub(crate) fn logged(&self, quiet: bool) -> Result<Option<(u64, String)>, Failure> {
+    /// Samples and digest of the records in its log, where it has one.
+    pub(crate) fn logged(&self, quiet: bool) -> Result<Option<RunDigest>, Failure> {
         let Some(log) = self.records() else { return Ok(None) };
         let steps = self.manifest.samples;
         let progress = Progress::begin(&format!("Reading {}", log.path().display()), steps, quiet);
-        let (mut digest, mut samples) = (Digest::default(), 0);
-        for record in log.records() {
-            digest.push(&record?);
-            samples += 1;
-            if samples % STRIDE == 0 {
-                progress.at(samples);
-                if interrupt::asked() {
-                    return Err(Failure::Interrupted(format!("after {}", counted(samples, "sample"))));
-                }
-            }
-        }
-        if samples == 0 {
+        let read = digest_of(log, |samples| {
+            progress.at(samples);
+            !interrupt::asked()
+        })?
+        .map_err(interrupted)?;
+        if read.samples == 0 {
             let text = format!("{} holds no whole sample", log.path().display());
             return Err(Failure::Usage(text));
         }
-        Ok(Some((samples, digest.text())))
+        Ok(Some(read))
     }
+}
+
+/// Work on records that ended after so many.
+pub(crate) fn interrupted(samples: u64) -> Failure {
+    Failure::Interrupted(format!("after {}", counted(samples, "sample")))
 }
 
 /// What a recorded run is, for who named something else.

@@ -3,20 +3,17 @@
 use crate::Outcome;
 use crate::args::PictureArgs;
 use crate::failure::Failure;
-use crate::playback::Source;
+use crate::load::{build, stem};
 use crate::print::{json, note, say};
 use crate::progress::Progress;
-use crate::recorded::Recorded;
-use crate::run::{PROGRAM, STRIDE};
-use crate::{capture, eyes, film, interrupt};
+use crate::recorded::{Recorded, interrupted};
+use crate::{cameras, capture, film, interrupt};
 use clap::Args;
-use metrics::Digest;
-use recording::log::Log;
 use recording::{Manifest, Status};
-use scene::Scene;
 use serde_json::json;
-use simulation::Simulation;
 use std::path::PathBuf;
+use studies::PROGRAM;
+use studies::replay::{RecordSource, Replay, RunDigest, run_again};
 use vocabulary::counted;
 
 #[derive(Debug, Args)]
@@ -55,18 +52,10 @@ pub(crate) struct ReplayArgs {
     quiet: bool,
 }
 
-/// A run as it was recorded and as it came out again.
-struct Replay {
+/// A replay, and what is told about it.
+struct ReplayReport {
     manifest: Manifest,
-    /// Of the run as it was recorded.
-    recorded: String,
-    /// Of the moments in its log, where there is one.
-    log: Option<String>,
-    /// Of the run as it is now.
-    digest: String,
-    samples: u64,
-    /// When the moments of the log and those of the run first differ, in anything at all, s.
-    apart: Option<f64>,
+    replay: Replay,
     /// Whether cameras on robots took pictures.
     sees: bool,
 }
@@ -103,9 +92,9 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
         // A storyboard goes with the whole run.
         settings.shots.clear();
     }
-    let source = || Ok(Source::Log(Box::new(log.records())));
+    let source = || Ok(RecordSource::Log(Box::new(log.records())));
     if let Some(path) = &args.film {
-        let job = film::Job {
+        let job = film::FilmJob {
             picture: &args.picture,
             adapter: &args.adapter,
             path: path.clone(),
@@ -127,7 +116,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
         };
         return film::shoot(job, |_| source());
     }
-    let job = capture::Job {
+    let job = capture::CaptureJob {
         picture: &args.picture,
         adapter: &args.adapter,
         out: &args.out,
@@ -148,21 +137,18 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
 fn name(run: &std::path::Path) -> String {
     let whole = std::fs::canonicalize(run).unwrap_or_else(|_| run.to_owned());
     let folder = if run.ends_with(recording::log::FILE) { whole.parent().unwrap_or(&whole) } else { &whole };
-    crate::load::stem(folder)
+    stem(folder)
 }
 
 /// Runs the scene again.
 fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
     let quiet = args.quiet || args.json;
     run.needs_the_start("a replay")?;
-    let mut manifest = run.manifest.clone();
+    let manifest = run.manifest.clone();
     let logged = run.logged(quiet)?;
     let recorded = match (&manifest.digest, &logged) {
-        (Some(digest), _) => digest.clone(),
-        (None, Some((samples, digest))) => {
-            manifest.samples = *samples;
-            digest.clone()
-        }
+        (Some(digest), _) => RunDigest { samples: manifest.samples, digest: digest.clone() },
+        (None, Some(logged)) => logged.clone(),
         (None, None) => {
             return Err(Failure::Usage(format!(
                 "{} has no digest and no log to compare with: the run is under way, or was cut off by the machine",
@@ -170,93 +156,54 @@ fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
             )));
         }
     };
-    let scene: Scene = run.scene()?;
-    let setup = simulation::build(&scene)
-        .map_err(|error| Failure::Usage(format!("{}: {error}", run.scene.0.display())))?;
-    let mut simulation = Simulation::new(setup);
-    eyes::open(&mut simulation, None, &args.adapter, None)?;
-    let progress = Progress::begin(&format!("Replaying {}", scene.title), simulation.len(), quiet);
+    let mut again = build(run.scene()?, &run.scene.0.display())?;
+    cameras::attach(&mut again, None, &args.adapter, None)?;
+    let sees = again.simulation.needs_cameras();
+    let title = &again.scene.title;
+    let progress = Progress::begin(&format!("Replaying {title}"), again.simulation.len(), quiet);
     let cut = matches!(manifest.status, Status::Interrupted | Status::Running);
-    let most = if cut { manifest.samples } else { u64::MAX };
-    let (samples, digest, apart) = run_again(&mut simulation, most, run.records(), &progress)?;
+    let most = if cut { recorded.samples } else { u64::MAX };
+    let (now, apart) = run_again(&mut again, most, run.records(), |samples| {
+        progress.at(samples);
+        !interrupt::asked()
+    })?
+    .map_err(interrupted)?;
     progress.end();
-    let sees = simulation.needs_cameras();
-    let log = logged.map(|(_, digest)| digest);
-    let replay = Replay { manifest, recorded, log, digest, samples, apart, sees };
+    let replay = Replay { recorded, log: logged.map(|logged| logged.digest), now, apart };
+    let report = ReplayReport { manifest, replay, sees };
     if args.json {
-        replay.as_json();
+        report.as_json();
     } else if !args.quiet {
-        replay.as_text();
-    } else if !replay.same() {
-        note(&replay.verdict());
+        report.as_text();
+    } else if !report.replay.same() {
+        note(&report.verdict());
     }
-    if replay.same() { Ok(()) } else { Err(Failure::Expectation) }
+    if report.replay.same() { Ok(()) } else { Err(Failure::Expectation) }
 }
 
-/// Runs `most` samples at most; how many there were, their digest, and when they first differ from those of `log`, s.
-fn run_again(
-    simulation: &mut Simulation,
-    most: u64,
-    log: Option<&Log>,
-    progress: &Progress,
-) -> Result<(u64, String, Option<f64>), Failure> {
-    let (mut digest, mut samples, mut apart) = (Digest::default(), 0, None);
-    let mut logged = log.map(Log::records);
-    while samples < most {
-        let Some(record) = simulation.next_record() else { break };
-        digest.push(record);
-        // The digest is that of motions and commands; this is everything.
-        if let (None, Some(logged)) = (apart, &mut logged)
-            && let Some(then) = logged.next().transpose()?
-            && then != *record
-        {
-            apart = Some(record.snapshot.time);
-        }
-        samples += 1;
-        if samples % STRIDE == 0 {
-            progress.at(samples);
-            if interrupt::asked() {
-                return Err(Failure::Interrupted(format!("after {}", counted(samples, "sample"))));
-            }
-        }
-    }
-    match simulation.fault() {
-        Some(fault) => Err(fault.into()),
-        None => Ok((samples, digest.text(), apart)),
-    }
-}
-
-impl Replay {
-    fn same(&self) -> bool {
-        self.digest == self.recorded && self.samples == self.manifest.samples && self.log_agrees()
-    }
-
-    fn log_agrees(&self) -> bool {
-        self.apart.is_none() && self.log.as_ref().is_none_or(|log| *log == self.recorded)
-    }
-
+impl ReplayReport {
     /// What made the run, if that is not this program.
     fn other_program(&self) -> Option<String> {
         let commit = |commit: Option<&str>| commit.map_or_else(String::new, |commit| format!(" ({commit})"));
         let recorded = format!("{}{}", self.manifest.program, commit(self.manifest.commit.as_deref()));
-        let now = format!("{PROGRAM}{}", commit(option_env!("ECHELON_COMMIT")));
+        let now = format!("{PROGRAM}{}", commit(studies::COMMIT));
         (recorded != now).then(|| format!("recorded by {recorded}; this is {now}"))
     }
 
     fn verdict(&self) -> String {
-        let Manifest { samples, .. } = self.manifest;
-        if self.same() {
+        let Replay { recorded, now, apart, .. } = &self.replay;
+        if self.replay.same() {
             return "same: bit for bit".to_owned();
         }
-        if self.samples != samples {
+        if now.samples != recorded.samples {
             return format!(
                 "DIFFERENT: it had {} when it was recorded, and has {} now",
-                counted(samples, "sample"),
-                self.samples
+                counted(recorded.samples, "sample"),
+                now.samples
             );
         }
-        if self.digest == self.recorded && !self.log_agrees() {
-            let when = self.apart.map_or_else(String::new, |time| format!(", from {time:.2} s on"));
+        if now.digest == recorded.digest && !self.replay.log_agrees() {
+            let when = apart.map_or_else(String::new, |time| format!(", from {time:.2} s on"));
             return format!("DIFFERENT: the run comes out the same, but its log holds another{when}");
         }
         let why = if self.other_program().is_some() {
@@ -270,7 +217,9 @@ impl Replay {
     }
 
     fn as_text(&self) {
-        let Manifest { title, status, period, samples, .. } = &self.manifest;
+        let Manifest { title, status, period, .. } = &self.manifest;
+        let Replay { recorded, now, .. } = &self.replay;
+        let samples = recorded.samples;
         let ended = match status {
             Status::Interrupted => ", interrupted",
             Status::Stopped => ", stopped where bodies touched",
@@ -282,26 +231,27 @@ impl Replay {
         if let Some(other) = self.other_program() {
             say(&other);
         }
-        say(&format!("recorded {}\nnow      {}\n{}", self.recorded, self.digest, self.verdict()));
+        say(&format!("recorded {}\nnow      {}\n{}", recorded.digest, now.digest, self.verdict()));
     }
 
     fn as_json(&self) {
+        let Replay { recorded, log, now, .. } = &self.replay;
         json(&json!({
-            "same": self.same(),
+            "same": self.replay.same(),
             "title": self.manifest.title,
             "status": self.manifest.status,
             "recorded": {
-                "digest": self.recorded,
-                "log_digest": self.log,
-                "samples": self.manifest.samples,
+                "digest": recorded.digest,
+                "log_digest": log,
+                "samples": recorded.samples,
                 "program": self.manifest.program,
                 "commit": self.manifest.commit,
             },
             "now": {
-                "digest": self.digest,
-                "samples": self.samples,
+                "digest": now.digest,
+                "samples": now.samples,
                 "program": PROGRAM,
-                "commit": option_env!("ECHELON_COMMIT"),
+                "commit": studies::COMMIT,
             },
         }));
     }

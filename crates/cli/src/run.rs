@@ -1,30 +1,50 @@
 //! `echelon run`: simulate, record, judge.
 
 use crate::Outcome;
-use crate::args::RunArgs;
-use crate::eyes;
+use crate::args::SceneArgs;
+use crate::cameras;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::junit::{self, Case};
-use crate::load::{Loaded, load, stem};
+use crate::junit::{self, ReportedCheck};
+use crate::load::{load, stem};
 use crate::print::note;
 use crate::progress::Progress;
 use crate::summary::{self, Summary};
-use metrics::{CertificateMetrics, Digest, Metrics, MetricsBuilder};
+use clap::Args;
 use output::Place;
 use recording::log::{self, Log, Roll};
-use recording::{Finished, Recorder, RunOptions, Status};
-use simulation::Fault;
-use simulation::certify::Examiner;
-use simulation::verdict::{Finding, verdict};
+use recording::{Recorder, RunOptions, Status};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use studies::run::JudgedRun;
+use studies::verdict::verdict;
+use studies::{Error, run_options};
 
-/// Name and version, as manifests and pictures carry it.
-pub(crate) const PROGRAM: &str = concat!("echelon ", env!("CARGO_PKG_VERSION"));
-
-/// Steps between two looks at the bar and at Ctrl-C.
-pub(crate) const STRIDE: u64 = 16;
+#[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
+pub(crate) struct RunArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Folder for the run; runs/NAME-001, -002, … if left out
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Also write the tables as CSV
+    #[arg(long)]
+    csv: bool,
+    /// Leave out log.mcap, which other tools open and replays are drawn from
+    #[arg(long)]
+    no_log: bool,
+    /// Replace an earlier run in the folder
+    #[arg(long)]
+    force: bool,
+    /// Also write what became of the scene's expectations as JUnit XML, which CI systems read; `-` is standard
+    /// output, and what is for people goes to standard error
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Record nothing, only simulate and judge
+    #[arg(long, conflicts_with_all = ["out", "csv", "force", "no_log"])]
+    no_record: bool,
+}
 
 pub(crate) fn run(args: &RunArgs) -> Outcome {
     let began = Instant::now();
@@ -35,74 +55,50 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
         args.junit.as_deref(),
         &stem(&args.scene.scene),
         cases,
-        (outcome, began.elapsed()),
+        outcome,
+        began.elapsed(),
         args.scene.quiet,
     )
 }
 
 /// Runs the scene; `cases` are what became of its expectations.
-fn judge(args: &RunArgs, cases: &mut Vec<Case>) -> Outcome {
-    let mut loaded = load(&args.scene)?;
-    for late in loaded.scene.late().iter().filter(|_| !args.scene.quiet && !args.scene.json) {
+fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
+    let mut run = load(&args.scene)?;
+    for late in run.scene.late().iter().filter(|_| !args.scene.quiet && !args.scene.json) {
         note(&format!("note: {late}"));
     }
     let roll = Roll::default();
     let logs = !args.no_record && !args.no_log;
-    let drawn = eyes::open(&mut loaded.simulation, None, &args.scene.adapter, logs.then_some(&roll))?;
-    let Loaded { scene, mut simulation } = loaded;
+    let drawn = cameras::attach(&mut run, None, &args.scene.adapter, logs.then_some(&roll))?;
+    let scene = run.scene.clone();
     let folder = if args.no_record { None } else { Some(folder(args)?) };
-    let mut sink = match &folder {
-        Some(folder) => Sink::record(folder, args, &scene, &simulation, roll)?,
-        None => Sink::Judge(Box::new((
-            MetricsBuilder::new(simulation.fleet(), scene.judging()),
-            Digest::default(),
-        ))),
-    };
-    let steps = simulation.len();
-    let what = format!("Simulating {}, {} s", stem(&args.scene.scene), scene.time.duration);
-    let progress = Progress::begin(&what, steps, args.scene.quiet || args.scene.json);
-    let began = Instant::now();
-    let mut step = 0;
-    let mut examiner = Examiner::new(&scene, &simulation);
-    while let Some(record) = simulation.next_record() {
-        if let Err(error) = sink.push(record) {
-            sink.abandon();
-            return Err(Failure::from(error).but(&folder.as_deref().map_or_else(String::new, kept)));
-        }
-        examiner.push(&simulation);
-        step += 1;
-        if step % STRIDE == 0 {
-            progress.at(step);
-            if interrupt::asked() {
-                break;
-            }
-        }
-    }
-    let broken = match simulation.fault() {
-        Some(Fault::NotFinite(what)) => Some(Finding::not_finite(what)),
-        Some(fault @ Fault::CameraRenderer(_)) => {
-            sink.abandon();
-            return Err(fault.into());
-        }
+    let options =
+        || RunOptions { csv: args.csv, no_log: args.no_log, roll, force: args.force, ..run_options(&scene) };
+    let recorder = match &folder {
+        Some(folder) => Some(Recorder::create(folder, run.simulation.fleet(), options())?),
         None => None,
     };
+    let what = format!("Simulating {}, {} s", stem(&args.scene.scene), scene.time.duration);
+    let progress = Progress::begin(&what, run.simulation.len(), args.scene.quiet || args.scene.json);
+    let began = Instant::now();
+    let judged = studies::run::run(run, recorder, |step| {
+        progress.at(step);
+        !interrupt::asked()
+    });
     let wall = began.elapsed().as_secs_f64();
+    let JudgedRun { status, steps, metrics, digest, findings, written } =
+        judged.map_err(|error| match error {
+            Error::Recording(error) => {
+                Failure::from(error).but(&folder.as_deref().map_or_else(String::new, kept))
+            }
+            other => other.into(),
+        })?;
     progress.end();
-    let status = match step == steps {
-        true => Status::Complete,
-        false if simulation.stopped() || broken.is_some() => Status::Stopped,
-        false => Status::Interrupted,
-    };
-    let certificates = examiner.finish(&simulation);
-    let certificates = certificates.iter().map(|c| c.metrics(simulation.fleet())).collect();
-    let findings: Vec<Finding> = match status {
-        Status::Interrupted => vec![],
-        _ => verdict(&scene, &sink.metrics(), status == Status::Complete).into_iter().chain(broken).collect(),
-    };
-    let (metrics, digest, written) = sink.finish(status, certificates, &findings);
     if status == Status::Interrupted {
         let why = format!("the run was interrupted at {:.2} s", metrics.duration);
-        cases.extend(verdict(&scene, &metrics, false).iter().map(|finding| Case::unjudged(finding, &why)));
+        cases.extend(
+            verdict(&scene, &metrics, false).iter().map(|finding| ReportedCheck::unjudged(finding, &why)),
+        );
         written?;
         let place = folder.map_or_else(String::new, |f| format!(", recorded in {}", f.display()));
         return Err(Failure::Interrupted(format!(
@@ -110,18 +106,10 @@ fn judge(args: &RunArgs, cases: &mut Vec<Case>) -> Outcome {
             metrics.duration, scene.time.duration
         )));
     }
-    cases.extend(findings.iter().map(Case::of));
-    let met = !findings.iter().any(Finding::failed);
-    let summary = Summary {
-        scene: &scene,
-        metrics: &metrics,
-        findings: &findings,
-        digest,
-        folder,
-        wall,
-        drawn,
-        steps: step,
-    };
+    cases.extend(findings.iter().map(ReportedCheck::of));
+    let summary =
+        Summary { scene: &scene, metrics: &metrics, findings: &findings, digest, folder, wall, drawn, steps };
+    let met = summary.met();
     if args.scene.json {
         summary::as_json(&summary);
     } else if !args.scene.quiet {
@@ -149,78 +137,6 @@ fn kept(folder: &Path) -> String {
              interrupted",
             (samples - 1) as f64 * period
         ),
-    }
-}
-
-/// Where moments go.
-enum Sink {
-    Record(Box<Recorder>),
-    Judge(Box<(MetricsBuilder, Digest)>),
-}
-
-impl Sink {
-    fn record(
-        folder: &Path,
-        args: &RunArgs,
-        scene: &scene::Scene,
-        simulation: &simulation::Simulation,
-        roll: Roll,
-    ) -> Result<Self, Failure> {
-        let options = RunOptions {
-            csv: args.csv,
-            no_log: args.no_log,
-            roll,
-            force: args.force,
-            scene: scene.to_toml(),
-            program: PROGRAM.to_owned(),
-            commit: option_env!("ECHELON_COMMIT").map(str::to_owned),
-            seed: scene.seed,
-            period: scene.time.period,
-            judging: scene.judging(),
-        };
-        Ok(Self::Record(Box::new(Recorder::create(folder, simulation.fleet(), options)?)))
-    }
-
-    fn push(&mut self, record: &vocabulary::StepRecord) -> Result<(), recording::Error> {
-        match self {
-            Self::Record(recorder) => recorder.push(record),
-            Self::Judge(judge) => {
-                judge.0.push(record);
-                judge.1.push(record);
-                Ok(())
-            }
-        }
-    }
-
-    fn abandon(self) {
-        if let Self::Record(recorder) = self {
-            recorder.abandon();
-        }
-    }
-
-    fn metrics(&self) -> Metrics {
-        match self {
-            Self::Record(recorder) => recorder.metrics(),
-            Self::Judge(judge) => judge.0.finish(),
-        }
-    }
-
-    /// Metrics, digest, and whether what was to be written is.
-    fn finish(
-        self,
-        status: Status,
-        certificates: Vec<CertificateMetrics>,
-        findings: &[Finding],
-    ) -> (Metrics, String, Result<(), recording::Error>) {
-        match self {
-            Self::Record(mut recorder) => {
-                recorder.certify(certificates);
-                recorder.judge(findings.iter().map(Finding::metrics).collect());
-                let Finished { metrics, digest, written } = recorder.conclude(status);
-                (metrics, digest, written.map(drop))
-            }
-            Self::Judge(judge) => (Metrics { certificates, ..judge.0.finish() }, judge.1.text(), Ok(())),
-        }
     }
 }
 

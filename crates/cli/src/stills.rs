@@ -6,9 +6,9 @@ use crate::Outcome;
 use crate::args::{PictureArgs, SceneArgs};
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::load::{load, stem};
-use crate::picture::Studio;
-use crate::playback::{Playback, Source};
+use crate::load::{attach_cameras, load, stem};
+use crate::picture::RenderSetup;
+use crate::playback::Playback;
 use crate::print::{json, say};
 use crate::progress::Progress;
 use crate::replaced::Replaced;
@@ -17,6 +17,7 @@ use output::Place;
 use rendering::{Style, ViewLayout};
 use serde_json::json;
 use std::path::{Path, PathBuf};
+use studies::replay::RecordSource;
 use vocabulary::{Picture, StepRecord};
 
 #[derive(Debug, Args)]
@@ -51,14 +52,14 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     let tile = args.picture.size.unwrap_or(TILE);
     let large = args.picture.size.unwrap_or(STROBE);
     let view = loaded.scene.views.default.clone();
-    let mut small = Studio::open((&args.scene.adapter, &args.picture), &fleet, &view, tile)?;
-    loaded.attach_cameras(Some(&small.gpu), &args.scene)?;
+    let mut small = RenderSetup::open(&args.scene.adapter, &args.picture, &fleet, &view, tile)?;
+    attach_cameras(&mut loaded, Some(&small.gpu), &args.scene)?;
     let duration = loaded.scene.time.duration;
 
     // Both are drawn from the same moments.
     let steps = u64::from(2 * args.count);
     let progress = Progress::begin(&format!("Drawing stills of {name}"), steps, quiet);
-    let mut playback = Playback::new(&fleet, Source::Run(Box::new(loaded.simulation)));
+    let mut playback = Playback::new(&fleet, RecordSource::Run(Box::new(loaded.simulation)));
     let (mut records, mut tiles): (Vec<StepRecord>, Vec<Picture>) = (Vec::new(), Vec::new());
     for k in 0..args.count {
         let record = playback.at(duration * f64::from(k) / f64::from(args.count - 1));
@@ -99,7 +100,7 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     progress.end();
     let adapter = small.gpu.description();
     let texts =
-        [("Title", fleet.title.as_str()), ("Software", crate::run::PROGRAM), ("Adapter", adapter.as_str())];
+        [("Title", fleet.title.as_str()), ("Software", studies::PROGRAM), ("Adapter", adapter.as_str())];
     let (mut files, mut replaced) = (Vec::<(PathBuf, [u32; 2])>::new(), Replaced::default());
     for (kind, picture) in [("sheet", sheet), ("strobe", strobe)] {
         let path = args.out.join(format!("{name}-{kind}.png"));

@@ -1,26 +1,33 @@
 //! What a run showed, for people and for machines.
 
-use crate::eyes::Drawn;
+use crate::cameras::DrawingCost;
 use crate::print::{json, note, say};
 use metrics::Metrics;
 use scene::Scene;
 use serde_json::json;
-use simulation::verdict::Finding;
 use std::path::PathBuf;
+use studies::verdict::JudgedExpectation;
 use vocabulary::counted;
 
 /// A run that reached its end.
 pub(crate) struct Summary<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) metrics: &'a Metrics,
-    pub(crate) findings: &'a [Finding],
+    pub(crate) findings: &'a [JudgedExpectation],
     pub(crate) digest: String,
     pub(crate) folder: Option<PathBuf>,
     /// s of wall time, simulation and recording.
     pub(crate) wall: f64,
     /// What of it went into the pictures of the robots' cameras.
-    pub(crate) drawn: Drawn,
+    pub(crate) drawn: DrawingCost,
     pub(crate) steps: u64,
+}
+
+impl Summary<'_> {
+    /// Whether no expectation failed.
+    pub(crate) fn met(&self) -> bool {
+        !self.findings.iter().any(JudgedExpectation::failed)
+    }
 }
 
 /// Edges a summary lists one by one.
@@ -28,7 +35,7 @@ const MOST_EDGES: usize = 12;
 
 pub(crate) fn as_text(summary: &Summary<'_>) {
     let Summary { scene, metrics, .. } = summary;
-    say(&format!("{}\n{}\n", scene.title, simulation::caption(scene)));
+    say(&format!("{}\n{}\n", scene.title, studies::caption(scene)));
     edges(metrics);
     if let (Some(clearance), Some(time), Some([a, b])) =
         (metrics.clearance_min, metrics.clearance_min_time, &metrics.clearance_min_robots)
@@ -175,7 +182,8 @@ pub(crate) fn failures(summary: &Summary<'_>) {
 }
 
 pub(crate) fn as_json(summary: &Summary<'_>) {
-    let finding = |f: &Finding| json!({ "key": f.key, "wanted": f.wanted, "found": f.found, "met": f.met });
+    let finding =
+        |f: &JudgedExpectation| json!({ "key": f.key, "wanted": f.wanted, "found": f.found, "met": f.met });
     json(&json!({
         "title": summary.scene.title,
         "seed": summary.scene.seed,
@@ -187,6 +195,6 @@ pub(crate) fn as_json(summary: &Summary<'_>) {
         "folder": summary.folder.as_ref().map(|f| f.display().to_string()),
         "metrics": summary.metrics,
         "expectations": summary.findings.iter().map(finding).collect::<Vec<_>>(),
-        "met": !summary.findings.iter().any(Finding::failed),
+        "met": summary.met(),
     }));
 }

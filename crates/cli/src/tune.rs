@@ -1,18 +1,29 @@
 //! `echelon tune`: gains that fit the vehicles of a scene.
 
 use crate::Outcome;
-use crate::args::TuneArgs;
+use crate::args::SceneArgs;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::load::{Loaded, load, stem};
+use crate::load::{load, stem};
 use crate::print::{json, say};
 use crate::progress::Progress;
+use clap::Args;
 use serde_json::json;
-use simulation::tune::{Trial, tune as search};
+use studies::SceneRun;
+use studies::tune::{Trial, tune as search};
 use vocabulary::counted;
 
+#[derive(Debug, Args)]
+pub(crate) struct TuneArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Runs of the scene to try, at most
+    #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u64).range(4..=100_000))]
+    trials: u64,
+}
+
 pub(crate) fn tune(args: &TuneArgs) -> Outcome {
-    let Loaded { scene, simulation } = load(&args.scene)?;
+    let SceneRun { scene, simulation } = load(&args.scene)?;
     if simulation.needs_cameras() {
         let text = format!(
             "{}: a hundred runs on pictures take too long to tune on; tune on calculated tags instead, which err alike: \
@@ -39,7 +50,7 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
     if args.scene.json {
         json(&json!({ "trials": tried, "first": as_json(first), "best": as_json(best) }));
     } else if !args.scene.quiet {
-        say(&format!("{}\n{}\n", scene.title, simulation::caption(&scene)));
+        say(&format!("{}\n{}\n", scene.title, studies::caption(&scene)));
         say(&format!(
             "{:12} {:>8} {:>26} {:>9} {:>9}",
             "", "cost", "error in the second half", "limited", "contacts"

@@ -214,7 +214,24 @@ mod tests {
             [&[][..], &[5.0], &[f64::NAN, f64::INFINITY], &[0.0], &[1e300, -1e300], &[f64::MAX, f64::MIN]]
         {
             for scale in [Scale::Linear, Scale::Log] {
-                assert!(labels(scale, values, 5).len() < 60, "{values:?}");
+                let axis = Axis { scale, ..Axis::default() };
+                let ruler = Ruler::new(&axis, values.iter().copied(), true);
+                let finite = || values.iter().copied().filter(|v| v.is_finite());
+                let span = finite().fold(0.0, f64::max) - finite().fold(0.0, f64::min);
+                // Where the span itself overflows, nothing has a place.
+                let has_place =
+                    |v: &f64| v.is_finite() && span.is_finite() && (scale == Scale::Linear || *v > 0.0);
+                for value in values.iter().filter(|v| has_place(v)) {
+                    let at = ruler.at(*value);
+                    assert!(
+                        at.is_some_and(|at| (0.0..=1.0).contains(&at)),
+                        "{value} of {values:?} at {at:?}"
+                    );
+                }
+                let ticks = ruler.ticks(5);
+                let rise = ticks.windows(2).all(|pair| pair[0].at < pair[1].at);
+                assert!(ticks.len() < 60 && (rise || !span.is_finite()), "{values:?}: {ticks:?}");
+                assert!(ticks.iter().any(|tick| !tick.label.is_empty()), "{values:?}: {ticks:?}");
             }
         }
     }

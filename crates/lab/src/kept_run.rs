@@ -6,6 +6,7 @@ use rendering::{Gpu, GpuCameraRenderer};
 use scene::Scene;
 use simulation::Simulation;
 use std::path::{Path, PathBuf};
+use studies::run_options;
 use vocabulary::counted;
 
 /// What was seen in the window.
@@ -37,18 +38,7 @@ pub fn keep(
         let eyes = GpuCameraRenderer::new(gpu, run.fleet()).map_err(|error| error.to_string())?;
         run.attach_cameras(roll.through(Box::new(eyes)));
     }
-    let options = RunOptions {
-        csv: false,
-        no_log: false,
-        roll,
-        force: false,
-        scene: scene.to_toml(),
-        program: concat!("echelon ", env!("CARGO_PKG_VERSION")).to_owned(),
-        commit: option_env!("ECHELON_COMMIT").map(str::to_owned),
-        seed: scene.seed,
-        period: scene.time.period,
-        judging: scene.judging(),
-    };
+    let options = RunOptions { roll, ..run_options(&scene) };
     let mut recorder = Recorder::create(folder, run.fleet(), options).map_err(|error| error.to_string())?;
     while let Some(record) = run.next_record() {
         recorder.push(record).map_err(|error| error.to_string())?;

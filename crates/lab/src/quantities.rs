@@ -5,8 +5,8 @@ use crate::session::history::History;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
 use formation::relative::Geometry;
 use scene::Follow;
-use simulation::certify::{WitnessRow, rows};
 use std::fmt::Write;
+use studies::certify::{WitnessRow, rows};
 use vocabulary::{Edge, EdgeState, LawKind, Snapshot, StepRecord};
 
 /// What a plot shows.
@@ -172,7 +172,8 @@ fn certified(
         PlotQuantity::Lyapunov => |row| row.v,
         _ => return None,
     };
-    let rows = if follow.law.kind == LawKind::FullState { vec![] } else { rows(records, edge, follow) };
+    let rows =
+        if follow.law.kind == LawKind::FullState { vec![] } else { rows(records, edge.0, edge.1, follow) };
     Some(rows.iter().map(|row| [row.time, value(row)]).filter(|p| p[1].is_finite()).collect())
 }
 

@@ -7,10 +7,12 @@ mod digest;
 mod expectations;
 mod looks;
 mod metrics;
+mod statistics;
 
 pub use certificates::{CertificateMetrics, StatementMetrics};
 pub use contacts::ContactMetrics;
 pub use digest::Digest;
 pub use expectations::ExpectationMetrics;
-pub use looks::LookMetrics;
+pub use looks::{LookMetrics, difference};
 pub use metrics::{EdgeMetrics, Metrics, MetricsBuilder, RobotMetrics};
+pub use statistics::{RootMeanSquare, median};

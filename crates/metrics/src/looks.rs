@@ -1,7 +1,8 @@
 //! How well a follower saw its leader over a run.
 
+use crate::statistics::RootMeanSquare;
 use serde::Serialize;
-use vocabulary::{EdgeState, MeasurementRecord, Outcome, TrackingState, wrap};
+use vocabulary::{EdgeState, MeasurementRecord, Outcome, Relative, TrackingState, wrap};
 
 /// Looks of one follower over a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
@@ -36,9 +37,8 @@ pub struct LookMetrics {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LookSums {
     metrics: LookMetrics,
-    squares: [f64; 3],
-    told_squares: [f64; 3],
-    told: u64,
+    used: RootMeanSquare<3>,
+    estimates: RootMeanSquare<3>,
     looked: bool,
 }
 
@@ -50,13 +50,7 @@ impl LookSums {
         match frame.outcome {
             Outcome::Used => {
                 m.used += 1;
-                let (seen, truth) = (frame.measurement.relative, frame.truth);
-                let off = [
-                    seen.distance - truth.distance,
-                    wrap(seen.bearing - truth.bearing),
-                    wrap(seen.view_angle - truth.view_angle),
-                ];
-                add_squares(&mut self.squares, off);
+                self.used.add(difference(&frame.measurement.relative, &frame.truth));
             }
             Outcome::Rejected => m.rejected += 1,
             Outcome::Ambiguous => m.ambiguous += 1,
@@ -72,14 +66,7 @@ impl LookSums {
             TrackingState::Truth | TrackingState::Waiting => {}
             TrackingState::Lost => self.metrics.lost += step,
             TrackingState::Tracking | TrackingState::Coasting => {
-                let (seen, truth) = (edge.seen, edge.relative);
-                let off = [
-                    seen.distance - truth.distance,
-                    wrap(seen.bearing - truth.bearing),
-                    wrap(seen.view_angle - truth.view_angle),
-                ];
-                add_squares(&mut self.told_squares, off);
-                self.told += 1;
+                self.estimates.add(difference(&edge.seen, &edge.relative));
             }
         }
     }
@@ -87,28 +74,29 @@ impl LookSums {
     /// The metrics so far; `None` for a follower that does not look.
     pub(crate) fn finish(&self) -> Option<LookMetrics> {
         let m = &self.metrics;
-        let root =
-            |squares: [f64; 3], count: u64| (count > 0).then(|| squares.map(|s| (s / count as f64).sqrt()));
         let arrived = m.taken - m.dropped;
         self.looked.then(|| LookMetrics {
             in_view: (arrived - m.missed) as f64 / arrived.max(1) as f64,
-            rms_error: root(self.squares, m.used),
-            rms_estimate_error: root(self.told_squares, self.told),
+            rms_error: self.used.root(),
+            rms_estimate_error: self.estimates.root(),
             ..m.clone()
         })
     }
 }
 
-fn add_squares(sums: &mut [f64; 3], off: [f64; 3]) {
-    for (sum, off) in sums.iter_mut().zip(off) {
-        *sum += off * off;
-    }
+/// `seen` minus `truth`: distance in m, bearing and view angle in rad, wrapped.
+pub fn difference(seen: &Relative, truth: &Relative) -> [f64; 3] {
+    [
+        seen.distance - truth.distance,
+        wrap(seen.bearing - truth.bearing),
+        wrap(seen.view_angle - truth.view_angle),
+    ]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::{Measurement, Relative};
+    use vocabulary::Measurement;
 
     #[test]
     fn looks_are_counted_by_what_came_of_them() {

@@ -4,6 +4,7 @@ use crate::certificates::CertificateMetrics;
 use crate::clearance::Clearance;
 use crate::contacts::{ContactLog, ContactMetrics};
 use crate::looks::{LookMetrics, LookSums};
+use crate::statistics::RootMeanSquare;
 use serde::Serialize;
 use vocabulary::{Condition, Contact, EdgeState, EntityId, FleetInfo, Judging, StepRecord};
 
@@ -111,14 +112,13 @@ pub struct MetricsBuilder {
 #[derive(Debug, Clone, Default)]
 struct EdgeSums {
     last: EdgeState,
-    squares: [f64; 2],
+    errors: RootMeanSquare<2>,
     absolute_integral: [f64; 2],
     square_integral: [f64; 2],
     effort: [f64; 2],
     peak_error: [f64; 2],
     late_peak_error: [f64; 2],
-    late_squares: [f64; 2],
-    late_samples: u64,
+    late_errors: RootMeanSquare<2>,
     peak_rates: [f64; 2],
     looks: LookSums,
     limited: u64,
@@ -131,8 +131,7 @@ struct EdgeSums {
 #[derive(Debug, Clone, Copy)]
 struct Settled {
     since: f64,
-    squares: [f64; 2],
-    samples: u64,
+    errors: RootMeanSquare<2>,
     speeds: [f64; 2],
 }
 
@@ -229,7 +228,6 @@ impl EdgeSums {
         let (now, before) = (commands(edge), commands(&self.last));
         for i in 0..2 {
             let (e, last) = (edge.error[i], self.last.error[i]);
-            self.squares[i] += e * e;
             // Trapezoids; the first sample has no width.
             self.absolute_integral[i] += step * (e.abs() + last.abs()) / 2.0;
             self.square_integral[i] += step * (e * e + last * last) / 2.0;
@@ -237,11 +235,13 @@ impl EdgeSums {
             self.peak_error[i] = self.peak_error[i].max(e.abs());
             if time >= judging.settled_after {
                 self.late_peak_error[i] = self.late_peak_error[i].max(e.abs());
-                self.late_squares[i] += e * e;
             }
             self.peak_rates[i] = self.peak_rates[i].max(edge.rates[i].abs());
         }
-        self.late_samples += u64::from(time >= judging.settled_after);
+        self.errors.add(edge.error);
+        if time >= judging.settled_after {
+            self.late_errors.add(edge.error);
+        }
         self.looks.know(edge, step);
         self.limited += u64::from(edge.limited);
         self.too_close += u64::from(edge.too_close);
@@ -255,29 +255,25 @@ impl EdgeSums {
             self.settled = None;
             return;
         }
-        let fresh = Settled { since: time, squares: [0.0; 2], samples: 0, speeds: [f64::INFINITY, 0.0] };
+        let fresh = Settled { since: time, errors: RootMeanSquare::EMPTY, speeds: [f64::INFINITY, 0.0] };
         let settled = self.settled.get_or_insert(fresh);
-        for i in 0..2 {
-            settled.squares[i] += edge.error[i] * edge.error[i];
-        }
-        settled.samples += 1;
+        settled.errors.add(edge.error);
         settled.speeds = [settled.speeds[0].min(speed), settled.speeds[1].max(speed)];
     }
 
     fn finish(&self, leader: String, follower: String, samples: u64) -> EdgeMetrics {
         let count = samples.max(1) as f64;
-        let rms = |squares: [f64; 2], n: f64| squares.map(|s| (s / n).sqrt());
         EdgeMetrics {
             leader,
             follower,
             final_error: self.last.error,
-            rms_error: rms(self.squares, count),
-            settled_rms_error: self.settled.map(|s| rms(s.squares, s.samples as f64)),
+            rms_error: self.errors.root().unwrap_or_default(),
+            settled_rms_error: self.settled.and_then(|settled| settled.errors.root()),
             iae: self.absolute_integral,
             ise: self.square_integral,
             peak_error: self.peak_error,
             late_peak_error: self.late_peak_error,
-            late_rms_error: rms(self.late_squares, self.late_samples.max(1) as f64),
+            late_rms_error: self.late_errors.root().unwrap_or_default(),
             settling_time: self.settled.map(|s| s.since),
             effort: self.effort,
             peak_rates: self.peak_rates,

@@ -153,6 +153,7 @@ fn a_detector_remembers_nothing() {
     let (mut used, mut tags, mut again) = (Locus::new(), vec![], vec![]);
     for picture in &pictures {
         used.detect(picture, &mut tags);
+        assert!(!tags.is_empty(), "every picture shows a leader near enough to be read");
     }
     for picture in pictures.iter().rev() {
         used.detect(picture, &mut tags);

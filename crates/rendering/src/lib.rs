@@ -1,7 +1,7 @@
 //! Step records to pictures.
 //!
 //! ```no_run
-//! use rendering::{AdapterChoice, Gpu, Layout, Renderer, Style, Trail, View};
+//! use rendering::{AdapterChoice, Gpu, ViewLayout, Renderer, Style, Trail, Viewpoint};
 //! # fn shown(fleet: &vocabulary::FleetInfo, records: &[vocabulary::StepRecord]) -> Result<(), rendering::Error> {
 //! let gpu = Gpu::open(&AdapterChoice::Auto)?;
 //! let mut renderer = Renderer::new(&gpu, fleet, 1280, 720, 4)?;
@@ -10,7 +10,7 @@
 //!     trail.push(record);
 //! }
 //! if let Some(last) = records.last() {
-//!     let picture = renderer.draw(&trail, last, &Layout::single(View::Snake), &Style::default())?;
+//!     let picture = renderer.draw(&trail, last, &ViewLayout::single(Viewpoint::Snake), &Style::default())?;
 //!     println!("{} bytes by {}", picture.rgba.len(), gpu.description());
 //! }
 //! # Ok(())

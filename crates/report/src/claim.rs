@@ -7,7 +7,7 @@ use serde::Serialize;
 
 /// A measured value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Value {
+pub struct ClaimValue {
     /// Of what.
     pub name: String,
     /// SI.
@@ -18,7 +18,7 @@ pub struct Value {
 
 /// One sentence about a figure and what became of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Claim {
+pub struct FigureClaim {
     /// Which figure is to show it.
     pub figure: String,
     /// What should be seen.
@@ -26,7 +26,7 @@ pub struct Claim {
     /// What the numbers are.
     pub quantity: String,
     /// The numbers, in the order of the claim.
-    pub values: Vec<Value>,
+    pub values: Vec<ClaimValue>,
     /// What they have to do.
     pub wanted: String,
     /// What they may not exceed, if that is it.
@@ -36,17 +36,27 @@ pub struct Claim {
     pub holds: bool,
 }
 
+/// What a claim is about.
+#[derive(Debug, Clone, Copy)]
+pub struct ClaimSubject<'a> {
+    /// Which figure is to show it.
+    pub figure: &'a str,
+    /// What should be seen.
+    pub claim: &'a str,
+    /// What the numbers are.
+    pub quantity: &'a str,
+    /// Their unit; empty where they have none.
+    pub unit: &'static str,
+}
+
 /// Differences below this share are rounding.
 const ROUNDING: f64 = 1e-9;
 
-impl Claim {
-    fn new(
-        (figure, claim): (&str, &str),
-        (quantity, unit): (&str, &'static str),
-        values: &[(&str, f64)],
-        (wanted, holds): (String, bool),
-    ) -> Self {
-        let value = |(name, value): &(&str, f64)| Value { name: (*name).to_owned(), value: *value, unit };
+impl FigureClaim {
+    fn new(about: ClaimSubject<'_>, values: &[(&str, f64)], wanted: String, holds: bool) -> Self {
+        let ClaimSubject { figure, claim, quantity, unit } = about;
+        let value =
+            |(name, value): &(&str, f64)| ClaimValue { name: (*name).to_owned(), value: *value, unit };
         // A run that broke off has nothing to show for a claim.
         let measured = !values.is_empty() && values.iter().all(|(_, value)| value.is_finite());
         Self {
@@ -61,28 +71,24 @@ impl Claim {
     }
 
     /// Every value is larger than the one before.
-    pub fn rises(about: (&str, &str), of: (&str, &'static str), values: &[(&str, f64)]) -> Self {
+    pub fn rises(about: ClaimSubject<'_>, values: &[(&str, f64)]) -> Self {
         let up = |w: &[(&str, f64)]| w[1].1 - w[0].1 > ROUNDING * w[0].1.abs();
         let holds = values.len() > 1 && values.windows(2).all(up);
-        Self::new(about, of, values, ("rises from each to the next".to_owned(), holds))
+        Self::new(about, values, "rises from each to the next".to_owned(), holds)
     }
 
     /// Every value is smaller than the one before.
-    pub fn falls(about: (&str, &str), of: (&str, &'static str), values: &[(&str, f64)]) -> Self {
+    pub fn falls(about: ClaimSubject<'_>, values: &[(&str, f64)]) -> Self {
         let down = |w: &[(&str, f64)]| w[0].1 - w[1].1 > ROUNDING * w[0].1.abs();
         let holds = values.len() > 1 && values.windows(2).all(down);
-        Self::new(about, of, values, ("falls from each to the next".to_owned(), holds))
+        Self::new(about, values, "falls from each to the next".to_owned(), holds)
     }
 
     /// No value is larger than `limit`.
-    pub fn at_most(
-        about: (&str, &str),
-        of: (&str, &'static str),
-        values: &[(&str, f64)],
-        limit: f64,
-    ) -> Self {
+    pub fn at_most(about: ClaimSubject<'_>, values: &[(&str, f64)], limit: f64) -> Self {
         let holds = values.iter().all(|(_, value)| *value <= limit);
-        let claim = Self::new(about, of, values, (format!("at most {}", quantity(limit, of.1)), holds));
+        let wanted = format!("at most {}", quantity(limit, about.unit));
+        let claim = Self::new(about, values, wanted, holds);
         Self { limit: Some(limit), ..claim }
     }
 
@@ -96,7 +102,7 @@ impl Claim {
 }
 
 /// The formation is taken up: every follower ends within the band of its scene, and stays there.
-pub(crate) fn takes_up(figure: &str, run: &Trace) -> Vec<Claim> {
+pub(crate) fn takes_up(figure: &str, run: &Trace) -> Vec<FigureClaim> {
     let claim = "The controller drives each robot to the desired distance and bearing.";
     let band = run.metrics.settling_band;
     let values = |channel: usize| {
@@ -105,8 +111,16 @@ pub(crate) fn takes_up(figure: &str, run: &Trace) -> Vec<Claim> {
     };
     let quantity = format!("largest error from {} on", quantity(run.late_from(), "s"));
     vec![
-        Claim::at_most((figure, claim), (&format!("{quantity}, distance"), "m"), &values(0), band[0]),
-        Claim::at_most((figure, claim), (&format!("{quantity}, bearing"), "rad"), &values(1), band[1]),
+        FigureClaim::at_most(
+            ClaimSubject { figure, claim, quantity: &format!("{quantity}, distance"), unit: "m" },
+            &values(0),
+            band[0],
+        ),
+        FigureClaim::at_most(
+            ClaimSubject { figure, claim, quantity: &format!("{quantity}, bearing"), unit: "rad" },
+            &values(1),
+            band[1],
+        ),
     ]
 }
 
@@ -122,9 +136,13 @@ fn worst(mut values: Vec<(&str, f64)>) -> Vec<(&str, f64)> {
 }
 
 /// Nobody touches anybody.
-pub(crate) fn no_contact(figure: &str, run: &Trace) -> Claim {
+pub(crate) fn no_contact(figure: &str, run: &Trace) -> FigureClaim {
     let claim = "The formation drives without contact.";
-    Claim::at_most((figure, claim), ("contacts", ""), &[("contacts", run.metrics.contacts as f64)], 0.0)
+    FigureClaim::at_most(
+        ClaimSubject { figure, claim, quantity: "contacts", unit: "" },
+        &[("contacts", run.metrics.contacts as f64)],
+        0.0,
+    )
 }
 
 /// Runs of one scene with their short names, in the order of a comparison.
@@ -136,59 +154,75 @@ fn each<'a>(runs: &Compared<'a>, value: impl Fn(&Trace) -> Option<f64>) -> Vec<(
 
 /// The less a law knows, the more its commands cost: the laws from the one that knows most, the first and the last
 /// compared.
-pub fn knowing_less_costs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<Claim> {
+pub fn knowing_less_costs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<FigureClaim> {
     let claim = "Without knowing its leader's motion, the follower spends more on control (output feedback against full \
                  state).";
     let ends: Vec<_> =
         runs.first().into_iter().chain(runs.last().filter(|_| runs.len() > 1)).copied().collect();
     let applied = |channel: usize| each(&ends, |run| Some(run.efforts.get(edge)?.applied[channel]));
     vec![
-        Claim::rises((figure, claim), ("∫|dv/dt| dt", "m/s"), &applied(0)),
-        Claim::rises((figure, claim), ("∫|ω| dt", "rad in all"), &applied(1)),
+        FigureClaim::rises(ClaimSubject { figure, claim, quantity: "∫|dv/dt| dt", unit: "m/s" }, &applied(0)),
+        FigureClaim::rises(
+            ClaimSubject { figure, claim, quantity: "∫|ω| dt", unit: "rad in all" },
+            &applied(1),
+        ),
     ]
 }
 
 /// The less a law knows, the larger the error that stays; and that of output feedback is small all the same.
-pub fn knowing_less_errs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<Claim> {
+pub fn knowing_less_errs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<FigureClaim> {
     let claim = "The less a law knows, the larger the error that stays.";
     let settled = each(runs, |run| run.settled(edge));
-    let mut claims = vec![Claim::rises((figure, claim), ("settled ‖e‖", ""), &settled)];
+    let mut claims =
+        vec![FigureClaim::rises(ClaimSubject { figure, claim, quantity: "settled ‖e‖", unit: "" }, &settled)];
     if let Some(last) = settled.last() {
         let claim = "The behaviour under output feedback is quite satisfactory.";
         let band = runs.last().map_or(0.0, |(_, run)| {
             let [distance, bearing] = run.metrics.settling_band;
             distance.hypot(bearing)
         });
-        claims.push(Claim::at_most((figure, claim), ("settled ‖e‖", ""), &[*last], band));
+        claims.push(FigureClaim::at_most(
+            ClaimSubject { figure, claim, quantity: "settled ‖e‖", unit: "" },
+            &[*last],
+            band,
+        ));
     }
     claims
 }
 
 /// As ε falls, commands grow while the observer has not settled. `runs` go from the largest ε to the smallest.
-pub fn faster_observers_cost(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<Claim> {
+pub fn faster_observers_cost(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<FigureClaim> {
     let claim = "As ε decreases, the control effort of the transient increases.";
-    let of = |value: &dyn Fn(&crate::Effort) -> f64| each(runs, |run| run.efforts.get(edge).map(value));
+    let of =
+        |value: &dyn Fn(&crate::CommandEffort) -> f64| each(runs, |run| run.efforts.get(edge).map(value));
     let until = runs.first().and_then(|(_, run)| run.efforts.get(edge)).map_or(0.0, |e| e.transient);
     let over = |what: &str| format!("{what}, first {}", quantity(until, "s"));
     vec![
-        Claim::rises((figure, claim), (&over("peak |dv/dt| asked for"), "m/s²"), &of(&|e| e.peak_asked[0])),
-        Claim::rises(
-            (figure, claim),
-            (&over("∫|dv/dt asked for| dt"), "m/s"),
+        FigureClaim::rises(
+            ClaimSubject { figure, claim, quantity: &over("peak |dv/dt| asked for"), unit: "m/s²" },
+            &of(&|e| e.peak_asked[0]),
+        ),
+        FigureClaim::rises(
+            ClaimSubject { figure, claim, quantity: &over("∫|dv/dt asked for| dt"), unit: "m/s" },
             &of(&|e| e.transient_asked[0]),
         ),
-        Claim::rises((figure, claim), (&over("∫|ω| dt"), "rad in all"), &of(&|e| e.transient_applied[1])),
+        FigureClaim::rises(
+            ClaimSubject { figure, claim, quantity: &over("∫|ω| dt"), unit: "rad in all" },
+            &of(&|e| e.transient_applied[1]),
+        ),
     ]
 }
 
 /// As ε falls, errors fall: those that stay, and those of the whole run. `runs` go from the largest ε to the smallest.
-pub fn faster_observers_err_less(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<Claim> {
+pub fn faster_observers_err_less(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<FigureClaim> {
     let claim = "As ε decreases, tracking errors decrease.";
     vec![
-        Claim::falls((figure, claim), ("settled ‖e‖", ""), &each(runs, |run| run.settled(edge))),
-        Claim::falls(
-            (figure, claim),
-            ("(∫‖e‖² dt)^½ over the run", "s^½"),
+        FigureClaim::falls(
+            ClaimSubject { figure, claim, quantity: "settled ‖e‖", unit: "" },
+            &each(runs, |run| run.settled(edge)),
+        ),
+        FigureClaim::falls(
+            ClaimSubject { figure, claim, quantity: "(∫‖e‖² dt)^½ over the run", unit: "s^½" },
             &each(runs, |run| run.over_the_run(edge)),
         ),
     ]
@@ -198,26 +232,24 @@ pub fn faster_observers_err_less(figure: &str, runs: &Compared<'_>, edge: usize)
 mod tests {
     use super::*;
 
-    const ABOUT: (&str, &str) = ("7", "it falls");
+    const ABOUT: ClaimSubject<'_> = ClaimSubject { figure: "7", claim: "it falls", quantity: "x", unit: "m" };
 
     #[test]
     fn what_falls_falls_and_what_rises_does_not() {
         let falling = [("a", 2.0), ("b", 1.0), ("c", 0.5)];
-        assert!(Claim::falls(ABOUT, ("x", "m"), &falling).holds);
-        assert!(!Claim::rises(ABOUT, ("x", "m"), &falling).holds);
+        assert!(FigureClaim::falls(ABOUT, &falling).holds);
+        assert!(!FigureClaim::rises(ABOUT, &falling).holds);
         let swapped = [("b", 1.0), ("a", 2.0), ("c", 0.5)];
-        assert!(!Claim::falls(ABOUT, ("x", "m"), &swapped).holds);
+        assert!(!FigureClaim::falls(ABOUT, &swapped).holds);
         let level = [("a", 1.0), ("b", 1.0 + 1e-13)];
-        assert!(
-            !Claim::falls(ABOUT, ("x", "m"), &level).holds && !Claim::rises(ABOUT, ("x", "m"), &level).holds
-        );
+        assert!(!FigureClaim::falls(ABOUT, &level).holds && !FigureClaim::rises(ABOUT, &level).holds);
     }
 
     #[test]
     fn what_was_not_measured_is_not_so() {
-        assert!(!Claim::at_most(ABOUT, ("x", "m"), &[("a", f64::NAN)], 1.0).holds);
-        assert!(!Claim::at_most(ABOUT, ("x", "m"), &[], 1.0).holds);
-        assert!(!Claim::falls(ABOUT, ("x", "m"), &[("a", 1.0)]).holds);
-        assert!(Claim::at_most(ABOUT, ("x", "m"), &[("a", 1.0)], 1.0).holds);
+        assert!(!FigureClaim::at_most(ABOUT, &[("a", f64::NAN)], 1.0).holds);
+        assert!(!FigureClaim::at_most(ABOUT, &[], 1.0).holds);
+        assert!(!FigureClaim::falls(ABOUT, &[("a", 1.0)]).holds);
+        assert!(FigureClaim::at_most(ABOUT, &[("a", 1.0)], 1.0).holds);
     }
 }

@@ -4,7 +4,7 @@ use vocabulary::Command;
 
 /// Commands of one edge; every pair is [acceleration, turn rate].
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
-pub struct Effort {
+pub struct CommandEffort {
     /// Largest |command asked for| in the transient, before limits, [m/s², rad/s].
     pub peak_asked: [f64; 2],
     /// Largest |command applied| in the transient, [m/s², rad/s].
@@ -19,16 +19,16 @@ pub struct Effort {
     pub transient: f64,
 }
 
-/// Running sums of an [`Effort`].
+/// Running sums of an [`CommandEffort`].
 #[derive(Debug, Clone, Default)]
 pub(crate) struct EffortSums {
-    sums: Effort,
+    sums: CommandEffort,
     last: Option<(f64, [f64; 2], [f64; 2])>,
 }
 
 impl EffortSums {
     pub(crate) fn until(transient: f64) -> Self {
-        Self { sums: Effort { transient, ..Effort::default() }, last: None }
+        Self { sums: CommandEffort { transient, ..CommandEffort::default() }, last: None }
     }
 
     /// Takes in a sample. A command holds from its sample to the next one.
@@ -54,7 +54,7 @@ impl EffortSums {
         self.last = Some((time, asked, applied));
     }
 
-    pub(crate) fn finish(&self) -> Effort {
+    pub(crate) fn finish(&self) -> CommandEffort {
         self.sums
     }
 }

@@ -3,11 +3,11 @@
 use crate::claim::{
     Compared, faster_observers_cost, faster_observers_err_less, knowing_less_costs, knowing_less_errs,
 };
-use crate::draw::{Curve, Magnify, errors, inputs};
-use crate::item::Item;
+use crate::draw::{EdgeCurve, Magnify, errors, inputs};
+use crate::figure::ReportFigure;
 
 /// The four figures of comparisons, and how much of the start they magnify, s.
-pub(crate) struct Comparison<'a> {
+pub(crate) struct LawComparison<'a> {
     pub(crate) runs: &'a Compared<'a>,
     pub(crate) edge: usize,
     pub(crate) start: f64,
@@ -20,16 +20,16 @@ fn reading(start: f64) -> String {
     format!("Left: the first {start} s, magnified (shaded on the right).")
 }
 
-impl Comparison<'_> {
+impl LawComparison<'_> {
     fn follower(&self) -> &str {
         self.runs.first().map_or("", |(_, run)| run.follower(self.edge))
     }
 
-    fn curves(&self) -> Vec<Curve<'_>> {
-        Curve::compared(self.runs, self.edge)
+    fn curves(&self) -> Vec<EdgeCurve<'_>> {
+        EdgeCurve::compared(self.runs, self.edge)
     }
 
-    pub(crate) fn laws_inputs(&self, stem: &str) -> Item {
+    pub(crate) fn laws_inputs(&self, stem: &str) -> ReportFigure {
         let caption = format!(
             "Inputs of {} under full state feedback (FSFB, eq 20), robust state feedback (RSFB, eq 22) and output feedback \
              (OFB, eq 42), {}. Grey: beyond the bounds. {}",
@@ -41,7 +41,7 @@ impl Comparison<'_> {
         drawn.item(stem, caption).with(knowing_less_costs(stem, self.runs, self.edge))
     }
 
-    pub(crate) fn laws_errors(&self, stem: &str) -> Item {
+    pub(crate) fn laws_errors(&self, stem: &str) -> ReportFigure {
         let caption = format!(
             "Tracking error of {} under the three laws, {}; below, its size on a logarithmic axis, where what stays can be \
              told apart.",
@@ -52,7 +52,7 @@ impl Comparison<'_> {
         drawn.item(stem, caption).with(knowing_less_errs(stem, self.runs, self.edge))
     }
 
-    pub(crate) fn constants_inputs(&self, stem: &str) -> Item {
+    pub(crate) fn constants_inputs(&self, stem: &str) -> ReportFigure {
         let caption = format!(
             "Inputs of {} under output feedback with different observer constants ε, {}. Grey: beyond the bounds. {}",
             self.follower(),
@@ -63,7 +63,7 @@ impl Comparison<'_> {
         drawn.item(stem, caption).with(faster_observers_cost(stem, self.runs, self.edge))
     }
 
-    pub(crate) fn constants_errors(&self, stem: &str) -> Item {
+    pub(crate) fn constants_errors(&self, stem: &str) -> ReportFigure {
         let caption = format!(
             "Tracking error of {} under output feedback with different observer constants ε, {}.",
             self.follower(),

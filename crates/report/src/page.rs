@@ -1,7 +1,7 @@
 //! A report as one file of HTML: nothing is fetched from anywhere, figures, pictures, films and the font are in it.
 
-use crate::claim::Claim;
-use crate::item::{Item, Report, Table};
+use crate::claim::FigureClaim;
+use crate::figure::{Report, ReportFigure, ReportTable};
 use base64::Engine;
 use std::fmt::Write;
 
@@ -39,7 +39,7 @@ pub fn page(report: &Report, font: &[u8]) -> String {
 }
 
 /// What figures are called in the report.
-fn name(item: &Item, index: usize) -> String {
+fn name(item: &ReportFigure, index: usize) -> String {
     let number = item.stem.strip_prefix("figure-").and_then(|n| n.parse::<u32>().ok());
     format!("Figure {}", number.unwrap_or(index as u32 + 1))
 }
@@ -68,7 +68,7 @@ fn verdicts(html: &mut String, report: &Report) {
     html.push_str("</section>\n");
 }
 
-fn claim(html: &mut String, claim: &Claim, of: Option<&str>) {
+fn claim(html: &mut String, claim: &FigureClaim, of: Option<&str>) {
     let (class, mark, word) = if claim.holds { ("yes", "✓", "so") } else { ("no", "✗", "not so") };
     let of = of.map_or_else(String::new, |of| format!("{of}: "));
     let values = if claim.values.is_empty() {
@@ -85,7 +85,7 @@ fn claim(html: &mut String, claim: &Claim, of: Option<&str>) {
     );
 }
 
-fn figure(html: &mut String, item: &Item, index: usize) {
+fn figure(html: &mut String, item: &ReportFigure, index: usize) {
     let wide = if item.picture.is_some() { " class=\"wide\"" } else { "" };
     let (name, caption) = (name(item, index), escape(&item.caption));
     let _ = writeln!(html, "<figure id=\"{}\"{wide}>", escape(&item.stem));
@@ -119,7 +119,7 @@ fn films(html: &mut String, report: &Report) {
     html.push_str("</section>\n");
 }
 
-fn table(html: &mut String, table: &Table) {
+fn table(html: &mut String, table: &ReportTable) {
     let _ = writeln!(
         html,
         "<section class=\"table\">\n<table>\n<caption>{}</caption>\n<thead><tr>",
@@ -150,18 +150,23 @@ fn escape(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::item::Film;
+    use crate::claim::ClaimSubject;
+    use crate::figure::ReportFilm;
 
     fn report() -> Report {
-        let about = ("figure-07", "a < b & c");
+        let about = |quantity| ClaimSubject { figure: "figure-07", claim: "a < b & c", quantity, unit: "m" };
         let claims = vec![
-            Claim::falls(about, ("x", "m"), &[("a", 2.0), ("b", 1.0)]),
-            Claim::falls(about, ("y", "m"), &[("a", 1.0), ("b", 2.0)]),
+            FigureClaim::falls(about("x"), &[("a", 2.0), ("b", 1.0)]),
+            FigureClaim::falls(about("y"), &[("a", 1.0), ("b", 2.0)]),
         ];
         Report {
             title: "One & all".to_owned(),
-            items: vec![Item::new("figure-07", "caption", "<svg></svg>", "").with(claims)],
-            films: vec![Film { file: "a.mp4".to_owned(), caption: "film".to_owned(), mp4: vec![1, 2, 3] }],
+            items: vec![ReportFigure::new("figure-07", "caption", "<svg></svg>", "").with(claims)],
+            films: vec![ReportFilm {
+                file: "a.mp4".to_owned(),
+                caption: "film".to_owned(),
+                mp4: vec![1, 2, 3],
+            }],
             ..Report::default()
         }
     }

@@ -1,10 +1,10 @@
 //! The figures of section 5 of Orqueda, Zhang and Fierro (2007), by their numbers.
 
-use crate::claim::{Claim, Compared, no_contact, takes_up};
+use crate::claim::{ClaimSubject, Compared, FigureClaim, no_contact, takes_up};
 use crate::draw::{farthest, graph, trajectories};
-use crate::item::{Item, Report};
-use crate::job::{COMPARED, CONSTANTS, Case, Ran, find, plain};
-use crate::laws::Comparison;
+use crate::figure::{Report, ReportFigure};
+use crate::laws::LawComparison;
+use crate::planned_run::{COMPARED, CONSTANTS, Case, FinishedRun, find, plain};
 use crate::tables;
 use crate::trace::Trace;
 use crate::variant::Variant;
@@ -20,9 +20,9 @@ pub(crate) fn stem(number: u32) -> String {
     format!("figure-{number:02}")
 }
 
-/// All figures but the drawn ones, 13 and 14, of the runs of [`crate::paper_jobs`]; figures whose runs are missing are
+/// All figures but the drawn ones, 13 and 14, of the runs of [`crate::paper_runs`]; figures whose runs are missing are
 /// left out.
-pub fn paper(runs: &[Ran]) -> Report {
+pub fn paper(runs: &[FinishedRun]) -> Report {
     let mut items = vec![];
     let cases = [(Case::Line, 3, "straight line"), (Case::Circle, 8, "circular path")];
     for (case, first, words) in cases {
@@ -45,7 +45,7 @@ pub fn paper(runs: &[Ran]) -> Report {
     }
 }
 
-fn case_items(runs: &[Ran], case: Case, first: u32, words: &str) -> Vec<Item> {
+fn case_items(runs: &[FinishedRun], case: Case, first: u32, words: &str) -> Vec<ReportFigure> {
     let of = |variant: Variant| find(runs, case, variant);
     let output = Variant::epsilon(COMPARED[1]);
     let (Some(full), Some(robust), Some(observed), Some(slow)) = (
@@ -59,7 +59,7 @@ fn case_items(runs: &[Ran], case: Case, first: u32, words: &str) -> Vec<Item> {
     let [large, small] = COMPARED.map(|epsilon| format!("ε = {}", plain(epsilon)));
     let laws: &Compared<'_> = &[("FSFB", full), ("RSFB", robust), ("OFB", observed)];
     let constants: &Compared<'_> = &[(&large, slow), (&small, observed)];
-    let about = |runs| Comparison { runs, edge: FOLLOWER, start: START, of: words };
+    let about = |runs| LawComparison { runs, edge: FOLLOWER, start: START, of: words };
     vec![
         ways(&stem(first), observed, words),
         about(laws).laws_inputs(&stem(first + 1)),
@@ -70,7 +70,7 @@ fn case_items(runs: &[Ran], case: Case, first: u32, words: &str) -> Vec<Item> {
 }
 
 /// Trajectories, with the claim that the formation is taken up.
-pub(crate) fn ways(stem: &str, run: &Trace, words: &str) -> Item {
+pub(crate) fn ways(stem: &str, run: &Trace, words: &str) -> ReportFigure {
     let (drawn, factor) = trajectories(run);
     let size =
         if factor == 1.0 { String::new() } else { format!(", drawn {factor} times as large as they are") };
@@ -80,7 +80,7 @@ pub(crate) fn ways(stem: &str, run: &Trace, words: &str) -> Item {
 }
 
 /// Figure 15: the graph, and whether the robots came to stand as it says.
-fn formation(run: &Trace) -> Item {
+fn formation(run: &Trace) -> ReportFigure {
     let stem = stem(15);
     let drawn = graph(run, run.scene.time.duration);
     let caption = "Edge specification of the simulation of figure 14: an arrow from each leader to its follower with the \
@@ -89,14 +89,15 @@ fn formation(run: &Trace) -> Item {
 }
 
 /// At the end every robot stands where the set points of the edges up to its leader want it.
-pub(crate) fn stands_so(stem: &str, run: &Trace) -> Claim {
+pub(crate) fn stands_so(stem: &str, run: &Trace) -> FigureClaim {
     let last = run.times.len().saturating_sub(1);
     let off = farthest(run, last).unwrap_or(f64::NAN);
     let depth = depth(run);
     let limit = run.metrics.settling_band[0] * depth.max(1) as f64;
     let claim = "At the end the robots stand as the graph says, seen from their lead robot.";
     let quantity = "largest distance of a robot from its place";
-    Claim::at_most((stem, claim), (quantity, "m"), &[("largest", off)], limit)
+    let subject = ClaimSubject { figure: stem, claim, quantity, unit: "m" };
+    FigureClaim::at_most(subject, &[("largest", off)], limit)
 }
 
 /// Edges on the longest way from a lead robot.
@@ -114,7 +115,7 @@ fn depth(run: &Trace) -> usize {
 }
 
 /// What figures 13 and 14 are said to show.
-pub(crate) fn drawn_claims(stem: &str, run: &Trace) -> Vec<Claim> {
+pub(crate) fn drawn_claims(stem: &str, run: &Trace) -> Vec<FigureClaim> {
     let mut claims = takes_up(stem, run);
     claims.push(no_contact(stem, run));
     claims

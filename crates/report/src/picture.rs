@@ -1,7 +1,7 @@
-//! Pictures that were drawn elsewhere, as figures: on a sheet, with the poses of all robots beside them.
+//! Pictures that were drawn elsewhere, as figures: inside SVG, with the poses of all robots beside them.
 
 use crate::draw::{number, quoted};
-use crate::item::{Item, Report};
+use crate::figure::{Report, ReportFigure};
 use crate::paper::drawn_claims;
 use crate::trace::Trace;
 use base64::Engine;
@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 /// A picture of a run at a time.
 #[derive(Debug, Clone)]
-pub struct Shot {
+pub struct ReportPicture {
     /// File name without its ending.
     pub stem: String,
     /// What is seen.
@@ -26,7 +26,7 @@ pub struct Shot {
 const WIDTH: f64 = 170.0;
 
 /// Puts a picture of `run` among the figures; numbered ones stand in order.
-pub fn add_picture(report: &mut Report, shot: Shot, run: &Trace) {
+pub fn add_picture(report: &mut Report, shot: ReportPicture, run: &Trace) {
     let [width, height] = shot.size.map(f64::from);
     let tall = WIDTH * height / width.max(1.0);
     let data = base64::engine::general_purpose::STANDARD.encode(&shot.png);
@@ -36,11 +36,11 @@ pub fn add_picture(report: &mut Report, shot: Shot, run: &Trace) {
          xlink:href=\"data:image/png;base64,{data}\"/>\n</svg>\n"
     );
     let claims = if shot.stem.starts_with(NUMBERED) { drawn_claims(&shot.stem, run) } else { vec![] };
-    let item = Item {
+    let item = ReportFigure {
         picture: Some(shot.png),
-        ..Item::new(shot.stem, shot.caption, svg, poses(run, shot.time)).with(claims)
+        ..ReportFigure::new(shot.stem, shot.caption, svg, poses(run, shot.time)).with(claims)
     };
-    let after = |other: &Item| item.stem.starts_with(NUMBERED) && other.stem > item.stem;
+    let after = |other: &ReportFigure| item.stem.starts_with(NUMBERED) && other.stem > item.stem;
     let place = report.items.iter().position(after).unwrap_or(report.items.len());
     report.items.insert(place, item);
 }

@@ -1,21 +1,21 @@
 //! The same figures for any scene: what it can show, and what was left out.
 
-use crate::claim::Claim;
-use crate::draw::{Curve, Magnify, errors, graph, inputs, observer};
-use crate::item::{Item, Report};
-use crate::job::{Case, Ran, constants, find, plain};
-use crate::laws::Comparison;
+use crate::claim::FigureClaim;
+use crate::draw::{EdgeCurve, Magnify, errors, graph, inputs, observer};
+use crate::figure::{Report, ReportFigure};
+use crate::laws::LawComparison;
 use crate::paper::{stands_so, ways};
+use crate::planned_run::{Case, FinishedRun, constants, find, plain};
 use crate::tables;
 use crate::trace::Trace;
 use crate::variant::{LAWS, Variant, constants_apart, laws_apart, short};
 use crate::words::round;
 use scene::{Role, Scene};
-use simulation::verdict::verdict;
+use studies::verdict::verdict;
 use vocabulary::LawKind;
 
-/// All figures but the drawn one of the runs of [`crate::scene_jobs`].
-pub fn of_scene(scene: &Scene, runs: &[Ran]) -> Report {
+/// All figures but the drawn one of the runs of [`crate::scene_runs`].
+pub fn of_scene(scene: &Scene, runs: &[FinishedRun]) -> Report {
     let Some(run) = find(runs, Case::Own, Variant::default()) else { return Report::default() };
     let mut report = Report {
         title: scene.title.clone(),
@@ -37,9 +37,9 @@ pub fn of_scene(scene: &Scene, runs: &[Ran]) -> Report {
         " By name: the followers with the largest and the smallest error that stays; pale: all others."
     };
     let caption = format!("Inputs of all followers. Grey: beyond the bounds.{crowd}");
-    report.items.push(inputs(&Curve::all(run), Magnify::Start).item("inputs", caption));
+    report.items.push(inputs(&EdgeCurve::all(run), Magnify::Start).item("inputs", caption));
     let caption = format!("Tracking errors of all followers.{crowd}");
-    report.items.push(errors(&Curve::all(run), Magnify::No).item("errors", caption));
+    report.items.push(errors(&EdgeCurve::all(run), Magnify::No).item("errors", caption));
     report.items.extend(observed(run));
     comparisons(scene, runs, &mut report);
     let caption = "Formation graph at the end: an arrow from each leader to its follower; places follow from the wanted \
@@ -59,7 +59,7 @@ fn straight(run: &Trace) -> bool {
 }
 
 /// True and estimated rates of the follower by output feedback whose error stays largest.
-fn observed(run: &Trace) -> Option<Item> {
+fn observed(run: &Trace) -> Option<ReportFigure> {
     let observes = |edge: &usize| {
         let robot = run.fleet.edges.get(*edge).and_then(|e| run.scene.robots.get(e.follower));
         matches!(robot.map(|r| &r.role), Some(Role::Follow(f)) if f.law.kind == LawKind::OutputFeedback)
@@ -75,14 +75,14 @@ fn observed(run: &Trace) -> Option<Item> {
     Some(observer(run, edge, Magnify::Start).item("observer", caption))
 }
 
-fn comparisons(scene: &Scene, runs: &[Ran], report: &mut Report) {
+fn comparisons(scene: &Scene, runs: &[FinishedRun], report: &mut Report) {
     let start = round(scene.time.duration / 30.0);
     if let Some(why) = laws_apart(scene) {
         report.left_out.push(format!("The three laws compared: {why}."));
     } else {
         let all = LAWS.iter().filter_map(|k| Some((short(*k), find(runs, Case::Own, Variant::law(*k))?)));
         let all: Vec<(&str, &Trace)> = all.collect();
-        let about = Comparison { runs: &all, edge: 0, start, of: &scene.title };
+        let about = LawComparison { runs: &all, edge: 0, start, of: &scene.title };
         report.items.extend([about.laws_inputs("laws-inputs"), about.laws_errors("laws-errors")]);
     }
     if let Some(why) = constants_apart(scene) {
@@ -91,19 +91,19 @@ fn comparisons(scene: &Scene, runs: &[Ran], report: &mut Report) {
         let named = |e: f64| Some((format!("ε = {}", plain(e)), find(runs, Case::Own, Variant::epsilon(e))?));
         let names: Vec<(String, &Trace)> = constants(scene).into_iter().filter_map(named).collect();
         let all: Vec<(&str, &Trace)> = names.iter().map(|(name, run)| (name.as_str(), *run)).collect();
-        let about = Comparison { runs: &all, edge: 0, start, of: &scene.title };
+        let about = LawComparison { runs: &all, edge: 0, start, of: &scene.title };
         let items = [about.constants_inputs("constants-inputs"), about.constants_errors("constants-errors")];
         report.items.extend(items);
     }
 }
 
 /// What the scene expects of its run, as claims without numbers of their own.
-fn expectations(run: &Trace) -> Vec<Claim> {
+fn expectations(run: &Trace) -> Vec<FigureClaim> {
     let completed = run.times.last().is_some_and(|t| t + run.scene.time.period > run.scene.time.duration);
     verdict(&run.scene, &run.metrics, completed)
         .into_iter()
         .filter(|finding| finding.met.is_some())
-        .map(|finding| Claim {
+        .map(|finding| FigureClaim {
             figure: "trajectories".to_owned(),
             claim: format!("The scene expects {} {}.", finding.key, finding.wanted),
             quantity: format!("found {}", finding.found),

@@ -1,8 +1,8 @@
 //! The numbers of all runs, side by side.
 
-use crate::item::Table;
-use crate::job::{Case, Ran, find};
+use crate::figure::ReportTable;
 use crate::paper::constants;
+use crate::planned_run::{Case, FinishedRun, find};
 use crate::trace::Trace;
 use crate::variant::Variant;
 use crate::words::{digits, quantity};
@@ -13,13 +13,13 @@ fn words(words: &[&str]) -> Vec<String> {
 }
 
 /// One follower under all laws and observer constants.
-pub(crate) fn laws(runs: &[Ran], cases: &[Case], edge: usize) -> Table {
+pub(crate) fn laws(runs: &[FinishedRun], cases: &[Case], edge: usize) -> ReportTable {
     let laws = [LawKind::FullState, LawKind::RobustState].map(Variant::law);
     let variants: Vec<Variant> = laws.into_iter().chain(constants()).collect();
     let traces = cases.iter().flat_map(|case| variants.iter().filter_map(|v| find(runs, *case, *v)));
     let transient = runs.first().and_then(|ran| ran.trace.efforts.get(edge)).map_or(0.0, |e| e.transient);
     let first = format!("first {}", quantity(transient, "s"));
-    Table {
+    ReportTable {
         caption: format!(
             "Follower 1 under every law and observer constant. Settled: root mean square over the last fifth of the run. \
              Settles: time from which the error stays within the band of the scene. Asked for: before limits, over the {first}."
@@ -57,7 +57,7 @@ fn law_row(trace: &Trace, edge: usize) -> Option<Vec<String>> {
 const LISTED: usize = 24;
 
 /// All edges of a run; of many, those whose errors stay largest.
-pub(crate) fn edges(run: &Trace) -> Table {
+pub(crate) fn edges(run: &Trace) -> ReportTable {
     let mut order: Vec<usize> = (0..run.fleet.edges.len()).collect();
     if order.len() > LISTED {
         order.sort_by(|a, b| run.settled(*b).unwrap_or(0.0).total_cmp(&run.settled(*a).unwrap_or(0.0)));
@@ -75,7 +75,7 @@ pub(crate) fn edges(run: &Trace) -> Table {
             format!("{} rad", digits(effort.applied[1])),
         ])
     };
-    Table {
+    ReportTable {
         caption: if run.fleet.edges.len() > LISTED {
             format!("The {LISTED} of {} edges whose errors stay largest.", run.fleet.edges.len())
         } else {
@@ -95,13 +95,13 @@ pub(crate) fn edges(run: &Trace) -> Table {
 }
 
 /// Which runs these were, to the last bit.
-pub(crate) fn digests(runs: &[Ran]) -> Table {
-    let row = |ran: &Ran| {
+pub(crate) fn digests(runs: &[FinishedRun]) -> ReportTable {
+    let row = |ran: &FinishedRun| {
         let trace = &ran.trace;
         let (length, seed) = (quantity(trace.metrics.duration, "s"), trace.scene.seed.to_string());
         vec![trace.name.clone(), length, seed, trace.digest.clone()]
     };
-    Table {
+    ReportTable {
         caption: "Digest of every run: the same scene, seed and build give the same one.".to_owned(),
         head: words(&["run", "length", "seed", "digest"]),
         rows: runs.iter().map(row).collect(),

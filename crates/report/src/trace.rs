@@ -1,6 +1,6 @@
 //! All of a run that figures are drawn from: what every robot and every edge did, and what it cost.
 
-use crate::effort::{Effort, EffortSums};
+use crate::effort::{CommandEffort, EffortSums};
 use figures::Rgb;
 use metrics::{Digest, Metrics, MetricsBuilder};
 use scene::Scene;
@@ -44,7 +44,7 @@ pub struct Trace {
     /// Errors of the whole run; the late ones count from [`Trace::late_from`].
     pub metrics: Metrics,
     /// Commands, by edge.
-    pub efforts: Vec<Effort>,
+    pub efforts: Vec<CommandEffort>,
     /// Digest of the trajectory.
     pub digest: String,
 }

@@ -99,7 +99,8 @@ fn follows(robot: &scene::Robot) -> Option<(&str, &Follow)> {
     }
 }
 
-pub(crate) fn edge_law(follow: &Follow) -> EdgeLaw {
+/// The law, observer and set point of a follower, as the loop uses them.
+pub fn edge_law(follow: &Follow) -> EdgeLaw {
     let (law, observer) = (&follow.law, observer(follow));
     EdgeLaw {
         law: formation::Law {

@@ -112,7 +112,7 @@ fn range(all: &[&Follow], value: impl Fn(&Follow) -> [f64; 2]) -> String {
 }
 
 /// A number to six significant digits, without those that come from arithmetic only.
-pub(crate) fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string()
 }
 

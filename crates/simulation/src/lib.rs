@@ -1,11 +1,10 @@
 //! The loop itself: the only place that knows the order of a step.
 //!
 //! [`build`] turns a checked scene into a [`Setup`]; [`Simulation`] runs it, one [`StepRecord`](vocabulary::StepRecord) per
-//! control sample; [`verdict`] holds what was measured against what the scene expects.
+//! control sample.
 
 mod build;
 mod caption;
-pub mod certify;
 mod continuous;
 mod drivable;
 mod error;
@@ -18,11 +17,9 @@ mod setup;
 mod simulation;
 mod stage;
 mod step;
-pub mod tune;
-pub mod verdict;
 
-pub use build::build;
-pub use caption::caption;
+pub use build::{build, edge_law};
+pub use caption::{caption, short};
 pub use drivable::Undrivable;
 pub use error::BuildError;
 pub use fault::{Fault, NotFinite};

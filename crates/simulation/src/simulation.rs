@@ -128,6 +128,11 @@ impl Simulation {
         false
     }
 
+    /// When plant, law and observer act.
+    pub fn mode(&self) -> TimeMode {
+        self.mode
+    }
+
     /// Control period, s.
     pub fn period(&self) -> f64 {
         self.period

@@ -1,9 +1,8 @@
 //! The benchmark's results as text and as JSON.
 
-use crate::accuracy::bench::STAGES;
-use crate::accuracy::poses::BINS;
-use crate::accuracy::tally::{Bin, Rms, targets};
+use metrics::RootMeanSquare;
 use serde_json::{Value, json};
+use studies::accuracy::{AccuracyBin, BINS, STAGES, readable_rms, targets};
 
 /// Titles of the two ways to look, in the order of the times.
 const WAYS: [&str; 2] = ["part that is tracked", "whole picture"];
@@ -12,7 +11,7 @@ const WAYS: [&str; 2] = ["part that is tracked", "whole picture"];
 pub(crate) type Medians = [[Option<f64>; 4]; 2];
 
 /// Everything as lines.
-pub(crate) fn text(bins: &[Bin], times: &Medians) -> Vec<String> {
+pub(crate) fn text(bins: &[AccuracyBin], times: &Medians) -> Vec<String> {
     let mut lines = vec![format!(
         "{:<10}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}{:>9}{:>7}{:>11}",
         "distance",
@@ -57,14 +56,14 @@ pub(crate) fn text(bins: &[Bin], times: &Medians) -> Vec<String> {
         lines.push(format!(
             "{:<10}{:>5}  {:<20}{:<20}{:<20}{:<9}{:<20}{:>5}  {:<20}",
             metres(bounds),
-            bin.refined.count,
-            triple(bin.refined.values()),
+            bin.refined.count(),
+            triple(readable_rms(&bin.refined)),
             target(0),
             target(1),
             verdict(&bin.refined, wanted),
-            triple(bin.raw.values()),
-            bin.single.count,
-            triple(bin.single.values())
+            triple(readable_rms(&bin.raw)),
+            bin.single.count(),
+            triple(readable_rms(&bin.single))
         ));
     }
     lines.push(String::new());
@@ -95,8 +94,8 @@ fn number(value: Option<f64>) -> String {
 }
 
 /// What has been reached: nothing yet, not what must be, what must be, or more.
-fn verdict(rms: &Rms, wanted: Option<[[f64; 3]; 2]>) -> &'static str {
-    let (Some(got), Some([must, stretch])) = (rms.values(), wanted) else { return "" };
+fn verdict(rms: &RootMeanSquare<3>, wanted: Option<[[f64; 3]; 2]>) -> &'static str {
+    let (Some(got), Some([must, stretch])) = (readable_rms(rms), wanted) else { return "" };
     let within = |most: [f64; 3]| got.iter().zip(most).all(|(a, b)| *a <= b);
     match (within(stretch), within(must)) {
         (true, _) => "stretch",
@@ -106,11 +105,11 @@ fn verdict(rms: &Rms, wanted: Option<[[f64; 3]; 2]>) -> &'static str {
 }
 
 /// Everything for machines.
-pub(crate) fn as_json(bins: &[Bin], times: &Medians) -> Value {
-    let rms = |rms: &Rms| {
-        let values = rms.values();
+pub(crate) fn as_json(bins: &[AccuracyBin], times: &Medians) -> Value {
+    let rms = |rms: &RootMeanSquare<3>| {
+        let values = readable_rms(rms);
         json!({
-            "views": rms.count, "range_percent": values.map(|v| v[0]),
+            "views": rms.count(), "range_percent": values.map(|v| v[0]),
             "bearing_degrees": values.map(|v| v[1]), "heading_degrees": values.map(|v| v[2]),
         })
     };
@@ -142,16 +141,16 @@ pub(crate) fn as_json(bins: &[Bin], times: &Medians) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accuracy::tally::Sample;
+    use studies::accuracy::PoseSample;
 
-    fn bin(range: f64) -> Bin {
-        let mut bin = Bin::default();
-        bin.add(&Sample {
+    fn bin(range: f64) -> AccuracyBin {
+        let mut bin = AccuracyBin::default();
+        bin.add(&PoseSample {
             distance: 1.5,
             readable: 2,
             seen: 2,
             refined: Some([range, 1e-5, 1e-4]),
-            ..Sample::default()
+            ..PoseSample::default()
         });
         bin
     }
@@ -161,7 +160,7 @@ mod tests {
         let wanted = targets(1);
         let of = |range: f64| verdict(&bin(range).refined, wanted);
         assert_eq!([0.0002, 0.0008, 0.002].map(of), ["stretch", "must", "missed"]);
-        assert_eq!(verdict(&Rms::default(), wanted), "");
+        assert_eq!(verdict(&RootMeanSquare::default(), wanted), "");
         assert_eq!(verdict(&bin(0.0).refined, None), "");
     }
 

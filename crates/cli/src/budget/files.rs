@@ -1,15 +1,13 @@
 //! A comparison as files: a figure, every number as JSON, and a table for other programs.
 
-use super::Budget;
-use super::case::Observer;
 use super::picture;
-use super::scaling::Growth;
 use crate::failure::Failure;
 use crate::replaced::Replaced;
 use output::write_whole;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use studies::budget::{Budget, Growth, ObserverChoice};
 
 /// Writes figure, JSON and CSV into `folder`; what was there under their names is replaced.
 pub(crate) fn write(folder: &Path, budget: &Budget<'_>, quiet: bool) -> Result<Vec<PathBuf>, Failure> {
@@ -35,34 +33,34 @@ pub(crate) fn as_json(budget: &Budget<'_>) -> Value {
     let edges: Vec<_> = (0..budget.fleet.edges.len()).collect();
     let runs = budget.runs.iter().map(|(case, run)| {
         let constant = match case.observer {
-            Observer::Constant(constant) => constant,
-            Observer::HighGain | Observer::Unscented => None,
+            ObserverChoice::Constant(constant) => constant,
+            ObserverChoice::HighGain | ObserverChoice::Unscented => None,
         };
         json!({
             "sensing": case.level.word(),
             "pixel_noise": case.level.pixels(),
             "observer": observer(case.observer),
             "epsilon": constant,
-            "adaptive": matches!(case.observer, Observer::Constant(None)),
+            "adaptive": matches!(case.observer, ObserverChoice::Constant(None)),
             "contacts": run.contacts,
             "duration": run.duration,
             "edges": run.edges,
         })
     });
-    let growth = |observer: Observer, edge: usize, channel: usize| {
+    let growth = |observer: ObserverChoice, edge: usize, channel: usize| {
         Growth::fit(&budget.curve(edge, observer, |m| Some(m.tracking[channel])))
     };
     let scaling = edges.iter().map(|edge| {
         let (each, all) = budget.camera_as_pixels(*edge);
         let looks = [0, 1, 2]
-            .map(|c| Growth::fit(&budget.curve(*edge, Observer::HighGain, |m| Some(m.looks?[c]))));
+            .map(|c| Growth::fit(&budget.curve(*edge, ObserverChoice::HighGain, |m| Some(m.looks?[c]))));
         let told =
-            [0, 1, 2].map(|c| Growth::fit(&budget.curve(*edge, Observer::HighGain, |m| Some(m.told?[c]))));
-        let tracking = |observer: Observer| [0, 1].map(|c| growth(observer, *edge, c));
+            [0, 1, 2].map(|c| Growth::fit(&budget.curve(*edge, ObserverChoice::HighGain, |m| Some(m.told?[c]))));
+        let tracking = |observer: ObserverChoice| [0, 1].map(|c| growth(observer, *edge, c));
         json!({
             "looks": looks,
             "told": told,
-            "tracking": { "high-gain": tracking(Observer::HighGain), "unscented": tracking(Observer::Unscented) },
+            "tracking": { "high-gain": tracking(ObserverChoice::HighGain), "unscented": tracking(ObserverChoice::Unscented) },
             "camera_as_pixels": { "distance": each[0], "bearing": each[1], "view_angle": each[2], "all": all },
         })
     });
@@ -82,10 +80,10 @@ pub(crate) fn as_json(budget: &Budget<'_>) -> Value {
     value
 }
 
-fn observer(observer: Observer) -> &'static str {
+fn observer(observer: ObserverChoice) -> &'static str {
     match observer {
-        Observer::Unscented => "unscented",
-        Observer::HighGain | Observer::Constant(_) => "high-gain",
+        ObserverChoice::Unscented => "unscented",
+        ObserverChoice::HighGain | ObserverChoice::Constant(_) => "high-gain",
     }
 }
 
@@ -100,9 +98,9 @@ fn as_csv(budget: &Budget<'_>) -> String {
     let mut text = COLUMNS.to_owned();
     for (case, run) in &budget.runs {
         let epsilon = match case.observer {
-            Observer::Constant(Some(epsilon)) => epsilon.to_string(),
-            Observer::Constant(None) => "adaptive".to_owned(),
-            Observer::HighGain | Observer::Unscented => String::new(),
+            ObserverChoice::Constant(Some(epsilon)) => epsilon.to_string(),
+            ObserverChoice::Constant(None) => "adaptive".to_owned(),
+            ObserverChoice::HighGain | ObserverChoice::Unscented => String::new(),
         };
         for (index, edge) in run.edges.iter().enumerate() {
             let [leader, follower] = budget.edge(index).map(quoted);

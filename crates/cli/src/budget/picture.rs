@@ -1,12 +1,10 @@
 //! A comparison as a figure a column wide.
 
-use super::Budget;
-use super::case::{Level, Observer};
-use super::measure::Measured;
 use figures::{Axis, Figure, Key, Marker, Panel, Rgb, Scale, Series, Stroke};
+use studies::budget::{Budget, EdgeErrors, ObserverChoice, SensingLevel};
 
 /// One quantity of an edge.
-type Value<'a> = &'a dyn Fn(&Measured) -> Option<f64>;
+type Value<'a> = &'a dyn Fn(&EdgeErrors) -> Option<f64>;
 
 pub(crate) fn figure(budget: &Budget<'_>) -> Figure {
     if budget.constants { constants(budget) } else { levels(budget) }
@@ -47,7 +45,7 @@ fn levels(budget: &Budget<'_>) -> Figure {
         Key { name: "unscented filter".to_owned(), stroke: Stroke::Dashed, ..Key::default() },
         Key { name: "told the truth".to_owned(), stroke: Stroke::Dotted, ..Key::default() },
     ];
-    if budget.run(Level::Camera, Observer::HighGain).is_some() {
+    if budget.run(SensingLevel::Camera, ObserverChoice::HighGain).is_some() {
         keys.push(Key {
             name: "camera, at the noise its looks stand for".to_owned(),
             stroke: Stroke::None,
@@ -66,9 +64,9 @@ fn levels(budget: &Budget<'_>) -> Figure {
 
 /// A curve for every edge, and a diamond for its camera.
 fn looks(budget: &Budget<'_>, label: &str, channel: usize, factor: f64) -> Panel {
-    let value = |m: &Measured| Some(m.looks?[channel] * factor);
+    let value = |m: &EdgeErrors| Some(m.looks?[channel] * factor);
     let series = followers(budget).into_iter().enumerate().flat_map(|(index, (colour, name))| {
-        let mut points = budget.curve(index, Observer::HighGain, value);
+        let mut points = budget.curve(index, ObserverChoice::HighGain, value);
         // Without noise and tilt only rounding errs: showing it would flatten everything else.
         if let [[_, first], [_, second], ..] = points[..]
             && first < 0.05 * second
@@ -83,23 +81,23 @@ fn looks(budget: &Budget<'_>, label: &str, channel: usize, factor: f64) -> Panel
 
 /// A curve for every edge and observer, a diamond for its camera, and the least that is possible.
 fn tracking(budget: &Budget<'_>, label: &str, channel: usize, factor: f64) -> Panel {
-    let value = |m: &Measured| Some(m.tracking[channel] * factor);
+    let value = |m: &EdgeErrors| Some(m.tracking[channel] * factor);
     let series = followers(budget).into_iter().enumerate().flat_map(|(index, (colour, name))| {
-        let curve = |observer: Observer, stroke: Stroke, marker: Marker| Series {
+        let curve = |observer: ObserverChoice, stroke: Stroke, marker: Marker| Series {
             colour,
             points: budget.curve(index, observer, value),
             marker,
             stroke,
             ..Series::default()
         };
-        let unscented = curve(Observer::Unscented, Stroke::Dashed, Marker::None);
-        let high_gain = Series { name, ..curve(Observer::HighGain, Stroke::Solid, Marker::of(index)) };
+        let unscented = curve(ObserverChoice::Unscented, Stroke::Dashed, Marker::None);
+        let high_gain = Series { name, ..curve(ObserverChoice::HighGain, Stroke::Solid, Marker::of(index)) };
         [Some(unscented), Some(high_gain), camera(budget, index, colour, &value)].into_iter().flatten()
     });
     let mut series: Vec<Series> = series.collect();
     let least = series.iter().flat_map(|s| &s.points).map(|p| p[1]).fold(f64::INFINITY, f64::min);
     let ends: Vec<f64> = budget.pixels().into_iter().filter(|p| *p > 0.0).collect();
-    let truth = budget.run(Level::Truth, Observer::HighGain);
+    let truth = budget.run(SensingLevel::Truth, ObserverChoice::HighGain);
     for (index, (colour, _)) in followers(budget).into_iter().enumerate() {
         let Some(level) = truth.and_then(|run| value(run.edges.get(index)?)) else { continue };
         // Where the truth is far better, showing it would flatten everything else.
@@ -113,7 +111,7 @@ fn tracking(budget: &Budget<'_>, label: &str, channel: usize, factor: f64) -> Pa
 
 /// The camera's value, at the noise of corners that the follower's looks by camera stand for.
 fn camera(budget: &Budget<'_>, index: usize, colour: Rgb, value: Value<'_>) -> Option<Series> {
-    let run = budget.run(Level::Camera, Observer::HighGain)?;
+    let run = budget.run(SensingLevel::Camera, ObserverChoice::HighGain)?;
     let (pixels, value) = (budget.camera_as_pixels(index).1?, value(run.edges.get(index)?)?);
     let points = vec![[pixels, value]];
     Some(Series { colour, points, stroke: Stroke::None, marker: Marker::Diamond, ..Series::default() })
@@ -123,15 +121,15 @@ fn camera(budget: &Budget<'_>, index: usize, colour: Rgb, value: Value<'_>) -> O
 fn constants(budget: &Budget<'_>) -> Figure {
     let panel = |label: &str, scale: Scale, value: Value<'_>| {
         let series = followers(budget).into_iter().enumerate().flat_map(|(index, (colour, name))| {
-            let at = |observer: Observer| {
+            let at = |observer: ObserverChoice| {
                 let run = budget.runs.iter().find(|(case, _)| case.observer == observer);
                 value(run?.1.edges.get(index)?)
             };
             let points: Vec<[f64; 2]> = epsilons(budget)
-                .filter_map(|epsilon| Some([epsilon, at(Observer::Constant(Some(epsilon)))?]))
+                .filter_map(|epsilon| Some([epsilon, at(ObserverChoice::Constant(Some(epsilon)))?]))
                 .collect();
             let ends = [points.first(), points.last()].into_iter().flatten().map(|p| p[0]);
-            let level = at(Observer::Constant(None));
+            let level = at(ObserverChoice::Constant(None));
             let adaptive = ends.filter_map(|x| Some([x, level?])).collect();
             [
                 Series { colour, points: adaptive, stroke: Stroke::Dashed, ..Series::default() },
@@ -168,7 +166,7 @@ fn constants(budget: &Budget<'_>) -> Figure {
 /// The constants that were tried, in order.
 fn epsilons(budget: &Budget<'_>) -> impl Iterator<Item = f64> {
     budget.runs.iter().filter_map(|(case, _)| match case.observer {
-        Observer::Constant(constant) => constant,
-        Observer::HighGain | Observer::Unscented => None,
+        ObserverChoice::Constant(constant) => constant,
+        ObserverChoice::HighGain | ObserverChoice::Unscented => None,
     })
 }

@@ -1,17 +1,14 @@
 //! A comparison as tables for people.
 
-use super::Budget;
-use super::case::{Case, Level, Observer};
-use super::measure::{Measured, Run};
-use super::scaling::Growth;
 use crate::print::say;
+use studies::budget::{Budget, BudgetCase, EdgeErrors, Growth, MeasuredRun, ObserverChoice, SensingLevel};
 use vocabulary::counted;
 
 /// Edges that are told one by one.
 const MOST_EDGES: usize = 12;
 
 pub(crate) fn print(budget: &Budget<'_>) {
-    say(&format!("{}\n{}", budget.scene.title, simulation::caption(budget.scene)));
+    say(&format!("{}\n{}", budget.scene.title, studies::caption(budget.scene)));
     say(&format!(
         "seed {}, errors are root mean squares from {} s on",
         budget.scene.seed, budget.settled_after
@@ -43,7 +40,7 @@ pub(crate) fn print(budget: &Budget<'_>) {
 }
 
 /// What went wrong in a run, in a line.
-fn trouble(budget: &Budget<'_>, case: &Case, run: &Run) {
+fn trouble(budget: &Budget<'_>, case: &BudgetCase, run: &MeasuredRun) {
     let name = format!("{}, {}", case.level.name(), case.observer.name());
     if run.contacts > 0 {
         say(&format!("{name}: {}", counted(run.contacts, "contact")));
@@ -80,13 +77,13 @@ fn levels(budget: &Budget<'_>, index: usize) {
     ));
     for (case, run) in &budget.runs {
         let Some(edge) = run.edges.get(index) else { continue };
-        let observer = if case.level == Level::Truth { "-".to_owned() } else { case.observer.name() };
+        let observer = if case.level == SensingLevel::Truth { "-".to_owned() } else { case.observer.name() };
         say(&format!(
             "{:17} {observer:9} {} {:>7}  {}  {:>8.2} {:>7} {:>7} {:>7}",
             case.level.name(),
             three(edge.looks),
             percent(edge.looks_relative, 3),
-            three(if case.level == Level::Truth { None } else { edge.told }),
+            three(if case.level == SensingLevel::Truth { None } else { edge.told }),
             edge.tracking[0] * 1e3,
             degrees(edge.tracking[1]),
             percent(edge.in_view, 1),
@@ -95,7 +92,7 @@ fn levels(budget: &Budget<'_>, index: usize) {
     }
     growth(budget, index);
     let (each, all) = budget.camera_as_pixels(index);
-    if budget.run(Level::Camera, Observer::HighGain).is_some() {
+    if budget.run(SensingLevel::Camera, ObserverChoice::HighGain).is_some() {
         let tried = budget.pixels();
         let one = |noise: Option<f64>| noise.map_or_else(|| "outside".to_owned(), |n| format!("{n:.3} px"));
         let [l, p, g] = each.map(one);
@@ -110,7 +107,7 @@ fn levels(budget: &Budget<'_>, index: usize) {
 
 /// How errors grow with the noise of corners.
 fn growth(budget: &Budget<'_>, index: usize) {
-    let fit = |observer: Observer, value: &dyn Fn(&Measured) -> Option<f64>| {
+    let fit = |observer: ObserverChoice, value: &dyn Fn(&EdgeErrors) -> Option<f64>| {
         Growth::fit(&budget.curve(index, observer, value))
     };
     let one = |fit: Option<Growth>, scale: f64, unit: &str| {
@@ -120,11 +117,19 @@ fn growth(budget: &Budget<'_>, index: usize) {
         )
     };
     let angle = 1_f64.to_degrees();
-    let rows: [(&str, Observer, [Option<Growth>; 3]); 4] = [
-        ("looks", Observer::HighGain, [0, 1, 2].map(|c| fit(Observer::HighGain, &|m| Some(m.looks?[c])))),
-        ("told", Observer::HighGain, [0, 1, 2].map(|c| fit(Observer::HighGain, &|m| Some(m.told?[c])))),
-        ("tracking", Observer::HighGain, tracking(&fit, Observer::HighGain)),
-        ("tracking", Observer::Unscented, tracking(&fit, Observer::Unscented)),
+    let rows: [(&str, ObserverChoice, [Option<Growth>; 3]); 4] = [
+        (
+            "looks",
+            ObserverChoice::HighGain,
+            [0, 1, 2].map(|c| fit(ObserverChoice::HighGain, &|m| Some(m.looks?[c]))),
+        ),
+        (
+            "told",
+            ObserverChoice::HighGain,
+            [0, 1, 2].map(|c| fit(ObserverChoice::HighGain, &|m| Some(m.told?[c]))),
+        ),
+        ("tracking", ObserverChoice::HighGain, tracking(&fit, ObserverChoice::HighGain)),
+        ("tracking", ObserverChoice::Unscented, tracking(&fit, ObserverChoice::Unscented)),
     ];
     if rows.iter().all(|(.., fits)| fits.iter().all(Option::is_none)) {
         return;
@@ -139,9 +144,9 @@ fn growth(budget: &Budget<'_>, index: usize) {
 }
 
 /// How a measure of an observer's runs grows with the noise of the corners.
-type Fit<'a> = dyn Fn(Observer, &dyn Fn(&Measured) -> Option<f64>) -> Option<Growth> + 'a;
+type Fit<'a> = dyn Fn(ObserverChoice, &dyn Fn(&EdgeErrors) -> Option<f64>) -> Option<Growth> + 'a;
 
-fn tracking(fit: &Fit<'_>, observer: Observer) -> [Option<Growth>; 3] {
+fn tracking(fit: &Fit<'_>, observer: ObserverChoice) -> [Option<Growth>; 3] {
     [fit(observer, &|m| Some(m.tracking[0])), fit(observer, &|m| Some(m.tracking[1])), None]
 }
 

@@ -1,20 +1,20 @@
 //! A certificate as files: JSON, the quantities of the theorems over time as a table, and figures.
 
-use super::Report;
-use super::beyond::Beyond;
+use super::CertifyReport;
 use super::pictures;
 use super::text::reason;
 use crate::failure::Failure;
 use crate::replaced::Replaced;
 use output::write_whole;
 use serde_json::{Value, json};
-use simulation::certify::chain::LENGTHS;
-use simulation::certify::{Certificate, Constants, LongestPeriod};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use studies::certify::beyond::Beyond;
+use studies::certify::chain::LENGTHS;
+use studies::certify::{Certificate, Constants, LongestPeriod};
 
 /// Writes everything into `folder`; what was there under the same names is replaced.
-pub(super) fn write(folder: &Path, report: &Report<'_>, quiet: bool) -> Result<Vec<PathBuf>, Failure> {
+pub(super) fn write(folder: &Path, report: &CertifyReport<'_>, quiet: bool) -> Result<Vec<PathBuf>, Failure> {
     let mut texts =
         vec![("certificate.json", format!("{:#}\n", as_json(report))), ("certificate.csv", table(report))];
     texts.extend(pictures::figures(report));
@@ -38,18 +38,18 @@ pub(super) fn write(folder: &Path, report: &Report<'_>, quiet: bool) -> Result<V
 }
 
 /// Every number, SI units.
-pub(super) fn as_json(report: &Report<'_>) -> Value {
+pub(super) fn as_json(report: &CertifyReport<'_>) -> Value {
     let edges: Vec<Value> = report.certificates.iter().map(|c| edge(report, c)).collect();
     json!({
         "title": report.scene.title,
-        "law": simulation::caption(report.scene),
+        "law": studies::caption(report.scene),
         "edges": edges,
         "beyond": report.beyond.as_ref().map(|beyond| beyond_json(report, beyond)),
         "wall_seconds": report.wall,
     })
 }
 
-fn edge(report: &Report<'_>, certificate: &Certificate) -> Value {
+fn edge(report: &CertifyReport<'_>, certificate: &Certificate) -> Value {
     let mut value = serde_json::to_value(certificate.metrics(&report.fleet)).unwrap_or_default();
     if let Some(map) = value.as_object_mut() {
         let witness = &certificate.witness;
@@ -77,7 +77,7 @@ fn constants(c: &Constants, bound: Option<f64>) -> Value {
     })
 }
 
-fn beyond_json(report: &Report<'_>, beyond: &Beyond) -> Value {
+fn beyond_json(report: &CertifyReport<'_>, beyond: &Beyond) -> Value {
     let sensitivity = match &beyond.sensitivities {
         Err(why) => json!({ "left_out": why }),
         Ok(found) => {
@@ -134,7 +134,7 @@ fn beyond_json(report: &Report<'_>, beyond: &Beyond) -> Value {
 }
 
 /// A row for every edge and sample.
-fn table(report: &Report<'_>) -> String {
+fn table(report: &CertifyReport<'_>) -> String {
     let mut text = String::from(
         "leader,follower,time_s,error,error_rate,filtered_error,leader_effect,leader_effect_rate,beta_margin,p,v,\
          observer_error,w\n",

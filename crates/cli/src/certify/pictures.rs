@@ -1,10 +1,10 @@
 //! Certificates as figures for print.
 
-use super::Report;
-use super::beyond::{Beyond, Chart, PERIODS};
+use super::CertifyReport;
 use figures::{Axis, Figure, Guide, Key, Marker, Panel, Rgb, Scale, Series, Stroke};
-use simulation::certify::chain::LENGTHS;
-use simulation::certify::{LongestPeriod, WitnessRow};
+use studies::certify::beyond::{Beyond, PERIODS, StabilityChart};
+use studies::certify::chain::LENGTHS;
+use studies::certify::{LongestPeriod, WitnessRow};
 
 /// Curves that are shown, at most.
 const MOST_EDGES: usize = 6;
@@ -14,7 +14,7 @@ const GREYS: [f32; LENGTHS.len()] = [0.0, 0.25, 0.4, 0.55];
 const MOST_POINTS: usize = 400;
 
 /// Names and texts of all figures there are.
-pub(super) fn figures(report: &Report<'_>) -> Vec<(&'static str, String)> {
+pub(super) fn figures(report: &CertifyReport<'_>) -> Vec<(&'static str, String)> {
     let mut all = vec![("certificate.svg", over_time(report).svg())];
     if let Some(beyond) = &report.beyond {
         if let Some(chart) = &beyond.chart {
@@ -28,7 +28,7 @@ pub(super) fn figures(report: &Report<'_>) -> Vec<(&'static str, String)> {
     all
 }
 
-fn colours(report: &Report<'_>) -> Vec<Rgb> {
+fn colours(report: &CertifyReport<'_>) -> Vec<Rgb> {
     let robots = rendering::robot_colours(&report.fleet);
     let colour = |edge: &vocabulary::Edge| robots.get(edge.follower).copied().unwrap_or([0.3; 3]);
     report.fleet.edges.iter().map(colour).collect()
@@ -39,7 +39,7 @@ fn axis(label: &str, scale: Scale) -> Axis {
 }
 
 /// The margin of β, P and V, and W with its trap.
-fn over_time(report: &Report<'_>) -> Figure {
+fn over_time(report: &CertifyReport<'_>) -> Figure {
     let colours = colours(report);
     let panel = |label: &str, scale: Scale, named: bool, value: fn(&WitnessRow) -> f64| {
         let mut series = vec![];
@@ -87,7 +87,7 @@ fn over_time(report: &Report<'_>) -> Figure {
 }
 
 /// The longest stable period over ε, a curve for every discretisation.
-fn stability(report: &Report<'_>, chart: &Chart) -> Figure {
+fn stability(report: &CertifyReport<'_>, chart: &StabilityChart) -> Figure {
     const COLOURS: [Rgb; 5] =
         [[0.0, 0.45, 0.70], [0.0, 0.62, 0.45], [0.90, 0.62, 0.0], [0.80, 0.47, 0.65], [0.84, 0.37, 0.0]];
     let series = chart.borders.iter().enumerate().map(|(k, (_, border))| {
@@ -127,7 +127,7 @@ fn stability(report: &Report<'_>, chart: &Chart) -> Figure {
 }
 
 /// How far away a set point may be, over its bearing.
-fn reach(report: &Report<'_>, beyond: &Beyond) -> Figure {
+fn reach(report: &CertifyReport<'_>, beyond: &Beyond) -> Figure {
     let colours = colours(report);
     let mut series = vec![];
     let shown = || beyond.reach.iter().take(MOST_EDGES);
@@ -178,7 +178,7 @@ fn reach(report: &Report<'_>, beyond: &Beyond) -> Figure {
 }
 
 /// Gains over frequency of the first edge, and in long chains of it.
-fn chain(report: &Report<'_>, beyond: &Beyond) -> Figure {
+fn chain(report: &CertifyReport<'_>, beyond: &Beyond) -> Figure {
     let Some(gain) = beyond.chain.iter().find(|gain| !gain.curve.is_empty()) else {
         return Figure::default();
     };

@@ -1,22 +1,22 @@
 //! A certificate for people.
 
-use super::Report;
-use super::beyond::{Beyond, Chart};
+use super::CertifyReport;
 use crate::print::say;
-use simulation::certify::chain::{LENGTHS, Point};
-use simulation::certify::{
+use std::path::PathBuf;
+use studies::certify::beyond::{Beyond, PERIODS, StabilityChart};
+use studies::certify::chain::{GainPoint, LENGTHS};
+use studies::certify::{
     Certificate, Constants, Discretisation, Infeasible, LongestPeriod, NotLinear, Statement,
     StatementFinding, StatementOutcome,
 };
-use std::path::PathBuf;
 
 /// Edges that are told statement by statement; the others have a line each.
 const IN_FULL: usize = 2;
 /// Edges that have a line.
 const MOST_EDGES: usize = 12;
 
-pub(super) fn tell(report: &Report<'_>, written: &[PathBuf]) {
-    say(&format!("{}\n{}", report.scene.title, simulation::caption(report.scene)));
+pub(super) fn tell(report: &CertifyReport<'_>, written: &[PathBuf]) {
+    say(&format!("{}\n{}", report.scene.title, studies::caption(report.scene)));
     for certificate in report.certificates.iter().take(IN_FULL) {
         edge(report, certificate);
     }
@@ -36,7 +36,7 @@ pub(super) fn tell(report: &Report<'_>, written: &[PathBuf]) {
     }
 }
 
-fn edge(report: &Report<'_>, certificate: &Certificate) {
+fn edge(report: &CertifyReport<'_>, certificate: &Certificate) {
     let [from, to] = certificate.span;
     say(&format!("\n{}, {from:.2} to {to:.2} s", report.edge(certificate.edge)));
     for finding in &certificate.findings {
@@ -68,7 +68,7 @@ fn edge(report: &Report<'_>, certificate: &Certificate) {
 }
 
 /// A line for every edge that is not told in full.
-fn others(report: &Report<'_>) {
+fn others(report: &CertifyReport<'_>) {
     let rest = || report.certificates.iter().skip(IN_FULL);
     if rest().next().is_none() {
         return;
@@ -125,7 +125,7 @@ fn statement(finding: &StatementFinding) {
     };
     say(&format!("  {:<14} {:<32} {outcome}", finding.statement.source(), finding.statement.words()));
     if finding.outcome() == StatementOutcome::PremiseNotMet {
-        let reasons: Vec<String> = finding.unmet.iter().map(simulation::certify::Premise::words).collect();
+        let reasons: Vec<String> = finding.unmet.iter().map(studies::certify::Premise::words).collect();
         for line in wrapped(&reasons, 84) {
             say(&format!("{:51}{line}", ""));
         }
@@ -188,7 +188,7 @@ fn numbers(c: &Constants, bound: Option<f64>, met: bool) {
     }
 }
 
-fn sensitivities(report: &Report<'_>, beyond: &Beyond) {
+fn sensitivities(report: &CertifyReport<'_>, beyond: &Beyond) {
     let found = match &beyond.sensitivities {
         Ok(found) => found,
         Err(why) => return say(&format!("  sensitivity of the settled error: {why}")),
@@ -209,13 +209,13 @@ fn sensitivities(report: &Report<'_>, beyond: &Beyond) {
     }
 }
 
-fn reach(report: &Report<'_>, beyond: &Beyond) {
+fn reach(report: &CertifyReport<'_>, beyond: &Beyond) {
     say("  set points that can be held while leaders drive their paths, limits on speed and turning kept");
     for reach in beyond.reach.iter().take(MOST_EDGES) {
         let [distance, bearing] = reach.set_point;
         let degrees = bearing.to_degrees();
         let near = reach.rays.iter().min_by(|a, b| {
-            let off = |ray: &simulation::certify::reach::Ray| vocabulary::wrap(ray.bearing - bearing).abs();
+            let off = |ray: &studies::certify::reach::ReachRay| vocabulary::wrap(ray.bearing - bearing).abs();
             off(a).total_cmp(&off(b))
         });
         let along = near.map_or_else(String::new, |ray| match ray.end {
@@ -227,7 +227,7 @@ fn reach(report: &Report<'_>, beyond: &Beyond) {
             .map_or_else(|| "can be held".to_owned(), |why| format!("CANNOT be held: {}", reason(why)));
         say(&format!("    {:<28} {distance:.2} m at {degrees:.0}° {own}; {along}", report.edge(reach.edge)));
     }
-    if simulation::certify::reach::moving(report.scene) {
+    if studies::certify::reach::moving(report.scene) {
         say("    set points of this scene move; these are the ones at the start");
     }
 }
@@ -242,7 +242,7 @@ pub(super) fn reason(why: Infeasible) -> &'static str {
     }
 }
 
-fn stability(chart: &Chart) {
+fn stability(chart: &StabilityChart) {
     let at = chart.channel;
     say(&format!(
         "  sampled stability of {}, linear about its set point, at ε = {} s and {} ms",
@@ -253,7 +253,7 @@ fn stability(chart: &Chart) {
     for how in Discretisation::ALL {
         let growth = at.growth(how, chart.epsilon, chart.period);
         let stable = if growth < 1.0 { "stable" } else { "UNSTABLE" };
-        let longest = match at.longest_period(how, chart.epsilon, super::beyond::PERIODS) {
+        let longest = match at.longest_period(how, chart.epsilon, PERIODS) {
             LongestPeriod::At(period) => format!("up to {} ms", short(1e3 * period)),
             LongestPeriod::Below => "at none from 0.1 ms on".to_owned(),
             LongestPeriod::Beyond => "up to 1 s and beyond".to_owned(),
@@ -268,7 +268,7 @@ fn stability(chart: &Chart) {
     }
 }
 
-fn chain(report: &Report<'_>, beyond: &Beyond) {
+fn chain(report: &CertifyReport<'_>, beyond: &Beyond) {
     say(
         "  chains: distance error per deviation of the lead robot's speed, largest over frequency (linear, no limits)",
     );
@@ -296,7 +296,7 @@ fn chain(report: &Report<'_>, beyond: &Beyond) {
             gain.depth
         ));
         let slow = gain.curve.iter().min_by(|a, b| {
-            let off = |p: &Point| (p.frequency / SLOW).ln().abs();
+            let off = |p: &GainPoint| (p.frequency / SLOW).ln().abs();
             off(a).total_cmp(&off(b))
         });
         let lengths: Vec<String> = LENGTHS

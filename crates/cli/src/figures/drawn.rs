@@ -4,21 +4,29 @@ use super::folder::Folder;
 use super::meter::Meter;
 use super::{Subject, ready, stop};
 use crate::failure::Failure;
-use crate::playback::{Playback, Source};
-use crate::run::PROGRAM;
+use crate::playback::Playback;
 use film::{FilmKind, png};
 use rendering::{Gpu, Renderer, Style, ViewLayout};
-use report::{Case, Film, Job, Ran, Report, Shot, add_picture, find};
+use report::{Case, FinishedRun, PlannedRun, Report, ReportFilm, ReportPicture, add_picture, find};
+use studies::PROGRAM;
+use studies::replay::RecordSource;
 use vocabulary::FleetInfo;
 
 /// A run to draw.
-pub(super) struct Show {
+pub(super) struct FilmedRun {
     case: Case,
     /// File name of the film, without its ending.
     name: String,
-    job: Job,
-    /// File name of the picture without its ending, and its time, s.
-    shot: Option<(String, f64)>,
+    job: PlannedRun,
+    picture: Option<PictureOfRun>,
+}
+
+/// A picture of a run.
+struct PictureOfRun {
+    /// File name without its ending.
+    stem: &'static str,
+    /// s.
+    time: f64,
 }
 
 /// 170 mm, two columns, at 300 dots an inch.
@@ -31,7 +39,7 @@ const RATE: f64 = 20.0;
 /// About as long as films get, s.
 const LENGTH: f64 = 8.0;
 
-impl Show {
+impl FilmedRun {
     fn duration(&self) -> f64 {
         self.job.scene.time.duration
     }
@@ -49,8 +57,8 @@ impl Show {
 }
 
 /// What is drawn of a subject.
-pub(super) fn shows(subject: &Subject) -> Vec<Show> {
-    let show = |(case, name, job): (Case, &str, &Job)| {
+pub(super) fn shows(subject: &Subject) -> Vec<FilmedRun> {
+    let show = |(case, name, job): (Case, &str, &PlannedRun)| {
         let stem = match case {
             Case::Line => None,
             Case::Circle => Some("figure-13"),
@@ -58,22 +66,23 @@ pub(super) fn shows(subject: &Subject) -> Vec<Show> {
             Case::Own => Some("snake"),
         };
         let time = if case == Case::Own { 0.8 } else { 0.6 } * job.scene.time.duration;
-        let shot = stem.map(|stem| (stem.to_owned(), time));
-        Show { case, name: name.to_owned(), job: job.clone(), shot }
+        let picture = stem.map(|stem| PictureOfRun { stem, time });
+        FilmedRun { case, name: name.to_owned(), job: job.clone(), picture }
     };
     subject.filmed().into_iter().map(show).collect()
 }
 
 /// Draws one run: its film into the folder, its picture into the report.
 pub(super) fn draw(
-    show: &Show,
+    show: &FilmedRun,
     gpu: &Gpu,
     adapter: &str,
-    runs: &[Ran],
-    (folder, meter): (&mut Folder, &mut Meter),
+    runs: &[FinishedRun],
+    folder: &mut Folder,
+    meter: &mut Meter,
     report: &mut Report,
 ) -> Result<(), Failure> {
-    let simulation = ready(&show.job, Some(gpu), adapter)?;
+    let simulation = ready(&show.job, Some(gpu), adapter)?.simulation;
     let fleet = simulation.fleet().clone();
     let layout = layout(show, &fleet)?;
     let style = Style::without(&["caption", "inset", "labels"])?;
@@ -81,13 +90,13 @@ pub(super) fn draw(
     let file = format!("{}.mp4", show.name);
     let path = folder.place(&file);
     let mut film = film::Film::create(&path, FilmKind::Mp4, FILM[0], FILM[1], RATE)?;
-    let mut playback = Playback::new(&fleet, Source::Run(Box::new(simulation)));
-    let mut shot = show.shot.as_ref();
+    let mut playback = Playback::new(&fleet, RecordSource::Run(Box::new(simulation)));
+    let mut due = show.picture.as_ref();
     for frame in 0..show.frames() {
         let time = frame as f64 * show.speed() / RATE;
-        if let Some((stem, at)) = shot.filter(|(_, at)| *at <= time) {
-            picture(show, (stem.as_str(), *at), (gpu, &fleet, &layout), &mut playback, runs, report)?;
-            shot = None;
+        if let Some(of) = due.filter(|of| of.time <= time) {
+            picture(show, of, gpu, &layout, &mut playback, runs, report)?;
+            due = None;
         }
         let record = playback.at(time);
         playback.check()?;
@@ -104,26 +113,29 @@ pub(super) fn draw(
         std::fs::read(&path).map_err(|e| Failure::Machine(format!("cannot read {}: {e}", path.display())))?;
     let speed = show.speed();
     let fast = if speed > 1.0 { format!(", {speed} times as fast as it is") } else { String::new() };
-    report.films.push(Film { file, caption: format!("{}{fast}.", fleet.title), mp4 });
+    report.films.push(ReportFilm { file, caption: format!("{}{fast}.", fleet.title), mp4 });
     Ok(())
 }
 
 /// The view of the scene; the paper's is the snake's.
-fn layout(show: &Show, fleet: &FleetInfo) -> Result<ViewLayout, Failure> {
+fn layout(show: &FilmedRun, fleet: &FleetInfo) -> Result<ViewLayout, Failure> {
     let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
     let view = if show.case == Case::Own { show.job.scene.views.default.as_str() } else { "snake" };
     Ok(ViewLayout::parse(view, &names)?)
 }
 
 fn picture(
-    show: &Show,
-    (stem, time): (&str, f64),
-    (gpu, fleet, layout): (&Gpu, &FleetInfo, &ViewLayout),
+    show: &FilmedRun,
+    of: &PictureOfRun,
+    gpu: &Gpu,
+    layout: &ViewLayout,
     playback: &mut Playback,
-    runs: &[Ran],
+    runs: &[FinishedRun],
     report: &mut Report,
 ) -> Result<(), Failure> {
+    let PictureOfRun { stem, time } = *of;
     let Some(trace) = find(runs, show.case, show.job.variant) else { return Ok(()) };
+    let fleet = &trace.fleet;
     let mut style = Style::without(&["caption", "inset", "time"])?;
     style.scale = PICTURE_TEXT;
     let mut renderer = Renderer::new(gpu, fleet, PICTURE[0], PICTURE[1], 4)?;
@@ -134,7 +146,7 @@ fn picture(
     let texts = [("Software", PROGRAM), ("Title", &*fleet.title), ("Time", &*at), ("Adapter", &*adapter)];
     let view =
         if show.job.scene.views.default == "snake" || show.case != Case::Own { "Snake view" } else { "View" };
-    let shot = Shot {
+    let shot = ReportPicture {
         stem: stem.to_owned(),
         caption: format!(
             "{view}: {}, at {time:.1} s. Ribbons are where the robots drove, rings where the followers should be.",

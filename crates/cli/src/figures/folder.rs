@@ -1,12 +1,12 @@
 //! The folder of a set of figures: refused where it holds other things, every file in it whole or not there.
 
 use crate::failure::Failure;
-use crate::run::PROGRAM;
 use output::{Claim, write_whole};
-use report::{Ran, Report};
+use report::{FinishedRun, Report};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
+use studies::PROGRAM;
 
 /// The file that says whose folder it is, and what is in it.
 const MARK: &str = "claims.json";
@@ -48,13 +48,13 @@ impl Folder {
     }
 
     /// Writes down how it ended, what is in the folder, and what came out.
-    pub(super) fn close(&self, status: &str, came: Option<(&Report, &[Ran])>) -> Result<(), Failure> {
+    pub(super) fn close(&self, status: &str, came: Option<(&Report, &[FinishedRun])>) -> Result<(), Failure> {
         // A place that was kept for a film which was never finished is no file.
         let there: Vec<&String> = self.files.iter().filter(|name| self.path.join(name).exists()).collect();
         let mut value = json!({
             "format": FORMAT,
             "program": PROGRAM,
-            "commit": option_env!("ECHELON_COMMIT"),
+            "commit": studies::COMMIT,
             "status": status,
             "files": there,
         });
@@ -66,9 +66,9 @@ impl Folder {
 }
 
 /// Claims, runs, what was left out.
-pub(super) fn found(report: &Report, runs: &[Ran]) -> serde_json::Map<String, Value> {
+pub(super) fn found(report: &Report, runs: &[FinishedRun]) -> serde_json::Map<String, Value> {
     let claims: Vec<_> = report.claims().collect();
-    let run = |ran: &Ran| {
+    let run = |ran: &FinishedRun| {
         let trace = &ran.trace;
         json!({
             "name": trace.name,

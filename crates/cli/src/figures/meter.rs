@@ -1,16 +1,16 @@
-//! How far the whole job is: samples, frames and sheets on one bar.
+//! How far the whole job is: samples, frames and figures on one bar.
 
-use super::drawn::Show;
+use super::drawn::FilmedRun;
 use super::{FiguresArgs, Subject};
 use crate::progress::Progress;
-use simulation::Simulation;
+use studies::SceneRun;
 use vocabulary::counted;
 
-/// What a frame of a film and a printed sheet weigh in samples of a few robots.
+/// What a frame of a film and a figure weigh in samples of a few robots.
 const FRAME: u64 = 120;
-const SHEET: u64 = 300;
-/// Sheets, about.
-const SHEETS: u64 = 14;
+const FIGURE: u64 = 300;
+/// Figures, about.
+const FIGURES: u64 = 14;
 /// Samples between two looks at the bar.
 const STRIDE: u64 = 64;
 
@@ -20,20 +20,25 @@ pub(super) struct Meter {
     done: u64,
     samples: u64,
     frames: u64,
-    sheets: u64,
+    figures: u64,
 }
 
 impl Meter {
-    pub(super) fn begin(args: &FiguresArgs, subject: &Subject, runs: &[Simulation], shows: &[Show]) -> Self {
-        let frames: u64 = shows.iter().map(Show::frames).sum();
-        let samples: u64 = runs.iter().map(Simulation::len).sum();
+    pub(super) fn begin(
+        args: &FiguresArgs,
+        subject: &Subject,
+        runs: &[SceneRun],
+        shows: &[FilmedRun],
+    ) -> Self {
+        let frames: u64 = shows.iter().map(FilmedRun::frames).sum();
+        let samples: u64 = runs.iter().map(|run| run.simulation.len()).sum();
         let of = subject.own.as_ref().map_or("the paper", |(_, name)| name.as_str());
         let films = if shows.is_empty() { String::new() } else { format!(", {} films", shows.len()) };
         let films = if shows.len() == 1 { ", a film".to_owned() } else { films };
         let what = format!("Figures of {of}: {}{films}", counted(runs.len(), "run"));
-        let all = samples + FRAME * frames + SHEET * SHEETS;
+        let all = samples + FRAME * frames + FIGURE * FIGURES;
         let progress = Progress::begin(&what, all, args.quiet || args.json);
-        Self { progress, done: 0, samples: 0, frames: 0, sheets: 0 }
+        Self { progress, done: 0, samples: 0, frames: 0, figures: 0 }
     }
 
     pub(super) fn sample(&mut self) {
@@ -50,18 +55,18 @@ impl Meter {
         self.progress.at(self.done);
     }
 
-    pub(super) fn sheet(&mut self) {
-        self.sheets += 1;
-        self.done += SHEET;
+    pub(super) fn figure(&mut self) {
+        self.figures += 1;
+        self.done += FIGURE;
         self.progress.at(self.done);
     }
 
     /// What has been done, in words.
     pub(super) fn so_far(&self) -> String {
-        match (self.frames, self.sheets) {
+        match (self.frames, self.figures) {
             (0, 0) => format!("after {} of the runs", counted(self.samples, "sample")),
             (frames, 0) => format!("after all runs and {}", counted(frames, "frame")),
-            (_, sheets) => format!("after all runs, with {} written", counted(sheets, "figure")),
+            (_, figures) => format!("after all runs, with {} written", counted(figures, "figure")),
         }
     }
 }

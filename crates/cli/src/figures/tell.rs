@@ -3,11 +3,11 @@
 use super::FiguresArgs;
 use super::folder::{Folder, found};
 use crate::print::{json, say};
-use report::{Ran, Report};
+use report::{FinishedRun, Report};
 use serde_json::json;
 use vocabulary::counted;
 
-pub(super) fn tell(args: &FiguresArgs, report: &Report, runs: &[Ran], (folder, wall): (&Folder, f64)) {
+pub(super) fn tell(args: &FiguresArgs, report: &Report, runs: &[FinishedRun], folder: &Folder, wall: f64) {
     if args.json {
         let mut value = serde_json::Value::Object(found(report, runs));
         if let Some(all) = value.as_object_mut() {

@@ -46,7 +46,8 @@ impl Board {
     /// is no other.
     pub(super) fn new(
         film: &Film,
-        (whole, view): (Option<&str>, &str),
+        whole: Option<&str>,
+        view: &str,
         duration: f64,
         names: &[String],
     ) -> Result<Self, Failure> {
@@ -183,7 +184,7 @@ mod tests {
 
     fn board(shots: Vec<Shot>, title: f64, end: f64) -> Board {
         let film = Film { shots, title, end, ..Film::default() };
-        Board::new(&film, (None, "snake"), 10.0, &["a".to_owned()]).expect("a board")
+        Board::new(&film, None, "snake", 10.0, &["a".to_owned()]).expect("a board")
     }
 
     fn shot(from: f64, to: f64, view: &str, speed: f64) -> Shot {

@@ -47,7 +47,7 @@ impl LabApp {
             .as_ref()
             .map_or_else(String::new, |draft| draft.home().display().to_string());
         let texts = vec![
-            ("Software", concat!("echelon ", env!("CARGO_PKG_VERSION")).to_owned()),
+            ("Software", studies::PROGRAM.to_owned()),
             ("Scene", self.app_state.script().unwrap_or_default()),
             ("Home", home),
             ("Time", format!("{time:?}")),
@@ -72,7 +72,7 @@ impl LabApp {
             let [width, height] = image.size.map(|side| side as u32);
             let rgba = image.pixels.iter().flat_map(egui::Color32::to_array).collect();
             let picture = vocabulary::Picture { width, height, rgba };
-            let texts = [("Software", concat!("echelon ", env!("CARGO_PKG_VERSION")))];
+            let texts = [("Software", studies::PROGRAM)];
             let written = film::png::write(&path, &picture, &texts);
             // A window that is closed does not wait for it.
             let _ = sender.send(match written {

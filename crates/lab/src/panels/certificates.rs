@@ -6,7 +6,7 @@ use crate::app_state::AppState;
 use crate::panels::curves;
 use crate::quantities::PlotQuantity;
 use eframe::egui::{RichText, Ui};
-use simulation::certify::{Premise, StatementFinding, StatementOutcome, so_far};
+use studies::certify::{Premise, StatementFinding, StatementOutcome, so_far};
 
 /// Moments that are looked at, at most.
 const MOST: usize = 2000;
@@ -36,7 +36,7 @@ fn findings(app_state: &AppState) -> Option<Vec<StatementFinding>> {
     let index = edges.iter().position(|edge| Some(edge.follower) == chosen).unwrap_or(0);
     let (edge, (_, _, follow)) = (*edges.get(index)?, app_state.follower(index)?);
     let records = history.between(app_state.branch, [0.0, f64::INFINITY], MOST);
-    Some(so_far(&records, (index, edge), follow, scene).0)
+    Some(so_far(&records, index, edge, follow, scene).0)
 }
 
 /// A finding in words.

@@ -8,7 +8,7 @@ use vocabulary::Limits;
 
 /// One edge of one run, as it is drawn.
 #[derive(Clone)]
-pub(crate) struct Curve<'a> {
+pub(crate) struct EdgeCurve<'a> {
     pub(crate) name: String,
     pub(crate) run: &'a Trace,
     pub(crate) edge: usize,
@@ -17,10 +17,10 @@ pub(crate) struct Curve<'a> {
     pub(crate) faint: bool,
 }
 
-impl<'a> Curve<'a> {
+impl<'a> EdgeCurve<'a> {
     /// The same edge of runs that are compared, each with its short name.
     pub(crate) fn compared(runs: &[(&str, &'a Trace)], edge: usize) -> Vec<Self> {
-        let curve = |(k, (name, run)): (usize, &(&str, &'a Trace))| Curve {
+        let curve = |(k, (name, run)): (usize, &(&str, &'a Trace))| EdgeCurve {
             name: (*name).to_owned(),
             run,
             edge,
@@ -40,7 +40,7 @@ impl<'a> Curve<'a> {
         let (first, last) = (worst.first().copied(), worst.last().copied());
         let named = |edge: usize| few || Some(edge) == first || Some(edge) == last;
         let mut curves: Vec<Self> = (0..run.fleet.edges.len())
-            .map(|edge| Curve {
+            .map(|edge| EdgeCurve {
                 name: if named(edge) { run.follower(edge).to_owned() } else { String::new() },
                 run,
                 edge,
@@ -125,7 +125,7 @@ pub(crate) enum Magnify {
 }
 
 impl Magnify {
-    fn part(self, curves: &[Curve<'_>]) -> Option<[f64; 2]> {
+    fn part(self, curves: &[EdgeCurve<'_>]) -> Option<[f64; 2]> {
         let length = curves.first().map_or(1.0, |c| c.run.scene.time.duration);
         match self {
             Self::First(seconds) => Some([0.0, seconds.min(length)]),
@@ -154,8 +154,8 @@ fn panel(label: &str, series: Vec<Series>) -> Panel {
 }
 
 /// Speed, what the law asked of it, and turn rate of followers, with grey where they cannot go.
-pub(crate) fn inputs(curves: &[Curve<'_>], magnify: Magnify) -> Drawn {
-    let limits = curves.first().and_then(Curve::limits).unwrap_or(Limits::PAPER);
+pub(crate) fn inputs(curves: &[EdgeCurve<'_>], magnify: Magnify) -> Drawn {
+    let limits = curves.first().and_then(EdgeCurve::limits).unwrap_or(Limits::PAPER);
     let mut columns = vec![];
     let (mut speed, mut asked, mut turn) = (vec![], vec![], vec![]);
     for curve in curves {
@@ -183,7 +183,7 @@ pub(crate) fn inputs(curves: &[Curve<'_>], magnify: Magnify) -> Drawn {
     Drawn { svg, csv: table(times(curves), &columns) }
 }
 
-fn times<'a>(curves: &[Curve<'a>]) -> &'a [f64] {
+fn times<'a>(curves: &[EdgeCurve<'a>]) -> &'a [f64] {
     curves.first().map_or(&[], |curve| &curve.run.times)
 }
 
@@ -213,7 +213,7 @@ fn bound(panel: &mut Panel, [low, high]: [f64; 2], end: [Option<f64>; 2]) {
 const NORMS: [f64; 2] = [1e-6, 10.0];
 
 /// Errors of distance and bearing, and their size by its logarithm.
-pub(crate) fn errors(curves: &[Curve<'_>], magnify: Magnify) -> Drawn {
+pub(crate) fn errors(curves: &[EdgeCurve<'_>], magnify: Magnify) -> Drawn {
     let mut columns = vec![];
     let (mut distance, mut bearing, mut norm) = (vec![], vec![], vec![]);
     for curve in curves {
@@ -252,10 +252,20 @@ pub(crate) fn errors(curves: &[Curve<'_>], magnify: Magnify) -> Drawn {
 
 /// True and estimated rates of an edge, and how far they are apart.
 pub(crate) fn observer(run: &Trace, edge: usize, magnify: Magnify) -> Drawn {
-    let base =
-        Curve { name: "true".to_owned(), run, edge, colour: [0.12; 3], stroke: Stroke::Solid, faint: false };
-    let estimated =
-        Curve { name: "estimated".to_owned(), colour: COMPARED[0], stroke: Stroke::Dashed, ..base.clone() };
+    let base = EdgeCurve {
+        name: "true".to_owned(),
+        run,
+        edge,
+        colour: [0.12; 3],
+        stroke: Stroke::Solid,
+        faint: false,
+    };
+    let estimated = EdgeCurve {
+        name: "estimated".to_owned(),
+        colour: COMPARED[0],
+        stroke: Stroke::Dashed,
+        ..base.clone()
+    };
     let mut columns = vec![];
     let mut panels = vec![];
     for (channel, label, factor, unit) in [

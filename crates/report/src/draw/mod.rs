@@ -4,22 +4,22 @@ mod curves;
 mod graph;
 mod ways;
 
-pub(crate) use curves::{Curve, Magnify, errors, inputs, observer};
+pub(crate) use curves::{EdgeCurve, Magnify, errors, inputs, observer};
 pub(crate) use graph::{farthest, graph};
 pub(crate) use ways::trajectories;
 
-use crate::item::Item;
+use crate::figure::ReportFigure;
 use figures::{Rgb, Stroke};
 
-/// A figure as it leaves this folder: a sheet, and a table of what it shows.
+/// A figure as it leaves this folder: SVG, and a table of what it shows.
 pub(crate) struct Drawn {
     pub(crate) svg: String,
     pub(crate) csv: String,
 }
 
 impl Drawn {
-    pub(crate) fn item(self, stem: impl Into<String>, caption: impl Into<String>) -> Item {
-        Item::new(stem, caption, self.svg, self.csv)
+    pub(crate) fn item(self, stem: impl Into<String>, caption: impl Into<String>) -> ReportFigure {
+        ReportFigure::new(stem, caption, self.svg, self.csv)
     }
 }
 

@@ -40,7 +40,7 @@ pub(crate) fn trajectories(run: &Trace) -> (Drawn, f64) {
             clock(run, *time, factor * scale * POINTS, &mut plan);
         }
     }
-    names(run, &times, (scale, factor), &mut plan);
+    names(run, &times, scale, factor, &mut plan);
     let columns = run.robots.iter().zip(&run.fleet.robots).flat_map(|(motions, member)| {
         let column = |what: &str, value: fn(&vocabulary::Motion) -> f64| {
             (format!("{} {what}", member.name), motions.iter().map(value).collect())
@@ -185,7 +185,7 @@ const FREE: f64 = 9.0;
 
 /// Names beside ways, halfway between two marked times, on the inside of the turn; on the outside where the guide's
 /// times would be in the way.
-fn names(run: &Trace, times: &[f64], (scale, factor): (f64, f64), plan: &mut Plan) {
+fn names(run: &Trace, times: &[f64], scale: f64, factor: f64, plan: &mut Plan) {
     let few = run.fleet.robots.len() < NAMED;
     let end = run.times.last().copied().unwrap_or(0.0);
     let middle = times.len() / 2;

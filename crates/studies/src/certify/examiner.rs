@@ -1,0 +1,271 @@
+//! Goes along with a run and certifies its edges.
+
+use formation::certificate::{
+    Circumstances, Constants, Instant, Premise, Statement, StatementFinding, StatementOutcome, Witness,
+    certify,
+};
+use formation::{EdgeLaw, Estimate, SetPointTrajectory, Switching};
+use metrics::{CertificateMetrics, StatementMetrics};
+use scene::Scene;
+use simulation::Simulation;
+use vocabulary::{Edge, EntityId, FleetInfo, LawKind, MotionInput, StepRecord, TimeMode};
+
+/// A change of a held command below this is rounding, m/s² or rad/s.
+const STEADY: f64 = 1e-9;
+
+/// What is known of one edge over a stretch of a run in which its law stayed the same.
+#[derive(Debug, Clone)]
+pub struct Certificate {
+    /// Index of the edge.
+    pub edge: usize,
+    /// First and last sample, s.
+    pub span: [f64; 2],
+    /// All statements of the paper.
+    pub findings: Vec<StatementFinding>,
+    /// Constants of section 4.3; `None` unless the law is output feedback.
+    pub constants: Option<Constants>,
+    /// What it is made of.
+    pub witness: Witness,
+    /// Error at the end of the stretch, [m, rad].
+    pub final_error: [f64; 2],
+    /// What tanh in place of sign leaves of the error where the leader goes on as at the end of the stretch, [m, rad]:
+    /// k² e + β tanh(slope e) = g_v V_i; `None` for other laws.
+    pub smoothing: Option<[f64; 2]>,
+}
+
+impl Certificate {
+    /// The finding about a statement.
+    pub fn finding(&self, statement: Statement) -> Option<&StatementFinding> {
+        self.findings.iter().find(|finding| finding.statement == statement)
+    }
+
+    /// The certificate as `metrics.json` holds it.
+    pub fn metrics(&self, fleet: &FleetInfo) -> CertificateMetrics {
+        let name = |robot: usize| fleet.name(EntityId::Robot(robot)).to_owned();
+        let (leader, follower) =
+            fleet.edges.get(self.edge).map_or((0, 0), |edge| (edge.leader, edge.follower));
+        let statement = |finding: &StatementFinding| StatementMetrics {
+            statement: finding.statement.name().to_owned(),
+            source: finding.statement.source().to_owned(),
+            outcome: finding.outcome().name().to_owned(),
+            against_from: finding.against.map(|against| against.first),
+            against_to: finding.against.map(|against| against.last),
+            margin: finding.margin.filter(|margin| margin.is_finite()),
+            unmet: finding.unmet.iter().map(Premise::words).collect(),
+        };
+        let finite = |value: f64| Some(value).filter(|v| v.is_finite());
+        CertificateMetrics {
+            leader: name(leader),
+            follower: name(follower),
+            span: self.span,
+            statements: self.findings.iter().map(statement).collect(),
+            ultimate_error: self.constants.and_then(|c| finite(c.error)),
+            epsilon_1: self.constants.and_then(|c| finite(c.epsilon_1)),
+        }
+    }
+
+    /// Whether every statement holds or is not claimed.
+    pub fn unbroken(&self) -> bool {
+        !self.findings.iter().any(|finding| matches!(finding.outcome(), StatementOutcome::Violated(_)))
+    }
+}
+
+/// Goes along with a run.
+pub struct Examiner {
+    edges: Vec<CertifiedStretch>,
+    /// Stretches that are over.
+    closed: Vec<Certificate>,
+    leads_on_wheels: Vec<bool>,
+    wheels: Vec<bool>,
+    mode: TimeMode,
+    period: f64,
+    last: Vec<MotionInput>,
+    keeps: bool,
+}
+
+/// An edge since its law last changed.
+struct CertifiedStretch {
+    witness: Witness,
+    set_point: SetPointTrajectory,
+    looks: bool,
+    rough_leader: Option<f64>,
+    final_error: [f64; 2],
+}
+
+impl CertifiedStretch {
+    fn of(law: &EdgeLaw, keeps: bool) -> Self {
+        let witness = Witness::new(law.law, law.observer);
+        Self {
+            witness: if keeps { witness.keeping() } else { witness },
+            set_point: law.set_point.clone(),
+            looks: law.looks.is_some(),
+            rough_leader: None,
+            final_error: [0.0; 2],
+        }
+    }
+
+    fn fits(&self, law: &EdgeLaw) -> bool {
+        *self.witness.law() == law.law
+            && *self.witness.observer() == law.observer
+            && self.set_point == law.set_point
+            && self.looks == law.looks.is_some()
+    }
+}
+
+impl Examiner {
+    /// For a run of `scene` that has not begun; its memory does not grow with the run.
+    pub fn new(scene: &Scene, simulation: &Simulation) -> Self {
+        Self::begin(scene, simulation, false)
+    }
+
+    /// As [`Self::new`], with every sample kept in the witness of its certificate.
+    pub fn keeping(scene: &Scene, simulation: &Simulation) -> Self {
+        Self::begin(scene, simulation, true)
+    }
+
+    fn begin(scene: &Scene, simulation: &Simulation, keeps: bool) -> Self {
+        let wheels: Vec<bool> = scene.robots.iter().map(|robot| robot.vehicle.kind.has_wheels()).collect();
+        let leads = &simulation.fleet().robots;
+        Self {
+            edges: simulation.formation().laws().iter().map(|law| CertifiedStretch::of(law, keeps)).collect(),
+            closed: Vec::new(),
+            leads_on_wheels: leads.iter().zip(&wheels).map(|(m, wheels)| m.leads && *wheels).collect(),
+            wheels,
+            mode: simulation.mode(),
+            period: simulation.period(),
+            last: Vec::new(),
+            keeps,
+        }
+    }
+
+    /// Takes in the moment that `simulation` has just come to.
+    pub fn push(&mut self, simulation: &Simulation) {
+        let (record, formation) = (simulation.record(), simulation.formation());
+        let drives = self.drives(simulation, record);
+        for (index, (edge, law)) in formation.edges().iter().zip(formation.laws()).enumerate() {
+            if !self.edges[index].fits(law) {
+                let over = std::mem::replace(&mut self.edges[index], CertifiedStretch::of(law, self.keeps));
+                if over.witness.span().is_some() {
+                    self.closed.push(self.certificate(index, *edge, &over));
+                }
+            }
+            let rough = self.jumps(simulation, *edge, &drives).then_some(record.snapshot.time);
+            let stretch = &mut self.edges[index];
+            stretch.rough_leader = stretch.rough_leader.or(rough);
+            stretch.final_error = record.edges[index].error;
+            stretch.witness.push(&instant(simulation, index, *edge, law, &drives));
+        }
+        self.last = drives;
+    }
+
+    /// The certificates of all edges, in their order, and of each stretch by stretch.
+    pub fn finish(mut self, simulation: &Simulation) -> Vec<Certificate> {
+        let mut all = std::mem::take(&mut self.closed);
+        for (index, (edge, stretch)) in simulation.formation().edges().iter().zip(&self.edges).enumerate() {
+            if stretch.witness.span().is_some() {
+                all.push(self.certificate(index, *edge, stretch));
+            }
+        }
+        all.sort_by_key(|certificate| certificate.edge);
+        all
+    }
+
+    /// The certificate of an edge as things are; `None` before the first sample.
+    pub fn so_far(&self, simulation: &Simulation, edge: usize) -> Option<Certificate> {
+        let stretch = self.edges.get(edge).filter(|stretch| stretch.witness.span().is_some())?;
+        Some(self.certificate(edge, *simulation.formation().edges().get(edge)?, stretch))
+    }
+
+    fn certificate(&self, index: usize, edge: Edge, stretch: &CertifiedStretch) -> Certificate {
+        let witness = &stretch.witness;
+        let wheels = |robot: usize| self.wheels.get(robot).copied().unwrap_or(false);
+        let circumstances = Circumstances {
+            held: (self.mode != TimeMode::Continuous).then_some(self.period),
+            sampled_measurement: self.mode == TimeMode::Measured,
+            looks: stretch.looks,
+            wheels: wheels(edge.leader) || wheels(edge.follower),
+            rough_leader: stretch.rough_leader,
+        };
+        let law = witness.law();
+        let effect = witness.last_effect();
+        let smoothed = law.kind != LawKind::FullState && matches!(law.switching, Switching::Tanh(_));
+        Certificate {
+            edge: index,
+            span: witness.span().unwrap_or_default(),
+            findings: certify(witness, &circumstances),
+            constants: Constants::of(witness).filter(|_| law.kind == LawKind::OutputFeedback),
+            final_error: stretch.final_error,
+            smoothing: smoothed
+                .then(|| [0, 1].map(|i| formation::certificate::chain::residual(law, i, effect[i]))),
+            witness: witness.clone(),
+        }
+    }
+
+    /// How every robot moves: what is prescribed where it is driven exactly, else what it does, and the change of its
+    /// turn rate since the sample before.
+    fn drives(&self, simulation: &Simulation, record: &StepRecord) -> Vec<MotionInput> {
+        let motion = |(robot, state): (usize, &vocabulary::RobotState)| {
+            let m = &state.motion;
+            let before = self.last.get(robot).map_or(m.turn_rate, |last| last.turn_rate);
+            let turn_acceleration = (m.turn_rate - before) / self.period;
+            MotionInput {
+                speed: m.speed,
+                acceleration: m.acceleration,
+                turn_rate: m.turn_rate,
+                turn_acceleration,
+            }
+        };
+        let mut drives: Vec<MotionInput> = record.snapshot.robots.iter().enumerate().map(motion).collect();
+        for (robot, trajectory) in simulation.formation().leads() {
+            if !self.leads_on_wheels.get(*robot).copied().unwrap_or(true) {
+                drives[*robot] = trajectory.at(record.snapshot.time);
+            }
+        }
+        drives
+    }
+
+    /// Whether an edge's leader has just done what no smooth leader does: it follows, and its command stepped.
+    fn jumps(&self, simulation: &Simulation, edge: Edge, drives: &[MotionInput]) -> bool {
+        let formation = simulation.formation();
+        let Some(above) = formation.edges().iter().position(|other| other.follower == edge.leader) else {
+            return false;
+        };
+        if self.mode == TimeMode::Continuous {
+            let law = &formation.laws()[above].law;
+            let sign = law.kind != LawKind::FullState && law.switching == Switching::Sign;
+            return sign || simulation.record().edges[above].limited;
+        }
+        let (Some(last), Some(now)) = (self.last.get(edge.leader), drives.get(edge.leader)) else {
+            return false;
+        };
+        (now.turn_rate - last.turn_rate).abs() > STEADY
+            || (now.acceleration - last.acceleration).abs() > STEADY
+    }
+}
+
+/// One edge at the moment that `simulation` has just come to.
+fn instant(
+    simulation: &Simulation,
+    index: usize,
+    edge: Edge,
+    law: &EdgeLaw,
+    drives: &[MotionInput],
+) -> Instant {
+    let record = simulation.record();
+    let (state, time) = (&record.edges[index], record.snapshot.time);
+    let limits = simulation.formation().limits(edge.follower);
+    let speed = record.snapshot.robots[edge.follower].motion.speed;
+    let observes = law.law.kind == LawKind::OutputFeedback;
+    Instant {
+        time,
+        relative: state.relative,
+        follower_speed: speed.max(limits.speed_min),
+        leader: drives[edge.leader],
+        set_point: law.set_point.at(time),
+        error: state.error,
+        estimate: observes.then_some(Estimate { output: state.estimate, rates: state.rates }),
+        limited: state.limited,
+        at_speed_bound: speed <= limits.speed_min || speed >= limits.speed_max,
+        too_close: state.too_close,
+    }
+}

@@ -1,0 +1,47 @@
+//! Certificates of runs: what the theorems say of every edge, and what lies beyond them.
+//!
+//! An [`Examiner`] goes along with a run. [`sensitivity`] runs a scene again with every gain a little larger and smaller;
+//! [`reach`] says which set points followers can hold; [`chain`] how disturbances go down a chain.
+
+pub mod beyond;
+pub mod chain;
+mod examiner;
+mod past;
+pub mod reach;
+pub mod sensitivity;
+
+pub use examiner::{Certificate, Examiner};
+pub use formation::certificate::chain::NotLinear;
+pub use formation::certificate::discretisation::{ChannelSensitivity, Discretisation, LongestPeriod};
+pub use formation::certificate::{
+    Constants, Premise, Statement, StatementFinding, StatementOutcome, WitnessRow,
+};
+pub use formation::feasible::Infeasible;
+pub use past::{rows, so_far};
+
+use crate::run::STRIDE;
+use crate::{Error, SceneRun};
+
+/// The certificates of every edge over a whole run; `None` where `go_on`, which gets the number of steps, says no.
+///
+/// # Errors
+/// [`Error`] where the run breaks off with a fault.
+pub fn certificates(
+    run: SceneRun,
+    mut go_on: impl FnMut(u64) -> bool,
+) -> Result<Option<Vec<Certificate>>, Error> {
+    let SceneRun { scene, mut simulation } = run;
+    let mut examiner = Examiner::keeping(&scene, &simulation);
+    let mut step = 0;
+    while simulation.next_record().is_some() {
+        examiner.push(&simulation);
+        step += 1;
+        if step % STRIDE == 0 && !go_on(step) {
+            return Ok(None);
+        }
+    }
+    match simulation.fault() {
+        Some(fault) => Err(fault.into()),
+        None => Ok(Some(examiner.finish(&simulation))),
+    }
+}

@@ -1,0 +1,77 @@
+//! The quantities of the theorems of a run that is over, or of what is kept of it: from moments alone.
+
+use formation::Estimate;
+use formation::certificate::{Circumstances, Instant, StatementFinding, Witness, WitnessRow, certify};
+use scene::{Follow, Role, Scene, SensingKind};
+use simulation::edge_law;
+use vocabulary::{Edge, LawKind, Motion, MotionInput, SetPoint, StepRecord, TimeMode, wrap};
+
+/// What the theorems say of edge number `index` along `records`, so far, and the quantities they speak of.
+pub fn so_far(
+    records: &[&StepRecord],
+    index: usize,
+    edge: Edge,
+    follow: &Follow,
+    scene: &Scene,
+) -> (Vec<StatementFinding>, Vec<WitnessRow>) {
+    let witness = witness(records, index, edge, follow);
+    let wheels = |robot: usize| scene.robots.get(robot).is_some_and(|robot| robot.vehicle.kind.has_wheels());
+    let leads = scene.robots.get(edge.leader).is_none_or(|robot| matches!(robot.role, Role::Lead { .. }));
+    let held = scene.time.mode != TimeMode::Continuous;
+    let first = records.first().map(|record| record.snapshot.time);
+    let circumstances = Circumstances {
+        held: held.then_some(scene.time.period),
+        sampled_measurement: scene.time.mode == TimeMode::Measured,
+        looks: follow.sensing.kind != SensingKind::Truth,
+        wheels: wheels(edge.leader) || wheels(edge.follower),
+        // A leader that follows is told its commands period by period.
+        rough_leader: first.filter(|_| held && !leads),
+    };
+    (certify(&witness, &circumstances), witness.rows().to_vec())
+}
+
+/// The quantities of edge number `index` along `records`, which may be thinned; its law is that of `follow`. Rates of set
+/// points and of turn rates are differences from moment to moment.
+pub fn rows(records: &[&StepRecord], index: usize, edge: Edge, follow: &Follow) -> Vec<WitnessRow> {
+    witness(records, index, edge, follow).rows().to_vec()
+}
+
+fn witness(records: &[&StepRecord], index: usize, edge: Edge, follow: &Follow) -> Witness {
+    let law = edge_law(follow);
+    let mut witness = Witness::new(law.law, law.observer).keeping();
+    let observes = law.law.kind == LawKind::OutputFeedback;
+    let mut before: Option<(f64, Motion, [f64; 2])> = None;
+    for record in records {
+        let robots = &record.snapshot.robots;
+        let (Some(state), Some(leader), Some(follower)) =
+            (record.edges.get(index), robots.get(edge.leader), robots.get(edge.follower))
+        else {
+            continue;
+        };
+        let (time, motion, value) = (record.snapshot.time, leader.motion, state.set_point);
+        let (turned, moved) = before.map_or((0.0, [0.0; 2]), |(then, last, point)| {
+            let step = (time - then).max(1e-9);
+            let moved = [value[0] - point[0], wrap(value[1] - point[1])].map(|d| d / step);
+            ((motion.turn_rate - last.turn_rate) / step, moved)
+        });
+        before = Some((time, motion, value));
+        witness.push(&Instant {
+            time,
+            relative: state.relative,
+            follower_speed: follower.motion.speed.max(1e-6),
+            leader: MotionInput {
+                speed: motion.speed,
+                acceleration: motion.acceleration,
+                turn_rate: motion.turn_rate,
+                turn_acceleration: turned,
+            },
+            set_point: SetPoint { value, rate: moved, acceleration: [0.0; 2] },
+            error: state.error,
+            estimate: observes.then_some(Estimate { output: state.estimate, rates: state.rates }),
+            limited: state.limited,
+            at_speed_bound: false,
+            too_close: state.too_close,
+        });
+    }
+    witness
+}

@@ -1,0 +1,181 @@
+//! How the settled error answers to every gain: the scene run again with each gain a little larger and a little smaller.
+
+use metrics::RootMeanSquare;
+use scene::{Follow, Role, Scene, SwitchingKind};
+use simulation::{BuildError, Simulation, build};
+use vocabulary::LawKind;
+
+/// A gain is changed by this share, up and down.
+const SHARE: f64 = 0.02;
+/// The settled error is taken over this last part of the run.
+const LATE: f64 = 0.2;
+/// Below this, m or rad, an error has settled to zero and says nothing about gains.
+const ZERO: f64 = 1e-8;
+
+/// A gain of law or observer; channel 0 is distance, 1 bearing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Gain {
+    /// K.
+    K(usize),
+    /// β.
+    Beta(usize),
+    /// Slope of tanh.
+    Slope(usize),
+    /// ε.
+    Epsilon(usize),
+    /// α1.
+    Alpha1(usize),
+    /// α2.
+    Alpha2(usize),
+}
+
+impl Gain {
+    /// Symbol with channel.
+    pub fn symbol(self) -> String {
+        let (symbol, channel) = match self {
+            Self::K(i) => ("k", i),
+            Self::Beta(i) => ("β", i),
+            Self::Slope(i) => ("slope", i),
+            Self::Epsilon(i) => ("ε", i),
+            Self::Alpha1(i) => ("α1", i),
+            Self::Alpha2(i) => ("α2", i),
+        };
+        format!("{symbol} {}", ["distance", "bearing"][channel])
+    }
+
+    fn of(self, follow: &mut Follow) -> &mut f64 {
+        match self {
+            Self::K(i) => &mut follow.law.k[i],
+            Self::Beta(i) => &mut follow.law.beta[i],
+            Self::Slope(i) => &mut follow.law.slope[i],
+            Self::Epsilon(i) => &mut follow.observer.epsilon[i],
+            Self::Alpha1(i) => &mut follow.observer.alpha1[i],
+            Self::Alpha2(i) => &mut follow.observer.alpha2[i],
+        }
+    }
+
+    /// Whether a follower's law uses it.
+    fn acts_on(self, follow: &Follow) -> bool {
+        match self {
+            Self::K(_) => true,
+            Self::Beta(_) => follow.law.kind != LawKind::FullState,
+            Self::Slope(_) => {
+                follow.law.kind != LawKind::FullState && follow.law.switching == SwitchingKind::Tanh
+            }
+            Self::Epsilon(_) | Self::Alpha1(_) | Self::Alpha2(_) => {
+                follow.law.kind == LawKind::OutputFeedback
+            }
+        }
+    }
+}
+
+/// What one gain does, when it is changed on all edges together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensitivity {
+    /// Which gain.
+    pub gain: Gain,
+    /// Per edge: by how many percent the settled error of [distance, bearing] grows when the gain grows by one percent
+    /// (d ln e / d ln gain); `None` where the error settles to zero.
+    pub edges: Vec<[Option<f64>; 2]>,
+}
+
+/// Settled errors, and what every gain does to them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensitivities {
+    /// Root mean square over the last fifth of the run, per edge, [m, rad].
+    pub settled: Vec<[f64; 2]>,
+    /// Gains that act.
+    pub gains: Vec<Sensitivity>,
+}
+
+/// The gains that act in a scene.
+pub fn gains(scene: &Scene) -> Vec<Gain> {
+    let kinds: [fn(usize) -> Gain; 6] =
+        [Gain::K, Gain::Beta, Gain::Slope, Gain::Epsilon, Gain::Alpha1, Gain::Alpha2];
+    let all = kinds.into_iter().flat_map(|gain| [gain(0), gain(1)]);
+    let follows = |gain: &Gain| {
+        scene.robots.iter().any(|robot| matches!(&robot.role, Role::Follow(follow) if gain.acts_on(follow)))
+    };
+    all.filter(follows).collect()
+}
+
+/// Runs the scene as it is and twice for every gain, on all cores; `look` is told of every run that is done and says
+/// whether to go on. `None` when it said no.
+///
+/// # Errors
+/// [`BuildError`] where the scene cannot run.
+pub fn sensitivities(
+    scene: &Scene,
+    look: impl Fn() -> bool + Sync,
+) -> Result<Option<Sensitivities>, BuildError> {
+    let gains = gains(scene);
+    let mut cases: Vec<Option<(Gain, f64)>> = vec![None];
+    cases.extend(gains.iter().flat_map(|gain| [-SHARE, SHARE].map(|share| Some((*gain, share)))));
+    let runs = in_parallel(&cases, |case| {
+        let mut scene = scene.clone();
+        if let Some((gain, share)) = case {
+            scene.for_every_robot(|robot| {
+                if let Role::Follow(follow) = &mut robot.role {
+                    *gain.of(follow) *= 1.0 + share;
+                }
+            });
+        }
+        settled(&scene, &look)
+    });
+    let mut errors = Vec::with_capacity(runs.len());
+    for run in runs {
+        match run? {
+            Some(settled) => errors.push(settled),
+            None => return Ok(None),
+        }
+    }
+    let [own, rest @ ..] = errors.as_slice() else { return Ok(None) };
+    let sensitivity = |(gain, pair): (&Gain, &[Vec<[f64; 2]>])| {
+        let slope = |edge: usize, i: usize| {
+            let [less, more] = [pair[0][edge][i], pair[1][edge][i]];
+            let width = ((1.0 + SHARE) / (1.0 - SHARE)).ln();
+            (less > ZERO && more > ZERO).then(|| (more / less).ln() / width)
+        };
+        Sensitivity { gain: *gain, edges: (0..own.len()).map(|e| [slope(e, 0), slope(e, 1)]).collect() }
+    };
+    let gains = gains.iter().zip(rest.chunks_exact(2)).map(sensitivity).collect();
+    Ok(Some(Sensitivities { settled: own.clone(), gains }))
+}
+
+/// Settled errors of a run; `None` when it was not to go on.
+fn settled(scene: &Scene, look: &(impl Fn() -> bool + Sync)) -> Result<Option<Vec<[f64; 2]>>, BuildError> {
+    let mut simulation = Simulation::new(build(scene)?);
+    let from = simulation.len() - (simulation.len() as f64 * LATE) as u64;
+    let mut errors = vec![RootMeanSquare::<2>::EMPTY; simulation.fleet().edges.len()];
+    while let Some(record) = simulation.next_record() {
+        if simulation_sample(record, scene.time.period) < from {
+            continue;
+        }
+        for (sum, edge) in errors.iter_mut().zip(&record.edges) {
+            sum.add(edge.error);
+        }
+    }
+    Ok(look().then(|| errors.iter().map(|sum| sum.root().unwrap_or_default()).collect()))
+}
+
+fn simulation_sample(record: &vocabulary::StepRecord, period: f64) -> u64 {
+    (record.snapshot.time / period).round() as u64
+}
+
+/// `work` on every item, on all cores; results in the order of the items, whoever did them.
+fn in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let workers = std::thread::available_parallelism().map_or(1, usize::from).min(items.len().max(1));
+    let work = &work;
+    let mut done: Vec<(usize, R)> = std::thread::scope(|scope| {
+        let bench = |first: usize| {
+            scope.spawn(move || {
+                let own = items.iter().enumerate().skip(first).step_by(workers);
+                own.map(|(k, item)| (k, work(item))).collect::<Vec<_>>()
+            })
+        };
+        let benches: Vec<_> = (0..workers).map(bench).collect();
+        benches.into_iter().flat_map(|bench| bench.join().unwrap_or_default()).collect()
+    });
+    done.sort_by_key(|(k, _)| *k);
+    done.into_iter().map(|(_, result)| result).collect()
+}

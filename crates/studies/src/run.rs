@@ -1,0 +1,140 @@
+//! One run of a scene: stepped, recorded if asked for, certified, and judged by what the scene expects.
+
+use crate::certify::Examiner;
+use crate::verdict::{JudgedExpectation, verdict};
+use crate::{Error, SceneRun};
+use metrics::{CertificateMetrics, Digest, Metrics, MetricsBuilder};
+use recording::{Finished, Recorder, Status};
+use simulation::Fault;
+use vocabulary::StepRecord;
+
+/// Steps between two reports of how far a run is.
+pub const STRIDE: u64 = 16;
+
+/// What came of a run.
+pub struct JudgedRun {
+    /// Complete, stopped before its time, or interrupted.
+    pub status: Status,
+    /// Samples that were taken.
+    pub steps: u64,
+    /// Errors, effort, clearance, contacts, certificates.
+    pub metrics: Metrics,
+    /// Of the trajectory.
+    pub digest: String,
+    /// The scene's expectations; none of a run that was interrupted.
+    pub findings: Vec<JudgedExpectation>,
+    /// Whether everything that was to be recorded is on the disk.
+    pub written: Result<(), recording::Error>,
+}
+
+/// Runs a scene to its end, into `recorder` if there is one. `go_on` gets the number of steps every [`STRIDE`] steps and says
+/// whether the run goes on; a run that does not is interrupted.
+///
+/// # Errors
+/// [`Error::Recording`] where the disk refuses a record, [`Error::Camera`] where cameras cannot take their pictures. What
+/// was recorded until then stays, as interrupted.
+pub fn run(
+    run: SceneRun,
+    recorder: Option<Recorder>,
+    mut go_on: impl FnMut(u64) -> bool,
+) -> Result<JudgedRun, Error> {
+    let SceneRun { scene, mut simulation } = run;
+    let mut sink = match recorder {
+        Some(recorder) => RecordSink::Disk(Box::new(recorder)),
+        None => RecordSink::Memory(Box::new(RunSums {
+            metrics: MetricsBuilder::new(simulation.fleet(), scene.judging()),
+            digest: Digest::default(),
+        })),
+    };
+    let mut examiner = Examiner::new(&scene, &simulation);
+    let mut steps = 0;
+    while let Some(record) = simulation.next_record() {
+        if let Err(error) = sink.push(record) {
+            sink.abandon();
+            return Err(error.into());
+        }
+        examiner.push(&simulation);
+        steps += 1;
+        if steps % STRIDE == 0 && !go_on(steps) {
+            break;
+        }
+    }
+    let broken = match simulation.fault() {
+        Some(Fault::NotFinite(what)) => Some(JudgedExpectation::not_finite(what)),
+        Some(fault @ Fault::CameraRenderer(_)) => {
+            let error = Error::from(fault);
+            sink.abandon();
+            return Err(error);
+        }
+        None => None,
+    };
+    let status = match steps == simulation.len() {
+        true => Status::Complete,
+        false if simulation.stopped() || broken.is_some() => Status::Stopped,
+        false => Status::Interrupted,
+    };
+    let certificates = examiner.finish(&simulation);
+    let certificates = certificates.iter().map(|c| c.metrics(simulation.fleet())).collect();
+    let findings: Vec<JudgedExpectation> = match status {
+        Status::Interrupted => vec![],
+        _ => verdict(&scene, &sink.metrics(), status == Status::Complete).into_iter().chain(broken).collect(),
+    };
+    let (metrics, digest, written) = sink.finish(status, certificates, &findings);
+    Ok(JudgedRun { status, steps, metrics, digest, findings, written })
+}
+
+/// Where records go: to a folder, or only into the sums that a verdict needs.
+enum RecordSink {
+    Disk(Box<Recorder>),
+    Memory(Box<RunSums>),
+}
+
+struct RunSums {
+    metrics: MetricsBuilder,
+    digest: Digest,
+}
+
+impl RecordSink {
+    fn push(&mut self, record: &StepRecord) -> Result<(), recording::Error> {
+        match self {
+            Self::Disk(recorder) => recorder.push(record),
+            Self::Memory(sums) => {
+                sums.metrics.push(record);
+                sums.digest.push(record);
+                Ok(())
+            }
+        }
+    }
+
+    fn abandon(self) {
+        if let Self::Disk(recorder) = self {
+            recorder.abandon();
+        }
+    }
+
+    fn metrics(&self) -> Metrics {
+        match self {
+            Self::Disk(recorder) => recorder.metrics(),
+            Self::Memory(sums) => sums.metrics.finish(),
+        }
+    }
+
+    fn finish(
+        self,
+        status: Status,
+        certificates: Vec<CertificateMetrics>,
+        findings: &[JudgedExpectation],
+    ) -> (Metrics, String, Result<(), recording::Error>) {
+        match self {
+            Self::Disk(mut recorder) => {
+                recorder.certify(certificates);
+                recorder.judge(findings.iter().map(JudgedExpectation::metrics).collect());
+                let Finished { metrics, digest, written } = recorder.conclude(status);
+                (metrics, digest, written.map(drop))
+            }
+            Self::Memory(sums) => {
+                (Metrics { certificates, ..sums.metrics.finish() }, sums.digest.text(), Ok(()))
+            }
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! A scene with its simulation, before the first step.
+
+use crate::Error;
+use recording::RunOptions;
+use recording::log::Roll;
+use scene::Scene;
+use simulation::{BuildError, Simulation, build};
+use vocabulary::{CameraRenderer, FleetInfo};
+
+/// Name and version of the program, as manifests and pictures carry them.
+pub const PROGRAM: &str = concat!("echelon ", env!("CARGO_PKG_VERSION"));
+
+/// The commit that the program is built from, where it is known.
+pub const COMMIT: Option<&str> = option_env!("ECHELON_COMMIT");
+
+/// Makes what draws the pictures of a fleet's cameras; the text says why it cannot.
+pub type RendererFactory<'a> = &'a mut dyn FnMut(&FleetInfo) -> Result<Box<dyn CameraRenderer>, String>;
+
+/// A scene with its simulation, before the first step.
+pub struct SceneRun {
+    /// What runs.
+    pub scene: Scene,
+    /// Its run.
+    pub simulation: Simulation,
+}
+
+impl SceneRun {
+    /// Builds the simulation of `scene`.
+    ///
+    /// # Errors
+    /// [`BuildError`] where the scene cannot run.
+    pub fn new(scene: Scene) -> Result<Self, BuildError> {
+        let simulation = Simulation::new(build(&scene)?);
+        Ok(Self { scene, simulation })
+    }
+
+    /// Gives the cameras of the run what draws for them, if the scene has cameras that take pictures.
+    ///
+    /// # Errors
+    /// [`Error::Camera`] where it cannot be made.
+    pub fn attach_cameras(&mut self, renderer: RendererFactory<'_>) -> Result<(), Error> {
+        if self.simulation.needs_cameras() {
+            let made = renderer(self.simulation.fleet()).map_err(Error::Camera)?;
+            self.simulation.attach_cameras(made);
+        }
+        Ok(())
+    }
+}
+
+/// How a run of `scene` is recorded: with a log, without CSV tables, into an empty folder; nothing draws on the roll.
+pub fn run_options(scene: &Scene) -> RunOptions {
+    RunOptions {
+        csv: false,
+        no_log: false,
+        roll: Roll::default(),
+        force: false,
+        scene: scene.to_toml(),
+        program: PROGRAM.to_owned(),
+        commit: COMMIT.map(str::to_owned),
+        seed: scene.seed,
+        period: scene.time.period,
+        judging: scene.judging(),
+    }
+}
