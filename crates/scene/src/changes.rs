@@ -2,53 +2,15 @@
 
 use crate::{
     Change, Override, Robot, Role, Scene,
-    document::{Document, MOST_ROBOTS},
+    document::{Document, GroupKeys, MOST_ROBOTS, MemberKeys, RobotKeys},
     overrides::Origin,
     resolve::resolve_robots,
     sets::{ParameterDifference, refusal},
-    text::{Form, Node, Reporter, Span, Value, table},
+    text::{Form, Keys, Node, Reporter, Span, Value, keys::Mark, table},
 };
 
 /// Most robots times changes: each is a whole robot in memory.
 const MOST_STATES: usize = 20 * MOST_ROBOTS;
-/// Parts of a scene that no robot depends on once it runs; left out of what is read again.
-const SETTLED: [&str; 8] =
-    ["ground", "props", "patterns", "changes", "environment", "views", "film", "expect"];
-/// Keys of a scene that cannot change while it runs.
-const FIXED: [&str; 15] = [
-    "schema",
-    "title",
-    "description",
-    "seed",
-    "time",
-    "physics",
-    "sensing",
-    "vision",
-    "ground",
-    "props",
-    "patterns",
-    "changes",
-    "environment",
-    "views",
-    "film",
-];
-/// Keys of a robot, a group or a member of one that cannot change while it runs.
-const FIXED_OF_ROBOTS: [&str; 13] = [
-    "name",
-    "absent",
-    "pose",
-    "path",
-    "leader",
-    "speed",
-    "sensing",
-    "number",
-    "shape",
-    "count",
-    "follows",
-    "scatter",
-    "scatter_heading",
-];
-
 /// The changes that `root` has, in the order of time, each with the scene that holds after it; `scene` is the one at the
 /// start. Notes stand at the text of the change.
 pub(crate) fn changes(root: &Node, scene: &Scene, reporter: &mut Reporter) -> Vec<Change> {
@@ -85,7 +47,7 @@ pub(crate) fn changes(root: &Node, scene: &Scene, reporter: &mut Reporter) -> Ve
 /// The tree without what robots do not depend on once they run, starts included.
 fn of_robots(root: &Node) -> Node {
     let Value::Table(entries) = &root.value else { return root.clone() };
-    let kept = entries.iter().filter(|entry| !SETTLED.contains(&entry.key.as_str())).cloned();
+    let kept = entries.iter().filter(|entry| !has::<Document>(&entry.key, Mark::Apart)).cloned();
     let mut tree = Node { place: root.place, value: Value::Table(kept.collect()) };
     for list in ["robots", "groups"] {
         tree.items_mut(list).iter_mut().for_each(|item| item.leave_out(&["speed"]));
@@ -184,14 +146,20 @@ impl Set {
     }
 }
 
-/// Whether what `path` leads to is known not to change.
+/// Whether what `path` leads to is known not to change while a run goes. What is not known is told where it is read.
 fn is_fixed(path: &[&str]) -> bool {
+    let fixed = |marks: Option<&[Mark]>| marks.is_some_and(|marks| !marks.contains(&Mark::Live));
     match path {
         ["robots" | "groups"] | ["robots" | "groups", _] => true,
-        ["groups", _, "members", _, key, ..] | ["robots" | "groups", _, key, ..] => {
-            FIXED_OF_ROBOTS.contains(key)
-        }
-        [key, ..] => FIXED.contains(key) || *key == "expect",
+        ["groups", _, "members", _, key, ..] => fixed(MemberKeys::marks(key)),
+        ["robots", _, key, ..] => fixed(RobotKeys::marks(key)),
+        ["groups", _, key, ..] => fixed(GroupKeys::marks(key)),
+        [key, ..] => fixed(Document::marks(key)),
         [] => false,
     }
+}
+
+/// Whether a key of the table whose keys are `K` has a mark.
+fn has<K: Keys>(key: &str, mark: Mark) -> bool {
+    K::marks(key).is_some_and(|marks| marks.contains(&mark))
 }

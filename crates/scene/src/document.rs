@@ -45,35 +45,35 @@ keys! {
         /// How vehicles with wheels and props that move are carried through time.
         physics: PhysicsPart = table::<PhysicsPart>(), part;
         /// Kind, limits and measures of every robot that says nothing else: a kind alone, or a table.
-        vehicle: VehiclePart = VehicleForm, part;
+        vehicle: VehiclePart = VehicleForm, part, Live;
         /// Control law of every follower that says nothing else.
-        law: LawPart = table::<LawPart>(), part;
+        law: LawPart = table::<LawPart>(), part, Live;
         /// Observer of every follower that says nothing else.
-        observer: ObserverPart = table::<ObserverPart>(), part;
+        observer: ObserverPart = table::<ObserverPart>(), part, Live;
         /// What every follower that says nothing else knows of its leader: a kind alone, or a table.
         sensing: SensingPart = SensingForm, part;
         /// Cameras and shells of all robots.
         vision: VisionPart = table::<VisionPart>(), part;
         /// The lie of the land and its grip; flat if left out.
-        ground: GroundKeys = GroundForm, optional;
+        ground: GroundKeys = GroundForm, optional, Apart;
         /// Robots one by one.
-        robots: Vec<RobotKeys> = list(table::<RobotKeys>(), 0, MOST_ROBOTS), part;
+        robots: Vec<RobotKeys> = list(table::<RobotKeys>(), 0, MOST_ROBOTS), part, Live;
         /// Robots in well-known shapes.
-        groups: Vec<GroupKeys> = list(table::<GroupKeys>(), 0, 1000), part;
+        groups: Vec<GroupKeys> = list(table::<GroupKeys>(), 0, 1000), part, Live;
         /// Solid things that are no robots: walls, pillars, ramps, cones, crates.
-        props: Vec<PropKeys> = list(PropForm, 0, MOST_PROPS), part;
+        props: Vec<PropKeys> = list(PropForm, 0, MOST_PROPS), part, Apart;
         /// Props in well-known arrangements.
-        patterns: Vec<PatternKeys> = list(PatternForm, 0, 200), part;
+        patterns: Vec<PatternKeys> = list(PatternForm, 0, 200), part, Apart;
         /// What changes while the run goes.
-        changes: Vec<ChangeKeys> = list(table::<ChangeKeys>(), 0, MOST_CHANGES), part;
+        changes: Vec<ChangeKeys> = list(table::<ChangeKeys>(), 0, MOST_CHANGES), part, Apart;
         /// Light and air.
-        environment: EnvironmentPart = table::<EnvironmentPart>(), part;
+        environment: EnvironmentPart = table::<EnvironmentPart>(), part, Apart;
         /// How pictures look at the run.
-        views: ViewsPart = table::<ViewsPart>(), part;
+        views: ViewsPart = table::<ViewsPart>(), part, Apart;
         /// How a film is made when the command line does not say.
-        film: FilmPart = table::<FilmPart>(), part;
+        film: FilmPart = table::<FilmPart>(), part, Apart;
         /// What the run has to show.
-        expect: ExpectPart = table::<ExpectPart>(), part;
+        expect: ExpectPart = table::<ExpectPart>(), part, Apart;
     }
 }
 
@@ -89,17 +89,17 @@ keys! {
         /// Name of the robot that is followed.
         leader: String = NameForm::WHOLE, optional;
         /// Wanted distance from the leader, m: a number, a sinusoid, or smooth passages.
-        distance: ScalarTrajectory = DistanceForm, optional;
+        distance: ScalarTrajectory = DistanceForm, optional, Live;
         /// Wanted bearing, seen from the leader's heading, left positive: an angle, a sinusoid, or smooth passages.
-        bearing: ScalarTrajectory = BearingForm, optional;
+        bearing: ScalarTrajectory = BearingForm, optional, Live;
         /// Speed of a follower at the start, m/s; its `speed_min` if left out.
         speed: f64 = SPEED, optional;
         /// What differs from the scene's `vehicle`.
-        vehicle: VehiclePart = VehicleForm, optional;
+        vehicle: VehiclePart = VehicleForm, optional, Live;
         /// What differs from the scene's `law`.
-        law: LawPart = table::<LawPart>(), optional;
+        law: LawPart = table::<LawPart>(), optional, Live;
         /// What differs from the scene's `observer`.
-        observer: ObserverPart = table::<ObserverPart>(), optional;
+        observer: ObserverPart = table::<ObserverPart>(), optional, Live;
         /// What differs from the scene's `sensing`.
         sensing: SensingPart = SensingForm, optional;
         /// Number on its shell, unique: its tags are 5·number to 5·number + 4; the lowest that is free if left out.
@@ -126,11 +126,11 @@ keys! {
         /// first way-point, if left out.
         pose: [f64; 3] = POSE, optional;
         /// Distance between neighbours, m.
-        distance: f64 = number("m").above(0.0).up_to(1000.0), or(2.0);
+        distance: f64 = number("m").above(0.0).up_to(1000.0), or(2.0), Live;
         /// Whom the robots follow.
         follows: Follows = word::<Follows>(), or(Follows::Neighbour);
         /// Bearing of a neighbour in shapes `v` and `diamond`.
-        angle: f64 = angle_within(FRAC_PI_2, PI), or(0.75 * PI);
+        angle: f64 = angle_within(FRAC_PI_2, PI), or(0.75 * PI), Live;
         /// Followers start at most this far from their places along each axis, m, by the scene's seed; 0 starts in
         /// formation.
         scatter: f64 = number("m").from(0.0).up_to(1000.0), or(0.3);
@@ -139,15 +139,15 @@ keys! {
         /// Speed of the followers at the start, m/s; their `speed_min` if left out.
         speed: f64 = SPEED, optional;
         /// What differs from the scene's `vehicle`.
-        vehicle: VehiclePart = VehicleForm, part;
+        vehicle: VehiclePart = VehicleForm, part, Live;
         /// What differs from the scene's `law`.
-        law: LawPart = table::<LawPart>(), part;
+        law: LawPart = table::<LawPart>(), part, Live;
         /// What differs from the scene's `observer`.
-        observer: ObserverPart = table::<ObserverPart>(), part;
+        observer: ObserverPart = table::<ObserverPart>(), part, Live;
         /// What differs from the scene's `sensing`.
         sensing: SensingPart = SensingForm, part;
         /// Robots of the group that differ from the others, by their names.
-        members: Vec<GroupMember> = MembersForm, part;
+        members: Vec<GroupMember> = MembersForm, part, Live;
     }
 }
 
@@ -161,15 +161,15 @@ keys! {
         /// Name of the robot that it follows, in place of the shape's.
         leader: String = NameForm::WHOLE, optional;
         /// Wanted distance from the robot it follows, m, in place of the shape's.
-        distance: ScalarTrajectory = DistanceForm, optional;
+        distance: ScalarTrajectory = DistanceForm, optional, Live;
         /// Wanted bearing, in place of the shape's.
-        bearing: ScalarTrajectory = BearingForm, optional;
+        bearing: ScalarTrajectory = BearingForm, optional, Live;
         /// What differs from the group's `vehicle`.
-        vehicle: VehiclePart = VehicleForm, optional;
+        vehicle: VehiclePart = VehicleForm, optional, Live;
         /// What differs from the group's `law`.
-        law: LawPart = table::<LawPart>(), optional;
+        law: LawPart = table::<LawPart>(), optional, Live;
         /// What differs from the group's `observer`.
-        observer: ObserverPart = table::<ObserverPart>(), optional;
+        observer: ObserverPart = table::<ObserverPart>(), optional, Live;
         /// What differs from the group's `sensing`.
         sensing: SensingPart = SensingForm, optional;
     }

@@ -1,24 +1,11 @@
 //! What leads from one scene to another while a run goes, and what stands in the way.
 
-use crate::{Follow, Robot, Role, Scene, Vehicle};
+use crate::text::{Keys, keys::Mark};
+use crate::types::{LawPart, ObserverPart, SensingPart, VehiclePart};
+use crate::vehicle::applies;
+use crate::{Follow, Robot, Role, Scene};
 use serde::Serialize;
 use std::collections::BTreeSet;
-
-/// Limits of a vehicle, which hold from one moment to the next.
-const LIMITS: [&str; 4] = ["speed_min", "speed_max", "turn_rate_max", "acceleration_max"];
-/// What else the driver of a vehicle on wheels goes by; the others are of its body and tyres.
-const DRIVING: [&str; 10] = [
-    "steering_max",
-    "steering_rate",
-    "steering_lag",
-    "drive_force",
-    "drive_lag",
-    "brake_force",
-    "brake_lag",
-    "compensation",
-    "speed_gain",
-    "turn_gain",
-];
 
 /// What differs between two scenes.
 #[derive(Debug, Default)]
@@ -58,19 +45,36 @@ impl Scene {
 impl ParameterDifference {
     /// All but robots and changes.
     fn note_rest(&mut self, a: &Scene, b: &Scene) {
+        // A part that is added to scenes has to be placed here: it does not compile without.
+        let Scene {
+            title,
+            description,
+            seed,
+            time,
+            physics,
+            vision,
+            ground,
+            props,
+            environment,
+            views,
+            film,
+            expect,
+            robots: _,
+            changes: _,
+        } = a;
         for (key, same) in [
-            ("title", a.title == b.title),
-            ("description", a.description == b.description),
-            ("seed", a.seed == b.seed),
-            ("time", a.time == b.time),
-            ("physics", a.physics == b.physics),
-            ("vision", a.vision == b.vision),
-            ("ground", a.ground == b.ground),
-            ("props", a.props == b.props),
-            ("environment", a.environment == b.environment),
-            ("views", a.views == b.views),
-            ("film", a.film == b.film),
-            ("expect", a.expect == b.expect),
+            ("title", *title == b.title),
+            ("description", *description == b.description),
+            ("seed", *seed == b.seed),
+            ("time", *time == b.time),
+            ("physics", *physics == b.physics),
+            ("vision", *vision == b.vision),
+            ("ground", *ground == b.ground),
+            ("props", *props == b.props),
+            ("environment", *environment == b.environment),
+            ("views", *views == b.views),
+            ("film", *film == b.film),
+            ("expect", *expect == b.expect),
         ] {
             self.refuse_unless(same, "", key);
         }
@@ -87,7 +91,7 @@ impl ParameterDifference {
             self.refuse_unless(a.pose == b.pose, &at, "pose");
             self.refuse_unless(a.number == b.number, &at, "number");
             self.note_table([&a.vehicle, &b.vehicle], &format!("{at}vehicle."), |key| {
-                may_vary(&a.vehicle, key)
+                is_live::<VehiclePart>(key) && applies(key, a.vehicle.kind)
             });
             match (&a.role, &b.role) {
                 (Role::Lead { path: a }, Role::Lead { path: b }) => self.refuse_unless(a == b, &at, "path"),
@@ -109,9 +113,9 @@ impl ParameterDifference {
         if a.bearing != b.bearing {
             self.sets.push(format!("{at}bearing={}", written(&b.bearing)));
         }
-        self.note_table([&a.law, &b.law], &format!("{at}law."), |_| true);
-        self.note_table([&a.observer, &b.observer], &format!("{at}observer."), |key| key != "start");
-        self.note_table([&a.sensing, &b.sensing], &format!("{at}sensing."), |_| false);
+        self.note_table([&a.law, &b.law], &format!("{at}law."), is_live::<LawPart>);
+        self.note_table([&a.observer, &b.observer], &format!("{at}observer."), is_live::<ObserverPart>);
+        self.note_table([&a.sensing, &b.sensing], &format!("{at}sensing."), is_live::<SensingPart>);
     }
 
     /// The keys in which two tables differ, those to be set of which `may` says so.
@@ -137,9 +141,9 @@ impl ParameterDifference {
     }
 }
 
-/// Whether a vehicle can go on with another value of `key`.
-fn may_vary(vehicle: &Vehicle, key: &str) -> bool {
-    LIMITS.contains(&key) || (vehicle.kind.has_wheels() && DRIVING.contains(&key))
+/// Whether a run can go on with another value of `key` of the table whose keys are `K`.
+fn is_live<K: Keys>(key: &str) -> bool {
+    K::marks(key).is_some_and(|marks| marks.contains(&Mark::Live))
 }
 
 /// A value as it stands behind `=`; words stand alone.

@@ -3,33 +3,22 @@
 use crate::text::words::word;
 use crate::{
     Vehicle, VehicleKind,
-    text::{Form, Found, Keys, Node, Part, Reporter, Span, Value, table, words::quoted},
+    text::{Form, Found, Keys, Node, Part, Reporter, Span, Value, keys::Mark, table, words::quoted},
     types::VehiclePart,
 };
 use serde::{Serializer, ser};
 use serde_json::{Value as Json, json};
 use vocabulary::{GRAVITY, Word};
 
-/// Keys that every kind has.
-const EVERYBODY: [&str; 11] = [
-    "kind",
-    "speed_min",
-    "speed_max",
-    "turn_rate_max",
-    "acceleration_max",
-    "length",
-    "width",
-    "height",
-    "wheelbase",
-    "track",
-    "wheel_radius",
-];
-/// Keys of kinds whose wheels are steered.
-const STEERED: [&str; 3] = ["steering_max", "steering_rate", "steering_lag"];
-
 /// Whether `key` means something for vehicles of `kind`.
-fn applies(key: &str, kind: VehicleKind) -> bool {
-    EVERYBODY.contains(&key) || (kind.has_wheels() && (kind.steers() || !STEERED.contains(&key)))
+pub(crate) fn applies(key: &str, kind: VehicleKind) -> bool {
+    VehiclePart::marks(key).is_some_and(|marks| {
+        marks.iter().all(|mark| match mark {
+            Mark::Wheels => kind.has_wheels(),
+            Mark::Steered => kind.steers(),
+            Mark::Live | Mark::Apart => true,
+        })
+    })
 }
 
 /// A vehicle: the word of a kind, or a table.

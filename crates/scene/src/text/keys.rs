@@ -45,6 +45,19 @@ pub(crate) fn one_of<T>(
     }
 }
 
+/// What is special about a key, written behind it in its declaration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Mark {
+    /// It may change while a run goes.
+    Live,
+    /// No robot depends on it once the run goes.
+    Apart,
+    /// It means something on wheels only.
+    Wheels,
+    /// It means something where wheels are steered.
+    Steered,
+}
+
 /// A table with known keys; made by [`keys!`] or [`settings!`].
 pub(crate) trait Keys: Sized {
     /// What the table is about.
@@ -55,6 +68,9 @@ pub(crate) trait Keys: Sized {
 
     /// The JSON Schema of every known key.
     fn fields() -> Vec<Field>;
+
+    /// What is special about a known key; `None` for one that is not known.
+    fn marks(key: &str) -> Option<&'static [Mark]>;
 
     /// Every key that was read, and where its value stands.
     fn places(&self) -> Vec<(&'static str, Span)>;
@@ -196,7 +212,7 @@ macro_rules! keys {
     (
         $(#[doc = $about:literal])*
         struct $name:ident {
-            $( $(#[doc = $doc:literal])* $key:ident : $type:ty = $form:expr, $need:ident $(($default:expr))?; )+
+            $( $(#[doc = $doc:literal])* $key:ident : $type:ty = $form:expr, $need:ident $(($default:expr))? $(, $mark:ident)*; )+
         }
     ) => {
         $(#[doc = $about])*
@@ -222,6 +238,13 @@ macro_rules! keys {
                     default: $crate::text::keys::keys!(@default $type $(, $default)?),
                     schema: $crate::text::Form::schema(&$form),
                 }, )+ ]
+            }
+
+            fn marks(key: &str) -> Option<&'static [$crate::text::keys::Mark]> {
+                match key {
+                    $( stringify!($key) => Some(&[$($crate::text::keys::Mark::$mark),*]), )+
+                    _ => None,
+                }
             }
 
             fn places(&self) -> Vec<(&'static str, $crate::text::Span)> {
@@ -252,7 +275,7 @@ macro_rules! settings {
         $(#[doc = $about:literal])*
         $(#[derive($($derive:ident),*)])?
         pub struct $name:ident from $part:ident {
-            $( $(#[doc = $doc:literal])* pub $key:ident : $type:ty = $default:expr, $form:expr; )+
+            $( $(#[doc = $doc:literal])* pub $key:ident : $type:ty = $default:expr, $form:expr $(, $mark:ident)*; )+
         }
     ) => {
         $(#[doc = $about])*
@@ -268,7 +291,7 @@ macro_rules! settings {
 
         $crate::text::keys::keys! {
             $(#[doc = $about])*
-            struct $part { $( $(#[doc = $doc])* $key: $type = $form, default($default); )+ }
+            struct $part { $( $(#[doc = $doc])* $key: $type = $form, default($default) $(, $mark)*; )+ }
         }
 
         impl $crate::text::Part for $part {

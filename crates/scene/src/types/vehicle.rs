@@ -24,13 +24,13 @@ settings! {
         /// How it moves, and which values it has where nothing else is said.
         pub kind: VehicleKind = VehicleKind::Unicycle, word::<VehicleKind>();
         /// Slowest forward speed of a follower, m/s; above 0, since the law is singular at rest.
-        pub speed_min: f64 = Limits::PAPER.speed_min, number("m/s").above(0.0).up_to(100.0);
+        pub speed_min: f64 = Limits::PAPER.speed_min, number("m/s").above(0.0).up_to(100.0), Live;
         /// Fastest forward speed, m/s; above `speed_min`.
-        pub speed_max: f64 = Limits::PAPER.speed_max, number("m/s").above(0.0).up_to(100.0);
+        pub speed_max: f64 = Limits::PAPER.speed_max, number("m/s").above(0.0).up_to(100.0), Live;
         /// Largest |turn rate|, rad/s.
-        pub turn_rate_max: f64 = Limits::PAPER.turn_rate_max, number("rad/s").above(0.0).up_to(1000.0);
+        pub turn_rate_max: f64 = Limits::PAPER.turn_rate_max, number("rad/s").above(0.0).up_to(1000.0), Live;
         /// Largest |dv/dt|, m/s²; `inf` for unbounded.
-        pub acceleration_max: f64 = Limits::PAPER.acceleration_max, number("m/s²").above(0.0).or_infinite();
+        pub acceleration_max: f64 = Limits::PAPER.acceleration_max, number("m/s²").above(0.0).or_infinite(), Live;
         /// Bumper to bumper, m.
         pub length: f64 = Body::default().length, MEASURE;
         /// Side to side, m.
@@ -44,51 +44,51 @@ settings! {
         /// Of every wheel, m.
         pub wheel_radius: f64 = Body::default().wheel_radius, MEASURE;
         /// All-up mass, kg.
-        pub mass: f64 = 5.01, number("kg").above(0.0);
+        pub mass: f64 = 5.01, number("kg").above(0.0), Wheels;
         /// Height of the centre of mass over the ground at rest, m.
-        pub mass_height: f64 = 0.11, MEASURE;
+        pub mass_height: f64 = 0.11, MEASURE, Wheels;
         /// Where the centre of mass is between the rear axle, 0, and the front axle, 1.
-        pub mass_forward: f64 = 0.5, number("").from(0.0).up_to(1.0);
+        pub mass_forward: f64 = 0.5, number("").from(0.0).up_to(1.0), Wheels;
         /// Factor on the moments of inertia of a box of the body's measures and mass.
-        pub inertia_scale: f64 = 1.0, number("").from(0.2).up_to(5.0);
+        pub inertia_scale: f64 = 1.0, number("").from(0.2).up_to(5.0), Wheels;
         /// Ground to the floor of the body at rest, m; what is lower passes under it.
-        pub clearance: f64 = 0.075, number("m").from(0.0).up_to(100.0);
+        pub clearance: f64 = 0.075, number("m").from(0.0).up_to(100.0), Wheels;
         /// Stiffness of each wheel's spring, N/m.
-        pub spring: f64 = 700.0, number("N/m").above(0.0).up_to(1e8);
+        pub spring: f64 = 700.0, number("N/m").above(0.0).up_to(1e8), Wheels;
         /// Of each wheel's damper, N s/m.
-        pub damping: f64 = 40.0, number("N s/m").from(0.0).up_to(1e7);
+        pub damping: f64 = 40.0, number("N s/m").from(0.0).up_to(1e7), Wheels;
         /// Largest compression of a spring from rest, m.
-        pub travel: f64 = 0.04, MEASURE;
+        pub travel: f64 = 0.04, MEASURE, Wheels;
         /// Coefficient of friction of the tyres.
-        pub friction: f64 = 0.9, number("").above(0.0).up_to(5.0);
+        pub friction: f64 = 0.9, number("").above(0.0).up_to(5.0), Wheels;
         /// Cornering stiffness of the tyres: lateral force per load and per slip angle, 1/rad.
-        pub cornering: f64 = 12.0, number("1/rad").above(0.0).up_to(100.0);
+        pub cornering: f64 = 12.0, number("1/rad").above(0.0).up_to(100.0), Wheels;
         /// Relaxation length of the tyres, m: the way over which a lateral force builds up.
-        pub relaxation: f64 = 0.06, MEASURE;
+        pub relaxation: f64 = 0.06, MEASURE, Wheels;
         /// Coefficient of rolling resistance.
-        pub rolling: f64 = 0.03, number("").from(0.0).up_to(1.0);
+        pub rolling: f64 = 0.03, number("").from(0.0).up_to(1.0), Wheels;
         /// Air drag per speed squared, N s²/m².
-        pub drag: f64 = 0.02, number("N s²/m²").from(0.0).up_to(1000.0);
+        pub drag: f64 = 0.02, number("N s²/m²").from(0.0).up_to(1000.0), Wheels;
         /// Largest |steering angle| of the front wheels, from 1 deg to 85 deg.
-        pub steering_max: f64 = 28.0 * DEGREE, angle_within(DEGREE, 85.0 * DEGREE);
+        pub steering_max: f64 = 28.0 * DEGREE, angle_within(DEGREE, 85.0 * DEGREE), Steered, Live;
         /// Largest |rate| of the steering angle, rad/s.
-        pub steering_rate: f64 = 5.0, number("rad/s").above(0.0).up_to(1000.0);
+        pub steering_rate: f64 = 5.0, number("rad/s").above(0.0).up_to(1000.0), Steered, Live;
         /// Time constant of the steering, s.
-        pub steering_lag: f64 = 0.08, LAG;
+        pub steering_lag: f64 = 0.08, LAG, Steered, Live;
         /// Largest force of the drive, all wheels together, N.
-        pub drive_force: f64 = 30.0, FORCE;
+        pub drive_force: f64 = 30.0, FORCE, Wheels, Live;
         /// Time constant of the drive, s.
-        pub drive_lag: f64 = 0.1, LAG;
+        pub drive_lag: f64 = 0.1, LAG, Wheels, Live;
         /// Largest force of the brakes, all wheels together, N.
-        pub brake_force: f64 = 35.0, FORCE;
+        pub brake_force: f64 = 35.0, FORCE, Wheels, Live;
         /// Time constant of the brakes, s.
-        pub brake_lag: f64 = 0.05, LAG;
+        pub brake_lag: f64 = 0.05, LAG, Wheels, Live;
         /// What is done about the actuators' lags.
-        pub compensation: Compensation = Compensation::Lead, word::<Compensation>();
+        pub compensation: Compensation = Compensation::Lead, word::<Compensation>(), Wheels, Live;
         /// Feedback on the speed, 1/s: acceleration asked for per error of speed.
-        pub speed_gain: f64 = 4.0, number("1/s").from(0.0).up_to(1000.0);
+        pub speed_gain: f64 = 4.0, number("1/s").from(0.0).up_to(1000.0), Wheels, Live;
         /// Feedback on the turn rate: share of its error that is added to what is asked for.
-        pub turn_gain: f64 = 0.0, number("").from(0.0).up_to(100.0);
+        pub turn_gain: f64 = 0.0, number("").from(0.0).up_to(100.0), Wheels, Live;
     }
 }
 
