@@ -28,8 +28,8 @@ FOLLOWERS = [(230, 159, 0), (86, 180, 233), (0, 158, 115), (240, 228, 66), (0, 1
 def colours(members):
     """The robots' colours, as in the pictures of Echelon."""
     followers = 0
-    for member in members:
-        if member.leads:
+    for robot in members:
+        if robot.leads:
             yield LEAD
         else:
             yield FOLLOWERS[followers % len(FOLLOWERS)]
@@ -46,33 +46,33 @@ def whole(reader):
 
 
 def read(path):
-    """The cast, the states of each edge with their times in ns, and the path of each robot."""
-    cast, edges, paths, cameras = None, defaultdict(list), defaultdict(list), set()
+    """The fleet, the states of each edge with their times in ns, and the path of each robot."""
+    fleet, edges, paths, cameras = None, defaultdict(list), defaultdict(list), set()
     with open(path, "rb") as file:
         # One that does not seek also reads a log that was cut off.
         reader = NonSeekingReader(file, decoder_factories=[DecoderFactory()])
         for channel, message, decoded in whole(reader):
             topic = channel.topic
-            if topic == "/cast":
-                cast = decoded
+            if topic == "/fleet":
+                fleet = decoded
             elif topic.startswith("/edge/") and topic.endswith("/state"):
                 edges[topic].append((message.log_time, decoded))
             elif topic.startswith("/robot/") and topic.endswith("/state"):
                 paths[topic.split("/")[2]].append((decoded.x_m, decoded.y_m, decoded.height_m + 0.01))
             elif topic.endswith("/camera/image"):
                 cameras.add(topic)
-    return cast, edges, paths, sorted(cameras)
+    return fleet, edges, paths, sorted(cameras)
 
 
 def main():
     log = sys.argv[1]
-    cast, edges, paths, cameras = read(log)
-    if cast is None:
+    fleet, edges, paths, cameras = read(log)
+    if fleet is None:
         sys.exit(f"{log} is no log of Echelon")
     curves = [rrb.TimeSeriesView(name=name, origin=f"/curves/{field}") for name, field in CURVES.items()]
-    lead = next((member.name for member in cast.members if member.leads), cast.members[0].name)
+    lead = next((robot.name for robot in fleet.robots if robot.leads), fleet.robots[0].name)
     space = rrb.Spatial3DView(
-        name=cast.title,
+        name=fleet.title,
         origin="/",
         contents=["/bodies/**", "/paths/**", "/tf", "/world"],
         background=(232, 236, 241),
@@ -91,23 +91,23 @@ def main():
     rr.log("/", rr.CoordinateFrame("world"), static=True)
     rr.log("/world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     by_name = {}
-    for member, colour in zip(cast.members, colours(cast.members)):
-        by_name[member.name] = colour
-        body = f"/bodies/{member.name}"
-        rr.log(body, rr.CoordinateFrame(f"robot/{member.name}"), static=True)
+    for robot, colour in zip(fleet.robots, colours(fleet.robots)):
+        by_name[robot.name] = colour
+        body = f"/bodies/{robot.name}"
+        rr.log(body, rr.CoordinateFrame(f"robot/{robot.name}"), static=True)
         box = rr.Boxes3D(
-            centers=[(member.wheelbase_m / 2, 0, member.height_m / 2)],
-            sizes=[(member.length_m, member.width_m, member.height_m)],
+            centers=[(robot.wheelbase_m / 2, 0, robot.height_m / 2)],
+            sizes=[(robot.length_m, robot.width_m, robot.height_m)],
             colors=[colour],
-            labels=[member.name],
+            labels=[robot.name],
             fill_mode="solid",
         )
         rr.log(body, box, static=True)
         # Every tenth point is enough for the eye.
-        strip = paths[member.name][::10]
+        strip = paths[robot.name][::10]
         if len(strip) > 1:
-            rr.log(f"/paths/{member.name}", rr.CoordinateFrame("world"), static=True)
-            rr.log(f"/paths/{member.name}", rr.LineStrips3D([strip], colors=[colour], radii=[0.02]), static=True)
+            rr.log(f"/paths/{robot.name}", rr.CoordinateFrame("world"), static=True)
+            rr.log(f"/paths/{robot.name}", rr.LineStrips3D([strip], colors=[colour], radii=[0.02]), static=True)
     for topic, rows in edges.items():
         _, _, leader, follower, _ = topic.split("/")
         times = rr.TimeColumn("message_log_time", timestamp=[time * 1e-9 for time, _ in rows])

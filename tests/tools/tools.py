@@ -70,8 +70,8 @@ def agree(run, messages, table, topic_of):
 def against_tables(run, messages):
     agree(run, messages, "robots", lambda row: f"/robot/{row['robot']}/state")
     agree(run, messages, "edges", lambda row: f"/edge/{row['leader']}/{row['follower']}/state")
-    if rows(run, "looks"):
-        agree(run, messages, "looks", lambda row: f"/edge/{row['leader']}/{row['follower']}/looks")
+    if rows(run, "measurements"):
+        agree(run, messages, "measurements", lambda row: f"/edge/{row['leader']}/{row['follower']}/measurements")
     times = sorted({float(row["time_s"]) for row in rows(run, "robots")})
     check(f"{run.name}: {len(times)} times equal", times == [sample.time_s for _, sample in messages["/samples"]])
 

@@ -203,7 +203,7 @@ impl Diff {
             "casts": self.casts.as_ref().map(pair),
             "scene": keys,
             "digests": { "a": self.digests[0], "b": self.digests[1] },
-            "moments": records,
+            "records": records,
         }));
     }
 }

@@ -203,6 +203,10 @@ fn read_manifest(folder: &Path) -> Result<Manifest, Failure> {
         }
         _ => Failure::Machine(format!("cannot read {}: {error}", path.display())),
     })?;
-    serde_json::from_str(&text)
-        .map_err(|error| Failure::Usage(format!("{} is no manifest of a run: {error}", path.display())))
+    let manifest: Manifest = serde_json::from_str(&text)
+        .map_err(|error| Failure::Usage(format!("{} is no manifest of a run: {error}", path.display())))?;
+    match manifest.other_layout() {
+        Some(fault) => Err(Failure::Usage(format!("{} {fault}", folder.display()))),
+        None => Ok(manifest),
+    }
 }

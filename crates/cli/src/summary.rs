@@ -119,7 +119,7 @@ fn edges(metrics: &Metrics) {
 
 /// How followers that look saw their leaders.
 fn looks(metrics: &Metrics) {
-    let looks = || metrics.edges.iter().filter_map(|edge| Some((edge, edge.looks.as_ref()?)));
+    let looks = || metrics.edges.iter().filter_map(|edge| Some((edge, edge.measurements.as_ref()?)));
     if looks().next().is_none() {
         return;
     }

@@ -5,7 +5,7 @@ pub mod clearance;
 mod contacts;
 mod digest;
 mod expectations;
-mod looks;
+mod measurements;
 mod metrics;
 mod statistics;
 
@@ -13,6 +13,6 @@ pub use certificates::{CertificateMetrics, StatementMetrics};
 pub use contacts::ContactMetrics;
 pub use digest::Digest;
 pub use expectations::ExpectationMetrics;
-pub use looks::{LookMetrics, difference};
+pub use measurements::{MeasurementMetrics, difference};
 pub use metrics::{EdgeMetrics, Metrics, MetricsBuilder, RobotMetrics};
 pub use statistics::{RootMeanSquare, median};

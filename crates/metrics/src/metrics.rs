@@ -3,7 +3,7 @@
 use crate::certificates::CertificateMetrics;
 use crate::clearance::Clearance;
 use crate::contacts::{ContactLog, ContactMetrics};
-use crate::looks::{LookMetrics, LookSums};
+use crate::measurements::{MeasurementMetrics, MeasurementSums};
 use crate::statistics::RootMeanSquare;
 use serde::Serialize;
 use vocabulary::{Condition, Contact, EdgeState, EntityId, FleetInfo, Judging, StepRecord};
@@ -91,7 +91,7 @@ pub struct EdgeMetrics {
     /// [slowest, fastest] speed of the follower since it settled, m/s; `None` if it did not.
     pub settled_speeds: Option<[f64; 2]>,
     /// How well it saw its leader; `None` where it is told the truth.
-    pub looks: Option<LookMetrics>,
+    pub measurements: Option<MeasurementMetrics>,
 }
 
 /// Gathers [`Metrics`].
@@ -120,7 +120,7 @@ struct EdgeSums {
     late_peak_error: [f64; 2],
     late_errors: RootMeanSquare<2>,
     peak_rates: [f64; 2],
-    looks: LookSums,
+    measurements: MeasurementSums,
     limited: u64,
     too_close: u64,
     speeds: [f64; 2],
@@ -162,7 +162,7 @@ impl MetricsBuilder {
         }
         for frame in &record.frames {
             if let Some(edge) = self.edges.get_mut(frame.edge) {
-                edge.looks.look(frame);
+                edge.measurements.look(frame);
             }
         }
         for (index, robot) in record.snapshot.robots.iter().enumerate() {
@@ -242,7 +242,7 @@ impl EdgeSums {
         if time >= judging.settled_after {
             self.late_errors.add(edge.error);
         }
-        self.looks.know(edge, step);
+        self.measurements.know(edge, step);
         self.limited += u64::from(edge.limited);
         self.too_close += u64::from(edge.too_close);
         self.speeds = [self.speeds[0].min(speed), self.speeds[1].max(speed)];
@@ -281,7 +281,7 @@ impl EdgeSums {
             too_close: self.too_close,
             speeds: self.speeds,
             settled_speeds: self.settled.map(|s| s.speeds),
-            looks: self.looks.finish(),
+            measurements: self.measurements.finish(),
         }
     }
 }

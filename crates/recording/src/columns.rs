@@ -59,7 +59,7 @@ pub(crate) fn of(kind: TableKind) -> &'static [&'static str] {
             "impulse_n_s",
         ],
         TableKind::Props => &["time_s", "prop", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"],
-        TableKind::Looks => &[
+        TableKind::Measurements => &[
             "leader",
             "follower",
             "outcome",
@@ -93,9 +93,13 @@ mod tests {
     fn the_documentation_names_every_column() {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/formats.md");
         let text = std::fs::read_to_string(path).expect("the page");
-        for kind in
-            [TableKind::Robots, TableKind::Edges, TableKind::Contacts, TableKind::Props, TableKind::Looks]
-        {
+        for kind in [
+            TableKind::Robots,
+            TableKind::Edges,
+            TableKind::Contacts,
+            TableKind::Props,
+            TableKind::Measurements,
+        ] {
             let start = text.find(&format!("**`{}`**", kind.name())).expect("a paragraph");
             let paragraph = text[start..].split("\n\n").next().expect("an end");
             let named: Vec<&str> = paragraph.split('`').skip(3).step_by(2).collect();

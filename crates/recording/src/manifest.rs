@@ -46,4 +46,17 @@ pub struct Manifest {
 }
 
 /// The layout this program writes.
-pub(crate) const FORMAT: u32 = 1;
+pub(crate) const FORMAT: u32 = 2;
+
+impl Manifest {
+    /// What is wrong with a run folder of another layout; `None` where this program can read it.
+    pub fn other_layout(&self) -> Option<String> {
+        (self.format != FORMAT).then(|| {
+            format!(
+                "is a run of layout {}; this program reads layout {FORMAT}: run its scene.toml again, or read it with \
+                 {}, which wrote it",
+                self.format, self.program
+            )
+        })
+    }
+}

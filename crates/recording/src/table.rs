@@ -27,7 +27,7 @@ pub enum TableKind {
     /// Where the props are that can move.
     Props,
     /// Looks of followers at their leaders, when they arrive.
-    Looks,
+    Measurements,
 }
 
 /// Values of one column.
@@ -54,7 +54,7 @@ impl TableKind {
             Self::Edges => "edges",
             Self::Contacts => "contacts",
             Self::Props => "props",
-            Self::Looks => "looks",
+            Self::Measurements => "measurements",
         }
     }
 
@@ -66,10 +66,10 @@ impl TableKind {
     /// The tables that a run of `fleet` has.
     pub fn of(fleet: &FleetInfo) -> Vec<Self> {
         let moving = fleet.props.iter().any(|prop| prop.mobility != Mobility::Fixed);
-        let all = [Self::Robots, Self::Edges, Self::Contacts, Self::Props, Self::Looks];
+        let all = [Self::Robots, Self::Edges, Self::Contacts, Self::Props, Self::Measurements];
         let has = |kind: &Self| match kind {
             Self::Props => moving,
-            Self::Looks => fleet.looks,
+            Self::Measurements => fleet.looks,
             _ => true,
         };
         all.into_iter().filter(has).collect()
@@ -152,7 +152,7 @@ impl TableKind {
                     }
                 }
             }
-            Self::Looks => {
+            Self::Measurements => {
                 for frame in &record.frames {
                     let Some(edge) = fleet.edges.get(frame.edge) else { continue };
                     let [leader, follower] = [edge.leader, edge.follower].map(|k| &*fleet.robots[k].name);

@@ -250,7 +250,8 @@ impl ExpectationJudge<'_> {
     }
 
     fn in_view(&mut self, least: f64) {
-        let looks = self.metrics.edges.iter().filter_map(|edge| Some((edge, edge.looks.as_ref()?.in_view)));
+        let looks =
+            self.metrics.edges.iter().filter_map(|edge| Some((edge, edge.measurements.as_ref()?.in_view)));
         let percent = |share: f64| format!("{:.2} %", share * 100.0);
         let (found, met) = match looks.min_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((edge, share)) => (format!("{} on {}", percent(share), name(edge)), share >= least),

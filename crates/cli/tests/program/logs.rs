@@ -96,7 +96,7 @@ fn runs_that_differ_are_told_apart() {
     let (code, out, _) = diff(&["a", "c", "--json"]);
     let report: Value = serde_json::from_str(&out).expect("JSON");
     assert_eq!(
-        (code, &report["same"], &report["moments"]["first"]["unit"]),
+        (code, &report["same"], &report["records"]["first"]["unit"]),
         (1, &Value::Bool(false), &"m".into())
     );
     record(folder.path(), "f", "circle-three", &["--set", "robots.follower-1.distance=2.0000000001"]);

@@ -100,9 +100,9 @@ impl Drawing {
         for (index, member) in fleet.robots.iter().enumerate() {
             let frame = solids::robot_frame(member);
             drawing.poses.push(channel::<PoseInFrame>(&format!("/{frame}/pose"), to)?);
-            let looks = fleet.looks && fleet.edges.iter().any(|edge| edge.follower == index);
+            let measurements = fleet.looks && fleet.edges.iter().any(|edge| edge.follower == index);
             let camera = format!("{frame}/camera");
-            drawing.cameras.push(if looks {
+            drawing.cameras.push(if measurements {
                 let calibration = channel::<CameraCalibration>(&format!("/{camera}/calibration"), to)?;
                 Some([calibration, channel::<CompressedImage>(&format!("/{camera}/image"), to)?])
             } else {

@@ -10,7 +10,7 @@ use super::read::LogChannel;
 use super::record;
 use super::stage::{FleetRecord, sound};
 use super::writer::Writer;
-use super::{FORMAT, NAME, Topics};
+use super::{FORMAT, NAME, Topics, other_layout};
 use crate::manifest;
 use crate::{Error, Manifest, Status};
 use mcap::records::{MessageHeader, Record as Item};
@@ -55,10 +55,10 @@ pub(super) fn import(file: &File, path: &Path) -> Result<Imported, Error> {
     let wrong = |message: String| Error::Log { path: path.to_owned(), message };
     let about = About::of(file, path)?;
     if let Some(format) = about.format.as_ref().filter(|format| **format != FORMAT.to_string()) {
-        return Err(wrong(format!("is a log of layout {format}; this program reads layout {FORMAT}")));
+        return Err(wrong(other_layout(format)));
     }
     let fleet = about.fleet.clone().filter(sound).ok_or_else(|| {
-        wrong(format!("is an MCAP file, but no log of Echelon: it has no topic {}", Topics::CAST))
+        wrong(format!("is an MCAP file, but no log of Echelon: it has no topic {}", Topics::FLEET))
     })?;
     let mut manifest = match &about.manifest {
         Some(text) => serde_json::from_str(text)
@@ -201,7 +201,9 @@ impl About {
         let place = |kind: LogChannel, topic: &str| match kind {
             LogChannel::Robot(_) => fleet.robots.iter().position(|member| Topics::robot(member) == topic),
             LogChannel::Edge(_) => fleet.edges.iter().position(|edge| Topics::edge(fleet, *edge) == topic),
-            LogChannel::Look(_) => fleet.edges.iter().position(|edge| Topics::looks(fleet, *edge) == topic),
+            LogChannel::Look(_) => {
+                fleet.edges.iter().position(|edge| Topics::measurements(fleet, *edge) == topic)
+            }
             LogChannel::Prop(_) => fleet.props.iter().position(|prop| Topics::prop(prop) == topic),
             _ => Some(0),
         };
@@ -303,7 +305,7 @@ impl Parts {
             (sample.edges, self.edges.len()),
             (sample.props, placed.len()),
             (sample.contacts, self.contacts.len()),
-            (sample.looks, self.frames.len()),
+            (sample.measurements, self.frames.len()),
         ];
         counts.iter().all(|(told, found)| *told == *found as u64).then_some(())?;
         let inside = |last: Option<&usize>, count: usize| last.is_none_or(|last| *last < count);

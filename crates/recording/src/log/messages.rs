@@ -82,7 +82,7 @@ impl Record for EdgeState {
 
 /// One look of an edge: its index is that of its channel.
 impl Record for MeasurementRecord {
-    const NAME: &'static str = "Look";
+    const NAME: &'static str = "Measurement";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
         use Outcome::{Ambiguous, Dropped, Missed, Rejected, Used};
@@ -234,7 +234,7 @@ pub(super) struct SampleNumber {
     pub(super) edges: u64,
     pub(super) props: u64,
     pub(super) contacts: u64,
-    pub(super) looks: u64,
+    pub(super) measurements: u64,
 }
 
 impl Record for SampleNumber {
@@ -247,6 +247,6 @@ impl Record for SampleNumber {
         f.count("edges", &mut self.edges)?;
         f.count("props", &mut self.props)?;
         f.count("contacts", &mut self.contacts)?;
-        f.count("looks", &mut self.looks)
+        f.count("measurements", &mut self.measurements)
     }
 }

@@ -39,7 +39,15 @@ use vocabulary::{Edge, FleetInfo, Prop, RobotInfo};
 pub const FILE: &str = "log.mcap";
 
 /// The layout this program writes and reads.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
+
+/// What to say of a log of another layout.
+fn other_layout(format: &str) -> String {
+    format!(
+        "is a log of layout {format}; this program reads layout {FORMAT}: run its scene again (`echelon run \
+         RUN/scene.toml`), or read it with the program that wrote it"
+    )
+}
 
 /// Name of the metadata that makes an MCAP file a log of ours.
 const NAME: &str = "echelon";
@@ -51,7 +59,7 @@ const OURS: &str = "echelon ";
 struct Topics;
 
 impl Topics {
-    const CAST: &str = "/cast";
+    const FLEET: &str = "/fleet";
     const CONTACTS: &str = "/contacts";
     const SAMPLES: &str = "/samples";
 
@@ -63,8 +71,8 @@ impl Topics {
         format!("/edge/{}/state", Self::pair(fleet, edge))
     }
 
-    fn looks(fleet: &FleetInfo, edge: Edge) -> String {
-        format!("/edge/{}/looks", Self::pair(fleet, edge))
+    fn measurements(fleet: &FleetInfo, edge: Edge) -> String {
+        format!("/edge/{}/measurements", Self::pair(fleet, edge))
     }
 
     fn pair(fleet: &FleetInfo, edge: Edge) -> String {

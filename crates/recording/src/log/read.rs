@@ -2,12 +2,12 @@
 //!
 //! Whole records are looked for from the beginning, so a log that was cut off reads like any other, up to its last chunk.
 
-use super::FORMAT;
 use super::import::{Imported, import};
 use super::messages::{ContactRecord, SampleNumber};
 use super::outline::{Chunk, ChunkOutline, LONGEST, body, parse};
 use super::record::{self, Record};
 use super::stage::{FleetRecord, sound};
+use super::{FORMAT, other_layout};
 use crate::{Error, Manifest, Status};
 use mcap::records::{MessageHeader, Record as Chunked, op};
 use std::collections::{HashMap, VecDeque};
@@ -83,7 +83,7 @@ impl Log {
             ));
         };
         if format != FORMAT.to_string() {
-            let message = format!("is a log of layout {format}; this program reads layout {FORMAT}");
+            let message = other_layout(&format);
             return Err(wrong(&message));
         }
         let Some((manifest, scene)) = outline.manifest.zip(outline.scene) else {
@@ -208,7 +208,7 @@ impl Log {
     }
 
     /// The moments at and after `time` s: what lies before is skipped, not read.
-    pub fn moments_from(&self, time: f64) -> Moments {
+    pub fn records_from(&self, time: f64) -> Moments {
         let begun = |chunk: &Chunk| chunk.begin as f64 * 1e-9 <= time + 1e-9;
         // The first chunk holds no moments; a stamp is rounded, so the chunk before may end with the one asked for.
         let mut records = self.after_chunks(self.inside.chunks.partition_point(begun).saturating_sub(2));
@@ -384,7 +384,7 @@ fn take(
                 (sample.edges, record.edges.len()),
                 (sample.props, props.len()),
                 (sample.contacts, record.contacts.len()),
-                (sample.looks, record.frames.len()),
+                (sample.measurements, record.frames.len()),
             ];
             counts.iter().all(|(told, found)| *told == *found as u64).then_some(())?;
             return Some(true);

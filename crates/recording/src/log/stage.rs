@@ -65,7 +65,7 @@ where
 }
 
 impl Record for FleetRecord {
-    const NAME: &'static str = "Cast";
+    const NAME: &'static str = "Fleet";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
         let fleet = &mut self.0;
@@ -76,13 +76,13 @@ impl Record for FleetRecord {
         f.number("sun_elevation_rad", sun_elevation)?;
         f.number("sun_azimuth_rad", sun_azimuth)?;
         f.number("haze_from_m", haze_from)?;
-        f.flag("looks", &mut fleet.looks)?;
+        f.flag("has_sensors", &mut fleet.looks)?;
         let mut members = std::mem::take(&mut fleet.robots).into_iter().map(Actor).collect();
         let mut edges = fleet.edges.iter().copied().map(EdgeRecord).collect();
         let mut props = std::mem::take(&mut fleet.props).into_iter().map(Scenery).collect();
         let mut land = fleet.terrain.iter().map(|land| Land(Terrain::clone(land))).collect();
         let told = f
-            .each("members", &mut members)
+            .each("robots", &mut members)
             .and_then(|()| f.each("edges", &mut edges))
             .and_then(|()| f.each("props", &mut props))
             .and_then(|()| f.each("terrain", &mut land));
@@ -95,7 +95,7 @@ impl Record for FleetRecord {
 }
 
 impl Record for Actor {
-    const NAME: &'static str = "Member";
+    const NAME: &'static str = "Robot";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
         let RobotInfo { name, leads, body, shell, camera_mount, camera_model } = &mut self.0;

@@ -101,7 +101,7 @@ pub(super) struct Writer {
     drawing: Option<Drawing>,
     robots: Vec<u16>,
     edges: Vec<u16>,
-    looks: Vec<u16>,
+    measurements: Vec<u16>,
     props: Vec<u16>,
     contacts: u16,
     samples: u16,
@@ -139,13 +139,13 @@ impl Writer {
             .map_err(Error::table(path))?;
         to.attach("scene.toml", "application/toml", scene)?;
         to.attach("manifest.json", "application/json", &text(manifest, path)?)?;
-        let stage = to.add_own::<FleetRecord>(Topics::CAST, 0)?;
+        let stage = to.add_own::<FleetRecord>(Topics::FLEET, 0)?;
         to.put_own(stage, Stamp::default(), &mut FleetRecord(fleet.clone()))?;
         let mut writer = Self {
             drawing: if drawn { Some(Drawing::begin(fleet, &mut to)?) } else { None },
             robots: vec![],
             edges: vec![],
-            looks: vec![],
+            measurements: vec![],
             props: vec![],
             contacts: to.add_own::<ContactRecord>(Topics::CONTACTS, 0)?,
             samples: to.add_own::<SampleNumber>(Topics::SAMPLES, 0)?,
@@ -167,7 +167,8 @@ impl Writer {
         for (index, edge) in fleet.edges.iter().enumerate() {
             self.edges.push(to.add_own::<EdgeState>(&Topics::edge(fleet, *edge), index)?);
             if fleet.looks {
-                self.looks.push(to.add_own::<MeasurementRecord>(&Topics::looks(fleet, *edge), index)?);
+                self.measurements
+                    .push(to.add_own::<MeasurementRecord>(&Topics::measurements(fleet, *edge), index)?);
             }
         }
         for (index, prop) in fleet.props.iter().enumerate() {
@@ -217,7 +218,7 @@ impl Writer {
             to.put_own(self.contacts, stamp, &mut ContactRecord { contact: *contact, names })?;
         }
         for frame in &mut record.frames {
-            if let Some(channel) = self.looks.get(frame.edge) {
+            if let Some(channel) = self.measurements.get(frame.edge) {
                 to.put_own(*channel, stamp, frame)?;
             }
         }
@@ -228,7 +229,7 @@ impl Writer {
             edges: record.edges.len() as u64,
             props: record.snapshot.props.len() as u64,
             contacts: record.contacts.len() as u64,
-            looks: record.frames.len() as u64,
+            measurements: record.frames.len() as u64,
         };
         self.number += 1;
         to.put_own(self.samples, stamp, &mut sample)

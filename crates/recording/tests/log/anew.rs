@@ -39,7 +39,7 @@ fn rewrite(from: &Path, to: &Path, how: Anew) {
         mcap::MessageStream::new(&bytes).expect("messages").map(|m| m.expect("a message")).collect();
     messages.retain(|m| how.without.is_none_or(|topic| m.channel.topic != topic));
     if let Some([from, to]) = how.span {
-        messages.retain(|m| m.channel.topic == "/cast" || (from..=to).contains(&m.log_time));
+        messages.retain(|m| m.channel.topic == "/fleet" || (from..=to).contains(&m.log_time));
     }
     if how.by_topic {
         messages.sort_by(|a, b| a.channel.topic.cmp(&b.channel.topic));
@@ -134,9 +134,9 @@ fn what_another_program_left_out_is_told() {
     assert_eq!((log.manifest().samples, log.manifest().digest.as_ref()), (201, None));
     let first = log.records().next().expect("one").expect("whole");
     assert_eq!(first.snapshot.time, log.begins());
-    rewrite(&original, &copy, Anew { without: Some("/cast"), ..other });
+    rewrite(&original, &copy, Anew { without: Some("/fleet"), ..other });
     let refused = Log::open(&copy).expect_err("no cast").to_string();
-    assert!(refused.contains("no log of Echelon") && refused.contains("/cast"), "{refused}");
+    assert!(refused.contains("no log of Echelon") && refused.contains("/fleet"), "{refused}");
     // Cut off, it reads up to there.
     rewrite(&original, &copy, Anew { bare: true, ..other });
     let bytes = fs::read(&copy).expect("a log");

@@ -38,7 +38,7 @@ fn any_time_is_found_without_reading_what_lies_before() {
     {
         let at = log.at(time).expect("sound").expect("a moment");
         assert!(same(&at, &records[want]), "{time} s gives {}", at.snapshot.time);
-        let on: Vec<StepRecord> = log.moments_from(time).map(|record| record.expect("sound")).collect();
+        let on: Vec<StepRecord> = log.records_from(time).map(|record| record.expect("sound")).collect();
         let first = records.iter().position(|record| record.snapshot.time >= time).unwrap_or(records.len());
         assert_eq!(on.len(), records.len() - first, "from {time} s");
     }
@@ -130,9 +130,11 @@ fn what_is_no_log_of_ours_says_what_it_is_instead() {
     foreign(&[]);
     assert!(refused(&path).contains("no log of Echelon"));
     foreign(&[("format", "99")]);
-    assert!(refused(&path).contains("layout 99; this program reads layout 1"));
+    assert!(refused(&path).contains("layout 99; this program reads layout 2: run its scene again"));
     foreign(&[("format", "1")]);
-    assert!(refused(&path).contains("no log of Echelon: it has no topic /cast"));
+    assert!(refused(&path).contains("layout 1; this program reads layout 2"));
+    foreign(&[("format", "2")]);
+    assert!(refused(&path).contains("no log of Echelon: it has no topic /fleet"));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use vocabulary::{EdgeState, MeasurementRecord, Outcome, Relative, TrackingState,
 
 /// Looks of one follower over a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
-pub struct LookMetrics {
+pub struct MeasurementMetrics {
     /// Looks that reached the follower, and those that were lost on the way.
     pub taken: u64,
     /// Looks that corrected the estimate.
@@ -33,16 +33,16 @@ pub struct LookMetrics {
     pub lost: f64,
 }
 
-/// Running sums of [`LookMetrics`].
+/// Running sums of [`MeasurementMetrics`].
 #[derive(Debug, Clone, Default)]
-pub(crate) struct LookSums {
-    metrics: LookMetrics,
+pub(crate) struct MeasurementSums {
+    metrics: MeasurementMetrics,
     used: RootMeanSquare<3>,
     estimates: RootMeanSquare<3>,
     looked: bool,
 }
 
-impl LookSums {
+impl MeasurementSums {
     pub(crate) fn look(&mut self, frame: &MeasurementRecord) {
         self.looked = true;
         let m = &mut self.metrics;
@@ -72,10 +72,10 @@ impl LookSums {
     }
 
     /// The metrics so far; `None` for a follower that does not look.
-    pub(crate) fn finish(&self) -> Option<LookMetrics> {
+    pub(crate) fn finish(&self) -> Option<MeasurementMetrics> {
         let m = &self.metrics;
         let arrived = m.taken - m.dropped;
-        self.looked.then(|| LookMetrics {
+        self.looked.then(|| MeasurementMetrics {
             in_view: (arrived - m.missed) as f64 / arrived.max(1) as f64,
             rms_error: self.used.root(),
             rms_estimate_error: self.estimates.root(),
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn looks_are_counted_by_what_came_of_them() {
-        let mut sums = LookSums::default();
+        let mut sums = MeasurementSums::default();
         assert_eq!(sums.finish(), None);
         let outcomes = [Outcome::Used, Outcome::Used, Outcome::Rejected, Outcome::Missed, Outcome::Dropped];
         for (k, outcome) in (0..).zip(outcomes) {
