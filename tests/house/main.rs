@@ -43,7 +43,7 @@ const ARROWS: [(&str, &[&str]); 15] = [
     ("recording", &["vocabulary", "metrics", "output"]),
     // Its tests, examples and benches write pictures and films with `film`.
     ("rendering", &["vocabulary", "film"]),
-    ("figures", &[]),
+    ("figures", &["vocabulary"]),
     ("simulation", &["vocabulary", "scene", "formation", "world", "perception", "metrics"]),
     ("report", &["vocabulary", "scene", "simulation", "metrics", "figures"]),
     (

@@ -148,8 +148,7 @@ fn peak(curves: &[QuantityCurve], [low, high]: [f64; 2]) -> Option<f64> {
 /// Marks of an axis at round values, about so many, and not nearer than `least`.
 fn marks((low, high): (f64, f64), about: f64, least: f64) -> Vec<GridMark> {
     let rough = ((high - low) / about.max(2.0)).max(least);
-    let power = 10_f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|s| *s >= rough).unwrap_or(rough);
+    let step = vocabulary::round_step(rough, 0.0);
     let step = if least >= 1.0 { step.round().max(1.0) } else { step };
     let (first, last) = ((low / step).ceil(), (high / step).floor());
     if !(last - first).is_finite() || last - first > 200.0 {

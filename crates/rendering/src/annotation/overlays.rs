@@ -5,6 +5,7 @@ use crate::annotation::letters::{Block, line_height};
 use crate::palette::{self, Rgb};
 use crate::picture_plan::Area;
 use glam::Vec2;
+use vocabulary::round_step;
 
 /// What is shown over and beside the views of a picture.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -202,23 +203,17 @@ fn range(plot: &CurvePanel) -> [f64; 2] {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
     if plot.centred || low > high {
         let most = if low > high { plot.least } else { low.abs().max(high.abs()).max(plot.least) };
-        let most = round_up(most);
+        let most = round_step(most, 0.001);
         return [-most, most];
     }
     let middle = f64::midpoint(low, high);
     let half = (0.55 * (high - low)).max(0.5 * plot.least);
-    let step = round_up(half) / 2.0;
+    let step = round_step(half, 0.001) / 2.0;
     [((middle - half) / step).floor() * step, ((middle + half) / step).ceil() * step]
 }
 
-/// A round number not below `most`.
-fn round_up(most: f64) -> f64 {
-    let power = 10_f64.powf(most.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|n| n * power).find(|n| *n >= most * 0.999).unwrap_or(most)
-}
-
 fn ticks([low, high]: [f64; 2], rows: f64) -> Vec<f64> {
-    let step = round_up((high - low) / rows);
+    let step = round_step((high - low) / rows, 0.001);
     let first = (low / step).ceil() as i64;
     let last = (high / step * (1.0 + 1e-12)).floor() as i64;
     (first..=last).take(12).map(|k| k as f64 * step).collect()

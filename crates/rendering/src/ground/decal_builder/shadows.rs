@@ -2,6 +2,7 @@
 
 use crate::gpu::model::Build;
 use crate::gpu::passes::decal::DecalForm;
+use crate::gpu::passes::{GREY_SKY, GREY_SUN};
 use crate::gpu::props::{corners, placed, turn};
 use crate::ground::decal_builder::DecalBuilder;
 use crate::palette::Rgb;
@@ -22,7 +23,7 @@ impl DecalBuilder<'_> {
     /// Patches that surely hold all shadows: few pixels look at the shadow map.
     pub(crate) fn shadows(&mut self, context: &PictureContext<'_>) {
         // What the sun gives, of all the light on flat ground: shadows under a low sun are faint.
-        let share = 2.063 * context.sun.z / (2.063 * context.sun.z + 0.41);
+        let share = GREY_SUN * context.sun.z / (GREY_SUN * context.sun.z + GREY_SKY);
         let alpha = (0.80 * share) as f32;
         let robots = context.record.snapshot.robots.iter().zip(&context.fleet.robots);
         let mut patches: Vec<Patch> = robots.map(|(r, m)| robot_shadow(context, r, m)).collect();
