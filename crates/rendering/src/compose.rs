@@ -160,13 +160,13 @@ pub(crate) fn words<'a>(
     context: &PictureContext<'_>,
     plan: &PicturePlan,
     windows: &[Window<'_>],
-    size: (u32, u32),
+    size: [u32; 2],
 ) -> (LabelPlacer<'a>, Vec<Area>) {
     let mut words = LabelPlacer::new(letters, context.style.scale);
     let shown = &context.style.show;
     let left = plan.left;
     let said = shown.line.as_ref().filter(|line| line.opacity > 0.0);
-    let said = said.map(|line| (line_place(&mut words, line, [left.0 as f32, left.1 as f32]), line.opacity));
+    let said = said.map(|line| (line_place(&mut words, line, left.map(|side| side as f32)), line.opacity));
     if let Some((line, _)) = said {
         words.reserve(line);
     }
@@ -191,6 +191,6 @@ pub(crate) fn words<'a>(
     for (view, window) in plan.views.iter().zip(windows) {
         view_words(&mut words, context, *window, view);
     }
-    show(&mut words, shown, context.colours, (left, size));
+    show(&mut words, shown, context.colours, left, size);
     (words, panels)
 }

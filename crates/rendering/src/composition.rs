@@ -32,10 +32,11 @@ impl Composition {
     /// That of the picture that a renderer of `fleet` draws at a size.
     pub fn new(
         fleet: &FleetInfo,
-        (trail, record): (&Trail, &StepRecord),
+        trail: &Trail,
+        record: &StepRecord,
         layout: &ViewLayout,
         style: &Style,
-        size: (u32, u32),
+        size: [u32; 2],
     ) -> Self {
         let mut letters = Letters::new();
         let floor = Floor::new(fleet);

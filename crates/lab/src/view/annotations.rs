@@ -22,7 +22,7 @@ pub const RING: f64 = 0.25;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Hand {
     /// The edge whose set point is under the pointer.
-    pub dialog: Option<usize>,
+    pub ring: Option<usize>,
     /// The edge whose set point is dragged.
     pub held: Option<usize>,
     /// The robot under the pointer.
@@ -47,7 +47,7 @@ pub fn annotations(app_state: &AppState, record: &StepRecord, hand: &Hand) -> An
     {
         future(prediction, &colours, &fleet, &mut annotations);
     }
-    handles(app_state, &fleet, (record, &colours), hand, &mut annotations);
+    handles(app_state, &fleet, record, &colours, hand, &mut annotations);
     if let Some((robot, to)) = hand.connecting
         && let Some(state) = record.snapshot.robots.get(robot)
     {
@@ -136,7 +136,8 @@ fn future(prediction: &Prediction, colours: &[[f32; 3]], fleet: &FleetInfo, anno
 fn handles(
     app_state: &AppState,
     fleet: &FleetInfo,
-    (record, colours): (&StepRecord, &[[f32; 3]]),
+    record: &StepRecord,
+    colours: &[[f32; 3]],
     hand: &Hand,
     annotations: &mut Annotations,
 ) {
@@ -147,7 +148,7 @@ fn handles(
             Ring { least: 17.0, ..Ring::new(at, RING * size(fleet, follower), light(colours[follower])) };
         if hand.held == Some(edge) || app_state.chosen_edge() == Some(edge) {
             annotations.rings.push(ring.selected());
-        } else if hand.dialog == Some(edge) {
+        } else if hand.ring == Some(edge) {
             annotations.rings.push(ring.hovered());
         }
     }

@@ -80,11 +80,12 @@ impl Letters {
     pub(crate) fn measure(&mut self, text: &str, size: f32, bold: bool, block: Option<Block>) -> Measure {
         let (own, all, used) = (&mut self.own, &mut self.all, self.pictures);
         let entry = self.shaped.texts.entry(key(text, size, bold, block)).or_insert_with(|| {
-            let mut buffer = shape(own, text, (size, bold), block, &BTreeSet::new());
+            let mut buffer = shape(own, text, Font { size, bold }, block, &BTreeSet::new());
             // An ellipsis may have left out what is lacking; nobody sees that.
             let lacks: BTreeSet<char> = lacking(&buffer).collect();
             if !lacks.is_empty() {
-                buffer = shape(all.get_or_insert_with(|| fonts(true)), text, (size, bold), block, &lacks);
+                buffer =
+                    shape(all.get_or_insert_with(|| fonts(true)), text, Font { size, bold }, block, &lacks);
             }
             let width = buffer.layout_runs().map(|run| run.line_w).fold(0.0, f32::max);
             let measure = Measure { width, rows: buffer.layout_runs().count().max(1) };
@@ -135,20 +136,27 @@ fn fonts(all: bool) -> FontSystem {
     FontSystem::new_with_locale_and_db("en-US".to_owned(), database)
 }
 
+/// Height in pixels and weight of a text.
+#[derive(Debug, Clone, Copy)]
+struct Font {
+    size: f32,
+    bold: bool,
+}
+
 /// Glyphs of a text; words with characters that `lacks` are written in other fonts.
 fn shape(
     fonts: &mut FontSystem,
     text: &str,
-    font: (f32, bool),
+    font: Font,
     block: Option<Block>,
     lacks: &BTreeSet<char>,
 ) -> Buffer {
     let Some(Block { width, rows, centred }) = block else {
         let line = text.split(['\n', '\r']).collect::<Vec<_>>().join(" ");
-        return laid(fonts, &line, (font, lacks), None, |_| None);
+        return laid(fonts, &line, font, lacks, None, |_| None);
     };
     let width = Some(width.max(1.0));
-    let wrapped = laid(fonts, text, (font, lacks), width, |_| None);
+    let wrapped = laid(fonts, text, font, lacks, width, |_| None);
     // Each line by itself, since a line that is wrapped keeps the space before it, and the last with all that is left.
     let ends = |run: &LayoutRun<'_>| {
         let from = run.glyphs.iter().map(|glyph| glyph.start).min().unwrap_or(0);
@@ -160,7 +168,7 @@ fn shape(
     let rest = lines.split_off(lines.len().min(rows.saturating_sub(1)));
     lines.extend((!rest.is_empty()).then(|| rest.join(" ")));
     let align = if centred { Align::Center } else { Align::Left };
-    laid(fonts, &lines.join("\n"), (font, lacks), width, |buffer| {
+    laid(fonts, &lines.join("\n"), font, lacks, width, |buffer| {
         buffer.set_ellipsize(Ellipsize::End(EllipsizeHeightLimit::Lines(1)));
         Some(align)
     })
@@ -170,7 +178,8 @@ fn shape(
 fn laid(
     fonts: &mut FontSystem,
     text: &str,
-    ((size, bold), lacks): ((f32, bool), &BTreeSet<char>),
+    Font { size, bold }: Font,
+    lacks: &BTreeSet<char>,
     width: Option<f32>,
     with: impl FnOnce(&mut Buffer) -> Option<Align>,
 ) -> Buffer {
@@ -217,7 +226,8 @@ pub(crate) fn digits() -> (Vec<u8>, u32, u32) {
     let (cell, height, size) = (40_usize, 64_usize, 78.0_f32);
     let mut texels = vec![0_u8; cell * 10 * height];
     for digit in 0..10 {
-        let mut buffer = shape(&mut fonts, &digit.to_string(), (size, true), None, &BTreeSet::new());
+        let mut buffer =
+            shape(&mut fonts, &digit.to_string(), Font { size, bold: true }, None, &BTreeSet::new());
         let width = buffer.layout_runs().map(|run| run.line_w).fold(0.0, f32::max);
         let shift = (0.5 * (cell as f32 - width)).round() as i32;
         // The line is taller than the figures: its upper part is space for accents.
@@ -269,7 +279,7 @@ mod tests {
         let lines = starts(&shape(
             &mut letters.own,
             "one two three four",
-            (20.0, false),
+            Font { size: 20.0, bold: false },
             Some(block(90.0, 2)),
             &BTreeSet::new(),
         ));

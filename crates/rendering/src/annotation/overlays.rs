@@ -79,12 +79,12 @@ const BELOW: f64 = 0.34;
 
 impl Overlays {
     /// Width and height that are left for the views of a picture, pixels; even, as they were.
-    pub(crate) fn left_over(&self, (width, height): (u32, u32)) -> (u32, u32) {
+    pub(crate) fn left_over(&self, [width, height]: [u32; 2]) -> [u32; 2] {
         let keep = |side: u32, share: f64| ((f64::from(side) * (1.0 - share)).round() as u32 & !1).max(16);
         match (self.plots.is_empty(), height > width) {
-            (true, _) => (width, height),
-            (false, false) => (keep(width, BESIDE), height),
-            (false, true) => (width, keep(height, BELOW)),
+            (true, _) => [width, height],
+            (false, false) => [keep(width, BESIDE), height],
+            (false, true) => [width, keep(height, BELOW)],
         }
     }
 }
@@ -94,12 +94,14 @@ pub(crate) fn show(
     words: &mut LabelPlacer<'_>,
     show: &Overlays,
     colours: &[Rgb],
-    (views, picture): ((u32, u32), (u32, u32)),
+    views: [u32; 2],
+    picture: [u32; 2],
 ) {
-    let [width, height] = [picture.0 as f32, picture.1 as f32];
+    let [width, height] = picture.map(|side| side as f32);
+    let beside = views.map(|side| side as f32);
     if !show.plots.is_empty() {
-        let (right, bottom) = (views.0 as f32, views.1 as f32);
-        let area = if views.0 < picture.0 {
+        let [right, bottom] = beside;
+        let area = if views[0] < picture[0] {
             [right, 0.0, width - right, height]
         } else {
             [0.0, bottom, width, height - bottom]
@@ -107,7 +109,7 @@ pub(crate) fn show(
         plots(words, &show.plots, colours, area);
     }
     if let Some(said) = show.line.as_ref().filter(|line| line.opacity > 0.0) {
-        line(words, said, [views.0 as f32, views.1 as f32]);
+        line(words, said, beside);
     }
     if let Some(shown) = show.card.as_ref().filter(|card| card.opacity > 0.0) {
         card(words, shown, [width, height]);
@@ -341,9 +343,9 @@ mod tests {
     #[test]
     fn plots_take_a_side_and_leave_even_sizes() {
         let show = Overlays { plots: vec![CurvePanel::default()], ..Overlays::default() };
-        assert_eq!(Overlays::default().left_over((1280, 720)), (1280, 720));
-        assert_eq!(show.left_over((1280, 720)), (896, 720));
-        let (width, height) = show.left_over((1080, 1920));
+        assert_eq!(Overlays::default().left_over([1280, 720]), [1280, 720]);
+        assert_eq!(show.left_over([1280, 720]), [896, 720]);
+        let [width, height] = show.left_over([1080, 1920]);
         assert!(width == 1080 && height % 2 == 0 && height < 1300);
     }
 

@@ -56,7 +56,7 @@ impl GpuCameraRenderer {
     /// [`Error::Device`] where the device fails.
     pub fn new(gpu: &Gpu, fleet: &FleetInfo) -> Result<Self, Error> {
         let (robot_models, floor) = (RobotModels::new(fleet), Floor::new(fleet));
-        let world = WorldPasses::new(gpu, CANVAS, fleet, (&robot_models, &floor), (Detail::Coarse, SHADOWS));
+        let world = WorldPasses::new(gpu, CANVAS, fleet, &robot_models, &floor, Detail::Coarse, SHADOWS);
         gpu.check()?;
         Ok(Self {
             gpu: gpu.clone(),
@@ -135,7 +135,7 @@ impl GpuCameraRenderer {
         }
         self.world.upload(&self.gpu, &frames, crowds.into_iter(), copies.into_iter(), &corners);
         let atlas = self.atlas(size);
-        let submission = self.draw(atlas, (&all, &things), &scenes, &under);
+        let submission = self.draw(atlas, &all, &things, &scenes, &under);
         self.gpu.check()?;
         self.atlases[atlas].read(&self.gpu, submission, &tiles, pictures)
     }
@@ -168,7 +168,8 @@ impl GpuCameraRenderer {
     fn draw(
         &self,
         atlas: usize,
-        (crowd, props): (&Crowd, &Copies),
+        crowd: &Crowd,
+        props: &Copies,
         scenes: &[CameraScene],
         under: &[(DecalLayer, Range<u32>)],
     ) -> wgpu::SubmissionIndex {

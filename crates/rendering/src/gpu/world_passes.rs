@@ -1,7 +1,6 @@
 //! The passes that draw the world: ground and sky, paint, robots, props and their shadows.
 
 use crate::Gpu;
-use crate::annotation::letters::digits;
 use crate::camera::Camera;
 use crate::gpu::model::Detail;
 use crate::gpu::passes::Canvas;
@@ -61,8 +60,10 @@ impl WorldPasses {
         gpu: &Gpu,
         canvas: Canvas,
         fleet: &FleetInfo,
-        (robot_models, floor): (&RobotModels, &Floor),
-        (detail, shadows): (Detail, u32),
+        robot_models: &RobotModels,
+        floor: &Floor,
+        detail: Detail,
+        shadows: u32,
     ) -> Self {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let map = ShadowPass::map(device, shadows);
@@ -78,7 +79,7 @@ impl WorldPasses {
         let prop = || PropPass::new(device, queue, canvas, &groups, &asphalt, veil);
         Self {
             models: Models::new(device, queue, detail, &robot_models.builds),
-            robot: RobotPass::new(device, queue, canvas, &groups, digits()),
+            robot: RobotPass::new(device, queue, canvas, &groups),
             tag: TagPass::new(device, queue, canvas, &groups),
             ground: GroundPass::new(device, canvas, &groups, &asphalt),
             terrain: terrain.map(|t| TerrainPass::new(device, queue, canvas, &groups, &asphalt, t)),

@@ -57,8 +57,10 @@ impl ViewRenderer {
     fn fine(
         &mut self,
         gpu: &Gpu,
-        (trail, record): (&Trail, &StepRecord),
-        (layout, style): (&ViewLayout, &Style),
+        trail: &Trail,
+        record: &StepRecord,
+        layout: &ViewLayout,
+        style: &Style,
         [title, caption]: &[String; 2],
     ) -> Result<(), Error> {
         let (width, height) = self.renderer.size();
@@ -87,7 +89,7 @@ pub(super) struct DrawnFrame {
     goals: Vec<[f64; 2]>,
     layout: ViewLayout,
     style: Style,
-    size: (u32, u32),
+    size: [u32; 2],
 }
 
 impl Viewport {
@@ -153,18 +155,18 @@ impl Viewport {
     }
 
     /// The view in all the room there is.
-    pub fn show(&mut self, ui: &mut Ui, app_state: &ViewInput<'_>, out: &mut Vec<Action>) {
+    pub fn show(&mut self, ui: &mut Ui, input: &ViewInput<'_>, out: &mut Vec<Action>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "3D view"));
         self.rect = rect;
-        let Some(record) = app_state.record.clone() else {
+        let Some(record) = input.record.clone() else {
             return centred(ui, rect, "Open a scene: Ctrl O, or drop a file here.");
         };
-        self.under_hand(ui, &response, (app_state.app_state, &record), rect, out);
+        self.under_hand(ui, &response, input.app_state, &record, rect, out);
         let pixels = ui.pixels_per_point();
         let size =
             [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(SIZES[0], SIZES[1]));
-        if let Err(error) = self.draw(app_state, &record, (size[0], size[1]), f64::from(pixels)) {
+        if let Err(error) = self.draw(input, &record, size, f64::from(pixels)) {
             self.fault = Some(error.to_string());
         }
         if let Some(fault) = &self.fault {
@@ -178,27 +180,27 @@ impl Viewport {
             let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
             ui.painter().image(stage.id, rect, whole, Color32::WHITE);
         }
-        self.readout(ui, app_state.app_state, &record, rect);
+        self.readout(ui, input.app_state, &record, rect);
     }
 
     fn draw(
         &mut self,
-        app_state: &ViewInput<'_>,
+        input: &ViewInput<'_>,
         record: &Arc<StepRecord>,
-        size: (u32, u32),
+        size: [u32; 2],
         pixels: f64,
     ) -> Result<(), Error> {
-        let fleet = Arc::clone(app_state.fleet);
+        let fleet = Arc::clone(input.fleet);
         // Text keeps its size on small views, and grows with the density of the screen.
         let scale = (0.92 * pixels).clamp(0.5, 6.0);
         let layout = self.layout(&fleet, record);
-        let style = Style { interactive: true, ..self.dressed(app_state.app_state, record, scale) };
+        let style = Style { interactive: true, ..self.dressed(input.app_state, record, scale) };
         if self.stage.as_ref().is_none_or(|stage| !Arc::ptr_eq(&stage.fleet, &fleet)) {
             self.set_stage(&fleet, size)?;
         }
         let Some(stage) = &mut self.stage else { return Ok(()) };
-        if stage.renderer.size() != size {
-            stage.renderer.resize(size.0, size.1)?;
+        if <[u32; 2]>::from(stage.renderer.size()) != size {
+            stage.renderer.resize(size[0], size[1])?;
             stage.texture = texture(&self.state.device, size);
             let view = stage.texture.create_view(&wgpu::TextureViewDescriptor::default());
             self.state.renderer.write().update_egui_texture_from_wgpu_texture(
@@ -210,21 +212,21 @@ impl Viewport {
             stage.shown = None;
         }
         let shown = DrawnFrame {
-            branch: app_state.app_state.branch,
-            words: app_state.app_state.words(),
+            branch: input.app_state.branch,
+            words: input.app_state.words(),
             time: record.snapshot.time,
             goals: record.edges.iter().map(|edge| edge.set_point).collect(),
             layout: layout.clone(),
             style: style.clone(),
             size,
         };
-        let Some(trail) = app_state.trail else { return Ok(()) };
+        let Some(trail) = input.trail else { return Ok(()) };
         match &stage.shown {
             Some((last, true)) if *last == shown => return Ok(()),
             Some((last, false)) if *last == shown => {
                 // Nothing moves any more: there is time for a better picture.
                 let fine = Style { interactive: false, ..style };
-                stage.fine(&self.gpu, (trail, record), (&layout, &fine), &shown.words)?;
+                stage.fine(&self.gpu, trail, record, &layout, &fine, &shown.words)?;
                 stage.shown = Some((shown, true));
                 self.pictures += 1;
                 return Ok(());
@@ -242,9 +244,9 @@ impl Viewport {
         Ok(())
     }
 
-    fn set_stage(&mut self, fleet: &Arc<FleetInfo>, size: (u32, u32)) -> Result<(), Error> {
+    fn set_stage(&mut self, fleet: &Arc<FleetInfo>, size: [u32; 2]) -> Result<(), Error> {
         let format = wgpu::TextureFormat::Rgba8Unorm;
-        let renderer = Renderer::with_format(&self.gpu, fleet, size.0, size.1, self.samples, format)?;
+        let renderer = Renderer::with_format(&self.gpu, fleet, size[0], size[1], self.samples, format)?;
         let texture = texture(&self.state.device, size);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut drawer = self.state.renderer.write();
@@ -310,7 +312,7 @@ pub struct ViewInput<'a> {
     pub trail: Option<&'a Trail>,
 }
 
-fn texture(device: &wgpu::Device, (width, height): (u32, u32)) -> wgpu::Texture {
+fn texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("3D view"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },

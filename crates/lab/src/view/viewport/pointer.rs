@@ -29,7 +29,8 @@ impl Viewport {
         &mut self,
         ui: &Ui,
         response: &egui::Response,
-        (app_state, record): (&AppState, &Arc<StepRecord>),
+        app_state: &AppState,
+        record: &Arc<StepRecord>,
         rect: Rect,
         out: &mut Vec<Action>,
     ) {
@@ -37,11 +38,11 @@ impl Viewport {
         let pixel = |pos: Pos2| [pos.x - rect.left(), pos.y - rect.top()].map(|x| f64::from(x * pixels));
         let Some(sight) = self.stage.as_ref().and_then(|stage| stage.sight.clone()) else { return };
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        self.hover(app_state, record, (&sight, pointer.map(pixel)), f64::from(pixels * GRASP));
+        self.hover(app_state, record, &sight, pointer.map(pixel), f64::from(pixels * GRASP));
         if response.drag_started() {
             // What was pressed counts, wherever the pointer is by now.
             let origin = ui.input(|input| input.pointer.press_origin());
-            self.hover(app_state, record, (&sight, origin.or(pointer).map(pixel)), f64::from(pixels * GRASP));
+            self.hover(app_state, record, &sight, origin.or(pointer).map(pixel), f64::from(pixels * GRASP));
             self.begin_drag(ui, app_state);
         }
         let share = |delta: Vec2| [delta.x, delta.y].map(|x| f64::from(x / rect.height().max(1.0)));
@@ -75,8 +76,8 @@ impl Viewport {
         if response.drag_stopped() {
             self.end_drag(out);
         }
-        self.wheel(ui, response, (&sight, pointer.map(pixel)), record);
-        self.clicks(response, app_state, (&sight, pointer.map(pixel)), out);
+        self.wheel(ui, response, &sight, pointer.map(pixel), record);
+        self.clicks(response, app_state, &sight, pointer.map(pixel), out);
     }
 
     /// What is under the pointer.
@@ -84,10 +85,11 @@ impl Viewport {
         &mut self,
         app_state: &AppState,
         record: &StepRecord,
-        (sight, pixel): (&Sightline, Option<[f64; 2]>),
+        sight: &Sightline,
+        pixel: Option<[f64; 2]>,
         grasp: f64,
     ) {
-        self.hand.dialog = None;
+        self.hand.ring = None;
         self.hand.robot = None;
         let (Some(pixel), Some(stage)) = (pixel, &self.stage) else { return };
         let near = set_points(&stage.fleet, record).into_iter().enumerate().filter_map(|(edge, at)| {
@@ -102,7 +104,7 @@ impl Viewport {
             if app_state.chosen_edge() == Some(*edge) { 0.5 * away } else { *away }
         };
         if app_state.tool == Tool::Hand {
-            self.hand.dialog = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
+            self.hand.ring = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
         }
         let robot = stage.renderer.pick(sight, record, pixel).into_iter().find_map(|picked| match picked {
             Picked::Robot(robot) => Some(robot),
@@ -116,7 +118,7 @@ impl Viewport {
             let pointer = &input.pointer;
             (pointer.secondary_down() || pointer.middle_down(), input.modifiers.shift)
         });
-        self.drag = Some(match (right, app_state.tool, self.hand.robot, self.hand.dialog) {
+        self.drag = Some(match (right, app_state.tool, self.hand.robot, self.hand.ring) {
             (true, ..) => Drag::Pan,
             (_, Tool::Connect, Some(robot), _) => Drag::Connect(robot),
             (_, Tool::Hand, _, Some(edge)) => Drag::SetPoint(edge),
@@ -149,7 +151,8 @@ impl Viewport {
         &mut self,
         ui: &Ui,
         response: &egui::Response,
-        (sight, pixel): (&Sightline, Option<[f64; 2]>),
+        sight: &Sightline,
+        pixel: Option<[f64; 2]>,
         record: &StepRecord,
     ) {
         if !response.hovered() {
@@ -170,7 +173,8 @@ impl Viewport {
         &self,
         response: &egui::Response,
         app_state: &AppState,
-        (sight, pixel): (&Sightline, Option<[f64; 2]>),
+        sight: &Sightline,
+        pixel: Option<[f64; 2]>,
         out: &mut Vec<Action>,
     ) {
         let Some(pixel) = pixel else { return };
@@ -187,7 +191,7 @@ impl Viewport {
     }
 
     fn chosen(&self, sight: &Sightline, app_state: &AppState, pixel: [f64; 2]) -> Option<Action> {
-        if let Some(edge) = self.hand.dialog {
+        if let Some(edge) = self.hand.ring {
             return Some(Action::Choose(Selection::Edge(edge)));
         }
         let stage = self.stage.as_ref()?;

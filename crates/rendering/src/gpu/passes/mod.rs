@@ -285,12 +285,12 @@ pub(crate) fn mipped(
     device: &Device,
     queue: &Queue,
     label: &str,
-    size: (u32, u32),
+    size: [u32; 2],
     levels: &[Vec<u8>],
 ) -> wgpu::Texture {
     let extent = |level: u32| wgpu::Extent3d {
-        width: (size.0 >> level).max(1),
-        height: (size.1 >> level).max(1),
+        width: (size[0] >> level).max(1),
+        height: (size[1] >> level).max(1),
         depth_or_array_layers: 1,
     };
     let texture = device.create_texture(&wgpu::TextureDescriptor {

@@ -2,6 +2,7 @@
 
 use super::frame::FrameGroups;
 use super::{Canvas, Recipe, StreamBuffer, constant, developed, mipped, shader, shrink, textured};
+use crate::annotation::letters::digits;
 use crate::gpu::model::{self, Build, Detail, Vertex};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
@@ -190,16 +191,10 @@ pub(crate) struct RobotPass {
 }
 
 impl RobotPass {
-    /// `digits` are ten glyphs side by side, one byte a texel.
-    pub(crate) fn new(
-        device: &Device,
-        queue: &Queue,
-        canvas: Canvas,
-        groups: &FrameGroups,
-        digits: (Vec<u8>, u32, u32),
-    ) -> Self {
-        let (texels, width, height) = digits;
-        let texture = mipped(device, queue, "digits", (width, height), &shrink(texels, width, height)[..4]);
+    /// The robots' pipelines, and the texture of the numbers on their roofs.
+    pub(crate) fn new(device: &Device, queue: &Queue, canvas: Canvas, groups: &FrameGroups) -> Self {
+        let (texels, width, height) = digits();
+        let texture = mipped(device, queue, "digits", [width, height], &shrink(texels, width, height)[..4]);
         let sampler = wgpu::SamplerDescriptor {
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,

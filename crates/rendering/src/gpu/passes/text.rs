@@ -66,7 +66,8 @@ impl TextPass {
     /// Makes `lines` ready to draw on a picture of `size` pixels; halos of all lines lie below all text.
     pub(crate) fn fill(
         &mut self,
-        (device, queue): (&Device, &Queue),
+        device: &Device,
+        queue: &Queue,
         size: [u32; 2],
         lines: &[TextLine],
         letters: &mut Letters,

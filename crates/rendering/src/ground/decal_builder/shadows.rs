@@ -111,7 +111,7 @@ impl DecalBuilder<'_> {
             Solid::Block { size } | Solid::Wedge { size } => {
                 let thin = matches!(prop.solid, Solid::Wedge { .. });
                 let half = [0.5 * size[0], 0.5 * size[1]];
-                self.skirt(at.truncate(), [ahead, aside], half, margin, (alpha, thin));
+                self.skirt(at.truncate(), [ahead, aside], half, margin, alpha, thin);
             }
             Solid::Cylinder { radius, .. } | Solid::Cone { radius, .. } => {
                 let reach = radius + 1.4 * margin;
@@ -129,7 +129,8 @@ impl DecalBuilder<'_> {
         axes: [DVec2; 2],
         half: [f64; 2],
         margin: f64,
-        (alpha, thin): (f32, bool),
+        alpha: f32,
+        thin: bool,
     ) {
         let knots = |half: f64| [-half - margin, -half, half, half + margin];
         let shapes = [-1.0, -0.25, 0.25, 1.0];
