@@ -20,11 +20,11 @@ pub struct Shortcut {
 struct Binding {
     modifiers: Modifiers,
     key: Key,
-    effect: Effect,
+    effect: KeyEffect,
 }
 
 /// What pressing a key comes to.
-enum Effect {
+enum KeyEffect {
     /// An action, where there is something to do it to.
     Act(fn(&AppState) -> Option<Action>),
     /// The selected set point moves by m and degrees. Every press of a frame counts, and all of them are one move.
@@ -32,20 +32,20 @@ enum Effect {
 }
 
 const fn bare(key: Key, action: fn(&AppState) -> Option<Action>) -> Binding {
-    Binding { modifiers: Modifiers::NONE, key, effect: Effect::Act(action) }
+    Binding { modifiers: Modifiers::NONE, key, effect: KeyEffect::Act(action) }
 }
 
 const fn shift(key: Key, action: fn(&AppState) -> Option<Action>) -> Binding {
-    Binding { modifiers: Modifiers::SHIFT, key, effect: Effect::Act(action) }
+    Binding { modifiers: Modifiers::SHIFT, key, effect: KeyEffect::Act(action) }
 }
 
 /// With Ctrl, or ⌘ on a Mac; also while a text is written.
 const fn command(key: Key, action: fn(&AppState) -> Option<Action>) -> Binding {
-    Binding { modifiers: Modifiers::COMMAND, key, effect: Effect::Act(action) }
+    Binding { modifiers: Modifiers::COMMAND, key, effect: KeyEffect::Act(action) }
 }
 
 const fn nudge(key: Key, by: [f64; 2]) -> Binding {
-    Binding { modifiers: Modifiers::NONE, key, effect: Effect::Nudge(by) }
+    Binding { modifiers: Modifiers::NONE, key, effect: KeyEffect::Nudge(by) }
 }
 
 /// All shortcuts and what the mouse does: the window goes by this list, and the page of shortcuts shows it.
@@ -262,12 +262,12 @@ fn take(ctx: &egui::Context, app_state: &AppState, modifiers: Modifiers, out: &m
         let count = || ctx.input_mut(|input| input.count_and_consume_key(modifiers, binding.key));
         match &binding.effect {
             // Without an edge the keys are left to others.
-            Effect::Nudge([metres, degrees]) if edge.is_some() => {
+            KeyEffect::Nudge([metres, degrees]) if edge.is_some() => {
                 let times = count() as f64;
                 moved = [moved[0] + times * metres, moved[1] + times * degrees];
             }
-            Effect::Nudge(_) => {}
-            Effect::Act(action) => {
+            KeyEffect::Nudge(_) => {}
+            KeyEffect::Act(action) => {
                 if let Some(action) = action(app_state)
                     && count() > 0
                 {
