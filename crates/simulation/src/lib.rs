@@ -1,6 +1,6 @@
 //! The loop itself: the only place that knows the order of a step.
 //!
-//! [`build`] turns a checked scene into a [`Setup`]; [`Simulation`] runs it, one [`StepRecord`](vocabulary::Moment) per
+//! [`build`] turns a checked scene into a [`Setup`]; [`Simulation`] runs it, one [`StepRecord`](vocabulary::StepRecord) per
 //! control sample; [`verdict`] holds what was measured against what the scene expects.
 
 mod build;
