@@ -3,8 +3,8 @@
 use crate::Viewpoint;
 use crate::annotation::inset::{clearness, inset};
 use crate::annotation::labels::{LabelPlacer, Window, ring_boxes, robot_boxes, view_words};
-use crate::annotation::letters::Letters;
 use crate::annotation::overlays::{line_place, show};
+use crate::annotation::text_shaper::TextShaper;
 use crate::camera::Camera;
 use crate::gpu::passes::frame::FrameUniforms;
 use crate::gpu::passes::ground::TILE;
@@ -156,7 +156,7 @@ const UNSEEN: f32 = 0.02;
 
 /// Text and flat shapes of the whole picture, and the panels that lie over views: that of errors, and a film's line.
 pub(crate) fn words<'a>(
-    letters: &'a mut Letters,
+    letters: &'a mut TextShaper,
     context: &PictureContext<'_>,
     plan: &PicturePlan,
     windows: &[Window<'_>],

@@ -3,8 +3,8 @@
 use crate::Style;
 use crate::annotation::inset::panel;
 use crate::annotation::labels::{Ink, LabelPlacer, MARGIN};
-use crate::annotation::letters::{Block, Letters, line_height};
 use crate::annotation::overlays::line_room;
+use crate::annotation::text_shaper::{Block, TextShaper, line_height};
 use crate::camera::free_space::FreeSpace;
 use crate::camera::viewpoint::{Tile, ViewLayout, Viewpoint, corner};
 use crate::palette;
@@ -52,7 +52,7 @@ pub(crate) struct PicturePlan {
 
 impl PicturePlan {
     pub(crate) fn new(
-        letters: &mut Letters,
+        letters: &mut TextShaper,
         fleet: &FleetInfo,
         layout: &ViewLayout,
         style: &Style,

@@ -1,7 +1,7 @@
 //! Moments to pictures.
 
 use crate::annotation::labels::{Window, detail};
-use crate::annotation::letters::Letters;
+use crate::annotation::text_shaper::TextShaper;
 use crate::camera::Camera;
 use crate::camera::pick::pick;
 use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun, veiled_decks, words};
@@ -35,7 +35,7 @@ pub struct Renderer {
     attachments: Attachments,
     passes: Passes,
     /// Behind a lock, since whoever asks how a view is seen has to know how long its words are.
-    letters: Mutex<Letters>,
+    letters: Mutex<TextShaper>,
     /// Two, so that one picture can be drawn while the one before is read.
     offscreen: Vec<Offscreen>,
     waiting: Option<(usize, wgpu::SubmissionIndex)>,
@@ -81,7 +81,7 @@ impl Renderer {
             canvas,
             attachments: Attachments::new(&gpu.device, [width, height], format, samples),
             passes,
-            letters: Mutex::new(Letters::new()),
+            letters: Mutex::new(TextShaper::new()),
             offscreen: Vec::new(),
             waiting: None,
         };

@@ -20,7 +20,7 @@ pub const RING: f64 = 0.25;
 
 /// What the hand does, as far as it is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Hand {
+pub struct PointerState {
     /// The edge whose set point is under the pointer.
     pub ring: Option<usize>,
     /// The edge whose set point is dragged.
@@ -32,7 +32,7 @@ pub struct Hand {
 }
 
 /// The annotations of what is shown.
-pub fn annotations(app_state: &AppState, record: &StepRecord, hand: &Hand) -> Annotations {
+pub fn annotations(app_state: &AppState, record: &StepRecord, hand: &PointerState) -> Annotations {
     let mut annotations = Annotations::default();
     let Some(history) = &app_state.history else { return annotations };
     let fleet = Arc::clone(history.fleet());
@@ -138,7 +138,7 @@ fn handles(
     fleet: &FleetInfo,
     record: &StepRecord,
     colours: &[[f32; 3]],
-    hand: &Hand,
+    hand: &PointerState,
     annotations: &mut Annotations,
 ) {
     for (edge, at) in set_points(fleet, record).into_iter().enumerate() {

@@ -1,7 +1,7 @@
 //! What films add to pictures: cards, a line at the bottom, plots beside the view.
 
 use crate::annotation::labels::{Ink, LabelPlacer};
-use crate::annotation::letters::{Block, line_height};
+use crate::annotation::text_shaper::{Block, line_height};
 use crate::palette::{self, Rgb};
 use crate::picture_plan::Area;
 use glam::Vec2;

@@ -6,8 +6,8 @@ use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun};
 use crate::gpu::atlas::{Atlas, CANVAS, pack};
 use crate::gpu::model::Detail;
 use crate::gpu::passes::decal::{DecalLayer, DecalVertex};
-use crate::gpu::passes::prop::Copies;
-use crate::gpu::passes::robot::Crowd;
+use crate::gpu::passes::prop::PropInstances;
+use crate::gpu::passes::robot::RobotInstances;
 use crate::gpu::props::props;
 use crate::gpu::robot_models::{RobotModels, crowd, part};
 use crate::gpu::world_passes::{SceneView, WorldPasses};
@@ -44,8 +44,8 @@ pub struct GpuCameraRenderer {
 /// What one shot shows.
 struct CameraScene {
     camera: Camera,
-    crowd: Crowd,
-    props: Copies,
+    crowd: RobotInstances,
+    props: PropInstances,
     tile: Tile,
 }
 
@@ -168,8 +168,8 @@ impl GpuCameraRenderer {
     fn draw(
         &self,
         atlas: usize,
-        crowd: &Crowd,
-        props: &Copies,
+        crowd: &RobotInstances,
+        props: &PropInstances,
         scenes: &[CameraScene],
         under: &[(DecalLayer, Range<u32>)],
     ) -> wgpu::SubmissionIndex {

@@ -1,14 +1,14 @@
 //! All passes of a picture, in the order in which they run.
 
-use crate::annotation::letters::Letters;
+use crate::annotation::text_shaper::TextShaper;
 use crate::camera::Camera;
 use crate::gpu::model::Detail;
 use crate::gpu::passes::Canvas;
 use crate::gpu::passes::decal::{DecalLayer, DecalVertex};
 use crate::gpu::passes::frame::FrameUniforms;
 use crate::gpu::passes::overlay::{OverlayPass, Shapes};
-use crate::gpu::passes::prop::Copies;
-use crate::gpu::passes::robot::Crowd;
+use crate::gpu::passes::prop::PropInstances;
+use crate::gpu::passes::robot::RobotInstances;
 use crate::gpu::passes::text::{TextLine, TextPass};
 use crate::gpu::robot_models::RobotModels;
 use crate::gpu::target::Attachments;
@@ -37,13 +37,13 @@ pub(crate) struct Passes {
 
 /// What a picture consists of, once its data is on the device.
 pub(crate) struct Prepared {
-    pub(crate) crowd: Crowd,
+    pub(crate) crowd: RobotInstances,
     pub(crate) cameras: Vec<Camera>,
     /// Of views through cameras: what they may see.
-    pub(crate) own: Vec<Option<Crowd>>,
+    pub(crate) own: Vec<Option<RobotInstances>>,
     /// How many of the tiles, the last, lie over others.
     pub(crate) upper: usize,
-    pub(crate) props: Copies,
+    pub(crate) props: PropInstances,
     pub(crate) tiles: Vec<Tile>,
     /// Which decks hide a robot in each view.
     pub(crate) veiled: Vec<Vec<bool>>,
@@ -110,7 +110,7 @@ impl Passes {
         frames: &[FrameUniforms],
         prepared: &mut Prepared,
         corners: &[DecalVertex],
-        letters: &mut Letters,
+        letters: &mut TextShaper,
     ) -> Result<(), Error> {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let (crowds, props) =

@@ -8,8 +8,8 @@ use crate::gpu::passes::asphalt::Asphalt;
 use crate::gpu::passes::decal::{DecalLayer, DecalPass, DecalVertex};
 use crate::gpu::passes::frame::{FrameGroups, FrameUniforms};
 use crate::gpu::passes::ground::GroundPass;
-use crate::gpu::passes::prop::{Copies, PropPass, Veil};
-use crate::gpu::passes::robot::{Crowd, Models, RobotPass};
+use crate::gpu::passes::prop::{PropInstances, PropPass, Veil};
+use crate::gpu::passes::robot::{Models, RobotInstances, RobotPass};
 use crate::gpu::passes::shadow::ShadowPass;
 use crate::gpu::passes::sky::SkyPass;
 use crate::gpu::passes::tag::TagPass;
@@ -42,8 +42,8 @@ pub(crate) struct SceneView<'a> {
     /// Of the view, among those uploaded.
     pub(crate) index: usize,
     pub(crate) camera: &'a Camera,
-    pub(crate) crowd: &'a Crowd,
-    pub(crate) props: &'a Copies,
+    pub(crate) crowd: &'a RobotInstances,
+    pub(crate) props: &'a PropInstances,
     /// Which decks hide a robot.
     pub(crate) veiled: &'a [bool],
     /// Paint and shadows on the floor, in order.
@@ -97,8 +97,8 @@ impl WorldPasses {
         &mut self,
         gpu: &Gpu,
         frames: &[FrameUniforms],
-        crowds: impl Iterator<Item = &'a mut Crowd>,
-        props: impl Iterator<Item = &'a mut Copies>,
+        crowds: impl Iterator<Item = &'a mut RobotInstances>,
+        props: impl Iterator<Item = &'a mut PropInstances>,
         corners: &[DecalVertex],
     ) {
         let (device, queue) = (&gpu.device, &gpu.queue);
@@ -110,7 +110,12 @@ impl WorldPasses {
         self.decal.fill(device, queue, corners);
     }
 
-    pub(crate) fn encode_shadow(&self, encoder: &mut wgpu::CommandEncoder, crowd: &Crowd, props: &Copies) {
+    pub(crate) fn encode_shadow(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        crowd: &RobotInstances,
+        props: &PropInstances,
+    ) {
         let mut pass = self.shadow.begin(encoder, &self.groups);
         self.models.draw_solid(&mut pass, crowd);
         self.models.draw_faces(&mut pass, crowd);

@@ -25,7 +25,7 @@ pub(super) enum Drag {
 
 impl Viewport {
     /// Everything the pointer does in the view.
-    pub(super) fn under_hand(
+    pub(super) fn handle_pointer(
         &mut self,
         ui: &Ui,
         response: &egui::Response,
@@ -36,7 +36,10 @@ impl Viewport {
     ) {
         let pixels = ui.pixels_per_point();
         let pixel = |pos: Pos2| [pos.x - rect.left(), pos.y - rect.top()].map(|x| f64::from(x * pixels));
-        let Some(sight) = self.stage.as_ref().and_then(|stage| stage.sight.clone()) else { return };
+        let Some(sight) = self.view_renderer.as_ref().and_then(|view_renderer| view_renderer.sight.clone())
+        else {
+            return;
+        };
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
         self.hover(app_state, record, &sight, pointer.map(pixel), f64::from(pixels * GRASP));
         if response.drag_started() {
@@ -91,14 +94,15 @@ impl Viewport {
     ) {
         self.hand.ring = None;
         self.hand.robot = None;
-        let (Some(pixel), Some(stage)) = (pixel, &self.stage) else { return };
-        let near = set_points(&stage.fleet, record).into_iter().enumerate().filter_map(|(edge, at)| {
-            let [x, y] = sight.pixel_of_ground(at?)?;
-            let away = (x - pixel[0]).hypot(y - pixel[1]);
-            let radius =
-                crate::view::annotations::RING / sight.metres_per_pixel([at?[0], at?[1], 0.0]).max(1e-9);
-            (away < grasp.max(0.8 * radius)).then_some((away, edge))
-        });
+        let (Some(pixel), Some(view_renderer)) = (pixel, &self.view_renderer) else { return };
+        let near =
+            set_points(&view_renderer.fleet, record).into_iter().enumerate().filter_map(|(edge, at)| {
+                let [x, y] = sight.pixel_of_ground(at?)?;
+                let away = (x - pixel[0]).hypot(y - pixel[1]);
+                let radius =
+                    crate::view::annotations::RING / sight.metres_per_pixel([at?[0], at?[1], 0.0]).max(1e-9);
+                (away < grasp.max(0.8 * radius)).then_some((away, edge))
+            });
         // The set point that is selected comes before those that it lies under.
         let first = |(away, edge): &(f64, usize)| {
             if app_state.chosen_edge() == Some(*edge) { 0.5 * away } else { *away }
@@ -106,10 +110,11 @@ impl Viewport {
         if app_state.tool == Tool::Hand {
             self.hand.ring = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
         }
-        let robot = stage.renderer.pick(sight, record, pixel).into_iter().find_map(|picked| match picked {
-            Picked::Robot(robot) => Some(robot),
-            _ => None,
-        });
+        let robot =
+            view_renderer.renderer.pick(sight, record, pixel).into_iter().find_map(|picked| match picked {
+                Picked::Robot(robot) => Some(robot),
+                _ => None,
+            });
         self.hand.robot = robot;
     }
 
@@ -194,8 +199,8 @@ impl Viewport {
         if let Some(edge) = self.hand.ring {
             return Some(Action::Choose(Selection::Edge(edge)));
         }
-        let stage = self.stage.as_ref()?;
-        let picked = stage.renderer.pick(sight, &*app_state.record()?, pixel).into_iter().next()?;
+        let view_renderer = self.view_renderer.as_ref()?;
+        let picked = view_renderer.renderer.pick(sight, &*app_state.record()?, pixel).into_iter().next()?;
         Some(Action::Choose(match picked {
             Picked::Robot(robot) => Selection::Robot(robot),
             Picked::Edge(edge) | Picked::SetPoint(edge) => Selection::Edge(edge),
@@ -207,9 +212,9 @@ impl Viewport {
         if self.held.is_some() {
             return;
         }
-        let Some(stage) = &self.stage else { return };
-        let lead = stage.fleet.robots.iter().position(|member| member.leads);
-        if let Some(sight) = &stage.sight {
+        let Some(view_renderer) = &self.view_renderer else { return };
+        let lead = view_renderer.fleet.robots.iter().position(|member| member.leads);
+        if let Some(sight) = &view_renderer.sight {
             self.held = Some(HeldCamera::take(sight.free(), robot.or(lead), &record.snapshot));
         }
     }

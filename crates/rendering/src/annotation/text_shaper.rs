@@ -55,7 +55,7 @@ impl Shaped {
 }
 
 /// Fonts, and what was shaped with them.
-pub(crate) struct Letters {
+pub(crate) struct TextShaper {
     /// Only what is embedded, so that a picture looks the same on every machine.
     own: FontSystem,
     /// The same and those of the machine, once a text needs a letter that the embedded fonts lack. Its embedded fonts have the
@@ -65,13 +65,13 @@ pub(crate) struct Letters {
     pictures: u64,
 }
 
-impl std::fmt::Debug for Letters {
+impl std::fmt::Debug for TextShaper {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Letters").field("shaped", &self.shaped.texts.len()).finish_non_exhaustive()
     }
 }
 
-impl Letters {
+impl TextShaper {
     pub(crate) fn new() -> Self {
         Self { own: fonts(false), all: None, shaped: Shaped::default(), pictures: 0 }
     }
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn long_texts_wrap_and_end_in_an_ellipsis() {
-        let mut letters = Letters::new();
+        let mut letters = TextShaper::new();
         let text = "Seven robots in a V that drive along a figure eight for a minute and a half";
         let whole = letters.measure(text, 20.0, true, None);
         assert_eq!(whole.rows, 1);
@@ -268,7 +268,7 @@ mod tests {
 
     #[test]
     fn lines_of_a_text_stay_lines() {
-        let mut letters = Letters::new();
+        let mut letters = TextShaper::new();
         assert_eq!(letters.measure("One\nTwo", 20.0, true, Some(block(900.0, 2))).rows, 2);
         assert_eq!(letters.measure("One\nTwo\nThree\n\n", 20.0, true, Some(block(900.0, 2))).rows, 2);
         // Where there is one line only, they share it.
@@ -291,7 +291,7 @@ mod tests {
 
     #[test]
     fn what_the_embedded_fonts_have_needs_no_others() {
-        let mut letters = Letters::new();
+        let mut letters = TextShaper::new();
         for text in ["Šárka Ørsted · β 5 · −135°", "Ωμέγα", "Игорь", "ψ ± 0.1°  ℓ 2.00 m …", ""]
         {
             assert!(letters.lacks(std::iter::once(text)).is_empty(), "{text}");
@@ -301,13 +301,13 @@ mod tests {
 
     #[test]
     fn what_they_lack_is_looked_for_and_told() {
-        let mut letters = Letters::new();
+        let mut letters = TextShaper::new();
         // A plane of private use: no font has that.
         let lacks = letters.lacks(["abc", "x\u{f4321}y"].into_iter());
         assert_eq!(lacks.into_iter().collect::<Vec<_>>(), ['\u{f4321}']);
         assert!(letters.all.is_some());
         // What the embedded fonts have stays as it was.
-        let before = Letters::new().measure("robot-1", 13.0, true, None);
+        let before = TextShaper::new().measure("robot-1", 13.0, true, None);
         assert_eq!(letters.measure("robot-1", 13.0, true, None), before);
     }
 }
