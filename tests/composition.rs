@@ -41,7 +41,14 @@ fn composed(
 ) -> Composition {
     let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
     let style = Style { scale: Style::scale_for(size.0, size.1), ..style.clone() };
-    Composition::new(fleet, (&at.0, &at.1), &ViewLayout::parse(view, &names).expect("a view"), &style, size)
+    Composition::new(
+        fleet,
+        &at.0,
+        &at.1,
+        &ViewLayout::parse(view, &names).expect("a view"),
+        &style,
+        size.into(),
+    )
 }
 
 fn overlap(a: &[f32; 4], b: &[f32; 4]) -> bool {

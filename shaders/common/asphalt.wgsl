@@ -4,9 +4,7 @@
 @group(2) @binding(1) var asphalt_sampler: sampler;
 @group(2) @binding(2) var patches: texture_2d<f32>;
 
-// Sky on flat ground and a sun straight above it, as numbers.
-const GREY_SKY = 0.41;
-const GREY_SUN = 2.063;
+// GREY_SKY and GREY_SUN, the light of the sky on flat ground and of a sun straight above it, stand in `gpu/passes/mod.rs`.
 
 // Coverage of lines `width` m wide every `every` m, where a metre has `density` pixels along each axis.
 // Lines thinner than a pixel are drawn a pixel wide and fainter, so that they fade instead of shimmering.

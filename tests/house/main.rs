@@ -44,7 +44,7 @@ const ARROWS: [(&str, &[&str]); 16] = [
     ("recording", &["vocabulary", "metrics", "output"]),
     // Its tests, examples and benches write pictures and films with `film`.
     ("rendering", &["vocabulary", "film"]),
-    ("figures", &[]),
+    ("figures", &["vocabulary"]),
     ("simulation", &["vocabulary", "scene", "formation", "world", "perception"]),
     (
         "studies",

@@ -144,9 +144,7 @@ fn step(least: f64) -> (f64, usize) {
     if !least.is_finite() || least <= 0.0 {
         return (1.0, 0);
     }
-    let decade = 10_f64.powf(least.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|f| f * decade).find(|s| *s >= least * (1.0 - 1e-9));
-    let step = step.unwrap_or(10.0 * decade);
+    let step = vocabulary::round_step(least, 1e-9);
     (step, (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize)
 }
 

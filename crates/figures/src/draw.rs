@@ -75,11 +75,11 @@ pub(crate) fn draw(figure: &Figure) -> String {
         svg.text([MARGIN, top - 5.0], &panel.axis.label, Anchor::Start, "");
         for (number, (across, left, width)) in columns.iter().enumerate() {
             let area = PanelArea { left: *left, top, width: *width, height };
-            let (rulers, outermost) = ((across, &rulers[index]), number + 1 == columns.len());
+            let (rulers, outermost) = ([across, &rulers[index]], number + 1 == columns.len());
             if let Some(zoom) = figure.zoom.filter(|_| outermost) {
                 shade(&mut svg, &area, across, zoom);
             }
-            frame(&mut svg, &area, across, &ticks[index], (last, number == 0));
+            frame(&mut svg, &area, across, &ticks[index], last, number == 0);
             guides(&mut svg, panel, &area, rulers, false);
             let ends: Vec<_> = panel.series.iter().map(|s| series(&mut svg, s, &area, rulers)).collect();
             if ends.iter().all(Option::is_none) {
@@ -169,7 +169,7 @@ pub(crate) fn keys(svg: &mut Svg, keys: &[Key], [left, top]: [f64; 2], sheet: f6
 }
 
 /// Axes, ticks, and faint lines across from the labelled ones.
-fn frame(svg: &mut Svg, area: &PanelArea, across: &Ruler, ticks: &[Tick], (last, first): (bool, bool)) {
+fn frame(svg: &mut Svg, area: &PanelArea, across: &Ruler, ticks: &[Tick], last: bool, first: bool) {
     let thin = "stroke=\"#1e1e22\" stroke-width=\"0.5\" fill=\"none\"";
     for tick in ticks {
         let y = area.y(tick.at);
@@ -206,7 +206,7 @@ fn frame(svg: &mut Svg, area: &PanelArea, across: &Ruler, ticks: &[Tick], (last,
 }
 
 /// Lines and bands, which lie under the curves, or their names, which lie over them.
-fn guides(svg: &mut Svg, panel: &Panel, area: &PanelArea, (across, up): (&Ruler, &Ruler), names: bool) {
+fn guides(svg: &mut Svg, panel: &Panel, area: &PanelArea, [across, up]: [&Ruler; 2], names: bool) {
     let dashes = format!("stroke=\"{GREY}\" stroke-width=\"0.6\" stroke-dasharray=\"1.2 1.6\"");
     // A halo keeps names readable where curves pass under them.
     let fill = format!("fill=\"{GREY}\" stroke=\"#fff\" stroke-width=\"2\" paint-order=\"stroke\"");
@@ -242,12 +242,7 @@ fn guides(svg: &mut Svg, panel: &Panel, area: &PanelArea, (across, up): (&Ruler,
 }
 
 /// Draws a curve; where it ends, if any of it is to be seen.
-fn series(
-    svg: &mut Svg,
-    series: &Series,
-    area: &PanelArea,
-    (across, up): (&Ruler, &Ruler),
-) -> Option<[f64; 2]> {
+fn series(svg: &mut Svg, series: &Series, area: &PanelArea, [across, up]: [&Ruler; 2]) -> Option<[f64; 2]> {
     let colour = ink(series.colour);
     let edges = [area.left, area.top, area.right(), area.bottom()];
     let (mut d, mut end, mut run, mut shown) = (String::new(), None, vec![], vec![]);

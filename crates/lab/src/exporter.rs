@@ -36,7 +36,7 @@ pub enum ExportJob {
         /// Who is on stage.
         fleet: Arc<FleetInfo>,
         /// Width and height, pixels.
-        size: (u32, u32),
+        size: [u32; 2],
         /// The past.
         trail: Box<Trail>,
         /// What is seen.
@@ -51,7 +51,7 @@ pub enum ExportJob {
         /// Who is on stage.
         fleet: Arc<FleetInfo>,
         /// Width and height, pixels, even.
-        size: (u32, u32),
+        size: [u32; 2],
         /// The past.
         trail: Box<Trail>,
     },
@@ -161,7 +161,7 @@ struct OpenFilm {
     path: PathBuf,
     film: Film,
     fleet: Arc<FleetInfo>,
-    size: (u32, u32),
+    size: [u32; 2],
     trail: Trail,
 }
 
@@ -178,7 +178,7 @@ impl ExportWorker {
                 Ok(Some(path))
             }
             ExportJob::Begin { path, fleet, size, trail } => {
-                let film = Film::create(&path, FilmKind::of(&path, false)?, size.0, size.1, RATE)?;
+                let film = Film::create(&path, FilmKind::of(&path, false)?, size[0], size[1], RATE)?;
                 self.film = Some(OpenFilm { path, film, fleet, size, trail: *trail });
                 Ok(None)
             }
@@ -224,14 +224,14 @@ impl ExportWorker {
         Ok(())
     }
 
-    fn drawer(&mut self, fleet: &Arc<FleetInfo>, size: (u32, u32)) -> Result<&mut Renderer, ExportError> {
+    fn drawer(&mut self, fleet: &Arc<FleetInfo>, size: [u32; 2]) -> Result<&mut Renderer, ExportError> {
         let fitting = self.drawer.take().filter(|(known, _)| Arc::ptr_eq(known, fleet));
         let drawer = match fitting {
             Some(drawer) => drawer,
-            None => (Arc::clone(fleet), Renderer::new(&self.gpu, fleet, size.0, size.1, 4)?),
+            None => (Arc::clone(fleet), Renderer::new(&self.gpu, fleet, size[0], size[1], 4)?),
         };
         let (_, renderer) = self.drawer.insert(drawer);
-        renderer.resize(size.0, size.1)?;
+        renderer.resize(size[0], size[1])?;
         Ok(renderer)
     }
 }

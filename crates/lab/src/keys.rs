@@ -1,70 +1,236 @@
-//! Keyboard shortcuts: one table for what keys do and for the page that lists them.
+//! Keyboard shortcuts: one list for what keys do, for the page that shows them and for the book.
 
 use crate::action::Action;
 use crate::app_state::{AppState, Selection, Tool};
 use crate::session::history::History;
-use eframe::egui::{self, Key, KeyboardShortcut, Modifiers};
+use eframe::egui::{self, Key, Modifiers};
 use std::f64::consts::PI;
 
-/// What a key does, for people.
+/// What a key or the mouse does: for people, and for the window.
 pub struct Shortcut {
     /// As it is written.
     pub keys: &'static str,
     /// What it does.
     pub what: &'static str,
+    /// The keys, each with its modifiers; none for what the view does by itself.
+    bindings: &'static [Binding],
 }
 
-/// All shortcuts and what the mouse does, as the page of shortcuts lists them.
+/// A key and what it asks for.
+struct Binding {
+    modifiers: Modifiers,
+    key: Key,
+    effect: KeyEffect,
+}
+
+/// What pressing a key comes to.
+enum KeyEffect {
+    /// An action, where there is something to do it to.
+    Act(fn(&AppState) -> Option<Action>),
+    /// The selected set point moves by m and degrees. Every press of a frame counts, and all of them are one move.
+    Nudge([f64; 2]),
+}
+
+const fn bare(key: Key, action: fn(&AppState) -> Option<Action>) -> Binding {
+    Binding { modifiers: Modifiers::NONE, key, effect: KeyEffect::Act(action) }
+}
+
+const fn shift(key: Key, action: fn(&AppState) -> Option<Action>) -> Binding {
+    Binding { modifiers: Modifiers::SHIFT, key, effect: KeyEffect::Act(action) }
+}
+
+/// With Ctrl, or ⌘ on a Mac; also while a text is written.
+const fn command(key: Key, action: fn(&AppState) -> Option<Action>) -> Binding {
+    Binding { modifiers: Modifiers::COMMAND, key, effect: KeyEffect::Act(action) }
+}
+
+const fn nudge(key: Key, by: [f64; 2]) -> Binding {
+    Binding { modifiers: Modifiers::NONE, key, effect: KeyEffect::Nudge(by) }
+}
+
+/// All shortcuts and what the mouse does: the window goes by this list, and the page of shortcuts shows it.
 pub const LIST: &[(&str, &[Shortcut])] = &[
     (
         "Time",
         &[
-            Shortcut { keys: "Space", what: "play or pause" },
-            Shortcut { keys: "→  ←", what: "a sample on, a sample back; with Shift a second" },
-            Shortcut { keys: "Home  End", what: "look at the start, at the present" },
-            Shortcut { keys: ",  .", what: "slower, faster" },
-            Shortcut { keys: "B", what: "branch here" },
-            Shortcut { keys: "[  ]", what: "branch before, next branch" },
-            Shortcut { keys: "Shift Home", what: "begin again at 0" },
+            Shortcut {
+                keys: "Space",
+                what: "play or pause",
+                bindings: &[bare(Key::Space, |_| Some(Action::Toggle))],
+            },
+            Shortcut {
+                keys: "→  ←",
+                what: "a sample on, a sample back; with Shift a second",
+                bindings: &[
+                    bare(Key::ArrowRight, |_| Some(Action::Step)),
+                    bare(Key::ArrowLeft, |state| Some(Action::Back(period(state)))),
+                    shift(Key::ArrowRight, |_| Some(Action::Back(-1.0))),
+                    shift(Key::ArrowLeft, |_| Some(Action::Back(1.0))),
+                ],
+            },
+            Shortcut {
+                keys: "Home  End",
+                what: "look at the start, at the present",
+                bindings: &[
+                    bare(Key::Home, |_| Some(Action::Seek(0.0))),
+                    bare(Key::End, |_| Some(Action::Present)),
+                ],
+            },
+            Shortcut {
+                keys: ",  .",
+                what: "slower, faster",
+                bindings: &[
+                    bare(Key::Comma, |state| Some(Action::Pace(slower(state.pace)))),
+                    bare(Key::Period, |state| Some(Action::Pace(faster(state.pace)))),
+                ],
+            },
+            Shortcut { keys: "B", what: "branch here", bindings: &[bare(Key::B, |_| Some(Action::Fork))] },
+            Shortcut {
+                keys: "[  ]",
+                what: "branch before, next branch",
+                bindings: &[
+                    bare(Key::OpenBracket, |state| Some(Action::Branch(state.branch.saturating_sub(1)))),
+                    bare(Key::CloseBracket, |state| Some(Action::Branch(state.branch + 1))),
+                ],
+            },
+            Shortcut {
+                keys: "Shift Home",
+                what: "begin again at 0",
+                bindings: &[shift(Key::Home, |_| Some(Action::Restart))],
+            },
         ],
     ),
     (
         "Formation",
         &[
-            Shortcut { keys: "Tab", what: "next edge; with Shift the one before" },
-            Shortcut { keys: "W  S", what: "set point 0.1 m nearer, farther" },
-            Shortcut { keys: "A  D", what: "set point 5° to the left, to the right" },
-            Shortcut { keys: "M", what: "mirror: both sides move" },
-            Shortcut { keys: "Ctrl −  Ctrl +", what: "whole formation smaller, larger" },
-            Shortcut { keys: "Insert  Delete", what: "add a robot, remove the selected one" },
-            Shortcut { keys: "C  O  Esc", what: "connect robots, place pillars, neither" },
+            Shortcut {
+                keys: "Tab",
+                what: "next edge; with Shift the one before",
+                bindings: &[
+                    bare(Key::Tab, |state| Some(Action::Choose(next(state, 1)))),
+                    shift(Key::Tab, |state| Some(Action::Choose(next(state, -1)))),
+                ],
+            },
+            Shortcut {
+                keys: "W  S",
+                what: "set point 0.1 m nearer, farther",
+                bindings: &[nudge(Key::W, [-0.1, 0.0]), nudge(Key::S, [0.1, 0.0])],
+            },
+            Shortcut {
+                keys: "A  D",
+                what: "set point 5° to the left, to the right",
+                bindings: &[nudge(Key::A, [0.0, 5.0]), nudge(Key::D, [0.0, -5.0])],
+            },
+            Shortcut {
+                keys: "M",
+                what: "mirror: both sides move",
+                bindings: &[bare(Key::M, |state| Some(Action::Mirror(!state.mirror)))],
+            },
+            Shortcut {
+                keys: "Ctrl −  Ctrl +",
+                what: "whole formation smaller, larger",
+                bindings: &[
+                    command(Key::Minus, |_| Some(Action::Shape { scale: 1.0 / 1.1, turn: 0.0 })),
+                    command(Key::Plus, |_| Some(Action::Shape { scale: 1.1, turn: 0.0 })),
+                    command(Key::Equals, |_| Some(Action::Shape { scale: 1.1, turn: 0.0 })),
+                ],
+            },
+            Shortcut {
+                keys: "Insert  Delete",
+                what: "add a robot, remove the selected one",
+                bindings: &[
+                    bare(Key::Insert, |_| Some(Action::AddRobot)),
+                    bare(Key::Delete, |state| chosen(state).map(|(_, name)| Action::RemoveRobot(name))),
+                ],
+            },
+            Shortcut {
+                keys: "C  O  Esc",
+                what: "connect robots, place pillars, neither",
+                bindings: &[
+                    bare(Key::C, |_| Some(Action::Take(Tool::Connect))),
+                    bare(Key::O, |_| Some(Action::Take(Tool::Pillar))),
+                    bare(Key::Escape, |_| Some(Action::Dismiss)),
+                ],
+            },
         ],
     ),
     (
         "View",
         &[
-            Shortcut { keys: "1 … 5", what: "snake, snake eye, top, orbit, camera of the selected robot" },
-            Shortcut { keys: "G", what: "follow the selected robot" },
-            Shortcut { keys: "I", what: "its camera in the corner" },
-            Shortcut { keys: "Drag", what: "turn; with the right button move; wheel to zoom" },
+            Shortcut {
+                keys: "1 … 5",
+                what: "snake, snake eye, top, orbit, camera of the selected robot",
+                bindings: &[
+                    bare(Key::Num1, |_| Some(Action::Viewpoint("snake".to_owned()))),
+                    bare(Key::Num2, |_| Some(Action::Viewpoint("snake-eye".to_owned()))),
+                    bare(Key::Num3, |_| Some(Action::Viewpoint("top".to_owned()))),
+                    bare(Key::Num4, |_| Some(Action::Viewpoint("orbit".to_owned()))),
+                    bare(Key::Num5, |state| {
+                        chosen(state).map(|(_, name)| Action::Viewpoint(format!("camera:{name}")))
+                    }),
+                ],
+            },
+            Shortcut {
+                keys: "G",
+                what: "follow the selected robot",
+                bindings: &[bare(Key::G, |state| {
+                    chosen(state).map(|(robot, _)| Action::Follow(Some(robot)))
+                })],
+            },
+            Shortcut {
+                keys: "I",
+                what: "its camera in the corner",
+                bindings: &[bare(Key::I, |state| chosen(state).map(|(robot, _)| Action::Inset(Some(robot))))],
+            },
+            Shortcut { keys: "Drag", what: "turn; with the right button move; wheel to zoom", bindings: &[] },
             Shortcut {
                 keys: "Drag a ring",
                 what: "set point, in steps of 0.1 m and 5°; Shift without steps",
+                bindings: &[],
             },
-            Shortcut { keys: "Ctrl drag a ring", what: "whole formation" },
-            Shortcut { keys: "T", what: "light or dark" },
+            Shortcut { keys: "Ctrl drag a ring", what: "whole formation", bindings: &[] },
+            Shortcut { keys: "T", what: "light or dark", bindings: &[bare(Key::T, |_| Some(Action::Theme))] },
         ],
     ),
     (
         "Work",
         &[
-            Shortcut { keys: "Ctrl S", what: "save the scene" },
-            Shortcut { keys: "Ctrl O", what: "scenes" },
-            Shortcut { keys: "Ctrl R", what: "read the file again" },
-            Shortcut { keys: "Ctrl Z  Ctrl Y", what: "undo, redo" },
-            Shortcut { keys: "P  F  K", what: "picture, film, keep the run" },
-            Shortcut { keys: "Ctrl P", what: "picture of the whole window" },
-            Shortcut { keys: "?", what: "this page" },
+            Shortcut {
+                keys: "Ctrl S",
+                what: "save the scene",
+                bindings: &[command(Key::S, |_| Some(Action::Save))],
+            },
+            Shortcut {
+                keys: "Ctrl O",
+                what: "scenes",
+                bindings: &[command(Key::O, |_| Some(Action::Gallery))],
+            },
+            Shortcut {
+                keys: "Ctrl R",
+                what: "read the file again",
+                bindings: &[command(Key::R, |_| Some(Action::Reload))],
+            },
+            Shortcut {
+                keys: "Ctrl Z  Ctrl Y",
+                what: "undo, redo",
+                bindings: &[command(Key::Z, |_| Some(Action::Undo)), command(Key::Y, |_| Some(Action::Redo))],
+            },
+            Shortcut {
+                keys: "P  F  K",
+                what: "picture, film, keep the run",
+                bindings: &[
+                    bare(Key::P, |_| Some(Action::Picture)),
+                    bare(Key::F, |_| Some(Action::Film)),
+                    bare(Key::K, |_| Some(Action::KeepRun)),
+                ],
+            },
+            Shortcut {
+                keys: "Ctrl P",
+                what: "picture of the whole window",
+                bindings: &[command(Key::P, |_| Some(Action::WindowPicture))],
+            },
+            // `?` is where a keyboard has it: `pressed` takes it as a text.
+            Shortcut { keys: "?  F1", what: "this page", bindings: &[bare(Key::F1, |_| Some(Action::Help))] },
         ],
     ),
 ];
@@ -72,92 +238,52 @@ pub const LIST: &[(&str, &[Shortcut])] = &[
 /// What keys ask for in this frame; nothing while a text is written, and nothing behind a menu or, where the view is
 /// `covered`, a window.
 pub fn pressed(ctx: &egui::Context, app_state: &AppState, covered: bool, out: &mut Vec<Action>) {
-    commands(ctx, out);
+    take(ctx, app_state, Modifiers::COMMAND, out);
     if covered && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
         out.push(Action::Dismiss);
     }
     if ctx.egui_wants_keyboard_input() || covered || egui::Popup::is_any_open(ctx) {
         return;
     }
-    nudges(ctx, app_state, out);
-    let period = app_state.history.as_ref().map_or(0.01, History::period);
-    let mut take = |modifiers: Modifiers, key: Key, action: Action| {
-        if ctx.input_mut(|input| input.consume_key(modifiers, key)) {
-            out.push(action);
-        }
-    };
-    let (none, shift) = (Modifiers::NONE, Modifiers::SHIFT);
-    take(none, Key::Space, Action::Toggle);
-    take(none, Key::ArrowRight, Action::Step);
-    take(none, Key::ArrowLeft, Action::Back(period));
-    take(shift, Key::ArrowLeft, Action::Back(1.0));
-    take(shift, Key::ArrowRight, Action::Back(-1.0));
-    take(shift, Key::Home, Action::Restart);
-    take(none, Key::Home, Action::Seek(0.0));
-    take(none, Key::End, Action::Present);
-    take(none, Key::Comma, Action::Pace(slower(app_state.pace)));
-    take(none, Key::Period, Action::Pace(faster(app_state.pace)));
-    take(none, Key::B, Action::Fork);
-    take(none, Key::OpenBracket, Action::Branch(app_state.branch.saturating_sub(1)));
-    take(none, Key::CloseBracket, Action::Branch(app_state.branch + 1));
-    take(none, Key::Tab, Action::Choose(next(app_state, 1)));
-    take(shift, Key::Tab, Action::Choose(next(app_state, -1)));
-    take(none, Key::M, Action::Mirror(!app_state.mirror));
-    take(none, Key::Insert, Action::AddRobot);
-    take(none, Key::C, Action::Take(Tool::Connect));
-    take(none, Key::O, Action::Take(Tool::Pillar));
-    take(none, Key::Escape, Action::Dismiss);
-    for (key, view) in
-        [(Key::Num1, "snake"), (Key::Num2, "snake-eye"), (Key::Num3, "top"), (Key::Num4, "orbit")]
-    {
-        take(none, key, Action::Viewpoint(view.to_owned()));
-    }
-    take(none, Key::T, Action::Theme);
-    take(none, Key::P, Action::Picture);
-    take(none, Key::F, Action::Film);
-    take(none, Key::K, Action::KeepRun);
-    take(none, Key::F1, Action::Help);
-    if let Some((robot, name)) = chosen(app_state) {
-        take(none, Key::Num5, Action::Viewpoint(format!("camera:{name}")));
-        take(none, Key::G, Action::Follow(Some(robot)));
-        take(none, Key::I, Action::Inset(Some(robot)));
-        take(none, Key::Delete, Action::RemoveRobot(name));
-    }
+    // A key without modifiers is also found where Shift is held, so those with Shift come first.
+    take(ctx, app_state, Modifiers::SHIFT, out);
+    take(ctx, app_state, Modifiers::NONE, out);
     if ctx.input(|input| input.events.iter().any(|e| matches!(e, egui::Event::Text(text) if text == "?"))) {
         out.push(Action::Help);
     }
 }
 
-/// Keys that move the selected set point.
-fn nudges(ctx: &egui::Context, app_state: &AppState, out: &mut Vec<Action>) {
-    if let Some(edge) = app_state.chosen_edge() {
-        // Every press of a frame counts, and all of them are one move.
-        let times =
-            |key: Key| ctx.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as f64;
-        let metres = 0.1 * (times(Key::S) - times(Key::W));
-        let degrees = 5.0 * (times(Key::A) - times(Key::D));
-        if metres != 0.0 || degrees != 0.0 {
-            out.extend(nudged(app_state, edge, [metres, degrees]));
+/// What the keys of the list with these modifiers ask for.
+fn take(ctx: &egui::Context, app_state: &AppState, modifiers: Modifiers, out: &mut Vec<Action>) {
+    let mut moved = [0.0; 2];
+    let edge = app_state.chosen_edge();
+    let bindings = LIST.iter().flat_map(|(_, rows)| rows.iter()).flat_map(|row| row.bindings);
+    for binding in bindings.filter(|binding| binding.modifiers == modifiers) {
+        let count = || ctx.input_mut(|input| input.count_and_consume_key(modifiers, binding.key));
+        match &binding.effect {
+            // Without an edge the keys are left to others.
+            KeyEffect::Nudge([metres, degrees]) if edge.is_some() => {
+                let times = count() as f64;
+                moved = [moved[0] + times * metres, moved[1] + times * degrees];
+            }
+            KeyEffect::Nudge(_) => {}
+            KeyEffect::Act(action) => {
+                if let Some(action) = action(app_state)
+                    && count() > 0
+                {
+                    out.push(action);
+                }
+            }
         }
+    }
+    if let Some(edge) = edge.filter(|_| moved != [0.0; 2]) {
+        out.extend(nudged(app_state, edge, moved));
     }
 }
 
-/// Shortcuts with Ctrl, or ⌘ on a Mac.
-fn commands(ctx: &egui::Context, out: &mut Vec<Action>) {
-    let mut take = |key: Key, action: Action| {
-        if ctx.input_mut(|input| input.consume_shortcut(&KeyboardShortcut::new(Modifiers::COMMAND, key))) {
-            out.push(action);
-        }
-    };
-    take(Key::S, Action::Save);
-    take(Key::O, Action::Gallery);
-    take(Key::R, Action::Reload);
-    take(Key::P, Action::WindowPicture);
-    take(Key::Y, Action::Redo);
-    take(Key::Z, Action::Undo);
-    take(Key::Minus, Action::Shape { scale: 1.0 / 1.1, turn: 0.0 });
-    take(Key::Plus, Action::Shape { scale: 1.1, turn: 0.0 });
-    take(Key::Equals, Action::Shape { scale: 1.1, turn: 0.0 });
+/// Control period of the run, s.
+fn period(app_state: &AppState) -> f64 {
+    app_state.history.as_ref().map_or(0.01, History::period)
 }
 
 fn chosen(app_state: &AppState) -> Option<(usize, String)> {
@@ -223,6 +349,87 @@ fn part(ui: &mut egui::Ui, head: &str, shortcuts: &[Shortcut]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// As a binding is written in the list.
+    fn written(binding: &Binding) -> String {
+        let key = match binding.key {
+            Key::ArrowRight => "→",
+            Key::ArrowLeft => "←",
+            Key::Comma => ",",
+            Key::Period => ".",
+            Key::OpenBracket => "[",
+            Key::CloseBracket => "]",
+            Key::Minus => "−",
+            Key::Plus => "+",
+            Key::Escape => "Esc",
+            other => other.name(),
+        };
+        match binding.modifiers {
+            Modifiers::COMMAND => format!("Ctrl {key}"),
+            Modifiers::SHIFT => format!("Shift {key}"),
+            _ => key.to_owned(),
+        }
+    }
+
+    fn rows() -> impl Iterator<Item = &'static Shortcut> {
+        LIST.iter().flat_map(|(_, rows)| rows.iter())
+    }
+
+    #[test]
+    fn every_key_is_listed_and_bound_once() {
+        let mut all = Vec::new();
+        for row in rows() {
+            for binding in row.bindings.iter().filter(|binding| binding.key != Key::Equals) {
+                let name = written(binding);
+                let said = row.keys.split("  ").any(|key| key == name)
+                    || (row.keys == "1 … 5" && "12345".contains(&name))
+                    || (name.starts_with("Shift") && row.what.contains("with Shift"));
+                assert!(said, "{name} is not in {:?}", row.keys);
+                assert!(!all.contains(&name), "{name} is bound twice");
+                all.push(name);
+            }
+        }
+        assert!(all.len() > 40, "{}", all.len());
+    }
+
+    /// The book names keys in the same words.
+    #[test]
+    fn the_book_names_keys_that_are_bound() {
+        let book = include_str!("../../../docs/lab.md");
+        let keys: Vec<&str> = rows().flat_map(|row| row.keys.split("  ")).collect();
+        let is_key = |word: &str| {
+            let single = word.chars().count() == 1 && !word.starts_with(|c: char| c.is_lowercase());
+            single
+                || word.starts_with("Ctrl ")
+                || word.starts_with("Shift ")
+                || Key::from_name(word).is_some()
+        };
+        let named: Vec<&str> = book.split('`').skip(1).step_by(2).filter(|word| is_key(word)).collect();
+        for key in &named {
+            assert!(keys.contains(key), "docs/lab.md names `{key}`, which is not bound");
+        }
+        assert!(named.len() > 15, "{named:?}");
+    }
+
+    fn asked(modifiers: Modifiers, key: Key) -> Vec<Action> {
+        let ctx = egui::Context::default();
+        let mut out = Vec::new();
+        let press = egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
+        let input = egui::RawInput { events: vec![press], ..egui::RawInput::default() };
+        let mut output = ctx.run_ui(input, |ui| pressed(ui.ctx(), &AppState::new(), false, &mut out));
+        output.textures_delta.clear();
+        out
+    }
+
+    /// Without modifiers the arrow was found first, and Shift made no difference.
+    #[test]
+    fn shift_makes_a_second_of_a_sample() {
+        assert_eq!(asked(Modifiers::NONE, Key::ArrowRight), [Action::Step]);
+        assert_eq!(asked(Modifiers::SHIFT, Key::ArrowRight), [Action::Back(-1.0)]);
+        assert_eq!(asked(Modifiers::SHIFT, Key::ArrowLeft), [Action::Back(1.0)]);
+        assert_eq!(asked(Modifiers::SHIFT, Key::Home), [Action::Restart]);
+        assert_eq!(asked(Modifiers::COMMAND, Key::S), [Action::Save]);
+    }
 
     #[test]
     fn paces_go_up_and_down_and_stop() {

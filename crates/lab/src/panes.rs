@@ -193,7 +193,7 @@ fn show(ui: &mut Ui, pane: Pane, panels: &mut Panels<'_>) {
             );
         }
         "Commands" => {
-            panels::curves::show(ui, app_state, &[PlotQuantity::Acceleration, PlotQuantity::TurnRate], out)
+            panels::curves::show(ui, app_state, &[PlotQuantity::Acceleration, PlotQuantity::TurnRate], out);
         }
         "Speeds" => panels::curves::show(ui, app_state, &[PlotQuantity::Speed], out),
         "Observer error" => {

@@ -136,11 +136,11 @@ pub fn curves(
         let records = history.between(branch, [from, span[1]], most);
         for (edge, ends) in history.fleet().edges.iter().enumerate() {
             let Some((_, _, follow)) = app_state.follower(edge) else { continue };
-            if let Some(points) = certified(quantity, &records, (edge, *ends), follow) {
+            if let Some(points) = certified(quantity, &records, edge, *ends, follow) {
                 all.push(QuantityCurve { branch, robot: Some(ends.follower), points });
                 continue;
             }
-            let point = |m: &&StepRecord| Some([m.snapshot.time, value(quantity, m, (edge, *ends), follow)?]);
+            let point = |m: &&StepRecord| Some([m.snapshot.time, value(quantity, m, edge, *ends, follow)?]);
             let points = records.iter().filter_map(point).collect();
             all.push(QuantityCurve { branch, robot: Some(ends.follower), points });
         }
@@ -163,7 +163,8 @@ pub fn curves(
 fn certified(
     quantity: PlotQuantity,
     records: &[&StepRecord],
-    edge: (usize, Edge),
+    index: usize,
+    edge: Edge,
     follow: &Follow,
 ) -> Option<Vec<[f64; 2]>> {
     let value: fn(&WitnessRow) -> f64 = match quantity {
@@ -173,7 +174,7 @@ fn certified(
         _ => return None,
     };
     let rows =
-        if follow.law.kind == LawKind::FullState { vec![] } else { rows(records, edge.0, edge.1, follow) };
+        if follow.law.kind == LawKind::FullState { vec![] } else { rows(records, index, edge, follow) };
     Some(rows.iter().map(|row| [row.time, value(row)]).filter(|p| p[1].is_finite()).collect())
 }
 
@@ -181,7 +182,8 @@ fn certified(
 fn value(
     quantity: PlotQuantity,
     record: &StepRecord,
-    (index, edge): (usize, Edge),
+    index: usize,
+    edge: Edge,
     follow: &Follow,
 ) -> Option<f64> {
     let state = record.edges.get(index)?;

@@ -63,7 +63,7 @@ pub fn open(options: Options) -> Result<(), Error> {
             NAME,
             native,
             Box::new(move |context| {
-                let lab = LabApp::new(context, &options, (began, why))?;
+                let lab = LabApp::new(context, &options, began, why)?;
                 Ok(Box::new(lab))
             }),
         )

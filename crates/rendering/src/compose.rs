@@ -3,8 +3,8 @@
 use crate::Viewpoint;
 use crate::annotation::inset::{clearness, inset};
 use crate::annotation::labels::{LabelPlacer, Window, ring_boxes, robot_boxes, view_words};
-use crate::annotation::letters::Letters;
 use crate::annotation::overlays::{line_place, show};
+use crate::annotation::text_shaper::TextShaper;
 use crate::camera::Camera;
 use crate::gpu::passes::frame::FrameUniforms;
 use crate::gpu::passes::ground::TILE;
@@ -156,17 +156,17 @@ const UNSEEN: f32 = 0.02;
 
 /// Text and flat shapes of the whole picture, and the panels that lie over views: that of errors, and a film's line.
 pub(crate) fn words<'a>(
-    letters: &'a mut Letters,
+    letters: &'a mut TextShaper,
     context: &PictureContext<'_>,
     plan: &PicturePlan,
     windows: &[Window<'_>],
-    size: (u32, u32),
+    size: [u32; 2],
 ) -> (LabelPlacer<'a>, Vec<Area>) {
     let mut words = LabelPlacer::new(letters, context.style.scale);
     let shown = &context.style.show;
     let left = plan.left;
     let said = shown.line.as_ref().filter(|line| line.opacity > 0.0);
-    let said = said.map(|line| (line_place(&mut words, line, [left.0 as f32, left.1 as f32]), line.opacity));
+    let said = said.map(|line| (line_place(&mut words, line, left.map(|side| side as f32)), line.opacity));
     if let Some((line, _)) = said {
         words.reserve(line);
     }
@@ -191,6 +191,6 @@ pub(crate) fn words<'a>(
     for (view, window) in plan.views.iter().zip(windows) {
         view_words(&mut words, context, *window, view);
     }
-    show(&mut words, shown, context.colours, (left, size));
+    show(&mut words, shown, context.colours, left, size);
     (words, panels)
 }

@@ -1,7 +1,7 @@
 //! Where things are in a picture, without drawing it: what words and panels cover, and what they should not.
 
 use crate::annotation::labels::{Window, detail, ring_boxes, robot_boxes};
-use crate::annotation::letters::Letters;
+use crate::annotation::text_shaper::TextShaper;
 use crate::compose::{local_origin, shadowed, towards_sun, words};
 use crate::ground::floor::Floor;
 use crate::palette::robot_colours;
@@ -32,12 +32,13 @@ impl Composition {
     /// That of the picture that a renderer of `fleet` draws at a size.
     pub fn new(
         fleet: &FleetInfo,
-        (trail, record): (&Trail, &StepRecord),
+        trail: &Trail,
+        record: &StepRecord,
         layout: &ViewLayout,
         style: &Style,
-        size: (u32, u32),
+        size: [u32; 2],
     ) -> Self {
-        let mut letters = Letters::new();
+        let mut letters = TextShaper::new();
         let floor = Floor::new(fleet);
         let colours = robot_colours(fleet);
         let plan = PicturePlan::new(&mut letters, fleet, layout, style, size);

@@ -37,8 +37,8 @@ mod style;
 pub use annotation::annotations::{
     AnnotationArrow, AnnotationStroke, Annotations, Ghost, Ring, ShadedArea, StrokePoint,
 };
-pub use annotation::letters::FONT;
 pub use annotation::overlays::{Card, CurvePanel, Overlays, PanelCurve, ReservedSpace, Subtitle};
+pub use annotation::text_shaper::FONT;
 pub use camera::pick::Picked;
 pub use camera::sightline::Sightline;
 pub use camera::viewpoint::{FreeCamera, Tile, ViewLayout, Viewpoint};

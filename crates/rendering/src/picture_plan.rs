@@ -3,8 +3,8 @@
 use crate::Style;
 use crate::annotation::inset::panel;
 use crate::annotation::labels::{Ink, LabelPlacer, MARGIN};
-use crate::annotation::letters::{Block, Letters, line_height};
 use crate::annotation::overlays::line_room;
+use crate::annotation::text_shaper::{Block, TextShaper, line_height};
 use crate::camera::free_space::FreeSpace;
 use crate::camera::viewpoint::{Tile, ViewLayout, Viewpoint, corner};
 use crate::palette;
@@ -40,7 +40,7 @@ pub(crate) struct PicturePlan {
     /// How many of the views, the last, lie over others.
     pub(crate) upper: usize,
     /// The part of the picture that is left for the views, pixels.
-    pub(crate) left: (u32, u32),
+    pub(crate) left: [u32; 2],
     headings: Vec<Heading>,
     clock: Option<Area>,
     /// Where errors are plotted.
@@ -52,14 +52,14 @@ pub(crate) struct PicturePlan {
 
 impl PicturePlan {
     pub(crate) fn new(
-        letters: &mut Letters,
+        letters: &mut TextShaper,
         fleet: &FleetInfo,
         layout: &ViewLayout,
         style: &Style,
-        size: (u32, u32),
+        size: [u32; 2],
     ) -> Self {
         let left = style.show.left_over(size);
-        let (mut views, mut tiles, mut upper) = (layout.views.clone(), layout.tiles(left.0, left.1), 0);
+        let (mut views, mut tiles, mut upper) = (layout.views.clone(), layout.tiles(left[0], left[1]), 0);
         let member = style.picture_in_picture.and_then(|robot| fleet.robots.get(robot).map(|m| (robot, m)));
         if let (Some((robot, member)), Some(first)) = (member, tiles.first()) {
             let aspect =
@@ -90,7 +90,7 @@ impl PicturePlan {
         if titled && style.clock {
             plan.clock = Some(clock(&mut words, fleet, left));
         }
-        let line = line_room(&mut words, &style.show, [left.0 as f32, left.1 as f32]);
+        let line = line_room(&mut words, &style.show, left.map(|side| side as f32));
         let below = plan.views.len() - upper;
         // In a quarter of a picture it would cover a whole view.
         let charted = style.show.plots.is_empty()
@@ -108,10 +108,10 @@ impl PicturePlan {
     /// Pixels that a title may take across.
     fn free_width(&self, words: &LabelPlacer<'_>) -> f32 {
         let margin = words.scaled(MARGIN);
-        let whole = self.left.0 as f32 - 2.0 * margin;
+        let whole = self.left[0] as f32 - 2.0 * margin;
         let small = self.tiles.get(self.tiles.len() - self.upper).map(|tile| tile.x as f32 - 2.0 * margin);
         // The scale bar of a view from above stands in the corner on the right.
-        let right = |tile: &Tile| tile.y == 0 && tile.x + tile.width == self.left.0;
+        let right = |tile: &Tile| tile.y == 0 && tile.x + tile.width == self.left[0];
         let bars =
             self.tiles.iter().zip(&self.views).filter(|(tile, view)| **view == Viewpoint::Top && right(tile));
         let bar = bars.map(|(tile, _)| whole - 0.24 * tile.width as f32 - margin).reduce(f32::min);
@@ -195,7 +195,7 @@ fn headings(words: &mut LabelPlacer<'_>, fleet: &FleetInfo, free: f32) -> Vec<He
 }
 
 /// Where the clock is: wide enough for any time of the run, so that it takes the same room all the time.
-fn clock(words: &mut LabelPlacer<'_>, fleet: &FleetInfo, (_, height): (u32, u32)) -> Area {
+fn clock(words: &mut LabelPlacer<'_>, fleet: &FleetInfo, [_, height]: [u32; 2]) -> Area {
     let margin = words.scaled(MARGIN);
     let (width, high) = (words.width(&time_text(fleet.duration), CLOCK, true), words.scaled(28.0));
     [margin, height as f32 - margin - words.scaled(8.0) - 0.5 * high, width, high]

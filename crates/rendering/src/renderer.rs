@@ -1,7 +1,7 @@
 //! Moments to pictures.
 
 use crate::annotation::labels::{Window, detail};
-use crate::annotation::letters::Letters;
+use crate::annotation::text_shaper::TextShaper;
 use crate::camera::Camera;
 use crate::camera::pick::pick;
 use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun, veiled_decks, words};
@@ -35,7 +35,7 @@ pub struct Renderer {
     attachments: Attachments,
     passes: Passes,
     /// Behind a lock, since whoever asks how a view is seen has to know how long its words are.
-    letters: Mutex<Letters>,
+    letters: Mutex<TextShaper>,
     /// Two, so that one picture can be drawn while the one before is read.
     offscreen: Vec<Offscreen>,
     waiting: Option<(usize, wgpu::SubmissionIndex)>,
@@ -79,9 +79,9 @@ impl Renderer {
             floor,
             size: (width, height),
             canvas,
-            attachments: Attachments::new(&gpu.device, (width, height), format, samples),
+            attachments: Attachments::new(&gpu.device, [width, height], format, samples),
             passes,
-            letters: Mutex::new(Letters::new()),
+            letters: Mutex::new(TextShaper::new()),
             offscreen: Vec::new(),
             waiting: None,
         };
@@ -109,7 +109,7 @@ impl Renderer {
         if self.size != (width, height) {
             self.size = (width, height);
             self.attachments =
-                Attachments::new(&self.gpu.device, self.size, self.canvas.format, self.canvas.samples);
+                Attachments::new(&self.gpu.device, self.size.into(), self.canvas.format, self.canvas.samples);
             self.offscreen.clear();
             self.waiting = None;
         }
@@ -169,7 +169,7 @@ impl Renderer {
         layout: &ViewLayout,
         style: &Style,
     ) -> Result<wgpu::SubmissionIndex, Error> {
-        self.encoded((trail, record), layout, style, target, None)
+        self.encoded(trail, record, layout, style, target, None)
     }
 
     fn submit(
@@ -184,16 +184,17 @@ impl Renderer {
             return Err(Error::Device(format!("no picture can be read from {:?}", self.canvas.format)));
         }
         while self.offscreen.len() <= slot {
-            self.offscreen.push(Offscreen::new(&self.gpu.device, self.size, self.canvas.format));
+            self.offscreen.push(Offscreen::new(&self.gpu.device, self.size.into(), self.canvas.format));
         }
         let view = self.offscreen[slot].view.clone();
-        Ok((slot, self.encoded((trail, record), layout, style, &view, Some(slot))?))
+        Ok((slot, self.encoded(trail, record, layout, style, &view, Some(slot))?))
     }
 
     /// Draws a moment into a target and copies it to where it is read, if it is.
     fn encoded(
         &mut self,
-        (trail, record): (&Trail, &StepRecord),
+        trail: &Trail,
+        record: &StepRecord,
         layout: &ViewLayout,
         style: &Style,
         target: &wgpu::TextureView,
@@ -270,7 +271,7 @@ impl Renderer {
         let windows: Vec<_> =
             cameras.iter().zip(tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
         let letters = self.letters.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let (words, _) = words(letters, &context, &plan, &windows, self.size);
+        let (words, _) = words(letters, &context, &plan, &windows, self.size.into());
         let (lines, shapes) = (words.lines, words.shapes);
         let ghosts =
             views.iter().map(|view| !matches!(view, Viewpoint::SnakeEye | Viewpoint::Camera(_))).collect();
@@ -286,9 +287,10 @@ impl Renderer {
             decals,
             ghosts,
             shapes,
+            lines,
             shadowed: false,
         };
-        self.passes.upload(&self.gpu, self.size, &frames, &mut prepared, &corners, (&lines, letters))?;
+        self.passes.upload(&self.gpu, self.size.into(), &frames, &mut prepared, &corners, letters)?;
         Ok(prepared)
     }
 
@@ -329,7 +331,7 @@ impl Renderer {
 
     fn plan(&self, layout: &ViewLayout, style: &Style) -> PicturePlan {
         let mut letters = self.letters.lock().unwrap_or_else(PoisonError::into_inner);
-        PicturePlan::new(&mut letters, &self.fleet, layout, style, self.size)
+        PicturePlan::new(&mut letters, &self.fleet, layout, style, self.size.into())
     }
 
     /// A target with all that drawing into it takes.
@@ -358,7 +360,7 @@ pub(crate) fn cameras(
     floor: &Floor,
 ) -> Vec<Camera> {
     let camera = |(k, view): (usize, &Viewpoint)| {
-        Camera::of(view, &trail.smoothed, &record.snapshot, (fleet, floor), &plan.room(k))
+        Camera::of(view, &trail.smoothed, &record.snapshot, fleet, floor, &plan.room(k))
     };
     plan.views.iter().enumerate().map(camera).collect()
 }

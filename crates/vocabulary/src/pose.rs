@@ -22,6 +22,12 @@ impl Pose {
         let (sin, cos) = self.heading.sin_cos();
         [self.x + forward * cos - left * sin, self.y + forward * sin + left * cos]
     }
+
+    /// World coordinates in m of a point at a `distance` in m and a `bearing` in rad from this pose.
+    pub fn polar(&self, distance: f64, bearing: f64) -> [f64; 2] {
+        let (sin, cos) = bearing.sin_cos();
+        self.world_from_body(distance * cos, distance * sin)
+    }
 }
 
 #[cfg(test)]
@@ -35,5 +41,7 @@ mod tests {
         let north = Pose::new(0.0, 0.0, std::f64::consts::FRAC_PI_2);
         let [x, y] = north.world_from_body(1.0, 0.5);
         assert!((x + 0.5).abs() < 1e-15 && (y - 1.0).abs() < 1e-15);
+        let [x, y] = east.polar(2.0, std::f64::consts::FRAC_PI_2);
+        assert!((x - 1.0).abs() < 1e-15 && (y - 4.0).abs() < 1e-15);
     }
 }

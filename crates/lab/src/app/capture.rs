@@ -11,9 +11,9 @@ use std::sync::Arc;
 
 impl LabApp {
     /// What is seen now, for a picture `size` large.
-    pub(crate) fn shot(&self, record: &Arc<vocabulary::StepRecord>, size: (u32, u32)) -> Option<FrameSpec> {
+    pub(crate) fn shot(&self, record: &Arc<vocabulary::StepRecord>, size: [u32; 2]) -> Option<FrameSpec> {
         let fleet = self.app_state.history.as_ref()?.fleet();
-        let scale = (f64::from(size.1) / 720.0).max(0.5);
+        let scale = (f64::from(size[1]) / 720.0).max(0.5);
         Some(FrameSpec {
             record: Arc::clone(record),
             layout: self.viewport.layout(fleet, record),
@@ -24,7 +24,7 @@ impl LabApp {
 
     /// What a film shows now: what is seen, or the view that was chosen for it, without what only the hand needs.
     pub(crate) fn film_shot(&self, record: &Arc<vocabulary::StepRecord>) -> Option<FrameSpec> {
-        let shot = self.shot(record, (1280, 720))?;
+        let shot = self.shot(record, [1280, 720])?;
         let Some(view) = &self.app_state.film_from else { return Some(shot) };
         let fleet = self.app_state.history.as_ref()?.fleet();
         let names: Vec<String> = fleet.robots.iter().map(|member| member.name.clone()).collect();
@@ -33,7 +33,7 @@ impl LabApp {
     }
 
     pub(crate) fn picture(&mut self) {
-        let size = (1920, 1080);
+        let size = [1920, 1080];
         let (Some(record), Some(history)) = (self.app_state.record(), &self.app_state.history) else {
             return;
         };
@@ -92,7 +92,7 @@ impl LabApp {
         self.exporter.ask(ExportJob::Begin {
             path: path.clone(),
             fleet,
-            size: (1280, 720),
+            size: [1280, 720],
             trail: Box::new(trail),
         });
         self.app_state.note(format!("Filming to {}", path.display()));

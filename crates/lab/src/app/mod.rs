@@ -71,7 +71,8 @@ impl LabApp {
     pub(crate) fn new(
         context: &eframe::CreationContext<'_>,
         options: &Options,
-        (began, ended): (Instant, Arc<Mutex<Option<Error>>>),
+        began: Instant,
+        ended: Arc<Mutex<Option<Error>>>,
     ) -> Result<Self, String> {
         let state = context.wgpu_render_state.as_ref().ok_or("there is no graphics device")?;
         let ctx = context.egui_ctx.clone();
@@ -283,7 +284,7 @@ impl LabApp {
             }
             Action::Film => self.begin_film(),
             Action::KeepRun if self.app_state.recorded => {
-                self.app_state.fault("This run is recorded already")
+                self.app_state.fault("This run is recorded already");
             }
             Action::KeepRun => self.app_state.requests.push(RunRequest::Summarize(self.app_state.branch)),
             Action::CurvesCsv => self.write_curves("csv", &quantities::csv(&self.app_state)),

@@ -400,8 +400,7 @@ fn degrees(angle: f64) -> String {
 
 /// A place at a distance (m) and bearing (degrees) of a pose, m.
 fn seen_from(pose: vocabulary::Pose, [distance, bearing]: [f64; 2]) -> [f64; 2] {
-    let (sin, cos) = bearing.to_radians().sin_cos();
-    pose.world_from_body(distance * cos, distance * sin)
+    pose.polar(distance, bearing.to_radians())
 }
 
 /// The circle that would close if `follower` followed `leader`, in names.

@@ -157,7 +157,8 @@ impl AppState {
     pub(crate) fn forked(
         &mut self,
         branch: usize,
-        (from, sample): (usize, u64),
+        from: usize,
+        sample: u64,
         name: String,
         changes: Vec<BranchChange>,
     ) {

@@ -369,7 +369,7 @@ impl AppState {
                 }
             }
             RunEvent::Forked { branch, from, sample, name, changes } => {
-                self.forked(branch, (from, sample), name, changes);
+                self.forked(branch, from, sample, name, changes);
             }
             RunEvent::Changed(branch, change) => self.changed(branch, &change),
             RunEvent::RecordingResumed(same) => self.recording_resumed(same),

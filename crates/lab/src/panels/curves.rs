@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, quantities: &[PlotQuantity], out:
     let gap = ui.spacing().item_spacing.y;
     let high = (ui.available_height() - gap * (quantities.len() - 1) as f32) / quantities.len() as f32;
     for (row, quantity) in quantities.iter().enumerate() {
-        plot(ui, app_state, *quantity, (high, row + 1 == quantities.len()), out);
+        plot(ui, app_state, *quantity, high, row + 1 == quantities.len(), out);
     }
 }
 
@@ -29,7 +29,8 @@ fn plot(
     ui: &mut Ui,
     app_state: &AppState,
     quantity: PlotQuantity,
-    (high, last): (f32, bool),
+    high: f32,
+    last: bool,
     out: &mut Vec<Action>,
 ) {
     let end = app_state
@@ -63,9 +64,9 @@ fn plot(
         .include_x(0.0)
         .include_x(end.max(1.0))
         .y_axis_min_width(40.0)
-        .x_grid_spacer(|input| marks(input.bounds, 5.0, 1e-3))
+        .x_grid_spacer(|input| marks(input.bounds.into(), 5.0, 1e-3))
         .y_grid_spacer(move |input| {
-            marks(input.bounds, f64::from(high) / 26.0, if logarithmic { 1.0 } else { 1e-9 })
+            marks(input.bounds.into(), f64::from(high) / 26.0, if logarithmic { 1.0 } else { 1e-9 })
         })
         .y_axis_formatter(move |mark, _| text(mark.value))
         .x_axis_formatter(|mark, _| format!("{} s", short(mark.value)))
@@ -146,10 +147,9 @@ fn peak(curves: &[QuantityCurve], [low, high]: [f64; 2]) -> Option<f64> {
 }
 
 /// Marks of an axis at round values, about so many, and not nearer than `least`.
-fn marks((low, high): (f64, f64), about: f64, least: f64) -> Vec<GridMark> {
+fn marks([low, high]: [f64; 2], about: f64, least: f64) -> Vec<GridMark> {
     let rough = ((high - low) / about.max(2.0)).max(least);
-    let power = 10_f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|s| *s >= rough).unwrap_or(rough);
+    let step = vocabulary::round_step(rough, 0.0);
     let step = if least >= 1.0 { step.round().max(1.0) } else { step };
     let (first, last) = ((low / step).ceil(), (high / step).floor());
     if !(last - first).is_finite() || last - first > 200.0 {

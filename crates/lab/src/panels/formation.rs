@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let rows = order(&fleet);
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         for (robot, depth) in rows {
-            row(ui, app_state, (&fleet, record.as_deref()), (robot, depth), out);
+            row(ui, app_state, &fleet, record.as_deref(), robot, depth, out);
         }
     });
 }
@@ -46,8 +46,10 @@ fn order(fleet: &FleetInfo) -> Vec<(usize, usize)> {
 fn row(
     ui: &mut Ui,
     app_state: &AppState,
-    (fleet, record): (&FleetInfo, Option<&StepRecord>),
-    (robot, depth): (usize, usize),
+    fleet: &FleetInfo,
+    record: Option<&StepRecord>,
+    robot: usize,
+    depth: usize,
     out: &mut Vec<Action>,
 ) {
     let name = &fleet.robots[robot].name;

@@ -108,7 +108,7 @@ impl Branches {
 
     /// A new branch that leaves `from` before control sample `sample`; its index.
     pub fn fork(&mut self, from: usize, sample: u64, name: String) -> Option<usize> {
-        let branch = self.list.get(from)?.fork(&self.scene, (from, sample), name);
+        let branch = self.list.get(from)?.fork(&self.scene, from, sample, name);
         self.list.push(branch);
         Some(self.list.len() - 1)
     }
@@ -156,8 +156,7 @@ impl Branch {
         Ok((again || !change.set.is_empty()).then_some(change))
     }
 
-    fn fork(&self, base: &Scene, parent: (usize, u64), name: String) -> Self {
-        let until = parent.1;
+    fn fork(&self, base: &Scene, index: usize, until: u64, name: String) -> Self {
         let marks: Vec<_> = self.marks.iter().filter(|m| m.simulation.sample() <= until).cloned().collect();
         let changes: Vec<_> = self.changes.iter().filter(|c| c.sample < until).cloned().collect();
         // The mark at time 0 is always there.
@@ -178,7 +177,15 @@ impl Branch {
             let Some(record) = simulation.next_record() else { break };
             digest.push(record);
         }
-        Self { name, parent: Some(parent), changes, simulation, digest, marks, mark_every: self.mark_every }
+        Self {
+            name,
+            parent: Some((index, until)),
+            changes,
+            simulation,
+            digest,
+            marks,
+            mark_every: self.mark_every,
+        }
     }
 
     /// Digest of all samples so far.

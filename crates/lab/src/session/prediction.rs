@@ -27,7 +27,7 @@ pub struct Prediction {
     /// One path per robot.
     pub paths: Vec<Vec<PathPoint>>,
     /// Speed, m/s, and turn rate, rad/s, of every robot at the places of its path.
-    pub motions: Vec<Vec<(f64, f64)>>,
+    pub motions: Vec<Vec<[f64; 2]>>,
     /// Where every robot ends.
     pub end: Vec<Pose>,
     /// Largest |error| of every edge in the last tenth, [m, rad].
@@ -202,7 +202,7 @@ impl PredictionBuilder {
         {
             let motion = robot.motion;
             path.push(PathPoint { at: [motion.pose.x, motion.pose.y], trouble: std::mem::take(trouble) });
-            motions.push((motion.speed, motion.turn_rate));
+            motions.push([motion.speed, motion.turn_rate]);
         }
     }
 

@@ -20,9 +20,9 @@ pub const RING: f64 = 0.25;
 
 /// What the hand does, as far as it is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Hand {
+pub struct PointerState {
     /// The edge whose set point is under the pointer.
-    pub dialog: Option<usize>,
+    pub ring: Option<usize>,
     /// The edge whose set point is dragged.
     pub held: Option<usize>,
     /// The robot under the pointer.
@@ -32,7 +32,7 @@ pub struct Hand {
 }
 
 /// The annotations of what is shown.
-pub fn annotations(app_state: &AppState, record: &StepRecord, hand: &Hand) -> Annotations {
+pub fn annotations(app_state: &AppState, record: &StepRecord, hand: &PointerState) -> Annotations {
     let mut annotations = Annotations::default();
     let Some(history) = &app_state.history else { return annotations };
     let fleet = Arc::clone(history.fleet());
@@ -47,7 +47,7 @@ pub fn annotations(app_state: &AppState, record: &StepRecord, hand: &Hand) -> An
     {
         future(prediction, &colours, &fleet, &mut annotations);
     }
-    handles(app_state, &fleet, (record, &colours), hand, &mut annotations);
+    handles(app_state, &fleet, record, &colours, hand, &mut annotations);
     if let Some((robot, to)) = hand.connecting
         && let Some(state) = record.snapshot.robots.get(robot)
     {
@@ -136,8 +136,9 @@ fn future(prediction: &Prediction, colours: &[[f32; 3]], fleet: &FleetInfo, anno
 fn handles(
     app_state: &AppState,
     fleet: &FleetInfo,
-    (record, colours): (&StepRecord, &[[f32; 3]]),
-    hand: &Hand,
+    record: &StepRecord,
+    colours: &[[f32; 3]],
+    hand: &PointerState,
     annotations: &mut Annotations,
 ) {
     for (edge, at) in set_points(fleet, record).into_iter().enumerate() {
@@ -147,7 +148,7 @@ fn handles(
             Ring { least: 17.0, ..Ring::new(at, RING * size(fleet, follower), light(colours[follower])) };
         if hand.held == Some(edge) || app_state.chosen_edge() == Some(edge) {
             annotations.rings.push(ring.selected());
-        } else if hand.dialog == Some(edge) {
+        } else if hand.ring == Some(edge) {
             annotations.rings.push(ring.hovered());
         }
     }

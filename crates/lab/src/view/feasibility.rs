@@ -37,12 +37,12 @@ pub struct PlaceConstraints {
 
 impl PlaceConstraints {
     /// What stands against a place while the leader drives at one of `motions` (m/s, rad/s); `None` if nothing does.
-    pub fn refuses(&self, place: [f64; 2], motions: &[(f64, f64)]) -> bool {
+    pub fn refuses(&self, place: [f64; 2], motions: &[[f64; 2]]) -> bool {
         self.others.iter().any(|(at, near)| (place[0] - at[0]).hypot(place[1] - at[1]) < *near)
             || motions.iter().any(|motion| self.refuses_at(place, *motion))
     }
 
-    fn refuses_at(&self, place: [f64; 2], (speed, turn_rate): (f64, f64)) -> bool {
+    fn refuses_at(&self, place: [f64; 2], [speed, turn_rate]: [f64; 2]) -> bool {
         let why = unholdable(place, [speed, turn_rate], &self.limits, self.distance_min);
         if why.is_some() {
             return true;
@@ -85,19 +85,19 @@ pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(
         others: places.chain([([0.0; 2], reach)]).collect(),
     };
     let motions =
-        motions(app_state.prediction.as_ref(), ends.leader, (leader.motion.speed, leader.motion.turn_rate));
+        motions(app_state.prediction.as_ref(), ends.leader, [leader.motion.speed, leader.motion.turn_rate]);
     Some((leader.motion.pose, shade(&wanted, &motions)))
 }
 
 /// How the leader drives now and on its way to come.
-fn motions(prediction: Option<&Prediction>, leader: usize, now: (f64, f64)) -> Vec<(f64, f64)> {
+fn motions(prediction: Option<&Prediction>, leader: usize, now: [f64; 2]) -> Vec<[f64; 2]> {
     let ahead = prediction.and_then(|prediction| prediction.motions.get(leader)).map_or(&[][..], |all| all);
     let every = (ahead.len() / GLANCES).max(1);
     [now].into_iter().chain(ahead.iter().step_by(every).copied()).collect()
 }
 
 /// The field of what is wanted.
-pub fn shade(wanted: &PlaceConstraints, motions: &[(f64, f64)]) -> FeasibilityMap {
+pub fn shade(wanted: &PlaceConstraints, motions: &[[f64; 2]]) -> FeasibilityMap {
     let half = 0.5 * (SIDE - 1) as f64 * STEP;
     let mut alphas = Vec::with_capacity(SIDE * SIDE);
     for row in 0..SIDE {
@@ -122,8 +122,8 @@ mod tests {
 
     #[test]
     fn a_straight_way_leaves_all_ground_and_a_bend_takes_the_outside() {
-        let free = shade(&wanted(), &[(1.0, 0.0)]);
-        let taken = shade(&wanted(), &[(1.0, 0.3)]);
+        let free = shade(&wanted(), &[[1.0, 0.0]]);
+        let taken = shade(&wanted(), &[[1.0, 0.3]]);
         let count = |field: &FeasibilityMap| field.alphas.iter().filter(|a| **a > 0.0).count();
         // What is nearer than the law allows is one square.
         assert_eq!(count(&free), 1);
@@ -133,14 +133,14 @@ mod tests {
     #[test]
     fn who_looks_has_to_see() {
         let looking = PlaceConstraints { sight: Some([4.0, 2.0]), ..wanted() };
-        assert!(looking.refuses([-4.5, 0.0], &[(1.0, 0.0)]), "too far");
-        assert!(looking.refuses([2.0, 0.0], &[(1.0, 0.0)]), "behind the camera");
-        assert!(!looking.refuses([-2.0, 1.0], &[(1.0, 0.0)]));
+        assert!(looking.refuses([-4.5, 0.0], &[[1.0, 0.0]]), "too far");
+        assert!(looking.refuses([2.0, 0.0], &[[1.0, 0.0]]), "behind the camera");
+        assert!(!looking.refuses([-2.0, 1.0], &[[1.0, 0.0]]));
     }
 
     #[test]
     fn nobody_stands_where_another_does() {
         let crowded = PlaceConstraints { others: vec![([-1.0, 1.0], 0.5)], ..wanted() };
-        assert!(crowded.refuses([-1.2, 1.2], &[(1.0, 0.0)]) && !crowded.refuses([-2.0, 1.0], &[(1.0, 0.0)]));
+        assert!(crowded.refuses([-1.2, 1.2], &[[1.0, 0.0]]) && !crowded.refuses([-2.0, 1.0], &[[1.0, 0.0]]));
     }
 }

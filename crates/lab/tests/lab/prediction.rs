@@ -72,7 +72,7 @@ fn what_is_foreseen_is_what_comes() {
             let mut way = there.iter().map(|record| record.snapshot.robots[robot].motion);
             for (place, motion) in path.iter().zip(motions) {
                 let found = way.find(|real| {
-                    [real.pose.x, real.pose.y] == place.at && (real.speed, real.turn_rate) == *motion
+                    [real.pose.x, real.pose.y] == place.at && [real.speed, real.turn_rate] == *motion
                 });
                 assert!(found.is_some(), "robot {robot} never comes to {place:?}");
             }

@@ -5,6 +5,7 @@ use crate::camera::viewpoint::Tile;
 use crate::picture_context::PictureContext;
 use crate::picture_plan::{Area, overlap};
 use glam::Vec2;
+use vocabulary::round_step;
 
 /// Sizes of the panel at scale 1, pixels: with numbers beside its charts, and where there is little room with the numbers
 /// in the titles.
@@ -99,7 +100,7 @@ pub(crate) fn inset(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, p
     let (left, right) = (x + words.scaled(aside), x + width - words.scaled(if large { 14.0 } else { 10.0 }));
     let (rows, tall) = if large { ([24.0, 95.0], 50.0) } else { ([20.0, 62.0], 22.0) };
     for (quantity, row) in QUANTITIES.iter().zip(rows) {
-        let limit = ceiling(largest(context, quantity)).min(quantity.most);
+        let limit = (round_step(f64::from(largest(context, quantity)), 0.001) as f32).min(quantity.most);
         let (top, high) = (y + words.scaled(row), words.scaled(tall));
         let axes = Axes {
             left,
@@ -128,12 +129,6 @@ fn largest(context: &PictureContext<'_>, quantity: &ChartedError) -> f32 {
     let past = context.trail.errors.entries.iter().flat_map(|(_, e)| e.iter()).map(|e| e[quantity.index]);
     let sizes = past.chain(now).map(|e| e.abs() * quantity.factor).filter(|e| e.is_finite());
     sizes.fold(quantity.least, f32::max)
-}
-
-/// A round number not below `most`.
-fn ceiling(most: f32) -> f32 {
-    let power = 10.0_f32.powf(most.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|n| n * power).find(|n| *n >= most * 0.999).unwrap_or(most)
 }
 
 fn frame(words: &mut LabelPlacer<'_>, axes: &Axes, quantity: &ChartedError, limit: f32, large: bool) {
@@ -199,18 +194,6 @@ fn curves(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, axes: &Axes
         if let Some((end, _)) = before {
             let dot = words.scaled(2.5);
             words.shapes.panel([end.x - dot, end.y - dot, 2.0 * dot, 2.0 * dot], dot, colour);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_scale_is_round_and_large_enough() {
-        for (most, wanted) in [(0.02, 0.02), (0.021, 0.05), (0.3, 0.5), (1.0, 1.0), (7.0, 10.0)] {
-            assert!((ceiling(most) - wanted).abs() < 1e-6 * wanted, "{most}: {}", ceiling(most));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Words in the picture: caption, time, names, edges and coordinates, placed so that none covers another.
 
 use crate::annotation::detections::camera_words;
-use crate::annotation::letters::{Block, Letters, Measure, line_height};
+use crate::annotation::text_shaper::{Block, Measure, TextShaper, line_height};
 use crate::camera::Camera;
 use crate::gpu::model::Build;
 use crate::gpu::passes::overlay::Shapes;
@@ -25,7 +25,7 @@ pub(crate) struct LabelPlacer<'a> {
     /// Where names, edges and coordinates were written.
     pub(crate) labels: Vec<Area>,
     taken: Vec<Area>,
-    letters: &'a mut Letters,
+    letters: &'a mut TextShaper,
     scale: f32,
 }
 
@@ -63,7 +63,7 @@ impl Window<'_> {
 }
 
 impl<'a> LabelPlacer<'a> {
-    pub(crate) fn new(letters: &'a mut Letters, scale: f64) -> Self {
+    pub(crate) fn new(letters: &'a mut TextShaper, scale: f64) -> Self {
         Self {
             lines: Vec::new(),
             shapes: Shapes::default(),

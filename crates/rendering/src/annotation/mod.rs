@@ -4,5 +4,5 @@ pub(crate) mod annotations;
 pub(crate) mod detections;
 pub(crate) mod inset;
 pub(crate) mod labels;
-pub(crate) mod letters;
 pub(crate) mod overlays;
+pub(crate) mod text_shaper;

@@ -1,10 +1,11 @@
 //! What films add to pictures: cards, a line at the bottom, plots beside the view.
 
 use crate::annotation::labels::{Ink, LabelPlacer};
-use crate::annotation::letters::{Block, line_height};
+use crate::annotation::text_shaper::{Block, line_height};
 use crate::palette::{self, Rgb};
 use crate::picture_plan::Area;
 use glam::Vec2;
+use vocabulary::round_step;
 
 /// What is shown over and beside the views of a picture.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -78,12 +79,12 @@ const BELOW: f64 = 0.34;
 
 impl Overlays {
     /// Width and height that are left for the views of a picture, pixels; even, as they were.
-    pub(crate) fn left_over(&self, (width, height): (u32, u32)) -> (u32, u32) {
+    pub(crate) fn left_over(&self, [width, height]: [u32; 2]) -> [u32; 2] {
         let keep = |side: u32, share: f64| ((f64::from(side) * (1.0 - share)).round() as u32 & !1).max(16);
         match (self.plots.is_empty(), height > width) {
-            (true, _) => (width, height),
-            (false, false) => (keep(width, BESIDE), height),
-            (false, true) => (width, keep(height, BELOW)),
+            (true, _) => [width, height],
+            (false, false) => [keep(width, BESIDE), height],
+            (false, true) => [width, keep(height, BELOW)],
         }
     }
 }
@@ -93,12 +94,14 @@ pub(crate) fn show(
     words: &mut LabelPlacer<'_>,
     show: &Overlays,
     colours: &[Rgb],
-    (views, picture): ((u32, u32), (u32, u32)),
+    views: [u32; 2],
+    picture: [u32; 2],
 ) {
-    let [width, height] = [picture.0 as f32, picture.1 as f32];
+    let [width, height] = picture.map(|side| side as f32);
+    let beside = views.map(|side| side as f32);
     if !show.plots.is_empty() {
-        let (right, bottom) = (views.0 as f32, views.1 as f32);
-        let area = if views.0 < picture.0 {
+        let [right, bottom] = beside;
+        let area = if views[0] < picture[0] {
             [right, 0.0, width - right, height]
         } else {
             [0.0, bottom, width, height - bottom]
@@ -106,7 +109,7 @@ pub(crate) fn show(
         plots(words, &show.plots, colours, area);
     }
     if let Some(said) = show.line.as_ref().filter(|line| line.opacity > 0.0) {
-        line(words, said, [views.0 as f32, views.1 as f32]);
+        line(words, said, beside);
     }
     if let Some(shown) = show.card.as_ref().filter(|card| card.opacity > 0.0) {
         card(words, shown, [width, height]);
@@ -202,23 +205,17 @@ fn range(plot: &CurvePanel) -> [f64; 2] {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
     if plot.centred || low > high {
         let most = if low > high { plot.least } else { low.abs().max(high.abs()).max(plot.least) };
-        let most = round_up(most);
+        let most = round_step(most, 0.001);
         return [-most, most];
     }
     let middle = f64::midpoint(low, high);
     let half = (0.55 * (high - low)).max(0.5 * plot.least);
-    let step = round_up(half) / 2.0;
+    let step = round_step(half, 0.001) / 2.0;
     [((middle - half) / step).floor() * step, ((middle + half) / step).ceil() * step]
 }
 
-/// A round number not below `most`.
-fn round_up(most: f64) -> f64 {
-    let power = 10_f64.powf(most.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|n| n * power).find(|n| *n >= most * 0.999).unwrap_or(most)
-}
-
 fn ticks([low, high]: [f64; 2], rows: f64) -> Vec<f64> {
-    let step = round_up((high - low) / rows);
+    let step = round_step((high - low) / rows, 0.001);
     let first = (low / step).ceil() as i64;
     let last = (high / step * (1.0 + 1e-12)).floor() as i64;
     (first..=last).take(12).map(|k| k as f64 * step).collect()
@@ -346,9 +343,9 @@ mod tests {
     #[test]
     fn plots_take_a_side_and_leave_even_sizes() {
         let show = Overlays { plots: vec![CurvePanel::default()], ..Overlays::default() };
-        assert_eq!(Overlays::default().left_over((1280, 720)), (1280, 720));
-        assert_eq!(show.left_over((1280, 720)), (896, 720));
-        let (width, height) = show.left_over((1080, 1920));
+        assert_eq!(Overlays::default().left_over([1280, 720]), [1280, 720]);
+        assert_eq!(show.left_over([1280, 720]), [896, 720]);
+        let [width, height] = show.left_over([1080, 1920]);
         assert!(width == 1080 && height % 2 == 0 && height < 1300);
     }
 

@@ -52,7 +52,8 @@ impl Camera {
         view: &Viewpoint,
         smoothed: &SmoothedFormation,
         snapshot: &Snapshot,
-        (fleet, floor): (&FleetInfo, &Floor),
+        fleet: &FleetInfo,
+        floor: &Floor,
         room: &FreeSpace,
     ) -> Self {
         let aspect = room.aspect();
@@ -71,7 +72,7 @@ impl Camera {
             }
             Viewpoint::Between(from, to, share) => {
                 let [from, to] =
-                    [from, to].map(|view| Self::of(view, smoothed, snapshot, (fleet, floor), room));
+                    [from, to].map(|view| Self::of(view, smoothed, snapshot, fleet, floor, room));
                 return between(&from, &to, *share, smoothed);
             }
         };

@@ -66,7 +66,7 @@ impl Atlas {
         let pitch = width.next_multiple_of(PITCH);
         Self {
             size,
-            attachments: Attachments::new(device, (width, height), CANVAS.format, CANVAS.samples),
+            attachments: Attachments::new(device, [width, height], CANVAS.format, CANVAS.samples),
             view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
             texture,
             buffer: device.create_buffer(&wgpu::BufferDescriptor {

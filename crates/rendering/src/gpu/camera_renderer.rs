@@ -6,8 +6,8 @@ use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun};
 use crate::gpu::atlas::{Atlas, CANVAS, pack};
 use crate::gpu::model::Detail;
 use crate::gpu::passes::decal::{DecalLayer, DecalVertex};
-use crate::gpu::passes::prop::Copies;
-use crate::gpu::passes::robot::Crowd;
+use crate::gpu::passes::prop::PropInstances;
+use crate::gpu::passes::robot::RobotInstances;
 use crate::gpu::props::props;
 use crate::gpu::robot_models::{RobotModels, crowd, part};
 use crate::gpu::world_passes::{SceneView, WorldPasses};
@@ -44,8 +44,8 @@ pub struct GpuCameraRenderer {
 /// What one shot shows.
 struct CameraScene {
     camera: Camera,
-    crowd: Crowd,
-    props: Copies,
+    crowd: RobotInstances,
+    props: PropInstances,
     tile: Tile,
 }
 
@@ -56,7 +56,7 @@ impl GpuCameraRenderer {
     /// [`Error::Device`] where the device fails.
     pub fn new(gpu: &Gpu, fleet: &FleetInfo) -> Result<Self, Error> {
         let (robot_models, floor) = (RobotModels::new(fleet), Floor::new(fleet));
-        let world = WorldPasses::new(gpu, CANVAS, fleet, (&robot_models, &floor), (Detail::Coarse, SHADOWS));
+        let world = WorldPasses::new(gpu, CANVAS, fleet, &robot_models, &floor, Detail::Coarse, SHADOWS);
         gpu.check()?;
         Ok(Self {
             gpu: gpu.clone(),
@@ -135,7 +135,7 @@ impl GpuCameraRenderer {
         }
         self.world.upload(&self.gpu, &frames, crowds.into_iter(), copies.into_iter(), &corners);
         let atlas = self.atlas(size);
-        let submission = self.draw(atlas, (&all, &things), &scenes, &under);
+        let submission = self.draw(atlas, &all, &things, &scenes, &under);
         self.gpu.check()?;
         self.atlases[atlas].read(&self.gpu, submission, &tiles, pictures)
     }
@@ -168,7 +168,8 @@ impl GpuCameraRenderer {
     fn draw(
         &self,
         atlas: usize,
-        (crowd, props): (&Crowd, &Copies),
+        crowd: &RobotInstances,
+        props: &PropInstances,
         scenes: &[CameraScene],
         under: &[(DecalLayer, Range<u32>)],
     ) -> wgpu::SubmissionIndex {

@@ -1,14 +1,14 @@
 //! All passes of a picture, in the order in which they run.
 
-use crate::annotation::letters::Letters;
+use crate::annotation::text_shaper::TextShaper;
 use crate::camera::Camera;
 use crate::gpu::model::Detail;
 use crate::gpu::passes::Canvas;
 use crate::gpu::passes::decal::{DecalLayer, DecalVertex};
 use crate::gpu::passes::frame::FrameUniforms;
 use crate::gpu::passes::overlay::{OverlayPass, Shapes};
-use crate::gpu::passes::prop::Copies;
-use crate::gpu::passes::robot::Crowd;
+use crate::gpu::passes::prop::PropInstances;
+use crate::gpu::passes::robot::RobotInstances;
 use crate::gpu::passes::text::{TextLine, TextPass};
 use crate::gpu::robot_models::RobotModels;
 use crate::gpu::target::Attachments;
@@ -37,13 +37,13 @@ pub(crate) struct Passes {
 
 /// What a picture consists of, once its data is on the device.
 pub(crate) struct Prepared {
-    pub(crate) crowd: Crowd,
+    pub(crate) crowd: RobotInstances,
     pub(crate) cameras: Vec<Camera>,
     /// Of views through cameras: what they may see.
-    pub(crate) own: Vec<Option<Crowd>>,
+    pub(crate) own: Vec<Option<RobotInstances>>,
     /// How many of the tiles, the last, lie over others.
     pub(crate) upper: usize,
-    pub(crate) props: Copies,
+    pub(crate) props: PropInstances,
     pub(crate) tiles: Vec<Tile>,
     /// Which decks hide a robot in each view.
     pub(crate) veiled: Vec<Vec<bool>>,
@@ -52,6 +52,8 @@ pub(crate) struct Prepared {
     /// Whether a view shows ghosts: near the ground they would veil what is behind them.
     pub(crate) ghosts: Vec<bool>,
     pub(crate) shapes: Shapes,
+    /// Its texts.
+    pub(crate) lines: Vec<TextLine>,
     /// Whether the shadow map is as it should be.
     pub(crate) shadowed: bool,
 }
@@ -93,7 +95,7 @@ impl Passes {
         let robots = fleet.robots.len();
         let side = if robots > 12 || !fleet.props.is_empty() { 2048 } else { 1024 };
         Self {
-            world: WorldPasses::new(gpu, canvas, fleet, (robot_models, floor), (detail, side)),
+            world: WorldPasses::new(gpu, canvas, fleet, robot_models, floor, detail, side),
             overlay: OverlayPass::new(&gpu.device, flat),
             text: TextPass::new(&gpu.device, &gpu.queue, flat),
             shadowed: None,
@@ -104,18 +106,18 @@ impl Passes {
     pub(crate) fn upload(
         &mut self,
         gpu: &Gpu,
-        (width, height): (u32, u32),
+        [width, height]: [u32; 2],
         frames: &[FrameUniforms],
         prepared: &mut Prepared,
         corners: &[DecalVertex],
-        (lines, letters): (&[TextLine], &mut Letters),
+        letters: &mut TextShaper,
     ) -> Result<(), Error> {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let (crowds, props) =
             (once(&mut prepared.crowd).chain(prepared.own.iter_mut().flatten()), once(&mut prepared.props));
         self.world.upload(gpu, frames, crowds, props, corners);
         self.overlay.fill(device, queue, [width as f32, height as f32], &prepared.shapes);
-        let written = self.text.fill((device, queue), [width, height], lines, letters);
+        let written = self.text.fill(device, queue, [width, height], &prepared.lines, letters);
         written.map_err(|e| Error::Device(e.to_string()))?;
         let casting = Some(casting(frames, prepared));
         prepared.shadowed = self.shadowed == casting;

@@ -1,6 +1,6 @@
 //! Where the props of a moment stand, and what they are made of.
 
-use crate::gpu::passes::prop::{Copies, PropAppearance};
+use crate::gpu::passes::prop::{PropAppearance, PropInstances};
 use crate::gpu::passes::robot::Instance;
 use crate::palette::{Rgb, hex, linear};
 use crate::picture_context::PictureContext;
@@ -46,8 +46,8 @@ pub(crate) fn corners(prop: &Prop, placement: &Placement) -> [DVec3; 8] {
 }
 
 /// All copies of the solids in a picture.
-pub(crate) fn props(context: &PictureContext<'_>) -> Copies {
-    let mut copies = Copies::default();
+pub(crate) fn props(context: &PictureContext<'_>) -> PropInstances {
+    let mut copies = PropInstances::default();
     for (_, prop, placement) in placed(context).filter(|(k, ..)| !context.floor.is_drivable(*k)) {
         let ground = context.floor.height(DVec3::from_array(placement.position).truncate());
         copies.others[look(prop) as usize].push(instance(context, prop, &placement, ground));

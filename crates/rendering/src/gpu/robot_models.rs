@@ -3,7 +3,7 @@
 use crate::Ghost;
 use crate::camera::Camera;
 use crate::gpu::model::Build;
-use crate::gpu::passes::robot::{Crowd, Instance, Squad};
+use crate::gpu::passes::robot::{Instance, RobotInstances, Squad};
 use crate::ground::decal_builder::flat;
 use crate::palette::{Rgb, linear};
 use crate::picture_context::PictureContext;
@@ -36,8 +36,11 @@ impl RobotModels {
 }
 
 /// All copies of the models in a picture.
-pub(crate) fn crowd(context: &PictureContext<'_>, robot_models: &RobotModels) -> Crowd {
-    let mut crowd = Crowd { squads: vec![Squad::default(); robot_models.builds.len()], ..Crowd::default() };
+pub(crate) fn crowd(context: &PictureContext<'_>, robot_models: &RobotModels) -> RobotInstances {
+    let mut crowd = RobotInstances {
+        squads: vec![Squad::default(); robot_models.builds.len()],
+        ..RobotInstances::default()
+    };
     for (index, (robot, member)) in
         context.record.snapshot.robots.iter().zip(&context.fleet.robots).enumerate()
     {
@@ -57,13 +60,14 @@ pub(crate) fn crowd(context: &PictureContext<'_>, robot_models: &RobotModels) ->
 
 /// What of a crowd a camera on robot `own` may see: not the head it sits in.
 pub(crate) fn part(
-    all: &Crowd,
+    all: &RobotInstances,
     context: &PictureContext<'_>,
     robot_models: &RobotModels,
     camera: &Camera,
     own: usize,
-) -> Crowd {
-    let mut part = Crowd { squads: vec![Squad::default(); all.squads.len()], ..Crowd::default() };
+) -> RobotInstances {
+    let mut part =
+        RobotInstances { squads: vec![Squad::default(); all.squads.len()], ..RobotInstances::default() };
     let mut counts = vec![0; all.squads.len()];
     let mut seen = Vec::new();
     for (index, robot) in context.record.snapshot.robots.iter().enumerate() {
@@ -159,7 +163,7 @@ fn stand(
     look.instance(camera, 1.0)
 }
 
-fn ghosts(crowd: &mut Crowd, context: &PictureContext<'_>, robot_models: &RobotModels) {
+fn ghosts(crowd: &mut RobotInstances, context: &PictureContext<'_>, robot_models: &RobotModels) {
     let now = context.record.snapshot.time;
     for row in &context.trail.ghosts {
         let age = now - row.time;
@@ -182,7 +186,7 @@ fn ghosts(crowd: &mut Crowd, context: &PictureContext<'_>, robot_models: &RobotM
 }
 
 /// The faint bodies among annotations.
-fn sketched(crowd: &mut Crowd, context: &PictureContext<'_>, robot_models: &RobotModels) {
+fn sketched(crowd: &mut RobotInstances, context: &PictureContext<'_>, robot_models: &RobotModels) {
     for Ghost { robot, pose, alpha } in &context.style.annotations.ghosts {
         let finite = [pose.x, pose.y, pose.heading].iter().all(|x| x.is_finite());
         let Some(member) = context.fleet.robots.get(*robot).filter(|_| finite) else { continue };

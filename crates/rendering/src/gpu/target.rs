@@ -32,7 +32,7 @@ pub(crate) struct Attachments {
 }
 
 impl Attachments {
-    pub(crate) fn new(device: &Device, size: (u32, u32), format: TextureFormat, samples: u32) -> Self {
+    pub(crate) fn new(device: &Device, size: [u32; 2], format: TextureFormat, samples: u32) -> Self {
         let sampled =
             (samples > 1).then(|| view(&colour(device, size, format, samples, TextureUsages::empty())));
         Self { sampled, depth: depth_texture(device, size, samples, false) }
@@ -74,14 +74,14 @@ fn view(texture: &Texture) -> TextureView {
 
 fn colour(
     device: &Device,
-    size: (u32, u32),
+    size: [u32; 2],
     format: TextureFormat,
     samples: u32,
     usage: TextureUsages,
 ) -> Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("picture"),
-        size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: samples,
         dimension: wgpu::TextureDimension::D2,
@@ -104,8 +104,8 @@ pub(crate) struct Offscreen {
 
 impl Offscreen {
     /// Of a `format` with four bytes a pixel.
-    pub(crate) fn new(device: &Device, (width, height): (u32, u32), format: TextureFormat) -> Self {
-        let texture = colour(device, (width, height), format, 1, TextureUsages::COPY_SRC);
+    pub(crate) fn new(device: &Device, [width, height]: [u32; 2], format: TextureFormat) -> Self {
+        let texture = colour(device, [width, height], format, 1, TextureUsages::COPY_SRC);
         let pitch = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("readback"),

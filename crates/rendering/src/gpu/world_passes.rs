@@ -1,7 +1,6 @@
 //! The passes that draw the world: ground and sky, paint, robots, props and their shadows.
 
 use crate::Gpu;
-use crate::annotation::letters::digits;
 use crate::camera::Camera;
 use crate::gpu::model::Detail;
 use crate::gpu::passes::Canvas;
@@ -9,8 +8,8 @@ use crate::gpu::passes::asphalt::Asphalt;
 use crate::gpu::passes::decal::{DecalLayer, DecalPass, DecalVertex};
 use crate::gpu::passes::frame::{FrameGroups, FrameUniforms};
 use crate::gpu::passes::ground::GroundPass;
-use crate::gpu::passes::prop::{Copies, PropPass, Veil};
-use crate::gpu::passes::robot::{Crowd, Models, RobotPass};
+use crate::gpu::passes::prop::{PropInstances, PropPass, Veil};
+use crate::gpu::passes::robot::{Models, RobotInstances, RobotPass};
 use crate::gpu::passes::shadow::ShadowPass;
 use crate::gpu::passes::sky::SkyPass;
 use crate::gpu::passes::tag::TagPass;
@@ -43,8 +42,8 @@ pub(crate) struct SceneView<'a> {
     /// Of the view, among those uploaded.
     pub(crate) index: usize,
     pub(crate) camera: &'a Camera,
-    pub(crate) crowd: &'a Crowd,
-    pub(crate) props: &'a Copies,
+    pub(crate) crowd: &'a RobotInstances,
+    pub(crate) props: &'a PropInstances,
     /// Which decks hide a robot.
     pub(crate) veiled: &'a [bool],
     /// Paint and shadows on the floor, in order.
@@ -61,8 +60,10 @@ impl WorldPasses {
         gpu: &Gpu,
         canvas: Canvas,
         fleet: &FleetInfo,
-        (robot_models, floor): (&RobotModels, &Floor),
-        (detail, shadows): (Detail, u32),
+        robot_models: &RobotModels,
+        floor: &Floor,
+        detail: Detail,
+        shadows: u32,
     ) -> Self {
         let (device, queue) = (&gpu.device, &gpu.queue);
         let map = ShadowPass::map(device, shadows);
@@ -78,7 +79,7 @@ impl WorldPasses {
         let prop = || PropPass::new(device, queue, canvas, &groups, &asphalt, veil);
         Self {
             models: Models::new(device, queue, detail, &robot_models.builds),
-            robot: RobotPass::new(device, queue, canvas, &groups, digits()),
+            robot: RobotPass::new(device, queue, canvas, &groups),
             tag: TagPass::new(device, queue, canvas, &groups),
             ground: GroundPass::new(device, canvas, &groups, &asphalt),
             terrain: terrain.map(|t| TerrainPass::new(device, queue, canvas, &groups, &asphalt, t)),
@@ -96,8 +97,8 @@ impl WorldPasses {
         &mut self,
         gpu: &Gpu,
         frames: &[FrameUniforms],
-        crowds: impl Iterator<Item = &'a mut Crowd>,
-        props: impl Iterator<Item = &'a mut Copies>,
+        crowds: impl Iterator<Item = &'a mut RobotInstances>,
+        props: impl Iterator<Item = &'a mut PropInstances>,
         corners: &[DecalVertex],
     ) {
         let (device, queue) = (&gpu.device, &gpu.queue);
@@ -109,7 +110,12 @@ impl WorldPasses {
         self.decal.fill(device, queue, corners);
     }
 
-    pub(crate) fn encode_shadow(&self, encoder: &mut wgpu::CommandEncoder, crowd: &Crowd, props: &Copies) {
+    pub(crate) fn encode_shadow(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        crowd: &RobotInstances,
+        props: &PropInstances,
+    ) {
         let mut pass = self.shadow.begin(encoder, &self.groups);
         self.models.draw_solid(&mut pass, crowd);
         self.models.draw_faces(&mut pass, crowd);

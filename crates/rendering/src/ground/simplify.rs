@@ -14,7 +14,7 @@ pub(crate) fn thinned(points: &[(DVec2, f32)], within: impl Fn(DVec2) -> f64) ->
     kept.extend(points.first());
     let mut anchor = 0;
     for k in 2..points.len() {
-        let close = |j: usize| near(&points[j], &points[anchor], &points[k], bounds[j]);
+        let close = |j: usize| near([&points[j], &points[anchor], &points[k]], bounds[j]);
         if k - anchor > MOST || !(anchor + 1..k).all(close) {
             anchor = k - 1;
             kept.push(points[anchor]);
@@ -25,7 +25,7 @@ pub(crate) fn thinned(points: &[(DVec2, f32)], within: impl Fn(DVec2) -> f64) ->
 }
 
 /// Whether a point is as good as on the line between two others.
-fn near((place, alpha): &(DVec2, f32), from: &(DVec2, f32), to: &(DVec2, f32), bound: f64) -> bool {
+fn near([(place, alpha), from, to]: [&(DVec2, f32); 3], bound: f64) -> bool {
     let along = to.0 - from.0;
     let share = ((*place - from.0).dot(along) / along.length_squared().max(1e-12)).clamp(0.0, 1.0);
     let even = from.1 + (to.1 - from.1) * share as f32;
@@ -46,7 +46,7 @@ mod tests {
         let thin = thinned(&points, |_| 0.002);
         assert!(thin.len() < 60 && thin[0] == points[0] && thin.last() == points.last(), "{}", thin.len());
         for p in &points {
-            assert!(thin.windows(2).any(|w| near(p, &w[0], &w[1], 0.0021)), "{p:?}");
+            assert!(thin.windows(2).any(|w| near([p, &w[0], &w[1]], 0.0021)), "{p:?}");
         }
         assert_eq!(thinned(&points[..1], |_| 1.0).len(), 1);
         assert_eq!(thinned(&points[..2], |_| 1.0).len(), 2);

@@ -169,8 +169,7 @@ pub fn set_points(fleet: &FleetInfo, record: &StepRecord) -> Vec<Option<[f64; 2]
         let state = record.edges.get(k)?;
         let leader = record.snapshot.robots.get(fleet.edges.get(k)?.leader)?;
         let [distance, bearing] = state.set_point;
-        let (sin, cos) = bearing.sin_cos();
-        let place = leader.motion.pose.world_from_body(distance * cos, distance * sin);
+        let place = leader.motion.pose.polar(distance, bearing);
         place.iter().all(|x| x.is_finite()).then_some(place)
     };
     (0..fleet.edges.len()).map(place).collect()

@@ -6,7 +6,7 @@ use self::pointer::Drag;
 use crate::action::Action;
 use crate::app_state::{AppState, Tool};
 use crate::tidy::fixed;
-use crate::view::annotations::{Hand, annotations};
+use crate::view::annotations::{PointerState, annotations};
 use crate::view::camera::HeldCamera;
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, TextureId, Ui, Vec2};
 use eframe::egui_wgpu::RenderState;
@@ -21,13 +21,13 @@ const SIZES: [u32; 2] = [16, 8192];
 pub struct Viewport {
     pub(super) state: RenderState,
     pub(super) gpu: Gpu,
-    pub(super) stage: Option<ViewRenderer>,
+    pub(super) view_renderer: Option<ViewRenderer>,
     /// What is looked from: a named view, or the camera in the hand.
     pub view: String,
     pub(super) held: Option<HeldCamera>,
     /// What is drawn besides the scene; its annotations are made anew for each picture.
     pub style: Style,
-    pub(super) hand: Hand,
+    pub(super) hand: PointerState,
     drag: Option<Drag>,
     /// Samples a pixel.
     pub(super) samples: u32,
@@ -57,8 +57,10 @@ impl ViewRenderer {
     fn fine(
         &mut self,
         gpu: &Gpu,
-        (trail, record): (&Trail, &StepRecord),
-        (layout, style): (&ViewLayout, &Style),
+        trail: &Trail,
+        record: &StepRecord,
+        layout: &ViewLayout,
+        style: &Style,
         [title, caption]: &[String; 2],
     ) -> Result<(), Error> {
         let (width, height) = self.renderer.size();
@@ -87,7 +89,7 @@ pub(super) struct DrawnFrame {
     goals: Vec<[f64; 2]>,
     layout: ViewLayout,
     style: Style,
-    size: (u32, u32),
+    size: [u32; 2],
 }
 
 impl Viewport {
@@ -100,11 +102,11 @@ impl Viewport {
         Self {
             state: state.clone(),
             gpu,
-            stage: None,
+            view_renderer: None,
             view: "snake".to_owned(),
             held: None,
             style,
-            hand: Hand::default(),
+            hand: PointerState::default(),
             drag: None,
             samples,
             fault: None,
@@ -153,18 +155,18 @@ impl Viewport {
     }
 
     /// The view in all the room there is.
-    pub fn show(&mut self, ui: &mut Ui, app_state: &ViewInput<'_>, out: &mut Vec<Action>) {
+    pub fn show(&mut self, ui: &mut Ui, input: &ViewInput<'_>, out: &mut Vec<Action>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "3D view"));
         self.rect = rect;
-        let Some(record) = app_state.record.clone() else {
+        let Some(record) = input.record.clone() else {
             return centred(ui, rect, "Open a scene: Ctrl O, or drop a file here.");
         };
-        self.under_hand(ui, &response, (app_state.app_state, &record), rect, out);
+        self.handle_pointer(ui, &response, input.app_state, &record, rect, out);
         let pixels = ui.pixels_per_point();
         let size =
             [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(SIZES[0], SIZES[1]));
-        if let Err(error) = self.draw(app_state, &record, (size[0], size[1]), f64::from(pixels)) {
+        if let Err(error) = self.draw(input, &record, size, f64::from(pixels)) {
             self.fault = Some(error.to_string());
         }
         if let Some(fault) = &self.fault {
@@ -174,86 +176,88 @@ impl Viewport {
                 &format!("The view cannot be drawn: {fault}\nYour scene and its run are kept."),
             );
         }
-        if let Some(stage) = &self.stage {
+        if let Some(view_renderer) = &self.view_renderer {
             let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-            ui.painter().image(stage.id, rect, whole, Color32::WHITE);
+            ui.painter().image(view_renderer.id, rect, whole, Color32::WHITE);
         }
-        self.readout(ui, app_state.app_state, &record, rect);
+        self.readout(ui, input.app_state, &record, rect);
     }
 
     fn draw(
         &mut self,
-        app_state: &ViewInput<'_>,
+        input: &ViewInput<'_>,
         record: &Arc<StepRecord>,
-        size: (u32, u32),
+        size: [u32; 2],
         pixels: f64,
     ) -> Result<(), Error> {
-        let fleet = Arc::clone(app_state.fleet);
+        let fleet = Arc::clone(input.fleet);
         // Text keeps its size on small views, and grows with the density of the screen.
         let scale = (0.92 * pixels).clamp(0.5, 6.0);
         let layout = self.layout(&fleet, record);
-        let style = Style { interactive: true, ..self.dressed(app_state.app_state, record, scale) };
-        if self.stage.as_ref().is_none_or(|stage| !Arc::ptr_eq(&stage.fleet, &fleet)) {
-            self.set_stage(&fleet, size)?;
+        let style = Style { interactive: true, ..self.dressed(input.app_state, record, scale) };
+        if self.view_renderer.as_ref().is_none_or(|view_renderer| !Arc::ptr_eq(&view_renderer.fleet, &fleet))
+        {
+            self.set_view_renderer(&fleet, size)?;
         }
-        let Some(stage) = &mut self.stage else { return Ok(()) };
-        if stage.renderer.size() != size {
-            stage.renderer.resize(size.0, size.1)?;
-            stage.texture = texture(&self.state.device, size);
-            let view = stage.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let Some(view_renderer) = &mut self.view_renderer else { return Ok(()) };
+        if <[u32; 2]>::from(view_renderer.renderer.size()) != size {
+            view_renderer.renderer.resize(size[0], size[1])?;
+            view_renderer.texture = texture(&self.state.device, size);
+            let view = view_renderer.texture.create_view(&wgpu::TextureViewDescriptor::default());
             self.state.renderer.write().update_egui_texture_from_wgpu_texture(
                 &self.state.device,
                 &view,
                 wgpu::FilterMode::Nearest,
-                stage.id,
+                view_renderer.id,
             );
-            stage.shown = None;
+            view_renderer.shown = None;
         }
         let shown = DrawnFrame {
-            branch: app_state.app_state.branch,
-            words: app_state.app_state.words(),
+            branch: input.app_state.branch,
+            words: input.app_state.words(),
             time: record.snapshot.time,
             goals: record.edges.iter().map(|edge| edge.set_point).collect(),
             layout: layout.clone(),
             style: style.clone(),
             size,
         };
-        let Some(trail) = app_state.trail else { return Ok(()) };
-        match &stage.shown {
+        let Some(trail) = input.trail else { return Ok(()) };
+        match &view_renderer.shown {
             Some((last, true)) if *last == shown => return Ok(()),
             Some((last, false)) if *last == shown => {
                 // Nothing moves any more: there is time for a better picture.
                 let fine = Style { interactive: false, ..style };
-                stage.fine(&self.gpu, (trail, record), (&layout, &fine), &shown.words)?;
-                stage.shown = Some((shown, true));
+                view_renderer.fine(&self.gpu, trail, record, &layout, &fine, &shown.words)?;
+                view_renderer.shown = Some((shown, true));
                 self.pictures += 1;
                 return Ok(());
             }
             _ => {}
         }
         let [title, caption] = &shown.words;
-        stage.renderer.retitle(title, caption);
-        stage.sight = stage.renderer.sightlines(trail, record, &layout, &style)?.into_iter().next();
-        let view = stage.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        stage.renderer.draw_into(&view, trail, record, &layout, &style)?;
-        stage.shown = Some((shown, self.samples > 1));
+        view_renderer.renderer.retitle(title, caption);
+        view_renderer.sight =
+            view_renderer.renderer.sightlines(trail, record, &layout, &style)?.into_iter().next();
+        let view = view_renderer.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        view_renderer.renderer.draw_into(&view, trail, record, &layout, &style)?;
+        view_renderer.shown = Some((shown, self.samples > 1));
         self.fault = None;
         self.pictures += 1;
         Ok(())
     }
 
-    fn set_stage(&mut self, fleet: &Arc<FleetInfo>, size: (u32, u32)) -> Result<(), Error> {
+    fn set_view_renderer(&mut self, fleet: &Arc<FleetInfo>, size: [u32; 2]) -> Result<(), Error> {
         let format = wgpu::TextureFormat::Rgba8Unorm;
-        let renderer = Renderer::with_format(&self.gpu, fleet, size.0, size.1, self.samples, format)?;
+        let renderer = Renderer::with_format(&self.gpu, fleet, size[0], size[1], self.samples, format)?;
         let texture = texture(&self.state.device, size);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut drawer = self.state.renderer.write();
-        if let Some(before) = self.stage.take() {
+        if let Some(before) = self.view_renderer.take() {
             drawer.free_texture(&before.id);
         }
         let id = drawer.register_native_texture(&self.state.device, &view, wgpu::FilterMode::Nearest);
         drop(drawer);
-        self.stage = Some(ViewRenderer {
+        self.view_renderer = Some(ViewRenderer {
             fleet: Arc::clone(fleet),
             renderer,
             texture,
@@ -267,7 +271,7 @@ impl Viewport {
 
     /// Whether what is seen could be drawn better when nothing moves.
     pub fn rough(&self) -> bool {
-        let shown = self.stage.as_ref().and_then(|stage| stage.shown.as_ref());
+        let shown = self.view_renderer.as_ref().and_then(|view_renderer| view_renderer.shown.as_ref());
         self.fault.is_none() && shown.is_some_and(|(_, fine)| !fine)
     }
 
@@ -310,7 +314,7 @@ pub struct ViewInput<'a> {
     pub trail: Option<&'a Trail>,
 }
 
-fn texture(device: &wgpu::Device, (width, height): (u32, u32)) -> wgpu::Texture {
+fn texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("3D view"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },

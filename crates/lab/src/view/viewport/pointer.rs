@@ -25,23 +25,27 @@ pub(super) enum Drag {
 
 impl Viewport {
     /// Everything the pointer does in the view.
-    pub(super) fn under_hand(
+    pub(super) fn handle_pointer(
         &mut self,
         ui: &Ui,
         response: &egui::Response,
-        (app_state, record): (&AppState, &Arc<StepRecord>),
+        app_state: &AppState,
+        record: &Arc<StepRecord>,
         rect: Rect,
         out: &mut Vec<Action>,
     ) {
         let pixels = ui.pixels_per_point();
         let pixel = |pos: Pos2| [pos.x - rect.left(), pos.y - rect.top()].map(|x| f64::from(x * pixels));
-        let Some(sight) = self.stage.as_ref().and_then(|stage| stage.sight.clone()) else { return };
+        let Some(sight) = self.view_renderer.as_ref().and_then(|view_renderer| view_renderer.sight.clone())
+        else {
+            return;
+        };
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        self.hover(app_state, record, (&sight, pointer.map(pixel)), f64::from(pixels * GRASP));
+        self.hover(app_state, record, &sight, pointer.map(pixel), f64::from(pixels * GRASP));
         if response.drag_started() {
             // What was pressed counts, wherever the pointer is by now.
             let origin = ui.input(|input| input.pointer.press_origin());
-            self.hover(app_state, record, (&sight, origin.or(pointer).map(pixel)), f64::from(pixels * GRASP));
+            self.hover(app_state, record, &sight, origin.or(pointer).map(pixel), f64::from(pixels * GRASP));
             self.begin_drag(ui, app_state);
         }
         let share = |delta: Vec2| [delta.x, delta.y].map(|x| f64::from(x / rect.height().max(1.0)));
@@ -75,8 +79,8 @@ impl Viewport {
         if response.drag_stopped() {
             self.end_drag(out);
         }
-        self.wheel(ui, response, (&sight, pointer.map(pixel)), record);
-        self.clicks(response, app_state, (&sight, pointer.map(pixel)), out);
+        self.wheel(ui, response, &sight, pointer.map(pixel), record);
+        self.clicks(response, app_state, &sight, pointer.map(pixel), out);
     }
 
     /// What is under the pointer.
@@ -84,30 +88,33 @@ impl Viewport {
         &mut self,
         app_state: &AppState,
         record: &StepRecord,
-        (sight, pixel): (&Sightline, Option<[f64; 2]>),
+        sight: &Sightline,
+        pixel: Option<[f64; 2]>,
         grasp: f64,
     ) {
-        self.hand.dialog = None;
+        self.hand.ring = None;
         self.hand.robot = None;
-        let (Some(pixel), Some(stage)) = (pixel, &self.stage) else { return };
-        let near = set_points(&stage.fleet, record).into_iter().enumerate().filter_map(|(edge, at)| {
-            let [x, y] = sight.pixel_of_ground(at?)?;
-            let away = (x - pixel[0]).hypot(y - pixel[1]);
-            let radius =
-                crate::view::annotations::RING / sight.metres_per_pixel([at?[0], at?[1], 0.0]).max(1e-9);
-            (away < grasp.max(0.8 * radius)).then_some((away, edge))
-        });
+        let (Some(pixel), Some(view_renderer)) = (pixel, &self.view_renderer) else { return };
+        let near =
+            set_points(&view_renderer.fleet, record).into_iter().enumerate().filter_map(|(edge, at)| {
+                let [x, y] = sight.pixel_of_ground(at?)?;
+                let away = (x - pixel[0]).hypot(y - pixel[1]);
+                let radius =
+                    crate::view::annotations::RING / sight.metres_per_pixel([at?[0], at?[1], 0.0]).max(1e-9);
+                (away < grasp.max(0.8 * radius)).then_some((away, edge))
+            });
         // The set point that is selected comes before those that it lies under.
         let first = |(away, edge): &(f64, usize)| {
             if app_state.chosen_edge() == Some(*edge) { 0.5 * away } else { *away }
         };
         if app_state.tool == Tool::Hand {
-            self.hand.dialog = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
+            self.hand.ring = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
         }
-        let robot = stage.renderer.pick(sight, record, pixel).into_iter().find_map(|picked| match picked {
-            Picked::Robot(robot) => Some(robot),
-            _ => None,
-        });
+        let robot =
+            view_renderer.renderer.pick(sight, record, pixel).into_iter().find_map(|picked| match picked {
+                Picked::Robot(robot) => Some(robot),
+                _ => None,
+            });
         self.hand.robot = robot;
     }
 
@@ -116,7 +123,7 @@ impl Viewport {
             let pointer = &input.pointer;
             (pointer.secondary_down() || pointer.middle_down(), input.modifiers.shift)
         });
-        self.drag = Some(match (right, app_state.tool, self.hand.robot, self.hand.dialog) {
+        self.drag = Some(match (right, app_state.tool, self.hand.robot, self.hand.ring) {
             (true, ..) => Drag::Pan,
             (_, Tool::Connect, Some(robot), _) => Drag::Connect(robot),
             (_, Tool::Hand, _, Some(edge)) => Drag::SetPoint(edge),
@@ -149,7 +156,8 @@ impl Viewport {
         &mut self,
         ui: &Ui,
         response: &egui::Response,
-        (sight, pixel): (&Sightline, Option<[f64; 2]>),
+        sight: &Sightline,
+        pixel: Option<[f64; 2]>,
         record: &StepRecord,
     ) {
         if !response.hovered() {
@@ -170,7 +178,8 @@ impl Viewport {
         &self,
         response: &egui::Response,
         app_state: &AppState,
-        (sight, pixel): (&Sightline, Option<[f64; 2]>),
+        sight: &Sightline,
+        pixel: Option<[f64; 2]>,
         out: &mut Vec<Action>,
     ) {
         let Some(pixel) = pixel else { return };
@@ -187,11 +196,11 @@ impl Viewport {
     }
 
     fn chosen(&self, sight: &Sightline, app_state: &AppState, pixel: [f64; 2]) -> Option<Action> {
-        if let Some(edge) = self.hand.dialog {
+        if let Some(edge) = self.hand.ring {
             return Some(Action::Choose(Selection::Edge(edge)));
         }
-        let stage = self.stage.as_ref()?;
-        let picked = stage.renderer.pick(sight, &*app_state.record()?, pixel).into_iter().next()?;
+        let view_renderer = self.view_renderer.as_ref()?;
+        let picked = view_renderer.renderer.pick(sight, &*app_state.record()?, pixel).into_iter().next()?;
         Some(Action::Choose(match picked {
             Picked::Robot(robot) => Selection::Robot(robot),
             Picked::Edge(edge) | Picked::SetPoint(edge) => Selection::Edge(edge),
@@ -203,9 +212,9 @@ impl Viewport {
         if self.held.is_some() {
             return;
         }
-        let Some(stage) = &self.stage else { return };
-        let lead = stage.fleet.robots.iter().position(|member| member.leads);
-        if let Some(sight) = &stage.sight {
+        let Some(view_renderer) = &self.view_renderer else { return };
+        let lead = view_renderer.fleet.robots.iter().position(|member| member.leads);
+        if let Some(sight) = &view_renderer.sight {
             self.held = Some(HeldCamera::take(sight.free(), robot.or(lead), &record.snapshot));
         }
     }

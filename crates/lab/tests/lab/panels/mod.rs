@@ -170,7 +170,7 @@ fn panels_without_a_scene_say_so() {
         panel(AppState::new(), |ui, app_state, out| lab::panels::time_bar::show(ui, app_state, false, out));
     assert_says(&bar, &["Play", "t = 0.00 s"]);
     let film = panel(AppState::new(), move |ui, app_state, out| {
-        lab::panels::film::show(ui, app_state, &style, None, out)
+        lab::panels::film::show(ui, app_state, &style, None, out);
     });
     assert_says(&film, &["Look ahead"]);
     assert_says(&panel(AppState::new(), lab::panels::log::show), &["appear here"]);

@@ -145,7 +145,7 @@ fn a_film_under_way_is_ended() {
 fn a_click_on_a_curve_looks_at_its_time() {
     for quantity in PlotQuantity::ALL {
         let mut panel = panel(app_state(THREE, 601), move |ui, app_state, out| {
-            curves::show(ui, app_state, &[quantity], out)
+            curves::show(ui, app_state, &[quantity], out);
         });
         panel.set_size([400.0, 200.0].into());
         panel.run();

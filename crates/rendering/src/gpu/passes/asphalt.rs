@@ -15,8 +15,8 @@ pub(crate) struct Asphalt {
 
 impl Asphalt {
     pub(crate) fn new(device: &Device, queue: &Queue) -> Self {
-        let texture = mipped(device, queue, "asphalt", (SIZE, SIZE), &shrink(asphalt(), SIZE, SIZE));
-        let patches = mipped(device, queue, "patches", (PATCHES, PATCHES), &[patches()]);
+        let texture = mipped(device, queue, "asphalt", [SIZE, SIZE], &shrink(asphalt(), SIZE, SIZE));
+        let patches = mipped(device, queue, "patches", [PATCHES, PATCHES], &[patches()]);
         let repeat = wgpu::AddressMode::Repeat;
         let sampler = wgpu::SamplerDescriptor {
             address_mode_u: repeat,

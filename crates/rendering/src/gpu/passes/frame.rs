@@ -155,16 +155,11 @@ fn light_layout(device: &Device) -> BindGroupLayout {
 }
 
 /// A depth texture to draw into, and to read where it is a shadow map.
-pub(crate) fn depth_texture(
-    device: &Device,
-    size: (u32, u32),
-    samples: u32,
-    read: bool,
-) -> wgpu::TextureView {
+pub(crate) fn depth_texture(device: &Device, size: [u32; 2], samples: u32, read: bool) -> wgpu::TextureView {
     let binding = if read { wgpu::TextureUsages::TEXTURE_BINDING } else { wgpu::TextureUsages::empty() };
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("depth"),
-        size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: samples,
         dimension: wgpu::TextureDimension::D2,

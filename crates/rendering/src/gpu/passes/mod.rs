@@ -18,12 +18,28 @@ mod tests;
 
 use wgpu::{BindGroupLayout, Buffer, BufferUsages, Device, Queue, TextureFormat};
 
-macro_rules! shader {
-    ($($name:literal),*) => {
-        concat!($(include_str!(concat!("../../../../../shaders/", $name, ".wgsl"))),*)
+/// Light of the sky on flat ground, of one colour.
+macro_rules! grey_sky {
+    () => {
+        0.41
     };
 }
-pub(crate) use shader;
+/// Light of a sun straight above it.
+macro_rules! grey_sun {
+    () => {
+        2.063
+    };
+}
+pub(crate) const GREY_SKY: f64 = grey_sky!();
+pub(crate) const GREY_SUN: f64 = grey_sun!();
+
+/// Shaders in a row, after the light that they share with the code that lays out shadows.
+macro_rules! shader {
+    ($($name:literal),*) => {
+        concat!("const GREY_SKY = ", $crate::gpu::passes::grey_sky!(), ";\nconst GREY_SUN = ", $crate::gpu::passes::grey_sun!(), ";\n", $(include_str!(concat!("../../../../../shaders/", $name, ".wgsl"))),*)
+    };
+}
+pub(crate) use {grey_sky, grey_sun, shader};
 
 /// The source of what is developed for a screen, and of the same for a monochrome camera; the frame comes first.
 macro_rules! developed {
@@ -269,12 +285,12 @@ pub(crate) fn mipped(
     device: &Device,
     queue: &Queue,
     label: &str,
-    size: (u32, u32),
+    size: [u32; 2],
     levels: &[Vec<u8>],
 ) -> wgpu::Texture {
     let extent = |level: u32| wgpu::Extent3d {
-        width: (size.0 >> level).max(1),
-        height: (size.1 >> level).max(1),
+        width: (size[0] >> level).max(1),
+        height: (size[1] >> level).max(1),
         depth_or_array_layers: 1,
     };
     let texture = device.create_texture(&wgpu::TextureDescriptor {

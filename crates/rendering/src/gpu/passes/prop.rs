@@ -31,7 +31,7 @@ impl PropAppearance {
 
 /// Copies that are drawn together.
 #[derive(Debug, Default)]
-pub(crate) struct Copies {
+pub(crate) struct PropInstances {
     /// Where they begin among all that are on the device.
     pub(crate) first: u32,
     /// By look.
@@ -40,7 +40,7 @@ pub(crate) struct Copies {
     pub(crate) drivables: Vec<(PropAppearance, Instance)>,
 }
 
-impl Copies {
+impl PropInstances {
     /// In the order in which they lie on the device.
     pub(crate) fn all(&self) -> impl Iterator<Item = &Instance> {
         self.others.iter().flatten().chain(self.drivables.iter().map(|(_, copy)| copy))
@@ -139,7 +139,7 @@ impl PropPass {
         &mut self,
         device: &Device,
         queue: &Queue,
-        pictures: impl Iterator<Item = &'a mut Copies>,
+        pictures: impl Iterator<Item = &'a mut PropInstances>,
     ) {
         let mut all: Vec<Instance> = Vec::new();
         for copies in pictures {
@@ -154,7 +154,7 @@ impl PropPass {
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         asphalt: &Asphalt,
-        copies: &Copies,
+        copies: &PropInstances,
         veiled: &[bool],
     ) {
         if copies.drivables.is_empty() {
@@ -179,7 +179,7 @@ impl PropPass {
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         asphalt: &Asphalt,
-        copies: &Copies,
+        copies: &PropInstances,
         veiled: &[bool],
     ) {
         pass.set_bind_group(2, &asphalt.group, &[]);
@@ -195,7 +195,7 @@ impl PropPass {
     }
 
     /// All copies with whatever pipeline is set.
-    pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, copies: &Copies) {
+    pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, copies: &PropInstances) {
         self.bind(pass);
         self.each_other(pass, copies, |_, _| ());
         self.each_deck(pass, copies, |_, _| true);
@@ -210,7 +210,7 @@ impl PropPass {
     fn each_other(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        copies: &Copies,
+        copies: &PropInstances,
         prepare: impl Fn(&mut wgpu::RenderPass<'_>, usize),
     ) {
         let mut first = copies.first;
@@ -228,7 +228,7 @@ impl PropPass {
     fn each_deck(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        copies: &Copies,
+        copies: &PropInstances,
         prepare: impl Fn(&mut wgpu::RenderPass<'_>, usize) -> bool,
     ) {
         let first = copies.first as usize + copies.others.iter().map(Vec::len).sum::<usize>();

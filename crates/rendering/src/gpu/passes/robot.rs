@@ -2,6 +2,7 @@
 
 use super::frame::FrameGroups;
 use super::{Canvas, Recipe, StreamBuffer, constant, developed, mipped, shader, shrink, textured};
+use crate::annotation::text_shaper::digits;
 use crate::gpu::model::{self, Build, Detail, Vertex};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
@@ -28,14 +29,14 @@ pub(crate) struct Squad {
 
 /// Copies that are drawn together.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Crowd {
+pub(crate) struct RobotInstances {
     /// Where they begin among all that are on the device.
     pub(crate) first: u32,
     pub(crate) squads: Vec<Squad>,
     pub(crate) cameras: Vec<Instance>,
 }
 
-impl Crowd {
+impl RobotInstances {
     /// In the order in which they lie on the device.
     fn copies(&self) -> impl Iterator<Item = &Instance> {
         self.solid().chain(self.squads.iter().flat_map(|s| &s.ghosts))
@@ -121,7 +122,7 @@ impl Models {
         &mut self,
         device: &Device,
         queue: &Queue,
-        crowds: impl Iterator<Item = &'a mut Crowd>,
+        crowds: impl Iterator<Item = &'a mut RobotInstances>,
     ) {
         let mut all: Vec<Instance> = Vec::new();
         for crowd in crowds {
@@ -132,7 +133,7 @@ impl Models {
     }
 
     /// Bodies, wheels and cameras, without the faces of shells.
-    pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
+    pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &RobotInstances) {
         let squads = self.kits.iter().zip(&crowd.squads);
         let parts = squads
             .flat_map(|(kit, squad)| [(&kit.body, squad.bodies.len()), (&kit.wheel, squad.wheels.len())]);
@@ -140,14 +141,14 @@ impl Models {
     }
 
     /// The faces of shells.
-    pub(crate) fn draw_faces(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
+    pub(crate) fn draw_faces(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &RobotInstances) {
         let squads = self.kits.iter().zip(&crowd.squads);
         let parts =
             squads.flat_map(|(kit, squad)| [(&kit.faces, squad.bodies.len()), (&NONE, squad.wheels.len())]);
         self.draw(pass, crowd.first, parts);
     }
 
-    fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &Crowd) {
+    fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &RobotInstances) {
         let solid: usize = crowd.squads.iter().map(|s| s.bodies.len() + s.wheels.len()).sum();
         let first = crowd.first + (solid + crowd.cameras.len()) as u32;
         let squads = self.kits.iter().zip(&crowd.squads);
@@ -190,16 +191,10 @@ pub(crate) struct RobotPass {
 }
 
 impl RobotPass {
-    /// `digits` are ten glyphs side by side, one byte a texel.
-    pub(crate) fn new(
-        device: &Device,
-        queue: &Queue,
-        canvas: Canvas,
-        groups: &FrameGroups,
-        digits: (Vec<u8>, u32, u32),
-    ) -> Self {
-        let (texels, width, height) = digits;
-        let texture = mipped(device, queue, "digits", (width, height), &shrink(texels, width, height)[..4]);
+    /// The robots' pipelines, and the texture of the numbers on their roofs.
+    pub(crate) fn new(device: &Device, queue: &Queue, canvas: Canvas, groups: &FrameGroups) -> Self {
+        let (texels, width, height) = digits();
+        let texture = mipped(device, queue, "digits", [width, height], &shrink(texels, width, height)[..4]);
         let sampler = wgpu::SamplerDescriptor {
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
@@ -235,14 +230,24 @@ impl RobotPass {
         }
     }
 
-    pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, models: &Models, crowd: &Crowd) {
+    pub(crate) fn draw_solid(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        models: &Models,
+        crowd: &RobotInstances,
+    ) {
         pass.set_pipeline(&self.solid);
         pass.set_bind_group(2, &self.digits, &[]);
         models.draw_solid(pass, crowd);
     }
 
     /// Depth first, so that only the faces in front shine through.
-    pub(crate) fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, models: &Models, crowd: &Crowd) {
+    pub(crate) fn draw_ghosts(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        models: &Models,
+        crowd: &RobotInstances,
+    ) {
         if crowd.squads.iter().all(|s| s.ghosts.is_empty()) {
             return;
         }

@@ -30,7 +30,7 @@ pub(crate) struct SunView {
 impl ShadowPass {
     /// The map comes before the bind groups that read it, the pipeline after.
     pub(crate) fn map(device: &Device, size: u32) -> wgpu::TextureView {
-        depth_texture(device, (size, size), 1, true)
+        depth_texture(device, [size, size], 1, true)
     }
 
     pub(crate) fn new(device: &Device, groups: &FrameGroups, map: wgpu::TextureView, size: u32) -> Self {

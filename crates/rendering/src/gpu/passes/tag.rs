@@ -1,7 +1,7 @@
 //! The faces of shells with the tags on them.
 
 use super::frame::FrameGroups;
-use super::robot::{Crowd, Models};
+use super::robot::{Models, RobotInstances};
 use super::{Canvas, Recipe, developed, shader};
 use vocabulary::{TAGS, tag_code};
 use wgpu::{Device, Queue};
@@ -53,7 +53,7 @@ impl TagPass {
         Self { pipeline, codes }
     }
 
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, models: &Models, crowd: &Crowd) {
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, models: &Models, crowd: &RobotInstances) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(2, &self.codes, &[]);
         models.draw_faces(pass, crowd);

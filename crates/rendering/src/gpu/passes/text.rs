@@ -1,7 +1,7 @@
-//! Text drawn last on the single-sample picture, from glyphs that [`Letters`] has shaped.
+//! Text drawn last on the single-sample picture, from glyphs that [`TextShaper`] has shaped.
 
 use super::Canvas;
-use crate::annotation::letters::{Block, Letters, line_height};
+use crate::annotation::text_shaper::{Block, TextShaper, line_height};
 use crate::palette::Rgb;
 use glyphon::{
     Buffer, Cache, Color, ColorMode, Resolution, SwashCache, TextArea, TextAtlas, TextBounds, TextRenderer,
@@ -66,10 +66,11 @@ impl TextPass {
     /// Makes `lines` ready to draw on a picture of `size` pixels; halos of all lines lie below all text.
     pub(crate) fn fill(
         &mut self,
-        (device, queue): (&Device, &Queue),
+        device: &Device,
+        queue: &Queue,
         size: [u32; 2],
         lines: &[TextLine],
-        letters: &mut Letters,
+        letters: &mut TextShaper,
     ) -> Result<(), glyphon::PrepareError> {
         for line in lines {
             letters.measure(&line.text, line.size, line.bold, line.block);
@@ -93,7 +94,7 @@ impl TextPass {
         device: &Device,
         queue: &Queue,
         lines: &[TextLine],
-        letters: &mut Letters,
+        letters: &mut TextShaper,
     ) -> Result<(), glyphon::PrepareError> {
         let (fonts, shaped) = letters.parts();
         let find = |line: &TextLine| shaped.find(&line.text, line.size, line.bold, line.block);

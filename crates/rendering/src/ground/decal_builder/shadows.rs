@@ -2,6 +2,7 @@
 
 use crate::gpu::model::Build;
 use crate::gpu::passes::decal::DecalForm;
+use crate::gpu::passes::{GREY_SKY, GREY_SUN};
 use crate::gpu::props::{corners, placed, turn};
 use crate::ground::decal_builder::DecalBuilder;
 use crate::palette::Rgb;
@@ -22,7 +23,7 @@ impl DecalBuilder<'_> {
     /// Patches that surely hold all shadows: few pixels look at the shadow map.
     pub(crate) fn shadows(&mut self, context: &PictureContext<'_>) {
         // What the sun gives, of all the light on flat ground: shadows under a low sun are faint.
-        let share = 2.063 * context.sun.z / (2.063 * context.sun.z + 0.41);
+        let share = GREY_SUN * context.sun.z / (GREY_SUN * context.sun.z + GREY_SKY);
         let alpha = (0.80 * share) as f32;
         let robots = context.record.snapshot.robots.iter().zip(&context.fleet.robots);
         let mut patches: Vec<Patch> = robots.map(|(r, m)| robot_shadow(context, r, m)).collect();
@@ -110,7 +111,7 @@ impl DecalBuilder<'_> {
             Solid::Block { size } | Solid::Wedge { size } => {
                 let thin = matches!(prop.solid, Solid::Wedge { .. });
                 let half = [0.5 * size[0], 0.5 * size[1]];
-                self.skirt(at.truncate(), [ahead, aside], half, margin, (alpha, thin));
+                self.skirt(at.truncate(), [ahead, aside], half, margin, alpha, thin);
             }
             Solid::Cylinder { radius, .. } | Solid::Cone { radius, .. } => {
                 let reach = radius + 1.4 * margin;
@@ -128,7 +129,8 @@ impl DecalBuilder<'_> {
         axes: [DVec2; 2],
         half: [f64; 2],
         margin: f64,
-        (alpha, thin): (f32, bool),
+        alpha: f32,
+        thin: bool,
     ) {
         let knots = |half: f64| [-half - margin, -half, half, half + margin];
         let shapes = [-1.0, -0.25, 0.25, 1.0];

@@ -55,7 +55,7 @@ impl Shaped {
 }
 
 /// Fonts, and what was shaped with them.
-pub(crate) struct Letters {
+pub(crate) struct TextShaper {
     /// Only what is embedded, so that a picture looks the same on every machine.
     own: FontSystem,
     /// The same and those of the machine, once a text needs a letter that the embedded fonts lack. Its embedded fonts have the
@@ -65,13 +65,13 @@ pub(crate) struct Letters {
     pictures: u64,
 }
 
-impl std::fmt::Debug for Letters {
+impl std::fmt::Debug for TextShaper {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Letters").field("shaped", &self.shaped.texts.len()).finish_non_exhaustive()
     }
 }
 
-impl Letters {
+impl TextShaper {
     pub(crate) fn new() -> Self {
         Self { own: fonts(false), all: None, shaped: Shaped::default(), pictures: 0 }
     }
@@ -80,11 +80,12 @@ impl Letters {
     pub(crate) fn measure(&mut self, text: &str, size: f32, bold: bool, block: Option<Block>) -> Measure {
         let (own, all, used) = (&mut self.own, &mut self.all, self.pictures);
         let entry = self.shaped.texts.entry(key(text, size, bold, block)).or_insert_with(|| {
-            let mut buffer = shape(own, text, (size, bold), block, &BTreeSet::new());
+            let mut buffer = shape(own, text, Font { size, bold }, block, &BTreeSet::new());
             // An ellipsis may have left out what is lacking; nobody sees that.
             let lacks: BTreeSet<char> = lacking(&buffer).collect();
             if !lacks.is_empty() {
-                buffer = shape(all.get_or_insert_with(|| fonts(true)), text, (size, bold), block, &lacks);
+                buffer =
+                    shape(all.get_or_insert_with(|| fonts(true)), text, Font { size, bold }, block, &lacks);
             }
             let width = buffer.layout_runs().map(|run| run.line_w).fold(0.0, f32::max);
             let measure = Measure { width, rows: buffer.layout_runs().count().max(1) };
@@ -135,20 +136,27 @@ fn fonts(all: bool) -> FontSystem {
     FontSystem::new_with_locale_and_db("en-US".to_owned(), database)
 }
 
+/// Height in pixels and weight of a text.
+#[derive(Debug, Clone, Copy)]
+struct Font {
+    size: f32,
+    bold: bool,
+}
+
 /// Glyphs of a text; words with characters that `lacks` are written in other fonts.
 fn shape(
     fonts: &mut FontSystem,
     text: &str,
-    font: (f32, bool),
+    font: Font,
     block: Option<Block>,
     lacks: &BTreeSet<char>,
 ) -> Buffer {
     let Some(Block { width, rows, centred }) = block else {
         let line = text.split(['\n', '\r']).collect::<Vec<_>>().join(" ");
-        return laid(fonts, &line, (font, lacks), None, |_| None);
+        return laid(fonts, &line, font, lacks, None, |_| None);
     };
     let width = Some(width.max(1.0));
-    let wrapped = laid(fonts, text, (font, lacks), width, |_| None);
+    let wrapped = laid(fonts, text, font, lacks, width, |_| None);
     // Each line by itself, since a line that is wrapped keeps the space before it, and the last with all that is left.
     let ends = |run: &LayoutRun<'_>| {
         let from = run.glyphs.iter().map(|glyph| glyph.start).min().unwrap_or(0);
@@ -160,7 +168,7 @@ fn shape(
     let rest = lines.split_off(lines.len().min(rows.saturating_sub(1)));
     lines.extend((!rest.is_empty()).then(|| rest.join(" ")));
     let align = if centred { Align::Center } else { Align::Left };
-    laid(fonts, &lines.join("\n"), (font, lacks), width, |buffer| {
+    laid(fonts, &lines.join("\n"), font, lacks, width, |buffer| {
         buffer.set_ellipsize(Ellipsize::End(EllipsizeHeightLimit::Lines(1)));
         Some(align)
     })
@@ -170,7 +178,8 @@ fn shape(
 fn laid(
     fonts: &mut FontSystem,
     text: &str,
-    ((size, bold), lacks): ((f32, bool), &BTreeSet<char>),
+    Font { size, bold }: Font,
+    lacks: &BTreeSet<char>,
     width: Option<f32>,
     with: impl FnOnce(&mut Buffer) -> Option<Align>,
 ) -> Buffer {
@@ -217,7 +226,8 @@ pub(crate) fn digits() -> (Vec<u8>, u32, u32) {
     let (cell, height, size) = (40_usize, 64_usize, 78.0_f32);
     let mut texels = vec![0_u8; cell * 10 * height];
     for digit in 0..10 {
-        let mut buffer = shape(&mut fonts, &digit.to_string(), (size, true), None, &BTreeSet::new());
+        let mut buffer =
+            shape(&mut fonts, &digit.to_string(), Font { size, bold: true }, None, &BTreeSet::new());
         let width = buffer.layout_runs().map(|run| run.line_w).fold(0.0, f32::max);
         let shift = (0.5 * (cell as f32 - width)).round() as i32;
         // The line is taller than the figures: its upper part is space for accents.
@@ -242,7 +252,7 @@ mod tests {
 
     #[test]
     fn long_texts_wrap_and_end_in_an_ellipsis() {
-        let mut letters = Letters::new();
+        let mut letters = TextShaper::new();
         let text = "Seven robots in a V that drive along a figure eight for a minute and a half";
         let whole = letters.measure(text, 20.0, true, None);
         assert_eq!(whole.rows, 1);
@@ -258,7 +268,7 @@ mod tests {
 
     #[test]
     fn lines_of_a_text_stay_lines() {
-        let mut letters = Letters::new();
+        let mut letters = TextShaper::new();
         assert_eq!(letters.measure("One\nTwo", 20.0, true, Some(block(900.0, 2))).rows, 2);
         assert_eq!(letters.measure("One\nTwo\nThree\n\n", 20.0, true, Some(block(900.0, 2))).rows, 2);
         // Where there is one line only, they share it.
@@ -269,7 +279,7 @@ mod tests {
         let lines = starts(&shape(
             &mut letters.own,
             "one two three four",
-            (20.0, false),
+            Font { size: 20.0, bold: false },
             Some(block(90.0, 2)),
             &BTreeSet::new(),
         ));
@@ -281,7 +291,7 @@ mod tests {
 
     #[test]
     fn what_the_embedded_fonts_have_needs_no_others() {
-        let mut letters = Letters::new();
+        let mut letters = TextShaper::new();
         for text in ["Šárka Ørsted · β 5 · −135°", "Ωμέγα", "Игорь", "ψ ± 0.1°  ℓ 2.00 m …", ""]
         {
             assert!(letters.lacks(std::iter::once(text)).is_empty(), "{text}");
@@ -291,13 +301,13 @@ mod tests {
 
     #[test]
     fn what_they_lack_is_looked_for_and_told() {
-        let mut letters = Letters::new();
+        let mut letters = TextShaper::new();
         // A plane of private use: no font has that.
         let lacks = letters.lacks(["abc", "x\u{f4321}y"].into_iter());
         assert_eq!(lacks.into_iter().collect::<Vec<_>>(), ['\u{f4321}']);
         assert!(letters.all.is_some());
         // What the embedded fonts have stays as it was.
-        let before = Letters::new().measure("robot-1", 13.0, true, None);
+        let before = TextShaper::new().measure("robot-1", 13.0, true, None);
         assert_eq!(letters.measure("robot-1", 13.0, true, None), before);
     }
 }
