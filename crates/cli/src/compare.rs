@@ -19,26 +19,26 @@ use vocabulary::{Picture, counted};
 
 #[derive(Debug, Args)]
 pub(crate) struct CompareArgs {
-    /// Picture (.png) as it should be, or a folder of such
+    /// Reference picture (.png), or a folder of reference pictures
     #[arg(value_name = "WANTED")]
     wanted: PathBuf,
-    /// Picture as it is, or a folder; pictures in folders are paired by their names
+    /// Picture to compare, or a folder; pictures in folders are paired by name
     #[arg(value_name = "FOUND")]
     found: PathBuf,
-    /// Likeness, 0 to 1, that every part of a picture has to have
+    /// Similarity, 0 to 1, that every part of a picture has to reach
     #[arg(long, value_name = "LIKENESS", default_value_t = 0.9, value_parser = likeness)]
     threshold: f64,
-    /// Folder for pictures of the differences: wanted, found, and where they differ
+    /// Folder for difference images: reference, picture, and where they differ
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Also write the result as JUnit XML, which CI systems read; `-` is standard
-    /// output, and what is for people goes to standard error
+    /// Also write the result as JUnit XML for CI systems; `-` writes it to standard
+    /// output and moves the report for people to standard error
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
-    /// Print only what differs
+    /// Print only differences
     #[arg(long, short, conflicts_with = "json")]
     quiet: bool,
 }
