@@ -62,3 +62,44 @@ pub(crate) enum Subcommands {
         shell: Shell,
     },
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+    use clap::error::ErrorKind;
+
+    #[test]
+    fn arguments_are_consistent() {
+        Program::command().debug_assert();
+    }
+
+    /// What stands after `such as` in a help text, up to the end of the word.
+    fn examples(help: &str) -> impl Iterator<Item = &str> {
+        let after = help.split("such as ").skip(1);
+        after
+            .filter_map(|rest| rest.split_whitespace().next())
+            .map(|word| word.trim_end_matches([',', ';', ':']))
+    }
+
+    /// Every example of an option is taken by the option.
+    #[test]
+    fn examples_in_the_help_are_values_that_are_taken() {
+        let (program, mut tried) = (Program::command(), 0);
+        for command in program.get_subcommands() {
+            for argument in command.get_arguments() {
+                let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+                let Some(option) = argument.get_long() else { continue };
+                for example in examples(&help) {
+                    let line = ["echelon", command.get_name(), &format!("--{option}={example}")];
+                    let kind = Program::try_parse_from(line).map_err(|error| error.kind());
+                    let refused =
+                        [ErrorKind::ValueValidation, ErrorKind::InvalidValue, ErrorKind::UnknownArgument];
+                    assert!(!kind.is_err_and(|kind| refused.contains(&kind)), "{line:?}");
+                    tried += 1;
+                }
+            }
+        }
+        assert!(tried >= 10, "{tried} examples");
+    }
+}
