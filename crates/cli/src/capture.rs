@@ -15,7 +15,7 @@ use output::Place;
 use rendering::{Gpu, png};
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use studies::replay::RecordSource;
+use studies::RecordSource;
 use vocabulary::{FleetInfo, counted};
 
 #[derive(Debug, Args)]

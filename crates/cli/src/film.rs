@@ -25,7 +25,7 @@ use rendering::{Film, FilmKind, Gpu, Room, Show};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
-use studies::replay::RecordSource;
+use studies::RecordSource;
 use vocabulary::{FleetInfo, Judging, counted};
 
 #[derive(Debug, Args)]

@@ -6,14 +6,14 @@ use crate::failure::Failure;
 use crate::load::{build, stem};
 use crate::print::{json, note, say};
 use crate::progress::Progress;
-use crate::recorded::{Recorded, interrupted};
+use crate::recorded::Recorded;
 use crate::{cameras, capture, film, interrupt};
 use clap::Args;
 use recording::{Manifest, Status};
 use serde_json::json;
 use std::path::PathBuf;
-use studies::PROGRAM;
-use studies::replay::{RecordSource, Replay, RunDigest, run_again};
+use studies::replay::{Replay, RunDigest, run_again};
+use studies::{PROGRAM, RecordSource};
 use vocabulary::counted;
 
 #[derive(Debug, Args)]
@@ -165,8 +165,7 @@ fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
     let (now, apart) = run_again(&mut again, most, run.records(), |samples| {
         progress.at(samples);
         !interrupt::asked()
-    })?
-    .map_err(interrupted)?;
+    })?;
     progress.end();
     let replay = Replay { recorded, log: logged.map(|logged| logged.digest), now, apart };
     let report = ReplayReport { manifest, replay, sees };

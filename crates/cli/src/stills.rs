@@ -17,7 +17,7 @@ use output::Place;
 use rendering::{Layout, Style};
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use studies::replay::RecordSource;
+use studies::RecordSource;
 use vocabulary::{Picture, StepRecord};
 
 #[derive(Debug, Args)]

@@ -15,6 +15,7 @@ pub mod dataset;
 pub mod diff;
 mod error;
 pub mod likeness;
+mod record_source;
 pub mod replay;
 pub mod run;
 mod scene_run;
@@ -22,5 +23,6 @@ pub mod tune;
 pub mod verdict;
 
 pub use error::Error;
+pub use record_source::RecordSource;
 pub use scene_run::{COMMIT, PROGRAM, RendererFactory, SceneRun, run_options};
 pub use simulation::{Fault, caption};

@@ -7,8 +7,7 @@ use crate::failure::Failure;
 use crate::playback::Playback;
 use rendering::{FilmKind, Gpu, Layout, Renderer, Style, png};
 use report::{Case, FinishedRun, PlannedRun, Report, ReportFilm, ReportPicture, add_picture, find};
-use studies::PROGRAM;
-use studies::replay::RecordSource;
+use studies::{PROGRAM, RecordSource};
 use vocabulary::FleetInfo;
 
 /// A run to draw.
