@@ -234,6 +234,7 @@ fn measures_are_read_from_syntax() {
 fn the_source_does_not_repeat_itself() {
     let measures = Measures::of_the_project();
     println!("{measures}");
+    assert_eq!(measures.program_lines(), 0, "what runs or judges scenes belongs to `studies`");
     if std::env::var_os("MEASURE_ALL").is_some() {
         for (name, files) in measures.shared_types() {
             println!("type {name}: {files:?}");

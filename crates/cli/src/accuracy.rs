@@ -3,29 +3,27 @@
 mod table;
 
 use crate::Outcome;
+use crate::args::AdapterArgs;
 use crate::cameras;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::print;
 use crate::progress::Progress;
 use clap::Args;
-use rendering::{AdapterChoice, Gpu};
 use serde_json::json;
 use std::time::Instant;
 use vocabulary::counted;
 
 #[derive(Debug, Args)]
 pub(crate) struct AccuracyArgs {
-    /// Poses of the leader to try
+    /// Number of random poses of the leader
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
     poses: u64,
-    /// Seed of the poses and of the noise
+    /// Random seed of poses and noise
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Adapter to draw with: its number in `echelon doctor`, vulkan, gl, part of its name, or both as in vulkan:llvmpipe; fails
-    /// where there is none such
-    #[arg(long, default_value = "auto")]
-    adapter: String,
+    #[command(flatten)]
+    adapter: AdapterArgs,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -34,7 +32,7 @@ pub(crate) struct AccuracyArgs {
 pub(crate) fn accuracy(args: &AccuracyArgs) -> Outcome {
     let began = Instant::now();
     interrupt::watch();
-    let gpu = Gpu::open(&AdapterChoice::from(args.adapter.as_str()))?;
+    let gpu = args.adapter.open()?;
     let what = format!("Locating a leader in {}", counted(args.poses, "pose"));
     let progress = Progress::begin(&what, args.poses, args.json);
     let clock = || began.elapsed().as_secs_f64();

@@ -1,25 +1,24 @@
 //! Arguments that several subcommands share. Those of one subcommand alone stand in its file.
 
 use clap::Args;
+use rendering::{AdapterChoice, Gpu};
 use scene::Override;
 use std::path::PathBuf;
 
-/// What every subcommand on a scene takes.
+/// Arguments of every subcommand that takes a scene.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArgs {
-    /// Scene file, or the name of a scene that comes with the program, such as circle-three: `echelon scenes` lists them
+    /// Scene file, or the name of a shipped scene, such as circle-three: `echelon scenes` lists them
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
-    /// Change a value of the scene, such as time.duration=5 or robots.follower-1.distance=1.5; may be repeated
+    /// Override a value of the scene, such as time.duration=5 or robots.follower-1.distance=1.5; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<Override>,
-    /// Seed in place of the scene's
+    /// Random seed, in place of the scene's
     #[arg(long)]
     pub(crate) seed: Option<u64>,
-    /// Adapter to draw with, pictures of cameras on robots included: its number in `echelon doctor`, vulkan, gl, part of its
-    /// name, or both as in vulkan:llvmpipe; fails where there is none such
-    #[arg(long, default_value = "auto")]
-    pub(crate) adapter: String,
+    #[command(flatten)]
+    pub(crate) adapter: AdapterArgs,
     /// Print the result as JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -28,30 +27,54 @@ pub(crate) struct SceneArgs {
     pub(crate) quiet: bool,
 }
 
+/// The graphics adapter.
+#[derive(Debug, Args)]
+pub(crate) struct AdapterArgs {
+    /// Graphics adapter for everything that is rendered, camera images of robots included: its number in `echelon doctor`,
+    /// vulkan, gl, part of its name, or both as in vulkan:llvmpipe; fails if there is no such adapter
+    #[arg(id = "adapter", long = "adapter", value_name = "ADAPTER", default_value = AdapterArgs::AUTO)]
+    pub(crate) name: String,
+}
+
+impl AdapterArgs {
+    /// The name that leaves the choice to the program.
+    const AUTO: &str = "auto";
+
+    /// Whether an adapter was asked for, which then has to be there.
+    pub(crate) fn is_named(&self) -> bool {
+        self.name != Self::AUTO
+    }
+
+    /// Opens the adapter.
+    pub(crate) fn open(&self) -> Result<Gpu, rendering::Error> {
+        Gpu::open(&AdapterChoice::from(self.name.as_str()))
+    }
+}
+
 /// How pictures look.
 #[derive(Debug, Args)]
 pub(crate) struct PictureArgs {
-    /// snake, snake-eye, top, orbit, follow:ROBOT, camera:ROBOT, fixed, or `fixed:ex,ey,ez,tx,ty,tz[,degrees]` from an eye
-    /// to a target in m with a field of view; several joined by '+' split the picture
+    /// View: snake, snake-eye, top, orbit, follow:ROBOT, camera:ROBOT, fixed, or `fixed:ex,ey,ez,tx,ty,tz[,degrees]` from an eye
+    /// point to a target in m, with a field of view; several views joined by '+' split the picture
     #[arg(long)]
     pub(crate) view: Option<String>,
-    /// Pixels, such as 1280x720
+    /// Image size in pixels, such as 1280x720
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<[u32; 2]>,
-    /// Elements to leave out, such as labels,inset; any of ribbons, ghosts, set-points, edges, labels, names, grid, inset,
+    /// Elements to hide, such as labels,inset; any of ribbons, ghosts, set-points, edges, labels, names, grid, inset,
     /// caption, time, shadows, marks, contacts
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) without: Vec<String>,
-    /// In views through cameras, draw the tags found, the pose estimated and how sure it is
+    /// In camera views, draw the detected tags, the estimated pose and its covariance
     #[arg(long)]
     pub(crate) overlay: bool,
-    /// Show what this robot's camera sees in a corner of the picture, with the overlay
+    /// Show this robot's camera image in a corner of the picture, with the overlay
     #[arg(long, value_name = "ROBOT")]
     pub(crate) inset_camera: Option<String>,
-    /// Size of text and lines; that of 1280x720 is 1, and it goes with the size of the picture if left out
+    /// Scale of text and lines, 1 at 1280x720; by default it follows the size of the picture
     #[arg(long, value_parser = scale)]
     pub(crate) scale: Option<f64>,
-    /// Samples a pixel: 4, or 1 for speed
+    /// Samples per pixel (MSAA): 4, or 1 for speed
     #[arg(long, default_value_t = 4)]
     pub(crate) samples: u32,
 }

@@ -16,7 +16,7 @@ use crate::print::{note, say};
 use crate::progress::Progress;
 use clap::Args;
 use output::Place;
-use rendering::{AdapterChoice, Gpu};
+use rendering::Gpu;
 use std::path::{Path, PathBuf};
 use studies::SceneRun;
 use studies::budget::{Budget, check, epsilon_cases, sensing_cases};
@@ -26,10 +26,10 @@ use vocabulary::counted;
 pub(crate) struct BudgetArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Folder for budget.svg, budget.json and budget.csv, with --epsilon for epsilon.svg and so on; it may hold others
+    /// Folder for budget.svg, .json and .csv, with --epsilon for epsilon.svg, .json and .csv; it may hold other files
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Noises of a tag's corners to try, px
+    /// Standard deviations of the corner noise to try, px
     #[arg(
         long,
         value_name = "LIST",
@@ -39,8 +39,8 @@ pub(crate) struct BudgetArgs {
         value_parser = pixels
     )]
     pixel_noise: Vec<f64>,
-    /// Compare observer constants ε instead, s, such as 0.001,0.003,0.01,0.03,0.1, with the one that follows from the
-    /// noise
+    /// Compare observer constants ε instead, s, such as 0.001,0.003,0.01,0.03,0.1, with the adaptive ε that follows from
+    /// the noise
     #[arg(
         long,
         value_name = "LIST",
@@ -50,7 +50,7 @@ pub(crate) struct BudgetArgs {
         value_parser = epsilon
     )]
     epsilon: Vec<f64>,
-    /// Leave out what needs pictures; with --epsilon, look by corners of tags instead
+    /// Skip camera sensing; with --epsilon, use geometric sensing instead
     #[arg(long)]
     no_camera: bool,
 }
@@ -128,10 +128,10 @@ fn camera(args: &BudgetArgs) -> Result<(Option<Gpu>, Option<String>), Failure> {
     if args.no_camera {
         return Ok((None, Some("no camera: --no-camera".to_owned())));
     }
-    match Gpu::open(&AdapterChoice::from(args.scene.adapter.as_str())) {
+    match args.scene.adapter.open() {
         Ok(gpu) => Ok((Some(gpu), None)),
         // One that was asked for by name has to be there.
-        Err(error) if args.scene.adapter != "auto" => Err(error.into()),
+        Err(error) if args.scene.adapter.is_named() => Err(error.into()),
         Err(error) => Ok((None, Some(format!("no camera: {error}")))),
     }
 }

@@ -16,7 +16,7 @@ use output::Place;
 use rendering::Gpu;
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use studies::replay::RecordSource;
+use studies::RecordSource;
 use vocabulary::{FleetInfo, counted};
 
 #[derive(Debug, Args)]
@@ -25,7 +25,7 @@ pub(crate) struct CaptureArgs {
     scene: SceneArgs,
     #[command(flatten)]
     picture: PictureArgs,
-    /// Times in s, such as 0,5,15; the end of the run if left out
+    /// Times in s, such as 0,5,15; by default the end of the run
     #[arg(long, value_name = "TIMES", value_delimiter = ',', allow_negative_numbers = true, value_parser = time)]
     at: Vec<f64>,
     /// Folder for the pictures; it may hold others
@@ -59,7 +59,7 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
     let scene = loaded.scene.clone();
     let job = CaptureJob {
         picture: &args.picture,
-        adapter: &args.scene.adapter,
+        adapter: &args.scene.adapter.name,
         out: &args.out,
         at: &args.at,
         quiet: args.scene.quiet,

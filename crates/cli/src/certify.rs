@@ -24,20 +24,20 @@ use vocabulary::{EntityId, FleetInfo};
 pub(crate) struct CertifyArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Folder for certificate.json, the numbers as certificate.csv, and figures; it may hold others
+    /// Folder for certificate.json, certificate.csv and figures; it may hold other files
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Wanted bound on the tracking error at the end (m and rad together, as in the paper): tells the largest ε that the
-    /// proof promises it for
+    /// Bound on the ultimate tracking error (m and rad together, as in the paper): report the largest ε for which the proof
+    /// guarantees it
     #[arg(long, value_name = "BOUND", value_parser = bound, allow_negative_numbers = true)]
     bound: Option<f64>,
-    /// Leave out what is beyond the paper: sensitivities, set points that can be held, stability over ε and period, chains
+    /// Skip what is beyond the paper: sensitivities, feasible set points, stability over ε and period, chains
     #[arg(long)]
     paper_only: bool,
-    /// Run the scene for every gain also where its runs are long: vehicles on wheels, many robots
+    /// Compute sensitivities even if the runs are long: wheeled vehicles, many robots
     #[arg(long, conflicts_with = "paper_only")]
     sensitivity: bool,
-    /// Exit with 1 where a statement is violated
+    /// Exit with 1 if a statement is violated
     #[arg(long)]
     strict: bool,
 }

@@ -12,13 +12,13 @@ use vocabulary::counted;
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
-    /// Scene files, or names of scenes that come with the program
+    /// Scene files, or names of shipped scenes
     #[arg(value_name = "SCENE", required = true)]
     scenes: Vec<PathBuf>,
-    /// Change a value of every scene
+    /// Override a value of every scene
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Override>,
-    /// Print the resolved scene, every default written out
+    /// Print the resolved scene with every default written out
     #[arg(long)]
     resolved: bool,
 }

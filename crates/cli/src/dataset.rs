@@ -9,7 +9,6 @@ use crate::load::{attach_cameras, load, stem};
 use crate::print;
 use crate::progress::Progress;
 use clap::Args;
-use rendering::{AdapterChoice, Gpu};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -20,16 +19,16 @@ use vocabulary::counted;
 pub(crate) struct DatasetArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Folder for pictures, dataset.json and coco.json
+    /// Folder for the images, dataset.json and coco.json
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
-    /// Time from one picture of a camera to its next, s
+    /// Interval between two images of a camera, s
     #[arg(long, value_name = "SECONDS", default_value = "0.2", value_parser = interval)]
     every: f64,
-    /// Followers whose cameras take pictures; all if left out
+    /// Followers whose cameras take images; by default all
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     edges: Vec<String>,
-    /// Look for the leader in the whole picture, instead of the part around where it is
+    /// Search for the leader in the whole image, instead of the region around it
     #[arg(long)]
     whole: bool,
     /// Replace an earlier data set in the folder
@@ -46,7 +45,7 @@ pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
     let began = Instant::now();
     let mut run = load(&args.scene)?;
     let edges = followed_edges(run.simulation.fleet(), &args.edges)?;
-    let gpu = Gpu::open(&AdapterChoice::from(args.scene.adapter.as_str()))?;
+    let gpu = args.scene.adapter.open()?;
     attach_cameras(&mut run, Some(&gpu), &args.scene)?;
     let (cameras, adapter) = (edges.len(), gpu.description());
     let options = DatasetOptions {

@@ -16,19 +16,19 @@ use vocabulary::counted;
 
 #[derive(Debug, Args)]
 pub(crate) struct DiffArgs {
-    /// A run folder or a log.mcap
+    /// Run folder or log.mcap
     #[arg(value_name = "A")]
     a: PathBuf,
-    /// The one to hold against it
+    /// Run folder or log.mcap to compare with
     #[arg(value_name = "B")]
     b: PathBuf,
-    /// Numbers that differ by no more than this, in their units, count as the same; words and flags always count
+    /// Absolute tolerance for numbers, in their units; words and flags have to be equal
     #[arg(long, value_name = "NUMBER", default_value_t = 0.0, value_parser = tolerance)]
     tolerance: f64,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
-    /// Print errors only: the exit code tells
+    /// Print errors only; the exit code is the result
     #[arg(long, short, conflicts_with = "json")]
     quiet: bool,
 }

@@ -2,6 +2,7 @@
 
 use crate::print::harmless;
 use std::io::Write;
+use vocabulary::counted;
 
 /// Why the program does not end with 0.
 #[derive(Debug)]
@@ -65,6 +66,9 @@ impl From<studies::Error> for Failure {
             studies::Error::Build(error) => Self::Usage(error.to_string()),
             studies::Error::NotFinite(what) => Self::Broken(what.to_string()),
             studies::Error::Camera(text) => Self::Machine(text),
+            studies::Error::Interrupted { samples } => {
+                Self::Interrupted(format!("after {}", counted(samples, "sample")))
+            }
             studies::Error::Output(error) => error.into(),
             studies::Error::Recording(error) => error.into(),
         }

@@ -7,6 +7,7 @@ mod meter;
 mod tell;
 
 use crate::Outcome;
+use crate::args::AdapterArgs;
 use crate::failure::Failure;
 use crate::load::{build, read, stem, with_seed};
 use crate::print::note;
@@ -14,7 +15,7 @@ use crate::{cameras, interrupt};
 use clap::Args;
 use folder::Folder;
 use meter::Meter;
-use rendering::{AdapterChoice, Gpu};
+use rendering::Gpu;
 use report::{Case, FinishedRun, PlannedRun, Rasterizer, Report, Tracer};
 use scene::{Override, Scene};
 use std::path::PathBuf;
@@ -25,27 +26,26 @@ use studies::{COMMIT, PROGRAM, SceneRun};
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub(crate) struct FiguresArgs {
-    /// Scene file or the name of one that comes with the program; if left out, the paper's two cases and its seven robots, which come with the program
+    /// Scene file or the name of a shipped scene; by default the paper's two cases and its seven robots
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Folder for figures (SVG, PNG, PDF, CSV), films, claims.json and report.html
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
-    /// Change a value of the scene, such as time.duration=5; may be repeated
+    /// Override a value of the scene, such as time.duration=5; may be repeated
     #[arg(long, value_name = "KEY=VALUE", requires = "scene")]
     set: Vec<Override>,
-    /// Seed in place of the scene's
+    /// Random seed, in place of the scene's
     #[arg(long, requires = "scene")]
     seed: Option<u64>,
     /// Replace an earlier set of figures in the folder
     #[arg(long)]
     force: bool,
-    /// Leave out what has to be drawn: snake views and films
+    /// Skip what has to be rendered: snake views and films
     #[arg(long)]
     no_pictures: bool,
-    /// Adapter to draw with: vulkan, gl, or part of its name; fails where there is none such
-    #[arg(long, default_value = "auto")]
-    adapter: String,
+    #[command(flatten)]
+    adapter: AdapterArgs,
     /// Print claims and files as JSON
     #[arg(long)]
     json: bool,
@@ -71,7 +71,7 @@ pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
     }
     let mut prepared = vec![];
     for job in &subject.jobs {
-        prepared.push(ready(job, gpu.as_ref(), &args.adapter)?);
+        prepared.push(ready(job, gpu.as_ref(), &args.adapter.name)?);
     }
     let shows: Vec<drawn::FilmedRun> = gpu.as_ref().map_or_else(Vec::new, |_| drawn::shows(&subject));
     let mut folder = Folder::create(&args.out, args.force)?;
@@ -110,10 +110,10 @@ fn adapter(args: &FiguresArgs) -> Result<(Option<Gpu>, Option<String>), Failure>
     if args.no_pictures {
         return Ok((None, Some("--no-pictures was given".to_owned())));
     }
-    match Gpu::open(&AdapterChoice::from(args.adapter.as_str())) {
+    match args.adapter.open() {
         Ok(gpu) => Ok((Some(gpu), None)),
         // One that was asked for by name has to be there.
-        Err(error) if args.adapter != "auto" => Err(error.into()),
+        Err(error) if args.adapter.is_named() => Err(error.into()),
         Err(error) => Ok((None, Some(format!("there is nothing to draw with ({error})")))),
     }
 }
@@ -145,7 +145,7 @@ fn make(
     };
     if let Some(gpu) = gpu {
         for show in shows {
-            drawn::draw(show, gpu, &args.adapter, &runs, &mut *folder, &mut *meter, &mut report)?;
+            drawn::draw(show, gpu, &args.adapter.name, &runs, &mut *folder, &mut *meter, &mut report)?;
         }
     }
     let rasterizer = Rasterizer::new(&[rendering::FONT]);

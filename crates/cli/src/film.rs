@@ -26,7 +26,7 @@ use rendering::{Gpu, Overlays, ReservedSpace};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
-use studies::replay::RecordSource;
+use studies::RecordSource;
 use vocabulary::{FleetInfo, Judging, counted};
 
 #[derive(Debug, Args)]
@@ -35,12 +35,12 @@ pub(crate) struct FilmArgs {
     scene: SceneArgs,
     #[command(flatten)]
     picture: PictureArgs,
-    /// Frames a second of simulation time
+    /// Frames per second of simulation time
     #[arg(long)]
     fps: Option<f64>,
-    /// Film file: .mp4, .m4v or .gif (480x270, 10 frames a second where the scene says no other); without an ending, a
-    /// folder of PNG frames; .webm, .mkv, .mov, .avi, .mpg, .mpeg, .ogv, .ts, .flv and .wmv need ffmpeg. NAME.mp4 if left
-    /// out
+    /// Film file: .mp4, .m4v or .gif (480x270 at 10 frames per second unless the scene sets them); without an extension, a
+    /// folder of PNG frames; .webm, .mkv, .mov, .avi, .mpg, .mpeg, .ogv, .ts, .flv and .wmv need ffmpeg. By default
+    /// NAME.mp4
     #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Encode with the ffmpeg on PATH instead of the built-in encoder
@@ -49,7 +49,7 @@ pub(crate) struct FilmArgs {
     /// Measures, cards and, where the scene has no storyboard, shots for a purpose
     #[arg(long, value_enum, conflicts_with = "view")]
     preset: Option<Preset>,
-    /// Begin anew where the same film was interrupted, instead of going on
+    /// Start over instead of resuming the same film where it was interrupted
     #[arg(long)]
     fresh: bool,
 }
@@ -97,7 +97,7 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
     let scene = loaded.scene.clone();
     let job = FilmJob {
         picture: &args.picture,
-        adapter: &args.scene.adapter,
+        adapter: &args.scene.adapter.name,
         path: args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.mp4"))),
         ffmpeg: args.ffmpeg,
         fps: args.fps,

@@ -1,7 +1,7 @@
 //! `echelon lab`: the window.
 
 use crate::Outcome;
-use crate::args::size;
+use crate::args::{AdapterArgs, size};
 use crate::failure::Failure;
 use crate::interrupt;
 use clap::Args;
@@ -10,24 +10,22 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct LabArgs {
-    /// Scene file or the name of a scene that comes with the program, a run folder or log.mcap to look through, or a picture
-    /// that the lab has made; a shipped scene if left out
+    /// Scene file or the name of a shipped scene, a run folder or log.mcap to browse, or a picture that the lab has saved;
+    /// by default a shipped scene
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
-    /// Change a value of the scene, as an edit that can be undone; may be repeated
+    /// Override a value of the scene, as an edit that can be undone; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Override>,
-    /// Adapter to draw with: its number in `echelon doctor`, vulkan, gl, part of its name, or both as in vulkan:llvmpipe; fails
-    /// where there is none such
-    #[arg(long, default_value = "auto")]
-    adapter: String,
-    /// Width and height of the window, such as 1280x800
+    #[command(flatten)]
+    adapter: AdapterArgs,
+    /// Window size, such as 1280x800
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
-    /// Stand at first instead of running
+    /// Start paused
     #[arg(long)]
     paused: bool,
-    /// Print what happens, and how fast the window was when it is closed
+    /// Print events, and frame times when the window closes
     #[arg(long)]
     timings: bool,
 }
@@ -37,7 +35,7 @@ pub(crate) fn lab(args: LabArgs) -> Outcome {
     let options = lab::Options {
         scene: args.scene,
         set: args.set,
-        adapter: args.adapter,
+        adapter: args.adapter.name,
         paused: args.paused,
         size: args.size.map(|size| size.map(|side| side as f32)),
         timings: args.timings,

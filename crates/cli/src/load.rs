@@ -40,7 +40,7 @@ pub(crate) fn attach_cameras(
     gpu: Option<&Gpu>,
     args: &SceneArgs,
 ) -> Result<DrawingCost, Failure> {
-    cameras::attach(run, gpu, &args.adapter, None)
+    cameras::attach(run, gpu, &args.adapter.name, None)
 }
 
 /// The overrides of a command line, with its seed as one of them.

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use metrics::{Metrics, MetricsBuilder};
 use rendering::Trail;
-use studies::replay::RecordSource;
+use studies::RecordSource;
 use vocabulary::{FleetInfo, Judging, StepRecord};
 
 /// What nothing is judged by.

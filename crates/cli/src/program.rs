@@ -20,45 +20,86 @@ pub(crate) struct Program {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Subcommands {
-    /// Simulate a scene, record it, and hold it against what it expects
+    /// Simulate a scene, record the run, and check the scene's expectations
     Run(run::RunArgs),
-    /// Run a recorded run again, and say whether it comes out the same bit for bit; or draw it as it was recorded
+    /// Run a recorded run again and check that it is the same bit for bit; or draw it as it was recorded
     Replay(replay::ReplayArgs),
-    /// Say whether two recorded runs are the same bit for bit, and where they part
+    /// Compare two recorded runs bit for bit, and report where they diverge
     Diff(diff::DiffArgs),
-    /// Open a window in which set points and gains are tuned while the scene runs
+    /// Open a window to tune set points and gains while the scene runs
     Lab(lab::LabArgs),
-    /// Draw pictures of a scene at given times
+    /// Render pictures of a scene at given times
     Capture(capture::CaptureArgs),
-    /// Make a film of a scene
+    /// Render a film of a scene
     Film(film::FilmArgs),
-    /// Draw a run on one sheet of pictures, and all of it in one picture as under a stroboscope
+    /// Render a contact sheet of a run, and a stroboscopic picture of all of it
     Stills(stills::StillsArgs),
-    /// Compare pictures, or folders of pictures, as eyes would, and show where they differ
+    /// Compare pictures, or folders of pictures, by perceptual similarity, and show where they differ
     Compare(compare::CompareArgs),
-    /// Search gains that fit a scene's vehicles, and print them
+    /// Search for gains that fit a scene's vehicles, and print them
     Tune(tune::TuneArgs),
-    /// Say where errors of following come from: the scene with better and worse sensing, side by side
+    /// Compute an error budget: run the scene with better and worse sensing, side by side
     Budget(budget::BudgetArgs),
-    /// Say what the paper's theorems promise for a scene's run, and whether their premises are met
+    /// Check which statements of the paper's theorems hold for a run, and whether their premises are met
     Certify(certify::CertifyArgs),
-    /// Write what the cameras of a scene see, with the truth about every tag: a labelled set of pictures
+    /// Export the cameras' images with ground truth for every tag: a labelled data set
     Dataset(dataset::DatasetArgs),
-    /// Make figures for print of the paper's runs or of a scene, and say whether they show what is claimed
+    /// Plot figures for print of the paper's runs or of a scene, and check the claims about them
     Figures(figures::FiguresArgs),
-    /// Measure how well leaders are found and located in drawn pictures
+    /// Benchmark the detection and localization of leaders in rendered pictures
     Accuracy(accuracy::AccuracyArgs),
-    /// Read scenes and say what is wrong with them, without running
+    /// Validate scene files without running them
     Check(check::CheckArgs),
-    /// List the scenes that come with the program, or print one to start from
+    /// List the shipped scenes, or print one to start from
     Scenes(scenes::ScenesArgs),
     /// Print the JSON Schema of scene files
     Schema,
-    /// Say which adapters, drivers and encoders this machine has, and what is missing
+    /// Report this machine's graphics adapters, drivers and encoders, and what is missing
     Doctor(doctor::DoctorArgs),
-    /// Print completions for a shell
+    /// Print shell completions
     Completions {
         /// The shell
         shell: Shell,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+    use clap::error::ErrorKind;
+
+    #[test]
+    fn arguments_are_consistent() {
+        Program::command().debug_assert();
+    }
+
+    /// What stands after `such as` in a help text, up to the end of the word.
+    fn examples(help: &str) -> impl Iterator<Item = &str> {
+        let after = help.split("such as ").skip(1);
+        after
+            .filter_map(|rest| rest.split_whitespace().next())
+            .map(|word| word.trim_end_matches([',', ';', ':']))
+    }
+
+    /// Every example of an option is taken by the option.
+    #[test]
+    fn examples_in_the_help_are_values_that_are_taken() {
+        let (program, mut tried) = (Program::command(), 0);
+        for command in program.get_subcommands() {
+            for argument in command.get_arguments() {
+                let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+                let Some(option) = argument.get_long() else { continue };
+                for example in examples(&help) {
+                    let line = ["echelon", command.get_name(), &format!("--{option}={example}")];
+                    let kind = Program::try_parse_from(line).map_err(|error| error.kind());
+                    let refused =
+                        [ErrorKind::ValueValidation, ErrorKind::InvalidValue, ErrorKind::UnknownArgument];
+                    assert!(!kind.is_err_and(|kind| refused.contains(&kind)), "{line:?}");
+                    tried += 1;
+                }
+            }
+        }
+        assert!(tried >= 10, "{tried} examples");
+    }
 }

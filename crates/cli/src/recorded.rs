@@ -11,7 +11,6 @@ use scene::Scene;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use studies::replay::{RunDigest, digest_of};
-use vocabulary::counted;
 
 /// A recorded run.
 pub(crate) struct Recorded {
@@ -129,19 +128,13 @@ impl Recorded {
         let read = digest_of(log, |samples| {
             progress.at(samples);
             !interrupt::asked()
-        })?
-        .map_err(interrupted)?;
+        })?;
         if read.samples == 0 {
             let text = format!("{} holds no whole sample", log.path().display());
             return Err(Failure::Usage(text));
         }
         Ok(Some(read))
     }
-}
-
-/// Work on records that ended after so many.
-pub(crate) fn interrupted(samples: u64) -> Failure {
-    Failure::Interrupted(format!("after {}", counted(samples, "sample")))
 }
 
 /// What a recorded run is, for who named something else.

@@ -1,36 +1,36 @@
 //! `echelon replay`: does a recorded run come out the same again?
 
 use crate::Outcome;
-use crate::args::PictureArgs;
+use crate::args::{AdapterArgs, PictureArgs};
 use crate::failure::Failure;
 use crate::load::{build, stem};
 use crate::print::{json, note, say};
 use crate::progress::Progress;
-use crate::recorded::{Recorded, interrupted};
+use crate::recorded::Recorded;
 use crate::{cameras, capture, film, interrupt};
 use clap::Args;
 use recording::{Manifest, Status};
 use serde_json::json;
 use std::path::PathBuf;
-use studies::PROGRAM;
-use studies::replay::{RecordSource, Replay, RunDigest, run_again};
+use studies::replay::{Replay, RunDigest, run_again};
+use studies::{PROGRAM, RecordSource};
 use vocabulary::counted;
 
 #[derive(Debug, Args)]
 pub(crate) struct ReplayArgs {
-    /// Folder of a run, such as runs/line-three-001, or a log.mcap alone
+    /// Run folder, such as runs/line-three-001, or a log.mcap
     #[arg(value_name = "RUN")]
     run: PathBuf,
-    /// Make a film of what was recorded, without simulating
+    /// Render a film of the recording, without simulating
     #[arg(long, value_name = "FILE", conflicts_with = "capture")]
     film: Option<PathBuf>,
-    /// Draw pictures of what was recorded at these times in s, such as 0,5,15, without simulating
+    /// Render pictures of the recording at these times in s, such as 0,5,15, without simulating
     #[arg(long, value_name = "TIMES", value_delimiter = ',', allow_negative_numbers = true, value_parser = crate::args::time)]
     capture: Vec<f64>,
     /// Folder for the pictures; it may hold others
     #[arg(long, short, value_name = "DIR", default_value = ".", requires = "capture")]
     out: PathBuf,
-    /// Frames a second of simulation time
+    /// Frames per second of simulation time
     #[arg(long, requires = "film")]
     fps: Option<f64>,
     /// Encode with the ffmpeg on PATH instead of the built-in encoder
@@ -41,13 +41,12 @@ pub(crate) struct ReplayArgs {
     preset: Option<film::Preset>,
     #[command(flatten)]
     picture: PictureArgs,
-    /// Adapter to draw with, pictures of cameras on robots included: vulkan, gl, or part of its name
-    #[arg(long, default_value = "auto")]
-    adapter: String,
+    #[command(flatten)]
+    adapter: AdapterArgs,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
-    /// Print only what differs, and errors
+    /// Print only differences and errors
     #[arg(long, short, conflicts_with = "json")]
     quiet: bool,
 }
@@ -96,7 +95,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
     if let Some(path) = &args.film {
         let job = film::FilmJob {
             picture: &args.picture,
-            adapter: &args.adapter,
+            adapter: &args.adapter.name,
             path: path.clone(),
             ffmpeg: args.ffmpeg,
             fps: args.fps,
@@ -118,7 +117,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
     }
     let job = capture::CaptureJob {
         picture: &args.picture,
-        adapter: &args.adapter,
+        adapter: &args.adapter.name,
         out: &args.out,
         at: &args.capture,
         quiet: args.quiet,
@@ -157,7 +156,7 @@ fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
         }
     };
     let mut again = build(run.scene()?, &run.scene.0.display())?;
-    cameras::attach(&mut again, None, &args.adapter, None)?;
+    cameras::attach(&mut again, None, &args.adapter.name, None)?;
     let sees = again.simulation.needs_cameras();
     let title = &again.scene.title;
     let progress = Progress::begin(&format!("Replaying {title}"), again.simulation.len(), quiet);
@@ -166,8 +165,7 @@ fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
     let (now, apart) = run_again(&mut again, most, run.records(), |samples| {
         progress.at(samples);
         !interrupt::asked()
-    })?
-    .map_err(interrupted)?;
+    })?;
     progress.end();
     let replay = Replay { recorded, log: logged.map(|logged| logged.digest), now, apart };
     let report = ReplayReport { manifest, replay, sees };

@@ -25,23 +25,23 @@ use studies::{Error, run_options};
 pub(crate) struct RunArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Folder for the run; runs/NAME-001, -002, … if left out
+    /// Run folder; by default runs/NAME-001, -002, …
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Also write the tables as CSV
     #[arg(long)]
     csv: bool,
-    /// Leave out log.mcap, which other tools open and replays are drawn from
+    /// Do not write log.mcap, which other tools open and replays are rendered from
     #[arg(long)]
     no_log: bool,
     /// Replace an earlier run in the folder
     #[arg(long)]
     force: bool,
-    /// Also write what became of the scene's expectations as JUnit XML, which CI systems read; `-` is standard
-    /// output, and what is for people goes to standard error
+    /// Also write the results of the scene's expectations as JUnit XML for CI systems; `-` writes it to standard
+    /// output and moves the report for people to standard error
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
-    /// Record nothing, only simulate and judge
+    /// Record nothing: only simulate and check expectations
     #[arg(long, conflicts_with_all = ["out", "csv", "force", "no_log"])]
     no_record: bool,
 }
@@ -69,7 +69,7 @@ fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
     }
     let roll = Roll::default();
     let logs = !args.no_record && !args.no_log;
-    let drawn = cameras::attach(&mut run, None, &args.scene.adapter, logs.then_some(&roll))?;
+    let drawn = cameras::attach(&mut run, None, &args.scene.adapter.name, logs.then_some(&roll))?;
     let scene = run.scene.clone();
     let folder = if args.no_record { None } else { Some(folder(args)?) };
     let options =

@@ -17,7 +17,7 @@ use output::Place;
 use rendering::{Style, ViewLayout};
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use studies::replay::RecordSource;
+use studies::RecordSource;
 use vocabulary::{Picture, StepRecord};
 
 #[derive(Debug, Args)]
@@ -29,10 +29,10 @@ pub(crate) struct StillsArgs {
     /// Folder for NAME-sheet.png and NAME-strobe.png; it may hold others
     #[arg(long, short, value_name = "DIR", default_value = ".")]
     out: PathBuf,
-    /// Pictures on the sheet, and bodies of each robot in the strobe picture
+    /// Pictures on the sheet, and images of each robot in the strobe picture
     #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(2..=64))]
     count: u32,
-    /// Pictures in a row of the sheet
+    /// Pictures per row of the sheet
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=16))]
     columns: u32,
 }
@@ -52,7 +52,7 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     let tile = args.picture.size.unwrap_or(TILE);
     let large = args.picture.size.unwrap_or(STROBE);
     let view = loaded.scene.views.default.clone();
-    let mut small = RenderSetup::open(&args.scene.adapter, &args.picture, &fleet, &view, tile)?;
+    let mut small = RenderSetup::open(&args.scene.adapter.name, &args.picture, &fleet, &view, tile)?;
     attach_cameras(&mut loaded, Some(&small.gpu), &args.scene)?;
     let duration = loaded.scene.time.duration;
 

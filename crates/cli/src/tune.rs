@@ -17,7 +17,7 @@ use vocabulary::counted;
 pub(crate) struct TuneArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Runs of the scene to try, at most
+    /// Largest number of runs of the scene
     #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u64).range(4..=100_000))]
     trials: u64,
 }

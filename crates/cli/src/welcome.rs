@@ -23,3 +23,26 @@ More: `echelon --help`, `echelon film --help`, `echelon doctor` if drawing does 
 pub(crate) fn welcome() {
     say(TEXT);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::program::Program;
+    use clap::Parser;
+
+    /// Every line of the start is a command, and its scene comes with the program.
+    #[test]
+    fn the_commands_of_the_start_are_taken() {
+        let lines: Vec<&str> = TEXT.lines().filter(|line| line.starts_with("  echelon ")).collect();
+        assert!(lines.len() >= 5, "{lines:?}");
+        for line in lines {
+            let command = line.split('>').next().unwrap_or(line).split_whitespace();
+            let parsed = Program::try_parse_from(command.clone());
+            assert!(parsed.is_ok(), "{line}: {:?}", parsed.err());
+            let named = command.skip(2).take_while(|word| !word.starts_with('-'));
+            for name in named {
+                assert!(scene::shipped(name).is_some(), "{line}: no scene is called {name}");
+            }
+        }
+    }
+}

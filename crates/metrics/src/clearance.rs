@@ -10,7 +10,7 @@ use vocabulary::{Body, Contact, EntityId, FleetInfo, Placement, RobotState, Snap
 
 /// The room between a robot and something else.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Room {
+pub struct LeastClearance {
     /// m; 0 where the two touch or overlap.
     pub clearance: f64,
     /// What is nearest.
@@ -23,7 +23,7 @@ pub struct Room {
 #[derive(Debug, Clone)]
 pub struct Clearance {
     shapes: Vec<Hull>,
-    least: Vec<Option<Room>>,
+    least: Vec<Option<LeastClearance>>,
     robots: usize,
     /// Everything that counts, by the smallest x it reached last time.
     order: Vec<usize>,
@@ -86,7 +86,7 @@ impl Clearance {
                 let clearance = a.distance(b);
                 for (k, other) in [(i, b.thing), (j, a.thing)] {
                     if k < *robots && clearance < known(least, k) {
-                        least[k] = Some(Room { clearance, nearest: other, time: snapshot.time });
+                        least[k] = Some(LeastClearance { clearance, nearest: other, time: snapshot.time });
                     }
                 }
             }
@@ -103,13 +103,13 @@ impl Clearance {
         }
         for (k, nearest) in [(i, b.thing), (j, a.thing)] {
             if k < self.robots && known(&self.least, k) > 0.0 {
-                self.least[k] = Some(Room { clearance: 0.0, nearest, time: contact.begin });
+                self.least[k] = Some(LeastClearance { clearance: 0.0, nearest, time: contact.begin });
             }
         }
     }
 
     /// The least room of each robot so far; `None` where there is nothing else.
-    pub fn least(&self) -> &[Option<Room>] {
+    pub fn least(&self) -> &[Option<LeastClearance>] {
         &self.least
     }
 }
@@ -192,7 +192,7 @@ impl Hull {
 }
 
 /// The least room known of body `k`, m: that of props is not asked for.
-fn known(least: &[Option<Room>], k: usize) -> f64 {
+fn known(least: &[Option<LeastClearance>], k: usize) -> f64 {
     least.get(k).map_or(0.0, |room| room.map_or(f64::INFINITY, |room| room.clearance))
 }
 
@@ -243,7 +243,7 @@ mod tests {
         Snapshot { time: 1.0, robots: poses.iter().map(robot).collect(), props }
     }
 
-    fn least(fleet: &FleetInfo, snapshot: &Snapshot) -> Vec<Option<Room>> {
+    fn least(fleet: &FleetInfo, snapshot: &Snapshot) -> Vec<Option<LeastClearance>> {
         let mut clearance = Clearance::new(fleet);
         clearance.push(snapshot);
         clearance.least().to_vec()
@@ -268,7 +268,7 @@ mod tests {
             impulse: 0.0,
         };
         clearance.touch(&contact);
-        let room = Room { clearance: 0.0, nearest: things[1], time: 0.6 };
+        let room = LeastClearance { clearance: 0.0, nearest: things[1], time: 0.6 };
         assert_eq!(clearance.least()[0], Some(room));
         assert!(clearance.least()[1].is_some_and(|room| room.clearance > 1.0));
         clearance.touch(&Contact { things: [EntityId::Robot(1), EntityId::Ground], ..contact });

@@ -18,6 +18,12 @@ pub enum Error {
     /// Nobody could draw what cameras see.
     #[error("{0}")]
     Camera(String),
+    /// The caller said that the work is not to go on.
+    #[error("interrupted after {samples} samples")]
+    Interrupted {
+        /// Samples that were done.
+        samples: u64,
+    },
     /// A file or folder could not be written.
     #[error(transparent)]
     Output(#[from] output::Error),

@@ -3,9 +3,7 @@
 use crate::run::STRIDE;
 use crate::{Error, SceneRun};
 use metrics::Digest;
-use recording::log::{Log, Moments};
-use simulation::Simulation;
-use vocabulary::StepRecord;
+use recording::log::Log;
 
 /// Samples of a run and their digest.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,34 +39,33 @@ impl Replay {
     }
 }
 
-/// Samples and digest of the records in a log. `go_on` gets the number of samples now and then; `None` where it says no,
-/// with the samples that were read in `Err`.
+/// Samples and digest of the records in a log. `go_on` gets the number of samples every [`STRIDE`] samples and says whether
+/// the work goes on.
 ///
 /// # Errors
-/// [`Error::Recording`] where the log is damaged.
-pub fn digest_of(log: &Log, mut go_on: impl FnMut(u64) -> bool) -> Result<Result<RunDigest, u64>, Error> {
+/// [`Error::Recording`] where the log is damaged, [`Error::Interrupted`] where `go_on` says no.
+pub fn digest_of(log: &Log, mut go_on: impl FnMut(u64) -> bool) -> Result<RunDigest, Error> {
     let (mut digest, mut samples) = (Digest::default(), 0);
     for record in log.records() {
         digest.push(&record?);
         samples += 1;
         if samples % STRIDE == 0 && !go_on(samples) {
-            return Ok(Err(samples));
+            return Err(Error::Interrupted { samples });
         }
     }
-    Ok(Ok(RunDigest { samples, digest: digest.text() }))
+    Ok(RunDigest { samples, digest: digest.text() })
 }
 
 /// Runs a scene again, `most` samples at most, beside the records of `log`: what came out, and when the two first differ, s.
-/// The inner `Err` holds the number of samples at which `go_on` said no.
 ///
 /// # Errors
-/// [`Error`] where the run breaks off with a fault, or the log is damaged.
+/// [`Error`] where the run breaks off with a fault or the log is damaged, [`Error::Interrupted`] where `go_on` says no.
 pub fn run_again(
     run: &mut SceneRun,
     most: u64,
     log: Option<&Log>,
     mut go_on: impl FnMut(u64) -> bool,
-) -> Result<Result<(RunDigest, Option<f64>), u64>, Error> {
+) -> Result<(RunDigest, Option<f64>), Error> {
     let (mut digest, mut samples, mut apart) = (Digest::default(), 0, None);
     let mut logged = log.map(Log::records);
     while samples < most {
@@ -83,44 +80,11 @@ pub fn run_again(
         }
         samples += 1;
         if samples % STRIDE == 0 && !go_on(samples) {
-            return Ok(Err(samples));
+            return Err(Error::Interrupted { samples });
         }
     }
     match run.simulation.fault() {
         Some(fault) => Err(fault.into()),
-        None => Ok(Ok((RunDigest { samples, digest: digest.text() }, apart))),
-    }
-}
-
-/// Where the records of a run come from: they are made, or they were recorded.
-pub enum RecordSource {
-    /// They are made.
-    Run(Box<Simulation>),
-    /// They were recorded.
-    Log(Box<Moments>),
-}
-
-impl RecordSource {
-    /// Puts the next record into `record`; whether there was one.
-    ///
-    /// # Errors
-    /// [`Error`] where the run breaks off with a fault, or the log is damaged.
-    pub fn next_into(&mut self, record: &mut StepRecord) -> Result<bool, Error> {
-        match self {
-            Self::Run(simulation) => match simulation.next_record() {
-                Some(next) => {
-                    record.clone_from(next);
-                    Ok(true)
-                }
-                None => simulation.fault().map_or(Ok(false), |fault| Err(fault.into())),
-            },
-            Self::Log(records) => match records.next() {
-                Some(next) => {
-                    *record = next?;
-                    Ok(true)
-                }
-                None => Ok(false),
-            },
-        }
+        None => Ok((RunDigest { samples, digest: digest.text() }, apart)),
     }
 }

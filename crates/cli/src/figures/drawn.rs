@@ -8,8 +8,7 @@ use crate::playback::Playback;
 use film::{FilmKind, png};
 use rendering::{Gpu, Renderer, Style, ViewLayout};
 use report::{Case, FinishedRun, PlannedRun, Report, ReportFilm, ReportPicture, add_picture, find};
-use studies::PROGRAM;
-use studies::replay::RecordSource;
+use studies::{PROGRAM, RecordSource};
 use vocabulary::FleetInfo;
 
 /// A run to draw.
