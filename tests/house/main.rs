@@ -186,14 +186,6 @@ fn the_first_build_takes_as_long_everywhere() {
 }
 
 #[test]
-fn files_stay_short() {
-    for (path, text) in sources(&["rs", "wgsl"]) {
-        let lines = text.lines().count();
-        assert!(lines <= 700, "{} has {lines} lines: divide it", path.display());
-    }
-}
-
-#[test]
 fn nothing_is_silenced_or_left_undone() {
     // Written in two parts so that this file does not find itself.
     let words = [["#![", "allow"], ["#[", "allow("], ["todo", "!("], ["unimplemented", "!("], ["FIX", "ME"]];

@@ -15,8 +15,8 @@ pub(crate) struct Measures {
     methods: BTreeMap<String, BTreeSet<String>>,
     /// Functions with a tuple among their parameters.
     tuples: Vec<String>,
-    /// Files that read `settled_after`.
-    settled: BTreeSet<String>,
+    /// Files that decide by what a run is judged.
+    judging: BTreeSet<String>,
     /// Lines of the program in files that run or judge a scene themselves.
     program: usize,
     /// Lines of code and comments.
@@ -64,9 +64,9 @@ impl Measures {
         self.shared_types().count() as f64 / self.types.len() as f64
     }
 
-    /// Types whose methods stand in files of more than one folder or beside each other.
+    /// Types whose methods stand in more than one file, but for those that have a module folder to themselves.
     pub(crate) fn scattered(&self) -> impl Iterator<Item = (&String, &BTreeSet<String>)> {
-        self.methods.iter().filter(|(_, files)| files.len() > 1)
+        self.methods.iter().filter(|(_, files)| files.len() > 1 && !in_a_module(files))
     }
 
     /// Functions with tuples among their parameters.
@@ -74,9 +74,9 @@ impl Measures {
         &self.tuples
     }
 
-    /// Files that decide from when on errors are judged.
-    pub(crate) fn settled_places(&self) -> &BTreeSet<String> {
-        &self.settled
+    /// Files that decide from when on, and within which band, errors are judged.
+    pub(crate) fn judging_places(&self) -> &BTreeSet<String> {
+        &self.judging
     }
 
     /// Lines of the program that run or judge scenes.
@@ -97,8 +97,8 @@ impl fmt::Display for Measures {
         )?;
         writeln!(f, "functions with tuple parameters           {}", self.tuples.len())?;
         writeln!(f, "lines of `cli` that run or judge scenes    {}", self.program)?;
-        writeln!(f, "files that read `settled_after`            {}", self.settled.len())?;
-        writeln!(f, "types with methods in two or more files   {}", self.scattered().count())?;
+        writeln!(f, "files that decide what is judged           {}", self.judging.len())?;
+        writeln!(f, "types with scattered methods              {}", self.scattered().count())?;
         writeln!(f, "lines of the README                       {}", readme.lines().count())?;
         writeln!(f, "production lines                          {}", self.lines)
     }
@@ -125,6 +125,12 @@ impl Reader<'_> {
             self.measures.tuples.push(format!("{} in {}", signature.ident, self.shown));
         }
     }
+}
+
+/// Whether all files lie in one folder below `src`, which is a module.
+fn in_a_module(files: &BTreeSet<String>) -> bool {
+    let folders: BTreeSet<_> = files.iter().filter_map(|file| Path::new(file).parent()).collect();
+    folders.len() == 1 && folders.iter().all(|folder| folder.file_name().is_some_and(|name| name != "src"))
 }
 
 /// Whether a type is a tuple of values or a reference to one; `()` is none.
@@ -190,14 +196,11 @@ impl<'ast> Visit<'ast> for Reader<'_> {
         visit::visit_trait_item_fn(self, item);
     }
 
-    fn visit_expr_field(&mut self, item: &'ast syn::ExprField) {
-        if let (syn::Member::Named(name), syn::Expr::Field(of)) = (&item.member, &*item.base)
-            && name == "settled_after"
-            && matches!(&of.member, syn::Member::Named(expect) if expect == "expect")
-        {
-            self.measures.settled.insert(self.shown.to_owned());
+    fn visit_expr_struct(&mut self, item: &'ast syn::ExprStruct) {
+        if item.path.segments.last().is_some_and(|last| last.ident == "Judging") {
+            self.measures.judging.insert(self.shown.to_owned());
         }
-        visit::visit_expr_field(self, item);
+        visit::visit_expr_struct(self, item);
     }
 
     fn visit_path(&mut self, path: &'ast syn::Path) {
@@ -217,7 +220,7 @@ impl<'ast> Visit<'ast> for Reader<'_> {
 fn measures_are_read_from_syntax() {
     let mut measures = Measures::default();
     let text = "struct A; impl A { fn f(&self, at: (f64, f64)) {} fn g(&self, x: [f64; 2]) {} }\n\
-                fn h(a: &(u8, u8)) -> f64 { scene.expect.settled_after }\n\
+                fn h(a: &(u8, u8)) -> f64 { Judging { settled_after: 0.0 }.settled_after }\n\
                 #[cfg(test)]\nmod tests { struct B; fn k(a: (u8, u8)) {} }\n";
     measures.read("cli", Path::new("cli/src/a.rs"), text);
     measures.read("cli", Path::new("cli/src/b.rs"), "use simulation::Simulation;\nenum A {}\nimpl A {}\n");
@@ -225,7 +228,7 @@ fn measures_are_read_from_syntax() {
     assert_eq!(measures.types.len(), 1, "{:?}", measures.types);
     assert_eq!(measures.tuple_functions(), ["f in cli/src/a.rs", "h in cli/src/a.rs"]);
     assert_eq!(measures.scattered().count(), 1);
-    assert_eq!(measures.settled_places().len(), 1);
+    assert_eq!(measures.judging_places().len(), 1);
     assert_eq!((measures.program_lines(), measures.lines), (3, 5));
 }
 
@@ -235,6 +238,19 @@ fn the_source_does_not_repeat_itself() {
     let measures = Measures::of_the_project();
     println!("{measures}");
     assert_eq!(measures.program_lines(), 0, "what runs or judges scenes belongs to `studies`");
+    assert!(measures.shared_share() <= 0.03, "{:?}", measures.shared_types().collect::<Vec<_>>());
+    assert!(measures.tuple_functions().is_empty(), "{:?}", measures.tuple_functions());
+    assert_eq!(
+        measures.scattered().next(),
+        None,
+        "methods of one type stand in one file, or in a module of it"
+    );
+    let judging = ["scene/src/types/expect.rs", "vocabulary/src/judging.rs"];
+    assert!(
+        measures.judging_places().iter().all(|file| judging.contains(&file.as_str())),
+        "{:?}",
+        measures.judging
+    );
     if std::env::var_os("MEASURE_ALL").is_some() {
         for (name, files) in measures.shared_types() {
             println!("type {name}: {files:?}");
@@ -245,6 +261,6 @@ fn the_source_does_not_repeat_itself() {
         for name in measures.tuple_functions() {
             println!("tuple: {name}");
         }
-        println!("settled_after: {:?}", measures.settled_places());
+        println!("judging: {:?}", measures.judging_places());
     }
 }

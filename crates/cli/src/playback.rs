@@ -7,9 +7,6 @@ use rendering::Trail;
 use studies::RecordSource;
 use vocabulary::{FleetInfo, Judging, StepRecord};
 
-/// What nothing is judged by.
-const NOTHING: Judging = Judging { settling_band: [0.0; 2], settled_after: 0.0 };
-
 /// A source that is asked for growing times.
 pub(crate) struct Playback {
     source: RecordSource,
@@ -49,7 +46,7 @@ impl Playback {
 
     /// What was measured so far.
     pub(crate) fn metrics(&self) -> Metrics {
-        let nothing = || MetricsBuilder::new(&FleetInfo::default(), NOTHING).finish();
+        let nothing = || MetricsBuilder::new(&FleetInfo::default(), Judging::NONE).finish();
         self.metrics.as_ref().map_or_else(nothing, |metrics| metrics.finish())
     }
 

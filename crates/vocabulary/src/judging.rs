@@ -8,3 +8,8 @@ pub struct Judging {
     /// Time from which late errors count, s.
     pub settled_after: f64,
 }
+
+impl Judging {
+    /// For figures that are not judged: nothing is settled, and all errors are late ones.
+    pub const NONE: Self = Self { settling_band: [0.0; 2], settled_after: 0.0 };
+}
