@@ -32,7 +32,8 @@ pub(crate) struct SceneArgs {
 pub(crate) struct AdapterArgs {
     /// Graphics adapter for everything that is rendered, camera images of robots included: its number in `echelon doctor`,
     /// vulkan, gl, part of its name, or both as in vulkan:llvmpipe; fails if there is no such adapter
-    #[arg(id = "adapter", long = "adapter", value_name = "ADAPTER", default_value = AdapterArgs::AUTO)]
+    #[arg(id = "adapter", long = "adapter", value_name = "ADAPTER", default_value = AdapterArgs::AUTO,
+        value_parser = clap::builder::NonEmptyStringValueParser::new())]
     pub(crate) name: String,
 }
 

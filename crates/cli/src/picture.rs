@@ -4,6 +4,7 @@ use crate::args::PictureArgs;
 use crate::failure::Failure;
 use crate::print::note;
 use rendering::{AdapterChoice, Gpu, Renderer, Style, ViewLayout, Viewpoint};
+use scene::composed;
 use std::collections::BTreeSet;
 use vocabulary::FleetInfo;
 
@@ -28,7 +29,7 @@ impl RenderSetup {
         size: [u32; 2],
     ) -> Result<Self, Failure> {
         let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
-        let layout = ViewLayout::parse(args.view.as_deref().unwrap_or(view), &names)?;
+        let layout = ViewLayout::parse(&composed(args.view.as_deref().unwrap_or(view)), &names)?;
         let size = args.size.unwrap_or(size);
         let mut style = Style::without(&args.without)?;
         style.detections = args.overlay || args.inset_camera.is_some();
@@ -42,7 +43,7 @@ impl RenderSetup {
         }
         if let Some(robot) = &args.inset_camera {
             // The same words and the same mistakes as in a view.
-            let view = ViewLayout::parse(&format!("camera:{robot}"), &names)?;
+            let view = ViewLayout::parse(&composed(&format!("camera:{robot}")), &names)?;
             style.picture_in_picture = view.views.iter().find_map(|view| match view {
                 Viewpoint::Camera(index) => Some(*index),
                 _ => None,

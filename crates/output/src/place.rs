@@ -72,6 +72,9 @@ impl Place {
 
     /// Makes `folder` and those around it.
     fn made(folder: &Path) -> Result<Self, Error> {
+        if let Some(file) = folder.ancestors().find(|f| f.is_file()) {
+            return Err(Error::place(file, "is a file: name a folder"));
+        }
         let missing = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.exists());
         let place = Self { made: missing.map(Path::to_owned).collect() };
         fs::create_dir_all(folder).map_err(Error::io("create", folder))?;
@@ -215,7 +218,7 @@ mod tests {
             assert!(told(Place::file(Path::new("/dev/null"))).contains("device"));
         }
         // Below a file there is no folder, and that is no other word's fault.
-        assert!(!Place::file(&file.join("below.xml")).expect_err("refused").is_usage());
+        assert!(Place::file(&file.join("below.xml")).expect_err("refused").is_usage());
         assert_eq!(fs::read_to_string(&file).expect("untouched"), "x");
     }
 }

@@ -42,6 +42,7 @@ pub use edit::{EditError, SceneText};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
 pub use shipped::{SHIPPED, Shipped, nearest_shipped, shipped};
+pub use text::node::composed;
 pub use types::{
     Change, Compensation, Environment, Expect, Film, Follow, Ground, Law, Noise, Observer, OnContact, Patch,
     Path, Physics, Plot, PropMotion, PropSpec, Relief, Robot, Role, Scene, Sensing, SensingKind, Shot,

@@ -116,7 +116,7 @@ fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Span, repor
         reporter.report(place, message);
     }
     if let Some(mode) = said.time.mode.as_ref().filter(|mode| mode.value == TimeMode::Continuous) {
-        let words = quoted([TimeMode::Sampled, TimeMode::Measured].into_iter().map(|mode| mode.word()));
+        let words = quoted([TimeMode::Sampled, TimeMode::Measured].into_iter().map(Word::word));
         let message = format!(
             "mode `continuous` knows no looks, but `{}` senses by `{word}`; use one of {words}",
             robot.name

@@ -105,7 +105,7 @@ pub(crate) fn usual_kind(scene: &VehiclePart) -> VehicleKind {
 pub(crate) fn check_meaning(part: &VehiclePart, kind: VehicleKind, reporter: &mut Reporter) {
     for (key, place) in part.places().into_iter().filter(|(key, _)| !applies(key, kind)) {
         let others = VehicleKind::ALL.into_iter().filter(|other| applies(key, *other));
-        let others = quoted(others.map(|other| other.word()));
+        let others = quoted(others.map(Word::word));
         let kind = kind.word();
         reporter.report(
             place,

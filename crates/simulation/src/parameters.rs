@@ -49,6 +49,12 @@ pub(crate) fn sample_at(at: f64, period: f64) -> u64 {
     (at / period * (1.0 - 1e-12) - 1e-9).ceil().max(0.0) as u64
 }
 
+/// Changes by the samples at which they take hold.
+pub(crate) fn pending(changes: &[ScheduledChange], period: f64) -> VecDeque<(u64, Arc<ParameterSet>)> {
+    let turn = |turn: &ScheduledChange| (sample_at(turn.at, period), Arc::new(turn.parameters.clone()));
+    changes.iter().map(turn).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -62,10 +68,4 @@ mod tests {
         }
         assert!((0..100_000).all(|k| sample_at(k as f64 * 0.01, 0.01) == k));
     }
-}
-
-/// Changes by the samples at which they take hold.
-pub(crate) fn pending(changes: &[ScheduledChange], period: f64) -> VecDeque<(u64, Arc<ParameterSet>)> {
-    let turn = |turn: &ScheduledChange| (sample_at(turn.at, period), Arc::new(turn.parameters.clone()));
-    changes.iter().map(turn).collect()
 }

@@ -43,13 +43,13 @@ fn places_that_cannot_be_are_refused_at_once() {
     let long = ["--set", "time.duration=20000"];
     for (args, code, words) in [
         (vec!["run", &line, "--no-record", "--junit", "folder"], 2, "is a folder"),
-        (vec!["run", &line, "--no-record", "--junit", "file/x.xml"], 3, "cannot create file"),
+        (vec!["run", &line, "--no-record", "--junit", "file/x.xml"], 2, "file is a file: name a folder"),
         (vec!["run", &line, "--no-record", "--json", "--junit", "-"], 2, "name a file for one of them"),
         (vec!["compare", "folder", "folder", "--json", "--junit", "-"], 2, "name a file for one of them"),
         (vec!["run", &line, "-o", "file"], 2, "is a file"),
         (vec!["run", &line, "-o", "-"], 2, "standard output"),
         (vec!["film", &line, "-o", "-"], 2, "standard output"),
-        (vec!["film", &line, "-o", "file/f.mp4"], 3, "cannot create file"),
+        (vec!["film", &line, "-o", "file/f.mp4"], 2, "file is a file: name a folder"),
         (vec!["film", &line, "-o", "x.png"], 2, "x.png is no name of a film: write NAME.mp4, .m4v or .gif"),
         (vec!["film", &line, "-o", "x.xyz"], 2, ".webm, .mkv"),
         (vec!["film", &line, "-o", "deep/.mp4"], 2, "deep/.mp4 is no name of a film"),

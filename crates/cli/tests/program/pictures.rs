@@ -136,3 +136,23 @@ fn views_and_elements_are_documented_as_they_are_taken() {
         rendering::Viewpoint::parse(&example, &names).expect(view);
     }
 }
+
+/// Keyboards write é as one character or as two: a name is found in views by both, as everywhere.
+#[test]
+fn names_in_views_are_found_however_their_accents_are_typed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "schema = 1\ntitle = \"t\"\ntime = { duration = 1.0 }\n[[robots]]\nname = \"\u{e9}\"\npose = [0, 0, 0]\n\
+                path = { kind = \"constant\", speed = 1.0 }\n";
+    fs::write(folder.path().join("accent.toml"), text).expect("written");
+    // A folder that is called like a scene hides no scene.
+    fs::create_dir(folder.path().join("line-three")).expect("made");
+    let (code, _, err) = told(&echelon(folder.path(), &["check", "line-three"]));
+    assert_eq!(code, 0, "{err}");
+    for view in ["follow:\u{e9}", "follow:e\u{301}"] {
+        let args = ["capture", "accent.toml", "--at", "0", "--size", "64x64", "--view", view];
+        let (code, _, err) = told(&echelon(folder.path(), &args));
+        assert_eq!(code, 0, "{view}: {err}");
+    }
+    let (code, _, err) = told(&echelon(folder.path(), &["capture", "accent.toml", "--adapter", ""]));
+    assert!(code == 2 && err.contains("--adapter"), "{code}: {err}");
+}

@@ -174,7 +174,7 @@ impl About {
                     let Some(kind) = about.channels.get(&header.channel_id) else { return Ok(true) };
                     match kind {
                         LogChannel::FleetInfo => {
-                            about.fleet = record::read::<FleetRecord>(&data).map(|stage| stage.0)
+                            about.fleet = record::read::<FleetRecord>(&data).map(|stage| stage.0);
                         }
                         LogChannel::Sample => {
                             if let Some(time) = about.times.get_mut(about.samples as usize) {

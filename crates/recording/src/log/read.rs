@@ -373,7 +373,7 @@ fn take(
             if index == props.len() { props.push(place) } else { *props.get_mut(index)? = place }
         }
         LogChannel::Look(index) => {
-            record.frames.push(MeasurementRecord { edge: index, ..record::read(data)? })
+            record.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
         }
         LogChannel::Contact => record.contacts.push(record::read::<ContactRecord>(data)?.contact),
         LogChannel::Sample => {

@@ -191,6 +191,7 @@ fn fits(info: &AdapterInfo, place: usize, name: &str) -> bool {
     let name = name.trim().to_lowercase();
     let name =
         ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, known)| (*known).to_owned());
+    let name = name.strip_prefix("opengl:").map_or(name.clone(), |word| format!("gl:{word}"));
     if name.bytes().all(|byte| byte.is_ascii_digit()) {
         return name.parse() == Ok(place);
     }
@@ -273,6 +274,7 @@ mod tests {
             ("GL:LLVMpipe", Some(2)),
             ("lavapipe", Some(1)),
             ("OpenGL", Some(2)),
+            ("opengl:llvmpipe", Some(2)),
             ("h200", Some(0)),
             ("0", Some(0)),
             ("2", Some(2)),

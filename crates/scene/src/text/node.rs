@@ -147,7 +147,7 @@ impl Node {
 }
 
 /// Text as most people write it: letters with their accents as one character each, so that what looks alike is alike.
-pub(crate) fn composed(text: &str) -> String {
+pub fn composed(text: &str) -> String {
     text.nfc().collect()
 }
 
