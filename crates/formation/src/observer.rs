@@ -44,7 +44,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The start that equations.md chooses: ŝ1 = s(0), ŝ2 = 0.
+    /// The start chosen where the paper is silent: ŝ1 = s(0), ŝ2 = 0 (see `docs/laws.md`).
     pub fn at(relative: &Relative) -> Self {
         Self { output: [relative.distance, relative.bearing], rates: [0.0; 2] }
     }

@@ -217,7 +217,7 @@ mod tests {
         if cfg!(unix) {
             assert!(told(Place::file(Path::new("/dev/null"))).contains("device"));
         }
-        // Below a file there is no folder, and that is no other word's fault.
+        // Below a file there is no folder.
         assert!(Place::file(&file.join("below.xml")).expect_err("refused").is_usage());
         assert_eq!(fs::read_to_string(&file).expect("untouched"), "x");
     }

@@ -93,7 +93,6 @@ fn note_cycle(
     // A robot that follows itself has its own message.
     if cycle.len() > 1 {
         let chain: Vec<_> = cycle.iter().chain([&name]).map(|robot| format!("`{robot}`")).collect();
-        reporter
-            .report(leader.place, format!("following comes round in a circle: {}", chain.join(" follows ")));
+        reporter.report(leader.place, format!("the followers form a cycle: {}", chain.join(" follows ")));
     }
 }

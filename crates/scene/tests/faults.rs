@@ -227,7 +227,7 @@ fn a_name_given_twice_by_the_command_line_is_shown_there() {
 #[test]
 fn cycles_name_their_robots() {
     let text = format!("{GOOD}{}{}{}", another("a", "c"), another("b", "a"), another("c", "b"));
-    assert_fault(&text, (26, 10), &["in a circle", "`a` follows `c` follows `b` follows `a`"]);
+    assert_fault(&text, (26, 10), &["form a cycle", "`a` follows `c` follows `b` follows `a`"]);
     let tail = format!("{text}{}", another("d", "a"));
     assert_eq!(faults(&tail).len(), 1, "a robot behind a cycle is no second cycle");
 }

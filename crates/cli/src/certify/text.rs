@@ -131,7 +131,7 @@ fn statement(finding: &StatementFinding) {
         }
         match (finding.margin, when.is_empty()) {
             (None, _) => {}
-            (Some(_), true) => say(&format!("{:51}by the numbers it is so all the same", "")),
+            (Some(_), true) => say(&format!("{:51}the inequality nevertheless holds numerically", "")),
             (Some(_), false) => say(&format!("{:51}by the numbers it is not so {when}", "")),
         }
     }
