@@ -31,7 +31,7 @@ pub const NAMES: &[&str] = &[
     "Speeds",
     "Observer error",
     "Energy",
-    "Room",
+    "Clearance",
     "Certificates",
 ];
 
@@ -62,7 +62,7 @@ pub fn arrangement() -> Tree<Pane> {
         tabs(&["Errors"]),
         tabs(&["Commands", "Speeds"]),
         tabs(&["Observer error"]),
-        tabs(&["Energy", "Certificates", "Room"]),
+        tabs(&["Energy", "Certificates", "Clearance"]),
     ];
     let left = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [formation, edge], 0.46));
     let right = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [law, more], 0.48));
@@ -209,7 +209,7 @@ fn show(ui: &mut Ui, pane: Pane, panels: &mut Panels<'_>) {
             );
         }
         "Certificates" => panels::certificates::show(ui, app_state, out),
-        "Room" => panels::curves::show(ui, app_state, &[PlotQuantity::Clearance], out),
+        "Clearance" => panels::curves::show(ui, app_state, &[PlotQuantity::Clearance], out),
         _ => {}
     }
 }
