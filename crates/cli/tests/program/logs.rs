@@ -148,8 +148,8 @@ fn a_log_without_a_scene_is_compared_by_its_moments() {
     record(folder.path(), "run", "circle-three", &[]);
     let mut bytes = fs::read(folder.path().join("run/log.mcap")).expect("a log");
     // The library's name stands in the header, and says whose it is.
-    let library = bytes.windows(8).position(|name| name == b"echelon ").expect("a header");
-    bytes[library..library + 7].copy_from_slice(b"another");
+    let name_at = bytes.windows(8).position(|name| name == b"echelon ").expect("a header");
+    bytes[name_at..name_at + 7].copy_from_slice(b"another");
     // Before its name an attachment (9) has its length, two times and the length of the name; 0x90 is nobody's record.
     let names: Vec<usize> = (29..bytes.len()).filter(|at| bytes[*at..].starts_with(b"scene.toml")).collect();
     let attachments: Vec<usize> = names.into_iter().map(|at| at - 29).filter(|at| bytes[*at] == 9).collect();

@@ -13,7 +13,7 @@ use super::writer::Writer;
 use super::{FORMAT, NAME, Topics, other_layout};
 use crate::manifest;
 use crate::{Error, Manifest, Status};
-use mcap::records::{MessageHeader, Record as Item};
+use mcap::records::{Header, MessageHeader, Record as Item};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
@@ -34,7 +34,7 @@ pub(super) struct Imported {
 /// What a foreign log holds besides its moments.
 #[derive(Default)]
 struct About {
-    library: String,
+    writer: String,
     format: Option<String>,
     manifest: Option<String>,
     scene: Option<String>,
@@ -144,7 +144,7 @@ impl About {
         let mut last = 0;
         read(file, path, |item| {
             match item {
-                Item::Header(header) => about.library = header.library,
+                Item::Header(Header { library, .. }) => about.writer = library,
                 Item::Metadata(metadata) if metadata.name == NAME => {
                     about.format = metadata.metadata.get("format").cloned();
                 }
@@ -218,7 +218,7 @@ impl About {
 
     /// What was done with the log, and what it lacks.
     fn remark(&self, count: u64, sound: bool) -> String {
-        let anew = format!("was written anew by {}", self.library);
+        let anew = format!("was written anew by {}", self.writer);
         let lacks =
             [(self.scene.is_none(), "its scene"), (self.manifest.is_none(), "its manifest with the digest")];
         let lacks: Vec<&str> = lacks.iter().filter(|(lacks, _)| *lacks).map(|(_, what)| *what).collect();

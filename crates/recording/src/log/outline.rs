@@ -2,7 +2,7 @@
 
 use super::{NAME, OURS};
 use crate::Error;
-use mcap::records::{Record as Chunked, op};
+use mcap::records::{Header, Record as Chunked, op};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -92,8 +92,8 @@ impl ChunkOutline {
                 }
                 op::HEADER if length < LONGEST => {
                     let bytes = body(&mut reader, start, length).map_err(io)?;
-                    if let Ok(Chunked::Header(header)) = parse(*code, &bytes) {
-                        outline.foreign = !header.library.starts_with(OURS);
+                    if let Ok(Chunked::Header(Header { library, .. })) = parse(*code, &bytes) {
+                        outline.foreign = !library.starts_with(OURS);
                     }
                 }
                 op::MESSAGE => outline.foreign = true,

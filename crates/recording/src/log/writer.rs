@@ -120,9 +120,9 @@ impl Writer {
         manifest: &Manifest,
         drawn: bool,
     ) -> Result<Self, Error> {
-        let options = WriteOptions::new()
+        let ours = format!("{OURS}{}", env!("CARGO_PKG_VERSION"));
+        let options = WriteOptions::library(WriteOptions::new(), ours)
             .compression(Some(Compression::Lz4))
-            .library(format!("{OURS}{}", env!("CARGO_PKG_VERSION")))
             // Chunks end between two samples, by `flush`, and reach the file whole.
             .chunk_size(None)
             .disable_seeking(true);

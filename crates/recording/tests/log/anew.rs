@@ -21,16 +21,15 @@ struct Anew {
     plain_channels: bool,
     /// A topic that is left out.
     without: Option<&'static str>,
-    /// The library that is named.
-    library: &'static str,
+    /// The writer that is named.
+    writer: &'static str,
     /// Times that are kept, ns; all if empty. What stands at time 0 besides samples is kept.
     span: Option<[u64; 2]>,
 }
 
 fn rewrite(from: &Path, to: &Path, how: Anew) {
     let bytes = fs::read(from).expect("a log");
-    let options = mcap::WriteOptions::new()
-        .library(how.library)
+    let options = mcap::WriteOptions::library(mcap::WriteOptions::new(), how.writer)
         .compression(Some(mcap::Compression::Zstd))
         .use_chunks(!how.bare)
         .chunk_size(Some(5000));
@@ -74,20 +73,20 @@ fn what_another_program_wrote_anew_is_read() {
     let original = folder.path().join(FILE);
     assert_eq!(Log::open(&original).expect("a log").remark(), None);
     let copy = folder.path().join("copy.mcap");
-    let other = Anew { library: "mcap go v1.7", ..Anew::default() };
+    let other = Anew { writer: "mcap go v1.7", ..Anew::default() };
     for how in [
         other,
         Anew { bare: true, ..other },
         Anew { plain_channels: true, ..other },
         Anew { by_topic: true, ..other },
         // Whoever copies the head of a file says that we wrote it.
-        Anew { library: "echelon 0.1.0", ..other },
-        Anew { library: "echelon 0.1.0", bare: true, ..other },
+        Anew { writer: "echelon 0.1.0", ..other },
+        Anew { writer: "echelon 0.1.0", bare: true, ..other },
     ] {
         rewrite(&original, &copy, how);
         let log = Log::open(&copy).expect("a log");
         assert_eq!((log.manifest(), log.scene()), (&manifest, "schema = 1\ntitle = \"x\"\n"));
-        assert!(log.remark().is_some_and(|remark| remark.contains(how.library)), "{:?}", log.remark());
+        assert!(log.remark().is_some_and(|remark| remark.contains(how.writer)), "{:?}", log.remark());
         let read: Vec<StepRecord> = log.records().map(|m| m.expect("a moment")).collect();
         assert_eq!(read.len(), records.len());
         for (read, record) in read.iter().zip(&records) {
@@ -113,7 +112,7 @@ fn what_another_program_left_out_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let (records, _) = record(folder.path(), 250, Status::Complete);
     let (original, copy) = (folder.path().join(FILE), folder.path().join("copy.mcap"));
-    let other = Anew { library: "mcap go v1.7", ..Anew::default() };
+    let other = Anew { writer: "mcap go v1.7", ..Anew::default() };
     rewrite(&original, &copy, Anew { attachments: true, ..other });
     let log = Log::open(&copy).expect("a log");
     let remark = log.remark().expect("a remark");
