@@ -579,7 +579,7 @@ class Test:
         lab = Lab(self, self.scene.name, "--paused")
         subprocess.run([sys.executable, "-c", DESTROY, str(lab.window)], env=self.environment, check=True)
         code, said = lab.ended(20), lab.err.read_text().strip()
-        check(code == 3 and "taken away from outside" in said, f"exit code {code}: {said}")
+        check(code == 3 and "another program destroyed the window" in said, f"exit code {code}: {said}")
         check("\n" not in said and "panick" not in said, f"not one line: {said}")
         return said
 

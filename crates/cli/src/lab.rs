@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use clap::Args;
 use scene::Override;
+use signal_hook::low_level;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -40,9 +41,18 @@ pub(crate) fn lab(args: LabArgs) -> Outcome {
         size: args.size.map(|size| size.map(|side| side as f32)),
         timings: args.timings,
         stop: Some(interrupt::asked),
+        abandon: Some(abandon),
     };
     lab::open(options).map_err(|error| match error {
         lab::Error::Window(text) => Failure::Machine(text),
         lab::Error::Interrupted => Failure::Interrupted(error.to_string()),
     })
+}
+
+/// Ends the process as [`lab`] would have failed: the window library leaves no way back to it.
+fn abandon(reason: &str) {
+    let failure = Failure::Machine(reason.to_owned());
+    failure.tell();
+    // Nothing that runs at an ordinary exit may wait for a window that is gone.
+    low_level::exit(failure.code().into())
 }

@@ -16,7 +16,6 @@ pub mod gallery;
 pub mod kept_run;
 pub mod keys;
 pub mod look;
-mod lost;
 pub mod panels;
 pub mod panes;
 pub mod quantities;
@@ -25,6 +24,7 @@ pub mod symbols;
 pub mod tidy;
 pub mod view;
 mod window;
+mod window_guard;
 
 pub use window::{Options, open};
 

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::app::LabApp;
-use crate::lost;
+use crate::window_guard::guarded;
 use eframe::egui::ViewportBuilder;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use std::path::PathBuf;
@@ -26,6 +26,8 @@ pub struct Options {
     pub timings: bool,
     /// Asked again and again; the window closes when it says so.
     pub stop: Option<fn() -> bool>,
+    /// Gets the reason where the window library is about to abort the process; may end it in a better way.
+    pub abandon: Option<fn(&str)>,
 }
 
 /// Name under which the window keeps its arrangement.
@@ -56,6 +58,7 @@ pub fn open(options: Options) -> Result<(), Error> {
         dithering: false,
         ..eframe::NativeOptions::default()
     };
+    let abandon = options.abandon.unwrap_or(|_| ());
     let ended = Arc::new(Mutex::new(None));
     let why = Arc::clone(&ended);
     let show = || {
@@ -68,7 +71,7 @@ pub fn open(options: Options) -> Result<(), Error> {
             }),
         )
     };
-    let made = lost::told(show).map_err(Error::Window)?;
+    let made = guarded(show, abandon).map_err(Error::Window)?;
     let ended: Option<Error> = ended.lock().unwrap_or_else(PoisonError::into_inner).take();
     match (made, ended) {
         (Ok(()), None) => Ok(()),
