@@ -13,14 +13,20 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
     run.record.frames.clone_from(&run.frames);
     for (index, (edge, out)) in run.formation.edges().iter().zip(&mut run.record.edges).enumerate() {
         let robots = &mut run.record.snapshot.robots;
-        let relative = Relative::between(robots[edge.leader].motion.pose, robots[edge.follower].motion.pose);
         let decision = &run.state.decisions[index];
         let wanted = decision.set_point;
         let looks = run.sensing.as_ref().filter(|_| run.formation.laws()[index].looks.is_some());
-        let (age, pan) =
-            looks.map_or_else(|| (0.0, wrap(relative.view_angle - PI)), |sensing| sensing.age_and_pan(index));
-        robots[edge.follower].camera_pan = pan;
         let known = &run.observations[index];
+        let (relative, age, pan) = match looks {
+            // What a follower without a sensor knows is the truth.
+            None => (known.relative, 0.0, wrap(known.relative.view_angle - PI)),
+            Some(sensing) => {
+                let [leader, follower] = [edge.leader, edge.follower].map(|k| robots[k].motion.pose);
+                let (age, pan) = sensing.age_and_pan(index);
+                (Relative::between(leader, follower), age, pan)
+            }
+        };
+        robots[edge.follower].camera_pan = pan;
         *out = EdgeState {
             relative,
             seen: known.relative,

@@ -36,19 +36,19 @@ fn stretch(lead: &dyn Trajectory, pose: Pose, from: f64, h: f64, halvings: u32) 
         let middle = stretch(lead, pose, from, 0.5 * h, halvings - 1);
         return stretch(lead, middle, from + 0.5 * h, 0.5 * h, halvings - 1);
     }
-    let heading = |t: f64| {
-        let turned: f64 =
-            GAUSS.iter().map(|(node, weight)| weight * lead.at(from + node * t).turn_rate).sum();
+    let heading = |t: f64, drives: [MotionInput; 3]| {
+        let turned: f64 = GAUSS.iter().zip(drives).map(|((_, weight), drive)| weight * drive.turn_rate).sum();
         pose.heading + t * turned
     };
     let (mut x, mut y) = (pose.x, pose.y);
     for ((node, weight), drive) in GAUSS.into_iter().zip(drives) {
-        let (sin, cos) = heading(node * h).sin_cos();
+        let t = node * h;
+        let (sin, cos) = heading(t, GAUSS.map(|(node, _)| lead.at(from + node * t))).sin_cos();
         let share = h * weight * drive.speed;
         x += share * cos;
         y += share * sin;
     }
-    Pose::new(x, y, wrap(heading(h)))
+    Pose::new(x, y, wrap(heading(h, drives)))
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 //! 1 m/s and 10 rad/s is below 1e-12 m per second.
 
 use crate::{Handling, World, arc, prescribed::prescribed, touch::Touches};
+use std::cell::RefCell;
 use std::sync::Arc;
 use vocabulary::{
     Body, Command, Contact, Limits, Motion, Pose, RobotState, Snapshot, StepInterpolant, Trajectory,
@@ -37,13 +38,16 @@ pub struct Unicycles {
 }
 
 /// How one robot moves over the current step.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 struct UnicycleStep {
     start: Motion,
     sin: f64,
     cos: f64,
     /// When the speed meets its bound, and the motion from there.
     saturation_time: Option<(f64, Motion)>,
+    /// Where a lead robot was found at an elapsed time, s: every follower asks for the same times, and an integral costs
+    /// more than a search.
+    found: RefCell<Vec<(f64, Motion)>>,
 }
 
 impl Unicycles {
@@ -76,7 +80,10 @@ impl Unicycles {
         self.started = self.snapshot.time;
         self.duration = duration;
         for (index, robot) in self.robots.iter().enumerate() {
-            self.steps[index] = UnicycleStep::begin(&self.snapshot.robots[index].motion, robot, duration);
+            let mut found = std::mem::take(&mut self.steps[index].found);
+            found.get_mut().clear();
+            let start = &self.snapshot.robots[index].motion;
+            self.steps[index] = UnicycleStep { found, ..UnicycleStep::begin(start, robot, duration) };
         }
         for index in 0..self.robots.len() {
             let end = self.motion_of(index, duration);
@@ -95,7 +102,9 @@ impl Unicycles {
     fn motion_of(&self, robot: usize, elapsed: f64) -> Motion {
         let step = &self.steps[robot];
         match (&self.robots[robot].lead, step.saturation_time) {
-            (Some(lead), _) => prescribed(lead.as_ref(), step.start.pose, self.started, elapsed),
+            (Some(lead), _) => {
+                step.found(elapsed, || prescribed(lead.as_ref(), step.start.pose, self.started, elapsed))
+            }
             (None, Some((saturation_time, after))) if elapsed > saturation_time => {
                 arc::after(&after, elapsed - saturation_time)
             }
@@ -156,10 +165,13 @@ impl StepInterpolant for Unicycles {
     }
 }
 
+/// Elapsed times that are kept: the nodes of a track, its middle, and the ends.
+const FOUND: usize = 12;
+
 impl UnicycleStep {
     fn begin(start: &Motion, robot: &Unicycle, duration: f64) -> Self {
         let (sin, cos) = start.pose.heading.sin_cos();
-        let mut step = Self { start: *start, sin, cos, saturation_time: None };
+        let mut step = Self { start: *start, sin, cos, ..Self::default() };
         if robot.lead.is_some() || start.acceleration == 0.0 {
             return step;
         }
@@ -170,6 +182,19 @@ impl UnicycleStep {
             step.saturation_time = Some((reach.max(0.0), Motion { speed: bound, acceleration: 0.0, ..met }));
         }
         step
+    }
+
+    /// The motion after `elapsed` s, computed once.
+    fn found(&self, elapsed: f64, motion: impl FnOnce() -> Motion) -> Motion {
+        let mut found = self.found.borrow_mut();
+        if let Some((_, motion)) = found.iter().find(|(at, _)| *at == elapsed) {
+            return *motion;
+        }
+        let motion = motion();
+        if found.len() < FOUND {
+            found.push((elapsed, motion));
+        }
+        motion
     }
 
     /// Path length after `elapsed` s, m; for a lead robot to first order in its acceleration.
