@@ -49,6 +49,10 @@ impl Trajectory for AnalyticTrajectory {
             (self.speed.at(time), self.turn_rate.at(time));
         MotionInput { speed, acceleration, turn_rate, turn_acceleration }
     }
+
+    fn ranges(&self) -> Option<[[f64; 2]; 2]> {
+        Some([self.speed.range(), self.turn_rate.range()])
+    }
 }
 
 /// Speed and turn rate read from a table, smooth between its rows and constant outside them.

@@ -84,7 +84,7 @@ pub(crate) fn expand(
         }
         let (distance, bearing) = spot.set_point(member);
         if let Some(found) = member.and_then(|keys| keys.distance.as_ref()) {
-            check_distance(distance.least(), own.law.distance_min, found.place, reporter);
+            check_distance(distance.range()[0], own.law.distance_min, found.place, reporter);
         }
         let Outfit { vehicle, law, observer, sensing } = own;
         let name = group.name(place);

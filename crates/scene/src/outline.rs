@@ -12,6 +12,8 @@ pub(crate) struct Outline {
     /// Middle and direction.
     pose: Pose,
     form: OutlineForm,
+    /// Largest distance from the middle, m.
+    reach: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -23,12 +25,20 @@ enum OutlineForm {
 }
 
 impl Outline {
+    fn new(pose: Pose, form: OutlineForm) -> Self {
+        let reach = match form {
+            OutlineForm::Box([length, width]) => length.hypot(width),
+            OutlineForm::Disc(radius) => radius,
+        };
+        Self { pose, form, reach }
+    }
+
     /// Of a robot at its start.
     pub(crate) fn of_robot(robot: &Robot) -> Self {
         let body = robot.vehicle.body();
         let [x, y] = robot.pose.world_from_body(0.5 * body.wheelbase, 0.0);
         let pose = Pose::new(x, y, robot.pose.heading);
-        Self { pose, form: OutlineForm::Box([0.5 * body.length, 0.5 * body.width]) }
+        Self::new(pose, OutlineForm::Box([0.5 * body.length, 0.5 * body.width]))
     }
 
     /// Of a solid at a pose.
@@ -37,34 +47,27 @@ impl Outline {
             Solid::Block { size } | Solid::Wedge { size } => OutlineForm::Box([0.5 * size[0], 0.5 * size[1]]),
             Solid::Cylinder { radius, .. } | Solid::Cone { radius, .. } => OutlineForm::Disc(radius),
         };
-        Self { pose, form }
+        Self::new(pose, form)
     }
 
     /// [least, largest] x that it may cover, m.
     pub(crate) fn span(&self) -> [f64; 2] {
-        [self.pose.x - self.reach(), self.pose.x + self.reach()]
-    }
-
-    /// Largest distance from the middle, m.
-    fn reach(&self) -> f64 {
-        match self.form {
-            OutlineForm::Box([length, width]) => length.hypot(width),
-            OutlineForm::Disc(radius) => radius,
-        }
+        [self.pose.x - self.reach, self.pose.x + self.reach]
     }
 
     fn apart(&self, other: &Self) -> f64 {
-        (self.pose.x - other.pose.x).hypot(self.pose.y - other.pose.y)
+        let [x, y] = [self.pose.x - other.pose.x, self.pose.y - other.pose.y];
+        (x * x + y * y).sqrt()
     }
 
     /// Whether discs around both are at least `distance` (m) apart.
     pub(crate) fn far_from(&self, other: &Self, distance: f64) -> bool {
-        self.apart(other) - self.reach() - other.reach() >= distance
+        self.apart(other) - self.reach - other.reach >= distance
     }
 
     /// Whether they overlap; touching is none.
     pub(crate) fn overlaps(&self, other: &Self) -> bool {
-        if self.apart(other) >= self.reach() + other.reach() - ROUNDING {
+        if self.apart(other) >= self.reach + other.reach - ROUNDING {
             return false;
         }
         // Convex shapes are apart where some line divides them: along a side of a box, or across the way from a disc's

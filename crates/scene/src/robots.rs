@@ -146,7 +146,7 @@ fn follow(
     let sensing = keys.sensing.as_ref().map_or_else(SensingPart::default, |found| found.value.clone());
     let speed = start_speed(keys.speed.as_ref(), vehicle, reporter);
     let (distance, bearing) = (keys.distance.as_ref()?, keys.bearing.as_ref()?);
-    check_distance(distance.value.least(), law.distance_min, distance.place, reporter);
+    check_distance(distance.value.range()[0], law.distance_min, distance.place, reporter);
     Some(Follow {
         leader: keys.leader.as_ref()?.value.clone(),
         speed,

@@ -46,7 +46,7 @@ fn assert_sound(scene: &Scene) {
         assert!(robot.vehicle.speed_min < robot.vehicle.speed_max);
         if let Role::Follow(follow) = &robot.role {
             assert!(scene.index_of(&follow.leader).is_some());
-            assert!(follow.distance.least() >= follow.law.distance_min);
+            assert!(follow.distance.range()[0] >= follow.law.distance_min);
         }
     }
 }

@@ -65,6 +65,15 @@ pub(crate) fn undrivable(motion: &PathMotion, limits: &Limits, [from, to]: [f64;
         }
     }
     let trajectory = motion.trajectory();
+    // A turn rate that fits the slowest and the fastest speed fits those between: the bound rises, then falls.
+    if let Some([[slowest, fastest], turns]) = trajectory.ranges() {
+        let turn_rate = turns[0].abs().max(turns[1].abs());
+        if slowest >= 0.0
+            && [slowest, fastest].iter().all(|speed| judge(from, None, *speed, turn_rate).is_none())
+        {
+            return None;
+        }
+    }
     let instants = (0..=INSTANTS).filter_map(|k| {
         let time = from + (to - from) * f64::from(k) / f64::from(INSTANTS);
         let MotionInput { speed, turn_rate, .. } = trajectory.at(time);

@@ -50,12 +50,18 @@ impl ScalarTrajectory {
         }
     }
 
-    /// The least value at any time.
-    pub fn least(&self) -> f64 {
+    /// The least and the largest value at any time.
+    pub fn range(&self) -> [f64; 2] {
+        let of = |values: &[f64]| {
+            [
+                values.iter().fold(f64::INFINITY, |a, b| a.min(*b)),
+                values.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b)),
+            ]
+        };
         match self {
-            Self::Constant(value) => *value,
-            Self::Sinusoid { mean, amplitude, .. } => mean - amplitude.abs(),
-            Self::Ramps(ramps) => ramps.iter().map(|r| r.from.min(r.to)).fold(f64::INFINITY, f64::min),
+            Self::Constant(value) => [*value; 2],
+            Self::Sinusoid { mean, amplitude, .. } => of(&[mean - amplitude, mean + amplitude]),
+            Self::Ramps(ramps) => of(&ramps.iter().flat_map(|r| [r.from, r.to]).collect::<Vec<_>>()),
         }
     }
 }
