@@ -63,6 +63,7 @@ pub(crate) fn expand(
 ) -> Option<()> {
     let keys = group.keys;
     let count = group.count(drafts.len(), reporter)?;
+    drafts.reserve(count);
     group.check_members(reporter);
     let usual = group.outfit(None, defaults, reporter)?;
     let speed = start_speed(keys.speed.as_ref(), &usual.vehicle, reporter);
