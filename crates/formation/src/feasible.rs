@@ -3,6 +3,7 @@
 //! A follower that keeps its place in the leader's frame moves like a point of a rigid body. With the leader at v and ω,
 //! the place [x, y] moves at (v − ω y, ω x) in the leader's frame and turns with ω.
 
+use vocabulary::math;
 use vocabulary::{Limits, MotionInput};
 
 /// Why a place cannot be held.
@@ -39,7 +40,7 @@ pub fn unholdable_now(
     distance_min: f64,
 ) -> Option<Infeasible> {
     let [x, y] = place;
-    if x.hypot(y) < distance_min {
+    if math::hypot(x, y) < distance_min {
         return Some(Infeasible::TooClose);
     }
     let (needed, moving) = (held(place, leader), leader.speed > limits.speed_min);
@@ -62,7 +63,7 @@ pub fn unholdable_now(
 pub fn held(place: [f64; 2], leader: &MotionInput) -> MotionInput {
     let [x, y] = place;
     let (ahead, aside) = (leader.speed - leader.turn_rate * y, leader.turn_rate * x);
-    let speed = ahead.hypot(aside);
+    let speed = math::hypot(ahead, aside);
     if speed <= f64::EPSILON {
         return MotionInput { speed, acceleration: 0.0, ..*leader };
     }
@@ -91,7 +92,8 @@ mod tests {
     #[test]
     fn a_bend_is_too_fast_outside_and_too_slow_inside() {
         // The paper's circle: 1.1 m/s and 0.3 rad/s; the outer follower needs 1.486 m/s of 1.6.
-        let place = |distance: f64, bearing: f64| [distance * bearing.cos(), distance * bearing.sin()];
+        let place =
+            |distance: f64, bearing: f64| [distance * math::cos(bearing), distance * math::sin(bearing)];
         let at = |d, b: f64| unholdable(place(d, b.to_radians()), [1.0, 0.3], &Limits::PAPER, 0.1);
         assert_eq!(at(2.0, -135.0), None);
         assert_eq!(at(3.0, -90.0), Some(Infeasible::TooFast));
@@ -119,9 +121,9 @@ mod tests {
             for k in 0..steps {
                 let s = (f64::from(k) + 0.5) * h;
                 let v = leader.speed + leader.acceleration * s;
-                (x, y) = (x + v * heading(s).cos() * h, y + v * heading(s).sin() * h);
+                (x, y) = (x + v * math::cos(heading(s)) * h, y + v * math::sin(heading(s)) * h);
             }
-            let (sin, cos) = heading(t).sin_cos();
+            let (sin, cos) = math::sin_cos(heading(t));
             [x + place[0] * cos - place[1] * sin, y + place[0] * sin + place[1] * cos]
         };
         let h = 1e-3;
@@ -131,7 +133,7 @@ mod tests {
         };
         let polar = |t: f64| {
             let [x, y] = velocity(t);
-            [x.hypot(y), y.atan2(x)]
+            [math::hypot(x, y), math::atan2(y, x)]
         };
         let (before, now, after) = (polar(-h), polar(0.0), polar(h));
         let [speed, acceleration, turn_rate] =

@@ -81,6 +81,7 @@ impl Trajectory for TabulatedTrajectory {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vocabulary::math;
 
     /// Position and heading after driving `trajectory` for `duration` s, by a fine midpoint rule.
     fn drive(trajectory: &dyn Trajectory, duration: f64) -> [f64; 3] {
@@ -90,8 +91,8 @@ mod tests {
         for k in 0..steps {
             let d = trajectory.at((f64::from(k) + 0.5) * h);
             let middle = heading + d.turn_rate * h / 2.0;
-            x += d.speed * middle.cos() * h;
-            y += d.speed * middle.sin() * h;
+            x += d.speed * math::cos(middle) * h;
+            y += d.speed * math::sin(middle) * h;
             heading += d.turn_rate * h;
         }
         [x, y, heading]
@@ -102,7 +103,7 @@ mod tests {
         let eight = AnalyticTrajectory::figure_eight(0.8, 40.0);
         for (time, name) in [(40.0, "end"), (20.0, "crossing")] {
             let [x, y, _] = drive(&eight, time);
-            assert!(x.hypot(y) < 1e-3, "{name}: {x} {y}");
+            assert!(math::hypot(x, y) < 1e-3, "{name}: {x} {y}");
         }
         assert!(drive(&eight, 40.0)[2].abs() < 1e-6);
         assert_eq!(eight.at(0.0).turn_rate, 0.0);

@@ -15,6 +15,7 @@ pub mod graph;
 pub mod law;
 pub mod lead;
 pub mod looks;
+mod matrix_exponential;
 pub mod observer;
 pub mod relative;
 pub mod set_point;

@@ -15,6 +15,7 @@
 
 mod stretch;
 
+use crate::matrix_exponential::exponential;
 use crate::relative::Geometry;
 use nalgebra::{Matrix4, Vector4};
 pub(crate) use stretch::input_effect;
@@ -176,7 +177,7 @@ impl Observer {
         let particular = self.polynomial_solution(stretch, &column);
         let at_end: Vector4<f64> = particular.iter().sum();
         let matrix = self.matrix(&column) * stretch.duration;
-        at_end + matrix.exp() * (start - particular[0])
+        at_end + exponential(&matrix) * (start - particular[0])
     }
 
     /// The system matrix of [d1/ε, d2] with a constant first column of g_s, 1/s.
@@ -230,7 +231,7 @@ const SERIES_TERMS: usize = 40;
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use vocabulary::{Pose, nearest_turn};
+    use vocabulary::{Pose, math, nearest_turn};
 
     /// A leader on a gentle curve and a follower that holds `acceleration` and `turn_rate`, at time t.
     fn sample(t: f64, acceleration: f64, turn_rate: f64) -> EdgeSample {
@@ -241,7 +242,7 @@ mod tests {
             for k in 0..=n {
                 let s = t * f64::from(k) / f64::from(n);
                 let weight = if k == 0 || k == n { 1.0 } else { f64::from(2 + 2 * (k % 2)) };
-                let (sin, cos) = (h0 + w * s).sin_cos();
+                let (sin, cos) = math::sin_cos(h0 + w * s);
                 x += weight * (v + a * s) * cos;
                 y += weight * (v + a * s) * sin;
             }

@@ -3,6 +3,7 @@
 //! Indices of the paper: i is the leader, j the follower.
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+use vocabulary::math;
 use vocabulary::{MotionInput, Relative};
 
 /// A relative position ready for the equations: sines and cosines taken, distance kept off zero.
@@ -23,8 +24,8 @@ pub struct Geometry {
 impl Geometry {
     /// The geometry of `relative`, its distance at least `distance_min` m (ℓ_min) wherever it divides.
     pub fn new(relative: &Relative, distance_min: f64) -> Self {
-        let (sin_bearing, cos_bearing) = relative.bearing.sin_cos();
-        let (sin_view, cos_view) = relative.view_angle.sin_cos();
+        let (sin_bearing, cos_bearing) = math::sin_cos(relative.bearing);
+        let (sin_view, cos_view) = math::sin_cos(relative.view_angle);
         Self { distance: relative.distance.max(distance_min), sin_bearing, cos_bearing, sin_view, cos_view }
     }
 
@@ -140,7 +141,7 @@ mod tests {
                 let heading =
                     |s: f64| now.pose.heading + now.drive.turn_rate * s + d.turn_acceleration * s * s / 2.0;
                 let speed = |s: f64| now.drive.speed + d.acceleration * s;
-                let slope = |s: f64| (speed(s) * heading(s).cos(), speed(s) * heading(s).sin());
+                let slope = |s: f64| (speed(s) * math::cos(heading(s)), speed(s) * math::sin(heading(s)));
                 let (a, b, c) = (slope(0.0), slope(h / 2.0), slope(h));
                 let pose = Pose::new(
                     now.pose.x + h / 6.0 * (a.0 + 4.0 * b.0 + c.0),

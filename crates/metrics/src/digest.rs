@@ -1,9 +1,10 @@
 //! One number for a whole trajectory.
 
-use vocabulary::{Relative, StepRecord};
+use vocabulary::{Contact, Relative, StepRecord};
 use xxhash_rust::xxh3::Xxh3;
 
-/// A running 128-bit digest (XXH3) of every f64 of every moment, in order: equal only for bitwise equal runs.
+/// A running 128-bit digest (XXH3) of every number of every moment, in order: equal only for bitwise equal runs, but for
+/// the sign of zeros, which processors set differently.
 #[derive(Clone, Default)]
 pub struct Digest {
     hash: Xxh3,
@@ -11,37 +12,77 @@ pub struct Digest {
 }
 
 impl Digest {
-    /// Takes in a moment: time, poses, speeds, commands, estimates, props, contacts, looks at leaders.
+    /// Takes in a moment.
     pub fn push(&mut self, record: &StepRecord) {
         self.bytes.clear();
-        let mut put = |values: &[f64]| self.bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
-        put(&[record.snapshot.time]);
-        for robot in &record.snapshot.robots {
-            let m = &robot.motion;
-            put(&[m.pose.x, m.pose.y, m.pose.heading, m.speed, m.acceleration, m.turn_rate]);
-            put(&[robot.attitude.height, robot.attitude.roll, robot.attitude.pitch]);
-        }
-        for edge in &record.edges {
-            put(&[edge.set_point[0], edge.set_point[1], edge.error[0], edge.error[1]]);
-            put(&[edge.applied.acceleration, edge.applied.turn_rate, edge.rates[0], edge.rates[1]]);
-        }
-        for prop in &record.snapshot.props {
-            put(&prop.position);
-            put(&prop.rotation);
-        }
-        for contact in &record.contacts {
-            put(&[contact.begin, contact.end, contact.impulse]);
-        }
-        for frame in &record.frames {
-            let Relative { distance, bearing, view_angle } = frame.measurement.relative;
-            put(&[frame.measurement.stamp, frame.arrival, distance, bearing, view_angle]);
-        }
+        let bytes = &mut self.bytes;
+        numbers(record, |_, _, value| bytes.extend((value + 0.0).to_le_bytes()));
         self.hash.update(&self.bytes);
     }
 
     /// 32 hexadecimal digits.
     pub fn text(&self) -> String {
         format!("{:032x}", self.hash.digest128())
+    }
+}
+
+/// What a number of a moment belongs to, counted from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The moment itself.
+    Time,
+    /// A robot.
+    Robot(usize),
+    /// An edge of the formation.
+    Edge(usize),
+    /// A prop.
+    Prop(usize),
+    /// A contact.
+    Contact(usize),
+    /// A measurement of a leader.
+    Measurement(usize),
+}
+
+/// Hands every number of a moment that a digest covers to `visit`, in order: what it belongs to, its name, its value.
+pub fn numbers(record: &StepRecord, mut visit: impl FnMut(Part, &'static str, f64)) {
+    let mut put = |part, numbers: &[(&'static str, f64)]| {
+        for (name, value) in numbers {
+            visit(part, name, *value);
+        }
+    };
+    put(Part::Time, &[("time", record.snapshot.time)]);
+    for (k, robot) in record.snapshot.robots.iter().enumerate() {
+        let (m, attitude) = (&robot.motion, &robot.attitude);
+        put(Part::Robot(k), &[("x", m.pose.x), ("y", m.pose.y), ("heading", m.pose.heading)]);
+        put(
+            Part::Robot(k),
+            &[("speed", m.speed), ("acceleration", m.acceleration), ("turn rate", m.turn_rate)],
+        );
+        let attitude = [("height", attitude.height), ("roll", attitude.roll), ("pitch", attitude.pitch)];
+        put(Part::Robot(k), &attitude);
+    }
+    for (k, edge) in record.edges.iter().enumerate() {
+        let ([distance, bearing], [d, b], [rate, turning]) = (edge.set_point, edge.error, edge.rates);
+        put(Part::Edge(k), &[("distance set point", distance), ("bearing set point", bearing)]);
+        put(Part::Edge(k), &[("distance error", d), ("bearing error", b)]);
+        let command = edge.applied;
+        put(Part::Edge(k), &[("commanded acceleration", command.acceleration)]);
+        put(Part::Edge(k), &[("commanded turn rate", command.turn_rate)]);
+        put(Part::Edge(k), &[("distance rate", rate), ("bearing rate", turning)]);
+    }
+    for (k, prop) in record.snapshot.props.iter().enumerate() {
+        put(Part::Prop(k), &prop.position.map(|value| ("position", value)));
+        put(Part::Prop(k), &prop.rotation.map(|value| ("rotation", value)));
+    }
+    for (k, contact) in record.contacts.iter().enumerate() {
+        let Contact { begin, end, impulse, .. } = *contact;
+        put(Part::Contact(k), &[("begin", begin), ("end", end), ("impulse", impulse)]);
+    }
+    for (k, frame) in record.frames.iter().enumerate() {
+        let Relative { distance, bearing, view_angle } = frame.measurement.relative;
+        put(Part::Measurement(k), &[("stamp", frame.measurement.stamp), ("arrival", frame.arrival)]);
+        let measured = [("distance", distance), ("bearing", bearing), ("view angle", view_angle)];
+        put(Part::Measurement(k), &measured);
     }
 }
 
@@ -68,6 +109,7 @@ mod tests {
         assert_eq!(digest(&[1.0, 2.0]), digest(&[1.0, 2.0]));
         assert_ne!(digest(&[1.0, 2.0]), digest(&[2.0, 1.0]));
         assert_ne!(digest(&[1.0]), digest(&[1.0_f64.next_up()]));
+        assert_eq!(digest(&[0.0]), digest(&[-0.0]));
         assert_eq!(digest(&[]).len(), 32);
     }
 }

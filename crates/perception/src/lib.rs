@@ -85,6 +85,7 @@ fn track(interpolant: &(impl StepInterpolant + ?Sized), edge: Edge, from: f64, u
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vocabulary::math;
     use vocabulary::{Motion, Pose, RobotState};
 
     /// A leader at rest at the origin; a follower on a circle around it, whose acceleration jumps at 4 ms.
@@ -101,7 +102,7 @@ mod tests {
             }
             // Half a turn less 2 ms: the bearing crosses the seam on the way.
             let angle = std::f64::consts::PI - 0.002 + elapsed;
-            let pose = Pose::new(2.0 * angle.cos(), 2.0 * angle.sin(), angle);
+            let pose = Pose::new(2.0 * math::cos(angle), 2.0 * math::sin(angle), angle);
             let acceleration = if elapsed <= 0.004 { 5.0 } else { 0.0 };
             Motion { pose, speed: 2.0, acceleration, turn_rate: 1.0 }
         }

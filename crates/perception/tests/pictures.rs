@@ -6,6 +6,7 @@ use perception::detect::{Detector, Locus, Tag, recognise, sharpen};
 use perception::imaging::{ImageSensor, Optics, Purpose, noise_stream};
 use perception::pose::{Prior, locate};
 use synthetic::{Scenes, sensor};
+use vocabulary::math;
 use vocabulary::{CameraModel, Grey, Region, wrap};
 
 /// The library's conventions are ours: pixel (0, 0) has its middle at (0, 0), corners go clockwise from the top left.
@@ -24,7 +25,7 @@ fn corners_are_where_they_should_be_and_in_order() {
             let truth = scene.corners(face).expect("in front");
             for (got, want) in tag.corners.iter().zip(truth) {
                 let off = [got[0] - want[0], got[1] - want[1]];
-                assert!(off[0].hypot(off[1]) < 0.7, "{tag:?} {truth:?}");
+                assert!(math::hypot(off[0], off[1]) < 0.7, "{tag:?} {truth:?}");
                 sum = [sum[0] + off[0], sum[1] + off[1]];
                 n += 1.0;
             }
@@ -54,8 +55,9 @@ fn errors(
         let heading = wrap(found.pose.heading - scene.pose.heading);
         assert!(found.ambiguous || heading.abs() < 8_f64.to_radians(), "a flip: {found:?} {:?}", scene.pose);
         if faces.len() > 1 {
-            let range = found.pose.x.hypot(found.pose.y) / distance - 1.0;
-            let bearing = wrap(found.pose.y.atan2(found.pose.x) - scene.pose.y.atan2(scene.pose.x));
+            let range = math::hypot(found.pose.x, found.pose.y) / distance - 1.0;
+            let bearing =
+                wrap(math::atan2(found.pose.y, found.pose.x) - math::atan2(scene.pose.y, scene.pose.x));
             for (sum, error) in squares.iter_mut().zip([range, bearing, heading]) {
                 *sum += error * error;
             }

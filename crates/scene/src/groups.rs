@@ -19,6 +19,7 @@ use rand_chacha::{
     rand_core::{Rng, SeedableRng},
 };
 use serde_json::{Value as Json, json};
+use vocabulary::math;
 use vocabulary::{Pose, ScalarTrajectory, wrap};
 
 /// What is different about one robot of a group.
@@ -279,11 +280,11 @@ impl Group<'_> {
         for place in 1..count {
             let step = shape.step(place, count, angle);
             let [x, y] = spots.get(step.leader)?.at;
-            let (sin, cos) = step.bearing.sin_cos();
+            let (sin, cos) = math::sin_cos(step.bearing);
             let [x, y] = [x + spacing * cos, y + spacing * sin];
             let (follows, distance, bearing) = match follows {
                 Follows::Neighbour => (step.leader, spacing, step.bearing),
-                Follows::Leader => (0, x.hypot(y), wrap(y.atan2(x))),
+                Follows::Leader => (0, math::hypot(x, y), wrap(math::atan2(y, x))),
             };
             spots.push(GroupSpot { at: [x, y], follows, distance, bearing });
         }

@@ -1,6 +1,7 @@
 //! Outlines of bodies as seen from above, and whether they overlap.
 
 use crate::Robot;
+use vocabulary::math;
 use vocabulary::{Pose, Solid};
 
 /// Overlaps smaller than this are rounding, m.
@@ -27,7 +28,7 @@ enum OutlineForm {
 impl Outline {
     fn new(pose: Pose, form: OutlineForm) -> Self {
         let reach = match form {
-            OutlineForm::Box([length, width]) => length.hypot(width),
+            OutlineForm::Box([length, width]) => math::hypot(length, width),
             OutlineForm::Disc(radius) => radius,
         };
         Self { pose, form, reach }
@@ -84,7 +85,7 @@ impl Outline {
     fn covers_near(&self, half: [f64; 2], disc: Pose, radius: f64) -> bool {
         let [forward, left] = self.seen([disc.x - self.pose.x, disc.y - self.pose.y]);
         let [a, b] = [forward.abs() - half[0], left.abs() - half[1]].map(|beyond| beyond.max(0.0));
-        a.hypot(b) < radius - ROUNDING
+        math::hypot(a, b) < radius - ROUNDING
     }
 
     /// Whether a side of this box divides it from another box.
@@ -93,7 +94,7 @@ impl Outline {
             return false;
         };
         let [forward, left] = self.seen([other.pose.x - self.pose.x, other.pose.y - self.pose.y]);
-        let (sin, cos) = (other.pose.heading - self.pose.heading).sin_cos();
+        let (sin, cos) = math::sin_cos(other.pose.heading - self.pose.heading);
         let [sin, cos] = [sin.abs(), cos.abs()];
         forward.abs() >= half[0] + length * cos + width * sin - ROUNDING
             || left.abs() >= half[1] + length * sin + width * cos - ROUNDING
@@ -101,7 +102,7 @@ impl Outline {
 
     /// A direction of the world as [forward, left].
     fn seen(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let (sin, cos) = self.pose.heading.sin_cos();
+        let (sin, cos) = math::sin_cos(self.pose.heading);
         [x * cos + y * sin, y * cos - x * sin]
     }
 }

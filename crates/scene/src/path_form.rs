@@ -14,6 +14,7 @@ use crate::{
     },
 };
 use serde_json::{Value as Json, json};
+use vocabulary::math;
 
 /// Time of a row.
 pub(crate) const TIME: Number = number("s").from(0.0);
@@ -213,7 +214,7 @@ impl KindKeys<Path> for WaypointsKeys {
         let back = if closed { points.first() } else { None };
         let next = points.iter().skip(1).chain(back);
         // Closer than this there is no telling in which direction the curve goes.
-        if points.iter().zip(next).any(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-3) {
+        if points.iter().zip(next).any(|(a, b)| math::hypot(a[0] - b[0], a[1] - b[1]) < 1e-3) {
             let hint = if closed && points.first() == points.last() {
                 ": a closed curve comes back by itself, so leave out the last point"
             } else {

@@ -15,6 +15,7 @@ use crate::{
     },
 };
 use serde_json::Value as Json;
+use vocabulary::math;
 use vocabulary::{Pose, Solid};
 
 /// Most props of a scene.
@@ -119,12 +120,12 @@ impl KindKeys<Measured> for WallKeys {
     fn make(self, _: &Node, reporter: &mut Reporter) -> Option<Measured> {
         let (from, to) = (self.from?.value, self.to?);
         let [dx, dy] = [to.value[0] - from[0], to.value[1] - from[1]];
-        let length = dx.hypot(dy);
+        let length = math::hypot(dx, dy);
         if length < 1e-3 {
             reporter.report(to.place, "a wall must be at least 0.001 m long: `to` is where `from` is");
             return None;
         }
-        let pose = Pose::new(from[0] + 0.5 * dx, from[1] + 0.5 * dy, dy.atan2(dx));
+        let pose = Pose::new(from[0] + 0.5 * dx, from[1] + 0.5 * dy, math::atan2(dy, dx));
         let size = [length, self.thickness?.value, self.height?.value];
         Some(Measured { solid: Solid::Block { size }, pose: Some(pose) })
     }

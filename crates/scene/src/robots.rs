@@ -9,6 +9,7 @@ use crate::{
     vehicle::{WrittenVehicle, vehicle},
 };
 use vocabulary::Pose;
+use vocabulary::math;
 
 /// What holds for every robot that says nothing else.
 pub(crate) struct Defaults {
@@ -227,7 +228,7 @@ pub(crate) fn start_pose(
         return start;
     };
     let [x, y, heading] = pose.value;
-    if let Some(start) = start.filter(|start| (x - start.x).hypot(y - start.y) > 1e-6) {
+    if let Some(start) = start.filter(|start| math::hypot(x - start.x, y - start.y) > 1e-6) {
         let message =
             format!("`pose` must start at the first of the path's points, [{}, {}]", start.x, start.y);
         reporter.report(pose.place, message);

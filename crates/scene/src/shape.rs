@@ -52,6 +52,7 @@ impl Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vocabulary::math;
 
     /// Places in the leader's body frame for neighbours 1 m apart.
     fn places(shape: Shape, count: usize) -> Vec<[f64; 2]> {
@@ -59,13 +60,13 @@ mod tests {
         for place in 1..count {
             let step = shape.step(place, count, 0.75 * PI);
             let [x, y] = places[step.leader];
-            places.push([x + step.bearing.cos(), y + step.bearing.sin()]);
+            places.push([x + math::cos(step.bearing), y + math::sin(step.bearing)]);
         }
         places
     }
 
     fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
-        (a[0] - b[0]).hypot(a[1] - b[1])
+        math::hypot(a[0] - b[0], a[1] - b[1])
     }
 
     #[test]
@@ -101,7 +102,7 @@ mod tests {
     #[test]
     fn a_circle_is_round() {
         let places = places(Shape::Circle, 9);
-        let radius = 0.5 / (PI / 9.0).sin();
+        let radius = 0.5 / math::sin(PI / 9.0);
         assert!(places.iter().all(|place| (apart(*place, [-radius, 0.0]) - radius).abs() < 1e-9));
     }
 

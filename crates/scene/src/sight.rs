@@ -8,6 +8,7 @@ use crate::{
 };
 use std::collections::HashMap;
 use std::f64::consts::PI;
+use vocabulary::math;
 use vocabulary::{
     CameraModel, CameraMount, FACES, LawKind, Pose, ScalarTrajectory, Shell, TAGS, TimeMode, Word, wrap,
 };
@@ -147,7 +148,7 @@ fn check_shell(said: &Said<'_>, robot: &Robot, place: Span, reporter: &mut Repor
     let part = said.part;
     let up = camera_mount.height - shell.height;
     let half = 0.5 * shell.face_height;
-    let within = shell.apothem - up * shell.lean.tan();
+    let within = shell.apothem - up * math::tan(shell.lean);
     let camera =
         [&part.camera_height, &part.camera_forward].map(|found| found.as_ref().map(|found| found.place));
     if up.abs() < half && (camera_mount.forward - shell.forward).abs() < within {
@@ -163,7 +164,7 @@ fn check_shell(said: &Said<'_>, robot: &Robot, place: Span, reporter: &mut Repor
         reporter.report(place([camera[0], camera[1], at(&part.shell_scale)]), message);
         return true;
     }
-    let slope = shell.face_height / shell.lean.cos();
+    let slope = shell.face_height / math::cos(shell.lean);
     let side = 2.0 * shell.half_tag();
     if side > slope || shell.half_tag() > shell.half_width(shell.half_tag()) {
         let message = format!(
@@ -201,7 +202,7 @@ fn check_visible(
     };
     let (shell, camera_mount, camera_model) =
         (said.vision.shell(leader), said.vision.camera_mount(robot), said.vision.camera_model());
-    let (sin, cos) = bearing.sin_cos();
+    let (sin, cos) = math::sin_cos(*bearing);
     let [x, y] = Pose::new(distance * cos, distance * sin, 0.0).world_from_body(camera_mount.forward, 0.0);
     let eye = [x, y, camera_mount.height];
     let faces = (0..FACES).filter_map(|face| {
@@ -209,7 +210,7 @@ fn check_visible(
         let [right, up, out] = frame.inverse().apply(eye);
         let away = (right * right + up * up + out * out).sqrt();
         let slant = out / away;
-        (slant > STEEPEST.cos()).then_some(camera_model.focal * shell.cell * slant.sqrt() / away)
+        (slant > math::cos(STEEPEST)).then_some(camera_model.focal * shell.cell * slant.sqrt() / away)
     });
     // Side by side and equally headed, as a formation is that has settled.
     let pan = wrap(bearing - PI).abs() - 0.5 * said.vision.field_of_view;

@@ -3,6 +3,7 @@
 use scene::{Path, Role, Scene, SpeedProfile};
 use std::{f64::consts::PI, fs};
 use vocabulary::ScalarTrajectory;
+use vocabulary::math;
 
 fn lead(path: &str) -> String {
     format!("schema = 1\ntitle = \"t\"\n[[robots]]\nname = \"a\"\npose = [0, 0, 0]\npath = {path}\n")
@@ -144,10 +145,10 @@ fn groups_without_scatter_start_in_formation() {
             let Role::Follow(follow) = &robot.role else { continue };
             let leader = &scene.robots[scene.index_of(&follow.leader).unwrap()];
             let (dx, dy) = (robot.pose.x - leader.pose.x, robot.pose.y - leader.pose.y);
-            let bearing = vocabulary::wrap(dy.atan2(dx) - leader.pose.heading);
+            let bearing = vocabulary::wrap(math::atan2(dy, dx) - leader.pose.heading);
             let ScalarTrajectory::Constant(wanted) = follow.bearing else { panic!("a constant bearing") };
             let ScalarTrajectory::Constant(distance) = follow.distance else { panic!("a constant distance") };
-            assert!((dx.hypot(dy) - distance).abs() < 1e-9, "{shape}: {}", robot.name);
+            assert!((math::hypot(dx, dy) - distance).abs() < 1e-9, "{shape}: {}", robot.name);
             assert!(if follows == "leader" { follow.leader == "robot-1" } else { distance == 2.0 });
             assert!(vocabulary::wrap(bearing - wanted).abs() < 1e-9, "{shape}: {}", robot.name);
         }

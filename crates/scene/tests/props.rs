@@ -3,6 +3,7 @@
 use scene::{Override, Path, PropMotion, PropSpec, Scene};
 use std::f64::consts::FRAC_PI_2;
 use vocabulary::Solid;
+use vocabulary::math;
 
 /// A scene with a robot at the origin and these props; the first line of `keys` is line 7.
 fn text(keys: &str) -> String {
@@ -89,10 +90,15 @@ fn a_field_keeps_clear_and_depends_on_its_seed() {
     assert_eq!(field.len(), 30);
     for (index, a) in field.iter().enumerate() {
         // The robot's middle, and half its diagonal.
-        let robot = (a.pose.x - 0.135).hypot(a.pose.y) - 0.24;
+        let robot = math::hypot(a.pose.x - 0.135, a.pose.y) - 0.24;
         assert!(robot > 0.6 - 0.01, "{} stands before the robot", a.name);
         for b in &field[..index] {
-            assert!((a.pose.x - b.pose.x).hypot(a.pose.y - b.pose.y) >= 0.8, "{} and {}", a.name, b.name);
+            assert!(
+                math::hypot(a.pose.x - b.pose.x, a.pose.y - b.pose.y) >= 0.8,
+                "{} and {}",
+                a.name,
+                b.name
+            );
         }
     }
     assert_ne!(field, load(FIELD, Some("seed=7")).props);

@@ -1,6 +1,7 @@
 //! Vehicles: what each kind has, what is written over it, and what contradicts itself.
 
 use scene::{Compensation, Scene, Vehicle, VehicleKind};
+use vocabulary::math;
 
 /// A scene with one robot, `keys` at its top and `own` in the robot's table.
 fn text(keys: &str, own: &str) -> String {
@@ -32,7 +33,7 @@ fn each_kind_has_its_own_values_and_they_agree() {
     let car = Vehicle::ready_made(VehicleKind::Car);
     assert_eq!((car.mass, car.length, car.wheelbase, car.height), (5.01, 0.49, 0.30, 0.32));
     assert_eq!((car.steering_max, car.compensation), (28f64.to_radians(), Compensation::Lead));
-    assert!((car.limits().curvature_max - 28f64.to_radians().tan() / 0.3).abs() < 1e-12);
+    assert!((car.limits().curvature_max - math::tan(28f64.to_radians()) / 0.3).abs() < 1e-12);
     assert!((car.limits().lateral_acceleration_max - 0.8 * 0.9 * vocabulary::GRAVITY).abs() < 1e-12);
     assert_eq!(car.body().height, 0.32);
     assert_eq!(Vehicle::ready_made(VehicleKind::Unicycle), Vehicle::default());

@@ -4,6 +4,7 @@
 //! every step. It costs about 1/ε evaluations per simulated second, which is the price of continuous time.
 
 use formation::{Estimate, Formation, FormationState};
+use vocabulary::math;
 use vocabulary::{EdgeSample, LawKind, Motion, Observation, Pose, Relative, wrap};
 use world::{Unicycles, World};
 
@@ -123,7 +124,7 @@ impl Continuous {
 
 /// d[x, y, θ, v]/dt (eq 1).
 fn unicycle(heading: f64, speed: f64, acceleration: f64, turn_rate: f64) -> [f64; 4] {
-    let (sin, cos) = heading.sin_cos();
+    let (sin, cos) = math::sin_cos(heading);
     [speed * cos, speed * sin, turn_rate, acceleration]
 }
 

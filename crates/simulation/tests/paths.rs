@@ -2,6 +2,7 @@
 
 use scene::Scene;
 use simulation::{Fault, Simulation, build};
+use vocabulary::math;
 
 fn scene(path: &str, more: &str) -> Scene {
     let text = format!(
@@ -18,7 +19,7 @@ fn refusal(path: &str, more: &str) -> String {
 /// Two legs of 4 m with a turn by so many degrees between them.
 fn turn(degrees: f64) -> [[f64; 2]; 3] {
     let back = (180.0 - degrees).to_radians();
-    [[0.0, 0.0], [4.0, 0.0], [4.0 - 4.0 * back.cos(), 4.0 * back.sin()]]
+    [[0.0, 0.0], [4.0, 0.0], [4.0 - 4.0 * math::cos(back), 4.0 * math::sin(back)]]
 }
 
 fn waypoints(points: &[[f64; 2]]) -> String {
@@ -104,7 +105,7 @@ fn sharp_turns_are_driven_through_their_points() {
             let pose = record.snapshot.robots[0].motion.pose;
             for (near, [x, y]) in nearest.iter_mut().zip(points) {
                 // Between two samples it goes 1 cm.
-                *near = near.min(((pose.x - x).hypot(pose.y - y) - 0.005).max(0.0));
+                *near = near.min((math::hypot(pose.x - x, pose.y - y) - 0.005).max(0.0));
             }
         }
         assert!(nearest.iter().all(|near| *near < 0.01), "{degrees}°: {nearest:?} m");

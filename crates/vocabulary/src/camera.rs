@@ -1,5 +1,6 @@
 //! Pictures that cameras on robots take, and who takes them.
 
+use crate::math;
 use crate::{Body, Region, Rigid, RobotState, Shell, Snapshot};
 
 /// Where a camera sits on a robot: it turns about an upright axis.
@@ -21,7 +22,7 @@ impl CameraMount {
 
     /// The camera's frame (x right, y down, z ahead) in the body's, turned by `pan` rad from the heading.
     pub fn body_from_camera(&self, pan: f64) -> Rigid {
-        let (sin, cos) = pan.sin_cos();
+        let (sin, cos) = math::sin_cos(pan);
         Rigid {
             rotation: [[sin, 0.0, cos], [-cos, 0.0, sin], [0.0, -1.0, 0.0]],
             translation: [self.forward, 0.0, self.height],

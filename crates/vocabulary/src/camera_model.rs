@@ -1,5 +1,7 @@
 //! How a camera maps directions to pixels.
 
+use crate::math;
+
 /// A pinhole camera with Brown-Conrady distortion. The middle of the top left pixel is (0, 0), x to the right, y down; in
 /// the camera's frame x is to the right, y down and z ahead, as OpenCV has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +31,7 @@ impl CameraModel {
         Self {
             width,
             height,
-            focal: 0.5 * f64::from(width) / (0.5 * field_of_view).tan(),
+            focal: 0.5 * f64::from(width) / math::tan(0.5 * field_of_view),
             centre: [0.5 * (f64::from(width) - 1.0), 0.5 * (f64::from(height) - 1.0)],
             distortion: [0.0; 5],
         }

@@ -1,5 +1,6 @@
 //! Who follows whom, where a follower is, and where it should be.
 
+use crate::math;
 use crate::{Pose, wrap};
 
 /// A leader-follower pair; both are indices of robots in a snapshot.
@@ -28,7 +29,7 @@ impl Relative {
     /// Two robots on the same spot have distance 0 and, by choice, the line between them along the x axis.
     pub fn between(leader: Pose, follower: Pose) -> Self {
         let (dx, dy) = (leader.x - follower.x, leader.y - follower.y);
-        let from_follower = dy.atan2(dx);
+        let from_follower = math::atan2(dy, dx);
         Self {
             distance: (dx * dx + dy * dy).sqrt(),
             bearing: wrap(std::f64::consts::PI + from_follower - leader.heading),
@@ -72,7 +73,7 @@ mod tests {
     fn the_view_angle_points_back_at_the_leader() {
         let (leader, follower) = (Pose::new(3.0, 1.0, 0.4), Pose::new(1.0, 0.0, -0.7));
         let r = Relative::between(leader, follower);
-        let direction = (1.0_f64).atan2(2.0) - follower.heading;
+        let direction = math::atan2(1.0_f64, 2.0) - follower.heading;
         assert!((wrap(r.view_angle - PI) - wrap(direction)).abs() < 1e-14);
     }
 }

@@ -16,6 +16,7 @@ mod gravity;
 mod judging;
 mod law;
 mod limits;
+pub mod math;
 mod measurement;
 mod numeral;
 mod observation;

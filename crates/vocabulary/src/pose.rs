@@ -1,5 +1,7 @@
 //! Where a robot stands on the plane.
 
+use crate::math;
+
 /// Position in m and heading in rad, in the world frame (x forward, y left).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pose {
@@ -19,13 +21,13 @@ impl Pose {
 
     /// World coordinates in m of a point given in this pose's body frame (`forward`, `left`) in m.
     pub fn world_from_body(&self, forward: f64, left: f64) -> [f64; 2] {
-        let (sin, cos) = self.heading.sin_cos();
+        let (sin, cos) = math::sin_cos(self.heading);
         [self.x + forward * cos - left * sin, self.y + forward * sin + left * cos]
     }
 
     /// World coordinates in m of a point at a `distance` in m and a `bearing` in rad from this pose.
     pub fn polar(&self, distance: f64, bearing: f64) -> [f64; 2] {
-        let (sin, cos) = bearing.sin_cos();
+        let (sin, cos) = math::sin_cos(bearing);
         self.world_from_body(distance * cos, distance * sin)
     }
 }

@@ -1,6 +1,7 @@
 //! Solid things that are no robots: walls, pillars, ramps, cones, crates.
 
 use crate::Pose;
+use crate::math;
 
 /// The shape of a solid thing. Its frame has its origin in the middle of its foot, z up; all measures in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +46,7 @@ impl Solid {
     /// Largest distance from its middle axis to its outline, seen from above, m.
     pub fn reach(&self) -> f64 {
         match *self {
-            Self::Block { size } | Self::Wedge { size } => 0.5 * size[0].hypot(size[1]),
+            Self::Block { size } | Self::Wedge { size } => 0.5 * math::hypot(size[0], size[1]),
             Self::Cylinder { radius, .. } | Self::Cone { radius, .. } => radius,
         }
     }
@@ -69,7 +70,7 @@ impl Default for Placement {
 impl Placement {
     /// Upright at a pose, its foot `height` m over z = 0.
     pub fn upright(pose: Pose, height: f64) -> Self {
-        let (sin, cos) = (0.5 * pose.heading).sin_cos();
+        let (sin, cos) = math::sin_cos(0.5 * pose.heading);
         Self { position: [pose.x, pose.y, height], rotation: [0.0, 0.0, sin, cos] }
     }
 

@@ -1,5 +1,7 @@
 //! Where frames are in one another.
 
+use crate::math;
+
 /// A turn and a shift: takes points of one frame to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rigid {
@@ -16,7 +18,8 @@ impl Rigid {
 
     /// Turned by `roll` about x, then `pitch` about y, then `heading` about z, rad; its origin at `at`, m.
     pub fn turned(at: [f64; 3], heading: f64, pitch: f64, roll: f64) -> Self {
-        let ((sh, ch), (sp, cp), (sr, cr)) = (heading.sin_cos(), pitch.sin_cos(), roll.sin_cos());
+        let ((sh, ch), (sp, cp), (sr, cr)) =
+            (math::sin_cos(heading), math::sin_cos(pitch), math::sin_cos(roll));
         Self {
             rotation: [
                 [ch * cp, ch * sp * sr - sh * cr, ch * sp * cr + sh * sr],

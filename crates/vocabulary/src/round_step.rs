@@ -1,9 +1,11 @@
 //! Round numbers for axes and their ticks.
 
+use crate::math;
+
 /// The least of 1, 2 or 5 times a power of ten that is not below `least`; one that is below it by a share of at most
 /// `slack` counts. `least` is above 0.
 pub fn round_step(least: f64, slack: f64) -> f64 {
-    let decade = 10_f64.powf(least.log10().floor());
+    let decade = math::powf(10_f64, math::log10(least).floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade);
     steps.into_iter().find(|step| *step >= least * (1.0 - slack)).unwrap_or(least)
 }

@@ -1,5 +1,6 @@
 //! A value prescribed over time, with its first and second derivative.
 
+use crate::math;
 use serde::Serialize;
 
 /// A smooth change of a value: quintic, so that value, rate and acceleration are continuous.
@@ -68,7 +69,7 @@ impl ScalarTrajectory {
 
 /// Value, first and second derivative of `mean + amplitude · sin(rate · t)`.
 fn wave(mean: f64, amplitude: f64, rate: f64, t: f64) -> [f64; 3] {
-    let (sin, cos) = (rate * t).sin_cos();
+    let (sin, cos) = math::sin_cos(rate * t);
     [mean + amplitude * sin, amplitude * rate * cos, -amplitude * rate * rate * sin]
 }
 

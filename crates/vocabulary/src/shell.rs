@@ -1,6 +1,7 @@
 //! The shell that carries the identification tags: the geometry that pictures are drawn from and poses are found with.
 
 use crate::codes::CODES;
+use crate::math;
 use crate::{Body, Rigid};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, FRAC_PI_8, PI};
 
@@ -94,8 +95,8 @@ impl Shell {
     /// The frame of a face in the body's: x to the right and y up as seen from outside, z outward; its origin in the
     /// middle of the tag.
     pub fn body_from_face(&self, face: usize) -> Rigid {
-        let (sin, cos) = FACE_DIRECTIONS[face % FACES].sin_cos();
-        let (lean, upright) = self.lean.sin_cos();
+        let (sin, cos) = math::sin_cos(FACE_DIRECTIONS[face % FACES]);
+        let (lean, upright) = math::sin_cos(self.lean);
         let columns =
             [[-sin, cos, 0.0], [-cos * lean, -sin * lean, upright], [cos * upright, sin * upright, lean]];
         Rigid {
@@ -120,7 +121,7 @@ impl Shell {
     /// The outline of a face in its own plane, half its width in m at a height of `y` m above the middle of the tag,
     /// measured along the face.
     pub fn half_width(&self, y: f64) -> f64 {
-        (self.apothem - y * self.lean.sin()) * FRAC_PI_8.tan()
+        (self.apothem - y * math::sin(self.lean)) * math::tan(FRAC_PI_8)
     }
 }
 
@@ -149,19 +150,20 @@ mod tests {
     fn the_papers_shell_has_the_measures_it_should() {
         let shell = Shell::PAPER;
         for (face, corners) in (0..FACES).map(|face| (face, shell.tag_corners(face))) {
-            let side = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+            let side =
+                |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| math::powi(a[k] - b[k], 2)).sum::<f64>().sqrt();
             for k in 0..4 {
                 assert!((side(corners[k], corners[(k + 1) % 4]) - 0.12).abs() < 1e-12);
             }
             let z = corners.iter().map(|c| c[2]).sum::<f64>() / 4.0;
             assert!((z - 0.20).abs() < 1e-12);
             let outward = shell.body_from_face(face).turn([0.0, 0.0, 1.0]);
-            assert!((outward[2] - 10_f64.to_radians().sin()).abs() < 1e-12);
-            let direction = outward[1].atan2(outward[0]);
+            assert!((outward[2] - math::sin(10_f64.to_radians())).abs() < 1e-12);
+            let direction = math::atan2(outward[1], outward[0]);
             assert!(crate::wrap(direction - FACE_DIRECTIONS[face]).abs() < 1e-12);
         }
         // Bottom and top width of a face.
-        let up = 0.08 / 10_f64.to_radians().cos();
+        let up = 0.08 / math::cos(10_f64.to_radians());
         assert!((2.0 * shell.half_width(-up) - 0.167).abs() < 1e-3);
         assert!((2.0 * shell.half_width(up) - 0.143).abs() < 1e-3);
     }

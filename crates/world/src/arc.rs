@@ -4,11 +4,12 @@
 //! ∫ v e^(iθ) dt = e^(iθ0) (v0 t f0(ωt) + a t² f1(ωt)), where
 //! f0(u) = ∫₀¹ e^(iuσ) dσ and f1(u) = ∫₀¹ σ e^(iuσ) dσ.
 
+use vocabulary::math;
 use vocabulary::{Motion, Pose, wrap};
 
 /// Where `start` is after `t` s at its own speed, acceleration and turn rate; no bounds are looked at.
 pub fn after(start: &Motion, t: f64) -> Motion {
-    let (sin, cos) = start.pose.heading.sin_cos();
+    let (sin, cos) = math::sin_cos(start.pose.heading);
     after_with(start, sin, cos, t)
 }
 
@@ -30,7 +31,7 @@ fn records(u: f64) -> ([f64; 2], [f64; 2]) {
     if u.abs() < 0.5 {
         return moments_by_series(u);
     }
-    let (sin, cos) = u.sin_cos();
+    let (sin, cos) = math::sin_cos(u);
     let f0 = [sin / u, (1.0 - cos) / u];
     ([f0[0], f0[1]], [(sin - f0[1]) / u, (f0[0] - cos) / u])
 }
@@ -80,7 +81,7 @@ mod tests {
         for k in 0..=n {
             let s = t * f64::from(k) / f64::from(n);
             let weight = if k == 0 || k == n { 1.0 } else { f64::from(2 + 2 * (k % 2)) };
-            let (sin, cos) = (start.pose.heading + start.turn_rate * s).sin_cos();
+            let (sin, cos) = math::sin_cos(start.pose.heading + start.turn_rate * s);
             let share = weight * (start.speed + start.acceleration * s) * t / f64::from(n) / 3.0;
             x += share * cos;
             y += share * sin;
@@ -100,7 +101,7 @@ mod tests {
 
         #[test]
         fn series_and_closed_form_meet(u in 0.3..0.5) {
-            let (sin, cos) = f64::sin_cos(u);
+            let (sin, cos) = math::sin_cos(u);
             let ([c0, s0], [c1, s1]) = moments_by_series(u);
             prop_assert!((c0 - sin / u).abs() < 1e-15 && (s0 - (1.0 - cos) / u).abs() < 1e-15);
             prop_assert!((c1 - (u * sin + cos - 1.0) / (u * u)).abs() < 1e-14);
@@ -112,6 +113,6 @@ mod tests {
     fn a_full_circle_returns() {
         let start = Motion { speed: 1.0, turn_rate: 2.0, ..Motion::default() };
         let end = after(&start, std::f64::consts::PI);
-        assert!(end.pose.x.hypot(end.pose.y) < 1e-14 && end.pose.heading.abs() < 1e-14);
+        assert!(math::hypot(end.pose.x, end.pose.y) < 1e-14 && end.pose.heading.abs() < 1e-14);
     }
 }

@@ -3,6 +3,7 @@
 //! Y. Kanayama, Y. Kimura, F. Miyazaki, T. Noguchi, A stable tracking control method for an autonomous mobile robot,
 //! ICRA 1990, with the path errors closed over a length that fits the wheelbase.
 
+use vocabulary::math;
 use vocabulary::{Command, Limits, Motion, wrap};
 
 /// Along the path, 1/s.
@@ -19,11 +20,11 @@ pub(crate) fn chase(ideal: &Motion, now: &Motion, wheelbase: f64, limits: &Limit
     let length = WHEELBASES * wheelbase;
     let hold = |error: f64| error.clamp(-FARTHEST * wheelbase, FARTHEST * wheelbase);
     let (dx, dy) = (ideal.pose.x - now.pose.x, ideal.pose.y - now.pose.y);
-    let (sin, cos) = now.pose.heading.sin_cos();
+    let (sin, cos) = math::sin_cos(now.pose.heading);
     let (ahead, left) = (hold(cos * dx + sin * dy), hold(cos * dy - sin * dx));
     let turned = wrap(ideal.pose.heading - now.pose.heading);
-    let speed = ideal.speed * turned.cos() + ALONG * ahead;
-    let bend = left / (length * length) + 2.0 * turned.sin() / length;
+    let speed = ideal.speed * math::cos(turned) + ALONG * ahead;
+    let bend = left / (length * length) + 2.0 * math::sin(turned) / length;
     let asked = Command {
         acceleration: ideal.acceleration + SPEED * (speed - now.speed),
         turn_rate: ideal.turn_rate + ideal.speed * bend,
@@ -51,7 +52,7 @@ pub(crate) fn wanted_speed(ideal: &Motion, now: &Motion) -> f64 {
 
 /// How far a motion is ahead, m.
 fn along(ideal: &Motion, now: &Motion) -> f64 {
-    let (sin, cos) = now.pose.heading.sin_cos();
+    let (sin, cos) = math::sin_cos(now.pose.heading);
     cos * (ideal.pose.x - now.pose.x) + sin * (ideal.pose.y - now.pose.y)
 }
 
@@ -81,7 +82,7 @@ mod tests {
             now = crate::arc::after(&now, step);
             ideal = crate::arc::after(&ideal, step);
         }
-        let off = (ideal.pose.x - now.pose.x).hypot(ideal.pose.y - now.pose.y);
+        let off = math::hypot(ideal.pose.x - now.pose.x, ideal.pose.y - now.pose.y);
         assert!(off < 0.01, "{off} m off");
     }
 }

@@ -3,6 +3,7 @@
 //! Gauss-Legendre quadrature; its error at 1 m/s and 10 rad/s is below 1e-12 m per second. Where the turn rate is large or
 //! changes fast, stretches are halved, so that a sharp bend of a path is driven as it is.
 
+use vocabulary::math;
 use vocabulary::{Motion, MotionInput, Pose, Trajectory, wrap};
 
 /// Nodes and weights of the three-point Gauss-Legendre rule on 0 to 1.
@@ -43,7 +44,7 @@ fn stretch(lead: &dyn Trajectory, pose: Pose, from: f64, h: f64, halvings: u32) 
     let (mut x, mut y) = (pose.x, pose.y);
     for ((node, weight), drive) in GAUSS.into_iter().zip(drives) {
         let t = node * h;
-        let (sin, cos) = heading(t, GAUSS.map(|(node, _)| lead.at(from + node * t))).sin_cos();
+        let (sin, cos) = math::sin_cos(heading(t, GAUSS.map(|(node, _)| lead.at(from + node * t))));
         let share = h * weight * drive.speed;
         x += share * cos;
         y += share * sin;
@@ -82,7 +83,7 @@ mod tests {
                 pose = prescribed(&Hook, pose, time, period).pose;
                 time += period;
             }
-            let turned = 2.0 * (1.0 / WIDTH).atan();
+            let turned = 2.0 * math::atan(1.0 / WIDTH);
             assert!((pose.heading - turned).abs() < 1e-3, "{} rad by {period} s", pose.heading);
         }
     }

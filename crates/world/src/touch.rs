@@ -1,6 +1,7 @@
 //! Contacts over time: which things touch, since when, and how hard.
 
 use std::collections::BTreeMap;
+use vocabulary::math;
 use vocabulary::{Body, Contact, EntityId, Pose, Snapshot};
 
 /// Things that have not touched for so long have parted, s: shorter gaps are one contact that rattles.
@@ -115,7 +116,7 @@ struct BodyOutline {
 
 impl BodyOutline {
     fn of(pose: &Pose, body: &Body) -> Self {
-        let (sin, cos) = pose.heading.sin_cos();
+        let (sin, cos) = math::sin_cos(pose.heading);
         let ahead = body.wheelbase / 2.0;
         let half = [body.length / 2.0, body.width / 2.0];
         Self {
@@ -123,7 +124,7 @@ impl BodyOutline {
             axes: [[cos, sin], [-sin, cos]],
             half,
             height: body.height,
-            reach: half[0].hypot(half[1]),
+            reach: math::hypot(half[0], half[1]),
         }
     }
 
@@ -143,7 +144,7 @@ impl BodyOutline {
     /// Middle and direction of the overlap along the axis on which the two overlap least, if they do on all.
     fn overlap(&self, other: &Self) -> Option<([f64; 3], [f64; 3])> {
         let apart = [other.middle[0] - self.middle[0], other.middle[1] - self.middle[1]];
-        if dot(apart, apart) > (self.reach + other.reach).powi(2) {
+        if dot(apart, apart) > math::powi(self.reach + other.reach, 2) {
             return None;
         }
         let mut least = (f64::INFINITY, [0.0; 2]);

@@ -7,6 +7,7 @@
 use crate::{Handling, World, arc, prescribed::prescribed, touch::Touches};
 use std::cell::RefCell;
 use std::sync::Arc;
+use vocabulary::math;
 use vocabulary::{
     Body, Command, Contact, Limits, Motion, Pose, RobotState, Snapshot, StepInterpolant, Trajectory,
 };
@@ -170,7 +171,7 @@ const FOUND: usize = 12;
 
 impl UnicycleStep {
     fn begin(start: &Motion, robot: &Unicycle, duration: f64) -> Self {
-        let (sin, cos) = start.pose.heading.sin_cos();
+        let (sin, cos) = math::sin_cos(start.pose.heading);
         let mut step = Self { start: *start, sin, cos, ..Self::default() };
         if robot.lead.is_some() || start.acceleration == 0.0 {
             return step;
@@ -214,7 +215,8 @@ const STEERING_MAX: f64 = 0.6;
 
 fn roll(state: &mut RobotState, body: &Body, travelled: f64, end: &Motion) {
     state.motion = *end;
-    let steering = (body.wheelbase * end.turn_rate).atan2(end.speed.abs()).clamp(-STEERING_MAX, STEERING_MAX);
+    let steering =
+        math::atan2(body.wheelbase * end.turn_rate, end.speed.abs()).clamp(-STEERING_MAX, STEERING_MAX);
     for (index, wheel) in state.wheels.iter_mut().enumerate() {
         wheel.rotation += travelled / body.wheel_radius;
         wheel.steering = if index < 2 { steering } else { 0.0 };
@@ -234,10 +236,10 @@ mod tests {
     impl Trajectory for Swing {
         fn at(&self, t: f64) -> MotionInput {
             MotionInput {
-                speed: 1.0 + 0.5 * (3.0 * t).sin(),
-                acceleration: 1.5 * (3.0 * t).cos(),
-                turn_rate: 8.0 * (2.0 * t).cos(),
-                turn_acceleration: -16.0 * (2.0 * t).sin(),
+                speed: 1.0 + 0.5 * math::sin(3.0 * t),
+                acceleration: 1.5 * math::cos(3.0 * t),
+                turn_rate: 8.0 * math::cos(2.0 * t),
+                turn_acceleration: -16.0 * math::sin(2.0 * t),
             }
         }
     }
@@ -259,8 +261,8 @@ mod tests {
             world.snapshot().robots[0].motion
         };
         let (coarse, fine) = (run(0.01), run(1e-4));
-        assert!((coarse.pose.x - fine.pose.x).hypot(coarse.pose.y - fine.pose.y) < 1e-9);
-        let heading = wrap(0.3 + 4.0 * 10.0_f64.sin());
+        assert!(math::hypot(coarse.pose.x - fine.pose.x, coarse.pose.y - fine.pose.y) < 1e-9);
+        let heading = wrap(0.3 + 4.0 * math::sin(10.0_f64));
         assert!((coarse.pose.heading - heading).abs() < 1e-9);
     }
 

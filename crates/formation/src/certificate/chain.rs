@@ -8,6 +8,7 @@ use crate::law::{Law, LawInput, Switching};
 use crate::observer::Estimate;
 use crate::relative::Geometry;
 use nalgebra::{Complex, DMatrix, Matrix2, SVector};
+use vocabulary::math;
 use vocabulary::{EdgeSample, LawKind, MotionInput, Relative, SetPoint, wrap};
 
 /// What one edge makes of its leader's deviation [δv in m/s, δω in rad/s] at one frequency.
@@ -195,11 +196,11 @@ fn near(law: &Law, set_point: &SetPoint, leader: &MotionInput) -> Option<State> 
     // What the leader's motion does depends a little on where the follower ends: this settles in a few rounds.
     for _ in 0..100 {
         let [distance, bearing] = [set_point.value[0] - error[0], set_point.value[1] - error[1]];
-        let (x, y) = (distance * bearing.cos(), distance * bearing.sin());
+        let (x, y) = (distance * math::cos(bearing), distance * math::sin(bearing));
         let (ahead, aside) = (leader.speed - leader.turn_rate * y, leader.turn_rate * x);
-        let speed = ahead.hypot(aside);
+        let speed = math::hypot(ahead, aside);
         // θ_j − θ_i, and γ = ψ + θ_i − θ_j.
-        let view_angle = wrap(bearing - aside.atan2(ahead));
+        let view_angle = wrap(bearing - math::atan2(aside, ahead));
         let relative = Relative { distance, bearing, view_angle };
         let geometry = Geometry::new(&relative, law.distance_min);
         let effect = geometry.leader_effect(speed, leader);
@@ -228,7 +229,7 @@ pub fn residual(law: &Law, channel: usize, effect: f64) -> f64 {
             let (mut low, mut high) = (0.0, size / (k * k));
             for _ in 0..200 {
                 let middle = f64::midpoint(low, high);
-                let more = k * k * middle + beta * (slope[channel] * middle).tanh() < size;
+                let more = k * k * middle + beta * math::tanh(slope[channel] * middle) < size;
                 if more { low = middle } else { high = middle }
             }
             f64::midpoint(low, high)
@@ -255,7 +256,7 @@ pub fn growth(response: &Response) -> f64 {
 
 /// Frequencies at which responses are looked at: evenly in their logarithm, rad/s.
 pub fn frequencies() -> impl Iterator<Item = f64> {
-    (0..=240).map(|k| 1e-2 * 10_f64.powf(f64::from(k) / 60.0))
+    (0..=240).map(|k| 1e-2 * math::powf(10_f64, f64::from(k) / 60.0))
 }
 
 #[cfg(test)]
@@ -345,7 +346,7 @@ mod tests {
     fn what_tanh_leaves_solves_its_equation() {
         let law = edge(LawKind::RobustState, 1e-3).law;
         let e = residual(&law, 0, 0.5);
-        assert!(e > 0.0 && (25.0 * e + 5.0 * (24.53 * e).tanh() - 0.5).abs() < 1e-12);
+        assert!(e > 0.0 && (25.0 * e + 5.0 * math::tanh(24.53 * e) - 0.5).abs() < 1e-12);
         assert_eq!(residual(&law, 0, -0.5), -e);
         let sign = Law { switching: Switching::Sign, ..law };
         assert_eq!((residual(&sign, 0, 4.9), residual(&sign, 0, 30.0)), (0.0, 1.0));

@@ -8,6 +8,7 @@
 
 use super::ledger::Peaks;
 use super::witness::Witness;
+use vocabulary::math;
 
 /// Constants of one edge of a run by output feedback.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,14 +66,14 @@ impl Constants {
         let epsilon = witness.observer().epsilon;
         let epsilon = epsilon[0].max(epsilon[1]);
         let sigma_1 = (sigma_s + 2.0 * k_most) / k_least;
-        let rho = 16.0 * sigma_v.powi(2) * norm.powi(3);
+        let rho = 16.0 * math::powi(sigma_v, 2) * math::powi(norm, 3);
         let l1 = sigma_1 * (rho / least).sqrt();
         // A run that stays inside the ball of eq 51 needs no larger one.
         let mu = filtered.max(2.0 * l1 * epsilon);
         let c3 = epsilon * first_observer_error;
         let (mu_1, mu_2) = (1.0 / (2.0 * norm), c3 * c3 * norm);
-        let trap = rho * epsilon.powi(2);
-        let late = epsilon / mu_1 * (mu_2 / (rho * epsilon.powi(4))).ln();
+        let trap = rho * math::powi(epsilon, 2);
+        let late = epsilon / mu_1 * math::ln(mu_2 / (rho * math::powi(epsilon, 4)));
         let filtered = 2.0 * l1 * epsilon;
         let error = filtered / k_least;
         let eta = epsilon * (rho / least).sqrt();

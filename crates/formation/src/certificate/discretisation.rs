@@ -3,7 +3,9 @@
 //! Near its set point an edge is, channel by channel, d²e/dt² = w with w = −2k ê₂ − (k² + β slope) e, held over a period;
 //! the observer estimates ê₁, ê₂ of e, de/dt. How the observer is carried over the period is what makes the difference.
 
+use crate::matrix_exponential::exponential;
 use nalgebra::{Matrix4, SMatrix, Vector4};
+use vocabulary::math;
 
 /// One channel of a sampled loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,7 +69,7 @@ impl Discretisation {
         let step = system * period;
         let eye = Augmented::identity();
         match self {
-            Self::Exact | Self::Ramp | Self::Held => step.exp(),
+            Self::Exact | Self::Ramp | Self::Held => exponential(&step),
             Self::Euler => eye + step,
             Self::RungeKutta => {
                 let (two, three) = (step * step, step * step * step);
@@ -143,7 +145,7 @@ impl ChannelSensitivity {
     /// `None` where it is stable over all of it or nowhere.
     pub fn longest_period(&self, how: Discretisation, epsilon: f64, span: [f64; 2]) -> LongestPeriod {
         const STEPS: u32 = 400;
-        let at = |k: u32| span[0] * (span[1] / span[0]).powf(f64::from(k) / f64::from(STEPS));
+        let at = |k: u32| span[0] * math::powf(span[1] / span[0], f64::from(k) / f64::from(STEPS));
         let stable = |period: f64| self.growth(how, epsilon, period) < 1.0;
         let Some(first) = (0..=STEPS).find(|k| !stable(at(*k))) else { return LongestPeriod::Beyond };
         if first == 0 {
@@ -225,12 +227,14 @@ mod tests {
         let h = period / f64::from(steps);
         for _ in 0..steps {
             let middle = e + rate * h / 2.0;
-            let mut d =
-                [e2 + PAPER.alpha1 / epsilon * (e - e1), w + PAPER.alpha2 / epsilon.powi(2) * (e - e1)];
+            let mut d = [
+                e2 + PAPER.alpha1 / epsilon * (e - e1),
+                w + PAPER.alpha2 / math::powi(epsilon, 2) * (e - e1),
+            ];
             let (m1, m2) = (e1 + d[0] * h / 2.0, e2 + d[1] * h / 2.0);
             d = [
                 m2 + PAPER.alpha1 / epsilon * (middle - m1),
-                w + PAPER.alpha2 / epsilon.powi(2) * (middle - m1),
+                w + PAPER.alpha2 / math::powi(epsilon, 2) * (middle - m1),
             ];
             (e1, e2) = (e1 + d[0] * h, e2 + d[1] * h);
             e += rate * h + w * h * h / 2.0;

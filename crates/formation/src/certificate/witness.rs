@@ -7,6 +7,7 @@ use crate::law::{Law, Switching};
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
 use nalgebra::Vector2;
+use vocabulary::math;
 use vocabulary::{LawKind, MotionInput, Relative, SetPoint, wrap};
 
 /// One edge at one control sample, as it truly was.
@@ -314,7 +315,7 @@ impl Witness {
 
 /// ln cosh x for x ≥ 0, without overflow.
 fn log_cosh(x: f64) -> f64 {
-    x + (-2.0 * x).exp().ln_1p() - std::f64::consts::LN_2
+    x + math::ln_1p(math::exp(-2.0 * x)) - std::f64::consts::LN_2
 }
 
 /// β − ‖g_v V_i‖ − ‖d(g_v V_i)/dt‖/k₁₂ (Lemma 4.1), β the smaller of the two.

@@ -1,6 +1,7 @@
 //! Where a curve bends most: what decides whether a robot can follow it.
 
 use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv};
+use vocabulary::math;
 
 /// The sharpest bend between two points of a way, when it is passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +64,7 @@ fn bend(piece: &CubicBez, u: f64) -> f64 {
     let (d1, d2) = (first.eval(u).to_vec2(), first.deriv().eval(u).to_vec2());
     let still = d1.hypot() <= STILL * (piece.p3 - piece.p0).hypot();
     // Where it is slowest, what changes its direction is all that there is.
-    let bent = if still { d2.hypot() / d1.hypot2() } else { d1.cross(d2).abs() / d1.hypot().powi(3) };
+    let bent = if still { d2.hypot() / d1.hypot2() } else { d1.cross(d2).abs() / math::powi(d1.hypot(), 3) };
     let sharp = bent * ON_THE_SPOT * (piece.p3 - piece.p0).hypot() > 1.0;
     if sharp || bent.is_nan() { f64::INFINITY } else { bent }
 }

@@ -5,6 +5,7 @@
 use super::{Bend, SpeedSchedule, bend::sharpest, tridiagonal::Tridiagonal};
 use kurbo::{CubicBez, ParamCurve, ParamCurveArclen, ParamCurveDeriv, Point, Vec2};
 use thiserror::Error;
+use vocabulary::math;
 use vocabulary::{MotionInput, Pose, Trajectory};
 
 /// Why points make no curve.
@@ -66,7 +67,7 @@ impl SplinePath {
     /// Where the curve begins and how it points there: the robot should start here.
     pub fn start(&self) -> Pose {
         let (point, tangent) = (self.pieces[0].p0, self.pieces[0].p1 - self.pieces[0].p0);
-        Pose::new(point.x, point.y, tangent.atan2())
+        Pose::new(point.x, point.y, math::atan2(tangent.y, tangent.x))
     }
 
     /// The sharpest bend of every piece, each time that it is passed before `until` s while the speed still changes, and
@@ -108,8 +109,8 @@ impl SplinePath {
         let (d1, d2) = (first.eval(u).to_vec2(), second.eval(u).to_vec2());
         let speed = d1.hypot();
         let turn = d1.cross(d2);
-        let curvature = turn / speed.powi(3);
-        let change = d1.cross(third) / speed.powi(3) - 3.0 * turn * d1.dot(d2) / speed.powi(5);
+        let curvature = turn / math::powi(speed, 3);
+        let change = d1.cross(third) / math::powi(speed, 3) - 3.0 * turn * d1.dot(d2) / math::powi(speed, 5);
         [curvature, change / speed]
     }
 }
@@ -209,12 +210,12 @@ mod tests {
         while travelled < way.length() {
             let d = way.at((travelled_time(&way, travelled)) + h / 2.0);
             let middle = heading + d.turn_rate * h / 2.0;
-            x += d.speed * middle.cos() * h;
-            y += d.speed * middle.sin() * h;
+            x += d.speed * math::cos(middle) * h;
+            y += d.speed * math::sin(middle) * h;
             heading += d.turn_rate * h;
             travelled += d.speed * h;
         }
-        assert!((x - start.x).hypot(y - start.y) < 1e-3, "{x} {y}");
+        assert!(math::hypot(x - start.x, y - start.y) < 1e-3, "{x} {y}");
     }
 
     fn travelled_time(way: &SplinePath, travelled: f64) -> f64 {

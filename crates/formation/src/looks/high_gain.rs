@@ -3,6 +3,7 @@
 use super::{LookLaw, Own, innovation};
 use crate::observer::{Estimate, Observer, input_effect};
 use crate::relative::Geometry;
+use vocabulary::math;
 use vocabulary::{EdgeSample, Measurement, MotionInput, Relative};
 
 /// ŝ1 and ŝ2, and the view angle, which no law controls but all of them use.
@@ -85,7 +86,7 @@ impl HighGain {
             0.5 * SUDDEN * delta * reach * reach
         };
         let share = |k: usize| {
-            let variance = look.deviation[k].powi(2) + self.variance[k] + unseen(k).powi(2);
+            let variance = math::powi(look.deviation[k], 2) + self.variance[k] + math::powi(unseen(k), 2);
             off[k].abs() / variance.max(1e-24).sqrt()
         };
         (0..3).map(share).fold(0.0, f64::max)
@@ -95,7 +96,7 @@ impl HighGain {
     /// less certain than those before, such as the last one of a tag that slips behind a pillar, corrects less.
     pub(super) fn correct(&mut self, law: &LookLaw, look: &Measurement, age: f64) {
         let trust: [f64; 3] = std::array::from_fn(|k| {
-            let ratio = look.deviation[k].powi(2) / self.variance[k].max(1e-24);
+            let ratio = math::powi(look.deviation[k], 2) / self.variance[k].max(1e-24);
             if ratio > 1.0 { 2.0 / (1.0 + ratio) } else { 1.0 }
         });
         for (variance, deviation) in self.variance.iter_mut().zip(look.deviation) {
@@ -119,7 +120,7 @@ impl HighGain {
         }
         let delta = law.disturbance[channel.min(1)];
         let interval = law.interval;
-        let best = (3.0 * self.variance[channel] * interval / (32.0 * delta * delta)).powf(0.2);
+        let best = math::powf(3.0 * self.variance[channel] * interval / (32.0 * delta * delta), 0.2);
         best.clamp(EPSILON[0] * interval.min(age), EPSILON[1])
     }
 }
@@ -129,15 +130,15 @@ impl HighGain {
 fn gain(observer: &Observer, channel: usize, epsilon: f64, age: f64) -> [f64; 2] {
     let (a1, a2) = (observer.alpha1[channel], observer.alpha2[channel]);
     let reach = age / epsilon;
-    let product = (-a1 * reach).exp();
+    let product = math::exp(-a1 * reach);
     let root = 0.25 * a1 * a1 - a2;
-    let decay = (-0.5 * a1 * reach).exp();
+    let decay = math::exp(-0.5 * a1 * reach);
     let sum = if root >= 0.0 {
         let r = root.sqrt() * reach;
         // Two decaying exponentials, written so that neither overflows.
-        (r - 0.5 * a1 * reach).exp() + (-r - 0.5 * a1 * reach).exp()
+        math::exp(r - 0.5 * a1 * reach) + math::exp(-r - 0.5 * a1 * reach)
     } else {
-        2.0 * decay * ((-root).sqrt() * reach).cos()
+        2.0 * decay * math::cos((-root).sqrt() * reach)
     };
     [1.0 - product, (1.0 - sum + product) / age]
 }

@@ -1,6 +1,7 @@
 //! What estimates from looks have to show, on a pair of exact unicycles.
 
 use super::*;
+use vocabulary::math;
 use vocabulary::{Pose, nearest_turn};
 
 const T: f64 = 0.01;
@@ -26,10 +27,10 @@ impl Pair {
         let go = |pose: &mut Pose, speed: f64, turn: f64| {
             let middle = pose.heading + 0.5 * turn * T;
             // The chord of an arc.
-            let chord = speed * T * (1.0 - (turn * T).powi(2) / 24.0);
+            let chord = speed * T * (1.0 - math::powi(turn * T, 2) / 24.0);
             *pose = Pose::new(
-                pose.x + chord * middle.cos(),
-                pose.y + chord * middle.sin(),
+                pose.x + chord * math::cos(middle),
+                pose.y + chord * math::sin(middle),
                 wrap(pose.heading + turn * T),
             );
         };
@@ -117,12 +118,12 @@ fn run(
             ];
             let estimate = tracker.estimate(law);
             for (sum, (seen, true_rate)) in shown.rates.iter_mut().zip(estimate.rates.iter().zip(rate)) {
-                *sum += (seen - true_rate).powi(2);
+                *sum += math::powi(seen - true_rate, 2);
             }
             counted += 1;
         }
         let t = k as f64 * T;
-        let own = Own { speed: 1.0, acceleration: 0.0, turn_rate: 0.3 + 0.2 * (1.3 * t).sin() };
+        let own = Own { speed: 1.0, acceleration: 0.0, turn_rate: 0.3 + 0.2 * math::sin(1.3 * t) };
         pair.advance(own);
         tracker.advance(law, own, T);
     }

@@ -3,6 +3,7 @@
 use crate::relative::Geometry;
 use nalgebra::{SMatrix, Vector2};
 use std::sync::LazyLock;
+use vocabulary::math;
 use vocabulary::{EdgeSample, Relative, TRACK_NODES, Track, nearest_turn};
 
 /// Polynomials of the stretch have this degree, one less than the nodes of a track.
@@ -131,7 +132,7 @@ fn fit(values: &[f64; TRACK_NODES]) -> Poly {
 
 static COEFFICIENTS_FROM_NODES: LazyLock<SMatrix<f64, TRACK_NODES, TRACK_NODES>> = LazyLock::new(|| {
     let vandermonde = SMatrix::<f64, TRACK_NODES, TRACK_NODES>::from_fn(|row, column| {
-        Track::NODES[row].powi(column as i32)
+        math::powi(Track::NODES[row], column as i32)
     });
     vandermonde.try_inverse().unwrap_or_else(SMatrix::identity)
 });

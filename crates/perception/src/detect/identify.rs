@@ -2,6 +2,7 @@
 
 use super::Tag;
 use crate::pose::{SeenFace, area};
+use vocabulary::math;
 use vocabulary::{FACES, Shell};
 
 /// Sides shorter than this, pixels, cannot have been read: eight cells of a pixel.
@@ -36,7 +37,7 @@ fn sensible(corners: &[[f64; 2]; 4]) -> bool {
         let ([a, b], [c, d]) = (corners[k % 4], corners[(k + 1) % 4]);
         [c - a, d - b]
     };
-    let lengths = [0, 1, 2, 3].map(|k| side(k)[0].hypot(side(k)[1]));
+    let lengths = [0, 1, 2, 3].map(|k| math::hypot(side(k)[0], side(k)[1]));
     let (short, long) =
         lengths.iter().fold((f64::INFINITY, 0.0_f64), |(short, long), l| (short.min(*l), long.max(*l)));
     let convex = (0..4).all(|k| {

@@ -4,6 +4,7 @@ use super::{Detector, Tag};
 use locus_core::{DetectorBuilder, FrameContext, ImageView, LocusEngine, TagFamily};
 use std::sync::LazyLock;
 use vocabulary::Grey;
+use vocabulary::math;
 
 /// Pictures with fewer pixels across or down hold no tag: ten cells of little more than a pixel.
 const LEAST: u32 = 16;
@@ -28,7 +29,7 @@ const LIFT: f64 = 40.0;
 /// Display value of every amount of light, as near to logarithmic as the noise of the dark allows.
 static DISPLAY: LazyLock<[u8; 256]> = LazyLock::new(|| {
     std::array::from_fn(|light| {
-        let lifted = (LIFT * light as f64 / 255.0).ln_1p() / LIFT.ln_1p();
+        let lifted = math::ln_1p(LIFT * light as f64 / 255.0) / math::ln_1p(LIFT);
         (255.0 * lifted).round() as u8
     })
 });

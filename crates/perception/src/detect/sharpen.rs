@@ -14,6 +14,7 @@ use crate::imaging::Optics;
 use crate::pose::homography;
 use bell::EdgeProfile;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use vocabulary::math;
 use vocabulary::{CameraModel, Grey, Region, TAG_CELLS, tag_cell};
 
 /// Corners of the black square, in cells from the middle of the tag, x right and y down.
@@ -114,7 +115,7 @@ fn fitted(view: &TagView<'_>, blur: f64, tag: &Tag) -> Option<([[f64; 2]; 4], f6
     let cells = cells(tag.id)?;
     let start = tag.corners.map(|c| view.ideal(c));
     let middle = [0, 1].map(|k| start.iter().map(|c| c[k]).sum::<f64>() / 4.0);
-    let size = start.iter().map(|c| (c[0] - middle[0]).hypot(c[1] - middle[1])).sum::<f64>() / 4.0;
+    let size = start.iter().map(|c| math::hypot(c[0] - middle[0], c[1] - middle[1])).sum::<f64>() / 4.0;
     if !(size.is_finite() && size > 4.0) {
         return None;
     }
@@ -133,10 +134,10 @@ fn fitted(view: &TagView<'_>, blur: f64, tag: &Tag) -> Option<([[f64; 2]; 4], f6
         light = std::array::from_fn(|k| light[k] + round.light[k]);
         spread = round.spread;
         // A pixel is never sharper than its own square.
-        blur = (blur * round.blur.clamp(-0.3, 0.3).exp()).max(PIXEL.sqrt() / size);
+        blur = (blur * math::exp(round.blur.clamp(-0.3, 0.3))).max(PIXEL.sqrt() / size);
         let next = placed(&h)?.map(|c| [0, 1].map(|k| c[k] * size + middle[k]));
         let moved = |a: &[[f64; 2]; 4], b: &[[f64; 2]; 4]| {
-            a.iter().zip(b).map(|(p, q)| (p[0] - q[0]).hypot(p[1] - q[1])).fold(0.0, f64::max)
+            a.iter().zip(b).map(|(p, q)| math::hypot(p[0] - q[0], p[1] - q[1])).fold(0.0, f64::max)
         };
         if moved(&next, &start) > ASTRAY {
             return None;
@@ -221,7 +222,7 @@ fn shade(back: &Matrix3<f64>, cells: &Cells, blur: f64, [x, y]: [f64; 2]) -> Opt
     let p = back * Vector3::new(x, y, 1.0);
     let tag = [p.x / p.z, p.y / p.z];
     let change = [0, 1].map(|k| [0, 1].map(|c| (back[(k, c)] - tag[k] * back[(2, c)]) / p.z));
-    let soft = change.map(|row| blur * row[0].hypot(row[1]));
+    let soft = change.map(|row| blur * math::hypot(row[0], row[1]));
     let limit = |soft: f64| (0.5 * TAG_CELLS as f64 - 2.0 * soft).max(4.3);
     if !(tag[0].abs() < limit(soft[0]) && tag[1].abs() < limit(soft[1])) {
         return None;
@@ -322,9 +323,9 @@ fn round(
     if count < 30.0 {
         return None;
     }
-    let known = (spread.min(20.0) / BLUR_KNOWN).powi(2);
+    let known = math::powi(spread.min(20.0) / BLUR_KNOWN, 2);
     curvature[(BLUR, BLUR)] += known;
-    slope[BLUR] += known * (told / blur).ln();
+    slope[BLUR] += known * math::ln(told / blur);
     let factors = curvature.cholesky()?;
     let d = factors.solve(&slope);
     let spread = (squares / (count - UNKNOWN as f64)).sqrt().max(0.5);

@@ -6,6 +6,7 @@ mod noise;
 
 pub use exposure::gather;
 pub use noise::{NoiseStream, Purpose, noise_stream};
+use vocabulary::math;
 
 use glass::{Glass, between};
 use vocabulary::{CameraModel, Grey, Region};
@@ -59,7 +60,7 @@ impl ImageSensor {
     pub fn new(optics: Optics) -> Self {
         let sigma = if optics.blur > 0.0 { optics.blur.min(WIDEST_BLUR) } else { 0.0 };
         let reach = (3.0 * sigma).ceil() as usize;
-        let bell = |k: usize| if k == 0 { 1.0 } else { (-0.5 * (k as f64 / sigma).powi(2)).exp() };
+        let bell = |k: usize| if k == 0 { 1.0 } else { math::exp(-0.5 * math::powi(k as f64 / sigma, 2)) };
         let sum = 2.0 * (0..=reach).map(bell).sum::<f64>() - 1.0;
         Self {
             optics,

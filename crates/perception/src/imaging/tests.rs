@@ -1,6 +1,7 @@
 //! Light through glass, blur and noise, held against what it should be.
 
 use super::*;
+use vocabulary::math;
 
 fn drawn(source: &IdealPicture, light: impl Fn(f64, f64) -> f64) -> Grey {
     let Region { width, height, .. } = source.region;
@@ -32,7 +33,7 @@ fn an_edge_becomes_as_soft_as_the_blur_says() {
     let total: f64 = slope.iter().sum();
     let mean = slope.iter().enumerate().map(|(k, s)| (k as f64 + 0.5) * s).sum::<f64>() / total;
     let square =
-        slope.iter().enumerate().map(|(k, s)| (k as f64 + 0.5 - mean).powi(2) * s).sum::<f64>() / total;
+        slope.iter().enumerate().map(|(k, s)| math::powi(k as f64 + 0.5 - mean, 2) * s).sum::<f64>() / total;
     assert!((mean - 29.5).abs() < 0.02 && (square.sqrt() - 1.5).abs() < 0.05, "{mean} {}", square.sqrt());
 }
 
@@ -42,7 +43,7 @@ fn noise_is_as_strong_as_it_should_be() {
     let picture = taken(optics, Region::whole(&optics.camera_model), |_, _| 120.0);
     let n = picture.values.len() as f64;
     let mean = picture.values.iter().map(|v| f64::from(*v)).sum::<f64>() / n;
-    let square = picture.values.iter().map(|v| (f64::from(*v) - mean).powi(2)).sum::<f64>() / n;
+    let square = picture.values.iter().map(|v| math::powi(f64::from(*v) - mean, 2)).sum::<f64>() / n;
     // Rounding to whole levels adds 1/12.
     assert!((mean - 120.0).abs() < 0.05 && (square - 16.0 - 1.0 / 12.0).abs() < 0.3, "{mean} {square}");
 }
@@ -53,7 +54,7 @@ fn the_lens_bends_a_picture_as_it_bends_points() {
     let camera_model =
         CameraModel { distortion: [-0.28, 0.09, 1e-3, -7e-4, -0.01], ..CameraModel::default() };
     let optics = Optics { camera_model, blur: 0.0, noise: 0.0 };
-    let light = |x: f64, y: f64| 128.0 + 100.0 * (x * 0.11).sin() * (y * 0.13).cos();
+    let light = |x: f64, y: f64| 128.0 + 100.0 * math::sin(x * 0.11) * math::cos(y * 0.13);
     for region in [REGION, Region { x: 0, y: 0, width: 90, height: 70 }, Region::whole(&camera_model)] {
         let picture = taken(optics, region, light);
         let mut worst = 0.0_f64;
@@ -76,7 +77,7 @@ fn a_region_is_a_part_of_the_whole() {
     let camera_model = CameraModel { distortion: [-0.2, 0.05, 0.0, 0.0, 0.0], ..CameraModel::default() };
     for camera_model in [camera_model, CameraModel::default()] {
         let optics = Optics { camera_model, blur: 0.8, noise: 0.0 };
-        let light = |x: f64, y: f64| 128.0 + 100.0 * (x * 0.4).sin() * (y * 0.3).cos();
+        let light = |x: f64, y: f64| 128.0 + 100.0 * math::sin(x * 0.4) * math::cos(y * 0.3);
         let (whole, part) =
             (taken(optics, Region::whole(&camera_model), light), taken(optics, REGION, light));
         for y in 0..REGION.height {

@@ -7,6 +7,7 @@
 use super::posit::{Match, centroid, rigid, scaled_pose};
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, SMatrix, SVector, Vector2, Vector3};
 use vocabulary::Rigid;
+use vocabulary::math;
 
 /// Rounds after which a branch is given up.
 const ROUNDS: usize = 200;
@@ -33,7 +34,11 @@ pub fn coplanar_posit(matches: &[Match]) -> Vec<Rigid> {
 pub fn misfit(camera_from_object: &Rigid, matches: &[Match]) -> f64 {
     let squares = matches.iter().map(|m| {
         let [x, y, z] = camera_from_object.apply(m.point);
-        if z > 1e-6 { (x / z - m.seen[0]).powi(2) + (y / z - m.seen[1]).powi(2) } else { f64::INFINITY }
+        if z > 1e-6 {
+            math::powi(x / z - m.seen[0], 2) + math::powi(y / z - m.seen[1], 2)
+        } else {
+            f64::INFINITY
+        }
     });
     (squares.sum::<f64>() / matches.len().max(1) as f64).sqrt()
 }
@@ -82,7 +87,7 @@ impl Plane {
         }
         let [i0, j0] = sums.map(|sum| self.inverse * sum);
         let (re, im) = (j0.norm_squared() - i0.norm_squared(), -2.0 * i0.dot(&j0));
-        let size = re.hypot(im);
+        let size = math::hypot(re, im);
         let (lambda, mu) = ((0.5 * (size + re)).max(0.0).sqrt(), (0.5 * (size - re)).max(0.0).sqrt());
         let mu = if im < 0.0 { -mu } else { mu };
         [1.0, -1.0].map(|sign| {
@@ -136,7 +141,8 @@ pub fn square_poses(half: f64, seen: &[[f64; 2]; 4]) -> Vec<Rigid> {
     let flat = Matrix2x3::new(1.0, 0.0, -p, 0.0, 1.0, -q) * to_sight.fixed_columns::<2>(0);
     let Some(a) = flat.try_inverse().map(|inverse| inverse * slope) else { return vec![] };
     let squares = a * a.transpose();
-    let gap = (0.25 * (squares[(0, 0)] - squares[(1, 1)]).powi(2) + squares[(0, 1)].powi(2)).sqrt();
+    let gap =
+        (0.25 * math::powi(squares[(0, 0)] - squares[(1, 1)], 2) + math::powi(squares[(0, 1)], 2)).sqrt();
     let stretch = (0.5 * squares.trace() + gap).sqrt();
     if !(stretch.is_finite() && stretch > 1e-12) {
         return vec![];

@@ -17,6 +17,7 @@ pub use posit::{Match, classic_posit, posit};
 
 use nalgebra::{Matrix3, Vector3};
 use refine::{Corner, Minimum, Problem};
+use vocabulary::math;
 use vocabulary::{CameraModel, FACE_DIRECTIONS, FACES, Pose, Relative, Rigid, Shell, wrap};
 
 /// Poses whose headings differ by less, rad, are not told apart: their difference goes into the covariance.
@@ -86,7 +87,7 @@ impl PoseEstimate {
     /// Distance, bearing and view angle, with the standard deviations [m, rad, rad] that the covariance gives them.
     pub fn measurement(&self) -> (Relative, [f64; 3]) {
         let relative = Relative::between(self.pose, Pose::default());
-        let square = relative.distance.powi(2).max(1e-12);
+        let square = math::powi(relative.distance, 2).max(1e-12);
         let (x, y) = (self.pose.x, self.pose.y);
         let along = Vector3::new(x, y, 0.0) / square.sqrt();
         // The view angle turns with the direction of the leader; the bearing also against its heading.
@@ -121,7 +122,7 @@ pub fn locate(
     let mut corners = Vec::with_capacity(4 * faces.len());
     let mut matches = Vec::with_capacity(4 * faces.len());
     for seen in faces {
-        let sigma = pixel_sigma.hypot(seen.deviation);
+        let sigma = math::hypot(pixel_sigma, seen.deviation);
         for (point, pixel) in rig.shell.tag_corners(seen.face).into_iter().zip(seen.corners) {
             corners.push(Corner::new(&rig.camera_model, point, pixel, sigma)?);
             matches.push(Match { point, seen: rig.camera_model.direction(pixel) });
@@ -174,7 +175,7 @@ fn judge(
     let mut covariance = best.covariance;
     for twin in minima.iter().filter(|m| turned(m, best) <= ALIKE && apart(&m.pose, &best.pose) > 1e-5) {
         // Half-way between two minima so close together it is as likely as in either.
-        let share = 1.0 / (1.0 + (0.5 * (twin.cost - best.cost)).clamp(-50.0, 50.0).exp());
+        let share = 1.0 / (1.0 + math::exp((0.5 * (twin.cost - best.cost)).clamp(-50.0, 50.0)));
         let (a, b) = (twin.pose, best.pose);
         let off = Vector3::new(a.x - b.x, a.y - b.y, wrap(a.heading - b.heading));
         covariance += off * off.transpose() * share;
@@ -214,7 +215,7 @@ fn starts(
         let [x, y, _] = tag.translation;
         let camera = rig.body_from_camera.translation;
         let at = |turn: f64| {
-            let outward = (camera[1] - y).atan2(camera[0] - x) + turn;
+            let outward = math::atan2(camera[1] - y, camera[0] - x) + turn;
             let heading = wrap(outward - FACE_DIRECTIONS[seen.face % FACES]);
             let [forward, left, _] = body_from_tag.translation;
             let [dx, dy] = Pose::new(0.0, 0.0, heading).world_from_body(forward, left);
@@ -235,14 +236,17 @@ fn faces_camera(rig: &Rig, leader: &Rigid, face: usize) -> bool {
 
 /// The pose on the ground of a body that may be tilted.
 fn flat(body: &Rigid) -> Option<Pose> {
-    let pose =
-        Pose::new(body.translation[0], body.translation[1], body.rotation[1][0].atan2(body.rotation[0][0]));
+    let pose = Pose::new(
+        body.translation[0],
+        body.translation[1],
+        math::atan2(body.rotation[1][0], body.rotation[0][0]),
+    );
     (pose.x.is_finite() && pose.y.is_finite() && pose.heading.is_finite()).then_some(pose)
 }
 
 /// A measure of how far two poses are apart, m and rad alike.
 fn apart(a: &Pose, b: &Pose) -> f64 {
-    (a.x - b.x).hypot(a.y - b.y).max(wrap(a.heading - b.heading).abs())
+    math::hypot(a.x - b.x, a.y - b.y).max(wrap(a.heading - b.heading).abs())
 }
 
 /// Twice the area of a quadrilateral, positive for corners in the order of a tag's; square pixels.
@@ -255,7 +259,7 @@ fn longest_side(corners: &[[f64; 2]; 4]) -> f64 {
     (0..4)
         .map(|k| {
             let ([a, b], [c, d]) = (corners[k], corners[(k + 1) % 4]);
-            (a - c).hypot(b - d)
+            math::hypot(a - c, b - d)
         })
         .fold(0.0, f64::max)
 }

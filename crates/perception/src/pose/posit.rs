@@ -152,6 +152,7 @@ fn spread_is_solid(matches: &[Match], middle: &Vector3<f64>) -> bool {
 mod tests {
     use super::*;
     use crate::pose::trial::{Views, apart, matches_of};
+    use vocabulary::math;
 
     #[test]
     fn exact_points_give_the_pose() {
@@ -191,7 +192,9 @@ mod tests {
                 continue;
             }
             let matches = matches_of(&view);
-            let off = |found: Option<Rigid>| found.map_or(1.0, |f| apart(&f, &view.camera_from_body).powi(2));
+            let off = |found: Option<Rigid>| {
+                found.map_or(1.0, |f| math::powi(apart(&f, &view.camera_from_body), 2))
+            };
             classic += off(classic_posit(&matches));
             homogeneous += off(posit(&matches));
             n += 1.0;

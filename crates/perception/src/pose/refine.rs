@@ -7,6 +7,7 @@
 
 use super::Prior;
 use nalgebra::{Matrix2, Matrix3, Matrix6, Rotation3, SMatrix, Vector2, Vector3, Vector6};
+use vocabulary::math;
 use vocabulary::{CameraModel, Pose, Rigid, wrap};
 
 /// A corner further off than this, in standard deviations, counts by its distance and no longer by its square (Huber):
@@ -74,9 +75,9 @@ struct Local {
 impl Problem<'_> {
     /// Goes down from `start` to the next minimum; `None` where that leads behind the camera or nowhere.
     pub(super) fn minimum(&self, start: Pose) -> Option<Minimum> {
-        let distance = start.x.hypot(start.y);
+        let distance = math::hypot(start.x, start.y);
         // A follower that pitches sees its leader higher or lower by its distance times the angle.
-        let height = self.prior.height.hypot(distance * self.prior.tilt);
+        let height = math::hypot(self.prior.height, distance * self.prior.tilt);
         let scale = Vector6::new(1.0, 1.0, 1.0, height, self.prior.tilt, self.prior.tilt);
         let mut at = Vector6::new(start.x, start.y, start.heading, 0.0, 0.0, 0.0);
         // Far from the minimum every corner is far off; squares get there in fewer steps.

@@ -3,6 +3,7 @@
 use super::trial::{PoseView, Views};
 use super::*;
 use proptest::prelude::*;
+use vocabulary::math;
 
 const FLAT: Prior = Prior { tilt: 0.0, height: 0.0 };
 
@@ -50,7 +51,7 @@ fn calibration(seed: u64, prior: Prior, trials: usize) -> (f64, f64) {
         let view = views.next(1.0..4.0);
         let [roll, pitch] = [0, 1].map(|_| prior.tilt * views.normal());
         let (x, y) = (view.pose.x, view.pose.y);
-        let z = prior.height.hypot(prior.tilt * x.hypot(y)) * views.normal();
+        let z = math::hypot(prior.height, prior.tilt * math::hypot(x, y)) * views.normal();
         let body = Rigid::turned([x, y, z], view.pose.heading, pitch, roll);
         let view = PoseView::tilted(view.rig, view.pose, &body);
         if view.faces.len() < 2 {
@@ -63,7 +64,7 @@ fn calibration(seed: u64, prior: Prior, trials: usize) -> (f64, f64) {
         let bound = Matrix3::from_fn(|r, c| found.covariance[r][c]);
         let distance = (error.transpose() * bound.try_inverse().expect("regular") * error)[(0, 0)];
         sum += distance / 3.0;
-        squares += error.z.powi(2) / bound[(2, 2)];
+        squares += math::powi(error.z, 2) / bound[(2, 2)];
         n += 1.0;
     }
     (sum / n, squares / n)
@@ -90,7 +91,7 @@ fn one_bad_corner_does_little() {
         let mut seen = view.seen();
         let error = |seen: &[SeenFace]| {
             let found = locate(&view.rig, seen, 0.1, &FLAT, None).expect("a pose");
-            wrap(found.pose.heading - view.pose.heading).to_degrees().powi(2)
+            math::powi(wrap(found.pose.heading - view.pose.heading).to_degrees(), 2)
         };
         clean += error(&seen);
         seen[0].corners[1][0] += 2.0;
@@ -173,8 +174,8 @@ fn posit_and_sqpnp_agree() {
         // Six degrees of freedom from POSIT and SQPnP; the ground makes three of them known.
         let (a, b) = (heading(&posit), heading(&other));
         assert!(wrap(a - b).abs() < 5_f64.to_radians(), "{a} {b}");
-        ours += wrap(refined.pose.heading - view.pose.heading).powi(2);
-        theirs += wrap(b - view.pose.heading).powi(2);
+        ours += math::powi(wrap(refined.pose.heading - view.pose.heading), 2);
+        theirs += math::powi(wrap(b - view.pose.heading), 2);
         n += 1;
     }
     assert!(n > 100 && ours < theirs, "{n} {ours} {theirs}");

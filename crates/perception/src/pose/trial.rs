@@ -3,6 +3,7 @@
 use super::{Match, Rig, SeenFace};
 use crate::imaging::{NoiseStream, Purpose};
 use std::ops::Range;
+use vocabulary::math;
 use vocabulary::{Body, CameraModel, CameraMount, FACES, Pose, Rigid, Shell, wrap};
 
 pub(crate) struct Views {
@@ -35,8 +36,11 @@ impl Views {
     /// a few degrees.
     pub(crate) fn next(&mut self, range: Range<f64>) -> PoseView {
         let (distance, bearing) = (self.uniform(range), self.uniform(-0.8..0.8));
-        let pose =
-            Pose::new(distance * bearing.cos(), distance * bearing.sin(), wrap(self.uniform(-3.1..3.1)));
+        let pose = Pose::new(
+            distance * math::cos(bearing),
+            distance * math::sin(bearing),
+            wrap(self.uniform(-3.1..3.1)),
+        );
         let pan = bearing + self.uniform(-0.15..0.15);
         let body_from_camera = CameraMount::fitting(&Body::default()).body_from_camera(pan);
         let rig =
@@ -61,7 +65,7 @@ impl PoseView {
                 -(0..3).map(|k| out[k] * at[k]).sum::<f64>() / at.iter().map(|x| x * x).sum::<f64>().sqrt();
             let corners = rig.shell.tag_corners(face).map(|c| camera_from_body.apply(c));
             let ahead = corners.iter().all(|c| c[2] > 0.05);
-            (cosine > 65_f64.to_radians().cos() && ahead)
+            (cosine > math::cos(65_f64.to_radians()) && ahead)
                 .then(|| (face, corners.map(|[x, y, z]| [x / z, y / z])))
         };
         Self { rig, pose, camera_from_body, faces: (0..FACES).filter_map(seen).collect() }

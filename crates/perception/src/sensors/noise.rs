@@ -1,6 +1,7 @@
 //! The truth with errors.
 
 use crate::imaging::NoiseStream;
+use vocabulary::math;
 use vocabulary::{Measurement, Relative, wrap};
 
 /// Errors of looks at the truth, each of [distance in m, bearing in rad, view angle in rad].
@@ -32,7 +33,7 @@ impl NoiseModel {
         random: &mut NoiseStream,
     ) -> Measurement {
         let fresh = [0, 1, 2].map(|_| f64::from(random.normal()));
-        let keep = if self.correlation > 0.0 { (-interval / self.correlation).exp() } else { 0.0 };
+        let keep = if self.correlation > 0.0 { math::exp(-interval / self.correlation) } else { 0.0 };
         let now = drift
             .now
             .map_or(fresh, |last| [0, 1, 2].map(|k| keep * last[k] + (1.0 - keep * keep).sqrt() * fresh[k]));
@@ -72,11 +73,11 @@ mod tests {
         let n = errors.len();
         for (k, deviation) in model.deviation.into_iter().enumerate() {
             let centre = mean(&|i| errors[i][k], n);
-            let spread = mean(&|i| (errors[i][k] - centre).powi(2), n);
+            let spread = mean(&|i| math::powi(errors[i][k] - centre, 2), n);
             let next = mean(&|i| (errors[i][k] - centre) * (errors[i + 1][k] - centre), n - 1);
             assert!((centre - model.bias[k]).abs() < 0.05 * deviation, "{k}: {centre}");
             assert!((spread.sqrt() / deviation - 1.0).abs() < 0.05, "{k}: {spread}");
-            assert!((next / spread - (-0.5_f64).exp()).abs() < 0.05, "{k}: {}", next / spread);
+            assert!((next / spread - math::exp(-0.5_f64)).abs() < 0.05, "{k}: {}", next / spread);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The camera on its mast: it turns towards the leader, and searches when it has lost it.
 
 use super::{CameraSettings, LeaderPrediction};
+use vocabulary::math;
 use vocabulary::{Pose, Relative, TrackingState, wrap};
 
 /// Where a camera points over the period that has passed, and how it searches.
@@ -67,14 +68,14 @@ impl Pan {
 /// The leader in its follower's frame.
 pub(super) fn leader_pose(relative: &Relative) -> Pose {
     let direction = wrap(relative.view_angle - std::f64::consts::PI);
-    let (sin, cos) = direction.sin_cos();
+    let (sin, cos) = math::sin_cos(direction);
     Pose::new(relative.distance * cos, relative.distance * sin, wrap(relative.view_angle - relative.bearing))
 }
 
 /// Direction from a camera `forward` m ahead of its robot's reference point to the leader, rad from the heading.
 pub(super) fn towards(relative: &Relative, forward: f64) -> f64 {
     let leader = leader_pose(relative);
-    leader.y.atan2(leader.x - forward)
+    math::atan2(leader.y, leader.x - forward)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Pictures of a shell with tags, cast ray by ray: 8 by 8 of them to a pixel, in linear light.
 use perception::imaging::{IdealPicture, ImageSensor, NoiseStream, Optics, Purpose, noise_stream};
 use perception::pose::Rig;
+use vocabulary::math;
 use vocabulary::{
     Body, CameraModel, CameraMount, FACES, Grey, Pose, Region, Rigid, Shell, TAG_CELLS, tag_cell, wrap,
 };
@@ -43,7 +44,7 @@ impl Scenes {
         let behind = self.uniform(30_f64.to_radians(), std::f64::consts::PI);
         let behind = if self.stream.uniform() < 0.5 { behind } else { -behind };
         let heading = wrap(bearing + std::f64::consts::PI - behind);
-        let pose = Pose::new(distance * bearing.cos(), distance * bearing.sin(), heading);
+        let pose = Pose::new(distance * math::cos(bearing), distance * math::sin(bearing), heading);
         let robot = (self.stream.uniform() * 117.0) as usize;
         let rig = Rig {
             shell: Shell::PAPER.tagged(robot),
@@ -81,7 +82,8 @@ impl Scene {
         let range = at.iter().map(|x| x * x).sum::<f64>().sqrt();
         let cosine = -(0..3).map(|k| out[k] * at[k]).sum::<f64>() / range;
         let inside = |p: [f64; 2]| self.rig.camera_model.holds(p, 8.0);
-        cosine > 65_f64.to_radians().cos() && self.corners(face).is_some_and(|c| c.into_iter().all(inside))
+        cosine > math::cos(65_f64.to_radians())
+            && self.corners(face).is_some_and(|c| c.into_iter().all(inside))
     }
 
     /// Where the corners of a face's tag are, pixels.
@@ -126,7 +128,8 @@ impl Scene {
     /// Light of the background at a pixel of the ideal picture.
     fn behind(&self, x: f64, y: f64) -> f64 {
         let ground = if y > 200.0 { 0.45 } else { 0.6 };
-        let waves = 0.05 * (0.21 * x + 0.4 * (0.05 * y).sin()).sin() + 0.04 * (0.13 * y + 0.07 * x).cos();
+        let waves =
+            0.05 * math::sin(0.21 * x + 0.4 * math::sin(0.05 * y)) + 0.04 * math::cos(0.13 * y + 0.07 * x);
         let on = |c: &&[f64; 5]| (x - c[0]).abs() < c[2] && (y - c[1]).abs() < c[3];
         self.clutter.iter().find(on).map_or(ground + waves, |c| c[4])
     }
@@ -137,7 +140,7 @@ impl Scene {
         let frames: Vec<_> = (0..FACES)
             .map(|face| self.camera_from_body.after(&shell.body_from_face(face)).inverse())
             .collect();
-        let half_face = 0.5 * shell.face_height / shell.lean.cos();
+        let half_face = 0.5 * shell.face_height / math::cos(shell.lean);
         let focal = self.rig.camera_model.focal;
         let fleet = |x: f64, y: f64| -> Option<f64> {
             let ray = [(x - source.centre[0]) / focal, (y - source.centre[1]) / focal, 1.0];

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use vocabulary::Pose;
+use vocabulary::math;
 
 /// Motion of a lead robot as plain data; it starts at the robot's pose, way-points at their own start.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -79,7 +80,7 @@ impl Path {
     pub(crate) fn start(&self) -> Option<Pose> {
         let Self::Waypoints { points, .. } = self else { return None };
         let [first, second, ..] = points.as_slice() else { return None };
-        Some(Pose::new(first[0], first[1], (second[1] - first[1]).atan2(second[0] - first[0])))
+        Some(Pose::new(first[0], first[1], math::atan2(second[1] - first[1], second[0] - first[0])))
     }
 
     /// Bounds on |speed| in m/s and |turn rate| in rad/s over all times, where they can be told beforehand.

@@ -2,6 +2,7 @@
 
 use crate::text::words::word;
 use crate::text::{angle_within, form::Number, number, settings};
+use vocabulary::math;
 use vocabulary::{Body, GRAVITY, Limits, words};
 
 /// A measure of a body.
@@ -222,7 +223,7 @@ impl Vehicle {
             turn_rate_max: self.turn_rate_max,
             acceleration_max: self.acceleration_max,
             curvature_max: if self.kind.steers() {
-                self.steering_max.tan() / self.wheelbase
+                math::tan(self.steering_max) / self.wheelbase
             } else {
                 f64::INFINITY
             },

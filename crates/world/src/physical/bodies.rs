@@ -13,6 +13,7 @@ use rapier3d_f64::prelude::{
     PhysicsPipeline, Pose as Isometry, QueryFilter, Ray, RigidBodyBuilder, RigidBodyHandle, RigidBodySet,
     Rotation, SharedShape, SoftBodySet, Vector,
 };
+use vocabulary::math;
 use vocabulary::{Attitude, Body, EntityId, GRAVITY, Mobility, Motion, Placement, Pose, Solid, Surface};
 
 /// Bodies whose nearest points are closer than this touch, m.
@@ -235,7 +236,7 @@ impl Bodies {
         let (carriage, origin) = self.carriage(body);
         let [ahead, ..] = carriage.axes;
         let velocity = carriage.velocity + carriage.spin.cross(origin - carriage.centre);
-        let heading = ahead.y.atan2(ahead.x);
+        let heading = math::atan2(ahead.y, ahead.x);
         let level = Vector::new(ahead.x, ahead.y, 0.0).normalize_or(Vector::X);
         Knot {
             pose: Pose { x: origin.x, y: origin.y, heading },
@@ -252,7 +253,11 @@ impl Bodies {
             let (carriage, origin) = self.carriage(body);
             (carriage.axes, origin)
         };
-        Attitude { height: origin.z, roll: left.z.atan2(up.z), pitch: (-ahead.z).clamp(-1.0, 1.0).asin() }
+        Attitude {
+            height: origin.z,
+            roll: math::atan2(left.z, up.z),
+            pitch: math::asin((-ahead.z).clamp(-1.0, 1.0)),
+        }
     }
 
     /// Where a prop is now; `None` for one that is fixed.
@@ -422,10 +427,10 @@ pub(super) fn on_surface(pose: Pose, surface: &Surface) -> Isometry {
 
 /// How a body stands on a surface.
 pub(super) fn attitude_on(heading: f64, surface: &Surface) -> Attitude {
-    let ([nx, ny, nz], (sin, cos)) = (surface.normal, heading.sin_cos());
+    let ([nx, ny, nz], (sin, cos)) = (surface.normal, math::sin_cos(heading));
     let (ahead, left) = (nx * cos + ny * sin, ny * cos - nx * sin);
     // The body's z axis comes out as the normal: (sin p cos r, −sin r, cos p cos r) in the heading's frame.
-    Attitude { height: surface.height, roll: (-left).asin(), pitch: ahead.atan2(nz) }
+    Attitude { height: surface.height, roll: math::asin(-left), pitch: math::atan2(ahead, nz) }
 }
 
 /// Only what can cross its own width in a few steps needs the swept test.

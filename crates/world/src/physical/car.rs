@@ -9,6 +9,7 @@ use crate::wheeled::wheel::{Carriage, Footing, Mounting, Pull, Push};
 use crate::{Unicycle, Wheeled};
 use rapier3d_f64::prelude::{RigidBodyHandle, Vector};
 use std::sync::Arc;
+use vocabulary::math;
 use vocabulary::{Command, Limits, Motion, Surface, Terrain, Wheel};
 
 /// What vehicles drive on and among.
@@ -173,7 +174,7 @@ impl Car {
         // Straight ahead needs no arc tangent.
         let steered = effort.tan_steering != 0.0;
         for (wheel, [cos, sin]) in self.wheels.iter_mut().zip(headings).take(2) {
-            wheel.steering = if steered { sin.atan2(*cos) } else { 0.0 };
+            wheel.steering = if steered { math::atan2(*sin, *cos) } else { 0.0 };
         }
     }
 }
@@ -222,7 +223,7 @@ fn headings(vehicle: &Wheeled, tan: f64) -> [[f64; 2]; 4] {
     let curvature = tan / vehicle.body.wheelbase;
     let aside = curvature * vehicle.body.track / 2.0;
     let towards = |cos: f64| {
-        let norm = cos.hypot(tan);
+        let norm = math::hypot(cos, tan);
         [cos / norm, tan / norm]
     };
     [towards(1.0 - aside), towards(1.0 + aside), straight, straight]

@@ -16,6 +16,7 @@ use interpolant::MotionHistory;
 use rapier3d_f64::prelude::RigidBodyHandle;
 use rayon::prelude::*;
 use std::sync::Arc;
+use vocabulary::math;
 use vocabulary::{
     Command, Contact, Mobility, Motion, Placement, Pose, Prop, Snapshot, Solid, StepInterpolant, Terrain,
     Trajectory,
@@ -122,7 +123,7 @@ impl Physical {
             snapshot.props.push(prop.prop.placement);
             if let (Some(body), Mobility::Guided, Some(path)) = (body, prop.prop.mobility, &prop.path) {
                 let Placement { position: [x, y, height], rotation: [_, _, z, w] } = prop.prop.placement;
-                let pose = Pose::new(x, y, 2.0 * z.atan2(w));
+                let pose = Pose::new(x, y, 2.0 * math::atan2(z, w));
                 let size = [smaller_side(&prop.prop.solid), prop.prop.solid.reach()];
                 guided.push(Guided { body, path: path.clone(), pose, height, size });
             }

@@ -1,6 +1,7 @@
 //! Notices robots that cannot drive any more.
 
 use super::ground::FAR;
+use vocabulary::math;
 use vocabulary::{Attitude, Condition, Motion};
 
 /// Cosine of the tilt beyond which a vehicle lies on its side or roof.
@@ -40,7 +41,7 @@ impl StuckDetector {
             *since = if now { Some(since.unwrap_or(time)) } else { None };
             since.is_some_and(|since| time - since >= long)
         };
-        let tilted = attitude.roll.cos() * attitude.pitch.cos() < TILTED;
+        let tilted = math::cos(attitude.roll) * math::cos(attitude.pitch) < TILTED;
         let pulling = motion.speed.abs() < STILL.min(CRAWLS * told) && ahead > PULLING;
         let lying = lasts(&mut self.tilted, tilted, LYING);
         let stuck = lasts(&mut self.pulling, pulling, STUCK);

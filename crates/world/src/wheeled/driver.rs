@@ -6,6 +6,7 @@
 
 use super::actuator::{demand, share};
 use super::{Drivetrain, Wheeled};
+use vocabulary::math;
 use vocabulary::{Command, GRAVITY};
 
 /// What a driver remembers, and where the actuators stand.
@@ -93,7 +94,7 @@ impl Driver {
                 self.steer(vehicle, pace, command.turn_rate, [speed, turn_rate], angle_max, rate);
                 let drive = [self.force.max(0.0) / 4.0; 4];
                 let brake = [(-self.force).max(0.0) / 4.0; 4];
-                Effort { drive, brake, tan_steering: self.turn.tan() }
+                Effort { drive, brake, tan_steering: math::tan(self.turn) }
             }
             Drivetrain::Differential => {
                 self.spin(vehicle, pace, command.turn_rate, [speed, turn_rate]);
@@ -112,7 +113,7 @@ impl Driver {
             Drivetrain::Steered { .. } => Effort {
                 drive: [drive / 4.0; 4],
                 brake: [vehicle.brake_force / 4.0; 4],
-                tan_steering: self.turn.tan(),
+                tan_steering: math::tan(self.turn),
             },
             Drivetrain::Differential => {
                 self.turn -= pace.turn * self.turn;
@@ -146,7 +147,7 @@ impl Driver {
     fn steer(&mut self, vehicle: &Wheeled, pace: &Pace, wanted: f64, now: [f64; 2], most: f64, rate: f64) {
         let [speed, turn_rate] = now;
         let turn = wanted + vehicle.turn_gain * (wanted - turn_rate);
-        let angle = (vehicle.body.wheelbase * turn / speed.abs().max(CRAWL)).atan().clamp(-most, most);
+        let angle = math::atan(vehicle.body.wheelbase * turn / speed.abs().max(CRAWL)).clamp(-most, most);
         let asked = demand(self.turn, angle, pace.turn, vehicle.compensation).clamp(-most, most);
         let reach = rate * pace.step;
         self.turn += (pace.turn * (asked - self.turn)).clamp(-reach, reach);

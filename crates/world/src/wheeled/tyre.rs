@@ -5,6 +5,8 @@
 //! where it stands. Along its rolling direction the brush bends as far as brakes and rolling resistance hold it. Both
 //! together never exceed the friction circle μN. (Pacejka, Tyre and Vehicle Dynamics, ch. 5: single contact point model.)
 
+use vocabulary::math;
+
 /// Parameters of a tyre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tyre {
@@ -52,7 +54,7 @@ impl Tyre {
         if stiffness <= 0.0 {
             return ([0.0; 2], Brush::default());
         }
-        let fading = 1.0 + (along / STANDING).powi(2);
+        let fading = 1.0 + math::powi(along / STANDING, 2);
         let damping = STANDING_DAMPING * (stiffness * rolling.mass).sqrt() / fading;
         // Backward Euler: stable however fast it rolls.
         let left = (brush.0[1] - step * aside) / (1.0 + step * along.abs() / self.relaxation);
@@ -61,7 +63,7 @@ impl Tyre {
         let resistance = (stiffness * forward - damping * along).clamp(-held, held);
         let side = stiffness * left - damping * aside;
         let wanted = rolling.drive + resistance;
-        let (most, asked) = (self.friction * rolling.grip * load, wanted.hypot(side));
+        let (most, asked) = (self.friction * rolling.grip * load, math::hypot(wanted, side));
         let cut = if asked > most { most / asked } else { 1.0 };
         // What slides does not bend further.
         let bent = (stiffness * forward).clamp(-held, held) / stiffness;
@@ -102,7 +104,7 @@ mod tests {
     fn friction_bounds_everything() {
         let slide = Rolling { brake: 100.0, ..rolling(1.0, 1.0) };
         let [along, aside] = settled(&slide);
-        assert!((along.hypot(aside) - 0.9 * 12.0).abs() < 1e-9 && along < 0.0 && aside < 0.0);
+        assert!((math::hypot(along, aside) - 0.9 * 12.0).abs() < 1e-9 && along < 0.0 && aside < 0.0);
     }
 
     proptest! {
@@ -112,7 +114,7 @@ mod tests {
         ) {
             let told = Rolling { load, drive, brake, ..rolling(along, aside) };
             let (force, brush) = TYRE.force(&told, Brush([0.01, -0.02]), 0.005);
-            prop_assert!(force[0].hypot(force[1]) <= 0.9 * load * (1.0 + 1e-12) + 1e-12);
+            prop_assert!(math::hypot(force[0], force[1]) <= 0.9 * load * (1.0 + 1e-12) + 1e-12);
             prop_assert!(brush.0.iter().all(|d| d.is_finite()));
         }
     }

@@ -1,6 +1,7 @@
 //! One vehicle by itself.
 
 use crate::common::{Run, actor, differential, flat, truck};
+use vocabulary::math;
 use vocabulary::{Command, Condition, GRAVITY, Pose};
 use world::wheeled::Drivetrain;
 use world::{Wheeled, World};
@@ -23,7 +24,8 @@ fn rest_stays_at_rest_for_a_minute() {
         let mut run = alone(&vehicle, 0.0);
         run.hold(FORWARD, 60.0, |snapshot| {
             let robot = &snapshot.robots[0];
-            let drift = robot.motion.pose.x.hypot(robot.motion.pose.y).max(robot.attitude.height.abs());
+            let drift =
+                math::hypot(robot.motion.pose.x, robot.motion.pose.y).max(robot.attitude.height.abs());
             assert!(drift < 1e-3, "{drift} m after {} s", snapshot.time);
         });
         assert!(run.motion().pose.heading.abs() < 1e-4);
@@ -46,8 +48,8 @@ fn coasting_and_braking_follow_their_closed_forms_at_any_heading() {
         let deceleration = 20.0 / vehicle.mass + vehicle.tyre.rolling * GRAVITY;
         let (pose, wanted) = (run.motion().pose, 4.5 / deceleration);
         let (ahead, aside) = (
-            pose.x * heading.cos() + pose.y * heading.sin(),
-            pose.y * heading.cos() - pose.x * heading.sin(),
+            pose.x * math::cos(heading) + pose.y * math::sin(heading),
+            pose.y * math::cos(heading) - pose.x * math::sin(heading),
         );
         assert!((ahead / wanted - 1.0).abs() < 0.03, "stopped after {ahead} m, not {wanted} m");
         assert!(aside.abs() < 1e-3 && run.motion().speed.abs() < 1e-3);
@@ -67,7 +69,7 @@ fn wheels_roll_as_far_as_the_vehicle_drives() {
 fn slow_turns_are_those_of_the_kinematic_bicycle() {
     let angle: f64 = 0.3;
     let vehicle = Wheeled { turn_gain: 0.0, ..truck() };
-    let turn_rate = 0.5 * angle.tan() / vehicle.body.wheelbase;
+    let turn_rate = 0.5 * math::tan(angle) / vehicle.body.wheelbase;
     let mut run = alone(&vehicle, 0.5);
     run.hold(Command { acceleration: 0.0, turn_rate }, 3.0, |_| {});
     let (mut turned, mut driven, start) = (0.0, 0.0, run.world.snapshot().time);
@@ -79,7 +81,7 @@ fn slow_turns_are_those_of_the_kinematic_bicycle() {
     });
     assert!(start > 2.9 && driven > 2.5);
     let curvature = turned / driven;
-    let wanted = angle.tan() / vehicle.body.wheelbase;
+    let wanted = math::tan(angle) / vehicle.body.wheelbase;
     println!("slow: curvature {curvature}, bicycle {wanted}");
     assert!((curvature / wanted - 1.0).abs() < 0.02, "curvature {curvature}, bicycle {wanted}");
 }
@@ -103,7 +105,8 @@ fn fast_turns_are_those_of_a_single_track_model() {
         let steering = 0.5 * (robot.wheels[0].steering + robot.wheels[1].steering);
         let v = robot.motion.speed;
         for _ in 0..100 {
-            let (slip_front, slip_rear) = (((u + a * r) / v).atan() - steering, ((u - b * r) / v).atan());
+            let (slip_front, slip_rear) =
+                (math::atan((u + a * r) / v) - steering, math::atan((u - b * r) / v));
             let (side_front, side_rear) = (-front * slip_front, -rear * slip_rear);
             u += 1e-4 * ((side_front + side_rear) / m - v * r);
             r += 1e-4 * (a * side_front - b * side_rear) / i;
@@ -121,7 +124,7 @@ fn a_differential_drive_turns_on_the_spot_and_drives_curves() {
     let mut run = alone(&differential(), 0.0);
     run.hold(Command { acceleration: 0.0, turn_rate: 1.0 }, 3.0, |_| {});
     assert!((run.motion().turn_rate - 1.0).abs() < 0.05, "{:?}", run.motion());
-    assert!(run.motion().pose.x.hypot(run.motion().pose.y) < 0.05, "{:?}", run.motion());
+    assert!(math::hypot(run.motion().pose.x, run.motion().pose.y) < 0.05, "{:?}", run.motion());
     let mut run = alone(&differential(), 0.5);
     run.hold(Command { acceleration: 0.2, turn_rate: 0.4 }, 3.0, |_| {});
     assert!(
@@ -168,7 +171,7 @@ fn steering_keeps_its_range_and_its_rate() {
     let mut last = 0.0;
     run.hold(Command { acceleration: 0.0, turn_rate: 100.0 }, 1.0, |snapshot| {
         let [left, right, ..] = snapshot.robots[0].wheels;
-        let middle = (2.0 / (1.0 / left.steering.tan() + 1.0 / right.steering.tan())).atan();
+        let middle = math::atan(2.0 / (1.0 / math::tan(left.steering) + 1.0 / math::tan(right.steering)));
         assert!(middle <= angle_max + 1e-9 && (middle - last) <= rate * 0.01 + 1e-3, "{middle} after {last}");
         assert!(left.steering >= right.steering, "the inner wheel turns more");
         last = middle;

@@ -2,6 +2,7 @@
 
 use crate::common::{actor, differential, flat, truck};
 use std::sync::Arc;
+use vocabulary::math;
 use vocabulary::{Command, Condition, Motion, MotionInput, Pose, RobotState, Terrain, Trajectory};
 use world::{Physical, RobotSetup, Wheeled, World, WorldSetup};
 
@@ -72,7 +73,7 @@ fn who_is_parked_stays_where_it_is_from_the_first_step_on() {
             for heading in [0.0, std::f64::consts::FRAC_PI_2, std::f64::consts::PI] {
                 let motion = lead(&vehicle, heading, Stop(0.0, 0.0), rise, 5.0, |robot| {
                     let pose = robot.motion.pose;
-                    let off = pose.x.hypot(pose.y);
+                    let off = math::hypot(pose.x, pose.y);
                     // Springs settle by as much.
                     assert!(off < 0.005, "{name} at {heading:.1} rad on {rise}: {off} m");
                     assert_eq!(robot.condition, Condition::Able);

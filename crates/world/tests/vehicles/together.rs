@@ -3,6 +3,7 @@
 use crate::common::{Run, actor, differential, flat, truck, unicycle};
 use proptest::prelude::*;
 use std::f64::consts::PI;
+use vocabulary::math;
 use vocabulary::{Command, Contact, EntityId, Mobility, Placement, Pose, Prop, Snapshot, Solid};
 use world::{Physical, PropBody, Wheeled, World, WorldSetup};
 
@@ -107,7 +108,7 @@ fn a_crate_is_pushed_and_a_ramp_is_climbed() {
         Run::new(WorldSetup { props: vec![ramp], ..flat(vec![actor(&truck(), Pose::default(), 1.0)]) });
     run.hold(FORWARD, 2.3, |_| {});
     let robot = &run.world.snapshot().robots[0];
-    let slope = (0.25_f64 / 2.0).atan();
+    let slope = math::atan(0.25_f64 / 2.0);
     assert!((robot.attitude.pitch + slope).abs() < 0.05, "{:?} {:?}", robot.attitude, robot.motion);
     assert!((robot.attitude.height - (robot.motion.pose.x - 1.0) * 0.125).abs() < 0.02, "{robot:?}");
     let crate_ = prop(Solid::Block { size: [0.3, 0.3, 0.3] }, Pose::new(1.5, 0.0, 0.0), Some(1.0));
@@ -179,7 +180,8 @@ fn a_guided_prop_keeps_going() {
         "{placement:?}"
     );
     assert!(
-        (2.0 * placement.rotation[2].atan2(placement.rotation[3]) - std::f64::consts::FRAC_PI_2).abs() < 0.01
+        (2.0 * math::atan2(placement.rotation[2], placement.rotation[3]) - std::f64::consts::FRAC_PI_2).abs()
+            < 0.01
     );
 }
 
@@ -192,7 +194,7 @@ fn crowd(count: usize) -> WorldSetup {
 fn trajectory(world: &mut dyn World, from: usize, steps: usize) -> Vec<[u64; 4]> {
     let mut bits = Vec::new();
     for step in from..from + steps {
-        let wave = |k: usize| (k as f64 + step as f64 * 0.02).sin();
+        let wave = |k: usize| math::sin(k as f64 + step as f64 * 0.02);
         let count = world.snapshot().robots.len();
         let commands: Vec<Command> =
             (0..count).map(|k| Command { acceleration: wave(k), turn_rate: 3.0 * wave(k + 7) }).collect();
@@ -298,7 +300,7 @@ fn a_fast_turning_arm_meets_a_loose_block() {
     }
     // The arm turns by 3 rad in this time: past the block, which has gone with it.
     let [x, y, _] = world.snapshot().props[1].position;
-    assert!(x < -1.0 && x.hypot(y) > 3.0, "{x} {y}");
+    assert!(x < -1.0 && math::hypot(x, y) > 3.0, "{x} {y}");
 }
 
 /// The ground bears as far out as anything can start.

@@ -1,5 +1,6 @@
 //! The truck of tests, benchmarks and examples; a scene's `vehicle = "car"` is much like it.
 
+use vocabulary::math;
 use vocabulary::{Body, Limits};
 use world::wheeled::tyre::Tyre;
 use world::{Drivetrain, Wheeled};
@@ -16,7 +17,7 @@ pub(crate) fn truck() -> Wheeled {
             speed_max: 4.0,
             turn_rate_max: 8.0,
             acceleration_max: 6.0,
-            curvature_max: angle_max.tan() / body.wheelbase,
+            curvature_max: math::tan(angle_max) / body.wheelbase,
             lateral_acceleration_max: 7.0,
         },
         mass: 5.01,

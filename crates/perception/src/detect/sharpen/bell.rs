@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 use vocabulary::TAG_CELLS;
+use vocabulary::math;
 
 /// Standard deviations beyond which a bell curve is over.
 const REACH: f64 = 3.5;
@@ -11,7 +12,7 @@ const FINE: f64 = 64.0;
 
 /// The normal distribution and its density from −4 on.
 static TABLE: LazyLock<Vec<[f64; 2]>> = LazyLock::new(|| {
-    let density = |x: f64| (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt();
+    let density = |x: f64| math::exp(-0.5 * x * x) / (2.0 * std::f64::consts::PI).sqrt();
     let mut below = 0.0;
     let places = (0..=(8.0 * FINE) as usize).map(|k| {
         let x = k as f64 / FINE - 4.0;
