@@ -32,7 +32,7 @@ fn dependencies(all_kinds: bool) -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// Whom each crate may use among our own; everybody else may not.
-const ARROWS: [(&str, &[&str]); 16] = [
+const ARROWS: [(&str, &[&str]); 17] = [
     ("vocabulary", &[]),
     ("output", &[]),
     ("film", &["vocabulary", "output"]),
@@ -46,6 +46,7 @@ const ARROWS: [(&str, &[&str]); 16] = [
     ("rendering", &["vocabulary", "film"]),
     ("figures", &["vocabulary"]),
     ("simulation", &["vocabulary", "scene", "formation", "world", "perception"]),
+    ("digests", &["vocabulary", "metrics", "scene", "simulation"]),
     (
         "studies",
         &["vocabulary", "output", "metrics", "scene", "formation", "perception", "simulation", "recording"],
@@ -120,6 +121,39 @@ fn arrows_point_one_way() {
         }
     }
     assert_eq!(all.len(), ARROWS.len() + 2);
+}
+
+/// Features add up over all who use a library: one of them could switch on mathematics that differs between machines.
+#[test]
+fn libraries_compute_the_same_on_every_machine() {
+    let output = Command::new(env!("CARGO"))
+        .args([
+            "tree",
+            "--workspace",
+            "--locked",
+            "--offline",
+            "--edges=normal",
+            "--prefix=none",
+            "--format={p} {f}",
+        ])
+        .current_dir(root())
+        .output()
+        .expect("cargo tree");
+    let tree = String::from_utf8(output.stdout).expect("text");
+    for (library, feature, wanted) in [
+        ("rapier3d-f64 ", "enhanced-determinism", true),
+        ("parry3d-f64 ", "enhanced-determinism", true),
+        ("simba ", "libm_force", true),
+        ("glam ", "libm", true),
+        ("glam ", "fast-math", false),
+    ] {
+        let lines: Vec<&str> = tree.lines().filter(|line| line.starts_with(library)).collect();
+        assert!(!lines.is_empty(), "nobody uses {library}");
+        for line in lines {
+            let features = line.split(' ').nth(2).expect("features");
+            assert_eq!(features.split(',').any(|have| have == feature), wanted, "{feature}: {line}");
+        }
+    }
 }
 
 /// Source files of the project, with their text.

@@ -90,10 +90,8 @@ mod tests {
             assert!((turned - Matrix2::new(cos, -sin, sin, cos)).amax() < 1e-13, "{angle}");
         }
         let decayed = exponential(&Matrix2::new(-700.0, 0.0, 0.0, 2.0));
-        assert!(
-            (decayed[(1, 1)] - math::exp(2.0)).abs() < 1e-13 && decayed[(0, 0)].abs() < 1e-250,
-            "{decayed}"
-        );
+        // Eight squarings, each of which doubles what rounding did.
+        assert!((decayed[(1, 1)] - math::exp(2.0)).abs() < 1e-12 && decayed[(0, 0)].abs() < 1e-250);
         assert!(!exponential(&Matrix2::new(f64::NAN, 0.0, 0.0, 0.0))[(0, 0)].is_finite());
     }
 
