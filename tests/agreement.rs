@@ -95,7 +95,7 @@ fn one_digest_has_one_late_error() {
     let ready = run(&scene);
     let mut budget = Budget::new(&scene, ready.simulation.fleet().clone(), false);
     let cases = &sensing_cases(&[], false)[..1];
-    budget.measure(cases, &mut |_| Err("nobody looks".to_owned()), |_, _| true).expect("a budget");
+    budget.measure(cases, &mut |_| Err("nobody measures".to_owned()), |_, _| true).expect("a budget");
     assert_eq!(budget.runs[0].1.edges[0].tracking, wanted[1], "budget");
 
     // Figures.

@@ -132,13 +132,13 @@ fn every_premise_is_named_where_it_is_not_met() {
     assert!(ROBUST.iter().all(|statement| unmet(&full, *statement) == ["full-state"]));
     let measured = certificate(&["law.kind=output-feedback", "time.mode=measured", "observer.epsilon=0.01"]);
     assert_eq!(unmet(&measured, Statement::Trapped), ["sampled-measurement"]);
-    let looking = certificate(&[
+    let measuring = certificate(&[
         "law.kind=output-feedback",
         "time.mode=sampled",
         "sensing.kind=noise",
         "observer.epsilon=0.01",
     ]);
-    assert!(unmet(&looking, Statement::Trapped).contains(&"looks"));
+    assert!(unmet(&measuring, Statement::Trapped).contains(&"measurements"));
     let car = certificate(&["vehicle.kind=car", "vehicle.speed_max=2", "time.mode=sampled"]);
     assert!(unmet(&car, v).contains(&"wheels"));
 }

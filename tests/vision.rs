@@ -1,4 +1,4 @@
-//! Robots that look: the loop closed on looks, on any machine, and on pictures where there is an adapter.
+//! Robots with sensors: the loop closed on measurements, on any machine, and on pictures where there is an adapter.
 
 use rendering::{AdapterChoice, Gpu, GpuCameraRenderer};
 use scene::{Role, Scene, SensingKind};
@@ -51,7 +51,7 @@ fn records(run: Simulation) -> Vec<StepRecord> {
 }
 
 #[test]
-fn formations_hold_on_looks_at_tags() {
+fn formations_hold_on_measurements_at_tags() {
     for name in ["vision-circle-three", "vision-cars-circle-three"] {
         let all = records(start(&scene(name, 20.0, SensingKind::Geometric)));
         let [distance, bearing] = worst_rms(&all, 8.0);
@@ -74,7 +74,7 @@ fn the_second_estimator_holds_them_too() {
 }
 
 #[test]
-fn looks_are_the_same_in_every_run_and_go_on_alike_from_a_copy() {
+fn measurements_are_the_same_in_every_run_and_go_on_alike_from_a_copy() {
     let scene = scene("vision-dropout", 6.0, SensingKind::Geometric);
     let whole = play(start(&scene), |_| ());
     assert_eq!(whole, play(start(&scene), |_| ()));
@@ -96,7 +96,7 @@ fn looks_are_the_same_in_every_run_and_go_on_alike_from_a_copy() {
 
 /// Frames that do not fit the control period are taken at their own instants.
 #[test]
-fn looks_have_their_own_instants_and_arrive_late() {
+fn measurements_have_their_own_instants_and_arrive_late() {
     let mut scene = scene("vision-line-three", 3.0, SensingKind::Geometric);
     for robot in &mut scene.robots {
         if let Role::Follow(follow) = &mut robot.role {

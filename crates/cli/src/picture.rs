@@ -38,8 +38,10 @@ impl RenderSetup {
             note(
                 "--overlay shows in views through cameras only: add --view camera:ROBOT or --inset-camera ROBOT",
             );
-        } else if style.detections && !fleet.looks {
-            note("nobody looks in this scene, so there is nothing to overlay: try --set sensing.kind=camera");
+        } else if style.detections && !fleet.has_sensors {
+            note(
+                "no follower has a sensor in this scene, so there is nothing to overlay: try --set sensing.kind=camera",
+            );
         }
         if let Some(robot) = &args.inset_camera {
             // The same words and the same mistakes as in a view.

@@ -11,7 +11,7 @@ pub struct Digest {
 }
 
 impl Digest {
-    /// Takes in a moment: time, poses, speeds, commands, estimates, props, contacts, looks at leaders.
+    /// Takes in a moment: time, poses, speeds, commands, estimates, props, contacts, measurements of leaders.
     pub fn push(&mut self, record: &StepRecord) {
         self.bytes.clear();
         let mut put = |values: &[f64]| self.bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));

@@ -31,7 +31,7 @@ pub struct Metrics {
     pub first_contacts: Vec<ContactMetrics>,
     /// |error| under which an edge counts as settled, [m, rad].
     pub settling_band: [f64; 2],
-    /// What the theorems say of every edge, where somebody has looked.
+    /// What the theorems say of every edge, where they were checked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub certificates: Vec<CertificateMetrics>,
 }
@@ -162,7 +162,7 @@ impl MetricsBuilder {
         }
         for frame in &record.frames {
             if let Some(edge) = self.edges.get_mut(frame.edge) {
-                edge.measurements.look(frame);
+                edge.measurements.add(frame);
             }
         }
         for (index, robot) in record.snapshot.robots.iter().enumerate() {

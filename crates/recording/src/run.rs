@@ -68,7 +68,7 @@ pub struct Finished {
 struct MetricsFile<'a> {
     #[serde(flatten)]
     metrics: &'a Metrics,
-    /// What the scene expects, where somebody has looked.
+    /// What the scene expects, where it was checked.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     expectations: &'a [ExpectationMetrics],
 }
@@ -80,8 +80,8 @@ impl Recorder {
     /// Makes `folder` and writes what is known before the run.
     ///
     /// # Errors
-    /// [`Error::Output`] where the folder holds a run (unless `force`) or anything else, where another run is being written
-    /// there, and where it cannot be written.
+    /// [`Error::Output`] where the folder holds a run (unless `force`) or anything else, where another run is being
+    /// written there, and where it cannot be written.
     pub fn create(folder: &Path, fleet: &FleetInfo, options: RunOptions) -> Result<Self, Error> {
         let ours =
             |folder: &Path| folder.join("manifest.json").exists().then(|| OURS.map(str::to_owned).to_vec());

@@ -26,7 +26,7 @@ pub enum TableKind {
     Contacts,
     /// Where the props are that can move.
     Props,
-    /// Looks of followers at their leaders, when they arrive.
+    /// Measurements of followers, when they arrive.
     Measurements,
 }
 
@@ -69,7 +69,7 @@ impl TableKind {
         let all = [Self::Robots, Self::Edges, Self::Contacts, Self::Props, Self::Measurements];
         let has = |kind: &Self| match kind {
             Self::Props => moving,
-            Self::Measurements => fleet.looks,
+            Self::Measurements => fleet.has_sensors,
             _ => true,
         };
         all.into_iter().filter(has).collect()
@@ -156,12 +156,12 @@ impl TableKind {
                 for frame in &record.frames {
                     let Some(edge) = fleet.edges.get(frame.edge) else { continue };
                     let [leader, follower] = [edge.leader, edge.follower].map(|k| &*fleet.robots[k].name);
-                    let (look, truth, region) = (&frame.measurement, &frame.truth, &frame.region);
+                    let (measurement, truth, region) = (&frame.measurement, &frame.truth, &frame.region);
                     let [x, y, width, height] =
                         [region.x, region.y, region.width, region.height].map(f64::from);
-                    let r = look.relative;
+                    let r = measurement.relative;
                     let numbers = [
-                        look.stamp,
+                        measurement.stamp,
                         frame.arrival,
                         frame.faces() as f64,
                         r.distance,
@@ -170,9 +170,9 @@ impl TableKind {
                         truth.distance,
                         truth.bearing,
                         truth.view_angle,
-                        look.deviation[0],
-                        look.deviation[1],
-                        look.deviation[2],
+                        measurement.deviation[0],
+                        measurement.deviation[1],
+                        measurement.deviation[2],
                         frame.pan,
                         x,
                         y,

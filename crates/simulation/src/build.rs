@@ -5,7 +5,7 @@ use crate::error::{BuildError, EPSILON_MIN};
 use crate::parameters::{ParameterSet, ScheduledChange};
 use crate::setup::Setup;
 use crate::stage::{handling, stage};
-use formation::{EdgeLaw, Formation, Graph, LookLaw, SetPointTrajectory};
+use formation::{EdgeLaw, Formation, Graph, SetPointTrajectory, TrackerParameters};
 use perception::sensors::{CameraSettings, NoiseModel, Sensor, SensorConfig, SensorKind};
 use scene::{Follow, OnContact, Role, Scene, SensingKind, SwitchingKind};
 use std::sync::Arc;
@@ -51,7 +51,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
             },
             robots: members,
             edges,
-            looks: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
+            has_sensors: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
             terrain: stage.terrain.clone(),
         },
@@ -114,7 +114,7 @@ pub fn edge_law(follow: &Follow) -> EdgeLaw {
             distance_min: law.distance_min,
         },
         observer,
-        looks: look_law(follow, observer),
+        tracker: tracker_parameters(follow, observer),
         set_point: SetPointTrajectory { distance: follow.distance.clone(), bearing: follow.bearing.clone() },
     }
 }
@@ -129,8 +129,8 @@ fn observer(follow: &Follow) -> formation::Observer {
     }
 }
 
-fn look_law(follow: &Follow, observer: formation::Observer) -> Option<LookLaw> {
-    (follow.sensing.kind != SensingKind::Truth).then_some(LookLaw {
+fn tracker_parameters(follow: &Follow, observer: formation::Observer) -> Option<TrackerParameters> {
+    (follow.sensing.kind != SensingKind::Truth).then_some(TrackerParameters {
         method: follow.observer.kind,
         observer,
         adaptive: follow.observer.adaptive,
@@ -195,5 +195,5 @@ fn sensor_config(
         camera,
         scene.seed,
     );
-    sensor_config.look().then(|| Arc::new(sensor_config))
+    sensor_config.has_sensors().then(|| Arc::new(sensor_config))
 }

@@ -31,19 +31,21 @@ pub fn caption(scene: &Scene) -> String {
         None if observed.is_empty() => {}
         None => parts.push("mixed observers".to_owned()),
     }
-    let looking: Vec<_> = all.iter().copied().filter(|follow| looks(follow)).collect();
-    if !looking.is_empty() {
-        let rate = range(&looking, |follow| [follow.sensing.rate; 2]);
+    let measuring: Vec<_> = all.iter().copied().filter(|follow| measures(follow)).collect();
+    if !measuring.is_empty() {
+        let rate = range(&measuring, |follow| [follow.sensing.rate; 2]);
         parts.push(match common(&all, |follow| follow.sensing.kind) {
-            Some(SensingKind::Noise) => format!("{} a second", counted(rate, "noisy look")),
-            Some(SensingKind::Geometric) => format!("{} at tags a second", counted(rate, "look")),
+            Some(SensingKind::Noise) => format!("{} a second", counted(rate, "noisy measurement")),
+            Some(SensingKind::Geometric) => format!("{} of tags a second", counted(rate, "measurement")),
             Some(SensingKind::Camera) => format!("{} a second", counted(rate, "picture")),
-            Some(SensingKind::Truth) | None => format!("mixed sensing, {} a second", counted(rate, "look")),
+            Some(SensingKind::Truth) | None => {
+                format!("mixed sensing, {} a second", counted(rate, "measurement"))
+            }
         });
     }
     let every = format!("every {} ms", short(scene.time.period * 1e3));
     parts.push(match scene.time.mode {
-        _ if !looking.is_empty() => every,
+        _ if !measuring.is_empty() => every,
         TimeMode::Continuous => "continuous time".to_owned(),
         TimeMode::Sampled => every,
         TimeMode::Measured => format!("{every}, sampled measurement"),
@@ -71,7 +73,7 @@ fn law(kind: LawKind) -> &'static str {
     }
 }
 
-fn looks(follow: &Follow) -> bool {
+fn measures(follow: &Follow) -> bool {
     follow.sensing.kind != SensingKind::Truth
 }
 
@@ -84,9 +86,9 @@ enum ObserverWords {
 }
 
 fn observer(follow: &Follow) -> Option<ObserverWords> {
-    if looks(follow) && follow.observer.kind == ObserverKind::Unscented {
+    if measures(follow) && follow.observer.kind == ObserverKind::Unscented {
         Some(ObserverWords::Unscented)
-    } else if looks(follow) && follow.observer.adaptive {
+    } else if measures(follow) && follow.observer.adaptive {
         Some(ObserverWords::Noise)
     } else {
         (follow.law.kind == LawKind::OutputFeedback).then_some(ObserverWords::Epsilon)

@@ -16,9 +16,9 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
         let relative = Relative::between(robots[edge.leader].motion.pose, robots[edge.follower].motion.pose);
         let decision = &run.state.decisions[index];
         let wanted = decision.set_point;
-        let looks = run.sensing.as_ref().filter(|_| run.formation.laws()[index].looks.is_some());
-        let (age, pan) =
-            looks.map_or_else(|| (0.0, wrap(relative.view_angle - PI)), |sensing| sensing.age_and_pan(index));
+        let sensing = run.sensing.as_ref().filter(|_| run.formation.laws()[index].tracker.is_some());
+        let (age, pan) = sensing
+            .map_or_else(|| (0.0, wrap(relative.view_angle - PI)), |sensing| sensing.age_and_pan(index));
         robots[edge.follower].camera_pan = pan;
         let known = &run.observations[index];
         *out = EdgeState {

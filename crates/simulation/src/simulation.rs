@@ -161,7 +161,7 @@ impl Simulation {
         &self.record
     }
 
-    /// Followers are told the truth from now on, whatever their sensors: to look ahead where pictures cannot be drawn.
+    /// Followers are told the truth from now on, whatever their sensors: to predict where pictures cannot be drawn.
     pub fn trust(&mut self) {
         self.sensing = None;
         let limits = (0..self.fleet.robots.len()).map(|robot| *self.formation.limits(robot)).collect();
@@ -221,7 +221,7 @@ impl Simulation {
 
 /// Laws of followers that are told the truth.
 fn trusting(laws: &[EdgeLaw]) -> Vec<EdgeLaw> {
-    laws.iter().map(|law| EdgeLaw { looks: None, ..law.clone() }).collect()
+    laws.iter().map(|law| EdgeLaw { tracker: None, ..law.clone() }).collect()
 }
 
 fn first_estimate(seen: &Relative, start: ObserverStart) -> Estimate {

@@ -250,14 +250,14 @@ impl ExpectationJudge<'_> {
     }
 
     fn in_view(&mut self, least: f64) {
-        let looks =
+        let measured =
             self.metrics.edges.iter().filter_map(|edge| Some((edge, edge.measurements.as_ref()?.in_view)));
         let percent = |share: f64| format!("{:.2} %", share * 100.0);
-        let (found, met) = match looks.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        let (found, met) = match measured.min_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((edge, share)) => (format!("{} on {}", percent(share), name(edge)), share >= least),
-            None => ("nobody looks".into(), false),
+            None => ("nobody measures".into(), false),
         };
-        self.add("in_view_at_least", format!("≥ {} of the looks", percent(least)), found, met);
+        self.add("in_view_at_least", format!("≥ {} of the measurements", percent(least)), found, met);
     }
 
     fn settling(&mut self, latest: f64) {

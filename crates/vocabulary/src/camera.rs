@@ -68,7 +68,8 @@ pub trait CameraRenderer: Send {
     ///
     /// # Errors
     /// What went wrong, in words.
-    fn look(&mut self, snapshot: &Snapshot, shots: &[Shot], pictures: &mut Vec<Grey>) -> Result<(), String>;
+    fn render(&mut self, snapshot: &Snapshot, shots: &[Shot], pictures: &mut Vec<Grey>)
+    -> Result<(), String>;
 }
 
 #[cfg(test)]

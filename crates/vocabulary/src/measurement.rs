@@ -1,11 +1,11 @@
-//! What a follower got to see of its leader.
+//! What a follower has measured of its leader.
 
 use crate::{FACES, Region, Relative};
 
-/// One look at a leader: what a sensor reports of one instant.
+/// One measurement of a leader: what a sensor reports of one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Measurement {
-    /// The instant of the look, s from the start of the run.
+    /// The instant of the measurement, s from the start of the run.
     pub stamp: f64,
     /// Relative position as measured.
     pub relative: Relative,
@@ -23,7 +23,7 @@ pub enum TrackingState {
     Waiting,
     /// It has seen its leader a moment ago.
     Tracking,
-    /// It has missed some looks and goes by its prediction.
+    /// It has missed some measurements and goes by its prediction.
     Coasting,
     /// It has not seen its leader for too long: it slows down and searches.
     Lost,
@@ -42,7 +42,7 @@ impl TrackingState {
     }
 }
 
-/// What came of one look.
+/// What came of one measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Outcome {
     /// The estimate was corrected by it.
@@ -76,12 +76,12 @@ impl Outcome {
     }
 }
 
-/// One look at a leader as it goes into the record.
+/// One measurement of a leader as it goes into the record.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeasurementRecord {
     /// Index of the edge.
     pub edge: usize,
-    /// The look; only its stamp counts where the leader was not recognised.
+    /// The measurement; only its stamp counts where the leader was not recognised.
     pub measurement: Measurement,
     /// When it reached the follower, s from the start of the run.
     pub arrival: f64,
@@ -91,7 +91,7 @@ pub struct MeasurementRecord {
     pub truth: Relative,
     /// Corners of the tags seen, by face, pixels: top left, top right, bottom right, bottom left of the tag.
     pub tags: [Option<[[f64; 2]; 4]>; FACES],
-    /// The part of the picture that was looked at; empty for sensors without pictures.
+    /// The part of the picture that was searched; empty for sensors without pictures.
     pub region: Region,
     /// Direction of the camera from the follower's heading at the stamp, rad.
     pub pan: f64,

@@ -119,8 +119,8 @@ pub struct StatementFinding {
     pub statement: Statement,
     /// What it rests on and what was not so.
     pub unmet: Vec<Premise>,
-    /// Samples at which the numbers say otherwise, premises or not; `None` where they are as stated throughout, or where
-    /// there are no numbers.
+    /// Samples at which the numbers say otherwise, premises or not; `None` where they are as stated throughout, or
+    /// where there are no numbers.
     pub against: Option<Against>,
     /// The least room to the other side, in the statement's own unit; `None` where there are no numbers.
     pub margin: Option<f64>,
@@ -144,8 +144,8 @@ pub struct Circumstances {
     pub held: Option<f64>,
     /// Whether the observer sees samples only.
     pub sampled_measurement: bool,
-    /// Whether the follower goes by looks.
-    pub looks: bool,
+    /// Whether the follower goes by measurements.
+    pub measures: bool,
     /// Whether the follower or its leader is a vehicle on wheels.
     pub wheels: bool,
     /// When the leader first moved as no bounded d²u/dt² allows, s; `None` where it is smooth.
@@ -247,7 +247,7 @@ impl FindingView<'_> {
         let at_bound = || spell(&ledger.at_speed_bound).map(Premise::SpeedBound);
         let close = || spell(&ledger.too_close).map(Premise::TooClose);
         let held = c.held.map(Premise::Held);
-        let looks = c.looks.then_some(Premise::Looks);
+        let measurements = c.measures.then_some(Premise::Measurements);
         let wheels = c.wheels.then_some(Premise::Wheels);
         let samples = c.sampled_measurement.then_some(Premise::SampledMeasurement);
         let epsilon = || self.constants.filter(|k| k.epsilon > k.epsilon_1).map(|_| Premise::Epsilon);
@@ -264,12 +264,12 @@ impl FindingView<'_> {
                     rough,
                     beta(),
                     held,
-                    looks,
+                    measurements,
                     wheels,
                 ]
             }
             Statement::ObserverDecrease | Statement::Trapped => {
-                vec![close(), rough, samples, looks, wheels, epsilon()]
+                vec![close(), rough, samples, measurements, wheels, epsilon()]
             }
             Statement::UltimateBound => {
                 vec![
@@ -282,7 +282,7 @@ impl FindingView<'_> {
                     beta(),
                     held,
                     samples,
-                    looks,
+                    measurements,
                     wheels,
                     epsilon(),
                 ]

@@ -35,8 +35,8 @@ pub enum Premise {
     Held(f64),
     /// The observer sees samples only.
     SampledMeasurement,
-    /// The follower looks at its leader: what it knows is late and noisy.
-    Looks,
+    /// The follower measures where its leader is: what it knows is late and noisy.
+    Measurements,
     /// A vehicle on wheels: it does what it is told only nearly.
     Wheels,
     /// The distance was below ℓ_min.
@@ -75,7 +75,7 @@ impl Premise {
             Self::LeaderNotSmooth { at } => format!("leader not smooth at {at:.2} s"),
             Self::Held(period) => format!("sampled: the law is held for {} ms", 1e3 * period),
             Self::SampledMeasurement => "the observer sees samples only".to_owned(),
-            Self::Looks => "the follower goes by looks, which are late and noisy".to_owned(),
+            Self::Measurements => "the follower goes by measurements, which are late and noisy".to_owned(),
             Self::Wheels => "a vehicle on wheels does what it is told only nearly".to_owned(),
             Self::TooClose(when) => spell("distance below its minimum", when),
             Self::RobustGain { at } => format!("β too small for Lemma 4.1 at {at:.2} s"),
@@ -95,7 +95,7 @@ impl Premise {
             Self::LeaderNotSmooth { .. } => "leader-not-smooth",
             Self::Held(_) => "sampled",
             Self::SampledMeasurement => "sampled-measurement",
-            Self::Looks => "looks",
+            Self::Measurements => "measurements",
             Self::Wheels => "wheels",
             Self::TooClose(_) => "too-close",
             Self::RobustGain { .. } => "robust-gain",

@@ -14,22 +14,22 @@ const MARGIN: f64 = 4.0;
 /// Corners of the tags that can be read, each coordinate with an error of `pixel_noise` pixels standard deviation.
 pub(super) fn faces(
     sensor_config: &SensorConfig,
-    look: &Exposure<'_>,
+    exposure: &Exposure<'_>,
     pixel_noise: f64,
     random: &mut NoiseStream,
 ) -> Vec<SeenFace> {
     let (Some(leader), Some(follower)) =
-        (sensor_config.kits.get(look.leader), sensor_config.kits.get(look.follower))
+        (sensor_config.kits.get(exposure.leader), sensor_config.kits.get(exposure.follower))
     else {
         return Vec::new();
     };
-    let (Some(shell), Some(camera_from_leader)) = (leader.shell, sensor_config.camera_from_leader(look))
+    let (Some(shell), Some(camera_from_leader)) = (leader.shell, sensor_config.camera_from_leader(exposure))
     else {
         return Vec::new();
     };
-    let robots = &look.snapshot.robots;
-    let world_from_leader = robots[look.leader].world_from_body();
-    let world_from_camera = follower.camera_mount.world_from_camera(&robots[look.follower]);
+    let robots = &exposure.snapshot.robots;
+    let world_from_leader = robots[exposure.leader].world_from_body();
+    let world_from_camera = follower.camera_mount.world_from_camera(&robots[exposure.follower]);
     let mut seen = Vec::new();
     for face in all_faces() {
         // Errors are drawn for every face, so that a face out of sight changes none of the others.
@@ -52,7 +52,7 @@ pub(super) fn faces(
         let in_picture = pixels.iter().all(|p| follower.camera_model.holds(*p, MARGIN));
         let from = world_from_camera.translation;
         let in_sight =
-            || corners.iter().all(|c| !hidden(sensor_config, look, from, world_from_leader.apply(*c)));
+            || corners.iter().all(|c| !hidden(sensor_config, exposure, from, world_from_leader.apply(*c)));
         if in_picture && in_sight() {
             let moved = |k: usize| [0, 1].map(|i| pixels[k][i] + pixel_noise * errors[k][i]);
             seen.push(SeenFace { face, corners: [0, 1, 2, 3].map(moved), deviation: 0.0 });

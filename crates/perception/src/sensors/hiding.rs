@@ -4,8 +4,8 @@ use super::{Exposure, SensorConfig, sightline};
 use vocabulary::Snapshot;
 
 impl SensorConfig {
-    /// Whether anything hides the point `to` on the robot `watched` from the point `from` on the robot `watcher`, both in
-    /// the world's frame, m; those two robots themselves do not count.
+    /// Whether anything hides the point `to` on the robot `watched` from the point `from` on the robot `watcher`, both
+    /// in the world's frame, m; those two robots themselves do not count.
     pub fn hides(
         &self,
         snapshot: &Snapshot,
@@ -13,7 +13,7 @@ impl SensorConfig {
         from: [f64; 3],
         to: [f64; 3],
     ) -> bool {
-        let look = Exposure {
+        let exposure = Exposure {
             edge: 0,
             leader: watched,
             follower: watcher,
@@ -23,6 +23,6 @@ impl SensorConfig {
             seen: false,
             pan_rate: 0.0,
         };
-        sightline::hidden(self, &look, from, to)
+        sightline::hidden(self, &exposure, from, to)
     }
 }

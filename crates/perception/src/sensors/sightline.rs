@@ -6,16 +6,16 @@ use vocabulary::{Placement, Rigid, Solid};
 /// Whether anything but the two robots concerned hides `to` from `from`, both in the world's frame, m.
 pub(super) fn hidden(
     sensor_config: &SensorConfig,
-    look: &Exposure<'_>,
+    exposure: &Exposure<'_>,
     from: [f64; 3],
     to: [f64; 3],
 ) -> bool {
-    let others = look.snapshot.robots.iter().zip(&sensor_config.kits).enumerate();
-    let mut others = others.filter(|(index, _)| *index != look.leader && *index != look.follower);
+    let others = exposure.snapshot.robots.iter().zip(&sensor_config.kits).enumerate();
+    let mut others = others.filter(|(index, _)| *index != exposure.leader && *index != exposure.follower);
     if others.any(|(_, (robot, kit))| robot_hides(kit, &robot.world_from_body(), from, to)) {
         return true;
     }
-    let props = sensor_config.props.iter().zip(&look.snapshot.props);
+    let props = sensor_config.props.iter().zip(&exposure.snapshot.props);
     let mut props = props.map(|(prop, place)| (prop.solid, place));
     if props.any(|(solid, place)| prop_hides(solid, place, from, to)) {
         return true;
@@ -60,7 +60,7 @@ fn prop_hides(solid: Solid, place: &Placement, from: [f64; 3], to: [f64; 3]) -> 
     let back = Rigid { rotation, translation: place.position }.inverse();
     let (a, b) = (back.apply(from), back.apply(to));
     match solid {
-        // A ramp hides what its box does: robots seldom look along one.
+        // A ramp hides what its box does: robots seldom measure along one.
         Solid::Block { size } | Solid::Wedge { size } => {
             let middle = [0.0, 0.0, 0.5 * size[2]];
             crosses_box(shifted(a, middle), shifted(b, middle), size.map(|s| 0.5 * s))

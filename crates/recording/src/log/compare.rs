@@ -46,7 +46,7 @@ pub struct Comparison {
     pub first: Option<Difference>,
     /// Samples that differ.
     pub differing: u64,
-    /// Largest difference of every quantity that differs anywhere, by edges, robots, props, contacts, looks.
+    /// Largest difference of every quantity that differs anywhere, by edges, robots, props, contacts, measurements.
     pub peaks: Vec<Peak>,
 }
 
@@ -196,7 +196,7 @@ impl ComparedQuantity {
     }
 }
 
-/// All quantities of a moment, by edge, robot, prop, contact and look.
+/// All quantities of a moment, by edge, robot, prop, contact and measurement.
 fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     let mut all = Collector { of: "sample".to_owned(), table: 0, field: 0, found: vec![] };
     let mut record = record.clone();
@@ -224,7 +224,7 @@ fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
         all.collect(4, of, &mut ContactRecord { contact: *contact, names: [first, second] });
     }
     for frame in &mut record.frames {
-        all.collect(5, format!("look of {}", pair(frame.edge)), frame);
+        all.collect(5, format!("measurement of {}", pair(frame.edge)), frame);
     }
     all.found
 }

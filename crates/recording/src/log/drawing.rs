@@ -33,7 +33,7 @@ pub(super) struct Drawing {
     formation: u16,
     ribbons: u16,
     poses: Vec<u16>,
-    /// Of robots whose cameras look: calibration and pictures.
+    /// Of robots whose cameras measure: calibration and pictures.
     cameras: Vec<Option<[u16; 2]>>,
     colours: Vec<Color>,
     frames: Vec<[String; 3]>,
@@ -100,7 +100,7 @@ impl Drawing {
         for (index, member) in fleet.robots.iter().enumerate() {
             let frame = solids::robot_frame(member);
             drawing.poses.push(channel::<PoseInFrame>(&format!("/{frame}/pose"), to)?);
-            let measurements = fleet.looks && fleet.edges.iter().any(|edge| edge.follower == index);
+            let measurements = fleet.has_sensors && fleet.edges.iter().any(|edge| edge.follower == index);
             let camera = format!("{frame}/camera");
             drawing.cameras.push(if measurements {
                 let calibration = channel::<CameraCalibration>(&format!("/{camera}/calibration"), to)?;

@@ -1,8 +1,8 @@
 //! A log that another program wrote anew: sorted, filtered, compressed otherwise, its chunks laid anew.
 //!
-//! Our own reader relies on how our own writer lays a file. What others write is put together again, sample by sample, into a
-//! log of ours in a file without a name, and read from there: a moment that comes back is the moment that was recorded, bit
-//! for bit, or is not there.
+//! Our own reader relies on how our own writer lays a file. What others write is put together again, sample by sample,
+//! into a log of ours in a file without a name, and read from there: a moment that comes back is the moment that was
+//! recorded, bit for bit, or is not there.
 
 use super::messages::{ContactRecord, SampleNumber};
 use super::outline::{LONGEST, parse};
@@ -201,7 +201,7 @@ impl About {
         let place = |kind: LogChannel, topic: &str| match kind {
             LogChannel::Robot(_) => fleet.robots.iter().position(|member| Topics::robot(member) == topic),
             LogChannel::Edge(_) => fleet.edges.iter().position(|edge| Topics::edge(fleet, *edge) == topic),
-            LogChannel::Look(_) => {
+            LogChannel::Measurement(_) => {
                 fleet.edges.iter().position(|edge| Topics::measurements(fleet, *edge) == topic)
             }
             LogChannel::Prop(_) => fleet.props.iter().position(|prop| Topics::prop(prop) == topic),
@@ -274,7 +274,7 @@ impl Pending {
                 LogChannel::Robot(index) => drop(parts.robots.insert(index, record::read(data)?)),
                 LogChannel::Edge(index) => drop(parts.edges.insert(index, record::read(data)?)),
                 LogChannel::Prop(index) => drop(parts.props.insert(index, record::read(data)?)),
-                LogChannel::Look(index) => {
+                LogChannel::Measurement(index) => {
                     parts.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
                 }
                 LogChannel::Contact => {

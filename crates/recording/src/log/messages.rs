@@ -80,18 +80,18 @@ impl Record for EdgeState {
     }
 }
 
-/// One look of an edge: its index is that of its channel.
+/// One measurement of an edge: its index is that of its channel.
 impl Record for MeasurementRecord {
     const NAME: &'static str = "Measurement";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
         use Outcome::{Ambiguous, Dropped, Missed, Rejected, Used};
         let outcomes = words([Used, Rejected, Ambiguous, Missed, Dropped], Outcome::name);
-        let look = &mut self.measurement;
+        let measurement = &mut self.measurement;
         f.choice("outcome", &mut self.outcome, &outcomes)?;
-        f.number("stamp_s", &mut look.stamp)?;
+        f.number("stamp_s", &mut measurement.stamp)?;
         f.number("arrival_s", &mut self.arrival)?;
-        let Relative { distance, bearing, view_angle } = &mut look.relative;
+        let Relative { distance, bearing, view_angle } = &mut measurement.relative;
         f.number("distance_m", distance)?;
         f.number("bearing_rad", bearing)?;
         f.number("view_angle_rad", view_angle)?;
@@ -99,9 +99,9 @@ impl Record for MeasurementRecord {
         f.number("true_distance_m", distance)?;
         f.number("true_bearing_rad", bearing)?;
         f.number("true_view_angle_rad", view_angle)?;
-        f.number("deviation_distance_m", &mut look.deviation[0])?;
-        f.number("deviation_bearing_rad", &mut look.deviation[1])?;
-        f.number("deviation_view_angle_rad", &mut look.deviation[2])?;
+        f.number("deviation_distance_m", &mut measurement.deviation[0])?;
+        f.number("deviation_bearing_rad", &mut measurement.deviation[1])?;
+        f.number("deviation_view_angle_rad", &mut measurement.deviation[2])?;
         f.number("pan_rad", &mut self.pan)?;
         let region = &mut self.region;
         for (name, side) in [

@@ -43,8 +43,13 @@ struct Through {
 }
 
 impl CameraRenderer for Through {
-    fn look(&mut self, snapshot: &Snapshot, shots: &[Shot], pictures: &mut Vec<Grey>) -> Result<(), String> {
-        self.eyes.look(snapshot, shots, pictures)?;
+    fn render(
+        &mut self,
+        snapshot: &Snapshot,
+        shots: &[Shot],
+        pictures: &mut Vec<Grey>,
+    ) -> Result<(), String> {
+        self.eyes.render(snapshot, shots, pictures)?;
         self.next.resize(snapshot.robots.len(), 0.0);
         for (shot, picture) in shots.iter().zip(&*pictures) {
             let Some(next) = self.next.get_mut(shot.robot).filter(|next| snapshot.time >= **next - 1e-9)
@@ -68,8 +73,8 @@ impl CameraRenderer for Through {
 }
 
 impl Photo {
-    /// Appends the picture to `out` as PNG, in its place in the whole picture of `camera_model`, black around it, and as bright as
-    /// screens want it; `None` where it makes no picture.
+    /// Appends the picture to `out` as PNG, in its place in the whole picture of `camera_model`, black around it, and
+    /// as bright as screens want it; `None` where it makes no picture.
     pub(super) fn png(&self, camera_model: &CameraModel, out: &mut Vec<u8>) -> Option<()> {
         let (across, down) = (camera_model.width as usize, camera_model.height as usize);
         let mut pixels = vec![0; across.checked_mul(down)?];

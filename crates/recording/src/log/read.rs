@@ -1,6 +1,6 @@
 //! Reads a log back: what is known of the run, and its moments in order or from a time on.
 //!
-//! Whole records are looked for from the beginning, so a log that was cut off reads like any other, up to its last chunk.
+//! Whole records are searched from the beginning, so a log that was cut off reads like any other, up to its last chunk.
 
 use super::import::{Imported, import};
 use super::messages::{ContactRecord, SampleNumber};
@@ -45,7 +45,7 @@ pub(super) enum LogChannel {
     Robot(usize),
     Edge(usize),
     Prop(usize),
-    Look(usize),
+    Measurement(usize),
     Contact,
     Sample,
     FleetInfo,
@@ -282,7 +282,7 @@ impl LogChannel {
             RobotState::NAME => Some(Self::Robot(index)),
             EdgeState::NAME => Some(Self::Edge(index)),
             Placement::NAME => Some(Self::Prop(index)),
-            MeasurementRecord::NAME => Some(Self::Look(index)),
+            MeasurementRecord::NAME => Some(Self::Measurement(index)),
             ContactRecord::NAME => Some(Self::Contact),
             SampleNumber::NAME => Some(Self::Sample),
             FleetRecord::NAME => Some(Self::FleetInfo),
@@ -372,7 +372,7 @@ fn take(
             let place = record::read(data)?;
             if index == props.len() { props.push(place) } else { *props.get_mut(index)? = place }
         }
-        LogChannel::Look(index) => {
+        LogChannel::Measurement(index) => {
             record.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
         }
         LogChannel::Contact => record.contacts.push(record::read::<ContactRecord>(data)?.contact),

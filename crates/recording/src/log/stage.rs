@@ -76,7 +76,7 @@ impl Record for FleetRecord {
         f.number("sun_elevation_rad", sun_elevation)?;
         f.number("sun_azimuth_rad", sun_azimuth)?;
         f.number("haze_from_m", haze_from)?;
-        f.flag("has_sensors", &mut fleet.looks)?;
+        f.flag("has_sensors", &mut fleet.has_sensors)?;
         let mut members = std::mem::take(&mut fleet.robots).into_iter().map(Actor).collect();
         let mut edges = fleet.edges.iter().copied().map(EdgeRecord).collect();
         let mut props = std::mem::take(&mut fleet.props).into_iter().map(Scenery).collect();

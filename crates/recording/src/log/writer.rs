@@ -111,7 +111,8 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// Writes what is known before the run into `file`; errors speak of `path`. Without drawings, where nobody will look.
+    /// Writes what is known before the run into `file`; errors speak of `path`. Without drawings, where nobody will
+    /// look.
     pub(super) fn create(
         file: File,
         path: &Path,
@@ -166,7 +167,7 @@ impl Writer {
         }
         for (index, edge) in fleet.edges.iter().enumerate() {
             self.edges.push(to.add_own::<EdgeState>(&Topics::edge(fleet, *edge), index)?);
-            if fleet.looks {
+            if fleet.has_sensors {
                 self.measurements
                     .push(to.add_own::<MeasurementRecord>(&Topics::measurements(fleet, *edge), index)?);
             }

@@ -204,7 +204,12 @@ impl GpuCameraRenderer {
 }
 
 impl CameraRenderer for GpuCameraRenderer {
-    fn look(&mut self, snapshot: &Snapshot, shots: &[Shot], pictures: &mut Vec<Grey>) -> Result<(), String> {
+    fn render(
+        &mut self,
+        snapshot: &Snapshot,
+        shots: &[Shot],
+        pictures: &mut Vec<Grey>,
+    ) -> Result<(), String> {
         self.take(snapshot, shots, pictures).map_err(|error| error.to_string())
     }
 }

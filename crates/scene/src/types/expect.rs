@@ -48,7 +48,7 @@ settings! {
         pub settled_error_at_most: Option<[f64; 2]> = None, optional(ERROR);
         /// What the root mean square of no edge's error may exceed from `settled_after` to the end, [m, rad].
         pub settled_rms_at_most: Option<[f64; 2]> = None, optional(ERROR);
-        /// Share of the looks that arrived in which every follower has to have recognised its leader.
+        /// Share of the measurements that arrived in which every follower has to have recognised its leader.
         pub in_view_at_least: Option<f64> = None, optional(number("").from(0.0).up_to(1.0));
         /// Time from which `settled_error_at_most` and `settled_rms_at_most` hold, s.
         pub settled_after: Option<f64> = None, optional(number("s").from(0.0));
@@ -67,8 +67,8 @@ settings! {
 const LATE: f64 = 0.5;
 
 impl Expect {
-    /// What a run of `duration` s is judged by. Late errors count from `settled_after` on, or from half time where a scene
-    /// gives none that comes.
+    /// What a run of `duration` s is judged by. Late errors count from `settled_after` on, or from half time where a
+    /// scene gives none that comes.
     pub fn judging(&self, duration: f64) -> Judging {
         let said = self.settled_after.filter(|time| *time < duration);
         Judging { settling_band: self.settling_band, settled_after: said.unwrap_or(LATE * duration) }

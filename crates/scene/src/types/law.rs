@@ -10,8 +10,8 @@ use serde_json::{Value as Json, json};
 use vocabulary::{LawKind, ObserverKind, ObserverStart, words};
 
 settings! {
-    /// Parameters of a control law. A pair is for [distance, bearing]; one value stands for both. On wheels the gains that
-    /// are not said are those that fit the kind of vehicle.
+    /// Parameters of a control law. A pair is for [distance, bearing]; one value stands for both. On wheels the gains
+    /// that are not said are those that fit the kind of vehicle.
     #[derive(Copy)]
     pub struct Law from LawPart {
         /// Which law.
@@ -49,14 +49,15 @@ settings! {
         pub alpha1: [f64; 2] = [2.0; 2], pair(number("").above(0.0)), Live;
         /// α2 of s² + α1 s + α2; above 0 for stability.
         pub alpha2: [f64; 2] = [1.0; 2], pair(number("").above(0.0)), Live;
-        /// How looks at the leader become an estimate; looks come with every sensing but `truth`.
+        /// How measurements become an estimate; they come with every sensing but `truth`.
         pub kind: ObserverKind = ObserverKind::HighGain, word::<ObserverKind>(), Live;
-        /// With looks: whether ε follows from how certain each look is, ε⁵ = 3σ²T/(32 δ²), instead of being `epsilon`; true
-        /// where `epsilon` is not written.
+        /// With measurements: whether ε follows from how certain each measurement is, ε⁵ = 3σ²T/(32 δ²), instead of
+        /// being `epsilon`; true where `epsilon` is not written.
         pub adaptive: bool = true, flag(), Live;
-        /// With looks: size of what the observer does not know (δ = |g_v V_i|), [m/s², rad/s²].
+        /// With measurements: size of what the observer does not know (δ = |g_v V_i|), [m/s², rad/s²].
         pub disturbance: [f64; 2] = [1.0; 2], pair(number("m/s² or rad/s²").above(0.0).up_to(1e4)), Live;
-        /// With looks: a look farther from the prediction than this many standard deviations is not believed.
+        /// With measurements: a measurement farther from the prediction than this many standard deviations is not
+        /// believed.
         pub gate: f64 = 6.0, number("").above(0.0).up_to(1e6), Live;
         /// Where the estimate of [distance, bearing] starts; that of their rates starts at 0.
         pub start: ObserverStart = ObserverStart::Measured, StartForm;

@@ -86,7 +86,7 @@ impl LocalisationBench {
         let fleet = FleetInfo {
             robots: vec![leader, RobotInfo::new("follower", false, Body::default())],
             edges: vec![Edge { leader: LEADER, follower: FOLLOWER }],
-            looks: true,
+            has_sensors: true,
             ..FleetInfo::default()
         };
         Ok(Self {
@@ -165,7 +165,7 @@ impl LocalisationBench {
         let mut times = Times::default();
         let mut pictures = Vec::new();
         let began = clock();
-        self.renderer.look(snapshot, &[shot], &mut pictures).map_err(Error::Camera)?;
+        self.renderer.render(snapshot, &[shot], &mut pictures).map_err(Error::Camera)?;
         times[0] = 1e3 * (clock() - began);
         let light = pictures.pop().unwrap_or_default();
         let mut picture = Grey::default();

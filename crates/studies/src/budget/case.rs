@@ -43,7 +43,7 @@ impl SensingLevel {
     }
 }
 
-/// What makes rates of looks.
+/// What makes rates of measurements.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ObserverChoice {
     /// The high-gain observer, as the scene has it.
@@ -121,7 +121,7 @@ pub(super) fn pixel_noise(scene: &Scene) -> f64 {
     scene.robots.iter().find_map(noise).unwrap_or(0.0)
 }
 
-/// Refuses scenes whose followers cannot go by looks, and says what to change.
+/// Refuses scenes whose followers cannot go by measurements, and says what to change.
 ///
 /// # Errors
 /// [`Error::Usage`] for such a scene.
@@ -140,18 +140,18 @@ pub fn check(scene: &Scene) -> Result<(), Error> {
     let other = |(_, follow): &(&str, &Follow)| follow.law.kind != LawKind::OutputFeedback;
     if let Some((name, _)) = followers().find(other) {
         return Err(Error::Usage(format!(
-            "`{name}` does not follow by output feedback, and other laws have to know more than looks tell: write `law = {{ \
+            "`{name}` does not follow by output feedback, and other laws need more than measurements tell: write `law = {{ \
              kind = \"output-feedback\" }}` for it, or --set robots.{name}.law.kind=output-feedback"
         )));
     }
     if scene.time.mode == TimeMode::Continuous {
-        let text = "mode `continuous` knows no looks: use --set time.mode=sampled";
+        let text = "mode `continuous` has no measurements: use --set time.mode=sampled";
         return Err(Error::Usage(text.to_owned()));
     }
-    // What only scenes that look have to fulfil is checked where scenes are read.
-    let looking =
+    // What only scenes with sensors have to fulfil is checked where scenes are read.
+    let sensing =
         BudgetCase { level: SensingLevel::Pixels(0.0), observer: ObserverChoice::HighGain }.give(scene);
-    Scene::parse(&looking.to_toml(), "the scene with sensing by tags", &[])
+    Scene::parse(&sensing.to_toml(), "the scene with sensing by tags", &[])
         .map(drop)
         .map_err(|errors| Error::Usage(errors.to_string()))
 }

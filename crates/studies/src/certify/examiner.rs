@@ -87,7 +87,7 @@ pub struct Examiner {
 struct CertifiedStretch {
     witness: Witness,
     set_point: SetPointTrajectory,
-    looks: bool,
+    measures: bool,
     rough_leader: Option<f64>,
     final_error: [f64; 2],
 }
@@ -98,7 +98,7 @@ impl CertifiedStretch {
         Self {
             witness: if keeps { witness.keeping() } else { witness },
             set_point: law.set_point.clone(),
-            looks: law.looks.is_some(),
+            measures: law.tracker.is_some(),
             rough_leader: None,
             final_error: [0.0; 2],
         }
@@ -108,7 +108,7 @@ impl CertifiedStretch {
         *self.witness.law() == law.law
             && *self.witness.observer() == law.observer
             && self.set_point == law.set_point
-            && self.looks == law.looks.is_some()
+            && self.measures == law.tracker.is_some()
     }
 }
 
@@ -182,7 +182,7 @@ impl Examiner {
         let circumstances = Circumstances {
             held: (self.mode != TimeMode::Continuous).then_some(self.period),
             sampled_measurement: self.mode == TimeMode::Measured,
-            looks: stretch.looks,
+            measures: stretch.measures,
             wheels: wheels(edge.leader) || wheels(edge.follower),
             rough_leader: stretch.rough_leader,
         };

@@ -22,7 +22,7 @@ pub fn so_far(
     let circumstances = Circumstances {
         held: held.then_some(scene.time.period),
         sampled_measurement: scene.time.mode == TimeMode::Measured,
-        looks: follow.sensing.kind != SensingKind::Truth,
+        measures: follow.sensing.kind != SensingKind::Truth,
         wheels: wheels(edge.leader) || wheels(edge.follower),
         // A leader that follows is told its commands period by period.
         rough_leader: first.filter(|_| held && !leads),
@@ -30,8 +30,8 @@ pub fn so_far(
     (certify(&witness, &circumstances), witness.rows().to_vec())
 }
 
-/// The quantities of edge number `index` along `records`, which may be thinned; its law is that of `follow`. Rates of set
-/// points and of turn rates are differences from moment to moment.
+/// The quantities of edge number `index` along `records`, which may be thinned; its law is that of `follow`. Rates of
+/// set points and of turn rates are differences from moment to moment.
 pub fn rows(records: &[&StepRecord], index: usize, edge: Edge, follow: &Follow) -> Vec<WitnessRow> {
     witness(records, index, edge, follow).rows().to_vec()
 }
