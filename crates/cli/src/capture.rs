@@ -2,8 +2,9 @@
 
 use crate::Outcome;
 use crate::args::{PictureArgs, SceneArgs, time};
+use crate::cameras;
 use crate::failure::Failure;
-use crate::load::{attach_cameras, load, stem};
+use crate::load::{load, stem};
 use crate::picture::RenderSetup;
 use crate::playback::Playback;
 use crate::print::{json, note, say};
@@ -72,7 +73,7 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
         view: &scene.views.default,
     };
     draw(&job, |gpu| {
-        attach_cameras(&mut loaded, Some(gpu), &args.scene)?;
+        cameras::attach(&mut loaded, Some(gpu), &args.scene.adapter.name, None)?;
         Ok(RecordSource::Run(Box::new(loaded.simulation)))
     })
 }
@@ -127,7 +128,7 @@ pub(crate) fn draw(
             break;
         }
     }
-    progress.end();
+    drop(progress);
     replaced.tell(job.quiet);
     if job.json {
         json(&json!({ "files": files, "times": shown, "size": studio.size, "adapter": adapter }));

@@ -7,9 +7,10 @@ mod words;
 
 use crate::Outcome;
 use crate::args::{PictureArgs, SceneArgs};
+use crate::cameras;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::load::{attach_cameras, load, stem};
+use crate::load::{load, stem};
 use crate::picture::RenderSetup;
 use crate::playback::Playback;
 use crate::print::{json, note, say};
@@ -116,7 +117,7 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
         captions: captions(&scene),
     };
     shoot(job, |gpu| {
-        attach_cameras(&mut loaded, Some(gpu), &args.scene)?;
+        cameras::attach(&mut loaded, Some(gpu), &args.scene.adapter.name, None)?;
         Ok(RecordSource::Run(Box::new(loaded.simulation)))
     })
 }
@@ -212,13 +213,13 @@ pub(crate) fn shoot(
     if index < frames {
         film.pause().map_err(|e| refused(e, &job, kind, rate))?;
         replaced.tell(job.quiet);
-        progress.end();
+        drop(progress);
         let seconds = shot as f64 / rate;
         let more = if kind == FilmKind::Mp4 { "; the same command goes on from there" } else { "" };
         return Err(Failure::Interrupted(format!("{} holds the first {seconds:.2} s{more}", path.display())));
     }
     film.finish().map_err(|e| refused(e, &job, kind, rate))?;
-    progress.end();
+    drop(progress);
     replaced.tell(job.quiet);
     if let Some(end) = playback.ended().filter(|_| shot < frames && !job.quiet) {
         note(&format!("the run ended at {end:.2} s of {:.2} s, and the film with it", job.duration));

@@ -108,21 +108,15 @@ fn write(path: &Path, name: &str, cases: &[ReportedCheck], wall: Duration) -> Re
     let others = cases.iter().filter(|case| case.time.is_none()).count() as u32;
     let share = wall.saturating_sub(own).checked_div(others).unwrap_or_default();
     for case in cases {
-        let not = |kind, text: &String| {
-            let mut status = TestCaseStatus::non_success(kind);
+        let (mut status, text) = match &case.came {
+            Came::Fine => (TestCaseStatus::success(), None),
+            Came::Failed(text) => (TestCaseStatus::non_success(NonSuccessKind::Failure), Some(text)),
+            Came::Skipped(text) => (TestCaseStatus::skipped(), Some(text)),
+            Came::Broken(text) => (TestCaseStatus::non_success(NonSuccessKind::Error), Some(text)),
+        };
+        if let Some(text) = text {
             status.set_message(allowed(text));
-            status
-        };
-        let status = match &case.came {
-            Came::Fine => TestCaseStatus::success(),
-            Came::Failed(text) => not(NonSuccessKind::Failure, text),
-            Came::Skipped(text) => {
-                let mut status = TestCaseStatus::skipped();
-                status.set_message(allowed(text));
-                status
-            }
-            Came::Broken(text) => not(NonSuccessKind::Error, text),
-        };
+        }
         let mut written = TestCase::new(allowed(&case.name), status);
         written.set_classname(name.as_str()).set_time(case.time.unwrap_or(share));
         suite.add_test_case(written);

@@ -166,7 +166,7 @@ fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
         progress.at(samples);
         !interrupt::asked()
     })?;
-    progress.end();
+    drop(progress);
     let replay = Replay { recorded, log: logged.map(|logged| logged.digest), now, apart };
     let report = ReplayReport { manifest, replay, sees };
     if args.json {

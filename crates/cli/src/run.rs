@@ -93,7 +93,7 @@ fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
             }
             other => other.into(),
         })?;
-    progress.end();
+    drop(progress);
     if status == Status::Interrupted {
         let why = format!("the run was interrupted at {:.2} s", metrics.duration);
         cases.extend(

@@ -45,7 +45,7 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
     // The scene's own gains are the first trial.
     let most = usize::try_from(args.trials - 1).unwrap_or(usize::MAX);
     let found = search(&scene, most, look).map_err(|error| Failure::Usage(error.to_string()))?;
-    progress.end();
+    drop(progress);
     let [first, best] = &found;
     if args.scene.json {
         json(&json!({ "trials": tried, "first": as_json(first), "best": as_json(best) }));

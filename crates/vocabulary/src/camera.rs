@@ -64,12 +64,11 @@ pub struct Grey {
 
 /// Takes pictures of a world: implemented by whoever can draw.
 pub trait CameraRenderer: Send {
-    /// Takes all `shots` of the same instant, one picture each in `pictures`.
+    /// Takes all `shots` of the same instant, one image each in `images`.
     ///
     /// # Errors
     /// What went wrong, in words.
-    fn render(&mut self, snapshot: &Snapshot, shots: &[Shot], pictures: &mut Vec<Grey>)
-    -> Result<(), String>;
+    fn render(&mut self, snapshot: &Snapshot, shots: &[Shot], images: &mut Vec<Grey>) -> Result<(), String>;
 }
 
 #[cfg(test)]

@@ -2,8 +2,7 @@
 
 use super::picture;
 use crate::failure::Failure;
-use crate::replaced::Replaced;
-use output::write_whole;
+use crate::replaced::{quoted, write_all};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -17,15 +16,7 @@ pub(crate) fn write(folder: &Path, budget: &Budget<'_>, quiet: bool) -> Result<V
         ("json", format!("{:#}\n", as_json(budget))),
         ("csv", as_csv(budget)),
     ];
-    let (mut written, mut replaced) = (vec![], Replaced::default());
-    for (ending, text) in texts {
-        let path = folder.join(stem).with_extension(ending);
-        replaced.look(&path);
-        write_whole(&path, text.as_bytes())?;
-        written.push(path);
-    }
-    replaced.tell(quiet);
-    Ok(written)
+    write_all(folder, &texts.map(|(ending, text)| (format!("{stem}.{ending}"), text)), quiet)
 }
 
 /// Every number, in m, rad and s.
@@ -129,15 +120,6 @@ fn as_csv(budget: &Budget<'_>) -> String {
 
 fn optional(number: Option<f64>) -> String {
     number.map_or_else(String::new, |n| n.to_string())
-}
-
-/// A name as CSV takes it.
-fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", name.replace('"', "\"\""))
-    } else {
-        name.to_owned()
-    }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! A comparison as a figure a column wide.
 
+use crate::certify::axis;
 use figures::{Axis, Figure, Key, Marker, Panel, Rgb, Scale, Series, Stroke};
 use studies::budget::{Budget, EdgeErrors, ObserverChoice, SensingLevel};
 
@@ -22,10 +23,6 @@ fn followers(budget: &Budget<'_>) -> Vec<(Rgb, String)> {
 const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 /// Factor from m to mm.
 const MILLI: f64 = 1e3;
-
-fn axis(label: &str, scale: Scale) -> Axis {
-    Axis { label: label.to_owned(), scale, ..Axis::default() }
-}
 
 /// Errors of measurements and of following over the noise of corners, with the camera among them.
 fn levels(budget: &Budget<'_>) -> Figure {

@@ -39,6 +39,6 @@ fn every_gain(scene: &Scene, asked: bool, quiet: bool) -> Result<Result<Sensitiv
     // The bar is not made for several threads: it goes on by itself.
     let found = sensitivities(scene, look).map_err(studies::Error::from)?;
     progress.at(done.load(Ordering::Relaxed));
-    progress.end();
+    drop(progress);
     found.map(Ok).ok_or_else(nothing)
 }

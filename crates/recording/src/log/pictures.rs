@@ -43,15 +43,10 @@ struct Through {
 }
 
 impl CameraRenderer for Through {
-    fn render(
-        &mut self,
-        snapshot: &Snapshot,
-        shots: &[Shot],
-        pictures: &mut Vec<Grey>,
-    ) -> Result<(), String> {
-        self.eyes.render(snapshot, shots, pictures)?;
+    fn render(&mut self, snapshot: &Snapshot, shots: &[Shot], images: &mut Vec<Grey>) -> Result<(), String> {
+        self.eyes.render(snapshot, shots, images)?;
         self.next.resize(snapshot.robots.len(), 0.0);
-        for (shot, picture) in shots.iter().zip(&*pictures) {
+        for (shot, picture) in shots.iter().zip(&*images) {
             let Some(next) = self.next.get_mut(shot.robot).filter(|next| snapshot.time >= **next - 1e-9)
             else {
                 continue;
