@@ -6,7 +6,7 @@ use crate::contacts::{ContactLog, ContactMetrics};
 use crate::measurements::{MeasurementMetrics, MeasurementSums};
 use crate::statistics::RootMeanSquare;
 use serde::Serialize;
-use vocabulary::{Condition, Contact, EdgeState, EntityId, FleetInfo, Judging, StepRecord};
+use vocabulary::{Condition, Contact, EdgeState, EntityId, FleetInfo, Judging, StepRecord, Word};
 
 /// `metrics.json`. Every pair is [distance, bearing] or [acceleration, turn rate].
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -216,7 +216,7 @@ impl MetricsBuilder {
             nearest: room.map(|r| self.fleet.name(r.nearest).to_owned()),
             clearance_min_time: room.map(|r| r.time),
             lift_max: self.lifts[index],
-            condition: self.conditions[index].name().to_owned(),
+            condition: self.conditions[index].word().to_owned(),
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Writing a run folder while the run goes.
 
 use crate::log::{self, Pipe, Roll};
-use crate::manifest::FORMAT;
 use crate::table::{TableKind, TableWriter};
 use crate::{Error, Manifest, Status};
 use metrics::{CertificateMetrics, Digest, ExpectationMetrics, Metrics, MetricsBuilder};
@@ -90,7 +89,13 @@ impl Recorder {
         fs::create_dir(&tables).map_err(Error::io("create", &tables))?;
         write_whole(&folder.join("scene.toml"), options.scene.as_bytes())?;
         let writer = |kind| TableWriter::create(&tables, kind, options.csv);
-        let manifest = first_manifest(fleet, &options);
+        let manifest = Manifest {
+            program: options.program,
+            commit: options.commit,
+            seed: options.seed,
+            period: options.period,
+            ..Manifest::of(fleet)
+        };
         let log = if options.no_log {
             None
         } else {
@@ -189,24 +194,6 @@ impl Recorder {
 
     fn write_manifest(&self) -> Result<(), Error> {
         write_json(&self.folder.join("manifest.json"), &self.manifest)
-    }
-}
-
-fn first_manifest(fleet: &FleetInfo, options: &RunOptions) -> Manifest {
-    let name = |robot: usize| fleet.robots[robot].name.clone();
-    Manifest {
-        format: FORMAT,
-        program: options.program.clone(),
-        commit: options.commit.clone(),
-        title: fleet.title.clone(),
-        seed: options.seed,
-        period: options.period,
-        duration: fleet.duration,
-        robots: fleet.robots.iter().map(|m| m.name.clone()).collect(),
-        edges: fleet.edges.iter().map(|e| [name(e.leader), name(e.follower)]).collect(),
-        status: Status::Running,
-        samples: 0,
-        digest: None,
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::{Body, Region, Rigid, RobotState, Shell, Snapshot};
 
 /// Where a camera sits on a robot: it turns about an upright axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CameraMount {
     /// Of its axis ahead of the robot's reference point, m.
     pub forward: f64,

@@ -31,7 +31,7 @@ impl Default for Body {
 }
 
 /// One robot on stage.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct RobotInfo {
     /// Unique name.
     pub name: String,

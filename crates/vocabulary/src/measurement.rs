@@ -1,6 +1,6 @@
 //! What a follower has measured of its leader.
 
-use crate::{FACES, Region, Relative};
+use crate::{FACES, Region, Relative, words};
 
 /// One measurement of a leader: what a sensor reports of one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -13,63 +13,39 @@ pub struct Measurement {
     pub deviation: [f64; 3],
 }
 
-/// How well a follower knows where its leader is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum TrackingState {
-    /// It is told the truth at every instant.
-    #[default]
-    Truth,
-    /// It has not seen its leader yet.
-    Waiting,
-    /// It has seen its leader a moment ago.
-    Tracking,
-    /// It has missed some measurements and goes by its prediction.
-    Coasting,
-    /// It has not seen its leader for too long: it slows down and searches.
-    Lost,
-}
-
-impl TrackingState {
-    /// One word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Truth => "truth",
-            Self::Waiting => "waiting",
-            Self::Tracking => "tracking",
-            Self::Coasting => "coasting",
-            Self::Lost => "lost",
-        }
+words! {
+    /// How well a follower knows where its leader is.
+    pub enum TrackingState = Truth {
+        /// It is told the truth at every instant.
+        Truth = "truth",
+        /// It has not seen its leader yet.
+        Waiting = "waiting",
+        /// It has seen its leader a moment ago.
+        Tracking = "tracking",
+        /// It has missed some measurements and goes by its prediction.
+        Coasting = "coasting",
+        /// It has not seen its leader for too long: it slows down and searches.
+        Lost = "lost",
     }
 }
 
-/// What came of one measurement.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Outcome {
-    /// The estimate was corrected by it.
-    #[default]
-    Used,
-    /// It was too far from the prediction to be believed.
-    Rejected,
-    /// Two poses explain it alike.
-    Ambiguous,
-    /// The leader was not seen.
-    Missed,
-    /// The frame never arrived.
-    Dropped,
+words! {
+    /// What came of one measurement.
+    pub enum Outcome = Used {
+        /// The estimate was corrected by it.
+        Used = "used",
+        /// It was too far from the prediction to be believed.
+        Rejected = "rejected",
+        /// Two poses explain it alike.
+        Ambiguous = "ambiguous",
+        /// The leader was not seen.
+        Missed = "missed",
+        /// The frame never arrived.
+        Dropped = "dropped",
+    }
 }
 
 impl Outcome {
-    /// One word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Used => "used",
-            Self::Rejected => "rejected",
-            Self::Ambiguous => "ambiguous",
-            Self::Missed => "missed",
-            Self::Dropped => "dropped",
-        }
-    }
-
     /// Whether the leader was recognised in it.
     pub fn seen(self) -> bool {
         matches!(self, Self::Used | Self::Rejected | Self::Ambiguous)

@@ -1,6 +1,6 @@
 //! Solid things that are no robots: walls, pillars, ramps, cones, crates.
 
-use crate::Pose;
+use crate::{Pose, words};
 
 /// The shape of a solid thing. Its frame has its origin in the middle of its foot, z up; all measures in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +29,12 @@ pub enum Solid {
         /// [length, width, height].
         size: [f64; 3],
     },
+}
+
+impl Default for Solid {
+    fn default() -> Self {
+        Self::Block { size: [0.0; 3] }
+    }
 }
 
 impl Solid {
@@ -87,20 +93,20 @@ impl Placement {
     }
 }
 
-/// How a prop can move.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Mobility {
-    /// Never.
-    #[default]
-    Fixed,
-    /// It can be pushed, and falls.
-    Loose,
-    /// It goes its own way and nothing stops it.
-    Guided,
+words! {
+    /// How a prop can move.
+    pub enum Mobility = Fixed {
+        /// Never.
+        Fixed = "fixed",
+        /// It can be pushed, and falls.
+        Loose = "loose",
+        /// It goes its own way and nothing stops it.
+        Guided = "guided",
+    }
 }
 
 /// A solid thing on stage.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Prop {
     /// Unique name, among robots too.
     pub name: String,

@@ -2,7 +2,7 @@
 
 use super::messages::ContactRecord;
 use super::read::Log;
-use super::record::{self, Fields, Record};
+use super::record::{self, FieldValue, Fields, Record};
 use crate::Error;
 use std::collections::BTreeMap;
 use vocabulary::{FleetInfo, StepRecord, wrap};
@@ -255,48 +255,24 @@ impl Collector {
 }
 
 impl Fields for Collector {
-    fn number(&mut self, name: &'static str, value: &mut f64) -> Option<()> {
-        self.add(name, ComparedValue::Number(*value));
-        Some(())
-    }
-
-    fn numbers(&mut self, name: &'static str, values: &mut [f64]) -> Option<()> {
-        let field = self.field;
-        for value in values {
-            self.field = field;
-            self.add(name, ComparedValue::Number(*value));
-        }
-        Some(())
-    }
-
-    fn series(&mut self, name: &'static str, values: &mut Vec<f64>) -> Option<()> {
-        self.add(name, ComparedValue::Word(format!("{values:?}")));
-        Some(())
-    }
-
-    fn count(&mut self, name: &'static str, value: &mut u64) -> Option<()> {
-        self.add(name, ComparedValue::Number(*value as f64));
-        Some(())
-    }
-
-    fn flag(&mut self, name: &'static str, value: &mut bool) -> Option<()> {
-        self.add(name, ComparedValue::Word(value.to_string()));
-        Some(())
-    }
-
-    fn text(&mut self, name: &'static str, value: &mut String) -> Option<()> {
-        self.add(name, ComparedValue::Word(value.clone()));
-        Some(())
-    }
-
-    fn choice<T: Copy + PartialEq>(
-        &mut self,
-        name: &'static str,
-        value: &mut T,
-        all: &[(T, &'static str)],
-    ) -> Option<()> {
-        let word = all.iter().find(|(one, _)| one == value).map_or("?", |(_, word)| word);
-        self.add(name, ComparedValue::Word(word.to_owned()));
+    fn field(&mut self, name: &'static str, value: FieldValue<'_>) -> Option<()> {
+        let value = match value {
+            FieldValue::Number(value) => ComparedValue::Number(*value),
+            FieldValue::Count(value) => ComparedValue::Number(*value as f64),
+            FieldValue::Flag(value) => ComparedValue::Word(value.to_string()),
+            FieldValue::Text(text) => ComparedValue::Word(text.clone()),
+            FieldValue::Series(values) => ComparedValue::Word(format!("{values:?}")),
+            FieldValue::Choice(index, words) => ComparedValue::Word(words[*index].to_owned()),
+            FieldValue::Numbers(values) => {
+                let field = self.field;
+                for value in values {
+                    self.field = field;
+                    self.add(name, ComparedValue::Number(*value));
+                }
+                return Some(());
+            }
+        };
+        self.add(name, value);
         Some(())
     }
 

@@ -4,7 +4,6 @@ use super::drawing::Drawing;
 use super::messages::{ContactRecord, SampleNumber};
 use super::pictures::Photo;
 use super::record::{self, Record};
-use super::stage::FleetRecord;
 use super::{FORMAT, OURS, Topics, ros};
 use crate::{Error, Manifest};
 use mcap::records::{MessageHeader, Metadata};
@@ -140,8 +139,8 @@ impl Writer {
             .map_err(Error::table(path))?;
         to.attach("scene.toml", "application/toml", scene)?;
         to.attach("manifest.json", "application/json", &text(manifest, path)?)?;
-        let stage = to.add_own::<FleetRecord>(Topics::FLEET, 0)?;
-        to.put_own(stage, Stamp::default(), &mut FleetRecord(fleet.clone()))?;
+        let cast = to.add_own::<FleetInfo>(Topics::FLEET, 0)?;
+        to.put_own(cast, Stamp::default(), &mut fleet.clone())?;
         let mut writer = Self {
             drawing: if drawn { Some(Drawing::begin(fleet, &mut to)?) } else { None },
             robots: vec![],

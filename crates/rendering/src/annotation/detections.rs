@@ -7,7 +7,8 @@ use crate::palette::{Rgb, hex};
 use crate::picture_context::PictureContext;
 use glam::Vec2;
 use vocabulary::{
-    CameraModel, Edge, FACES, MeasurementRecord, Outcome, Relative, Rigid, RobotInfo, Shell, tag_code, wrap,
+    CameraModel, Edge, FACES, MeasurementRecord, Outcome, Relative, Rigid, RobotInfo, Shell, Word, tag_code,
+    wrap,
 };
 
 /// Older measurements are forgotten, s.
@@ -267,7 +268,7 @@ fn report(words: &mut LabelPlacer<'_>, tile: Tile, leader: &str, frame: &Measure
         1 => ", 1 face".to_owned(),
         n => format!(", {n} faces"),
     };
-    line(words, format!("{leader}: {}{faces}", frame.outcome.name()), true, told);
+    line(words, format!("{leader}: {}{faces}", frame.outcome.word()), true, told);
 }
 
 #[cfg(test)]
