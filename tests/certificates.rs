@@ -61,7 +61,7 @@ fn certificates(text: &str, set: &[&str]) -> Vec<Certificate> {
     let set: Vec<Override> = set.iter().map(|s| s.parse().expect("an override")).collect();
     let scene = Scene::parse(text, "ideal.toml", &set).expect("a scene").scene;
     let mut simulation = Simulation::new(build(&scene).expect("a run"));
-    let mut examiner = Examiner::keeping(&scene, &simulation);
+    let mut examiner = Examiner::new(&scene, &simulation, true);
     while simulation.next_record().is_some() {
         examiner.push(&simulation);
     }

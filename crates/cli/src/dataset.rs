@@ -13,7 +13,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
 use studies::dataset::{DatasetExport, DatasetOptions, DatasetStatus, followed_edges};
-use vocabulary::counted;
+use vocabulary::{Word, counted};
 
 #[derive(Debug, Args)]
 pub(crate) struct DatasetArgs {
@@ -75,7 +75,7 @@ pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
     let summary = export.summary();
     if args.scene.json {
         print::json(&json!({
-            "folder": args.out.display().to_string(), "status": status.name(), "adapter": adapter,
+            "folder": args.out.display().to_string(), "status": status.word(), "adapter": adapter,
             "wall_seconds": seconds, "summary": summary,
         }));
     } else if !args.scene.quiet {

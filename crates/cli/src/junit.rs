@@ -4,11 +4,11 @@ use crate::Outcome;
 use crate::failure::Failure;
 use crate::print;
 use crate::replaced::Replaced;
+use metrics::JudgedExpectation;
 use output::{Place, write_whole};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use std::path::Path;
 use std::time::Duration;
-use studies::verdict::JudgedExpectation;
 use vocabulary::readable;
 
 /// One thing that was checked.

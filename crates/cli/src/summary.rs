@@ -2,11 +2,10 @@
 
 use crate::cameras::DrawingCost;
 use crate::print::{json, note, say};
-use metrics::Metrics;
+use metrics::{JudgedExpectation, Metrics};
 use scene::Scene;
 use serde_json::json;
 use std::path::PathBuf;
-use studies::verdict::JudgedExpectation;
 use vocabulary::counted;
 
 /// A run that reached its end.
@@ -183,8 +182,6 @@ pub(crate) fn failures(summary: &Summary<'_>) {
 }
 
 pub(crate) fn as_json(summary: &Summary<'_>) {
-    let finding =
-        |f: &JudgedExpectation| json!({ "key": f.key, "wanted": f.wanted, "found": f.found, "met": f.met });
     json(&json!({
         "title": summary.scene.title,
         "seed": summary.scene.seed,
@@ -195,7 +192,7 @@ pub(crate) fn as_json(summary: &Summary<'_>) {
         "digest": summary.digest,
         "folder": summary.folder.as_ref().map(|f| f.display().to_string()),
         "metrics": summary.metrics,
-        "expectations": summary.findings.iter().map(finding).collect::<Vec<_>>(),
+        "expectations": summary.findings,
         "met": summary.met(),
     }));
 }

@@ -111,19 +111,13 @@ pub struct MetricsBuilder {
 /// Running sums of one edge.
 #[derive(Debug, Clone, Default)]
 struct EdgeSums {
+    /// What needs no more than the samples so far.
+    metrics: EdgeMetrics,
     last: EdgeState,
     errors: RootMeanSquare<2>,
-    absolute_integral: [f64; 2],
-    square_integral: [f64; 2],
-    effort: [f64; 2],
-    peak_error: [f64; 2],
-    late_peak_error: [f64; 2],
     late_errors: RootMeanSquare<2>,
-    peak_rates: [f64; 2],
     measurements: MeasurementSums,
     limited: u64,
-    too_close: u64,
-    speeds: [f64; 2],
     /// Since the edge was last outside its band; `None` while it is.
     settled: Option<Settled>,
 }
@@ -138,7 +132,9 @@ struct Settled {
 impl MetricsBuilder {
     /// For a run of `fleet`.
     pub fn new(fleet: &FleetInfo, judging: Judging) -> Self {
-        let edges = vec![EdgeSums { speeds: [f64::INFINITY, 0.0], ..EdgeSums::default() }; fleet.edges.len()];
+        let mut edge = EdgeSums::default();
+        edge.metrics.speeds = [f64::INFINITY, 0.0];
+        let edges = vec![edge; fleet.edges.len()];
         Self {
             judging,
             edges,
@@ -223,30 +219,30 @@ impl MetricsBuilder {
 
 impl EdgeSums {
     fn push(&mut self, edge: &EdgeState, speed: f64, time: f64, step: f64, judging: &Judging) {
-        let band = judging.settling_band;
         let commands = |e: &EdgeState| [e.applied.acceleration, e.applied.turn_rate];
-        let (now, before) = (commands(edge), commands(&self.last));
+        let (now, before, late) = (commands(edge), commands(&self.last), time >= judging.settled_after);
+        let m = &mut self.metrics;
         for i in 0..2 {
             let (e, last) = (edge.error[i], self.last.error[i]);
             // Trapezoids; the first sample has no width.
-            self.absolute_integral[i] += step * (e.abs() + last.abs()) / 2.0;
-            self.square_integral[i] += step * (e * e + last * last) / 2.0;
-            self.effort[i] += step * (now[i].abs() + before[i].abs()) / 2.0;
-            self.peak_error[i] = self.peak_error[i].max(e.abs());
-            if time >= judging.settled_after {
-                self.late_peak_error[i] = self.late_peak_error[i].max(e.abs());
+            m.iae[i] += step * (e.abs() + last.abs()) / 2.0;
+            m.ise[i] += step * (e * e + last * last) / 2.0;
+            m.effort[i] += step * (now[i].abs() + before[i].abs()) / 2.0;
+            m.peak_error[i] = m.peak_error[i].max(e.abs());
+            if late {
+                m.late_peak_error[i] = m.late_peak_error[i].max(e.abs());
             }
-            self.peak_rates[i] = self.peak_rates[i].max(edge.rates[i].abs());
+            m.peak_rates[i] = m.peak_rates[i].max(edge.rates[i].abs());
         }
+        m.too_close += u64::from(edge.too_close);
+        m.speeds = [m.speeds[0].min(speed), m.speeds[1].max(speed)];
         self.errors.add(edge.error);
-        if time >= judging.settled_after {
+        if late {
             self.late_errors.add(edge.error);
         }
         self.measurements.know(edge, step);
         self.limited += u64::from(edge.limited);
-        self.too_close += u64::from(edge.too_close);
-        self.speeds = [self.speeds[0].min(speed), self.speeds[1].max(speed)];
-        self.settle(edge, speed, time, band);
+        self.settle(edge, speed, time, judging.settling_band);
         self.last = *edge;
     }
 
@@ -262,26 +258,18 @@ impl EdgeSums {
     }
 
     fn finish(&self, leader: String, follower: String, samples: u64) -> EdgeMetrics {
-        let count = samples.max(1) as f64;
         EdgeMetrics {
             leader,
             follower,
             final_error: self.last.error,
             rms_error: self.errors.root().unwrap_or_default(),
             settled_rms_error: self.settled.and_then(|settled| settled.errors.root()),
-            iae: self.absolute_integral,
-            ise: self.square_integral,
-            peak_error: self.peak_error,
-            late_peak_error: self.late_peak_error,
             late_rms_error: self.late_errors.root().unwrap_or_default(),
             settling_time: self.settled.map(|s| s.since),
-            effort: self.effort,
-            peak_rates: self.peak_rates,
-            limited: self.limited as f64 / count,
-            too_close: self.too_close,
-            speeds: self.speeds,
+            limited: self.limited as f64 / samples.max(1) as f64,
             settled_speeds: self.settled.map(|s| s.speeds),
             measurements: self.measurements.finish(),
+            ..self.metrics.clone()
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::log::{self, Pipe, Roll};
 use crate::table::{TableKind, TableWriter};
 use crate::{Error, Manifest, Status};
-use metrics::{CertificateMetrics, Digest, ExpectationMetrics, Metrics, MetricsBuilder};
+use metrics::{CertificateMetrics, Digest, JudgedExpectation, Metrics, MetricsBuilder};
 use output::{Claim, write_whole};
 use serde::Serialize;
 use std::fs;
@@ -45,7 +45,7 @@ pub struct Recorder {
     log: Option<Pipe>,
     metrics: MetricsBuilder,
     certificates: Vec<CertificateMetrics>,
-    expectations: Vec<ExpectationMetrics>,
+    expectations: Vec<JudgedExpectation>,
     digest: Digest,
     /// Last, so that it is given up when all files are closed.
     _claim: Claim,
@@ -69,7 +69,7 @@ struct MetricsFile<'a> {
     metrics: &'a Metrics,
     /// What the scene expects, where it was checked.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    expectations: &'a [ExpectationMetrics],
+    expectations: &'a [JudgedExpectation],
 }
 
 /// What a run folder may contain that we wrote ourselves and may replace.
@@ -144,7 +144,7 @@ impl Recorder {
     }
 
     /// What became of the scene's expectations, for the file of metrics.
-    pub fn judge(&mut self, expectations: Vec<ExpectationMetrics>) {
+    pub fn judge(&mut self, expectations: Vec<JudgedExpectation>) {
         self.expectations = expectations;
     }
 

@@ -18,7 +18,7 @@ use world::WorldSetup;
 /// [`BuildError`], naming the robots.
 pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let names: Vec<&str> = scene.robots.iter().map(|r| &*r.name).collect();
-    let followers: Vec<(&str, &Follow)> = scene.robots.iter().filter_map(follows).collect();
+    let followers: Vec<(&str, &Follow)> = scene.followers().collect();
     let pairs: Vec<(&str, &str)> = followers.iter().map(|(name, follow)| (&*follow.leader, *name)).collect();
     let graph = Graph::new(&names, &pairs)?;
     check_stiffness(scene, &followers)?;
@@ -69,7 +69,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
 /// What `change` puts in place.
 fn turn(change: &scene::Change) -> Result<ScheduledChange, BuildError> {
     let robots = &change.then.robots;
-    let followers: Vec<(&str, &Follow)> = robots.iter().filter_map(follows).collect();
+    let followers: Vec<(&str, &Follow)> = change.then.followers().collect();
     check_stiffness(&change.then, &followers)?;
     let parameters = ParameterSet {
         laws: followers.iter().map(|(_, follow)| edge_law(follow)).collect(),
@@ -90,13 +90,6 @@ fn check_stiffness(scene: &Scene, followers: &[(&str, &Follow)]) -> Result<(), B
         }
     }
     Ok(())
-}
-
-fn follows(robot: &scene::Robot) -> Option<(&str, &Follow)> {
-    match &robot.role {
-        Role::Lead { .. } => None,
-        Role::Follow(follow) => Some((&robot.name, follow)),
-    }
 }
 
 /// The law, observer and set point of a follower, as the loop uses them.

@@ -1,11 +1,11 @@
 //! A scene's laws in one line, for pictures and reports.
 
-use scene::{Follow, Role, Scene, SensingKind, SwitchingKind};
+use scene::{Follow, Scene, SensingKind, SwitchingKind};
 use vocabulary::{LawKind, ObserverKind, TimeMode, counted};
 
 /// Law, gains and timing of a scene in one line; ranges where gains of followers differ, "mixed" where their laws do.
 pub fn caption(scene: &Scene) -> String {
-    let all: Vec<&Follow> = scene.robots.iter().filter_map(follow).collect();
+    let all: Vec<&Follow> = scene.followers().map(|(_, follow)| follow).collect();
     if all.is_empty() {
         return "No followers".to_owned();
     }
@@ -56,13 +56,6 @@ pub fn caption(scene: &Scene) -> String {
         changes => parts.push(format!("{changes} changes")),
     }
     parts.join(" · ")
-}
-
-fn follow(robot: &scene::Robot) -> Option<&Follow> {
-    match &robot.role {
-        Role::Lead { .. } => None,
-        Role::Follow(follow) => Some(follow),
-    }
 }
 
 fn law(kind: LawKind) -> &'static str {

@@ -92,7 +92,7 @@ impl SensingPipeline {
         frames.clear();
         for (index, law) in formation.laws().iter().enumerate() {
             for mut frame in SensorConfig::arrived(&mut self.sensor_state, index, time) {
-                self.trackers[index].put(law, &mut frame, self.starts[index]);
+                put(&mut self.trackers[index], law, &mut frame, self.starts[index]);
                 frames.push(frame);
             }
         }
@@ -135,31 +135,19 @@ impl SensingPipeline {
     pub(crate) fn age_and_pan(&self, edge: usize) -> (f64, f64) {
         (self.trackers[edge].age(), self.sensor_config.pan(&self.sensor_state, edge))
     }
-
-    pub(crate) fn disturb(&mut self, edge: usize, rates: [f64; 2]) {
-        if let Some(tracker) = self.trackers.get_mut(edge) {
-            tracker.disturb([0.0; 2], rates);
-        }
-    }
 }
 
-/// Puts measurements into an estimate.
-trait Put {
-    fn put(&mut self, law: &EdgeLaw, frame: &mut MeasurementRecord, start: ObserverStart);
-}
-
-impl Put for Tracker {
-    fn put(&mut self, law: &EdgeLaw, frame: &mut MeasurementRecord, start: ObserverStart) {
-        let (Some(parameters), Outcome::Used) = (&law.tracker, frame.outcome) else { return };
-        let first = self.relative().is_none();
-        frame.outcome = self.take(parameters, &frame.measurement);
-        let (true, Some(seen)) = (first, self.relative()) else { return };
-        match start {
-            ObserverStart::Measured | ObserverStart::Offset([0.0, 0.0]) => {}
-            ObserverStart::Offset(offset) => self.disturb(offset, [0.0; 2]),
-            ObserverStart::At([distance, bearing]) => {
-                self.disturb([distance - seen.distance, vocabulary::wrap(bearing - seen.bearing)], [0.0; 2]);
-            }
+/// Puts a measurement into an estimate.
+fn put(tracker: &mut Tracker, law: &EdgeLaw, frame: &mut MeasurementRecord, start: ObserverStart) {
+    let (Some(parameters), Outcome::Used) = (&law.tracker, frame.outcome) else { return };
+    let first = tracker.relative().is_none();
+    frame.outcome = tracker.take(parameters, &frame.measurement);
+    let (true, Some(seen)) = (first, tracker.relative()) else { return };
+    match start {
+        ObserverStart::Measured | ObserverStart::Offset([0.0, 0.0]) => {}
+        ObserverStart::Offset(offset) => tracker.disturb(offset, [0.0; 2]),
+        ObserverStart::At([distance, bearing]) => {
+            tracker.disturb([distance - seen.distance, vocabulary::wrap(bearing - seen.bearing)], [0.0; 2]);
         }
     }
 }

@@ -187,17 +187,6 @@ impl Simulation {
         self.fleet.duration = self.fleet.duration.max(duration);
     }
 
-    /// Adds to the rates an edge's observer estimates, [m/s, rad/s]: to watch it recover.
-    pub fn disturb_observer(&mut self, edge: usize, by: [f64; 2]) {
-        if let Some(estimate) = self.state.estimates.get_mut(edge) {
-            estimate.rates[0] += by[0];
-            estimate.rates[1] += by[1];
-        }
-        if let Some(sensing) = &mut self.sensing {
-            sensing.disturb(edge, by);
-        }
-    }
-
     /// A copy of the whole run as it stands: it goes on to the same future, bit for bit.
     #[must_use]
     pub fn save(&self) -> Self {

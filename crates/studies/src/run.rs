@@ -1,9 +1,9 @@
 //! One run of a scene: stepped, recorded if asked for, certified, and judged by what the scene expects.
 
 use crate::certify::Examiner;
-use crate::verdict::{JudgedExpectation, verdict};
+use crate::verdict::{not_finite, verdict};
 use crate::{Error, SceneRun};
-use metrics::{CertificateMetrics, Digest, Metrics, MetricsBuilder};
+use metrics::{CertificateMetrics, Digest, JudgedExpectation, Metrics, MetricsBuilder};
 use recording::{Finished, Recorder, Status};
 use simulation::Fault;
 use vocabulary::StepRecord;
@@ -46,7 +46,7 @@ pub fn run(
             digest: Digest::default(),
         })),
     };
-    let mut examiner = Examiner::new(&scene, &simulation);
+    let mut examiner = Examiner::new(&scene, &simulation, false);
     let mut steps = 0;
     while let Some(record) = simulation.next_record() {
         if let Err(error) = sink.push(record) {
@@ -60,7 +60,7 @@ pub fn run(
         }
     }
     let broken = match simulation.fault() {
-        Some(Fault::NotFinite(what)) => Some(JudgedExpectation::not_finite(what)),
+        Some(Fault::NotFinite(what)) => Some(not_finite(what)),
         Some(fault @ Fault::CameraRenderer(_)) => {
             let error = Error::from(fault);
             sink.abandon();
@@ -128,7 +128,7 @@ impl RecordSink {
         match self {
             Self::Disk(mut recorder) => {
                 recorder.certify(certificates);
-                recorder.judge(findings.iter().map(JudgedExpectation::metrics).collect());
+                recorder.judge(findings.to_vec());
                 let Finished { metrics, digest, written } = recorder.conclude(status);
                 (metrics, digest, written.map(drop))
             }

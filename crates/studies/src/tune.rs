@@ -66,15 +66,10 @@ const DISASTER: f64 = 100.0;
 impl Gains {
     /// Those of the first follower by output feedback.
     fn of(scene: &Scene) -> Option<Self> {
-        scene.robots.iter().find_map(|robot| match &robot.role {
-            Role::Follow(follow) if follow.law.kind == LawKind::OutputFeedback => Some(Self {
-                k: follow.law.k[0],
-                beta: follow.law.beta[0],
-                slope: follow.law.slope[0],
-                epsilon: follow.observer.epsilon[0],
-            }),
-            _ => None,
-        })
+        let mut followers = scene.followers().map(|(_, follow)| follow);
+        let follow = followers.find(|follow| follow.law.kind == LawKind::OutputFeedback)?;
+        let (law, epsilon) = (&follow.law, follow.observer.epsilon[0]);
+        Some(Self { k: law.k[0], beta: law.beta[0], slope: law.slope[0], epsilon })
     }
 
     fn give(self, scene: &mut Scene) {
@@ -84,7 +79,7 @@ impl Gains {
                 follow.law.beta = [self.beta; 2];
                 follow.law.slope = [self.slope; 2];
                 follow.observer.epsilon = [self.epsilon; 2];
-                // It is ε that is searched, with looks too.
+                // It is ε that is searched, with measurements too.
                 follow.observer.adaptive = false;
             }
         });

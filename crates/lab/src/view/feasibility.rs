@@ -2,8 +2,8 @@
 
 use crate::app_state::AppState;
 use crate::session::prediction::Prediction;
-use formation::feasible::unholdable;
-use vocabulary::{Limits, Pose, StepRecord};
+use formation::feasible::infeasible;
+use vocabulary::{Limits, MotionInput, Pose, StepRecord};
 
 /// Side of a square of the field, m, and squares on a side.
 const STEP: f64 = 0.25;
@@ -43,8 +43,8 @@ impl PlaceConstraints {
     }
 
     fn refuses_at(&self, place: [f64; 2], [speed, turn_rate]: [f64; 2]) -> bool {
-        let why = unholdable(place, [speed, turn_rate], &self.limits, self.distance_min);
-        if why.is_some() {
+        let leader = MotionInput { speed, turn_rate, ..MotionInput::default() };
+        if infeasible(place, &leader, &self.limits, self.distance_min).is_some() {
             return true;
         }
         let Some([far, pan]) = self.sight else { return false };

@@ -1,4 +1,4 @@
-//! Pictures: where to exposure, what the sensor makes of the light, and the tags in it.
+//! Pictures: which part to take, what the sensor makes of the light, and the tags in it.
 
 use super::{Exposure, SensorConfig, all_faces, pan};
 use crate::detect::{Locus, recognise_expected};
@@ -162,8 +162,8 @@ impl CameraSettings {
                 work.push(if first + 1 < threads { Err(scope.spawn(task)) } else { Ok(task()) });
             }
             for done in work {
-                let done = done
-                    .or_else(|thread| thread.join().map_err(|_| "a thread that exposures for tags failed"))?;
+                let done =
+                    done.or_else(|thread| thread.join().map_err(|_| "a thread that looks for tags failed"))?;
                 for (k, seen) in done {
                     found[k] = Some(seen);
                 }

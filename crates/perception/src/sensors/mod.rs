@@ -6,13 +6,13 @@
 
 mod camera;
 mod geometric;
-mod hiding;
 mod noise;
 mod pan;
 mod sightline;
 
 use camera::CameraPipeline;
 pub use camera::CameraSettings;
+pub use geometric::{MARGIN, readable};
 pub use noise::NoiseModel;
 
 use crate::imaging::{Purpose, noise_stream};

@@ -118,6 +118,11 @@ impl Scene {
         self.robots.iter().position(|robot| robot.name == name)
     }
 
+    /// The robots that follow, by name, in their order.
+    pub fn followers(&self) -> impl Iterator<Item = (&str, &Follow)> {
+        self.robots.iter().filter_map(|robot| Some((&*robot.name, robot.role.follow()?)))
+    }
+
     /// What a run of this scene is judged by.
     pub fn judging(&self) -> Judging {
         self.expect.judging(self.time.duration)

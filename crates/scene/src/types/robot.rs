@@ -36,6 +36,16 @@ pub enum Role {
     Follow(Box<Follow>),
 }
 
+impl Role {
+    /// How a robot follows; `None` for one that leads.
+    pub fn follow(&self) -> Option<&Follow> {
+        match self {
+            Self::Lead { .. } => None,
+            Self::Follow(follow) => Some(follow),
+        }
+    }
+}
+
 /// An edge of the formation, seen from its follower.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Follow {

@@ -19,9 +19,8 @@ impl SensingLevel {
     /// In words, with the noise.
     pub fn name(self) -> String {
         match self {
-            Self::Truth => "truth".to_owned(),
             Self::Pixels(pixels) => format!("geometric {pixels} px"),
-            Self::Camera => "camera".to_owned(),
+            other => other.word().to_owned(),
         }
     }
 
@@ -114,11 +113,7 @@ impl BudgetCase {
 
 /// Noise of corners of the scene's first follower, px.
 pub(super) fn pixel_noise(scene: &Scene) -> f64 {
-    let noise = |robot: &scene::Robot| match &robot.role {
-        Role::Follow(follow) => Some(follow.sensing.pixel_noise),
-        Role::Lead { .. } => None,
-    };
-    scene.robots.iter().find_map(noise).unwrap_or(0.0)
+    scene.followers().next().map_or(0.0, |(_, follow)| follow.sensing.pixel_noise)
 }
 
 /// Refuses scenes whose followers cannot go by measurements, and says what to change.
@@ -126,19 +121,13 @@ pub(super) fn pixel_noise(scene: &Scene) -> f64 {
 /// # Errors
 /// [`Error::Usage`] for such a scene.
 pub fn check(scene: &Scene) -> Result<(), Error> {
-    let followers = || {
-        scene.robots.iter().filter_map(|robot| match &robot.role {
-            Role::Follow(follow) => Some((robot.name.as_str(), &**follow)),
-            Role::Lead { .. } => None,
-        })
-    };
-    if followers().next().is_none() {
+    if scene.followers().next().is_none() {
         let text = "the scene has no followers, and so no errors of following: give a robot `leader`, `distance` and \
                     `bearing`";
         return Err(Error::Usage(text.to_owned()));
     }
     let other = |(_, follow): &(&str, &Follow)| follow.law.kind != LawKind::OutputFeedback;
-    if let Some((name, _)) = followers().find(other) {
+    if let Some((name, _)) = scene.followers().find(other) {
         return Err(Error::Usage(format!(
             "`{name}` does not follow by output feedback, and other laws need more than measurements tell: write `law = {{ \
              kind = \"output-feedback\" }}` for it, or --set robots.{name}.law.kind=output-feedback"

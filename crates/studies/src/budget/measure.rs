@@ -33,7 +33,7 @@ pub struct EdgeErrors {
 }
 
 /// [`EdgeErrors`] under way.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct EdgeErrorSums {
     measurements: RootMeanSquare<3>,
     relative: RootMeanSquare<1>,
@@ -52,22 +52,6 @@ struct EdgeErrorSums {
 }
 
 impl EdgeErrorSums {
-    const NONE: Self = Self {
-        measurements: RootMeanSquare::EMPTY,
-        relative: RootMeanSquare::EMPTY,
-        told: RootMeanSquare::EMPTY,
-        tracking: RootMeanSquare::EMPTY,
-        rates: RootMeanSquare::EMPTY,
-        before: [None; 2],
-        samples: 0,
-        limited: 0,
-        lost: 0,
-        taken: 0,
-        arrived: 0,
-        seen: 0,
-        refused: 0,
-    };
-
     fn know(&mut self, edge: &EdgeState, period: f64) {
         self.samples += 1;
         self.limited += u64::from(edge.limited);
@@ -78,10 +62,10 @@ impl EdgeErrorSums {
                 self.told.add(difference(&edge.seen, &edge.relative));
             }
         }
-        if let [Some(first), Some(geometric_mean)] = self.before {
+        if let [Some(first), Some(middle)] = self.before {
             let [distance, bearing, _] = difference(&edge.relative, &first.relative);
             let rates = [distance, bearing].map(|d| d / (2.0 * period));
-            self.rates.add([geometric_mean.rates[0] - rates[0], geometric_mean.rates[1] - rates[1]]);
+            self.rates.add([middle.rates[0] - rates[0], middle.rates[1] - rates[1]]);
         }
         self.before = [self.before[1], Some(*edge)];
     }
@@ -89,7 +73,7 @@ impl EdgeErrorSums {
     fn add(&mut self, frame: &MeasurementRecord) {
         self.taken += 1;
         self.arrived += u64::from(frame.outcome != Outcome::Dropped);
-        self.seen += u64::from(!matches!(frame.outcome, Outcome::Dropped | Outcome::Missed));
+        self.seen += u64::from(frame.outcome.seen());
         self.refused += u64::from(matches!(frame.outcome, Outcome::Rejected | Outcome::Ambiguous));
         if frame.outcome == Outcome::Used {
             let off = difference(&frame.measurement.relative, &frame.truth);
@@ -139,7 +123,7 @@ pub fn measure(
     mut go_on: impl FnMut(u64) -> bool,
 ) -> Result<Option<MeasuredRun>, Error> {
     let period = simulation.period();
-    let mut edges = vec![EdgeErrorSums::NONE; simulation.fleet().edges.len()];
+    let mut edges = vec![EdgeErrorSums::default(); simulation.fleet().edges.len()];
     let (mut run, mut step, mut before) = (MeasuredRun::default(), 0, f64::NEG_INFINITY);
     while let Some(record) = simulation.next_record() {
         take_in(&mut edges, record, settled_after, period);
@@ -178,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_rate_is_held_against_the_motion_around_it() {
-        let mut gathering = EdgeErrorSums::NONE;
+        let mut gathering = EdgeErrorSums::default();
         for k in 0..5 {
             let relative = Relative { distance: 2.0 + 0.03 * f64::from(k), ..Relative::default() };
             let rates = [3.5, 0.0];
@@ -191,7 +175,7 @@ mod tests {
 
     #[test]
     fn only_measurements_that_were_used_count_as_errors() {
-        let mut gathering = EdgeErrorSums::NONE;
+        let mut gathering = EdgeErrorSums::default();
         for (outcome, distance) in [(Outcome::Used, 2.2), (Outcome::Rejected, 9.0), (Outcome::Missed, 0.0)] {
             let mut frame = MeasurementRecord { outcome, ..MeasurementRecord::default() };
             frame.truth.distance = 2.0;

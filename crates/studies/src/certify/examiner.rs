@@ -113,17 +113,9 @@ impl CertifiedStretch {
 }
 
 impl Examiner {
-    /// For a run of `scene` that has not begun; its memory does not grow with the run.
-    pub fn new(scene: &Scene, simulation: &Simulation) -> Self {
-        Self::begin(scene, simulation, false)
-    }
-
-    /// As [`Self::new`], with every sample kept in the witness of its certificate.
-    pub fn keeping(scene: &Scene, simulation: &Simulation) -> Self {
-        Self::begin(scene, simulation, true)
-    }
-
-    fn begin(scene: &Scene, simulation: &Simulation, keeps: bool) -> Self {
+    /// For a run of `scene` that has not begun. Where it `keeps`, every sample stays in the witness of its certificate;
+    /// else its memory does not grow with the run.
+    pub fn new(scene: &Scene, simulation: &Simulation, keeps: bool) -> Self {
         let wheels: Vec<bool> = scene.robots.iter().map(|robot| robot.vehicle.kind.has_wheels()).collect();
         let leads = &simulation.fleet().robots;
         Self {

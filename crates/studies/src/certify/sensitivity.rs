@@ -93,9 +93,7 @@ pub fn gains(scene: &Scene) -> Vec<Gain> {
     let kinds: [fn(usize) -> Gain; 6] =
         [Gain::K, Gain::Beta, Gain::Slope, Gain::Epsilon, Gain::Alpha1, Gain::Alpha2];
     let all = kinds.into_iter().flat_map(|gain| [gain(0), gain(1)]);
-    let follows = |gain: &Gain| {
-        scene.robots.iter().any(|robot| matches!(&robot.role, Role::Follow(follow) if gain.acts_on(follow)))
-    };
+    let follows = |gain: &Gain| scene.followers().any(|(_, follow)| gain.acts_on(follow));
     all.filter(follows).collect()
 }
 
