@@ -76,8 +76,28 @@ fn outcome(certificate: &Certificate, statement: Statement) -> StatementOutcome 
     certificate.finding(statement).expect("a finding").outcome()
 }
 
+/// A word for a premise.
+fn word(premise: &Premise) -> &'static str {
+    match premise {
+        Premise::FullState => "full-state",
+        Premise::NoObserver => "no-observer",
+        Premise::Smoothed => "tanh",
+        Premise::Chatter(_) => "chatter",
+        Premise::Saturated(_) => "saturated",
+        Premise::SpeedBound(_) => "speed-bound",
+        Premise::LeaderNotSmooth { .. } => "leader-not-smooth",
+        Premise::Held(_) => "sampled",
+        Premise::SampledMeasurement => "sampled-measurement",
+        Premise::Measurements => "measurements",
+        Premise::Wheels => "wheels",
+        Premise::TooClose(_) => "too-close",
+        Premise::RobustGain { .. } => "robust-gain",
+        Premise::Epsilon => "epsilon",
+    }
+}
+
 fn unmet(certificate: &Certificate, statement: Statement) -> Vec<&'static str> {
-    certificate.finding(statement).expect("a finding").unmet.iter().map(Premise::name).collect()
+    certificate.finding(statement).expect("a finding").unmet.iter().map(word).collect()
 }
 
 const ROBUST: [Statement; 3] = [Statement::RobustGain, Statement::NonNegative, Statement::TrackingDecrease];

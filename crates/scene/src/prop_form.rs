@@ -86,8 +86,8 @@ pub(crate) struct Measured {
     pub(crate) pose: Option<Pose>,
 }
 
-fn anywhere(solid: Solid) -> Option<Measured> {
-    Some(Measured { solid, pose: None })
+fn anywhere(solid: Solid) -> Measured {
+    Measured { solid, pose: None }
 }
 
 fn wall(keys: WallKeys, _: &Node, reporter: &mut Reporter) -> Option<Measured> {
@@ -103,22 +103,26 @@ fn wall(keys: WallKeys, _: &Node, reporter: &mut Reporter) -> Option<Measured> {
     Some(Measured { solid: Solid::Block { size }, pose: Some(pose) })
 }
 
-const BLOCK: &dyn KindOption<Measured> =
-    &Kind { word: "block", make: |keys: BlockKeys, _, _| anywhere(Solid::Block { size: keys.size?.value }) };
+const BLOCK: &dyn KindOption<Measured> = &Kind {
+    word: "block",
+    make: |keys: BlockKeys, _, _| Some(anywhere(Solid::Block { size: keys.size?.value })),
+};
 const CYLINDER: &dyn KindOption<Measured> = &Kind {
     word: "cylinder",
     make: |keys: CylinderKeys, _, _| {
-        anywhere(Solid::Cylinder { radius: keys.radius?.value, height: keys.height?.value })
+        Some(anywhere(Solid::Cylinder { radius: keys.radius?.value, height: keys.height?.value }))
     },
 };
 const CONE: &dyn KindOption<Measured> = &Kind {
     word: "cone",
     make: |keys: ConeKeys, _, _| {
-        anywhere(Solid::Cone { radius: keys.radius?.value, height: keys.height?.value })
+        Some(anywhere(Solid::Cone { radius: keys.radius?.value, height: keys.height?.value }))
     },
 };
-const RAMP: &dyn KindOption<Measured> =
-    &Kind { word: "ramp", make: |keys: RampKeys, _, _| anywhere(Solid::Wedge { size: keys.size?.value }) };
+const RAMP: &dyn KindOption<Measured> = &Kind {
+    word: "ramp",
+    make: |keys: RampKeys, _, _| Some(anywhere(Solid::Wedge { size: keys.size?.value })),
+};
 
 /// Shapes of props.
 const SHAPES: Kinds<Measured> = Kinds {

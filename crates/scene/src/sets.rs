@@ -24,15 +24,21 @@ pub(crate) fn refusal(path: &str) -> String {
     )
 }
 
-/// What leads from scene `a` to scene `b`: see [`Scene::sets_to`].
-pub(crate) fn sets_to(a: &Scene, b: &Scene) -> Result<Vec<String>, Vec<String>> {
-    let mut found = ParameterDifference::default();
-    found.note_rest(a, b);
-    found.note_robots(&a.robots, &b.robots);
-    if found.obstacles.is_empty() {
-        Ok(found.sets)
-    } else {
-        Err(found.obstacles.iter().map(|path| refusal(path)).collect())
+impl Scene {
+    /// What has to be set to come from this scene to `other` while a run goes, robot by robot in the words of `--set`:
+    /// `robots.follower-1.law.k=[3.0, 3.0]`. Changes that the scenes have themselves are left out of account.
+    ///
+    /// # Errors
+    /// One message for everything that differs and cannot change while a run goes.
+    pub fn sets_to(&self, other: &Self) -> Result<Vec<String>, Vec<String>> {
+        let mut found = ParameterDifference::default();
+        found.note_rest(self, other);
+        found.note_robots(&self.robots, &other.robots);
+        if found.obstacles.is_empty() {
+            Ok(found.sets)
+        } else {
+            Err(found.obstacles.iter().map(|path| refusal(path)).collect())
+        }
     }
 }
 

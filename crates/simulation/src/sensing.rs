@@ -145,9 +145,9 @@ fn put(tracker: &mut Tracker, law: &EdgeLaw, frame: &mut MeasurementRecord, star
     let (true, Some(seen)) = (first, tracker.relative()) else { return };
     match start {
         ObserverStart::Measured | ObserverStart::Offset([0.0, 0.0]) => {}
-        ObserverStart::Offset(offset) => tracker.disturb(offset, [0.0; 2]),
+        ObserverStart::Offset(offset) => tracker.disturb(offset),
         ObserverStart::At([distance, bearing]) => {
-            tracker.disturb([distance - seen.distance, vocabulary::wrap(bearing - seen.bearing)], [0.0; 2]);
+            tracker.disturb([distance - seen.distance, vocabulary::wrap(bearing - seen.bearing)]);
         }
     }
 }

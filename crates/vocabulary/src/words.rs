@@ -22,14 +22,20 @@ macro_rules! words {
         }
     ) => {
         $(#[doc = $about])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-        $vis enum $name { $( $(#[doc = $doc])* #[serde(rename = $word)] $variant, )+ }
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        $vis enum $name { $( $(#[doc = $doc])* $variant, )+ }
 
         $(impl Default for $name {
             fn default() -> Self {
                 Self::$default
             }
         })?
+
+        impl $crate::serde::Serialize for $name {
+            fn serialize<S: $crate::serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str($crate::Word::word(*self))
+            }
+        }
 
         impl $crate::Word for $name {
             const WORDS: &'static [(&'static str, Self, &'static str)] = &[$(

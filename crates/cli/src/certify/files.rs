@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use studies::certify::beyond::Beyond;
 use studies::certify::chain::LENGTHS;
 use studies::certify::{Certificate, Constants, LongestPeriod};
+use vocabulary::Word;
 
 /// Writes everything into `folder`; what was there under the same names is replaced.
 pub(super) fn write(folder: &Path, report: &CertifyReport<'_>, quiet: bool) -> Result<Vec<PathBuf>, Failure> {
@@ -92,7 +93,7 @@ fn beyond_json(report: &CertifyReport<'_>, beyond: &Beyond) -> Value {
                 LongestPeriod::Beyond => Value::Null,
             });
             json!({
-                "discretisation": how.name(),
+                "discretisation": how.word(),
                 "longest_period": longest.collect::<Vec<_>>(),
                 "growth": chart.channel.growth(*how, chart.epsilon, chart.period),
                 "reported_rate": chart.channel.reported_rate(*how, chart.epsilon, chart.period),

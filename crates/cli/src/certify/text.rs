@@ -9,6 +9,7 @@ use studies::certify::{
     Certificate, Constants, Discretisation, Infeasible, LongestPeriod, NotLinear, Statement,
     StatementFinding, StatementOutcome,
 };
+use vocabulary::Word;
 
 /// Edges that are told statement by statement; the others have a line each.
 const IN_FULL: usize = 2;
@@ -69,8 +70,7 @@ fn others(report: &CertifyReport<'_>) {
     if rest().next().is_none() {
         return;
     }
-    let heads = Statement::ALL.map(Statement::source);
-    let head = row(heads.iter().map(|source| format!("  {source:>13}")));
+    let head = row(Statement::WORDS.iter().map(|(_, statement, _)| format!("  {:>13}", statement.source())));
     say(&format!("\n{:40}{head}", "the others, in short"));
     for certificate in rest().take(MOST_EDGES) {
         let cells = row(certificate.findings.iter().map(|f| format!("  {:>13}", cell(f))));
@@ -119,7 +119,7 @@ fn statement(finding: &StatementFinding) {
         StatementOutcome::Violated(_) => format!("violated {when}{margin}"),
         StatementOutcome::PremiseNotMet => "premise not met".to_owned(),
     };
-    say(&format!("  {:<14} {:<32} {outcome}", finding.statement.source(), finding.statement.words()));
+    say(&format!("  {:<14} {:<32} {outcome}", finding.statement.source(), finding.statement.symbols()));
     if finding.outcome() == StatementOutcome::PremiseNotMet {
         let reasons: Vec<String> = finding.unmet.iter().map(studies::certify::Premise::words).collect();
         for line in wrapped(&reasons, 84) {

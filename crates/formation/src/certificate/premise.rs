@@ -82,26 +82,6 @@ impl Premise {
             Self::Epsilon => "ε above ε₁".to_owned(),
         }
     }
-
-    /// One word for it, for machines.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::FullState => "full-state",
-            Self::NoObserver => "no-observer",
-            Self::Smoothed => "tanh",
-            Self::Chatter(_) => "chatter",
-            Self::Saturated(_) => "saturated",
-            Self::SpeedBound(_) => "speed-bound",
-            Self::LeaderNotSmooth { .. } => "leader-not-smooth",
-            Self::Held(_) => "sampled",
-            Self::SampledMeasurement => "sampled-measurement",
-            Self::Measurements => "measurements",
-            Self::Wheels => "wheels",
-            Self::TooClose(_) => "too-close",
-            Self::RobustGain { .. } => "robust-gain",
-            Self::Epsilon => "epsilon",
-        }
-    }
 }
 
 /// A share in words that are never "0 %" for what happened.

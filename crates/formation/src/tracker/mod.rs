@@ -153,9 +153,7 @@ impl Tracker {
         let speed = own.map_or(0.0, |s| s.own.speed);
         let belief = match law.method {
             ObserverKind::HighGain => EdgeEstimator::HighGain(HighGain::at(measurement)),
-            ObserverKind::Unscented => {
-                EdgeEstimator::Unscented(Box::new(Unscented::at(law, measurement, speed)))
-            }
+            ObserverKind::Unscented => EdgeEstimator::Unscented(Box::new(Unscented::at(measurement, speed))),
         };
         self.settle(law, measurement.stamp, belief);
     }
@@ -177,15 +175,13 @@ impl Tracker {
         }
     }
 
-    /// Adds to the estimate as it stands, [m, rad] and [m/s, rad/s]: to watch it recover.
-    pub fn disturb(&mut self, output: [f64; 2], rates: [f64; 2]) {
+    /// Adds to the estimate as it stands, [m, rad].
+    pub fn disturb(&mut self, output: [f64; 2]) {
         let beliefs = self.anchor.iter_mut().map(|(_, belief)| belief).chain(&mut self.current);
         for belief in beliefs {
             if let EdgeEstimator::HighGain(belief) = belief {
-                for k in 0..2 {
-                    belief.estimate.output[k] += output[k];
-                    belief.estimate.rates[k] += rates[k];
-                }
+                belief.estimate.output[0] += output[0];
+                belief.estimate.output[1] += output[1];
             }
         }
     }

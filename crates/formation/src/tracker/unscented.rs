@@ -31,7 +31,7 @@ const AT_FIRST: [f64; 2] = [1.0, 0.5];
 
 impl Unscented {
     /// Begins at a measurement; the leader is taken to be as fast as its follower and to drive straight on.
-    pub(super) fn at(_law: &TrackerParameters, measurement: &Measurement, own_speed: f64) -> Self {
+    pub(super) fn at(measurement: &Measurement, own_speed: f64) -> Self {
         let Relative { distance, bearing, view_angle } = measurement.relative;
         let position = Vector3::new(distance, bearing, view_angle);
         let variance = Vector3::from(measurement.deviation.map(|d| d * d + 1e-12));

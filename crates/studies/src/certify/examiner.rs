@@ -8,7 +8,7 @@ use formation::{EdgeLaw, Estimate, SetPointTrajectory, Switching};
 use metrics::{CertificateMetrics, StatementMetrics};
 use scene::Scene;
 use simulation::Simulation;
-use vocabulary::{Edge, EntityId, FleetInfo, LawKind, MotionInput, StepRecord, TimeMode};
+use vocabulary::{Edge, EntityId, FleetInfo, LawKind, MotionInput, StepRecord, TimeMode, Word};
 
 /// A change of a held command below this is rounding, m/s² or rad/s.
 const STEADY: f64 = 1e-9;
@@ -45,7 +45,7 @@ impl Certificate {
         let (leader, follower) =
             fleet.edges.get(self.edge).map_or((0, 0), |edge| (edge.leader, edge.follower));
         let statement = |finding: &StatementFinding| StatementMetrics {
-            statement: finding.statement.name().to_owned(),
+            statement: finding.statement.word().to_owned(),
             source: finding.statement.source().to_owned(),
             outcome: finding.outcome().name().to_owned(),
             against_from: finding.against.map(|against| against.first),
