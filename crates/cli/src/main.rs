@@ -45,8 +45,14 @@ fn main() -> ExitCode {
     // All others may open a graphics adapter.
     if !matches!(
         program.command,
-        None | Some(Subcommands::Diff(_) | Subcommands::Compare(_) | Subcommands::Check(_))
-            | Some(Subcommands::Scenes(_) | Subcommands::Schema | Subcommands::Completions { .. })
+        None | Some(
+            Subcommands::Diff(_)
+                | Subcommands::Compare(_)
+                | Subcommands::Check(_)
+                | Subcommands::Scenes(_)
+                | Subcommands::Schema
+                | Subcommands::Completions { .. }
+        )
     ) {
         quiet::restart_if_needed();
     }

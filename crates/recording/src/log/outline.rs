@@ -97,7 +97,9 @@ impl ChunkOutline {
                 op::MESSAGE => outline.foreign = true,
                 op::METADATA | op::ATTACHMENT if length < LONGEST => {
                     let bytes = body(&mut reader, start, length).map_err(io)?;
-                    parse(*code, &bytes).into_iter().for_each(|item| outline.around.note(item));
+                    if let Ok(item) = parse(*code, &bytes) {
+                        outline.around.note(item);
+                    }
                 }
                 op::DATA_END => outline.whole = true,
                 _ => {}

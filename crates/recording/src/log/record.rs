@@ -127,7 +127,7 @@ impl FieldWriter<'_> {
         if !values.is_empty() {
             self.tag(BYTES);
             put_varint(self.out, 8 * values.len() as u64);
-            values.iter().for_each(|value| self.out.extend_from_slice(&value.to_le_bytes()));
+            self.out.extend(values.iter().flat_map(|value| value.to_le_bytes()));
         }
     }
 }
