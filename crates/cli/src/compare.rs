@@ -87,11 +87,7 @@ impl PicturePair {
 }
 
 pub(crate) fn compare(args: &CompareArgs) -> Outcome {
-    let began = Instant::now();
-    let _report = junit::open(args.junit.as_deref(), args.json)?;
-    let mut cases = vec![];
-    let outcome = judge(args, &mut cases);
-    junit::close(args.junit.as_deref(), "pictures", cases, outcome, began.elapsed(), args.quiet)
+    junit::reported(args.junit.as_deref(), "pictures", args.json, args.quiet, |cases| judge(args, cases))
 }
 
 /// Compares all pictures; `cases` are what became of them.

@@ -3,13 +3,12 @@
 use crate::{
     Diagnostics, Override, Scene,
     changes::changes,
-    document::{Document, SCHEMA_VERSION},
+    document::Document,
     files::read_text,
     resolve::resolve,
     shipped::{Shipped, nearest_shipped, shipped},
     text::{Form, Node, Reporter, table},
 };
-use serde::Serialize;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -22,53 +21,28 @@ pub struct Loaded {
     pub files: Vec<PathBuf>,
 }
 
-impl Scene {
-    /// Reads and checks the scene file at `path`, or the shipped scene of that name where there is no such file, with
-    /// `overrides` applied before checking.
-    ///
-    /// # Errors
-    /// Everything that is wrong with the file, the overrides and the tables the file names.
-    pub fn load(path: impl AsRef<Path>, overrides: &[Override]) -> Result<Loaded, Diagnostics> {
-        let path = path.as_ref();
-        if let Some(shipped) = named(path) {
-            return Self::parse(shipped.text, path, overrides);
-        }
-        let text =
-            read_text(path).map_err(|fault| Diagnostics::whole_file(path, fault + &suggestion(path)))?;
-        Self::parse(&text, path, overrides)
+/// Reads and checks the scene at `path`: see [`Scene::load`].
+pub(crate) fn load(path: &Path, overrides: &[Override]) -> Result<Loaded, Diagnostics> {
+    if let Some(shipped) = named(path) {
+        return parse(shipped.text, path, overrides);
     }
+    let text = read_text(path).map_err(|fault| Diagnostics::whole_file(path, fault + &suggestion(path)))?;
+    parse(&text, path, overrides)
+}
 
-    /// Checks scene `text`; `path` names it in messages, and tables are looked for beside it.
-    ///
-    /// # Errors
-    /// Everything that is wrong with the text, the overrides and the tables the text names.
-    pub fn parse(text: &str, path: impl AsRef<Path>, overrides: &[Override]) -> Result<Loaded, Diagnostics> {
-        let path = path.as_ref();
-        if text.trim().is_empty() {
-            let fault = "is empty: a scene needs at least `schema = 1`, a title and a robot";
-            return Err(Diagnostics::whole_file(path, fault.to_owned()));
-        }
-        let mut reporter = Reporter::new(path.parent().unwrap_or(Path::new("")));
-        match check(text, path, overrides, &mut reporter) {
-            Some(scene) if reporter.is_clean() => {
-                let files = [path.to_owned()].into_iter().chain(reporter.files).collect();
-                Ok(Loaded { scene, files })
-            }
-            _ => Err(reporter.into_diagnostics()),
-        }
+/// Checks scene `text`: see [`Scene::parse`].
+pub(crate) fn parse(text: &str, path: &Path, overrides: &[Override]) -> Result<Loaded, Diagnostics> {
+    if text.trim().is_empty() {
+        let fault = "is empty: a scene needs at least `schema = 1`, a title and a robot";
+        return Err(Diagnostics::whole_file(path, fault.to_owned()));
     }
-
-    /// The scene as TOML with every default written out; it loads again to an equal scene.
-    pub fn to_toml(&self) -> String {
-        /// A scene as a file has it.
-        #[derive(Serialize)]
-        struct File<'a> {
-            schema: u64,
-            #[serde(flatten)]
-            scene: &'a Scene,
+    let mut reporter = Reporter::new(path.parent().unwrap_or(Path::new("")));
+    match check(text, path, overrides, &mut reporter) {
+        Some(scene) if reporter.is_clean() => {
+            let files = [path.to_owned()].into_iter().chain(reporter.files).collect();
+            Ok(Loaded { scene, files })
         }
-        // A checked scene holds nothing that TOML cannot write, as the round trips of the tests show.
-        toml::to_string(&File { schema: SCHEMA_VERSION, scene: self }).unwrap_or_default()
+        _ => Err(reporter.into_diagnostics()),
     }
 }
 

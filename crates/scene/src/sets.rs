@@ -24,27 +24,9 @@ pub(crate) fn refusal(path: &str) -> String {
     )
 }
 
-impl Scene {
-    /// What has to be set to come from this scene to `other` while a run goes, robot by robot in the words of `--set`:
-    /// `robots.follower-1.law.k=[3.0, 3.0]`. Changes that the scenes have themselves are left out of account.
-    ///
-    /// # Errors
-    /// One message for everything that differs and cannot change while a run goes.
-    pub fn sets_to(&self, other: &Self) -> Result<Vec<String>, Vec<String>> {
-        let mut found = ParameterDifference::default();
-        found.note_rest(self, other);
-        found.note_robots(&self.robots, &other.robots);
-        if found.obstacles.is_empty() {
-            Ok(found.sets)
-        } else {
-            Err(found.obstacles.iter().map(|path| refusal(path)).collect())
-        }
-    }
-}
-
 impl ParameterDifference {
     /// All but robots and changes.
-    fn note_rest(&mut self, a: &Scene, b: &Scene) {
+    pub(crate) fn note_rest(&mut self, a: &Scene, b: &Scene) {
         // A part that is added to scenes has to be placed here: it does not compile without.
         let Scene {
             title,

@@ -41,10 +41,10 @@ pub fn run(
     let SceneRun { scene, mut simulation } = run;
     let mut sink = match recorder {
         Some(recorder) => RecordSink::Disk(Box::new(recorder)),
-        None => RecordSink::Memory(Box::new(RunSums {
-            metrics: MetricsBuilder::new(simulation.fleet(), scene.judging()),
-            digest: Digest::default(),
-        })),
+        None => {
+            let metrics = Box::new(MetricsBuilder::new(simulation.fleet(), scene.judging()));
+            RecordSink::Memory { metrics, digest: Box::default() }
+        }
     };
     let mut examiner = Examiner::new(&scene, &simulation, false);
     let mut steps = 0;
@@ -86,21 +86,16 @@ pub fn run(
 /// Where records go: to a folder, or only into the sums that a verdict needs.
 enum RecordSink {
     Disk(Box<Recorder>),
-    Memory(Box<RunSums>),
-}
-
-struct RunSums {
-    metrics: MetricsBuilder,
-    digest: Digest,
+    Memory { metrics: Box<MetricsBuilder>, digest: Box<Digest> },
 }
 
 impl RecordSink {
     fn push(&mut self, record: &StepRecord) -> Result<(), recording::Error> {
         match self {
             Self::Disk(recorder) => recorder.push(record),
-            Self::Memory(sums) => {
-                sums.metrics.push(record);
-                sums.digest.push(record);
+            Self::Memory { metrics, digest } => {
+                metrics.push(record);
+                digest.push(record);
                 Ok(())
             }
         }
@@ -115,7 +110,7 @@ impl RecordSink {
     fn metrics(&self) -> Metrics {
         match self {
             Self::Disk(recorder) => recorder.metrics(),
-            Self::Memory(sums) => sums.metrics.finish(),
+            Self::Memory { metrics, .. } => metrics.finish(),
         }
     }
 
@@ -132,8 +127,8 @@ impl RecordSink {
                 let Finished { metrics, digest, written } = recorder.conclude(status);
                 (metrics, digest, written.map(drop))
             }
-            Self::Memory(sums) => {
-                (Metrics { certificates, ..sums.metrics.finish() }, sums.digest.text(), Ok(()))
+            Self::Memory { metrics, digest } => {
+                (Metrics { certificates, ..metrics.finish() }, digest.text(), Ok(()))
             }
         }
     }

@@ -1,9 +1,11 @@
 //! Solid things that are no robots: walls, pillars, ramps, cones, crates.
 
 use crate::{Pose, words};
+use serde::Serialize;
 
 /// The shape of a solid thing. Its frame has its origin in the middle of its foot, z up; all measures in m.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "shape", rename_all = "kebab-case")]
 pub enum Solid {
     /// Length along x, width along y, height along z.
     Block {
@@ -25,6 +27,7 @@ pub enum Solid {
         height: f64,
     },
     /// A ramp: from the ground at its −x end it rises evenly to its full height at its +x end.
+    #[serde(rename = "ramp")]
     Wedge {
         /// [length, width, height].
         size: [f64; 3],

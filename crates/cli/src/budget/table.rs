@@ -117,17 +117,12 @@ fn growth(budget: &Budget<'_>, index: usize) {
         )
     };
     let angle = 1_f64.to_degrees();
+    let triple = |value: fn(&EdgeErrors) -> Option<[f64; 3]>| {
+        [0, 1, 2].map(|c| fit(ObserverChoice::HighGain, &|m| Some(value(m)?[c])))
+    };
     let rows: [(&str, ObserverChoice, [Option<Growth>; 3]); 4] = [
-        (
-            "measurements",
-            ObserverChoice::HighGain,
-            [0, 1, 2].map(|c| fit(ObserverChoice::HighGain, &|m| Some(m.measurements?[c]))),
-        ),
-        (
-            "told",
-            ObserverChoice::HighGain,
-            [0, 1, 2].map(|c| fit(ObserverChoice::HighGain, &|m| Some(m.told?[c]))),
-        ),
+        ("measurements", ObserverChoice::HighGain, triple(|m| m.measurements)),
+        ("told", ObserverChoice::HighGain, triple(|m| m.told)),
         ("tracking", ObserverChoice::HighGain, tracking(&fit, ObserverChoice::HighGain)),
         ("tracking", ObserverChoice::Unscented, tracking(&fit, ObserverChoice::Unscented)),
     ];

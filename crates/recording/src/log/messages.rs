@@ -174,19 +174,8 @@ impl Record for ContactRecord {
 pub(super) struct SampleNumber {
     pub(super) number: u64,
     pub(super) time: f64,
-    pub(super) robots: u64,
-    pub(super) edges: u64,
-    pub(super) props: u64,
-    pub(super) contacts: u64,
-    pub(super) measurements: u64,
-}
-
-impl SampleNumber {
-    /// Whether so many robots, edges, props, contacts and measurements are all.
-    pub(super) fn counts(&self, found: [usize; 5]) -> bool {
-        let told = [self.robots, self.edges, self.props, self.contacts, self.measurements];
-        told == found.map(|found| found as u64)
-    }
+    /// Of robots, edges, props, contacts and measurements.
+    pub(super) counts: [usize; 5],
 }
 
 impl Record for SampleNumber {
@@ -195,10 +184,7 @@ impl Record for SampleNumber {
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
         f.count("number", &mut self.number)?;
         f.number("time_s", &mut self.time)?;
-        f.count("robots", &mut self.robots)?;
-        f.count("edges", &mut self.edges)?;
-        f.count("props", &mut self.props)?;
-        f.count("contacts", &mut self.contacts)?;
-        f.count("measurements", &mut self.measurements)
+        let names = ["robots", "edges", "props", "contacts", "measurements"];
+        names.into_iter().zip(&mut self.counts).try_for_each(|(name, count)| f.count(name, count))
     }
 }

@@ -222,15 +222,10 @@ impl Writer {
                 to.put_own(*channel, stamp, frame)?;
             }
         }
-        let mut sample = SampleNumber {
-            number: self.number,
-            time: record.snapshot.time,
-            robots: record.snapshot.robots.len() as u64,
-            edges: record.edges.len() as u64,
-            props: record.snapshot.props.len() as u64,
-            contacts: record.contacts.len() as u64,
-            measurements: record.frames.len() as u64,
-        };
+        let StepRecord { snapshot, edges, contacts, frames } = record;
+        let (robots, props) = (snapshot.robots.len(), snapshot.props.len());
+        let counts = [robots, edges.len(), props, contacts.len(), frames.len()];
+        let mut sample = SampleNumber { number: self.number, time: snapshot.time, counts };
         self.number += 1;
         to.put_own(self.samples, stamp, &mut sample)
     }

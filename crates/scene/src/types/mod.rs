@@ -39,6 +39,9 @@ pub(crate) use set_point::{BearingForm, DistanceForm};
 pub(crate) use stage::{EnvironmentPart, ROBOT_VIEWS, ViewsPart};
 pub(crate) use vehicle::VehiclePart;
 
+use crate::document::SCHEMA_VERSION;
+use crate::sets::{ParameterDifference, refusal};
+use crate::{Diagnostics, Loaded, Override, load};
 use serde::Serialize;
 use vocabulary::Judging;
 
@@ -77,6 +80,56 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Reads and checks the scene file at `path`, or the shipped scene of that name where there is no such file, with
+    /// `overrides` applied before checking.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the file, the overrides and the tables the file names.
+    pub fn load(path: impl AsRef<std::path::Path>, overrides: &[Override]) -> Result<Loaded, Diagnostics> {
+        load::load(path.as_ref(), overrides)
+    }
+
+    /// Checks scene `text`; `path` names it in messages, and tables are looked for beside it.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text, the overrides and the tables the text names.
+    pub fn parse(
+        text: &str,
+        path: impl AsRef<std::path::Path>,
+        overrides: &[Override],
+    ) -> Result<Loaded, Diagnostics> {
+        load::parse(text, path.as_ref(), overrides)
+    }
+
+    /// The scene as TOML with every default written out; it loads again to an equal scene.
+    pub fn to_toml(&self) -> String {
+        /// A scene as a file has it.
+        #[derive(Serialize)]
+        struct File<'a> {
+            schema: u64,
+            #[serde(flatten)]
+            scene: &'a Scene,
+        }
+        // A checked scene holds nothing that TOML cannot write, as the round trips of the tests show.
+        toml::to_string(&File { schema: SCHEMA_VERSION, scene: self }).unwrap_or_default()
+    }
+
+    /// What has to be set to come from this scene to `other` while a run goes, robot by robot in the words of `--set`:
+    /// `robots.follower-1.law.k=[3.0, 3.0]`. Changes that the scenes have themselves are left out of account.
+    ///
+    /// # Errors
+    /// One message for everything that differs and cannot change while a run goes.
+    pub fn sets_to(&self, other: &Self) -> Result<Vec<String>, Vec<String>> {
+        let mut found = ParameterDifference::default();
+        found.note_rest(self, other);
+        found.note_robots(&self.robots, &other.robots);
+        if found.obstacles.is_empty() {
+            Ok(found.sets)
+        } else {
+            Err(found.obstacles.iter().map(|path| refusal(path)).collect())
+        }
+    }
+
     /// Index of the robot called `name`.
     pub fn index_of(&self, name: &str) -> Option<usize> {
         self.robots.iter().position(|robot| robot.name == name)

@@ -65,6 +65,6 @@ pub struct Follow {
     pub sensing: Sensing,
 }
 
-fn pose_as_list<S: Serializer>(pose: &Pose, serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn pose_as_list<S: Serializer>(pose: &Pose, serializer: S) -> Result<S::Ok, S::Error> {
     [pose.x, pose.y, pose.heading].serialize(serializer)
 }

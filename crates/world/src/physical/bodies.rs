@@ -42,12 +42,9 @@ pub(super) struct Bodies {
 /// A vehicle at the end of a physics step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Knot {
-    pub(super) pose: Pose,
+    pub(super) motion: Motion,
     /// Of the pose's point, m/s, world.
     pub(super) velocity: [f64; 2],
-    pub(super) speed: f64,
-    pub(super) acceleration: f64,
-    pub(super) turn_rate: f64,
 }
 
 impl Clone for Bodies {
@@ -237,13 +234,10 @@ impl Bodies {
         let velocity = carriage.velocity + carriage.spin.cross(origin - carriage.centre);
         let heading = ahead.y.atan2(ahead.x);
         let level = Vector::new(ahead.x, ahead.y, 0.0).normalize_or(Vector::X);
-        Knot {
-            pose: Pose { x: origin.x, y: origin.y, heading },
-            velocity: [velocity.x, velocity.y],
-            speed: velocity.dot(level),
-            acceleration: 0.0,
-            turn_rate: carriage.spin.z,
-        }
+        let pose = Pose { x: origin.x, y: origin.y, heading };
+        let (speed, turn_rate) = (velocity.dot(level), carriage.spin.z);
+        let motion = Motion { pose, speed, acceleration: 0.0, turn_rate };
+        Knot { motion, velocity: [velocity.x, velocity.y] }
     }
 
     /// Height, roll and pitch of a body.
