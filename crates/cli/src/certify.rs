@@ -96,7 +96,12 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     })?
     .ok_or_else(nothing)?;
     drop(progress);
-    let beyond = (!args.paper_only).then(|| beyond::look(&scene, args.sensitivity, quiet)).transpose()?;
+    let beyond = if args.paper_only {
+        None
+    } else {
+        let sensitivities = beyond::every_gain(&scene, args.sensitivity, quiet)?;
+        Some(Beyond::of(&scene, sensitivities).map_err(studies::Error::from)?)
+    };
     let mut report =
         CertifyReport { scene: &scene, fleet, certificates, beyond, bound: args.bound, wall: 0.0 };
     report.wall = began.elapsed().as_secs_f64();

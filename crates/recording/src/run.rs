@@ -44,8 +44,6 @@ pub struct Recorder {
     tables: Vec<TableWriter>,
     log: Option<Pipe>,
     metrics: MetricsBuilder,
-    certificates: Vec<CertificateMetrics>,
-    expectations: Vec<JudgedExpectation>,
     digest: Digest,
     /// Last, so that it is given up when all files are closed.
     _claim: Claim,
@@ -107,8 +105,6 @@ impl Recorder {
             fleet: fleet.clone(),
             tables: TableKind::of(fleet).into_iter().map(writer).collect::<Result<_, _>>()?,
             metrics: MetricsBuilder::new(fleet, options.judging),
-            certificates: Vec::new(),
-            expectations: Vec::new(),
             digest: Digest::default(),
             log,
             manifest,
@@ -133,19 +129,9 @@ impl Recorder {
         Ok(())
     }
 
-    /// What the theorems say of the run, for its metrics.
-    pub fn certify(&mut self, certificates: Vec<CertificateMetrics>) {
-        self.certificates = certificates;
-    }
-
     /// What was measured so far.
     pub fn metrics(&self) -> Metrics {
         self.metrics.finish()
-    }
-
-    /// What became of the scene's expectations, for the file of metrics.
-    pub fn judge(&mut self, expectations: Vec<JudgedExpectation>) {
-        self.expectations = expectations;
     }
 
     /// Closes the tables and writes metrics and manifest.
@@ -153,29 +139,33 @@ impl Recorder {
     /// # Errors
     /// [`Error`] when the disk does not take it.
     pub fn finish(self, status: Status) -> Result<(Manifest, Metrics), Error> {
-        let Finished { metrics, written, .. } = self.conclude(status);
+        let Finished { metrics, written, .. } = self.conclude(status, vec![], &[]);
         Ok((written?, metrics))
     }
 
-    /// As [`Recorder::finish`]; what came out is told, whether or not the disk takes it.
-    pub fn conclude(mut self, status: Status) -> Finished {
+    /// As [`Recorder::finish`], with what the theorems say of the run and what became of the scene's expectations; what
+    /// came out is told, whether or not the disk takes it.
+    pub fn conclude(
+        mut self,
+        status: Status,
+        certificates: Vec<CertificateMetrics>,
+        expectations: &[JudgedExpectation],
+    ) -> Finished {
         let last = StepRecord { contacts: self.metrics.close_contacts(), ..StepRecord::default() };
-        let metrics =
-            Metrics { certificates: std::mem::take(&mut self.certificates), ..self.metrics.finish() };
+        let metrics = Metrics { certificates, ..self.metrics.finish() };
         let digest = self.digest.text();
         self.manifest.status = status;
         self.manifest.digest = Some(digest.clone());
-        let written = self.close(&last, &metrics);
+        let written = self.close(&last, &MetricsFile { metrics: &metrics, expectations });
         Finished { metrics, digest, written: written.map(|()| self.manifest) }
     }
 
-    fn close(&mut self, last: &StepRecord, metrics: &Metrics) -> Result<(), Error> {
+    fn close(&mut self, last: &StepRecord, file: &MetricsFile<'_>) -> Result<(), Error> {
         for table in &mut self.tables {
             table.push(&self.fleet, last)?;
             table.finish()?;
         }
-        let file = MetricsFile { metrics, expectations: &self.expectations };
-        write_json(&self.folder.join("metrics.json"), &file)?;
+        write_json(&self.folder.join("metrics.json"), file)?;
         self.log.take().map_or(Ok(()), |log| log.finish(&self.manifest))?;
         self.write_manifest()
     }

@@ -7,7 +7,7 @@ use crate::setup::Setup;
 use crate::stage::{handling, stage};
 use formation::{EdgeLaw, Formation, Graph, SetPointTrajectory, TrackerParameters};
 use perception::sensors::{CameraSettings, NoiseModel, Sensor, SensorConfig, SensorKind};
-use scene::{Follow, OnContact, Role, Scene, SensingKind, SwitchingKind};
+use scene::{Follow, OnContact, Role, Scene, SensingKind, SwitchingKind, Vision};
 use std::sync::Arc;
 use vocabulary::{Edge, FleetInfo, Light, RobotInfo};
 use world::WorldSetup;
@@ -113,13 +113,8 @@ pub fn edge_law(follow: &Follow) -> EdgeLaw {
 }
 
 fn observer(follow: &Follow) -> formation::Observer {
-    let observer = &follow.observer;
-    formation::Observer {
-        epsilon: observer.epsilon,
-        alpha1: observer.alpha1,
-        alpha2: observer.alpha2,
-        distance_min: follow.law.distance_min,
-    }
+    let scene::Observer { epsilon, alpha1, alpha2, .. } = follow.observer;
+    formation::Observer { epsilon, alpha1, alpha2, distance_min: follow.law.distance_min }
 }
 
 fn tracker_parameters(follow: &Follow, observer: formation::Observer) -> Option<TrackerParameters> {
@@ -168,16 +163,8 @@ fn sensor_config(
             tilt: sensing.tilt.unwrap_or(if upright { 0.0 } else { TILT }),
         }
     });
-    let vision = &scene.vision;
-    let camera = CameraSettings {
-        blur: vision.blur,
-        noise: vision.noise,
-        exposure: vision.exposure,
-        shutter: vision.shutter,
-        pan_rate: vision.pan_rate,
-        pan_max: vision.pan_max,
-        whole_frames: vision.whole_frames,
-    };
+    let Vision { blur, noise, exposure, shutter, pan_rate, pan_max, whole_frames, .. } = scene.vision;
+    let camera = CameraSettings { blur, noise, exposure, shutter, pan_rate, pan_max, whole_frames };
     let props: Vec<_> = stage.props.iter().map(|prop| prop.prop.clone()).collect();
     let sensor_config = SensorConfig::new(
         edges,

@@ -15,6 +15,7 @@ use vocabulary::{
 };
 
 /// A run under way. The same setup gives the same moments, bit for bit.
+#[derive(Clone)]
 pub struct Simulation {
     pub(crate) fleet: FleetInfo,
     pub(crate) formation: Formation,
@@ -190,21 +191,7 @@ impl Simulation {
     /// A copy of the whole run as it stands: it goes on to the same future, bit for bit.
     #[must_use]
     pub fn save(&self) -> Self {
-        Self {
-            fleet: self.fleet.clone(),
-            formation: self.formation.clone(),
-            state: self.state.clone(),
-            plant: self.plant.save(),
-            observations: self.observations.clone(),
-            sensing: self.sensing.clone(),
-            frames: self.frames.clone(),
-            record: self.record.clone(),
-            spare: self.spare.clone(),
-            fault: self.fault.clone(),
-            changes: self.changes.clone(),
-            adopted: self.adopted.clone(),
-            ..*self
-        }
+        self.clone()
     }
 }
 

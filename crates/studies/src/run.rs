@@ -39,13 +39,9 @@ pub fn run(
     mut go_on: impl FnMut(u64) -> bool,
 ) -> Result<JudgedRun, Error> {
     let SceneRun { scene, mut simulation } = run;
-    let mut sink = match recorder {
-        Some(recorder) => RecordSink::Disk(Box::new(recorder)),
-        None => {
-            let metrics = Box::new(MetricsBuilder::new(simulation.fleet(), scene.judging()));
-            RecordSink::Memory { metrics, digest: Box::default() }
-        }
-    };
+    let metrics = || Box::new(MetricsBuilder::new(simulation.fleet(), scene.judging()));
+    let memory = || RecordSink::Memory { metrics: metrics(), digest: Box::default() };
+    let mut sink = recorder.map_or_else(memory, |recorder| RecordSink::Disk(Box::new(recorder)));
     let mut examiner = Examiner::new(&scene, &simulation, false);
     let mut steps = 0;
     while let Some(record) = simulation.next_record() {
@@ -121,10 +117,8 @@ impl RecordSink {
         findings: &[JudgedExpectation],
     ) -> (Metrics, String, Result<(), recording::Error>) {
         match self {
-            Self::Disk(mut recorder) => {
-                recorder.certify(certificates);
-                recorder.judge(findings.to_vec());
-                let Finished { metrics, digest, written } = recorder.conclude(status);
+            Self::Disk(recorder) => {
+                let Finished { metrics, digest, written } = recorder.conclude(status, certificates, findings);
                 (metrics, digest, written.map(drop))
             }
             Self::Memory { metrics, digest } => {

@@ -7,13 +7,14 @@
 use cobyla::{RhoBeg, StopTols, minimize};
 use metrics::{Metrics, MetricsBuilder};
 use scene::{Role, Scene};
+use serde::Serialize;
 use simulation::{BuildError, Simulation, build};
 use std::cell::RefCell;
 use thiserror::Error;
 use vocabulary::LawKind;
 
 /// Gains of every follower, the same for distance and bearing.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Gains {
     /// 1/s.
     pub k: f64,
@@ -26,9 +27,10 @@ pub struct Gains {
 }
 
 /// One run with some gains.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Trial {
     /// What was tried.
+    #[serde(flatten)]
     pub gains: Gains,
     /// What it cost; less is better.
     pub cost: f64,

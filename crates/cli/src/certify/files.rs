@@ -105,16 +105,8 @@ fn beyond_json(report: &CertifyReport<'_>, beyond: &Beyond) -> Value {
         })
     });
     let chain = beyond.chain.iter().map(|gain| {
-        let curve = gain.curve.iter().map(|p| {
-            json!({
-                "frequency": p.frequency, "own_leader": p.own_leader, "lead": p.lead, "growth": p.growth,
-                "chains": p.lengths,
-            })
-        });
-        json!({
-            "edge": report.edge(gain.edge), "depth": gain.depth, "stable": gain.stable,
-            "curve": curve.collect::<Vec<_>>(),
-        })
+        let edge = report.edge(gain.edge);
+        json!({ "edge": edge, "depth": gain.depth, "stable": gain.stable, "curve": gain.curve })
     });
     json!({
         "sensitivity": sensitivity,

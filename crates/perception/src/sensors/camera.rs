@@ -110,10 +110,10 @@ impl DetectorBench {
         let mut random =
             noise_stream(sensor_config.seed, exposure.follower, exposure.number, Purpose::Pixels);
         let mut picture = std::mem::take(&mut self.picture);
-        let sensor = self.sensor(&sensor_config.kits[exposure.follower].camera_model, model);
+        let sensor = self.sensor(&sensor_config.robots[exposure.follower].camera_model, model);
         sensor.expose(light, region, &mut random, &mut picture);
         let optics = *sensor.optics();
-        let shell = sensor_config.kits[exposure.leader].shell;
+        let shell = sensor_config.robots[exposure.leader].shell;
         let expected = readable(sensor_config, exposure).unwrap_or(FACES);
         let faces = shell.map_or_else(Vec::new, |shell| {
             recognise_expected(&mut self.detector, &picture, region, &optics, &shell, expected)
@@ -185,14 +185,14 @@ impl CameraSettings {
     ) -> Result<Vec<Grey>, String> {
         let mut shots = |snapshot: &Snapshot| -> Vec<Shot> {
             let shot = |(exposure, region): (&&Exposure<'_>, &Region)| {
-                let kit = &sensor_config.kits[exposure.follower];
-                let source = bench.sensor(&kit.camera_model, self).source(*region);
+                let info = &sensor_config.robots[exposure.follower];
+                let source = bench.sensor(&info.camera_model, self).source(*region);
                 Shot {
                     robot: exposure.follower,
-                    world_from_camera: kit
+                    world_from_camera: info
                         .camera_mount
                         .world_from_camera(&snapshot.robots[exposure.follower]),
-                    focal: kit.camera_model.focal,
+                    focal: info.camera_model.focal,
                     centre: source.centre,
                     region: source.region,
                     exposure: self.exposure,
@@ -225,7 +225,7 @@ impl CameraSettings {
 
     /// Where the leader is expected to be seen; the whole picture where that is not known.
     fn region(&self, sensor_config: &SensorConfig, exposure: &Exposure<'_>) -> Region {
-        let camera_model = &sensor_config.kits[exposure.follower].camera_model;
+        let camera_model = &sensor_config.robots[exposure.follower].camera_model;
         let whole = Region::whole(camera_model);
         if self.whole_frames || !exposure.seen {
             return whole;
@@ -246,14 +246,14 @@ fn camera_from_expected(sensor_config: &SensorConfig, exposure: &Exposure<'_>) -
     let pose = pan::leader_pose(&exposure.expected?);
     let body_from_leader = Rigid::turned([pose.x, pose.y, 0.0], pose.heading, 0.0, 0.0);
     let pan = exposure.snapshot.robots.get(exposure.follower)?.camera_pan;
-    let camera_mount = sensor_config.kits.get(exposure.follower)?.camera_mount;
+    let camera_mount = sensor_config.robots.get(exposure.follower)?.camera_mount;
     Some(camera_mount.body_from_camera(pan).inverse().after(&body_from_leader))
 }
 
 /// How many faces can surely be read where the leader is expected; `None` where that is not known.
 fn readable(sensor_config: &SensorConfig, exposure: &Exposure<'_>) -> Option<usize> {
     let (leader, follower) =
-        (sensor_config.kits.get(exposure.leader)?, sensor_config.kits.get(exposure.follower)?);
+        (sensor_config.robots.get(exposure.leader)?, sensor_config.robots.get(exposure.follower)?);
     let (shell, from_leader) = (leader.shell?, camera_from_expected(sensor_config, exposure)?);
     let surely = |face: usize| {
         let camera = from_leader.after(&shell.body_from_face(face)).inverse().translation;
@@ -270,7 +270,7 @@ const SURELY: (f64, f64) = (0.55, 2.0);
 fn expected(sensor_config: &SensorConfig, exposure: &Exposure<'_>) -> Option<[[f64; 2]; 2]> {
     let camera_from_leader = camera_from_expected(sensor_config, exposure)?;
     let (leader, follower) =
-        (sensor_config.kits.get(exposure.leader)?, sensor_config.kits.get(exposure.follower)?);
+        (sensor_config.robots.get(exposure.leader)?, sensor_config.robots.get(exposure.follower)?);
     let shell = leader.shell?;
     let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for corner in all_faces().flat_map(|face| shell.tag_corners(face)) {

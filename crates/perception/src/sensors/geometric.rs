@@ -26,7 +26,7 @@ pub(super) fn faces(
     random: &mut NoiseStream,
 ) -> Vec<SeenFace> {
     let (Some(leader), Some(follower)) =
-        (sensor_config.kits.get(exposure.leader), sensor_config.kits.get(exposure.follower))
+        (sensor_config.robots.get(exposure.leader), sensor_config.robots.get(exposure.follower))
     else {
         return Vec::new();
     };

@@ -20,8 +20,8 @@ use crate::pose::{Prior, Rig, SeenFace, locate};
 use pan::Pan;
 use std::collections::VecDeque;
 use vocabulary::{
-    Body, CameraModel, CameraMount, CameraRenderer, Edge, FACES, Measurement, MeasurementRecord, Outcome,
-    Prop, Relative, Rigid, RobotInfo, Shell, Snapshot, StepInterpolant, Terrain, TrackingState,
+    CameraRenderer, Edge, FACES, Measurement, MeasurementRecord, Outcome, Prop, Relative, Rigid, RobotInfo,
+    Snapshot, StepInterpolant, Terrain, TrackingState,
 };
 
 /// Where the measurements of one follower come from.
@@ -55,21 +55,13 @@ pub struct Sensor {
     pub tilt: f64,
 }
 
-/// What a robot is seen by and sees with.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct EdgeHardware {
-    pub(crate) body: Body,
-    pub(crate) shell: Option<Shell>,
-    pub(crate) camera_mount: CameraMount,
-    pub(crate) camera_model: CameraModel,
-}
-
 /// Parameters of all followers' senses.
 #[derive(Debug, Clone)]
 pub struct SensorConfig {
     edges: Vec<Edge>,
     sensors: Vec<Sensor>,
-    pub(crate) kits: Vec<EdgeHardware>,
+    /// What robots are seen by and see with.
+    pub(crate) robots: Vec<RobotInfo>,
     pub(crate) props: Vec<Prop>,
     pub(crate) terrain: Option<std::sync::Arc<Terrain>>,
     camera: CameraSettings,
@@ -139,16 +131,10 @@ impl SensorConfig {
         seed: u64,
     ) -> Self {
         debug_assert_eq!(edges.len(), sensors.len());
-        let kit = |m: &RobotInfo| EdgeHardware {
-            body: m.body,
-            shell: m.shell,
-            camera_mount: m.camera_mount,
-            camera_model: m.camera_model,
-        };
         Self {
             edges: edges.to_vec(),
             sensors,
-            kits: robots.iter().map(kit).collect(),
+            robots: robots.to_vec(),
             props: props.to_vec(),
             terrain,
             camera,
@@ -176,7 +162,7 @@ impl SensorConfig {
         let sensor_state = |edge: &Edge| {
             let (leader, follower) = (&snapshot.robots[edge.leader], &snapshot.robots[edge.follower]);
             let relative = Relative::between(leader.motion.pose, follower.motion.pose);
-            let camera_mount = self.kits[edge.follower].camera_mount;
+            let camera_mount = self.robots[edge.follower].camera_mount;
             EdgeWatch {
                 taken: 0,
                 pan: Pan::at(pan::towards(&relative, camera_mount.forward), &self.camera),
@@ -350,12 +336,12 @@ impl SensorConfig {
 
     /// What the follower measures, and with what.
     fn rig(&self, exposure: &Exposure<'_>) -> Option<Rig> {
-        let kit = self.kits.get(exposure.follower)?;
+        let robot = self.robots.get(exposure.follower)?;
         let pan = exposure.snapshot.robots.get(exposure.follower)?.camera_pan;
         Some(Rig {
-            shell: self.kits.get(exposure.leader)?.shell?,
-            camera_model: kit.camera_model,
-            body_from_camera: kit.camera_mount.body_from_camera(pan),
+            shell: self.robots.get(exposure.leader)?.shell?,
+            camera_model: robot.camera_model,
+            body_from_camera: robot.camera_mount.body_from_camera(pan),
         })
     }
 
@@ -394,7 +380,7 @@ impl SensorConfig {
     /// Turns all cameras for a period to come towards where leaders are believed to be.
     pub fn turn_cameras(&self, sensor_state: &mut SensorState, beliefs: &[LeaderPrediction], period: f64) {
         for ((edge, state), belief) in self.edges.iter().zip(&mut sensor_state.edges).zip(beliefs) {
-            state.pan.turn(belief, self.kits[edge.follower].camera_mount.forward, &self.camera, period);
+            state.pan.turn(belief, self.robots[edge.follower].camera_mount.forward, &self.camera, period);
         }
     }
 
@@ -407,7 +393,7 @@ impl SensorConfig {
     pub(crate) fn camera_from_leader(&self, exposure: &Exposure<'_>) -> Option<Rigid> {
         let follower = exposure.snapshot.robots.get(exposure.follower)?;
         let leader = exposure.snapshot.robots.get(exposure.leader)?;
-        let camera_mount = self.kits.get(exposure.follower)?.camera_mount;
+        let camera_mount = self.robots.get(exposure.follower)?.camera_mount;
         Some(camera_mount.world_from_camera(follower).inverse().after(&leader.world_from_body()))
     }
 }

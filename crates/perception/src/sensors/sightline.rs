@@ -1,7 +1,7 @@
 //! What stands between a camera and a tag.
 
-use super::{EdgeHardware, SensorConfig};
-use vocabulary::{Placement, Rigid, Snapshot, Solid};
+use super::SensorConfig;
+use vocabulary::{Placement, Rigid, RobotInfo, Snapshot, Solid};
 
 impl SensorConfig {
     /// Whether anything hides the point `to` on the robot `watched` from the point `from` on the robot `watcher`, both
@@ -13,9 +13,9 @@ impl SensorConfig {
         from: [f64; 3],
         to: [f64; 3],
     ) -> bool {
-        let others = snapshot.robots.iter().zip(&self.kits).enumerate();
+        let others = snapshot.robots.iter().zip(&self.robots).enumerate();
         let mut others = others.filter(|(index, _)| *index != watcher && *index != watched);
-        if others.any(|(_, (robot, kit))| robot_hides(kit, &robot.world_from_body(), from, to)) {
+        if others.any(|(_, (robot, info))| robot_hides(info, &robot.world_from_body(), from, to)) {
             return true;
         }
         let mut props = self.props.iter().zip(&snapshot.props);
@@ -35,10 +35,10 @@ impl SensorConfig {
 const GROUND_STEPS: u32 = 40;
 
 /// A robot is a box for its body and a cylinder for its shell.
-fn robot_hides(kit: &EdgeHardware, frame: &Rigid, from: [f64; 3], to: [f64; 3]) -> bool {
+fn robot_hides(info: &RobotInfo, frame: &Rigid, from: [f64; 3], to: [f64; 3]) -> bool {
     let back = frame.inverse();
     let (a, b) = (back.apply(from), back.apply(to));
-    let body = kit.body;
+    let body = info.body;
     let middle = [0.5 * body.wheelbase, 0.0, 0.5 * body.height];
     if crosses_box(
         shifted(a, middle),
@@ -47,7 +47,7 @@ fn robot_hides(kit: &EdgeHardware, frame: &Rigid, from: [f64; 3], to: [f64; 3]) 
     ) {
         return true;
     }
-    kit.shell.is_some_and(|shell| {
+    info.shell.is_some_and(|shell| {
         let foot = [shell.forward, 0.0, shell.height - 0.5 * shell.face_height];
         crosses_cylinder(shifted(a, foot), shifted(b, foot), 1.04 * shell.apothem, shell.face_height)
     })

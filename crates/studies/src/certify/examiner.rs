@@ -8,7 +8,7 @@ use formation::{EdgeLaw, Estimate, SetPointTrajectory, Switching};
 use metrics::{CertificateMetrics, StatementMetrics};
 use scene::Scene;
 use simulation::Simulation;
-use vocabulary::{Edge, EntityId, FleetInfo, LawKind, MotionInput, StepRecord, TimeMode, Word};
+use vocabulary::{Edge, EntityId, FleetInfo, LawKind, Motion, MotionInput, StepRecord, TimeMode, Word};
 
 /// A change of a held command below this is rounding, m/s² or rad/s.
 const STEADY: f64 = 1e-9;
@@ -197,15 +197,10 @@ impl Examiner {
     /// turn rate since the sample before.
     fn drives(&self, simulation: &Simulation, record: &StepRecord) -> Vec<MotionInput> {
         let motion = |(robot, state): (usize, &vocabulary::RobotState)| {
-            let m = &state.motion;
-            let before = self.last.get(robot).map_or(m.turn_rate, |last| last.turn_rate);
-            let turn_acceleration = (m.turn_rate - before) / self.period;
-            MotionInput {
-                speed: m.speed,
-                acceleration: m.acceleration,
-                turn_rate: m.turn_rate,
-                turn_acceleration,
-            }
+            let Motion { speed, acceleration, turn_rate, .. } = state.motion;
+            let before = self.last.get(robot).map_or(turn_rate, |last| last.turn_rate);
+            let turn_acceleration = (turn_rate - before) / self.period;
+            MotionInput { speed, acceleration, turn_rate, turn_acceleration }
         };
         let mut drives: Vec<MotionInput> = record.snapshot.robots.iter().enumerate().map(motion).collect();
         for (robot, trajectory) in simulation.formation().leads() {

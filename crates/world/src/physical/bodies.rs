@@ -23,8 +23,9 @@ const CORNERS: f64 = 2e-3;
 const SHELL: [f64; 2] = [0.4, 0.1];
 
 /// All bodies and their solver.
+#[derive(Clone)]
 pub(super) struct Bodies {
-    pipeline: PhysicsPipeline,
+    pipeline: Pipeline,
     parameters: IntegrationParameters,
     islands: IslandManager,
     broad_phase: BroadPhaseBvh,
@@ -47,23 +48,13 @@ pub(super) struct Knot {
     pub(super) velocity: [f64; 2],
 }
 
-impl Clone for Bodies {
-    /// All but the pipeline's scratch memory, which holds nothing from one step to the next.
+/// Runs the physics; a copy leaves out its scratch memory, which holds nothing from one step to the next.
+#[derive(Default)]
+struct Pipeline(PhysicsPipeline);
+
+impl Clone for Pipeline {
     fn clone(&self) -> Self {
-        Self {
-            pipeline: PhysicsPipeline::new(),
-            parameters: self.parameters,
-            islands: self.islands.clone(),
-            broad_phase: self.broad_phase.clone(),
-            narrow_phase: self.narrow_phase.clone(),
-            set: self.set.clone(),
-            colliders: self.colliders.clone(),
-            joints: self.joints.clone(),
-            multibodies: self.multibodies.clone(),
-            soft: self.soft.clone(),
-            ccd: self.ccd.clone(),
-            props: self.props.clone(),
-        }
+        Self::default()
     }
 }
 
@@ -75,7 +66,7 @@ impl Bodies {
             colliders.insert(part.friction(0.7).user_data(mark(EntityId::Ground)));
         }
         Self {
-            pipeline: PhysicsPipeline::new(),
+            pipeline: Pipeline::default(),
             // Recycled contacts keep old distances: a touch would be seen centimetres late.
             parameters: IntegrationParameters {
                 contact_recycling: false,
@@ -180,7 +171,7 @@ impl Bodies {
     /// One physics step of `h` s.
     pub(super) fn step(&mut self, h: f64) {
         self.parameters.dt = h;
-        self.pipeline.step(
+        self.pipeline.0.step(
             Vector::new(0.0, 0.0, -GRAVITY),
             &self.parameters,
             &mut self.islands,
