@@ -9,6 +9,7 @@ use std::path::Path;
 use studies::SceneRun;
 use studies::budget::{Budget, sensing_cases};
 use vocabulary::GRAVITY;
+use vocabulary::math;
 
 /// Two unicycles, and nothing that says from when on errors are judged: that is half time, 2 s.
 const TWO: &str = "schema = 1\ntitle = \"t\"\n[time]\nduration = 4.0\n[[robots]]\nname = \"ann\"\npose = [0, 0, 0]\n\
@@ -95,7 +96,7 @@ fn one_digest_has_one_late_error() {
     let ready = run(&scene);
     let mut budget = Budget::new(&scene, ready.simulation.fleet().clone(), false);
     let cases = &sensing_cases(&[], false)[..1];
-    budget.measure(cases, &mut |_| Err("nobody looks".to_owned()), |_, _| true).expect("a budget");
+    budget.measure(cases, &mut |_| Err("nobody measures".to_owned()), |_, _| true).expect("a budget");
     assert_eq!(budget.runs[0].1.edges[0].tracking, wanted[1], "budget");
 
     // Figures.
@@ -106,7 +107,7 @@ fn one_digest_has_one_late_error() {
     }
     let trace = tracer.finish();
     assert_eq!((of(&trace.metrics), trace.late_from()), (wanted, 2.0), "report");
-    assert_eq!(trace.settled(0), Some(wanted[1][0].hypot(wanted[1][1])), "report");
+    assert_eq!(trace.settled(0), Some(math::hypot(wanted[1][0], wanted[1][1])), "report");
 }
 
 /// A time that the scene gives takes the place of half time.
@@ -132,7 +133,7 @@ fn limits_and_the_world_have_one_gravity() {
     }
     // Second differences know neither the speed at the start nor the size of a physics step.
     let [first, middle, last] = [heights[20], heights[50], heights[80]];
-    let fell = (2.0 * middle - first - last) / 0.3_f64.powi(2);
+    let fell = (2.0 * middle - first - last) / math::powi(0.3_f64, 2);
     assert!((fell - GRAVITY).abs() < 1e-6, "{fell} m/s²");
 
     let car = scene::Vehicle::ready_made(VehicleKind::Car);

@@ -75,7 +75,8 @@ fn adopting(start: &Scene, scene: &Scene) -> String {
     sum.text()
 }
 
-/// Every way of running: by samples, by measured samples, in continuous time, on wheels, by noisy looks, among props.
+/// Every way of running: by samples, by measured samples, in continuous time, on wheels, by noisy measurements, among
+/// props.
 fn ways() -> Vec<(&'static str, Vec<&'static str>, &'static str)> {
     let mixed =
         "[[props]]\nname = \"post\"\nshape = \"cylinder\"\nradius = 0.1\nheight = 0.5\npose = [5, 5, 0]\n";

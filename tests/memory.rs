@@ -24,7 +24,7 @@ fn a_run_that_goes_on_takes_no_more_memory() {
     let options = RunOptions { no_log: true, ..run_options(&scene) };
     let mut recorder =
         Recorder::create(&folder.path().join("run"), simulation.fleet(), options).expect("a recorder");
-    let mut examiner = Examiner::new(&scene, &simulation);
+    let mut examiner = Examiner::new(&scene, &simulation, false);
     let mut stretch = || {
         for _ in 0..STRETCH {
             recorder.push(simulation.next_record().expect("a moment")).expect("recorded");

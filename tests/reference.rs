@@ -123,7 +123,7 @@ impl Case {
                 alpha2: [c.alpha2; 2],
                 distance_min,
             },
-            looks: None,
+            tracker: None,
             set_point: SetPointTrajectory::constant(0.0, 0.0),
         })
     }

@@ -5,6 +5,7 @@ use scene::Scene;
 use simulation::{Simulation, build};
 use std::path::Path;
 use vocabulary::Judging;
+use vocabulary::math;
 
 fn run(name: &str, overrides: &[&str]) -> Metrics {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
@@ -28,7 +29,7 @@ fn settled_errors_do_not_hang_on_the_physics_step() {
             run(name, &[step])
                 .edges
                 .iter()
-                .map(|e| e.final_error[0].hypot(2.0 * e.final_error[1]))
+                .map(|e| math::hypot(e.final_error[0], 2.0 * e.final_error[1]))
                 .collect::<Vec<_>>()
         };
         for (coarse, fine) in settled("physics.step=0.005").iter().zip(settled("physics.step=0.0025")) {

@@ -1,9 +1,10 @@
-//! Robots that look: the loop closed on looks, on any machine, and on pictures where there is an adapter.
+//! Robots with sensors: the loop closed on measurements, on any machine, and on pictures where there is an adapter.
 
 use rendering::{AdapterChoice, Gpu, GpuCameraRenderer};
 use scene::{Role, Scene, SensingKind};
 use simulation::{Simulation, build};
 use std::path::Path;
+use vocabulary::math;
 use vocabulary::{Outcome, StepRecord, TrackingState};
 
 /// A shipped scene, its length and its followers' sensing changed.
@@ -39,7 +40,7 @@ fn worst_rms(records: &[StepRecord], after: f64) -> [f64; 2] {
     let late: Vec<&StepRecord> = records.iter().filter(|m| m.snapshot.time >= after).collect();
     let edges = late.first().map_or(0, |m| m.edges.len());
     let rms = |edge: usize, k: usize| {
-        (late.iter().map(|m| m.edges[edge].error[k].powi(2)).sum::<f64>() / late.len() as f64).sqrt()
+        (late.iter().map(|m| math::powi(m.edges[edge].error[k], 2)).sum::<f64>() / late.len() as f64).sqrt()
     };
     [0, 1].map(|k| (0..edges).map(|edge| rms(edge, k)).fold(0.0, f64::max))
 }
@@ -51,7 +52,7 @@ fn records(run: Simulation) -> Vec<StepRecord> {
 }
 
 #[test]
-fn formations_hold_on_looks_at_tags() {
+fn formations_hold_on_measurements_at_tags() {
     for name in ["vision-circle-three", "vision-cars-circle-three"] {
         let all = records(start(&scene(name, 20.0, SensingKind::Geometric)));
         let [distance, bearing] = worst_rms(&all, 8.0);
@@ -74,7 +75,7 @@ fn the_second_estimator_holds_them_too() {
 }
 
 #[test]
-fn looks_are_the_same_in_every_run_and_go_on_alike_from_a_copy() {
+fn measurements_are_the_same_in_every_run_and_go_on_alike_from_a_copy() {
     let scene = scene("vision-dropout", 6.0, SensingKind::Geometric);
     let whole = play(start(&scene), |_| ());
     assert_eq!(whole, play(start(&scene), |_| ()));
@@ -96,7 +97,7 @@ fn looks_are_the_same_in_every_run_and_go_on_alike_from_a_copy() {
 
 /// Frames that do not fit the control period are taken at their own instants.
 #[test]
-fn looks_have_their_own_instants_and_arrive_late() {
+fn measurements_have_their_own_instants_and_arrive_late() {
     let mut scene = scene("vision-line-three", 3.0, SensingKind::Geometric);
     for robot in &mut scene.robots {
         if let Role::Follow(follow) = &mut robot.role {

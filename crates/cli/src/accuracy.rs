@@ -41,7 +41,7 @@ pub(crate) fn accuracy(args: &AccuracyArgs) -> Outcome {
         progress.at(done);
         !interrupt::asked()
     })?;
-    progress.end();
+    drop(progress);
     let seconds = clock();
     let adapter = gpu.description();
     if args.json {

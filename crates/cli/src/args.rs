@@ -3,6 +3,7 @@
 use clap::Args;
 use rendering::{AdapterChoice, Gpu};
 use scene::Override;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 /// Arguments of every subcommand that takes a scene.
@@ -73,7 +74,7 @@ pub(crate) struct PictureArgs {
     #[arg(long, value_name = "ROBOT")]
     pub(crate) inset_camera: Option<String>,
     /// Scale of text and lines, 1 at 1280x720; by default it follows the size of the picture
-    #[arg(long, value_parser = scale)]
+    #[arg(long, value_parser = within(0.25..=8.0, "write a number from 0.25 to 8"))]
     pub(crate) scale: Option<f64>,
     /// Samples per pixel (MSAA): 4, or 1 for speed
     #[arg(long, default_value_t = 4)]
@@ -92,7 +93,10 @@ pub(crate) fn time(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| "write seconds with commas between them, such as 0,2.5,15".to_owned())
 }
 
-fn scale(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|v| (0.25..=8.0).contains(v));
-    value.ok_or_else(|| "write a number from 0.25 to 8".to_owned())
+/// Takes a number in a range; `wanted` says which where it is another.
+pub(crate) fn within(
+    range: RangeInclusive<f64>,
+    wanted: &'static str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| text.parse().ok().filter(|value| range.contains(value)).ok_or_else(|| wanted.to_owned())
 }

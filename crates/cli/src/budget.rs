@@ -7,7 +7,7 @@ mod picture;
 mod table;
 
 use crate::Outcome;
-use crate::args::SceneArgs;
+use crate::args::{SceneArgs, within};
 use crate::cameras;
 use crate::failure::Failure;
 use crate::interrupt;
@@ -36,7 +36,7 @@ pub(crate) struct BudgetArgs {
         value_delimiter = ',',
         allow_negative_numbers = true,
         default_value = "0,0.02,0.05,0.1,0.2,0.5,1",
-        value_parser = pixels
+        value_parser = within(0.0..=50.0, "write pixels from 0 to 50, such as 0,0.1,0.5")
     )]
     pixel_noise: Vec<f64>,
     /// Compare observer constants ε instead, s, such as 0.001,0.003,0.01,0.03,0.1, with the adaptive ε that follows from
@@ -47,22 +47,12 @@ pub(crate) struct BudgetArgs {
         value_delimiter = ',',
         allow_negative_numbers = true,
         conflicts_with = "pixel_noise",
-        value_parser = epsilon
+        value_parser = within(1e-6..=100.0, "write seconds from 0.000001 to 100, such as 0.001,0.01,0.1")
     )]
     epsilon: Vec<f64>,
     /// Skip camera sensing; with --epsilon, use geometric sensing instead
     #[arg(long)]
     no_camera: bool,
-}
-
-fn pixels(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|v| (0.0..=50.0).contains(v));
-    value.ok_or_else(|| "write pixels from 0 to 50, such as 0,0.1,0.5".to_owned())
-}
-
-fn epsilon(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|v| (1e-6..=100.0).contains(v));
-    value.ok_or_else(|| "write seconds from 0.000001 to 100, such as 0.001,0.01,0.1".to_owned())
 }
 
 pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
@@ -96,7 +86,7 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
         progress.at(index as u64 * each + step);
         !interrupt::asked()
     })?;
-    progress.end();
+    drop(progress);
     finish(&budget, folder, args)?;
     if !budget.complete {
         let done =

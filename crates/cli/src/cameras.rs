@@ -32,9 +32,9 @@ struct TimedRenderer {
 }
 
 impl CameraRenderer for TimedRenderer {
-    fn look(&mut self, snapshot: &Snapshot, shots: &[Shot], pictures: &mut Vec<Grey>) -> Result<(), String> {
+    fn render(&mut self, snapshot: &Snapshot, shots: &[Shot], images: &mut Vec<Grey>) -> Result<(), String> {
         let began = Instant::now();
-        let result = self.renderer.look(snapshot, shots, pictures);
+        let result = self.renderer.render(snapshot, shots, images);
         let nanoseconds = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
         self.cost.0[0].fetch_add(shots.len() as u64, Relaxed);
         self.cost.0[1].fetch_add(nanoseconds, Relaxed);

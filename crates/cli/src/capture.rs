@@ -2,9 +2,10 @@
 
 use crate::Outcome;
 use crate::args::{PictureArgs, SceneArgs, time};
+use crate::cameras;
 use crate::failure::Failure;
-use crate::load::{attach_cameras, load, stem};
-use crate::picture::RenderSetup;
+use crate::load::load;
+use crate::picture::{DrawJob, RenderSetup};
 use crate::playback::Playback;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
@@ -17,7 +18,7 @@ use rendering::Gpu;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use studies::RecordSource;
-use vocabulary::{FleetInfo, counted};
+use vocabulary::counted;
 
 #[derive(Debug, Args)]
 pub(crate) struct CaptureArgs {
@@ -35,44 +36,21 @@ pub(crate) struct CaptureArgs {
 
 /// What pictures are made of.
 pub(crate) struct CaptureJob<'a> {
-    pub(crate) picture: &'a PictureArgs,
-    pub(crate) adapter: &'a str,
+    pub(crate) draw: DrawJob<'a>,
     /// Folder for the pictures.
     pub(crate) out: &'a Path,
     /// Times asked for, s.
     pub(crate) at: &'a [f64],
-    pub(crate) quiet: bool,
-    pub(crate) json: bool,
     /// The scene file or the recorded run.
     pub(crate) of: &'a Path,
-    /// What files are called by.
-    pub(crate) name: String,
-    pub(crate) fleet: FleetInfo,
-    /// s.
-    pub(crate) duration: f64,
-    pub(crate) settings: &'a scene::Film,
-    pub(crate) view: &'a str,
 }
 
 pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;
-    let scene = loaded.scene.clone();
-    let job = CaptureJob {
-        picture: &args.picture,
-        adapter: &args.scene.adapter.name,
-        out: &args.out,
-        at: &args.at,
-        quiet: args.scene.quiet,
-        json: args.scene.json,
-        of: &args.scene.scene,
-        name: stem(&args.scene.scene),
-        fleet: loaded.simulation.fleet().clone(),
-        duration: scene.time.duration,
-        settings: &scene.film,
-        view: &scene.views.default,
-    };
-    draw(&job, |gpu| {
-        attach_cameras(&mut loaded, Some(gpu), &args.scene)?;
+    let draw = DrawJob::of(&args.scene, &args.picture, &loaded);
+    let job = CaptureJob { draw, out: &args.out, at: &args.at, of: &args.scene.scene };
+    self::draw(&job, |gpu| {
+        cameras::attach(&mut loaded, Some(gpu), &args.scene.adapter.name, None)?;
         Ok(RecordSource::Run(Box::new(loaded.simulation)))
     })
 }
@@ -82,15 +60,16 @@ pub(crate) fn draw(
     job: &CaptureJob<'_>,
     source: impl FnOnce(&Gpu) -> Result<RecordSource, Failure>,
 ) -> Outcome {
-    let times = times::within(job.at, job.duration)?;
+    let times = times::within(job.at, job.draw.duration)?;
     let _place = Place::folder(job.out)?;
-    let CaptureJob { fleet, name, .. } = job;
-    let mut studio = RenderSetup::open(job.adapter, job.picture, fleet, job.view, job.settings.size)?;
+    let DrawJob { fleet, name, .. } = &job.draw;
+    let mut studio =
+        RenderSetup::open(job.draw.adapter, job.draw.picture, fleet, &job.draw.view, job.draw.settings.size)?;
     let source = source(&studio.gpu)?;
     let adapter = studio.gpu.description();
     let mut playback = Playback::new(fleet, source);
     let what = format!("Drawing {} of {name}", counted(times.len(), "picture"));
-    let progress = Progress::begin(&what, times.len() as u64, job.quiet || times.len() < 4);
+    let progress = Progress::begin(&what, times.len() as u64, job.draw.quiet || times.len() < 4);
     let (mut files, mut shown, mut replaced) = (Vec::new(), Vec::new(), Replaced::default());
     for (count, time) in times.iter().enumerate() {
         let record = playback.at(*time);
@@ -127,11 +106,11 @@ pub(crate) fn draw(
             break;
         }
     }
-    progress.end();
-    replaced.tell(job.quiet);
-    if job.json {
+    drop(progress);
+    replaced.tell(job.draw.quiet);
+    if job.draw.json {
         json(&json!({ "files": files, "times": shown, "size": studio.size, "adapter": adapter }));
-    } else if !job.quiet {
+    } else if !job.draw.quiet {
         for file in &files {
             say(file);
         }

@@ -5,9 +5,12 @@ mod files;
 mod pictures;
 mod text;
 
-use crate::args::SceneArgs;
+pub(crate) use pictures::axis;
+
+use crate::args::{SceneArgs, within};
+use crate::cameras;
 use crate::failure::Failure;
-use crate::load::{attach_cameras, load, stem};
+use crate::load::{load, stem};
 use crate::print::json;
 use crate::progress::Progress;
 use crate::{Outcome, interrupt};
@@ -29,7 +32,7 @@ pub(crate) struct CertifyArgs {
     out: Option<PathBuf>,
     /// Bound on the ultimate tracking error (m and rad together, as in the paper): report the largest ε for which the proof
     /// guarantees it
-    #[arg(long, value_name = "BOUND", value_parser = bound, allow_negative_numbers = true)]
+    #[arg(long, value_name = "BOUND", value_parser = within(1e-9..=1e3, "write a number from 1e-9 to 1000, such as 0.01"), allow_negative_numbers = true)]
     bound: Option<f64>,
     /// Skip what is beyond the paper: sensitivities, feasible set points, stability over ε and period, chains
     #[arg(long)]
@@ -40,11 +43,6 @@ pub(crate) struct CertifyArgs {
     /// Exit with 1 if a statement is violated
     #[arg(long)]
     strict: bool,
-}
-
-fn bound(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|v| (1e-9..=1e3).contains(v));
-    value.ok_or_else(|| "write a number from 1e-9 to 1000, such as 0.01".to_owned())
 }
 
 /// All that is known of a scene.
@@ -82,7 +80,7 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     let began = Instant::now();
     let mut run = load(&args.scene)?;
     let _place = args.out.as_deref().map(Place::folder).transpose()?;
-    attach_cameras(&mut run, None, &args.scene)?;
+    cameras::attach(&mut run, None, &args.scene.adapter.name, None)?;
     let quiet = args.scene.quiet || args.scene.json;
     let (scene, fleet) = (run.scene.clone(), run.simulation.fleet().clone());
     if fleet.edges.is_empty() {
@@ -97,8 +95,13 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
         !interrupt::asked()
     })?
     .ok_or_else(nothing)?;
-    progress.end();
-    let beyond = (!args.paper_only).then(|| beyond::look(&scene, args.sensitivity, quiet)).transpose()?;
+    drop(progress);
+    let beyond = if args.paper_only {
+        None
+    } else {
+        let sensitivities = beyond::every_gain(&scene, args.sensitivity, quiet)?;
+        Some(Beyond::of(&scene, sensitivities).map_err(studies::Error::from)?)
+    };
     let mut report =
         CertifyReport { scene: &scene, fleet, certificates, beyond, bound: args.bound, wall: 0.0 };
     report.wall = began.elapsed().as_secs_f64();

@@ -1,6 +1,7 @@
 //! `echelon compare`: do pictures look alike? For frames in CI against those that somebody has looked at.
 
 use crate::Outcome;
+use crate::args::within;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::junit::{self, Came, ReportedCheck};
@@ -26,7 +27,7 @@ pub(crate) struct CompareArgs {
     #[arg(value_name = "FOUND")]
     found: PathBuf,
     /// Similarity, 0 to 1, that every part of a picture has to reach
-    #[arg(long, value_name = "LIKENESS", default_value_t = 0.9, value_parser = likeness)]
+    #[arg(long, value_name = "LIKENESS", default_value_t = 0.9, value_parser = within(0.0..=1.0, "write a number from 0, anything, to 1, every pixel the same"))]
     threshold: f64,
     /// Folder for difference images: reference, picture, and where they differ
     #[arg(long, short, value_name = "DIR")]
@@ -41,11 +42,6 @@ pub(crate) struct CompareArgs {
     /// Print only differences
     #[arg(long, short, conflicts_with = "json")]
     quiet: bool,
-}
-
-fn likeness(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|v| (0.0..=1.0).contains(v));
-    value.ok_or_else(|| "write a number from 0, anything, to 1, every pixel the same".to_owned())
 }
 
 /// Largest picture that is read, pixels.
@@ -91,11 +87,7 @@ impl PicturePair {
 }
 
 pub(crate) fn compare(args: &CompareArgs) -> Outcome {
-    let began = Instant::now();
-    let _report = junit::open(args.junit.as_deref(), args.json)?;
-    let mut cases = vec![];
-    let outcome = judge(args, &mut cases);
-    junit::close(args.junit.as_deref(), "pictures", cases, outcome, began.elapsed(), args.quiet)
+    junit::reported(args.junit.as_deref(), "pictures", args.json, args.quiet, |cases| judge(args, cases))
 }
 
 /// Compares all pictures; `cases` are what became of them.

@@ -1,11 +1,11 @@
 //! `echelon dataset`: what the cameras of a scene see, with the truth about every tag and what the detector makes of it.
 
 use crate::Outcome;
-use crate::args::SceneArgs;
+use crate::args::{SceneArgs, within};
 use crate::cameras;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::load::{attach_cameras, load, stem};
+use crate::load::{load, stem};
 use crate::print;
 use crate::progress::Progress;
 use clap::Args;
@@ -13,7 +13,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
 use studies::dataset::{DatasetExport, DatasetOptions, DatasetStatus, followed_edges};
-use vocabulary::counted;
+use vocabulary::{Word, counted};
 
 #[derive(Debug, Args)]
 pub(crate) struct DatasetArgs {
@@ -23,7 +23,7 @@ pub(crate) struct DatasetArgs {
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
     /// Interval between two images of a camera, s
-    #[arg(long, value_name = "SECONDS", default_value = "0.2", value_parser = interval)]
+    #[arg(long, value_name = "SECONDS", default_value = "0.2", value_parser = within(0.001..=1e5, "write seconds from 0.001 to 100000"))]
     every: f64,
     /// Followers whose cameras take images; by default all
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
@@ -36,17 +36,12 @@ pub(crate) struct DatasetArgs {
     force: bool,
 }
 
-fn interval(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|v| (0.001..=1e5).contains(v));
-    value.ok_or_else(|| "write seconds from 0.001 to 100000".to_owned())
-}
-
 pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
     let began = Instant::now();
     let mut run = load(&args.scene)?;
     let edges = followed_edges(run.simulation.fleet(), &args.edges)?;
     let gpu = args.scene.adapter.open()?;
-    attach_cameras(&mut run, Some(&gpu), &args.scene)?;
+    cameras::attach(&mut run, Some(&gpu), &args.scene.adapter.name, None)?;
     let (cameras, adapter) = (edges.len(), gpu.description());
     let options = DatasetOptions {
         out: args.out.clone(),
@@ -70,7 +65,7 @@ pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
         let kept = format!("{} keeps the first {count}; --force begins anew", args.out.display());
         Failure::from(error).but(&kept)
     })?;
-    progress.end();
+    drop(progress);
     if status == DatasetStatus::Interrupted {
         let count = counted(export.pictures(), "picture");
         let text = format!("{} holds the first {count}", args.out.display());
@@ -80,7 +75,7 @@ pub(crate) fn dataset(args: &DatasetArgs) -> Outcome {
     let summary = export.summary();
     if args.scene.json {
         print::json(&json!({
-            "folder": args.out.display().to_string(), "status": status.name(), "adapter": adapter,
+            "folder": args.out.display().to_string(), "status": status.word(), "adapter": adapter,
             "wall_seconds": seconds, "summary": summary,
         }));
     } else if !args.scene.quiet {

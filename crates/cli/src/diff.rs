@@ -1,6 +1,7 @@
 //! `echelon diff`: are two recorded runs the same, and where do they part?
 
 use crate::Outcome;
+use crate::args::within;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::print::{json, say};
@@ -23,7 +24,7 @@ pub(crate) struct DiffArgs {
     #[arg(value_name = "B")]
     b: PathBuf,
     /// Absolute tolerance for numbers, in their units; words and flags have to be equal
-    #[arg(long, value_name = "NUMBER", default_value_t = 0.0, value_parser = tolerance)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 0.0, value_parser = within(0.0..=f64::MAX, "write a number from 0 on, such as 1e-9"))]
     tolerance: f64,
     /// Print the result as JSON
     #[arg(long)]
@@ -31,11 +32,6 @@ pub(crate) struct DiffArgs {
     /// Print errors only; the exit code is the result
     #[arg(long, short, conflicts_with = "json")]
     quiet: bool,
-}
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|v| *v >= 0.0 && v.is_finite());
-    value.ok_or_else(|| "write a number from 0 on, such as 1e-9".to_owned())
 }
 
 /// What two runs have and have not in common.
@@ -75,7 +71,7 @@ pub(crate) fn diff(args: &DiffArgs) -> Outcome {
                 }
                 !interrupt::asked()
             })?;
-            progress.end();
+            drop(progress);
             if interrupt::asked() {
                 return Err(Failure::Interrupted(format!("after {}", counted(found.samples, "sample"))));
             }

@@ -1,7 +1,6 @@
 //! What can end a subcommand early, and the exit code it ends with.
 
-use crate::print::harmless;
-use std::io::Write;
+use crate::print::note;
 use vocabulary::counted;
 
 /// Why the program does not end with 0.
@@ -49,13 +48,10 @@ impl Failure {
 
     /// One message on standard error.
     pub(crate) fn tell(&self) {
-        let message = match self {
-            Self::Expectation => return,
-            Self::Broken(text) | Self::Usage(text) | Self::Machine(text) => format!("error: {text}"),
-            Self::Interrupted(text) => format!("interrupted: {text}"),
-        };
-        // Nobody is left to tell if standard error is closed.
-        let _ = writeln!(std::io::stderr(), "{}", harmless(&message));
+        if let Some(text) = self.text() {
+            let kind = if matches!(self, Self::Interrupted(_)) { "interrupted" } else { "error" };
+            note(&format!("{kind}: {text}"));
+        }
     }
 }
 

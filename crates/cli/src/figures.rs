@@ -16,7 +16,7 @@ use clap::Args;
 use folder::Folder;
 use meter::Meter;
 use rendering::Gpu;
-use report::{Case, FinishedRun, PlannedRun, Rasterizer, Report, Tracer};
+use report::{FinishedRun, PlannedRun, Rasterizer, Report, Tracer};
 use scene::{Override, Scene};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -195,25 +195,4 @@ fn versions(gpu: Option<&Gpu>) -> Vec<[String; 2]> {
     [("made with", PROGRAM), ("commit", commit), ("pictures drawn with", &*drawn)]
         .map(|(name, value)| [name.to_owned(), value.to_owned()])
         .to_vec()
-}
-
-impl Subject {
-    /// The scenes that are filmed: case, file name, and the job that runs it as it is written.
-    fn filmed(&self) -> Vec<(Case, &str, &PlannedRun)> {
-        let as_written = |case: Case| {
-            // The paper's films are those of its own ε, which is the scenes'.
-            let mut of = self.jobs.iter().filter(move |job| job.case == case);
-            if case == Case::Own { of.next() } else { of.next_back() }
-        };
-        let name = |case: Case| match case {
-            Case::Line => "line",
-            Case::Circle => "circle",
-            Case::Seven => "seven",
-            Case::Own => "film",
-        };
-        [Case::Line, Case::Circle, Case::Seven, Case::Own]
-            .into_iter()
-            .filter_map(|case| Some((case, name(case), as_written(case)?)))
-            .collect()
-    }
 }

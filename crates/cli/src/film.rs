@@ -7,10 +7,11 @@ mod words;
 
 use crate::Outcome;
 use crate::args::{PictureArgs, SceneArgs};
+use crate::cameras;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::load::{attach_cameras, load, stem};
-use crate::picture::RenderSetup;
+use crate::load::load;
+use crate::picture::{DrawJob, RenderSetup};
 use crate::playback::Playback;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
@@ -27,7 +28,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
 use studies::RecordSource;
-use vocabulary::{FleetInfo, Judging, counted};
+use vocabulary::{Judging, counted};
 
 #[derive(Debug, Args)]
 pub(crate) struct FilmArgs {
@@ -55,10 +56,8 @@ pub(crate) struct FilmArgs {
 }
 
 /// What a film is made of.
-#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub(crate) struct FilmJob<'a> {
-    pub(crate) picture: &'a PictureArgs,
-    pub(crate) adapter: &'a str,
+    pub(crate) draw: DrawJob<'a>,
     /// The film file.
     pub(crate) path: PathBuf,
     pub(crate) ffmpeg: bool,
@@ -67,18 +66,8 @@ pub(crate) struct FilmJob<'a> {
     pub(crate) preset: Option<Preset>,
     /// Begin anew where the same film was interrupted.
     pub(crate) fresh: bool,
-    pub(crate) quiet: bool,
-    pub(crate) json: bool,
-    /// Of the scene or the recorded run.
-    pub(crate) name: String,
-    pub(crate) fleet: FleetInfo,
     /// What the scene is about.
     pub(crate) description: String,
-    /// s.
-    pub(crate) duration: f64,
-    pub(crate) settings: scene::Film,
-    /// In place of the film's own, which the scene may leave out.
-    pub(crate) view: &'a str,
     pub(crate) judging: Judging,
     /// What is the same only for the same run.
     pub(crate) run: String,
@@ -93,30 +82,22 @@ pub(crate) fn captions(scene: &scene::Scene) -> Vec<(f64, String)> {
 
 pub(crate) fn film(args: &FilmArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;
-    let name = stem(&args.scene.scene);
-    let scene = loaded.scene.clone();
+    let draw = DrawJob::of(&args.scene, &args.picture, &loaded);
+    let scene = &loaded.scene;
     let job = FilmJob {
-        picture: &args.picture,
-        adapter: &args.scene.adapter.name,
-        path: args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.mp4"))),
+        path: args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.mp4", draw.name))),
+        draw,
         ffmpeg: args.ffmpeg,
         fps: args.fps,
         preset: args.preset,
         fresh: args.fresh,
-        quiet: args.scene.quiet,
-        json: args.scene.json,
-        name,
-        fleet: loaded.simulation.fleet().clone(),
         description: scene.description.clone(),
-        duration: scene.time.duration,
-        settings: scene.film.clone(),
-        view: &scene.views.default,
         judging: scene.judging(),
         run: scene.to_toml(),
-        captions: captions(&scene),
+        captions: captions(scene),
     };
     shoot(job, |gpu| {
-        attach_cameras(&mut loaded, Some(gpu), &args.scene)?;
+        cameras::attach(&mut loaded, Some(gpu), &args.scene.adapter.name, None)?;
         Ok(RecordSource::Run(Box::new(loaded.simulation)))
     })
 }
@@ -129,26 +110,27 @@ pub(crate) fn shoot(
     let began = Instant::now();
     let kind = FilmKind::of(&job.path, job.ffmpeg)?;
     if kind == FilmKind::Gif {
-        lighten(&mut job.settings);
+        lighten(&mut job.draw.settings);
     }
     if let Some(preset) = job.preset {
-        preset.apply(&mut job.settings, job.duration);
+        preset.apply(&mut job.draw.settings, job.draw.duration);
     }
     let _place = match kind {
         FilmKind::PngSequence => Place::new_folder(&job.path)?,
         _ => Place::file(&job.path)?,
     };
-    let FilmJob { path, name, fleet, settings, .. } = &job;
+    let path = &job.path;
+    let DrawJob { name, fleet, settings, .. } = &job.draw;
     let rate = job.fps.unwrap_or(settings.fps);
     if !(1.0..=240.0).contains(&rate) {
         return Err(film::Error::FrameRate(rate).into());
     }
-    let view = settings.view.as_deref().unwrap_or(job.view);
+    let view = settings.view.as_deref().unwrap_or(&job.draw.view);
     let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
     // Whoever names a view wants that one, from beginning to end.
-    let board = Board::new(settings, job.picture.view.as_deref(), view, job.duration, &names)?;
+    let board = Board::new(settings, job.draw.picture.view.as_deref(), view, job.draw.duration, &names)?;
     let frames = board.frames(rate);
-    let mut studio = RenderSetup::open(job.adapter, job.picture, fleet, view, settings.size)?;
+    let mut studio = RenderSetup::open(job.draw.adapter, job.draw.picture, fleet, view, settings.size)?;
     let told = settings.shots.iter().map(|shot| shot.line.as_str()).chain([job.description.as_str()]);
     studio.check_texts(told);
     let source = source(&studio.gpu)?;
@@ -160,12 +142,12 @@ pub(crate) fn shoot(
     }
 
     let what = format!("Filming {name}, {}, to {}", counted(frames, "frame"), path.display());
-    let progress = Progress::begin(&what, frames, job.quiet);
-    if done > 0 && !job.quiet {
+    let progress = Progress::begin(&what, frames, job.draw.quiet);
+    if done > 0 && !job.draw.quiet {
         note(&format!("going on after {:.2} s that are there from an interrupted film", done as f64 / rate));
     }
     let mut playback = Playback::new(fleet, source).measured(MetricsBuilder::new(fleet, job.judging));
-    let mut plots = Plots::new(fleet, job.duration);
+    let mut plots = Plots::new(fleet, job.draw.duration);
     let plain = studio.style.clone();
     // Where a line or a panel comes and goes, no camera moves.
     let room = ReservedSpace { panel: plain.inset, rows: board.rows(fleet.edges.len()) };
@@ -211,26 +193,26 @@ pub(crate) fn shoot(
     }
     if index < frames {
         film.pause().map_err(|e| refused(e, &job, kind, rate))?;
-        replaced.tell(job.quiet);
-        progress.end();
+        replaced.tell(job.draw.quiet);
+        drop(progress);
         let seconds = shot as f64 / rate;
         let more = if kind == FilmKind::Mp4 { "; the same command goes on from there" } else { "" };
         return Err(Failure::Interrupted(format!("{} holds the first {seconds:.2} s{more}", path.display())));
     }
     film.finish().map_err(|e| refused(e, &job, kind, rate))?;
-    progress.end();
-    replaced.tell(job.quiet);
-    if let Some(end) = playback.ended().filter(|_| shot < frames && !job.quiet) {
-        note(&format!("the run ended at {end:.2} s of {:.2} s, and the film with it", job.duration));
+    drop(progress);
+    replaced.tell(job.draw.quiet);
+    if let Some(end) = playback.ended().filter(|_| shot < frames && !job.draw.quiet) {
+        note(&format!("the run ended at {end:.2} s of {:.2} s, and the film with it", job.draw.duration));
     }
     let seconds = began.elapsed().as_secs_f64();
     let adapter = studio.gpu.description();
-    if job.json {
+    if job.draw.json {
         json(&json!({
             "file": path.display().to_string(), "frames": shot, "fps": rate, "size": studio.size,
             "adapter": adapter, "wall_seconds": seconds, "frames_found": done,
         }));
-    } else if !job.quiet {
+    } else if !job.draw.quiet {
         let length = shot as f64 / rate;
         let [width, height] = studio.size;
         say(&format!(
@@ -278,8 +260,9 @@ fn begin(job: &FilmJob<'_>, kind: FilmKind, studio: &RenderSetup, rate: f64) -> 
     // The same film is made of the same run, by the same program on the same adapter, with the same words.
     let mut whole = xxhash_rust::xxh3::Xxh3::new();
     let program = (studies::PROGRAM, studies::COMMIT, studio.gpu.description());
-    whole.update(format!("{program:?}{:?}{:?}{:?}", studio.layout, studio.style, job.picture).as_bytes());
-    whole.update(format!("{:?}{:?}{}", job.preset, job.settings, job.run).as_bytes());
+    whole
+        .update(format!("{program:?}{:?}{:?}{:?}", studio.layout, studio.style, job.draw.picture).as_bytes());
+    whole.update(format!("{:?}{:?}{}", job.preset, job.draw.settings, job.run).as_bytes());
     let made_of = format!("{:032x}", whole.digest128());
     if job.fresh {
         // What belongs to another film is begun anew.

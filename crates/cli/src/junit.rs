@@ -4,11 +4,11 @@ use crate::Outcome;
 use crate::failure::Failure;
 use crate::print;
 use crate::replaced::Replaced;
+use metrics::JudgedExpectation;
 use output::{Place, write_whole};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use std::path::Path;
-use std::time::Duration;
-use studies::verdict::JudgedExpectation;
+use std::time::{Duration, Instant};
 use vocabulary::readable;
 
 /// One thing that was checked.
@@ -52,27 +52,35 @@ impl ReportedCheck {
 /// Standard output, as it is named.
 const STREAM: &str = "-";
 
-/// Looks before the work whether a report can be written to `path`: a file, or standard output, which results for people then
-/// make way for.
-pub(crate) fn open(path: Option<&Path>, json: bool) -> Result<Option<Place>, Failure> {
-    match path {
+/// Does `work`, which says what became of its checks, and writes them to `path` if there is one: a file, or standard output,
+/// which results for people then make way for.
+pub(crate) fn reported(
+    path: Option<&Path>,
+    name: &str,
+    json: bool,
+    quiet: bool,
+    work: impl FnOnce(&mut Vec<ReportedCheck>) -> Outcome,
+) -> Outcome {
+    let (began, mut cases) = (Instant::now(), vec![]);
+    let _place = match path {
         Some(path) if path.as_os_str() == STREAM && json => {
             let text = "--junit - and --json would both write to standard output: name a file for one of them, such as \
                         --junit report.xml";
-            Err(Failure::Usage(text.to_owned()))
+            return Err(Failure::Usage(text.to_owned()));
         }
         Some(path) if path.as_os_str() == STREAM => {
             print::make_way();
-            Ok(None)
+            None
         }
-        Some(path) => Ok(Some(Place::file(path)?)),
-        None => Ok(None),
-    }
+        path => path.map(Place::file).transpose()?,
+    };
+    let outcome = work(&mut cases);
+    close(path, name, cases, outcome, began.elapsed(), quiet)
 }
 
 /// Writes `cases` of the suite called `name`, which took `wall`, to `path` if there is one, whatever came of them. Work that
 /// was cut short is an error among them.
-pub(crate) fn close(
+fn close(
     path: Option<&Path>,
     name: &str,
     mut cases: Vec<ReportedCheck>,
@@ -108,21 +116,15 @@ fn write(path: &Path, name: &str, cases: &[ReportedCheck], wall: Duration) -> Re
     let others = cases.iter().filter(|case| case.time.is_none()).count() as u32;
     let share = wall.saturating_sub(own).checked_div(others).unwrap_or_default();
     for case in cases {
-        let not = |kind, text: &String| {
-            let mut status = TestCaseStatus::non_success(kind);
+        let (mut status, text) = match &case.came {
+            Came::Fine => (TestCaseStatus::success(), None),
+            Came::Failed(text) => (TestCaseStatus::non_success(NonSuccessKind::Failure), Some(text)),
+            Came::Skipped(text) => (TestCaseStatus::skipped(), Some(text)),
+            Came::Broken(text) => (TestCaseStatus::non_success(NonSuccessKind::Error), Some(text)),
+        };
+        if let Some(text) = text {
             status.set_message(allowed(text));
-            status
-        };
-        let status = match &case.came {
-            Came::Fine => TestCaseStatus::success(),
-            Came::Failed(text) => not(NonSuccessKind::Failure, text),
-            Came::Skipped(text) => {
-                let mut status = TestCaseStatus::skipped();
-                status.set_message(allowed(text));
-                status
-            }
-            Came::Broken(text) => not(NonSuccessKind::Error, text),
-        };
+        }
         let mut written = TestCase::new(allowed(&case.name), status);
         written.set_classname(name.as_str()).set_time(case.time.unwrap_or(share));
         suite.add_test_case(written);

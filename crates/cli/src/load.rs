@@ -1,11 +1,9 @@
 //! From a scene file to a run.
 
 use crate::args::SceneArgs;
-use crate::cameras::{self, DrawingCost};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::recorded;
-use rendering::Gpu;
 use scene::{Override, Scene};
 use std::path::Path;
 use studies::SceneRun;
@@ -32,15 +30,6 @@ pub(crate) fn read(path: &Path, overrides: &[Override]) -> Result<Scene, Failure
 /// Builds a scene; a fault names it by `name`.
 pub(crate) fn build(scene: Scene, name: &dyn std::fmt::Display) -> Result<SceneRun, Failure> {
     SceneRun::new(scene).map_err(|error| Failure::Usage(format!("{name}: {error}")))
-}
-
-/// Gives the robots' cameras what draws for them, where they take pictures: `gpu`, or the adapter of `args`.
-pub(crate) fn attach_cameras(
-    run: &mut SceneRun,
-    gpu: Option<&Gpu>,
-    args: &SceneArgs,
-) -> Result<DrawingCost, Failure> {
-    cameras::attach(run, gpu, &args.adapter.name, None)
 }
 
 /// The overrides of a command line, with its seed as one of them.

@@ -42,22 +42,16 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let program = Program::parse();
-    if matches!(
+    // All others may open a graphics adapter.
+    if !matches!(
         program.command,
-        Some(
-            Subcommands::Run(_)
-                | Subcommands::Replay(_)
-                | Subcommands::Capture(_)
-                | Subcommands::Lab(_)
-                | Subcommands::Film(_)
-                | Subcommands::Tune(_)
-                | Subcommands::Budget(_)
-                | Subcommands::Certify(_)
-                | Subcommands::Stills(_)
-                | Subcommands::Dataset(_)
-                | Subcommands::Figures(_)
-                | Subcommands::Accuracy(_)
-                | Subcommands::Doctor(_)
+        None | Some(
+            Subcommands::Diff(_)
+                | Subcommands::Compare(_)
+                | Subcommands::Check(_)
+                | Subcommands::Scenes(_)
+                | Subcommands::Schema
+                | Subcommands::Completions { .. }
         )
     ) {
         quiet::restart_if_needed();
@@ -93,18 +87,15 @@ fn main() -> ExitCode {
             Ok(())
         }
     };
-    match outcome {
-        Ok(()) if print::lost() => {
-            let failure = Failure::Machine("standard output could not be written".to_owned());
+    let lost = || Failure::Machine("standard output could not be written".to_owned());
+    let outcome = outcome.and_then(|()| if print::lost() { Err(lost()) } else { Ok(()) });
+    outcome.map_or_else(
+        |failure| {
             failure.tell();
             ExitCode::from(failure.code())
-        }
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.tell();
-            ExitCode::from(failure.code())
-        }
-    }
+        },
+        |()| ExitCode::SUCCESS,
+    )
 }
 
 /// What a subcommand returns.

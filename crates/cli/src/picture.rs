@@ -1,12 +1,47 @@
 //! What stills and films share: adapter, size, views and style.
 
-use crate::args::PictureArgs;
+use crate::args::{PictureArgs, SceneArgs};
 use crate::failure::Failure;
+use crate::load::stem;
 use crate::print::note;
 use rendering::{AdapterChoice, Gpu, Renderer, Style, ViewLayout, Viewpoint};
 use scene::composed;
 use std::collections::BTreeSet;
+use studies::SceneRun;
 use vocabulary::FleetInfo;
+
+/// A run to draw, of a scene or recorded, and how.
+pub(crate) struct DrawJob<'a> {
+    pub(crate) picture: &'a PictureArgs,
+    pub(crate) adapter: &'a str,
+    pub(crate) quiet: bool,
+    pub(crate) json: bool,
+    /// What files are called by.
+    pub(crate) name: String,
+    pub(crate) fleet: FleetInfo,
+    /// s.
+    pub(crate) duration: f64,
+    pub(crate) settings: scene::Film,
+    /// The view where nothing names one.
+    pub(crate) view: String,
+}
+
+impl<'a> DrawJob<'a> {
+    /// That of a scene.
+    pub(crate) fn of(args: &'a SceneArgs, picture: &'a PictureArgs, run: &SceneRun) -> Self {
+        Self {
+            picture,
+            adapter: &args.adapter.name,
+            quiet: args.quiet,
+            json: args.json,
+            name: stem(&args.scene),
+            fleet: run.simulation.fleet().clone(),
+            duration: run.scene.time.duration,
+            settings: run.scene.film.clone(),
+            view: run.scene.views.default.clone(),
+        }
+    }
+}
 
 /// Everything that draws.
 pub(crate) struct RenderSetup {
@@ -38,8 +73,10 @@ impl RenderSetup {
             note(
                 "--overlay shows in views through cameras only: add --view camera:ROBOT or --inset-camera ROBOT",
             );
-        } else if style.detections && !fleet.looks {
-            note("nobody looks in this scene, so there is nothing to overlay: try --set sensing.kind=camera");
+        } else if style.detections && !fleet.has_sensors {
+            note(
+                "no follower has a sensor in this scene, so there is nothing to overlay: try --set sensing.kind=camera",
+            );
         }
         if let Some(robot) = &args.inset_camera {
             // The same words and the same mistakes as in a view.

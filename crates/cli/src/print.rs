@@ -76,7 +76,7 @@ pub(crate) fn lost() -> bool {
     LOST.load(Ordering::Relaxed)
 }
 
-/// Prints a line to standard error.
+/// Prints a line to standard error; nobody is left to tell if that is closed.
 pub(crate) fn note(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", harmless(text));
 }

@@ -49,14 +49,10 @@ impl Progress {
             }
         }
     }
-
-    /// Ends the job and takes the bar away.
-    pub(crate) fn end(self) {
-        drop(self);
-    }
 }
 
 impl Drop for Progress {
+    /// Takes the bar away.
     fn drop(&mut self) {
         if let ProgressDisplay::Bar(bar) = &self.0 {
             bar.finish_and_clear();

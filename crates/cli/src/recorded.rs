@@ -58,12 +58,11 @@ impl Recorded {
             ))),
             opened => opened.map_err(Failure::from),
         };
-        let manifest = match (read_manifest(path), log) {
+        let (mut manifest, log) = match (read_manifest(path), log) {
             (Ok(manifest), log) => (manifest, log),
             (Err(_), Ok(log)) => return Ok(Self::of_log(path, log)),
             (Err(failure), Err(_)) => return Err(failure),
         };
-        let (mut manifest, log) = manifest;
         if let (None, Ok(log)) = (&manifest.digest, &log) {
             manifest.samples = log.manifest().samples;
         }

@@ -1,12 +1,40 @@
 //! Files that took the place of others: one rule for all commands. A file of the same name is replaced once the new one is
 //! whole, and that is told; folders are another matter, see `output::Claim`.
 
+use crate::failure::Failure;
 use crate::print::note;
+use output::write_whole;
 use std::path::{Path, PathBuf};
 
 /// What was there before a command wrote its files.
 #[derive(Default)]
 pub(crate) struct Replaced(Vec<PathBuf>);
+
+/// Writes texts as files of these names into `folder`; that they replaced others is told.
+pub(crate) fn write_all(
+    folder: &Path,
+    texts: &[(String, String)],
+    quiet: bool,
+) -> Result<Vec<PathBuf>, Failure> {
+    let (mut written, mut replaced) = (vec![], Replaced::default());
+    for (name, text) in texts {
+        let path = folder.join(name);
+        replaced.look(&path);
+        write_whole(&path, text.as_bytes())?;
+        written.push(path);
+    }
+    replaced.tell(quiet);
+    Ok(written)
+}
+
+/// A name as CSV takes it.
+pub(crate) fn quoted(name: &str) -> String {
+    if name.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", name.replace('"', "\"\""))
+    } else {
+        name.to_owned()
+    }
+}
 
 /// Names that are told one by one.
 const SHOWN: usize = 3;

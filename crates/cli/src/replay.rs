@@ -4,6 +4,7 @@ use crate::Outcome;
 use crate::args::{AdapterArgs, PictureArgs};
 use crate::failure::Failure;
 use crate::load::{build, stem};
+use crate::picture::DrawJob;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use crate::recorded::Recorded;
@@ -92,43 +93,33 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
         settings.shots.clear();
     }
     let source = || Ok(RecordSource::Log(Box::new(log.records())));
+    let draw = DrawJob {
+        picture: &args.picture,
+        adapter: &args.adapter.name,
+        quiet: args.quiet,
+        json: args.json,
+        name,
+        fleet,
+        duration,
+        settings,
+        view,
+    };
     if let Some(path) = &args.film {
         let job = film::FilmJob {
-            picture: &args.picture,
-            adapter: &args.adapter.name,
+            draw,
             path: path.clone(),
             ffmpeg: args.ffmpeg,
             fps: args.fps,
             preset: args.preset,
             fresh: false,
-            quiet: args.quiet,
-            json: args.json,
-            name,
-            fleet,
             description,
-            duration,
-            settings,
-            view: &view,
             judging: expect.judging(duration),
             run: format!("{:?}", log.manifest()),
             captions: scene.as_ref().map_or_else(Vec::new, film::captions),
         };
         return film::shoot(job, |_| source());
     }
-    let job = capture::CaptureJob {
-        picture: &args.picture,
-        adapter: &args.adapter.name,
-        out: &args.out,
-        at: &args.capture,
-        quiet: args.quiet,
-        json: args.json,
-        of: &args.run,
-        name,
-        fleet,
-        duration,
-        settings: &settings,
-        view: &view,
-    };
+    let job = capture::CaptureJob { draw, out: &args.out, at: &args.capture, of: &args.run };
     capture::draw(&job, |_| source())
 }
 
@@ -166,7 +157,7 @@ fn verify(args: &ReplayArgs, run: &Recorded) -> Outcome {
         progress.at(samples);
         !interrupt::asked()
     })?;
-    progress.end();
+    drop(progress);
     let replay = Replay { recorded, log: logged.map(|logged| logged.digest), now, apart };
     let report = ReplayReport { manifest, replay, sees };
     if args.json {

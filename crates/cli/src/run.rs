@@ -47,18 +47,8 @@ pub(crate) struct RunArgs {
 }
 
 pub(crate) fn run(args: &RunArgs) -> Outcome {
-    let began = Instant::now();
-    let _report = junit::open(args.junit.as_deref(), args.scene.json)?;
-    let mut cases = vec![];
-    let outcome = judge(args, &mut cases);
-    junit::close(
-        args.junit.as_deref(),
-        &stem(&args.scene.scene),
-        cases,
-        outcome,
-        began.elapsed(),
-        args.scene.quiet,
-    )
+    let SceneArgs { scene, json, quiet, .. } = &args.scene;
+    junit::reported(args.junit.as_deref(), &stem(scene), *json, *quiet, |cases| judge(args, cases))
 }
 
 /// Runs the scene; `cases` are what became of its expectations.
@@ -93,7 +83,7 @@ fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
             }
             other => other.into(),
         })?;
-    progress.end();
+    drop(progress);
     if status == Status::Interrupted {
         let why = format!("the run was interrupted at {:.2} s", metrics.duration);
         cases.extend(

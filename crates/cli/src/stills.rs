@@ -4,9 +4,10 @@ mod strobe;
 
 use crate::Outcome;
 use crate::args::{PictureArgs, SceneArgs};
+use crate::cameras;
 use crate::failure::Failure;
 use crate::interrupt;
-use crate::load::{attach_cameras, load, stem};
+use crate::load::{load, stem};
 use crate::picture::RenderSetup;
 use crate::playback::Playback;
 use crate::print::{json, say};
@@ -16,7 +17,7 @@ use clap::Args;
 use output::Place;
 use rendering::{Style, ViewLayout};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use studies::RecordSource;
 use vocabulary::{Picture, StepRecord};
 
@@ -53,7 +54,7 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     let large = args.picture.size.unwrap_or(STROBE);
     let view = loaded.scene.views.default.clone();
     let mut small = RenderSetup::open(&args.scene.adapter.name, &args.picture, &fleet, &view, tile)?;
-    attach_cameras(&mut loaded, Some(&small.gpu), &args.scene)?;
+    cameras::attach(&mut loaded, Some(&small.gpu), &args.scene.adapter.name, None)?;
     let duration = loaded.scene.time.duration;
 
     // Both are drawn from the same moments.
@@ -97,7 +98,7 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
         progress.at(u64::from(args.count) + k as u64 + 1);
     }
     let strobe = strobe::together(&pictures);
-    progress.end();
+    drop(progress);
     let adapter = small.gpu.description();
     let texts =
         [("Title", fleet.title.as_str()), ("Software", studies::PROGRAM), ("Adapter", adapter.as_str())];
@@ -105,9 +106,9 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     for (kind, picture) in [("sheet", sheet), ("strobe", strobe)] {
         let path = args.out.join(format!("{name}-{kind}.png"));
         replaced.look(&path);
-        write(&path, &picture, &texts).map_err(|failure| match files.first() {
-            Some((first, _)) => failure.but(&format!("{} is written", first.display())),
-            None => failure.but("nothing is written"),
+        film::png::write(&path, &picture, &texts).map_err(|error| match files.first() {
+            Some((first, _)) => Failure::from(error).but(&format!("{} is written", first.display())),
+            None => Failure::from(error).but("nothing is written"),
         })?;
         files.push((path, [picture.width, picture.height]));
     }
@@ -122,10 +123,6 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
         }
     }
     Ok(())
-}
-
-fn write(path: &Path, picture: &Picture, texts: &[(&str, &str)]) -> Result<(), Failure> {
-    Ok(film::png::write(path, picture, texts)?)
 }
 
 /// Pictures in rows, white between them.

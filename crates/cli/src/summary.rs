@@ -2,11 +2,10 @@
 
 use crate::cameras::DrawingCost;
 use crate::print::{json, note, say};
-use metrics::Metrics;
+use metrics::{JudgedExpectation, Metrics};
 use scene::Scene;
 use serde_json::json;
 use std::path::PathBuf;
-use studies::verdict::JudgedExpectation;
 use vocabulary::counted;
 
 /// A run that reached its end.
@@ -42,7 +41,7 @@ pub(crate) fn as_text(summary: &Summary<'_>) {
     {
         say(&format!("least clearance {clearance:.3} m, between {a} and {b} at {time:.2} s"));
     }
-    looks(metrics);
+    measurements(metrics);
     contacts(metrics);
     let speed = metrics.duration / summary.wall.max(1e-9);
     let speed = if speed < 10.0 { format!("{speed:.2}") } else { format!("{speed:.0}") };
@@ -117,20 +116,20 @@ fn edges(metrics: &Metrics) {
     ));
 }
 
-/// How followers that look saw their leaders.
-fn looks(metrics: &Metrics) {
-    let looks = || metrics.edges.iter().filter_map(|edge| Some((edge, edge.measurements.as_ref()?)));
-    if looks().next().is_none() {
+/// How followers with sensors measured their leaders.
+fn measurements(metrics: &Metrics) {
+    let measurements = || metrics.edges.iter().filter_map(|edge| Some((edge, edge.measurements.as_ref()?)));
+    if measurements().next().is_none() {
         return;
     }
-    let width = looks().map(|(e, _)| e.leader.len() + e.follower.len() + 3).max().unwrap_or(0).max(4);
+    let width = measurements().map(|(e, _)| e.leader.len() + e.follower.len() + 3).max().unwrap_or(0).max(12);
     say(&format!(
         "{:width$}  {:>6}  {:>8}  {:>7}  {:>29}  {:>29}  {:>6}",
-        "looks",
+        "measurements",
         "taken",
         "in view",
         "refused",
-        "rms error of looks (ℓ, ψ, γ)",
+        "rms error (ℓ, ψ, γ)",
         "of what the law was told",
         "gap"
     ));
@@ -139,23 +138,24 @@ fn looks(metrics: &Metrics) {
             |e: [f64; 3]| format!("{:>9.4} m {:>7.3}° {:>7.3}°", e[0], e[1].to_degrees(), e[2].to_degrees());
         e.map_or("none".to_owned(), told)
     };
-    for (edge, look) in looks().take(MOST_EDGES) {
+    for (edge, measured) in measurements().take(MOST_EDGES) {
         let name = format!("{} → {}", edge.leader, edge.follower);
-        let (errors, told) = (three(look.rms_error), three(look.rms_estimate_error));
-        let (view, refused) = (format!("{:.2} %", look.in_view * 100.0), look.rejected + look.ambiguous);
+        let (errors, told) = (three(measured.rms_error), three(measured.rms_estimate_error));
+        let (view, refused) =
+            (format!("{:.2} %", measured.in_view * 100.0), measured.rejected + measured.ambiguous);
         say(&format!(
             "{name:width$}  {:>6}  {view:>8}  {refused:>7}  {errors:>29}  {told:>29}  {:>4.2} s",
-            look.taken, look.longest_gap
+            measured.taken, measured.longest_gap
         ));
-        if look.lost > 0.0 {
-            say(&format!("  {} had lost its leader for {:.2} s", edge.follower, look.lost));
+        if measured.lost > 0.0 {
+            say(&format!("  {} had lost its leader for {:.2} s", edge.follower, measured.lost));
         }
-        if look.in_view == 0.0 {
+        if measured.in_view == 0.0 {
             say(&format!("  {} never saw its leader", edge.follower));
         }
     }
     say(
-        "refused: looks too far from the prediction, or explained alike by two poses; gap: longest time without a look\n",
+        "refused: too far from the prediction, or explained alike by two poses; gap: longest time without a measurement\n",
     );
 }
 
@@ -182,8 +182,6 @@ pub(crate) fn failures(summary: &Summary<'_>) {
 }
 
 pub(crate) fn as_json(summary: &Summary<'_>) {
-    let finding =
-        |f: &JudgedExpectation| json!({ "key": f.key, "wanted": f.wanted, "found": f.found, "met": f.met });
     json(&json!({
         "title": summary.scene.title,
         "seed": summary.scene.seed,
@@ -194,7 +192,7 @@ pub(crate) fn as_json(summary: &Summary<'_>) {
         "digest": summary.digest,
         "folder": summary.folder.as_ref().map(|f| f.display().to_string()),
         "metrics": summary.metrics,
-        "expectations": summary.findings.iter().map(finding).collect::<Vec<_>>(),
+        "expectations": summary.findings,
         "met": summary.met(),
     }));
 }

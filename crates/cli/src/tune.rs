@@ -45,10 +45,10 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
     // The scene's own gains are the first trial.
     let most = usize::try_from(args.trials - 1).unwrap_or(usize::MAX);
     let found = search(&scene, most, look).map_err(|error| Failure::Usage(error.to_string()))?;
-    progress.end();
+    drop(progress);
     let [first, best] = &found;
     if args.scene.json {
-        json(&json!({ "trials": tried, "first": as_json(first), "best": as_json(best) }));
+        json(&json!({ "trials": tried, "first": first, "best": best }));
     } else if !args.scene.quiet {
         say(&format!("{}\n{}\n", scene.title, studies::caption(&scene)));
         say(&format!(
@@ -76,12 +76,4 @@ fn row(name: &str, trial: &Trial) {
     let error = format!("{distance:.4} m {:>8.3}°", bearing.to_degrees());
     let limited = format!("{:.1} %", trial.limited * 100.0);
     say(&format!("{name:12} {:>8.2} {error:>26} {limited:>9} {:>9}", trial.cost, trial.contacts));
-}
-
-fn as_json(trial: &Trial) -> serde_json::Value {
-    let gains = &trial.gains;
-    json!({
-        "k": gains.k, "beta": gains.beta, "slope": gains.slope, "epsilon": gains.epsilon,
-        "cost": trial.cost, "late_error": trial.late_error, "limited": trial.limited, "contacts": trial.contacts,
-    })
 }

@@ -39,9 +39,9 @@ fn main() {
             ..Axis::default()
         },
         panels: vec![
-            panel("Error of looks: distance (mm)", 12.0, true),
-            panel("Error of looks: bearing (°)", 0.2, false),
-            panel("Error of looks: view angle (°)", 3.0, false),
+            panel("Error of measurements: distance (mm)", 12.0, true),
+            panel("Error of measurements: bearing (°)", 0.2, false),
+            panel("Error of measurements: view angle (°)", 3.0, false),
         ],
         keys: vec![
             key("high-gain observer", Stroke::Solid, Marker::None),

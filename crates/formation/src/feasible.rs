@@ -21,19 +21,9 @@ pub enum Infeasible {
     TooHard,
 }
 
-/// What stands against a follower with `limits` at `place`, [forward, left] of its leader in m, which drives at `speed`
-/// m/s and turns at `turn_rate` rad/s; `distance_min` m is the law's. Margins are shares of the limits.
-pub fn unholdable(
-    place: [f64; 2],
-    [speed, turn_rate]: [f64; 2],
-    limits: &Limits,
-    distance_min: f64,
-) -> Option<Infeasible> {
-    unholdable_now(place, &MotionInput { speed, turn_rate, ..MotionInput::default() }, limits, distance_min)
-}
-
-/// As [`unholdable`], of a leader that is about to drive or turn faster or slower.
-pub fn unholdable_now(
+/// What stands against a follower with `limits` at `place`, [forward, left] in m of a leader that moves as `leader`;
+/// `distance_min` m is the law's.
+pub fn infeasible(
     place: [f64; 2],
     leader: &MotionInput,
     limits: &Limits,
@@ -81,12 +71,19 @@ pub fn held(place: [f64; 2], leader: &MotionInput) -> MotionInput {
 mod tests {
     use super::*;
 
+    fn steady(speed: f64, turn_rate: f64) -> MotionInput {
+        MotionInput { speed, turn_rate, ..MotionInput::default() }
+    }
+
     #[test]
     fn on_a_straight_line_every_place_can_be_held() {
         for place in [[-2.0, 0.0], [1.0, 5.0], [0.0, -30.0]] {
-            assert_eq!(unholdable(place, [1.0, 0.0], &Limits::PAPER, 0.1), None);
+            assert_eq!(infeasible(place, &steady(1.0, 0.0), &Limits::PAPER, 0.1), None);
         }
-        assert_eq!(unholdable([0.05, 0.0], [1.0, 0.0], &Limits::PAPER, 0.1), Some(Infeasible::TooClose));
+        assert_eq!(
+            infeasible([0.05, 0.0], &steady(1.0, 0.0), &Limits::PAPER, 0.1),
+            Some(Infeasible::TooClose)
+        );
     }
 
     #[test]
@@ -94,7 +91,7 @@ mod tests {
         // The paper's circle: 1.1 m/s and 0.3 rad/s; the outer follower needs 1.486 m/s of 1.6.
         let place =
             |distance: f64, bearing: f64| [distance * math::cos(bearing), distance * math::sin(bearing)];
-        let at = |d, b: f64| unholdable(place(d, b.to_radians()), [1.0, 0.3], &Limits::PAPER, 0.1);
+        let at = |d, b: f64| infeasible(place(d, b.to_radians()), &steady(1.0, 0.3), &Limits::PAPER, 0.1);
         assert_eq!(at(2.0, -135.0), None);
         assert_eq!(at(3.0, -90.0), Some(Infeasible::TooFast));
         assert_eq!(at(3.4, 90.0), Some(Infeasible::TooSlow));
@@ -103,8 +100,8 @@ mod tests {
     #[test]
     fn steered_wheels_cannot_turn_tightly() {
         let car = Limits { curvature_max: 1.0 / 0.6, ..Limits::PAPER };
-        assert_eq!(unholdable([-0.3, 2.5], [1.0, 0.35], &car, 0.1), Some(Infeasible::TooTight));
-        assert_eq!(unholdable([-0.3, -1.0], [1.0, 0.35], &car, 0.1), None);
+        assert_eq!(infeasible([-0.3, 2.5], &steady(1.0, 0.35), &car, 0.1), Some(Infeasible::TooTight));
+        assert_eq!(infeasible([-0.3, -1.0], &steady(1.0, 0.35), &car, 0.1), None);
     }
 
     /// Speed, turn rate and acceleration of a place, by finite differences of where it is.
@@ -144,7 +141,7 @@ mod tests {
             turn_rate_max: 11.5,
             ..Limits::PAPER
         };
-        let judge = |limits: Limits| unholdable_now(place, &leader, &limits, 0.1);
+        let judge = |limits: Limits| infeasible(place, &leader, &limits, 0.1);
         assert_eq!(judge(just(1.001)), None);
         assert_eq!(judge(just(0.999)), Some(Infeasible::TooHard));
         let tight = |share: f64| Limits { turn_rate_max: share * turn_rate.abs(), ..just(2.0) };

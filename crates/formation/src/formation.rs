@@ -2,10 +2,10 @@
 
 use crate::graph::Graph;
 use crate::law::{Law, LawInput};
-use crate::looks::LookLaw;
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
 use crate::set_point::SetPointTrajectory;
+use crate::tracker::TrackerParameters;
 use std::sync::Arc;
 use vocabulary::{
     Command, Edge, LawKind, Limits, MotionInput, Observation, SetPoint, TrackingState, Trajectory, wrap,
@@ -18,8 +18,8 @@ pub struct EdgeLaw {
     pub law: Law,
     /// Its observer; used by output feedback.
     pub observer: Observer,
-    /// How it makes an estimate of looks; `None` where it is told the truth.
-    pub looks: Option<LookLaw>,
+    /// How it makes an estimate from measurements; `None` where it is told the truth.
+    pub tracker: Option<TrackerParameters>,
     /// Where it shall be.
     pub set_point: SetPointTrajectory,
 }
@@ -256,7 +256,8 @@ mod tests {
             distance_min: 0.1,
         };
         let observer = Observer { epsilon: [1e-3; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 };
-        let edge = EdgeLaw { law, observer, looks: None, set_point: SetPointTrajectory::constant(2.0, -2.3) };
+        let edge =
+            EdgeLaw { law, observer, tracker: None, set_point: SetPointTrajectory::constant(2.0, -2.3) };
         let limits = Limits::PAPER;
         let lead: Arc<dyn Trajectory> = Arc::new(AnalyticTrajectory::constant(1.0, 0.3));
         Formation::new(graph, vec![edge.clone(), edge], vec![limits; 3], vec![(0, lead)], 0.01)

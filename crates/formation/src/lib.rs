@@ -4,8 +4,8 @@
 //! Only building a [`Graph`] or a curve can fail. Equation numbers are those of Orqueda, Zhang, Fierro:
 //! *An output feedback nonlinear decentralized controller for unmanned vehicle co-ordination* (2007).
 //!
-//! Read in the order of the data: [`graph`], [`relative`], [`set_point`], [`lead`], [`law`], [`observer`], [`looks`], and
-//! [`formation`], which puts them together.
+//! Read in the order of the data: [`graph`], [`relative`], [`set_point`], [`lead`], [`law`], [`observer`], [`tracker`],
+//! and [`formation`], which puts them together.
 
 pub mod certificate;
 pub mod energy;
@@ -14,15 +14,15 @@ pub mod formation;
 pub mod graph;
 pub mod law;
 pub mod lead;
-pub mod looks;
 mod matrix_exponential;
 pub mod observer;
 pub mod relative;
 pub mod set_point;
+pub mod tracker;
 
 pub use formation::{EdgeLaw, Formation, FormationState};
 pub use graph::{Graph, GraphError};
 pub use law::{Law, LawInput, Switching};
-pub use looks::{LookLaw, Own, Tracker};
 pub use observer::{Estimate, Observer};
 pub use set_point::SetPointTrajectory;
+pub use tracker::{Own, Tracker, TrackerParameters};

@@ -55,11 +55,11 @@ symbols! {
         "Commands are cut less often.";
     ACCELERATION_MAX = "a_max", "Largest acceleration", "m/s²", "|dv/dt| ≤ a_max, the sat{} of eq 42",
         "Commands are cut less often.";
-    RATE = "f", "Looks a second", "1/s", "the observer is corrected by each look",
+    RATE = "f", "Measurements a second", "1/s", "the observer is corrected by each measurement",
         "The estimate follows more closely; cameras cost more.";
-    LATENCY = "τ", "Latency", "s", "a look is put in at its own time, and what has passed since is run again",
+    LATENCY = "τ", "Latency", "s", "a measurement is put in at its own time, and what has passed since is run again",
         "The follower knows later what its leader does; high gains begin to swing.";
-    DROPS = "p", "Lost looks", "", "a look arrives with probability 1 − p",
+    DROPS = "p", "Lost measurements", "", "a measurement arrives with probability 1 − p",
         "The estimate coasts more often.";
     DISTANCE_NOISE = "σ_ℓ", "Noise of the distance", "m", "ℓ + σ_ℓ·n",
         "Rates are estimated worse, the more the smaller ε is.";

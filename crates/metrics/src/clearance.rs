@@ -213,6 +213,7 @@ fn of_placement(placement: &Placement) -> Isometry {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use vocabulary::math;
     use vocabulary::{Mobility, Pose, Prop, RobotInfo};
 
     const BODY: Body =
@@ -286,7 +287,7 @@ mod tests {
         assert!((at(1.0, 0.0, 0.0) - 0.6).abs() < 1e-9);
         assert!((at(0.0, 1.0, 0.0) - 0.8).abs() < 1e-9);
         assert!((at(1.0, 0.0, FRAC_PI_2) - 0.7).abs() < 1e-9);
-        assert!((at(1.0, 1.0, 0.0) - 0.6_f64.hypot(0.8)).abs() < 1e-9);
+        assert!((at(1.0, 1.0, 0.0) - math::hypot(0.6_f64, 0.8)).abs() < 1e-9);
         assert_eq!(at(0.3, 0.05, 0.1), 0.0);
         assert_eq!(at(0.0, 0.0, FRAC_PI_2), 0.0, "crossed without a corner inside");
     }

@@ -80,13 +80,10 @@ impl ContactLog {
     }
 
     pub(crate) fn first(&self, fleet: &FleetInfo) -> Vec<ContactMetrics> {
-        let entry = |contact: &Contact| ContactMetrics {
-            between: contact.things.map(|thing| fleet.name(thing).to_owned()),
-            begin: contact.begin,
-            end: contact.end,
-            place: contact.place,
-            normal: contact.normal,
-            impulse: contact.impulse,
+        let entry = |contact: &Contact| {
+            let Contact { things, begin, end, place, normal, impulse, .. } = *contact;
+            let between = things.map(|thing| fleet.name(thing).to_owned());
+            ContactMetrics { between, begin, end, place, normal, impulse }
         };
         self.first.iter().map(entry).collect()
     }

@@ -1,16 +1,23 @@
-//! What became of a scene's expectations, as `metrics.json` holds it.
+//! What became of a scene's expectations.
 
 use serde::Serialize;
 
-/// One expectation and what became of it.
+/// One expectation and what became of it, as `metrics.json` holds it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ExpectationMetrics {
+pub struct JudgedExpectation {
     /// The key in the scene's `[expect]`.
-    pub key: String,
+    pub key: &'static str,
     /// What was wanted, with unit.
     pub wanted: String,
     /// What was found, with unit, and on which edge or between which robots.
     pub found: String,
-    /// Whether it was met; `None` where the run does not show it.
+    /// Whether it was met; `None` where the run is too short to show it.
     pub met: Option<bool>,
+}
+
+impl JudgedExpectation {
+    /// Whether it was judged and not met.
+    pub fn failed(&self) -> bool {
+        self.met == Some(false)
+    }
 }

@@ -12,7 +12,7 @@ mod statistics;
 pub use certificates::{CertificateMetrics, StatementMetrics};
 pub use contacts::ContactMetrics;
 pub use digest::{Digest, Part, numbers};
-pub use expectations::ExpectationMetrics;
+pub use expectations::JudgedExpectation;
 pub use measurements::{MeasurementMetrics, difference};
 pub use metrics::{EdgeMetrics, Metrics, MetricsBuilder, RobotMetrics};
 pub use statistics::{RootMeanSquare, median};

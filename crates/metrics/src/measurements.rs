@@ -4,30 +4,30 @@ use crate::statistics::RootMeanSquare;
 use serde::Serialize;
 use vocabulary::{EdgeState, MeasurementRecord, Outcome, Relative, TrackingState, wrap};
 
-/// Looks of one follower over a run.
+/// Measurements of one follower over a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
 pub struct MeasurementMetrics {
-    /// Looks that reached the follower, and those that were lost on the way.
+    /// Measurements that reached the follower, and those that were lost on the way.
     pub taken: u64,
-    /// Looks that corrected the estimate.
+    /// Measurements that corrected the estimate.
     pub used: u64,
-    /// Looks too far from the prediction to be believed.
+    /// Measurements too far from the prediction to be believed.
     pub rejected: u64,
-    /// Looks that two poses explained alike.
+    /// Measurements that two poses explained alike.
     pub ambiguous: u64,
-    /// Looks in which the leader was not recognised.
+    /// Measurements in which the leader was not recognised.
     pub missed: u64,
-    /// Looks that never arrived.
+    /// Measurements that never arrived.
     pub dropped: u64,
-    /// Share of the looks that arrived in which the leader was recognised; 0 where none arrived.
+    /// Share of the measurements that arrived in which the leader was recognised; 0 where none arrived.
     pub in_view: f64,
-    /// Root mean square error of the looks used, [m, rad, rad]: distance, bearing, view angle.
+    /// Root mean square error of the measurements used, [m, rad, rad]: distance, bearing, view angle.
     /// `None` where none was used.
     pub rms_error: Option<[f64; 3]>,
-    /// Root mean square error of what the law was told, [m, rad, rad], while the leader was not lost; `None` where it was
-    /// never told.
+    /// Root mean square error of what the law was told, [m, rad, rad], while the leader was not lost; `None` where it
+    /// was never told.
     pub rms_estimate_error: Option<[f64; 3]>,
-    /// Longest time without a look that corrected the estimate, s.
+    /// Longest time without a measurement that corrected the estimate, s.
     pub longest_gap: f64,
     /// Time for which the leader was lost, s.
     pub lost: f64,
@@ -39,12 +39,12 @@ pub(crate) struct MeasurementSums {
     metrics: MeasurementMetrics,
     used: RootMeanSquare<3>,
     estimates: RootMeanSquare<3>,
-    looked: bool,
+    measured: bool,
 }
 
 impl MeasurementSums {
-    pub(crate) fn look(&mut self, frame: &MeasurementRecord) {
-        self.looked = true;
+    pub(crate) fn add(&mut self, frame: &MeasurementRecord) {
+        self.measured = true;
         let m = &mut self.metrics;
         m.taken += 1;
         match frame.outcome {
@@ -71,11 +71,11 @@ impl MeasurementSums {
         }
     }
 
-    /// The metrics so far; `None` for a follower that does not look.
+    /// The metrics so far; `None` for a follower that does not measure.
     pub(crate) fn finish(&self) -> Option<MeasurementMetrics> {
         let m = &self.metrics;
         let arrived = m.taken - m.dropped;
-        self.looked.then(|| MeasurementMetrics {
+        self.measured.then(|| MeasurementMetrics {
             in_view: (arrived - m.missed) as f64 / arrived.max(1) as f64,
             rms_error: self.used.root(),
             rms_estimate_error: self.estimates.root(),
@@ -99,7 +99,7 @@ mod tests {
     use vocabulary::Measurement;
 
     #[test]
-    fn looks_are_counted_by_what_came_of_them() {
+    fn measurements_are_counted_by_what_came_of_them() {
         let mut sums = MeasurementSums::default();
         assert_eq!(sums.finish(), None);
         let outcomes = [Outcome::Used, Outcome::Used, Outcome::Rejected, Outcome::Missed, Outcome::Dropped];
@@ -107,10 +107,10 @@ mod tests {
             let relative = Relative { distance: 2.0 + 0.1 * f64::from(k), ..Relative::default() };
             let truth = Relative { distance: 2.0, ..Relative::default() };
             let measurement = Measurement { relative, ..Measurement::default() };
-            sums.look(&MeasurementRecord { outcome, measurement, truth, ..MeasurementRecord::default() });
+            sums.add(&MeasurementRecord { outcome, measurement, truth, ..MeasurementRecord::default() });
         }
         sums.know(&EdgeState { sight: TrackingState::Lost, age: 0.7, ..EdgeState::default() }, 0.01);
-        let metrics = sums.finish().expect("it looked");
+        let metrics = sums.finish().expect("it measured");
         assert_eq!((metrics.taken, metrics.used, metrics.dropped), (5, 2, 1));
         assert!((metrics.in_view - 0.75).abs() < 1e-12);
         let rms = metrics.rms_error.expect("some were used")[0];

@@ -6,7 +6,7 @@ use crate::contacts::{ContactLog, ContactMetrics};
 use crate::measurements::{MeasurementMetrics, MeasurementSums};
 use crate::statistics::RootMeanSquare;
 use serde::Serialize;
-use vocabulary::{Condition, Contact, EdgeState, EntityId, FleetInfo, Judging, StepRecord};
+use vocabulary::{Condition, Contact, EdgeState, EntityId, FleetInfo, Judging, StepRecord, Word};
 
 /// `metrics.json`. Every pair is [distance, bearing] or [acceleration, turn rate].
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -31,7 +31,7 @@ pub struct Metrics {
     pub first_contacts: Vec<ContactMetrics>,
     /// |error| under which an edge counts as settled, [m, rad].
     pub settling_band: [f64; 2],
-    /// What the theorems say of every edge, where somebody has looked.
+    /// What the theorems say of every edge, where they were checked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub certificates: Vec<CertificateMetrics>,
 }
@@ -111,19 +111,13 @@ pub struct MetricsBuilder {
 /// Running sums of one edge.
 #[derive(Debug, Clone, Default)]
 struct EdgeSums {
+    /// What needs no more than the samples so far.
+    metrics: EdgeMetrics,
     last: EdgeState,
     errors: RootMeanSquare<2>,
-    absolute_integral: [f64; 2],
-    square_integral: [f64; 2],
-    effort: [f64; 2],
-    peak_error: [f64; 2],
-    late_peak_error: [f64; 2],
     late_errors: RootMeanSquare<2>,
-    peak_rates: [f64; 2],
     measurements: MeasurementSums,
     limited: u64,
-    too_close: u64,
-    speeds: [f64; 2],
     /// Since the edge was last outside its band; `None` while it is.
     settled: Option<Settled>,
 }
@@ -138,7 +132,9 @@ struct Settled {
 impl MetricsBuilder {
     /// For a run of `fleet`.
     pub fn new(fleet: &FleetInfo, judging: Judging) -> Self {
-        let edges = vec![EdgeSums { speeds: [f64::INFINITY, 0.0], ..EdgeSums::default() }; fleet.edges.len()];
+        let mut edge = EdgeSums::default();
+        edge.metrics.speeds = [f64::INFINITY, 0.0];
+        let edges = vec![edge; fleet.edges.len()];
         Self {
             judging,
             edges,
@@ -162,7 +158,7 @@ impl MetricsBuilder {
         }
         for frame in &record.frames {
             if let Some(edge) = self.edges.get_mut(frame.edge) {
-                edge.measurements.look(frame);
+                edge.measurements.add(frame);
             }
         }
         for (index, robot) in record.snapshot.robots.iter().enumerate() {
@@ -216,37 +212,37 @@ impl MetricsBuilder {
             nearest: room.map(|r| self.fleet.name(r.nearest).to_owned()),
             clearance_min_time: room.map(|r| r.time),
             lift_max: self.lifts[index],
-            condition: self.conditions[index].name().to_owned(),
+            condition: self.conditions[index].word().to_owned(),
         }
     }
 }
 
 impl EdgeSums {
     fn push(&mut self, edge: &EdgeState, speed: f64, time: f64, step: f64, judging: &Judging) {
-        let band = judging.settling_band;
         let commands = |e: &EdgeState| [e.applied.acceleration, e.applied.turn_rate];
-        let (now, before) = (commands(edge), commands(&self.last));
+        let (now, before, late) = (commands(edge), commands(&self.last), time >= judging.settled_after);
+        let m = &mut self.metrics;
         for i in 0..2 {
             let (e, last) = (edge.error[i], self.last.error[i]);
             // Trapezoids; the first sample has no width.
-            self.absolute_integral[i] += step * (e.abs() + last.abs()) / 2.0;
-            self.square_integral[i] += step * (e * e + last * last) / 2.0;
-            self.effort[i] += step * (now[i].abs() + before[i].abs()) / 2.0;
-            self.peak_error[i] = self.peak_error[i].max(e.abs());
-            if time >= judging.settled_after {
-                self.late_peak_error[i] = self.late_peak_error[i].max(e.abs());
+            m.iae[i] += step * (e.abs() + last.abs()) / 2.0;
+            m.ise[i] += step * (e * e + last * last) / 2.0;
+            m.effort[i] += step * (now[i].abs() + before[i].abs()) / 2.0;
+            m.peak_error[i] = m.peak_error[i].max(e.abs());
+            if late {
+                m.late_peak_error[i] = m.late_peak_error[i].max(e.abs());
             }
-            self.peak_rates[i] = self.peak_rates[i].max(edge.rates[i].abs());
+            m.peak_rates[i] = m.peak_rates[i].max(edge.rates[i].abs());
         }
+        m.too_close += u64::from(edge.too_close);
+        m.speeds = [m.speeds[0].min(speed), m.speeds[1].max(speed)];
         self.errors.add(edge.error);
-        if time >= judging.settled_after {
+        if late {
             self.late_errors.add(edge.error);
         }
         self.measurements.know(edge, step);
         self.limited += u64::from(edge.limited);
-        self.too_close += u64::from(edge.too_close);
-        self.speeds = [self.speeds[0].min(speed), self.speeds[1].max(speed)];
-        self.settle(edge, speed, time, band);
+        self.settle(edge, speed, time, judging.settling_band);
         self.last = *edge;
     }
 
@@ -262,26 +258,18 @@ impl EdgeSums {
     }
 
     fn finish(&self, leader: String, follower: String, samples: u64) -> EdgeMetrics {
-        let count = samples.max(1) as f64;
         EdgeMetrics {
             leader,
             follower,
             final_error: self.last.error,
             rms_error: self.errors.root().unwrap_or_default(),
             settled_rms_error: self.settled.and_then(|settled| settled.errors.root()),
-            iae: self.absolute_integral,
-            ise: self.square_integral,
-            peak_error: self.peak_error,
-            late_peak_error: self.late_peak_error,
             late_rms_error: self.late_errors.root().unwrap_or_default(),
             settling_time: self.settled.map(|s| s.since),
-            effort: self.effort,
-            peak_rates: self.peak_rates,
-            limited: self.limited as f64 / count,
-            too_close: self.too_close,
-            speeds: self.speeds,
+            limited: self.limited as f64 / samples.max(1) as f64,
             settled_speeds: self.settled.map(|s| s.speeds),
             measurements: self.measurements.finish(),
+            ..self.metrics.clone()
         }
     }
 }
@@ -289,6 +277,7 @@ impl EdgeSums {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vocabulary::math;
     use vocabulary::{Edge, Pose, RobotInfo, RobotState, Snapshot};
 
     /// An error that falls by e^(−t) on an edge of two robots 1 m apart at the start.
@@ -303,7 +292,7 @@ mod tests {
             let mut robots = vec![RobotState::default(); 2];
             robots[1].motion.pose = Pose::new(-1.0 - (time - 5.0).abs(), 0.0, 0.0);
             robots[1].motion.speed = 1.0;
-            let edge = EdgeState { error: [(-time).exp(), 0.0], ..EdgeState::default() };
+            let edge = EdgeState { error: [math::exp(-time), 0.0], ..EdgeState::default() };
             builder.push(&StepRecord {
                 snapshot: Snapshot { time, robots, props: vec![] },
                 edges: vec![edge],
@@ -318,10 +307,10 @@ mod tests {
         let metrics = run();
         let edge = &metrics.edges[0];
         assert!((edge.iae[0] - 1.0).abs() < 1e-4 && (edge.ise[0] - 0.5).abs() < 1e-4);
-        assert!((edge.final_error[0] - (-10.0_f64).exp()).abs() < 1e-12);
+        assert!((edge.final_error[0] - math::exp(-10.0_f64)).abs() < 1e-12);
         assert_eq!(edge.peak_error[0], 1.0);
         let settling = edge.settling_time.expect("it settles");
-        assert!((settling - 10.0_f64.ln()).abs() < 0.011, "{settling}");
+        assert!((settling - math::ln(10.0_f64)).abs() < 0.011, "{settling}");
         assert_eq!(edge.settled_speeds, Some([1.0, 1.0]));
     }
 

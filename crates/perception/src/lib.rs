@@ -1,9 +1,9 @@
 //! What each robot knows of its leader.
 //!
-//! [`observe`] is one look at an instant; [`tracks`] is what an uninterrupted look over the last step would have
-//! seen, for observers that run in continuous time between control samples. Those two are the truth; what a camera
+//! [`observe`] is what is seen at an instant; [`tracks`] is what uninterrupted observation over the last step would
+//! have seen, for observers that run in continuous time between control samples. Those two are the truth; what a camera
 //! makes of it goes from [`imaging`] through [`detect`] to [`pose`]. [`sensors`] puts
-//! all of it behind one interface: who looks when, and when the follower has what it saw.
+//! all of it behind one interface: who measures when, and when the follower has the result.
 
 pub mod detect;
 pub mod imaging;

@@ -1,87 +1,136 @@
-//! What the tables of a run have in their columns.
+//! What the tables of a run have in their columns: a function for every kind of row.
 
-use crate::TableKind;
+use crate::{Column, TableKind};
+use vocabulary::{Contact, EdgeState, MeasurementRecord, Placement, RobotState, Word};
 
-/// Names of the columns of a table, with units.
-pub(crate) fn of(kind: TableKind) -> &'static [&'static str] {
+/// A value of a row.
+pub(crate) enum Cell<'a> {
+    Text(&'a str),
+    Number(f64),
+    Flag(bool),
+}
+
+use Cell::{Flag, Number, Text};
+
+/// Takes the values of a row one after the other, each with the name of its column, which ends in its unit.
+pub(crate) type Row<'a> = dyn FnMut(&'static str, Cell<'_>) + 'a;
+
+/// The columns of a table, empty, and their names.
+pub(crate) fn empty(kind: TableKind) -> Vec<(&'static str, Column)> {
+    let mut columns = vec![];
+    let mut add = |name, cell: Cell<'_>| {
+        let column = match cell {
+            Text(_) => Column::Text(vec![]),
+            Number(_) => Column::Number(vec![]),
+            Flag(_) => Column::Flag(vec![]),
+        };
+        columns.push((name, column));
+    };
     match kind {
-        TableKind::Robots => &[
-            "time_s",
-            "robot",
-            "x_m",
-            "y_m",
-            "heading_rad",
-            "speed_m_s",
-            "acceleration_m_s2",
-            "turn_rate_rad_s",
-            "height_m",
-            "roll_rad",
-            "pitch_rad",
-            "steering_rad",
-            "condition",
-        ],
-        TableKind::Edges => &[
-            "time_s",
-            "leader",
-            "follower",
-            "distance_m",
-            "bearing_rad",
-            "view_angle_rad",
-            "set_distance_m",
-            "set_bearing_rad",
-            "error_distance_m",
-            "error_bearing_rad",
-            "asked_acceleration_m_s2",
-            "asked_turn_rate_rad_s",
-            "applied_acceleration_m_s2",
-            "applied_turn_rate_rad_s",
-            "rate_distance_m_s",
-            "rate_bearing_rad_s",
-            "seen_distance_m",
-            "seen_bearing_rad",
-            "seen_view_angle_rad",
-            "age_s",
-            "sight",
-            "limited",
-            "too_close",
-        ],
-        TableKind::Contacts => &[
-            "first",
-            "second",
-            "begin_s",
-            "end_s",
-            "x_m",
-            "y_m",
-            "z_m",
-            "normal_x",
-            "normal_y",
-            "normal_z",
-            "impulse_n_s",
-        ],
-        TableKind::Props => &["time_s", "prop", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"],
-        TableKind::Measurements => &[
-            "leader",
-            "follower",
-            "outcome",
-            "stamp_s",
-            "arrival_s",
-            "faces",
-            "distance_m",
-            "bearing_rad",
-            "view_angle_rad",
-            "true_distance_m",
-            "true_bearing_rad",
-            "true_view_angle_rad",
-            "deviation_distance_m",
-            "deviation_bearing_rad",
-            "deviation_view_angle_rad",
-            "pan_rad",
-            "region_x_px",
-            "region_y_px",
-            "region_width_px",
-            "region_height_px",
-        ],
+        TableKind::Robots => robot(0.0, "", &RobotState::default(), &mut add),
+        TableKind::Edges => edge(0.0, [""; 2], &EdgeState::default(), &mut add),
+        TableKind::Contacts => contact([""; 2], &Contact::default(), &mut add),
+        TableKind::Props => prop(0.0, "", &Placement::default(), &mut add),
+        TableKind::Measurements => measurement([""; 2], &MeasurementRecord::default(), &mut add),
     }
+    columns
+}
+
+/// A robot at a sample.
+pub(crate) fn robot(time: f64, name: &str, robot: &RobotState, row: &mut Row<'_>) {
+    let (m, a, [left, right, ..]) = (&robot.motion, &robot.attitude, &robot.wheels);
+    row("time_s", Number(time));
+    row("robot", Text(name));
+    row("x_m", Number(m.pose.x));
+    row("y_m", Number(m.pose.y));
+    row("heading_rad", Number(m.pose.heading));
+    row("speed_m_s", Number(m.speed));
+    row("acceleration_m_s2", Number(m.acceleration));
+    row("turn_rate_rad_s", Number(m.turn_rate));
+    row("height_m", Number(a.height));
+    row("roll_rad", Number(a.roll));
+    row("pitch_rad", Number(a.pitch));
+    row("steering_rad", Number(f64::midpoint(left.steering, right.steering)));
+    row("condition", Text(robot.condition.word()));
+}
+
+/// An edge at a sample.
+pub(crate) fn edge(time: f64, [leader, follower]: [&str; 2], edge: &EdgeState, row: &mut Row<'_>) {
+    row("time_s", Number(time));
+    row("leader", Text(leader));
+    row("follower", Text(follower));
+    row("distance_m", Number(edge.relative.distance));
+    row("bearing_rad", Number(edge.relative.bearing));
+    row("view_angle_rad", Number(edge.relative.view_angle));
+    row("set_distance_m", Number(edge.set_point[0]));
+    row("set_bearing_rad", Number(edge.set_point[1]));
+    row("error_distance_m", Number(edge.error[0]));
+    row("error_bearing_rad", Number(edge.error[1]));
+    row("asked_acceleration_m_s2", Number(edge.asked.acceleration));
+    row("asked_turn_rate_rad_s", Number(edge.asked.turn_rate));
+    row("applied_acceleration_m_s2", Number(edge.applied.acceleration));
+    row("applied_turn_rate_rad_s", Number(edge.applied.turn_rate));
+    row("rate_distance_m_s", Number(edge.rates[0]));
+    row("rate_bearing_rad_s", Number(edge.rates[1]));
+    row("seen_distance_m", Number(edge.seen.distance));
+    row("seen_bearing_rad", Number(edge.seen.bearing));
+    row("seen_view_angle_rad", Number(edge.seen.view_angle));
+    row("age_s", Number(edge.age));
+    row("sight", Text(edge.sight.word()));
+    row("limited", Flag(edge.limited));
+    row("too_close", Flag(edge.too_close));
+}
+
+/// A contact that has ended.
+pub(crate) fn contact([first, second]: [&str; 2], contact: &Contact, row: &mut Row<'_>) {
+    row("first", Text(first));
+    row("second", Text(second));
+    row("begin_s", Number(contact.begin));
+    row("end_s", Number(contact.end));
+    row("x_m", Number(contact.place[0]));
+    row("y_m", Number(contact.place[1]));
+    row("z_m", Number(contact.place[2]));
+    row("normal_x", Number(contact.normal[0]));
+    row("normal_y", Number(contact.normal[1]));
+    row("normal_z", Number(contact.normal[2]));
+    row("impulse_n_s", Number(contact.impulse));
+}
+
+/// A prop that can move at a sample.
+pub(crate) fn prop(time: f64, name: &str, placement: &Placement, row: &mut Row<'_>) {
+    row("time_s", Number(time));
+    row("prop", Text(name));
+    for (column, value) in ["x_m", "y_m", "z_m"].into_iter().zip(placement.position) {
+        row(column, Number(value));
+    }
+    for (column, value) in ["qx", "qy", "qz", "qw"].into_iter().zip(placement.rotation) {
+        row(column, Number(value));
+    }
+}
+
+/// A measurement that has arrived.
+pub(crate) fn measurement([leader, follower]: [&str; 2], frame: &MeasurementRecord, row: &mut Row<'_>) {
+    let (measured, truth, region) = (&frame.measurement, &frame.truth, &frame.region);
+    row("leader", Text(leader));
+    row("follower", Text(follower));
+    row("outcome", Text(frame.outcome.word()));
+    row("stamp_s", Number(measured.stamp));
+    row("arrival_s", Number(frame.arrival));
+    row("faces", Number(frame.faces() as f64));
+    row("distance_m", Number(measured.relative.distance));
+    row("bearing_rad", Number(measured.relative.bearing));
+    row("view_angle_rad", Number(measured.relative.view_angle));
+    row("true_distance_m", Number(truth.distance));
+    row("true_bearing_rad", Number(truth.bearing));
+    row("true_view_angle_rad", Number(truth.view_angle));
+    row("deviation_distance_m", Number(measured.deviation[0]));
+    row("deviation_bearing_rad", Number(measured.deviation[1]));
+    row("deviation_view_angle_rad", Number(measured.deviation[2]));
+    row("pan_rad", Number(frame.pan));
+    row("region_x_px", Number(f64::from(region.x)));
+    row("region_y_px", Number(f64::from(region.y)));
+    row("region_width_px", Number(f64::from(region.width)));
+    row("region_height_px", Number(f64::from(region.height)));
 }
 
 #[cfg(test)]
@@ -93,17 +142,12 @@ mod tests {
     fn the_documentation_names_every_column() {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/formats.md");
         let text = std::fs::read_to_string(path).expect("the page");
-        for kind in [
-            TableKind::Robots,
-            TableKind::Edges,
-            TableKind::Contacts,
-            TableKind::Props,
-            TableKind::Measurements,
-        ] {
-            let start = text.find(&format!("**`{}`**", kind.name())).expect("a paragraph");
+        for (name, kind, _) in TableKind::WORDS {
+            let start = text.find(&format!("**`{name}`**")).expect("a paragraph");
             let paragraph = text[start..].split("\n\n").next().expect("an end");
             let named: Vec<&str> = paragraph.split('`').skip(3).step_by(2).collect();
-            assert_eq!(named, of(kind), "{}", kind.name());
+            let columns: Vec<&str> = empty(*kind).into_iter().map(|(column, _)| column).collect();
+            assert_eq!(named, columns, "{name}");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What ran and how it ended.
 
 use serde::{Deserialize, Serialize};
+use vocabulary::{EntityId, FleetInfo};
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -49,6 +50,25 @@ pub struct Manifest {
 pub(crate) const FORMAT: u32 = 2;
 
 impl Manifest {
+    /// That of a run of `fleet` of which nothing else is known.
+    pub(crate) fn of(fleet: &FleetInfo) -> Self {
+        let name = |robot: usize| fleet.name(EntityId::Robot(robot)).to_owned();
+        Self {
+            format: FORMAT,
+            program: "unknown".to_owned(),
+            commit: None,
+            title: fleet.title.clone(),
+            seed: 0,
+            period: 0.0,
+            duration: fleet.duration,
+            robots: fleet.robots.iter().map(|robot| robot.name.clone()).collect(),
+            edges: fleet.edges.iter().map(|edge| [name(edge.leader), name(edge.follower)]).collect(),
+            status: Status::Running,
+            samples: 0,
+            digest: None,
+        }
+    }
+
     /// What is wrong with a run folder of another layout; `None` where this program can read it.
     pub fn other_layout(&self) -> Option<String> {
         (self.format != FORMAT).then(|| {

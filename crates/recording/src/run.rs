@@ -1,10 +1,9 @@
 //! Writing a run folder while the run goes.
 
 use crate::log::{self, Pipe, Roll};
-use crate::manifest::FORMAT;
 use crate::table::{TableKind, TableWriter};
 use crate::{Error, Manifest, Status};
-use metrics::{CertificateMetrics, Digest, ExpectationMetrics, Metrics, MetricsBuilder};
+use metrics::{CertificateMetrics, Digest, JudgedExpectation, Metrics, MetricsBuilder};
 use output::{Claim, write_whole};
 use serde::Serialize;
 use std::fs;
@@ -45,8 +44,6 @@ pub struct Recorder {
     tables: Vec<TableWriter>,
     log: Option<Pipe>,
     metrics: MetricsBuilder,
-    certificates: Vec<CertificateMetrics>,
-    expectations: Vec<ExpectationMetrics>,
     digest: Digest,
     /// Last, so that it is given up when all files are closed.
     _claim: Claim,
@@ -68,9 +65,9 @@ pub struct Finished {
 struct MetricsFile<'a> {
     #[serde(flatten)]
     metrics: &'a Metrics,
-    /// What the scene expects, where somebody has looked.
+    /// What the scene expects, where it was checked.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    expectations: &'a [ExpectationMetrics],
+    expectations: &'a [JudgedExpectation],
 }
 
 /// What a run folder may contain that we wrote ourselves and may replace.
@@ -80,8 +77,8 @@ impl Recorder {
     /// Makes `folder` and writes what is known before the run.
     ///
     /// # Errors
-    /// [`Error::Output`] where the folder holds a run (unless `force`) or anything else, where another run is being written
-    /// there, and where it cannot be written.
+    /// [`Error::Output`] where the folder holds a run (unless `force`) or anything else, where another run is being
+    /// written there, and where it cannot be written.
     pub fn create(folder: &Path, fleet: &FleetInfo, options: RunOptions) -> Result<Self, Error> {
         let ours =
             |folder: &Path| folder.join("manifest.json").exists().then(|| OURS.map(str::to_owned).to_vec());
@@ -90,7 +87,13 @@ impl Recorder {
         fs::create_dir(&tables).map_err(Error::io("create", &tables))?;
         write_whole(&folder.join("scene.toml"), options.scene.as_bytes())?;
         let writer = |kind| TableWriter::create(&tables, kind, options.csv);
-        let manifest = first_manifest(fleet, &options);
+        let manifest = Manifest {
+            program: options.program,
+            commit: options.commit,
+            seed: options.seed,
+            period: options.period,
+            ..Manifest::of(fleet)
+        };
         let log = if options.no_log {
             None
         } else {
@@ -102,8 +105,6 @@ impl Recorder {
             fleet: fleet.clone(),
             tables: TableKind::of(fleet).into_iter().map(writer).collect::<Result<_, _>>()?,
             metrics: MetricsBuilder::new(fleet, options.judging),
-            certificates: Vec::new(),
-            expectations: Vec::new(),
             digest: Digest::default(),
             log,
             manifest,
@@ -128,19 +129,9 @@ impl Recorder {
         Ok(())
     }
 
-    /// What the theorems say of the run, for its metrics.
-    pub fn certify(&mut self, certificates: Vec<CertificateMetrics>) {
-        self.certificates = certificates;
-    }
-
     /// What was measured so far.
     pub fn metrics(&self) -> Metrics {
         self.metrics.finish()
-    }
-
-    /// What became of the scene's expectations, for the file of metrics.
-    pub fn judge(&mut self, expectations: Vec<ExpectationMetrics>) {
-        self.expectations = expectations;
     }
 
     /// Closes the tables and writes metrics and manifest.
@@ -148,29 +139,33 @@ impl Recorder {
     /// # Errors
     /// [`Error`] when the disk does not take it.
     pub fn finish(self, status: Status) -> Result<(Manifest, Metrics), Error> {
-        let Finished { metrics, written, .. } = self.conclude(status);
+        let Finished { metrics, written, .. } = self.conclude(status, vec![], &[]);
         Ok((written?, metrics))
     }
 
-    /// As [`Recorder::finish`]; what came out is told, whether or not the disk takes it.
-    pub fn conclude(mut self, status: Status) -> Finished {
+    /// As [`Recorder::finish`], with what the theorems say of the run and what became of the scene's expectations; what
+    /// came out is told, whether or not the disk takes it.
+    pub fn conclude(
+        mut self,
+        status: Status,
+        certificates: Vec<CertificateMetrics>,
+        expectations: &[JudgedExpectation],
+    ) -> Finished {
         let last = StepRecord { contacts: self.metrics.close_contacts(), ..StepRecord::default() };
-        let metrics =
-            Metrics { certificates: std::mem::take(&mut self.certificates), ..self.metrics.finish() };
+        let metrics = Metrics { certificates, ..self.metrics.finish() };
         let digest = self.digest.text();
         self.manifest.status = status;
         self.manifest.digest = Some(digest.clone());
-        let written = self.close(&last, &metrics);
+        let written = self.close(&last, &MetricsFile { metrics: &metrics, expectations });
         Finished { metrics, digest, written: written.map(|()| self.manifest) }
     }
 
-    fn close(&mut self, last: &StepRecord, metrics: &Metrics) -> Result<(), Error> {
+    fn close(&mut self, last: &StepRecord, file: &MetricsFile<'_>) -> Result<(), Error> {
         for table in &mut self.tables {
             table.push(&self.fleet, last)?;
             table.finish()?;
         }
-        let file = MetricsFile { metrics, expectations: &self.expectations };
-        write_json(&self.folder.join("metrics.json"), &file)?;
+        write_json(&self.folder.join("metrics.json"), file)?;
         self.log.take().map_or(Ok(()), |log| log.finish(&self.manifest))?;
         self.write_manifest()
     }
@@ -189,24 +184,6 @@ impl Recorder {
 
     fn write_manifest(&self) -> Result<(), Error> {
         write_json(&self.folder.join("manifest.json"), &self.manifest)
-    }
-}
-
-fn first_manifest(fleet: &FleetInfo, options: &RunOptions) -> Manifest {
-    let name = |robot: usize| fleet.robots[robot].name.clone();
-    Manifest {
-        format: FORMAT,
-        program: options.program.clone(),
-        commit: options.commit.clone(),
-        title: fleet.title.clone(),
-        seed: options.seed,
-        period: options.period,
-        duration: fleet.duration,
-        robots: fleet.robots.iter().map(|m| m.name.clone()).collect(),
-        edges: fleet.edges.iter().map(|e| [name(e.leader), name(e.follower)]).collect(),
-        status: Status::Running,
-        samples: 0,
-        digest: None,
     }
 }
 

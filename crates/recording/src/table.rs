@@ -3,7 +3,8 @@
 //! A Parquet file is readable only once it is closed, so rows go into small parts, each closed as soon as it is
 //! full, and the parts become one file when the run ends.
 
-use crate::{Error, columns};
+use crate::Error;
+use crate::columns::{self, Cell, Row};
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, RecordBatch, StringArray};
 use arrow_schema::{DataType, Field, Schema};
 use parquet::arrow::ArrowWriter;
@@ -13,21 +14,22 @@ use parquet::file::properties::WriterProperties;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{FleetInfo, Mobility, StepRecord};
+use vocabulary::{Edge, FleetInfo, Mobility, StepRecord, Word, words};
 
-/// The tables of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TableKind {
-    /// Poses and speeds of every robot.
-    Robots,
-    /// Set point, error, command and estimate of every edge.
-    Edges,
-    /// Contacts, each once, when it has ended.
-    Contacts,
-    /// Where the props are that can move.
-    Props,
-    /// Looks of followers at their leaders, when they arrive.
-    Measurements,
+words! {
+    /// The tables of a run; the word is the stem of the file's name.
+    pub enum TableKind {
+        /// Poses and speeds of every robot.
+        Robots = "robots",
+        /// Set point, error, command and estimate of every edge.
+        Edges = "edges",
+        /// Contacts, each once, when it has ended.
+        Contacts = "contacts",
+        /// Where the props are that can move.
+        Props = "props",
+        /// Measurements of followers, when they arrive.
+        Measurements = "measurements",
+    }
 }
 
 /// Values of one column.
@@ -47,139 +49,47 @@ const SAMPLES_PER_PART: usize = 750;
 const ROWS_PER_GROUP: usize = 1 << 17;
 
 impl TableKind {
-    /// Stem of the file's name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Robots => "robots",
-            Self::Edges => "edges",
-            Self::Contacts => "contacts",
-            Self::Props => "props",
-            Self::Measurements => "measurements",
-        }
-    }
-
-    /// Names of the columns, with units.
-    pub fn columns(self) -> &'static [&'static str] {
-        columns::of(self)
-    }
-
     /// The tables that a run of `fleet` has.
     pub fn of(fleet: &FleetInfo) -> Vec<Self> {
         let moving = fleet.props.iter().any(|prop| prop.mobility != Mobility::Fixed);
-        let all = [Self::Robots, Self::Edges, Self::Contacts, Self::Props, Self::Measurements];
         let has = |kind: &Self| match kind {
             Self::Props => moving,
-            Self::Measurements => fleet.looks,
+            Self::Measurements => fleet.has_sensors,
             _ => true,
         };
-        all.into_iter().filter(has).collect()
+        Self::WORDS.iter().map(|(_, kind, _)| *kind).filter(has).collect()
     }
 
-    fn empty_columns(self) -> Vec<Column> {
-        let kind = |name: &&str| match *name {
-            "robot" | "leader" | "follower" | "condition" | "first" | "second" | "prop" | "sight"
-            | "outcome" => Column::Text(vec![]),
-            "limited" | "too_close" => Column::Flag(vec![]),
-            _ => Column::Number(vec![]),
-        };
-        self.columns().iter().map(kind).collect()
-    }
-
-    /// One row per robot or edge of `record`, passed on as text, numbers and flags in the order of the columns.
-    fn rows(self, fleet: &FleetInfo, record: &StepRecord, mut put: impl FnMut(&[&str], &[f64], &[bool])) {
-        let time = record.snapshot.time;
+    /// Shows `row` the values of every row that `record` adds.
+    fn rows(self, fleet: &FleetInfo, record: &StepRecord, row: &mut Row<'_>) {
+        let StepRecord { snapshot, edges, contacts, frames } = record;
+        let pair = |edge: &Edge| [edge.leader, edge.follower].map(|robot| &*fleet.robots[robot].name);
         match self {
             Self::Robots => {
-                for (member, robot) in fleet.robots.iter().zip(&record.snapshot.robots) {
-                    let m = &robot.motion;
-                    let (a, [left, right, ..]) = (&robot.attitude, &robot.wheels);
-                    let numbers = [
-                        time,
-                        m.pose.x,
-                        m.pose.y,
-                        m.pose.heading,
-                        m.speed,
-                        m.acceleration,
-                        m.turn_rate,
-                        a.height,
-                        a.roll,
-                        a.pitch,
-                        f64::midpoint(left.steering, right.steering),
-                    ];
-                    put(&[&member.name, robot.condition.name()], &numbers, &[]);
+                for (member, robot) in fleet.robots.iter().zip(&snapshot.robots) {
+                    columns::robot(snapshot.time, &member.name, robot, row);
                 }
             }
             Self::Edges => {
-                for (edge, state) in fleet.edges.iter().zip(&record.edges) {
-                    let [leader, follower] =
-                        [&*fleet.robots[edge.leader].name, &*fleet.robots[edge.follower].name];
-                    let (r, s) = (&state.relative, state);
-                    let numbers = [
-                        time,
-                        r.distance,
-                        r.bearing,
-                        r.view_angle,
-                        s.set_point[0],
-                        s.set_point[1],
-                        s.error[0],
-                        s.error[1],
-                        s.asked.acceleration,
-                        s.asked.turn_rate,
-                        s.applied.acceleration,
-                        s.applied.turn_rate,
-                        s.rates[0],
-                        s.rates[1],
-                        s.seen.distance,
-                        s.seen.bearing,
-                        s.seen.view_angle,
-                        s.age,
-                    ];
-                    put(&[leader, follower, s.sight.name()], &numbers, &[s.limited, s.too_close]);
+                for (edge, state) in fleet.edges.iter().zip(edges) {
+                    columns::edge(snapshot.time, pair(edge), state, row);
                 }
             }
             Self::Contacts => {
-                for contact in record.contacts.iter().filter(|contact| !contact.open) {
-                    let names = contact.things.map(|thing| fleet.name(thing));
-                    let ([x, y, z], [nx, ny, nz]) = (contact.place, contact.normal);
-                    put(&names, &[contact.begin, contact.end, x, y, z, nx, ny, nz, contact.impulse], &[]);
+                for contact in contacts.iter().filter(|contact| !contact.open) {
+                    columns::contact(contact.things.map(|thing| fleet.name(thing)), contact, row);
                 }
             }
             Self::Props => {
-                for (prop, placement) in fleet.props.iter().zip(&record.snapshot.props) {
-                    if prop.mobility != Mobility::Fixed {
-                        let ([x, y, z], [qx, qy, qz, qw]) = (placement.position, placement.rotation);
-                        put(&[&prop.name], &[time, x, y, z, qx, qy, qz, qw], &[]);
-                    }
+                let placed = fleet.props.iter().zip(&snapshot.props);
+                for (prop, placement) in placed.filter(|(prop, _)| prop.mobility != Mobility::Fixed) {
+                    columns::prop(snapshot.time, &prop.name, placement, row);
                 }
             }
             Self::Measurements => {
-                for frame in &record.frames {
+                for frame in frames {
                     let Some(edge) = fleet.edges.get(frame.edge) else { continue };
-                    let [leader, follower] = [edge.leader, edge.follower].map(|k| &*fleet.robots[k].name);
-                    let (look, truth, region) = (&frame.measurement, &frame.truth, &frame.region);
-                    let [x, y, width, height] =
-                        [region.x, region.y, region.width, region.height].map(f64::from);
-                    let r = look.relative;
-                    let numbers = [
-                        look.stamp,
-                        frame.arrival,
-                        frame.faces() as f64,
-                        r.distance,
-                        r.bearing,
-                        r.view_angle,
-                        truth.distance,
-                        truth.bearing,
-                        truth.view_angle,
-                        look.deviation[0],
-                        look.deviation[1],
-                        look.deviation[2],
-                        frame.pan,
-                        x,
-                        y,
-                        width,
-                        height,
-                    ];
-                    put(&[leader, follower, frame.outcome.name()], &numbers, &[]);
+                    columns::measurement(pair(edge), frame, row);
                 }
             }
         }
@@ -190,7 +100,7 @@ impl TableKind {
 pub(crate) struct TableWriter {
     kind: TableKind,
     folder: PathBuf,
-    columns: Vec<Column>,
+    columns: Vec<(&'static str, Column)>,
     samples: usize,
     parts: usize,
     csv: Option<csv::Writer<File>>,
@@ -201,7 +111,7 @@ impl TableWriter {
         let mut writer = Self {
             kind,
             folder: folder.to_owned(),
-            columns: kind.empty_columns(),
+            columns: columns::empty(kind),
             samples: 0,
             parts: 0,
             csv: None,
@@ -210,14 +120,14 @@ impl TableWriter {
         if csv {
             let path = writer.path("csv");
             let mut file = csv::Writer::from_path(&path).map_err(Error::table(&path))?;
-            file.write_record(kind.columns()).map_err(Error::table(&path))?;
+            file.write_record(writer.columns.iter().map(|(name, _)| name)).map_err(Error::table(&path))?;
             writer.csv = Some(file);
         }
         Ok(writer)
     }
 
     fn path(&self, extension: &str) -> PathBuf {
-        self.folder.join(self.kind.name()).with_extension(extension)
+        self.folder.join(self.kind.word()).with_extension(extension)
     }
 
     fn parts_folder(&self) -> PathBuf {
@@ -229,16 +139,15 @@ impl TableWriter {
     }
 
     pub(crate) fn push(&mut self, fleet: &FleetInfo, record: &StepRecord) -> Result<(), Error> {
-        let columns = &mut self.columns;
-        self.kind.rows(fleet, record, |texts, numbers, flags| {
-            let (mut texts, mut numbers, mut flags) = (texts.iter(), numbers.iter(), flags.iter());
-            for column in columns.iter_mut() {
-                match column {
-                    Column::Text(values) => values.extend(texts.next().map(|t| (*t).to_owned())),
-                    Column::Number(values) => values.extend(numbers.next()),
-                    Column::Flag(values) => values.extend(flags.next()),
-                }
+        let (columns, mut next) = (&mut self.columns, 0);
+        self.kind.rows(fleet, record, &mut |_, cell| {
+            match (&mut columns[next].1, cell) {
+                (Column::Text(values), Cell::Text(text)) => values.push(text.to_owned()),
+                (Column::Number(values), Cell::Number(number)) => values.push(number),
+                (Column::Flag(values), Cell::Flag(flag)) => values.push(flag),
+                _ => {}
             }
+            next = (next + 1) % columns.len();
         });
         self.samples += 1;
         if self.samples == SAMPLES_PER_PART { self.flush() } else { Ok(()) }
@@ -252,7 +161,8 @@ impl TableWriter {
         self.flush_csv()?;
         let path = self.part(self.parts);
         let draft = path.with_extension("tmp");
-        let batch = batch(self.kind, &mut self.columns).map_err(Error::table(&path))?;
+        let values = self.columns.iter_mut().map(|(_, column)| column.take()).collect();
+        let batch = RecordBatch::try_new(schema(self.kind), values).map_err(Error::table(&path))?;
         write_parquet(&draft, &path, &batch.schema(), |writer| {
             writer.write(&batch).map_err(Error::table(&path))
         })?;
@@ -264,9 +174,10 @@ impl TableWriter {
     fn flush_csv(&mut self) -> Result<(), Error> {
         let path = self.path("csv");
         let Some(file) = &mut self.csv else { return Ok(()) };
-        let rows = self.columns.first().map_or(0, Column::len);
+        let rows = self.columns.first().map_or(0, |(_, column)| column.len());
         for row in 0..rows {
-            file.write_record(self.columns.iter().map(|c| c.text(row))).map_err(Error::table(&path))?;
+            file.write_record(self.columns.iter().map(|(_, column)| column.text(row)))
+                .map_err(Error::table(&path))?;
         }
         file.flush().map_err(Error::io("write", &path))
     }
@@ -275,7 +186,7 @@ impl TableWriter {
     pub(crate) fn finish(&mut self) -> Result<(), Error> {
         self.flush()?;
         let (path, draft) = (self.path("parquet"), self.path("parquet.tmp"));
-        let schema = Arc::new(schema(self.kind));
+        let schema = schema(self.kind);
         let all_parts = |writer: &mut ArrowWriter<File>| {
             for index in 0..self.parts {
                 for batch in open(&self.part(index))? {
@@ -325,13 +236,9 @@ impl Column {
     }
 }
 
-fn schema(kind: TableKind) -> Schema {
-    let field = |(name, column): (&&str, Column)| Field::new(*name, column.data_type(), false);
-    Schema::new(kind.columns().iter().zip(kind.empty_columns()).map(field).collect::<Vec<_>>())
-}
-
-fn batch(kind: TableKind, columns: &mut [Column]) -> Result<RecordBatch, arrow_schema::ArrowError> {
-    RecordBatch::try_new(Arc::new(schema(kind)), columns.iter_mut().map(Column::take).collect())
+fn schema(kind: TableKind) -> Arc<Schema> {
+    let field = |(name, column): (&'static str, Column)| Field::new(name, column.data_type(), false);
+    Arc::new(Schema::new(columns::empty(kind).into_iter().map(field).collect::<Vec<_>>()))
 }
 
 /// Writes a whole Parquet file as `draft` and renames it to `path`; where that fails, no draft is left.
@@ -370,28 +277,28 @@ fn open(path: &Path) -> Result<parquet::arrow::arrow_reader::ParquetRecordBatchR
         .map_err(Error::table(path))
 }
 
-/// Reads a table of the run in `folder` back, in the order of [`TableKind::columns`]; of a run that was killed, the
+/// Reads a table of the run in `folder` back, in the order of its columns; of a run that was killed, the
 /// parts that were closed.
 ///
 /// # Errors
 /// [`Error`] when a file is missing or is no such table.
 pub fn read_table(folder: &Path, kind: TableKind) -> Result<Vec<Column>, Error> {
     let tables = folder.join("tables");
-    let whole = tables.join(kind.name()).with_extension("parquet");
+    let whole = tables.join(kind.word()).with_extension("parquet");
     let files =
-        if whole.exists() { vec![whole] } else { parts(&tables.join(kind.name()).with_extension("parts"))? };
-    let mut columns = kind.empty_columns();
+        if whole.exists() { vec![whole] } else { parts(&tables.join(kind.word()).with_extension("parts"))? };
+    let mut columns = columns::empty(kind);
     for path in files {
         for batch in open(&path)? {
             let batch = batch.map_err(Error::table(&path))?;
-            for (column, name) in columns.iter_mut().zip(kind.columns()) {
+            for (name, column) in &mut columns {
                 append(column, batch.column_by_name(name)).ok_or_else(|| {
                     Error::table(&path)(format!("column `{name}` is missing or of another type"))
                 })?;
             }
         }
     }
-    Ok(columns)
+    Ok(columns.into_iter().map(|(_, column)| column).collect())
 }
 
 fn parts(folder: &Path) -> Result<Vec<PathBuf>, Error> {

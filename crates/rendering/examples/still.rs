@@ -12,7 +12,7 @@ mod stage;
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded, overturn, touch};
 use film::png;
 use rendering::{AdapterChoice, Gpu, Renderer, Style, Trail, ViewLayout};
-use sight::looks;
+use sight::measurements;
 use stage::{Path, Play};
 use std::time::Instant;
 use vocabulary::{Body, StepRecord};
@@ -72,7 +72,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     style.scale = number(7, 1.0);
     let layout = ViewLayout::parse(&word(1, "snake"), &names)?;
     let mut record = record(&play, scale, wreck, time);
-    looks(&play.fleet, &mut record);
+    measurements(&play.fleet, &mut record);
     style.detections = !without.contains("detections");
     style.picture_in_picture = words.get(12).and_then(|w| w.parse().ok());
     let picture = renderer.draw(&trail, &record, &layout, &style)?;

@@ -52,7 +52,7 @@ fn shot(fleet: &FleetInfo, snapshot: &Snapshot, camera_model: &CameraModel) -> S
 fn look(fleet: &FleetInfo, snapshot: &Snapshot, shots: &[Shot]) -> Vec<Grey> {
     let mut eyes = GpuCameraRenderer::new(gpu(), fleet).unwrap();
     let mut pictures = Vec::new();
-    eyes.look(snapshot, shots, &mut pictures).unwrap();
+    eyes.render(snapshot, shots, &mut pictures).unwrap();
     pictures
 }
 
@@ -305,13 +305,13 @@ fn what_cannot_be_taken_is_refused() {
     let shot = shot(&fleet, &snapshot, &camera_model);
     let mut eyes = GpuCameraRenderer::new(gpu(), &fleet).unwrap();
     let mut pictures = Vec::new();
-    assert!(eyes.look(&Snapshot::default(), &[shot], &mut pictures).is_err());
+    assert!(eyes.render(&Snapshot::default(), &[shot], &mut pictures).is_err());
     for (width, height) in [(0, 10), (1 << 20, 10)] {
         let region = Region { x: 0, y: 0, width, height };
-        assert!(eyes.look(&snapshot, &[Shot { region, ..shot }], &mut pictures).is_err());
+        assert!(eyes.render(&snapshot, &[Shot { region, ..shot }], &mut pictures).is_err());
     }
-    assert!(eyes.look(&snapshot, &[], &mut pictures).is_ok() && pictures.is_empty());
+    assert!(eyes.render(&snapshot, &[], &mut pictures).is_ok() && pictures.is_empty());
     let large = Shot { region: Region { x: 0, y: 0, width: 4096, height: 3000 }, focal: 4000.0, ..shot };
-    eyes.look(&snapshot, &[large], &mut pictures).unwrap();
+    eyes.render(&snapshot, &[large], &mut pictures).unwrap();
     assert_eq!(pictures[0].values.len(), 4096 * 3000);
 }

@@ -260,7 +260,7 @@ fn golden_pictures() {
 fn views_through_cameras_show_what_the_robot_sees() {
     let play = Play::new(3, Path::Eight);
     let mut record = play.at(12.0);
-    sight::looks(&play.fleet, &mut record);
+    sight::measurements(&play.fleet, &mut record);
     let frame = record.frames[0];
     let corners = frame.tags.iter().flatten().next().copied().unwrap();
     let bare = Style { shadows: true, ..Style::bare() };

@@ -70,7 +70,7 @@ pub(crate) fn laws_apart(scene: &Scene) -> Option<&'static str> {
     if scene.robots.iter().all(|robot| matches!(robot.role, Role::Lead { .. })) {
         Some("nobody follows")
     } else if !scene.robots.iter().all(truth) {
-        Some("followers look, and two of the laws have to be told more than looks tell")
+        Some("followers measure, and two of the laws need more than measurements tell")
     } else if scene.robots.iter().any(|robot| robot.vehicle.kind != VehicleKind::Unicycle) {
         Some("gains on wheels are found for output feedback, and would not fit the other laws")
     } else if scene.robots.len() > MANY {
@@ -93,7 +93,7 @@ pub(crate) fn constants_apart(scene: &Scene) -> Option<&'static str> {
     } else if followers().any(|follow| follow.sensing.kind == SensingKind::Camera) {
         Some("drawing for cameras over and over takes minutes: `echelon budget --epsilon` does it")
     } else if followers().any(|follow| follow.sensing.kind != SensingKind::Truth) {
-        Some("ε follows from the noise of looks: `echelon budget --epsilon` compares")
+        Some("ε follows from the noise of measurements: `echelon budget --epsilon` compares")
     } else if scene.time.mode == TimeMode::Continuous {
         Some("continuous time takes steps of an eighth of ε, and small ones do not come to an end")
     } else if scene.robots.len() > MANY {

@@ -3,7 +3,7 @@
 use std::{fmt, path::Path};
 
 /// One thing that is wrong.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Diagnostic {
     /// File or override it was found in, as shown to the user.
     pub origin: String,
@@ -31,7 +31,7 @@ impl Diagnostics {
 
     pub(crate) fn whole_file(path: &Path, message: String) -> Self {
         let origin = path.display().to_string();
-        Self(vec![Diagnostic { origin, line: 0, column: 0, excerpt: String::new(), width: 1, message }])
+        Self(vec![Diagnostic { origin, width: 1, message, ..Diagnostic::default() }])
     }
 }
 

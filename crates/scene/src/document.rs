@@ -9,7 +9,7 @@ use crate::{
     path_form::PATH,
     patterns::{PatternForm, PatternKeys},
     prop_form::{MOST_PROPS, PropForm, PropKeys},
-    text::{angle_within, flag, form::Number, integer, keys, list, number, table, text},
+    text::{Flag, Text, angle_within, form::Number, integer, keys, list, number, table},
     types::{
         BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, LawPart, ObserverPart, PhysicsPart,
         SensingForm, SensingPart, TimePart, VehiclePart, ViewsPart, VisionPart,
@@ -35,9 +35,9 @@ keys! {
         /// Version of this format.
         schema: u64 = integer::<u64>(SCHEMA_VERSION, SCHEMA_VERSION), required;
         /// Title shown in pictures and reports.
-        title: String = text(200), required;
+        title: String = Text(200), required;
         /// What the experiment is about.
-        description: String = text(10_000), or(String::new());
+        description: String = Text(10_000), or(String::new());
         /// Seed of everything random.
         seed: u64 = integer::<u64>(0, i64::MAX as u64), or(1);
         /// Length, control period and mode of the run.
@@ -157,7 +157,7 @@ keys! {
         /// What the robot is called, in place of the name that it has by its place.
         name: String = NameForm::WHOLE, optional;
         /// Whether its place stays empty; who follows that place needs a `leader` of its own then.
-        absent: bool = flag(), optional;
+        absent: bool = Flag, optional;
         /// Name of the robot that it follows, in place of the shape's.
         leader: String = NameForm::WHOLE, optional;
         /// Wanted distance from the robot it follows, m, in place of the shape's.
@@ -181,7 +181,7 @@ keys! {
         /// It holds from the first control sample at or after this on, s.
         at: f64 = number("s").from(0.0).up_to(1e5), required;
         /// What is set, as after `--set`, on top of what earlier changes have set: "robots.follower-1.distance=1.5".
-        set: Vec<String> = list(text(10_000), 0, 10_000), required;
+        set: Vec<String> = list(Text(10_000), 0, 10_000), required;
     }
 }
 

@@ -1,6 +1,7 @@
 //! Reading text files that somebody named: one clear message for each way this can fail.
 
-use crate::text::{Node, Reporter};
+use crate::text::{Form, Node, Reporter};
+use serde_json::{Value as Json, json};
 use std::{
     fs::File,
     io::{ErrorKind, Read},
@@ -36,22 +37,32 @@ pub(crate) fn read_text(path: &Path) -> Result<String, String> {
     })
 }
 
-/// Reads a file that a scene names, lying beside it: its text, and what to call it in notes; `None` after a note.
-pub(crate) fn read_beside(node: &Node, reporter: &mut Reporter) -> Option<(String, usize)> {
-    let Some(name) = node.as_text() else {
-        reporter.wrong(node, "the name of a CSV file");
-        return None;
-    };
-    let path = reporter.beside_scene(name);
-    match read_text(&path) {
-        Ok(text) => {
-            let source = reporter.add_source(path.display().to_string(), &text);
-            reporter.files.push(path);
-            Some((text, source))
+/// The name of a CSV file beside the scene, which the function reads: its text, and what to call it in notes.
+pub(crate) struct FileForm<T>(pub(crate) fn(&str, usize, &mut Reporter) -> Option<T>);
+
+impl<T> Form for FileForm<T> {
+    type Out = T;
+
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<T> {
+        let Some(name) = node.as_text() else {
+            reporter.wrong(node, "the name of a CSV file");
+            return None;
+        };
+        let path = reporter.beside_scene(name);
+        match read_text(&path) {
+            Ok(text) => {
+                let source = reporter.add_source(path.display().to_string(), &text);
+                reporter.files.push(path);
+                self.0(&text, source, reporter)
+            }
+            Err(fault) => {
+                reporter.report(node.place, format!("{}: {fault}", path.display()));
+                None
+            }
         }
-        Err(fault) => {
-            reporter.report(node.place, format!("{}: {fault}", path.display()));
-            None
-        }
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "string" })
     }
 }

@@ -2,14 +2,14 @@
 
 use crate::{
     Ground, Noise, Patch, Relief,
-    heights_file::{HEIGHT, HeightsForm, wrong_length, wrong_size},
+    heights_file::{HEIGHT, HEIGHTS_FILE, wrong_length, wrong_size},
     relief,
     text::{
-        Form, Found, Keys, Node, Reporter, Span, Value, couple,
+        Couple, Form, Found, Keys, Node, Reporter, Span, Value,
         form::Number,
         integer, keys,
         keys::{TableReader, one_of},
-        kinds::{KindFound, KindKeys, Kinds, kind},
+        kinds::{Kind, KindFound, Kinds},
         list, number, table,
     },
 };
@@ -100,11 +100,11 @@ keys! {
     struct TableKeys {
         /// CSV file of heights in m beside the scene: no header, rows along x, the first with the smallest y; or give
         /// `heights`.
-        file: Vec<Vec<f64>> = HeightsForm, optional;
+        file: Vec<Vec<f64>> = HEIGHTS_FILE, optional;
         /// Rows of heights in m along x, the first with the smallest y; or give `file`.
         heights: Vec<Vec<f64>> = list(list(HEIGHT, 0, 1_000_000), 0, 1_000_000), optional;
         /// The point with the smallest x and y, [m, m].
-        origin: [f64; 2] = couple(number("m"), number("m")), or([0.0; 2]);
+        origin: [f64; 2] = Couple(number("m"), number("m")), or([0.0; 2]);
         /// Distance between neighbouring points, m.
         cell: f64 = CELL, required;
     }
@@ -137,33 +137,29 @@ struct WrittenGround {
     seeded: bool,
 }
 
-impl KindKeys<WrittenGround> for FlatKeys {
-    fn make(self, _: &Node, _: &mut Reporter) -> Option<WrittenGround> {
-        Some(WrittenGround { relief: Relief::Flat { cell: self.cell?.value }, seeded: true })
-    }
+fn level(keys: FlatKeys, _: &Node, _: &mut Reporter) -> Option<WrittenGround> {
+    Some(WrittenGround { relief: Relief::Flat { cell: keys.cell?.value }, seeded: true })
 }
 
-/// Checks noise and hands it on as the kind that `relief` makes of it.
+/// Checks noise and hands it on as the kind that `$relief` makes of it.
 macro_rules! noise {
-    ($keys:ident, $relief:path) => {
-        impl KindKeys<WrittenGround> for $keys {
-            fn make(self, _: &Node, reporter: &mut Reporter) -> Option<WrittenGround> {
-                let (region, cell) = (self.region?, self.cell?);
-                let noise = Noise {
-                    amplitude: self.amplitude?.value,
-                    wavelength: self.wavelength?.value,
-                    seed: self.seed.as_ref().map_or(0, |seed| seed.value),
-                    region: region.value,
-                    cell: cell.value,
-                };
-                check_noise(&noise, cell.place, region.place, reporter)?;
-                Some(WrittenGround { relief: $relief(noise), seeded: self.seed.is_some() })
-            }
+    ($make:ident, $keys:ident, $relief:path) => {
+        fn $make(keys: $keys, _: &Node, reporter: &mut Reporter) -> Option<WrittenGround> {
+            let (region, cell) = (keys.region?, keys.cell?);
+            let noise = Noise {
+                amplitude: keys.amplitude?.value,
+                wavelength: keys.wavelength?.value,
+                seed: keys.seed.as_ref().map_or(0, |seed| seed.value),
+                region: region.value,
+                cell: cell.value,
+            };
+            check_noise(&noise, cell.place, region.place, reporter)?;
+            Some(WrittenGround { relief: $relief(noise), seeded: keys.seed.is_some() })
         }
     };
 }
-noise!(RoughKeys, Relief::Rough);
-noise!(HillKeys, Relief::Hills);
+noise!(rough, RoughKeys, Relief::Rough);
+noise!(hills, HillKeys, Relief::Hills);
 
 fn check_noise(noise: &Noise, cell: Span, region: Span, reporter: &mut Reporter) -> Option<()> {
     if noise.cell > 0.25 * noise.wavelength {
@@ -190,25 +186,22 @@ fn check_points(region: [f64; 4], cell: f64, place: Span, reporter: &mut Reporte
     None
 }
 
-impl KindKeys<WrittenGround> for TableKeys {
-    fn make(self, node: &Node, reporter: &mut Reporter) -> Option<WrittenGround> {
-        let (heights, from_file) = one_of(node, ["heights", "file"], [self.heights, self.file], reporter)?;
-        if !from_file {
-            let wanted = heights.value.first().map(Vec::len);
-            let rows = heights.value.iter().zip(node.items("heights")).enumerate();
-            let wrong = rows.filter_map(|(index, (row, node))| {
-                Some((node.place, wrong_length(index + 1, row.len(), wanted)?))
-            });
-            let size = wrong_size(&heights.value).map(|fault| (heights.place, fault));
-            if let Some((place, fault)) = wrong.chain(size).next() {
-                reporter.report(place, fault);
-                return None;
-            }
+fn heights(keys: TableKeys, node: &Node, reporter: &mut Reporter) -> Option<WrittenGround> {
+    let (heights, from_file) = one_of(node, ["heights", "file"], [keys.heights, keys.file], reporter)?;
+    if !from_file {
+        let wanted = heights.value.first().map(Vec::len);
+        let rows = heights.value.iter().zip(node.items("heights")).enumerate();
+        let wrong = rows.filter_map(|(index, (row, node))| {
+            Some((node.place, wrong_length(index + 1, row.len(), wanted)?))
+        });
+        let size = wrong_size(&heights.value).map(|fault| (heights.place, fault));
+        if let Some((place, fault)) = wrong.chain(size).next() {
+            reporter.report(place, fault);
+            return None;
         }
-        let relief =
-            Relief::Table { origin: self.origin?.value, cell: self.cell?.value, heights: heights.value };
-        Some(WrittenGround { relief, seeded: true })
     }
+    let relief = Relief::Table { origin: keys.origin?.value, cell: keys.cell?.value, heights: heights.value };
+    Some(WrittenGround { relief, seeded: true })
 }
 
 /// Kinds of ground.
@@ -216,10 +209,10 @@ const RELIEF: Kinds<WrittenGround> = Kinds {
     key: "kind",
     usual: Some("flat"),
     all: &[
-        kind::<_, FlatKeys>("flat"),
-        kind::<_, RoughKeys>("rough"),
-        kind::<_, HillKeys>("hills"),
-        kind::<_, TableKeys>("table"),
+        &Kind { word: "flat", make: level },
+        &Kind { word: "rough", make: rough },
+        &Kind { word: "hills", make: hills },
+        &Kind { word: "table", make: heights },
     ],
 };
 

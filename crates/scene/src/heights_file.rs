@@ -1,11 +1,10 @@
 //! Heights of the ground, in files beside the scene.
 
 use crate::{
-    files::read_beside,
+    files::FileForm,
     table_file::{line_at, separator, why},
-    text::{Form, Node, Reporter, Span, form::Number, number},
+    text::{Reporter, Span, form::Number, number},
 };
-use serde_json::{Value as Json, json};
 use vocabulary::counted;
 
 /// One height.
@@ -14,20 +13,7 @@ pub(crate) const HEIGHT: Number = number("m").from(-1000.0).up_to(1000.0);
 pub(crate) const MOST_HEIGHTS: usize = 300_000;
 
 /// The name of a CSV file of heights: no header, a row of numbers for each y, the smallest y first.
-pub(crate) struct HeightsForm;
-
-impl Form for HeightsForm {
-    type Out = Vec<Vec<f64>>;
-
-    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Vec<Vec<f64>>> {
-        let (text, source) = read_beside(node, reporter)?;
-        read_rows(&text, source, reporter)
-    }
-
-    fn schema(&self) -> Json {
-        json!({ "type": "string" })
-    }
-}
+pub(crate) const HEIGHTS_FILE: FileForm<Vec<Vec<f64>>> = FileForm(read_rows);
 
 fn read_rows(text: &str, source: usize, reporter: &mut Reporter) -> Option<Vec<Vec<f64>>> {
     let mut table = csv::ReaderBuilder::new()

@@ -3,13 +3,12 @@
 use crate::{
     Diagnostics, Override, Scene,
     changes::changes,
-    document::{Document, SCHEMA_VERSION},
+    document::Document,
     files::read_text,
     resolve::resolve,
     shipped::{Shipped, nearest_shipped, shipped},
     text::{Form, Node, Reporter, table},
 };
-use serde::Serialize;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -38,27 +37,13 @@ pub(crate) fn parse(text: &str, path: &Path, overrides: &[Override]) -> Result<L
         return Err(Diagnostics::whole_file(path, fault.to_owned()));
     }
     let mut reporter = Reporter::new(path.parent().unwrap_or(Path::new("")));
-    let scene = check(text, path, overrides, &mut reporter);
-    match scene {
+    match check(text, path, overrides, &mut reporter) {
         Some(scene) if reporter.is_clean() => {
             let files = [path.to_owned()].into_iter().chain(reporter.files).collect();
             Ok(Loaded { scene, files })
         }
         _ => Err(reporter.into_diagnostics()),
     }
-}
-
-/// The scene as TOML: see [`Scene::to_toml`].
-pub(crate) fn to_toml(scene: &Scene) -> String {
-    /// A scene as a file has it.
-    #[derive(Serialize)]
-    struct File<'a> {
-        schema: u64,
-        #[serde(flatten)]
-        scene: &'a Scene,
-    }
-    // A checked scene holds nothing that TOML cannot write, as the round trips of the tests show.
-    toml::to_string(&File { schema: SCHEMA_VERSION, scene }).unwrap_or_default()
 }
 
 /// The shipped scene that a path names, where there is no file; a folder of that name is none.

@@ -1,16 +1,15 @@
 //! What robots and props have in common as they are written: names and poses.
 
 use crate::text::{
-    Form, Node, Reporter, angle_of_turns,
+    Form, Node, Reporter, Triple, angle_of_turns,
     form::{Angle, Number},
-    lists::Triple,
-    number, triple,
+    number,
 };
 use serde_json::{Value as Json, json};
 use unicode_normalization::char::is_combining_mark;
 
 /// Start pose [m, m, rad].
-pub(crate) const POSE: Triple<Number, Number, Angle> = triple(number("m"), number("m"), angle_of_turns(10.0));
+pub(crate) const POSE: Triple<Number, Number, Angle> = Triple(number("m"), number("m"), angle_of_turns(10.0));
 
 /// A robot's or prop's name: fit for paths of overrides, columns of tables and file names.
 pub(crate) struct NameForm {

@@ -2,14 +2,14 @@
 
 use crate::{
     Path, SpeedProfile,
-    table_file::{CsvForm, check_rising},
+    table_file::{ROWS_FILE, check_rising},
     text::{
-        Form, Node, Reporter, couple, flag,
+        Couple, Flag, Form, Node, Reporter, Triple,
         form::Number,
         keys,
         keys::one_of,
-        kinds::{KindKeys, Kinds, kind},
-        list, number, table, triple,
+        kinds::{Kind, Kinds},
+        list, number, table,
         words::Words,
     },
 };
@@ -90,9 +90,9 @@ keys! {
     /// A smooth curve through points.
     struct WaypointsKeys {
         /// World coordinates [x, y], m; the robot starts at the first.
-        points: Vec<[f64; 2]> = list(couple(number("m"), number("m")), 2, MOST_ROWS), required;
+        points: Vec<[f64; 2]> = list(Couple(number("m"), number("m")), 2, MOST_ROWS), required;
         /// Whether the curve returns to its first point and goes on.
-        closed: bool = flag(), or(false);
+        closed: bool = Flag, or(false);
         /// Speed along the curve.
         speed: SpeedProfile = SpeedForm, or(SpeedProfile::Constant(1.0));
     }
@@ -102,9 +102,9 @@ keys! {
     /// Speed and turn rate from a table, smooth in between without overshoot, held after its last row.
     struct TableKeys {
         /// CSV file with columns t (s), v (m/s), omega (rad/s), beside the scene; or give `rows`.
-        file: Vec<[f64; 3]> = CsvForm, optional;
+        file: Vec<[f64; 3]> = ROWS_FILE, optional;
         /// Rows of [time in s, speed in m/s, turn rate in rad/s], time rising from 0; or give `file`.
-        rows: Vec<[f64; 3]> = list(triple(TIME, SPEED, TURN_RATE), 1, MOST_ROWS), optional;
+        rows: Vec<[f64; 3]> = list(Triple(TIME, SPEED, TURN_RATE), 1, MOST_ROWS), optional;
     }
 }
 
@@ -115,9 +115,9 @@ keys! {
     /// A speed that changes along the way, smooth between its rows.
     struct SpeedKeys {
         /// Rows of [distance travelled in m, speed in m/s], rising from 0; or give `time`.
-        distance: Vec<[f64; 2]> = list(couple(number("m").from(0.0), SPEED), 1, MOST_ROWS), optional;
+        distance: Vec<[f64; 2]> = list(Couple(number("m").from(0.0), SPEED), 1, MOST_ROWS), optional;
         /// Rows of [time in s, speed in m/s], rising from 0; or give `distance`.
-        time: Vec<[f64; 2]> = list(couple(TIME, SPEED), 1, MOST_ROWS), optional;
+        time: Vec<[f64; 2]> = list(Couple(TIME, SPEED), 1, MOST_ROWS), optional;
     }
 }
 
@@ -146,97 +146,81 @@ impl Form for SpeedForm {
     }
 }
 
-impl KindKeys<Path> for ConstantKeys {
-    fn make(self, _: &Node, _: &mut Reporter) -> Option<Path> {
-        Some(Path::Constant { speed: self.speed?.value, turn_rate: self.turn_rate?.value })
-    }
+fn constant(keys: ConstantKeys, _: &Node, _: &mut Reporter) -> Option<Path> {
+    Some(Path::Constant { speed: keys.speed?.value, turn_rate: keys.turn_rate?.value })
 }
 
-impl KindKeys<Path> for SinusoidKeys {
-    fn make(self, _: &Node, reporter: &mut Reporter) -> Option<Path> {
-        let (speed, amplitude) = (self.speed?.value, self.speed_amplitude?);
-        if amplitude.value.abs() > speed {
-            let message =
-                format!("`speed_amplitude` must be at most `speed`, {speed} m/s: nothing drives backwards");
-            reporter.report(amplitude.place, message);
-        }
-        Some(Path::Sinusoid {
-            speed,
-            speed_amplitude: amplitude.value,
-            speed_rate: self.speed_rate?.value,
-            turn_rate: self.turn_rate?.value,
-            turn_rate_amplitude: self.turn_rate_amplitude?.value,
-            turn_rate_rate: self.turn_rate_rate?.value,
-        })
+fn sinusoid(keys: SinusoidKeys, _: &Node, reporter: &mut Reporter) -> Option<Path> {
+    let (speed, amplitude) = (keys.speed?.value, keys.speed_amplitude?);
+    if amplitude.value.abs() > speed {
+        let message =
+            format!("`speed_amplitude` must be at most `speed`, {speed} m/s: nothing drives backwards");
+        reporter.report(amplitude.place, message);
     }
+    Some(Path::Sinusoid {
+        speed,
+        speed_amplitude: amplitude.value,
+        speed_rate: keys.speed_rate?.value,
+        turn_rate: keys.turn_rate?.value,
+        turn_rate_amplitude: keys.turn_rate_amplitude?.value,
+        turn_rate_rate: keys.turn_rate_rate?.value,
+    })
 }
 
-impl KindKeys<Path> for CircleKeys {
-    fn make(self, node: &Node, reporter: &mut Reporter) -> Option<Path> {
-        let speed = self.speed?.value;
-        let (size, by_turn_rate) =
-            one_of(node, ["radius", "turn_rate"], [self.radius, self.turn_rate], reporter)?;
-        if by_turn_rate && let Some(direction) = self.direction {
-            reporter.report(
-                direction.place,
-                "the sign of `turn_rate` says the direction already; left is positive",
-            );
-            return None;
-        }
-        if size.value == 0.0 {
-            reporter.report(
-                size.place,
-                "a circle needs a `turn_rate` other than 0; a straight line is kind `constant`",
-            );
-            return None;
-        }
-        let sign = self.direction.map_or(1.0, |direction| direction.value);
-        let turn_rate = if by_turn_rate { size.value } else { sign * speed / size.value };
-        Some(Path::Circle { speed, turn_rate })
+fn circle(keys: CircleKeys, node: &Node, reporter: &mut Reporter) -> Option<Path> {
+    let speed = keys.speed?.value;
+    let (size, by_turn_rate) =
+        one_of(node, ["radius", "turn_rate"], [keys.radius, keys.turn_rate], reporter)?;
+    if by_turn_rate && let Some(direction) = keys.direction {
+        reporter
+            .report(direction.place, "the sign of `turn_rate` says the direction already; left is positive");
+        return None;
     }
+    if size.value == 0.0 {
+        reporter.report(
+            size.place,
+            "a circle needs a `turn_rate` other than 0; a straight line is kind `constant`",
+        );
+        return None;
+    }
+    let sign = keys.direction.map_or(1.0, |direction| direction.value);
+    let turn_rate = if by_turn_rate { size.value } else { sign * speed / size.value };
+    Some(Path::Circle { speed, turn_rate })
 }
 
-impl KindKeys<Path> for FigureEightKeys {
-    fn make(self, node: &Node, reporter: &mut Reporter) -> Option<Path> {
-        let speed = self.speed?.value;
-        let (size, by_period) = one_of(node, ["length", "period"], [self.length, self.period], reporter)?;
-        Some(Path::FigureEight { speed, length: if by_period { speed * size.value } else { size.value } })
-    }
+fn figure_eight(keys: FigureEightKeys, node: &Node, reporter: &mut Reporter) -> Option<Path> {
+    let speed = keys.speed?.value;
+    let (size, by_period) = one_of(node, ["length", "period"], [keys.length, keys.period], reporter)?;
+    Some(Path::FigureEight { speed, length: if by_period { speed * size.value } else { size.value } })
 }
 
-impl KindKeys<Path> for WaypointsKeys {
-    fn make(self, _: &Node, reporter: &mut Reporter) -> Option<Path> {
-        let (points, closed) = (self.points?, self.closed?.value);
-        let (place, points) = (points.place, points.value);
-        if closed && points.len() < 3 {
-            reporter.report(place, "a closed curve needs at least three points");
-        }
-        let back = if closed { points.first() } else { None };
-        let next = points.iter().skip(1).chain(back);
-        // Closer than this there is no telling in which direction the curve goes.
-        if points.iter().zip(next).any(|(a, b)| math::hypot(a[0] - b[0], a[1] - b[1]) < 1e-3) {
-            let hint = if closed && points.first() == points.last() {
-                ": a closed curve comes back by itself, so leave out the last point"
-            } else {
-                ""
-            };
-            reporter.report(
-                place,
-                format!("neighbouring points of a curve must be at least 0.001 m apart{hint}"),
-            );
-        }
-        Some(Path::Waypoints { points, closed, speed: self.speed?.value })
+fn waypoints(keys: WaypointsKeys, _: &Node, reporter: &mut Reporter) -> Option<Path> {
+    let (points, closed) = (keys.points?, keys.closed?.value);
+    let (place, points) = (points.place, points.value);
+    if closed && points.len() < 3 {
+        reporter.report(place, "a closed curve needs at least three points");
     }
+    let back = if closed { points.first() } else { None };
+    let next = points.iter().skip(1).chain(back);
+    // Closer than this there is no telling in which direction the curve goes.
+    if points.iter().zip(next).any(|(a, b)| math::hypot(a[0] - b[0], a[1] - b[1]) < 1e-3) {
+        let hint = if closed && points.first() == points.last() {
+            ": a closed curve comes back by itself, so leave out the last point"
+        } else {
+            ""
+        };
+        reporter
+            .report(place, format!("neighbouring points of a curve must be at least 0.001 m apart{hint}"));
+    }
+    Some(Path::Waypoints { points, closed, speed: keys.speed?.value })
 }
 
-impl KindKeys<Path> for TableKeys {
-    fn make(self, node: &Node, reporter: &mut Reporter) -> Option<Path> {
-        let (rows, from_file) = one_of(node, ["rows", "file"], [self.rows, self.file], reporter)?;
-        if !from_file {
-            check_rising(rows.value.iter().map(|row| row[0]), rows.place, reporter);
-        }
-        Some(Path::Table { rows: rows.value })
+fn from_table(keys: TableKeys, node: &Node, reporter: &mut Reporter) -> Option<Path> {
+    let (rows, from_file) = one_of(node, ["rows", "file"], [keys.rows, keys.file], reporter)?;
+    if !from_file {
+        check_rising(rows.value.iter().map(|row| row[0]), rows.place, reporter);
     }
+    Some(Path::Table { rows: rows.value })
 }
 
 /// A lead robot's path.
@@ -244,11 +228,11 @@ pub(crate) const PATH: Kinds<Path> = Kinds {
     key: "kind",
     usual: None,
     all: &[
-        kind::<_, ConstantKeys>("constant"),
-        kind::<_, SinusoidKeys>("sinusoid"),
-        kind::<_, CircleKeys>("circle"),
-        kind::<_, FigureEightKeys>("figure-eight"),
-        kind::<_, WaypointsKeys>("waypoints"),
-        kind::<_, TableKeys>("table"),
+        &Kind { word: "constant", make: constant },
+        &Kind { word: "sinusoid", make: sinusoid },
+        &Kind { word: "circle", make: circle },
+        &Kind { word: "figure-eight", make: figure_eight },
+        &Kind { word: "waypoints", make: waypoints },
+        &Kind { word: "table", make: from_table },
     ],
 };

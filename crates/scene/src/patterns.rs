@@ -7,7 +7,7 @@ use crate::{
     text::{
         Form, Found, Keys, Node, Reporter, integer, keys,
         keys::TableReader,
-        kinds::{KindFound, KindKeys, Kinds, kind},
+        kinds::{Kind, KindFound, Kinds},
         number,
     },
 };
@@ -110,47 +110,39 @@ fn beside([x, y, heading]: [f64; 3], forward: f64, left: f64) -> Pose {
     Pose::new(x, y, heading)
 }
 
-impl KindKeys<Layout> for SlalomKeys {
-    fn make(self, _: &Node, _: &mut Reporter) -> Option<Layout> {
-        let (pose, spacing, offset) = (self.pose?.value, self.spacing?.value, self.offset?.value);
-        let solid = Solid::Cone { radius: self.radius?.value, height: self.height?.value };
-        let cone = |index: usize| {
-            let left = if index.is_multiple_of(2) { offset } else { -offset };
-            (solid, beside(pose, index as f64 * spacing, left))
-        };
-        Some(Layout::Placed((0..self.count?.value).map(cone).collect()))
-    }
+fn slalom(keys: SlalomKeys, _: &Node, _: &mut Reporter) -> Option<Layout> {
+    let (pose, spacing, offset) = (keys.pose?.value, keys.spacing?.value, keys.offset?.value);
+    let solid = Solid::Cone { radius: keys.radius?.value, height: keys.height?.value };
+    let cone = |index: usize| {
+        let left = if index.is_multiple_of(2) { offset } else { -offset };
+        (solid, beside(pose, index as f64 * spacing, left))
+    };
+    Some(Layout::Placed((0..keys.count?.value).map(cone).collect()))
 }
 
-impl KindKeys<Layout> for CorridorKeys {
-    fn make(self, _: &Node, _: &mut Reporter) -> Option<Layout> {
-        let (length, thickness) = (self.length?.value, self.thickness?.value);
-        let (pose, left) = (self.pose?.value, 0.5 * (self.width?.value + thickness));
-        let solid = Solid::Block { size: [length, thickness, self.height?.value] };
-        let wall = |left| (solid, beside(pose, 0.5 * length, left));
-        Some(Layout::Placed([left, -left].map(wall).to_vec()))
-    }
+fn corridor(keys: CorridorKeys, _: &Node, _: &mut Reporter) -> Option<Layout> {
+    let (length, thickness) = (keys.length?.value, keys.thickness?.value);
+    let (pose, left) = (keys.pose?.value, 0.5 * (keys.width?.value + thickness));
+    let solid = Solid::Block { size: [length, thickness, keys.height?.value] };
+    let wall = |left| (solid, beside(pose, 0.5 * length, left));
+    Some(Layout::Placed([left, -left].map(wall).to_vec()))
 }
 
-impl KindKeys<Layout> for GateKeys {
-    fn make(self, _: &Node, _: &mut Reporter) -> Option<Layout> {
-        let (pose, radius) = (self.pose?.value, self.radius?.value);
-        let left = 0.5 * self.width?.value + radius;
-        let solid = Solid::Cylinder { radius, height: self.height?.value };
-        Some(Layout::Placed([left, -left].map(|left| (solid, beside(pose, 0.0, left))).to_vec()))
-    }
+fn gate(keys: GateKeys, _: &Node, _: &mut Reporter) -> Option<Layout> {
+    let (pose, radius) = (keys.pose?.value, keys.radius?.value);
+    let left = 0.5 * keys.width?.value + radius;
+    let solid = Solid::Cylinder { radius, height: keys.height?.value };
+    Some(Layout::Placed([left, -left].map(|left| (solid, beside(pose, 0.0, left))).to_vec()))
 }
 
-impl KindKeys<Layout> for FieldKeys {
-    fn make(self, _: &Node, _: &mut Reporter) -> Option<Layout> {
-        Some(Layout::Field(PatternField {
-            count: self.count?,
-            seed: self.seed.map(|seed| seed.value),
-            region: self.region?.value,
-            keep_clear: self.keep_clear?.value,
-            solid: self.prop?.value.solid,
-        }))
-    }
+fn field(keys: FieldKeys, _: &Node, _: &mut Reporter) -> Option<Layout> {
+    Some(Layout::Field(PatternField {
+        count: keys.count?,
+        seed: keys.seed.map(|seed| seed.value),
+        region: keys.region?.value,
+        keep_clear: keys.keep_clear?.value,
+        solid: keys.prop?.value.solid,
+    }))
 }
 
 /// Kinds of patterns.
@@ -158,10 +150,10 @@ const PATTERNS: Kinds<Layout> = Kinds {
     key: "kind",
     usual: None,
     all: &[
-        kind::<_, SlalomKeys>("slalom"),
-        kind::<_, CorridorKeys>("corridor"),
-        kind::<_, GateKeys>("gate"),
-        kind::<_, FieldKeys>("field"),
+        &Kind { word: "slalom", make: slalom },
+        &Kind { word: "corridor", make: corridor },
+        &Kind { word: "gate", make: gate },
+        &Kind { word: "field", make: field },
     ],
 };
 

@@ -5,13 +5,12 @@ use crate::{
     names::{NameForm, POSE},
     path_form::PATH,
     text::{
-        Form, Found, Keys, Node, Reporter, couple,
+        Couple, Form, Found, Keys, Node, Reporter, Triple,
         form::Number,
         keys,
         keys::TableReader,
-        kinds::{KindFound, KindKeys, KindOption, Kinds, kind},
-        lists::Triple,
-        number, triple,
+        kinds::{Kind, KindFound, KindOption, Kinds},
+        number,
     },
 };
 use serde_json::Value as Json;
@@ -23,7 +22,7 @@ pub(crate) const MOST_PROPS: usize = 2000;
 /// A measure of a prop.
 pub(crate) const MEASURE: Number = number("m").above(0.0).up_to(1000.0);
 /// [length, width, height].
-const SIZE: Triple<Number, Number, Number> = triple(MEASURE, MEASURE, MEASURE);
+const SIZE: Triple<Number, Number, Number> = Triple(MEASURE, MEASURE, MEASURE);
 /// What makes a prop loose.
 pub(crate) const MASS: Number = number("kg").above(0.0);
 /// Of a prop's surface.
@@ -71,9 +70,9 @@ keys! {
     /// A long block between two points; it has no `pose`.
     struct WallKeys {
         /// One end [x, y], m.
-        from: [f64; 2] = couple(number("m"), number("m")), required;
+        from: [f64; 2] = Couple(number("m"), number("m")), required;
         /// The other end [x, y], m.
-        to: [f64; 2] = couple(number("m"), number("m")), required;
+        to: [f64; 2] = Couple(number("m"), number("m")), required;
         /// From foot to top, m.
         height: f64 = MEASURE, or(0.5);
         /// From side to side, m.
@@ -92,54 +91,46 @@ fn anywhere(solid: Solid) -> Measured {
     Measured { solid, pose: None }
 }
 
-impl KindKeys<Measured> for BlockKeys {
-    fn make(self, _: &Node, _: &mut Reporter) -> Option<Measured> {
-        Some(anywhere(Solid::Block { size: self.size?.value }))
+fn wall(keys: WallKeys, _: &Node, reporter: &mut Reporter) -> Option<Measured> {
+    let (from, to) = (keys.from?.value, keys.to?);
+    let [dx, dy] = [to.value[0] - from[0], to.value[1] - from[1]];
+    let length = math::hypot(dx, dy);
+    if length < 1e-3 {
+        reporter.report(to.place, "a wall must be at least 0.001 m long: `to` is where `from` is");
+        return None;
     }
+    let pose = Pose::new(from[0] + 0.5 * dx, from[1] + 0.5 * dy, math::atan2(dy, dx));
+    let size = [length, keys.thickness?.value, keys.height?.value];
+    Some(Measured { solid: Solid::Block { size }, pose: Some(pose) })
 }
 
-impl KindKeys<Measured> for RampKeys {
-    fn make(self, _: &Node, _: &mut Reporter) -> Option<Measured> {
-        Some(anywhere(Solid::Wedge { size: self.size?.value }))
-    }
-}
-
-impl KindKeys<Measured> for CylinderKeys {
-    fn make(self, _: &Node, _: &mut Reporter) -> Option<Measured> {
-        Some(anywhere(Solid::Cylinder { radius: self.radius?.value, height: self.height?.value }))
-    }
-}
-
-impl KindKeys<Measured> for ConeKeys {
-    fn make(self, _: &Node, _: &mut Reporter) -> Option<Measured> {
-        Some(anywhere(Solid::Cone { radius: self.radius?.value, height: self.height?.value }))
-    }
-}
-
-impl KindKeys<Measured> for WallKeys {
-    fn make(self, _: &Node, reporter: &mut Reporter) -> Option<Measured> {
-        let (from, to) = (self.from?.value, self.to?);
-        let [dx, dy] = [to.value[0] - from[0], to.value[1] - from[1]];
-        let length = math::hypot(dx, dy);
-        if length < 1e-3 {
-            reporter.report(to.place, "a wall must be at least 0.001 m long: `to` is where `from` is");
-            return None;
-        }
-        let pose = Pose::new(from[0] + 0.5 * dx, from[1] + 0.5 * dy, math::atan2(dy, dx));
-        let size = [length, self.thickness?.value, self.height?.value];
-        Some(Measured { solid: Solid::Block { size }, pose: Some(pose) })
-    }
-}
-
-const BLOCK: KindOption<Measured> = kind::<_, BlockKeys>("block");
-const CYLINDER: KindOption<Measured> = kind::<_, CylinderKeys>("cylinder");
-const CONE: KindOption<Measured> = kind::<_, ConeKeys>("cone");
-const RAMP: KindOption<Measured> = kind::<_, RampKeys>("ramp");
-const WALL: KindOption<Measured> = kind::<_, WallKeys>("wall");
+const BLOCK: &dyn KindOption<Measured> = &Kind {
+    word: "block",
+    make: |keys: BlockKeys, _, _| Some(anywhere(Solid::Block { size: keys.size?.value })),
+};
+const CYLINDER: &dyn KindOption<Measured> = &Kind {
+    word: "cylinder",
+    make: |keys: CylinderKeys, _, _| {
+        Some(anywhere(Solid::Cylinder { radius: keys.radius?.value, height: keys.height?.value }))
+    },
+};
+const CONE: &dyn KindOption<Measured> = &Kind {
+    word: "cone",
+    make: |keys: ConeKeys, _, _| {
+        Some(anywhere(Solid::Cone { radius: keys.radius?.value, height: keys.height?.value }))
+    },
+};
+const RAMP: &dyn KindOption<Measured> = &Kind {
+    word: "ramp",
+    make: |keys: RampKeys, _, _| Some(anywhere(Solid::Wedge { size: keys.size?.value })),
+};
 
 /// Shapes of props.
-const SHAPES: Kinds<Measured> =
-    Kinds { key: "shape", usual: None, all: &[BLOCK, CYLINDER, CONE, WALL, RAMP] };
+const SHAPES: Kinds<Measured> = Kinds {
+    key: "shape",
+    usual: None,
+    all: &[BLOCK, CYLINDER, CONE, &Kind { word: "wall", make: wall }, RAMP],
+};
 
 /// Shapes of props that can stand anywhere.
 pub(crate) const SOLIDS: Kinds<Measured> =

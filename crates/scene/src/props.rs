@@ -86,7 +86,7 @@ impl PropStage<'_> {
         }
         let (friction, restitution) = (keys.friction, keys.restitution);
         let name = keys.name.value.clone();
-        let prop = PropSpec { name, solid, pose, elevation, motion, friction, restitution };
+        let prop = PropSpec { name, solid, pose, elevation, friction, restitution, motion };
         Some(Found { place: keys.name.place, value: prop })
     }
 

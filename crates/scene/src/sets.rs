@@ -24,21 +24,9 @@ pub(crate) fn refusal(path: &str) -> String {
     )
 }
 
-/// What leads from scene `a` to scene `b`: see [`Scene::sets_to`].
-pub(crate) fn sets_to(a: &Scene, b: &Scene) -> Result<Vec<String>, Vec<String>> {
-    let mut found = ParameterDifference::default();
-    found.note_rest(a, b);
-    found.note_robots(&a.robots, &b.robots);
-    if found.obstacles.is_empty() {
-        Ok(found.sets)
-    } else {
-        Err(found.obstacles.iter().map(|path| refusal(path)).collect())
-    }
-}
-
 impl ParameterDifference {
     /// All but robots and changes.
-    fn note_rest(&mut self, a: &Scene, b: &Scene) {
+    pub(crate) fn note_rest(&mut self, a: &Scene, b: &Scene) {
         // A part that is added to scenes has to be placed here: it does not compile without.
         let Scene {
             title,

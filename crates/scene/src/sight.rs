@@ -1,4 +1,4 @@
-//! What followers can and cannot see: shells, cameras and the looks that are possible.
+//! What followers can and cannot see: shells, cameras and the measurements that are possible.
 
 use crate::{
     Follow, Robot, Role, Sensing, Vision,
@@ -78,7 +78,7 @@ pub(crate) struct Said<'a> {
     pub(crate) vision: &'a Vision,
 }
 
-/// Notes looks that cannot be.
+/// Notes measurements that cannot be.
 pub(crate) fn check_sight(said: &Said<'_>, drafts: &[RobotDraft], reporter: &mut Reporter) {
     let robots: HashMap<&str, &Robot> = drafts
         .iter()
@@ -110,7 +110,7 @@ fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Span, repor
     if follow.law.kind != LawKind::OutputFeedback {
         let law = follow.law.kind.word();
         let message = format!(
-            "`{}` uses the `{law}` law, which has to know more than looks tell; with sensing `{word}` its law must be \
+            "`{}` uses the `{law}` law, which needs more than measurements tell; with sensing `{word}` its law must be \
              `output-feedback`",
             robot.name
         );
@@ -119,19 +119,19 @@ fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Span, repor
     if let Some(mode) = said.time.mode.as_ref().filter(|mode| mode.value == TimeMode::Continuous) {
         let words = quoted([TimeMode::Sampled, TimeMode::Measured].into_iter().map(Word::word));
         let message = format!(
-            "mode `continuous` knows no looks, but `{}` senses by `{word}`; use one of {words}",
+            "mode `continuous` has no measurements, but `{}` senses by `{word}`; use one of {words}",
             robot.name
         );
         reporter.report(mode.place, message);
     }
 }
 
-/// Notes looks that come so late or so seldom that a leader is lost between any two of them.
+/// Notes measurements that come so late or so seldom that a leader is lost between any two of them.
 fn check_hold(follow: &Follow, robot: &Robot, place: Span, reporter: &mut Reporter) {
     let Sensing { rate, latency, hold, .. } = follow.sensing;
     if latency + 1.0 / rate >= hold {
         let message = format!(
-            "`{}` would lose its leader between any two looks: they are up to {:.3} s old (`latency` and 1/`rate`), and `hold` is \
+            "`{}` would lose its leader between any two measurements: they are up to {:.3} s old (`latency` and 1/`rate`), and `hold` is \
              {hold} s; it must be longer",
             robot.name,
             latency + 1.0 / rate

@@ -1,31 +1,17 @@
 //! Tables of a lead robot's motion, in files beside the scene.
 
 use crate::{
-    files::read_beside,
+    files::FileForm,
     path_form::{MOST_ROWS, SPEED, TIME, TURN_RATE},
-    text::{Form, Node, Reporter, Span, form::Number},
+    text::{Reporter, Span, form::Number},
 };
-use serde_json::{Value as Json, json};
 use vocabulary::counted;
 
 /// Columns and the forms of their values.
 const COLUMNS: [(&str, Number); 3] = [("t", TIME), ("v", SPEED), ("omega", TURN_RATE)];
 
 /// The name of a CSV file with columns t, v, omega.
-pub(crate) struct CsvForm;
-
-impl Form for CsvForm {
-    type Out = Vec<[f64; 3]>;
-
-    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Vec<[f64; 3]>> {
-        let (text, source) = read_beside(node, reporter)?;
-        read_rows(&text, source, reporter)
-    }
-
-    fn schema(&self) -> Json {
-        json!({ "type": "string" })
-    }
-}
+pub(crate) const ROWS_FILE: FileForm<Vec<[f64; 3]>> = FileForm(read_rows);
 
 /// What is wrong with `value` as the next of numbers that rise from 0.
 fn out_of_order(last: Option<f64>, value: f64) -> Option<String> {

@@ -102,7 +102,7 @@ fn a_leader_that_can_never_be_seen_is_told_before_the_run() {
 }
 
 #[test]
-fn looks_that_lose_the_leader_between_them_are_refused() {
+fn measurements_that_lose_the_leader_between_them_are_refused() {
     let late = text("[sensing]\nkind = \"camera\"\nlatency = 0.6\n", "", "-135 deg");
     refused(&late, &["`b` would lose its leader", "0.633 s", "`hold` is 0.5 s"]);
     refused(&text("[sensing]\nkind = \"noise\"\nrate = 1.0\n", "", "-135 deg"), &["`hold`"]);

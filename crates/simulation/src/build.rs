@@ -5,9 +5,9 @@ use crate::error::{BuildError, EPSILON_MIN};
 use crate::parameters::{ParameterSet, ScheduledChange};
 use crate::setup::Setup;
 use crate::stage::{handling, stage};
-use formation::{EdgeLaw, Formation, Graph, LookLaw, SetPointTrajectory};
+use formation::{EdgeLaw, Formation, Graph, SetPointTrajectory, TrackerParameters};
 use perception::sensors::{CameraSettings, NoiseModel, Sensor, SensorConfig, SensorKind};
-use scene::{Follow, OnContact, Role, Scene, SensingKind, SwitchingKind};
+use scene::{Follow, OnContact, Role, Scene, SensingKind, SwitchingKind, Vision};
 use std::sync::Arc;
 use vocabulary::{Edge, FleetInfo, Light, RobotInfo};
 use world::WorldSetup;
@@ -18,7 +18,7 @@ use world::WorldSetup;
 /// [`BuildError`], naming the robots.
 pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let names: Vec<&str> = scene.robots.iter().map(|r| &*r.name).collect();
-    let followers: Vec<(&str, &Follow)> = scene.robots.iter().filter_map(follows).collect();
+    let followers: Vec<(&str, &Follow)> = scene.followers().collect();
     let pairs: Vec<(&str, &str)> = followers.iter().map(|(name, follow)| (&*follow.leader, *name)).collect();
     let graph = Graph::new(&names, &pairs)?;
     check_stiffness(scene, &followers)?;
@@ -51,7 +51,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
             },
             robots: members,
             edges,
-            looks: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
+            has_sensors: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
             terrain: stage.terrain.clone(),
         },
@@ -69,7 +69,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
 /// What `change` puts in place.
 fn turn(change: &scene::Change) -> Result<ScheduledChange, BuildError> {
     let robots = &change.then.robots;
-    let followers: Vec<(&str, &Follow)> = robots.iter().filter_map(follows).collect();
+    let followers: Vec<(&str, &Follow)> = change.then.followers().collect();
     check_stiffness(&change.then, &followers)?;
     let parameters = ParameterSet {
         laws: followers.iter().map(|(_, follow)| edge_law(follow)).collect(),
@@ -92,13 +92,6 @@ fn check_stiffness(scene: &Scene, followers: &[(&str, &Follow)]) -> Result<(), B
     Ok(())
 }
 
-fn follows(robot: &scene::Robot) -> Option<(&str, &Follow)> {
-    match &robot.role {
-        Role::Lead { .. } => None,
-        Role::Follow(follow) => Some((&robot.name, follow)),
-    }
-}
-
 /// The law, observer and set point of a follower, as the loop uses them.
 pub fn edge_law(follow: &Follow) -> EdgeLaw {
     let (law, observer) = (&follow.law, observer(follow));
@@ -114,23 +107,18 @@ pub fn edge_law(follow: &Follow) -> EdgeLaw {
             distance_min: law.distance_min,
         },
         observer,
-        looks: look_law(follow, observer),
+        tracker: tracker_parameters(follow, observer),
         set_point: SetPointTrajectory { distance: follow.distance.clone(), bearing: follow.bearing.clone() },
     }
 }
 
 fn observer(follow: &Follow) -> formation::Observer {
-    let observer = &follow.observer;
-    formation::Observer {
-        epsilon: observer.epsilon,
-        alpha1: observer.alpha1,
-        alpha2: observer.alpha2,
-        distance_min: follow.law.distance_min,
-    }
+    let scene::Observer { epsilon, alpha1, alpha2, .. } = follow.observer;
+    formation::Observer { epsilon, alpha1, alpha2, distance_min: follow.law.distance_min }
 }
 
-fn look_law(follow: &Follow, observer: formation::Observer) -> Option<LookLaw> {
-    (follow.sensing.kind != SensingKind::Truth).then_some(LookLaw {
+fn tracker_parameters(follow: &Follow, observer: formation::Observer) -> Option<TrackerParameters> {
+    (follow.sensing.kind != SensingKind::Truth).then_some(TrackerParameters {
         method: follow.observer.kind,
         observer,
         adaptive: follow.observer.adaptive,
@@ -175,16 +163,8 @@ fn sensor_config(
             tilt: sensing.tilt.unwrap_or(if upright { 0.0 } else { TILT }),
         }
     });
-    let vision = &scene.vision;
-    let camera = CameraSettings {
-        blur: vision.blur,
-        noise: vision.noise,
-        exposure: vision.exposure,
-        shutter: vision.shutter,
-        pan_rate: vision.pan_rate,
-        pan_max: vision.pan_max,
-        whole_frames: vision.whole_frames,
-    };
+    let Vision { blur, noise, exposure, shutter, pan_rate, pan_max, whole_frames, .. } = scene.vision;
+    let camera = CameraSettings { blur, noise, exposure, shutter, pan_rate, pan_max, whole_frames };
     let props: Vec<_> = stage.props.iter().map(|prop| prop.prop.clone()).collect();
     let sensor_config = SensorConfig::new(
         edges,
@@ -195,5 +175,5 @@ fn sensor_config(
         camera,
         scene.seed,
     );
-    sensor_config.look().then(|| Arc::new(sensor_config))
+    sensor_config.has_sensors().then(|| Arc::new(sensor_config))
 }

@@ -1,11 +1,11 @@
 //! A scene's laws in one line, for pictures and reports.
 
-use scene::{Follow, Role, Scene, SensingKind, SwitchingKind};
+use scene::{Follow, Scene, SensingKind, SwitchingKind};
 use vocabulary::{LawKind, ObserverKind, TimeMode, counted};
 
 /// Law, gains and timing of a scene in one line; ranges where gains of followers differ, "mixed" where their laws do.
 pub fn caption(scene: &Scene) -> String {
-    let all: Vec<&Follow> = scene.robots.iter().filter_map(follow).collect();
+    let all: Vec<&Follow> = scene.followers().map(|(_, follow)| follow).collect();
     if all.is_empty() {
         return "No followers".to_owned();
     }
@@ -31,19 +31,21 @@ pub fn caption(scene: &Scene) -> String {
         None if observed.is_empty() => {}
         None => parts.push("mixed observers".to_owned()),
     }
-    let looking: Vec<_> = all.iter().copied().filter(|follow| looks(follow)).collect();
-    if !looking.is_empty() {
-        let rate = range(&looking, |follow| [follow.sensing.rate; 2]);
+    let measuring: Vec<_> = all.iter().copied().filter(|follow| measures(follow)).collect();
+    if !measuring.is_empty() {
+        let rate = range(&measuring, |follow| [follow.sensing.rate; 2]);
         parts.push(match common(&all, |follow| follow.sensing.kind) {
-            Some(SensingKind::Noise) => format!("{} a second", counted(rate, "noisy look")),
-            Some(SensingKind::Geometric) => format!("{} at tags a second", counted(rate, "look")),
+            Some(SensingKind::Noise) => format!("{} a second", counted(rate, "noisy measurement")),
+            Some(SensingKind::Geometric) => format!("{} of tags a second", counted(rate, "measurement")),
             Some(SensingKind::Camera) => format!("{} a second", counted(rate, "picture")),
-            Some(SensingKind::Truth) | None => format!("mixed sensing, {} a second", counted(rate, "look")),
+            Some(SensingKind::Truth) | None => {
+                format!("mixed sensing, {} a second", counted(rate, "measurement"))
+            }
         });
     }
     let every = format!("every {} ms", short(scene.time.period * 1e3));
     parts.push(match scene.time.mode {
-        _ if !looking.is_empty() => every,
+        _ if !measuring.is_empty() => every,
         TimeMode::Continuous => "continuous time".to_owned(),
         TimeMode::Sampled => every,
         TimeMode::Measured => format!("{every}, sampled measurement"),
@@ -56,13 +58,6 @@ pub fn caption(scene: &Scene) -> String {
     parts.join(" · ")
 }
 
-fn follow(robot: &scene::Robot) -> Option<&Follow> {
-    match &robot.role {
-        Role::Lead { .. } => None,
-        Role::Follow(follow) => Some(follow),
-    }
-}
-
 fn law(kind: LawKind) -> &'static str {
     match kind {
         LawKind::FullState => "Full state feedback",
@@ -71,7 +66,7 @@ fn law(kind: LawKind) -> &'static str {
     }
 }
 
-fn looks(follow: &Follow) -> bool {
+fn measures(follow: &Follow) -> bool {
     follow.sensing.kind != SensingKind::Truth
 }
 
@@ -84,9 +79,9 @@ enum ObserverWords {
 }
 
 fn observer(follow: &Follow) -> Option<ObserverWords> {
-    if looks(follow) && follow.observer.kind == ObserverKind::Unscented {
+    if measures(follow) && follow.observer.kind == ObserverKind::Unscented {
         Some(ObserverWords::Unscented)
-    } else if looks(follow) && follow.observer.adaptive {
+    } else if measures(follow) && follow.observer.adaptive {
         Some(ObserverWords::Noise)
     } else {
         (follow.law.kind == LawKind::OutputFeedback).then_some(ObserverWords::Epsilon)

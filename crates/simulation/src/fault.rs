@@ -60,7 +60,7 @@ pub(crate) fn not_finite(record: &StepRecord, fleet: &FleetInfo) -> Option<NotFi
         return Some(found(format!("{a} and {b}"), "contact"));
     }
     let frame = frames.iter().find(|frame| !is_seen(frame))?;
-    Some(found(between(frame.edge), "look"))
+    Some(found(between(frame.edge), "measurement"))
 }
 
 fn finite<const N: usize>(values: [f64; N]) -> bool {

@@ -41,7 +41,7 @@ impl ParameterSet {
 /// Whether an observer begins to run that was not needed before.
 pub(crate) fn wakes(before: &EdgeLaw, after: &EdgeLaw) -> bool {
     let runs = |law: &EdgeLaw| law.law.kind == LawKind::OutputFeedback;
-    runs(after) && !runs(before) && after.looks.is_none()
+    runs(after) && !runs(before) && after.tracker.is_none()
 }
 
 /// The first control sample at or after `at` s; one that is missed by rounding only counts.

@@ -12,6 +12,15 @@ pub(crate) enum Plant {
     Continuous(Box<Continuous>),
 }
 
+impl Clone for Plant {
+    fn clone(&self) -> Self {
+        match self {
+            Self::Held(world) => Self::Held(world.save()),
+            Self::Continuous(system) => Self::Continuous(system.clone()),
+        }
+    }
+}
+
 impl Plant {
     /// Unicycles on an empty plane are moved exactly; all else is moved by forces.
     pub(crate) fn new(stage: WorldSetup, mode: TimeMode, formation: &Formation) -> Self {
@@ -33,13 +42,6 @@ impl Plant {
         self.world_mut().apply_parameters(&parameters.handling);
         if let Self::Continuous(system) = self {
             system.keep_pace(formation);
-        }
-    }
-
-    pub(crate) fn save(&self) -> Self {
-        match self {
-            Self::Held(world) => Self::Held(world.save()),
-            Self::Continuous(system) => Self::Continuous(system.clone()),
         }
     }
 

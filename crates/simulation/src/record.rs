@@ -15,9 +15,9 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
         let robots = &mut run.record.snapshot.robots;
         let decision = &run.state.decisions[index];
         let wanted = decision.set_point;
-        let looks = run.sensing.as_ref().filter(|_| run.formation.laws()[index].looks.is_some());
+        let sensing = run.sensing.as_ref().filter(|_| run.formation.laws()[index].tracker.is_some());
         let known = &run.observations[index];
-        let (relative, age, pan) = match looks {
+        let (relative, age, pan) = match sensing {
             // What a follower without a sensor knows is the truth.
             None => (known.relative, 0.0, wrap(known.relative.view_angle - PI)),
             Some(sensing) => {

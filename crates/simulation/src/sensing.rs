@@ -1,4 +1,4 @@
-//! Followers that look: what they see, when it reaches them, and what they make of it.
+//! Followers with sensors: what they measure, when it reaches them, and what they make of it.
 
 use formation::{EdgeLaw, Estimate, Formation, Own, Tracker};
 use perception::sensors::{LeaderPrediction, SensorConfig, SensorState};
@@ -59,15 +59,16 @@ impl SensingPipeline {
     /// Carries estimates on over a period that has passed, by what the followers themselves did in it.
     pub(crate) fn follow(&mut self, formation: &Formation, world: &dyn World, period: f64) {
         for ((edge, law), tracker) in formation.edges().iter().zip(formation.laws()).zip(&mut self.trackers) {
-            if let Some(looks) = &law.looks {
-                tracker.advance(looks, own_motion(world, *edge, period), period);
+            if let Some(parameters) = &law.tracker {
+                tracker.advance(parameters, own_motion(world, *edge, period), period);
             }
         }
         self.believe(formation);
     }
 
-    /// Takes the looks that are due by `time`, and puts those that have arrived into the estimates; `frames` are theirs.
-    pub(crate) fn look(
+    /// Takes the measurements that are due by `time`, and puts those that have arrived into the estimates; `frames` are
+    /// theirs.
+    pub(crate) fn measure(
         &mut self,
         formation: &Formation,
         world: &dyn World,
@@ -80,7 +81,7 @@ impl SensingPipeline {
             let mut eyes = self.eyes.as_ref().map(|eyes| eyes.lock().unwrap_or_else(PoisonError::into_inner));
             let eyes = eyes.as_mut().map(|eyes| eyes.as_mut() as &mut dyn CameraRenderer);
             let period = [&self.before, &now];
-            self.sensor_config.take_looks(
+            self.sensor_config.take_measurements(
                 &mut self.sensor_state,
                 period,
                 world as &dyn StepInterpolant,
@@ -91,7 +92,7 @@ impl SensingPipeline {
         frames.clear();
         for (index, law) in formation.laws().iter().enumerate() {
             for mut frame in SensorConfig::arrived(&mut self.sensor_state, index, time) {
-                self.trackers[index].put(law, &mut frame, self.starts[index]);
+                put(&mut self.trackers[index], law, &mut frame, self.starts[index]);
                 frames.push(frame);
             }
         }
@@ -101,16 +102,17 @@ impl SensingPipeline {
 
     fn believe(&mut self, formation: &Formation) {
         for ((belief, tracker), law) in self.beliefs.iter_mut().zip(&self.trackers).zip(formation.laws()) {
-            *belief = law
-                .looks
-                .as_ref()
-                .map_or(LeaderPrediction { relative: None, sight: TrackingState::Truth }, |looks| {
-                    LeaderPrediction { relative: tracker.relative(), sight: tracker.sight(looks) }
-                });
+            *belief = law.tracker.as_ref().map_or(
+                LeaderPrediction { relative: None, sight: TrackingState::Truth },
+                |parameters| LeaderPrediction {
+                    relative: tracker.relative(),
+                    sight: tracker.sight(parameters),
+                },
+            );
         }
     }
 
-    /// What followers that look know, in place of the truth in `observations`, and their estimates.
+    /// What followers with sensors know, in place of the truth in `observations`, and their estimates.
     pub(crate) fn tell(
         &self,
         laws: &[EdgeLaw],
@@ -118,46 +120,34 @@ impl SensingPipeline {
         estimates: &mut [Estimate],
     ) {
         for (index, law) in laws.iter().enumerate() {
-            let Some(looks) = &law.looks else { continue };
+            let Some(parameters) = &law.tracker else { continue };
             let (belief, seen) = (&self.beliefs[index], &mut observations[index]);
             seen.leader_speed = None;
             seen.sight = belief.sight;
             seen.relative = belief
                 .relative
-                .unwrap_or(Relative { distance: looks.observer.distance_min, ..Relative::default() });
-            estimates[index] = self.trackers[index].estimate(looks);
+                .unwrap_or(Relative { distance: parameters.observer.distance_min, ..Relative::default() });
+            estimates[index] = self.trackers[index].estimate(parameters);
         }
     }
 
-    /// Time since the look that an edge's estimate rests on, s, and where the follower's camera points.
+    /// Time since the measurement that an edge's estimate rests on, s, and where the follower's camera points.
     pub(crate) fn age_and_pan(&self, edge: usize) -> (f64, f64) {
         (self.trackers[edge].age(), self.sensor_config.pan(&self.sensor_state, edge))
     }
-
-    pub(crate) fn disturb(&mut self, edge: usize, rates: [f64; 2]) {
-        if let Some(tracker) = self.trackers.get_mut(edge) {
-            tracker.disturb([0.0; 2], rates);
-        }
-    }
 }
 
-/// Puts looks into an estimate.
-trait Put {
-    fn put(&mut self, law: &EdgeLaw, frame: &mut MeasurementRecord, start: ObserverStart);
-}
-
-impl Put for Tracker {
-    fn put(&mut self, law: &EdgeLaw, frame: &mut MeasurementRecord, start: ObserverStart) {
-        let (Some(looks), Outcome::Used) = (&law.looks, frame.outcome) else { return };
-        let first = self.relative().is_none();
-        frame.outcome = self.take(looks, &frame.measurement);
-        let (true, Some(seen)) = (first, self.relative()) else { return };
-        match start {
-            ObserverStart::Measured | ObserverStart::Offset([0.0, 0.0]) => {}
-            ObserverStart::Offset(offset) => self.disturb(offset, [0.0; 2]),
-            ObserverStart::At([distance, bearing]) => {
-                self.disturb([distance - seen.distance, vocabulary::wrap(bearing - seen.bearing)], [0.0; 2]);
-            }
+/// Puts a measurement into an estimate.
+fn put(tracker: &mut Tracker, law: &EdgeLaw, frame: &mut MeasurementRecord, start: ObserverStart) {
+    let (Some(parameters), Outcome::Used) = (&law.tracker, frame.outcome) else { return };
+    let first = tracker.relative().is_none();
+    frame.outcome = tracker.take(parameters, &frame.measurement);
+    let (true, Some(seen)) = (first, tracker.relative()) else { return };
+    match start {
+        ObserverStart::Measured | ObserverStart::Offset([0.0, 0.0]) => {}
+        ObserverStart::Offset(offset) => tracker.disturb(offset),
+        ObserverStart::At([distance, bearing]) => {
+            tracker.disturb([distance - seen.distance, vocabulary::wrap(bearing - seen.bearing)]);
         }
     }
 }

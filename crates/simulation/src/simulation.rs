@@ -15,6 +15,7 @@ use vocabulary::{
 };
 
 /// A run under way. The same setup gives the same moments, bit for bit.
+#[derive(Clone)]
 pub struct Simulation {
     pub(crate) fleet: FleetInfo,
     pub(crate) formation: Formation,
@@ -161,7 +162,7 @@ impl Simulation {
         &self.record
     }
 
-    /// Followers are told the truth from now on, whatever their sensors: to look ahead where pictures cannot be drawn.
+    /// Followers are told the truth from now on, whatever their sensors: to predict where pictures cannot be drawn.
     pub fn trust(&mut self) {
         self.sensing = None;
         let limits = (0..self.fleet.robots.len()).map(|robot| *self.formation.limits(robot)).collect();
@@ -187,41 +188,16 @@ impl Simulation {
         self.fleet.duration = self.fleet.duration.max(duration);
     }
 
-    /// Adds to the rates an edge's observer estimates, [m/s, rad/s]: to watch it recover.
-    pub fn disturb_observer(&mut self, edge: usize, by: [f64; 2]) {
-        if let Some(estimate) = self.state.estimates.get_mut(edge) {
-            estimate.rates[0] += by[0];
-            estimate.rates[1] += by[1];
-        }
-        if let Some(sensing) = &mut self.sensing {
-            sensing.disturb(edge, by);
-        }
-    }
-
     /// A copy of the whole run as it stands: it goes on to the same future, bit for bit.
     #[must_use]
     pub fn save(&self) -> Self {
-        Self {
-            fleet: self.fleet.clone(),
-            formation: self.formation.clone(),
-            state: self.state.clone(),
-            plant: self.plant.save(),
-            observations: self.observations.clone(),
-            sensing: self.sensing.clone(),
-            frames: self.frames.clone(),
-            record: self.record.clone(),
-            spare: self.spare.clone(),
-            fault: self.fault.clone(),
-            changes: self.changes.clone(),
-            adopted: self.adopted.clone(),
-            ..*self
-        }
+        self.clone()
     }
 }
 
 /// Laws of followers that are told the truth.
 fn trusting(laws: &[EdgeLaw]) -> Vec<EdgeLaw> {
-    laws.iter().map(|law| EdgeLaw { looks: None, ..law.clone() }).collect()
+    laws.iter().map(|law| EdgeLaw { tracker: None, ..law.clone() }).collect()
 }
 
 fn first_estimate(seen: &Relative, start: ObserverStart) -> Estimate {

@@ -70,7 +70,7 @@ fn apply(run: &mut Simulation, parameters: &ParameterSet, woken: &mut Vec<usize>
 /// Followers with sensors take the measurements that are due, and correct their estimates by those that have arrived.
 fn measure(run: &mut Simulation, time: f64) -> Result<(), String> {
     let Some(sensing) = &mut run.sensing else { return Ok(()) };
-    sensing.look(&run.formation, run.plant.world(), time, &mut run.frames)?;
+    sensing.measure(&run.formation, run.plant.world(), time, &mut run.frames)?;
     sensing.tell(run.formation.laws(), &mut run.observations, &mut run.state.estimates);
     Ok(())
 }
@@ -105,7 +105,7 @@ fn follow_samples(run: &mut Simulation) {
     let world = run.plant.world();
     for (index, edge) in run.formation.edges().iter().enumerate() {
         let law = &run.formation.laws()[index];
-        if law.law.kind != LawKind::OutputFeedback || law.looks.is_some() {
+        if law.law.kind != LawKind::OutputFeedback || law.tracker.is_some() {
             continue;
         }
         let mut before = perception::sample(world, *edge, 0.0, None);
@@ -120,7 +120,7 @@ fn follow_samples(run: &mut Simulation) {
 fn follow(formation: &Formation, state: &mut FormationState, world: &dyn World) {
     for (index, edge) in formation.edges().iter().enumerate() {
         let law = &formation.laws()[index];
-        if law.law.kind == LawKind::OutputFeedback && law.looks.is_none() {
+        if law.law.kind == LawKind::OutputFeedback && law.tracker.is_none() {
             let estimate = &mut state.estimates[index];
             perception::tracks(world, *edge, |track| *estimate = law.observer.follow(estimate, track));
         }

@@ -1,9 +1,9 @@
 //! One run of a scene: stepped, recorded if asked for, certified, and judged by what the scene expects.
 
 use crate::certify::Examiner;
-use crate::verdict::{JudgedExpectation, verdict};
+use crate::verdict::{not_finite, verdict};
 use crate::{Error, SceneRun};
-use metrics::{CertificateMetrics, Digest, Metrics, MetricsBuilder};
+use metrics::{CertificateMetrics, Digest, JudgedExpectation, Metrics, MetricsBuilder};
 use recording::{Finished, Recorder, Status};
 use simulation::Fault;
 use vocabulary::StepRecord;
@@ -39,14 +39,10 @@ pub fn run(
     mut go_on: impl FnMut(u64) -> bool,
 ) -> Result<JudgedRun, Error> {
     let SceneRun { scene, mut simulation } = run;
-    let mut sink = match recorder {
-        Some(recorder) => RecordSink::Disk(Box::new(recorder)),
-        None => RecordSink::Memory(Box::new(RunSums {
-            metrics: MetricsBuilder::new(simulation.fleet(), scene.judging()),
-            digest: Digest::default(),
-        })),
-    };
-    let mut examiner = Examiner::new(&scene, &simulation);
+    let metrics = || Box::new(MetricsBuilder::new(simulation.fleet(), scene.judging()));
+    let memory = || RecordSink::Memory { metrics: metrics(), digest: Box::default() };
+    let mut sink = recorder.map_or_else(memory, |recorder| RecordSink::Disk(Box::new(recorder)));
+    let mut examiner = Examiner::new(&scene, &simulation, false);
     let mut steps = 0;
     while let Some(record) = simulation.next_record() {
         if let Err(error) = sink.push(record) {
@@ -60,7 +56,7 @@ pub fn run(
         }
     }
     let broken = match simulation.fault() {
-        Some(Fault::NotFinite(what)) => Some(JudgedExpectation::not_finite(what)),
+        Some(Fault::NotFinite(what)) => Some(not_finite(what)),
         Some(fault @ Fault::CameraRenderer(_)) => {
             let error = Error::from(fault);
             sink.abandon();
@@ -86,21 +82,16 @@ pub fn run(
 /// Where records go: to a folder, or only into the sums that a verdict needs.
 enum RecordSink {
     Disk(Box<Recorder>),
-    Memory(Box<RunSums>),
-}
-
-struct RunSums {
-    metrics: MetricsBuilder,
-    digest: Digest,
+    Memory { metrics: Box<MetricsBuilder>, digest: Box<Digest> },
 }
 
 impl RecordSink {
     fn push(&mut self, record: &StepRecord) -> Result<(), recording::Error> {
         match self {
             Self::Disk(recorder) => recorder.push(record),
-            Self::Memory(sums) => {
-                sums.metrics.push(record);
-                sums.digest.push(record);
+            Self::Memory { metrics, digest } => {
+                metrics.push(record);
+                digest.push(record);
                 Ok(())
             }
         }
@@ -115,7 +106,7 @@ impl RecordSink {
     fn metrics(&self) -> Metrics {
         match self {
             Self::Disk(recorder) => recorder.metrics(),
-            Self::Memory(sums) => sums.metrics.finish(),
+            Self::Memory { metrics, .. } => metrics.finish(),
         }
     }
 
@@ -126,14 +117,12 @@ impl RecordSink {
         findings: &[JudgedExpectation],
     ) -> (Metrics, String, Result<(), recording::Error>) {
         match self {
-            Self::Disk(mut recorder) => {
-                recorder.certify(certificates);
-                recorder.judge(findings.iter().map(JudgedExpectation::metrics).collect());
-                let Finished { metrics, digest, written } = recorder.conclude(status);
+            Self::Disk(recorder) => {
+                let Finished { metrics, digest, written } = recorder.conclude(status, certificates, findings);
                 (metrics, digest, written.map(drop))
             }
-            Self::Memory(sums) => {
-                (Metrics { certificates, ..sums.metrics.finish() }, sums.digest.text(), Ok(()))
+            Self::Memory { metrics, digest } => {
+                (Metrics { certificates, ..metrics.finish() }, digest.text(), Ok(()))
             }
         }
     }

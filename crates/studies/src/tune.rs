@@ -7,13 +7,15 @@
 use cobyla::{RhoBeg, StopTols, minimize};
 use metrics::{Metrics, MetricsBuilder};
 use scene::{Role, Scene};
+use serde::Serialize;
 use simulation::{BuildError, Simulation, build};
 use std::cell::RefCell;
 use thiserror::Error;
 use vocabulary::LawKind;
+use vocabulary::math;
 
 /// Gains of every follower, the same for distance and bearing.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Gains {
     /// 1/s.
     pub k: f64,
@@ -26,9 +28,10 @@ pub struct Gains {
 }
 
 /// One run with some gains.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Trial {
     /// What was tried.
+    #[serde(flatten)]
     pub gains: Gains,
     /// What it cost; less is better.
     pub cost: f64,
@@ -66,15 +69,10 @@ const DISASTER: f64 = 100.0;
 impl Gains {
     /// Those of the first follower by output feedback.
     fn of(scene: &Scene) -> Option<Self> {
-        scene.robots.iter().find_map(|robot| match &robot.role {
-            Role::Follow(follow) if follow.law.kind == LawKind::OutputFeedback => Some(Self {
-                k: follow.law.k[0],
-                beta: follow.law.beta[0],
-                slope: follow.law.slope[0],
-                epsilon: follow.observer.epsilon[0],
-            }),
-            _ => None,
-        })
+        let mut followers = scene.followers().map(|(_, follow)| follow);
+        let follow = followers.find(|follow| follow.law.kind == LawKind::OutputFeedback)?;
+        let (law, epsilon) = (&follow.law, follow.observer.epsilon[0]);
+        Some(Self { k: law.k[0], beta: law.beta[0], slope: law.slope[0], epsilon })
     }
 
     fn give(self, scene: &mut Scene) {
@@ -84,7 +82,7 @@ impl Gains {
                 follow.law.beta = [self.beta; 2];
                 follow.law.slope = [self.slope; 2];
                 follow.observer.epsilon = [self.epsilon; 2];
-                // It is ε that is searched, with looks too.
+                // It is ε that is searched, with measurements too.
                 follow.observer.adaptive = false;
             }
         });
@@ -92,11 +90,11 @@ impl Gains {
 
     fn logarithms(self) -> [f64; 4] {
         let values = [self.k, self.beta, self.slope, self.epsilon];
-        [0, 1, 2, 3].map(|i| values[i].clamp(BOUNDS[i][0], BOUNDS[i][1]).ln())
+        [0, 1, 2, 3].map(|i| math::ln(values[i].clamp(BOUNDS[i][0], BOUNDS[i][1])))
     }
 
     fn from_logarithms(values: &[f64]) -> Self {
-        let at = |i: usize| values.get(i).map_or(1.0, |x| x.exp()).clamp(BOUNDS[i][0], BOUNDS[i][1]);
+        let at = |i: usize| values.get(i).map_or(1.0, |x| math::exp(*x)).clamp(BOUNDS[i][0], BOUNDS[i][1]);
         Self { k: at(0), beta: at(1), slope: at(2), epsilon: at(3) }
     }
 }
@@ -120,12 +118,12 @@ pub fn tune(scene: &Scene, most: usize, look: impl FnMut(&Trial) -> bool) -> Res
         search.borrow_mut().take_in(trial);
         trial.cost
     };
-    let bounds = BOUNDS.map(|[low, high]| (low.ln(), high.ln()));
+    let bounds = BOUNDS.map(|[low, high]| (math::ln(low), math::ln(high)));
     let tolerances = StopTols { xtol_rel: 1e-2, ..StopTols::default() };
     let starts = [&[own][..], &STARTS].concat();
     for start in &starts {
         let no_constraints: [fn(&[f64], &mut ()) -> f64; 0] = [];
-        let (first_step, share) = (RhoBeg::All(FIRST_STEP.ln()), (most / starts.len()).max(1));
+        let (first_step, share) = (RhoBeg::All(math::ln(FIRST_STEP)), (most / starts.len()).max(1));
         // It ends by its tolerance or by the number of trials; the best that was seen counts either way.
         let _ = minimize(
             cost,

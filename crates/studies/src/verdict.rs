@@ -1,40 +1,13 @@
 //! What a run showed, held against what its scene expects.
 
-use metrics::{EdgeMetrics, ExpectationMetrics, Metrics};
+use metrics::{EdgeMetrics, JudgedExpectation, Metrics};
 use scene::{Expect, OnContact, Scene};
 use simulation::{NotFinite, short};
 
-/// One expectation and what became of it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct JudgedExpectation {
-    /// The key in the scene's `[expect]`.
-    pub key: &'static str,
-    /// What was wanted, with unit.
-    pub wanted: String,
-    /// What was found, with unit, and on which edge or between which robots.
-    pub found: String,
-    /// Whether it was met; `None` where the run is too short to show it.
-    pub met: Option<bool>,
-}
-
-impl JudgedExpectation {
-    /// What every scene expects, and was not met.
-    pub fn not_finite(fault: &NotFinite) -> Self {
-        let wanted = "every number finite".to_owned();
-        Self { key: "finite", wanted, found: fault.to_string(), met: Some(false) }
-    }
-
-    /// Whether it was judged and not met.
-    pub fn failed(&self) -> bool {
-        self.met == Some(false)
-    }
-
-    /// The finding as `metrics.json` holds it.
-    pub fn metrics(&self) -> ExpectationMetrics {
-        let Self { key, wanted, found, met } = self;
-        let (key, wanted, found) = ((*key).to_owned(), wanted.clone(), found.clone());
-        ExpectationMetrics { key, wanted, found, met: *met }
-    }
+/// What every scene expects, and was not met.
+pub(crate) fn not_finite(fault: &NotFinite) -> JudgedExpectation {
+    let wanted = "every number finite".to_owned();
+    JudgedExpectation { key: "finite", wanted, found: fault.to_string(), met: Some(false) }
 }
 
 /// Everything that a scene asks of its run, in the order of its keys.
@@ -93,33 +66,23 @@ fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Judg
     if let Some(latest) = expect.settling_time {
         findings.settling(latest);
     }
-    if let Some(most) = expect.error_peak_at_most {
-        for (channel, most) in most.into_iter().enumerate() {
-            findings.worst("error_peak_at_most", channel, most, |edge| edge.peak_error);
-        }
+    for (channel, most) in expect.error_peak_at_most.into_iter().flatten().enumerate() {
+        findings.worst("error_peak_at_most", channel, most, |edge| edge.peak_error);
     }
-    if let Some(most) = expect.settled_error_at_most {
-        for (channel, most) in most.into_iter().enumerate() {
-            findings.late("settled_error_at_most", channel, most, expect, |edge| edge.late_peak_error);
-        }
+    for (channel, most) in expect.settled_error_at_most.into_iter().flatten().enumerate() {
+        findings.late("settled_error_at_most", channel, most, expect, |edge| edge.late_peak_error);
     }
-    if let Some(most) = expect.settled_rms_at_most {
-        for (channel, most) in most.into_iter().enumerate() {
-            findings.late("settled_rms_at_most", channel, most, expect, |edge| edge.late_rms_error);
-        }
+    for (channel, most) in expect.settled_rms_at_most.into_iter().flatten().enumerate() {
+        findings.late("settled_rms_at_most", channel, most, expect, |edge| edge.late_rms_error);
     }
     if let Some(least) = expect.in_view_at_least {
         findings.in_view(least);
     }
-    if let Some(most) = expect.rate_peak_at_most {
-        for (channel, most) in most.into_iter().enumerate() {
-            findings.worst_rate("rate_peak_at_most", channel, "≤", most, |found| found <= most);
-        }
+    for (channel, most) in expect.rate_peak_at_most.into_iter().flatten().enumerate() {
+        findings.worst_rate("rate_peak_at_most", channel, "≤", most, |found| found <= most);
     }
-    if let Some(least) = expect.rate_peak_at_least {
-        for (channel, least) in least.into_iter().enumerate() {
-            findings.worst_rate("rate_peak_at_least", channel, "≥", least, |found| found >= least);
-        }
+    for (channel, least) in expect.rate_peak_at_least.into_iter().flatten().enumerate() {
+        findings.worst_rate("rate_peak_at_least", channel, "≥", least, |found| found >= least);
     }
     if let Some(range) = expect.speed_within {
         findings.speeds(range, expect.settling_time);
@@ -250,14 +213,14 @@ impl ExpectationJudge<'_> {
     }
 
     fn in_view(&mut self, least: f64) {
-        let looks =
+        let measured =
             self.metrics.edges.iter().filter_map(|edge| Some((edge, edge.measurements.as_ref()?.in_view)));
         let percent = |share: f64| format!("{:.2} %", share * 100.0);
-        let (found, met) = match looks.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        let (found, met) = match measured.min_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((edge, share)) => (format!("{} on {}", percent(share), name(edge)), share >= least),
-            None => ("nobody looks".into(), false),
+            None => ("nobody measures".into(), false),
         };
-        self.add("in_view_at_least", format!("≥ {} of the looks", percent(least)), found, met);
+        self.add("in_view_at_least", format!("≥ {} of the measurements", percent(least)), found, met);
     }
 
     fn settling(&mut self, latest: f64) {

@@ -4,7 +4,7 @@ use crate::math;
 use crate::{Body, Region, Rigid, RobotState, Shell, Snapshot};
 
 /// Where a camera sits on a robot: it turns about an upright axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CameraMount {
     /// Of its axis ahead of the robot's reference point, m.
     pub forward: f64,
@@ -65,11 +65,11 @@ pub struct Grey {
 
 /// Takes pictures of a world: implemented by whoever can draw.
 pub trait CameraRenderer: Send {
-    /// Takes all `shots` of the same instant, one picture each in `pictures`.
+    /// Takes all `shots` of the same instant, one image each in `images`.
     ///
     /// # Errors
     /// What went wrong, in words.
-    fn look(&mut self, snapshot: &Snapshot, shots: &[Shot], pictures: &mut Vec<Grey>) -> Result<(), String>;
+    fn render(&mut self, snapshot: &Snapshot, shots: &[Shot], images: &mut Vec<Grey>) -> Result<(), String>;
 }
 
 #[cfg(test)]

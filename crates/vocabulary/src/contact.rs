@@ -1,13 +1,14 @@
 //! Two named things that touch.
 
 /// What can touch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub enum EntityId {
     /// Index of a robot in the cast.
     Robot(usize),
     /// Index of a prop in the cast.
     Prop(usize),
     /// The ground; only bodies touch it, wheels that stand on it do not count.
+    #[default]
     Ground,
 }
 
@@ -19,7 +20,7 @@ impl Contact {
 }
 
 /// One contact of two things, from their first touch until they have parted.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Contact {
     /// Counts the contacts of a run from 0.
     pub number: u64,

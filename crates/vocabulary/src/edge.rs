@@ -4,7 +4,7 @@ use crate::math;
 use crate::{Pose, wrap};
 
 /// A leader-follower pair; both are indices of robots in a snapshot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Edge {
     /// Index of the robot that is followed (robot i of the paper).
     pub leader: usize,

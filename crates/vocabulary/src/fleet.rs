@@ -31,7 +31,7 @@ impl Default for Body {
 }
 
 /// One robot on stage.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct RobotInfo {
     /// Unique name.
     pub name: String,
@@ -95,8 +95,8 @@ pub struct FleetInfo {
     pub robots: Vec<RobotInfo>,
     /// In the order of the edge states.
     pub edges: Vec<Edge>,
-    /// Whether any follower looks at its leader instead of being told the truth.
-    pub looks: bool,
+    /// Whether any follower measures with a sensor instead of knowing the truth.
+    pub has_sensors: bool,
     /// Solid things that are no robots, in the order of the snapshots.
     pub props: Vec<Prop>,
     /// The lie of the land; flat at z = 0 where there is none.

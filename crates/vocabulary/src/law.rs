@@ -16,9 +16,9 @@ words! {
 }
 
 words! {
-    /// How looks at the leader become an estimate of [distance, bearing] and of their rates.
+    /// How measurements become an estimate of [distance, bearing] and of their rates.
     pub enum ObserverKind {
-        /// The high-gain observer, carried on by eqs 31-32 and corrected by each look.
+        /// The high-gain observer, carried on by eqs 31-32 and corrected by each measurement.
         HighGain = "high-gain",
         /// Two unscented Kalman filters, one for the relative position and one for the leader's speed and turn rate.
         Unscented = "unscented",

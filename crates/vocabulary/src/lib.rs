@@ -34,6 +34,9 @@ mod terrain;
 mod trajectory;
 mod words;
 
+#[doc(hidden)]
+pub use serde;
+
 pub use angle::{nearest_turn, wrap};
 pub use camera::{CameraMount, CameraRenderer, Grey, Shot};
 pub use camera_model::{CameraModel, Region};

@@ -1,11 +1,11 @@
-//! What a follower got to see of its leader.
+//! What a follower has measured of its leader.
 
-use crate::{FACES, Region, Relative};
+use crate::{FACES, Region, Relative, words};
 
-/// One look at a leader: what a sensor reports of one instant.
+/// One measurement of a leader: what a sensor reports of one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Measurement {
-    /// The instant of the look, s from the start of the run.
+    /// The instant of the measurement, s from the start of the run.
     pub stamp: f64,
     /// Relative position as measured.
     pub relative: Relative,
@@ -13,75 +13,51 @@ pub struct Measurement {
     pub deviation: [f64; 3],
 }
 
-/// How well a follower knows where its leader is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum TrackingState {
-    /// It is told the truth at every instant.
-    #[default]
-    Truth,
-    /// It has not seen its leader yet.
-    Waiting,
-    /// It has seen its leader a moment ago.
-    Tracking,
-    /// It has missed some looks and goes by its prediction.
-    Coasting,
-    /// It has not seen its leader for too long: it slows down and searches.
-    Lost,
-}
-
-impl TrackingState {
-    /// One word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Truth => "truth",
-            Self::Waiting => "waiting",
-            Self::Tracking => "tracking",
-            Self::Coasting => "coasting",
-            Self::Lost => "lost",
-        }
+words! {
+    /// How well a follower knows where its leader is.
+    pub enum TrackingState = Truth {
+        /// It is told the truth at every instant.
+        Truth = "truth",
+        /// It has not seen its leader yet.
+        Waiting = "waiting",
+        /// It has seen its leader a moment ago.
+        Tracking = "tracking",
+        /// It has missed some measurements and goes by its prediction.
+        Coasting = "coasting",
+        /// It has not seen its leader for too long: it slows down and searches.
+        Lost = "lost",
     }
 }
 
-/// What came of one look.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Outcome {
-    /// The estimate was corrected by it.
-    #[default]
-    Used,
-    /// It was too far from the prediction to be believed.
-    Rejected,
-    /// Two poses explain it alike.
-    Ambiguous,
-    /// The leader was not seen.
-    Missed,
-    /// The frame never arrived.
-    Dropped,
+words! {
+    /// What came of one measurement.
+    pub enum Outcome = Used {
+        /// The estimate was corrected by it.
+        Used = "used",
+        /// It was too far from the prediction to be believed.
+        Rejected = "rejected",
+        /// Two poses explain it alike.
+        Ambiguous = "ambiguous",
+        /// The leader was not seen.
+        Missed = "missed",
+        /// The frame never arrived.
+        Dropped = "dropped",
+    }
 }
 
 impl Outcome {
-    /// One word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Used => "used",
-            Self::Rejected => "rejected",
-            Self::Ambiguous => "ambiguous",
-            Self::Missed => "missed",
-            Self::Dropped => "dropped",
-        }
-    }
-
     /// Whether the leader was recognised in it.
     pub fn seen(self) -> bool {
         matches!(self, Self::Used | Self::Rejected | Self::Ambiguous)
     }
 }
 
-/// One look at a leader as it goes into the record.
+/// One measurement of a leader as it goes into the record.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeasurementRecord {
     /// Index of the edge.
     pub edge: usize,
-    /// The look; only its stamp counts where the leader was not recognised.
+    /// The measurement; only its stamp counts where the leader was not recognised.
     pub measurement: Measurement,
     /// When it reached the follower, s from the start of the run.
     pub arrival: f64,
@@ -91,7 +67,7 @@ pub struct MeasurementRecord {
     pub truth: Relative,
     /// Corners of the tags seen, by face, pixels: top left, top right, bottom right, bottom left of the tag.
     pub tags: [Option<[[f64; 2]; 4]>; FACES],
-    /// The part of the picture that was looked at; empty for sensors without pictures.
+    /// The part of the picture that was searched; empty for sensors without pictures.
     pub region: Region,
     /// Direction of the camera from the follower's heading at the stamp, rad.
     pub pan: f64,

@@ -53,8 +53,8 @@ mod tests {
             ["0 frames", "1 frame", "2 frames", "11 frames"]
         );
         assert_eq!(
-            (counted(1.0, "look"), counted("0.5 to 1", "look")),
-            ("1 look".into(), "0.5 to 1 looks".into())
+            (counted(1.0, "measurement"), counted("0.5 to 1", "measurement")),
+            ("1 measurement".into(), "0.5 to 1 measurements".into())
         );
     }
 

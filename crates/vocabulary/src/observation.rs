@@ -1,8 +1,8 @@
-//! What a follower knows of its leader: the only thing a law may look at.
+//! What a follower knows of its leader: the only thing a law may use.
 
 use crate::{Relative, TrackingState};
 
-/// One look of a follower at its leader.
+/// What one follower knows of its leader at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Observation {
     /// Relative position as sensed (eqs 2-4).
@@ -15,7 +15,7 @@ pub struct Observation {
     pub sight: TrackingState,
 }
 
-/// How an edge looked at one instant inside a control period.
+/// What an edge was at one instant inside a control period.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EdgeSample {
     /// Relative position; the bearing may exceed (−π, π] so as to be continuous along a track.

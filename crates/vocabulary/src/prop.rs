@@ -1,10 +1,12 @@
 //! Solid things that are no robots: walls, pillars, ramps, cones, crates.
 
-use crate::Pose;
 use crate::math;
+use crate::{Pose, words};
+use serde::Serialize;
 
 /// The shape of a solid thing. Its frame has its origin in the middle of its foot, z up; all measures in m.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "shape", rename_all = "kebab-case")]
 pub enum Solid {
     /// Length along x, width along y, height along z.
     Block {
@@ -26,10 +28,17 @@ pub enum Solid {
         height: f64,
     },
     /// A ramp: from the ground at its −x end it rises evenly to its full height at its +x end.
+    #[serde(rename = "ramp")]
     Wedge {
         /// [length, width, height].
         size: [f64; 3],
     },
+}
+
+impl Default for Solid {
+    fn default() -> Self {
+        Self::Block { size: [0.0; 3] }
+    }
 }
 
 impl Solid {
@@ -88,20 +97,20 @@ impl Placement {
     }
 }
 
-/// How a prop can move.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Mobility {
-    /// Never.
-    #[default]
-    Fixed,
-    /// It can be pushed, and falls.
-    Loose,
-    /// It goes its own way and nothing stops it.
-    Guided,
+words! {
+    /// How a prop can move.
+    pub enum Mobility = Fixed {
+        /// Never.
+        Fixed = "fixed",
+        /// It can be pushed, and falls.
+        Loose = "loose",
+        /// It goes its own way and nothing stops it.
+        Guided = "guided",
+    }
 }
 
 /// A solid thing on stage.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Prop {
     /// Unique name, among robots too.
     pub name: String,

@@ -38,6 +38,12 @@ pub struct Shell {
     pub first_tag: Option<u16>,
 }
 
+impl Default for Shell {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
+
 impl Shell {
     /// The shell of the paper's robots, its axis over the reference point, blank.
     pub const PAPER: Self = Self {

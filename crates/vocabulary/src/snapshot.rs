@@ -1,6 +1,6 @@
 //! The truth about all robots at one instant: the only way out of a world.
 
-use crate::{Placement, Pose, Rigid, nearest_turn, wrap};
+use crate::{Placement, Pose, Rigid, nearest_turn, words, wrap};
 
 /// How a robot moves at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -37,29 +37,17 @@ pub struct Wheel {
     pub compression: f64,
 }
 
-/// Whether a robot can still drive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Condition {
-    /// It can.
-    #[default]
-    Able,
-    /// Its wheels are not under it.
-    Overturned,
-    /// It is told to drive and does not move.
-    Stuck,
-    /// It is deep below the ground around it, or out of all bounds.
-    Fallen,
-}
-
-impl Condition {
-    /// One word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Able => "able",
-            Self::Overturned => "overturned",
-            Self::Stuck => "stuck",
-            Self::Fallen => "fallen",
-        }
+words! {
+    /// Whether a robot can still drive.
+    pub enum Condition = Able {
+        /// It can.
+        Able = "able",
+        /// Its wheels are not under it.
+        Overturned = "overturned",
+        /// It is told to drive and does not move.
+        Stuck = "stuck",
+        /// It is deep below the ground around it, or out of all bounds.
+        Fallen = "fallen",
     }
 }
 

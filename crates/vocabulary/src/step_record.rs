@@ -11,7 +11,7 @@ pub struct EdgeState {
     pub seen: Relative,
     /// How well it knows where its leader is.
     pub sight: TrackingState,
-    /// Time since the last look that corrected the estimate, s; 0 where it is told the truth.
+    /// Time since the last measurement that corrected the estimate, s; 0 where it is told the truth.
     pub age: f64,
     /// Wanted [distance in m, bearing in rad].
     pub set_point: [f64; 2],
@@ -23,7 +23,8 @@ pub struct EdgeState {
     pub applied: Command,
     /// Estimate of the rates of [distance, bearing] in [m/s, rad/s]; the observer's where one runs, else the truth.
     pub rates: [f64; 2],
-    /// Estimate of [distance in m, bearing in rad] that the observer corrects by (ŝ₁); where none runs it means nothing.
+    /// Estimate of [distance in m, bearing in rad] that the observer corrects by (ŝ₁); where none runs it means
+    /// nothing.
     pub estimate: [f64; 2],
     /// Whether a limit (turn rate, speed, acceleration) cut the command.
     pub limited: bool,
@@ -40,7 +41,7 @@ pub struct StepRecord {
     pub edges: Vec<EdgeState>,
     /// Contacts that are open, or that ended since the moment before.
     pub contacts: Vec<Contact>,
-    /// Looks at leaders that arrived since the moment before.
+    /// Measurements of leaders that arrived since the moment before.
     pub frames: Vec<MeasurementRecord>,
 }
 

@@ -2,7 +2,7 @@
 
 /// A height field over a grid of square cells, each two flat triangles; beyond its edges it goes on level from the
 /// nearest point of the grid.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Terrain {
     /// The corner with the smallest x and y, m.
     pub origin: [f64; 2],

@@ -11,18 +11,31 @@ pub trait Word: Copy + PartialEq + 'static {
     }
 }
 
-/// Defines a public enum whose variants have words. After a bar stands another word for the same.
+/// Defines an enum whose variants have words, with its default behind its name if it has one. After a bar stands another
+/// word for the same.
 #[macro_export]
 macro_rules! words {
     (
         $(#[doc = $about:literal])*
-        $vis:vis enum $name:ident {
+        $vis:vis enum $name:ident $(= $default:ident)? {
             $( $(#[doc = $doc:literal])* $variant:ident = $word:literal $(| $other:literal)?, )+
         }
     ) => {
         $(#[doc = $about])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-        $vis enum $name { $( $(#[doc = $doc])* #[serde(rename = $word)] $variant, )+ }
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        $vis enum $name { $( $(#[doc = $doc])* $variant, )+ }
+
+        $(impl Default for $name {
+            fn default() -> Self {
+                Self::$default
+            }
+        })?
+
+        impl $crate::serde::Serialize for $name {
+            fn serialize<S: $crate::serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str($crate::Word::word(*self))
+            }
+        }
 
         impl $crate::Word for $name {
             const WORDS: &'static [(&'static str, Self, &'static str)] = &[$(

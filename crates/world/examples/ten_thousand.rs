@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 use std::time::Instant;
-use vocabulary::{Command, Pose};
+use vocabulary::{Command, Pose, Word};
 use world::{Physical, RobotSetup, Unicycle, World, WorldSetup};
 
 #[path = "../tests/vehicles/truck.rs"]
@@ -57,7 +57,7 @@ fn main() {
     }
     assert!(lowest > -0.075, "a truck sank {lowest} m, deeper than its floor is over the ground");
     let wall = began.elapsed().as_secs_f64();
-    let unable = world.snapshot().robots.iter().filter(|r| r.condition.name() != "able").count();
+    let unable = world.snapshot().robots.iter().filter(|r| r.condition.word() != "able").count();
     let steps = (COUNT * SECONDS * 200) as f64;
     println!("{COUNT} trucks, {SECONDS} s in {wall:.1} s, {:.0} vehicle-steps a second", steps / wall);
     println!(

@@ -2,47 +2,41 @@
 
 use metrics::RootMeanSquare;
 use serde_json::{Value, json};
+use std::iter;
 use studies::accuracy::{AccuracyBin, BINS, STAGES, readable_rms, targets};
 
 /// Titles of the two ways to look, in the order of the times.
 const WAYS: [&str; 2] = ["part that is tracked", "whole picture"];
+
+/// Columns of the first table but the first one, and their widths.
+const COLUMNS: [(&str, usize); 11] = [
+    ("poses", 7),
+    ("1 face", 9),
+    ("found", 9),
+    ("whole", 9),
+    ("2 faces", 9),
+    ("found", 9),
+    ("whole", 9),
+    ("wrong", 7),
+    ("strayed", 9),
+    ("flips", 7),
+    ("ambiguous", 11),
+];
 
 /// Medians of every stage, ms, for the tracked part and the whole picture.
 pub(crate) type Medians = [[Option<f64>; 4]; 2];
 
 /// Everything as lines.
 pub(crate) fn text(bins: &[AccuracyBin], times: &Medians) -> Vec<String> {
-    let mut lines = vec![format!(
-        "{:<10}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}{:>9}{:>7}{:>11}",
-        "distance",
-        "poses",
-        "1 face",
-        "found",
-        "whole",
-        "2 faces",
-        "found",
-        "whole",
-        "wrong",
-        "strayed",
-        "flips",
-        "ambiguous"
-    )];
+    let mut lines = vec![row("distance", COLUMNS.iter().map(|(head, _)| (*head).to_owned()))];
     for (bounds, bin) in BINS.iter().zip(bins) {
-        lines.push(format!(
-            "{:<10}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}{:>9}{:>7}{:>11}",
-            metres(bounds),
-            bin.poses,
-            bin.views[0],
-            share(bin.seen[0], bin.views[0]),
-            share(bin.seen_whole[0], bin.views[0]),
-            bin.views[1],
-            share(bin.seen[1], bin.views[1]),
-            share(bin.seen_whole[1], bin.views[1]),
-            bin.wrong,
-            bin.strayed,
-            bin.flips,
-            bin.ambiguous
-        ));
+        let found = (0..2).flat_map(|k| {
+            let of = |count: u32| share(count, bin.views[k]);
+            [bin.views[k].to_string(), of(bin.seen[k]), of(bin.seen_whole[k])]
+        });
+        let faults = [bin.wrong, bin.strayed, bin.flips as usize, bin.ambiguous as usize];
+        let cells = iter::once(bin.poses.to_string()).chain(found);
+        lines.push(row(&metres(bounds), cells.chain(faults.map(|count| count.to_string()))));
     }
     lines.push(String::new());
     lines.push("RMS error of range %, bearing °, heading °".into());
@@ -75,6 +69,12 @@ pub(crate) fn text(bins: &[AccuracyBin], times: &Medians) -> Vec<String> {
         lines.push(format!("{way:<22}{cells}{:>20}", number(rest)));
     }
     lines
+}
+
+/// A line of the first table.
+fn row(first: &str, cells: impl Iterator<Item = String>) -> String {
+    let cells = cells.zip(COLUMNS).map(|(cell, (_, width))| format!("{cell:>width$}"));
+    format!("{first:<10}{}", cells.collect::<String>())
 }
 
 fn metres([low, high]: &[f64; 2]) -> String {

@@ -2,8 +2,7 @@
 
 use super::picture;
 use crate::failure::Failure;
-use crate::replaced::Replaced;
-use output::write_whole;
+use crate::replaced::{quoted, write_all};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -17,15 +16,7 @@ pub(crate) fn write(folder: &Path, budget: &Budget<'_>, quiet: bool) -> Result<V
         ("json", format!("{:#}\n", as_json(budget))),
         ("csv", as_csv(budget)),
     ];
-    let (mut written, mut replaced) = (vec![], Replaced::default());
-    for (ending, text) in texts {
-        let path = folder.join(stem).with_extension(ending);
-        replaced.look(&path);
-        write_whole(&path, text.as_bytes())?;
-        written.push(path);
-    }
-    replaced.tell(quiet);
-    Ok(written)
+    write_all(folder, &texts.map(|(ending, text)| (format!("{stem}.{ending}"), text)), quiet)
 }
 
 /// Every number, in m, rad and s.
@@ -52,13 +43,13 @@ pub(crate) fn as_json(budget: &Budget<'_>) -> Value {
     };
     let scaling = edges.iter().map(|edge| {
         let (each, all) = budget.camera_as_pixels(*edge);
-        let looks = [0, 1, 2]
-            .map(|c| Growth::fit(&budget.curve(*edge, ObserverChoice::HighGain, |m| Some(m.looks?[c]))));
+        let measurements = [0, 1, 2]
+            .map(|c| Growth::fit(&budget.curve(*edge, ObserverChoice::HighGain, |m| Some(m.measurements?[c]))));
         let told =
             [0, 1, 2].map(|c| Growth::fit(&budget.curve(*edge, ObserverChoice::HighGain, |m| Some(m.told?[c]))));
         let tracking = |observer: ObserverChoice| [0, 1].map(|c| growth(observer, *edge, c));
         json!({
-            "looks": looks,
+            "measurements": measurements,
             "told": told,
             "tracking": { "high-gain": tracking(ObserverChoice::HighGain), "unscented": tracking(ObserverChoice::Unscented) },
             "camera_as_pixels": { "distance": each[0], "bearing": each[1], "view_angle": each[2], "all": all },
@@ -88,10 +79,10 @@ fn observer(observer: ObserverChoice) -> &'static str {
 }
 
 const COLUMNS: &str = "sensing,pixel_noise_px,observer,epsilon_s,leader,follower,\
-look_distance_rms_m,look_bearing_rms_rad,look_view_angle_rms_rad,look_distance_rms_share,\
+measurement_distance_rms_m,measurement_bearing_rms_rad,measurement_view_angle_rms_rad,measurement_distance_rms_share,\
 told_distance_rms_m,told_bearing_rms_rad,told_view_angle_rms_rad,\
 tracking_distance_rms_m,tracking_bearing_rms_rad,rate_distance_rms_m_s,rate_bearing_rms_rad_s,\
-limited_share,in_view_share,looks_taken,looks_refused,lost_share\n";
+limited_share,in_view_share,measurements_taken,measurements_refused,lost_share\n";
 
 /// A row for every edge of every run; empty where there is no value.
 fn as_csv(budget: &Budget<'_>) -> String {
@@ -111,9 +102,9 @@ fn as_csv(budget: &Budget<'_>) -> String {
                 optional(case.level.pixels())
             );
             let three = |values: Option<[f64; 3]>| [0, 1, 2].map(|c| values.map(|v| v[c]));
-            let numbers = three(edge.looks)
+            let numbers = three(edge.measurements)
                 .into_iter()
-                .chain([edge.looks_relative])
+                .chain([edge.measurements_relative])
                 .chain(three(edge.told))
                 .chain(edge.tracking.into_iter().chain(edge.rate_error).map(Some))
                 .chain([Some(edge.limited), edge.in_view])
@@ -129,15 +120,6 @@ fn as_csv(budget: &Budget<'_>) -> String {
 
 fn optional(number: Option<f64>) -> String {
     number.map_or_else(String::new, |n| n.to_string())
-}
-
-/// A name as CSV takes it.
-fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", name.replace('"', "\"\""))
-    } else {
-        name.to_owned()
-    }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! A comparison as a figure a column wide.
 
+use crate::certify::axis;
 use figures::{Axis, Figure, Key, Marker, Panel, Rgb, Scale, Series, Stroke};
 use studies::budget::{Budget, EdgeErrors, ObserverChoice, SensingLevel};
 
@@ -23,16 +24,12 @@ const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 /// Factor from m to mm.
 const MILLI: f64 = 1e3;
 
-fn axis(label: &str, scale: Scale) -> Axis {
-    Axis { label: label.to_owned(), scale, ..Axis::default() }
-}
-
-/// Errors of looks and of following over the noise of corners, with the camera among them.
+/// Errors of measurements and of following over the noise of corners, with the camera among them.
 fn levels(budget: &Budget<'_>) -> Figure {
     let mut panels = vec![
-        looks(budget, "Error of looks: distance (mm)", 0, MILLI),
-        looks(budget, "Error of looks: bearing (°)", 1, DEGREES),
-        looks(budget, "Error of looks: view angle (°)", 2, DEGREES),
+        measurements(budget, "Error of measurements: distance (mm)", 0, MILLI),
+        measurements(budget, "Error of measurements: bearing (°)", 1, DEGREES),
+        measurements(budget, "Error of measurements: view angle (°)", 2, DEGREES),
         tracking(budget, "Tracking error: distance (mm)", 0, MILLI),
         tracking(budget, "Tracking error: bearing (°)", 1, DEGREES),
     ];
@@ -47,7 +44,7 @@ fn levels(budget: &Budget<'_>) -> Figure {
     ];
     if budget.run(SensingLevel::Camera, ObserverChoice::HighGain).is_some() {
         keys.push(Key {
-            name: "camera, at the noise its looks stand for".to_owned(),
+            name: "camera, at the noise its measurements stand for".to_owned(),
             stroke: Stroke::None,
             marker: Marker::Diamond,
             colour: None,
@@ -63,8 +60,8 @@ fn levels(budget: &Budget<'_>) -> Figure {
 }
 
 /// A curve for every edge, and a diamond for its camera.
-fn looks(budget: &Budget<'_>, label: &str, channel: usize, factor: f64) -> Panel {
-    let value = |m: &EdgeErrors| Some(m.looks?[channel] * factor);
+fn measurements(budget: &Budget<'_>, label: &str, channel: usize, factor: f64) -> Panel {
+    let value = |m: &EdgeErrors| Some(m.measurements?[channel] * factor);
     let series = followers(budget).into_iter().enumerate().flat_map(|(index, (colour, name))| {
         let mut points = budget.curve(index, ObserverChoice::HighGain, value);
         // Without noise and tilt only rounding errs: showing it would flatten everything else.
@@ -109,7 +106,7 @@ fn tracking(budget: &Budget<'_>, label: &str, channel: usize, factor: f64) -> Pa
     Panel { axis: axis(label, Scale::Log), series, guides: vec![] }
 }
 
-/// The camera's value, at the noise of corners that the follower's looks by camera stand for.
+/// The camera's value, at the noise of corners that the follower's measurements by camera stand for.
 fn camera(budget: &Budget<'_>, index: usize, colour: Rgb, value: Value<'_>) -> Option<Series> {
     let run = budget.run(SensingLevel::Camera, ObserverChoice::HighGain)?;
     let (pixels, value) = (budget.camera_as_pixels(index).1?, value(run.edges.get(index)?)?);
@@ -117,7 +114,8 @@ fn camera(budget: &Budget<'_>, index: usize, colour: Rgb, value: Value<'_>) -> O
     Some(Series { colour, points, stroke: Stroke::None, marker: Marker::Diamond, ..Series::default() })
 }
 
-/// What an observer constant does to following, to rates and to commands, with the constant that follows from the noise.
+/// What an observer constant does to following, to rates and to commands, with the constant that follows from the
+/// noise.
 fn constants(budget: &Budget<'_>) -> Figure {
     let panel = |label: &str, scale: Scale, value: Value<'_>| {
         let series = followers(budget).into_iter().enumerate().flat_map(|(index, (colour, name))| {
@@ -152,7 +150,7 @@ fn constants(budget: &Budget<'_>) -> Figure {
     }
     let by = budget.runs.first().map_or("", |(case, _)| case.level.word());
     Figure {
-        title: format!("{}: observer constant, looks by {by}, RMS", budget.scene.title),
+        title: format!("{}: observer constant, measurements by {by}, RMS", budget.scene.title),
         axis: axis("observer constant ε (s)", Scale::Log),
         panels,
         keys: vec![

@@ -33,8 +33,8 @@ pub(crate) fn print(budget: &Budget<'_>) {
     }
     if !budget.constants {
         say(
-            "looks: those used; told: what the law was told; tracking: set point minus truth; refused: looks not believed, \
-             or ambiguous",
+            "measurements: those used; told: what the law was told; tracking: set point minus truth; refused: not believed, or \
+             ambiguous",
         );
     }
 }
@@ -69,7 +69,7 @@ fn percent(share: Option<f64>, decimals: usize) -> String {
 fn levels(budget: &Budget<'_>, index: usize) {
     say(&format!(
         "{:17} {:9} {:>32}  {:>24}  {:>16} {:>7} {:>7}",
-        "", "", "looks", "told", "tracking", "in view", "refused"
+        "", "", "measurements", "told", "tracking", "in view", "refused"
     ));
     say(&format!(
         "{:17} {:9} {:>8} {:>7} {:>7} {:>7}  {:>8} {:>7} {:>7}  {:>8} {:>7} {:>7}",
@@ -81,8 +81,8 @@ fn levels(budget: &Budget<'_>, index: usize) {
         say(&format!(
             "{:17} {observer:9} {} {:>7}  {}  {:>8.2} {:>7} {:>7} {:>7}",
             case.level.name(),
-            three(edge.looks),
-            percent(edge.looks_relative, 3),
+            three(edge.measurements),
+            percent(edge.measurements_relative, 3),
             three(if case.level == SensingLevel::Truth { None } else { edge.told }),
             edge.tracking[0] * 1e3,
             degrees(edge.tracking[1]),
@@ -97,7 +97,7 @@ fn levels(budget: &Budget<'_>, index: usize) {
         let one = |noise: Option<f64>| noise.map_or_else(|| "outside".to_owned(), |n| format!("{n:.3} px"));
         let [l, p, g] = each.map(one);
         say(&format!(
-            "the camera's looks err as corners do with {} (by ℓ {l}, by ψ {p}, by γ {g}; tried {} to {} px)",
+            "the camera's measurements err as corners do with {} (by ℓ {l}, by ψ {p}, by γ {g}; tried {} to {} px)",
             one(all),
             tried.first().copied().unwrap_or_default(),
             tried.last().copied().unwrap_or_default()
@@ -117,17 +117,12 @@ fn growth(budget: &Budget<'_>, index: usize) {
         )
     };
     let angle = 1_f64.to_degrees();
+    let triple = |value: fn(&EdgeErrors) -> Option<[f64; 3]>| {
+        [0, 1, 2].map(|c| fit(ObserverChoice::HighGain, &|m| Some(value(m)?[c])))
+    };
     let rows: [(&str, ObserverChoice, [Option<Growth>; 3]); 4] = [
-        (
-            "looks",
-            ObserverChoice::HighGain,
-            [0, 1, 2].map(|c| fit(ObserverChoice::HighGain, &|m| Some(m.looks?[c]))),
-        ),
-        (
-            "told",
-            ObserverChoice::HighGain,
-            [0, 1, 2].map(|c| fit(ObserverChoice::HighGain, &|m| Some(m.told?[c]))),
-        ),
+        ("measurements", ObserverChoice::HighGain, triple(|m| m.measurements)),
+        ("told", ObserverChoice::HighGain, triple(|m| m.told)),
         ("tracking", ObserverChoice::HighGain, tracking(&fit, ObserverChoice::HighGain)),
         ("tracking", ObserverChoice::Unscented, tracking(&fit, ObserverChoice::Unscented)),
     ];
@@ -136,10 +131,10 @@ fn growth(budget: &Budget<'_>, index: usize) {
     }
     say("error = floor ⊕ slope · pixels (⊕: root of the sum of squares)");
     for (what, observer, [l, p, g]) in rows {
-        let observer = if what == "looks" { String::new() } else { observer.name() };
+        let observer = if what == "measurements" { String::new() } else { observer.name() };
         let (l, p) = (one(l, 1e3, "mm"), one(p, angle, "°"));
         let g = if what == "tracking" { String::new() } else { format!("γ {}", one(g, angle, "°")) };
-        say(format!("  {what:8} {observer:9}  ℓ {l:28}  ψ {p:26}  {g}").trim_end());
+        say(format!("  {what:12} {observer:9}  ℓ {l:28}  ψ {p:26}  {g}").trim_end());
     }
 }
 

@@ -6,16 +6,16 @@ use crate::interrupt;
 use crate::progress::Progress;
 use scene::Scene;
 use std::sync::atomic::{AtomicU64, Ordering};
-use studies::certify::beyond::{Beyond, SensitivityCost};
+use studies::certify::beyond::SensitivityCost;
 use studies::certify::sensitivity::{Sensitivities, sensitivities};
 use vocabulary::counted;
 
-pub(super) fn look(scene: &Scene, asked: bool, quiet: bool) -> Result<Beyond, Failure> {
-    let sensitivities = every_gain(scene, asked, quiet)?;
-    Ok(Beyond::of(scene, sensitivities).map_err(studies::Error::from)?)
-}
-
-fn every_gain(scene: &Scene, asked: bool, quiet: bool) -> Result<Result<Sensitivities, String>, Failure> {
+/// What every gain does to the settled error, or why that is left out.
+pub(super) fn every_gain(
+    scene: &Scene,
+    asked: bool,
+    quiet: bool,
+) -> Result<Result<Sensitivities, String>, Failure> {
     let (runs, heavy) = match SensitivityCost::of(scene) {
         SensitivityCost::Pictures => {
             return Ok(Err("left out: cameras take pictures in every run".to_owned()));
@@ -39,6 +39,6 @@ fn every_gain(scene: &Scene, asked: bool, quiet: bool) -> Result<Result<Sensitiv
     // The bar is not made for several threads: it goes on by itself.
     let found = sensitivities(scene, look).map_err(studies::Error::from)?;
     progress.at(done.load(Ordering::Relaxed));
-    progress.end();
+    drop(progress);
     found.map(Ok).ok_or_else(nothing)
 }

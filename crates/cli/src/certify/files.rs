@@ -4,14 +4,14 @@ use super::CertifyReport;
 use super::pictures;
 use super::text::reason;
 use crate::failure::Failure;
-use crate::replaced::Replaced;
-use output::write_whole;
+use crate::replaced::{quoted, write_all};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use studies::certify::beyond::Beyond;
 use studies::certify::chain::LENGTHS;
 use studies::certify::{Certificate, Constants, LongestPeriod};
+use vocabulary::Word;
 
 /// Writes everything into `folder`; what was there under the same names is replaced.
 pub(super) fn write(folder: &Path, report: &CertifyReport<'_>, quiet: bool) -> Result<Vec<PathBuf>, Failure> {
@@ -26,15 +26,8 @@ pub(super) fn write(folder: &Path, report: &CertifyReport<'_>, quiet: bool) -> R
                 .map_err(|e| Failure::Machine(format!("cannot remove {}: {e}", path.display())))?;
         }
     }
-    let (mut written, mut replaced) = (vec![], Replaced::default());
-    for (name, text) in texts {
-        let path = folder.join(name);
-        replaced.look(&path);
-        write_whole(&path, text.as_bytes())?;
-        written.push(path);
-    }
-    replaced.tell(quiet);
-    Ok(written)
+    let texts: Vec<_> = texts.into_iter().map(|(name, text)| (name.to_owned(), text)).collect();
+    write_all(folder, &texts, quiet)
 }
 
 /// Every number, SI units.
@@ -51,14 +44,12 @@ pub(super) fn as_json(report: &CertifyReport<'_>) -> Value {
 
 fn edge(report: &CertifyReport<'_>, certificate: &Certificate) -> Value {
     let mut value = serde_json::to_value(certificate.metrics(&report.fleet)).unwrap_or_default();
-    if let Some(map) = value.as_object_mut() {
-        let witness = &certificate.witness;
-        map.insert("zeta_b".to_owned(), json!(witness.initial()));
-        map.insert("final_error".to_owned(), json!(certificate.final_error));
-        map.insert("error_left_by_tanh".to_owned(), json!(certificate.smoothing));
-        map.insert("p0".to_owned(), json!(witness.layer().map(|l| rows(&l.matrix))));
-        map.insert("constants".to_owned(), json!(certificate.constants.map(|c| constants(&c, report.bound))));
-    }
+    let witness = &certificate.witness;
+    value["zeta_b"] = json!(witness.initial());
+    value["final_error"] = json!(certificate.final_error);
+    value["error_left_by_tanh"] = json!(certificate.smoothing);
+    value["p0"] = json!(witness.layer().map(|l| rows(&l.matrix)));
+    value["constants"] = json!(certificate.constants.map(|c| constants(&c, report.bound)));
     value
 }
 
@@ -102,7 +93,7 @@ fn beyond_json(report: &CertifyReport<'_>, beyond: &Beyond) -> Value {
                 LongestPeriod::Beyond => Value::Null,
             });
             json!({
-                "discretisation": how.name(),
+                "discretisation": how.word(),
                 "longest_period": longest.collect::<Vec<_>>(),
                 "growth": chart.channel.growth(*how, chart.epsilon, chart.period),
                 "reported_rate": chart.channel.reported_rate(*how, chart.epsilon, chart.period),
@@ -114,16 +105,8 @@ fn beyond_json(report: &CertifyReport<'_>, beyond: &Beyond) -> Value {
         })
     });
     let chain = beyond.chain.iter().map(|gain| {
-        let curve = gain.curve.iter().map(|p| {
-            json!({
-                "frequency": p.frequency, "own_leader": p.own_leader, "lead": p.lead, "growth": p.growth,
-                "chains": p.lengths,
-            })
-        });
-        json!({
-            "edge": report.edge(gain.edge), "depth": gain.depth, "stable": gain.stable,
-            "curve": curve.collect::<Vec<_>>(),
-        })
+        let edge = report.edge(gain.edge);
+        json!({ "edge": edge, "depth": gain.depth, "stable": gain.stable, "curve": gain.curve })
     });
     json!({
         "sensitivity": sensitivity,
@@ -141,31 +124,13 @@ fn table(report: &CertifyReport<'_>) -> String {
     );
     for certificate in &report.certificates {
         let edge = certificate.metrics(&report.fleet);
-        let quoted = |name: &str| {
-            if name.contains([',', '"']) {
-                format!("\"{}\"", name.replace('"', "\"\""))
-            } else {
-                name.to_owned()
-            }
-        };
         let head = format!("{},{}", quoted(&edge.leader), quoted(&edge.follower));
         for r in certificate.witness.rows() {
+            let own = [r.time, r.error, r.error_rate, r.filtered, r.effect, r.effect_rate];
+            let proof = [r.margin, r.p, r.v, r.observer_error, r.w];
+            let numbers = own.iter().chain(&proof).map(f64::to_string);
             // Writing to a text cannot fail.
-            let _ = writeln!(
-                text,
-                "{head},{},{},{},{},{},{},{},{},{},{},{}",
-                r.time,
-                r.error,
-                r.error_rate,
-                r.filtered,
-                r.effect,
-                r.effect_rate,
-                r.margin,
-                r.p,
-                r.v,
-                r.observer_error,
-                r.w
-            );
+            let _ = writeln!(text, "{head},{}", numbers.collect::<Vec<_>>().join(","));
         }
     }
     text

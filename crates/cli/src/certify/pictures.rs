@@ -34,7 +34,8 @@ fn colours(report: &CertifyReport<'_>) -> Vec<Rgb> {
     report.fleet.edges.iter().map(colour).collect()
 }
 
-fn axis(label: &str, scale: Scale) -> Axis {
+/// An axis whose range follows from what it shows.
+pub(crate) fn axis(label: &str, scale: Scale) -> Axis {
     Axis { label: label.to_owned(), scale, ..Axis::default() }
 }
 

@@ -9,6 +9,7 @@ use studies::certify::{
     Certificate, Constants, Discretisation, Infeasible, LongestPeriod, NotLinear, Statement,
     StatementFinding, StatementOutcome,
 };
+use vocabulary::Word;
 
 /// Edges that are told statement by statement; the others have a line each.
 const IN_FULL: usize = 2;
@@ -44,14 +45,10 @@ fn edge(report: &CertifyReport<'_>, certificate: &Certificate) {
     }
     let witness = &certificate.witness;
     if let Some(last) = witness.rows().last() {
+        let [effect, margin, initial, p, v, w] =
+            [last.effect, last.margin, witness.initial(), last.p, last.v, last.w].map(short);
         say(&format!(
-            "  at the end     ‖gᵥVᵢ‖ {}, margin of β {}, ζ_b {}, P {}, V {}, W {}",
-            short(last.effect),
-            short(last.margin),
-            short(witness.initial()),
-            short(last.p),
-            short(last.v),
-            short(last.w)
+            "  at the end     ‖gᵥVᵢ‖ {effect}, margin of β {margin}, ζ_b {initial}, P {p}, V {v}, W {w}"
         ));
     }
     let error = |e: [f64; 2]| format!("{} mm {}°", short(1e3 * e[0]), short(e[1].to_degrees()));
@@ -73,8 +70,7 @@ fn others(report: &CertifyReport<'_>) {
     if rest().next().is_none() {
         return;
     }
-    let heads = Statement::ALL.map(Statement::source);
-    let head = row(heads.iter().map(|source| format!("  {source:>13}")));
+    let head = row(Statement::WORDS.iter().map(|(_, statement, _)| format!("  {:>13}", statement.source())));
     say(&format!("\n{:40}{head}", "the others, in short"));
     for certificate in rest().take(MOST_EDGES) {
         let cells = row(certificate.findings.iter().map(|f| format!("  {:>13}", cell(f))));
@@ -123,7 +119,7 @@ fn statement(finding: &StatementFinding) {
         StatementOutcome::Violated(_) => format!("violated {when}{margin}"),
         StatementOutcome::PremiseNotMet => "premise not met".to_owned(),
     };
-    say(&format!("  {:<14} {:<32} {outcome}", finding.statement.source(), finding.statement.words()));
+    say(&format!("  {:<14} {:<32} {outcome}", finding.statement.source(), finding.statement.symbols()));
     if finding.outcome() == StatementOutcome::PremiseNotMet {
         let reasons: Vec<String> = finding.unmet.iter().map(studies::certify::Premise::words).collect();
         for line in wrapped(&reasons, 84) {
@@ -154,29 +150,18 @@ fn wrapped(words: &[String], width: usize) -> Vec<String> {
 }
 
 fn numbers(c: &Constants, bound: Option<f64>, met: bool) {
+    let [s_s, s_v, norm, least, rho, s_1] =
+        [c.sigma_s, c.sigma_v, c.norm, c.least, c.rho, c.sigma_1].map(short);
+    let [l1, mu, mu_1, mu_2, c3] = [c.l1, c.mu, c.mu_1, c.mu_2, c.c3].map(short);
     say(&format!(
-        "  constants      σ_s {}, σ_v {}, ‖P₀‖ {}, λ_min {}, ρ {}, σ₁ {}, L₁ {}, μ {}, μ₁ {}, μ₂ {}, c₃ {}",
-        short(c.sigma_s),
-        short(c.sigma_v),
-        short(c.norm),
-        short(c.least),
-        short(c.rho),
-        short(c.sigma_1),
-        short(c.l1),
-        short(c.mu),
-        short(c.mu_1),
-        short(c.mu_2),
-        short(c.c3)
+        "  constants      σ_s {s_s}, σ_v {s_v}, ‖P₀‖ {norm}, λ_min {least}, ρ {rho}, σ₁ {s_1}, L₁ {l1}, μ {mu}, \
+         μ₁ {mu_1}, μ₂ {mu_2}, c₃ {c3}"
     ));
+    let [epsilon, epsilon_1, time] = [c.epsilon, c.epsilon_1, c.t_epsilon].map(short);
+    let [filtered, error, delta] = [c.filtered, c.error, c.delta_0].map(short);
+    let unmet = if met { "" } else { ", if the premises were met" };
     say(&format!(
-        "  for ε = {} s  ε₁ {} s, T_ε {} s; in the end ‖r‖ ≤ {}, ‖e‖ ≤ {}, δ₀ {}{}",
-        short(c.epsilon),
-        short(c.epsilon_1),
-        short(c.t_epsilon),
-        short(c.filtered),
-        short(c.error),
-        short(c.delta_0),
-        if met { "" } else { ", if the premises were met" }
+        "  for ε = {epsilon} s  ε₁ {epsilon_1} s, T_ε {time} s; in the end ‖r‖ ≤ {filtered}, ‖e‖ ≤ {error}, δ₀ {delta}{unmet}"
     ));
     if let Some(bound) = bound {
         say(&format!(

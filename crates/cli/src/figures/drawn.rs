@@ -55,20 +55,23 @@ impl FilmedRun {
     }
 }
 
-/// What is drawn of a subject.
+/// What is drawn of a subject: the film of every case, and the picture of some.
 pub(super) fn shows(subject: &Subject) -> Vec<FilmedRun> {
-    let show = |(case, name, job): (Case, &str, &PlannedRun)| {
-        let stem = match case {
-            Case::Line => None,
-            Case::Circle => Some("figure-13"),
-            Case::Seven => Some("figure-14"),
-            Case::Own => Some("snake"),
-        };
+    let cases = [
+        (Case::Line, "line", None),
+        (Case::Circle, "circle", Some("figure-13")),
+        (Case::Seven, "seven", Some("figure-14")),
+        (Case::Own, "film", Some("snake")),
+    ];
+    let show = |(case, name, stem): (Case, &str, Option<&'static str>)| {
+        // The paper's films are those of its own ε, which is the scenes'.
+        let mut of = subject.jobs.iter().filter(|job| job.case == case);
+        let job = if case == Case::Own { of.next() } else { of.next_back() }?;
         let time = if case == Case::Own { 0.8 } else { 0.6 } * job.scene.time.duration;
         let picture = stem.map(|stem| PictureOfRun { stem, time });
-        FilmedRun { case, name: name.to_owned(), job: job.clone(), picture }
+        Some(FilmedRun { case, name: name.to_owned(), job: job.clone(), picture })
     };
-    subject.filmed().into_iter().map(show).collect()
+    cases.into_iter().filter_map(show).collect()
 }
 
 /// Draws one run: its film into the folder, its picture into the report.

@@ -58,7 +58,7 @@ impl Folder {
             "status": status,
             "files": there,
         });
-        if let (Some((report, runs)), Some(all)) = (came, value.as_object_mut()) {
+        if let (Some((report, runs)), Value::Object(all)) = (came, &mut value) {
             all.extend(found(report, runs));
         }
         Ok(write_whole(&self.path.join(MARK), format!("{value:#}\n").as_bytes())?)

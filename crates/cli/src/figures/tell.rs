@@ -10,10 +10,8 @@ use vocabulary::counted;
 pub(super) fn tell(args: &FiguresArgs, report: &Report, runs: &[FinishedRun], folder: &Folder, wall: f64) {
     if args.json {
         let mut value = serde_json::Value::Object(found(report, runs));
-        if let Some(all) = value.as_object_mut() {
-            all.insert("folder".to_owned(), json!(folder.path().display().to_string()));
-            all.insert("wall_seconds".to_owned(), json!(wall));
-        }
+        value["folder"] = json!(folder.path().display().to_string());
+        value["wall_seconds"] = json!(wall);
         return json(&value);
     }
     if args.quiet {

@@ -2,7 +2,7 @@
 
 use rendering::{CurvePanel as Shown, PanelCurve};
 use scene::Plot;
-use vocabulary::{Edge, FleetInfo, StepRecord};
+use vocabulary::{Edge, FleetInfo, StepRecord, Word};
 
 /// Everything that may be plotted, so far.
 pub(super) struct Plots {
@@ -12,32 +12,23 @@ pub(super) struct Plots {
     curves: Vec<Vec<Vec<[f64; 2]>>>,
 }
 
-const ALL: [Plot; 6] = [
-    Plot::DistanceError,
-    Plot::BearingError,
-    Plot::Speed,
-    Plot::TurnRate,
-    Plot::Acceleration,
-    Plot::Distance,
-];
-
 impl Plots {
     pub(super) fn new(fleet: &FleetInfo, duration: f64) -> Self {
         Self {
             edges: fleet.edges.clone(),
             duration,
-            curves: vec![vec![vec![]; fleet.edges.len()]; ALL.len()],
+            curves: vec![vec![vec![]; fleet.edges.len()]; Plot::WORDS.len()],
         }
     }
 
     /// Takes in the moment of a frame.
     pub(super) fn record(&mut self, record: &StepRecord) {
         let time = record.snapshot.time;
-        for (quantity, curves) in ALL.into_iter().zip(&mut self.curves) {
+        for ((_, quantity, _), curves) in Plot::WORDS.iter().zip(&mut self.curves) {
             for ((index, edge), curve) in self.edges.iter().enumerate().zip(curves) {
                 // While a card stands, so does the time.
                 if curve.last().is_none_or(|last| time > last[0]) {
-                    curve.push([time, value(quantity, record, index, *edge).unwrap_or(f64::NAN)]);
+                    curve.push([time, value(*quantity, record, index, *edge).unwrap_or(f64::NAN)]);
                 }
             }
         }
@@ -49,7 +40,7 @@ impl Plots {
     }
 
     fn one(&self, plot: Plot) -> Option<Shown> {
-        let index = ALL.iter().position(|other| *other == plot)?;
+        let index = Plot::WORDS.iter().position(|(_, other, _)| *other == plot)?;
         let (label, least, centred) = match plot {
             Plot::DistanceError => ("distance error (m)", 0.02, true),
             Plot::BearingError => ("bearing error (°)", 1.0, true),

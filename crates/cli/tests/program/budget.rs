@@ -19,11 +19,11 @@ fn json(args: &[&str]) -> Value {
     serde_json::from_str(&out).expect("JSON only on standard output")
 }
 
-/// Root mean square error of the looks at the distance, by level, of the first edge with the first observer.
-fn look_errors(value: &Value) -> Vec<f64> {
+/// Root mean square error of the measured distances, by level, of the first edge with the first observer.
+fn measurement_errors(value: &Value) -> Vec<f64> {
     let runs = value["runs"].as_array().expect("runs").iter();
     let geometric = runs.filter(|r| r["sensing"] == "geometric" && r["observer"] == "high-gain");
-    geometric.map(|r| r["edges"][0]["looks"][0].as_f64().expect("a number")).collect()
+    geometric.map(|r| r["edges"][0]["measurements"][0].as_f64().expect("a number")).collect()
 }
 
 #[test]
@@ -33,10 +33,10 @@ fn errors_grow_with_the_noise_of_corners() {
     let value = json(&args);
     assert_eq!(value["runs"].as_array().map(Vec::len), Some(7), "truth, and three levels with two observers");
     assert_eq!(value["status"], "complete");
-    let errors = look_errors(&value);
+    let errors = measurement_errors(&value);
     assert!(errors.windows(2).all(|w| w[1] > 2.0 * w[0]), "{errors:?}");
     assert!(value["without_camera"].as_str().is_some_and(|why| why.contains("--no-camera")));
-    let slope = &value["scaling"][0]["looks"][0]["slope"];
+    let slope = &value["scaling"][0]["measurements"][0]["slope"];
     assert!(slope.as_f64().is_some_and(|s| s > 0.0), "{slope}");
     assert_eq!(value, json(&args), "the same again");
 }

@@ -1,7 +1,8 @@
 //! How a disturbance of a lead robot's motion goes down a chain of followers: gains over frequency.
 //!
-//! Every edge is linearised about steady motion, its law acting in continuous time and without limits. From the leader's
-//! deviation [δv, δω] follow the errors [δℓ, δψ] and the follower's own deviation, which is what the next one follows.
+//! Every edge is linearised about steady motion, its law acting in continuous time and without limits. From the
+//! leader's deviation [δv, δω] follow the errors [δℓ, δψ] and the follower's own deviation, which is what the next one
+//! follows.
 
 use crate::formation::EdgeLaw;
 use crate::law::{Law, LawInput, Switching};
@@ -277,7 +278,7 @@ mod tests {
         let observer =
             Observer { epsilon: [epsilon; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 };
         let set_point = SetPointTrajectory::constant(2.0, -0.75 * std::f64::consts::PI);
-        EdgeLaw { law, observer, looks: None, set_point }
+        EdgeLaw { law, observer, tracker: None, set_point }
     }
 
     const AHEAD: MotionInput =

@@ -6,6 +6,7 @@
 use crate::matrix_exponential::exponential;
 use nalgebra::{Matrix4, SMatrix, Vector4};
 use vocabulary::math;
+use vocabulary::words;
 
 /// One channel of a sampled loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,19 +21,20 @@ pub struct ChannelSensitivity {
     pub alpha2: f64,
 }
 
-/// How an observer is carried from one sample to the next.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Discretisation {
-    /// It sees the plant in between: `sampled` runs.
-    Exact,
-    /// It takes the measurement as the straight line between samples: `measured` runs.
-    Ramp,
-    /// It takes the measurement as held, and is solved exactly.
-    Held,
-    /// One step of Runge-Kutta 4, the measurement held.
-    RungeKutta,
-    /// One step of Euler, the measurement held.
-    Euler,
+words! {
+    /// How an observer is carried from one sample to the next.
+    pub enum Discretisation {
+        /// It sees the plant in between: `sampled` runs.
+        Exact = "exact",
+        /// It takes the measurement as the straight line between samples: `measured` runs.
+        Ramp = "ramp",
+        /// It takes the measurement as held, and is solved exactly.
+        Held = "held",
+        /// One step of Runge-Kutta 4, the measurement held.
+        RungeKutta = "runge-kutta",
+        /// One step of Euler, the measurement held.
+        Euler = "euler",
+    }
 }
 
 /// ê₁, ε ê₂, y, dy/dt, w.
@@ -50,17 +52,6 @@ impl Discretisation {
             Self::Held => "held measurement",
             Self::RungeKutta => "Runge-Kutta 4",
             Self::Euler => "Euler",
-        }
-    }
-
-    /// One word for it, for machines.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::Ramp => "ramp",
-            Self::Held => "held",
-            Self::RungeKutta => "runge-kutta",
-            Self::Euler => "euler",
         }
     }
 

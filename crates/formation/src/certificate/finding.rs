@@ -6,75 +6,48 @@ use super::premise::{Premise, Spell};
 use super::tally::{Margin, Tally};
 use super::witness::Witness;
 use crate::law::Switching;
-use vocabulary::LawKind;
+use vocabulary::{LawKind, Word, words};
 
-/// What the theorems state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Statement {
-    /// β > ‖g_v V_i‖ + ‖d(g_v V_i)/dt‖/k₁₂ (Lemma 4.1).
-    RobustGain,
-    /// P ≥ 0 (eq 28).
-    NonNegative,
-    /// V falls: wherever ‖r‖ > σ₁‖η‖, which is everywhere for robust state feedback (eqs 30, 44).
-    TrackingDecrease,
-    /// ε ≤ ε₁ (below eq 45).
-    Epsilon,
-    /// W falls wherever it is above ρε² (eqs 45, 47).
-    ObserverDecrease,
-    /// W ≤ ρε² from T_ε on (eq 49).
-    Trapped,
-    /// ‖e‖ + ‖de/dt‖ + ‖η‖ ≤ δ₀ in the end (eqs 51-53).
-    UltimateBound,
+words! {
+    /// What the theorems state, in the order of the paper.
+    pub enum Statement {
+        /// β > ‖g_v V_i‖ + ‖d(g_v V_i)/dt‖/k₁₂ (Lemma 4.1).
+        RobustGain = "robust-gain",
+        /// P ≥ 0 (eq 28).
+        NonNegative = "p-non-negative",
+        /// V falls: wherever ‖r‖ > σ₁‖η‖, which is everywhere for robust state feedback (eqs 30, 44).
+        TrackingDecrease = "v-falls",
+        /// ε ≤ ε₁ (below eq 45).
+        Epsilon = "epsilon",
+        /// W falls wherever it is above ρε² (eqs 45, 47).
+        ObserverDecrease = "w-falls",
+        /// W ≤ ρε² from T_ε on (eq 49).
+        Trapped = "w-trapped",
+        /// ‖e‖ + ‖de/dt‖ + ‖η‖ ≤ δ₀ in the end (eqs 51-53).
+        UltimateBound = "ultimate-bound",
+    }
 }
 
 impl Statement {
-    /// All of them, in the order of the paper.
-    pub const ALL: [Self; 7] = [
-        Self::RobustGain,
-        Self::NonNegative,
-        Self::TrackingDecrease,
-        Self::Epsilon,
-        Self::ObserverDecrease,
-        Self::Trapped,
-        Self::UltimateBound,
-    ];
-
-    /// The statement in symbols.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::RobustGain => "β > ‖gᵥVᵢ‖ + ‖d(gᵥVᵢ)/dt‖/k₁₂",
-            Self::NonNegative => "P ≥ 0",
-            Self::TrackingDecrease => "V falls",
-            Self::Epsilon => "ε ≤ ε₁",
-            Self::ObserverDecrease => "W falls above ρε²",
-            Self::Trapped => "W ≤ ρε² from T_ε on",
-            Self::UltimateBound => "‖e‖+‖de/dt‖+‖η‖ ≤ δ₀ in the end",
-        }
-    }
-
     /// Where the paper states it.
     pub fn source(self) -> &'static str {
-        match self {
-            Self::RobustGain => "Lemma 4.1",
-            Self::NonNegative => "eq 28",
-            Self::TrackingDecrease => "eqs 29-30, 44",
-            Self::Epsilon => "eqs 44-46",
-            Self::ObserverDecrease => "eqs 45-47",
-            Self::Trapped => "eqs 48-49",
-            Self::UltimateBound => "eqs 51-53",
-        }
+        self.texts()[0]
     }
 
-    /// One word for it, for machines.
-    pub fn name(self) -> &'static str {
+    /// The statement in symbols.
+    pub fn symbols(self) -> &'static str {
+        self.texts()[1]
+    }
+
+    fn texts(self) -> [&'static str; 2] {
         match self {
-            Self::RobustGain => "robust-gain",
-            Self::NonNegative => "p-non-negative",
-            Self::TrackingDecrease => "v-falls",
-            Self::Epsilon => "epsilon",
-            Self::ObserverDecrease => "w-falls",
-            Self::Trapped => "w-trapped",
-            Self::UltimateBound => "ultimate-bound",
+            Self::RobustGain => ["Lemma 4.1", "β > ‖gᵥVᵢ‖ + ‖d(gᵥVᵢ)/dt‖/k₁₂"],
+            Self::NonNegative => ["eq 28", "P ≥ 0"],
+            Self::TrackingDecrease => ["eqs 29-30, 44", "V falls"],
+            Self::Epsilon => ["eqs 44-46", "ε ≤ ε₁"],
+            Self::ObserverDecrease => ["eqs 45-47", "W falls above ρε²"],
+            Self::Trapped => ["eqs 48-49", "W ≤ ρε² from T_ε on"],
+            Self::UltimateBound => ["eqs 51-53", "‖e‖+‖de/dt‖+‖η‖ ≤ δ₀ in the end"],
         }
     }
 }
@@ -119,8 +92,8 @@ pub struct StatementFinding {
     pub statement: Statement,
     /// What it rests on and what was not so.
     pub unmet: Vec<Premise>,
-    /// Samples at which the numbers say otherwise, premises or not; `None` where they are as stated throughout, or where
-    /// there are no numbers.
+    /// Samples at which the numbers say otherwise, premises or not; `None` where they are as stated throughout, or
+    /// where there are no numbers.
     pub against: Option<Against>,
     /// The least room to the other side, in the statement's own unit; `None` where there are no numbers.
     pub margin: Option<f64>,
@@ -144,8 +117,8 @@ pub struct Circumstances {
     pub held: Option<f64>,
     /// Whether the observer sees samples only.
     pub sampled_measurement: bool,
-    /// Whether the follower goes by looks.
-    pub looks: bool,
+    /// Whether the follower goes by measurements.
+    pub measures: bool,
     /// Whether the follower or its leader is a vehicle on wheels.
     pub wheels: bool,
     /// When the leader first moved as no bounded d²u/dt² allows, s; `None` where it is smooth.
@@ -155,7 +128,7 @@ pub struct Circumstances {
 /// All statements, held against what a witness has seen.
 pub fn certify(witness: &Witness, circumstances: &Circumstances) -> Vec<StatementFinding> {
     let view = FindingView { witness, circumstances, constants: Constants::of(witness) };
-    Statement::ALL.into_iter().map(|statement| view.finding(statement)).collect()
+    Statement::WORDS.iter().map(|(_, statement, _)| view.finding(*statement)).collect()
 }
 
 struct FindingView<'a> {
@@ -247,46 +220,19 @@ impl FindingView<'_> {
         let at_bound = || spell(&ledger.at_speed_bound).map(Premise::SpeedBound);
         let close = || spell(&ledger.too_close).map(Premise::TooClose);
         let held = c.held.map(Premise::Held);
-        let looks = c.looks.then_some(Premise::Looks);
+        let measurements = c.measures.then_some(Premise::Measurements);
         let wheels = c.wheels.then_some(Premise::Wheels);
         let samples = c.sampled_measurement.then_some(Premise::SampledMeasurement);
         let epsilon = || self.constants.filter(|k| k.epsilon > k.epsilon_1).map(|_| Premise::Epsilon);
+        let tracking = || vec![smoothed, chatter(), saturated(), at_bound(), close(), rough, beta(), held];
         let list: Vec<Option<Premise>> = match statement {
             Statement::RobustGain | Statement::Epsilon => vec![rough],
             Statement::NonNegative => vec![smoothed, rough, beta()],
-            Statement::TrackingDecrease => {
-                vec![
-                    smoothed,
-                    chatter(),
-                    saturated(),
-                    at_bound(),
-                    close(),
-                    rough,
-                    beta(),
-                    held,
-                    looks,
-                    wheels,
-                ]
-            }
+            Statement::TrackingDecrease => [tracking(), vec![measurements, wheels]].concat(),
             Statement::ObserverDecrease | Statement::Trapped => {
-                vec![close(), rough, samples, looks, wheels, epsilon()]
+                vec![close(), rough, samples, measurements, wheels, epsilon()]
             }
-            Statement::UltimateBound => {
-                vec![
-                    smoothed,
-                    chatter(),
-                    saturated(),
-                    at_bound(),
-                    close(),
-                    rough,
-                    beta(),
-                    held,
-                    samples,
-                    looks,
-                    wheels,
-                    epsilon(),
-                ]
-            }
+            Statement::UltimateBound => [tracking(), vec![samples, measurements, wheels, epsilon()]].concat(),
         };
         list.into_iter().flatten().collect()
     }

@@ -35,8 +35,8 @@ pub enum Premise {
     Held(f64),
     /// The observer sees samples only.
     SampledMeasurement,
-    /// The follower looks at its leader: what it knows is late and noisy.
-    Looks,
+    /// The follower measures where its leader is: what it knows is late and noisy.
+    Measurements,
     /// A vehicle on wheels: it does what it is told only nearly.
     Wheels,
     /// The distance was below ℓ_min.
@@ -75,31 +75,11 @@ impl Premise {
             Self::LeaderNotSmooth { at } => format!("leader not smooth at {at:.2} s"),
             Self::Held(period) => format!("sampled: the law is held for {} ms", 1e3 * period),
             Self::SampledMeasurement => "the observer sees samples only".to_owned(),
-            Self::Looks => "the follower goes by looks, which are late and noisy".to_owned(),
+            Self::Measurements => "the follower goes by measurements, which are late and noisy".to_owned(),
             Self::Wheels => "a vehicle on wheels does what it is told only nearly".to_owned(),
             Self::TooClose(when) => spell("distance below its minimum", when),
             Self::RobustGain { at } => format!("β too small for Lemma 4.1 at {at:.2} s"),
             Self::Epsilon => "ε above ε₁".to_owned(),
-        }
-    }
-
-    /// One word for it, for machines.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::FullState => "full-state",
-            Self::NoObserver => "no-observer",
-            Self::Smoothed => "tanh",
-            Self::Chatter(_) => "chatter",
-            Self::Saturated(_) => "saturated",
-            Self::SpeedBound(_) => "speed-bound",
-            Self::LeaderNotSmooth { .. } => "leader-not-smooth",
-            Self::Held(_) => "sampled",
-            Self::SampledMeasurement => "sampled-measurement",
-            Self::Looks => "looks",
-            Self::Wheels => "wheels",
-            Self::TooClose(_) => "too-close",
-            Self::RobustGain { .. } => "robust-gain",
-            Self::Epsilon => "epsilon",
         }
     }
 }

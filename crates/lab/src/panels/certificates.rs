@@ -52,5 +52,5 @@ fn words(finding: &StatementFinding) -> String {
             format!("premise not met:\n{}", reasons.join("\n"))
         }
     };
-    format!("{} ({})\n{outcome}", finding.statement.words(), finding.statement.source())
+    format!("{} ({})\n{outcome}", finding.statement.symbols(), finding.statement.source())
 }

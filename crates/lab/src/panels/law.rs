@@ -73,15 +73,15 @@ pub fn observer(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     else {
         return nobody(ui, app_state, "Nobody follows: there is nothing to observe.");
     };
-    let looks = follow.sensing.kind != scene::SensingKind::Truth;
-    if follow.law.kind != LawKind::OutputFeedback && !looks {
+    let measures = follow.sensing.kind != scene::SensingKind::Truth;
+    if follow.law.kind != LawKind::OutputFeedback && !measures {
         return nothing(ui, "This law is told the rates. Output feedback observes them.");
     }
     scope(ui, app_state, name, out);
     let (observer, default) = (&follow.observer, Observer::fitting(vehicle(app_state, robot)));
-    if looks {
+    if measures {
         let mut adaptive = observer.adaptive;
-        if ui.checkbox(&mut adaptive, "ε follows from the noise of each look").changed() {
+        if ui.checkbox(&mut adaptive, "ε follows from the noise of each measurement").changed() {
             out.push(tune("Adaptive ε", "observer.adaptive", adaptive.to_string()));
             out.push(Action::Rest);
         }
@@ -89,12 +89,12 @@ pub fn observer(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
             ui.weak("Two unscented Kalman filters stand in for the observer.");
         }
     }
-    ui.add_enabled_ui(!(looks && observer.adaptive), |ui| {
+    ui.add_enabled_ui(!(measures && observer.adaptive), |ui| {
         EPSILON.two(ui, observer.epsilon, default.epsilon, false, out);
     });
     ALPHA_ONE.two(ui, observer.alpha1, default.alpha1, false, out);
     ALPHA_TWO.two(ui, observer.alpha2, default.alpha2, false, out);
-    if !(looks && observer.adaptive) {
+    if !(measures && observer.adaptive) {
         ui.weak(format!("Poles at {}", poles(observer)));
     }
     if ui

@@ -12,7 +12,7 @@ use vocabulary::TrackingState;
 
 const KINDS: [(SensingKind, &str, &str, &str); 4] = [
     (SensingKind::Truth, "Truth", "truth", "Every follower is told distance and bearing."),
-    (SensingKind::Noise, "Noise", "noise", "Looks at the truth, with errors."),
+    (SensingKind::Noise, "Noise", "noise", "The truth, with errors."),
     (SensingKind::Geometric, "Tags", "geometric", "Corners of tags, with errors; nothing is drawn."),
     (SensingKind::Camera, "Camera", "camera", "Each follower's own pictures, drawn, searched for tags."),
 ];
@@ -70,7 +70,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
             TrackingState::Lost => "has lost its leader",
         };
         ui.label(format!("{name} {word}"));
-        ui.weak(format!("last look {} ms ago", crate::tidy::fixed(state.age * 1e3, 0)));
+        ui.weak(format!("last measurement {} ms ago", crate::tidy::fixed(state.age * 1e3, 0)));
     }
     ui.weak("A change of sensing runs the scene again from the start.");
 }

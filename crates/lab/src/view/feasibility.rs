@@ -2,8 +2,8 @@
 
 use crate::app_state::AppState;
 use crate::session::prediction::Prediction;
-use formation::feasible::unholdable;
-use vocabulary::{Limits, Pose, StepRecord};
+use formation::feasible::infeasible;
+use vocabulary::{Limits, MotionInput, Pose, StepRecord};
 
 /// Side of a square of the field, m, and squares on a side.
 const STEP: f64 = 0.25;
@@ -43,8 +43,8 @@ impl PlaceConstraints {
     }
 
     fn refuses_at(&self, place: [f64; 2], [speed, turn_rate]: [f64; 2]) -> bool {
-        let why = unholdable(place, [speed, turn_rate], &self.limits, self.distance_min);
-        if why.is_some() {
+        let leader = MotionInput { speed, turn_rate, ..MotionInput::default() };
+        if infeasible(place, &leader, &self.limits, self.distance_min).is_some() {
             return true;
         }
         let Some([far, pan]) = self.sight else { return false };
@@ -64,7 +64,7 @@ pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(
     let scene = app_state.scene_now()?;
     let vehicle = &scene.robots.get(robot)?.vehicle;
     let leader = record.snapshot.robots.get(ends.leader)?;
-    let looks = follow.sensing.kind != scene::SensingKind::Truth;
+    let measures = follow.sensing.kind != scene::SensingKind::Truth;
     let camera_model = &fleet.robots.get(robot)?.camera_model;
     // A cell of a tag must be at least two pixels wide to be read.
     let cell = fleet.robots.get(ends.leader)?.shell.as_ref().map_or(0.015, |shell| shell.cell);
@@ -81,7 +81,7 @@ pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(
     let wanted = PlaceConstraints {
         limits: vehicle.limits(),
         distance_min: follow.law.distance_min,
-        sight: looks.then_some([far, scene.vision.pan_max + half_picture]),
+        sight: measures.then_some([far, scene.vision.pan_max + half_picture]),
         others: places.chain([([0.0; 2], reach)]).collect(),
     };
     let motions =
@@ -132,10 +132,10 @@ mod tests {
 
     #[test]
     fn who_looks_has_to_see() {
-        let looking = PlaceConstraints { sight: Some([4.0, 2.0]), ..wanted() };
-        assert!(looking.refuses([-4.5, 0.0], &[[1.0, 0.0]]), "too far");
-        assert!(looking.refuses([2.0, 0.0], &[[1.0, 0.0]]), "behind the camera");
-        assert!(!looking.refuses([-2.0, 1.0], &[[1.0, 0.0]]));
+        let measuring = PlaceConstraints { sight: Some([4.0, 2.0]), ..wanted() };
+        assert!(measuring.refuses([-4.5, 0.0], &[[1.0, 0.0]]), "too far");
+        assert!(measuring.refuses([2.0, 0.0], &[[1.0, 0.0]]), "behind the camera");
+        assert!(!measuring.refuses([-2.0, 1.0], &[[1.0, 0.0]]));
     }
 
     #[test]

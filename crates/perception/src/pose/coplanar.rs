@@ -202,7 +202,7 @@ pub(crate) fn homography(from: &[[f64; 2]; 4], to: &[[f64; 2]; 4]) -> Option<Mat
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pose::trial::{Views, apart};
+    use crate::pose::tests::{Views, frames_apart};
     use vocabulary::Shell;
 
     #[test]
@@ -217,7 +217,7 @@ mod tests {
             let matches: Vec<_> =
                 points.iter().zip(seen).map(|(point, seen)| Match { point: *point, seen: *seen }).collect();
             let least = |poses: &[Rigid], truth: &Rigid| {
-                poses.iter().map(|p| apart(p, truth)).fold(f64::INFINITY, f64::min)
+                poses.iter().map(|p| frames_apart(p, truth)).fold(f64::INFINITY, f64::min)
             };
             // The iteration loses its way now and then; the closed form does not.
             astray += usize::from(least(&coplanar_posit(&matches), &view.camera_from_body) > 1e-9);

@@ -8,12 +8,10 @@ mod posit;
 mod refine;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-pub(crate) mod trial;
 
 pub(crate) use coplanar::homography;
 pub use coplanar::{coplanar_posit, misfit, square_poses};
-pub use posit::{Match, classic_posit, posit};
+pub use posit::{Match, posit};
 
 use nalgebra::{Matrix3, Vector3};
 use refine::{Corner, Minimum, Problem};

@@ -44,28 +44,6 @@ pub fn posit(matches: &[Match]) -> Option<Rigid> {
     })
 }
 
-/// The object's frame in the camera's by POSIT as first published: everything is measured from the first point, whose
-/// error so enters every other. Kept for comparison.
-///
-/// `None` as for [`posit`].
-pub fn classic_posit(matches: &[Match]) -> Option<Rigid> {
-    let origin = Vector3::from(matches.first()?.point);
-    let middle = centroid(matches)?;
-    let rows = |m: &Match| Vector3::from(m.point) - origin;
-    let squares: Matrix3<f64> = matches.iter().map(|m| rows(m) * rows(m).transpose()).sum();
-    let inverse = spread_is_solid(matches, &middle).then(|| squares.try_inverse())??;
-    let [x0, y0] = matches.first()?.seen;
-    settle(matches, &origin, |stretched| {
-        let mut sums = [Vector3::zeros(); 2];
-        for (m, [x, y]) in matches.iter().zip(stretched) {
-            sums[0] += rows(m) * (x - x0);
-            sums[1] += rows(m) * (y - y0);
-        }
-        let [i, j] = sums.map(|sum| inverse * sum);
-        Some((i, j, [x0, y0]))
-    })
-}
-
 /// Repeats `solve`, which gives I = sR₁, J = sR₂ and (sTx, sTy) for directions stretched by 1 + ε, until depths settle;
 /// `origin` is the point they are given for.
 fn settle(
@@ -151,8 +129,28 @@ fn spread_is_solid(matches: &[Match], middle: &Vector3<f64>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pose::trial::{Views, apart, matches_of};
+    use crate::pose::tests::{Views, frames_apart, matches_of};
     use vocabulary::math;
+
+    /// The object's frame in the camera's by POSIT as first published: everything is measured from the first point, whose
+    /// error so enters every other.
+    fn classic_posit(matches: &[Match]) -> Option<Rigid> {
+        let origin = Vector3::from(matches.first()?.point);
+        let middle = centroid(matches)?;
+        let rows = |m: &Match| Vector3::from(m.point) - origin;
+        let squares: Matrix3<f64> = matches.iter().map(|m| rows(m) * rows(m).transpose()).sum();
+        let inverse = spread_is_solid(matches, &middle).then(|| squares.try_inverse())??;
+        let [x0, y0] = matches.first()?.seen;
+        settle(matches, &origin, |stretched| {
+            let mut sums = [Vector3::zeros(); 2];
+            for (m, [x, y]) in matches.iter().zip(stretched) {
+                sums[0] += rows(m) * (x - x0);
+                sums[1] += rows(m) * (y - y0);
+            }
+            let [i, j] = sums.map(|sum| inverse * sum);
+            Some((i, j, [x0, y0]))
+        })
+    }
 
     #[test]
     fn exact_points_give_the_pose() {
@@ -167,7 +165,7 @@ mod tests {
             tried += 1;
             for found in [posit(&matches_of(&view)), classic_posit(&matches_of(&view))] {
                 let found = found.expect("a pose");
-                let off = apart(&found, &view.camera_from_body);
+                let off = frames_apart(&found, &view.camera_from_body);
                 if off > 1e-9 {
                     println!(
                         "OFF {off:e} {:.3} faces {}",
@@ -193,7 +191,7 @@ mod tests {
             }
             let matches = matches_of(&view);
             let off = |found: Option<Rigid>| {
-                found.map_or(1.0, |f| math::powi(apart(&f, &view.camera_from_body), 2))
+                found.map_or(1.0, |f| math::powi(frames_apart(&f, &view.camera_from_body), 2))
             };
             classic += off(classic_posit(&matches));
             homogeneous += off(posit(&matches));

@@ -1,4 +1,4 @@
-//! Pictures: where to look, what the sensor makes of the light, and the tags in it.
+//! Pictures: which part to take, what the sensor makes of the light, and the tags in it.
 
 use super::{Exposure, SensorConfig, all_faces, pan};
 use crate::detect::{Locus, recognise_expected};
@@ -21,7 +21,7 @@ pub struct CameraSettings {
     pub pan_rate: f64,
     /// Farthest turn from straight ahead, rad.
     pub pan_max: f64,
-    /// Whether every look takes in the whole picture.
+    /// Whether every measurement takes in the whole picture.
     pub whole_frames: bool,
 }
 
@@ -103,17 +103,18 @@ impl DetectorBench {
         &mut self,
         model: &CameraSettings,
         sensor_config: &SensorConfig,
-        look: &Exposure<'_>,
+        exposure: &Exposure<'_>,
         region: Region,
         light: &Grey,
     ) -> CameraDetection {
-        let mut random = noise_stream(sensor_config.seed, look.follower, look.number, Purpose::Pixels);
+        let mut random =
+            noise_stream(sensor_config.seed, exposure.follower, exposure.number, Purpose::Pixels);
         let mut picture = std::mem::take(&mut self.picture);
-        let sensor = self.sensor(&sensor_config.kits[look.follower].camera_model, model);
+        let sensor = self.sensor(&sensor_config.robots[exposure.follower].camera_model, model);
         sensor.expose(light, region, &mut random, &mut picture);
         let optics = *sensor.optics();
-        let shell = sensor_config.kits[look.leader].shell;
-        let expected = readable(sensor_config, look).unwrap_or(FACES);
+        let shell = sensor_config.robots[exposure.leader].shell;
+        let expected = readable(sensor_config, exposure).unwrap_or(FACES);
         let faces = shell.map_or_else(Vec::new, |shell| {
             recognise_expected(&mut self.detector, &picture, region, &optics, &shell, expected)
         });
@@ -131,19 +132,20 @@ const GRID: u32 = 16;
 pub(super) const CORNER_NOISE: f64 = 0.02;
 
 impl CameraSettings {
-    /// Takes the pictures of all looks at one instant and finds the leaders' tags in them.
+    /// Takes the pictures of all exposures of one instant and finds the leaders' tags in them.
     pub(super) fn see(
         &self,
         sensor_config: &SensorConfig,
-        looks: &[&Exposure<'_>],
+        exposures: &[&Exposure<'_>],
         period: [&Snapshot; 2],
         eyes: &mut dyn CameraRenderer,
         camera_pipeline: &mut CameraPipeline,
     ) -> Result<Vec<CameraDetection>, String> {
-        let regions: Vec<Region> = looks.iter().map(|look| self.region(sensor_config, look)).collect();
-        let benches = camera_pipeline.benches(looks.len());
-        let pictures = self.light(sensor_config, looks, &regions, period, eyes, &mut benches[0])?;
-        let jobs: Vec<_> = looks.iter().zip(regions.into_iter().zip(&pictures)).collect();
+        let regions: Vec<Region> =
+            exposures.iter().map(|exposure| self.region(sensor_config, exposure)).collect();
+        let benches = camera_pipeline.benches(exposures.len());
+        let pictures = self.light(sensor_config, exposures, &regions, period, eyes, &mut benches[0])?;
+        let jobs: Vec<_> = exposures.iter().zip(regions.into_iter().zip(&pictures)).collect();
         let threads = benches.len();
         let mut found: Vec<Option<CameraDetection>> = jobs.iter().map(|_| None).collect();
         // Every thread takes every so manieth picture; who develops it makes no difference to what is found.
@@ -152,8 +154,8 @@ impl CameraSettings {
             for (first, bench) in benches.iter_mut().enumerate() {
                 let own = jobs.iter().enumerate().skip(first).step_by(threads);
                 let task = move || -> Vec<(usize, CameraDetection)> {
-                    own.map(|(k, (look, (region, light)))| {
-                        (k, bench.develop(self, sensor_config, look, *region, light))
+                    own.map(|(k, (exposure, (region, light)))| {
+                        (k, bench.develop(self, sensor_config, exposure, *region, light))
                     })
                     .collect()
                 };
@@ -175,58 +177,60 @@ impl CameraSettings {
     fn light(
         &self,
         sensor_config: &SensorConfig,
-        looks: &[&Exposure<'_>],
+        exposures: &[&Exposure<'_>],
         regions: &[Region],
         [before, after]: [&Snapshot; 2],
         eyes: &mut dyn CameraRenderer,
         bench: &mut DetectorBench,
     ) -> Result<Vec<Grey>, String> {
         let mut shots = |snapshot: &Snapshot| -> Vec<Shot> {
-            let shot = |(look, region): (&&Exposure<'_>, &Region)| {
-                let kit = &sensor_config.kits[look.follower];
-                let source = bench.sensor(&kit.camera_model, self).source(*region);
+            let shot = |(exposure, region): (&&Exposure<'_>, &Region)| {
+                let info = &sensor_config.robots[exposure.follower];
+                let source = bench.sensor(&info.camera_model, self).source(*region);
                 Shot {
-                    robot: look.follower,
-                    world_from_camera: kit.camera_mount.world_from_camera(&snapshot.robots[look.follower]),
-                    focal: kit.camera_model.focal,
+                    robot: exposure.follower,
+                    world_from_camera: info
+                        .camera_mount
+                        .world_from_camera(&snapshot.robots[exposure.follower]),
+                    focal: info.camera_model.focal,
                     centre: source.centre,
                     region: source.region,
                     exposure: self.exposure,
                 }
             };
-            looks.iter().zip(regions).map(shot).collect()
+            exposures.iter().zip(regions).map(shot).collect()
         };
-        let Some(first) = looks.first() else { return Ok(Vec::new()) };
+        let Some(first) = exposures.first() else { return Ok(Vec::new()) };
         let (now, period) = (first.snapshot, after.time - before.time);
         // At the start of the run nothing has moved yet.
         let shutter = if period > 0.0 { self.shutter } else { 0.0 };
         gather(shutter, |off, pictures| {
             if off == 0.0 {
-                eyes.look(now, &shots(now), pictures)?;
-                return checked(pictures, looks.len());
+                eyes.render(now, &shots(now), pictures)?;
+                return checked(pictures, exposures.len());
             }
             let mut then = Snapshot::between(before, after, (now.time + off - before.time) / period);
             for (robot, now) in then.robots.iter_mut().zip(&now.robots) {
                 robot.camera_pan = now.camera_pan;
             }
-            for look in looks {
-                if let Some(robot) = then.robots.get_mut(look.follower) {
-                    robot.camera_pan += look.pan_rate * off;
+            for exposure in exposures {
+                if let Some(robot) = then.robots.get_mut(exposure.follower) {
+                    robot.camera_pan += exposure.pan_rate * off;
                 }
             }
-            eyes.look(&then, &shots(&then), pictures)?;
-            checked(pictures, looks.len())
+            eyes.render(&then, &shots(&then), pictures)?;
+            checked(pictures, exposures.len())
         })
     }
 
     /// Where the leader is expected to be seen; the whole picture where that is not known.
-    fn region(&self, sensor_config: &SensorConfig, look: &Exposure<'_>) -> Region {
-        let camera_model = &sensor_config.kits[look.follower].camera_model;
+    fn region(&self, sensor_config: &SensorConfig, exposure: &Exposure<'_>) -> Region {
+        let camera_model = &sensor_config.robots[exposure.follower].camera_model;
         let whole = Region::whole(camera_model);
-        if self.whole_frames || !look.seen {
+        if self.whole_frames || !exposure.seen {
             return whole;
         }
-        expected(sensor_config, look).and_then(|bounds| fitted(camera_model, bounds)).unwrap_or(whole)
+        expected(sensor_config, exposure).and_then(|bounds| fitted(camera_model, bounds)).unwrap_or(whole)
     }
 }
 
@@ -238,33 +242,35 @@ fn checked(pictures: &[Grey], wanted: usize) -> Result<(), String> {
 }
 
 /// The leader's frame in the camera's, as the follower expects it.
-fn camera_from_expected(sensor_config: &SensorConfig, look: &Exposure<'_>) -> Option<Rigid> {
-    let pose = pan::leader_pose(&look.expected?);
+fn camera_from_expected(sensor_config: &SensorConfig, exposure: &Exposure<'_>) -> Option<Rigid> {
+    let pose = pan::leader_pose(&exposure.expected?);
     let body_from_leader = Rigid::turned([pose.x, pose.y, 0.0], pose.heading, 0.0, 0.0);
-    let pan = look.snapshot.robots.get(look.follower)?.camera_pan;
-    let camera_mount = sensor_config.kits.get(look.follower)?.camera_mount;
+    let pan = exposure.snapshot.robots.get(exposure.follower)?.camera_pan;
+    let camera_mount = sensor_config.robots.get(exposure.follower)?.camera_mount;
     Some(camera_mount.body_from_camera(pan).inverse().after(&body_from_leader))
 }
 
 /// How many faces can surely be read where the leader is expected; `None` where that is not known.
-fn readable(sensor_config: &SensorConfig, look: &Exposure<'_>) -> Option<usize> {
-    let (leader, follower) = (sensor_config.kits.get(look.leader)?, sensor_config.kits.get(look.follower)?);
-    let (shell, from_leader) = (leader.shell?, camera_from_expected(sensor_config, look)?);
+fn readable(sensor_config: &SensorConfig, exposure: &Exposure<'_>) -> Option<usize> {
+    let (leader, follower) =
+        (sensor_config.robots.get(exposure.leader)?, sensor_config.robots.get(exposure.follower)?);
+    let (shell, from_leader) = (leader.shell?, camera_from_expected(sensor_config, exposure)?);
     let surely = |face: usize| {
         let camera = from_leader.after(&shell.body_from_face(face)).inverse().translation;
         let away = camera.iter().map(|x| x * x).sum::<f64>().sqrt();
         camera[2] > SURELY.0 * away && follower.camera_model.focal * shell.cell > SURELY.1 * away
     };
-    look.seen.then(|| all_faces().filter(|face| surely(*face)).count().max(1))
+    exposure.seen.then(|| all_faces().filter(|face| surely(*face)).count().max(1))
 }
 
 /// Cosine of the angle from its normal, and pixels a cell, at which a face is surely read.
 const SURELY: (f64, f64) = (0.55, 2.0);
 
 /// Smallest and largest column and row of the leader's tags where the follower expects them.
-fn expected(sensor_config: &SensorConfig, look: &Exposure<'_>) -> Option<[[f64; 2]; 2]> {
-    let camera_from_leader = camera_from_expected(sensor_config, look)?;
-    let (leader, follower) = (sensor_config.kits.get(look.leader)?, sensor_config.kits.get(look.follower)?);
+fn expected(sensor_config: &SensorConfig, exposure: &Exposure<'_>) -> Option<[[f64; 2]; 2]> {
+    let camera_from_leader = camera_from_expected(sensor_config, exposure)?;
+    let (leader, follower) =
+        (sensor_config.robots.get(exposure.leader)?, sensor_config.robots.get(exposure.follower)?);
     let shell = leader.shell?;
     let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for corner in all_faces().flat_map(|face| shell.tag_corners(face)) {

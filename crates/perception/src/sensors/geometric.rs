@@ -1,6 +1,6 @@
 //! Tags as a camera would see them, calculated: no picture is drawn.
 
-use super::{Exposure, SensorConfig, all_faces, sightline::hidden};
+use super::{Exposure, SensorConfig, all_faces};
 use crate::imaging::NoiseStream;
 use crate::pose::SeenFace;
 
@@ -9,27 +9,34 @@ const LEAST_CELL: [f64; 2] = [1.75, 2.5];
 /// Cosine of that angle, 62°.
 const STEEPEST: f64 = 0.469;
 /// Pixels that a tag's corners keep from the edge of the picture.
-const MARGIN: f64 = 4.0;
+pub const MARGIN: f64 = 4.0;
+
+/// Whether a tag is large enough for its slant to be read: `slant` is the cosine of the angle between the way to the
+/// camera and the tag's normal, `cell` the side of a cell that is seen from ahead at that distance, pixels.
+pub fn readable(slant: f64, cell: f64) -> bool {
+    let share = (1.0 - slant) / (1.0 - STEEPEST);
+    slant >= STEEPEST && cell >= LEAST_CELL[0] + (LEAST_CELL[1] - LEAST_CELL[0]) * share
+}
 
 /// Corners of the tags that can be read, each coordinate with an error of `pixel_noise` pixels standard deviation.
 pub(super) fn faces(
     sensor_config: &SensorConfig,
-    look: &Exposure<'_>,
+    exposure: &Exposure<'_>,
     pixel_noise: f64,
     random: &mut NoiseStream,
 ) -> Vec<SeenFace> {
     let (Some(leader), Some(follower)) =
-        (sensor_config.kits.get(look.leader), sensor_config.kits.get(look.follower))
+        (sensor_config.robots.get(exposure.leader), sensor_config.robots.get(exposure.follower))
     else {
         return Vec::new();
     };
-    let (Some(shell), Some(camera_from_leader)) = (leader.shell, sensor_config.camera_from_leader(look))
+    let (Some(shell), Some(camera_from_leader)) = (leader.shell, sensor_config.camera_from_leader(exposure))
     else {
         return Vec::new();
     };
-    let robots = &look.snapshot.robots;
-    let world_from_leader = robots[look.leader].world_from_body();
-    let world_from_camera = follower.camera_mount.world_from_camera(&robots[look.follower]);
+    let robots = &exposure.snapshot.robots;
+    let world_from_leader = robots[exposure.leader].world_from_body();
+    let world_from_camera = follower.camera_mount.world_from_camera(&robots[exposure.follower]);
     let mut seen = Vec::new();
     for face in all_faces() {
         // Errors are drawn for every face, so that a face out of sight changes none of the others.
@@ -37,12 +44,8 @@ pub(super) fn faces(
         let eye = shell.body_from_face(face).inverse().after(&camera_from_leader.inverse()).translation;
         let away = eye.iter().map(|x| x * x).sum::<f64>().sqrt();
         let slant = eye[2] / away;
-        if slant < STEEPEST || shell.first_tag.is_none() {
-            continue;
-        }
-        let share = (1.0 - slant) / (1.0 - STEEPEST);
-        let least = LEAST_CELL[0] + (LEAST_CELL[1] - LEAST_CELL[0]) * share;
-        if follower.camera_model.focal * shell.cell / away < least {
+        let cell = follower.camera_model.focal * shell.cell / away;
+        if shell.first_tag.is_none() || !readable(slant, cell) {
             continue;
         }
         let corners = shell.tag_corners(face);
@@ -51,9 +54,11 @@ pub(super) fn faces(
         let pixels = [a, b, c, d];
         let in_picture = pixels.iter().all(|p| follower.camera_model.holds(*p, MARGIN));
         let from = world_from_camera.translation;
-        let in_sight =
-            || corners.iter().all(|c| !hidden(sensor_config, look, from, world_from_leader.apply(*c)));
-        if in_picture && in_sight() {
+        let pair = [exposure.follower, exposure.leader];
+        let hidden = |corner: [f64; 3]| {
+            sensor_config.hides(exposure.snapshot, pair, from, world_from_leader.apply(corner))
+        };
+        if in_picture && !corners.into_iter().any(hidden) {
             let moved = |k: usize| [0, 1].map(|i| pixels[k][i] + pixel_noise * errors[k][i]);
             seen.push(SeenFace { face, corners: [0, 1, 2, 3].map(moved), deviation: 0.0 });
         }

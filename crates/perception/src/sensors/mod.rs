@@ -1,18 +1,18 @@
-//! Looks at leaders: who looks when, by which sensor, and when the follower has what it saw.
+//! Measurements of leaders: who measures when, by which sensor, and when the follower has the result.
 //!
-//! A look is taken at its own instant, which need not be a control sample: robots are where they were at that instant,
-//! cameras point where they pointed. What is seen is on its way for the sensor's latency. [`SensorConfig`] are parameters,
-//! [`SensorState`] is their state.
+//! A measurement is taken at its own instant, which need not be a control sample: robots are where they were at that
+//! instant, cameras point where they pointed. What is seen is on its way for the sensor's latency. [`SensorConfig`] are
+//! parameters, [`SensorState`] is their state.
 
 mod camera;
 mod geometric;
-mod hiding;
 mod noise;
 mod pan;
 mod sightline;
 
 use camera::CameraPipeline;
 pub use camera::CameraSettings;
+pub use geometric::{MARGIN, readable};
 pub use noise::NoiseModel;
 
 use crate::imaging::{Purpose, noise_stream};
@@ -20,14 +20,14 @@ use crate::pose::{Prior, Rig, SeenFace, locate};
 use pan::Pan;
 use std::collections::VecDeque;
 use vocabulary::{
-    Body, CameraModel, CameraMount, CameraRenderer, Edge, FACES, Measurement, MeasurementRecord, Outcome,
-    Prop, Relative, Rigid, RobotInfo, Shell, Snapshot, StepInterpolant, Terrain, TrackingState,
+    CameraRenderer, Edge, FACES, Measurement, MeasurementRecord, Outcome, Prop, Relative, Rigid, RobotInfo,
+    Snapshot, StepInterpolant, Terrain, TrackingState,
 };
 
-/// Where the looks of one follower come from.
+/// Where the measurements of one follower come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SensorKind {
-    /// It is told the truth at every instant, and does not look.
+    /// It is told the truth at every instant, and measures nothing.
     Truth,
     /// The truth with errors.
     Noise(NoiseModel),
@@ -43,25 +43,16 @@ pub enum SensorKind {
 /// How one follower senses its leader.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensor {
-    /// Where its looks come from.
+    /// Where its measurements come from.
     pub source: SensorKind,
-    /// Looks a second.
+    /// Measurements a second.
     pub rate: f64,
-    /// From a look until the follower has it, s.
+    /// From a measurement until the follower has it, s.
     pub latency: f64,
-    /// Share of the looks that never arrive.
+    /// Share of the measurements that never arrive.
     pub drop: f64,
     /// How far bodies are expected to tilt against each other, standard deviation, rad.
     pub tilt: f64,
-}
-
-/// What a robot is seen by and sees with.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct EdgeHardware {
-    pub(crate) body: Body,
-    pub(crate) shell: Option<Shell>,
-    pub(crate) camera_mount: CameraMount,
-    pub(crate) camera_model: CameraModel,
 }
 
 /// Parameters of all followers' senses.
@@ -69,7 +60,8 @@ pub(crate) struct EdgeHardware {
 pub struct SensorConfig {
     edges: Vec<Edge>,
     sensors: Vec<Sensor>,
-    pub(crate) kits: Vec<EdgeHardware>,
+    /// What robots are seen by and see with.
+    pub(crate) robots: Vec<RobotInfo>,
     pub(crate) props: Vec<Prop>,
     pub(crate) terrain: Option<std::sync::Arc<Terrain>>,
     camera: CameraSettings,
@@ -86,12 +78,12 @@ pub struct SensorState {
 /// State of one follower's senses.
 #[derive(Debug, Clone)]
 struct EdgeWatch {
-    /// Looks taken so far.
-    looks: u64,
+    /// Measurements taken so far.
+    taken: u64,
     pan: Pan,
     /// Slowly changing errors of the noisy truth.
     drift: noise::Drift,
-    /// Whether the leader was recognised in the last look.
+    /// Whether the leader was recognised in the last measurement.
     seen: bool,
     on_the_way: VecDeque<MeasurementRecord>,
 }
@@ -105,12 +97,12 @@ pub struct LeaderPrediction {
     pub sight: TrackingState,
 }
 
-/// One look as it is taken.
+/// One measurement as it is taken.
 pub(crate) struct Exposure<'a> {
     pub(crate) edge: usize,
     pub(crate) leader: usize,
     pub(crate) follower: usize,
-    /// Counts the looks of this follower.
+    /// Counts the measurements of this follower.
     pub(crate) number: u64,
     /// All robots at that instant, cameras included.
     pub(crate) snapshot: &'a Snapshot,
@@ -124,7 +116,7 @@ pub(crate) struct Exposure<'a> {
 
 /// Instants closer together than this are one, s.
 const INSTANT: f64 = 1e-9;
-/// Looks that are on their way at once, per follower; more than this and the oldest are lost.
+/// Measurements that are on their way at once, per follower; more than this and the oldest are lost.
 const MOST_ON_THE_WAY: usize = 4096;
 
 impl SensorConfig {
@@ -139,16 +131,10 @@ impl SensorConfig {
         seed: u64,
     ) -> Self {
         debug_assert_eq!(edges.len(), sensors.len());
-        let kit = |m: &RobotInfo| EdgeHardware {
-            body: m.body,
-            shell: m.shell,
-            camera_mount: m.camera_mount,
-            camera_model: m.camera_model,
-        };
         Self {
             edges: edges.to_vec(),
             sensors,
-            kits: robots.iter().map(kit).collect(),
+            robots: robots.to_vec(),
             props: props.to_vec(),
             terrain,
             camera,
@@ -161,8 +147,8 @@ impl SensorConfig {
         &self.sensors
     }
 
-    /// Whether any follower looks at all.
-    pub fn look(&self) -> bool {
+    /// Whether any follower measures at all.
+    pub fn has_sensors(&self) -> bool {
         self.sensors.iter().any(|sensor| sensor.source != SensorKind::Truth)
     }
 
@@ -171,14 +157,14 @@ impl SensorConfig {
         self.sensors.iter().any(|sensor| sensor.source == SensorKind::Camera)
     }
 
-    /// The state before the first look: cameras point at the leaders as they stand.
+    /// The state before the first measurement: cameras point at the leaders as they stand.
     pub fn start(&self, snapshot: &Snapshot) -> SensorState {
         let sensor_state = |edge: &Edge| {
             let (leader, follower) = (&snapshot.robots[edge.leader], &snapshot.robots[edge.follower]);
             let relative = Relative::between(leader.motion.pose, follower.motion.pose);
-            let camera_mount = self.kits[edge.follower].camera_mount;
+            let camera_mount = self.robots[edge.follower].camera_mount;
             EdgeWatch {
-                looks: 0,
+                taken: 0,
                 pan: Pan::at(pan::towards(&relative, camera_mount.forward), &self.camera),
                 drift: noise::Drift::default(),
                 seen: false,
@@ -191,12 +177,12 @@ impl SensorConfig {
         }
     }
 
-    /// Takes all looks due after the last ones up to the end of a period, which began with the snapshot `before` and
-    /// ended with `after`; both are the same for the looks at the start.
+    /// Takes all measurements due after the last ones up to the end of a period, which began with the snapshot `before`
+    /// and ended with `after`; both are the same for the measurements at the start.
     ///
     /// # Errors
     /// What kept the cameras from taking pictures, in words.
-    pub fn take_looks(
+    pub fn take_measurements(
         &self,
         sensor_state: &mut SensorState,
         [before, after]: [&Snapshot; 2],
@@ -204,20 +190,20 @@ impl SensorConfig {
         beliefs: &[LeaderPrediction],
         mut eyes: Option<&mut (dyn CameraRenderer + '_)>,
     ) -> Result<(), String> {
-        while let Some((instant, due)) = self.next_looks(sensor_state, after.time) {
+        while let Some((instant, due)) = self.next_measurements(sensor_state, after.time) {
             let share = if after.time > before.time {
                 (instant - before.time) / (after.time - before.time)
             } else {
                 1.0
             };
             let snapshot = self.instant(sensor_state, [before, after], interpolant, share);
-            let looks: Vec<Exposure<'_>> = due
+            let exposures: Vec<Exposure<'_>> = due
                 .iter()
                 .map(|&edge| Exposure {
                     edge,
                     leader: self.edges[edge].leader,
                     follower: self.edges[edge].follower,
-                    number: sensor_state.edges[edge].looks,
+                    number: sensor_state.edges[edge].taken,
                     snapshot: &snapshot,
                     expected: beliefs[edge].relative,
                     seen: sensor_state.edges[edge].seen && beliefs[edge].sight == TrackingState::Tracking,
@@ -225,15 +211,15 @@ impl SensorConfig {
                 })
                 .collect();
             let pictures = self.pictures(
-                &looks,
+                &exposures,
                 [before, after],
                 eyes.as_deref_mut(),
                 &mut sensor_state.camera_pipeline,
             )?;
-            for (look, picture) in looks.iter().zip(pictures) {
-                let frame = self.frame(sensor_state, look, instant, picture);
-                let state = &mut sensor_state.edges[look.edge];
-                state.looks += 1;
+            for (exposure, picture) in exposures.iter().zip(pictures) {
+                let frame = self.frame(sensor_state, exposure, instant, picture);
+                let state = &mut sensor_state.edges[exposure.edge];
+                state.taken += 1;
                 state.seen = frame.outcome.seen() || (state.seen && frame.outcome == Outcome::Dropped);
                 state.on_the_way.push_back(frame);
                 if state.on_the_way.len() > MOST_ON_THE_WAY {
@@ -244,11 +230,11 @@ impl SensorConfig {
         Ok(())
     }
 
-    /// The next instant at which someone looks, and who does.
-    fn next_looks(&self, sensor_state: &SensorState, until: f64) -> Option<(f64, Vec<usize>)> {
+    /// The next instant at which someone measures, and who does.
+    fn next_measurements(&self, sensor_state: &SensorState, until: f64) -> Option<(f64, Vec<usize>)> {
         let due = |edge: usize| {
             let sensor = &self.sensors[edge];
-            (sensor.source != SensorKind::Truth).then(|| sensor_state.edges[edge].looks as f64 / sensor.rate)
+            (sensor.source != SensorKind::Truth).then(|| sensor_state.edges[edge].taken as f64 / sensor.rate)
         };
         let all = 0..self.sensors.len();
         let instant = all.clone().filter_map(due).fold(f64::INFINITY, f64::min);
@@ -280,27 +266,28 @@ impl SensorConfig {
         now
     }
 
-    /// What comes of one look.
+    /// What comes of one measurement.
     fn frame(
         &self,
         sensor_state: &mut SensorState,
-        look: &Exposure<'_>,
+        exposure: &Exposure<'_>,
         stamp: f64,
         picture: Option<camera::CameraDetection>,
     ) -> MeasurementRecord {
-        let sensor = &self.sensors[look.edge];
-        let robot = |index: usize| &look.snapshot.robots[index];
-        let truth = Relative::between(robot(look.leader).motion.pose, robot(look.follower).motion.pose);
+        let sensor = &self.sensors[exposure.edge];
+        let robot = |index: usize| &exposure.snapshot.robots[index];
+        let truth =
+            Relative::between(robot(exposure.leader).motion.pose, robot(exposure.follower).motion.pose);
         let mut frame = MeasurementRecord {
-            edge: look.edge,
+            edge: exposure.edge,
             measurement: Measurement { stamp, ..Measurement::default() },
             arrival: stamp + sensor.latency,
             outcome: Outcome::Missed,
             truth,
-            pan: robot(look.follower).camera_pan,
+            pan: robot(exposure.follower).camera_pan,
             ..MeasurementRecord::default()
         };
-        let stream = |purpose| noise_stream(self.seed, look.follower, look.number, purpose);
+        let stream = |purpose| noise_stream(self.seed, exposure.follower, exposure.number, purpose);
         if stream(Purpose::Dropouts).uniform() < sensor.drop {
             frame.outcome = Outcome::Dropped;
             return frame;
@@ -308,17 +295,17 @@ impl SensorConfig {
         let mut random = stream(Purpose::Errors);
         match (sensor.source, picture) {
             (SensorKind::Noise(model), _) => {
-                let drift = &mut sensor_state.edges[look.edge].drift;
+                let drift = &mut sensor_state.edges[exposure.edge].drift;
                 frame.measurement = model.measurement(stamp, &truth, 1.0 / sensor.rate, drift, &mut random);
                 frame.outcome = Outcome::Used;
             }
             (SensorKind::Geometric { pixel_noise }, _) => {
-                let faces = geometric::faces(self, look, pixel_noise, &mut random);
-                self.locate(look, &faces, pixel_noise, &mut frame);
+                let faces = geometric::faces(self, exposure, pixel_noise, &mut random);
+                self.locate(exposure, &faces, pixel_noise, &mut frame);
             }
             (SensorKind::Camera, Some(seen)) => {
                 frame.region = seen.region;
-                self.locate(look, &seen.faces, camera::CORNER_NOISE, &mut frame);
+                self.locate(exposure, &seen.faces, camera::CORNER_NOISE, &mut frame);
             }
             (SensorKind::Camera | SensorKind::Truth, _) => {}
         }
@@ -326,51 +313,57 @@ impl SensorConfig {
     }
 
     /// The pose of the leader from the faces seen.
-    fn locate(&self, look: &Exposure<'_>, faces: &[SeenFace], deviation: f64, frame: &mut MeasurementRecord) {
+    fn locate(
+        &self,
+        exposure: &Exposure<'_>,
+        faces: &[SeenFace],
+        deviation: f64,
+        frame: &mut MeasurementRecord,
+    ) {
         for seen in faces {
             if let Some(tag) = frame.tags.get_mut(seen.face) {
                 *tag = Some(seen.corners);
             }
         }
-        let (Some(rig), false) = (self.rig(look), faces.is_empty()) else { return };
-        let prior = Prior { tilt: self.sensors[look.edge].tilt, height: 0.0 };
-        let near = look.expected.filter(|_| look.seen).map(|relative| pan::leader_pose(&relative));
+        let (Some(rig), false) = (self.rig(exposure), faces.is_empty()) else { return };
+        let prior = Prior { tilt: self.sensors[exposure.edge].tilt, height: 0.0 };
+        let near = exposure.expected.filter(|_| exposure.seen).map(|relative| pan::leader_pose(&relative));
         let Some(found) = locate(&rig, faces, deviation.max(1e-3), &prior, near) else { return };
         let (relative, deviation) = found.measurement();
         frame.measurement = Measurement { stamp: frame.measurement.stamp, relative, deviation };
         frame.outcome = if found.ambiguous { Outcome::Ambiguous } else { Outcome::Used };
     }
 
-    /// What the follower looks at and with.
-    fn rig(&self, look: &Exposure<'_>) -> Option<Rig> {
-        let kit = self.kits.get(look.follower)?;
-        let pan = look.snapshot.robots.get(look.follower)?.camera_pan;
+    /// What the follower measures, and with what.
+    fn rig(&self, exposure: &Exposure<'_>) -> Option<Rig> {
+        let robot = self.robots.get(exposure.follower)?;
+        let pan = exposure.snapshot.robots.get(exposure.follower)?.camera_pan;
         Some(Rig {
-            shell: self.kits.get(look.leader)?.shell?,
-            camera_model: kit.camera_model,
-            body_from_camera: kit.camera_mount.body_from_camera(pan),
+            shell: self.robots.get(exposure.leader)?.shell?,
+            camera_model: robot.camera_model,
+            body_from_camera: robot.camera_mount.body_from_camera(pan),
         })
     }
 
-    /// Takes the pictures of all looks that need one; `None` for those that do not.
+    /// Takes the pictures of all measurements that need one; `None` for those that do not.
     fn pictures(
         &self,
-        looks: &[Exposure<'_>],
+        exposures: &[Exposure<'_>],
         period: [&Snapshot; 2],
         eyes: Option<&mut (dyn CameraRenderer + '_)>,
         camera_pipeline: &mut CameraPipeline,
     ) -> Result<Vec<Option<camera::CameraDetection>>, String> {
-        let by_camera = |look: &Exposure<'_>| self.sensors[look.edge].source == SensorKind::Camera;
-        if !looks.iter().any(by_camera) {
-            return Ok(looks.iter().map(|_| None).collect());
+        let by_camera = |exposure: &Exposure<'_>| self.sensors[exposure.edge].source == SensorKind::Camera;
+        if !exposures.iter().any(by_camera) {
+            return Ok(exposures.iter().map(|_| None).collect());
         }
         let eyes = eyes.ok_or("cameras are to take pictures, and nobody is there to draw them")?;
-        let wanted: Vec<&Exposure<'_>> = looks.iter().filter(|look| by_camera(look)).collect();
+        let wanted: Vec<&Exposure<'_>> = exposures.iter().filter(|exposure| by_camera(exposure)).collect();
         let mut seen = self.camera.see(self, &wanted, period, eyes, camera_pipeline)?.into_iter();
-        Ok(looks.iter().map(|look| if by_camera(look) { seen.next() } else { None }).collect())
+        Ok(exposures.iter().map(|exposure| if by_camera(exposure) { seen.next() } else { None }).collect())
     }
 
-    /// The looks of an edge that have arrived by `time`, in the order of their stamps.
+    /// The measurements of an edge that have arrived by `time`, in the order of their stamps.
     pub fn arrived(
         sensor_state: &mut SensorState,
         edge: usize,
@@ -387,7 +380,7 @@ impl SensorConfig {
     /// Turns all cameras for a period to come towards where leaders are believed to be.
     pub fn turn_cameras(&self, sensor_state: &mut SensorState, beliefs: &[LeaderPrediction], period: f64) {
         for ((edge, state), belief) in self.edges.iter().zip(&mut sensor_state.edges).zip(beliefs) {
-            state.pan.turn(belief, self.kits[edge.follower].camera_mount.forward, &self.camera, period);
+            state.pan.turn(belief, self.robots[edge.follower].camera_mount.forward, &self.camera, period);
         }
     }
 
@@ -397,10 +390,10 @@ impl SensorConfig {
     }
 
     /// The shell's frames as a follower's camera sees them.
-    pub(crate) fn camera_from_leader(&self, look: &Exposure<'_>) -> Option<Rigid> {
-        let follower = look.snapshot.robots.get(look.follower)?;
-        let leader = look.snapshot.robots.get(look.leader)?;
-        let camera_mount = self.kits.get(look.follower)?.camera_mount;
+    pub(crate) fn camera_from_leader(&self, exposure: &Exposure<'_>) -> Option<Rigid> {
+        let follower = exposure.snapshot.robots.get(exposure.follower)?;
+        let leader = exposure.snapshot.robots.get(exposure.leader)?;
+        let camera_mount = self.robots.get(exposure.follower)?.camera_mount;
         Some(camera_mount.world_from_camera(follower).inverse().after(&leader.world_from_body()))
     }
 }

@@ -4,14 +4,14 @@ use crate::imaging::NoiseStream;
 use vocabulary::math;
 use vocabulary::{Measurement, Relative, wrap};
 
-/// Errors of looks at the truth, each of [distance in m, bearing in rad, view angle in rad].
+/// Errors that are added to the truth, each of [distance in m, bearing in rad, view angle in rad].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoiseModel {
     /// Standard deviation.
     pub deviation: [f64; 3],
-    /// The same in every look.
+    /// The same in every measurement.
     pub bias: [f64; 3],
-    /// Time over which errors are alike, s; 0 where each look has its own.
+    /// Time over which errors are alike, s; 0 where each measurement has its own.
     pub correlation: f64,
 }
 
@@ -22,8 +22,8 @@ pub(super) struct Drift {
 }
 
 impl NoiseModel {
-    /// A look `interval` s after the last one. Correlated errors are a first-order Gauss-Markov process, so that their
-    /// standard deviation stays what it is.
+    /// A measurement `interval` s after the last one. Correlated errors are a first-order Gauss-Markov process, so that
+    /// their standard deviation stays what it is.
     pub(super) fn measurement(
         &self,
         stamp: f64,

@@ -1,41 +1,44 @@
 //! What stands between a camera and a tag.
 
-use super::{EdgeHardware, Exposure, SensorConfig};
-use vocabulary::{Placement, Rigid, Solid};
+use super::SensorConfig;
+use vocabulary::{Placement, Rigid, RobotInfo, Snapshot, Solid};
 
-/// Whether anything but the two robots concerned hides `to` from `from`, both in the world's frame, m.
-pub(super) fn hidden(
-    sensor_config: &SensorConfig,
-    look: &Exposure<'_>,
-    from: [f64; 3],
-    to: [f64; 3],
-) -> bool {
-    let others = look.snapshot.robots.iter().zip(&sensor_config.kits).enumerate();
-    let mut others = others.filter(|(index, _)| *index != look.leader && *index != look.follower);
-    if others.any(|(_, (robot, kit))| robot_hides(kit, &robot.world_from_body(), from, to)) {
-        return true;
+impl SensorConfig {
+    /// Whether anything hides the point `to` on the robot `watched` from the point `from` on the robot `watcher`, both
+    /// in the world's frame, m; those two robots themselves do not count.
+    pub fn hides(
+        &self,
+        snapshot: &Snapshot,
+        [watcher, watched]: [usize; 2],
+        from: [f64; 3],
+        to: [f64; 3],
+    ) -> bool {
+        let others = snapshot.robots.iter().zip(&self.robots).enumerate();
+        let mut others = others.filter(|(index, _)| *index != watcher && *index != watched);
+        if others.any(|(_, (robot, info))| robot_hides(info, &robot.world_from_body(), from, to)) {
+            return true;
+        }
+        let mut props = self.props.iter().zip(&snapshot.props);
+        if props.any(|(prop, place)| prop_hides(prop.solid, place, from, to)) {
+            return true;
+        }
+        let Some(terrain) = &self.terrain else { return false };
+        (1..GROUND_STEPS).any(|k| {
+            let share = f64::from(k) / f64::from(GROUND_STEPS);
+            let [x, y, z] = [0, 1, 2].map(|i| from[i] + (to[i] - from[i]) * share);
+            terrain.at(x, y).height > z
+        })
     }
-    let props = sensor_config.props.iter().zip(&look.snapshot.props);
-    let mut props = props.map(|(prop, place)| (prop.solid, place));
-    if props.any(|(solid, place)| prop_hides(solid, place, from, to)) {
-        return true;
-    }
-    let Some(terrain) = &sensor_config.terrain else { return false };
-    (1..GROUND_STEPS).any(|k| {
-        let share = f64::from(k) / f64::from(GROUND_STEPS);
-        let [x, y, z] = [0, 1, 2].map(|i| from[i] + (to[i] - from[i]) * share);
-        terrain.at(x, y).height > z
-    })
 }
 
 /// Places along the line at which the ground is looked at.
 const GROUND_STEPS: u32 = 40;
 
 /// A robot is a box for its body and a cylinder for its shell.
-fn robot_hides(kit: &EdgeHardware, frame: &Rigid, from: [f64; 3], to: [f64; 3]) -> bool {
+fn robot_hides(info: &RobotInfo, frame: &Rigid, from: [f64; 3], to: [f64; 3]) -> bool {
     let back = frame.inverse();
     let (a, b) = (back.apply(from), back.apply(to));
-    let body = kit.body;
+    let body = info.body;
     let middle = [0.5 * body.wheelbase, 0.0, 0.5 * body.height];
     if crosses_box(
         shifted(a, middle),
@@ -44,7 +47,7 @@ fn robot_hides(kit: &EdgeHardware, frame: &Rigid, from: [f64; 3], to: [f64; 3]) 
     ) {
         return true;
     }
-    kit.shell.is_some_and(|shell| {
+    info.shell.is_some_and(|shell| {
         let foot = [shell.forward, 0.0, shell.height - 0.5 * shell.face_height];
         crosses_cylinder(shifted(a, foot), shifted(b, foot), 1.04 * shell.apothem, shell.face_height)
     })
@@ -60,7 +63,7 @@ fn prop_hides(solid: Solid, place: &Placement, from: [f64; 3], to: [f64; 3]) -> 
     let back = Rigid { rotation, translation: place.position }.inverse();
     let (a, b) = (back.apply(from), back.apply(to));
     match solid {
-        // A ramp hides what its box does: robots seldom look along one.
+        // A ramp hides what its box does: cameras seldom point along one.
         Solid::Block { size } | Solid::Wedge { size } => {
             let middle = [0.0, 0.0, 0.5 * size[2]];
             crosses_box(shifted(a, middle), shifted(b, middle), size.map(|s| 0.5 * s))

@@ -2,7 +2,7 @@
 
 use super::messages::ContactRecord;
 use super::read::Log;
-use super::record::{self, Fields, Record};
+use super::record::{self, FieldValue, Fields, Record};
 use crate::Error;
 use std::collections::BTreeMap;
 use vocabulary::{FleetInfo, StepRecord, wrap};
@@ -46,7 +46,7 @@ pub struct Comparison {
     pub first: Option<Difference>,
     /// Samples that differ.
     pub differing: u64,
-    /// Largest difference of every quantity that differs anywhere, by edges, robots, props, contacts, looks.
+    /// Largest difference of every quantity that differs anywhere, by edges, robots, props, contacts, measurements.
     pub peaks: Vec<Peak>,
 }
 
@@ -196,7 +196,7 @@ impl ComparedQuantity {
     }
 }
 
-/// All quantities of a moment, by edge, robot, prop, contact and look.
+/// All quantities of a moment, by edge, robot, prop, contact and measurement.
 fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     let mut all = Collector { of: "sample".to_owned(), table: 0, field: 0, found: vec![] };
     let mut record = record.clone();
@@ -224,7 +224,7 @@ fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
         all.collect(4, of, &mut ContactRecord { contact: *contact, names: [first, second] });
     }
     for frame in &mut record.frames {
-        all.collect(5, format!("look of {}", pair(frame.edge)), frame);
+        all.collect(5, format!("measurement of {}", pair(frame.edge)), frame);
     }
     all.found
 }
@@ -255,48 +255,24 @@ impl Collector {
 }
 
 impl Fields for Collector {
-    fn number(&mut self, name: &'static str, value: &mut f64) -> Option<()> {
-        self.add(name, ComparedValue::Number(*value));
-        Some(())
-    }
-
-    fn numbers(&mut self, name: &'static str, values: &mut [f64]) -> Option<()> {
-        let field = self.field;
-        for value in values {
-            self.field = field;
-            self.add(name, ComparedValue::Number(*value));
-        }
-        Some(())
-    }
-
-    fn series(&mut self, name: &'static str, values: &mut Vec<f64>) -> Option<()> {
-        self.add(name, ComparedValue::Word(format!("{values:?}")));
-        Some(())
-    }
-
-    fn count(&mut self, name: &'static str, value: &mut u64) -> Option<()> {
-        self.add(name, ComparedValue::Number(*value as f64));
-        Some(())
-    }
-
-    fn flag(&mut self, name: &'static str, value: &mut bool) -> Option<()> {
-        self.add(name, ComparedValue::Word(value.to_string()));
-        Some(())
-    }
-
-    fn text(&mut self, name: &'static str, value: &mut String) -> Option<()> {
-        self.add(name, ComparedValue::Word(value.clone()));
-        Some(())
-    }
-
-    fn choice<T: Copy + PartialEq>(
-        &mut self,
-        name: &'static str,
-        value: &mut T,
-        all: &[(T, &'static str)],
-    ) -> Option<()> {
-        let word = all.iter().find(|(one, _)| one == value).map_or("?", |(_, word)| word);
-        self.add(name, ComparedValue::Word(word.to_owned()));
+    fn field(&mut self, name: &'static str, value: FieldValue<'_>) -> Option<()> {
+        let value = match value {
+            FieldValue::Number(value) => ComparedValue::Number(*value),
+            FieldValue::Count(value) => ComparedValue::Number(*value as f64),
+            FieldValue::Flag(value) => ComparedValue::Word(value.to_string()),
+            FieldValue::Text(text) => ComparedValue::Word(text.clone()),
+            FieldValue::Series(values) => ComparedValue::Word(format!("{values:?}")),
+            FieldValue::Choice(index, words) => ComparedValue::Word(words[*index].to_owned()),
+            FieldValue::Numbers(values) => {
+                let field = self.field;
+                for value in values {
+                    self.field = field;
+                    self.add(name, ComparedValue::Number(*value));
+                }
+                return Some(());
+            }
+        };
+        self.add(name, value);
         Some(())
     }
 

@@ -14,6 +14,7 @@ use foxglove::messages::{
 };
 use std::collections::VecDeque;
 use vocabulary::colours::robot_colours;
+use vocabulary::math;
 use vocabulary::{FleetInfo, Rigid, Snapshot, StepRecord};
 
 /// Drawings a second; fewer where there are many robots.
@@ -33,7 +34,7 @@ pub(super) struct Drawing {
     formation: u16,
     ribbons: u16,
     poses: Vec<u16>,
-    /// Of robots whose cameras look: calibration and pictures.
+    /// Of robots whose cameras measure: calibration and pictures.
     cameras: Vec<Option<[u16; 2]>>,
     colours: Vec<Color>,
     frames: Vec<[String; 3]>,
@@ -100,7 +101,7 @@ impl Drawing {
         for (index, member) in fleet.robots.iter().enumerate() {
             let frame = solids::robot_frame(member);
             drawing.poses.push(channel::<PoseInFrame>(&format!("/{frame}/pose"), to)?);
-            let measurements = fleet.looks && fleet.edges.iter().any(|edge| edge.follower == index);
+            let measurements = fleet.has_sensors && fleet.edges.iter().any(|edge| edge.follower == index);
             let camera = format!("{frame}/camera");
             drawing.cameras.push(if measurements {
                 let calibration = channel::<CameraCalibration>(&format!("/{camera}/calibration"), to)?;
@@ -198,7 +199,7 @@ impl Drawing {
             };
             let [distance, bearing] = state.set_point;
             let pose = leader.motion.pose;
-            let [x, y] = pose.world_from_body(distance * bearing.cos(), distance * bearing.sin());
+            let [x, y] = pose.world_from_body(distance * math::cos(bearing), distance * math::sin(bearing));
             let z = self.fleet.surface(x, y).height + LIFT;
             all.push(transform(solids::WORLD, goal, &Rigid::turned([x, y, z], pose.heading, 0.0, 0.0)));
         }

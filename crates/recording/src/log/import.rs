@@ -1,17 +1,16 @@
 //! A log that another program wrote anew: sorted, filtered, compressed otherwise, its chunks laid anew.
 //!
-//! Our own reader relies on how our own writer lays a file. What others write is put together again, sample by sample, into a
-//! log of ours in a file without a name, and read from there: a moment that comes back is the moment that was recorded, bit
-//! for bit, or is not there.
+//! Our own reader relies on how our own writer lays a file. What others write is put together again, sample by sample,
+//! into a log of ours in a file without a name, and read from there: a moment that comes back is the moment that was
+//! recorded, bit for bit, or is not there.
 
+use super::fleet::sound;
 use super::messages::{ContactRecord, SampleNumber};
-use super::outline::{LONGEST, parse};
+use super::outline::{Around, LONGEST, parse};
 use super::read::LogChannel;
 use super::record;
-use super::stage::{FleetRecord, sound};
 use super::writer::Writer;
-use super::{FORMAT, NAME, Topics, other_layout};
-use crate::manifest;
+use super::{FORMAT, Topics, other_layout};
 use crate::{Error, Manifest, Status};
 use mcap::records::{Header, MessageHeader, Record as Item};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
@@ -31,13 +30,11 @@ pub(super) struct Imported {
     pub(super) remark: String,
 }
 
-/// What a foreign log holds besides its moments.
+/// What a log of another program holds besides its moments.
 #[derive(Default)]
-struct About {
+struct ForeignLog {
     writer: String,
-    format: Option<String>,
-    manifest: Option<String>,
-    scene: Option<String>,
+    around: Around,
     fleet: Option<FleetInfo>,
     channels: HashMap<u16, LogChannel>,
     /// Samples, and the times of the first two, s.
@@ -53,19 +50,24 @@ const BATCH: usize = 64;
 /// Puts the log in `file` together again; errors speak of `path`.
 pub(super) fn import(file: &File, path: &Path) -> Result<Imported, Error> {
     let wrong = |message: String| Error::Log { path: path.to_owned(), message };
-    let about = About::of(file, path)?;
-    if let Some(format) = about.format.as_ref().filter(|format| **format != FORMAT.to_string()) {
+    let about = ForeignLog::of(file, path)?;
+    if let Some(format) = about.around.format.as_ref().filter(|format| **format != FORMAT.to_string()) {
         return Err(wrong(other_layout(format)));
     }
     let fleet = about.fleet.clone().filter(sound).ok_or_else(|| {
         wrong(format!("is an MCAP file, but no log of Echelon: it has no topic {}", Topics::FLEET))
     })?;
-    let mut manifest = match &about.manifest {
+    let mut manifest = match &about.around.manifest {
         Some(text) => serde_json::from_str(text)
             .map_err(|error| wrong(format!("holds a manifest that cannot be read: {error}")))?,
-        None => guessed(&fleet, &about),
+        None => Manifest {
+            period: about.times[1] - about.times[0],
+            status: Status::Interrupted,
+            samples: about.samples,
+            ..Manifest::of(&fleet)
+        },
     };
-    let scene = about.scene.clone().unwrap_or_default();
+    let scene = about.around.scene.clone().unwrap_or_default();
     let ours = output::scratch()?;
     let copy = ours.try_clone().map_err(Error::io("write", path))?;
     let mut writer = Writer::create(ours, path, &fleet, &scene, &manifest, false)?;
@@ -118,26 +120,7 @@ pub(super) fn import(file: &File, path: &Path) -> Result<Imported, Error> {
     Ok(Imported { file: copy, begins: span[0], remark })
 }
 
-/// What can be said of a run whose manifest was left out.
-fn guessed(fleet: &FleetInfo, about: &About) -> Manifest {
-    let name = |robot: usize| fleet.robots.get(robot).map_or_else(String::new, |member| member.name.clone());
-    Manifest {
-        format: manifest::FORMAT,
-        program: "unknown".to_owned(),
-        commit: None,
-        title: fleet.title.clone(),
-        seed: 0,
-        period: about.times[1] - about.times[0],
-        duration: fleet.duration,
-        robots: fleet.robots.iter().map(|member| member.name.clone()).collect(),
-        edges: fleet.edges.iter().map(|edge| [name(edge.leader), name(edge.follower)]).collect(),
-        status: Status::Interrupted,
-        samples: about.samples,
-        digest: None,
-    }
-}
-
-impl About {
+impl ForeignLog {
     fn of(file: &File, path: &Path) -> Result<Self, Error> {
         let mut about = Self { in_order: true, ..Self::default() };
         let (mut schemas, mut topics) = (HashMap::new(), vec![]);
@@ -145,18 +128,7 @@ impl About {
         read(file, path, |item| {
             match item {
                 Item::Header(Header { library, .. }) => about.writer = library,
-                Item::Metadata(metadata) if metadata.name == NAME => {
-                    about.format = metadata.metadata.get("format").cloned();
-                }
-                Item::Attachment { header, data, .. } => {
-                    let text = String::from_utf8(data.into_owned()).ok();
-                    match &*header.name {
-                        // The last one is that of the end.
-                        "manifest.json" => about.manifest = text.or(about.manifest.take()),
-                        "scene.toml" => about.scene = text.or(about.scene.take()),
-                        _ => {}
-                    }
-                }
+                item @ (Item::Metadata(_) | Item::Attachment { .. }) => about.around.note(item),
                 Item::Schema { header, .. } => {
                     schemas.insert(header.id, header.name);
                 }
@@ -174,7 +146,7 @@ impl About {
                     let Some(kind) = about.channels.get(&header.channel_id) else { return Ok(true) };
                     match kind {
                         LogChannel::FleetInfo => {
-                            about.fleet = record::read::<FleetRecord>(&data).map(|stage| stage.0);
+                            about.fleet = record::read::<FleetInfo>(&data);
                         }
                         LogChannel::Sample => {
                             if let Some(time) = about.times.get_mut(about.samples as usize) {
@@ -201,7 +173,7 @@ impl About {
         let place = |kind: LogChannel, topic: &str| match kind {
             LogChannel::Robot(_) => fleet.robots.iter().position(|member| Topics::robot(member) == topic),
             LogChannel::Edge(_) => fleet.edges.iter().position(|edge| Topics::edge(fleet, *edge) == topic),
-            LogChannel::Look(_) => {
+            LogChannel::Measurement(_) => {
                 fleet.edges.iter().position(|edge| Topics::measurements(fleet, *edge) == topic)
             }
             LogChannel::Prop(_) => fleet.props.iter().position(|prop| Topics::prop(prop) == topic),
@@ -219,8 +191,10 @@ impl About {
     /// What was done with the log, and what it lacks.
     fn remark(&self, count: u64, sound: bool) -> String {
         let anew = format!("was written anew by {}", self.writer);
-        let lacks =
-            [(self.scene.is_none(), "its scene"), (self.manifest.is_none(), "its manifest with the digest")];
+        let lacks = [
+            (self.around.scene.is_none(), "its scene"),
+            (self.around.manifest.is_none(), "its manifest with the digest"),
+        ];
         let lacks: Vec<&str> = lacks.iter().filter(|(lacks, _)| *lacks).map(|(_, what)| *what).collect();
         let lacks = match lacks.join(" and ") {
             nothing if nothing.is_empty() => nothing,
@@ -274,7 +248,7 @@ impl Pending {
                 LogChannel::Robot(index) => drop(parts.robots.insert(index, record::read(data)?)),
                 LogChannel::Edge(index) => drop(parts.edges.insert(index, record::read(data)?)),
                 LogChannel::Prop(index) => drop(parts.props.insert(index, record::read(data)?)),
-                LogChannel::Look(index) => {
+                LogChannel::Measurement(index) => {
                     parts.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
                 }
                 LogChannel::Contact => {
@@ -300,14 +274,9 @@ impl Parts {
     fn whole(self, placed: &mut BTreeMap<usize, Placement>, fleet: &FleetInfo) -> Option<StepRecord> {
         let sample = self.sample?;
         placed.extend(self.props);
-        let counts = [
-            (sample.robots, self.robots.len()),
-            (sample.edges, self.edges.len()),
-            (sample.props, placed.len()),
-            (sample.contacts, self.contacts.len()),
-            (sample.measurements, self.frames.len()),
-        ];
-        counts.iter().all(|(told, found)| *told == *found as u64).then_some(())?;
+        let (robots, edges) = (self.robots.len(), self.edges.len());
+        let found = [robots, edges, placed.len(), self.contacts.len(), self.frames.len()];
+        (sample.counts == found).then_some(())?;
         let inside = |last: Option<&usize>, count: usize| last.is_none_or(|last| *last < count);
         let fits = inside(self.robots.keys().next_back(), fleet.robots.len())
             && inside(self.edges.keys().next_back(), fleet.edges.len())

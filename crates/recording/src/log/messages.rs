@@ -1,20 +1,12 @@
 //! What a moment is made of, as messages: names and units of fields are those of the tables.
 
-use super::record::{Fields, Record};
-use vocabulary::{
-    Condition, Contact, EdgeState, EntityId, FACES, MeasurementRecord, Outcome, Placement, Relative,
-    RobotState, TrackingState,
-};
-
-fn words<T: Copy, const N: usize>(all: [T; N], name: impl Fn(T) -> &'static str) -> [(T, &'static str); N] {
-    all.map(|one| (one, name(one)))
-}
+use super::record::{FieldValue, Fields, Record};
+use vocabulary::{Contact, EdgeState, EntityId, FACES, MeasurementRecord, Placement, Relative, RobotState};
 
 impl Record for RobotState {
     const NAME: &'static str = "RobotState";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
-        use Condition::{Able, Fallen, Overturned, Stuck};
         let (motion, attitude) = (&mut self.motion, &mut self.attitude);
         f.number("x_m", &mut motion.pose.x)?;
         f.number("y_m", &mut motion.pose.y)?;
@@ -25,11 +17,7 @@ impl Record for RobotState {
         f.number("height_m", &mut attitude.height)?;
         f.number("roll_rad", &mut attitude.roll)?;
         f.number("pitch_rad", &mut attitude.pitch)?;
-        f.choice(
-            "condition",
-            &mut self.condition,
-            &words([Able, Overturned, Stuck, Fallen], Condition::name),
-        )?;
+        f.word("condition", &mut self.condition)?;
         f.number("camera_pan_rad", &mut self.camera_pan)?;
         let mut rotation = self.wheels.map(|wheel| wheel.rotation);
         let mut steering = self.wheels.map(|wheel| wheel.steering);
@@ -48,7 +36,6 @@ impl Record for EdgeState {
     const NAME: &'static str = "EdgeState";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
-        use TrackingState::{Coasting, Lost, Tracking, Truth, Waiting};
         let Relative { distance, bearing, view_angle } = &mut self.relative;
         f.number("distance_m", distance)?;
         f.number("bearing_rad", bearing)?;
@@ -70,28 +57,22 @@ impl Record for EdgeState {
         f.number("seen_bearing_rad", bearing)?;
         f.number("seen_view_angle_rad", view_angle)?;
         f.number("age_s", &mut self.age)?;
-        f.choice(
-            "sight",
-            &mut self.sight,
-            &words([Truth, Waiting, Tracking, Coasting, Lost], TrackingState::name),
-        )?;
+        f.word("sight", &mut self.sight)?;
         f.flag("limited", &mut self.limited)?;
         f.flag("too_close", &mut self.too_close)
     }
 }
 
-/// One look of an edge: its index is that of its channel.
+/// One measurement of an edge: its index is that of its channel.
 impl Record for MeasurementRecord {
     const NAME: &'static str = "Measurement";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
-        use Outcome::{Ambiguous, Dropped, Missed, Rejected, Used};
-        let outcomes = words([Used, Rejected, Ambiguous, Missed, Dropped], Outcome::name);
-        let look = &mut self.measurement;
-        f.choice("outcome", &mut self.outcome, &outcomes)?;
-        f.number("stamp_s", &mut look.stamp)?;
+        let measurement = &mut self.measurement;
+        f.word("outcome", &mut self.outcome)?;
+        f.number("stamp_s", &mut measurement.stamp)?;
         f.number("arrival_s", &mut self.arrival)?;
-        let Relative { distance, bearing, view_angle } = &mut look.relative;
+        let Relative { distance, bearing, view_angle } = &mut measurement.relative;
         f.number("distance_m", distance)?;
         f.number("bearing_rad", bearing)?;
         f.number("view_angle_rad", view_angle)?;
@@ -99,27 +80,20 @@ impl Record for MeasurementRecord {
         f.number("true_distance_m", distance)?;
         f.number("true_bearing_rad", bearing)?;
         f.number("true_view_angle_rad", view_angle)?;
-        f.number("deviation_distance_m", &mut look.deviation[0])?;
-        f.number("deviation_bearing_rad", &mut look.deviation[1])?;
-        f.number("deviation_view_angle_rad", &mut look.deviation[2])?;
+        f.number("deviation_distance_m", &mut measurement.deviation[0])?;
+        f.number("deviation_bearing_rad", &mut measurement.deviation[1])?;
+        f.number("deviation_view_angle_rad", &mut measurement.deviation[2])?;
         f.number("pan_rad", &mut self.pan)?;
-        let region = &mut self.region;
-        for (name, side) in [
-            ("region_x_px", &mut region.x),
-            ("region_y_px", &mut region.y),
-            ("region_width_px", &mut region.width),
-            ("region_height_px", &mut region.height),
-        ] {
-            let mut pixels = u64::from(*side);
-            f.count(name, &mut pixels)?;
-            *side = u32::try_from(pixels).ok()?;
-        }
+        f.count("region_x_px", &mut self.region.x)?;
+        f.count("region_y_px", &mut self.region.y)?;
+        f.count("region_width_px", &mut self.region.width)?;
+        f.count("region_height_px", &mut self.region.height)?;
         // Which faces were seen, a bit each, and eight coordinates for each of them.
         let mut faces =
             self.tags.iter().enumerate().fold(0, |bits, (k, t)| bits | u64::from(t.is_some()) << k);
         let mut corners: Vec<f64> = self.tags.iter().flatten().flatten().flatten().copied().collect();
         f.count("seen_faces_bits", &mut faces)?;
-        f.series("corners_px", &mut corners)?;
+        f.field("corners_px", FieldValue::Series(&mut corners))?;
         let mut corners = corners.into_iter();
         for (face, tag) in self.tags.iter_mut().enumerate().take(FACES) {
             *tag = None;
@@ -153,51 +127,21 @@ impl Record for Placement {
 }
 
 /// A contact and the names of who takes part.
+#[derive(Default)]
 pub(super) struct ContactRecord {
     pub(super) contact: Contact,
     pub(super) names: [String; 2],
 }
 
-impl Default for ContactRecord {
-    fn default() -> Self {
-        let contact = Contact {
-            number: 0,
-            things: [EntityId::Ground; 2],
-            begin: 0.0,
-            end: 0.0,
-            open: false,
-            place: [0.0; 3],
-            normal: [0.0; 3],
-            impulse: 0.0,
-        };
-        Self { contact, names: Default::default() }
-    }
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum EntityKind {
-    Ground,
-    Robot,
-    Prop,
-}
-
-const KINDS: [(EntityKind, &str); 3] =
-    [(EntityKind::Ground, "ground"), (EntityKind::Robot, "robot"), (EntityKind::Prop, "prop")];
-
 fn thing<F: Fields>(f: &mut F, names: [&'static str; 2], thing: &mut EntityId) -> Option<()> {
     let (mut kind, mut index) = match *thing {
-        EntityId::Ground => (EntityKind::Ground, 0),
-        EntityId::Robot(index) => (EntityKind::Robot, index as u64),
-        EntityId::Prop(index) => (EntityKind::Prop, index as u64),
+        EntityId::Ground => (0, 0),
+        EntityId::Robot(index) => (1, index),
+        EntityId::Prop(index) => (2, index),
     };
-    f.choice(names[0], &mut kind, &KINDS)?;
+    f.field(names[0], FieldValue::Choice(&mut kind, &["ground", "robot", "prop"]))?;
     f.count(names[1], &mut index)?;
-    let index = usize::try_from(index).ok()?;
-    *thing = match kind {
-        EntityKind::Ground => EntityId::Ground,
-        EntityKind::Robot => EntityId::Robot(index),
-        EntityKind::Prop => EntityId::Prop(index),
-    };
+    *thing = [EntityId::Ground, EntityId::Robot(index), EntityId::Prop(index)][kind];
     Some(())
 }
 
@@ -230,11 +174,8 @@ impl Record for ContactRecord {
 pub(super) struct SampleNumber {
     pub(super) number: u64,
     pub(super) time: f64,
-    pub(super) robots: u64,
-    pub(super) edges: u64,
-    pub(super) props: u64,
-    pub(super) contacts: u64,
-    pub(super) measurements: u64,
+    /// Of robots, edges, props, contacts and measurements.
+    pub(super) counts: [usize; 5],
 }
 
 impl Record for SampleNumber {
@@ -243,10 +184,7 @@ impl Record for SampleNumber {
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
         f.count("number", &mut self.number)?;
         f.number("time_s", &mut self.time)?;
-        f.count("robots", &mut self.robots)?;
-        f.count("edges", &mut self.edges)?;
-        f.count("props", &mut self.props)?;
-        f.count("contacts", &mut self.contacts)?;
-        f.count("measurements", &mut self.measurements)
+        let names = ["robots", "edges", "props", "contacts", "measurements"];
+        names.into_iter().zip(&mut self.counts).try_for_each(|(name, count)| f.count(name, count))
     }
 }

@@ -16,6 +16,7 @@
 
 mod compare;
 mod drawing;
+mod fleet;
 mod import;
 mod messages;
 mod outline;
@@ -25,7 +26,6 @@ mod read;
 mod record;
 mod ros;
 mod solids;
-mod stage;
 mod writer;
 
 pub use compare::{Comparison, Difference, Peak, compare};

@@ -49,9 +49,7 @@ pub(super) fn body(file: &mut &File, start: u64, length: u64) -> std::io::Result
 /// What stands outside the chunks, and where those are.
 #[derive(Default)]
 pub(super) struct ChunkOutline {
-    pub(super) format: Option<String>,
-    pub(super) manifest: Option<String>,
-    pub(super) scene: Option<String>,
+    pub(super) around: Around,
     pub(super) chunks: Vec<Chunk>,
     pub(super) whole: bool,
     /// Another program wrote it: nothing can be said of how it is laid.
@@ -99,7 +97,9 @@ impl ChunkOutline {
                 op::MESSAGE => outline.foreign = true,
                 op::METADATA | op::ATTACHMENT if length < LONGEST => {
                     let bytes = body(&mut reader, start, length).map_err(io)?;
-                    outline.note(parse(*code, &bytes).ok());
+                    if let Ok(item) = parse(*code, &bytes) {
+                        outline.around.note(item);
+                    }
                 }
                 op::DATA_END => outline.whole = true,
                 _ => {}
@@ -108,17 +108,28 @@ impl ChunkOutline {
         }
         Ok(outline)
     }
+}
 
-    fn note(&mut self, item: Option<Chunked<'_>>) {
+/// What a log says of its run before and after the moments.
+#[derive(Default)]
+pub(super) struct Around {
+    pub(super) format: Option<String>,
+    pub(super) manifest: Option<String>,
+    pub(super) scene: Option<String>,
+}
+
+impl Around {
+    pub(super) fn note(&mut self, item: Chunked<'_>) {
         match item {
-            Some(Chunked::Metadata(metadata)) if metadata.name == NAME => {
+            Chunked::Metadata(metadata) if metadata.name == NAME => {
                 self.format = metadata.metadata.get("format").cloned();
             }
-            Some(Chunked::Attachment { header, data, .. }) => {
+            Chunked::Attachment { header, data, .. } => {
                 let text = String::from_utf8(data.into_owned()).ok();
                 match &*header.name {
+                    // The last one is that of the end.
                     "manifest.json" => self.manifest = text.or(self.manifest.take()),
-                    "scene.toml" => self.scene = text,
+                    "scene.toml" => self.scene = text.or(self.scene.take()),
                     _ => {}
                 }
             }

@@ -1,6 +1,7 @@
 //! What cameras on robots saw: taken where they are drawn, so that no simulation knows of it.
 
 use std::sync::{Arc, Mutex, PoisonError};
+use vocabulary::math;
 use vocabulary::{CameraModel, CameraRenderer, Grey, Shot, Snapshot};
 
 /// Pictures of a camera in a second of simulation, at most.
@@ -43,10 +44,10 @@ struct Through {
 }
 
 impl CameraRenderer for Through {
-    fn look(&mut self, snapshot: &Snapshot, shots: &[Shot], pictures: &mut Vec<Grey>) -> Result<(), String> {
-        self.eyes.look(snapshot, shots, pictures)?;
+    fn render(&mut self, snapshot: &Snapshot, shots: &[Shot], images: &mut Vec<Grey>) -> Result<(), String> {
+        self.eyes.render(snapshot, shots, images)?;
         self.next.resize(snapshot.robots.len(), 0.0);
-        for (shot, picture) in shots.iter().zip(&*pictures) {
+        for (shot, picture) in shots.iter().zip(&*images) {
             let Some(next) = self.next.get_mut(shot.robot).filter(|next| snapshot.time >= **next - 1e-9)
             else {
                 continue;
@@ -68,14 +69,14 @@ impl CameraRenderer for Through {
 }
 
 impl Photo {
-    /// Appends the picture to `out` as PNG, in its place in the whole picture of `camera_model`, black around it, and as bright as
-    /// screens want it; `None` where it makes no picture.
+    /// Appends the picture to `out` as PNG, in its place in the whole picture of `camera_model`, black around it, and
+    /// as bright as screens want it; `None` where it makes no picture.
     pub(super) fn png(&self, camera_model: &CameraModel, out: &mut Vec<u8>) -> Option<()> {
         let (across, down) = (camera_model.width as usize, camera_model.height as usize);
         let mut pixels = vec![0; across.checked_mul(down)?];
         let corner = [0, 1].map(|k| (camera_model.centre[k] - self.centre[k]).round() as i64);
         let bright: Vec<u8> =
-            (0..=255_u8).map(|v| (255.0 * (f64::from(v) / 255.0).powf(1.0 / 2.2)) as u8).collect();
+            (0..=255_u8).map(|v| (255.0 * math::powf(f64::from(v) / 255.0, 1.0 / 2.2)) as u8).collect();
         let width = self.picture.width as usize;
         for (row, line) in self.picture.values.chunks_exact(width.max(1)).enumerate() {
             let Some(y) = usize::try_from(corner[1] + row as i64).ok().filter(|y| *y < down) else {

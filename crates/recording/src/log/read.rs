@@ -1,12 +1,12 @@
 //! Reads a log back: what is known of the run, and its moments in order or from a time on.
 //!
-//! Whole records are looked for from the beginning, so a log that was cut off reads like any other, up to its last chunk.
+//! Whole records are searched from the beginning, so a log that was cut off reads like any other, up to its last chunk.
 
+use super::fleet::sound;
 use super::import::{Imported, import};
 use super::messages::{ContactRecord, SampleNumber};
 use super::outline::{Chunk, ChunkOutline, LONGEST, body, parse};
 use super::record::{self, Record};
-use super::stage::{FleetRecord, sound};
 use super::{FORMAT, other_layout};
 use crate::{Error, Manifest, Status};
 use mcap::records::{MessageHeader, Record as Chunked, op};
@@ -45,7 +45,7 @@ pub(super) enum LogChannel {
     Robot(usize),
     Edge(usize),
     Prop(usize),
-    Look(usize),
+    Measurement(usize),
     Contact,
     Sample,
     FleetInfo,
@@ -77,7 +77,7 @@ impl Log {
         remark: Option<String>,
     ) -> Result<Self, Error> {
         let wrong = |message: &str| Error::Log { path: path.to_owned(), message: message.to_owned() };
-        let Some(format) = outline.format else {
+        let Some(format) = outline.around.format else {
             return Err(wrong(
                 "is an MCAP file, but no log of Echelon, or was cut off at its very beginning",
             ));
@@ -86,7 +86,7 @@ impl Log {
             let message = other_layout(&format);
             return Err(wrong(&message));
         }
-        let Some((manifest, scene)) = outline.manifest.zip(outline.scene) else {
+        let Some((manifest, scene)) = outline.around.manifest.zip(outline.around.scene) else {
             return Err(wrong("was cut off before the run began: its scene or its manifest is missing"));
         };
         let manifest = serde_json::from_str(&manifest)
@@ -129,7 +129,7 @@ impl Log {
                 Chunked::Message { header, data }
                     if matches!(channels.get(&header.channel_id), Some(LogChannel::FleetInfo)) =>
                 {
-                    fleet = record::read::<FleetRecord>(&data).map(|stage| stage.0);
+                    fleet = record::read::<FleetInfo>(&data);
                 }
                 _ => {}
             }
@@ -282,10 +282,10 @@ impl LogChannel {
             RobotState::NAME => Some(Self::Robot(index)),
             EdgeState::NAME => Some(Self::Edge(index)),
             Placement::NAME => Some(Self::Prop(index)),
-            MeasurementRecord::NAME => Some(Self::Look(index)),
+            MeasurementRecord::NAME => Some(Self::Measurement(index)),
             ContactRecord::NAME => Some(Self::Contact),
             SampleNumber::NAME => Some(Self::Sample),
-            FleetRecord::NAME => Some(Self::FleetInfo),
+            FleetInfo::NAME => Some(Self::FleetInfo),
             _ => None,
         }
     }
@@ -372,21 +372,16 @@ fn take(
             let place = record::read(data)?;
             if index == props.len() { props.push(place) } else { *props.get_mut(index)? = place }
         }
-        LogChannel::Look(index) => {
+        LogChannel::Measurement(index) => {
             record.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
         }
         LogChannel::Contact => record.contacts.push(record::read::<ContactRecord>(data)?.contact),
         LogChannel::Sample => {
             let sample: SampleNumber = record::read(data)?;
             record.snapshot.time = sample.time;
-            let counts = [
-                (sample.robots, record.snapshot.robots.len()),
-                (sample.edges, record.edges.len()),
-                (sample.props, props.len()),
-                (sample.contacts, record.contacts.len()),
-                (sample.measurements, record.frames.len()),
-            ];
-            counts.iter().all(|(told, found)| *told == *found as u64).then_some(())?;
+            let (robots, edges) = (record.snapshot.robots.len(), record.edges.len());
+            let found = [robots, edges, props.len(), record.contacts.len(), record.frames.len()];
+            (sample.counts == found).then_some(())?;
             return Some(true);
         }
         LogChannel::FleetInfo => {}

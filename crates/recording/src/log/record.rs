@@ -8,6 +8,7 @@ use prost_types::{
     DescriptorProto, EnumDescriptorProto, EnumValueDescriptorProto, FieldDescriptorProto,
     FileDescriptorProto, FileDescriptorSet,
 };
+use vocabulary::Word;
 
 /// What has fields.
 pub(super) trait Record {
@@ -18,22 +19,59 @@ pub(super) trait Record {
     fn list<F: Fields>(&mut self, fields: &mut F) -> Option<()>;
 }
 
+/// The value of a field.
+pub(super) enum FieldValue<'a> {
+    Number(&'a mut f64),
+    /// As many as there are.
+    Numbers(&'a mut [f64]),
+    Series(&'a mut Vec<f64>),
+    Count(&'a mut u64),
+    Flag(&'a mut bool),
+    Text(&'a mut String),
+    /// Index of one of these words, the first of which is the default.
+    Choice(&'a mut usize, &'a [&'static str]),
+}
+
 /// Whoever goes through the fields of a message: names end in their unit.
 pub(super) trait Fields {
-    fn number(&mut self, name: &'static str, value: &mut f64) -> Option<()>;
-    fn numbers(&mut self, name: &'static str, values: &mut [f64]) -> Option<()>;
-    fn series(&mut self, name: &'static str, values: &mut Vec<f64>) -> Option<()>;
-    fn count(&mut self, name: &'static str, value: &mut u64) -> Option<()>;
-    fn flag(&mut self, name: &'static str, value: &mut bool) -> Option<()>;
-    fn text(&mut self, name: &'static str, value: &mut String) -> Option<()>;
-    /// One of `all`, the first of which is the default.
-    fn choice<T: Copy + PartialEq>(
-        &mut self,
-        name: &'static str,
-        value: &mut T,
-        all: &[(T, &'static str)],
-    ) -> Option<()>;
+    fn field(&mut self, name: &'static str, value: FieldValue<'_>) -> Option<()>;
+
     fn each<T: Record + Default>(&mut self, name: &'static str, values: &mut Vec<T>) -> Option<()>;
+
+    fn number(&mut self, name: &'static str, value: &mut f64) -> Option<()> {
+        self.field(name, FieldValue::Number(value))
+    }
+
+    fn numbers(&mut self, name: &'static str, values: &mut [f64]) -> Option<()> {
+        self.field(name, FieldValue::Numbers(values))
+    }
+
+    fn flag(&mut self, name: &'static str, value: &mut bool) -> Option<()> {
+        self.field(name, FieldValue::Flag(value))
+    }
+
+    fn text(&mut self, name: &'static str, value: &mut String) -> Option<()> {
+        self.field(name, FieldValue::Text(value))
+    }
+
+    /// A whole number of any type.
+    fn count<T>(&mut self, name: &'static str, value: &mut T) -> Option<()>
+    where
+        T: Copy + TryInto<u64> + TryFrom<u64>,
+    {
+        let mut wide = (*value).try_into().ok()?;
+        self.field(name, FieldValue::Count(&mut wide))?;
+        *value = T::try_from(wide).ok()?;
+        Some(())
+    }
+
+    fn word<T: Word>(&mut self, name: &'static str, value: &mut T) -> Option<()> {
+        let words: Vec<&'static str> = T::WORDS.iter().map(|(word, ..)| *word).collect();
+        let mut index = T::WORDS.iter().position(|(_, one, _)| one == value)?;
+        self.field(name, FieldValue::Choice(&mut index, &words))?;
+        *value = T::WORDS.get(index)?.1;
+        Some(())
+    }
 }
 
 /// Appends `record` to `out`.
@@ -73,73 +111,45 @@ impl FieldWriter<'_> {
     }
 
     fn varint(&mut self, value: u64) {
-        self.field += 1;
         if value != 0 {
             self.tag(VARINT);
             put_varint(self.out, value);
         }
     }
 
-    fn bytes(&mut self, bytes: impl ExactSizeIterator<Item = [u8; 8]>) {
-        self.field += 1;
-        if bytes.len() > 0 {
+    fn bytes(&mut self, bytes: &[u8]) {
+        self.tag(BYTES);
+        put_varint(self.out, bytes.len() as u64);
+        self.out.extend_from_slice(bytes);
+    }
+
+    fn doubles(&mut self, values: &[f64]) {
+        if !values.is_empty() {
             self.tag(BYTES);
-            put_varint(self.out, 8 * bytes.len() as u64);
-            for value in bytes {
-                self.out.extend_from_slice(&value);
-            }
+            put_varint(self.out, 8 * values.len() as u64);
+            self.out.extend(values.iter().flat_map(|value| value.to_le_bytes()));
         }
     }
 }
 
 impl Fields for FieldWriter<'_> {
-    fn number(&mut self, _: &'static str, value: &mut f64) -> Option<()> {
+    fn field(&mut self, _: &'static str, value: FieldValue<'_>) -> Option<()> {
         self.field += 1;
-        if value.to_bits() != 0 {
-            self.tag(FIXED);
-            self.out.extend_from_slice(&value.to_le_bytes());
+        match value {
+            FieldValue::Number(value) if value.to_bits() == 0 => {}
+            FieldValue::Number(value) => {
+                self.tag(FIXED);
+                self.out.extend_from_slice(&value.to_le_bytes());
+            }
+            FieldValue::Numbers(values) if values.iter().all(|value| value.to_bits() == 0) => {}
+            FieldValue::Numbers(values) => self.doubles(values),
+            FieldValue::Series(values) => self.doubles(values),
+            FieldValue::Count(value) => self.varint(*value),
+            FieldValue::Flag(value) => self.varint(u64::from(*value)),
+            FieldValue::Choice(index, _) => self.varint(*index as u64),
+            FieldValue::Text(text) if text.is_empty() => {}
+            FieldValue::Text(text) => self.bytes(text.as_bytes()),
         }
-        Some(())
-    }
-
-    fn numbers(&mut self, _: &'static str, values: &mut [f64]) -> Option<()> {
-        let count = if values.iter().all(|value| value.to_bits() == 0) { 0 } else { values.len() };
-        self.bytes(values[..count].iter().map(|value| value.to_le_bytes()));
-        Some(())
-    }
-
-    fn series(&mut self, _: &'static str, values: &mut Vec<f64>) -> Option<()> {
-        self.bytes(values.iter().map(|value| value.to_le_bytes()));
-        Some(())
-    }
-
-    fn count(&mut self, _: &'static str, value: &mut u64) -> Option<()> {
-        self.varint(*value);
-        Some(())
-    }
-
-    fn flag(&mut self, _: &'static str, value: &mut bool) -> Option<()> {
-        self.varint(u64::from(*value));
-        Some(())
-    }
-
-    fn text(&mut self, _: &'static str, value: &mut String) -> Option<()> {
-        self.field += 1;
-        if !value.is_empty() {
-            self.tag(BYTES);
-            put_varint(self.out, value.len() as u64);
-            self.out.extend_from_slice(value.as_bytes());
-        }
-        Some(())
-    }
-
-    fn choice<T: Copy + PartialEq>(
-        &mut self,
-        _: &'static str,
-        value: &mut T,
-        all: &[(T, &'static str)],
-    ) -> Option<()> {
-        self.varint(all.iter().position(|(one, _)| one == value).unwrap_or(0) as u64);
         Some(())
     }
 
@@ -149,9 +159,7 @@ impl Fields for FieldWriter<'_> {
         for value in values {
             inner.clear();
             write(value, &mut inner);
-            self.tag(BYTES);
-            put_varint(self.out, inner.len() as u64);
-            self.out.extend_from_slice(&inner);
+            self.bytes(&inner);
         }
         Some(())
     }
@@ -197,12 +205,10 @@ impl<'a> Reader<'a> {
     }
 
     fn varint(&mut self) -> Option<u64> {
-        self.field += 1;
         if self.comes(VARINT)? { take_varint(&mut self.data) } else { Some(0) }
     }
 
     fn bytes(&mut self) -> Option<&'a [u8]> {
-        self.field += 1;
         if !self.comes(BYTES)? {
             return Some(&[]);
         }
@@ -217,54 +223,33 @@ fn numbers_of(bytes: &[u8]) -> Option<impl ExactSizeIterator<Item = f64> + '_> {
 }
 
 impl Fields for Reader<'_> {
-    fn number(&mut self, _: &'static str, value: &mut f64) -> Option<()> {
+    fn field(&mut self, _: &'static str, value: FieldValue<'_>) -> Option<()> {
         self.field += 1;
-        *value = if self.comes(FIXED)? { f64::from_le_bytes(self.take(8)?.try_into().ok()?) } else { 0.0 };
-        Some(())
-    }
-
-    fn numbers(&mut self, _: &'static str, values: &mut [f64]) -> Option<()> {
-        let found = numbers_of(self.bytes()?)?;
-        if found.len() == 0 {
-            values.fill(0.0);
-        } else if found.len() == values.len() {
-            for (value, found) in values.iter_mut().zip(found) {
-                *value = found;
+        match value {
+            FieldValue::Number(value) => {
+                let comes = self.comes(FIXED)?;
+                *value = if comes { f64::from_le_bytes(self.take(8)?.try_into().ok()?) } else { 0.0 };
             }
-        } else {
-            return None;
+            FieldValue::Numbers(values) => {
+                let found = numbers_of(self.bytes()?)?;
+                if found.len() == 0 {
+                    values.fill(0.0);
+                } else {
+                    (found.len() == values.len()).then_some(())?;
+                    values.iter_mut().zip(found).for_each(|(value, found)| *value = found);
+                }
+            }
+            FieldValue::Series(values) => {
+                values.clear();
+                values.extend(numbers_of(self.bytes()?)?);
+            }
+            FieldValue::Count(value) => *value = self.varint()?,
+            FieldValue::Flag(value) => *value = self.varint()? != 0,
+            FieldValue::Text(text) => std::str::from_utf8(self.bytes()?).ok()?.clone_into(text),
+            FieldValue::Choice(index, words) => {
+                *index = usize::try_from(self.varint()?).ok().filter(|index| *index < words.len())?;
+            }
         }
-        Some(())
-    }
-
-    fn series(&mut self, _: &'static str, values: &mut Vec<f64>) -> Option<()> {
-        values.clear();
-        values.extend(numbers_of(self.bytes()?)?);
-        Some(())
-    }
-
-    fn count(&mut self, _: &'static str, value: &mut u64) -> Option<()> {
-        *value = self.varint()?;
-        Some(())
-    }
-
-    fn flag(&mut self, _: &'static str, value: &mut bool) -> Option<()> {
-        *value = self.varint()? != 0;
-        Some(())
-    }
-
-    fn text(&mut self, _: &'static str, value: &mut String) -> Option<()> {
-        std::str::from_utf8(self.bytes()?).ok()?.clone_into(value);
-        Some(())
-    }
-
-    fn choice<T: Copy + PartialEq>(
-        &mut self,
-        _: &'static str,
-        value: &mut T,
-        all: &[(T, &'static str)],
-    ) -> Option<()> {
-        *value = all.get(usize::try_from(self.varint()?).ok()?)?.0;
         Some(())
     }
 
@@ -347,53 +332,28 @@ impl Description {
 }
 
 impl Fields for Description {
-    fn number(&mut self, name: &'static str, _: &mut f64) -> Option<()> {
-        self.add(name, Type::Double, Label::Optional, None);
-        Some(())
-    }
-
-    fn numbers(&mut self, name: &'static str, _: &mut [f64]) -> Option<()> {
-        self.add(name, Type::Double, Label::Repeated, None);
-        Some(())
-    }
-
-    fn series(&mut self, name: &'static str, _: &mut Vec<f64>) -> Option<()> {
-        self.add(name, Type::Double, Label::Repeated, None);
-        Some(())
-    }
-
-    fn count(&mut self, name: &'static str, _: &mut u64) -> Option<()> {
-        self.add(name, Type::Uint64, Label::Optional, None);
-        Some(())
-    }
-
-    fn flag(&mut self, name: &'static str, _: &mut bool) -> Option<()> {
-        self.add(name, Type::Bool, Label::Optional, None);
-        Some(())
-    }
-
-    fn text(&mut self, name: &'static str, _: &mut String) -> Option<()> {
-        self.add(name, Type::String, Label::Optional, None);
-        Some(())
-    }
-
-    fn choice<T: Copy + PartialEq>(
-        &mut self,
-        name: &'static str,
-        _: &mut T,
-        all: &[(T, &'static str)],
-    ) -> Option<()> {
-        // Names of values share the scope of their message: two fields of the same words have one enum.
-        let words: Vec<&str> = all.iter().map(|(_, word)| *word).collect();
-        let same = |known: &&EnumDescriptorProto| {
-            known.value.iter().map(EnumValueDescriptorProto::name).eq(words.iter().copied())
+    fn field(&mut self, name: &'static str, value: FieldValue<'_>) -> Option<()> {
+        let (kind, label) = match value {
+            FieldValue::Number(_) => (Type::Double, Label::Optional),
+            FieldValue::Numbers(_) | FieldValue::Series(_) => (Type::Double, Label::Repeated),
+            FieldValue::Count(_) => (Type::Uint64, Label::Optional),
+            FieldValue::Flag(_) => (Type::Bool, Label::Optional),
+            FieldValue::Text(_) => (Type::String, Label::Optional),
+            FieldValue::Choice(_, words) => {
+                // Names of values share the scope of their message: two fields of the same words have one enum.
+                let same = |known: &&EnumDescriptorProto| {
+                    known.value.iter().map(EnumValueDescriptorProto::name).eq(words.iter().copied())
+                };
+                let kind = match self.message.enum_type.iter().find(same) {
+                    Some(known) => known.name().to_owned(),
+                    None => self.enumerate(name, words),
+                };
+                let of = format!(".{PACKAGE}.{}.{kind}", self.message.name());
+                self.add(name, Type::Enum, Label::Optional, Some(of));
+                return Some(());
+            }
         };
-        let kind = match self.message.enum_type.iter().find(same) {
-            Some(known) => known.name().to_owned(),
-            None => self.enumerate(name, &words),
-        };
-        let owner = self.message.name().to_owned();
-        self.add(name, Type::Enum, Label::Optional, Some(format!(".{PACKAGE}.{owner}.{kind}")));
+        self.add(name, kind, label, None);
         Some(())
     }
 

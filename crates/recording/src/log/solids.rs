@@ -6,6 +6,7 @@ use foxglove::messages::{
     TriangleListPrimitive, Vector3, line_primitive::Type,
 };
 use std::f64::consts::TAU;
+use vocabulary::math;
 use vocabulary::{FleetInfo, Mobility, Placement, Prop, RobotInfo, Solid, Terrain};
 
 /// The frame in which all others are.
@@ -100,7 +101,7 @@ const EARTH: Color = Color { r: 0.62, g: 0.62, b: 0.6, a: 1.0 };
 
 fn ring(frame: &str, color: Color) -> SceneEntity {
     let around = (0..32).map(|k| {
-        let (sin, cos) = (TAU * f64::from(k) / 32.0).sin_cos();
+        let (sin, cos) = math::sin_cos(TAU * f64::from(k) / 32.0);
         point([RING * cos, RING * sin, 0.0])
     });
     let line = LinePrimitive {

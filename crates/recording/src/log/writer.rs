@@ -4,7 +4,6 @@ use super::drawing::Drawing;
 use super::messages::{ContactRecord, SampleNumber};
 use super::pictures::Photo;
 use super::record::{self, Record};
-use super::stage::FleetRecord;
 use super::{FORMAT, OURS, Topics, ros};
 use crate::{Error, Manifest};
 use mcap::records::{MessageHeader, Metadata};
@@ -111,7 +110,8 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// Writes what is known before the run into `file`; errors speak of `path`. Without drawings, where nobody will look.
+    /// Writes what is known before the run into `file`; errors speak of `path`. Without drawings, where nobody will
+    /// look.
     pub(super) fn create(
         file: File,
         path: &Path,
@@ -139,8 +139,8 @@ impl Writer {
             .map_err(Error::table(path))?;
         to.attach("scene.toml", "application/toml", scene)?;
         to.attach("manifest.json", "application/json", &text(manifest, path)?)?;
-        let stage = to.add_own::<FleetRecord>(Topics::FLEET, 0)?;
-        to.put_own(stage, Stamp::default(), &mut FleetRecord(fleet.clone()))?;
+        let cast = to.add_own::<FleetInfo>(Topics::FLEET, 0)?;
+        to.put_own(cast, Stamp::default(), &mut fleet.clone())?;
         let mut writer = Self {
             drawing: if drawn { Some(Drawing::begin(fleet, &mut to)?) } else { None },
             robots: vec![],
@@ -166,7 +166,7 @@ impl Writer {
         }
         for (index, edge) in fleet.edges.iter().enumerate() {
             self.edges.push(to.add_own::<EdgeState>(&Topics::edge(fleet, *edge), index)?);
-            if fleet.looks {
+            if fleet.has_sensors {
                 self.measurements
                     .push(to.add_own::<MeasurementRecord>(&Topics::measurements(fleet, *edge), index)?);
             }
@@ -222,15 +222,10 @@ impl Writer {
                 to.put_own(*channel, stamp, frame)?;
             }
         }
-        let mut sample = SampleNumber {
-            number: self.number,
-            time: record.snapshot.time,
-            robots: record.snapshot.robots.len() as u64,
-            edges: record.edges.len() as u64,
-            props: record.snapshot.props.len() as u64,
-            contacts: record.contacts.len() as u64,
-            measurements: record.frames.len() as u64,
-        };
+        let StepRecord { snapshot, edges, contacts, frames } = record;
+        let (robots, props) = (snapshot.robots.len(), snapshot.props.len());
+        let counts = [robots, edges.len(), props, contacts.len(), frames.len()];
+        let mut sample = SampleNumber { number: self.number, time: snapshot.time, counts };
         self.number += 1;
         to.put_own(self.samples, stamp, &mut sample)
     }

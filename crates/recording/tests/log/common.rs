@@ -67,7 +67,7 @@ pub(crate) fn fleet() -> FleetInfo {
             member("cy", false),
         ],
         edges: vec![Edge { leader: 0, follower: 1 }, Edge { leader: 1, follower: 2 }],
-        looks: true,
+        has_sensors: true,
         props: solids.into_iter().enumerate().map(prop).collect(),
         terrain: Some(Arc::new(Terrain {
             origin: [-1.0, 2.0],
@@ -126,7 +126,7 @@ pub(crate) fn step_record(fleet: &FleetInfo, k: u32, n: &mut Numbers) -> StepRec
         normal: n.many(),
         impulse: n.next(),
     };
-    let look = |n: &mut Numbers| {
+    let measurement = |n: &mut Numbers| {
         let mut frame = MeasurementRecord {
             edge: n.below(2),
             arrival: n.next(),
@@ -158,11 +158,11 @@ pub(crate) fn step_record(fleet: &FleetInfo, k: u32, n: &mut Numbers) -> StepRec
         snapshot: Snapshot { time: f64::from(k) * 0.01 + 1e-13, robots, props: props.collect() },
         edges: (0..2).map(|_| edge(n)).collect(),
         contacts: (0..n.below(3)).map(|_| contact(n)).collect(),
-        // Looks are told in the order of their edges.
+        // Measurements are told in the order of their edges.
         frames: {
-            let mut looks: Vec<MeasurementRecord> = (0..n.below(3)).map(|_| look(n)).collect();
-            looks.sort_by_key(|look| look.edge);
-            looks
+            let mut measurements: Vec<MeasurementRecord> = (0..n.below(3)).map(|_| measurement(n)).collect();
+            measurements.sort_by_key(|measurement| measurement.edge);
+            measurements
         },
     }
 }

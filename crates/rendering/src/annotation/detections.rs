@@ -7,10 +7,11 @@ use crate::palette::{Rgb, hex};
 use crate::picture_context::PictureContext;
 use glam::Vec2;
 use vocabulary::{
-    CameraModel, Edge, FACES, MeasurementRecord, Outcome, Relative, Rigid, RobotInfo, Shell, tag_code, wrap,
+    CameraModel, Edge, FACES, MeasurementRecord, Outcome, Relative, Rigid, RobotInfo, Shell, Word, tag_code,
+    wrap,
 };
 
-/// Older looks are forgotten, s.
+/// Older measurements are forgotten, s.
 const FORGOTTEN: f64 = 2.0;
 
 const USED: Rgb = hex(0x0048_e08a);
@@ -32,7 +33,7 @@ struct DetectionOverlay<'a, 'b, 'c> {
     words: &'a mut LabelPlacer<'b>,
     window: Window<'c>,
     camera_model: CameraModel,
-    /// How far the camera has turned to the left of its leader since the look, rad.
+    /// How far the camera has turned to the left of its leader since the measurement, rad.
     turn: f64,
     width: f32,
 }
@@ -44,8 +45,8 @@ fn turned([x, y]: [f64; 2], turn: f64) -> Option<[f64; 2]> {
     (ahead > 0.02).then(|| [(x * cos + sin) / ahead, y / ahead])
 }
 
-/// How far the camera has turned to the left of its leader since a look, rad: what was seen then is drawn over what is
-/// seen now.
+/// How far the camera has turned to the left of its leader since a measurement, rad: what was seen then is drawn over
+/// what is seen now.
 fn turn_since(context: &PictureContext<'_>, edge: &Edge, frame: &MeasurementRecord) -> f64 {
     let robots = &context.record.snapshot.robots;
     let (Some(own), Some(leader), Some(member)) =
@@ -63,7 +64,7 @@ fn turn_since(context: &PictureContext<'_>, edge: &Edge, frame: &MeasurementReco
 }
 
 impl DetectionOverlay<'_, '_, '_> {
-    /// Where a direction of the look (x/z right, y/z down) is seen, pixels of the whole picture.
+    /// Where a direction of the measurement (x/z right, y/z down) is seen, pixels of the whole picture.
     fn at(&self, direction: [f64; 2]) -> Option<Vec2> {
         turned(direction, self.turn).map(|[x, y]| self.window.direction(x, -y))
     }
@@ -135,7 +136,7 @@ fn clipped(a: Vec2, b: Vec2, tile: &Tile) -> Option<(Vec2, Vec2)> {
     (from < to).then(|| (a + along * from, a + along * to))
 }
 
-/// The leader's body as the estimate has it, in the frame of the follower's camera at the look.
+/// The leader's body as the estimate has it, in the frame of the follower's camera at the measurement.
 fn estimated(frame: &MeasurementRecord, follower: &RobotInfo) -> Rigid {
     let relative = frame.measurement.relative;
     let (sin, cos) = relative.view_angle.sin_cos();
@@ -160,13 +161,13 @@ pub(crate) fn camera_words(
     words.write(format!("camera: {}", member.name), at, 12.0, true, Ink::LIGHT);
 }
 
-/// Everything about the last look of each edge of a robot, over the view of its camera.
+/// Everything about the last measurement of each edge of a robot, over the view of its camera.
 fn detections(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window: Window<'_>, robot: usize) {
     let now = context.record.snapshot.time;
     let mut row = 0.0;
     for (index, edge) in context.fleet.edges.iter().enumerate().filter(|(_, edge)| edge.follower == robot) {
         let news = context.record.frames.iter().rev().find(|frame| frame.edge == index);
-        let Some(frame) = news.or_else(|| context.trail.look(index)) else { continue };
+        let Some(frame) = news.or_else(|| context.trail.measurement(index)) else { continue };
         let (Some(follower), Some(leader)) =
             (context.fleet.robots.get(robot), context.fleet.robots.get(edge.leader))
         else {
@@ -233,7 +234,7 @@ fn ids(overlay: &mut DetectionOverlay<'_, '_, '_>, frame: &MeasurementRecord, le
     }
 }
 
-/// Numbers and outcome of a look in two lines at the foot of a tile.
+/// Numbers and outcome of a measurement in two lines at the foot of a tile.
 fn report(words: &mut LabelPlacer<'_>, tile: Tile, leader: &str, frame: &MeasurementRecord, row: &mut f32) {
     let told = Ink { colour: colour(frame.outcome), ..Ink::LIGHT };
     let left = tile.x as f32 + words.scaled(10.0);
@@ -267,7 +268,7 @@ fn report(words: &mut LabelPlacer<'_>, tile: Tile, leader: &str, frame: &Measure
         1 => ", 1 face".to_owned(),
         n => format!(", {n} faces"),
     };
-    line(words, format!("{leader}: {}{faces}", frame.outcome.name()), true, told);
+    line(words, format!("{leader}: {}{faces}", frame.outcome.word()), true, told);
 }
 
 #[cfg(test)]
@@ -313,7 +314,7 @@ mod tests {
                 shadowed: (DVec2::ZERO, 1.0),
                 detail: 1.0,
             };
-            // The leader's middle, as the camera saw it at the look.
+            // The leader's middle, as the camera saw it at the measurement.
             let [leader, own] = [0, 1].map(|k| then.snapshot.robots[k]);
             let Pose { x, y, .. } = leader.motion.pose;
             let [x, y, z] = fleet.robots[1].camera_mount.world_from_camera(&own).inverse().apply([x, y, 0.2]);

@@ -78,17 +78,12 @@ impl GpuCameraRenderer {
     /// # Errors
     /// [`Error::FleetInfo`] for a snapshot of other robots, [`Error::Size`] for regions that are empty or too large,
     /// [`Error::Device`] where the device fails.
-    pub fn take(
-        &mut self,
-        snapshot: &Snapshot,
-        shots: &[Shot],
-        pictures: &mut Vec<Grey>,
-    ) -> Result<(), Error> {
+    pub fn take(&mut self, snapshot: &Snapshot, shots: &[Shot], images: &mut Vec<Grey>) -> Result<(), Error> {
         let (got, want) = (snapshot.robots.len(), self.fleet.robots.len());
         if got != want {
             return Err(Error::FleetInfo { what: "robots", got, want });
         }
-        pictures.resize_with(shots.len(), Grey::default);
+        images.resize_with(shots.len(), Grey::default);
         let Some(first) = shots.first() else { return Ok(()) };
         let (tiles, size) = self.places(shots)?;
         let record = StepRecord { snapshot: snapshot.clone(), ..StepRecord::default() };
@@ -137,7 +132,7 @@ impl GpuCameraRenderer {
         let atlas = self.atlas(size);
         let submission = self.draw(atlas, &all, &things, &scenes, &under);
         self.gpu.check()?;
-        self.atlases[atlas].read(&self.gpu, submission, &tiles, pictures)
+        self.atlases[atlas].read(&self.gpu, submission, &tiles, images)
     }
 
     /// Where each picture lies in an atlas, and how large that is.
@@ -204,7 +199,7 @@ impl GpuCameraRenderer {
 }
 
 impl CameraRenderer for GpuCameraRenderer {
-    fn look(&mut self, snapshot: &Snapshot, shots: &[Shot], pictures: &mut Vec<Grey>) -> Result<(), String> {
-        self.take(snapshot, shots, pictures).map_err(|error| error.to_string())
+    fn render(&mut self, snapshot: &Snapshot, shots: &[Shot], images: &mut Vec<Grey>) -> Result<(), String> {
+        self.take(snapshot, shots, images).map_err(|error| error.to_string())
     }
 }

@@ -19,8 +19,8 @@ const TOUCHES: usize = 256;
 /// A tyre that slides by less than this does not show it, rad; by the second it leaves all its rubber.
 const SLIDE: [f64; 2] = [0.052, 0.35];
 
-/// What a picture needs to know of the past. It depends on the pushed moments alone. A copy shares what it remembers with
-/// the original, so that one may be kept every few seconds of a run, to go back to.
+/// What a picture needs to know of the past. It depends on the pushed moments alone. A copy shares what it remembers
+/// with the original, so that one may be kept every few seconds of a run, to go back to.
 #[derive(Debug, Clone)]
 pub struct Trail {
     pub(crate) smoothed: SmoothedFormation,
@@ -34,8 +34,8 @@ pub struct Trail {
     /// Of the moment before, and how each robot has slid since the last mark.
     before: Vec<Pose>,
     slides: Vec<f32>,
-    /// The last look of each edge.
-    looks: Vec<Option<MeasurementRecord>>,
+    /// The last measurement of each edge.
+    measurements: Vec<Option<MeasurementRecord>>,
     pub(crate) errors: Thinning<Arc<[[f32; 2]]>>,
     fleet: Arc<FleetInfo>,
     spacing: f64,
@@ -70,7 +70,7 @@ impl Trail {
             forgotten: None,
             before: Vec::new(),
             slides: Vec::new(),
-            looks: vec![None; fleet.edges.len()],
+            measurements: vec![None; fleet.edges.len()],
             errors: Thinning::new(),
             fleet: Arc::new(fleet.clone()),
             spacing: RIBBON / points as f64,
@@ -97,8 +97,8 @@ impl Trail {
         keep(&mut self.ghosts, time, GHOST_EVERY, RIBBON, poses);
         self.touch(&record.contacts);
         for frame in &record.frames {
-            if let Some(look) = self.looks.get_mut(frame.edge) {
-                *look = Some(*frame);
+            if let Some(last) = self.measurements.get_mut(frame.edge) {
+                *last = Some(*frame);
             }
         }
         self.slide(record);
@@ -113,9 +113,9 @@ impl Trail {
         self.errors.push(time, || record.edges.iter().map(|e| error(&e.error)).collect());
     }
 
-    /// The last look of an edge that arrived.
-    pub(crate) fn look(&self, edge: usize) -> Option<&MeasurementRecord> {
-        self.looks.get(edge)?.as_ref()
+    /// The last measurement of an edge that arrived.
+    pub(crate) fn measurement(&self, edge: usize) -> Option<&MeasurementRecord> {
+        self.measurements.get(edge)?.as_ref()
     }
 
     /// Remembers contacts that are new.

@@ -48,11 +48,11 @@ pub(crate) fn region_around(fleet: &FleetInfo, snapshot: &Snapshot, shot: &Shot,
     Region { x, y, width, height }
 }
 
-/// Looks of every follower at its leader as a perfect eye would report them, every camera turned to what it looks at.
-pub(crate) fn looks(fleet: &FleetInfo, record: &mut StepRecord) {
+/// Measurements of every follower as a perfect eye would report them, every camera turned to what it looks at.
+pub(crate) fn measurements(fleet: &FleetInfo, record: &mut StepRecord) {
     let shots = shots(fleet, &mut record.snapshot);
     let snapshot = &record.snapshot;
-    let look = |(index, (edge, shot)): (usize, (&Edge, &Shot))| {
+    let measurement = |(index, (edge, shot)): (usize, (&Edge, &Shot))| {
         let (leader, follower) = (snapshot.robots[edge.leader], snapshot.robots[edge.follower]);
         let shell = fleet.robots[edge.leader].shell.unwrap_or(Shell::PAPER);
         let camera_from_body = shot.world_from_camera.inverse().after(&leader.world_from_body());
@@ -78,6 +78,6 @@ pub(crate) fn looks(fleet: &FleetInfo, record: &mut StepRecord) {
             ..MeasurementRecord::default()
         }
     };
-    let frames = fleet.edges.iter().zip(&shots).enumerate().map(look).collect();
+    let frames = fleet.edges.iter().zip(&shots).enumerate().map(measurement).collect();
     record.frames = frames;
 }

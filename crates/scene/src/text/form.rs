@@ -190,11 +190,6 @@ impl<T: TryFrom<u64>> Form for Integer<T> {
 /// `true` or `false`.
 pub(crate) struct Flag;
 
-/// `true` or `false`.
-pub(crate) const fn flag() -> Flag {
-    Flag
-}
-
 impl Form for Flag {
     type Out = bool;
 
@@ -211,13 +206,8 @@ impl Form for Flag {
     }
 }
 
-/// Any text up to a length.
-pub(crate) struct Text(usize);
-
-/// Any text of up to `most` characters.
-pub(crate) const fn text(most: usize) -> Text {
-    Text(most)
-}
+/// Any text of up to so many characters.
+pub(crate) struct Text(pub(crate) usize);
 
 impl Form for Text {
     type Out = String;
@@ -235,13 +225,8 @@ impl Form for Text {
     }
 }
 
-/// Something that may be left out altogether.
-pub(crate) struct Optional<F>(F);
-
-/// A value without a default.
-pub(crate) const fn optional<F: Form>(form: F) -> Optional<F> {
-    Optional(form)
-}
+/// A value without a default, which may be left out altogether.
+pub(crate) struct Optional<F>(pub(crate) F);
 
 impl<F: Form> Form for Optional<F> {
     type Out = Option<F::Out>;

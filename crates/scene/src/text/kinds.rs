@@ -12,30 +12,38 @@ pub(crate) struct Kinds<T: 'static> {
     pub(crate) key: &'static str,
     /// Word that is meant where the key is missing.
     pub(crate) usual: Option<&'static str>,
-    pub(crate) all: &'static [KindOption<T>],
+    pub(crate) all: &'static [&'static dyn KindOption<T>],
 }
 
 /// One kind: its word, and the keys it brings.
-pub(crate) struct KindOption<T> {
-    word: &'static str,
-    about: &'static str,
-    read: fn(&Node, &mut TableReader<'_>, &mut Reporter) -> Option<T>,
-    fields: fn() -> Vec<Field>,
+pub(crate) trait KindOption<T> {
+    fn word(&self) -> &'static str;
+    fn about(&self) -> &'static str;
+    fn fields(&self) -> Vec<Field>;
+    fn read(&self, node: &Node, table: &mut TableReader<'_>, reporter: &mut Reporter) -> Option<T>;
 }
 
-/// Keys that a kind brings, and what they make.
-pub(crate) trait KindKeys<T>: Keys {
-    /// What they make, or `None` after a note.
-    fn make(self, node: &Node, reporter: &mut Reporter) -> Option<T>;
+/// The kind called `word`, and what the keys `K` of a table make; `None` after a note.
+pub(crate) struct Kind<K, T> {
+    pub(crate) word: &'static str,
+    pub(crate) make: fn(K, &Node, &mut Reporter) -> Option<T>,
 }
 
-/// The kind called `word` with the keys of `K`.
-pub(crate) const fn kind<T, K: KindKeys<T>>(word: &'static str) -> KindOption<T> {
-    KindOption {
-        word,
-        about: K::ABOUT,
-        read: |node, table, reporter| K::read(table, reporter).make(node, reporter),
-        fields: K::fields,
+impl<K: Keys, T> KindOption<T> for Kind<K, T> {
+    fn word(&self) -> &'static str {
+        self.word
+    }
+
+    fn about(&self) -> &'static str {
+        K::ABOUT
+    }
+
+    fn fields(&self) -> Vec<Field> {
+        K::fields()
+    }
+
+    fn read(&self, node: &Node, table: &mut TableReader<'_>, reporter: &mut Reporter) -> Option<T> {
+        (self.make)(K::read(table, reporter), node, reporter)
     }
 }
 
@@ -49,19 +57,20 @@ impl<T> Kinds<T> {
     ) -> KindFound<T> {
         let found = table.take(self.key, &KindForm(self.all), self.usual.is_none(), reporter);
         let kind = match (found, node.get(self.key)) {
-            (None, None) => self.all.iter().find(|kind| Some(kind.word) == self.usual),
+            (None, None) => self.all.iter().copied().find(|kind| Some(kind.word()) == self.usual),
             (found, _) => found.map(|found| found.value),
         };
-        kind.map_or(KindFound::Unknown, |kind| KindFound::Known((kind.read)(node, table, reporter)))
+        kind.map_or(KindFound::Unknown, |kind| KindFound::Known(kind.read(node, table, reporter)))
     }
 
     /// Each kind's table, with `shared` keys that all of them have besides.
     pub(crate) fn schema_with(&self, shared: fn() -> Vec<Field>) -> Json {
-        let one = |kind: &KindOption<T>| {
-            let fields = (kind.fields)().into_iter().chain(shared());
-            let mut schema = object(kind.about, fields.collect());
-            schema["properties"][self.key] = json!({ "const": kind.word, "description": kind.about.trim() });
-            if self.usual != Some(kind.word)
+        let one = |kind: &&dyn KindOption<T>| {
+            let fields = kind.fields().into_iter().chain(shared());
+            let mut schema = object(kind.about(), fields.collect());
+            schema["properties"][self.key] =
+                json!({ "const": kind.word(), "description": kind.about().trim() });
+            if self.usual != Some(kind.word())
                 && let Some(required) = schema["required"].as_array_mut()
             {
                 required.push(json!(self.key));
@@ -96,20 +105,20 @@ impl<T> Form for Kinds<T> {
 }
 
 /// The word of a kind.
-struct KindForm<T: 'static>(&'static [KindOption<T>]);
+struct KindForm<T: 'static>(&'static [&'static dyn KindOption<T>]);
 
 impl<T> Form for KindForm<T> {
-    type Out = &'static KindOption<T>;
+    type Out = &'static dyn KindOption<T>;
 
-    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<&'static KindOption<T>> {
-        let found = self.0.iter().find(|kind| node.as_text() == Some(kind.word));
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<&'static dyn KindOption<T>> {
+        let found = self.0.iter().copied().find(|kind| node.as_text() == Some(kind.word()));
         if found.is_none() {
-            not_a_word(node, self.0.iter().map(|kind| kind.word), reporter);
+            not_a_word(node, self.0.iter().map(|kind| kind.word()), reporter);
         }
         found
     }
 
     fn schema(&self) -> Json {
-        json!({ "enum": self.0.iter().map(|kind| kind.word).collect::<Vec<_>>() })
+        json!({ "enum": self.0.iter().map(|kind| kind.word()).collect::<Vec<_>>() })
     }
 }

@@ -3,36 +3,26 @@
 use crate::text::{Form, Node, Reporter, Value};
 use serde_json::{Value as Json, json};
 
-/// [distance, bearing], or one value for both.
-pub(crate) struct Pair<F>(F);
-
-/// Two values of the same form, or one for both.
-pub(crate) const fn pair<F: Form<Out = f64>>(form: F) -> Pair<F> {
-    Pair(form)
-}
+/// Two values of the same form, such as [distance, bearing], or one for both.
+pub(crate) struct Pair<F>(pub(crate) F);
 
 impl<F: Form<Out = f64>> Form for Pair<F> {
     type Out = [f64; 2];
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<[f64; 2]> {
         match &node.value {
-            Value::List(_) => couple(&self.0, &self.0).read(node, reporter),
+            Value::List(_) => Couple(&self.0, &self.0).read(node, reporter),
             _ => self.0.read(node, reporter).map(|both| [both, both]),
         }
     }
 
     fn schema(&self) -> Json {
-        json!({ "anyOf": [self.0.schema(), couple(&self.0, &self.0).schema()] })
+        json!({ "anyOf": [self.0.schema(), Couple(&self.0, &self.0).schema()] })
     }
 }
 
-/// Exactly two values.
-pub(crate) struct Couple<F, G>(F, G);
-
 /// Exactly two values, such as [distance, bearing].
-pub(crate) const fn couple<F: Form, G: Form<Out = F::Out>>(first: F, second: G) -> Couple<F, G> {
-    Couple(first, second)
-}
+pub(crate) struct Couple<F, G>(pub(crate) F, pub(crate) G);
 
 impl<F: Form, G: Form<Out = F::Out>> Form for Couple<F, G> {
     type Out = [F::Out; 2];
@@ -55,13 +45,8 @@ impl<F: Form, G: Form<Out = F::Out>> Form for Couple<F, G> {
     }
 }
 
-/// Exactly three values.
-pub(crate) struct Triple<F, G, H>(F, G, H);
-
 /// Exactly three values, such as [x, y, heading].
-pub(crate) const fn triple<F, G, H>(first: F, second: G, third: H) -> Triple<F, G, H> {
-    Triple(first, second, third)
-}
+pub(crate) struct Triple<F, G, H>(pub(crate) F, pub(crate) G, pub(crate) H);
 
 impl<F: Form<Out = f64>, G: Form<Out = f64>, H: Form<Out = f64>> Form for Triple<F, G, H> {
     type Out = [f64; 3];

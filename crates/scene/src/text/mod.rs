@@ -8,8 +8,8 @@ pub(crate) mod node;
 pub(crate) mod reporter;
 pub(crate) mod words;
 
-pub(crate) use form::{Form, angle, angle_of_turns, angle_within, flag, integer, number, optional, text};
+pub(crate) use form::{Flag, Form, Optional, Text, angle, angle_of_turns, angle_within, integer, number};
 pub(crate) use keys::{Found, Keys, Part, keys, settings, table};
-pub(crate) use lists::{couple, list, pair, triple};
+pub(crate) use lists::{Couple, Pair, Triple, list};
 pub(crate) use node::{Node, Value};
 pub(crate) use reporter::{Reporter, Span};

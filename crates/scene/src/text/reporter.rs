@@ -121,14 +121,7 @@ impl Reporter {
     fn diagnostic(&self, place: Span, message: &str) -> Diagnostic {
         let message = readable(message).into_owned();
         let Some(source) = self.sources.get(place.source) else {
-            return Diagnostic {
-                origin: String::new(),
-                line: 0,
-                column: 0,
-                excerpt: String::new(),
-                width: 1,
-                message,
-            };
+            return Diagnostic { width: 1, message, ..Diagnostic::default() };
         };
         let (before, after) = source.text.split_at(floor_boundary(&source.text, place.start));
         let line_start = before.rfind('\n').map_or(0, |at| at + 1);

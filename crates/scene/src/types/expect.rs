@@ -1,7 +1,7 @@
 //! What a run has to show.
 
 use crate::text::{
-    angle_within, couple, flag, form::Angle, form::Number, integer, lists::Couple, number, optional, settings,
+    Couple, Flag, Optional, angle_within, form::Angle, form::Number, integer, number, settings,
 };
 use std::f64::consts::PI;
 use vocabulary::Judging;
@@ -11,9 +11,9 @@ const LENGTH: Number = number("m").from(0.0);
 /// Size of a bearing error.
 const TURN: Angle = angle_within(0.0, PI);
 /// Sizes of both.
-const ERROR: Couple<Number, Angle> = couple(LENGTH, TURN);
+const ERROR: Couple<Number, Angle> = Couple(LENGTH, TURN);
 /// Sizes of the rates of both.
-const RATES: Couple<Number, Number> = couple(number("m/s").from(0.0), number("rad/s").from(0.0));
+const RATES: Couple<Number, Number> = Couple(number("m/s").from(0.0), number("rad/s").from(0.0));
 /// Size of a push.
 const IMPULSE: Number = number("N s").from(0.0);
 
@@ -22,44 +22,44 @@ settings! {
     #[derive(Copy)]
     pub struct Expect from ExpectPart {
         /// Whether the run has to reach its duration.
-        pub completed: bool = true, flag();
+        pub completed: bool = true, Flag;
         /// Whether no two bodies may ever touch.
-        pub no_contact: bool = false, flag();
+        pub no_contact: bool = false, Flag;
         /// Largest |distance error| of any edge at the end, m.
-        pub final_distance_error: Option<f64> = None, optional(LENGTH);
+        pub final_distance_error: Option<f64> = None, Optional(LENGTH);
         /// Largest |bearing error| of any edge at the end, rad.
-        pub final_bearing_error: Option<f64> = None, optional(TURN);
+        pub final_bearing_error: Option<f64> = None, Optional(TURN);
         /// Time after which the errors of every edge stay inside `settling_band`, s.
-        pub settling_time: Option<f64> = None, optional(number("s").from(0.0));
+        pub settling_time: Option<f64> = None, Optional(number("s").from(0.0));
         /// |error| [m, rad] under which an edge counts as settled.
         pub settling_band: [f64; 2] = [0.02, 0.02], ERROR;
         /// Smallest distance between the outlines of any two bodies over the run, m.
-        pub clearance_min: Option<f64> = None, optional(LENGTH);
+        pub clearance_min: Option<f64> = None, Optional(LENGTH);
         /// [slowest, fastest] speed any follower may have, m/s: once its edge has settled if there is a
         /// `settling_time`, else over the whole run.
-        pub speed_within: Option<[f64; 2]> = None, optional(couple(number("m/s"), number("m/s")));
+        pub speed_within: Option<[f64; 2]> = None, Optional(Couple(number("m/s"), number("m/s")));
         /// What the largest |estimated rate| of [distance, bearing] of some edge has to reach, [m/s, rad/s]: peaking.
-        pub rate_peak_at_least: Option<[f64; 2]> = None, optional(RATES);
+        pub rate_peak_at_least: Option<[f64; 2]> = None, Optional(RATES);
         /// What no |estimated rate| of [distance, bearing] of any edge may exceed, [m/s, rad/s].
-        pub rate_peak_at_most: Option<[f64; 2]> = None, optional(RATES);
+        pub rate_peak_at_most: Option<[f64; 2]> = None, Optional(RATES);
         /// What no |error| of any edge may exceed over the whole run, [m, rad].
-        pub error_peak_at_most: Option<[f64; 2]> = None, optional(ERROR);
+        pub error_peak_at_most: Option<[f64; 2]> = None, Optional(ERROR);
         /// What no |error| of any edge may exceed from `settled_after` to the end, [m, rad].
-        pub settled_error_at_most: Option<[f64; 2]> = None, optional(ERROR);
+        pub settled_error_at_most: Option<[f64; 2]> = None, Optional(ERROR);
         /// What the root mean square of no edge's error may exceed from `settled_after` to the end, [m, rad].
-        pub settled_rms_at_most: Option<[f64; 2]> = None, optional(ERROR);
-        /// Share of the looks that arrived in which every follower has to have recognised its leader.
-        pub in_view_at_least: Option<f64> = None, optional(number("").from(0.0).up_to(1.0));
+        pub settled_rms_at_most: Option<[f64; 2]> = None, Optional(ERROR);
+        /// Share of the measurements that arrived in which every follower has to have recognised its leader.
+        pub in_view_at_least: Option<f64> = None, Optional(number("").from(0.0).up_to(1.0));
         /// Time from which `settled_error_at_most` and `settled_rms_at_most` hold, s.
-        pub settled_after: Option<f64> = None, optional(number("s").from(0.0));
+        pub settled_after: Option<f64> = None, Optional(number("s").from(0.0));
         /// Number of contacts of two bodies, props and ground included, over the run.
-        pub contacts_exactly: Option<u32> = None, optional(integer::<u32>(0, 1_000_000));
+        pub contacts_exactly: Option<u32> = None, Optional(integer::<u32>(0, 1_000_000));
         /// [least, most] that the largest impulse of any contact may be, N s; 0 where nothing touches.
-        pub contact_impulse_within: Option<[f64; 2]> = None, optional(couple(IMPULSE, IMPULSE));
+        pub contact_impulse_within: Option<[f64; 2]> = None, Optional(Couple(IMPULSE, IMPULSE));
         /// Whether every robot has to be able to drive at the end: not overturned, stuck or fallen.
-        pub all_able: bool = false, flag();
+        pub all_able: bool = false, Flag;
         /// Largest height of any robot's ground point over the ground, m: jumps and climbs.
-        pub lift_at_most: Option<f64> = None, optional(LENGTH);
+        pub lift_at_most: Option<f64> = None, Optional(LENGTH);
     }
 }
 
@@ -67,8 +67,8 @@ settings! {
 const LATE: f64 = 0.5;
 
 impl Expect {
-    /// What a run of `duration` s is judged by. Late errors count from `settled_after` on, or from half time where a scene
-    /// gives none that comes.
+    /// What a run of `duration` s is judged by. Late errors count from `settled_after` on, or from half time where a
+    /// scene gives none that comes.
     pub fn judging(&self, duration: f64) -> Judging {
         let said = self.settled_after.filter(|time| *time < duration);
         Judging { settling_band: self.settling_band, settled_after: said.unwrap_or(LATE * duration) }

@@ -3,7 +3,7 @@
 use super::stage::ViewForm;
 use crate::text::words::word;
 use crate::text::{
-    Form, Node, Part, Reporter, Value, couple, flag, integer, list, number, optional, settings, table, text,
+    Couple, Flag, Form, Node, Optional, Part, Reporter, Text, Value, integer, list, number, settings, table,
 };
 use serde_json::{Value as Json, json};
 use vocabulary::words;
@@ -17,11 +17,11 @@ settings! {
     /// How a film is made when the command line does not say.
     pub struct Film from FilmPart {
         /// View; the scene's default view if left out.
-        pub view: Option<String> = None, optional(ViewForm);
+        pub view: Option<String> = None, Optional(ViewForm);
         /// Frames a second.
         pub fps: f64 = 30.0, number("1/s").from(1.0).up_to(240.0);
         /// [width, height] in pixels, both even.
-        pub size: [u32; 2] = [1280, 720], couple(integer::<u32>(16, 8192), integer::<u32>(16, 8192));
+        pub size: [u32; 2] = [1280, 720], Couple(integer::<u32>(16, 8192), integer::<u32>(16, 8192));
         /// How long a card with the title stands before the run, s; 0 for none.
         pub title: f64 = 0.0, number("s").from(0.0).up_to(CARD);
         /// How long a card with what the run showed stands after it, s; 0 for none.
@@ -35,24 +35,24 @@ settings! {
     /// One shot of a film.
     pub struct Shot from ShotPart {
         /// When it begins, s of the run; where the shot before ends if left out. What lies between is skipped.
-        pub from: Option<f64> = None, optional(number("s").from(0.0).up_to(1e5));
+        pub from: Option<f64> = None, Optional(number("s").from(0.0).up_to(1e5));
         /// When it ends, s of the run; where the next begins, or with the run, if left out.
-        pub to: Option<f64> = None, optional(number("s").from(0.0).up_to(1e5));
+        pub to: Option<f64> = None, Optional(number("s").from(0.0).up_to(1e5));
         /// View as for pictures; several joined by '+' split the picture. The one before if left out.
-        pub view: Option<String> = None, optional(LayoutForm);
+        pub view: Option<String> = None, Optional(LayoutForm);
         /// Seconds of the run in a second of the film: below 1 is slow motion.
         pub speed: f64 = 1.0, number("").from(0.01).up_to(100.0);
         /// How long the camera moves from the view before to this one, s of the film; 0 cuts. Split pictures and cameras on
         /// robots are cut to.
         pub glide: f64 = 1.5, number("s").from(0.0).up_to(CARD);
         /// A line at the bottom of the picture.
-        pub line: String = String::new(), text(200);
+        pub line: String = String::new(), Text(200);
         /// Whether the set points stand in that line.
-        pub set_points: bool = false, flag();
+        pub set_points: bool = false, Flag;
         /// What is plotted beside the view as the run goes, at most four.
         pub plots: Vec<Plot> = vec![], list(word::<Plot>(), 0, 4);
         /// Elements of pictures to leave out, such as "labels", "inset", "ghosts".
-        pub without: Vec<String> = vec![], list(text(40), 0, 40);
+        pub without: Vec<String> = vec![], list(Text(40), 0, 40);
     }
 }
 

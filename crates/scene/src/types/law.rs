@@ -3,27 +3,27 @@
 
 use super::VehicleKind;
 use crate::text::{
-    Form, Node, Reporter, Value, angle, couple, flag, keys, number, pair, settings, table,
+    Couple, Flag, Form, Node, Pair, Reporter, Value, angle, keys, number, settings, table,
     words::{Words, word},
 };
 use serde_json::{Value as Json, json};
 use vocabulary::{LawKind, ObserverKind, ObserverStart, words};
 
 settings! {
-    /// Parameters of a control law. A pair is for [distance, bearing]; one value stands for both. On wheels the gains that
-    /// are not said are those that fit the kind of vehicle.
+    /// Parameters of a control law. A pair is for [distance, bearing]; one value stands for both. On wheels the gains
+    /// that are not said are those that fit the kind of vehicle.
     #[derive(Copy)]
     pub struct Law from LawPart {
         /// Which law.
         pub kind: LawKind = LawKind::OutputFeedback, word::<LawKind>(), Live;
         /// Gains K = diag(k1, k2), 1/s.
-        pub k: [f64; 2] = [5.0; 2], pair(number("1/s").above(0.0)), Live;
+        pub k: [f64; 2] = [5.0; 2], Pair(number("1/s").above(0.0)), Live;
         /// Gains of the switching term (β), [m/s², rad/s²].
-        pub beta: [f64; 2] = [5.0; 2], pair(number("m/s² or rad/s²").from(0.0)), Live;
+        pub beta: [f64; 2] = [5.0; 2], Pair(number("m/s² or rad/s²").from(0.0)), Live;
         /// Form of the switching term.
         pub switching: SwitchingKind = SwitchingKind::Tanh, word::<SwitchingKind>(), Live;
         /// Slope of tanh, [1/m, 1/rad].
-        pub slope: [f64; 2] = [24.53; 2], pair(number("1/m or 1/rad").above(0.0)), Live;
+        pub slope: [f64; 2] = [24.53; 2], Pair(number("1/m or 1/rad").above(0.0)), Live;
         /// Least distance used in divisions (ℓ_min), m.
         pub distance_min: f64 = 0.1, number("m").above(0.0), Live;
     }
@@ -44,19 +44,20 @@ settings! {
     #[derive(Copy)]
     pub struct Observer from ObserverPart {
         /// Time constant (ε), s.
-        pub epsilon: [f64; 2] = [0.001; 2], pair(number("s").above(0.0).up_to(100.0)), Live;
+        pub epsilon: [f64; 2] = [0.001; 2], Pair(number("s").above(0.0).up_to(100.0)), Live;
         /// α1 of s² + α1 s + α2; above 0 for stability.
-        pub alpha1: [f64; 2] = [2.0; 2], pair(number("").above(0.0)), Live;
+        pub alpha1: [f64; 2] = [2.0; 2], Pair(number("").above(0.0)), Live;
         /// α2 of s² + α1 s + α2; above 0 for stability.
-        pub alpha2: [f64; 2] = [1.0; 2], pair(number("").above(0.0)), Live;
-        /// How looks at the leader become an estimate; looks come with every sensing but `truth`.
+        pub alpha2: [f64; 2] = [1.0; 2], Pair(number("").above(0.0)), Live;
+        /// How measurements become an estimate; they come with every sensing but `truth`.
         pub kind: ObserverKind = ObserverKind::HighGain, word::<ObserverKind>(), Live;
-        /// With looks: whether ε follows from how certain each look is, ε⁵ = 3σ²T/(32 δ²), instead of being `epsilon`; true
-        /// where `epsilon` is not written.
-        pub adaptive: bool = true, flag(), Live;
-        /// With looks: size of what the observer does not know (δ = |g_v V_i|), [m/s², rad/s²].
-        pub disturbance: [f64; 2] = [1.0; 2], pair(number("m/s² or rad/s²").above(0.0).up_to(1e4)), Live;
-        /// With looks: a look farther from the prediction than this many standard deviations is not believed.
+        /// With measurements: whether ε follows from how certain each measurement is, ε⁵ = 3σ²T/(32 δ²), instead of
+        /// being `epsilon`; true where `epsilon` is not written.
+        pub adaptive: bool = true, Flag, Live;
+        /// With measurements: size of what the observer does not know (δ = |g_v V_i|), [m/s², rad/s²].
+        pub disturbance: [f64; 2] = [1.0; 2], Pair(number("m/s² or rad/s²").above(0.0).up_to(1e4)), Live;
+        /// With measurements: a measurement farther from the prediction than this many standard deviations is not
+        /// believed.
         pub gate: f64 = 6.0, number("").above(0.0).up_to(1e6), Live;
         /// Where the estimate of [distance, bearing] starts; that of their rates starts at 0.
         pub start: ObserverStart = ObserverStart::Measured, StartForm;
@@ -104,9 +105,9 @@ keys! {
     /// A start away from the first measurement, which shows the observer's peaking.
     struct StartKeys {
         /// [distance, bearing] at which the estimate starts, [m, rad].
-        at: [f64; 2] = couple(number("m").above(0.0), angle()), optional;
+        at: [f64; 2] = Couple(number("m").above(0.0), angle()), optional;
         /// What is added to the first measurement, [m, rad].
-        offset: [f64; 2] = couple(number("m"), angle()), optional;
+        offset: [f64; 2] = Couple(number("m"), angle()), optional;
     }
 }
 

@@ -39,7 +39,9 @@ pub(crate) use set_point::{BearingForm, DistanceForm};
 pub(crate) use stage::{EnvironmentPart, ROBOT_VIEWS, ViewsPart};
 pub(crate) use vehicle::VehiclePart;
 
-use crate::{Diagnostics, Loaded, Override, load, sets};
+use crate::document::SCHEMA_VERSION;
+use crate::sets::{ParameterDifference, refusal};
+use crate::{Diagnostics, Loaded, Override, load};
 use serde::Serialize;
 use vocabulary::Judging;
 
@@ -101,7 +103,15 @@ impl Scene {
 
     /// The scene as TOML with every default written out; it loads again to an equal scene.
     pub fn to_toml(&self) -> String {
-        load::to_toml(self)
+        /// A scene as a file has it.
+        #[derive(Serialize)]
+        struct File<'a> {
+            schema: u64,
+            #[serde(flatten)]
+            scene: &'a Scene,
+        }
+        // A checked scene holds nothing that TOML cannot write, as the round trips of the tests show.
+        toml::to_string(&File { schema: SCHEMA_VERSION, scene: self }).unwrap_or_default()
     }
 
     /// What has to be set to come from this scene to `other` while a run goes, robot by robot in the words of `--set`:
@@ -110,12 +120,24 @@ impl Scene {
     /// # Errors
     /// One message for everything that differs and cannot change while a run goes.
     pub fn sets_to(&self, other: &Self) -> Result<Vec<String>, Vec<String>> {
-        sets::sets_to(self, other)
+        let mut found = ParameterDifference::default();
+        found.note_rest(self, other);
+        found.note_robots(&self.robots, &other.robots);
+        if found.obstacles.is_empty() {
+            Ok(found.sets)
+        } else {
+            Err(found.obstacles.iter().map(|path| refusal(path)).collect())
+        }
     }
 
     /// Index of the robot called `name`.
     pub fn index_of(&self, name: &str) -> Option<usize> {
         self.robots.iter().position(|robot| robot.name == name)
+    }
+
+    /// The robots that follow, by name, in their order.
+    pub fn followers(&self) -> impl Iterator<Item = (&str, &Follow)> {
+        self.robots.iter().filter_map(|robot| Some((&*robot.name, robot.role.follow()?)))
     }
 
     /// What a run of this scene is judged by.

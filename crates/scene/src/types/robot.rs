@@ -36,6 +36,16 @@ pub enum Role {
     Follow(Box<Follow>),
 }
 
+impl Role {
+    /// How a robot follows; `None` for one that leads.
+    pub fn follow(&self) -> Option<&Follow> {
+        match self {
+            Self::Lead { .. } => None,
+            Self::Follow(follow) => Some(follow),
+        }
+    }
+}
+
 /// An edge of the formation, seen from its follower.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Follow {
@@ -55,6 +65,6 @@ pub struct Follow {
     pub sensing: Sensing,
 }
 
-fn pose_as_list<S: Serializer>(pose: &Pose, serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn pose_as_list<S: Serializer>(pose: &Pose, serializer: S) -> Result<S::Ok, S::Error> {
     [pose.x, pose.y, pose.heading].serialize(serializer)
 }

@@ -217,33 +217,23 @@ impl Vehicle {
 
     /// Bounds on speed, turn rate and acceleration.
     pub fn limits(&self) -> Limits {
+        let bound_where = |bound: f64, applies: bool| if applies { bound } else { f64::INFINITY };
+        let Self { speed_min, speed_max, turn_rate_max, acceleration_max, kind, .. } = *self;
+        let curvature_max = bound_where(math::tan(self.steering_max) / self.wheelbase, kind.steers());
+        let lateral_acceleration_max = bound_where(GRIP_USED * self.friction * GRAVITY, kind.has_wheels());
         Limits {
-            speed_min: self.speed_min,
-            speed_max: self.speed_max,
-            turn_rate_max: self.turn_rate_max,
-            acceleration_max: self.acceleration_max,
-            curvature_max: if self.kind.steers() {
-                math::tan(self.steering_max) / self.wheelbase
-            } else {
-                f64::INFINITY
-            },
-            lateral_acceleration_max: if self.kind.has_wheels() {
-                GRIP_USED * self.friction * GRAVITY
-            } else {
-                f64::INFINITY
-            },
+            speed_min,
+            speed_max,
+            turn_rate_max,
+            acceleration_max,
+            curvature_max,
+            lateral_acceleration_max,
         }
     }
 
     /// Outer measures, for drawing and clearance.
     pub fn body(&self) -> Body {
-        Body {
-            length: self.length,
-            width: self.width,
-            height: self.height,
-            wheelbase: self.wheelbase,
-            track: self.track,
-            wheel_radius: self.wheel_radius,
-        }
+        let Self { length, width, height, wheelbase, track, wheel_radius, .. } = *self;
+        Body { length, width, height, wheelbase, track, wheel_radius }
     }
 }

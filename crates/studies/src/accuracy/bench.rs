@@ -8,6 +8,7 @@ use crate::{Error, RendererFactory};
 use perception::detect::{Detector, Locus, Tag, recognise_expected};
 use perception::imaging::{ImageSensor, Optics, Purpose, noise_stream};
 use perception::pose::{Prior, Rig, SeenFace, locate};
+use vocabulary::math;
 use vocabulary::{
     Body, CameraRenderer, Edge, FACES, FleetInfo, Grey, Pose, Region, Rigid, RobotInfo, Shell, Shot, Snapshot,
 };
@@ -86,7 +87,7 @@ impl LocalisationBench {
         let fleet = FleetInfo {
             robots: vec![leader, RobotInfo::new("follower", false, Body::default())],
             edges: vec![Edge { leader: LEADER, follower: FOLLOWER }],
-            looks: true,
+            has_sensors: true,
             ..FleetInfo::default()
         };
         Ok(Self {
@@ -135,7 +136,7 @@ impl LocalisationBench {
         near.times[3] = 1e3 * (clock() - began);
         let off = |pose: &Pose| relative_errors(pose, &truth);
         let sample = PoseSample {
-            distance: truth.x.hypot(truth.y),
+            distance: math::hypot(truth.x, truth.y),
             readable,
             seen: near.faces.len(),
             seen_whole: whole.faces.len(),
@@ -165,7 +166,7 @@ impl LocalisationBench {
         let mut times = Times::default();
         let mut pictures = Vec::new();
         let began = clock();
-        self.renderer.look(snapshot, &[shot], &mut pictures).map_err(Error::Camera)?;
+        self.renderer.render(snapshot, &[shot], &mut pictures).map_err(Error::Camera)?;
         times[0] = 1e3 * (clock() - began);
         let light = pictures.pop().unwrap_or_default();
         let mut picture = Grey::default();
@@ -191,11 +192,11 @@ fn strays(seen: &SeenFace, shell: &Shell, optics: &Optics, camera_from_body: &Ri
         return true;
     };
     let most = ELSEWHERE.max(0.5 * view.cell);
-    seen.corners.iter().zip(view.corners).any(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) > most)
+    seen.corners.iter().zip(view.corners).any(|(a, b)| math::hypot(a[0] - b[0], a[1] - b[1]) > most)
 }
 
 /// Range as a share of the range, bearing and heading.
 fn relative_errors(pose: &Pose, truth: &Pose) -> Errors {
     let [range, bearing, heading] = errors(pose, truth);
-    [range / truth.x.hypot(truth.y).max(1e-9), bearing, heading]
+    [range / math::hypot(truth.x, truth.y).max(1e-9), bearing, heading]
 }

@@ -2,6 +2,7 @@
 
 use perception::imaging::{Purpose, noise_stream};
 use std::f64::consts::{PI, TAU};
+use vocabulary::math;
 use vocabulary::{Body, Motion, Pose, RobotInfo, RobotState, Snapshot};
 
 /// Bounds of the distances that are told apart, m.
@@ -28,14 +29,14 @@ pub(crate) fn place(seed: u64, number: u64, follower: &RobotInfo) -> Snapshot {
         // The sun shines from all sides in turn.
         let own = Pose::new(between(-2.0, 2.0), between(-2.0, 2.0), between(-PI, PI));
         let direction = between(-2.0, 2.0);
-        let [x, y] = own.world_from_body(distance * direction.cos(), distance * direction.sin());
+        let [x, y] = own.world_from_body(distance * math::cos(direction), distance * math::sin(direction));
         let leader = Pose::new(x, y, vocabulary::wrap(between(0.0, TAU)));
         // The leader stands anywhere across the picture: the camera looks past it by that much.
         let width = f64::from(follower.camera_model.width);
         let aside = between(-ASIDE, ASIDE) * width / follower.camera_model.focal;
         let forward = follower.camera_mount.forward;
-        let towards = (distance * direction.sin()).atan2(distance * direction.cos() - forward);
-        let pan = towards + aside.atan();
+        let towards = math::atan2(distance * math::sin(direction), distance * math::cos(direction) - forward);
+        let pan = towards + math::atan(aside);
         let body = &follower.body;
         if pan.abs() <= PAN && !touch(&leader, &own, body) {
             let robot = |pose: Pose, camera_pan: f64| RobotState {
@@ -55,10 +56,10 @@ fn touch(a: &Pose, b: &Pose, body: &Body) -> bool {
     let (p, q) = (middle(a), middle(b));
     let axes = [a.heading, a.heading + PI / 2.0, b.heading, b.heading + PI / 2.0];
     axes.iter().all(|axis| {
-        let (sin, cos) = axis.sin_cos();
+        let (sin, cos) = math::sin_cos(*axis);
         let reach = |pose: &Pose| {
             let turn = axis - pose.heading;
-            half[0] * turn.cos().abs() + half[1] * turn.sin().abs()
+            half[0] * math::cos(turn).abs() + half[1] * math::sin(turn).abs()
         };
         ((p[0] - q[0]) * cos + (p[1] - q[1]) * sin).abs() < reach(a) + reach(b)
     })

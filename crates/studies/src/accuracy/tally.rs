@@ -113,6 +113,7 @@ pub fn targets(bin: usize) -> Option<[[f64; 3]; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vocabulary::math;
 
     #[test]
     fn samples_are_counted_where_they_belong() {
@@ -136,7 +137,10 @@ mod tests {
         assert_eq!((bin.flips, bin.ambiguous), (2, 1));
         assert_eq!((bin.refined.count(), bin.raw.count(), bin.single.count()), (2, 2, 1));
         let range = readable_rms(&bin.refined).expect("two")[0];
-        assert!((range - 100.0 * (0.5 * (0.003_f64.powi(2) + 0.004_f64.powi(2))).sqrt()).abs() < 1e-12);
+        assert!(
+            (range - 100.0 * (0.5 * (math::powi(0.003_f64, 2) + math::powi(0.004_f64, 2))).sqrt()).abs()
+                < 1e-12
+        );
         assert_eq!(readable_rms(&RootMeanSquare::EMPTY), None);
     }
 

@@ -19,9 +19,8 @@ impl SensingLevel {
     /// In words, with the noise.
     pub fn name(self) -> String {
         match self {
-            Self::Truth => "truth".to_owned(),
             Self::Pixels(pixels) => format!("geometric {pixels} px"),
-            Self::Camera => "camera".to_owned(),
+            other => other.word().to_owned(),
         }
     }
 
@@ -43,7 +42,7 @@ impl SensingLevel {
     }
 }
 
-/// What makes rates of looks.
+/// What makes rates of measurements.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ObserverChoice {
     /// The high-gain observer, as the scene has it.
@@ -114,44 +113,34 @@ impl BudgetCase {
 
 /// Noise of corners of the scene's first follower, px.
 pub(super) fn pixel_noise(scene: &Scene) -> f64 {
-    let noise = |robot: &scene::Robot| match &robot.role {
-        Role::Follow(follow) => Some(follow.sensing.pixel_noise),
-        Role::Lead { .. } => None,
-    };
-    scene.robots.iter().find_map(noise).unwrap_or(0.0)
+    scene.followers().next().map_or(0.0, |(_, follow)| follow.sensing.pixel_noise)
 }
 
-/// Refuses scenes whose followers cannot go by looks, and says what to change.
+/// Refuses scenes whose followers cannot go by measurements, and says what to change.
 ///
 /// # Errors
 /// [`Error::Usage`] for such a scene.
 pub fn check(scene: &Scene) -> Result<(), Error> {
-    let followers = || {
-        scene.robots.iter().filter_map(|robot| match &robot.role {
-            Role::Follow(follow) => Some((robot.name.as_str(), &**follow)),
-            Role::Lead { .. } => None,
-        })
-    };
-    if followers().next().is_none() {
+    if scene.followers().next().is_none() {
         let text = "the scene has no followers, and so no errors of following: give a robot `leader`, `distance` and \
                     `bearing`";
         return Err(Error::Usage(text.to_owned()));
     }
     let other = |(_, follow): &(&str, &Follow)| follow.law.kind != LawKind::OutputFeedback;
-    if let Some((name, _)) = followers().find(other) {
+    if let Some((name, _)) = scene.followers().find(other) {
         return Err(Error::Usage(format!(
-            "`{name}` does not follow by output feedback, and other laws have to know more than looks tell: write `law = {{ \
+            "`{name}` does not follow by output feedback, and other laws need more than measurements tell: write `law = {{ \
              kind = \"output-feedback\" }}` for it, or --set robots.{name}.law.kind=output-feedback"
         )));
     }
     if scene.time.mode == TimeMode::Continuous {
-        let text = "mode `continuous` knows no looks: use --set time.mode=sampled";
+        let text = "mode `continuous` has no measurements: use --set time.mode=sampled";
         return Err(Error::Usage(text.to_owned()));
     }
-    // What only scenes that look have to fulfil is checked where scenes are read.
-    let looking =
+    // What only scenes with sensors have to fulfil is checked where scenes are read.
+    let sensing =
         BudgetCase { level: SensingLevel::Pixels(0.0), observer: ObserverChoice::HighGain }.give(scene);
-    Scene::parse(&looking.to_toml(), "the scene with sensing by tags", &[])
+    Scene::parse(&sensing.to_toml(), "the scene with sensing by tags", &[])
         .map(drop)
         .map_err(|errors| Error::Usage(errors.to_string()))
 }

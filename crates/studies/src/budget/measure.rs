@@ -6,14 +6,14 @@ use serde::Serialize;
 use simulation::Simulation;
 use vocabulary::{EdgeState, MeasurementRecord, Outcome, StepRecord, TrackingState};
 
-/// One edge of one run, from the time after which it counts as settled. Triples are distance, bearing, view angle in m and
-/// rad, pairs distance and bearing.
+/// One edge of one run, from the time after which it counts as settled. Triples are distance, bearing, view angle in m
+/// and rad, pairs distance and bearing.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct EdgeErrors {
-    /// Root mean square error of the looks used; `None` where there were none.
-    pub looks: Option<[f64; 3]>,
+    /// Root mean square error of the measurements used; `None` where there were none.
+    pub measurements: Option<[f64; 3]>,
     /// The same of the distance as a share of the distance.
-    pub looks_relative: Option<f64>,
+    pub measurements_relative: Option<f64>,
     /// Root mean square error of what the law was told, while the leader was not lost; `None` where it always was.
     pub told: Option<[f64; 3]>,
     /// Root mean square tracking error.
@@ -22,20 +22,20 @@ pub struct EdgeErrors {
     pub rate_error: [f64; 2],
     /// Share of the samples at which a limit cut the command.
     pub limited: f64,
-    /// Share of the looks that arrived in which the leader was recognised; `None` where there were none.
+    /// Share of the measurements that arrived in which the leader was recognised; `None` where there were none.
     pub in_view: Option<f64>,
-    /// Looks that reached the follower, or were lost on the way.
+    /// Measurements that reached the follower, or were lost on the way.
     pub taken: u64,
-    /// Looks that were not believed, or that two poses explained alike.
+    /// Measurements that were not believed, or that two poses explained alike.
     pub refused: u64,
     /// Share of the samples at which the leader was lost, or had never been seen.
     pub lost: f64,
 }
 
 /// [`EdgeErrors`] under way.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct EdgeErrorSums {
-    looks: RootMeanSquare<3>,
+    measurements: RootMeanSquare<3>,
     relative: RootMeanSquare<1>,
     told: RootMeanSquare<3>,
     tracking: RootMeanSquare<2>,
@@ -52,22 +52,6 @@ struct EdgeErrorSums {
 }
 
 impl EdgeErrorSums {
-    const NONE: Self = Self {
-        looks: RootMeanSquare::EMPTY,
-        relative: RootMeanSquare::EMPTY,
-        told: RootMeanSquare::EMPTY,
-        tracking: RootMeanSquare::EMPTY,
-        rates: RootMeanSquare::EMPTY,
-        before: [None; 2],
-        samples: 0,
-        limited: 0,
-        lost: 0,
-        taken: 0,
-        arrived: 0,
-        seen: 0,
-        refused: 0,
-    };
-
     fn know(&mut self, edge: &EdgeState, period: f64) {
         self.samples += 1;
         self.limited += u64::from(edge.limited);
@@ -78,22 +62,22 @@ impl EdgeErrorSums {
                 self.told.add(difference(&edge.seen, &edge.relative));
             }
         }
-        if let [Some(first), Some(geometric_mean)] = self.before {
+        if let [Some(first), Some(middle)] = self.before {
             let [distance, bearing, _] = difference(&edge.relative, &first.relative);
             let rates = [distance, bearing].map(|d| d / (2.0 * period));
-            self.rates.add([geometric_mean.rates[0] - rates[0], geometric_mean.rates[1] - rates[1]]);
+            self.rates.add([middle.rates[0] - rates[0], middle.rates[1] - rates[1]]);
         }
         self.before = [self.before[1], Some(*edge)];
     }
 
-    fn look(&mut self, frame: &MeasurementRecord) {
+    fn add(&mut self, frame: &MeasurementRecord) {
         self.taken += 1;
         self.arrived += u64::from(frame.outcome != Outcome::Dropped);
-        self.seen += u64::from(!matches!(frame.outcome, Outcome::Dropped | Outcome::Missed));
+        self.seen += u64::from(frame.outcome.seen());
         self.refused += u64::from(matches!(frame.outcome, Outcome::Rejected | Outcome::Ambiguous));
         if frame.outcome == Outcome::Used {
             let off = difference(&frame.measurement.relative, &frame.truth);
-            self.looks.add(off);
+            self.measurements.add(off);
             self.relative.add([off[0] / frame.truth.distance.max(1e-9)]);
         }
     }
@@ -101,8 +85,8 @@ impl EdgeErrorSums {
     fn finish(&self) -> EdgeErrors {
         let share = |part: u64, whole: u64| part as f64 / whole.max(1) as f64;
         EdgeErrors {
-            looks: self.looks.root(),
-            looks_relative: self.relative.root().map(|[r]| r),
+            measurements: self.measurements.root(),
+            measurements_relative: self.relative.root().map(|[r]| r),
             told: self.told.root(),
             tracking: self.tracking.root().unwrap_or_default(),
             rate_error: self.rates.root().unwrap_or_default(),
@@ -139,7 +123,7 @@ pub fn measure(
     mut go_on: impl FnMut(u64) -> bool,
 ) -> Result<Option<MeasuredRun>, Error> {
     let period = simulation.period();
-    let mut edges = vec![EdgeErrorSums::NONE; simulation.fleet().edges.len()];
+    let mut edges = vec![EdgeErrorSums::default(); simulation.fleet().edges.len()];
     let (mut run, mut step, mut before) = (MeasuredRun::default(), 0, f64::NEG_INFINITY);
     while let Some(record) = simulation.next_record() {
         take_in(&mut edges, record, settled_after, period);
@@ -161,7 +145,7 @@ pub fn measure(
 fn take_in(edges: &mut [EdgeErrorSums], record: &StepRecord, settled_after: f64, period: f64) {
     for frame in record.frames.iter().filter(|f| f.measurement.stamp >= settled_after) {
         if let Some(edge) = edges.get_mut(frame.edge) {
-            edge.look(frame);
+            edge.add(frame);
         }
     }
     if record.snapshot.time >= settled_after {
@@ -178,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_rate_is_held_against_the_motion_around_it() {
-        let mut gathering = EdgeErrorSums::NONE;
+        let mut gathering = EdgeErrorSums::default();
         for k in 0..5 {
             let relative = Relative { distance: 2.0 + 0.03 * f64::from(k), ..Relative::default() };
             let rates = [3.5, 0.0];
@@ -186,21 +170,21 @@ mod tests {
         }
         let measured = gathering.finish();
         assert!((measured.rate_error[0] - 0.5).abs() < 1e-9, "{measured:?}");
-        assert_eq!((measured.looks, measured.in_view, measured.told), (None, None, Some([0.0; 3])));
+        assert_eq!((measured.measurements, measured.in_view, measured.told), (None, None, Some([0.0; 3])));
     }
 
     #[test]
-    fn only_looks_that_were_used_count_as_errors() {
-        let mut gathering = EdgeErrorSums::NONE;
+    fn only_measurements_that_were_used_count_as_errors() {
+        let mut gathering = EdgeErrorSums::default();
         for (outcome, distance) in [(Outcome::Used, 2.2), (Outcome::Rejected, 9.0), (Outcome::Missed, 0.0)] {
             let mut frame = MeasurementRecord { outcome, ..MeasurementRecord::default() };
             frame.truth.distance = 2.0;
             frame.measurement.relative.distance = distance;
-            gathering.look(&frame);
+            gathering.add(&frame);
         }
         let measured = gathering.finish();
-        assert!((measured.looks.expect("one")[0] - 0.2).abs() < 1e-12);
-        assert!((measured.looks_relative.expect("one") - 0.1).abs() < 1e-12);
+        assert!((measured.measurements.expect("one")[0] - 0.2).abs() < 1e-12);
+        assert!((measured.measurements_relative.expect("one") - 0.1).abs() < 1e-12);
         assert_eq!((measured.taken, measured.refused), (3, 1));
         assert!((measured.in_view.expect("some") - 2.0 / 3.0).abs() < 1e-12);
     }

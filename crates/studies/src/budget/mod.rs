@@ -1,6 +1,6 @@
-//! Where errors of following come from: a scene runs again and again on the same seed, from followers that know the truth
-//! over corners of tags with more and more noise to pictures of cameras, with both observers; or with one observer constant
-//! after the other.
+//! Where errors of following come from: a scene runs again and again on the same seed, from followers that know the
+//! truth over corners of tags with more and more noise to pictures of cameras, with both observers; or with one
+//! observer constant after the other.
 
 mod case;
 mod measure;
@@ -50,8 +50,8 @@ impl<'a> Budget<'a> {
         }
     }
 
-    /// Runs all `cases`; `go_on` gets the number of cases that are done and of steps of the one under way, and says whether
-    /// the work goes on.
+    /// Runs all `cases`; `go_on` gets the number of cases that are done and of steps of the one under way, and says
+    /// whether the work goes on.
     ///
     /// # Errors
     /// [`Error`] where the scene cannot run so, or a run breaks off with a fault.
@@ -103,20 +103,21 @@ impl<'a> Budget<'a> {
         self.pixels().into_iter().filter_map(at).collect()
     }
 
-    /// The noise of corners, px, that an edge's looks by camera stand for: by distance, bearing, view angle, and by all.
+    /// The noise of corners, px, that an edge's measurements by camera stand for: by distance, bearing, view angle, and
+    /// by all.
     pub fn camera_as_pixels(&self, edge: usize) -> ([Option<f64>; 3], Option<f64>) {
         let of = |channel: usize| {
             let run = self.run(SensingLevel::Camera, ObserverChoice::HighGain)?;
-            let error = run.edges.get(edge)?.looks?[channel];
-            noise_of(&self.curve(edge, ObserverChoice::HighGain, |m| Some(m.looks?[channel])), error)
+            let error = run.edges.get(edge)?.measurements?[channel];
+            noise_of(&self.curve(edge, ObserverChoice::HighGain, |m| Some(m.measurements?[channel])), error)
         };
         let each = [0, 1, 2].map(of);
         (each, geometric_mean(&each))
     }
 }
 
-/// The runs of a comparison of ways of sensing, in order: the truth, every noise of corners, and pictures where there is a
-/// camera; with both observers.
+/// The runs of a comparison of ways of sensing, in order: the truth, every noise of corners, and pictures where there
+/// is a camera; with both observers.
 pub fn sensing_cases(pixel_noise: &[f64], camera: bool) -> Vec<BudgetCase> {
     let mut levels: Vec<SensingLevel> =
         sorted(pixel_noise.iter().copied()).into_iter().map(SensingLevel::Pixels).collect();
@@ -127,8 +128,8 @@ pub fn sensing_cases(pixel_noise: &[f64], camera: bool) -> Vec<BudgetCase> {
     [truth].into_iter().chain(with(ObserverChoice::HighGain)).chain(with(ObserverChoice::Unscented)).collect()
 }
 
-/// The runs of a comparison of observer constants, s, in order, with the one that follows from the noise; by pictures where
-/// there is a camera, else by corners with the noise of the scene.
+/// The runs of a comparison of observer constants, s, in order, with the one that follows from the noise; by pictures
+/// where there is a camera, else by corners with the noise of the scene.
 pub fn epsilon_cases(epsilon: &[f64], camera: bool, scene: &Scene) -> Vec<BudgetCase> {
     let level = if camera { SensingLevel::Camera } else { SensingLevel::Pixels(case::pixel_noise(scene)) };
     let constants = sorted(epsilon.iter().copied()).into_iter().map(Some).chain([None]);

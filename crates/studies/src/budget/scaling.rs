@@ -1,6 +1,7 @@
 //! How errors grow with the noise of corners, and which noise an error stands for.
 
 use serde::Serialize;
+use vocabulary::math;
 
 /// err² = floor² + (slope · px)².
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -54,8 +55,8 @@ pub fn noise_of(points: &[[f64; 2]], error: f64) -> Option<f64> {
 
 /// The noise that fits several errors at once: in the middle of those they give one by one, on a logarithmic scale.
 pub fn geometric_mean(noises: &[Option<f64>]) -> Option<f64> {
-    let some: Vec<f64> = noises.iter().flatten().copied().filter(|n| *n > 0.0).map(f64::ln).collect();
-    (!some.is_empty()).then(|| (some.iter().sum::<f64>() / some.len() as f64).exp())
+    let some: Vec<f64> = noises.iter().flatten().copied().filter(|n| *n > 0.0).map(math::ln).collect();
+    (!some.is_empty()).then(|| math::exp(some.iter().sum::<f64>() / some.len() as f64))
 }
 
 #[cfg(test)]

@@ -4,9 +4,10 @@ use super::chain::{self, EdgeGain};
 use super::reach::{self, Reach};
 use super::sensitivity::{self, Sensitivities};
 use super::{ChannelSensitivity, Discretisation, LongestPeriod};
-use scene::{Follow, Role, Scene, SensingKind, SwitchingKind};
+use scene::{Scene, SensingKind, SwitchingKind};
 use simulation::BuildError;
 use vocabulary::LawKind;
+use vocabulary::math;
 
 /// Stability over ε and period, of the distance channel of the first follower by output feedback.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,7 +73,7 @@ pub enum SensitivityCost {
 impl SensitivityCost {
     /// Of a scene.
     pub fn of(scene: &Scene) -> Self {
-        if followers(scene).any(|(_, follow)| follow.sensing.kind == SensingKind::Camera) {
+        if scene.followers().any(|(_, follow)| follow.sensing.kind == SensingKind::Camera) {
             return Self::Pictures;
         }
         let wheels = scene.robots.iter().any(|robot| robot.vehicle.kind.has_wheels());
@@ -82,15 +83,8 @@ impl SensitivityCost {
     }
 }
 
-fn followers(scene: &Scene) -> impl Iterator<Item = (&str, &Follow)> {
-    scene.robots.iter().filter_map(|robot| match &robot.role {
-        Role::Lead { .. } => None,
-        Role::Follow(follow) => Some((robot.name.as_str(), &**follow)),
-    })
-}
-
 fn chart(scene: &Scene) -> Option<StabilityChart> {
-    let (name, follow) = followers(scene).find(|(_, follow)| follow.law.kind == LawKind::OutputFeedback)?;
+    let (name, follow) = scene.followers().find(|(_, follow)| follow.law.kind == LawKind::OutputFeedback)?;
     let (k, observer) = (follow.law.k[0], &follow.observer);
     // The slope of the sign is not a number; near its set point only K acts then.
     let smooth = follow.law.switching == SwitchingKind::Tanh;
@@ -101,7 +95,7 @@ fn chart(scene: &Scene) -> Option<StabilityChart> {
         alpha1: observer.alpha1[0],
         alpha2: observer.alpha2[0],
     };
-    let epsilons: Vec<f64> = (0..=48).map(|i| 1e-4 * 10_f64.powf(f64::from(i) / 12.0)).collect();
+    let epsilons: Vec<f64> = (0..=48).map(|i| 1e-4 * math::powf(10_f64, f64::from(i) / 12.0)).collect();
     let border = |how: Discretisation| {
         let at = |epsilon: &f64| channel.longest_period(how, *epsilon, PERIODS);
         (how, epsilons.iter().map(at).collect())

@@ -2,6 +2,7 @@
 
 use formation::certificate::chain::{LinearEdge, NotLinear, Response, down_the_chain, frequencies, growth};
 use scene::Scene;
+use serde::Serialize;
 use simulation::{BuildError, Simulation, build};
 use vocabulary::MotionInput;
 
@@ -24,7 +25,7 @@ pub struct EdgeGain {
 }
 
 /// Gains at one frequency.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct GainPoint {
     /// rad/s.
     pub frequency: f64,
@@ -36,6 +37,7 @@ pub struct GainPoint {
     pub growth: f64,
     /// |error of distance| of the last of [`LENGTHS`] followers like this, per deviation of the first one's leader's speed,
     /// m per m/s.
+    #[serde(rename = "chains")]
     pub lengths: [f64; LENGTHS.len()],
 }
 

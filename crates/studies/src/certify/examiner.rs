@@ -8,7 +8,7 @@ use formation::{EdgeLaw, Estimate, SetPointTrajectory, Switching};
 use metrics::{CertificateMetrics, StatementMetrics};
 use scene::Scene;
 use simulation::Simulation;
-use vocabulary::{Edge, EntityId, FleetInfo, LawKind, MotionInput, StepRecord, TimeMode};
+use vocabulary::{Edge, EntityId, FleetInfo, LawKind, Motion, MotionInput, StepRecord, TimeMode, Word};
 
 /// A change of a held command below this is rounding, m/s² or rad/s.
 const STEADY: f64 = 1e-9;
@@ -45,7 +45,7 @@ impl Certificate {
         let (leader, follower) =
             fleet.edges.get(self.edge).map_or((0, 0), |edge| (edge.leader, edge.follower));
         let statement = |finding: &StatementFinding| StatementMetrics {
-            statement: finding.statement.name().to_owned(),
+            statement: finding.statement.word().to_owned(),
             source: finding.statement.source().to_owned(),
             outcome: finding.outcome().name().to_owned(),
             against_from: finding.against.map(|against| against.first),
@@ -87,7 +87,7 @@ pub struct Examiner {
 struct CertifiedStretch {
     witness: Witness,
     set_point: SetPointTrajectory,
-    looks: bool,
+    measures: bool,
     rough_leader: Option<f64>,
     final_error: [f64; 2],
 }
@@ -98,7 +98,7 @@ impl CertifiedStretch {
         Self {
             witness: if keeps { witness.keeping() } else { witness },
             set_point: law.set_point.clone(),
-            looks: law.looks.is_some(),
+            measures: law.tracker.is_some(),
             rough_leader: None,
             final_error: [0.0; 2],
         }
@@ -108,22 +108,14 @@ impl CertifiedStretch {
         *self.witness.law() == law.law
             && *self.witness.observer() == law.observer
             && self.set_point == law.set_point
-            && self.looks == law.looks.is_some()
+            && self.measures == law.tracker.is_some()
     }
 }
 
 impl Examiner {
-    /// For a run of `scene` that has not begun; its memory does not grow with the run.
-    pub fn new(scene: &Scene, simulation: &Simulation) -> Self {
-        Self::begin(scene, simulation, false)
-    }
-
-    /// As [`Self::new`], with every sample kept in the witness of its certificate.
-    pub fn keeping(scene: &Scene, simulation: &Simulation) -> Self {
-        Self::begin(scene, simulation, true)
-    }
-
-    fn begin(scene: &Scene, simulation: &Simulation, keeps: bool) -> Self {
+    /// For a run of `scene` that has not begun. Where it `keeps`, every sample stays in the witness of its certificate;
+    /// else its memory does not grow with the run.
+    pub fn new(scene: &Scene, simulation: &Simulation, keeps: bool) -> Self {
         let wheels: Vec<bool> = scene.robots.iter().map(|robot| robot.vehicle.kind.has_wheels()).collect();
         let leads = &simulation.fleet().robots;
         Self {
@@ -182,7 +174,7 @@ impl Examiner {
         let circumstances = Circumstances {
             held: (self.mode != TimeMode::Continuous).then_some(self.period),
             sampled_measurement: self.mode == TimeMode::Measured,
-            looks: stretch.looks,
+            measures: stretch.measures,
             wheels: wheels(edge.leader) || wheels(edge.follower),
             rough_leader: stretch.rough_leader,
         };
@@ -205,15 +197,10 @@ impl Examiner {
     /// turn rate since the sample before.
     fn drives(&self, simulation: &Simulation, record: &StepRecord) -> Vec<MotionInput> {
         let motion = |(robot, state): (usize, &vocabulary::RobotState)| {
-            let m = &state.motion;
-            let before = self.last.get(robot).map_or(m.turn_rate, |last| last.turn_rate);
-            let turn_acceleration = (m.turn_rate - before) / self.period;
-            MotionInput {
-                speed: m.speed,
-                acceleration: m.acceleration,
-                turn_rate: m.turn_rate,
-                turn_acceleration,
-            }
+            let Motion { speed, acceleration, turn_rate, .. } = state.motion;
+            let before = self.last.get(robot).map_or(turn_rate, |last| last.turn_rate);
+            let turn_acceleration = (turn_rate - before) / self.period;
+            MotionInput { speed, acceleration, turn_rate, turn_acceleration }
         };
         let mut drives: Vec<MotionInput> = record.snapshot.robots.iter().enumerate().map(motion).collect();
         for (robot, trajectory) in simulation.formation().leads() {

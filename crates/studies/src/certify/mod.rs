@@ -31,7 +31,7 @@ pub fn certificates(
     mut go_on: impl FnMut(u64) -> bool,
 ) -> Result<Option<Vec<Certificate>>, Error> {
     let SceneRun { scene, mut simulation } = run;
-    let mut examiner = Examiner::keeping(&scene, &simulation);
+    let mut examiner = Examiner::new(&scene, &simulation, true);
     let mut step = 0;
     while simulation.next_record().is_some() {
         examiner.push(&simulation);

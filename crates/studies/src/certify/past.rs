@@ -22,7 +22,7 @@ pub fn so_far(
     let circumstances = Circumstances {
         held: held.then_some(scene.time.period),
         sampled_measurement: scene.time.mode == TimeMode::Measured,
-        looks: follow.sensing.kind != SensingKind::Truth,
+        measures: follow.sensing.kind != SensingKind::Truth,
         wheels: wheels(edge.leader) || wheels(edge.follower),
         // A leader that follows is told its commands period by period.
         rough_leader: first.filter(|_| held && !leads),
@@ -30,8 +30,8 @@ pub fn so_far(
     (certify(&witness, &circumstances), witness.rows().to_vec())
 }
 
-/// The quantities of edge number `index` along `records`, which may be thinned; its law is that of `follow`. Rates of set
-/// points and of turn rates are differences from moment to moment.
+/// The quantities of edge number `index` along `records`, which may be thinned; its law is that of `follow`. Rates of
+/// set points and of turn rates are differences from moment to moment.
 pub fn rows(records: &[&StepRecord], index: usize, edge: Edge, follow: &Follow) -> Vec<WitnessRow> {
     witness(records, index, edge, follow).rows().to_vec()
 }
@@ -49,22 +49,18 @@ fn witness(records: &[&StepRecord], index: usize, edge: Edge, follow: &Follow) -
             continue;
         };
         let (time, motion, value) = (record.snapshot.time, leader.motion, state.set_point);
-        let (turned, moved) = before.map_or((0.0, [0.0; 2]), |(then, last, point)| {
+        let (turn_acceleration, moved) = before.map_or((0.0, [0.0; 2]), |(then, last, point)| {
             let step = (time - then).max(1e-9);
             let moved = [value[0] - point[0], wrap(value[1] - point[1])].map(|d| d / step);
             ((motion.turn_rate - last.turn_rate) / step, moved)
         });
         before = Some((time, motion, value));
+        let Motion { speed, acceleration, turn_rate, .. } = motion;
         witness.push(&Instant {
             time,
             relative: state.relative,
             follower_speed: follower.motion.speed.max(1e-6),
-            leader: MotionInput {
-                speed: motion.speed,
-                acceleration: motion.acceleration,
-                turn_rate: motion.turn_rate,
-                turn_acceleration: turned,
-            },
+            leader: MotionInput { speed, acceleration, turn_rate, turn_acceleration },
             set_point: SetPoint { value, rate: moved, acceleration: [0.0; 2] },
             error: state.error,
             estimate: observes.then_some(Estimate { output: state.estimate, rates: state.rates }),

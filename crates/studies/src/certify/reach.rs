@@ -1,9 +1,10 @@
 //! Which set points followers can hold while their leader drives its path: the set of (distance, bearing) within limits.
 
-use formation::feasible::{Infeasible, held, unholdable_now};
-use scene::{Role, Scene};
+use formation::feasible::{Infeasible, held, infeasible};
+use scene::Scene;
 use simulation::{BuildError, Simulation, build};
-use vocabulary::{Limits, MotionInput};
+use vocabulary::math;
+use vocabulary::{Limits, MotionInput, ScalarTrajectory};
 
 /// Bearings that are looked at.
 const BEARINGS: usize = 180;
@@ -64,7 +65,10 @@ pub fn reach(scene: &Scene) -> Result<Vec<Reach>, BuildError> {
         let value = law.set_point.at(0.0).value;
         let far = (3.0 * value[0]).max(4.0);
         let distance_min = law.law.distance_min;
-        let judge = Judge { path: distinct(path), limits: *formation.limits(edge.follower), distance_min };
+        // A path without what repeats itself.
+        let mut distinct = path.clone();
+        distinct.dedup();
+        let judge = Judge { path: distinct, limits: *formation.limits(edge.follower), distance_min };
         let rays = (0..=BEARINGS).map(|k| {
             let bearing = std::f64::consts::TAU * (k as f64 / BEARINGS as f64 - 0.5);
             judge.ray(bearing, far)
@@ -83,26 +87,12 @@ pub fn reach(scene: &Scene) -> Result<Vec<Reach>, BuildError> {
 
 /// Whether a scene's set points move, so that one of them does not stand for all.
 pub fn moving(scene: &Scene) -> bool {
-    scene.robots.iter().any(|robot| match &robot.role {
-        Role::Lead { .. } => false,
-        Role::Follow(follow) => {
-            let still = |channel: &vocabulary::ScalarTrajectory| {
-                matches!(channel, vocabulary::ScalarTrajectory::Constant(_))
-            };
-            !still(&follow.distance) || !still(&follow.bearing)
-        }
-    })
+    let still = |channel: &ScalarTrajectory| matches!(channel, ScalarTrajectory::Constant(_));
+    scene.followers().any(|(_, follow)| !still(&follow.distance) || !still(&follow.bearing))
 }
 
 fn place([distance, bearing]: [f64; 2]) -> [f64; 2] {
-    [distance * bearing.cos(), distance * bearing.sin()]
-}
-
-/// A path without what repeats itself.
-fn distinct(path: &[MotionInput]) -> Vec<MotionInput> {
-    let mut out: Vec<MotionInput> = path.to_vec();
-    out.dedup();
-    out
+    [distance * math::cos(bearing), distance * math::sin(bearing)]
 }
 
 struct Judge {
@@ -114,7 +104,7 @@ struct Judge {
 impl Judge {
     fn against(&self, distance: f64, bearing: f64) -> Option<Infeasible> {
         let place = place([distance, bearing]);
-        self.path.iter().find_map(|leader| unholdable_now(place, leader, &self.limits, self.distance_min))
+        self.path.iter().find_map(|leader| infeasible(place, leader, &self.limits, self.distance_min))
     }
 
     fn ray(&self, bearing: f64, far: f64) -> ReachRay {

@@ -4,6 +4,7 @@ use metrics::RootMeanSquare;
 use scene::{Follow, Role, Scene, SwitchingKind};
 use simulation::{BuildError, Simulation, build};
 use vocabulary::LawKind;
+use vocabulary::math;
 
 /// A gain is changed by this share, up and down.
 const SHARE: f64 = 0.02;
@@ -93,9 +94,7 @@ pub fn gains(scene: &Scene) -> Vec<Gain> {
     let kinds: [fn(usize) -> Gain; 6] =
         [Gain::K, Gain::Beta, Gain::Slope, Gain::Epsilon, Gain::Alpha1, Gain::Alpha2];
     let all = kinds.into_iter().flat_map(|gain| [gain(0), gain(1)]);
-    let follows = |gain: &Gain| {
-        scene.robots.iter().any(|robot| matches!(&robot.role, Role::Follow(follow) if gain.acts_on(follow)))
-    };
+    let follows = |gain: &Gain| scene.followers().any(|(_, follow)| gain.acts_on(follow));
     all.filter(follows).collect()
 }
 
@@ -133,8 +132,8 @@ pub fn sensitivities(
     let sensitivity = |(gain, pair): (&Gain, &[Vec<[f64; 2]>])| {
         let slope = |edge: usize, i: usize| {
             let [less, more] = [pair[0][edge][i], pair[1][edge][i]];
-            let width = ((1.0 + SHARE) / (1.0 - SHARE)).ln();
-            (less > ZERO && more > ZERO).then(|| (more / less).ln() / width)
+            let width = math::ln((1.0 + SHARE) / (1.0 - SHARE));
+            (less > ZERO && more > ZERO).then(|| math::ln(more / less) / width)
         };
         Sensitivity { gain: *gain, edges: (0..own.len()).map(|e| [slope(e, 0), slope(e, 1)]).collect() }
     };

@@ -7,6 +7,7 @@ use perception::imaging::{ImageSensor, Optics, Purpose, noise_stream};
 use perception::pose::{PoseEstimate, Prior, Rig, locate};
 use perception::sensors::SensorConfig;
 use serde_json::{Value, json};
+use vocabulary::math;
 use vocabulary::{Edge, FACES, FleetInfo, Grey, Pose, Region, RobotState, Shell, Snapshot, wrap};
 
 /// Standard deviation of a corner's coordinates as found in pictures, besides what its finder reports, pixels; what
@@ -177,7 +178,7 @@ impl FollowerCamera {
 
 /// `pose` in the frame of `of`; both are on the plane.
 pub(crate) fn relative_pose(pose: &Pose, of: &Pose) -> Pose {
-    let (sin, cos) = of.heading.sin_cos();
+    let (sin, cos) = math::sin_cos(of.heading);
     let (dx, dy) = (pose.x - of.x, pose.y - of.y);
     Pose::new(dx * cos + dy * sin, dy * cos - dx * sin, wrap(pose.heading - of.heading))
 }
@@ -185,15 +186,15 @@ pub(crate) fn relative_pose(pose: &Pose, of: &Pose) -> Pose {
 fn placed(pose: &Pose) -> Value {
     json!({
         "x": pose.x, "y": pose.y, "heading": pose.heading,
-        "range": pose.x.hypot(pose.y), "bearing": pose.y.atan2(pose.x),
+        "range": math::hypot(pose.x, pose.y), "bearing": math::atan2(pose.y, pose.x),
     })
 }
 
 /// By how much a pose is off in range (m), bearing and heading (rad).
 pub(crate) fn errors(found: &Pose, truth: &Pose) -> [f64; 3] {
     [
-        found.x.hypot(found.y) - truth.x.hypot(truth.y),
-        wrap(found.y.atan2(found.x) - truth.y.atan2(truth.x)),
+        math::hypot(found.x, found.y) - math::hypot(truth.x, truth.y),
+        wrap(math::atan2(found.y, found.x) - math::atan2(truth.y, truth.x)),
         wrap(found.heading - truth.heading),
     ]
 }

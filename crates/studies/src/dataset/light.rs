@@ -35,7 +35,7 @@ pub(crate) fn gather(
     imaging::gather(exposure.shutter, |off, pictures| {
         let then = timeline.at(now.time + off).filter(|_| off != 0.0);
         let then = then.as_ref().unwrap_or(now);
-        renderer.look(then, &shots(fleet, exposure, then, wanted), pictures).map_err(Error::Camera)
+        renderer.render(then, &shots(fleet, exposure, then, wanted), pictures).map_err(Error::Camera)
     })
 }
 

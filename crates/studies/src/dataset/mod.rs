@@ -14,11 +14,11 @@ use folder::DatasetFolder;
 use light::{Exposure, PictureRequest, gather};
 use perception::imaging::Optics;
 use perception::sensors::{CameraSettings, Sensor, SensorConfig, SensorKind};
-use scene::{Role, Scene};
+use scene::Scene;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use timeline::Timeline;
-use vocabulary::{CameraRenderer, Edge, FleetInfo, Region};
+use vocabulary::{CameraRenderer, Edge, FleetInfo, Region, Word, words};
 
 /// Version of the form of `dataset.json`.
 const FORMAT: u32 = 1;
@@ -47,25 +47,15 @@ impl DatasetOptions {
     }
 }
 
-/// How a data set ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DatasetStatus {
-    /// All pictures were taken.
-    Complete,
-    /// The run ended before its time.
-    Stopped,
-    /// Somebody asked it to end.
-    Interrupted,
-}
-
-impl DatasetStatus {
-    /// The word in `dataset.json`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Complete => "complete",
-            Self::Stopped => "stopped",
-            Self::Interrupted => "interrupted",
-        }
+words! {
+    /// How a data set ended; the word is that in `dataset.json`.
+    pub enum DatasetStatus {
+        /// All pictures were taken.
+        Complete = "complete",
+        /// The run ended before its time.
+        Stopped = "stopped",
+        /// Somebody asked it to end.
+        Interrupted = "interrupted",
     }
 }
 
@@ -139,7 +129,7 @@ impl DatasetExport {
             self.timeline.reach(time + 0.5 * self.exposure.shutter, go_on)?;
             self.take(frame, time).inspect_err(|_| {
                 // The disk may still take the list.
-                let _ = self.write(DatasetStatus::Interrupted.name());
+                let _ = self.write(DatasetStatus::Interrupted.word());
             })?;
             frame += 1;
             step(frame);
@@ -152,7 +142,7 @@ impl DatasetExport {
             false if !go_on() => DatasetStatus::Interrupted,
             false => DatasetStatus::Stopped,
         };
-        self.write(status.name())?;
+        self.write(status.word())?;
         Ok(status)
     }
 
@@ -259,10 +249,7 @@ fn follower_camera(scene: &Scene, fleet: &FleetInfo, edge: Edge, whole: bool) ->
     };
     let wheels = |index: usize| robots.get(index).is_some_and(|robot| robot.vehicle.kind.has_wheels());
     let upright = fleet.terrain.is_none() && !wheels(edge.leader) && !wheels(edge.follower);
-    let asked = robots.get(edge.follower).and_then(|robot| match &robot.role {
-        Role::Follow(follow) => follow.sensing.tilt,
-        Role::Lead { .. } => None,
-    });
+    let asked = robots.get(edge.follower).and_then(|robot| robot.role.follow()?.sensing.tilt);
     let tilt = asked.unwrap_or(if upright { 0.0 } else { TILT });
     FollowerCamera::new(edge, optics, tilt, whole)
 }

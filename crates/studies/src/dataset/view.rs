@@ -1,14 +1,9 @@
 //! How a tag stands in a camera's picture, by geometry alone.
 
+use perception::sensors::{MARGIN, readable};
+use vocabulary::math;
 use vocabulary::{CameraModel, FACES, Region, Rigid, Shell};
 
-/// Pixels that a cell needs to be read, seen from ahead and at the steepest angle at which a tag is read at all; the
-/// same numbers that sensing of kind `geometric` goes by.
-const LEAST_CELL: [f64; 2] = [1.75, 2.5];
-/// Cosine of that angle, 62°.
-const STEEPEST: f64 = 0.469;
-/// Pixels that the corners of a tag that is read keep from the edge of the picture.
-const MARGIN: f64 = 4.0;
 /// Cosine of the angle, and pixels a cell, at which a tag is surely read.
 const SURELY: (f64, f64) = (0.55, 2.0);
 /// What is looked at reaches this share of the shell's size beyond it, and this many pixels, as for cameras that track.
@@ -54,22 +49,20 @@ impl FaceView {
         corners.iter().all(|p| camera_model.holds(*p, 0.0)).then(|| Self {
             camera_from_tag,
             corners,
-            incidence: slant.clamp(-1.0, 1.0).acos(),
+            incidence: math::acos(slant.clamp(-1.0, 1.0)),
             cell: camera_model.focal * shell.cell / away,
         })
     }
 
     /// Whether there can be no doubt that it is read, as cameras that track judge it.
     pub(crate) fn surely_readable(&self) -> bool {
-        self.incidence.cos() > SURELY.0 && self.cell > SURELY.1
+        math::cos(self.incidence) > SURELY.0 && self.cell > SURELY.1
     }
 
     /// Whether a detector should read it: large enough for its slant, and not at the edge of the picture.
     pub(crate) fn readable(&self, camera_model: &CameraModel) -> bool {
-        let slant = self.incidence.cos();
-        let share = (1.0 - slant) / (1.0 - STEEPEST);
-        let least = LEAST_CELL[0] + (LEAST_CELL[1] - LEAST_CELL[0]) * share;
-        slant >= STEEPEST && self.cell >= least && self.corners.iter().all(|p| camera_model.holds(*p, MARGIN))
+        readable(math::cos(self.incidence), self.cell)
+            && self.corners.iter().all(|p| camera_model.holds(*p, MARGIN))
     }
 }
 
@@ -117,7 +110,7 @@ pub(crate) fn walls_hide(shell: &Shell, from: [f64; 3], to: [f64; 3]) -> bool {
         }
         let share = a[2] / (a[2] - b[2]);
         let [x, y] = [0, 1].map(|k| a[k] + (b[k] - a[k]) * share);
-        2.0 * y.abs() * shell.lean.cos() < shell.face_height && x.abs() < shell.half_width(y)
+        2.0 * y.abs() * math::cos(shell.lean) < shell.face_height && x.abs() < shell.half_width(y)
     })
 }
 

@@ -24,8 +24,9 @@ const CORNERS: f64 = 2e-3;
 const SHELL: [f64; 2] = [0.4, 0.1];
 
 /// All bodies and their solver.
+#[derive(Clone)]
 pub(super) struct Bodies {
-    pipeline: PhysicsPipeline,
+    pipeline: Pipeline,
     parameters: IntegrationParameters,
     islands: IslandManager,
     broad_phase: BroadPhaseBvh,
@@ -43,31 +44,18 @@ pub(super) struct Bodies {
 /// A vehicle at the end of a physics step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Knot {
-    pub(super) pose: Pose,
+    pub(super) motion: Motion,
     /// Of the pose's point, m/s, world.
     pub(super) velocity: [f64; 2],
-    pub(super) speed: f64,
-    pub(super) acceleration: f64,
-    pub(super) turn_rate: f64,
 }
 
-impl Clone for Bodies {
-    /// All but the pipeline's scratch memory, which holds nothing from one step to the next.
+/// Runs the physics; a copy leaves out its scratch memory, which holds nothing from one step to the next.
+#[derive(Default)]
+struct Pipeline(PhysicsPipeline);
+
+impl Clone for Pipeline {
     fn clone(&self) -> Self {
-        Self {
-            pipeline: PhysicsPipeline::new(),
-            parameters: self.parameters,
-            islands: self.islands.clone(),
-            broad_phase: self.broad_phase.clone(),
-            narrow_phase: self.narrow_phase.clone(),
-            set: self.set.clone(),
-            colliders: self.colliders.clone(),
-            joints: self.joints.clone(),
-            multibodies: self.multibodies.clone(),
-            soft: self.soft.clone(),
-            ccd: self.ccd.clone(),
-            props: self.props.clone(),
-        }
+        Self::default()
     }
 }
 
@@ -79,7 +67,7 @@ impl Bodies {
             colliders.insert(part.friction(0.7).user_data(mark(EntityId::Ground)));
         }
         Self {
-            pipeline: PhysicsPipeline::new(),
+            pipeline: Pipeline::default(),
             // Recycled contacts keep old distances: a touch would be seen centimetres late.
             parameters: IntegrationParameters {
                 contact_recycling: false,
@@ -184,7 +172,7 @@ impl Bodies {
     /// One physics step of `h` s.
     pub(super) fn step(&mut self, h: f64) {
         self.parameters.dt = h;
-        self.pipeline.step(
+        self.pipeline.0.step(
             Vector::new(0.0, 0.0, -GRAVITY),
             &self.parameters,
             &mut self.islands,
@@ -238,13 +226,10 @@ impl Bodies {
         let velocity = carriage.velocity + carriage.spin.cross(origin - carriage.centre);
         let heading = math::atan2(ahead.y, ahead.x);
         let level = Vector::new(ahead.x, ahead.y, 0.0).normalize_or(Vector::X);
-        Knot {
-            pose: Pose { x: origin.x, y: origin.y, heading },
-            velocity: [velocity.x, velocity.y],
-            speed: velocity.dot(level),
-            acceleration: 0.0,
-            turn_rate: carriage.spin.z,
-        }
+        let pose = Pose { x: origin.x, y: origin.y, heading };
+        let (speed, turn_rate) = (velocity.dot(level), carriage.spin.z);
+        let motion = Motion { pose, speed, acceleration: 0.0, turn_rate };
+        Knot { motion, velocity: [velocity.x, velocity.y] }
     }
 
     /// Height, roll and pitch of a body.

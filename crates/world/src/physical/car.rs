@@ -140,14 +140,13 @@ impl Car {
     fn turn_wheel(&mut self, k: usize, ride: &Ride<'_>, pull: &Pull) {
         let mounting = self.mountings[k];
         let [ahead, left, up] = ride.carriage.axes;
-        let camera_mount = ride.origin + ahead * mounting.place.x + left * mounting.place.y;
+        let hub = ride.origin + ahead * mounting.place.x + left * mounting.place.y;
         let radius = self.vehicle.body.wheel_radius;
-        let ground = stand(&mounting, camera_mount, up, ride.surroundings);
+        let ground = stand(&mounting, hub, up, ride.surroundings);
         let below = |(compression, ..): &(f64, Footing, Option<RigidBodyHandle>)| {
             *compression > ground.map_or(mounting.droop, |(compression, _)| compression)
         };
-        let prop =
-            ride.climbs.then(|| ride.bodies.prop_under(camera_mount, up, 2.0 * radius, -mounting.droop));
+        let prop = ride.climbs.then(|| ride.bodies.prop_under(hub, up, 2.0 * radius, -mounting.droop));
         let (footing, bearer) = match prop.flatten().filter(below) {
             Some((compression, footing, body)) => (Some((compression, footing)), body),
             None => (ground, None),
@@ -194,7 +193,7 @@ struct Ride<'a> {
 /// Where a wheel stands on the ground, and its compression; `None` in the air.
 fn stand(
     mounting: &Mounting,
-    camera_mount: Vector,
+    hub: Vector,
     up: Vector,
     surroundings: &Surroundings,
 ) -> Option<(f64, Footing)> {
@@ -203,15 +202,15 @@ fn stand(
         let place = Vector::new(at.x, at.y, surface.height);
         Footing { place, normal: Vector::from(surface.normal), velocity: Vector::ZERO, grip: surface.grip }
     };
-    let first = footing(camera_mount);
-    let mut compression = mounting.compression(camera_mount, up, first.place, first.normal)?;
+    let first = footing(hub);
+    let mut compression = mounting.compression(hub, up, first.place, first.normal)?;
     let mut found = first;
     if surroundings.terrain.is_some() {
         // The wheel's axis leans: what it meets lies a little beside what is straight below.
-        found = footing(camera_mount + up * compression);
-        compression = mounting.compression(camera_mount, up, found.place, found.normal)?;
+        found = footing(hub + up * compression);
+        compression = mounting.compression(hub, up, found.place, found.normal)?;
     }
-    Some((compression, Footing { place: camera_mount + up * compression, ..found }))
+    Some((compression, Footing { place: hub + up * compression, ..found }))
 }
 
 /// [cos, sin] of the angle of each wheel: the front ones both point across the same turning centre (Ackermann).

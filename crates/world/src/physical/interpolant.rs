@@ -29,20 +29,14 @@ impl MotionHistory {
         for car in cars {
             let before = self.knots[self.knots.len() - self.cars];
             let mut knot = bodies.knot(car.body);
-            knot.acceleration = (knot.speed - before.speed) / h;
+            knot.motion.acceleration = (knot.motion.speed - before.motion.speed) / h;
             self.knots.push(knot);
         }
     }
 
     /// The motion of the vehicle in `slot` now.
     pub(super) fn last(&self, slot: usize) -> Motion {
-        let knot = self.knots[self.knots.len() - self.cars + slot];
-        Motion {
-            pose: knot.pose,
-            speed: knot.speed,
-            acceleration: knot.acceleration,
-            turn_rate: knot.turn_rate,
-        }
+        self.knots[self.knots.len() - self.cars + slot].motion
     }
 
     /// The motion `elapsed` s after the advance began: cubic Hermite curves between the knots.
@@ -54,7 +48,8 @@ impl MotionHistory {
         let along = (elapsed / self.step).clamp(0.0, steps as f64);
         let k = (along.floor() as usize).min(steps - 1);
         let u = along - k as f64;
-        let (a, b) = (&self.knots[k * self.cars + slot], &self.knots[(k + 1) * self.cars + slot]);
+        let [from, to] = [k, k + 1].map(|k| &self.knots[k * self.cars + slot]);
+        let (a, b) = (&from.motion, &to.motion);
         let curve = |p: f64, dp: f64, q: f64, dq: f64| {
             let (v, h) = (1.0 - u, self.step);
             v * v * (1.0 + 2.0 * u) * p + u * u * (3.0 - 2.0 * u) * q + u * v * h * (v * dp - u * dq)
@@ -63,8 +58,8 @@ impl MotionHistory {
         let turned = nearest_turn(b.pose.heading, a.pose.heading);
         Motion {
             pose: Pose {
-                x: curve(a.pose.x, a.velocity[0], b.pose.x, b.velocity[0]),
-                y: curve(a.pose.y, a.velocity[1], b.pose.y, b.velocity[1]),
+                x: curve(a.pose.x, from.velocity[0], b.pose.x, to.velocity[0]),
+                y: curve(a.pose.y, from.velocity[1], b.pose.y, to.velocity[1]),
                 heading: wrap(curve(a.pose.heading, a.turn_rate, turned, b.turn_rate)),
             },
             speed: mix(a.speed, b.speed),

@@ -173,7 +173,7 @@ fn the_observer_is_shown_tuned_and_explained() {
     assert_says(&self::panel(app_state(&told, 5), law::observer), &["This law is told the rates."]);
     let looking = with(THREE, &[("sensing", "{ kind = \"noise\" }")]);
     let mut panel = self::panel(app_state(&looking, 5), law::observer);
-    let actions = click(&mut panel, Role::CheckBox, "ε follows from the noise of each look");
+    let actions = click(&mut panel, Role::CheckBox, "ε follows from the noise of each measurement");
     assert_eq!(values(&actions, "observer.adaptive").len(), 1);
 }
 
@@ -196,7 +196,7 @@ fn sensing_is_shown_tuned_and_explained() {
             (symbols::DISTANCE_NOISE, "sensing.distance_noise", 0.01, 0.02),
         ],
     );
-    assert_says(&panel(app_state(&text, 60), sensing::show), &["left ", "last look", "ms ago"]);
+    assert_says(&panel(app_state(&text, 60), sensing::show), &["left ", "last measurement", "ms ago"]);
     let tags = with(THREE, &[("sensing", "{ kind = \"geometric\", pixel_noise = 0.3 }")]);
     check_rows(
         || app_state(&tags, 5),

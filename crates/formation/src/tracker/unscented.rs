@@ -2,7 +2,7 @@
 //! robots in formation*, ACC): one filter for the relative position, one for what it depends on and nobody tells, the
 //! leader's speed and turn rate.
 
-use super::{LookLaw, Own, innovation};
+use super::{Own, TrackerParameters, innovation};
 use crate::observer::Estimate;
 use crate::relative::Geometry;
 use nalgebra::{Cholesky, Matrix2, Matrix3, SMatrix, SVector, Vector2, Vector3};
@@ -17,7 +17,7 @@ pub struct Unscented {
     /// The leader's speed, m/s, and turn rate, rad/s.
     motion: Vector2<f64>,
     motion_covariance: Matrix2<f64>,
-    /// What position and covariance were at the last look, and what the follower did since.
+    /// What position and covariance were at the last measurement, and what the follower did since.
     before: Vector3<f64>,
     since: Vec<(Own, f64)>,
 }
@@ -30,11 +30,11 @@ const SPREAD: f64 = 3.0;
 const AT_FIRST: [f64; 2] = [1.0, 0.5];
 
 impl Unscented {
-    /// Begins at a look; the leader is taken to be as fast as its follower and to drive straight on.
-    pub(super) fn at(_law: &LookLaw, look: &Measurement, own_speed: f64) -> Self {
-        let Relative { distance, bearing, view_angle } = look.relative;
+    /// Begins at a measurement; the leader is taken to be as fast as its follower and to drive straight on.
+    pub(super) fn at(measurement: &Measurement, own_speed: f64) -> Self {
+        let Relative { distance, bearing, view_angle } = measurement.relative;
         let position = Vector3::new(distance, bearing, view_angle);
-        let variance = Vector3::from(look.deviation.map(|d| d * d + 1e-12));
+        let variance = Vector3::from(measurement.deviation.map(|d| d * d + 1e-12));
         Self {
             position,
             position_covariance: Matrix3::from_diagonal(&variance),
@@ -51,7 +51,7 @@ impl Unscented {
     }
 
     /// ŝ, its rates those of eqs 6-7 with the leader's motion as estimated.
-    pub(super) fn estimate(&self, law: &LookLaw, own_speed: f64) -> Estimate {
+    pub(super) fn estimate(&self, law: &TrackerParameters, own_speed: f64) -> Estimate {
         let geometry = Geometry::new(&self.relative(), law.observer.distance_min);
         let rates = geometry.rates(own_speed, self.motion.x, self.motion.y);
         Estimate { output: [self.position.x, self.position.y], rates: rates.into() }
@@ -62,7 +62,7 @@ impl Unscented {
         finite && self.motion_covariance.iter().all(|x| x.is_finite())
     }
 
-    pub(super) fn predict(&mut self, law: &LookLaw, own: Own, duration: f64) {
+    pub(super) fn predict(&mut self, law: &TrackerParameters, own: Own, duration: f64) {
         let motion = self.motion;
         let carried = |x: &Vector3<f64>| drive(x, &motion, own, duration, law.observer.distance_min);
         let (mean, covariance, _) = through(&self.position, &self.position_covariance, carried);
@@ -74,17 +74,17 @@ impl Unscented {
         self.motion_covariance += Matrix2::from_diagonal(&Vector2::from(walk)) * duration;
     }
 
-    pub(super) fn surprise(&self, look: &Measurement) -> f64 {
-        let off = Vector3::from(innovation(&look.relative, &self.relative()));
+    pub(super) fn surprise(&self, measurement: &Measurement) -> f64 {
+        let off = Vector3::from(innovation(&measurement.relative, &self.relative()));
         let motion = self.motion_covariance.diagonal();
         let age: f64 = self.since.iter().map(|(_, duration)| duration).sum();
         let unknown = Vector3::new(motion.x, motion.y + motion.x, motion.x) * (age * age);
-        let variance = self.position_covariance.diagonal() + noise(look).diagonal() + unknown;
+        let variance = self.position_covariance.diagonal() + noise(measurement).diagonal() + unknown;
         (0..3).map(|k| off[k].abs() / variance[k].max(1e-24).sqrt()).fold(0.0, f64::max)
     }
 
-    pub(super) fn correct(&mut self, law: &LookLaw, look: &Measurement) {
-        let noise = noise(look);
+    pub(super) fn correct(&mut self, law: &TrackerParameters, measurement: &Measurement) {
+        let noise = noise(measurement);
         let (before, since) = (self.before, std::mem::take(&mut self.since));
         let replay = |motion: &Vector2<f64>| {
             let step = |x: Vector3<f64>, (own, duration): &(Own, f64)| {
@@ -93,14 +93,14 @@ impl Unscented {
             since.iter().fold(before, step)
         };
         let (expected, covariance, cross) = through(&self.motion, &self.motion_covariance, replay);
-        let off = Vector3::from(innovation(&look.relative, &relative(&expected)));
+        let off = Vector3::from(innovation(&measurement.relative, &relative(&expected)));
         if let Some(inverse) = (covariance + noise + self.position_covariance).try_inverse() {
             let gain = cross * inverse;
             self.motion += gain * off;
             self.motion_covariance -= gain * cross.transpose();
             self.motion_covariance = sound(self.motion_covariance);
         }
-        let off = Vector3::from(innovation(&look.relative, &self.relative()));
+        let off = Vector3::from(innovation(&measurement.relative, &self.relative()));
         // What the motion filter did not know of the leader is uncertain in the position too.
         let prior = self.position_covariance + covariance;
         if let Some(inverse) = (prior + noise).try_inverse() {
@@ -116,8 +116,8 @@ fn relative(position: &Vector3<f64>) -> Relative {
     Relative { distance: position.x, bearing: position.y, view_angle: position.z }
 }
 
-fn noise(look: &Measurement) -> Matrix3<f64> {
-    Matrix3::from_diagonal(&Vector3::from(look.deviation.map(|d| d * d + 1e-12)))
+fn noise(measurement: &Measurement) -> Matrix3<f64> {
+    Matrix3::from_diagonal(&Vector3::from(measurement.deviation.map(|d| d * d + 1e-12)))
 }
 
 /// Symmetric, and positive on its diagonal.

@@ -1,4 +1,4 @@
-//! What estimates from looks have to show, on a pair of exact unicycles.
+//! What estimates from measurements have to show, on a pair of exact unicycles.
 
 use super::*;
 use vocabulary::math;
@@ -43,8 +43,8 @@ impl Pair {
     }
 }
 
-fn law(method: ObserverKind) -> LookLaw {
-    LookLaw {
+fn law(method: ObserverKind) -> TrackerParameters {
+    TrackerParameters {
         method,
         observer: Observer { epsilon: [0.03; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 },
         adaptive: false,
@@ -73,9 +73,9 @@ struct Shown {
     rejected: usize,
 }
 
-/// 6 s at 100 Hz with looks at 33 ms that arrive `late` periods after they were taken.
+/// 6 s at 100 Hz with measurements at 33 ms that arrive `late` periods after they were taken.
 fn run(
-    law: &LookLaw,
+    law: &TrackerParameters,
     deviation: [f64; 3],
     late: usize,
     mut look_at: impl FnMut(usize, &mut Measurement) -> bool,
@@ -91,19 +91,19 @@ fn run(
             relative.distance += deviation[0] * n(0);
             relative.bearing += deviation[1] * n(1);
             relative.view_angle += deviation[2] * n(2);
-            let mut look = Measurement { stamp: k as f64 * T, relative, deviation };
-            if look_at(k, &mut look) {
-                waiting.push_back((k + late, look));
+            let mut measurement = Measurement { stamp: k as f64 * T, relative, deviation };
+            if look_at(k, &mut measurement) {
+                waiting.push_back((k + late, measurement));
             }
         }
-        while let Some((_, look)) = waiting.pop_front_if(|(due, _)| *due <= k) {
-            match tracker.take(law, &look) {
+        while let Some((_, measurement)) = waiting.pop_front_if(|(due, _)| *due <= k) {
+            match tracker.take(law, &measurement) {
                 Outcome::Used => shown.used += 1,
                 _ => shown.rejected += 1,
             }
         }
         if k >= 400 {
-            let (truth, seen) = (pair.relative(), tracker.relative().expect("looked"));
+            let (truth, seen) = (pair.relative(), tracker.relative().expect("measured"));
             let off = innovation(&truth, &seen);
             for (worst, off) in shown.worst.iter_mut().zip(off) {
                 *worst = worst.max(off.abs());
@@ -136,7 +136,7 @@ const BIAS: f64 = 0.06;
 const QUIET: [f64; 3] = [1e-5, 1e-5, 1e-5];
 
 #[test]
-fn exact_looks_are_followed_and_latency_costs_next_to_nothing() {
+fn exact_measurements_are_followed_and_latency_costs_next_to_nothing() {
     for method in [ObserverKind::HighGain, ObserverKind::Unscented] {
         for late in [0, 1, 3] {
             let shown = run(&law(method), QUIET, late, |_, _| true);
@@ -145,7 +145,7 @@ fn exact_looks_are_followed_and_latency_costs_next_to_nothing() {
                 "{method:?} {late}: {:?}",
                 shown.worst
             );
-            // Rates are as old as the look; a disturbance of 1 changes them by as much as that is late.
+            // Rates are as old as the measurement; a disturbance of 1 changes them by as much as that is late.
             let most = BIAS + T * late as f64;
             assert!(shown.rates[0] < most && shown.rates[1] < most, "{method:?} {late}: {:?}", shown.rates);
             assert_eq!(shown.rejected, 0);
@@ -154,20 +154,20 @@ fn exact_looks_are_followed_and_latency_costs_next_to_nothing() {
 }
 
 #[test]
-fn a_third_of_the_looks_may_be_missing() {
+fn a_third_of_the_measurements_may_be_missing() {
     for method in [ObserverKind::HighGain, ObserverKind::Unscented] {
         let shown = run(&law(method), QUIET, 3, |k, _| noise(k as u64 + 7_000) > -0.7);
         assert!(shown.worst[0] < 2e-2 && shown.worst[1] < 2e-2, "{method:?}: {:?}", shown.worst);
     }
 }
 
-/// One flipped heading in ten looks: an observer that believed it would see 30 rad/s.
+/// One flipped heading in ten measurements: an observer that believed it would see 30 rad/s.
 #[test]
 fn outliers_are_not_believed() {
     for method in [ObserverKind::HighGain, ObserverKind::Unscented] {
-        let shown = run(&law(method), [2e-3, 8e-3, 5e-4], 1, |k, look| {
+        let shown = run(&law(method), [2e-3, 8e-3, 5e-4], 1, |k, measurement| {
             if k % 30 == 0 && k > 60 {
-                look.relative.bearing = wrap(look.relative.bearing + 0.6);
+                measurement.relative.bearing = wrap(measurement.relative.bearing + 0.6);
             }
             true
         });
@@ -177,19 +177,19 @@ fn outliers_are_not_believed() {
 }
 
 #[test]
-fn a_leader_that_is_truly_elsewhere_is_believed_at_the_third_look() {
+fn a_leader_that_is_truly_elsewhere_is_believed_at_the_third_measurement() {
     let law = law(ObserverKind::HighGain);
     let mut tracker = Tracker::default();
-    let look = |stamp, distance| Measurement {
+    let measurement = |stamp, distance| Measurement {
         stamp,
         relative: Relative { distance, bearing: -2.0, view_angle: -2.0 },
         deviation: [2e-3, 8e-3, 5e-4],
     };
-    assert_eq!(tracker.take(&law, &look(0.0, 2.0)), Outcome::Used);
+    assert_eq!(tracker.take(&law, &measurement(0.0, 2.0)), Outcome::Used);
     let outcomes: Vec<_> = (1..4)
         .map(|k| {
             tracker.advance(&law, Own::default(), T);
-            tracker.take(&law, &look(f64::from(k) * T, 5.0))
+            tracker.take(&law, &measurement(f64::from(k) * T, 5.0))
         })
         .collect();
     assert_eq!(outcomes, [Outcome::Rejected, Outcome::Rejected, Outcome::Used]);
@@ -198,21 +198,24 @@ fn a_leader_that_is_truly_elsewhere_is_believed_at_the_third_look() {
 
 #[test]
 fn noise_sets_the_time_constant() {
-    let law = LookLaw { adaptive: true, ..law(ObserverKind::HighGain) };
+    let law = TrackerParameters { adaptive: true, ..law(ObserverKind::HighGain) };
     let worst = |deviation| run(&law, deviation, 1, |_, _| true).rates[1];
     let (quiet, loud) = (worst([2e-4, 8e-4, 1e-4]), worst([2e-3, 8e-3, 5e-4]));
     // Ten times the noise costs less than ten times the error, as ε grows with it.
     assert!(loud > quiet && loud < 6.0 * quiet, "{quiet} {loud}");
-    let fixed =
-        LookLaw { adaptive: false, observer: Observer { epsilon: [0.001; 2], ..law.observer }, ..law };
+    let fixed = TrackerParameters {
+        adaptive: false,
+        observer: Observer { epsilon: [0.001; 2], ..law.observer },
+        ..law
+    };
     let paper = run(&fixed, [2e-3, 8e-3, 5e-4], 1, |_, _| true).rates[1];
     assert!(paper > 2.0 * loud, "{paper} {loud}");
 }
 
-/// The last look before the leader is hidden is bad, and says so: the prediction that follows must not run away.
+/// The last measurement before the leader is hidden is bad, and says so: the prediction that follows must not run away.
 #[test]
-fn a_look_that_doubts_itself_moves_little() {
-    let law = LookLaw { adaptive: true, ..law(ObserverKind::HighGain) };
+fn a_measurement_that_doubts_itself_moves_little() {
+    let law = TrackerParameters { adaptive: true, ..law(ObserverKind::HighGain) };
     let sure = [1e-3, 1e-3, 1e-4];
     let doubtful = sure.map(|d| 5.0 * d);
     let rate = |deviation: [f64; 3]| {
@@ -234,7 +237,7 @@ fn a_look_that_doubts_itself_moves_little() {
 #[test]
 fn a_hidden_leader_is_followed_by_how_it_went() {
     for method in [ObserverKind::HighGain, ObserverKind::Unscented] {
-        let law = LookLaw { hold: 2.0, adaptive: true, ..law(method) };
+        let law = TrackerParameters { hold: 2.0, adaptive: true, ..law(method) };
         let shown = run(&law, QUIET, 1, |k, _| !(410..510).contains(&k));
         // A tenth of what it drives in that second.
         assert!(shown.worst[0] < 0.1 && shown.worst[1] < 0.02, "{method:?}: {:?}", shown.worst);
@@ -246,12 +249,12 @@ fn sight_is_lost_with_time_and_comes_back() {
     let law = law(ObserverKind::HighGain);
     let mut tracker = Tracker::default();
     assert_eq!((tracker.sight(&law), tracker.relative()), (TrackingState::Waiting, None));
-    let look = |stamp| Measurement {
+    let measurement = |stamp| Measurement {
         stamp,
         relative: Relative { distance: 2.0, bearing: -2.0, view_angle: -2.0 },
         deviation: QUIET,
     };
-    tracker.take(&law, &look(0.0));
+    tracker.take(&law, &measurement(0.0));
     let mut seen = vec![];
     for k in 1..=80 {
         tracker.advance(&law, Own::default(), T);
@@ -262,12 +265,12 @@ fn sight_is_lost_with_time_and_comes_back() {
         (seen[4], seen[20], seen[60]),
         (TrackingState::Tracking, TrackingState::Coasting, TrackingState::Lost)
     );
-    tracker.take(&law, &look(0.8));
+    tracker.take(&law, &measurement(0.8));
     assert_eq!(tracker.sight(&law), TrackingState::Tracking);
 }
 
 #[test]
-fn no_look_breaks_it() {
+fn no_measurement_breaks_it() {
     let odd = [0.0, -1.0, 1e9, f64::NAN, f64::INFINITY, 1e-9];
     for method in [ObserverKind::HighGain, ObserverKind::Unscented] {
         let law = law(method);

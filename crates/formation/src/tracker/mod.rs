@@ -1,9 +1,10 @@
-//! Estimates from looks at the leader: one every few periods, late, noisy, sometimes missing or wrong.
+//! Estimates from measurements of the leader: one every few periods, late, noisy, sometimes missing or wrong.
 //!
-//! Between looks an estimate is carried on by the equations of the observer, driven by what the follower itself does.
-//! A look is put in at the instant it was taken, and what the follower did since is played again on top of it, so that
-//! latency costs nothing but that time's disturbance. [`high_gain`] is the observer of eqs 31-32 in discrete form,
-//! [`unscented`] a dual unscented Kalman filter to compare it with.
+//! Between measurements an estimate is carried on by the equations of the observer, driven by what the follower itself
+//! does.
+//! A measurement is put in at the instant it was taken, and what the follower did since is played again on top of it,
+//! so that latency costs nothing but that time's disturbance. [`high_gain`] is the observer of eqs 31-32 in discrete
+//! form, [`unscented`] a dual unscented Kalman filter to compare it with.
 
 pub mod high_gain;
 pub mod unscented;
@@ -14,33 +15,33 @@ use std::collections::VecDeque;
 use unscented::Unscented;
 use vocabulary::{Measurement, ObserverKind, Outcome, Relative, TrackingState, wrap};
 
-/// Parameters of an estimate from looks.
+/// Parameters of an estimate from measurements.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LookLaw {
-    /// How looks become an estimate.
+pub struct TrackerParameters {
+    /// How measurements become an estimate.
     pub method: ObserverKind,
     /// ε, α and ℓ_min.
     pub observer: Observer,
-    /// Whether ε follows from how certain the looks are.
+    /// Whether ε follows from how certain the measurements are.
     pub adaptive: bool,
     /// δ, [m/s², rad/s²]: what the leader does to d²s/dt², unknown to the follower.
     pub disturbance: [f64; 2],
-    /// Standard deviations beyond which a look is not believed.
+    /// Standard deviations beyond which a measurement is not believed.
     pub gate: f64,
-    /// Time between looks that is expected, s.
+    /// Time between measurements that is expected, s.
     pub interval: f64,
-    /// Time without a look after which the leader is lost, s.
+    /// Time without a measurement after which the leader is lost, s.
     pub hold: f64,
 }
 
-impl LookLaw {
-    /// Whether a look of this age, s, should have been followed by another.
+impl TrackerParameters {
+    /// Whether a measurement of this age, s, should have been followed by another.
     fn coasts(&self, age: f64) -> bool {
         age > 1.5 * self.interval + SLACK
     }
 }
 
-/// Looks may come this much later than they should, s: they wait for a control sample, and for their latency.
+/// Measurements may come this much later than they should, s: they wait for a control sample, and for their latency.
 const SLACK: f64 = 0.03;
 
 /// What the follower itself does over a stretch of time, as applied.
@@ -69,27 +70,27 @@ enum EdgeEstimator {
     Unscented(Box<Unscented>),
 }
 
-/// The estimate of one edge from looks.
+/// The estimate of one edge from measurements.
 #[derive(Debug, Clone, Default)]
 pub struct Tracker {
     now: f64,
     past: VecDeque<OwnMotion>,
-    /// What was believed right after the last look, at its instant.
+    /// What was believed right after the last measurement, at its instant.
     anchor: Option<(f64, EdgeEstimator)>,
     /// The same, carried on to now.
     current: Option<EdgeEstimator>,
-    /// Looks that were not believed, one after the other.
+    /// Measurements that were not believed, one after the other.
     rejected: u32,
 }
 
-/// The follower's past is kept for this long, s: no look is older.
+/// The follower's past is kept for this long, s: no measurement is older.
 const MEMORY: f64 = 4.0;
-/// A look this far from the prediction this many times in a row is right, and the prediction wrong.
+/// A measurement this far from the prediction this many times in a row is right, and the prediction wrong.
 const STUBBORN: u32 = 3;
 
 impl Tracker {
     /// Carries the estimate on over a period that has passed.
-    pub fn advance(&mut self, law: &LookLaw, own: Own, period: f64) {
+    pub fn advance(&mut self, law: &TrackerParameters, own: Own, period: f64) {
         let stretch = OwnMotion { from: self.now, until: self.now + period, own };
         let coasting = law.coasts(self.age());
         if let Some(belief) = &mut self.current {
@@ -102,63 +103,63 @@ impl Tracker {
         }
     }
 
-    /// Puts in a look that has arrived; what came of it.
-    pub fn take(&mut self, law: &LookLaw, look: &Measurement) -> Outcome {
+    /// Puts in a measurement that has arrived; what came of it.
+    pub fn take(&mut self, law: &TrackerParameters, measurement: &Measurement) -> Outcome {
         let finite =
             |r: &Relative| r.distance.is_finite() && r.bearing.is_finite() && r.view_angle.is_finite();
-        if !finite(&look.relative) || look.stamp < self.now - MEMORY {
+        if !finite(&measurement.relative) || measurement.stamp < self.now - MEMORY {
             return Outcome::Rejected;
         }
         let Some((time, belief)) = self.anchor.take() else {
-            self.restart(law, look);
+            self.restart(law, measurement);
             return Outcome::Used;
         };
-        // Looks come in the order of their stamps; one out of order adds nothing.
-        if look.stamp < time {
+        // Measurements come in the order of their stamps; one out of order adds nothing.
+        if measurement.stamp < time {
             self.anchor = Some((time, belief));
             return Outcome::Rejected;
         }
         if !belief.is_of(law.method) {
             // The method has changed since: it begins anew.
-            self.restart(law, look);
+            self.restart(law, measurement);
             return Outcome::Used;
         }
-        let mut at_look = belief.clone();
-        self.replay(law, &mut at_look, time, look.stamp);
-        let age = (look.stamp - time).max(1e-6);
-        if at_look.surprise(law, look, age) > law.gate {
+        let mut at_measurement = belief.clone();
+        self.replay(law, &mut at_measurement, time, measurement.stamp);
+        let age = (measurement.stamp - time).max(1e-6);
+        if at_measurement.surprise(law, measurement, age) > law.gate {
             self.rejected += 1;
             if self.rejected < STUBBORN {
                 self.anchor = Some((time, belief));
                 return Outcome::Rejected;
             }
-            self.restart(law, look);
+            self.restart(law, measurement);
             return Outcome::Used;
         }
         self.rejected = 0;
-        at_look.correct(law, look, age);
-        if !at_look.is_finite() {
-            self.restart(law, look);
+        at_measurement.correct(law, measurement, age);
+        if !at_measurement.is_finite() {
+            self.restart(law, measurement);
             return Outcome::Used;
         }
-        self.settle(law, look.stamp, at_look);
+        self.settle(law, measurement.stamp, at_measurement);
         Outcome::Used
     }
 
-    /// Begins anew at a look, rates zero.
-    fn restart(&mut self, law: &LookLaw, look: &Measurement) {
+    /// Begins anew at a measurement, rates zero.
+    fn restart(&mut self, law: &TrackerParameters, measurement: &Measurement) {
         self.rejected = 0;
-        let own = self.past.iter().find(|s| look.stamp <= s.until).or(self.past.back());
+        let own = self.past.iter().find(|s| measurement.stamp <= s.until).or(self.past.back());
         let speed = own.map_or(0.0, |s| s.own.speed);
         let belief = match law.method {
-            ObserverKind::HighGain => EdgeEstimator::HighGain(HighGain::at(look)),
-            ObserverKind::Unscented => EdgeEstimator::Unscented(Box::new(Unscented::at(law, look, speed))),
+            ObserverKind::HighGain => EdgeEstimator::HighGain(HighGain::at(measurement)),
+            ObserverKind::Unscented => EdgeEstimator::Unscented(Box::new(Unscented::at(measurement, speed))),
         };
-        self.settle(law, look.stamp, belief);
+        self.settle(law, measurement.stamp, belief);
     }
 
     /// What is believed at `stamp` becomes the anchor, and is carried on to now.
-    fn settle(&mut self, law: &LookLaw, stamp: f64, belief: EdgeEstimator) {
+    fn settle(&mut self, law: &TrackerParameters, stamp: f64, belief: EdgeEstimator) {
         let mut current = belief.clone();
         self.replay(law, &mut current, stamp, self.now);
         self.anchor = Some((stamp, belief));
@@ -166,7 +167,7 @@ impl Tracker {
     }
 
     /// Carries `belief` from one instant to another by what the follower did.
-    fn replay(&self, law: &LookLaw, belief: &mut EdgeEstimator, from: f64, until: f64) {
+    fn replay(&self, law: &TrackerParameters, belief: &mut EdgeEstimator, from: f64, until: f64) {
         for stretch in self.past.iter().filter(|s| s.until > from && s.from < until) {
             let (start, end) = (from.max(stretch.from), until.min(stretch.until));
             let coasting = law.coasts(stretch.from - from);
@@ -174,27 +175,25 @@ impl Tracker {
         }
     }
 
-    /// Adds to the estimate as it stands, [m, rad] and [m/s, rad/s]: to watch it recover.
-    pub fn disturb(&mut self, output: [f64; 2], rates: [f64; 2]) {
+    /// Adds to the estimate as it stands, [m, rad].
+    pub fn disturb(&mut self, output: [f64; 2]) {
         let beliefs = self.anchor.iter_mut().map(|(_, belief)| belief).chain(&mut self.current);
         for belief in beliefs {
             if let EdgeEstimator::HighGain(belief) = belief {
-                for k in 0..2 {
-                    belief.estimate.output[k] += output[k];
-                    belief.estimate.rates[k] += rates[k];
-                }
+                belief.estimate.output[0] += output[0];
+                belief.estimate.output[1] += output[1];
             }
         }
     }
 
-    /// Where the follower is believed to be relative to its leader now; `None` before the first look.
+    /// Where the follower is believed to be relative to its leader now; `None` before the first measurement.
     pub fn relative(&self) -> Option<Relative> {
         let Relative { distance, bearing, view_angle } = self.current.as_ref()?.relative();
         Some(Relative { distance, bearing: wrap(bearing), view_angle: wrap(view_angle) })
     }
 
-    /// ŝ now; at rest and where it is before the first look.
-    pub fn estimate(&self, law: &LookLaw) -> Estimate {
+    /// ŝ now; at rest and where it is before the first measurement.
+    pub fn estimate(&self, law: &TrackerParameters) -> Estimate {
         self.current.as_ref().map_or_else(Estimate::default, |belief| belief.estimate(law, self.own_speed()))
     }
 
@@ -202,13 +201,13 @@ impl Tracker {
         self.past.back().map_or(0.0, |s| s.own.speed + s.own.acceleration * (s.until - s.from))
     }
 
-    /// Time since the look that the estimate rests on, s; since the start before there was one.
+    /// Time since the measurement that the estimate rests on, s; since the start before there was one.
     pub fn age(&self) -> f64 {
         self.anchor.as_ref().map_or(self.now, |(time, _)| self.now - time)
     }
 
     /// Whether the leader counts as seen.
-    pub fn sight(&self, law: &LookLaw) -> TrackingState {
+    pub fn sight(&self, law: &TrackerParameters) -> TrackingState {
         let age = self.age();
         if age > law.hold {
             TrackingState::Lost
@@ -231,7 +230,7 @@ impl EdgeEstimator {
     }
 
     /// Carries it on over `duration` s of a stretch that began `since` s before.
-    fn predict(&mut self, law: &LookLaw, own: Own, [since, duration]: [f64; 2], coasting: bool) {
+    fn predict(&mut self, law: &TrackerParameters, own: Own, [since, duration]: [f64; 2], coasting: bool) {
         let own = Own { speed: own.speed + own.acceleration * since, ..own };
         match self {
             Self::HighGain(belief) => belief.predict(law, own, duration, coasting),
@@ -239,18 +238,18 @@ impl EdgeEstimator {
         }
     }
 
-    /// How far a look is from what was expected, in standard deviations.
-    fn surprise(&self, law: &LookLaw, look: &Measurement, age: f64) -> f64 {
+    /// How far a measurement is from what was expected, in standard deviations.
+    fn surprise(&self, law: &TrackerParameters, measurement: &Measurement, age: f64) -> f64 {
         match self {
-            Self::HighGain(belief) => belief.surprise(law, look, age),
-            Self::Unscented(belief) => belief.surprise(look),
+            Self::HighGain(belief) => belief.surprise(law, measurement, age),
+            Self::Unscented(belief) => belief.surprise(measurement),
         }
     }
 
-    fn correct(&mut self, law: &LookLaw, look: &Measurement, age: f64) {
+    fn correct(&mut self, law: &TrackerParameters, measurement: &Measurement, age: f64) {
         match self {
-            Self::HighGain(belief) => belief.correct(law, look, age),
-            Self::Unscented(belief) => belief.correct(law, look),
+            Self::HighGain(belief) => belief.correct(law, measurement, age),
+            Self::Unscented(belief) => belief.correct(law, measurement),
         }
     }
 
@@ -261,7 +260,7 @@ impl EdgeEstimator {
         }
     }
 
-    fn estimate(&self, law: &LookLaw, own_speed: f64) -> Estimate {
+    fn estimate(&self, law: &TrackerParameters, own_speed: f64) -> Estimate {
         match self {
             Self::HighGain(belief) => belief.estimate,
             Self::Unscented(belief) => belief.estimate(law, own_speed),
@@ -279,12 +278,12 @@ impl EdgeEstimator {
     }
 }
 
-/// What a look says less what was expected, angles wrapped.
-fn innovation(look: &Relative, expected: &Relative) -> [f64; 3] {
+/// What a measurement says less what was expected, angles wrapped.
+fn innovation(measurement: &Relative, expected: &Relative) -> [f64; 3] {
     [
-        look.distance - expected.distance,
-        wrap(look.bearing - expected.bearing),
-        wrap(look.view_angle - expected.view_angle),
+        measurement.distance - expected.distance,
+        wrap(measurement.bearing - expected.bearing),
+        wrap(measurement.view_angle - expected.view_angle),
     ]
 }
 

@@ -1,6 +1,7 @@
-//! The high-gain observer on looks: eqs 31-32 without innovation between looks, a discrete correction at each.
+//! The high-gain observer on measurements: eqs 31-32 without innovation between measurements, a discrete correction at
+//! each.
 
-use super::{LookLaw, Own, innovation};
+use super::{Own, TrackerParameters, innovation};
 use crate::observer::{Estimate, Observer, input_effect};
 use crate::relative::Geometry;
 use vocabulary::math;
@@ -14,13 +15,13 @@ pub struct HighGain {
     view_angle: f64,
     /// How fast the line to the leader turns in the world, rad/s; dγ/dt is that less the follower's turn rate.
     line_rate: f64,
-    /// Variances of the looks, smoothed.
+    /// Variances of the measurements, smoothed.
     variance: [f64; 3],
 }
 
-/// Share of a look's own variance in the smoothed one.
+/// Share of a measurement's own variance in the smoothed one.
 const SMOOTHING: f64 = 0.2;
-/// ε that follows from noise stays above this share of the time between looks, and below this time, s.
+/// ε that follows from noise stays above this share of the time between measurements, and below this time, s.
 const EPSILON: [f64; 2] = [0.25, 0.3];
 /// How much stronger than δ a leader's sudden moves are.
 const SUDDEN: f64 = 8.0;
@@ -31,13 +32,13 @@ const STEP: f64 = 0.02;
 type State = [f64; 6];
 
 impl HighGain {
-    /// Begins at a look with rates of zero.
-    pub(super) fn at(look: &Measurement) -> Self {
+    /// Begins at a measurement with rates of zero.
+    pub(super) fn at(measurement: &Measurement) -> Self {
         Self {
-            estimate: Estimate::at(&look.relative),
-            view_angle: look.relative.view_angle,
+            estimate: Estimate::at(&measurement.relative),
+            view_angle: measurement.relative.view_angle,
             line_rate: 0.0,
-            variance: look.deviation.map(|d| d * d),
+            variance: measurement.deviation.map(|d| d * d),
         }
     }
 
@@ -48,9 +49,10 @@ impl HighGain {
     }
 
     /// Carries on over `duration` s in midpoint steps. The line turns with the bearing but for the leader's own turn,
-    /// so both have the same second derivative where that turn is steady. While looks come in, what the leader does is the
-    /// unknown that they make up for; when they stay out (`coasting`) it is taken to keep its speed and turn rate.
-    pub(super) fn predict(&mut self, law: &LookLaw, own: Own, duration: f64, coasting: bool) {
+    /// so both have the same second derivative where that turn is steady. While measurements come in, what the leader
+    /// does is the unknown that they make up for; when they stay out (`coasting`) it is taken to keep its speed and
+    /// turn rate.
+    pub(super) fn predict(&mut self, law: &TrackerParameters, own: Own, duration: f64, coasting: bool) {
         let steps = (duration / STEP).ceil().max(1.0);
         let h = duration / steps;
         for k in 0..steps as usize {
@@ -74,10 +76,10 @@ impl HighGain {
         (self.view_angle, self.line_rate) = (view_angle, line_rate);
     }
 
-    /// How far a look is from what was expected, in standard deviations: those of the look, of the estimate it meets,
-    /// and what the leader may have done unseen in `age` s.
-    pub(super) fn surprise(&self, law: &LookLaw, look: &Measurement, age: f64) -> f64 {
-        let off = innovation(&look.relative, &self.relative());
+    /// How far a measurement is from what was expected, in standard deviations: those of the measurement, of the
+    /// estimate it meets, and what the leader may have done unseen in `age` s.
+    pub(super) fn surprise(&self, law: &TrackerParameters, measurement: &Measurement, age: f64) -> f64 {
+        let off = innovation(&measurement.relative, &self.relative());
         let unseen = |k: usize| {
             let delta = law.disturbance[k.min(1)];
             // Rates are known about as well as ε allows, and what is unknown acts for `age` more. A leader may do more
@@ -86,23 +88,25 @@ impl HighGain {
             0.5 * SUDDEN * delta * reach * reach
         };
         let share = |k: usize| {
-            let variance = math::powi(look.deviation[k], 2) + self.variance[k] + math::powi(unseen(k), 2);
+            let variance =
+                math::powi(measurement.deviation[k], 2) + self.variance[k] + math::powi(unseen(k), 2);
             off[k].abs() / variance.max(1e-24).sqrt()
         };
         (0..3).map(share).fold(0.0, f64::max)
     }
 
-    /// Corrects each channel with L = [1 − p², (1 − p)²/Δt], p = e^(−Δt/ε), Δt the time since the last look. A look that is
-    /// less certain than those before, such as the last one of a tag that slips behind a pillar, corrects less.
-    pub(super) fn correct(&mut self, law: &LookLaw, look: &Measurement, age: f64) {
+    /// Corrects each channel with L = [1 − p², (1 − p)²/Δt], p = e^(−Δt/ε), Δt the time since the last measurement. A
+    /// measurement that is less certain than those before, such as the last one of a tag that slips behind a pillar,
+    /// corrects less.
+    pub(super) fn correct(&mut self, law: &TrackerParameters, measurement: &Measurement, age: f64) {
         let trust: [f64; 3] = std::array::from_fn(|k| {
-            let ratio = math::powi(look.deviation[k], 2) / self.variance[k].max(1e-24);
+            let ratio = math::powi(measurement.deviation[k], 2) / self.variance[k].max(1e-24);
             if ratio > 1.0 { 2.0 / (1.0 + ratio) } else { 1.0 }
         });
-        for (variance, deviation) in self.variance.iter_mut().zip(look.deviation) {
+        for (variance, deviation) in self.variance.iter_mut().zip(measurement.deviation) {
             *variance += SMOOTHING * (deviation * deviation - *variance);
         }
-        let off = innovation(&look.relative, &self.relative());
+        let off = innovation(&measurement.relative, &self.relative());
         for k in 0..2 {
             let [position, rate] = gain(&law.observer, k, self.epsilon(law, k, age), age);
             self.estimate.output[k] += trust[k] * position * off[k];
@@ -113,8 +117,9 @@ impl HighGain {
         self.line_rate += trust[2] * rate * off[2];
     }
 
-    /// ε of a channel, s: as given, or the one at which what noise and disturbance do to the rates is least in sum, ε⁵ = 3σ²T/(32 δ²).
-    fn epsilon(&self, law: &LookLaw, channel: usize, age: f64) -> f64 {
+    /// ε of a channel, s: as given, or the one at which what noise and disturbance do to the rates is least in sum, ε⁵
+    /// = 3σ²T/(32 δ²).
+    fn epsilon(&self, law: &TrackerParameters, channel: usize, age: f64) -> f64 {
         if !law.adaptive {
             return law.observer.epsilon[channel.min(1)];
         }
@@ -125,8 +130,8 @@ impl HighGain {
     }
 }
 
-/// Gains on position [1] and rate [1/s] after `age` s without a look: the poles of s² + α1 s + α2 at ε, taken through
-/// e^(s Δt).
+/// Gains on position [1] and rate [1/s] after `age` s without a measurement: the poles of s² + α1 s + α2 at ε, taken
+/// through e^(s Δt).
 fn gain(observer: &Observer, channel: usize, epsilon: f64, age: f64) -> [f64; 2] {
     let (a1, a2) = (observer.alpha1[channel], observer.alpha2[channel]);
     let reach = age / epsilon;
@@ -160,7 +165,8 @@ fn slope(x: &State, distance_min: f64, own: Own, coasting: bool) -> State {
     [dd, db, second.x, second.y, line_rate - own.turn_rate, second.y]
 }
 
-/// What the leader does by the rates that are believed: eqs 6-7 solved for its speed, along its heading, and its turn rate.
+/// What the leader does by the rates that are believed: eqs 6-7 solved for its speed, along its heading, and its turn
+/// rate.
 fn leader(geometry: &Geometry, &[_, _, dd, db, _, line_rate]: &State, own: Own) -> MotionInput {
     let along = own.speed * geometry.cos_view - dd;
     let across = line_rate * geometry.distance + own.speed * geometry.sin_view;
