@@ -10,6 +10,7 @@ use studies::certify::{
     StatementFinding, StatementOutcome,
 };
 use vocabulary::Word;
+use vocabulary::math;
 
 /// Edges that are told statement by statement; the others have a line each.
 const IN_FULL: usize = 2;
@@ -281,7 +282,7 @@ fn chain(report: &CertifyReport<'_>, beyond: &Beyond) {
             gain.depth
         ));
         let slow = gain.curve.iter().min_by(|a, b| {
-            let off = |p: &GainPoint| (p.frequency / SLOW).ln().abs();
+            let off = |p: &GainPoint| math::ln(p.frequency / SLOW).abs();
             off(a).total_cmp(&off(b))
         });
         let lengths: Vec<String> = LENGTHS
@@ -328,6 +329,6 @@ pub(super) fn short(value: f64) -> String {
     if !(1e-4..1e6).contains(&size) {
         return format!("{value:.2e}");
     }
-    let digits = (2 - size.log10().floor() as i32).max(0) as usize;
+    let digits = (2 - math::log10(size).floor() as i32).max(0) as usize;
     format!("{value:.digits$}")
 }

@@ -1,6 +1,7 @@
 //! All of a run in one picture, as under a stroboscope: pictures from one place, and of each what moved.
 
 use rendering::Viewpoint;
+use vocabulary::math;
 use vocabulary::{FleetInfo, Picture, StepRecord};
 
 /// Vertical field of view, rad.
@@ -35,12 +36,12 @@ pub(super) fn view(records: &[StepRecord], fleet: &FleetInfo, aspect: f64) -> Vi
 
 /// The nearest place from which all points are seen when looking along `heading`, and how far its eye is from them.
 fn stand(points: &[[f64; 3]], heading: f64, aspect: f64) -> (Viewpoint, f64) {
-    let (sin, cos) = heading.sin_cos();
-    let forward = [cos * PITCH.cos(), sin * PITCH.cos(), -PITCH.sin()];
+    let (sin, cos) = math::sin_cos(heading);
+    let forward = [cos * math::cos(PITCH), sin * math::cos(PITCH), -math::sin(PITCH)];
     let right = [sin, -cos, 0.0];
-    let up = [cos * PITCH.sin(), sin * PITCH.sin(), PITCH.cos()];
+    let up = [cos * math::sin(PITCH), sin * math::sin(PITCH), math::cos(PITCH)];
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let high = FILL * (0.5 * FIELD).tan();
+    let high = FILL * math::tan(0.5 * FIELD);
     let wide = high * aspect;
     // Each side of the picture is a plane through the eye: the farthest point beyond it bounds the eye.
     let most =
@@ -118,10 +119,12 @@ mod tests {
             for p in points {
                 let d = [0, 1, 2].map(|k| p[k] - eye[k]);
                 let depth: f64 = (0..3).map(|k| d[k] * forward[k]).sum();
-                let (sin, cos) = heading.sin_cos();
-                let (across, rise) =
-                    (d[0] * sin - d[1] * cos, (d[0] * cos + d[1] * sin) * PITCH.sin() + d[2] * PITCH.cos());
-                let most = (0.5 * FIELD).tan() * depth;
+                let (sin, cos) = math::sin_cos(heading);
+                let (across, rise) = (
+                    d[0] * sin - d[1] * cos,
+                    (d[0] * cos + d[1] * sin) * math::sin(PITCH) + d[2] * math::cos(PITCH),
+                );
+                let most = math::tan(0.5 * FIELD) * depth;
                 assert!(depth > 0.9 && rise.abs() < most && across.abs() < 1.6 * most, "{heading}: {p:?}");
             }
         }
