@@ -1,4 +1,4 @@
-//! Simulated seconds per second: columns of 3 to 1000 robots under each law, nothing recorded.
+//! Simulated seconds per second: columns of 3 to 1000 robots under each law, and shipped scenes; nothing recorded.
 //!
 //! Throughput is in steps; at the control period of 10 ms a hundred steps are a second, so 500 000 steps a second
 //! are 5000 times real time.
@@ -49,5 +49,39 @@ fn seconds_per_second(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, seconds_per_second);
+/// Every kind of vehicle, a yard of props, noise, geometric sensing and continuous time: shipped scenes over a second.
+fn shipped_scenes(c: &mut Criterion) {
+    let mut group = c.benchmark_group("shipped");
+    group.sample_size(20);
+    for (name, what, set) in [
+        ("cars-seven-v", "own", None),
+        ("cars-mixed", "own", None),
+        ("cars-yard", "own", None),
+        ("cars-rough", "own", None),
+        ("seven-v", "noise", Some("sensing.kind=noise")),
+        ("circle-three", "geometric", Some("sensing.kind=geometric")),
+        ("circle-three", "continuous", Some("time.mode=continuous")),
+    ] {
+        let shipped = scene::shipped(name).expect("a shipped scene");
+        let set = ["time.duration=1.0"].into_iter().chain(set);
+        let set: Vec<_> = set.map(|text| text.parse().expect("an override")).collect();
+        let loaded = Scene::parse(shipped.text, name, &set).expect("a scene");
+        let setup = build(&loaded.scene).expect("a formation");
+        group.throughput(Throughput::Elements(STEPS));
+        group.bench_with_input(BenchmarkId::new(name, what), &setup, |b, setup| {
+            b.iter_batched_ref(
+                || Simulation::new(setup.clone()),
+                |run| {
+                    while let Some(record) = run.next_record() {
+                        black_box(record);
+                    }
+                },
+                criterion::BatchSize::LargeInput,
+            );
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, seconds_per_second, shipped_scenes);
 criterion_main!(benches);
