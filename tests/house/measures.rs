@@ -19,7 +19,7 @@ pub(crate) struct Measures {
     judging: BTreeSet<String>,
     /// Lines of the program in files that run or judge a scene themselves.
     program: usize,
-    /// Lines of code and comments.
+    /// Lines of code, without comments, blank lines and unit tests.
     lines: usize,
 }
 
@@ -44,7 +44,7 @@ impl Measures {
     fn read(&mut self, member: &str, path: &Path, text: &str) {
         let shown = path.display().to_string();
         let file = syn::parse_file(text).unwrap_or_else(|error| panic!("{shown}: {error}"));
-        let lines = text.lines().take_while(|line| *line != "#[cfg(test)]").count();
+        let lines = lines_of_code(path, text);
         self.lines += lines;
         let mut reader = Reader { measures: self, member, shown: &shown, uses: BTreeSet::new() };
         reader.visit_file(&file);
@@ -100,8 +100,17 @@ impl fmt::Display for Measures {
         writeln!(f, "files that decide what is judged           {}", self.judging.len())?;
         writeln!(f, "types with scattered methods              {}", self.scattered().count())?;
         writeln!(f, "lines of the README                       {}", readme.lines().count())?;
-        writeln!(f, "production lines                          {}", self.lines)
+        writeln!(f, "production lines of code                  {}", self.lines)
     }
+}
+
+/// Lines of a file that are neither blank nor a comment, up to the module of its unit tests.
+fn lines_of_code(path: &Path, text: &str) -> usize {
+    if path.ends_with("tests.rs") {
+        return 0;
+    }
+    let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or(text);
+    code.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//")).count()
 }
 
 /// Walks one file.
