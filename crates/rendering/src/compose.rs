@@ -10,6 +10,7 @@ use crate::gpu::passes::frame::FrameUniforms;
 use crate::gpu::passes::ground::TILE;
 use crate::gpu::passes::shadow::{ShadowPass, SunView, sun_view};
 use crate::ground::floor::DrivableSurface;
+use crate::ground::trail::sizes;
 use crate::picture_context::PictureContext;
 use crate::picture_plan::{Area, PicturePlan, overlap};
 use glam::{DVec2, DVec3};
@@ -61,7 +62,7 @@ fn robots_within(fleet: &FleetInfo, record: &StepRecord) -> Option<(DVec3, f64)>
     };
     let low = places().fold(DVec3::INFINITY, DVec3::min);
     let high = places().fold(DVec3::NEG_INFINITY, DVec3::max);
-    let size = fleet.robots.iter().map(|m| crate::gpu::model::size(&m.body)).fold(1.0, f64::max);
+    let size = sizes(fleet).max(1.0);
     low.is_finite().then(|| ((low + high) * 0.5, (0.5 * low.distance(high) + 0.8 * size).min(40.0)))
 }
 

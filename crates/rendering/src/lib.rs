@@ -26,6 +26,7 @@ mod camera;
 mod compose;
 mod composition;
 mod error;
+mod fleet_model;
 mod gpu;
 mod ground;
 mod palette;

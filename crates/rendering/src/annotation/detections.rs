@@ -274,9 +274,9 @@ fn report(words: &mut LabelPlacer<'_>, tile: Tile, leader: &str, frame: &Measure
 mod tests {
     use super::*;
     use crate::camera::onboard::onboard;
-    use crate::ground::floor::Floor;
+    use crate::fleet_model::FleetModel;
     use crate::{Style, Trail};
-    use glam::{DVec2, DVec3};
+    use glam::DVec3;
     use vocabulary::{Body, FleetInfo, Pose, RobotState, Snapshot, StepRecord};
 
     /// A leader that drives past, and a follower that drives and turns while its camera pans, at a time.
@@ -297,22 +297,10 @@ mod tests {
             edges: vec![edge],
             ..FleetInfo::default()
         };
-        let (trail, style) = (Trail::new(&fleet), Style::default());
+        let (model, trail, style) = (FleetModel::new(&fleet), Trail::new(&fleet), Style::default());
         for rates in [[0.0; 3], [0.0, 1.5, 0.0], [1.0, -1.5, 0.0], [0.8, 0.0, 0.0], [0.3, 0.2, 0.8]] {
             let (then, now) = (record(0.45, rates), record(0.5, rates));
-            let context = PictureContext {
-                fleet: &fleet,
-                floor: &Floor::new(&fleet),
-                colours: &[vocabulary::colours::LEAD; 2],
-                trail: &trail,
-                record: &now,
-                style: &style,
-                origin: DVec3::ZERO,
-                sun: DVec3::Z,
-                size: 1.0,
-                shadowed: (DVec2::ZERO, 1.0),
-                detail: 1.0,
-            };
+            let context = PictureContext::new(&model, &trail, &now, &style);
             // The leader's middle, as the camera saw it at the look.
             let [leader, own] = [0, 1].map(|k| then.snapshot.robots[k]);
             let Pose { x, y, .. } = leader.motion.pose;

@@ -10,7 +10,7 @@ use crate::ground::decal_builder::RING;
 use crate::ground::trail::set_points;
 use crate::palette::{self, Rgb};
 use crate::picture_context::PictureContext;
-use crate::picture_plan::{Area, area, overlap};
+use crate::picture_plan::{Area, overlap};
 use crate::{Viewpoint, camera::viewpoint::Tile};
 use glam::{DVec2, DVec3, Vec2};
 use vocabulary::{Condition, RobotInfo, RobotState};
@@ -81,7 +81,7 @@ impl<'a> LabelPlacer<'a> {
 
     /// A thin frame around a tile, from which words keep away.
     pub(crate) fn framed(&mut self, tile: Tile) {
-        let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
+        let [x, y, width, height] = tile.area();
         let thick = self.scaled(1.5);
         let [a, b] = [Vec2::new(x, y), Vec2::new(x + width, y + height)];
         let (c, d) = (Vec2::new(b.x, a.y), Vec2::new(a.x, b.y));
@@ -89,7 +89,7 @@ impl<'a> LabelPlacer<'a> {
         for (from, to) in [(a, c), (c, b), (b, d), (d, a)] {
             self.shapes.line(from, to, thick, [red, green, blue, 0.95]);
         }
-        self.reserve(area(&tile));
+        self.reserve(tile.area());
     }
 
     pub(crate) fn scaled(&self, size: f32) -> f32 {
@@ -397,7 +397,7 @@ pub(crate) fn detail(robots: usize) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ground::floor::Floor;
+    use crate::fleet_model::FleetModel;
     use crate::{Style, Trail};
     use vocabulary::{Body, FleetInfo, Pose, Snapshot, StepRecord};
 
@@ -412,19 +412,8 @@ mod tests {
             ..StepRecord::default()
         };
         let (trail, style) = (Trail::new(&fleet), Style::default());
-        let context = PictureContext {
-            fleet: &fleet,
-            floor: &Floor::new(&fleet),
-            colours: &[vocabulary::colours::LEAD],
-            trail: &trail,
-            record: &record,
-            style: &style,
-            origin: DVec3::ZERO,
-            sun: DVec3::Z,
-            size: 1.0,
-            shadowed: (DVec2::ZERO, 1.0),
-            detail: 1.0,
-        };
+        let model = FleetModel::new(&fleet);
+        let context = PictureContext::new(&model, &trail, &record, &style);
         let camera = Camera::looking(DVec3::new(-2.0, 2.0, 1.5), DVec3::new(1.0, 2.0, 0.0), 0.7, 1.0);
         let window = Window { camera: &camera, tile: Tile { x: 100, y: 0, width: 400, height: 400 } };
         let boxes = robot_boxes(&context, window);

@@ -16,8 +16,9 @@ use crate::camera::smoothing::{Extent, SmoothedFormation};
 use crate::camera::snake::snake;
 use crate::camera::transition::between;
 use crate::ground::floor::Floor;
+use crate::picture_context::PictureContext;
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
-use vocabulary::{Edge, FleetInfo, Snapshot};
+use vocabulary::{Edge, Snapshot};
 
 /// Whence and how a picture is seen; only cameras on robots roll.
 #[derive(Debug, Clone, Copy)]
@@ -48,14 +49,9 @@ pub(crate) const REACH: f64 = 0.28;
 
 impl Camera {
     /// The camera of `view`, which keeps robots in `room` where it can.
-    pub(crate) fn of(
-        view: &Viewpoint,
-        smoothed: &SmoothedFormation,
-        snapshot: &Snapshot,
-        fleet: &FleetInfo,
-        floor: &Floor,
-        room: &FreeSpace,
-    ) -> Self {
+    pub(crate) fn of(view: &Viewpoint, context: &PictureContext<'_>, room: &FreeSpace) -> Self {
+        let PictureContext { fleet, floor, .. } = *context;
+        let (smoothed, snapshot) = (&context.trail.smoothed, &context.record.snapshot);
         let aspect = room.aspect();
         let mut camera = match view {
             Viewpoint::Snake => snake(smoothed, room),
@@ -71,8 +67,7 @@ impl Camera {
                 return Self::looking(eye, target, *field_of_view, aspect);
             }
             Viewpoint::Between(from, to, share) => {
-                let [from, to] =
-                    [from, to].map(|view| Self::of(view, smoothed, snapshot, fleet, floor, room));
+                let [from, to] = [from, to].map(|view| Self::of(view, context, room));
                 return between(&from, &to, *share, smoothed);
             }
         };

@@ -169,6 +169,13 @@ pub struct Tile {
     pub height: u32,
 }
 
+impl Tile {
+    /// Left, top, width and height, pixels.
+    pub(crate) fn area(&self) -> [f32; 4] {
+        [self.x, self.y, self.width, self.height].map(|n| n as f32)
+    }
+}
+
 impl ViewLayout {
     /// A single view.
     pub fn single(view: Viewpoint) -> Self {

@@ -1,7 +1,7 @@
 //! Where the props of a moment stand, and what they are made of.
 
+use crate::gpu::passes::instanced::Instance;
 use crate::gpu::passes::prop::{PropAppearance, PropInstances};
-use crate::gpu::passes::robot::Instance;
 use crate::palette::{Rgb, hex, linear};
 use crate::picture_context::PictureContext;
 use glam::{DQuat, DVec3, Mat4};

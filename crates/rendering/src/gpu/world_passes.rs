@@ -2,6 +2,7 @@
 
 use crate::Gpu;
 use crate::camera::Camera;
+use crate::fleet_model::FleetModel;
 use crate::gpu::model::Detail;
 use crate::gpu::passes::Canvas;
 use crate::gpu::passes::asphalt::Asphalt;
@@ -14,10 +15,7 @@ use crate::gpu::passes::shadow::ShadowPass;
 use crate::gpu::passes::sky::SkyPass;
 use crate::gpu::passes::tag::TagPass;
 use crate::gpu::passes::terrain::TerrainPass;
-use crate::gpu::robot_models::RobotModels;
-use crate::ground::floor::Floor;
 use std::ops::Range;
-use vocabulary::FleetInfo;
 
 /// Every pass with what it keeps on the device.
 #[derive(Debug)]
@@ -56,19 +54,11 @@ pub(crate) struct SceneView<'a> {
 
 impl WorldPasses {
     /// `shadows` is the side of the shadow map in texels.
-    pub(crate) fn new(
-        gpu: &Gpu,
-        canvas: Canvas,
-        fleet: &FleetInfo,
-        robot_models: &RobotModels,
-        floor: &Floor,
-        detail: Detail,
-        shadows: u32,
-    ) -> Self {
-        let (device, queue) = (&gpu.device, &gpu.queue);
-        let map = ShadowPass::map(device, shadows);
-        let groups = FrameGroups::new(device, &map);
-        let asphalt = Asphalt::new(device, queue);
+    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, model: &FleetModel, detail: Detail, shadows: u32) -> Self {
+        let FleetModel { fleet, floor, robots, .. } = model;
+        let map = ShadowPass::map(gpu, shadows);
+        let groups = FrameGroups::new(gpu, &map);
+        let asphalt = Asphalt::new(gpu);
         let terrain = fleet.terrain.as_deref();
         // What is seen through needs an opacity, which a monochrome picture has not.
         let veil = match (canvas.mono, floor.drivables.is_empty()) {
@@ -76,17 +66,17 @@ impl WorldPasses {
             (false, true) => Veil::All,
             (false, false) => Veil::ButDecks,
         };
-        let prop = || PropPass::new(device, queue, canvas, &groups, &asphalt, veil);
+        let prop = || PropPass::new(gpu, canvas, &groups, &asphalt, veil);
         Self {
-            models: Models::new(device, queue, detail, &robot_models.builds),
-            robot: RobotPass::new(device, queue, canvas, &groups),
-            tag: TagPass::new(device, queue, canvas, &groups),
-            ground: GroundPass::new(device, canvas, &groups, &asphalt),
-            terrain: terrain.map(|t| TerrainPass::new(device, queue, canvas, &groups, &asphalt, t)),
+            models: Models::new(gpu, detail, &robots.builds),
+            robot: RobotPass::new(gpu, canvas, &groups),
+            tag: TagPass::new(gpu, canvas, &groups),
+            ground: GroundPass::new(gpu, canvas, &groups, &asphalt),
+            terrain: terrain.map(|t| TerrainPass::new(gpu, canvas, &groups, &asphalt, t)),
             prop: (!fleet.props.is_empty()).then(prop),
-            decal: DecalPass::new(device, canvas, &groups, !floor.is_plane()),
-            sky: SkyPass::new(device, canvas, &groups),
-            shadow: ShadowPass::new(device, &groups, map, shadows),
+            decal: DecalPass::new(gpu, canvas, &groups, !floor.is_plane()),
+            sky: SkyPass::new(gpu, canvas, &groups),
+            shadow: ShadowPass::new(gpu, &groups, map, shadows),
             asphalt,
             groups,
         }
@@ -101,13 +91,12 @@ impl WorldPasses {
         props: impl Iterator<Item = &'a mut PropInstances>,
         corners: &[DecalVertex],
     ) {
-        let (device, queue) = (&gpu.device, &gpu.queue);
-        self.groups.fill(device, queue, frames);
-        self.models.fill(device, queue, crowds);
+        self.groups.fill(gpu, frames);
+        self.models.fill(gpu, crowds);
         if let Some(prop) = &mut self.prop {
-            prop.fill(device, queue, props);
+            prop.fill(gpu, props);
         }
-        self.decal.fill(device, queue, corners);
+        self.decal.fill(gpu, corners);
     }
 
     pub(crate) fn encode_shadow(

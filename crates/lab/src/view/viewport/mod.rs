@@ -63,7 +63,7 @@ impl ViewRenderer {
         style: &Style,
         [title, caption]: &[String; 2],
     ) -> Result<(), Error> {
-        let (width, height) = self.renderer.size();
+        let [width, height] = self.renderer.size();
         let finer = match self.finer.take() {
             Some(mut finer) => {
                 finer.resize(width, height)?;
@@ -200,7 +200,7 @@ impl Viewport {
             self.set_view_renderer(&fleet, size)?;
         }
         let Some(view_renderer) = &mut self.view_renderer else { return Ok(()) };
-        if <[u32; 2]>::from(view_renderer.renderer.size()) != size {
+        if view_renderer.renderer.size() != size {
             view_renderer.renderer.resize(size[0], size[1])?;
             view_renderer.texture = texture(&self.state.device, size);
             let view = view_renderer.texture.create_view(&wgpu::TextureViewDescriptor::default());

@@ -1,7 +1,7 @@
 //! Asphalt: two tiling textures made at the start, shared by all that shows stone.
 
 use super::{mipped, shrink, textured};
-use wgpu::{Device, Queue};
+use crate::Gpu;
 
 const SIZE: u32 = 512;
 const PATCHES: u32 = 128;
@@ -14,9 +14,9 @@ pub(crate) struct Asphalt {
 }
 
 impl Asphalt {
-    pub(crate) fn new(device: &Device, queue: &Queue) -> Self {
-        let texture = mipped(device, queue, "asphalt", [SIZE, SIZE], &shrink(asphalt(), SIZE, SIZE));
-        let patches = mipped(device, queue, "patches", [PATCHES, PATCHES], &[patches()]);
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let texture = mipped(gpu, "asphalt", [SIZE, SIZE], &shrink(asphalt(), SIZE, SIZE));
+        let patches = mipped(gpu, "patches", [PATCHES, PATCHES], &[patches()]);
         let repeat = wgpu::AddressMode::Repeat;
         let sampler = wgpu::SamplerDescriptor {
             address_mode_u: repeat,
@@ -27,7 +27,7 @@ impl Asphalt {
             mipmap_filter: wgpu::MipmapFilterMode::Nearest,
             ..Default::default()
         };
-        let (layout, group) = textured(device, "asphalt", &[&texture, &patches], &sampler);
+        let (layout, group) = textured(gpu, "asphalt", &[&texture, &patches], &sampler);
         Self { layout, group }
     }
 }

@@ -1,9 +1,10 @@
 //! Paint on the ground, in the order in which it lies there.
 
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, StreamBuffer, developed, shader};
+use super::{Canvas, Recipe, StreamBuffer, developed, shader, vertices};
+use crate::Gpu;
 use bytemuck::{Pod, Zeroable};
-use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
+use wgpu::vertex_attr_array;
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "decal");
 
@@ -82,16 +83,12 @@ impl DecalPass {
         vertex_attr_array![0 => Float32x3, 1 => Float32x2, 2 => Float32x2, 3 => Float32x4];
 
     /// On hills and decks depth is tested.
-    pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups, uneven: bool) -> Self {
+    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, groups: &FrameGroups, uneven: bool) -> Self {
         let recipe = Recipe {
             label: "decal",
             source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout],
-            buffers: &[VertexBufferLayout {
-                array_stride: size_of::<DecalVertex>() as u64,
-                step_mode: VertexStepMode::Vertex,
-                attributes: &Self::ATTRIBUTES,
-            }],
+            buffers: &[vertices::<DecalVertex>(&Self::ATTRIBUTES)],
             colour: Some((canvas, Some(wgpu::BlendState::ALPHA_BLENDING))),
             depth: Some((wgpu::CompareFunction::Always, false)),
             ..Default::default()
@@ -101,17 +98,17 @@ impl DecalPass {
         // Where every millisecond counts.
         let shadow = if canvas.mono { "shadow_quick" } else { "shadow" };
         Self {
-            over: recipe.build(device),
-            paint: paint.build(device),
+            over: recipe.build(gpu),
+            paint: paint.build(gpu),
             annotations: (!canvas.mono)
-                .then(|| Recipe { label: "sketch", entry: "sketch", ..paint }.build(device)),
-            shadow: Recipe { label: "shadow decal", entry: shadow, ..paint }.build(device),
-            corners: StreamBuffer::new(device, "decals", wgpu::BufferUsages::VERTEX),
+                .then(|| Recipe { label: "sketch", entry: "sketch", ..paint }.build(gpu)),
+            shadow: Recipe { label: "shadow decal", entry: shadow, ..paint }.build(gpu),
+            corners: StreamBuffer::new(gpu, "decals", wgpu::BufferUsages::VERTEX),
         }
     }
 
-    pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, corners: &[DecalVertex]) {
-        self.corners.fill(device, queue, bytemuck::cast_slice(corners));
+    pub(crate) fn fill(&mut self, gpu: &Gpu, corners: &[DecalVertex]) {
+        self.corners.fill(gpu, bytemuck::cast_slice(corners));
     }
 
     /// Draws corners of one view.

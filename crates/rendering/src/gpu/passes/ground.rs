@@ -3,7 +3,7 @@
 use super::asphalt::Asphalt;
 use super::frame::FrameGroups;
 use super::{Canvas, Recipe, developed, shader};
-use wgpu::Device;
+use crate::Gpu;
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/screen", "common/asphalt", "ground");
 
@@ -17,7 +17,7 @@ pub(crate) struct GroundPass {
 }
 
 impl GroundPass {
-    pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups, asphalt: &Asphalt) -> Self {
+    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, groups: &FrameGroups, asphalt: &Asphalt) -> Self {
         let pipeline = Recipe {
             label: "ground",
             source: canvas.of(SHADERS),
@@ -28,7 +28,7 @@ impl GroundPass {
             depth: Some((wgpu::CompareFunction::Always, false)),
             ..Default::default()
         }
-        .build(device);
+        .build(gpu);
         Self { pipeline }
     }
 

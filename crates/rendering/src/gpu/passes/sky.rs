@@ -2,7 +2,7 @@
 
 use super::frame::FrameGroups;
 use super::{Canvas, Recipe, developed, shader};
-use wgpu::Device;
+use crate::Gpu;
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/screen", "sky");
 
@@ -13,7 +13,7 @@ pub(crate) struct SkyPass {
 }
 
 impl SkyPass {
-    pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups) -> Self {
+    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, groups: &FrameGroups) -> Self {
         let pipeline = Recipe {
             label: "sky",
             source: canvas.of(SHADERS),
@@ -23,7 +23,7 @@ impl SkyPass {
             depth: Some((wgpu::CompareFunction::Always, false)),
             ..Default::default()
         }
-        .build(device);
+        .build(gpu);
         Self { pipeline }
     }
 

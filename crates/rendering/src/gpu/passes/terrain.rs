@@ -2,13 +2,14 @@
 
 use super::asphalt::Asphalt;
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, StreamBuffer, constant, developed, shader};
+use super::{Canvas, Recipe, StreamBuffer, developed, shader, vertices};
+use crate::Gpu;
 use crate::camera::Camera;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 use vocabulary::Terrain;
-use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
+use wgpu::{BufferUsages, vertex_attr_array};
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/asphalt", "terrain");
 
@@ -50,8 +51,7 @@ impl TerrainPass {
         vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32];
 
     pub(crate) fn new(
-        device: &Device,
-        queue: &Queue,
+        gpu: &Gpu,
         canvas: Canvas,
         groups: &FrameGroups,
         asphalt: &Asphalt,
@@ -62,23 +62,19 @@ impl TerrainPass {
             label: "terrain",
             source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout, &asphalt.layout],
-            buffers: &[VertexBufferLayout {
-                array_stride: size_of::<TerrainVertex>() as u64,
-                step_mode: VertexStepMode::Vertex,
-                attributes: &Self::ATTRIBUTES,
-            }],
+            buffers: &[vertices::<TerrainVertex>(&Self::ATTRIBUTES)],
             colour: Some((canvas, None)),
             depth: Some((wgpu::CompareFunction::Less, true)),
             ..Default::default()
         };
-        let (dry, slick) = (recipe.build(device), Recipe { entry: "slick", ..recipe }.build(device));
+        let (dry, slick) = (recipe.build(gpu), Recipe { entry: "slick", ..recipe }.build(gpu));
         let (triangles, pieces) = parted(&triangles, &points, terrain);
         let (corners, indices) = (bytemuck::cast_slice(&points), bytemuck::cast_slice(&triangles));
         Self {
             dry,
             slick,
-            points: constant(device, queue, "terrain", wgpu::BufferUsages::VERTEX, corners),
-            triangles: constant(device, queue, "terrain", wgpu::BufferUsages::INDEX, indices),
+            points: StreamBuffer::constant(gpu, "terrain", BufferUsages::VERTEX, corners),
+            triangles: StreamBuffer::constant(gpu, "terrain", BufferUsages::INDEX, indices),
             pieces,
         }
     }
