@@ -12,6 +12,11 @@ pub(crate) const INK: Rgb = hex(0x0012_161c);
 /// Halo, and text on dark ground.
 pub(crate) const PAPER: Rgb = hex(0x00fb_faf6);
 
+/// A colour with an opacity.
+pub(crate) fn with_alpha([red, green, blue]: Rgb, alpha: f32) -> [f32; 4] {
+    [red, green, blue, alpha]
+}
+
 /// Linear light of an sRGB colour.
 pub(crate) fn linear(colour: Rgb) -> Rgb {
     colour.map(|c| if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) })

@@ -148,7 +148,7 @@ impl PicturePlan {
             let rim = if bottom > sky { 0.5 } else { 0.0 };
             let dark = Ink { halo: (rim, palette::PAPER), ..Ink::DARK };
             let ink = if middle < 1.6 * sky { dark } else { Ink::LIGHT };
-            words.write_block(text.clone(), [area[0], first], *size, *bold, ink, *block);
+            words.write_block(text.clone(), [area[0], first], *size, *bold, ink, Some(*block));
         }
         if let Some(area) = self.clock {
             words.reserve(area);

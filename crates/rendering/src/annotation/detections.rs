@@ -3,7 +3,7 @@
 
 use crate::annotation::labels::{Ink, LabelPlacer, Window};
 use crate::camera::viewpoint::Tile;
-use crate::palette::{Rgb, hex};
+use crate::palette::{Rgb, hex, with_alpha};
 use crate::picture_context::PictureContext;
 use glam::Vec2;
 use vocabulary::{
@@ -71,8 +71,7 @@ impl DetectionOverlay<'_, '_, '_> {
     fn line(&mut self, from: [f64; 2], to: [f64; 2], colour: Rgb, alpha: f32) {
         let (Some(from), Some(to)) = (self.at(from), self.at(to)) else { return };
         if let Some((a, b)) = clipped(from, to, &self.window.tile) {
-            let [red, green, blue] = colour;
-            self.words.shapes.line(a, b, self.width, [red, green, blue, alpha]);
+            self.words.shapes.line(a, b, self.width, with_alpha(colour, alpha));
         }
     }
 

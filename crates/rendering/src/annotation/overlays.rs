@@ -2,7 +2,7 @@
 
 use crate::annotation::labels::{Ink, LabelPlacer};
 use crate::annotation::text_shaper::{Block, line_height};
-use crate::palette::{self, Rgb};
+use crate::palette::{self, Rgb, with_alpha};
 use crate::picture_plan::Area;
 use glam::Vec2;
 use vocabulary::round_step;
@@ -122,8 +122,7 @@ fn plots(
     colours: &[Rgb],
     [x, y, width, height]: [f32; 4],
 ) {
-    let [red, green, blue] = palette::PAPER;
-    words.shapes.panel([x, y, width, height], 0.0, [red, green, blue, 1.0]);
+    words.shapes.panel([x, y, width, height], 0.0, with_alpha(palette::PAPER, 1.0));
     let margin = words.scaled(20.0);
     let each = (height - margin) / plots.len() as f32;
     for (k, plot) in plots.iter().enumerate() {
@@ -158,11 +157,15 @@ fn one_plot(
         bottom - ((value - range[0]) / (range[1] - range[0])).clamp(0.0, 1.0) as f32 * (bottom - top)
     };
     let thin = words.scaled(1.0);
-    let ink = |alpha: f32| [palette::INK[0], palette::INK[1], palette::INK[2], alpha];
     for (value, text) in texts {
         let level = up(value).round() + 0.5;
         let alpha = if value == 0.0 { 0.5 } else { 0.13 };
-        words.shapes.line(Vec2::new(left, level), Vec2::new(right, level), thin, ink(alpha));
+        words.shapes.line(
+            Vec2::new(left, level),
+            Vec2::new(right, level),
+            thin,
+            with_alpha(palette::INK, alpha),
+        );
         let width = words.width(&text, 12.0, false);
         words.write(text, [left - width - words.scaled(6.0), level], 12.0, false, Ink::ON_PANEL);
     }
@@ -177,25 +180,12 @@ fn one_plot(
     }
     let wide = words.scaled(if plot.curves.len() > 12 { 1.2 } else { 2.2 });
     for curve in &plot.curves {
-        let [r, g, b] = colours.get(curve.robot).copied().unwrap_or(palette::INK);
         // A little darker than on the ground: the panel is bright.
-        let colour = [r * 0.86, g * 0.86, b * 0.86, 0.95];
-        let mut before: Option<Vec2> = None;
-        for [time, value] in curve.points.iter().filter(|p| p[1].is_finite()) {
-            let at = Vec2::new(across(*time), up(*value));
-            // Steps below a pixel would only cost time.
-            if before.is_some_and(|b| b.distance(at) <= 0.9) {
-                continue;
-            }
-            if let Some(from) = before {
-                words.shapes.line(from, at, wide, colour);
-            }
-            before = Some(at);
-        }
-        if let Some(end) = before {
-            let dot = words.scaled(3.5);
-            words.shapes.panel([end.x - dot, end.y - dot, 2.0 * dot, 2.0 * dot], dot, colour);
-        }
+        let colour = colours.get(curve.robot).copied().unwrap_or(palette::INK).map(|c| c * 0.86);
+        let points = curve.points.iter().filter(|[_, value]| value.is_finite());
+        let places = points.map(|[time, value]| (Vec2::new(across(*time), up(*value)), *value as f32));
+        let dot = words.scaled(3.5);
+        words.shapes.curve(places, |_, _| true, wide, dot, with_alpha(colour, 0.95));
     }
 }
 
@@ -281,14 +271,13 @@ fn line(words: &mut LabelPlacer<'_>, said: &Subtitle, views: [f32; 2]) {
     let alpha = said.opacity as f32;
     let (rows, size) = line_rows(words, said, views[0]);
     let place = line_place(words, said, views);
-    let [r, g, b] = palette::INK;
     let (radius, row, pad) = (words.scaled(8.0), words.scaled(1.45 * LINE), words.scaled(12.0));
-    words.shapes.panel(place, radius, [r, g, b, 0.72 * alpha]);
+    words.shapes.panel(place, radius, with_alpha(palette::INK, 0.72 * alpha));
     let ink = Ink { halo: (0.0, palette::INK), ..Ink::LIGHT }.faded(alpha);
     let mut down = place[1] + 0.5 * pad;
     for (text, (block, own, lines)) in said.rows.iter().zip(rows) {
         let left = 0.5 * (views[0] - own);
-        words.write_block(text.clone(), [left, down + 0.5 * row], size, true, ink, block);
+        words.write_block(text.clone(), [left, down + 0.5 * row], size, true, ink, Some(block));
         down += row * lines as f32;
     }
 }
@@ -300,12 +289,11 @@ const CARD_WIDTH: f32 = 800.0;
 
 fn card(words: &mut LabelPlacer<'_>, shown: &Card, [width, height]: [f32; 2]) {
     let alpha = shown.opacity as f32;
-    let [r, g, b] = palette::INK;
     // What is written below the card is not to be read through it.
     for said in &mut words.lines {
         said.alpha *= 1.0 - 0.96 * alpha;
     }
-    words.shapes.panel([0.0, 0.0, width, height], 0.0, [r, g, b, 0.78 * alpha]);
+    words.shapes.panel([0.0, 0.0, width, height], 0.0, with_alpha(palette::INK, 0.78 * alpha));
     let [(large, title_rows), (small, rows)] = CARD;
     // Where it is a little too long for the picture, in smaller letters; then in several lines.
     let most = 0.86 * width;
@@ -331,7 +319,7 @@ fn card(words: &mut LabelPlacer<'_>, shown: &Card, [width, height]: [f32; 2]) {
     let ink = Ink { halo: (0.0, palette::INK), ..Ink::LIGHT }.faded(alpha);
     for (text, size, bold, block, line, high) in texts {
         let left = 0.5 * (width - block.width);
-        words.write_block(text.clone(), [left, down + 0.5 * line], size, bold, ink, block);
+        words.write_block(text.clone(), [left, down + 0.5 * line], size, bold, ink, Some(block));
         down += high;
     }
 }

@@ -84,19 +84,14 @@ fn entered(ray: &ViewRay, low: DVec3, high: DVec3) -> Option<f64> {
 fn goals(sight: &Sightline, fleet: &FleetInfo, record: &StepRecord, pixel: [f64; 2]) -> Vec<Picked> {
     let Some(place) = sight.ground(pixel).map(DVec2::from_array) else { return Vec::new() };
     let reach = RING * sizes(fleet).max(1.0);
-    let mut found: Vec<_> = set_points(fleet, record)
-        .into_iter()
-        .enumerate()
-        .filter_map(|(k, goal)| {
-            let goal = goal?;
-            let away = place.distance(DVec2::from_array(goal));
-            let [x, y] = goal;
-            let pixel = sight.metres_per_pixel([x, y, sight.height(goal)]);
-            (away < reach.max(2.0 * NEAR * pixel)).then_some((away, Picked::SetPoint(k)))
-        })
-        .collect();
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.into_iter().map(|(_, goal)| goal).collect()
+    let goals = set_points(fleet, record).into_iter().enumerate();
+    nearest_first(goals.filter_map(|(k, goal)| {
+        let goal = goal?;
+        let away = place.distance(DVec2::from_array(goal));
+        let [x, y] = goal;
+        let pixel = sight.metres_per_pixel([x, y, sight.height(goal)]);
+        (away < reach.max(2.0 * NEAR * pixel)).then_some((away, Picked::SetPoint(k)))
+    }))
 }
 
 /// The edges that pass a pixel, the nearest first.
@@ -105,17 +100,17 @@ fn edges(sight: &Sightline, fleet: &FleetInfo, record: &StepRecord, pixel: DVec2
         let pose = record.snapshot.robots.get(k)?.motion.pose;
         sight.pixel_of_ground([pose.x, pose.y]).map(DVec2::from_array)
     };
-    let mut found: Vec<_> = fleet
-        .edges
-        .iter()
-        .enumerate()
-        .filter_map(|(k, edge)| {
-            let away = beside(pixel, place(edge.leader)?, place(edge.follower)?);
-            (away < NEAR).then_some((away, Picked::Edge(k)))
-        })
-        .collect();
+    nearest_first(fleet.edges.iter().enumerate().filter_map(|(k, edge)| {
+        let away = beside(pixel, place(edge.leader)?, place(edge.follower)?);
+        (away < NEAR).then_some((away, Picked::Edge(k)))
+    }))
+}
+
+/// What was found at some distances, in the order of these.
+fn nearest_first(found: impl Iterator<Item = (f64, Picked)>) -> Vec<Picked> {
+    let mut found: Vec<_> = found.collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.into_iter().map(|(_, edge)| edge).collect()
+    found.into_iter().map(|(_, picked)| picked).collect()
 }
 
 /// How far a point is from the line between two others.

@@ -84,11 +84,6 @@ impl Sightline {
         self.camera.metres_per_pixel(DVec3::from_array(place), f64::from(self.tile.height))
     }
 
-    /// Where the eye is, m; for a view without perspective it is far above what it shows.
-    pub fn eye(&self) -> [f64; 3] {
-        self.camera.eye.to_array()
-    }
-
     /// The free camera that shows the same ground in the same places, so that a hand can take over: it turns about what
     /// is in the middle of the tile. A view without perspective gets one, and a view through a camera loses its lean.
     pub fn free(&self) -> FreeCamera {

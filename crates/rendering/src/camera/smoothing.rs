@@ -29,8 +29,16 @@ pub(crate) struct Extent {
 }
 
 impl Extent {
+    /// Its middle in the world, m.
     pub(crate) fn middle(&self) -> [f64; 2] {
-        [0.5 * (self.forward[0] + self.forward[1]), 0.5 * (self.left[0] + self.left[1])]
+        let [forward, left] = [self.forward, self.left].map(|[low, high]| 0.5 * (low + high));
+        self.frame.world_from_body(forward, left)
+    }
+
+    /// Radius of the circle around it, `margin` wider on all sides, m: a view of that does not zoom where it turns.
+    pub(crate) fn radius(&self, margin: f64) -> f64 {
+        let Self { forward, left, .. } = self.grown(margin);
+        0.5 * (forward[1] - forward[0]).hypot(left[1] - left[0])
     }
 
     /// The eight corners of the outline, `margin` wider on all sides, in the frame, m.

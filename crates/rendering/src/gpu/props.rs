@@ -2,7 +2,7 @@
 
 use crate::gpu::passes::instanced::Instance;
 use crate::gpu::passes::prop::{PropAppearance, PropInstances};
-use crate::palette::{Rgb, hex, linear};
+use crate::palette::{Rgb, hex, linear, with_alpha};
 use crate::picture_context::PictureContext;
 use glam::{DQuat, DVec3, Mat4};
 use vocabulary::{Mobility, Placement, Prop, Solid};
@@ -82,14 +82,9 @@ fn instance(context: &PictureContext<'_>, prop: &Prop, placement: &Placement, gr
     let turn = turn(placement).as_quat();
     let model =
         Mat4::from_scale_rotation_translation(scale.as_vec3(), turn, (place - context.origin).as_vec3());
-    let rows = model.transpose();
-    let [r, g, b] = linear(colour(prop));
     let guided = f32::from(u8::from(prop.mobility == Mobility::Guided));
-    Instance {
-        rows: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.to_array()),
-        colour: [r, g, b, 1.0],
-        marks: [guided, 0.0, (ground - context.origin.z) as f32, 0.0],
-    }
+    let marks = [guided, 0.0, (ground - context.origin.z) as f32, 0.0];
+    Instance::new(model, with_alpha(linear(colour(prop)), 1.0), marks)
 }
 
 fn colour(prop: &Prop) -> Rgb {

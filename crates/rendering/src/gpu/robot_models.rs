@@ -6,7 +6,7 @@ use crate::gpu::model::Build;
 use crate::gpu::passes::instanced::Instance;
 use crate::gpu::passes::robot::{RobotInstances, Squad};
 use crate::ground::decal_builder::flat;
-use crate::palette::{Rgb, linear};
+use crate::palette::{Rgb, linear, with_alpha};
 use crate::picture_context::PictureContext;
 use glam::{DVec3, Mat3, Mat4, Vec3};
 use vocabulary::{Attitude, FleetInfo, Pose, RobotInfo, RobotState};
@@ -108,13 +108,7 @@ impl RobotAppearance {
     }
 
     fn instance(&self, local_from_model: Mat4, alpha: f32) -> Instance {
-        let rows = local_from_model.transpose();
-        let [r, g, b] = linear(self.colour);
-        Instance {
-            rows: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.to_array()),
-            colour: [r, g, b, alpha],
-            marks: self.marks,
-        }
+        Instance::new(local_from_model, with_alpha(linear(self.colour), alpha), self.marks)
     }
 }
 

@@ -65,9 +65,9 @@ pub(super) fn outline(mesh: &mut Mesh, build: &Build) {
     }
 }
 
-/// The outside of the faces, each with its number for a material and its cells for a picture: column and row of a
+/// The outside of the faces that carry tags, which the body leaves out, each with its number for a material and its cells for a picture: column and row of a
 /// place on the tag, from the upper left.
-pub(super) fn faces(build: &Build) -> Mesh {
+pub(crate) fn faces(build: &Build) -> Mesh {
     let mut mesh = Mesh::default();
     let Some(shell) = &build.shell else { return mesh };
     let [low, high] = span(shell);
@@ -136,7 +136,8 @@ fn struts() -> Mesh {
     mesh
 }
 
-pub(super) fn camera(detail: Detail) -> Mesh {
+/// The camera's head around its pan axis.
+pub(crate) fn camera(detail: Detail) -> Mesh {
     let mut mesh = Mesh::default();
     mesh.cuboid([-0.022, -0.021, -0.018], [0.016, 0.021, 0.018], Material::Plastic);
     if detail == Detail::Coarse {

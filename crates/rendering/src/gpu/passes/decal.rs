@@ -4,6 +4,7 @@ use super::frame::FrameGroups;
 use super::{Canvas, Recipe, StreamBuffer, developed, shader, vertices};
 use crate::Gpu;
 use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
 use wgpu::vertex_attr_array;
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "decal");
@@ -16,6 +17,13 @@ pub(crate) struct DecalVertex {
     pub(crate) kind: [f32; 2],
     pub(crate) shape: [f32; 2],
     pub(crate) colour: [f32; 4],
+}
+
+impl DecalVertex {
+    /// A corner at a place relative to the local origin, m.
+    pub(crate) fn new(place: DVec3, form: DecalForm, shape: [f32; 2], colour: [f32; 4]) -> Self {
+        Self { position: place.as_vec3().to_array(), kind: form.code(), shape, colour }
+    }
 }
 
 /// How a decal's edge is formed; see `coverage` in the shader.

@@ -42,10 +42,7 @@ impl FrameUniforms {
             right: right.extend(slope).to_array(),
             up: up.extend(height).to_array(),
             forward: forward.extend(above).to_array(),
-            sun: [0.0; 4],
-            ground: [0.0; 4],
-            terrain: [0.0; 4],
-            spare: [0.0; 4],
+            ..Self::zeroed()
         }
     }
 }

@@ -4,6 +4,7 @@ use super::{StreamBuffer, vertices};
 use crate::Gpu;
 use crate::gpu::model::Vertex;
 use bytemuck::{Pod, Zeroable};
+use glam::Mat4;
 use wgpu::{BufferUsages, VertexAttribute, VertexBufferLayout, VertexStepMode, vertex_attr_array};
 
 /// A copy of a mesh; mirrors `Instance` of the shaders.
@@ -13,6 +14,13 @@ pub(crate) struct Instance {
     pub(crate) rows: [[f32; 4]; 3],
     pub(crate) colour: [f32; 4],
     pub(crate) marks: [f32; 4],
+}
+
+impl Instance {
+    pub(crate) fn new(local_from_model: Mat4, colour: [f32; 4], marks: [f32; 4]) -> Self {
+        let [x, y, z, _] = local_from_model.transpose().to_cols_array_2d();
+        Self { rows: [x, y, z], colour, marks }
+    }
 }
 
 const CORNER: [VertexAttribute; 4] =

@@ -38,6 +38,31 @@ impl Shapes {
         self.push((from + to) * 0.5, along.normalize_or(Vec2::X), half, 0.5 * width, colour);
     }
 
+    /// A curve through places with their values that ends in a dot; `joins` tells whether a line leads from one value to
+    /// the next.
+    pub(crate) fn curve(
+        &mut self,
+        places: impl Iterator<Item = (Vec2, f32)>,
+        joins: impl Fn(f32, f32) -> bool,
+        width: f32,
+        dot: f32,
+        colour: [f32; 4],
+    ) {
+        let mut before: Option<(Vec2, f32)> = None;
+        for (at, value) in places {
+            match before {
+                // Steps below a pixel would only cost time.
+                Some((from, _)) if from.distance(at) <= 0.9 => continue,
+                Some((from, last)) if joins(last, value) => self.line(from, at, width, colour),
+                _ => {}
+            }
+            before = Some((at, value));
+        }
+        if let Some((end, _)) = before {
+            self.panel([end.x - dot, end.y - dot, 2.0 * dot, 2.0 * dot], dot, colour);
+        }
+    }
+
     fn push(&mut self, middle: Vec2, along: Vec2, half: Vec2, radius: f32, colour: [f32; 4]) {
         let across = Vec2::new(-along.y, along.x);
         // A pixel more on all sides, for the smooth edge.
