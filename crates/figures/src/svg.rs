@@ -71,6 +71,12 @@ pub(crate) fn point([x, y]: [f64; 2]) -> String {
     format!("{} {}", number(x), number(y))
 }
 
+/// A path through points.
+pub(crate) fn polyline(points: &[[f64; 2]]) -> String {
+    let step = |(k, p): (usize, &[f64; 2])| format!("{}{}", if k == 0 { 'M' } else { 'L' }, point(*p));
+    points.iter().enumerate().map(step).collect()
+}
+
 /// Two decimals, a hundredth of a point of print, without zeros at the end.
 pub(crate) fn number(value: f64) -> String {
     let text = format!("{value:.2}");

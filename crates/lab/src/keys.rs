@@ -2,7 +2,6 @@
 
 use crate::action::Action;
 use crate::app_state::{AppState, Selection, Tool};
-use crate::session::history::History;
 use eframe::egui::{self, Key, Modifiers};
 use std::f64::consts::PI;
 
@@ -31,6 +30,10 @@ enum KeyEffect {
     Nudge([f64; 2]),
 }
 
+const fn row(keys: &'static str, what: &'static str, bindings: &'static [Binding]) -> Shortcut {
+    Shortcut { keys, what, bindings }
+}
+
 const fn bare(key: Key, action: fn(&AppState) -> Option<Action>) -> Binding {
     Binding { modifiers: Modifiers::NONE, key, effect: KeyEffect::Act(action) }
 }
@@ -53,114 +56,99 @@ pub const LIST: &[(&str, &[Shortcut])] = &[
     (
         "Time",
         &[
-            Shortcut {
-                keys: "Space",
-                what: "play or pause",
-                bindings: &[bare(Key::Space, |_| Some(Action::Toggle))],
-            },
-            Shortcut {
-                keys: "→  ←",
-                what: "a sample on, a sample back; with Shift a second",
-                bindings: &[
+            row("Space", "play or pause", &[bare(Key::Space, |_| Some(Action::Toggle))]),
+            row(
+                "→  ←",
+                "a sample on, a sample back; with Shift a second",
+                &[
                     bare(Key::ArrowRight, |_| Some(Action::Step)),
-                    bare(Key::ArrowLeft, |state| Some(Action::Back(period(state)))),
+                    bare(Key::ArrowLeft, |state| Some(Action::Back(state.period()))),
                     shift(Key::ArrowRight, |_| Some(Action::Back(-1.0))),
                     shift(Key::ArrowLeft, |_| Some(Action::Back(1.0))),
                 ],
-            },
-            Shortcut {
-                keys: "Home  End",
-                what: "look at the start, at the present",
-                bindings: &[
-                    bare(Key::Home, |_| Some(Action::Seek(0.0))),
-                    bare(Key::End, |_| Some(Action::Present)),
-                ],
-            },
-            Shortcut {
-                keys: ",  .",
-                what: "slower, faster",
-                bindings: &[
+            ),
+            row(
+                "Home  End",
+                "look at the start, at the present",
+                &[bare(Key::Home, |_| Some(Action::Seek(0.0))), bare(Key::End, |_| Some(Action::Present))],
+            ),
+            row(
+                ",  .",
+                "slower, faster",
+                &[
                     bare(Key::Comma, |state| Some(Action::Pace(slower(state.pace)))),
                     bare(Key::Period, |state| Some(Action::Pace(faster(state.pace)))),
                 ],
-            },
-            Shortcut { keys: "B", what: "branch here", bindings: &[bare(Key::B, |_| Some(Action::Fork))] },
-            Shortcut {
-                keys: "[  ]",
-                what: "branch before, next branch",
-                bindings: &[
+            ),
+            row("B", "branch here", &[bare(Key::B, |_| Some(Action::Fork))]),
+            row(
+                "[  ]",
+                "branch before, next branch",
+                &[
                     bare(Key::OpenBracket, |state| Some(Action::Branch(state.branch.saturating_sub(1)))),
                     bare(Key::CloseBracket, |state| Some(Action::Branch(state.branch + 1))),
                 ],
-            },
-            Shortcut {
-                keys: "Shift Home",
-                what: "begin again at 0",
-                bindings: &[shift(Key::Home, |_| Some(Action::Restart))],
-            },
+            ),
+            row("Shift Home", "begin again at 0", &[shift(Key::Home, |_| Some(Action::Restart))]),
         ],
     ),
     (
         "Formation",
         &[
-            Shortcut {
-                keys: "Tab",
-                what: "next edge; with Shift the one before",
-                bindings: &[
+            row(
+                "Tab",
+                "next edge; with Shift the one before",
+                &[
                     bare(Key::Tab, |state| Some(Action::Choose(next(state, 1)))),
                     shift(Key::Tab, |state| Some(Action::Choose(next(state, -1)))),
                 ],
-            },
-            Shortcut {
-                keys: "W  S",
-                what: "set point 0.1 m nearer, farther",
-                bindings: &[nudge(Key::W, [-0.1, 0.0]), nudge(Key::S, [0.1, 0.0])],
-            },
-            Shortcut {
-                keys: "A  D",
-                what: "set point 5° to the left, to the right",
-                bindings: &[nudge(Key::A, [0.0, 5.0]), nudge(Key::D, [0.0, -5.0])],
-            },
-            Shortcut {
-                keys: "M",
-                what: "mirror: both sides move",
-                bindings: &[bare(Key::M, |state| Some(Action::Mirror(!state.mirror)))],
-            },
-            Shortcut {
-                keys: "Ctrl −  Ctrl +",
-                what: "whole formation smaller, larger",
-                bindings: &[
+            ),
+            row(
+                "W  S",
+                "set point 0.1 m nearer, farther",
+                &[nudge(Key::W, [-0.1, 0.0]), nudge(Key::S, [0.1, 0.0])],
+            ),
+            row(
+                "A  D",
+                "set point 5° to the left, to the right",
+                &[nudge(Key::A, [0.0, 5.0]), nudge(Key::D, [0.0, -5.0])],
+            ),
+            row("M", "mirror: both sides move", &[bare(Key::M, |state| Some(Action::Mirror(!state.mirror)))]),
+            row(
+                "Ctrl −  Ctrl +",
+                "whole formation smaller, larger",
+                &[
                     command(Key::Minus, |_| Some(Action::Shape { scale: 1.0 / 1.1, turn: 0.0 })),
                     command(Key::Plus, |_| Some(Action::Shape { scale: 1.1, turn: 0.0 })),
                     command(Key::Equals, |_| Some(Action::Shape { scale: 1.1, turn: 0.0 })),
                 ],
-            },
-            Shortcut {
-                keys: "Insert  Delete",
-                what: "add a robot, remove the selected one",
-                bindings: &[
+            ),
+            row(
+                "Insert  Delete",
+                "add a robot, remove the selected one",
+                &[
                     bare(Key::Insert, |_| Some(Action::AddRobot)),
                     bare(Key::Delete, |state| chosen(state).map(|(_, name)| Action::RemoveRobot(name))),
                 ],
-            },
-            Shortcut {
-                keys: "C  O  Esc",
-                what: "connect robots, place pillars, neither",
-                bindings: &[
+            ),
+            row(
+                "C  O  Esc",
+                "connect robots, place pillars, neither",
+                &[
                     bare(Key::C, |_| Some(Action::Take(Tool::Connect))),
                     bare(Key::O, |_| Some(Action::Take(Tool::Pillar))),
                     bare(Key::Escape, |_| Some(Action::Dismiss)),
                 ],
-            },
+            ),
         ],
     ),
     (
         "View",
         &[
-            Shortcut {
-                keys: "1 … 5",
-                what: "snake, snake eye, top, orbit, camera of the selected robot",
-                bindings: &[
+            row(
+                "1 … 5",
+                "snake, snake eye, top, orbit, camera of the selected robot",
+                &[
                     bare(Key::Num1, |_| Some(Action::Viewpoint("snake".to_owned()))),
                     bare(Key::Num2, |_| Some(Action::Viewpoint("snake-eye".to_owned()))),
                     bare(Key::Num3, |_| Some(Action::Viewpoint("top".to_owned()))),
@@ -169,68 +157,46 @@ pub const LIST: &[(&str, &[Shortcut])] = &[
                         chosen(state).map(|(_, name)| Action::Viewpoint(format!("camera:{name}")))
                     }),
                 ],
-            },
-            Shortcut {
-                keys: "G",
-                what: "follow the selected robot",
-                bindings: &[bare(Key::G, |state| {
-                    chosen(state).map(|(robot, _)| Action::Follow(Some(robot)))
-                })],
-            },
-            Shortcut {
-                keys: "I",
-                what: "its camera in the corner",
-                bindings: &[bare(Key::I, |state| chosen(state).map(|(robot, _)| Action::Inset(Some(robot))))],
-            },
-            Shortcut { keys: "Drag", what: "turn; with the right button move; wheel to zoom", bindings: &[] },
-            Shortcut {
-                keys: "Drag a ring",
-                what: "set point, in steps of 0.1 m and 5°; Shift without steps",
-                bindings: &[],
-            },
-            Shortcut { keys: "Ctrl drag a ring", what: "whole formation", bindings: &[] },
-            Shortcut { keys: "T", what: "light or dark", bindings: &[bare(Key::T, |_| Some(Action::Theme))] },
+            ),
+            row(
+                "G",
+                "follow the selected robot",
+                &[bare(Key::G, |state| chosen(state).map(|(robot, _)| Action::Follow(Some(robot))))],
+            ),
+            row(
+                "I",
+                "its camera in the corner",
+                &[bare(Key::I, |state| chosen(state).map(|(robot, _)| Action::Inset(Some(robot))))],
+            ),
+            row("Drag", "turn; with the right button move; wheel to zoom", &[]),
+            row("Drag a ring", "set point, in steps of 0.1 m and 5°; Shift without steps", &[]),
+            row("Ctrl drag a ring", "whole formation", &[]),
+            row("T", "light or dark", &[bare(Key::T, |_| Some(Action::Theme))]),
         ],
     ),
     (
         "Work",
         &[
-            Shortcut {
-                keys: "Ctrl S",
-                what: "save the scene",
-                bindings: &[command(Key::S, |_| Some(Action::Save))],
-            },
-            Shortcut {
-                keys: "Ctrl O",
-                what: "scenes",
-                bindings: &[command(Key::O, |_| Some(Action::Gallery))],
-            },
-            Shortcut {
-                keys: "Ctrl R",
-                what: "read the file again",
-                bindings: &[command(Key::R, |_| Some(Action::Reload))],
-            },
-            Shortcut {
-                keys: "Ctrl Z  Ctrl Y",
-                what: "undo, redo",
-                bindings: &[command(Key::Z, |_| Some(Action::Undo)), command(Key::Y, |_| Some(Action::Redo))],
-            },
-            Shortcut {
-                keys: "P  F  K",
-                what: "picture, film, keep the run",
-                bindings: &[
+            row("Ctrl S", "save the scene", &[command(Key::S, |_| Some(Action::Save))]),
+            row("Ctrl O", "scenes", &[command(Key::O, |_| Some(Action::Gallery))]),
+            row("Ctrl R", "read the file again", &[command(Key::R, |_| Some(Action::Reload))]),
+            row(
+                "Ctrl Z  Ctrl Y",
+                "undo, redo",
+                &[command(Key::Z, |_| Some(Action::Undo)), command(Key::Y, |_| Some(Action::Redo))],
+            ),
+            row(
+                "P  F  K",
+                "picture, film, keep the run",
+                &[
                     bare(Key::P, |_| Some(Action::Picture)),
                     bare(Key::F, |_| Some(Action::Film)),
                     bare(Key::K, |_| Some(Action::KeepRun)),
                 ],
-            },
-            Shortcut {
-                keys: "Ctrl P",
-                what: "picture of the whole window",
-                bindings: &[command(Key::P, |_| Some(Action::WindowPicture))],
-            },
+            ),
+            row("Ctrl P", "picture of the whole window", &[command(Key::P, |_| Some(Action::WindowPicture))]),
             // `?` is where a keyboard has it: `pressed` takes it as a text.
-            Shortcut { keys: "?  F1", what: "this page", bindings: &[bare(Key::F1, |_| Some(Action::Help))] },
+            row("?  F1", "this page", &[bare(Key::F1, |_| Some(Action::Help))]),
         ],
     ),
 ];
@@ -281,19 +247,14 @@ fn take(ctx: &egui::Context, app_state: &AppState, modifiers: Modifiers, out: &m
     }
 }
 
-/// Control period of the run, s.
-fn period(app_state: &AppState) -> f64 {
-    app_state.history.as_ref().map_or(0.01, History::period)
-}
-
 fn chosen(app_state: &AppState) -> Option<(usize, String)> {
     let robot = app_state.chosen_robot()?;
-    Some((robot, app_state.history.as_ref()?.fleet().robots.get(robot)?.name.clone()))
+    Some((robot, app_state.fleet()?.robots.get(robot)?.name.clone()))
 }
 
 /// The edge after or before the one that is selected.
 fn next(app_state: &AppState, by: i64) -> Selection {
-    let edges = app_state.history.as_ref().map_or(0, |history| history.fleet().edges.len()) as i64;
+    let edges = app_state.fleet().map_or(0, |fleet| fleet.edges.len()) as i64;
     if edges == 0 {
         return Selection::Nothing;
     }

@@ -15,14 +15,14 @@ mod frame_timings;
 pub mod gallery;
 pub mod kept_run;
 pub mod keys;
-pub mod look;
 mod lost;
+pub mod numbers;
 pub mod panels;
 pub mod panes;
 pub mod quantities;
 pub mod session;
 pub mod symbols;
-pub mod tidy;
+pub mod theme;
 pub mod view;
 mod window;
 

@@ -1,7 +1,6 @@
 //! Curves over time: what is plotted and what is exported, made of records in one place.
 
 use crate::app_state::AppState;
-use crate::session::history::History;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
 use formation::relative::Geometry;
 use scene::Follow;
@@ -39,56 +38,35 @@ pub enum PlotQuantity {
 }
 
 impl PlotQuantity {
-    /// All of them, in the order of the panels.
-    pub const ALL: [Self; 12] = [
-        Self::DistanceError,
-        Self::BearingError,
-        Self::Acceleration,
-        Self::TurnRate,
-        Self::Speed,
-        Self::DistanceRateError,
-        Self::BearingRateError,
-        Self::TrackingEnergy,
-        Self::ObserverEnergy,
-        Self::Clearance,
-        Self::RobustMargin,
-        Self::Lyapunov,
+    /// Every quantity in the order of its declaration: for an axis its symbol and unit, and its column of a table.
+    const TABLE: [(Self, &'static str, &'static str); 12] = [
+        (Self::DistanceError, "error of ℓ (m)", "distance_error_m"),
+        (Self::BearingError, "error of ψ (°)", "bearing_error_deg"),
+        (Self::Acceleration, "dv/dt (m/s²)", "acceleration_m_s2"),
+        (Self::TurnRate, "ω (rad/s)", "turn_rate_rad_s"),
+        (Self::Speed, "v (m/s)", "speed_m_s"),
+        (Self::DistanceRateError, "dℓ/dt − ŝ₂ (m/s)", "distance_rate_error_m_s"),
+        (Self::BearingRateError, "dψ/dt − ŝ₂ (°/s)", "bearing_rate_error_deg_s"),
+        (Self::TrackingEnergy, "½‖r‖²", "log10_tracking_energy"),
+        (Self::ObserverEnergy, "W", "log10_observer_energy"),
+        (Self::Clearance, "room (m)", "clearance_m"),
+        (Self::RobustMargin, "margin of β (m/s²)", "beta_margin_m_s2"),
+        (Self::Lyapunov, "V (eq 29)", "lyapunov_v"),
     ];
+
+    /// All of them.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::TABLE.into_iter().map(|(quantity, ..)| quantity)
+    }
 
     /// For an axis: symbol and unit.
     pub fn axis(self) -> &'static str {
-        match self {
-            Self::DistanceError => "error of ℓ (m)",
-            Self::BearingError => "error of ψ (°)",
-            Self::Acceleration => "dv/dt (m/s²)",
-            Self::TurnRate => "ω (rad/s)",
-            Self::Speed => "v (m/s)",
-            Self::DistanceRateError => "dℓ/dt − ŝ₂ (m/s)",
-            Self::BearingRateError => "dψ/dt − ŝ₂ (°/s)",
-            Self::TrackingEnergy => "½‖r‖²",
-            Self::ObserverEnergy => "W",
-            Self::Clearance => "room (m)",
-            Self::RobustMargin => "margin of β (m/s²)",
-            Self::Lyapunov => "V (eq 29)",
-        }
+        Self::TABLE[self as usize].1
     }
 
     /// For a column of a table.
     pub fn column(self) -> &'static str {
-        match self {
-            Self::DistanceError => "distance_error_m",
-            Self::BearingError => "bearing_error_deg",
-            Self::Acceleration => "acceleration_m_s2",
-            Self::TurnRate => "turn_rate_rad_s",
-            Self::Speed => "speed_m_s",
-            Self::DistanceRateError => "distance_rate_error_m_s",
-            Self::BearingRateError => "bearing_rate_error_deg_s",
-            Self::TrackingEnergy => "log10_tracking_energy",
-            Self::ObserverEnergy => "log10_observer_energy",
-            Self::Clearance => "clearance_m",
-            Self::RobustMargin => "beta_margin_m_s2",
-            Self::Lyapunov => "lyapunov_v",
-        }
+        Self::TABLE[self as usize].2
     }
 
     /// Whether values are logarithms to the base of 10.
@@ -136,23 +114,17 @@ pub fn curves(
         let records = history.between(branch, [from, span[1]], most);
         for (edge, ends) in history.fleet().edges.iter().enumerate() {
             let Some((_, _, follow)) = app_state.follower(edge) else { continue };
-            if let Some(points) = certified(quantity, &records, edge, *ends, follow) {
-                all.push(QuantityCurve { branch, robot: Some(ends.follower), points });
-                continue;
-            }
             let point = |m: &&StepRecord| Some([m.snapshot.time, value(quantity, m, edge, *ends, follow)?]);
-            let points = records.iter().filter_map(point).collect();
+            let points = certified(quantity, &records, edge, *ends, follow)
+                .unwrap_or_else(|| records.iter().filter_map(point).collect());
             all.push(QuantityCurve { branch, robot: Some(ends.follower), points });
         }
         if quantity == PlotQuantity::Speed {
             for (robot, _) in history.fleet().robots.iter().enumerate().filter(|(_, member)| member.leads) {
                 let speed =
                     |m: &&StepRecord| Some([m.snapshot.time, m.snapshot.robots.get(robot)?.motion.speed]);
-                all.push(QuantityCurve {
-                    branch,
-                    robot: Some(robot),
-                    points: records.iter().filter_map(speed).collect(),
-                });
+                let points = records.iter().filter_map(speed).collect();
+                all.push(QuantityCurve { branch, robot: Some(robot), points });
             }
         }
     }
@@ -258,11 +230,11 @@ pub fn csv(app_state: &AppState) -> String {
             name.to_owned()
         }
     };
-    for quantity in PlotQuantity::ALL {
+    for quantity in PlotQuantity::all() {
         for curve in curves(app_state, quantity, [0.0, f64::INFINITY], usize::MAX) {
             let branch = app_state.branches.get(curve.branch).map_or("", |b| &b.name);
-            let fleet = app_state.history.as_ref().map(History::fleet);
-            let robot = curve.robot.and_then(|robot| fleet?.robots.get(robot)).map_or("", |m| &m.name);
+            let robot =
+                curve.robot.and_then(|robot| app_state.fleet()?.robots.get(robot)).map_or("", |m| &m.name);
             let head = format!("{},{},{}", quoted(branch), quoted(robot), quantity.column());
             for [time, value] in curve.points {
                 // Writing to a text cannot fail.
@@ -276,8 +248,8 @@ pub fn csv(app_state: &AppState) -> String {
 /// The curves as a figure for print.
 pub fn svg(app_state: &AppState) -> String {
     use figures::{Axis, Figure, Guide, Panel, Series};
-    let fleet = app_state.history.as_ref().map(|history| history.fleet().clone());
-    let colours = fleet.as_ref().map(|fleet| rendering::robot_colours(fleet)).unwrap_or_default();
+    let fleet = app_state.fleet();
+    let colours = fleet.map(|fleet| rendering::robot_colours(fleet)).unwrap_or_default();
     let shown = [
         PlotQuantity::DistanceError,
         PlotQuantity::BearingError,
@@ -288,7 +260,7 @@ pub fn svg(app_state: &AppState) -> String {
     ];
     let panels = shown.into_iter().map(|quantity| {
         let series = curves(app_state, quantity, [0.0, f64::INFINITY], 600).into_iter().map(|curve| {
-            let name = curve.robot.and_then(|r| fleet.as_ref()?.robots.get(r)).map_or("all", |m| &m.name);
+            let name = curve.robot.and_then(|r| fleet?.robots.get(r)).map_or("all", |m| &m.name);
             let active = curve.branch == app_state.branch;
             let branch = app_state.branches.get(curve.branch).map_or("", |b| &b.name);
             Series {

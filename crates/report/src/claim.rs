@@ -49,6 +49,13 @@ pub struct ClaimSubject<'a> {
     pub unit: &'static str,
 }
 
+impl<'a> ClaimSubject<'a> {
+    /// What a figure should show of a quantity with a unit.
+    pub const fn new(figure: &'a str, claim: &'a str, quantity: &'a str, unit: &'static str) -> Self {
+        Self { figure, claim, quantity, unit }
+    }
+}
+
 /// Differences below this share are rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -110,18 +117,15 @@ pub(crate) fn takes_up(figure: &str, run: &Trace) -> Vec<FigureClaim> {
         worst(edges.map(|e| (e.follower.as_str(), e.late_peak_error[channel])).collect())
     };
     let quantity = format!("largest error from {} on", quantity(run.late_from(), "s"));
-    vec![
-        FigureClaim::at_most(
-            ClaimSubject { figure, claim, quantity: &format!("{quantity}, distance"), unit: "m" },
-            &values(0),
-            band[0],
-        ),
-        FigureClaim::at_most(
-            ClaimSubject { figure, claim, quantity: &format!("{quantity}, bearing"), unit: "rad" },
-            &values(1),
-            band[1],
-        ),
-    ]
+    [("distance", "m"), ("bearing", "rad")]
+        .into_iter()
+        .enumerate()
+        .map(|(channel, (name, unit))| {
+            let quantity = format!("{quantity}, {name}");
+            let subject = ClaimSubject::new(figure, claim, &quantity, unit);
+            FigureClaim::at_most(subject, &values(channel), band[channel])
+        })
+        .collect()
 }
 
 /// Values that a claim lists one by one; of more, the largest.
@@ -139,7 +143,7 @@ fn worst(mut values: Vec<(&str, f64)>) -> Vec<(&str, f64)> {
 pub(crate) fn no_contact(figure: &str, run: &Trace) -> FigureClaim {
     let claim = "The formation drives without contact.";
     FigureClaim::at_most(
-        ClaimSubject { figure, claim, quantity: "contacts", unit: "" },
+        ClaimSubject::new(figure, claim, "contacts", ""),
         &[("contacts", run.metrics.contacts as f64)],
         0.0,
     )
@@ -161,11 +165,8 @@ pub fn knowing_less_costs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec
         runs.first().into_iter().chain(runs.last().filter(|_| runs.len() > 1)).copied().collect();
     let applied = |channel: usize| each(&ends, |run| Some(run.efforts.get(edge)?.applied[channel]));
     vec![
-        FigureClaim::rises(ClaimSubject { figure, claim, quantity: "∫|dv/dt| dt", unit: "m/s" }, &applied(0)),
-        FigureClaim::rises(
-            ClaimSubject { figure, claim, quantity: "∫|ω| dt", unit: "rad in all" },
-            &applied(1),
-        ),
+        FigureClaim::rises(ClaimSubject::new(figure, claim, "∫|dv/dt| dt", "m/s"), &applied(0)),
+        FigureClaim::rises(ClaimSubject::new(figure, claim, "∫|ω| dt", "rad in all"), &applied(1)),
     ]
 }
 
@@ -173,8 +174,7 @@ pub fn knowing_less_costs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec
 pub fn knowing_less_errs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<FigureClaim> {
     let claim = "The less a law knows, the larger the error that stays.";
     let settled = each(runs, |run| run.settled(edge));
-    let mut claims =
-        vec![FigureClaim::rises(ClaimSubject { figure, claim, quantity: "settled ‖e‖", unit: "" }, &settled)];
+    let mut claims = vec![FigureClaim::rises(ClaimSubject::new(figure, claim, "settled ‖e‖", ""), &settled)];
     if let Some(last) = settled.last() {
         let claim = "The behaviour under output feedback is quite satisfactory.";
         let band = runs.last().map_or(0.0, |(_, run)| {
@@ -182,7 +182,7 @@ pub fn knowing_less_errs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<
             distance.hypot(bearing)
         });
         claims.push(FigureClaim::at_most(
-            ClaimSubject { figure, claim, quantity: "settled ‖e‖", unit: "" },
+            ClaimSubject::new(figure, claim, "settled ‖e‖", ""),
             &[*last],
             band,
         ));
@@ -199,15 +199,15 @@ pub fn faster_observers_cost(figure: &str, runs: &Compared<'_>, edge: usize) -> 
     let over = |what: &str| format!("{what}, first {}", quantity(until, "s"));
     vec![
         FigureClaim::rises(
-            ClaimSubject { figure, claim, quantity: &over("peak |dv/dt| asked for"), unit: "m/s²" },
+            ClaimSubject::new(figure, claim, &over("peak |dv/dt| asked for"), "m/s²"),
             &of(&|e| e.peak_asked[0]),
         ),
         FigureClaim::rises(
-            ClaimSubject { figure, claim, quantity: &over("∫|dv/dt asked for| dt"), unit: "m/s" },
+            ClaimSubject::new(figure, claim, &over("∫|dv/dt asked for| dt"), "m/s"),
             &of(&|e| e.transient_asked[0]),
         ),
         FigureClaim::rises(
-            ClaimSubject { figure, claim, quantity: &over("∫|ω| dt"), unit: "rad in all" },
+            ClaimSubject::new(figure, claim, &over("∫|ω| dt"), "rad in all"),
             &of(&|e| e.transient_applied[1]),
         ),
     ]
@@ -218,11 +218,11 @@ pub fn faster_observers_err_less(figure: &str, runs: &Compared<'_>, edge: usize)
     let claim = "As ε decreases, tracking errors decrease.";
     vec![
         FigureClaim::falls(
-            ClaimSubject { figure, claim, quantity: "settled ‖e‖", unit: "" },
+            ClaimSubject::new(figure, claim, "settled ‖e‖", ""),
             &each(runs, |run| run.settled(edge)),
         ),
         FigureClaim::falls(
-            ClaimSubject { figure, claim, quantity: "(∫‖e‖² dt)^½ over the run", unit: "s^½" },
+            ClaimSubject::new(figure, claim, "(∫‖e‖² dt)^½ over the run", "s^½"),
             &each(runs, |run| run.over_the_run(edge)),
         ),
     ]

@@ -21,20 +21,8 @@ pub struct ReportFigure {
 
 impl ReportFigure {
     /// A figure without claims.
-    pub fn new(
-        stem: impl Into<String>,
-        caption: impl Into<String>,
-        svg: impl Into<String>,
-        csv: impl Into<String>,
-    ) -> Self {
-        Self {
-            stem: stem.into(),
-            caption: caption.into(),
-            svg: svg.into(),
-            csv: csv.into(),
-            claims: vec![],
-            picture: None,
-        }
+    pub fn new(stem: impl Into<String>, caption: impl Into<String>, svg: String, csv: String) -> Self {
+        Self { stem: stem.into(), caption: caption.into(), svg, csv, claims: vec![], picture: None }
     }
 
     /// With what it is said to show.

@@ -96,7 +96,7 @@ pub(crate) fn stands_so(stem: &str, run: &Trace) -> FigureClaim {
     let limit = run.metrics.settling_band[0] * depth.max(1) as f64;
     let claim = "At the end the robots stand as the graph says, seen from their lead robot.";
     let quantity = "largest distance of a robot from its place";
-    let subject = ClaimSubject { figure: stem, claim, quantity, unit: "m" };
+    let subject = ClaimSubject::new(stem, claim, quantity, "m");
     FigureClaim::at_most(subject, &[("largest", off)], limit)
 }
 

@@ -5,7 +5,7 @@ use figures::Rgb;
 use metrics::{Digest, Metrics, MetricsBuilder};
 use scene::Scene;
 use simulation::Simulation;
-use vocabulary::{Command, Edge, FleetInfo, Motion, StepRecord, wrap};
+use vocabulary::{Command, Edge, FleetInfo, Motion, Pose, StepRecord, wrap};
 
 /// One edge at one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -76,6 +76,21 @@ impl Trace {
         Some((distance + bearing).sqrt())
     }
 
+    /// Pose of a robot at a kept sample.
+    pub(crate) fn pose(&self, robot: usize, sample: usize) -> Option<Pose> {
+        Some(self.robots.get(robot)?.get(sample)?.pose)
+    }
+
+    /// The first robot that leads, or the first of all.
+    pub(crate) fn guide(&self) -> usize {
+        self.fleet.robots.iter().position(|member| member.leads).unwrap_or(0)
+    }
+
+    /// The colour of a robot.
+    pub(crate) fn robot_colour(&self, robot: usize) -> Rgb {
+        self.colours.get(robot).copied().unwrap_or_default()
+    }
+
     /// Name of an edge's follower.
     pub fn follower(&self, edge: usize) -> &str {
         let robot = self.fleet.edges.get(edge).and_then(|edge| self.fleet.robots.get(edge.follower));
@@ -84,8 +99,7 @@ impl Trace {
 
     /// The follower's colour.
     pub(crate) fn colour(&self, edge: usize) -> Rgb {
-        let robot = self.fleet.edges.get(edge).and_then(|edge| self.colours.get(edge.follower));
-        robot.copied().unwrap_or_default()
+        self.fleet.edges.get(edge).map_or_else(Rgb::default, |edge| self.robot_colour(edge.follower))
     }
 }
 

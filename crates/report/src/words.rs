@@ -56,6 +56,11 @@ fn digits_to(count: i32, value: f64) -> String {
     format!("{factor:.decimals$}·10{raised}").replace('-', "−")
 }
 
+/// A number without zeros at the end of its decimals.
+pub(crate) fn trimmed(text: String) -> String {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 fn raise(c: char) -> char {
     const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     match c.to_digit(10) {

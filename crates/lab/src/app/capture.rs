@@ -1,18 +1,36 @@
 //! Pictures and films of what is seen.
 
 use super::LabApp;
-use super::film_capture::FilmCapture;
 use crate::exporter::{ExportJob, FrameSpec, RATE};
 use crate::kept_run::free;
 use eframe::egui;
 use rendering::{Annotations, Style, ViewLayout};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use vocabulary::counted;
+
+/// A film under way.
+pub(crate) struct FilmCapture {
+    path: PathBuf,
+    /// Time of the next frame, s, and the branch.
+    next: f64,
+    branch: usize,
+    /// Records up to this time have been sent, s.
+    sent: f64,
+    frames: u64,
+}
+
+impl FilmCapture {
+    /// How far it is, in words.
+    pub(crate) fn words(&self, waiting: usize) -> String {
+        format!("{}: {}, {waiting} waiting", self.path.display(), counted(self.frames, "frame"))
+    }
+}
 
 impl LabApp {
     /// What is seen now, for a picture `size` large.
     pub(crate) fn shot(&self, record: &Arc<vocabulary::StepRecord>, size: [u32; 2]) -> Option<FrameSpec> {
-        let fleet = self.app_state.history.as_ref()?.fleet();
+        let fleet = self.app_state.fleet()?;
         let scale = (f64::from(size[1]) / 720.0).max(0.5);
         Some(FrameSpec {
             record: Arc::clone(record),
@@ -26,7 +44,7 @@ impl LabApp {
     pub(crate) fn film_shot(&self, record: &Arc<vocabulary::StepRecord>) -> Option<FrameSpec> {
         let shot = self.shot(record, [1280, 720])?;
         let Some(view) = &self.app_state.film_from else { return Some(shot) };
-        let fleet = self.app_state.history.as_ref()?.fleet();
+        let fleet = self.app_state.fleet()?;
         let names: Vec<String> = fleet.robots.iter().map(|member| member.name.clone()).collect();
         let style = Style { annotations: Annotations::default(), inset: true, ..shot.style };
         Some(FrameSpec { layout: ViewLayout::parse(view, &names).unwrap_or(shot.layout), style, ..shot })

@@ -1,9 +1,24 @@
 //! Draws what lies over the panels: notices, the menu of scenes, shortcuts, hints, questions.
 
-use super::dialog::Dialog;
 use super::{BARE, LabApp};
 use crate::action::Action;
 use eframe::egui::{self, Context, Ui};
+
+/// What lies over the view.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Dialog {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The menu of scenes.
+    Gallery,
+    /// The shortcuts.
+    Help,
+    /// The question before unsaved work is closed.
+    Closing,
+    /// The question before another scene takes the place of unsaved work.
+    Leaving,
+}
 
 impl LabApp {
     /// A line under the bar: work that a crash has left.

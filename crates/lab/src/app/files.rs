@@ -1,9 +1,8 @@
 //! Scenes from and to disk: open, save, read again, recover, and runs that are kept.
 
 use super::LabApp;
-use super::dialog::Dialog;
+use super::dialogs::Dialog;
 use crate::kept_run::{SeenRun, free, keep};
-use crate::session::scene_draft::SceneDraft;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -158,7 +157,7 @@ impl LabApp {
     }
 
     pub(crate) fn changed_on_disk(&mut self) {
-        if self.app_state.draft.as_ref().is_some_and(SceneDraft::unsaved) {
+        if self.app_state.unsaved() {
             let text = "The file has changed on disk, and there are changes here: Ctrl R takes the file, Ctrl S keeps yours.";
             self.app_state.fault(text);
         } else {

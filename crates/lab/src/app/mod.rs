@@ -1,14 +1,12 @@
 //! The window itself: it hears events, shows panels, and does what is asked for.
 
 mod capture;
-mod dialog;
 mod dialogs;
 mod files;
-mod film_capture;
 mod memory;
 
-use self::dialog::Dialog;
-use self::film_capture::FilmCapture;
+use self::capture::FilmCapture;
+use self::dialogs::Dialog;
 use self::memory::Memory;
 use crate::Error;
 use crate::action::Action;
@@ -19,13 +17,13 @@ use crate::file_watcher::FileWatcher;
 use crate::frame_timings::FrameTimings;
 use crate::gallery::{self, Gallery};
 use crate::kept_run::SeenRun;
-use crate::look;
 use crate::panels::time_bar;
 use crate::panes::{self, Pane, Panels};
 use crate::quantities;
 use crate::session::prediction::{Prediction, Predictor};
 use crate::session::runner::{RunEvent, RunRequest, Runner};
 use crate::session::scene_draft::SceneDraft;
+use crate::theme;
 use crate::view::viewport::{ViewInput, Viewport};
 use crate::window::{NAME, Options};
 use eframe::egui::{self, Context, Ui};
@@ -76,7 +74,7 @@ impl LabApp {
     ) -> Result<Self, String> {
         let state = context.wgpu_render_state.as_ref().ok_or("there is no graphics device")?;
         let ctx = context.egui_ctx.clone();
-        look::dress(&ctx);
+        theme::apply(&ctx);
         let wake = || {
             let ctx = ctx.clone();
             move || ctx.request_repaint()
@@ -89,7 +87,7 @@ impl LabApp {
         let folder = eframe::storage_dir(NAME);
         let mut lab = Self {
             app_state: AppState::new(),
-            runner: Runner::start(predictor, wake()),
+            runner: Runner::start(predictor, Some(viewport.gpu().clone()), wake()),
             predictions,
             exporter: Exporter::start(viewport.gpu().clone(), wake()),
             viewport,
@@ -135,7 +133,7 @@ impl LabApp {
             self.app_state.edit("Changes of the command line", |text| {
                 set.iter().try_for_each(|set| {
                     let (path, value) = set.parts();
-                    text.set(path, value).map_err(|error| error.to_string())
+                    text.set(path, value)
                 })
             });
         }
@@ -185,16 +183,7 @@ impl LabApp {
 
     /// Sends what the state has requested.
     fn send(&mut self) {
-        for request in std::mem::take(&mut self.app_state.requests) {
-            let request = match request {
-                RunRequest::ResumeRecording { scene, .. } => {
-                    RunRequest::ResumeRecording { scene, gpu: Some(self.viewport.gpu().clone()) }
-                }
-                RunRequest::Open { scene, until, .. } => {
-                    RunRequest::Open { scene, until, gpu: Some(self.viewport.gpu().clone()) }
-                }
-                request => request,
-            };
+        for request in self.app_state.requests.drain(..) {
             self.runner.request(request);
         }
     }
@@ -221,7 +210,7 @@ impl LabApp {
             let empty = Arc::default();
             let seen = ViewInput {
                 app_state,
-                fleet: app_state.history.as_ref().map_or(&empty, |history| history.fleet()),
+                fleet: app_state.fleet().unwrap_or(&empty),
                 record: app_state.shown(),
                 trail: app_state.history.as_ref().and_then(|history| history.trail(branch, time)),
             };
@@ -265,7 +254,7 @@ impl LabApp {
                 // The names are the panel's own.
                 let _ = self.viewport.style.set(name, on);
             }
-            Action::Open(_) | Action::OpenShipped(_) if self.unsaved() => {
+            Action::Open(_) | Action::OpenShipped(_) if self.app_state.unsaved() => {
                 self.next = Some(action);
                 self.dialog = Dialog::Leaving;
             }
@@ -300,10 +289,6 @@ impl LabApp {
             Action::Dismiss => self.dismiss(),
             _ => {}
         }
-    }
-
-    pub(crate) fn unsaved(&self) -> bool {
-        self.app_state.draft.as_ref().is_some_and(SceneDraft::unsaved)
     }
 
     /// The window is called as its scene.
@@ -378,7 +363,7 @@ impl eframe::App for LabApp {
         }
         self.name_window(ctx);
         let asked = ctx.input(|input| input.viewport().close_requested());
-        if asked && self.unsaved() {
+        if asked && self.app_state.unsaved() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.dialog = Dialog::Closing;
         }

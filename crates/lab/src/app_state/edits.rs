@@ -4,18 +4,14 @@ use super::AppState;
 use super::branch_info::BranchInfo;
 use super::past_changes::PastChanges;
 use crate::session::branches::{BranchChange, script};
-use crate::session::history::History;
 use crate::session::runner::RunRequest;
 use crate::session::scene_draft::{Effect, SceneDraft};
+use scene::{EditError, SceneText};
 use std::sync::Arc;
 
 impl AppState {
     /// Edits the scene, and lets the run take it.
-    pub fn edit(
-        &mut self,
-        what: &str,
-        edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
-    ) -> bool {
+    pub fn edit(&mut self, what: &str, edit: impl FnOnce(&mut SceneText) -> Result<(), EditError>) -> bool {
         let past_changes = self.in_the_past();
         let time = self.time();
         let done = match &mut self.draft {
@@ -69,7 +65,7 @@ impl AppState {
     fn edit_past(
         &mut self,
         what: &str,
-        edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
+        edit: impl FnOnce(&mut SceneText) -> Result<(), EditError>,
     ) -> Result<Effect, String> {
         let (Some((_, there)), Some(draft)) = (self.there(), &self.draft) else { return Ok(Effect::None) };
         let settled = PastChanges::of(&draft.read(&there)?, self.time());
@@ -150,8 +146,7 @@ impl AppState {
     /// Why there is none, in words.
     pub fn script(&self) -> Result<String, String> {
         let branch = self.branches.get(self.branch).ok_or("There is no run.")?;
-        let period = self.history.as_ref().map_or(0.01, History::period);
-        script(&self.base, &self.own, &branch.changes, self.end().max(period))
+        script(&self.base, &self.own, &branch.changes, self.end().max(self.period()))
     }
 
     pub(crate) fn forked(

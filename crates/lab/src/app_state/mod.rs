@@ -15,7 +15,7 @@ use scene::{Follow, Role, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{EdgeState, ScalarTrajectory, StepRecord, wrap};
+use vocabulary::{EdgeState, FleetInfo, ScalarTrajectory, StepRecord, wrap};
 
 /// What is selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -163,7 +163,7 @@ impl AppState {
         self.begin();
         self.recorded = false;
         let Some(draft) = &self.draft else { return };
-        self.requests.push(RunRequest::Open { scene: Arc::clone(draft.scene()), gpu: None, until });
+        self.requests.push(RunRequest::Open { scene: Arc::clone(draft.scene()), until });
         self.requests.push(RunRequest::Ahead(self.ahead));
         self.requests.push(RunRequest::Play(self.playing));
     }
@@ -185,9 +185,24 @@ impl AppState {
         last.map(|change| &*change.scene).or(self.first.as_deref())
     }
 
+    /// Who runs.
+    pub(crate) fn fleet(&self) -> Option<&Arc<FleetInfo>> {
+        self.history.as_ref().map(History::fleet)
+    }
+
+    /// Control period of the run, s.
+    pub(crate) fn period(&self) -> f64 {
+        self.history.as_ref().map_or(0.01, History::period)
+    }
+
+    /// Whether the scene has changes that are not saved.
+    pub(crate) fn unsaved(&self) -> bool {
+        self.draft.as_ref().is_some_and(SceneDraft::unsaved)
+    }
+
     fn chosen_name(&self) -> Option<String> {
         let robot = self.chosen_robot()?;
-        Some(self.history.as_ref()?.fleet().robots.get(robot)?.name.clone())
+        Some(self.fleet()?.robots.get(robot)?.name.clone())
     }
 
     /// The scene with what its own changes have made of it by the time that is looked at.
@@ -247,11 +262,18 @@ impl AppState {
     /// The follower of an edge: its index among the robots, its name, and how it follows.
     pub fn follower(&self, edge: usize) -> Option<(usize, &str, &Follow)> {
         let scene = self.scene_now()?;
-        let followers = scene.robots.iter().enumerate().filter_map(|(index, robot)| match &robot.role {
+        let mut followers = scene.robots.iter().enumerate().filter_map(|(index, robot)| match &robot.role {
             Role::Follow(follow) => Some((index, &*robot.name, &**follow)),
             Role::Lead { .. } => None,
         });
-        followers.into_iter().nth(edge)
+        followers.nth(edge)
+    }
+
+    /// The follower whose values are tuned, that of the selected edge or else the first: its edge and what
+    /// [`AppState::follower`] tells.
+    pub fn tuned_follower(&self) -> Option<(usize, usize, &str, &Follow)> {
+        let edge = self.chosen_edge().unwrap_or(0);
+        self.follower(edge).map(|(robot, name, follow)| (edge, robot, name, follow))
     }
 
     /// The set point of an edge as it is wanted now, m and rad.
@@ -276,15 +298,14 @@ impl AppState {
 
     /// The edge on which a robot follows.
     pub fn edge_of(&self, robot: usize) -> Option<usize> {
-        let fleet = self.history.as_ref()?.fleet();
-        fleet.edges.iter().position(|edge| edge.follower == robot)
+        self.fleet()?.edges.iter().position(|edge| edge.follower == robot)
     }
 
     /// The robot that is selected, or the follower of the edge that is.
     pub fn chosen_robot(&self) -> Option<usize> {
         match self.selection {
             Selection::Robot(robot) => Some(robot),
-            Selection::Edge(edge) => self.history.as_ref()?.fleet().edges.get(edge).map(|edge| edge.follower),
+            Selection::Edge(edge) => self.fleet()?.edges.get(edge).map(|edge| edge.follower),
             Selection::Nothing => None,
         }
     }
@@ -326,7 +347,7 @@ impl AppState {
         } else {
             self.pause();
             // Between two samples there is nothing to see.
-            let period = self.history.as_ref().map_or(0.01, History::period);
+            let period = self.period();
             self.cursor = Some((time.max(0.0) / period).round() * period);
         }
     }
@@ -386,7 +407,7 @@ impl AppState {
 
     /// What was selected stays so by its name; what is not there any more is not.
     fn check_choice(&mut self) {
-        let Some(fleet) = self.history.as_ref().map(History::fleet) else { return };
+        let Some(fleet) = self.fleet() else { return };
         let named = |name: &String| fleet.robots.iter().position(|member| member.name == *name);
         let robot = self.chosen.as_ref().and_then(named);
         let edge = robot.and_then(|robot| fleet.edges.iter().position(|edge| edge.follower == robot));

@@ -33,7 +33,7 @@ impl AppState {
             self.restart(until);
             return self.note("The scene runs anew from here on: what cameras saw is drawn again");
         }
-        self.requests.push(RunRequest::ResumeRecording { scene, gpu: None });
+        self.requests.push(RunRequest::ResumeRecording(scene));
         self.requests.push(RunRequest::Ahead(self.ahead));
         self.note("What was recorded is taken up: the scene runs anew, unseen, as far as that came");
     }

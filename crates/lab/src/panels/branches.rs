@@ -3,7 +3,7 @@
 use super::naming;
 use crate::action::Action;
 use crate::app_state::AppState;
-use crate::tidy::fixed;
+use crate::numbers::fixed;
 use eframe::egui::{self, RichText, Role, Ui, WidgetInfo};
 
 /// All branches.

@@ -2,8 +2,8 @@
 
 use super::{pair, tune};
 use crate::action::Action;
+use crate::numbers::toml_number;
 use crate::symbols::Symbol;
-use crate::tidy::tidy;
 use eframe::egui::{self, Slider, Ui};
 
 /// How a slider goes.
@@ -40,13 +40,18 @@ pub(crate) struct SliderRow {
 }
 
 impl SliderRow {
+    /// Of a quantity under a key of the scene.
+    pub(crate) const fn new(symbol: Symbol, key: &'static str, range: Range, decimals: usize) -> Self {
+        Self { symbol, key, range, decimals }
+    }
+
     /// A row for one value; the default is shown beside the way back to it.
     pub(crate) fn one(&self, ui: &mut Ui, value: f64, default: f64, out: &mut Vec<Action>) {
-        self.frame(ui, value != default, &tidy(default), out, |ui, out| {
+        self.frame(ui, value != default, &toml_number(default), out, |ui, out| {
             let mut new = value;
             let response = self.slider(ui, &mut new, self.symbol.name);
             if response.changed() && new != value {
-                out.push(tune(self.symbol.name, self.key, tidy(new)));
+                out.push(tune(self.symbol.name, self.key, toml_number(new)));
             }
             released(&response, out);
         });
@@ -62,9 +67,9 @@ impl SliderRow {
         out: &mut Vec<Action>,
     ) {
         let shown = if default[0] == default[1] {
-            tidy(default[0])
+            toml_number(default[0])
         } else {
-            format!("{}, {}", tidy(default[0]), tidy(default[1]))
+            format!("{}, {}", toml_number(default[0]), toml_number(default[1]))
         };
         self.frame(ui, value != default, &shown, out, |ui, out| {
             if value[0] == value[1] && !apart {

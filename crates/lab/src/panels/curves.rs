@@ -3,8 +3,8 @@
 use super::{colour, nothing};
 use crate::action::Action;
 use crate::app_state::AppState;
+use crate::numbers::fixed;
 use crate::quantities::{PlotQuantity, QuantityCurve, bounds, curves};
-use crate::tidy::fixed;
 use eframe::egui::{self, Color32, Id, Stroke, Ui};
 use egui_plot::{GridMark, HLine, HoverPosition, LineStyle, Plot, PlotPoint, VLine};
 

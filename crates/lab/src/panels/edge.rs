@@ -3,8 +3,8 @@
 use super::nobody;
 use crate::action::Action;
 use crate::app_state::AppState;
+use crate::numbers::fixed;
 use crate::symbols;
-use crate::tidy::fixed;
 use eframe::egui::{self, DragValue, RichText, Ui, WidgetInfo};
 use vocabulary::ScalarTrajectory;
 
@@ -110,9 +110,9 @@ fn ahead(ui: &mut Ui, app_state: &AppState, edge: usize) {
         ));
     }
     if let Some((time, things)) = &prediction.contact
-        && let Some(history) = &app_state.history
+        && let Some(fleet) = app_state.fleet()
     {
-        let [a, b] = things.map(|thing| history.fleet().name(thing).to_owned());
+        let [a, b] = things.map(|thing| fleet.name(thing).to_owned());
         let text = format!("contact at {} s: {a} and {b}", fixed(*time, 1));
         ui.colored_label(ui.visuals().error_fg_color, text);
     }

@@ -29,11 +29,8 @@ pub fn show(ui: &mut Ui, app_state: &AppState, style: &Style, filming: Option<&s
         if ui.button("Picture").on_hover_text("A PNG that remembers its settings (P)").clicked() {
             out.push(Action::Picture);
         }
-        if ui
-            .button("Keep the run")
-            .on_hover_text("The run as a scene with its changes, and its tables")
-            .clicked()
-        {
+        let tip = "The run as a scene with its changes, and its tables";
+        if ui.button("Keep the run").on_hover_text(tip).clicked() {
             out.push(Action::KeepRun);
         }
     });
@@ -63,9 +60,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, style: &Style, filming: Option<&s
 
 /// The view that films are taken from.
 fn from(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let names =
-        app_state.history.as_ref().map(|history| history.fleet().robots.iter().map(|m| m.name.clone()));
-    let robots: Vec<String> = names.map(Iterator::collect).unwrap_or_default();
+    let robots = app_state.fleet().map_or(&[][..], |fleet| &fleet.robots);
     let now = app_state.film_from.as_deref().unwrap_or(SEEN);
     ui.horizontal(|ui| {
         ui.label("Film from");
@@ -75,7 +70,8 @@ fn from(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
                 out.push(Action::FilmFrom(None));
             }
             let plain = ["snake", "snake-eye", "top", "orbit", "snake+top"].map(str::to_owned).into_iter();
-            let bound = robots.iter().flat_map(|name| [format!("follow:{name}"), format!("camera:{name}")]);
+            let names = robots.iter().map(|robot| &robot.name);
+            let bound = names.flat_map(|name| [format!("follow:{name}"), format!("camera:{name}")]);
             for view in plain.chain(bound.take(40)) {
                 if ui.selectable_label(app_state.film_from.as_ref() == Some(&view), &view).clicked() {
                     out.push(Action::FilmFrom(Some(view)));

@@ -8,7 +8,7 @@ use vocabulary::{FleetInfo, StepRecord};
 
 /// Robots as a tree.
 pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let Some(fleet) = app_state.history.as_ref().map(|history| history.fleet().clone()) else {
+    let Some(fleet) = app_state.fleet() else {
         return nothing(ui, "No scene is open.");
     };
     ui.horizontal_wrapped(|ui| {
@@ -22,10 +22,10 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         }
     });
     let record = app_state.shown();
-    let rows = order(&fleet);
+    let rows = order(fleet);
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         for (robot, depth) in rows {
-            row(ui, app_state, &fleet, record.as_deref(), robot, depth, out);
+            row(ui, app_state, fleet, record.as_deref(), robot, depth, out);
         }
     });
 }
@@ -66,7 +66,7 @@ fn row(
                 app_state.edge_of(robot).and_then(|edge| Some(record?.edges.get(edge)?.error))
             {
                 let size = error[0].hypot(error[1]);
-                let text = format!("{} m", crate::tidy::fixed(error[0], 2));
+                let text = format!("{} m", crate::numbers::fixed(error[0], 2));
                 let weak = RichText::new(text).small();
                 let text = if size > 0.05 { weak.color(ui.visuals().warn_fg_color) } else { weak.weak() };
                 ui.label(text).on_hover_text("Error of the distance");

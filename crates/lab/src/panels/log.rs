@@ -2,7 +2,7 @@
 
 use crate::action::Action;
 use crate::app_state::AppState;
-use crate::tidy::fixed;
+use crate::numbers::fixed;
 use eframe::egui::{self, RichText, Ui};
 
 /// The log of events.

@@ -16,8 +16,9 @@ pub mod world;
 
 use crate::action::Action;
 use crate::app_state::AppState;
-use crate::tidy::tidy;
-use eframe::egui::{self, Color32, Popup, PopupCloseBehavior, Response, TextEdit, Ui};
+use crate::numbers::toml_number;
+use eframe::egui::{self, Color32, ComboBox, Popup, PopupCloseBehavior, Response, TextEdit, Ui};
+use vocabulary::Word;
 
 /// Says that there is nothing to show, and why.
 pub(crate) fn nothing(ui: &mut Ui, why: &str) {
@@ -49,6 +50,29 @@ pub(crate) fn naming(response: &Response, name: &str, more: impl FnOnce(&mut Ui)
     entered?.inner.filter(|text| !text.is_empty() && text != name)
 }
 
+/// A box to choose one of `kinds` from, each with its name and what it is: the value of a key of the scene.
+pub(crate) fn choice<K: Word>(
+    ui: &mut Ui,
+    name: &str,
+    key: &'static str,
+    now: K,
+    kinds: &[(K, &str, &str)],
+    out: &mut Vec<Action>,
+) {
+    let shown = kinds.iter().find(|(kind, ..)| *kind == now).map_or("", |(_, shown, _)| shown);
+    let combo = ComboBox::from_id_salt(name).selected_text(shown).width(ui.available_width() - 8.0);
+    let response = combo.show_ui(ui, |ui| {
+        for (kind, shown, tip) in kinds {
+            let label = ui.selectable_label(*kind == now, *shown).on_hover_text(*tip);
+            if label.clicked() && *kind != now {
+                out.push(tune(name, key, format!("{:?}", kind.word())));
+                out.push(Action::Rest);
+            }
+        }
+    });
+    chosen(&response.response, name, shown);
+}
+
 /// What a box to choose from is called, and what is chosen.
 pub(crate) fn chosen(response: &Response, name: &str, now: &str) {
     response.widget_info(|| egui::WidgetInfo {
@@ -71,9 +95,9 @@ pub(crate) fn nobody(ui: &mut Ui, app_state: &AppState, why: &str) {
 
 /// The colour of a robot on light and dark ground.
 pub(crate) fn colour(app_state: &AppState, robot: usize, ui: &Ui) -> Color32 {
-    let Some(history) = &app_state.history else { return Color32::GRAY };
-    let colours = rendering::robot_colours(history.fleet());
-    let leads = history.fleet().robots.get(robot).is_some_and(|member| member.leads);
+    let Some(fleet) = app_state.fleet() else { return Color32::GRAY };
+    let colours = rendering::robot_colours(fleet);
+    let leads = fleet.robots.get(robot).is_some_and(|member| member.leads);
     if leads && ui.visuals().dark_mode {
         // Near-black would be lost, and the gold of its stripe is too near to the first follower's orange.
         return Color32::from_rgb(0xe6, 0xe2, 0xd6);
@@ -100,8 +124,8 @@ pub(crate) fn tune(what: &str, key: &'static str, value: String) -> Action {
 /// A pair of values as TOML: one where both are the same.
 pub(crate) fn pair(values: [f64; 2]) -> String {
     if values[0] == values[1] {
-        tidy(values[0])
+        toml_number(values[0])
     } else {
-        format!("[{}, {}]", tidy(values[0]), tidy(values[1]))
+        format!("[{}, {}]", toml_number(values[0]), toml_number(values[1]))
     }
 }

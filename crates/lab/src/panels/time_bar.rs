@@ -3,7 +3,7 @@
 use super::icons::{Icon, button};
 use crate::action::Action;
 use crate::app_state::AppState;
-use crate::tidy::fixed;
+use crate::numbers::fixed;
 use eframe::egui::containers::menu::{MenuConfig, SubMenuButton};
 use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInfo};
 
@@ -156,17 +156,13 @@ fn menu(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     // Items close the menu themselves; a click into its field does not.
     let stays = egui::PopupCloseBehavior::CloseOnClickOutside;
     egui::Popup::menu(&more).close_behavior(stays).show(|ui| {
-        let unsaved = app_state.draft.as_ref().is_some_and(crate::session::scene_draft::SceneDraft::unsaved);
+        let on_disk = app_state.draft.as_ref().is_some_and(|draft| draft.path.is_some());
         for (text, action, on) in [
             ("Scenes   Ctrl O", Action::Gallery, true),
             ("Film   F", Action::Film, true),
             ("Picture   P", Action::Picture, true),
-            ("Save scene   Ctrl S", Action::Save, unsaved),
-            (
-                "Reload from disk   Ctrl R",
-                Action::Reload,
-                app_state.draft.as_ref().is_some_and(|d| d.path.is_some()),
-            ),
+            ("Save scene   Ctrl S", Action::Save, app_state.unsaved()),
+            ("Reload from disk   Ctrl R", Action::Reload, on_disk),
             ("Undo   Ctrl Z", Action::Undo, app_state.undoes().is_some()),
             ("Redo   Ctrl Y", Action::Redo, app_state.draft.as_ref().is_some_and(|d| d.redoes().is_some())),
             ("Keep the run   K", Action::KeepRun, true),
@@ -184,7 +180,7 @@ fn menu(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         let config = MenuConfig::new().close_behavior(stays);
         SubMenuButton::new("Save as").config(config).ui(ui, |ui| save_as(ui, out));
         ui.menu_button("Panels", |ui| {
-            for name in crate::panes::NAMES {
+            for (name, _) in crate::panes::PANES {
                 if ui.button(*name).clicked() {
                     out.push(Action::Panel(name));
                     ui.close();

@@ -5,41 +5,28 @@ use super::law::scope;
 use super::{nobody, nothing};
 use crate::action::Action;
 use crate::app_state::{AppState, Tool};
+use crate::numbers::toml_number;
 use crate::symbols;
-use crate::tidy::tidy;
 use eframe::egui::{self, Slider, Ui, WidgetInfo};
 use scene::Vehicle;
+use vocabulary::counted;
 
-const SPEED_MIN: SliderRow = SliderRow {
-    symbol: symbols::SPEED_MIN,
-    key: "vehicle.speed_min",
-    range: Range { span: [0.01, 1.0], hard: [0.001, 100.0], logarithmic: true },
-    decimals: 3,
-};
-const SPEED_MAX: SliderRow = SliderRow {
-    symbol: symbols::SPEED_MAX,
-    key: "vehicle.speed_max",
-    range: Range::factors(0.5, 20.0),
-    decimals: 2,
-};
-const TURN_MAX: SliderRow = SliderRow {
-    symbol: symbols::TURN_MAX,
-    key: "vehicle.turn_rate_max",
-    range: Range::factors(0.2, 20.0),
-    decimals: 2,
-};
-const ACCELERATION_MAX: SliderRow = SliderRow {
-    symbol: symbols::ACCELERATION_MAX,
-    key: "vehicle.acceleration_max",
-    range: Range::factors(0.2, 50.0),
-    decimals: 2,
-};
+const SPEED_MIN: SliderRow = SliderRow::new(
+    symbols::SPEED_MIN,
+    "vehicle.speed_min",
+    Range { span: [0.01, 1.0], hard: [0.001, 100.0], logarithmic: true },
+    3,
+);
+const SPEED_MAX: SliderRow =
+    SliderRow::new(symbols::SPEED_MAX, "vehicle.speed_max", Range::factors(0.5, 20.0), 2);
+const TURN_MAX: SliderRow =
+    SliderRow::new(symbols::TURN_MAX, "vehicle.turn_rate_max", Range::factors(0.2, 20.0), 2);
+const ACCELERATION_MAX: SliderRow =
+    SliderRow::new(symbols::ACCELERATION_MAX, "vehicle.acceleration_max", Range::factors(0.2, 50.0), 2);
 
 /// Limits of the follower that is selected.
 pub fn limits(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let Some((robot, name, _)) =
-        app_state.chosen_edge().or(Some(0)).and_then(|edge| app_state.follower(edge))
-    else {
+    let Some((_, robot, name, _)) = app_state.tuned_follower() else {
         return nobody(ui, app_state, "Nobody follows.");
     };
     let Some(vehicle) = app_state.scene_now().and_then(|scene| scene.robots.get(robot)).map(|r| r.vehicle)
@@ -76,8 +63,7 @@ pub fn surroundings(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         }
         ui.weak(match scene.props.len() {
             0 => "no obstacles".to_owned(),
-            1 => "1 obstacle".to_owned(),
-            count => format!("{count} obstacles"),
+            count => counted(count, "obstacle"),
         });
     });
     egui::ScrollArea::vertical().id_salt("props").max_height(110.0).show(ui, |ui| {
@@ -111,7 +97,7 @@ pub fn surroundings(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
             } else {
                 ui.data_mut(|data| data.remove::<f64>(id));
                 if (response.drag_stopped() || response.changed()) && (new - value).abs() > 0.25 {
-                    let values = vec![(key.to_owned(), format!("\"{} deg\"", tidy(new.round())))];
+                    let values = vec![(key.to_owned(), format!("\"{} deg\"", toml_number(new.round())))];
                     out.push(Action::Set { what: name.to_owned(), values });
                 }
             }

@@ -2,7 +2,6 @@
 
 use super::checked_scene::CheckedScene;
 use recording::log::Log;
-use rendering::Gpu;
 use scene::Scene;
 use std::sync::Arc;
 
@@ -12,20 +11,13 @@ pub enum RunRequest {
     Open {
         /// What to run.
         scene: Arc<Scene>,
-        /// Draws for cameras on robots.
-        gpu: Option<Gpu>,
         /// s.
         until: f64,
     },
     /// A run that was recorded: all of it is told at once, and nothing goes on.
     Recorded(Box<Log>),
     /// The scene of the run that was recorded: it runs unseen as far as that came, and can go on and branch from there.
-    ResumeRecording {
-        /// What to run.
-        scene: Arc<Scene>,
-        /// Draws for cameras on robots.
-        gpu: Option<Gpu>,
-    },
+    ResumeRecording(Arc<Scene>),
     /// Run on, or stand.
     Play(bool),
     /// Simulated seconds per second.

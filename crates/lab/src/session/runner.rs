@@ -37,8 +37,8 @@ const LOOK_EVERY: Duration = Duration::from_millis(300);
 const BEAT: Duration = Duration::from_millis(12);
 
 impl Runner {
-    /// Starts the thread; `wake` is called for every event.
-    pub fn start(predictor: Predictor, wake: impl Fn() + Send + 'static) -> Self {
+    /// Starts the thread; `gpu` draws for cameras on robots, and `wake` is called for every event.
+    pub fn start(predictor: Predictor, gpu: Option<Gpu>, wake: impl Fn() + Send + 'static) -> Self {
         let (requests, inbox) = channel();
         let (outbox, run_event) = channel();
         let unread = Arc::new(AtomicUsize::new(0));
@@ -56,6 +56,7 @@ impl Runner {
                 pace: 1.0,
                 owed: 0.0,
                 predictor,
+                gpu,
                 ahead: 0.0,
                 looked: None,
             };
@@ -106,6 +107,7 @@ struct RunWorker {
     /// Simulated time that is due, s.
     owed: f64,
     predictor: Predictor,
+    gpu: Option<Gpu>,
     ahead: f64,
     looked: Option<Instant>,
 }
@@ -198,9 +200,9 @@ impl RunWorker {
 
     fn follow(&mut self, request: RunRequest) {
         match request {
-            RunRequest::Open { scene, gpu, until } => self.open(scene, gpu.as_ref(), until),
+            RunRequest::Open { scene, until } => self.open(scene, until),
             RunRequest::Recorded(log) => self.look_through(&log),
-            RunRequest::ResumeRecording { scene, gpu } => self.take_up(scene, gpu.as_ref()),
+            RunRequest::ResumeRecording(scene) => self.take_up(scene),
             RunRequest::Play(on) => {
                 self.playing = on && self.branches.is_some();
                 self.owed = 0.0;
@@ -227,11 +229,11 @@ impl RunWorker {
     }
 
     /// The branches of a scene; `None` after saying why not.
-    fn branches_of(&self, scene: Arc<Scene>, gpu: Option<&Gpu>) -> Option<Branches> {
+    fn branches_of(&self, scene: Arc<Scene>) -> Option<Branches> {
         let mut blind = None;
         let opened = Branches::open(scene, |simulation| {
             if simulation.needs_cameras() {
-                match gpu.map(|gpu| GpuCameraRenderer::new(gpu, simulation.fleet())) {
+                match self.gpu.as_ref().map(|gpu| GpuCameraRenderer::new(gpu, simulation.fleet())) {
                     Some(Ok(eyes)) => simulation.attach_cameras(Box::new(eyes)),
                     Some(Err(error)) => blind = Some(error.to_string()),
                     None => blind = Some("There is no adapter to draw what cameras see.".to_owned()),
@@ -246,9 +248,9 @@ impl RunWorker {
         None
     }
 
-    fn open(&mut self, scene: Arc<Scene>, gpu: Option<&Gpu>, until: f64) {
+    fn open(&mut self, scene: Arc<Scene>, until: f64) {
         let planned = scene.time.duration;
-        let Some(branches) = self.branches_of(scene, gpu) else { return };
+        let Some(branches) = self.branches_of(scene) else { return };
         let simulation = branches.list()[0].simulation();
         let fleet = FleetInfo { duration: planned, ..simulation.fleet().clone() };
         let (fleet, period) = (Arc::new(fleet), simulation.period());
@@ -288,8 +290,8 @@ impl RunWorker {
     }
 
     /// Runs the scene of the recorded run as far as that came. The window has seen it.
-    fn take_up(&mut self, scene: Arc<Scene>, gpu: Option<&Gpu>) {
-        let Some(mut branches) = self.branches_of(scene, gpu) else { return };
+    fn take_up(&mut self, scene: Arc<Scene>) {
+        let Some(mut branches) = self.branches_of(scene) else { return };
         let (samples, digest) = &self.recorded;
         while branches.list()[0].simulation().sample() < *samples && branches.advance(0).is_some() {}
         let same = branches.list()[0].digest() == *digest;

@@ -2,6 +2,7 @@
 
 use super::checked_scene::CheckedScene;
 use scene::{Environment, Expect, Film, Scene, SceneText, Views};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -105,17 +106,17 @@ impl SceneDraft {
     ///
     /// # Errors
     /// Why the edit cannot be, in words; then nothing has changed.
-    pub fn edit(
+    pub fn edit<E: Display>(
         &mut self,
         what: &str,
-        edit: impl FnOnce(&mut SceneText) -> Result<(), String>,
+        edit: impl FnOnce(&mut SceneText) -> Result<(), E>,
     ) -> Result<Effect, String> {
         // Taken out, so that an edit that fails half-way leaves nothing behind.
         let mut document = match self.document.take() {
             Some(document) => document,
             None => SceneText::parse(&self.text).map_err(|error| error.to_string())?,
         };
-        edit(&mut document)?;
+        edit(&mut document).map_err(|error| error.to_string())?;
         let text = document.text();
         // A document with new tables is parsed again: only then do later edits find them where a reader would.
         let kept = text.lines().count() == self.text.lines().count();
@@ -128,13 +129,13 @@ impl SceneDraft {
     ///
     /// # Errors
     /// Why the edit cannot be, in words.
-    pub fn edited(
+    pub fn edited<E: Display>(
         &self,
         text: &str,
-        edit: impl FnOnce(&mut SceneText) -> Result<(), String>,
+        edit: impl FnOnce(&mut SceneText) -> Result<(), E>,
     ) -> Result<Option<EditedScene>, String> {
         let mut document = SceneText::parse(text).map_err(|error| error.to_string())?;
-        edit(&mut document)?;
+        edit(&mut document).map_err(|error| error.to_string())?;
         let edited = document.text();
         if edited == text {
             return Ok(None);

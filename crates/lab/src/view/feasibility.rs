@@ -57,8 +57,7 @@ impl PlaceConstraints {
 
 /// The field around the leader of `edge`.
 pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(Pose, FeasibilityMap)> {
-    let history = app_state.history.as_ref()?;
-    let fleet = history.fleet();
+    let fleet = app_state.fleet()?;
     let ends = *fleet.edges.get(edge)?;
     let (robot, _, follow) = app_state.follower(edge)?;
     let scene = app_state.scene_now()?;

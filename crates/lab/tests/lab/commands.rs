@@ -38,7 +38,7 @@ fn text(app_state: &AppState) -> String {
 /// What the run is asked for.
 fn requests(app_state: &AppState) -> Vec<&'static str> {
     let word = |request: &RunRequest| match request {
-        RunRequest::ResumeRecording { .. } => "take up",
+        RunRequest::ResumeRecording(_) => "take up",
         RunRequest::Open { .. } => "open",
         RunRequest::Recorded(_) => "recorded",
         RunRequest::Play(_) => "play",

@@ -9,6 +9,7 @@ pub(crate) use graph::{farthest, graph};
 pub(crate) use ways::trajectories;
 
 use crate::figure::ReportFigure;
+use crate::words::trimmed;
 use figures::{Rgb, Stroke};
 
 /// A figure as it leaves this folder: SVG, and a table of what it shows.
@@ -67,8 +68,7 @@ pub(crate) fn number(value: f64) -> String {
     }
     let digits = 8 - value.abs().log10().floor() as i32;
     if (0..=12).contains(&digits) {
-        let text = format!("{value:.*}", digits as usize);
-        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+        trimmed(format!("{value:.*}", digits as usize))
     } else {
         format!("{value:.8e}")
     }

@@ -5,7 +5,7 @@ mod pointer;
 use self::pointer::Drag;
 use crate::action::Action;
 use crate::app_state::{AppState, Tool};
-use crate::tidy::fixed;
+use crate::numbers::fixed;
 use crate::view::annotations::{PointerState, annotations};
 use crate::view::camera::HeldCamera;
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, TextureId, Ui, Vec2};

@@ -3,7 +3,7 @@
 use super::Viewport;
 use crate::action::Action;
 use crate::app_state::{AppState, Selection, Tool};
-use crate::tidy::snap;
+use crate::numbers::snap;
 use crate::view::camera::HeldCamera;
 use eframe::egui::{self, Pos2, Rect, Ui, Vec2};
 use rendering::{Picked, Sightline, set_points};
@@ -238,7 +238,7 @@ fn dragged(
     edge: usize,
     place: [f64; 2],
 ) -> Option<Action> {
-    let ends = *app_state.history.as_ref()?.fleet().edges.get(edge)?;
+    let ends = *app_state.fleet()?.edges.get(edge)?;
     let leader = record.snapshot.robots.get(ends.leader)?.motion.pose;
     let [dx, dy] = [place[0] - leader.x, place[1] - leader.y];
     let (distance, bearing) = (dx.hypot(dy), wrap(dy.atan2(dx) - leader.heading));

@@ -143,7 +143,7 @@ fn a_film_under_way_is_ended() {
 
 #[test]
 fn a_click_on_a_curve_looks_at_its_time() {
-    for quantity in PlotQuantity::ALL {
+    for quantity in PlotQuantity::all() {
         let mut panel = panel(app_state(THREE, 601), move |ui, app_state, out| {
             curves::show(ui, app_state, &[quantity], out);
         });

@@ -1,12 +1,12 @@
-//! How the window looks: one accent, calm panels, dark and light.
+//! The theme of the window: one accent, calm panels, dark and light.
 
 use eframe::egui::{self, Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals};
 
 /// The accent on dark and on light ground.
 const ACCENT: [Color32; 2] = [Color32::from_rgb(0x3d, 0x8b, 0xe0), Color32::from_rgb(0x1f, 0x6f, 0xc8)];
 
-/// Sets the looks of both themes.
-pub fn dress(ctx: &egui::Context) {
+/// Sets fonts, colours and spacing of the dark and the light theme.
+pub fn apply(ctx: &egui::Context) {
     // The face of the pictures, before those that come with the library.
     let mut fonts = egui::FontDefinitions::default();
     fonts.font_data.insert("Inter".to_owned(), egui::FontData::from_static(rendering::FONT).into());
