@@ -9,7 +9,7 @@ use std::sync::{
     atomic::{AtomicUsize, Ordering::Relaxed},
 };
 use std::thread::JoinHandle;
-use vocabulary::{FleetInfo, StepRecord};
+use vocabulary::{FleetInfo, Picture, StepRecord};
 
 /// Frames of a film a second.
 pub const RATE: f64 = 30.0;
@@ -170,9 +170,7 @@ impl ExportWorker {
     fn take(&mut self, job: ExportJob) -> Result<Option<PathBuf>, ExportError> {
         match job {
             ExportJob::Picture { path, fleet, size, trail, shot, texts } => {
-                let drawer = self.drawer(&fleet, size)?;
-                drawer.retitle(&shot.words[0], &shot.words[1]);
-                let picture = drawer.draw(&trail, &shot.record, &shot.layout, &shot.style)?;
+                let picture = self.draw(&fleet, size, &trail, &shot)?;
                 let texts: Vec<(&str, &str)> = texts.iter().map(|(key, text)| (*key, &**text)).collect();
                 png::write(&path, &picture, &texts)?;
                 Ok(Some(path))
@@ -216,15 +214,18 @@ impl ExportWorker {
 
     fn frame(&mut self, shot: &FrameSpec) -> Result<(), ExportError> {
         let Some(mut reel) = self.film.take() else { return Ok(()) };
-        let drawer = self.drawer(&reel.fleet, reel.size)?;
-        drawer.retitle(&shot.words[0], &shot.words[1]);
-        let picture = drawer.draw(&reel.trail, &shot.record, &shot.layout, &shot.style)?;
-        reel.film.push(picture)?;
+        reel.film.push(self.draw(&reel.fleet, reel.size, &reel.trail, shot)?)?;
         self.film = Some(reel);
         Ok(())
     }
 
-    fn drawer(&mut self, fleet: &Arc<FleetInfo>, size: [u32; 2]) -> Result<&mut Renderer, ExportError> {
+    fn draw(
+        &mut self,
+        fleet: &Arc<FleetInfo>,
+        size: [u32; 2],
+        trail: &Trail,
+        shot: &FrameSpec,
+    ) -> Result<Picture, ExportError> {
         let fitting = self.drawer.take().filter(|(known, _)| Arc::ptr_eq(known, fleet));
         let drawer = match fitting {
             Some(drawer) => drawer,
@@ -232,6 +233,7 @@ impl ExportWorker {
         };
         let (_, renderer) = self.drawer.insert(drawer);
         renderer.resize(size[0], size[1])?;
-        Ok(renderer)
+        renderer.retitle(&shot.words[0], &shot.words[1]);
+        Ok(renderer.draw(trail, &shot.record, &shot.layout, &shot.style)?)
     }
 }

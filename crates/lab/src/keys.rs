@@ -51,155 +51,143 @@ const fn nudge(key: Key, by: [f64; 2]) -> Binding {
     Binding { modifiers: Modifiers::NONE, key, effect: KeyEffect::Nudge(by) }
 }
 
-/// All shortcuts and what the mouse does: the window goes by this list, and the page of shortcuts shows it.
-pub const LIST: &[(&str, &[Shortcut])] = &[
-    (
-        "Time",
+const TIME: &[Shortcut] = &[
+    row("Space", "play or pause", &[bare(Key::Space, |_| Some(Action::Toggle))]),
+    row(
+        "→  ←",
+        "a sample on, a sample back; with Shift a second",
         &[
-            row("Space", "play or pause", &[bare(Key::Space, |_| Some(Action::Toggle))]),
-            row(
-                "→  ←",
-                "a sample on, a sample back; with Shift a second",
-                &[
-                    bare(Key::ArrowRight, |_| Some(Action::Step)),
-                    bare(Key::ArrowLeft, |state| Some(Action::Back(state.period()))),
-                    shift(Key::ArrowRight, |_| Some(Action::Back(-1.0))),
-                    shift(Key::ArrowLeft, |_| Some(Action::Back(1.0))),
-                ],
-            ),
-            row(
-                "Home  End",
-                "look at the start, at the present",
-                &[bare(Key::Home, |_| Some(Action::Seek(0.0))), bare(Key::End, |_| Some(Action::Present))],
-            ),
-            row(
-                ",  .",
-                "slower, faster",
-                &[
-                    bare(Key::Comma, |state| Some(Action::Pace(slower(state.pace)))),
-                    bare(Key::Period, |state| Some(Action::Pace(faster(state.pace)))),
-                ],
-            ),
-            row("B", "branch here", &[bare(Key::B, |_| Some(Action::Fork))]),
-            row(
-                "[  ]",
-                "branch before, next branch",
-                &[
-                    bare(Key::OpenBracket, |state| Some(Action::Branch(state.branch.saturating_sub(1)))),
-                    bare(Key::CloseBracket, |state| Some(Action::Branch(state.branch + 1))),
-                ],
-            ),
-            row("Shift Home", "begin again at 0", &[shift(Key::Home, |_| Some(Action::Restart))]),
+            bare(Key::ArrowRight, |_| Some(Action::Step)),
+            bare(Key::ArrowLeft, |state| Some(Action::Back(state.period()))),
+            shift(Key::ArrowRight, |_| Some(Action::Back(-1.0))),
+            shift(Key::ArrowLeft, |_| Some(Action::Back(1.0))),
         ],
     ),
-    (
-        "Formation",
+    row(
+        "Home  End",
+        "look at the start, at the present",
+        &[bare(Key::Home, |_| Some(Action::Seek(0.0))), bare(Key::End, |_| Some(Action::Present))],
+    ),
+    row(
+        ",  .",
+        "slower, faster",
         &[
-            row(
-                "Tab",
-                "next edge; with Shift the one before",
-                &[
-                    bare(Key::Tab, |state| Some(Action::Choose(next(state, 1)))),
-                    shift(Key::Tab, |state| Some(Action::Choose(next(state, -1)))),
-                ],
-            ),
-            row(
-                "W  S",
-                "set point 0.1 m nearer, farther",
-                &[nudge(Key::W, [-0.1, 0.0]), nudge(Key::S, [0.1, 0.0])],
-            ),
-            row(
-                "A  D",
-                "set point 5° to the left, to the right",
-                &[nudge(Key::A, [0.0, 5.0]), nudge(Key::D, [0.0, -5.0])],
-            ),
-            row("M", "mirror: both sides move", &[bare(Key::M, |state| Some(Action::Mirror(!state.mirror)))]),
-            row(
-                "Ctrl −  Ctrl +",
-                "whole formation smaller, larger",
-                &[
-                    command(Key::Minus, |_| Some(Action::Shape { scale: 1.0 / 1.1, turn: 0.0 })),
-                    command(Key::Plus, |_| Some(Action::Shape { scale: 1.1, turn: 0.0 })),
-                    command(Key::Equals, |_| Some(Action::Shape { scale: 1.1, turn: 0.0 })),
-                ],
-            ),
-            row(
-                "Insert  Delete",
-                "add a robot, remove the selected one",
-                &[
-                    bare(Key::Insert, |_| Some(Action::AddRobot)),
-                    bare(Key::Delete, |state| chosen(state).map(|(_, name)| Action::RemoveRobot(name))),
-                ],
-            ),
-            row(
-                "C  O  Esc",
-                "connect robots, place pillars, neither",
-                &[
-                    bare(Key::C, |_| Some(Action::Take(Tool::Connect))),
-                    bare(Key::O, |_| Some(Action::Take(Tool::Pillar))),
-                    bare(Key::Escape, |_| Some(Action::Dismiss)),
-                ],
-            ),
+            bare(Key::Comma, |state| Some(Action::Pace(slower(state.pace)))),
+            bare(Key::Period, |state| Some(Action::Pace(faster(state.pace)))),
         ],
     ),
-    (
-        "View",
+    row("B", "branch here", &[bare(Key::B, |_| Some(Action::Fork))]),
+    row(
+        "[  ]",
+        "branch before, next branch",
         &[
-            row(
-                "1 … 5",
-                "snake, snake eye, top, orbit, camera of the selected robot",
-                &[
-                    bare(Key::Num1, |_| Some(Action::Viewpoint("snake".to_owned()))),
-                    bare(Key::Num2, |_| Some(Action::Viewpoint("snake-eye".to_owned()))),
-                    bare(Key::Num3, |_| Some(Action::Viewpoint("top".to_owned()))),
-                    bare(Key::Num4, |_| Some(Action::Viewpoint("orbit".to_owned()))),
-                    bare(Key::Num5, |state| {
-                        chosen(state).map(|(_, name)| Action::Viewpoint(format!("camera:{name}")))
-                    }),
-                ],
-            ),
-            row(
-                "G",
-                "follow the selected robot",
-                &[bare(Key::G, |state| chosen(state).map(|(robot, _)| Action::Follow(Some(robot))))],
-            ),
-            row(
-                "I",
-                "its camera in the corner",
-                &[bare(Key::I, |state| chosen(state).map(|(robot, _)| Action::Inset(Some(robot))))],
-            ),
-            row("Drag", "turn; with the right button move; wheel to zoom", &[]),
-            row("Drag a ring", "set point, in steps of 0.1 m and 5°; Shift without steps", &[]),
-            row("Ctrl drag a ring", "whole formation", &[]),
-            row("T", "light or dark", &[bare(Key::T, |_| Some(Action::Theme))]),
+            bare(Key::OpenBracket, |state| Some(Action::Branch(state.branch.saturating_sub(1)))),
+            bare(Key::CloseBracket, |state| Some(Action::Branch(state.branch + 1))),
         ],
     ),
-    (
-        "Work",
+    row("Shift Home", "begin again at 0", &[shift(Key::Home, |_| Some(Action::Restart))]),
+];
+
+const FORMATION: &[Shortcut] = &[
+    row(
+        "Tab",
+        "next edge; with Shift the one before",
         &[
-            row("Ctrl S", "save the scene", &[command(Key::S, |_| Some(Action::Save))]),
-            row("Ctrl O", "scenes", &[command(Key::O, |_| Some(Action::Gallery))]),
-            row("Ctrl R", "read the file again", &[command(Key::R, |_| Some(Action::Reload))]),
-            row(
-                "Ctrl Z  Ctrl Y",
-                "undo, redo",
-                &[command(Key::Z, |_| Some(Action::Undo)), command(Key::Y, |_| Some(Action::Redo))],
-            ),
-            row(
-                "P  F  K",
-                "picture, film, keep the run",
-                &[
-                    bare(Key::P, |_| Some(Action::Picture)),
-                    bare(Key::F, |_| Some(Action::Film)),
-                    bare(Key::K, |_| Some(Action::KeepRun)),
-                ],
-            ),
-            row("Ctrl P", "picture of the whole window", &[command(Key::P, |_| Some(Action::WindowPicture))]),
-            // `?` is where a keyboard has it: `pressed` takes it as a text.
-            row("?  F1", "this page", &[bare(Key::F1, |_| Some(Action::Help))]),
+            bare(Key::Tab, |state| Some(Action::Choose(next(state, 1)))),
+            shift(Key::Tab, |state| Some(Action::Choose(next(state, -1)))),
+        ],
+    ),
+    row("W  S", "set point 0.1 m nearer, farther", &[nudge(Key::W, [-0.1, 0.0]), nudge(Key::S, [0.1, 0.0])]),
+    row(
+        "A  D",
+        "set point 5° to the left, to the right",
+        &[nudge(Key::A, [0.0, 5.0]), nudge(Key::D, [0.0, -5.0])],
+    ),
+    row("M", "mirror: both sides move", &[bare(Key::M, |state| Some(Action::Mirror(!state.mirror)))]),
+    row(
+        "Ctrl −  Ctrl +",
+        "whole formation smaller, larger",
+        &[
+            command(Key::Minus, |_| Some(Action::Shape { scale: 1.0 / 1.1, turn: 0.0 })),
+            command(Key::Plus, |_| Some(Action::Shape { scale: 1.1, turn: 0.0 })),
+            command(Key::Equals, |_| Some(Action::Shape { scale: 1.1, turn: 0.0 })),
+        ],
+    ),
+    row(
+        "Insert  Delete",
+        "add a robot, remove the selected one",
+        &[
+            bare(Key::Insert, |_| Some(Action::AddRobot)),
+            bare(Key::Delete, |state| chosen(state).map(|(_, name)| Action::RemoveRobot(name))),
+        ],
+    ),
+    row(
+        "C  O  Esc",
+        "connect robots, place pillars, neither",
+        &[
+            bare(Key::C, |_| Some(Action::Take(Tool::Connect))),
+            bare(Key::O, |_| Some(Action::Take(Tool::Pillar))),
+            bare(Key::Escape, |_| Some(Action::Dismiss)),
         ],
     ),
 ];
+
+const VIEW: &[Shortcut] = &[
+    row(
+        "1 … 5",
+        "snake, snake eye, top, orbit, camera of the selected robot",
+        &[
+            bare(Key::Num1, |_| Some(Action::Viewpoint("snake".to_owned()))),
+            bare(Key::Num2, |_| Some(Action::Viewpoint("snake-eye".to_owned()))),
+            bare(Key::Num3, |_| Some(Action::Viewpoint("top".to_owned()))),
+            bare(Key::Num4, |_| Some(Action::Viewpoint("orbit".to_owned()))),
+            bare(Key::Num5, |state| {
+                chosen(state).map(|(_, name)| Action::Viewpoint(format!("camera:{name}")))
+            }),
+        ],
+    ),
+    row(
+        "G",
+        "follow the selected robot",
+        &[bare(Key::G, |state| chosen(state).map(|(robot, _)| Action::Follow(Some(robot))))],
+    ),
+    row(
+        "I",
+        "its camera in the corner",
+        &[bare(Key::I, |state| chosen(state).map(|(robot, _)| Action::Inset(Some(robot))))],
+    ),
+    row("Drag", "turn; with the right button move; wheel to zoom", &[]),
+    row("Drag a ring", "set point, in steps of 0.1 m and 5°; Shift without steps", &[]),
+    row("Ctrl drag a ring", "whole formation", &[]),
+    row("T", "light or dark", &[bare(Key::T, |_| Some(Action::Theme))]),
+];
+
+const WORK: &[Shortcut] = &[
+    row("Ctrl S", "save the scene", &[command(Key::S, |_| Some(Action::Save))]),
+    row("Ctrl O", "scenes", &[command(Key::O, |_| Some(Action::Gallery))]),
+    row("Ctrl R", "read the file again", &[command(Key::R, |_| Some(Action::Reload))]),
+    row(
+        "Ctrl Z  Ctrl Y",
+        "undo, redo",
+        &[command(Key::Z, |_| Some(Action::Undo)), command(Key::Y, |_| Some(Action::Redo))],
+    ),
+    row(
+        "P  F  K",
+        "picture, film, keep the run",
+        &[
+            bare(Key::P, |_| Some(Action::Picture)),
+            bare(Key::F, |_| Some(Action::Film)),
+            bare(Key::K, |_| Some(Action::KeepRun)),
+        ],
+    ),
+    row("Ctrl P", "picture of the whole window", &[command(Key::P, |_| Some(Action::WindowPicture))]),
+    // `?` is where a keyboard has it: `pressed` takes it as a text.
+    row("?  F1", "this page", &[bare(Key::F1, |_| Some(Action::Help))]),
+];
+
+/// All shortcuts and what the mouse does: the window goes by this list, and the page of shortcuts shows it.
+pub const LIST: &[(&str, &[Shortcut])] =
+    &[("Time", TIME), ("Formation", FORMATION), ("View", VIEW), ("Work", WORK)];
 
 /// What keys ask for in this frame; nothing while a text is written, and nothing behind a menu or, where the view is
 /// `covered`, a window.

@@ -91,27 +91,22 @@ const FLOOR: f64 = 1e-18;
 /// The least margin of β that is shown, m/s².
 const LEAST_MARGIN: f64 = -20.0;
 
-/// The curves of a quantity in a span of time, of all branches, the one that is looked at last.
-pub fn curves(
-    app_state: &AppState,
-    quantity: PlotQuantity,
-    span: [f64; 2],
-    most: usize,
-) -> Vec<QuantityCurve> {
+/// The curves of a quantity of at most about `most` points, of all branches, the one that is looked at last.
+pub fn curves(app_state: &AppState, quantity: PlotQuantity, most: usize) -> Vec<QuantityCurve> {
     let Some(history) = &app_state.history else { return Vec::new() };
     let mut order: Vec<usize> = (0..history.branches()).filter(|b| *b != app_state.branch).collect();
     order.push(app_state.branch);
     let mut all = Vec::new();
     for branch in order {
         // What a branch shares with the one that is looked at is drawn once.
-        let own = app_state.branches.get(branch).and_then(|b| b.parent).map_or(span[0], |(_, time)| time);
-        let from = if branch == app_state.branch { span[0] } else { own.max(span[0]) };
+        let own = app_state.branches.get(branch).filter(|_| branch != app_state.branch);
+        let span = [own.and_then(|b| b.parent).map_or(0.0, |(_, time)| time), f64::INFINITY];
         if quantity == PlotQuantity::Clearance {
-            let points = history.rooms(branch, [from, span[1]]);
+            let points = history.rooms(branch, span);
             all.push(QuantityCurve { branch, robot: None, points });
             continue;
         }
-        let records = history.between(branch, [from, span[1]], most);
+        let records = history.between(branch, span, most);
         for (edge, ends) in history.fleet().edges.iter().enumerate() {
             let Some((_, _, follow)) = app_state.follower(edge) else { continue };
             let point = |m: &&StepRecord| Some([m.snapshot.time, value(quantity, m, edge, *ends, follow)?]);
@@ -231,7 +226,7 @@ pub fn csv(app_state: &AppState) -> String {
         }
     };
     for quantity in PlotQuantity::all() {
-        for curve in curves(app_state, quantity, [0.0, f64::INFINITY], usize::MAX) {
+        for curve in curves(app_state, quantity, usize::MAX) {
             let branch = app_state.branches.get(curve.branch).map_or("", |b| &b.name);
             let robot =
                 curve.robot.and_then(|robot| app_state.fleet()?.robots.get(robot)).map_or("", |m| &m.name);
@@ -259,7 +254,7 @@ pub fn svg(app_state: &AppState) -> String {
         PlotQuantity::Clearance,
     ];
     let panels = shown.into_iter().map(|quantity| {
-        let series = curves(app_state, quantity, [0.0, f64::INFINITY], 600).into_iter().map(|curve| {
+        let series = curves(app_state, quantity, 600).into_iter().map(|curve| {
             let name = curve.robot.and_then(|r| fleet?.robots.get(r)).map_or("all", |m| &m.name);
             let active = curve.branch == app_state.branch;
             let branch = app_state.branches.get(curve.branch).map_or("", |b| &b.name);

@@ -122,49 +122,47 @@ impl LabApp {
     }
 
     fn ask_before_closing(&mut self, ctx: &Context, out: &mut Vec<Action>) {
-        egui::Modal::new(egui::Id::unique("closing")).show(ctx, |ui| {
-            ui.label("The scene has changes that are not saved.");
-            ui.horizontal(|ui| {
-                if ui.button("Save and close").clicked() {
-                    out.push(Action::Save);
-                    self.dialog = Dialog::Nothing;
-                    ctx.send_viewport_cmd(egui::ViewportCommand::Close);
-                }
-                if ui.button("Close without saving").clicked() {
-                    self.autosave.done();
-                    self.app_state.draft = None;
-                    self.dialog = Dialog::Nothing;
-                    ctx.send_viewport_cmd(egui::ViewportCommand::Close);
-                }
-                if ui.button("Stay").clicked() {
-                    self.dialog = Dialog::Nothing;
-                }
-            });
-        });
+        let answers = ["Save and close", "Close without saving", "Stay"];
+        let [save, close, stay] = ask_about_changes(ctx, answers);
+        if close {
+            self.autosave.done();
+            self.app_state.draft = None;
+        }
+        if save {
+            out.push(Action::Save);
+        }
+        if save || close {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        if save || close || stay {
+            self.dialog = Dialog::Nothing;
+        }
     }
 
     fn ask_before_leaving(&mut self, ctx: &Context, out: &mut Vec<Action>) {
-        egui::Modal::new(egui::Id::unique("leaving")).show(ctx, |ui| {
-            ui.label("The scene has changes that are not saved.");
-            ui.horizontal(|ui| {
-                let (save, go) =
-                    (ui.button("Save and open").clicked(), ui.button("Open without saving").clicked());
-                let stay = ui.button("Stay").clicked();
-                if save || go || stay {
-                    self.dialog = Dialog::Nothing;
-                    let next = self.next.take();
-                    if save {
-                        out.push(Action::Save);
-                    }
-                    if go && let Some(draft) = &mut self.app_state.draft {
-                        draft.abandon();
-                    }
-                    if !stay {
-                        // Where saving failed, the question comes again.
-                        out.extend(next);
-                    }
-                }
-            });
-        });
+        let [save, go, stay] = ask_about_changes(ctx, ["Save and open", "Open without saving", "Stay"]);
+        if save || go || stay {
+            self.dialog = Dialog::Nothing;
+            let next = self.next.take();
+            if save {
+                out.push(Action::Save);
+            }
+            if go && let Some(draft) = &mut self.app_state.draft {
+                draft.abandon();
+            }
+            if !stay {
+                // Where saving failed, the question comes again.
+                out.extend(next);
+            }
+        }
     }
+}
+
+/// Asks what becomes of changes that are not saved; which of the answers is given.
+fn ask_about_changes(ctx: &Context, answers: [&str; 3]) -> [bool; 3] {
+    let asked = egui::Modal::new(egui::Id::unique("unsaved")).show(ctx, |ui| {
+        ui.label("The scene has changes that are not saved.");
+        ui.horizontal(|ui| answers.map(|answer| ui.button(answer).clicked())).inner
+    });
+    asked.inner
 }

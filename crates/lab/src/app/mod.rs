@@ -3,11 +3,9 @@
 mod capture;
 mod dialogs;
 mod files;
-mod memory;
 
 use self::capture::FilmCapture;
 use self::dialogs::Dialog;
-use self::memory::Memory;
 use crate::Error;
 use crate::action::Action;
 use crate::app_state::{AppState, Selection, Tool};
@@ -60,6 +58,15 @@ pub(crate) struct LabApp {
     pub(crate) ended: Arc<Mutex<Option<Error>>>,
     pub(crate) timings: FrameTimings,
     pub(crate) print: bool,
+}
+
+/// What the window remembers between starts.
+#[derive(serde::Serialize, serde::Deserialize, Default)]
+struct Memory {
+    tree: Option<Tree<Pane>>,
+    recent: Vec<PathBuf>,
+    hints_seen: bool,
+    scale: Option<f32>,
 }
 
 /// A word from a thread: what was done, or why it could not be.

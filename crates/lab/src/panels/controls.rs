@@ -48,12 +48,7 @@ impl SliderRow {
     /// A row for one value; the default is shown beside the way back to it.
     pub(crate) fn one(&self, ui: &mut Ui, value: f64, default: f64, out: &mut Vec<Action>) {
         self.frame(ui, value != default, &toml_number(default), out, |ui, out| {
-            let mut new = value;
-            let response = self.slider(ui, &mut new, self.symbol.name);
-            if response.changed() && new != value {
-                out.push(tune(self.symbol.name, self.key, toml_number(new)));
-            }
-            released(&response, out);
+            self.edit(ui, value, self.symbol.name, out, toml_number);
         });
     }
 
@@ -66,32 +61,35 @@ impl SliderRow {
         apart: bool,
         out: &mut Vec<Action>,
     ) {
-        let shown = if default[0] == default[1] {
-            toml_number(default[0])
-        } else {
-            format!("{}, {}", toml_number(default[0]), toml_number(default[1]))
-        };
-        self.frame(ui, value != default, &shown, out, |ui, out| {
+        let shown = pair(default);
+        self.frame(ui, value != default, shown.trim_matches(['[', ']']), out, |ui, out| {
             if value[0] == value[1] && !apart {
-                let mut new = value[0];
-                let response = self.slider(ui, &mut new, self.symbol.name);
-                if response.changed() && new != value[0] {
-                    out.push(tune(self.symbol.name, self.key, pair([new; 2])));
-                }
-                return released(&response, out);
+                return self.edit(ui, value[0], self.symbol.name, out, |new| pair([new; 2]));
             }
             ui.vertical(|ui| {
-                for (channel, word) in ["of the distance", "of the bearing"].into_iter().enumerate() {
-                    let mut new = value;
-                    let response =
-                        self.slider(ui, &mut new[channel], &format!("{} {word}", self.symbol.name));
-                    if response.changed() && new != value {
-                        out.push(tune(self.symbol.name, self.key, pair(new)));
-                    }
-                    released(&response, out);
-                }
+                let [distance, bearing] =
+                    ["distance", "bearing"].map(|of| format!("{} of the {of}", self.symbol.name));
+                self.edit(ui, value[0], &distance, out, |new| pair([new, value[1]]));
+                self.edit(ui, value[1], &bearing, out, |new| pair([value[0], new]));
             });
         });
+    }
+
+    /// A slider for a value, which `toml` writes as the value of the key.
+    fn edit(
+        &self,
+        ui: &mut Ui,
+        value: f64,
+        name: &str,
+        out: &mut Vec<Action>,
+        toml: impl FnOnce(f64) -> String,
+    ) {
+        let mut new = value;
+        let response = self.slider(ui, &mut new, name);
+        if response.changed() && new != value {
+            out.push(tune(self.symbol.name, self.key, toml(new)));
+        }
+        released(&response, out);
     }
 
     fn frame(

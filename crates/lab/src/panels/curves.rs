@@ -40,13 +40,11 @@ fn plot(
     let group = Id::unique("time axis");
     let logarithmic = quantity.logarithmic();
     let weak = ui.visuals().weak_text_color();
-    let text = |value: f64| {
-        match logarithmic {
-            // Decades only: between them a label would be one of its neighbours'.
-            true if (value - value.round()).abs() > 0.01 => String::new(),
-            true => format!("1e{}", fixed(value, 0)),
-            false => short(value),
-        }
+    let text = |value: f64| match logarithmic {
+        // Decades only: between them a label would be one of its neighbours'.
+        true if (value - value.round()).abs() > 0.01 => String::new(),
+        true => format!("1e{}", fixed(value, 0)),
+        false => short(value),
     };
     let plot = Plot::new(("plot", quantity.column()))
         .height(high.max(30.0))
@@ -76,7 +74,7 @@ fn plot(
             let value = if logarithmic { format!("{:.1e}", 10_f64.powf(at.y)) } else { fixed(at.y, 3) };
             Some(format!("{} s\n{value}", fixed(at.x, 2)))
         });
-    let all = curves(app_state, quantity, [0.0, f64::INFINITY], MOST_POINTS);
+    let all = curves(app_state, quantity, MOST_POINTS);
     let colours: Vec<Color32> = all
         .iter()
         .map(|curve| curve.robot.map_or(ui.visuals().text_color(), |robot| colour(app_state, robot, ui)))
@@ -91,9 +89,8 @@ fn plot(
             let near = all.iter().flat_map(|c| &c.points).any(|p| p[1].abs() > 0.4 * bound.abs());
             // A bound that is far away would only flatten the curves.
             if near {
-                plot.hline(
-                    HLine::new("bound", bound).color(weak).width(1.0).style(LineStyle::dashed_loose()),
-                );
+                let line = HLine::new("bound", bound).color(weak).width(1.0);
+                plot.hline(line.style(LineStyle::dashed_loose()));
             }
         }
         plot.vline(VLine::new("now", app_state.time()).color(cursor).width(1.0));

@@ -1,6 +1,6 @@
 //! What is drawn on the ground to explain: the future, handles, other branches, ground that cannot be held.
 
-use super::feasibility;
+use super::feasibility::{self, SIDE, STEP};
 use crate::app_state::{AppState, Selection};
 use crate::session::prediction::{PathPoint, Prediction, Trouble};
 use rendering::{
@@ -59,20 +59,16 @@ pub fn annotations(app_state: &AppState, record: &StepRecord, hand: &PointerStat
 
 /// Ground that the follower of an edge cannot hold.
 fn refused(app_state: &AppState, edge: usize, record: &StepRecord, annotations: &mut Annotations) {
-    let Some((leader, field)) = feasibility::field(app_state, edge, record) else { return };
-    let half = 0.5 * (field.side - 1) as f64 * field.step;
-    let area =
-        ShadedArea::field([-half; 2], field.step, field.side, &scaled(&field.alphas, 0.34), REFUSED, true);
+    let Some((leader, mut alphas)) = feasibility::field(app_state, edge, record) else { return };
+    alphas.iter_mut().for_each(|alpha| *alpha *= 0.34);
+    let half = 0.5 * (SIDE - 1) as f64 * STEP;
+    let area = ShadedArea::field([-half; 2], STEP, SIDE, &alphas, REFUSED, true);
     // The field is the leader's; rows run ahead, columns to the left.
     let turned = area.corners.into_iter().map(|spot| {
         let [left, ahead] = spot.at;
         StrokePoint { at: leader.world_from_body(ahead, left), ..spot }
     });
     annotations.areas.push(ShadedArea { corners: turned.collect(), hatched: true });
-}
-
-fn scaled(alphas: &[f32], by: f32) -> Vec<f32> {
-    alphas.iter().map(|alpha| alpha * by).collect()
 }
 
 /// Paths of branches that are not looked at.

@@ -5,22 +5,12 @@ use crate::session::prediction::Prediction;
 use formation::feasible::unholdable;
 use vocabulary::{Limits, Pose, StepRecord};
 
-/// Side of a square of the field, m, and squares on a side.
-const STEP: f64 = 0.25;
-const SIDE: usize = 49;
+/// Side of a square of the field, m.
+pub const STEP: f64 = 0.25;
+/// Squares on a side of the field.
+pub const SIDE: usize = 49;
 /// Records of the leader's way that are looked at.
 const GLANCES: usize = 12;
-
-/// Where a set point cannot be, in the leader's frame: a field of opacities from 0 to 1.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FeasibilityMap {
-    /// Row by row from behind to ahead, each from the right to the left; share of what stands against it.
-    pub alphas: Vec<f32>,
-    /// Squares on a side.
-    pub side: usize,
-    /// Side of a square, m.
-    pub step: f64,
-}
 
 /// What an edge asks of a place.
 #[derive(Debug, Clone)]
@@ -55,8 +45,8 @@ impl PlaceConstraints {
     }
 }
 
-/// The field around the leader of `edge`.
-pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(Pose, FeasibilityMap)> {
+/// The leader of `edge` and the field around it, as [`shade`] has it.
+pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(Pose, Vec<f32>)> {
     let fleet = app_state.fleet()?;
     let ends = *fleet.edges.get(edge)?;
     let (robot, _, follow) = app_state.follower(edge)?;
@@ -95,8 +85,9 @@ fn motions(prediction: Option<&Prediction>, leader: usize, now: [f64; 2]) -> Vec
     [now].into_iter().chain(ahead.iter().step_by(every).copied()).collect()
 }
 
-/// The field of what is wanted.
-pub fn shade(wanted: &PlaceConstraints, motions: &[[f64; 2]]) -> FeasibilityMap {
+/// Where a set point cannot be, in the leader's frame: opacities from 0 to 1 in squares, row by row from behind to ahead,
+/// each from the right to the left.
+pub fn shade(wanted: &PlaceConstraints, motions: &[[f64; 2]]) -> Vec<f32> {
     let half = 0.5 * (SIDE - 1) as f64 * STEP;
     let mut alphas = Vec::with_capacity(SIDE * SIDE);
     for row in 0..SIDE {
@@ -108,7 +99,7 @@ pub fn shade(wanted: &PlaceConstraints, motions: &[[f64; 2]]) -> FeasibilityMap 
             alphas.push(if wanted.refuses(place, motions) { rim } else { 0.0 });
         }
     }
-    FeasibilityMap { alphas, side: SIDE, step: STEP }
+    alphas
 }
 
 #[cfg(test)]
@@ -123,7 +114,7 @@ mod tests {
     fn a_straight_way_leaves_all_ground_and_a_bend_takes_the_outside() {
         let free = shade(&wanted(), &[[1.0, 0.0]]);
         let taken = shade(&wanted(), &[[1.0, 0.3]]);
-        let count = |field: &FeasibilityMap| field.alphas.iter().filter(|a| **a > 0.0).count();
+        let count = |alphas: &[f32]| alphas.iter().filter(|a| **a > 0.0).count();
         // What is nearer than the law allows is one square.
         assert_eq!(count(&free), 1);
         assert!(count(&taken) > 300);

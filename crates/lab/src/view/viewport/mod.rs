@@ -43,7 +43,7 @@ pub struct Viewport {
 pub(super) struct ViewRenderer {
     pub(super) fleet: Arc<FleetInfo>,
     pub(super) renderer: Renderer,
-    pub(super) texture: wgpu::Texture,
+    pub(super) texture: wgpu::TextureView,
     pub(super) id: TextureId,
     /// Draws what stands still with more samples, where the first draws with one.
     pub(super) finer: Option<Renderer>,
@@ -75,8 +75,7 @@ impl ViewRenderer {
         };
         let finer = self.finer.insert(finer);
         finer.retitle(title, caption);
-        let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        finer.draw_into(&view, trail, record, layout, style).map(drop)
+        finer.draw_into(&self.texture, trail, record, layout, style).map(drop)
     }
 }
 
@@ -203,10 +202,9 @@ impl Viewport {
         if view_renderer.renderer.size() != size {
             view_renderer.renderer.resize(size[0], size[1])?;
             view_renderer.texture = texture(&self.state.device, size);
-            let view = view_renderer.texture.create_view(&wgpu::TextureViewDescriptor::default());
             self.state.renderer.write().update_egui_texture_from_wgpu_texture(
                 &self.state.device,
-                &view,
+                &view_renderer.texture,
                 wgpu::FilterMode::Nearest,
                 view_renderer.id,
             );
@@ -238,8 +236,7 @@ impl Viewport {
         view_renderer.renderer.retitle(title, caption);
         view_renderer.sight =
             view_renderer.renderer.sightlines(trail, record, &layout, &style)?.into_iter().next();
-        let view = view_renderer.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        view_renderer.renderer.draw_into(&view, trail, record, &layout, &style)?;
+        view_renderer.renderer.draw_into(&view_renderer.texture, trail, record, &layout, &style)?;
         view_renderer.shown = Some((shown, self.samples > 1));
         self.fault = None;
         self.pictures += 1;
@@ -250,12 +247,11 @@ impl Viewport {
         let format = wgpu::TextureFormat::Rgba8Unorm;
         let renderer = Renderer::with_format(&self.gpu, fleet, size[0], size[1], self.samples, format)?;
         let texture = texture(&self.state.device, size);
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut drawer = self.state.renderer.write();
         if let Some(before) = self.view_renderer.take() {
             drawer.free_texture(&before.id);
         }
-        let id = drawer.register_native_texture(&self.state.device, &view, wgpu::FilterMode::Nearest);
+        let id = drawer.register_native_texture(&self.state.device, &texture, wgpu::FilterMode::Nearest);
         drop(drawer);
         self.view_renderer = Some(ViewRenderer {
             fleet: Arc::clone(fleet),
@@ -314,8 +310,8 @@ pub struct ViewInput<'a> {
     pub trail: Option<&'a Trail>,
 }
 
-fn texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
+fn texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("3D view"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
@@ -324,7 +320,8 @@ fn texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Texture {
         format: wgpu::TextureFormat::Rgba8Unorm,
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
-    })
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 fn centred(ui: &Ui, rect: Rect, text: &str) {
