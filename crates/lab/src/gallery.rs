@@ -1,6 +1,7 @@
 //! The scenes that come with the program, with thumbnails, and those opened before.
 
 use crate::action::Action;
+use crate::panels::on_click;
 use eframe::egui::{self, RichText, TextureHandle, Ui};
 use scene::{SHIPPED, Shipped};
 use std::collections::BTreeMap;
@@ -73,9 +74,8 @@ impl Gallery {
                 for path in recent {
                     let name =
                         path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-                    if ui.link(name).on_hover_text(path.display().to_string()).clicked() {
-                        out.push(Action::Open(path.clone()));
-                    }
+                    let link = ui.link(name).on_hover_text(path.display().to_string());
+                    on_click(&link, Action::Open(path.clone()), out);
                 }
             });
         }
@@ -127,9 +127,7 @@ impl Gallery {
             })
             .inner;
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, scene.name));
-        if response.on_hover_text(scene.title()).clicked() {
-            out.push(Action::OpenShipped(scene.name));
-        }
+        on_click(&response.on_hover_text(scene.title()), Action::OpenShipped(scene.name), out);
     }
 }
 

@@ -52,31 +52,24 @@ impl LabApp {
 
     pub(crate) fn picture(&mut self) {
         let size = [1920, 1080];
-        let (Some(record), Some(history)) = (self.app_state.record(), &self.app_state.history) else {
-            return;
-        };
-        let time = self.app_state.time();
-        let Some(trail) = history.trail(self.app_state.branch, time).cloned() else { return };
-        let (fleet, Some(shot)) = (Arc::clone(history.fleet()), self.shot(&record, size)) else { return };
+        let Some(record) = self.app_state.record() else { return };
+        let (Some(fleet), Some(trail)) = (self.app_state.fleet(), self.app_state.trail()) else { return };
+        let Some(shot) = self.shot(&record, size) else { return };
         let path = free(Path::new("."), &self.name(), "png");
-        let home = self
-            .app_state
-            .draft
-            .as_ref()
-            .map_or_else(String::new, |draft| draft.home().display().to_string());
+        let home = self.app_state.draft.as_ref().map(|draft| draft.home().display().to_string());
         let texts = vec![
             ("Software", studies::PROGRAM.to_owned()),
             ("Scene", self.app_state.script().unwrap_or_default()),
-            ("Home", home),
-            ("Time", format!("{time:?}")),
+            ("Home", home.unwrap_or_default()),
+            ("Time", format!("{:?}", self.app_state.time())),
             ("View", words_of(&shot.layout, &self.viewport.view)),
-            ("Adapter", self.viewport.gpu().description()),
+            ("Adapter", self.viewport.gpu.description()),
         ];
         self.exporter.ask(ExportJob::Picture {
             path,
-            fleet,
+            fleet: Arc::clone(fleet),
             size,
-            trail: Box::new(trail),
+            trail: Box::new(trail.clone()),
             shot: Box::new(shot),
             texts,
         });
@@ -140,19 +133,15 @@ impl LabApp {
             }
         }
         let end = history.end(film.branch);
-        let mut jobs = Vec::new();
         while film.next <= end + 1e-9 {
             let Some(record) = history.at(film.branch, film.next) else { break };
-            jobs.push(ExportJob::Records(history.since(film.branch, [film.sent, film.next])));
+            self.exporter.ask(ExportJob::Records(history.since(film.branch, [film.sent, film.next])));
             film.sent = film.next;
             if let Some(shot) = self.film_shot(&record) {
-                jobs.push(ExportJob::Frame(Box::new(shot)));
+                self.exporter.ask(ExportJob::Frame(Box::new(shot)));
                 film.frames += 1;
             }
             film.next += self.app_state.pace / RATE;
-        }
-        for job in jobs {
-            self.exporter.ask(job);
         }
         self.film = Some(film);
     }

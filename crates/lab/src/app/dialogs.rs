@@ -2,6 +2,7 @@
 
 use super::{BARE, LabApp};
 use crate::action::Action;
+use crate::panels::on_click;
 use eframe::egui::{self, Context, Ui};
 
 /// What lies over the view.
@@ -29,12 +30,8 @@ impl LabApp {
             egui::Panel::top("left").frame(BARE).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     ui.label(format!("Unsaved work on {name} was left when Echelon ended last time."));
-                    if ui.button("Go on with it").clicked() {
-                        out.push(Action::Recover);
-                    }
-                    if ui.button("Forget it").clicked() {
-                        out.push(Action::Forget);
-                    }
+                    on_click(&ui.button("Go on with it"), Action::Recover, out);
+                    on_click(&ui.button("Forget it"), Action::Forget, out);
                 });
             });
         }
@@ -57,9 +54,7 @@ impl LabApp {
                         let text = egui::RichText::new(notice).color(colour).monospace();
                         ui.add(egui::Label::new(text).wrap());
                     });
-                    if ui.button("Dismiss").on_hover_text("Esc").clicked() {
-                        out.push(Action::Dismiss);
-                    }
+                    on_click(&ui.button("Dismiss").on_hover_text("Esc"), Action::Dismiss, out);
                 });
             });
     }

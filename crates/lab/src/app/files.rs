@@ -206,7 +206,7 @@ impl LabApp {
         };
         let home = self.app_state.draft.as_ref().map_or_else(PathBuf::new, |draft| draft.home().to_owned());
         let folder = free(Path::new("runs"), &format!("{}-lab", self.name()), "");
-        let (sender, gpu, ctx) = (self.words.0.clone(), self.viewport.gpu().clone(), self.ctx.clone());
+        let (sender, gpu, ctx) = (self.words.0.clone(), self.viewport.gpu.clone(), self.ctx.clone());
         self.app_state.note("The run is being written down");
         let work = move || {
             let word = keep(&text, &home, &folder, &seen, Some(&gpu));

@@ -22,7 +22,7 @@ use crate::session::prediction::{Prediction, Predictor};
 use crate::session::runner::{RunEvent, RunRequest, Runner};
 use crate::session::scene_draft::SceneDraft;
 use crate::theme;
-use crate::view::viewport::{ViewInput, Viewport};
+use crate::view::viewport::Viewport;
 use crate::window::{NAME, Options};
 use eframe::egui::{self, Context, Ui};
 use egui_tiles::Tree;
@@ -94,9 +94,9 @@ impl LabApp {
         let folder = eframe::storage_dir(NAME);
         let mut lab = Self {
             app_state: AppState::new(),
-            runner: Runner::start(predictor, Some(viewport.gpu().clone()), wake()),
+            runner: Runner::start(predictor, Some(viewport.gpu.clone()), wake()),
             predictions,
-            exporter: Exporter::start(viewport.gpu().clone(), wake()),
+            exporter: Exporter::start(viewport.gpu.clone(), wake()),
             viewport,
             tree: memory.tree.filter(panes::sound).unwrap_or_else(panes::arrangement),
             gallery: Gallery::default(),
@@ -214,14 +214,7 @@ impl LabApp {
         let view_tile = Pane::named("View").and_then(|pane| self.tree.tiles.find_pane(&pane));
         let viewport = &mut self.viewport;
         let mut view = |ui: &mut Ui, out: &mut Vec<Action>| {
-            let empty = Arc::default();
-            let seen = ViewInput {
-                app_state,
-                fleet: app_state.fleet().unwrap_or(&empty),
-                record: app_state.shown(),
-                trail: app_state.history.as_ref().and_then(|history| history.trail(branch, time)),
-            };
-            viewport.show(ui, &seen, out);
+            viewport.show(ui, app_state, out);
         };
         let mut panels = Panels {
             app_state,
@@ -357,7 +350,7 @@ impl eframe::App for LabApp {
         for file in dropped {
             self.act(Action::Open(file.path().to_owned()));
         }
-        if let Some(why) = self.viewport.gpu().lost() {
+        if let Some(why) = self.viewport.gpu.lost() {
             let text = format!(
                 "the graphics device is gone: {why}; unsaved work is kept and offered at the next start"
             );

@@ -11,6 +11,7 @@ use crate::session::prediction::Prediction;
 use crate::session::runner::{RunEvent, RunRequest};
 use crate::session::scene_draft::SceneDraft;
 pub use branch_info::BranchInfo;
+use rendering::Trail;
 use scene::{Follow, Role, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -193,6 +194,11 @@ impl AppState {
     /// Control period of the run, s.
     pub(crate) fn period(&self) -> f64 {
         self.history.as_ref().map_or(0.01, History::period)
+    }
+
+    /// What a picture needs to know of the past of the time that is looked at.
+    pub(crate) fn trail(&self) -> Option<&Trail> {
+        self.history.as_ref()?.trail(self.branch, self.time())
     }
 
     /// Whether the scene has changes that are not saved.

@@ -1,6 +1,6 @@
 //! The branches of the run: their names, their changes, and a line for each in time.
 
-use super::naming;
+use super::{naming, on_click};
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::numbers::fixed;
@@ -8,17 +8,14 @@ use eframe::egui::{self, RichText, Role, Ui, WidgetInfo};
 
 /// All branches.
 pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    if ui.button("Branch here").on_hover_text("Leave this branch at the time you look at (B)").clicked() {
-        out.push(Action::Fork);
-    }
+    let fork = ui.button("Branch here").on_hover_text("Leave this branch at the time you look at (B)");
+    on_click(&fork, Action::Fork, out);
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         for (index, branch) in app_state.branches.iter().enumerate() {
             let chosen = index == app_state.branch;
             let response = ui.selectable_label(chosen, &branch.name);
             response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &branch.name));
-            if response.clicked() {
-                out.push(Action::Branch(index));
-            }
+            on_click(&response, Action::Branch(index), out);
             if let Some(name) = naming(&response, &branch.name, |_| ()) {
                 out.push(Action::NameBranch(index, name));
             }

@@ -1,5 +1,6 @@
 //! What is drawn, and pictures and films of it.
 
+use super::on_click;
 use crate::action::Action;
 use crate::app_state::AppState;
 use eframe::egui::{self, Slider, Ui, WidgetInfo};
@@ -23,15 +24,12 @@ const ELEMENTS: [(&str, &str); 10] = [
 pub fn show(ui: &mut Ui, app_state: &AppState, style: &Style, filming: Option<&str>, out: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let text = if filming.is_some() { "■ End the film" } else { "● Film" };
-        if ui.button(text).on_hover_text("An MP4 of what is seen, every moment of it (F)").clicked() {
-            out.push(Action::Film);
-        }
-        if ui.button("Picture").on_hover_text("A PNG that remembers its settings (P)").clicked() {
-            out.push(Action::Picture);
-        }
-        let tip = "The run as a scene with its changes, and its tables";
-        if ui.button("Keep the run").on_hover_text(tip).clicked() {
-            out.push(Action::KeepRun);
+        for (text, tip, action) in [
+            (text, "An MP4 of what is seen, every moment of it (F)", Action::Film),
+            ("Picture", "A PNG that remembers its settings (P)", Action::Picture),
+            ("Keep the run", "The run as a scene with its changes, and its tables", Action::KeepRun),
+        ] {
+            on_click(&ui.button(text).on_hover_text(tip), action, out);
         }
     });
     if let Some(text) = filming {

@@ -1,7 +1,7 @@
 //! Law, gains and observer.
 
 use super::controls::{Range, SliderRow};
-use super::{choice, nobody, nothing, tune};
+use super::{choice, nobody, nothing, on_click, tune};
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::symbols;
@@ -114,12 +114,9 @@ fn short(value: f64) -> String {
 /// Whether changes are for all followers or for one.
 pub(crate) fn scope(ui: &mut Ui, app_state: &AppState, name: &str, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
-        if ui.selectable_label(app_state.for_all, "All followers").clicked() {
-            out.push(Action::ForAll(true));
-        }
-        if ui.selectable_label(!app_state.for_all, format!("Only {name}")).clicked() {
-            out.push(Action::ForAll(false));
-        }
+        on_click(&ui.selectable_label(app_state.for_all, "All followers"), Action::ForAll(true), out);
+        let only = ui.selectable_label(!app_state.for_all, format!("Only {name}"));
+        on_click(&only, Action::ForAll(false), out);
     });
     ui.add_space(2.0);
 }

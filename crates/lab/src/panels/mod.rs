@@ -20,6 +20,21 @@ use crate::numbers::toml_number;
 use eframe::egui::{self, Color32, ComboBox, Popup, PopupCloseBehavior, Response, TextEdit, Ui};
 use vocabulary::Word;
 
+/// Asks for something where a widget was clicked.
+pub(crate) fn on_click(widget: &Response, action: Action, out: &mut Vec<Action>) {
+    if widget.clicked() {
+        out.push(action);
+    }
+}
+
+/// An item of a menu, which closes that.
+pub(crate) fn menu_item(ui: &mut Ui, enabled: bool, text: &str, action: Action, out: &mut Vec<Action>) {
+    if ui.add_enabled(enabled, egui::Button::new(text)).clicked() {
+        out.push(action);
+        ui.close();
+    }
+}
+
 /// Says that there is nothing to show, and why.
 pub(crate) fn nothing(ui: &mut Ui, why: &str) {
     ui.weak(why);

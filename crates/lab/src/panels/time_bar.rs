@@ -1,6 +1,7 @@
 //! Play, pace, time, and the line on which to go back and forth, with a row for each branch.
 
 use super::icons::{Icon, button};
+use super::{menu_item, on_click};
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::numbers::fixed;
@@ -40,16 +41,13 @@ fn buttons(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     } else {
         (Icon::Play, "Play")
     };
-    if button(ui, icon, "", name, None).on_hover_text(format!("{name} (Space)")).clicked() {
-        out.push(Action::Toggle);
-    }
-    if button(ui, Icon::Step, "", "Step", None).on_hover_text("One control sample (→)").clicked() {
-        out.push(Action::Step);
-    }
-    let tip = "Begin again at 0 (Shift Home)";
-    if button(ui, Icon::Restart, "", "Restart", None).on_hover_text(tip).clicked() {
-        out.push(Action::Restart);
-    }
+    let play = button(ui, icon, "", name, None).on_hover_text(format!("{name} (Space)"));
+    on_click(&play, Action::Toggle, out);
+    let step = button(ui, Icon::Step, "", "Step", None).on_hover_text("One control sample (→)");
+    on_click(&step, Action::Step, out);
+    let restart =
+        button(ui, Icon::Restart, "", "Restart", None).on_hover_text("Begin again at 0 (Shift Home)");
+    on_click(&restart, Action::Restart, out);
 }
 
 fn pace(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
@@ -139,15 +137,11 @@ fn buttons_of_work(ui: &mut Ui, filming: bool, out: &mut Vec<Action>) {
     } else {
         (Icon::Record, "Film what is seen (F)", None)
     };
-    if button(ui, icon, "Film", "Film", colour).on_hover_text(tip).clicked() {
-        out.push(Action::Film);
-    }
-    if button(ui, Icon::Camera, "", "Picture", None).on_hover_text("A PNG of what is seen (P)").clicked() {
-        out.push(Action::Picture);
-    }
-    if button(ui, Icon::Menu, "Scenes", "Scenes", None).on_hover_text("Open a scene (Ctrl O)").clicked() {
-        out.push(Action::Gallery);
-    }
+    on_click(&button(ui, icon, "Film", "Film", colour).on_hover_text(tip), Action::Film, out);
+    let picture = button(ui, Icon::Camera, "", "Picture", None).on_hover_text("A PNG of what is seen (P)");
+    on_click(&picture, Action::Picture, out);
+    let scenes = button(ui, Icon::Menu, "Scenes", "Scenes", None).on_hover_text("Open a scene (Ctrl O)");
+    on_click(&scenes, Action::Gallery, out);
 }
 
 /// Everything else.
@@ -171,28 +165,19 @@ fn menu(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
             ("Light or dark   T", Action::Theme, true),
             ("Shortcuts   ?", Action::Help, true),
         ] {
-            if ui.add_enabled(on, egui::Button::new(text)).clicked() {
-                out.push(action);
-                ui.close();
-            }
+            menu_item(ui, on, text, action, out);
         }
         ui.separator();
         let config = MenuConfig::new().close_behavior(stays);
         SubMenuButton::new("Save as").config(config).ui(ui, |ui| save_as(ui, out));
         ui.menu_button("Panels", |ui| {
             for (name, _) in crate::panes::PANES {
-                if ui.button(*name).clicked() {
-                    out.push(Action::Panel(name));
-                    ui.close();
-                }
+                menu_item(ui, true, name, Action::Panel(name), out);
             }
         });
         ui.menu_button("Size", |ui| {
             for scale in [0.75, 1.0, 1.25, 1.5, 2.0, 3.0] {
-                if ui.button(format!("{:.0} %", scale * 100.0)).clicked() {
-                    out.push(Action::Scale(scale));
-                    ui.close();
-                }
+                menu_item(ui, true, &format!("{:.0} %", scale * 100.0), Action::Scale(scale), out);
             }
         });
     });

@@ -2,7 +2,7 @@
 
 use super::controls::{Range, SliderRow};
 use super::law::scope;
-use super::{nobody, nothing};
+use super::{nobody, nothing, on_click};
 use crate::action::Action;
 use crate::app_state::{AppState, Tool};
 use crate::numbers::toml_number;
@@ -58,9 +58,8 @@ pub fn surroundings(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         let pillar = app_state.tool == Tool::Pillar;
         let tip = "Click on the ground to place a pillar (O)";
-        if ui.selectable_label(pillar, "+ Pillar").on_hover_text(tip).clicked() {
-            out.push(Action::Take(if pillar { Tool::Hand } else { Tool::Pillar }));
-        }
+        let label = ui.selectable_label(pillar, "+ Pillar").on_hover_text(tip);
+        on_click(&label, Action::Take(Tool::Pillar), out);
         ui.weak(match scene.props.len() {
             0 => "no obstacles".to_owned(),
             count => counted(count, "obstacle"),
@@ -73,9 +72,7 @@ pub fn surroundings(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
                 let remove = format!("Remove {}", prop.name);
                 let button = ui.small_button("×").on_hover_text(&remove);
                 button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &remove));
-                if button.clicked() {
-                    out.push(Action::RemoveProp(prop.name.clone()));
-                }
+                on_click(&button, Action::RemoveProp(prop.name.clone()), out);
             });
         }
     });

@@ -117,24 +117,21 @@ impl RunWorker {
         let mut before = Instant::now();
         loop {
             let request = if self.playing {
-                match self.inbox.try_recv() {
-                    Ok(request) => Some(request),
-                    Err(TryRecvError::Empty) => None,
-                    Err(TryRecvError::Disconnected) => return,
-                }
+                self.inbox.try_recv()
             } else {
-                match self.inbox.recv() {
-                    Ok(request) => Some(request),
-                    Err(_) => return,
-                }
+                self.inbox.recv().map_err(|_| TryRecvError::Disconnected)
             };
-            if let Some(request) = request {
-                let stood = !self.playing;
-                self.follow(request);
-                if stood {
-                    before = Instant::now();
+            match request {
+                Ok(request) => {
+                    let stood = !self.playing;
+                    self.follow(request);
+                    if stood {
+                        before = Instant::now();
+                    }
+                    continue;
                 }
-                continue;
+                Err(TryRecvError::Empty) => {}
+                Err(TryRecvError::Disconnected) => return,
             }
             let now = Instant::now();
             let passed = (now - before).as_secs_f64();

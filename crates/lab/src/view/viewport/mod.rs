@@ -20,7 +20,8 @@ const SIZES: [u32; 2] = [16, 8192];
 /// The 3D view.
 pub struct Viewport {
     pub(super) state: RenderState,
-    pub(super) gpu: Gpu,
+    /// The device, for whoever else draws.
+    pub gpu: Gpu,
     pub(super) view_renderer: Option<ViewRenderer>,
     /// What is looked from: a named view, or the camera in the hand.
     pub view: String,
@@ -53,17 +54,15 @@ pub(super) struct ViewRenderer {
 }
 
 impl ViewRenderer {
-    /// Draws with all samples.
+    /// Draws a frame with all samples.
     fn fine(
         &mut self,
         gpu: &Gpu,
         trail: &Trail,
         record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-        [title, caption]: &[String; 2],
+        frame: &DrawnFrame,
     ) -> Result<(), Error> {
-        let [width, height] = self.renderer.size();
+        let [width, height] = frame.size;
         let finer = match self.finer.take() {
             Some(mut finer) => {
                 finer.resize(width, height)?;
@@ -74,8 +73,9 @@ impl ViewRenderer {
             }
         };
         let finer = self.finer.insert(finer);
-        finer.retitle(title, caption);
-        finer.draw_into(&self.texture, trail, record, layout, style).map(drop)
+        finer.retitle(&frame.words[0], &frame.words[1]);
+        let style = Style { interactive: false, ..frame.style.clone() };
+        finer.draw_into(&self.texture, trail, record, &frame.layout, &style).map(drop)
     }
 }
 
@@ -114,11 +114,6 @@ impl Viewport {
         }
     }
 
-    /// The device, for whoever else draws.
-    pub fn gpu(&self) -> &Gpu {
-        &self.gpu
-    }
-
     /// Looks from a view called this.
     pub fn look(&mut self, view: &str) {
         view.clone_into(&mut self.view);
@@ -154,18 +149,18 @@ impl Viewport {
     }
 
     /// The view in all the room there is.
-    pub fn show(&mut self, ui: &mut Ui, input: &ViewInput<'_>, out: &mut Vec<Action>) {
+    pub fn show(&mut self, ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "3D view"));
         self.rect = rect;
-        let Some(record) = input.record.clone() else {
+        let (Some(record), Some(fleet)) = (app_state.shown(), app_state.fleet()) else {
             return centred(ui, rect, "Open a scene: Ctrl O, or drop a file here.");
         };
-        self.handle_pointer(ui, &response, input.app_state, &record, rect, out);
+        self.handle_pointer(ui, &response, app_state, &record, rect, out);
         let pixels = ui.pixels_per_point();
         let size =
             [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(SIZES[0], SIZES[1]));
-        if let Err(error) = self.draw(input, &record, size, f64::from(pixels)) {
+        if let Err(error) = self.draw(app_state, fleet, &record, size, f64::from(pixels)) {
             self.fault = Some(error.to_string());
         }
         if let Some(fault) = &self.fault {
@@ -179,24 +174,23 @@ impl Viewport {
             let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
             ui.painter().image(view_renderer.id, rect, whole, Color32::WHITE);
         }
-        self.readout(ui, input.app_state, &record, rect);
+        self.readout(ui, app_state, &record, rect);
     }
 
     fn draw(
         &mut self,
-        input: &ViewInput<'_>,
+        app_state: &AppState,
+        fleet: &Arc<FleetInfo>,
         record: &Arc<StepRecord>,
         size: [u32; 2],
         pixels: f64,
     ) -> Result<(), Error> {
-        let fleet = Arc::clone(input.fleet);
         // Text keeps its size on small views, and grows with the density of the screen.
         let scale = (0.92 * pixels).clamp(0.5, 6.0);
-        let layout = self.layout(&fleet, record);
-        let style = Style { interactive: true, ..self.dressed(input.app_state, record, scale) };
-        if self.view_renderer.as_ref().is_none_or(|view_renderer| !Arc::ptr_eq(&view_renderer.fleet, &fleet))
-        {
-            self.set_view_renderer(&fleet, size)?;
+        let layout = self.layout(fleet, record);
+        let style = Style { interactive: true, ..self.dressed(app_state, record, scale) };
+        if self.view_renderer.as_ref().is_none_or(|drawn| !Arc::ptr_eq(&drawn.fleet, fleet)) {
+            self.set_view_renderer(fleet, size)?;
         }
         let Some(view_renderer) = &mut self.view_renderer else { return Ok(()) };
         if view_renderer.renderer.size() != size {
@@ -211,32 +205,31 @@ impl Viewport {
             view_renderer.shown = None;
         }
         let shown = DrawnFrame {
-            branch: input.app_state.branch,
-            words: input.app_state.words(),
+            branch: app_state.branch,
+            words: app_state.words(),
             time: record.snapshot.time,
             goals: record.edges.iter().map(|edge| edge.set_point).collect(),
-            layout: layout.clone(),
-            style: style.clone(),
+            layout,
+            style,
             size,
         };
-        let Some(trail) = input.trail else { return Ok(()) };
+        let Some(trail) = app_state.trail() else { return Ok(()) };
         match &view_renderer.shown {
             Some((last, true)) if *last == shown => return Ok(()),
             Some((last, false)) if *last == shown => {
                 // Nothing moves any more: there is time for a better picture.
-                let fine = Style { interactive: false, ..style };
-                view_renderer.fine(&self.gpu, trail, record, &layout, &fine, &shown.words)?;
+                view_renderer.fine(&self.gpu, trail, record, &shown)?;
                 view_renderer.shown = Some((shown, true));
                 self.pictures += 1;
                 return Ok(());
             }
             _ => {}
         }
-        let [title, caption] = &shown.words;
-        view_renderer.renderer.retitle(title, caption);
-        view_renderer.sight =
-            view_renderer.renderer.sightlines(trail, record, &layout, &style)?.into_iter().next();
-        view_renderer.renderer.draw_into(&view_renderer.texture, trail, record, &layout, &style)?;
+        let DrawnFrame { words: [title, caption], layout, style, .. } = &shown;
+        let renderer = &mut view_renderer.renderer;
+        renderer.retitle(title, caption);
+        view_renderer.sight = renderer.sightlines(trail, record, layout, style)?.into_iter().next();
+        renderer.draw_into(&view_renderer.texture, trail, record, layout, style)?;
         view_renderer.shown = Some((shown, self.samples > 1));
         self.fault = None;
         self.pictures += 1;
@@ -296,18 +289,6 @@ impl Viewport {
         };
         plate(hint.to_owned(), rect.center_top() + Vec2::new(0.0, 14.0), egui::Align2::CENTER_TOP);
     }
-}
-
-/// What the view needs of the state, borrowed in parts.
-pub struct ViewInput<'a> {
-    /// All of it.
-    pub app_state: &'a AppState,
-    /// Who is on stage.
-    pub fleet: &'a Arc<FleetInfo>,
-    /// What is looked at.
-    pub record: Option<Arc<StepRecord>>,
-    /// The past of it.
-    pub trail: Option<&'a Trail>,
 }
 
 fn texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
