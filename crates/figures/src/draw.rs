@@ -59,7 +59,7 @@ pub(crate) fn draw(figure: &Figure) -> String {
     let along = (sheet - left - names - MARGIN).max(20.0);
     let columns = columns(figure, left, along);
 
-    let mut svg = Svg::new();
+    let mut svg = Svg::default();
     // Without a title, the first panel's label is the first line.
     let mut top = if figure.title.is_empty() && figure.keys.is_empty() { MARGIN - BARE } else { MARGIN };
     top = heading(&mut svg, &figure.title, &figure.keys, top, sheet);
@@ -313,20 +313,19 @@ pub(crate) fn stroke(svg: &mut Svg, d: &str, stroke: Stroke, colour: &str, faint
 
 fn marker(svg: &mut Svg, marker: Marker, [x, y]: [f64; 2], colour: &str) {
     let m = point([x, y]);
-    let (d, open) = match marker {
+    let (d, stroke) = match marker {
         Marker::None => return,
-        Marker::Disc => (format!("M{m}m-1.6 0a1.6 1.6 0 1 0 3.2 0a1.6 1.6 0 1 0 -3.2 0Z"), false),
-        Marker::Square => (format!("M{m}m-1.5 -1.5h3v3h-3Z"), false),
-        Marker::Triangle => (format!("M{m}m0 -2l1.9 3.3h-3.8Z"), false),
-        Marker::Wedge => (format!("M{m}m0 2l1.9 -3.3h-3.8Z"), false),
-        Marker::Plus => (format!("M{m}m-2 0h4m-2 -2v4"), true),
-        Marker::Cross => (format!("M{m}m-1.5 -1.5l3 3m-3 0l3 -3"), true),
-        Marker::Diamond => (format!("M{m}m0 -3.4l3.4 3.4l-3.4 3.4l-3.4 -3.4Z"), true),
+        Marker::Disc => (format!("M{m}m-1.6 0a1.6 1.6 0 1 0 3.2 0a1.6 1.6 0 1 0 -3.2 0Z"), None),
+        Marker::Square => (format!("M{m}m-1.5 -1.5h3v3h-3Z"), None),
+        Marker::Triangle => (format!("M{m}m0 -2l1.9 3.3h-3.8Z"), None),
+        Marker::Wedge => (format!("M{m}m0 2l1.9 -3.3h-3.8Z"), None),
+        Marker::Plus => (format!("M{m}m-2 0h4m-2 -2v4"), Some(1.0)),
+        Marker::Cross => (format!("M{m}m-1.5 -1.5l3 3m-3 0l3 -3"), Some(1.0)),
+        Marker::Diamond => (format!("M{m}m0 -3.4l3.4 3.4l-3.4 3.4l-3.4 -3.4Z"), Some(1.1)),
     };
-    let paint = match (open, marker) {
-        (true, Marker::Diamond) => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.1\""),
-        (true, _) => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1\""),
-        (false, _) => format!("fill=\"{colour}\""),
+    let paint = match stroke {
+        Some(width) => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\""),
+        None => format!("fill=\"{colour}\""),
     };
     svg.path(&d, &paint);
 }

@@ -154,7 +154,7 @@ impl Plan {
     /// The map as SVG.
     pub fn svg(&self) -> String {
         let (sheet, most) = (points(self.width), points(self.height));
-        let mut svg = Svg::new();
+        let mut svg = Svg::default();
         let mut top = heading(&mut svg, &self.title, &self.keys, MARGIN, sheet);
         let (left, foot) = if self.axes.is_some() { (24.0, 23.0) } else { (MARGIN, MARGIN) };
         top += if self.axes.is_some() { 16.0 } else { 3.0 };

@@ -9,6 +9,7 @@ pub type Rgb = [f32; 3];
 const FONT: &str = "Inter, Helvetica, Arial, sans-serif";
 
 /// A picture that grows.
+#[derive(Default)]
 pub(crate) struct Svg(String);
 
 /// Where a text begins.
@@ -20,10 +21,6 @@ pub(crate) enum Anchor {
 }
 
 impl Svg {
-    pub(crate) fn new() -> Self {
-        Self(String::new())
-    }
-
     /// A path with any attributes.
     pub(crate) fn path(&mut self, d: &str, attributes: &str) {
         let _ = writeln!(self.0, "<path d=\"{d}\" {attributes}/>");

@@ -84,13 +84,7 @@ impl Error {
         match self {
             Self::Output(error) => error.is_usage(),
             Self::Read { .. } | Self::Encode(_) | Self::NoFfmpeg => false,
-            Self::Busy(_)
-            | Self::Ending { .. }
-            | Self::Size { .. }
-            | Self::OddSize { .. }
-            | Self::FrameRate(_)
-            | Self::GifRate(_)
-            | Self::Mismatch { .. } => true,
+            _ => true,
         }
     }
 

@@ -39,28 +39,14 @@ pub enum Action {
         /// Path and value.
         values: Vec<(String, String)>,
     },
-    /// Take keys of the scene back to their defaults.
-    Reset {
-        /// For undo and the log.
-        what: String,
-        /// Paths.
-        paths: Vec<String>,
-    },
     /// Change a value of the follower that is selected, or of all of them.
     Tune {
         /// For undo and the log; with `…` at its end it goes on.
         what: String,
         /// Its key, without the robot.
         key: &'static str,
-        /// TOML.
-        value: String,
-    },
-    /// Take a value of the follower that is selected, or of all of them, back to its default.
-    Untune {
-        /// For undo and the log.
-        what: String,
-        /// Its key, without the robot.
-        key: &'static str,
+        /// TOML; `None` for its default.
+        value: Option<String>,
     },
     /// Whether changes of gains are for all followers.
     ForAll(bool),

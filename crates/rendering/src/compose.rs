@@ -6,8 +6,8 @@ use crate::annotation::labels::{LabelPlacer, Window, ring_boxes, robot_boxes, vi
 use crate::annotation::overlays::{line_place, show};
 use crate::annotation::text_shaper::TextShaper;
 use crate::camera::Camera;
+use crate::gpu::passes::backdrop::TILE;
 use crate::gpu::passes::frame::FrameUniforms;
-use crate::gpu::passes::ground::TILE;
 use crate::gpu::passes::shadow::{ShadowPass, SunView, sun_view};
 use crate::ground::floor::DrivableSurface;
 use crate::ground::trail::sizes;

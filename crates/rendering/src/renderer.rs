@@ -272,7 +272,7 @@ impl Renderer {
         let cameras = cameras(&plan, &context);
         let seen = plan.views.into_iter().zip(plan.tiles).zip(cameras);
         Ok(seen
-            .map(|((view, tile), camera)| Sightline::new(view, tile, camera, self.model.floor.clone()))
+            .map(|((view, tile), camera)| Sightline { view, tile, camera, floor: self.model.floor.clone() })
             .collect())
     }
 

@@ -286,18 +286,18 @@ fn sightlines_agree_with_the_picture() {
             r - g
         };
         let around: i32 = [(3.0, 0.0), (-4.0, 0.0)].iter().map(|(x, y)| red(*x, *y)).max().unwrap();
-        assert!(around > 50, "{:?} {around}", sight.view());
+        assert!(around > 50, "{:?} {around}", sight.view);
         let robot = record.snapshot.robots[1].motion.pose.world_from_body(0.13, 0.0);
         let [x, y] = sight.pixel([robot[0], robot[1], 0.05]).unwrap();
         let picked = renderer.pick(&sight, &record, [x, y]);
-        assert_eq!(picked.first(), Some(&rendering::Picked::Robot(1)), "{:?}", sight.view());
+        assert_eq!(picked.first(), Some(&rendering::Picked::Robot(1)), "{:?}", sight.view);
         // Taken over by a hand, the robot stays where it was.
         let free = ViewLayout { views: vec![sight.free().view()] };
         let whole = renderer.sightlines(&trail, &record, &free, &style).unwrap();
-        let before = [x - f64::from(sight.tile().x), y - f64::from(sight.tile().y)];
-        let factor = f64::from(SIZE.1) / f64::from(sight.tile().height);
+        let before = [x - f64::from(sight.tile.x), y - f64::from(sight.tile.y)];
+        let factor = f64::from(SIZE.1) / f64::from(sight.tile.height);
         let after = whole[0].pixel([robot[0], robot[1], 0.05]).unwrap();
         let shift = (before[1] * factor - after[1]).abs();
-        assert!(shift < 2.0, "{:?} {shift}", sight.view());
+        assert!(shift < 2.0, "{:?} {shift}", sight.view);
     }
 }

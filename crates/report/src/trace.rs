@@ -183,7 +183,7 @@ impl Tracer {
     /// The run as far as it went.
     pub fn finish(mut self) -> Trace {
         self.trace.metrics = self.metrics.finish();
-        self.trace.efforts = self.efforts.iter().map(EffortSums::finish).collect();
+        self.trace.efforts = self.efforts.iter().map(|effort| effort.sums).collect();
         self.trace.digest = self.digest.text();
         // Wheels slip sideways, and what a heading and a speed say is not all of the motion.
         if self.trace.scene.robots.iter().any(|robot| robot.vehicle.kind.has_wheels()) {

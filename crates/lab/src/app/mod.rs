@@ -323,7 +323,12 @@ impl LabApp {
         {
             self.app_state.fault(why);
         }
-        *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(Error::Interrupted);
+        self.end(ctx, Error::Interrupted);
+    }
+
+    /// Closes the window, and keeps why.
+    fn end(&self, ctx: &Context, why: Error) {
+        *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
         ctx.send_viewport_cmd(egui::ViewportCommand::Close);
     }
 }
@@ -354,9 +359,8 @@ impl eframe::App for LabApp {
             let text = format!(
                 "the graphics device is gone: {why}; unsaved work is kept and offered at the next start"
             );
-            *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(Error::Window(text));
             self.app_state.draft = None;
-            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            self.end(ctx, Error::Window(text));
         }
         if self.file_watcher.stopped() {
             return self.interrupted(ctx);

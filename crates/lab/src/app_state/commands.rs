@@ -28,9 +28,7 @@ fn changes_the_scene(action: &Action) -> bool {
     matches!(
         action,
         Action::Tune { .. }
-            | Action::Untune { .. }
             | Action::Set { .. }
-            | Action::Reset { .. }
             | Action::SetPoint { .. }
             | Action::Shape { .. }
             | Action::Connect { .. }
@@ -94,12 +92,8 @@ impl AppState {
             self.leave_recording();
         }
         match action {
-            Action::Tune { what, key, value } => self.tune(what, key, Some(value)),
-            Action::Untune { what, key } => self.tune(what, key, None),
+            Action::Tune { what, key, value } => self.tune(what, key, value.as_deref()),
             Action::Set { what, values } => self.set(what, values),
-            Action::Reset { what, paths } => {
-                self.edit(what, |text| paths.iter().try_for_each(|path| text.remove(path).map(drop)));
-            }
             Action::SetPoint { edge, distance, bearing } => self.move_set_point(*edge, [*distance, *bearing]),
             Action::Shape { scale, turn } => self.reshape(*scale, *turn),
             Action::Connect { leader, follower } => self.connect(*leader, *follower),

@@ -17,12 +17,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     };
     ui.label(RichText::new(format!("{} → {name}", follow.leader)).strong());
     let state = app_state.shown().and_then(|record| record.edges.get(edge).copied());
-    let now = state.map_or([0.0; 2], |state| state.set_point);
-    let value = |channel: &ScalarTrajectory, now: f64| match channel {
-        ScalarTrajectory::Constant(value) => *value,
-        _ => now,
-    };
-    let (distance, bearing) = (value(&follow.distance, now[0]), value(&follow.bearing, now[1]));
+    let [distance, bearing] = app_state.set_point(edge).unwrap_or_default();
     let (mut new_distance, mut new_degrees) = (distance, bearing.to_degrees());
     egui::Grid::new("set point").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
         symbols::DISTANCE.label(ui);
@@ -94,8 +89,7 @@ fn shape(ui: &mut Ui, out: &mut Vec<Action>) {
 
 /// What the prediction says of the edge.
 fn ahead(ui: &mut Ui, app_state: &AppState, edge: usize) {
-    let Some(prediction) =
-        app_state.prediction.as_ref().filter(|prediction| prediction.branch == app_state.branch)
+    let Some(prediction) = app_state.prediction.as_ref().filter(|ahead| ahead.branch == app_state.branch)
     else {
         return;
     };

@@ -133,7 +133,7 @@ fn dim(channel: u8) -> u8 {
 
 /// A change of one value of the follower that is selected, or of all.
 pub(crate) fn tune(what: &str, key: &'static str, value: String) -> Action {
-    Action::Tune { what: format!("{what}…"), key, value }
+    Action::Tune { what: format!("{what}…"), key, value: Some(value) }
 }
 
 /// A pair of values as TOML: one where both are the same.

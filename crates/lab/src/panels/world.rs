@@ -45,7 +45,7 @@ pub fn limits(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
             symbols::ACCELERATION_MAX.label(ui);
             ui.weak("unbounded, as in the paper");
             if ui.button("Bound it").clicked() {
-                let (what, value) = ("Largest acceleration".to_owned(), "4.0".to_owned());
+                let (what, value) = ("Largest acceleration".to_owned(), Some("4.0".to_owned()));
                 out.push(Action::Tune { what, key: ACCELERATION_MAX.key, value });
             }
         });

@@ -89,17 +89,14 @@ fn motions(prediction: Option<&Prediction>, leader: usize, now: [f64; 2]) -> Vec
 /// each from the right to the left.
 pub fn shade(wanted: &PlaceConstraints, motions: &[[f64; 2]]) -> Vec<f32> {
     let half = 0.5 * (SIDE - 1) as f64 * STEP;
-    let mut alphas = Vec::with_capacity(SIDE * SIDE);
-    for row in 0..SIDE {
-        for column in 0..SIDE {
-            let place = [row as f64 * STEP - half, column as f64 * STEP - half];
-            let away = place[0].hypot(place[1]) / half;
-            // It fades towards its rim, so that it is no square.
-            let rim = ((1.0 - away) / 0.2).clamp(0.0, 1.0) as f32;
-            alphas.push(if wanted.refuses(place, motions) { rim } else { 0.0 });
-        }
-    }
-    alphas
+    let alpha = |square: usize| {
+        let place = [square / SIDE, square % SIDE].map(|k| k as f64 * STEP - half);
+        let away = place[0].hypot(place[1]) / half;
+        // It fades towards its rim, so that it is no square.
+        let rim = ((1.0 - away) / 0.2).clamp(0.0, 1.0) as f32;
+        if wanted.refuses(place, motions) { rim } else { 0.0 }
+    };
+    (0..SIDE * SIDE).map(alpha).collect()
 }
 
 #[cfg(test)]

@@ -57,11 +57,11 @@ const RETUNE: &[&str] = &["change"];
 const RESTART: &[&str] = &["open", "ahead", "play"];
 
 pub(crate) fn tune(key: &'static str, value: &str) -> Action {
-    Action::Tune { what: "Gain…".to_owned(), key, value: value.to_owned() }
+    Action::Tune { what: "Gain…".to_owned(), key, value: Some(value.to_owned()) }
 }
 
 fn untune(key: &'static str) -> Action {
-    Action::Untune { what: "Reset gain".to_owned(), key }
+    Action::Tune { what: "Reset gain".to_owned(), key, value: None }
 }
 
 pub(crate) fn set(path: &str, value: &str) -> Action {
@@ -102,12 +102,7 @@ fn commands() -> Vec<(Action, String, Vec<&'static str>, &'static [&'static str]
             vec!["[-3.0, 1.0, 0.0] # where it starts"],
             RESTART,
         ),
-        (
-            Action::Reset { what: "Less".to_owned(), paths: vec!["law.k".to_owned(), "law.beta".to_owned()] },
-            three(),
-            vec!["# Gains of all."],
-            RETUNE,
-        ),
+        (untune("law.k"), three(), vec!["# Gains of all."], RETUNE),
         (Action::Connect { leader: 1, follower: 2 }, three(), vec!["leader = \"left\""], RESTART),
         (Action::AddRobot, three(), vec!["name = \"follower-1\"", "leader = \"left\""], RESTART),
         (Action::RemoveRobot("right".to_owned()), three(), vec!["# To the left."], RESTART),
@@ -352,7 +347,6 @@ fn what_cannot_be_changes_nothing_and_is_said_once() {
         (Action::RenameRobot("nobody".to_owned(), "x".to_owned()), "nobody"),
         (Action::RemoveRobot("nobody".to_owned()), "nobody"),
         (Action::RemoveProp("nothing".to_owned()), "nothing"),
-        (Action::Reset { what: "x".to_owned(), paths: vec!["robots.nobody.law.k".to_owned()] }, "nobody"),
     ];
     let continuous = with(THREE, &[("time.mode", "continuous"), ("observer.epsilon", "0.02")]);
     for past in [false, true] {
@@ -384,7 +378,6 @@ fn a_deed_that_changes_nothing_is_none() {
             tune("law.k", "3.0"),
             Action::RenameRobot("left".to_owned(), "left".to_owned()),
             untune("law.slope"),
-            Action::Reset { what: "x".to_owned(), paths: vec!["law.slope".to_owned()] },
         ] {
             app_state.act(&action);
             assert!(

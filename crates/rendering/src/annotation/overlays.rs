@@ -1,7 +1,7 @@
 //! What films add to pictures: cards, a line at the bottom, plots beside the view.
 
 use crate::annotation::labels::{Ink, LabelPlacer};
-use crate::annotation::text_shaper::{Block, line_height};
+use crate::annotation::text_shaper::{Block, Measure, line_height};
 use crate::palette::{self, Rgb, with_alpha};
 use crate::picture_plan::Area;
 use glam::Vec2;
@@ -224,18 +224,15 @@ fn number(value: f64, [low, high]: [f64; 2]) -> String {
 const LINE: f32 = 17.0;
 const LINE_ROWS: usize = 2;
 
-/// The rows of a line at the bottom: each with its room and the lines it takes, and the size of its letters.
-fn line_rows(words: &mut LabelPlacer<'_>, said: &Subtitle, width: f32) -> (Vec<(Block, f32, usize)>, f32) {
+/// What the rows of a line at the bottom take, the room of each, and the size of its letters.
+fn line_rows(words: &mut LabelPlacer<'_>, said: &Subtitle, width: f32) -> (Vec<Measure>, Block, f32) {
     let most = 0.9 * width;
     let widest = said.rows.iter().map(|row| words.width(row, LINE, true)).fold(1.0_f32, f32::max);
     // A little too long, it is smaller; much too long, it wraps.
     let size = LINE * (0.995 * most / widest).clamp(0.75, 1.0);
     let block = Block { width: most, rows: LINE_ROWS, centred: false };
-    let rows = said.rows.iter().map(|row| {
-        let measure = words.measure(row, size, true, Some(block));
-        (block, measure.width, measure.rows)
-    });
-    (rows.collect(), size)
+    let rows = said.rows.iter().map(|row| words.measure(row, size, true, Some(block)));
+    (rows.collect(), block, size)
 }
 
 /// The panel behind `rows` lines of a line at the bottom, `wide` pixels across.
@@ -249,9 +246,9 @@ fn line_panel(words: &LabelPlacer<'_>, [width, height]: [f32; 2], wide: f32, row
 
 /// Where a line at the bottom is.
 pub(crate) fn line_place(words: &mut LabelPlacer<'_>, said: &Subtitle, views: [f32; 2]) -> Area {
-    let (rows, _) = line_rows(words, said, views[0]);
-    let wide = rows.iter().map(|row| row.1).fold(1.0, f32::max);
-    line_panel(words, views, wide, rows.iter().map(|row| row.2).sum())
+    let (rows, ..) = line_rows(words, said, views[0]);
+    let wide = rows.iter().map(|row| row.width).fold(1.0, f32::max);
+    line_panel(words, views, wide, rows.iter().map(|row| row.rows).sum())
 }
 
 /// Where a line at the bottom is or may come to be in the film.
@@ -269,16 +266,16 @@ pub(crate) fn line_room(words: &mut LabelPlacer<'_>, show: &Overlays, views: [f3
 
 fn line(words: &mut LabelPlacer<'_>, said: &Subtitle, views: [f32; 2]) {
     let alpha = said.opacity as f32;
-    let (rows, size) = line_rows(words, said, views[0]);
+    let (rows, block, size) = line_rows(words, said, views[0]);
     let place = line_place(words, said, views);
     let (radius, row, pad) = (words.scaled(8.0), words.scaled(1.45 * LINE), words.scaled(12.0));
     words.shapes.panel(place, radius, with_alpha(palette::INK, 0.72 * alpha));
     let ink = Ink { halo: (0.0, palette::INK), ..Ink::LIGHT }.faded(alpha);
     let mut down = place[1] + 0.5 * pad;
-    for (text, (block, own, lines)) in said.rows.iter().zip(rows) {
-        let left = 0.5 * (views[0] - own);
+    for (text, row_size) in said.rows.iter().zip(rows) {
+        let left = 0.5 * (views[0] - row_size.width);
         words.write_block(text.clone(), [left, down + 0.5 * row], size, true, ink, Some(block));
-        down += row * lines as f32;
+        down += row * row_size.rows as f32;
     }
 }
 

@@ -146,7 +146,7 @@ mod tests {
     fn sight(eye: [f64; 3], to: [f64; 3]) -> Sightline {
         let camera = Camera::looking(DVec3::from_array(eye), DVec3::from_array(to), 0.7, 2.0);
         let tile = Tile { x: 30, y: 10, width: 800, height: 400 };
-        Sightline::new(Viewpoint::Snake, tile, camera, Floor::default())
+        Sightline { view: Viewpoint::Snake, tile, camera, floor: Floor::default() }
     }
 
     #[test]

@@ -65,7 +65,8 @@ const CORNERS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SmoothedFormation {
     lead: usize,
-    time: Option<f64>,
+    /// When the last moment was, s.
+    pub(crate) time: Option<f64>,
     size: f64,
     headings: Vec<f64>,
     heights: Vec<f64>,
@@ -88,11 +89,6 @@ impl SmoothedFormation {
         let Some(wanted) = self.measure(record, set_points) else { return };
         let old = self.extent.unwrap_or(wanted);
         self.extent = Some(approach(&old, &wanted, step));
-    }
-
-    /// When the last moment was, s.
-    pub(crate) fn time(&self) -> Option<f64> {
-        self.time
     }
 
     /// The filtered heading of a robot, rad, not wrapped.

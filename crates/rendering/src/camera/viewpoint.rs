@@ -102,15 +102,14 @@ impl Viewpoint {
             "top" => Some(Self::Top),
             "orbit" => Some(Self::Orbit),
             "fixed" => Some(Self::Fixed { eye: [-8.0, -8.0, 6.0], target: [0.0; 3], field_of_view: 0.7 }),
-            _ => text
-                .strip_prefix("follow:")
-                .and_then(|name| names.iter().position(|n| n == name.trim()))
-                .map(Self::Follow)
-                .or_else(|| {
-                    let name = text.strip_prefix("camera:")?.trim();
-                    names.iter().position(|n| n == name).map(Self::Camera)
-                })
-                .or_else(|| text.strip_prefix("fixed:").and_then(fixed)),
+            _ => {
+                let named = |kind: &str| {
+                    let name = text.strip_prefix(kind)?.trim();
+                    names.iter().position(|n| n == name)
+                };
+                let fixed = || text.strip_prefix("fixed:").and_then(fixed);
+                named("follow:").map(Self::Follow).or(named("camera:").map(Self::Camera)).or_else(fixed)
+            }
         };
         view.ok_or_else(|| unknown(text, names))
     }

@@ -50,28 +50,40 @@ pub(crate) fn props(context: &PictureContext<'_>) -> PropInstances {
     let mut copies = PropInstances::default();
     for (_, prop, placement) in placed(context).filter(|(k, ..)| !context.floor.is_drivable(*k)) {
         let ground = context.floor.height(DVec3::from_array(placement.position).truncate());
-        copies.others[look(prop) as usize].push(instance(context, prop, &placement, ground));
+        let (look, colour) = appearance(prop);
+        copies.others[look as usize].push(instance(context, prop, &placement, ground, colour));
     }
     for drivable in &context.floor.drivables {
         let prop = &context.fleet.props[drivable.prop];
         let ground = context.floor.ground(DVec3::from_array(prop.placement.position).truncate());
-        copies.drivables.push((look(prop), instance(context, prop, &prop.placement, ground)));
+        let (look, colour) = appearance(prop);
+        copies.drivables.push((look, instance(context, prop, &prop.placement, ground, colour)));
     }
     copies
 }
 
-fn look(prop: &Prop) -> PropAppearance {
+/// How a prop is painted, and its colour.
+fn appearance(prop: &Prop) -> (PropAppearance, Rgb) {
     match (prop.solid, prop.mobility) {
-        (Solid::Block { .. }, Mobility::Fixed) => PropAppearance::Concrete,
-        (Solid::Block { .. }, Mobility::Loose) => PropAppearance::Timber,
-        (Solid::Block { .. }, Mobility::Guided) => PropAppearance::Machine,
-        (Solid::Cylinder { .. }, _) => PropAppearance::Pillar,
-        (Solid::Cone { .. }, _) => PropAppearance::Cone,
-        (Solid::Wedge { .. }, _) => PropAppearance::Ramp,
+        (Solid::Block { .. }, Mobility::Fixed) => (PropAppearance::Concrete, CONCRETE),
+        (Solid::Block { .. }, Mobility::Loose) => (PropAppearance::Timber, CRATE),
+        (Solid::Block { .. }, Mobility::Guided) => (PropAppearance::Machine, GUIDED),
+        (Solid::Cylinder { .. }, Mobility::Fixed) => (PropAppearance::Pillar, PALE),
+        (Solid::Cylinder { .. }, Mobility::Loose) => (PropAppearance::Pillar, BARREL),
+        (Solid::Cylinder { .. }, Mobility::Guided) => (PropAppearance::Pillar, GUIDED),
+        (Solid::Cone { .. }, _) => (PropAppearance::Cone, ORANGE),
+        (Solid::Wedge { .. }, Mobility::Guided) => (PropAppearance::Ramp, GUIDED),
+        (Solid::Wedge { .. }, _) => (PropAppearance::Ramp, PLYWOOD),
     }
 }
 
-fn instance(context: &PictureContext<'_>, prop: &Prop, placement: &Placement, ground: f64) -> Instance {
+fn instance(
+    context: &PictureContext<'_>,
+    prop: &Prop,
+    placement: &Placement,
+    ground: f64,
+    colour: Rgb,
+) -> Instance {
     let scale = match prop.solid {
         Solid::Block { size } | Solid::Wedge { size } => DVec3::from_array(size),
         Solid::Cylinder { radius, height } | Solid::Cone { radius, height } => {
@@ -84,17 +96,5 @@ fn instance(context: &PictureContext<'_>, prop: &Prop, placement: &Placement, gr
         Mat4::from_scale_rotation_translation(scale.as_vec3(), turn, (place - context.origin).as_vec3());
     let guided = f32::from(u8::from(prop.mobility == Mobility::Guided));
     let marks = [guided, 0.0, (ground - context.origin.z) as f32, 0.0];
-    Instance::new(model, with_alpha(linear(colour(prop)), 1.0), marks)
-}
-
-fn colour(prop: &Prop) -> Rgb {
-    match (prop.solid, prop.mobility) {
-        (Solid::Cone { .. }, _) => ORANGE,
-        (_, Mobility::Guided) => GUIDED,
-        (Solid::Wedge { .. }, _) => PLYWOOD,
-        (Solid::Cylinder { .. }, Mobility::Loose) => BARREL,
-        (Solid::Cylinder { .. }, Mobility::Fixed) => PALE,
-        (Solid::Block { .. }, Mobility::Loose) => CRATE,
-        (Solid::Block { .. }, Mobility::Fixed) => CONCRETE,
-    }
+    Instance::new(model, with_alpha(linear(colour), 1.0), marks)
 }

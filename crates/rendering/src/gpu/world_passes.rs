@@ -6,13 +6,12 @@ use crate::fleet_model::FleetModel;
 use crate::gpu::model::Detail;
 use crate::gpu::passes::Canvas;
 use crate::gpu::passes::asphalt::Asphalt;
+use crate::gpu::passes::backdrop::BackdropPass;
 use crate::gpu::passes::decal::{DecalLayer, DecalPass, DecalVertex};
 use crate::gpu::passes::frame::{FrameGroups, FrameUniforms};
-use crate::gpu::passes::ground::GroundPass;
 use crate::gpu::passes::prop::{PropInstances, PropPass, Veil};
 use crate::gpu::passes::robot::{Models, RobotInstances, RobotPass};
 use crate::gpu::passes::shadow::ShadowPass;
-use crate::gpu::passes::sky::SkyPass;
 use crate::gpu::passes::tag::TagPass;
 use crate::gpu::passes::terrain::TerrainPass;
 use std::ops::Range;
@@ -26,12 +25,11 @@ pub(crate) struct WorldPasses {
     asphalt: Asphalt,
     robot: RobotPass,
     tag: TagPass,
-    ground: GroundPass,
+    backdrop: BackdropPass,
     /// In place of the flat ground.
     terrain: Option<TerrainPass>,
     prop: Option<PropPass>,
     decal: DecalPass,
-    sky: SkyPass,
 }
 
 /// What there is to see in a view.
@@ -71,11 +69,10 @@ impl WorldPasses {
             models: Models::new(gpu, detail, &robots.builds),
             robot: RobotPass::new(gpu, canvas, &groups),
             tag: TagPass::new(gpu, canvas, &groups),
-            ground: GroundPass::new(gpu, canvas, &groups, &asphalt),
+            backdrop: BackdropPass::new(gpu, canvas, &groups, &asphalt),
             terrain: terrain.map(|t| TerrainPass::new(gpu, canvas, &groups, &asphalt, t)),
             prop: (!fleet.props.is_empty()).then(prop),
             decal: DecalPass::new(gpu, canvas, &groups, !floor.is_plane()),
-            sky: SkyPass::new(gpu, canvas, &groups),
             shadow: ShadowPass::new(gpu, &groups, map, shadows),
             asphalt,
             groups,
@@ -118,10 +115,10 @@ impl WorldPasses {
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, sight: &SceneView<'_>) {
         pass.set_bind_group(0, &self.groups.view, &[FrameGroups::offset(sight.index)]);
         pass.set_bind_group(1, &self.groups.light, &[]);
-        self.sky.draw(pass);
+        self.backdrop.draw_sky(pass);
         match &self.terrain {
             Some(terrain) => terrain.draw(pass, &self.asphalt, sight.camera),
-            None => self.ground.draw(pass, &self.asphalt),
+            None => self.backdrop.draw_ground(pass, &self.asphalt),
         }
         if let Some(prop) = &self.prop {
             prop.draw_decks(pass, &self.asphalt, sight.props, sight.veiled);

@@ -16,7 +16,7 @@ pub(crate) struct Floor {
     pub(crate) terrain: Option<Arc<Terrain>>,
     pub(crate) drivables: Vec<DrivableSurface>,
     /// Lowest and highest of it, m.
-    range: [f64; 2],
+    pub(crate) range: [f64; 2],
 }
 
 /// The top of a prop that robots can drive on.
@@ -52,11 +52,6 @@ impl Floor {
     /// Whether it is nothing but the plane z = 0.
     pub(crate) fn is_plane(&self) -> bool {
         self.terrain.is_none() && self.drivables.is_empty()
-    }
-
-    /// Lowest and highest of it, m.
-    pub(crate) fn range(&self) -> [f64; 2] {
-        self.range
     }
 
     /// What is smaller than this is not told apart, m.
@@ -111,12 +106,8 @@ impl DrivableSurface {
         let corners = [(-0.5, -0.5, rise), (0.5, -0.5, height), (0.5, 0.5, height), (-0.5, 0.5, rise)]
             .map(|(x, y, z)| foot + turn * DVec3::new(x * length, y * width, z));
         let point = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-        let broad = match prop.solid {
-            Solid::Block { .. } => {
-                length.min(width) >= LEAST_WIDTH && point.z - floor.ground(point.truncate()) < MOST_HEIGHT
-            }
-            _ => true,
-        };
+        let low = length.min(width) >= LEAST_WIDTH && point.z - floor.ground(point.truncate()) < MOST_HEIGHT;
+        let broad = low || !matches!(prop.solid, Solid::Block { .. });
         let normal = (corners[1] - corners[0]).cross(corners[3] - corners[0]).normalize_or_zero();
         let outline = corners.map(DVec3::truncate);
         let low = outline.into_iter().fold(DVec2::INFINITY, DVec2::min);

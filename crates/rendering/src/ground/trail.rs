@@ -79,7 +79,7 @@ impl Trail {
 
     /// The time of the last moment that was taken in, s.
     pub fn time(&self) -> Option<f64> {
-        self.smoothed.time()
+        self.smoothed.time
     }
 
     /// Takes in the next moment; every control sample, or at least 30 a second.
@@ -87,7 +87,7 @@ impl Trail {
     /// A moment that is not later than the last one is ignored.
     pub fn push(&mut self, record: &StepRecord) {
         let time = record.snapshot.time;
-        if !time.is_finite() || self.smoothed.time().is_some_and(|last| time <= last) {
+        if !time.is_finite() || self.smoothed.time.is_some_and(|last| time <= last) {
             return;
         }
         let goals: Vec<_> = set_points(&self.fleet, record).into_iter().flatten().collect();

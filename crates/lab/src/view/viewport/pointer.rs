@@ -7,7 +7,6 @@ use crate::numbers::snap;
 use crate::view::camera::HeldCamera;
 use eframe::egui::{self, Pos2, Rect, Ui, Vec2};
 use rendering::{Picked, Sightline, set_points};
-use std::sync::Arc;
 use vocabulary::{StepRecord, wrap};
 
 /// Steps of a set point under the hand: m and degrees.
@@ -23,6 +22,15 @@ pub(super) enum Drag {
     Connect(usize),
 }
 
+/// What the pointer works on in a frame.
+struct PointerFrame<'a> {
+    ui: &'a Ui,
+    response: &'a egui::Response,
+    app_state: &'a AppState,
+    record: &'a StepRecord,
+    sight: Sightline,
+}
+
 impl Viewport {
     /// Everything the pointer does in the view.
     pub(super) fn handle_pointer(
@@ -30,7 +38,7 @@ impl Viewport {
         ui: &Ui,
         response: &egui::Response,
         app_state: &AppState,
-        record: &Arc<StepRecord>,
+        record: &StepRecord,
         rect: Rect,
         out: &mut Vec<Action>,
     ) {
@@ -40,12 +48,14 @@ impl Viewport {
         else {
             return;
         };
+        let frame = PointerFrame { ui, response, app_state, record, sight };
+        let sight = &frame.sight;
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        self.hover(app_state, record, &sight, pointer.map(pixel), f64::from(pixels * GRASP));
+        self.hover(&frame, pointer.map(pixel));
         if response.drag_started() {
             // What was pressed counts, wherever the pointer is by now.
             let origin = ui.input(|input| input.pointer.press_origin());
-            self.hover(app_state, record, &sight, origin.or(pointer).map(pixel), f64::from(pixels * GRASP));
+            self.hover(&frame, origin.or(pointer).map(pixel));
             self.begin_drag(ui, app_state);
         }
         let share = |delta: Vec2| [delta.x, delta.y].map(|x| f64::from(x / rect.height().max(1.0)));
@@ -68,7 +78,7 @@ impl Viewport {
                 }
                 Drag::SetPoint(edge) => {
                     if let Some(place) = sight.ground(pixel(pos)) {
-                        out.extend(dragged(ui, app_state, record, edge, place));
+                        out.extend(dragged(&frame, edge, place));
                     }
                 }
                 Drag::Connect(robot) => {
@@ -79,19 +89,14 @@ impl Viewport {
         if response.drag_stopped() {
             self.end_drag(out);
         }
-        self.wheel(ui, response, &sight, pointer.map(pixel), record);
-        self.clicks(response, app_state, &sight, pointer.map(pixel), out);
+        self.wheel(&frame, pointer.map(pixel));
+        self.clicks(&frame, pointer.map(pixel), out);
     }
 
     /// What is under the pointer.
-    fn hover(
-        &mut self,
-        app_state: &AppState,
-        record: &StepRecord,
-        sight: &Sightline,
-        pixel: Option<[f64; 2]>,
-        grasp: f64,
-    ) {
+    fn hover(&mut self, frame: &PointerFrame<'_>, pixel: Option<[f64; 2]>) {
+        let PointerFrame { app_state, record, sight, .. } = frame;
+        let grasp = f64::from(frame.ui.pixels_per_point() * GRASP);
         self.hand.ring = None;
         self.hand.robot = None;
         let (Some(pixel), Some(view_renderer)) = (pixel, &self.view_renderer) else { return };
@@ -152,55 +157,42 @@ impl Viewport {
         self.hand.connecting = None;
     }
 
-    fn wheel(
-        &mut self,
-        ui: &Ui,
-        response: &egui::Response,
-        sight: &Sightline,
-        pixel: Option<[f64; 2]>,
-        record: &StepRecord,
-    ) {
-        if !response.hovered() {
+    fn wheel(&mut self, frame: &PointerFrame<'_>, pixel: Option<[f64; 2]>) {
+        if !frame.response.hovered() {
             return;
         }
-        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        let (scroll, pinch) = frame.ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
         let factor = f64::from((-scroll * 0.004).exp() / pinch.max(1e-3));
         if (factor - 1.0).abs() > 1e-4 {
-            let about = pixel.and_then(|pixel| sight.ground(pixel));
-            self.take_camera(record, None);
+            let about = pixel.and_then(|pixel| frame.sight.ground(pixel));
+            self.take_camera(frame.record, None);
             if let Some(held) = &mut self.held {
-                held.zoom(factor, about, &record.snapshot);
+                held.zoom(factor, about, &frame.record.snapshot);
             }
         }
     }
 
-    fn clicks(
-        &self,
-        response: &egui::Response,
-        app_state: &AppState,
-        sight: &Sightline,
-        pixel: Option<[f64; 2]>,
-        out: &mut Vec<Action>,
-    ) {
+    fn clicks(&self, frame: &PointerFrame<'_>, pixel: Option<[f64; 2]>, out: &mut Vec<Action>) {
         let Some(pixel) = pixel else { return };
-        if response.double_clicked() {
+        if frame.response.double_clicked() {
             if let Some(robot) = self.hand.robot {
                 out.push(Action::Follow(Some(robot)));
             }
-        } else if response.clicked() {
-            match (app_state.tool, sight.ground(pixel)) {
+        } else if frame.response.clicked() {
+            match (frame.app_state.tool, frame.sight.ground(pixel)) {
                 (Tool::Pillar, Some(place)) => out.push(Action::AddProp("pillar", place)),
-                _ => out.extend(self.chosen(sight, app_state, pixel)),
+                _ => out.extend(self.chosen(frame, pixel)),
             }
         }
     }
 
-    fn chosen(&self, sight: &Sightline, app_state: &AppState, pixel: [f64; 2]) -> Option<Action> {
+    fn chosen(&self, frame: &PointerFrame<'_>, pixel: [f64; 2]) -> Option<Action> {
         if let Some(edge) = self.hand.ring {
             return Some(Action::Choose(Selection::Edge(edge)));
         }
         let view_renderer = self.view_renderer.as_ref()?;
-        let picked = view_renderer.renderer.pick(sight, &*app_state.record()?, pixel).into_iter().next()?;
+        let record = frame.app_state.record()?;
+        let picked = view_renderer.renderer.pick(&frame.sight, &record, pixel).into_iter().next()?;
         Some(Action::Choose(match picked {
             Picked::Robot(robot) => Selection::Robot(robot),
             Picked::Edge(edge) | Picked::SetPoint(edge) => Selection::Edge(edge),
@@ -231,13 +223,8 @@ fn released_at(ui: &Ui) -> Option<Pos2> {
 }
 
 /// What a set point that is dragged to a place asks for.
-fn dragged(
-    ui: &Ui,
-    app_state: &AppState,
-    record: &StepRecord,
-    edge: usize,
-    place: [f64; 2],
-) -> Option<Action> {
+fn dragged(frame: &PointerFrame<'_>, edge: usize, place: [f64; 2]) -> Option<Action> {
+    let PointerFrame { ui, app_state, record, .. } = frame;
     let ends = *app_state.fleet()?.edges.get(edge)?;
     let leader = record.snapshot.robots.get(ends.leader)?.motion.pose;
     let [dx, dy] = [place[0] - leader.x, place[1] - leader.y];

@@ -12,7 +12,7 @@ use lab::symbols;
 /// The values that are asked for, all of one key.
 fn values(actions: &[Action], key: &str) -> Vec<String> {
     let value = |action: &Action| match action {
-        Action::Tune { key: of, value, .. } => {
+        Action::Tune { key: of, value: Some(value), .. } => {
             assert_eq!(*of, key);
             Some(value.clone())
         }
@@ -46,7 +46,7 @@ fn check_rows(
         assert_eq!(*what, format!("{name}…"));
         let back = format!("Reset {}", name.to_lowercase());
         let actions = click(&mut panel, Role::Button, &back);
-        let untuned = Action::Untune { what: back, key };
+        let untuned = Action::Tune { what: back, key, value: None };
         assert!(actions.is_empty() || actions == [untuned.clone()], "{actions:?}");
         // Where the value is the default there is no way back.
         assert_eq!(

@@ -118,20 +118,15 @@ pub(super) fn build(mesh: &mut Mesh, detail: Detail, build: &Build) {
 /// What carries the paper's shell, from the middle of its lower edge.
 fn struts() -> Mesh {
     let mut mesh = Mesh::default();
+    // From a place beside the hull to the strut at `y`.
+    let across = |y: f32| [y.min(0.07 * y.signum()), y.max(0.07 * y.signum())];
     for y in [-0.085_f32, 0.085] {
+        let [low, high] = across(y);
         mesh.cuboid([-0.17, y - 0.006, -0.016], [0.05, y + 0.006, -0.008], Material::Plastic);
-        mesh.cuboid(
-            [-0.05, y.min(0.07 * y.signum()), -0.022],
-            [-0.03, y.max(0.07 * y.signum()), -0.008],
-            Material::Plastic,
-        );
+        mesh.cuboid([-0.05, low, -0.022], [-0.03, high, -0.008], Material::Plastic);
     }
-    for y in [-0.186_f32, 0.180] {
-        mesh.cuboid(
-            [-0.045, y.min(0.07 * y.signum()), -0.012],
-            [-0.030, y.max(0.07 * y.signum()), -0.004],
-            Material::Plastic,
-        );
+    for [low, high] in [-0.186_f32, 0.180].map(across) {
+        mesh.cuboid([-0.045, low, -0.012], [-0.030, high, -0.004], Material::Plastic);
     }
     mesh
 }

@@ -1,15 +1,14 @@
 //! One file per pass: its shader, its data, its pipeline and its draw. Here is what they share.
 
 pub(crate) mod asphalt;
+pub(crate) mod backdrop;
 pub(crate) mod decal;
 pub(crate) mod frame;
-pub(crate) mod ground;
 pub(crate) mod instanced;
 pub(crate) mod overlay;
 pub(crate) mod prop;
 pub(crate) mod robot;
 pub(crate) mod shadow;
-pub(crate) mod sky;
 pub(crate) mod tag;
 pub(crate) mod terrain;
 pub(crate) mod text;
@@ -64,11 +63,11 @@ pub(crate) const SHADERS: [(&str, &[&str]); 9] = [
     ("shadow", &[shadow::SHADER]),
     ("robot", &robot::SHADERS),
     ("tag", &tag::SHADERS),
-    ("ground", &ground::SHADERS),
+    ("ground", &backdrop::GROUND),
     ("terrain", &terrain::SHADERS),
     ("decal", &decal::SHADERS),
     ("prop", &prop::SHADERS),
-    ("sky", &sky::SHADERS),
+    ("sky", &backdrop::SKY),
     ("overlay", &[overlay::SHADER]),
 ];
 

@@ -142,12 +142,8 @@ fn parted(triangles: &[u32], points: &[TerrainVertex], terrain: &Terrain) -> (Ve
 /// Points relative to the terrain's origin, one more around the field on all sides, and triangles between them.
 fn mesh(terrain: &Terrain) -> (Vec<TerrainVertex>, Vec<u32>) {
     let (columns, rows) = (terrain.columns + 2, terrain.rows + 2);
-    let mut points = Vec::with_capacity(columns * rows);
-    for row in 0..rows {
-        for column in 0..columns {
-            points.push(point(terrain, column, row));
-        }
-    }
+    let row = |row| (0..columns).map(move |column| point(terrain, column, row));
+    let points: Vec<_> = (0..rows).flat_map(row).collect();
     let triangles = faces(&points, columns, rows);
     (points, triangles)
 }
