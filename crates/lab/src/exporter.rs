@@ -2,6 +2,7 @@
 
 use film::{Film, FilmKind, png};
 use rendering::{Gpu, Renderer, Style, Trail, ViewLayout};
+use std::error::Error;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{
@@ -27,34 +28,31 @@ pub struct FrameSpec {
     pub words: [String; 2],
 }
 
+/// A file to make, and what it shows throughout.
+pub struct ExportTarget {
+    /// The file.
+    pub path: PathBuf,
+    /// Who is in it.
+    pub fleet: Arc<FleetInfo>,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// The past.
+    pub trail: Trail,
+}
+
 /// What is asked of the exporter.
 pub enum ExportJob {
     /// A picture.
     Picture {
         /// Its file.
-        path: PathBuf,
-        /// Who is on stage.
-        fleet: Arc<FleetInfo>,
-        /// Width and height, pixels.
-        size: [u32; 2],
-        /// The past.
-        trail: Box<Trail>,
+        target: Box<ExportTarget>,
         /// What is seen.
         shot: Box<FrameSpec>,
         /// What the file tells besides.
         texts: Vec<(&'static str, String)>,
     },
-    /// A film begins.
-    Begin {
-        /// Its file.
-        path: PathBuf,
-        /// Who is on stage.
-        fleet: Arc<FleetInfo>,
-        /// Width and height, pixels, even.
-        size: [u32; 2],
-        /// The past.
-        trail: Box<Trail>,
-    },
+    /// A film begins; its width and height are even.
+    Begin(Box<ExportTarget>),
     /// The past is another: somebody changed the branch.
     Trail(Box<Trail>),
     /// What has happened since the last frame.
@@ -72,17 +70,6 @@ pub enum ExportEvent {
     Written(PathBuf),
     /// A file could not be made, and why.
     Failed(String),
-}
-
-/// Why a picture or a film could not be made.
-#[derive(Debug, thiserror::Error)]
-enum ExportError {
-    /// It could not be drawn.
-    #[error(transparent)]
-    Rendering(#[from] rendering::Error),
-    /// It could not be written.
-    #[error(transparent)]
-    Film(#[from] film::Error),
 }
 
 /// The thread and its channels.
@@ -158,38 +145,36 @@ struct ExportWorker {
 
 /// A film under way.
 struct OpenFilm {
-    path: PathBuf,
     film: Film,
-    fleet: Arc<FleetInfo>,
-    size: [u32; 2],
-    trail: Trail,
+    target: ExportTarget,
 }
 
 impl ExportWorker {
     /// Does a job; the file that is complete with it.
-    fn take(&mut self, job: ExportJob) -> Result<Option<PathBuf>, ExportError> {
+    fn take(&mut self, job: ExportJob) -> Result<Option<PathBuf>, Box<dyn Error>> {
         match job {
-            ExportJob::Picture { path, fleet, size, trail, shot, texts } => {
-                let picture = self.draw(&fleet, size, &trail, &shot)?;
+            ExportJob::Picture { target, shot, texts } => {
+                let picture = self.draw(&target, &shot)?;
                 let texts: Vec<(&str, &str)> = texts.iter().map(|(key, text)| (*key, &**text)).collect();
-                png::write(&path, &picture, &texts)?;
-                Ok(Some(path))
+                png::write(&target.path, &picture, &texts)?;
+                Ok(Some(target.path))
             }
-            ExportJob::Begin { path, fleet, size, trail } => {
-                let film = Film::create(&path, FilmKind::of(&path, false)?, size[0], size[1], RATE)?;
-                self.film = Some(OpenFilm { path, film, fleet, size, trail: *trail });
+            ExportJob::Begin(target) => {
+                let ExportTarget { path, size: [width, height], .. } = &*target;
+                let film = Film::create(path, FilmKind::of(path, false)?, *width, *height, RATE)?;
+                self.film = Some(OpenFilm { film, target: *target });
                 Ok(None)
             }
             ExportJob::Trail(trail) => {
                 if let Some(reel) = &mut self.film {
-                    reel.trail = *trail;
+                    reel.target.trail = *trail;
                 }
                 Ok(None)
             }
             ExportJob::Records(records) => {
                 if let Some(reel) = &mut self.film {
                     for record in &records {
-                        reel.trail.push(record);
+                        reel.target.trail.push(record);
                     }
                 }
                 Ok(None)
@@ -205,34 +190,29 @@ impl ExportWorker {
             ExportJob::End => match self.film.take() {
                 Some(reel) if reel.film.frames() > 0 => {
                     reel.film.finish()?;
-                    Ok(Some(reel.path))
+                    Ok(Some(reel.target.path))
                 }
                 _ => Ok(None),
             },
         }
     }
 
-    fn frame(&mut self, shot: &FrameSpec) -> Result<(), ExportError> {
+    fn frame(&mut self, shot: &FrameSpec) -> Result<(), Box<dyn Error>> {
         let Some(mut reel) = self.film.take() else { return Ok(()) };
-        reel.film.push(self.draw(&reel.fleet, reel.size, &reel.trail, shot)?)?;
+        reel.film.push(self.draw(&reel.target, shot)?)?;
         self.film = Some(reel);
         Ok(())
     }
 
-    fn draw(
-        &mut self,
-        fleet: &Arc<FleetInfo>,
-        size: [u32; 2],
-        trail: &Trail,
-        shot: &FrameSpec,
-    ) -> Result<Picture, ExportError> {
+    fn draw(&mut self, target: &ExportTarget, shot: &FrameSpec) -> Result<Picture, Box<dyn Error>> {
+        let ExportTarget { fleet, size: [width, height], trail, .. } = target;
         let fitting = self.drawer.take().filter(|(known, _)| Arc::ptr_eq(known, fleet));
         let drawer = match fitting {
             Some(drawer) => drawer,
-            None => (Arc::clone(fleet), Renderer::new(&self.gpu, fleet, size[0], size[1], 4)?),
+            None => (Arc::clone(fleet), Renderer::new(&self.gpu, fleet, *width, *height, 4)?),
         };
         let (_, renderer) = self.drawer.insert(drawer);
-        renderer.resize(size[0], size[1])?;
+        renderer.resize(*width, *height)?;
         renderer.retitle(&shot.words[0], &shot.words[1]);
         Ok(renderer.draw(trail, &shot.record, &shot.layout, &shot.style)?)
     }

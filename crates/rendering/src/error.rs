@@ -18,9 +18,11 @@ pub enum Error {
     /// The graphics device refused or was lost.
     #[error("the graphics device failed: {0}")]
     Device(String),
-    /// A view that does not exist.
-    #[error("unknown view {given:?}{}; views are {valid}, and several joined by '+'", .nearest.as_ref().map_or(String::new(), |n| format!(" (did you mean {n:?}?)")))]
-    Viewpoint {
+    /// A view or an element of the picture that does not exist.
+    #[error("unknown {what} {given:?}{}; {what}s are {valid}", .nearest.as_ref().map_or(String::new(), |n| format!(" (did you mean {n:?}?)")))]
+    Unknown {
+        /// `view` or `element`.
+        what: &'static str,
         /// What was asked for.
         given: String,
         /// The valid name nearest to it.
@@ -31,16 +33,6 @@ pub enum Error {
     /// More views than a picture is split into.
     #[error("{0} views are too many for one picture: join at most four")]
     TooManyViews(usize),
-    /// An element of the picture that does not exist.
-    #[error("unknown element {given:?}{}; elements are {valid}", .nearest.as_ref().map_or(String::new(), |n| format!(" (did you mean {n:?}?)")))]
-    Element {
-        /// What was asked for.
-        given: String,
-        /// The valid name nearest to it.
-        nearest: Option<String>,
-        /// All valid names.
-        valid: String,
-    },
     /// A picture size that cannot be drawn.
     #[error("a picture of {width}×{height} cannot be drawn: width and height must be 16 to {most} pixels")]
     Size {

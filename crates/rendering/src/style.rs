@@ -98,7 +98,7 @@ impl Style {
     /// Everything except the elements named.
     ///
     /// # Errors
-    /// [`Error::Element`] for the first name that is none.
+    /// [`Error::Unknown`] for the first name that is none.
     pub fn without<S: AsRef<str>>(names: &[S]) -> Result<Self, Error> {
         let mut style = Self::default();
         for name in names {
@@ -127,14 +127,15 @@ impl Style {
     /// Switches one element.
     ///
     /// # Errors
-    /// [`Error::Element`] where there is none of that name.
+    /// [`Error::Unknown`] where there is none of that name.
     pub fn set(&mut self, name: &str, on: bool) -> Result<(), Error> {
         match self.switch(name) {
             Some(switch) => {
                 *switch = on;
                 Ok(())
             }
-            None => Err(Error::Element {
+            None => Err(Error::Unknown {
+                what: "element",
                 given: name.to_owned(),
                 nearest: nearest(name, Self::ELEMENTS.iter().copied()),
                 valid: Self::ELEMENTS.join(", "),

@@ -142,11 +142,8 @@ fn worst(mut values: Vec<(&str, f64)>) -> Vec<(&str, f64)> {
 /// Nobody touches anybody.
 pub(crate) fn no_contact(figure: &str, run: &Trace) -> FigureClaim {
     let claim = "The formation drives without contact.";
-    FigureClaim::at_most(
-        ClaimSubject::new(figure, claim, "contacts", ""),
-        &[("contacts", run.metrics.contacts as f64)],
-        0.0,
-    )
+    let subject = ClaimSubject::new(figure, claim, "contacts", "");
+    FigureClaim::at_most(subject, &[("contacts", run.metrics.contacts as f64)], 0.0)
 }
 
 /// Runs of one scene with their short names, in the order of a comparison.
@@ -181,11 +178,8 @@ pub fn knowing_less_errs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<
             let [distance, bearing] = run.metrics.settling_band;
             distance.hypot(bearing)
         });
-        claims.push(FigureClaim::at_most(
-            ClaimSubject::new(figure, claim, "settled ‖e‖", ""),
-            &[*last],
-            band,
-        ));
+        let subject = ClaimSubject::new(figure, claim, "settled ‖e‖", "");
+        claims.push(FigureClaim::at_most(subject, &[*last], band));
     }
     claims
 }
@@ -197,34 +191,22 @@ pub fn faster_observers_cost(figure: &str, runs: &Compared<'_>, edge: usize) -> 
         |value: &dyn Fn(&crate::CommandEffort) -> f64| each(runs, |run| run.efforts.get(edge).map(value));
     let until = runs.first().and_then(|(_, run)| run.efforts.get(edge)).map_or(0.0, |e| e.transient);
     let over = |what: &str| format!("{what}, first {}", quantity(until, "s"));
+    let about = |quantity, unit| ClaimSubject::new(figure, claim, quantity, unit);
     vec![
-        FigureClaim::rises(
-            ClaimSubject::new(figure, claim, &over("peak |dv/dt| asked for"), "m/s²"),
-            &of(&|e| e.peak_asked[0]),
-        ),
-        FigureClaim::rises(
-            ClaimSubject::new(figure, claim, &over("∫|dv/dt asked for| dt"), "m/s"),
-            &of(&|e| e.transient_asked[0]),
-        ),
-        FigureClaim::rises(
-            ClaimSubject::new(figure, claim, &over("∫|ω| dt"), "rad in all"),
-            &of(&|e| e.transient_applied[1]),
-        ),
+        FigureClaim::rises(about(&over("peak |dv/dt| asked for"), "m/s²"), &of(&|e| e.peak_asked[0])),
+        FigureClaim::rises(about(&over("∫|dv/dt asked for| dt"), "m/s"), &of(&|e| e.transient_asked[0])),
+        FigureClaim::rises(about(&over("∫|ω| dt"), "rad in all"), &of(&|e| e.transient_applied[1])),
     ]
 }
 
 /// As ε falls, errors fall: those that stay, and those of the whole run. `runs` go from the largest ε to the smallest.
 pub fn faster_observers_err_less(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<FigureClaim> {
     let claim = "As ε decreases, tracking errors decrease.";
+    let about = |quantity, unit| ClaimSubject::new(figure, claim, quantity, unit);
+    let (settled, whole) = (each(runs, |run| run.settled(edge)), each(runs, |run| run.over_the_run(edge)));
     vec![
-        FigureClaim::falls(
-            ClaimSubject::new(figure, claim, "settled ‖e‖", ""),
-            &each(runs, |run| run.settled(edge)),
-        ),
-        FigureClaim::falls(
-            ClaimSubject::new(figure, claim, "(∫‖e‖² dt)^½ over the run", "s^½"),
-            &each(runs, |run| run.over_the_run(edge)),
-        ),
+        FigureClaim::falls(about("settled ‖e‖", ""), &settled),
+        FigureClaim::falls(about("(∫‖e‖² dt)^½ over the run", "s^½"), &whole),
     ]
 }
 

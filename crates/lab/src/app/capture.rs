@@ -1,7 +1,7 @@
 //! Pictures and films of what is seen.
 
 use super::LabApp;
-use crate::exporter::{ExportJob, FrameSpec, RATE};
+use crate::exporter::{ExportJob, ExportTarget, FrameSpec, RATE};
 use crate::kept_run::free;
 use eframe::egui;
 use rendering::{Annotations, Style, ViewLayout};
@@ -65,14 +65,9 @@ impl LabApp {
             ("View", words_of(&shot.layout, &self.viewport.view)),
             ("Adapter", self.viewport.gpu.description()),
         ];
-        self.exporter.ask(ExportJob::Picture {
-            path,
-            fleet: Arc::clone(fleet),
-            size,
-            trail: Box::new(trail.clone()),
-            shot: Box::new(shot),
-            texts,
-        });
+        let target = ExportTarget { path, fleet: Arc::clone(fleet), size, trail: trail.clone() };
+        let (target, shot) = (Box::new(target), Box::new(shot));
+        self.exporter.ask(ExportJob::Picture { target, shot, texts });
     }
 
     /// Writes a picture of the whole window.
@@ -100,12 +95,8 @@ impl LabApp {
         let Some(trail) = history.trail(branch, time).cloned() else { return };
         let fleet = Arc::clone(history.fleet());
         let path = free(Path::new("."), &self.name(), "mp4");
-        self.exporter.ask(ExportJob::Begin {
-            path: path.clone(),
-            fleet,
-            size: [1280, 720],
-            trail: Box::new(trail),
-        });
+        let target = ExportTarget { path: path.clone(), fleet, size: [1280, 720], trail };
+        self.exporter.ask(ExportJob::Begin(Box::new(target)));
         self.app_state.note(format!("Filming to {}", path.display()));
         let next = time + self.app_state.pace / RATE;
         self.film = Some(FilmCapture { path, next, branch, sent: time, frames: 0 });

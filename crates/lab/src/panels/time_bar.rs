@@ -94,18 +94,11 @@ fn line(ui: &mut Ui, app_state: &AppState, wide: f32, out: &mut Vec<Action>) {
             egui::Rect::from_x_y_ranges(x_of(from)..=x_of(end).max(x_of(from) + 1.0), y - half..=y + half);
         painter.rect_filled(bar, half.min(2.0), colour);
         for change in branch.changes.iter().filter(|change| change.time >= from) {
-            let x = x_of(change.time);
-            painter.line_segment(
-                [egui::pos2(x, y - half), egui::pos2(x, y + half)],
-                Stroke::new(1.0, visuals.extreme_bg_color),
-            );
+            let stroke = Stroke::new(1.0, visuals.extreme_bg_color);
+            painter.vline(x_of(change.time), y - half..=y + half, stroke);
         }
     }
-    let x = x_of(app_state.time());
-    painter.line_segment(
-        [egui::pos2(x, rect.top()), egui::pos2(x, rect.bottom())],
-        Stroke::new(2.0, visuals.strong_text_color()),
-    );
+    painter.vline(x_of(app_state.time()), rect.y_range(), Stroke::new(2.0, visuals.strong_text_color()));
     let under = |pos: egui::Pos2| f64::from(((pos.x - rect.left()) / rect.width()).clamp(0.0, 1.0)) * span;
     if let Some(pos) = response.interact_pointer_pos()
         && (response.dragged() || response.clicked())

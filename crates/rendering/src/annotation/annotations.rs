@@ -18,17 +18,6 @@ pub struct Annotations {
     pub ghosts: Vec<Ghost>,
 }
 
-impl Annotations {
-    /// Whether there is nothing to draw.
-    pub fn is_empty(&self) -> bool {
-        self.areas.is_empty()
-            && self.arrows.is_empty()
-            && self.strokes.is_empty()
-            && self.rings.is_empty()
-            && self.ghosts.is_empty()
-    }
-}
-
 /// A place with its colour, of a line or an area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StrokePoint {

@@ -93,7 +93,7 @@ impl Viewpoint {
     /// `follow:NAME`, `camera:NAME`, `fixed` or `fixed:ex,ey,ez,tx,ty,tz[,degrees]`.
     ///
     /// # Errors
-    /// [`Error::Viewpoint`] with the valid forms and the nearest of them.
+    /// [`Error::Unknown`] with the valid forms and the nearest of them.
     pub fn parse(text: &str, names: &[String]) -> Result<Self, Error> {
         let text = text.trim();
         let view = match text {
@@ -136,11 +136,12 @@ fn unknown(given: &str, names: &[String]) -> Error {
         let more = if all.len() > 6 { ", …" } else { "" };
         format!("{}{more}", all[..all.len().min(6)].join(", "))
     };
-    Error::Viewpoint {
+    Error::Unknown {
+        what: "view",
         given: given.to_owned(),
         nearest: nearest(given, valid),
         valid: format!(
-            "{}:ex,ey,ez,tx,ty,tz[,degrees], {}, {}",
+            "{}:ex,ey,ez,tx,ty,tz[,degrees], {}, {}, and several joined by '+'",
             PLAIN.join(", "),
             few(&follow),
             few(&camera)
@@ -184,7 +185,7 @@ impl ViewLayout {
     /// Views joined by '+', at most four.
     ///
     /// # Errors
-    /// [`Error::Viewpoint`] for the first that is unknown, [`Error::TooManyViews`] for more than four.
+    /// [`Error::Unknown`] for the first that is unknown, [`Error::TooManyViews`] for more than four.
     pub fn parse(text: &str, names: &[String]) -> Result<Self, Error> {
         let views =
             text.split('+').map(|part| Viewpoint::parse(part, names)).collect::<Result<Vec<_>, _>>()?;

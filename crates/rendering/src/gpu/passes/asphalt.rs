@@ -40,12 +40,10 @@ fn asphalt() -> Vec<u8> {
         let grain = 0.30 * noise(2, 1) + 0.30 * noise(4, 2) + 0.22 * noise(16, 3);
         let speck = chance(x / 2, y / 2, 4);
         // A few stones are bright, a few holes are dark.
-        let stone = if speck > 0.985 {
-            0.42
-        } else if speck < 0.02 {
-            -0.24
-        } else {
-            0.0
+        let stone = match speck {
+            0.0..0.02 => -0.24,
+            _ if speck > 0.985 => 0.42,
+            _ => 0.0,
         };
         let fine = grain + 0.18 * chance(x, y, 5) + stone;
         (fine.clamp(0.0, 1.0) * 255.0) as u8
