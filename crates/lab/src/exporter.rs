@@ -1,7 +1,7 @@
 //! Pictures and films, drawn on a thread of their own so that the window never waits for them.
 
 use film::{Film, FilmKind, png};
-use rendering::{Gpu, Renderer, Style, Trail, ViewLayout};
+use rendering::{Gpu, PictureSpec, Renderer, Style, Trail, ViewLayout};
 use std::error::Error;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -214,6 +214,6 @@ impl ExportWorker {
         let (_, renderer) = self.drawer.insert(drawer);
         renderer.resize(*width, *height)?;
         renderer.retitle(&shot.words[0], &shot.words[1]);
-        Ok(renderer.draw(trail, &shot.record, &shot.layout, &shot.style)?)
+        Ok(renderer.draw(PictureSpec::new(trail, &shot.record, &shot.layout, &shot.style))?)
     }
 }

@@ -7,8 +7,8 @@ use crate::fleet_model::FleetModel;
 use crate::picture_context::PictureContext;
 use crate::picture_plan::{PicturePlan, overlap};
 use crate::renderer::cameras;
-use crate::{Style, Tile, Trail, ViewLayout, Viewpoint};
-use vocabulary::{FleetInfo, StepRecord};
+use crate::{PictureSpec, Tile, Viewpoint};
+use vocabulary::FleetInfo;
 
 /// Rectangles of a picture: left, top, width and height in pixels from its upper left corner.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -29,18 +29,11 @@ pub struct Composition {
 
 impl Composition {
     /// That of the picture that a renderer of `fleet` draws at a size.
-    pub fn new(
-        fleet: &FleetInfo,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-        size: [u32; 2],
-    ) -> Self {
+    pub fn new(fleet: &FleetInfo, spec: PictureSpec<'_>, size: [u32; 2]) -> Self {
         let mut letters = TextShaper::new();
         let model = FleetModel::new(fleet);
-        let plan = PicturePlan::new(&mut letters, fleet, layout, style, size);
-        let context = PictureContext::new(&model, trail, record, style);
+        let plan = PicturePlan::new(&mut letters, fleet, spec.layout, spec.style, size);
+        let context = PictureContext::new(&model, spec.trail, spec.record, spec.style);
         let cameras = cameras(&plan, &context);
         let windows: Vec<_> =
             cameras.iter().zip(&plan.tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();

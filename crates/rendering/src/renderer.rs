@@ -15,7 +15,7 @@ use crate::gpu::target::{Attachments, PICTURE_FORMAT, Readback, check_size};
 use crate::ground::decal_builder::build_decals;
 use crate::picture_context::PictureContext;
 use crate::picture_plan::PicturePlan;
-use crate::{Error, Gpu, Picked, Sightline, Style, Trail, ViewLayout, Viewpoint};
+use crate::{Error, Gpu, Picked, PictureSpec, Sightline, Style, Viewpoint};
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 use vocabulary::{FleetInfo, Picture, StepRecord};
@@ -107,14 +107,8 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::FleetInfo`] for a moment of other robots, [`Error::Device`] where the device fails.
-    pub fn draw(
-        &mut self,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-    ) -> Result<Picture, Error> {
-        let (slot, submission) = self.submit(trail, record, layout, style)?;
+    pub fn draw(&mut self, spec: PictureSpec<'_>) -> Result<Picture, Error> {
+        let (slot, submission) = self.submit(spec)?;
         self.offscreen[slot].picture(&self.gpu, submission)
     }
 
@@ -123,14 +117,8 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::draw`].
-    pub fn draw_next(
-        &mut self,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-    ) -> Result<Option<Picture>, Error> {
-        let next = self.submit(trail, record, layout, style)?;
+    pub fn draw_next(&mut self, spec: PictureSpec<'_>) -> Result<Option<Picture>, Error> {
+        let next = self.submit(spec)?;
         let before = self.waiting.replace(next);
         before.map(|(slot, submission)| self.offscreen[slot].picture(&self.gpu, submission)).transpose()
     }
@@ -151,21 +139,12 @@ impl Renderer {
     pub fn draw_into(
         &mut self,
         target: &wgpu::TextureView,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
+        spec: PictureSpec<'_>,
     ) -> Result<wgpu::SubmissionIndex, Error> {
-        self.encoded(trail, record, layout, style, target, None)
+        self.encoded(spec, target, None)
     }
 
-    fn submit(
-        &mut self,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-    ) -> Result<(usize, wgpu::SubmissionIndex), Error> {
+    fn submit(&mut self, spec: PictureSpec<'_>) -> Result<(usize, wgpu::SubmissionIndex), Error> {
         let slot = self.waiting.as_ref().map_or(0, |(busy, _)| 1 - busy);
         if !matches!(self.canvas.format, TextureFormat::Rgba8Unorm | TextureFormat::Bgra8Unorm) {
             return Err(Error::Device(format!("no picture can be read from {:?}", self.canvas.format)));
@@ -174,20 +153,17 @@ impl Renderer {
             self.offscreen.push(Readback::new(&self.gpu, self.size(), self.canvas.format, 4));
         }
         let view = self.offscreen[slot].view.clone();
-        Ok((slot, self.encoded(trail, record, layout, style, &view, Some(slot))?))
+        Ok((slot, self.encoded(spec, &view, Some(slot))?))
     }
 
     /// Draws a moment into a target and copies it to where it is read, if it is.
     fn encoded(
         &mut self,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
+        spec: PictureSpec<'_>,
         target: &wgpu::TextureView,
         read: Option<usize>,
     ) -> Result<wgpu::SubmissionIndex, Error> {
-        let drawn = self.prepare(trail, record, layout, style).and_then(|prepared| {
+        let drawn = self.prepare(spec).and_then(|prepared| {
             let mut encoder =
                 self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             self.passes.encode(&mut encoder, target, &self.attachments, &prepared)?;
@@ -204,19 +180,13 @@ impl Renderer {
     }
 
     /// Computes what the picture consists of and brings it to the device.
-    fn prepare(
-        &mut self,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-    ) -> Result<Prepared, Error> {
-        self.check(record)?;
-        let plan = self.plan(layout, style);
-        let context = PictureContext::new(&self.model, trail, record, style);
+    fn prepare(&mut self, spec: PictureSpec<'_>) -> Result<Prepared, Error> {
+        self.check(spec.record)?;
+        let plan = self.plan(spec);
+        let context = PictureContext::new(&self.model, spec.trail, spec.record, spec.style);
         let cameras = cameras(&plan, &context);
         // Cameras on robots see nothing that is drawn to explain.
-        let bare = Style { shadows: style.shadows, ..Style::bare() };
+        let bare = Style { shadows: spec.style.shadows, ..Style::bare() };
         let (crowd, props) = (crowd(&context), props(&context));
         let sun = sun_over(&context);
         let (mut frames, mut corners, mut views) = (Vec::new(), Vec::new(), Vec::new());
@@ -259,16 +229,10 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::FleetInfo`] for a moment of other robots.
-    pub fn sightlines(
-        &self,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-    ) -> Result<Vec<Sightline>, Error> {
-        self.check(record)?;
-        let plan = self.plan(layout, style);
-        let context = PictureContext::new(&self.model, trail, record, style);
+    pub fn sightlines(&self, spec: PictureSpec<'_>) -> Result<Vec<Sightline>, Error> {
+        self.check(spec.record)?;
+        let plan = self.plan(spec);
+        let context = PictureContext::new(&self.model, spec.trail, spec.record, spec.style);
         let cameras = cameras(&plan, &context);
         let seen = plan.views.into_iter().zip(plan.tiles).zip(cameras);
         Ok(seen
@@ -290,9 +254,9 @@ impl Renderer {
         self.letters.lock().unwrap_or_else(PoisonError::into_inner).lacks(texts.into_iter())
     }
 
-    fn plan(&self, layout: &ViewLayout, style: &Style) -> PicturePlan {
+    fn plan(&self, spec: PictureSpec<'_>) -> PicturePlan {
         let mut letters = self.letters.lock().unwrap_or_else(PoisonError::into_inner);
-        PicturePlan::new(&mut letters, &self.model.fleet, layout, style, self.size())
+        PicturePlan::new(&mut letters, &self.model.fleet, spec.layout, spec.style, self.size())
     }
 
     fn check(&self, record: &StepRecord) -> Result<(), Error> {

@@ -4,8 +4,8 @@
 mod stage;
 
 use rendering::{
-    AdapterChoice, AnnotationArrow, AnnotationStroke, Annotations, Ghost, Gpu, Renderer, Ring, ShadedArea,
-    StrokePoint, Style, ViewLayout, Viewpoint,
+    AdapterChoice, AnnotationArrow, AnnotationStroke, Annotations, Ghost, Gpu, PictureSpec, Renderer, Ring,
+    ShadedArea, StrokePoint, Style, ViewLayout, Viewpoint,
 };
 use stage::{Path, Play};
 use std::sync::{Arc, OnceLock};
@@ -24,7 +24,9 @@ fn gpu() -> &'static Gpu {
 fn draw(play: &Play, view: Viewpoint, annotations: Annotations) -> Picture {
     let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     let style = Style { annotations, ..Style::bare() };
-    renderer.draw(&play.trail(2.0), &play.at(2.0), &ViewLayout::single(view), &style).unwrap()
+    renderer
+        .draw(PictureSpec::new(&play.trail(2.0), &play.at(2.0), &ViewLayout::single(view), &style))
+        .unwrap()
 }
 
 /// Straight down on the x-y plane, 9 m high, with +x up and +y to the left.
@@ -274,8 +276,8 @@ fn sightlines_agree_with_the_picture() {
     let ring = Ring { pixels: 6.0, ..Ring::new(at, 0.0, RED) };
     let style =
         Style { annotations: Annotations { rings: vec![ring], ..Annotations::default() }, ..Style::bare() };
-    let picture = renderer.draw(&trail, &record, &layout, &style).unwrap();
-    let sights = renderer.sightlines(&trail, &record, &layout, &style).unwrap();
+    let picture = renderer.draw(PictureSpec::new(&trail, &record, &layout, &style)).unwrap();
+    let sights = renderer.sightlines(PictureSpec::new(&trail, &record, &layout, &style)).unwrap();
     assert_eq!(sights.len(), 3);
     for sight in sights {
         let [x, y] = sight.pixel_of_ground(at).unwrap();
@@ -292,7 +294,7 @@ fn sightlines_agree_with_the_picture() {
         assert_eq!(picked.first(), Some(&rendering::Picked::Robot(1)), "{:?}", sight.view);
         // Taken over by a hand, the robot stays where it was.
         let free = ViewLayout { views: vec![sight.free().view()] };
-        let whole = renderer.sightlines(&trail, &record, &free, &style).unwrap();
+        let whole = renderer.sightlines(PictureSpec::new(&trail, &record, &free, &style)).unwrap();
         let before = [x - f64::from(sight.tile.x), y - f64::from(sight.tile.y)];
         let factor = f64::from(SIZE.1) / f64::from(sight.tile.height);
         let after = whole[0].pixel([robot[0], robot[1], 0.05]).unwrap();

@@ -10,7 +10,7 @@ use crate::view::annotations::{PointerState, annotations};
 use crate::view::camera::HeldCamera;
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, TextureId, Ui, Vec2};
 use eframe::egui_wgpu::RenderState;
-use rendering::{Error, Gpu, Renderer, Sightline, Style, Trail, ViewLayout, Viewpoint};
+use rendering::{Error, Gpu, PictureSpec, Renderer, Sightline, Style, Trail, ViewLayout, Viewpoint};
 use std::sync::Arc;
 use vocabulary::{FleetInfo, StepRecord};
 
@@ -75,7 +75,7 @@ impl ViewRenderer {
         let finer = self.finer.insert(finer);
         finer.retitle(&frame.words[0], &frame.words[1]);
         let style = Style { interactive: false, ..frame.style.clone() };
-        finer.draw_into(&self.texture, trail, record, &frame.layout, &style).map(drop)
+        finer.draw_into(&self.texture, PictureSpec::new(trail, record, &frame.layout, &style)).map(drop)
     }
 }
 
@@ -226,10 +226,11 @@ impl Viewport {
             _ => {}
         }
         let DrawnFrame { words: [title, caption], layout, style, .. } = &shown;
+        let spec = PictureSpec::new(trail, record, layout, style);
         let renderer = &mut view_renderer.renderer;
         renderer.retitle(title, caption);
-        view_renderer.sight = renderer.sightlines(trail, record, layout, style)?.into_iter().next();
-        renderer.draw_into(&view_renderer.texture, trail, record, layout, style)?;
+        view_renderer.sight = renderer.sightlines(spec)?.into_iter().next();
+        renderer.draw_into(&view_renderer.texture, spec)?;
         view_renderer.shown = Some((shown, self.samples > 1));
         self.fault = None;
         self.pictures += 1;
