@@ -44,16 +44,14 @@ impl LabApp {
         };
         self.end_film();
         // Beside the log lies what its scene was read from, if anything.
-        match self.app_state.open_recorded(log, &path.with_file_name("scene.toml")) {
-            Ok(()) => {
-                self.app_state.notice = None;
-                self.dialog = Dialog::Nothing;
-                self.viewport.look("snake");
-                self.file_watcher.look_at(None);
-                self.app_state.note(format!("As recorded in {}", path.display()));
-            }
-            Err(faults) => self.app_state.fault(faults),
+        if let Err(faults) = self.app_state.open_recorded(log, &path.with_file_name("scene.toml")) {
+            return self.app_state.fault(faults);
         }
+        self.app_state.notice = None;
+        self.dialog = Dialog::Nothing;
+        self.viewport.look("snake");
+        self.file_watcher.look_at(None);
+        self.app_state.note(format!("As recorded in {}", path.display()));
     }
 
     pub(crate) fn open_shipped(&mut self, name: &str) {
@@ -65,24 +63,17 @@ impl LabApp {
     /// A scene in place of the one that is open; where it cannot be opened, that one stays.
     pub(crate) fn take_scene(&mut self, text: String, path: Option<PathBuf>, home: &Path) -> bool {
         self.end_film();
-        match self.app_state.open(text, path.clone(), home) {
-            Ok(()) => {
-                self.app_state.notice = None;
-                self.dialog = Dialog::Nothing;
-                let view = self
-                    .app_state
-                    .scene()
-                    .map_or_else(|| "snake".to_owned(), |scene| scene.views.default.clone());
-                self.viewport.look(&view);
-                self.viewport.style.picture_in_picture = None;
-                self.file_watcher.look_at(path);
-                true
-            }
-            Err(faults) => {
-                self.app_state.fault(faults);
-                false
-            }
+        if let Err(faults) = self.app_state.open(text, path.clone(), home) {
+            self.app_state.fault(faults);
+            return false;
         }
+        self.app_state.notice = None;
+        self.dialog = Dialog::Nothing;
+        let view = self.app_state.scene().map(|scene| &*scene.views.default);
+        self.viewport.look(view.unwrap_or("snake"));
+        self.viewport.style.picture_in_picture = None;
+        self.file_watcher.look_at(path);
+        true
     }
 
     /// A picture brings back the scene, the time and the view that made it.
@@ -93,9 +84,8 @@ impl LabApp {
         };
         let of = |key: &str| texts.iter().find(|(known, _)| known == key).map(|(_, text)| text.clone());
         let Some(scene) = of("Scene") else {
-            return self
-                .app_state
-                .fault(format!("{} was not made by the lab: it holds no scene", path.display()));
+            let text = format!("{} was not made by the lab: it holds no scene", path.display());
+            return self.app_state.fault(text);
         };
         let home = of("Home").map_or_else(|| path.to_owned(), PathBuf::from);
         if !self.take_scene(scene, None, &home) {

@@ -4,7 +4,7 @@ use super::AppState;
 use super::branch_info::BranchInfo;
 use super::past_changes::PastChanges;
 use crate::session::branches::{BranchChange, script};
-use crate::session::runner::RunRequest;
+use crate::session::runner::{Fork, RunRequest};
 use crate::session::scene_draft::{Effect, SceneDraft};
 use scene::{EditError, SceneText};
 use std::sync::Arc;
@@ -149,14 +149,7 @@ impl AppState {
         script(&self.base, &self.own, &branch.changes, self.end().max(self.period()))
     }
 
-    pub(crate) fn forked(
-        &mut self,
-        branch: usize,
-        from: usize,
-        sample: u64,
-        name: String,
-        changes: Vec<BranchChange>,
-    ) {
+    pub(crate) fn forked(&mut self, Fork { branch, from, sample, name, changes }: Fork) {
         let Some(history) = &mut self.history else { return };
         history.fork(from, sample);
         let time = (sample as f64 - 1.0) * history.period();

@@ -395,9 +395,7 @@ impl AppState {
                     }
                 }
             }
-            RunEvent::Forked { branch, from, sample, name, changes } => {
-                self.forked(branch, from, sample, name, changes);
-            }
+            RunEvent::Forked(fork) => self.forked(fork),
             RunEvent::Changed(branch, change) => self.changed(branch, &change),
             RunEvent::RecordingResumed(same) => self.recording_resumed(same),
             RunEvent::Summary { .. } => {}

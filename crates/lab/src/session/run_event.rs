@@ -4,6 +4,20 @@ use super::branches::BranchChange;
 use std::sync::Arc;
 use vocabulary::{FleetInfo, StepRecord};
 
+/// A branch that was made.
+pub struct Fork {
+    /// Its index.
+    pub branch: usize,
+    /// The branch it leaves.
+    pub from: usize,
+    /// The first sample that is its own.
+    pub sample: u64,
+    /// What it is called.
+    pub name: String,
+    /// Changes it shares with the branch it leaves.
+    pub changes: Vec<BranchChange>,
+}
+
 /// What the window is told.
 pub enum RunEvent {
     /// A scene was opened.
@@ -14,18 +28,7 @@ pub enum RunEvent {
         period: f64,
     },
     /// A branch was made and is the one that goes on.
-    Forked {
-        /// Its index.
-        branch: usize,
-        /// The branch it leaves.
-        from: usize,
-        /// The first sample that is its own.
-        sample: u64,
-        /// What it is called.
-        name: String,
-        /// Changes it shares with the branch it leaves.
-        changes: Vec<BranchChange>,
-    },
+    Forked(Fork),
     /// The run that was recorded was taken up: whether it is the same bit for bit.
     RecordingResumed(bool),
     /// Samples of a branch.

@@ -3,7 +3,7 @@
 use super::branches::Branches;
 use super::checked_scene::CheckedScene;
 use super::prediction::Predictor;
-pub use super::run_event::RunEvent;
+pub use super::run_event::{Fork, RunEvent};
 pub use super::run_request::RunRequest;
 use metrics::Digest;
 use recording::log::Log;
@@ -343,7 +343,7 @@ impl RunWorker {
         let here = (made.simulation().sample() > 0).then(|| made.simulation().record().clone());
         self.active = branch;
         self.owed = 0.0;
-        self.tell(RunEvent::Forked { branch, from, sample, name, changes });
+        self.tell(RunEvent::Forked(Fork { branch, from, sample, name, changes }));
         self.report(here.into_iter().collect());
         self.look_ahead(true);
     }

@@ -3,7 +3,7 @@
 use crate::common::{BranchSummary, Rig, THREE, checked, run, scene, with};
 use lab::action::Action;
 use lab::session::branches::script;
-use lab::session::runner::{RunEvent, RunRequest};
+use lab::session::runner::{Fork, RunEvent, RunRequest};
 
 /// Runs on at a pace until a branch has more than `samples` samples, then stands.
 fn stride(rig: &mut Rig, pace: f64, samples: u64) {
@@ -69,7 +69,7 @@ fn a_branch_is_told_where_it_begins() {
     let mut rig = Rig::new(THREE);
     rig.steps(50);
     rig.runner.request(RunRequest::Fork { from: 0, sample: 37, name: "back".to_owned() });
-    let RunEvent::Forked { branch: 1, from: 0, sample: 37, name, changes } = rig.next() else {
+    let RunEvent::Forked(Fork { branch: 1, from: 0, sample: 37, name, changes }) = rig.next() else {
         panic!("no branch")
     };
     assert!(name == "back" && changes.is_empty());

@@ -36,6 +36,7 @@ pub(crate) struct Measure {
 
 type Key = (String, u32, bool, Option<(u32, usize, bool)>);
 
+#[derive(Debug)]
 struct ShapedText {
     buffer: Buffer,
     measure: Measure,
@@ -43,7 +44,7 @@ struct ShapedText {
 }
 
 /// Texts that are shaped.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Shaped {
     texts: HashMap<Key, ShapedText>,
 }
@@ -55,6 +56,7 @@ impl Shaped {
 }
 
 /// Fonts, and what was shaped with them.
+#[derive(Debug)]
 pub(crate) struct TextShaper {
     /// Only what is embedded, so that a picture looks the same on every machine.
     own: FontSystem,
@@ -63,12 +65,6 @@ pub(crate) struct TextShaper {
     all: Option<FontSystem>,
     shaped: Shaped,
     pictures: u64,
-}
-
-impl std::fmt::Debug for TextShaper {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Letters").field("shaped", &self.shaped.texts.len()).finish_non_exhaustive()
-    }
 }
 
 impl TextShaper {

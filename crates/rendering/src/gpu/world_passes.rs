@@ -22,7 +22,6 @@ pub(crate) struct WorldPasses {
     groups: FrameGroups,
     models: Models,
     pub(crate) shadow: ShadowPass,
-    asphalt: Asphalt,
     robot: RobotPass,
     tag: TagPass,
     backdrop: BackdropPass,
@@ -74,7 +73,6 @@ impl WorldPasses {
             prop: (!fleet.props.is_empty()).then(prop),
             decal: DecalPass::new(gpu, canvas, &groups, !floor.is_plane()),
             shadow: ShadowPass::new(gpu, &groups, map, shadows),
-            asphalt,
             groups,
         }
     }
@@ -117,11 +115,11 @@ impl WorldPasses {
         pass.set_bind_group(1, &self.groups.light, &[]);
         self.backdrop.draw_sky(pass);
         match &self.terrain {
-            Some(terrain) => terrain.draw(pass, &self.asphalt, sight.camera),
-            None => self.backdrop.draw_ground(pass, &self.asphalt),
+            Some(terrain) => terrain.draw(pass, sight.camera),
+            None => self.backdrop.draw_ground(pass),
         }
         if let Some(prop) = &self.prop {
-            prop.draw_decks(pass, &self.asphalt, sight.props, sight.veiled);
+            prop.draw_decks(pass, sight.props, sight.veiled);
         }
         for (layer, corners) in sight.under {
             self.decal.draw(pass, corners, *layer);
@@ -131,7 +129,7 @@ impl WorldPasses {
         self.robot.draw_solid(pass, &self.models, sight.crowd);
         // After the robots, which show through those in front of them.
         if let Some(prop) = &self.prop {
-            prop.draw(pass, &self.asphalt, sight.props, sight.veiled);
+            prop.draw(pass, sight.props, sight.veiled);
         }
         if sight.ghosts {
             self.robot.draw_ghosts(pass, &self.models, sight.crowd);

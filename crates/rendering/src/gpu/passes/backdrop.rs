@@ -4,7 +4,7 @@ use super::asphalt::Asphalt;
 use super::frame::FrameGroups;
 use super::{Canvas, Recipe, developed, shader};
 use crate::Gpu;
-use wgpu::{RenderPass, RenderPipeline};
+use wgpu::{BindGroup, RenderPass, RenderPipeline};
 
 pub(crate) const SKY: [&str; 2] = developed!("common/light", "common/screen", "sky");
 pub(crate) const GROUND: [&str; 2] = developed!("common/light", "common/screen", "common/asphalt", "ground");
@@ -15,6 +15,7 @@ pub(crate) const TILE: f64 = 20.0;
 /// Their pipelines.
 #[derive(Debug)]
 pub(crate) struct BackdropPass {
+    asphalt: BindGroup,
     sky: RenderPipeline,
     ground: RenderPipeline,
 }
@@ -31,6 +32,7 @@ impl BackdropPass {
         };
         let (sky, ground) = (canvas.of(SKY), canvas.of(GROUND));
         Self {
+            asphalt: asphalt.group.clone(),
             sky: Recipe { label: "sky", source: sky, groups: &groups[..2], ..recipe }.build(gpu),
             ground: Recipe { label: "ground", source: ground, groups: &groups, ..recipe }.build(gpu),
         }
@@ -41,9 +43,9 @@ impl BackdropPass {
         pass.draw(0..4, 0..1);
     }
 
-    pub(crate) fn draw_ground(&self, pass: &mut RenderPass<'_>, asphalt: &Asphalt) {
+    pub(crate) fn draw_ground(&self, pass: &mut RenderPass<'_>) {
         pass.set_pipeline(&self.ground);
-        pass.set_bind_group(2, &asphalt.group, &[]);
+        pass.set_bind_group(2, &self.asphalt, &[]);
         pass.draw(0..4, 0..1);
     }
 }

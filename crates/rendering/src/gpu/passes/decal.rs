@@ -5,7 +5,8 @@ use super::{Canvas, Recipe, StreamBuffer, developed, shader, vertices};
 use crate::Gpu;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
-use wgpu::vertex_attr_array;
+use std::ops::Range;
+use wgpu::{RenderPass, vertex_attr_array};
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "decal");
 
@@ -120,12 +121,7 @@ impl DecalPass {
     }
 
     /// Draws corners of one view.
-    pub(crate) fn draw(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        corners: &std::ops::Range<u32>,
-        layer: DecalLayer,
-    ) {
+    pub(crate) fn draw(&self, pass: &mut RenderPass<'_>, corners: &Range<u32>, layer: DecalLayer) {
         let pipeline = match layer {
             DecalLayer::Paint => Some(&self.paint),
             DecalLayer::Annotations => self.annotations.as_ref(),

@@ -9,6 +9,7 @@ use crate::camera::Camera;
 use crate::gpu::model::solids;
 use glam::DVec3;
 use std::ops::Range;
+use wgpu::{BindGroup, RenderPass};
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/robot", "common/asphalt", "prop");
 
@@ -81,6 +82,7 @@ pub(crate) struct PropPass {
     firm: Vec<wgpu::RenderPipeline>,
     /// Whether what is seen through leaves samples to what comes later.
     coverage: bool,
+    asphalt: BindGroup,
     meshes: InstancedMeshes,
     solids: [Range<u32>; 4],
 }
@@ -119,6 +121,7 @@ impl PropPass {
             pipelines: build(recipe),
             firm: if veil == Veil::ButDecks { build(firm) } else { Vec::new() },
             coverage,
+            asphalt: asphalt.group.clone(),
             meshes: InstancedMeshes::new(gpu, &vertices, &indices),
             solids,
         }
@@ -135,17 +138,11 @@ impl PropPass {
     }
 
     /// What robots drive on, before the paint on it; `veiled` tells which of it hides a robot from the eye.
-    pub(crate) fn draw_decks(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        asphalt: &Asphalt,
-        copies: &PropInstances,
-        veiled: &[bool],
-    ) {
+    pub(crate) fn draw_decks(&self, pass: &mut RenderPass<'_>, copies: &PropInstances, veiled: &[bool]) {
         if copies.drivables.is_empty() {
             return;
         }
-        pass.set_bind_group(2, &asphalt.group, &[]);
+        pass.set_bind_group(2, &self.asphalt, &[]);
         self.meshes.bind(pass);
         let seen_through = |k: usize| veiled.get(k).copied().unwrap_or_default();
         self.each_deck(pass, copies, |pass, k| {
@@ -160,14 +157,8 @@ impl PropPass {
     }
 
     /// All others, after the robots.
-    pub(crate) fn draw(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        asphalt: &Asphalt,
-        copies: &PropInstances,
-        veiled: &[bool],
-    ) {
-        pass.set_bind_group(2, &asphalt.group, &[]);
+    pub(crate) fn draw(&self, pass: &mut RenderPass<'_>, copies: &PropInstances, veiled: &[bool]) {
+        pass.set_bind_group(2, &self.asphalt, &[]);
         self.meshes.bind(pass);
         self.each_other(pass, copies, |pass, look| pass.set_pipeline(&self.pipelines[look]));
         self.each_deck(pass, copies, |pass, k| {
@@ -180,7 +171,7 @@ impl PropPass {
     }
 
     /// All copies with whatever pipeline is set.
-    pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, copies: &PropInstances) {
+    pub(crate) fn draw_solid(&self, pass: &mut RenderPass<'_>, copies: &PropInstances) {
         self.meshes.bind(pass);
         self.each_other(pass, copies, |_, _| ());
         self.each_deck(pass, copies, |_, _| true);
@@ -188,9 +179,9 @@ impl PropPass {
 
     fn each_other(
         &self,
-        pass: &mut wgpu::RenderPass<'_>,
+        pass: &mut RenderPass<'_>,
         copies: &PropInstances,
-        prepare: impl Fn(&mut wgpu::RenderPass<'_>, usize),
+        prepare: impl Fn(&mut RenderPass<'_>, usize),
     ) {
         let mut first = copies.first;
         for (look, ((_, solid), copies)) in PropAppearance::ALL.iter().zip(&copies.others).enumerate() {
@@ -206,9 +197,9 @@ impl PropPass {
     /// Draws the decks for which `prepare` says so.
     fn each_deck(
         &self,
-        pass: &mut wgpu::RenderPass<'_>,
+        pass: &mut RenderPass<'_>,
         copies: &PropInstances,
-        prepare: impl Fn(&mut wgpu::RenderPass<'_>, usize) -> bool,
+        prepare: impl Fn(&mut RenderPass<'_>, usize) -> bool,
     ) {
         let first = copies.first as usize + copies.others.iter().map(Vec::len).sum::<usize>();
         for (k, (look, _)) in copies.drivables.iter().enumerate() {

@@ -7,6 +7,7 @@ use crate::Gpu;
 use crate::annotation::text_shaper::digits;
 use crate::gpu::model::{self, Build, Detail};
 use std::ops::Range;
+use wgpu::RenderPass;
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/robot", "robot");
 
@@ -86,7 +87,7 @@ impl Models {
     }
 
     /// Bodies, wheels and cameras, without the faces of shells.
-    pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &RobotInstances) {
+    pub(crate) fn draw_solid(&self, pass: &mut RenderPass<'_>, crowd: &RobotInstances) {
         let squads = self.kits.iter().zip(&crowd.squads);
         let parts = squads
             .flat_map(|(kit, squad)| [(&kit.body, squad.bodies.len()), (&kit.wheel, squad.wheels.len())]);
@@ -94,14 +95,14 @@ impl Models {
     }
 
     /// The faces of shells.
-    pub(crate) fn draw_faces(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &RobotInstances) {
+    pub(crate) fn draw_faces(&self, pass: &mut RenderPass<'_>, crowd: &RobotInstances) {
         let squads = self.kits.iter().zip(&crowd.squads);
         let parts =
             squads.flat_map(|(kit, squad)| [(&kit.faces, squad.bodies.len()), (&NONE, squad.wheels.len())]);
         self.draw(pass, crowd.first, parts);
     }
 
-    fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &RobotInstances) {
+    fn draw_ghosts(&self, pass: &mut RenderPass<'_>, crowd: &RobotInstances) {
         let solid: usize = crowd.squads.iter().map(|s| s.bodies.len() + s.wheels.len()).sum();
         let first = crowd.first + (solid + crowd.cameras.len()) as u32;
         let squads = self.kits.iter().zip(&crowd.squads);
@@ -111,7 +112,7 @@ impl Models {
     /// Meshes, each as often as told; their copies follow each other from `first` on.
     fn draw<'a>(
         &self,
-        pass: &mut wgpu::RenderPass<'_>,
+        pass: &mut RenderPass<'_>,
         mut first: u32,
         parts: impl Iterator<Item = (&'a Range<u32>, usize)>,
     ) {
@@ -177,24 +178,14 @@ impl RobotPass {
         }
     }
 
-    pub(crate) fn draw_solid(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        models: &Models,
-        crowd: &RobotInstances,
-    ) {
+    pub(crate) fn draw_solid(&self, pass: &mut RenderPass<'_>, models: &Models, crowd: &RobotInstances) {
         pass.set_pipeline(&self.solid);
         pass.set_bind_group(2, &self.digits, &[]);
         models.draw_solid(pass, crowd);
     }
 
     /// Depth first, so that only the faces in front shine through.
-    pub(crate) fn draw_ghosts(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        models: &Models,
-        crowd: &RobotInstances,
-    ) {
+    pub(crate) fn draw_ghosts(&self, pass: &mut RenderPass<'_>, models: &Models, crowd: &RobotInstances) {
         if crowd.squads.iter().all(|s| s.ghosts.is_empty()) {
             return;
         }

@@ -6,7 +6,7 @@ use super::{DEPTH, Recipe, shader};
 use crate::Gpu;
 use crate::gpu::resources::flat_texture;
 use glam::{DMat4, DVec3, Mat4};
-use wgpu::TextureUsages;
+use wgpu::{CommandEncoder, RenderPass, TextureUsages};
 
 pub(crate) const SHADER: &str = shader!("common/frame", "common/robot", "shadow");
 
@@ -64,11 +64,7 @@ impl ShadowPass {
     }
 
     /// The pass into which all that casts shadows is drawn.
-    pub(crate) fn begin<'a>(
-        &self,
-        encoder: &'a mut wgpu::CommandEncoder,
-        groups: &FrameGroups,
-    ) -> wgpu::RenderPass<'a> {
+    pub(crate) fn begin<'a>(&self, encoder: &'a mut CommandEncoder, groups: &FrameGroups) -> RenderPass<'a> {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {

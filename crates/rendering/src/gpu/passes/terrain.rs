@@ -9,7 +9,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 use vocabulary::Terrain;
-use wgpu::{BufferUsages, vertex_attr_array};
+use wgpu::{BindGroup, BufferUsages, vertex_attr_array};
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/asphalt", "terrain");
 
@@ -30,6 +30,7 @@ pub(crate) struct TerrainVertex {
 pub(crate) struct TerrainPass {
     dry: wgpu::RenderPipeline,
     slick: wgpu::RenderPipeline,
+    asphalt: BindGroup,
     points: StreamBuffer,
     triangles: StreamBuffer,
     /// Those that grip come first.
@@ -73,6 +74,7 @@ impl TerrainPass {
         Self {
             dry,
             slick,
+            asphalt: asphalt.group.clone(),
             points: StreamBuffer::constant(gpu, "terrain", BufferUsages::VERTEX, corners),
             triangles: StreamBuffer::constant(gpu, "terrain", BufferUsages::INDEX, indices),
             pieces,
@@ -80,8 +82,8 @@ impl TerrainPass {
     }
 
     /// What of it a camera may see.
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, asphalt: &Asphalt, camera: &Camera) {
-        pass.set_bind_group(2, &asphalt.group, &[]);
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, camera: &Camera) {
+        pass.set_bind_group(2, &self.asphalt, &[]);
         pass.set_vertex_buffer(0, self.points.slice());
         pass.set_index_buffer(self.triangles.slice(), wgpu::IndexFormat::Uint32);
         for (slick, pipeline) in [(false, &self.dry), (true, &self.slick)] {
