@@ -5,6 +5,7 @@ use crate::action::Action;
 use crate::app_state::AppState;
 use crate::numbers::fixed;
 use crate::quantities::{PlotQuantity, QuantityCurve, bounds, curves};
+use crate::session::history::History;
 use eframe::egui::{self, Color32, Id, Stroke, Ui};
 use egui_plot::{GridMark, HLine, HoverPosition, LineStyle, Plot, PlotPoint, VLine};
 
@@ -33,10 +34,7 @@ fn plot(
     last: bool,
     out: &mut Vec<Action>,
 ) {
-    let end = app_state
-        .history
-        .as_ref()
-        .map_or(0.0, |history| (0..history.branches()).map(|branch| history.end(branch)).fold(0.0, f64::max));
+    let end = app_state.history.as_ref().map_or(0.0, History::latest);
     let group = Id::unique("time axis");
     let logarithmic = quantity.logarithmic();
     let weak = ui.visuals().weak_text_color();

@@ -5,6 +5,7 @@ use super::{menu_item, on_click};
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::numbers::fixed;
+use crate::session::history::History;
 use eframe::egui::containers::menu::{MenuConfig, SubMenuButton};
 use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInfo};
 
@@ -36,11 +37,8 @@ pub fn show(ui: &mut Ui, app_state: &AppState, filming: bool, out: &mut Vec<Acti
 }
 
 fn buttons(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let (icon, name) = if app_state.playing && app_state.history.is_some() {
-        (Icon::Pause, "Pause")
-    } else {
-        (Icon::Play, "Play")
-    };
+    let plays = app_state.playing && app_state.history.is_some();
+    let (icon, name) = if plays { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
     let play = button(ui, icon, "", name, None).on_hover_text(format!("{name} (Space)"));
     on_click(&play, Action::Toggle, out);
     let step = button(ui, Icon::Step, "", "Step", None).on_hover_text("One control sample (→)");
@@ -55,11 +53,7 @@ fn pace(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     ui.spacing_mut().slider_width = 84.0;
     let slider = Slider::new(&mut pace, 0.1..=50.0)
         .logarithmic(true)
-        .custom_formatter(
-            |value, _| {
-                if value < 10.0 { format!("{value:.1}×") } else { format!("{value:.0}×") }
-            },
-        )
+        .custom_formatter(|value, _| format!("{value:.*}×", usize::from(value < 10.0)))
         .custom_parser(|text| text.trim_end_matches(['×', 'x']).trim().parse().ok());
     let response =
         ui.add(slider).on_hover_text("Simulated seconds per second (, and .); double click for 1×");
@@ -112,8 +106,7 @@ fn line(ui: &mut Ui, app_state: &AppState, wide: f32, out: &mut Vec<Action>) {
 
 /// Seconds on the line: at least the scene's, and some more than there is.
 fn span(app_state: &AppState) -> f64 {
-    let ends = (0..app_state.branches.len()).filter_map(|k| Some(app_state.history.as_ref()?.end(k)));
-    let end = ends.fold(0.0, f64::max);
+    let end = app_state.history.as_ref().map_or(0.0, History::latest);
     let planned = app_state.scene().map_or(1.0, |scene| scene.time.duration);
     if end <= planned { planned } else { end * 1.02 }.max(1e-3)
 }

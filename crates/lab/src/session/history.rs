@@ -137,6 +137,11 @@ impl History {
         self.head(branch).map_or(0.0, |record| record.snapshot.time)
     }
 
+    /// Time of the last record of any branch, s.
+    pub fn latest(&self) -> f64 {
+        (0..self.past.len()).map(|branch| self.end(branch)).fold(0.0, f64::max)
+    }
+
     /// The record of a branch at a time; between two that are kept, in between.
     pub fn at(&self, branch: usize, time: f64) -> Option<Arc<StepRecord>> {
         let past = self.past.get(branch)?;

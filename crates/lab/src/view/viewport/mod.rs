@@ -164,11 +164,8 @@ impl Viewport {
             self.fault = Some(error.to_string());
         }
         if let Some(fault) = &self.fault {
-            return centred(
-                ui,
-                rect,
-                &format!("The view cannot be drawn: {fault}\nYour scene and its run are kept."),
-            );
+            let text = format!("The view cannot be drawn: {fault}\nYour scene and its run are kept.");
+            return centred(ui, rect, &text);
         }
         if let Some(view_renderer) = &self.view_renderer {
             let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
@@ -214,16 +211,14 @@ impl Viewport {
             size,
         };
         let Some(trail) = app_state.trail() else { return Ok(()) };
-        match &view_renderer.shown {
-            Some((last, true)) if *last == shown => return Ok(()),
-            Some((last, false)) if *last == shown => {
+        if let Some((_, fine)) = view_renderer.shown.as_ref().filter(|(last, _)| *last == shown) {
+            if !fine {
                 // Nothing moves any more: there is time for a better picture.
                 view_renderer.fine(&self.gpu, trail, record, &shown)?;
                 view_renderer.shown = Some((shown, true));
                 self.pictures += 1;
-                return Ok(());
             }
-            _ => {}
+            return Ok(());
         }
         let DrawnFrame { words: [title, caption], layout, style, .. } = &shown;
         let spec = PictureSpec::new(trail, record, layout, style);
