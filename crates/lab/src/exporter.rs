@@ -1,4 +1,4 @@
-//! Pictures and films, drawn on a thread of their own so that the window never waits for them.
+//! Pictures and films, rendered on their own thread so that the window never waits for them.
 
 use film::{Film, FilmKind, png};
 use rendering::{Gpu, PictureSpec, Renderer, Style, Trail, ViewLayout};
@@ -15,76 +15,76 @@ use vocabulary::{FleetInfo, Picture, StepRecord};
 /// Frames of a film a second.
 pub const RATE: f64 = 30.0;
 
-/// How something is seen.
+/// A frame to render.
 #[derive(Clone)]
 pub struct FrameSpec {
-    /// What is drawn.
+    /// The moment.
     pub record: Arc<StepRecord>,
-    /// From where.
+    /// The views.
     pub layout: ViewLayout,
-    /// And how.
+    /// Elements and annotations.
     pub style: Style,
     /// Title and caption.
     pub words: [String; 2],
 }
 
-/// A file to make, and what it shows throughout.
+/// A file to write, and what all its frames share.
 pub struct ExportTarget {
     /// The file.
     pub path: PathBuf,
-    /// Who is in it.
+    /// Robots and edges.
     pub fleet: Arc<FleetInfo>,
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// The past.
+    /// The past of the moment.
     pub trail: Trail,
 }
 
-/// What is asked of the exporter.
+/// A job of the exporter.
 pub enum ExportJob {
     /// A picture.
     Picture {
         /// Its file.
         target: Box<ExportTarget>,
-        /// What is seen.
+        /// The frame.
         shot: Box<FrameSpec>,
-        /// What the file tells besides.
+        /// Text chunks of the file.
         texts: Vec<(&'static str, String)>,
     },
-    /// A film begins; its width and height are even.
+    /// Start a film; its width and height are even.
     Begin(Box<ExportTarget>),
-    /// The past is another: somebody changed the branch.
+    /// Replace the past: the branch has changed.
     Trail(Box<Trail>),
-    /// What has happened since the last frame.
+    /// Records since the last frame.
     Records(Vec<Arc<StepRecord>>),
-    /// The next frame.
+    /// Add a frame to the film.
     Frame(Box<FrameSpec>),
-    /// The film ends.
+    /// End the film.
     End,
 }
 
-/// What the exporter tells.
+/// A result of the exporter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ExportEvent {
     /// A file is complete.
     Written(PathBuf),
-    /// A file could not be made, and why.
+    /// Why a file could not be written.
     Failed(String),
 }
 
 /// The thread and its channels.
 pub struct Exporter {
     jobs: Option<Sender<ExportJob>>,
-    told: Receiver<ExportEvent>,
+    events: Receiver<ExportEvent>,
     waiting: Arc<AtomicUsize>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Exporter {
-    /// Starts the thread; `wake` is called when it has something to tell.
+    /// Starts the thread; it calls `wake` for every event.
     pub fn start(gpu: Gpu, wake: impl Fn() + Send + 'static) -> Self {
         let (jobs, inbox) = channel();
-        let (outbox, told) = channel();
+        let (outbox, events) = channel();
         let waiting = Arc::new(AtomicUsize::new(0));
         let left = Arc::clone(&waiting);
         let work = move || {
@@ -97,18 +97,18 @@ impl Exporter {
                     Ok(Some(path)) => ExportEvent::Written(path),
                     Err(error) => ExportEvent::Failed(error.to_string()),
                 };
-                // Where nobody listens any more, the last film is still finished.
+                // Without a listener the last film is still finished.
                 let _ = outbox.send(word);
                 wake();
             }
-            // The window was closed in the middle of a film: what there is of it is kept.
+            // The window was closed during a film: the film is completed as far as it is.
             let _ = work.take(ExportJob::End);
         };
         let thread = std::thread::Builder::new().name("studio".to_owned()).spawn(work).ok();
-        Self { jobs: Some(jobs), told, waiting, thread }
+        Self { jobs: Some(jobs), events, waiting, thread }
     }
 
-    /// Asks for something.
+    /// Sends a request.
     pub fn ask(&self, job: ExportJob) {
         if let Some(jobs) = &self.jobs {
             self.waiting.fetch_add(1, Relaxed);
@@ -116,12 +116,12 @@ impl Exporter {
         }
     }
 
-    /// What it has to tell, if anything.
-    pub fn told(&self) -> Option<ExportEvent> {
-        self.told.try_recv().ok()
+    /// The next event, if there is one.
+    pub fn next_event(&self) -> Option<ExportEvent> {
+        self.events.try_recv().ok()
     }
 
-    /// Jobs that wait.
+    /// Number of jobs that are not finished.
     pub fn waiting(&self) -> usize {
         self.waiting.load(Relaxed)
     }
@@ -150,7 +150,7 @@ struct OpenFilm {
 }
 
 impl ExportWorker {
-    /// Does a job; the file that is complete with it.
+    /// Does a job; the file that it completes, if any.
     fn take(&mut self, job: ExportJob) -> Result<Option<PathBuf>, Box<dyn Error>> {
         match job {
             ExportJob::Picture { target, shot, texts } => {
@@ -182,7 +182,7 @@ impl ExportWorker {
             ExportJob::Frame(shot) => {
                 let done = self.frame(&shot);
                 if done.is_err() {
-                    // Nothing half is left: a film that is dropped removes its file.
+                    // A dropped film removes its incomplete file.
                     self.film = None;
                 }
                 done.map(|()| None)

@@ -1,4 +1,4 @@
-//! Notices when the scene's file changes on disk, and when the program is told to end.
+//! Notices when the scene's file changes on disk and when the program shall end.
 
 use std::fs;
 use std::path::PathBuf;
@@ -6,16 +6,16 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
 
-/// Between two looks at the file.
+/// Interval between two checks of the file.
 const INTERVAL: Duration = Duration::from_millis(400);
 
-/// Looks at one file again and again, on a thread of its own.
+/// Watches one file on its own thread.
 pub(crate) struct FileWatcher(Arc<Watched>);
 
 /// What the thread and the window share.
 #[derive(Default)]
 struct Watched {
-    /// The file, and when it was written last.
+    /// The file, and its modification time at the last check.
     file: Mutex<Option<(PathBuf, Option<SystemTime>)>>,
     changed: AtomicBool,
     stopped: AtomicBool,
@@ -40,12 +40,12 @@ impl FileWatcher {
                 std::thread::sleep(INTERVAL);
             }
         };
-        // Without it the file is read again by hand.
+        // Without the thread the user reloads the file.
         let _ = std::thread::Builder::new().name("watch".to_owned()).spawn(work);
         Self(shared)
     }
 
-    /// Looks at this file from now on, as it is now.
+    /// Watches this file from now on.
     pub(crate) fn look_at(&self, path: Option<PathBuf>) {
         let mut file = self.0.file.lock().unwrap_or_else(PoisonError::into_inner);
         *file = path.map(|path| {
@@ -60,18 +60,18 @@ impl FileWatcher {
         self.0.stopped.load(Relaxed)
     }
 
-    /// Whether the file has changed since the last question.
+    /// Whether the file has changed since the last call.
     pub(crate) fn changed(&self) -> bool {
         self.0.changed.swap(false, Relaxed)
     }
 }
 
 impl Watched {
-    /// Whether the file was written since the last look.
+    /// Whether the file was written since the last check.
     fn look(&self) -> bool {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         let Some((path, before)) = &mut *file else { return false };
-        // A file that is gone for a moment is being written.
+        // A file that is missing for a moment is being written.
         modified(path).is_some_and(|now| before.replace(now) != Some(now))
     }
 }

@@ -1,4 +1,4 @@
-//! The scenes that come with the program, with thumbnails, and those opened before.
+//! The list of shipped scenes, with thumbnails, and of recent scenes.
 
 use crate::action::Action;
 use crate::panels::on_click;
@@ -13,7 +13,7 @@ macro_rules! thumbnails {
     };
 }
 
-/// PNG pictures of the scenes that come with the program, by name.
+/// PNG pictures of the shipped scenes by name.
 const THUMBNAILS: &[(&str, &[u8])] = &thumbnails![
     "circle-three",
     "line-three",
@@ -51,10 +51,10 @@ fn thumbnail(name: &str) -> Option<egui::ColorImage> {
     decode(bytes)
 }
 
-/// The scene that the lab opens with when none is named.
+/// The scene that the lab opens by default.
 pub const FIRST: &str = "figure-eight-seven";
 
-/// The menu of scenes.
+/// The list of scenes.
 #[derive(Default)]
 pub struct Gallery {
     textures: BTreeMap<&'static str, TextureHandle>,
@@ -65,12 +65,12 @@ pub struct Gallery {
 const THUMBNAIL: egui::Vec2 = egui::vec2(176.0, 99.0);
 
 impl Gallery {
-    /// Shows the menu.
+    /// Shows the list.
     pub fn show(&mut self, ui: &mut Ui, recent: &[PathBuf], out: &mut Vec<Action>) {
         self.own(ui, out);
         if !recent.is_empty() {
             ui.horizontal_wrapped(|ui| {
-                ui.label(RichText::new("Opened before").strong());
+                ui.label(RichText::new("Recent").strong());
                 for path in recent {
                     let name =
                         path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
@@ -93,12 +93,12 @@ impl Gallery {
         });
     }
 
-    /// A scene of one's own, by its path.
+    /// A field for the path of a scene.
     fn own(&mut self, ui: &mut Ui, out: &mut Vec<Action>) {
         ui.horizontal(|ui| {
             ui.label("File");
             let edit =
-                egui::TextEdit::singleline(&mut self.path).hint_text("path of a scene, or drop one here");
+                egui::TextEdit::singleline(&mut self.path).hint_text("path of a scene, or drop a file here");
             let edit = ui.add(edit.desired_width(360.0));
             let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             if !entered {

@@ -1,4 +1,4 @@
-//! How panels share the window: a tree of tiles that a person rearranges, and that is remembered.
+//! The layout of panels: a tree of tiles that the user rearranges and the lab remembers.
 
 use crate::action::Action;
 use crate::app_state::AppState;
@@ -41,7 +41,7 @@ pub const PANES: &[(&str, Draw)] = &[
 ];
 
 impl Pane {
-    /// By its name.
+    /// The panel of this name.
     pub fn named(name: &str) -> Option<Self> {
         PANES.iter().position(|(known, _)| *known == name).map(Self)
     }
@@ -52,7 +52,7 @@ impl Pane {
     }
 }
 
-/// The arrangement at first.
+/// The initial layout.
 pub fn arrangement() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let mut tabs = |names: &[&str]| {
@@ -81,7 +81,7 @@ pub fn arrangement() -> Tree<Pane> {
     Tree::new(Id::unique("panels"), root, tiles)
 }
 
-/// Whether a tree from an earlier start can be used: the view is in it, and no panel twice.
+/// Whether a remembered layout is valid: it contains the view, and no panel twice.
 pub fn sound(tree: &Tree<Pane>) -> bool {
     let count = |pane: Pane| {
         tree.tiles.iter().filter(|(_, tile)| matches!(tile, Tile::Pane(p) if *p == pane)).count()
@@ -92,7 +92,7 @@ pub fn sound(tree: &Tree<Pane>) -> bool {
         && tree.tiles.iter().all(|(_, tile)| !matches!(tile, Tile::Pane(pane) if pane.0 >= PANES.len()))
 }
 
-/// Shows a panel that is hidden, hides one that is shown.
+/// Toggles a panel.
 pub fn toggle(tree: &mut Tree<Pane>, name: &str) {
     let Some(pane) = Pane::named(name) else { return };
     match tree.tiles.find_pane(&pane) {
@@ -113,17 +113,17 @@ pub fn toggle(tree: &mut Tree<Pane>, name: &str) {
 
 /// What draws the panels.
 pub struct Panels<'a> {
-    /// What they show.
+    /// The state that they show.
     pub app_state: &'a AppState,
-    /// What is drawn in the view.
+    /// Elements of the view.
     pub style: &'a Style,
-    /// How far a film is.
+    /// Progress of a film.
     pub filming: Option<&'a str>,
     /// Draws the 3D view.
     pub view: &'a mut dyn FnMut(&mut Ui, &mut Vec<Action>),
-    /// The tile of the view.
+    /// The tile that shows the view.
     pub view_tile: Option<TileId>,
-    /// What is asked for.
+    /// Actions of the user.
     pub out: &'a mut Vec<Action>,
 }
 
@@ -135,7 +135,7 @@ impl Behavior<Pane> for Panels<'_> {
             return UiResponse::None;
         }
         Frame::new().inner_margin(6.0).show(ui, |ui| {
-            // What is too wide for a narrow panel can still be reached.
+            // Content that is wider than the panel can be scrolled to.
             let scroll = ScrollArea::horizontal().id_salt(name).auto_shrink([false, false]);
             scroll.show(ui, |ui| draw(ui, self));
         });
@@ -151,7 +151,7 @@ impl Behavior<Pane> for Panels<'_> {
     }
 
     fn is_tab_bar_visible(&self, _: TileId, tabs: &egui_tiles::Tabs) -> bool {
-        // The view needs no name.
+        // The view needs no tab.
         tabs.children.len() > 1 || !self.only_view(tabs)
     }
 

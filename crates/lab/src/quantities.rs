@@ -1,4 +1,4 @@
-//! Curves over time: what is plotted and what is exported, made of records in one place.
+//! Curves over time, computed from records, for plots and exports.
 
 use crate::app_state::AppState;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
@@ -8,37 +8,37 @@ use std::fmt::Write;
 use studies::certify::{WitnessRow, rows};
 use vocabulary::{Edge, EdgeState, LawKind, Snapshot, StepRecord};
 
-/// What a plot shows.
+/// A plotted quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlotQuantity {
-    /// Error of the distance, m.
+    /// Distance error, m.
     DistanceError,
-    /// Error of the bearing, degrees.
+    /// Bearing error, degrees.
     BearingError,
-    /// Acceleration that was applied, m/s².
+    /// Applied acceleration, m/s².
     Acceleration,
-    /// Turn rate that was applied, rad/s.
+    /// Applied turn rate, rad/s.
     TurnRate,
     /// Forward speed, m/s.
     Speed,
-    /// What the observer is off in the rate of the distance, m/s.
+    /// Error of the observed distance rate, m/s.
     DistanceRateError,
-    /// What the observer is off in the rate of the bearing, degrees/s.
+    /// Error of the observed bearing rate, degrees/s.
     BearingRateError,
     /// ½‖r‖², logarithm to the base of 10.
     TrackingEnergy,
     /// W of the observer, logarithm to the base of 10.
     ObserverEnergy,
-    /// Least room between bodies, m.
+    /// Least clearance between bodies, m.
     Clearance,
-    /// By how much β is above what Lemma 4.1 asks for, m/s².
+    /// Margin of β above the bound of Lemma 4.1, m/s².
     RobustMargin,
     /// V of eq 29: ½‖r‖² and P.
     Lyapunov,
 }
 
 impl PlotQuantity {
-    /// Every quantity in the order of its declaration: for an axis its symbol and unit, and its column of a table.
+    /// All quantities in the order of declaration, with their axis label and table column.
     const TABLE: [(Self, &'static str, &'static str); 12] = [
         (Self::DistanceError, "error of ℓ (m)", "distance_error_m"),
         (Self::BearingError, "error of ψ (°)", "bearing_error_deg"),
@@ -49,22 +49,22 @@ impl PlotQuantity {
         (Self::BearingRateError, "dψ/dt − ŝ₂ (°/s)", "bearing_rate_error_deg_s"),
         (Self::TrackingEnergy, "½‖r‖²", "log10_tracking_energy"),
         (Self::ObserverEnergy, "W", "log10_observer_energy"),
-        (Self::Clearance, "room (m)", "clearance_m"),
-        (Self::RobustMargin, "margin of β (m/s²)", "beta_margin_m_s2"),
+        (Self::Clearance, "clearance (m)", "clearance_m"),
+        (Self::RobustMargin, "β margin (m/s²)", "beta_margin_m_s2"),
         (Self::Lyapunov, "V (eq 29)", "lyapunov_v"),
     ];
 
-    /// All of them.
+    /// All of them, in order.
     pub fn all() -> impl Iterator<Item = Self> {
         Self::TABLE.into_iter().map(|(quantity, ..)| quantity)
     }
 
-    /// For an axis: symbol and unit.
+    /// The label of its axis: symbol and unit.
     pub fn axis(self) -> &'static str {
         Self::TABLE[self as usize].1
     }
 
-    /// For a column of a table.
+    /// The name of its table column.
     pub fn column(self) -> &'static str {
         Self::TABLE[self as usize].2
     }
@@ -80,25 +80,25 @@ impl PlotQuantity {
 pub struct QuantityCurve {
     /// The branch.
     pub branch: usize,
-    /// The robot; `None` for what belongs to all.
+    /// The robot; `None` for a quantity of the whole formation.
     pub robot: Option<usize>,
     /// Time in s, value.
     pub points: Vec<[f64; 2]>,
 }
 
-/// The smallest energy that is shown: rounding is below it.
+/// The smallest energy that is shown; smaller values are rounding errors.
 const FLOOR: f64 = 1e-18;
-/// The least margin of β that is shown, m/s².
+/// The smallest margin of β that is shown, m/s².
 const LEAST_MARGIN: f64 = -20.0;
 
-/// The curves of a quantity of at most about `most` points, of all branches, the one that is looked at last.
+/// The curves of a quantity on all branches, the shown branch last; each of at most about `most` points.
 pub fn curves(app_state: &AppState, quantity: PlotQuantity, most: usize) -> Vec<QuantityCurve> {
     let Some(history) = &app_state.history else { return Vec::new() };
     let mut order: Vec<usize> = (0..history.branches()).filter(|b| *b != app_state.branch).collect();
     order.push(app_state.branch);
     let mut all = Vec::new();
     for branch in order {
-        // What a branch shares with the one that is looked at is drawn once.
+        // The past that branches share is drawn once.
         let own = app_state.branches.get(branch).filter(|_| branch != app_state.branch);
         let span = [own.and_then(|b| b.parent).map_or(0.0, |(_, time)| time), f64::INFINITY];
         if quantity == PlotQuantity::Clearance {
@@ -126,7 +126,7 @@ pub fn curves(app_state: &AppState, quantity: PlotQuantity, most: usize) -> Vec<
     all
 }
 
-/// Quantities that go by how a run came to be: they need all records. `None` for others.
+/// Curves of quantities that depend on the whole run and need all records. `None` for other quantities.
 fn certified(
     quantity: PlotQuantity,
     records: &[&StepRecord],
@@ -135,7 +135,7 @@ fn certified(
     follow: &Follow,
 ) -> Option<Vec<[f64; 2]>> {
     let value: fn(&WitnessRow) -> f64 = match quantity {
-        // What the first samples ask for would flatten all that follows.
+        // The first samples would flatten everything after them.
         PlotQuantity::RobustMargin => |row| row.margin.max(LEAST_MARGIN),
         PlotQuantity::Lyapunov => |row| row.v,
         _ => return None,
@@ -145,7 +145,7 @@ fn certified(
     Some(rows.iter().map(|row| [row.time, value(row)]).filter(|p| p[1].is_finite()).collect())
 }
 
-/// A quantity of an edge in a record; `None` where there is none.
+/// A quantity of an edge in a record; `None` if it is not defined.
 fn value(
     quantity: PlotQuantity,
     record: &StepRecord,
@@ -190,7 +190,7 @@ fn value(
     value.is_finite().then_some(value)
 }
 
-/// ds/dt as it truly is (eq 7).
+/// The true ds/dt (eq 7).
 fn true_rates(snapshot: &Snapshot, edge: Edge, state: &EdgeState, distance_min: f64) -> Option<[f64; 2]> {
     let (leader, follower) =
         (snapshot.robots.get(edge.leader)?.motion, snapshot.robots.get(edge.follower)?.motion);
@@ -198,7 +198,7 @@ fn true_rates(snapshot: &Snapshot, edge: Edge, state: &EdgeState, distance_min: 
     Some(geometry.rates(follower.speed, leader.speed, leader.turn_rate).into())
 }
 
-/// Bounds of a quantity, of the follower that is selected, for grey lines.
+/// Bounds of a quantity for the selected follower, drawn as dashed lines.
 pub fn bounds(app_state: &AppState, quantity: PlotQuantity) -> Vec<f64> {
     let robot = app_state.chosen_robot().or_else(|| app_state.follower(0).map(|(robot, ..)| robot));
     let vehicle = robot.and_then(|robot| Some(app_state.scene_now()?.robots.get(robot)?.vehicle));
@@ -232,7 +232,7 @@ pub fn csv(app_state: &AppState) -> String {
                 curve.robot.and_then(|robot| app_state.fleet()?.robots.get(robot)).map_or("", |m| &m.name);
             let head = format!("{},{},{}", quoted(branch), quoted(robot), quantity.column());
             for [time, value] in curve.points {
-                // Writing to a text cannot fail.
+                // Writing to a string cannot fail.
                 let _ = writeln!(text, "{head},{time:.6},{value:e}");
             }
         }
@@ -240,7 +240,7 @@ pub fn csv(app_state: &AppState) -> String {
     text
 }
 
-/// The curves as a figure for print.
+/// The curves as an SVG figure.
 pub fn svg(app_state: &AppState) -> String {
     use figures::{Axis, Figure, Guide, Panel, Series};
     let fleet = app_state.fleet();

@@ -1,4 +1,4 @@
-//! Pictures and films of what is seen.
+//! Pictures and films of the view.
 
 use super::LabApp;
 use crate::exporter::{ExportJob, ExportTarget, FrameSpec, RATE};
@@ -21,26 +21,26 @@ pub(crate) struct FilmCapture {
 }
 
 impl FilmCapture {
-    /// How far it is, in words.
+    /// Its progress, in words.
     pub(crate) fn words(&self, waiting: usize) -> String {
         format!("{}: {}, {waiting} waiting", self.path.display(), counted(self.frames, "frame"))
     }
 }
 
 impl LabApp {
-    /// What is seen now, for a picture `size` large.
+    /// The current view, for a picture of `size` pixels.
     pub(crate) fn shot(&self, record: &Arc<vocabulary::StepRecord>, size: [u32; 2]) -> Option<FrameSpec> {
         let fleet = self.app_state.fleet()?;
         let scale = (f64::from(size[1]) / 720.0).max(0.5);
         Some(FrameSpec {
             record: Arc::clone(record),
             layout: self.viewport.layout(fleet, record),
-            style: self.viewport.dressed(&self.app_state, record, scale),
+            style: self.viewport.annotated_style(&self.app_state, record, scale),
             words: self.app_state.words(),
         })
     }
 
-    /// What a film shows now: what is seen, or the view that was chosen for it, without what only the hand needs.
+    /// The frame of a film: the current view or the view chosen for films, without handles.
     pub(crate) fn film_shot(&self, record: &Arc<vocabulary::StepRecord>) -> Option<FrameSpec> {
         let shot = self.shot(record, [1280, 720])?;
         let Some(view) = &self.app_state.film_from else { return Some(shot) };
@@ -80,7 +80,7 @@ impl LabApp {
             let picture = vocabulary::Picture { width, height, rgba };
             let texts = [("Software", studies::PROGRAM)];
             let written = film::png::write(&path, &picture, &texts);
-            // A window that is closed does not wait for it.
+            // A closing window does not wait for it.
             let _ = sender.send(match written {
                 Ok(()) => Ok(format!("Written: {}", path.display())),
                 Err(error) => Err(error.to_string()),
@@ -105,13 +105,13 @@ impl LabApp {
     pub(crate) fn end_film(&mut self) {
         if let Some(film) = self.film.take() {
             if film.frames == 0 {
-                self.app_state.note("Nothing was filmed: the run stood still");
+                self.app_state.note("Nothing was filmed: the run was paused");
             }
             self.exporter.ask(ExportJob::End);
         }
     }
 
-    /// Frames of a film that are due, at even steps of simulated time whatever the window's pace.
+    /// Requests the frames of a film that are due, at even steps of simulated time at any pace.
     pub(crate) fn film_on(&mut self) {
         let Some(mut film) = self.film.take() else { return };
         let Some(history) = &self.app_state.history else { return };
@@ -138,7 +138,7 @@ impl LabApp {
     }
 }
 
-/// Where a picture was taken from, in the words of `--view`.
+/// The view of a picture, in the syntax of `--view`.
 fn words_of(layout: &rendering::ViewLayout, named: &str) -> String {
     match layout.views.first() {
         Some(rendering::Viewpoint::Fixed { eye, target, field_of_view }) => {

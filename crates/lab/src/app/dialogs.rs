@@ -1,43 +1,43 @@
-//! Draws what lies over the panels: notices, the menu of scenes, shortcuts, hints, questions.
+//! Draws what covers the panels: notices, the list of scenes, shortcuts, hints and questions.
 
 use super::{BARE, LabApp};
 use crate::action::Action;
 use crate::panels::on_click;
 use eframe::egui::{self, Context, Ui};
 
-/// What lies over the view.
+/// What covers the view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Dialog {
     /// Nothing.
     #[default]
     Nothing,
-    /// The menu of scenes.
+    /// The list of scenes.
     Gallery,
     /// The shortcuts.
     Help,
-    /// The question before unsaved work is closed.
+    /// The question before closing with unsaved changes.
     Closing,
-    /// The question before another scene takes the place of unsaved work.
+    /// The question before another scene replaces unsaved changes.
     Leaving,
 }
 
 impl LabApp {
-    /// A line under the bar: work that a crash has left.
+    /// Shows the offer to restore unsaved work, in a line under the bar.
     pub(crate) fn notices(&mut self, ui: &mut Ui, out: &mut Vec<Action>) {
         if let Some(left) = &self.left {
             let name =
                 left.path.as_ref().map_or_else(|| "a scene".to_owned(), |path| path.display().to_string());
             egui::Panel::top("left").frame(BARE).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
-                    ui.label(format!("Unsaved work on {name} was left when Echelon ended last time."));
-                    on_click(&ui.button("Go on with it"), Action::Recover, out);
-                    on_click(&ui.button("Forget it"), Action::Forget, out);
+                    ui.label(format!("The last session ended with unsaved changes to {name}."));
+                    on_click(&ui.button("Restore them"), Action::Recover, out);
+                    on_click(&ui.button("Discard them"), Action::Forget, out);
                 });
             });
         }
     }
 
-    /// What went wrong, over the view, so that nothing moves under the pointer.
+    /// Shows an error over the view, so that nothing moves under the pointer.
     fn show_notice(&self, ctx: &Context, out: &mut Vec<Action>) {
         let Some(notice) = self.app_state.notice.clone() else { return };
         let view = self.viewport.rect;
@@ -59,7 +59,7 @@ impl LabApp {
             });
     }
 
-    /// Windows over the view.
+    /// Shows the windows over the view.
     pub(crate) fn windows(&mut self, ctx: &Context, out: &mut Vec<Action>) {
         let mut open = true;
         let window = |name: &'static str| {
@@ -105,10 +105,10 @@ impl LabApp {
             .default_width(300.0)
             .show(ctx, |ui| {
                 ui.label(
-                    "1.  Drag the bright ring: the set point moves, and the thin lines show the future.",
+                    "1.  Drag the bright ring: the set point moves, and the thin lines show the prediction.",
                 );
-                ui.label("2.  Drag ε in the panel Observer, then press Shift Home, and watch it peak.");
-                ui.label("3.  Drag back on the line of time, change a gain, and play: a branch.");
+                ui.label("2.  Drag ε in the panel Observer, press Shift Home, and watch it peak.");
+                ui.label("3.  Drag back on the timeline, change a gain, and play: this makes a branch.");
                 if ui.button("Got it").clicked() {
                     self.hints = false;
                 }
@@ -117,7 +117,7 @@ impl LabApp {
     }
 
     fn ask_before_closing(&mut self, ctx: &Context, out: &mut Vec<Action>) {
-        let answers = ["Save and close", "Close without saving", "Stay"];
+        let answers = ["Save and close", "Close without saving", "Cancel"];
         let [save, close, stay] = ask_about_changes(ctx, answers);
         if close {
             self.autosave.done();
@@ -135,7 +135,7 @@ impl LabApp {
     }
 
     fn ask_before_leaving(&mut self, ctx: &Context, out: &mut Vec<Action>) {
-        let [save, go, stay] = ask_about_changes(ctx, ["Save and open", "Open without saving", "Stay"]);
+        let [save, go, stay] = ask_about_changes(ctx, ["Save and open", "Open without saving", "Cancel"]);
         if save || go || stay {
             self.dialog = Dialog::Nothing;
             let next = self.next.take();
@@ -146,17 +146,17 @@ impl LabApp {
                 draft.abandon();
             }
             if !stay {
-                // Where saving failed, the question comes again.
+                // If saving failed, the question is asked again.
                 out.extend(next);
             }
         }
     }
 }
 
-/// Asks what becomes of changes that are not saved; which of the answers is given.
+/// Asks what to do with unsaved changes; which of the answers was clicked.
 fn ask_about_changes(ctx: &Context, answers: [&str; 3]) -> [bool; 3] {
     let asked = egui::Modal::new(egui::Id::unique("unsaved")).show(ctx, |ui| {
-        ui.label("The scene has changes that are not saved.");
+        ui.label("The scene has unsaved changes.");
         ui.horizontal(|ui| answers.map(|answer| ui.button(answer).clicked())).inner
     });
     asked.inner

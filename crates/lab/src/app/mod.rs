@@ -1,4 +1,4 @@
-//! The window itself: it hears events, shows panels, and does what is asked for.
+//! The window itself: it receives events, shows panels and carries out actions.
 
 mod capture;
 mod dialogs;
@@ -45,7 +45,7 @@ pub(crate) struct LabApp {
     pub(crate) dialog: Dialog,
     pub(crate) hints: bool,
     title: String,
-    /// What waits for an answer about unsaved work.
+    /// The action that waits for the answer about unsaved changes.
     pub(crate) next: Option<Action>,
     pub(crate) recent: Vec<PathBuf>,
     pub(crate) autosave: Autosave,
@@ -60,7 +60,7 @@ pub(crate) struct LabApp {
     pub(crate) print: bool,
 }
 
-/// What the window remembers between starts.
+/// What the window remembers between sessions.
 #[derive(serde::Serialize, serde::Deserialize, Default)]
 struct Memory {
     tree: Option<Tree<Pane>>,
@@ -69,7 +69,7 @@ struct Memory {
     scale: Option<f32>,
 }
 
-/// A word from a thread: what was done, or why it could not be.
+/// A message from a thread: what was done, or why it failed.
 type Word = Result<String, String>;
 
 impl LabApp {
@@ -117,7 +117,7 @@ impl LabApp {
             print: options.timings,
         };
         if let Some([width, height]) = options.size {
-            // A size that was asked for comes before the one that is remembered.
+            // A requested size takes precedence over the remembered one.
             ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(egui::vec2(width, height)));
         }
         lab.app_state.playing = !options.paused;
@@ -132,12 +132,12 @@ impl LabApp {
             None => self.open_shipped(gallery::FIRST),
         }
         if let Some(fault) = self.app_state.notice.as_ref().filter(|_| self.app_state.draft.is_none()) {
-            // Whoever started it from a terminal looks there first.
+            // Users who start it from a terminal look there first.
             let _ = writeln!(std::io::stderr(), "error: {fault}");
         }
         if !options.set.is_empty() && self.app_state.draft.is_some() {
             let set = options.set.clone();
-            self.app_state.edit("Changes of the command line", |text| {
+            self.app_state.edit("Changes from the command line", |text| {
                 set.iter().try_for_each(|set| {
                     let (path, value) = set.parts();
                     text.set(path, value)
@@ -153,7 +153,7 @@ impl LabApp {
                     self.keep_run(branch, SeenRun { samples, digest });
                 }
                 RunEvent::Opened { .. } => {
-                    // Another run, or the same from the start: a film goes forward only.
+                    // Another run, or the same from the start: time in a film only increases.
                     self.end_film();
                     self.app_state.handle_event(run_event);
                 }
@@ -166,7 +166,7 @@ impl LabApp {
                 self.app_state.prediction = Some(prediction);
             }
         }
-        while let Some(told) = self.exporter.told() {
+        while let Some(told) = self.exporter.next_event() {
             match told {
                 ExportEvent::Written(path) => self.app_state.note(format!("Written: {}", path.display())),
                 ExportEvent::Failed(why) => {
@@ -188,7 +188,7 @@ impl LabApp {
         self.keep_work();
     }
 
-    /// Sends what the state has requested.
+    /// Sends the pending requests of the state.
     fn send(&mut self) {
         for request in self.app_state.requests.drain(..) {
             self.runner.request(request);
@@ -227,7 +227,7 @@ impl LabApp {
         let tree = &mut self.tree;
         egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| {
             let room = ui.available_size();
-            // In a window as small as a hand there is room for the view alone.
+            // A tiny window has room for the view only.
             if room.x < LEAST.x || room.y < LEAST.y {
                 (panels.view)(ui, panels.out);
             } else {
@@ -251,7 +251,7 @@ impl LabApp {
                 self.viewport.style.detections = now.is_some();
             }
             Action::Element(name, on) => {
-                // The names are the panel's own.
+                // The names are those of the panel.
                 let _ = self.viewport.style.set(name, on);
             }
             Action::Open(_) | Action::OpenShipped(_) if self.app_state.unsaved() => {
@@ -269,11 +269,11 @@ impl LabApp {
             Action::WindowPicture => self.window_picture(),
             Action::Film if self.film.is_some() => self.end_film(),
             Action::Film if self.app_state.recorded => {
-                self.app_state.fault("A recorded run is filmed by: echelon replay RUN --film FILE");
+                self.app_state.fault("To film a recorded run, use: echelon replay RUN --film FILE");
             }
             Action::Film => self.begin_film(),
             Action::KeepRun if self.app_state.recorded => {
-                self.app_state.fault("This run is recorded already");
+                self.app_state.fault("This run is a recording already");
             }
             Action::KeepRun => self.app_state.requests.push(RunRequest::Summarize(self.app_state.branch)),
             Action::CurvesCsv => self.write_curves("csv", &quantities::csv(&self.app_state)),
@@ -291,7 +291,7 @@ impl LabApp {
         }
     }
 
-    /// The window is called as its scene.
+    /// Sets the window's title to that of its scene.
     fn name_window(&mut self, ctx: &Context) {
         let title = self.app_state.scene().map_or_else(String::new, |scene| scene.title.clone());
         if title != self.title {
@@ -309,14 +309,14 @@ impl LabApp {
             (self.dialog, self.hints) = (Dialog::Nothing, false);
         } else if self.app_state.notice.is_some() {
             self.app_state.notice = None;
-        } else if self.app_state.tool != Tool::Hand {
-            self.app_state.tool = Tool::Hand;
+        } else if self.app_state.tool != Tool::Select {
+            self.app_state.tool = Tool::Select;
         } else {
             self.app_state.selection = Selection::Nothing;
         }
     }
 
-    /// Somebody ended the program from outside: unsaved work is put on disk and offered at the next start.
+    /// The program was terminated from outside: writes unsaved work, which the next start offers.
     fn interrupted(&mut self, ctx: &Context) {
         if let Some(draft) = self.app_state.draft.take().filter(SceneDraft::unsaved)
             && let Err(why) = self.autosave.keep(draft.text(), draft.path.as_deref())
@@ -326,18 +326,18 @@ impl LabApp {
         self.end(ctx, Error::Interrupted);
     }
 
-    /// Closes the window, and keeps why.
+    /// Closes the window and keeps the reason.
     fn end(&self, ctx: &Context, why: Error) {
         *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
         ctx.send_viewport_cmd(egui::ViewportCommand::Close);
     }
 }
 
-/// The window is cleared in the colour of panels; to paint it once more costs as much as the robots on a processor.
+/// The window is cleared in the colour of panels. On a CPU, painting it again would cost as much as the robots.
 pub(crate) const BARE: egui::Frame =
     egui::Frame { inner_margin: egui::Margin::symmetric(6, 2), ..egui::Frame::NONE };
 
-/// Room for panels, points.
+/// Size of the panel area, points.
 const LEAST: egui::Vec2 = egui::vec2(560.0, 340.0);
 
 impl eframe::App for LabApp {
@@ -356,9 +356,7 @@ impl eframe::App for LabApp {
             self.act(Action::Open(file.path().to_owned()));
         }
         if let Some(why) = self.viewport.gpu.lost() {
-            let text = format!(
-                "the graphics device is gone: {why}; unsaved work is kept and offered at the next start"
-            );
+            let text = format!("the graphics device was lost: {why}; the next start offers unsaved work");
             self.app_state.draft = None;
             self.end(ctx, Error::Window(text));
         }
@@ -404,7 +402,7 @@ impl eframe::App for LabApp {
     fn on_exit(&mut self) {
         self.end_film();
         if self.exporter.waiting() > 1 {
-            // Where nobody reads it, the film is finished all the same.
+            // Without a reader the film is finished all the same.
             let _ = writeln!(
                 std::io::stderr(),
                 "finishing the film: {} to draw",

@@ -1,4 +1,4 @@
-//! What actions mean for the scene and its run. Files, pictures and the window itself are the window's.
+//! Actions on the scene and its run. The window handles files, pictures and itself.
 
 use super::{AppState, Tool};
 use crate::action::Action;
@@ -9,7 +9,7 @@ use crate::session::scene_draft::SceneDraft;
 use scene::Role;
 use vocabulary::{Relative, wrap};
 
-/// Where a new follower may stand behind its leader: m, degrees.
+/// Candidate set points of a new follower: m, degrees.
 const PLACES: [[f64; 2]; 8] = [
     [2.0, -135.0],
     [2.0, 135.0],
@@ -20,10 +20,10 @@ const PLACES: [[f64; 2]; 8] = [
     [6.0, -135.0],
     [6.0, 135.0],
 ];
-/// Mirror images may be this far apart, m and rad.
+/// Tolerance of a mirror image, m and rad.
 const ALIKE: [f64; 2] = [0.05, 0.09];
 
-/// Whether an action asks for another scene.
+/// Whether an action edits the scene.
 fn changes_the_scene(action: &Action) -> bool {
     matches!(
         action,
@@ -43,7 +43,7 @@ fn changes_the_scene(action: &Action) -> bool {
 }
 
 impl AppState {
-    /// Does what can be done without files and without a window; whether that was all.
+    /// Carries out an action that needs no files and no window; whether it was one.
     pub fn act(&mut self, action: &Action) -> bool {
         match action {
             Action::Toggle if self.playing => self.pause(),
@@ -67,11 +67,11 @@ impl AppState {
                     face.name.clone_from(name);
                 }
             }
-            Action::Choose(selection) => self.selection = *selection,
+            Action::Select(selection) => self.selection = *selection,
             Action::ForAll(all) => self.for_all = *all,
             Action::Mirror(on) => self.mirror = *on,
             Action::FilmFrom(view) => self.film_from.clone_from(view),
-            Action::Take(tool) => self.tool = if self.tool == *tool { Tool::Hand } else { *tool },
+            Action::UseTool(tool) => self.tool = if self.tool == *tool { Tool::Select } else { *tool },
             Action::Ahead(seconds) => {
                 self.ahead = seconds.clamp(0.0, 60.0);
                 self.requests.push(RunRequest::Ahead(self.ahead));
@@ -80,13 +80,13 @@ impl AppState {
                 }
             }
             Action::Restart => self.restart(0.0),
-            Action::Rest => self.rest(),
+            Action::Release => self.rest(),
             _ => return self.edit_scene(action),
         }
         true
     }
 
-    /// Does what changes the scene; whether that was it.
+    /// Carries out an action that edits the scene; whether it was one.
     fn edit_scene(&mut self, action: &Action) -> bool {
         if changes_the_scene(action) {
             self.leave_recording();
@@ -100,14 +100,14 @@ impl AppState {
             Action::AddRobot => self.add_robot(),
             Action::RemoveRobot(name) => self.remove_robot(name),
             Action::RenameRobot(old, new) => {
-                let done = self.edit(&format!("{old} is called {new}"), |text| text.rename_robot(old, new));
+                let done = self.edit(&format!("{old} renamed to {new}"), |text| text.rename_robot(old, new));
                 if done && self.chosen.as_ref() == Some(old) {
                     self.chosen = Some(new.clone());
                 }
             }
             Action::AddProp(kind, place) => self.add_prop(kind, *place),
             Action::RemoveProp(name) => {
-                self.edit(&format!("Without {name}"), |text| text.remove_item("props", name));
+                self.edit(&format!("Removed {name}"), |text| text.remove_item("props", name));
             }
             Action::Undo => self.undo(),
             Action::Redo => self.redo(),
@@ -146,7 +146,7 @@ impl AppState {
 
     fn redo(&mut self) {
         if self.in_the_past() {
-            return self.note("Nothing was taken back here: what came later is on the branch that has it");
+            return self.note("Nothing was undone here: later changes stay on their branch");
         }
         let step = self.draft.as_mut().and_then(SceneDraft::redo);
         if let Some((what, effect)) = step {
@@ -158,7 +158,7 @@ impl AppState {
         self.edit(what, |text| values.iter().try_for_each(|(path, value)| text.set(path, value)));
     }
 
-    /// Sets a value of the follower that is selected, or of all followers; `None` is the default.
+    /// Sets a value of the selected follower or of all followers; `None` restores the default.
     fn tune(&mut self, what: &str, key: &str, value: Option<&str>) {
         let all = self.for_all;
         let Some((_, _, name, _)) = self.tuned_follower() else { return };
@@ -173,7 +173,7 @@ impl AppState {
         };
         self.edit(&what, |text| {
             if all {
-                // What single robots and groups say of it would stand before what holds for all.
+                // Values of single robots and groups would override the common value.
                 for name in &followers {
                     text.remove(&format!("robots.{name}.{key}"))?;
                 }
@@ -189,7 +189,7 @@ impl AppState {
         });
     }
 
-    /// Moves a set point, and its mirror image where that is wanted.
+    /// Moves a set point, and its mirror image if that is enabled.
     fn move_set_point(&mut self, edge: usize, [distance, bearing]: [f64; 2]) {
         let Some([_, name_and]) = self.names_of(edge) else { return };
         let before = self.set_point(edge);
@@ -233,7 +233,7 @@ impl AppState {
             Some((edge, [distance * scale, wrap(bearing + turn)]))
         };
         let moves: Vec<_> = (0..edges).filter_map(moved).collect();
-        self.put_set_points("The whole formation…", &moves);
+        self.put_set_points("Whole formation…", &moves);
     }
 
     /// Names of leader and follower of an edge.
@@ -243,7 +243,7 @@ impl AppState {
         Some([fleet.robots.get(ends.leader)?.name.clone(), fleet.robots.get(ends.follower)?.name.clone()])
     }
 
-    /// Lets one robot follow another, from where it is now.
+    /// Lets one robot follow another at its current distance and bearing.
     fn connect(&mut self, leader: usize, follower: usize) {
         let Some(scene) = self.scene().cloned() else { return };
         let (Some(ahead), Some(behind)) = (scene.robots.get(leader), scene.robots.get(follower)) else {
@@ -317,7 +317,7 @@ impl AppState {
             return self
                 .fault(format!("{name} stays: {them} {verb} it. Connect {them} to another robot first."));
         }
-        self.edit(&format!("Without {name}"), |text| text.remove_item("robots", name));
+        self.edit(&format!("Removed {name}"), |text| text.remove_item("robots", name));
     }
 
     fn add_prop(&mut self, kind: &str, [x, y]: [f64; 2]) {
@@ -335,7 +335,7 @@ impl AppState {
     }
 }
 
-/// A change in few words: what holds for several robots is said once.
+/// A short description of a change: equal values of several robots are listed once.
 pub fn words(change: &BranchChange) -> String {
     let mut said: Vec<(String, Vec<&str>)> = Vec::new();
     for set in &change.set {
@@ -354,7 +354,7 @@ pub fn words(change: &BranchChange) -> String {
     said.into_iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// A value as people say it: angles in degrees, numbers short.
+/// A value for people: angles in degrees, numbers short.
 fn said_of(key: &str, value: &str) -> String {
     match value.parse::<f64>() {
         Ok(angle) if key == "bearing" => format!("bearing = {}°", fixed(angle.to_degrees(), 1)),
@@ -376,7 +376,7 @@ fn seen_from(pose: vocabulary::Pose, [distance, bearing]: [f64; 2]) -> [f64; 2] 
     pose.polar(distance, bearing.to_radians())
 }
 
-/// The circle that would close if `follower` followed `leader`, in names.
+/// Names on the cycle that would arise if `follower` followed `leader`.
 fn circle(scene: &scene::Scene, leader: usize, follower: usize) -> Option<String> {
     let wanted = &scene.robots.get(follower)?.name;
     let mut names = vec![wanted.clone()];

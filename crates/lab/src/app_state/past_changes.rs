@@ -1,5 +1,5 @@
-//! What a scene's own changes have done by some time, written into the scene as if it had always been so: a hand that
-//! takes hold of a run goes on from what is, not from what was.
+//! Writes those changes of a scene that are past at some time into its values: an edit during a run continues from the
+//! current values, not from the initial ones.
 
 use scene::{EditError, Scene, SceneText};
 
@@ -16,7 +16,7 @@ impl PastChanges {
         Self { set: due.flat_map(|change| change.set.iter().cloned()).collect(), time }
     }
 
-    /// Writes them where they hold from the start on, and takes them out of the changes.
+    /// Writes them as initial values and removes them from the changes.
     ///
     /// # Errors
     /// Why the text cannot be edited.

@@ -1,4 +1,4 @@
-//! The branches of the run: their names, their changes, and a line for each in time.
+//! The branches of the run: their names and their changes.
 
 use super::{naming, on_click};
 use crate::action::Action;
@@ -8,7 +8,7 @@ use eframe::egui::{self, RichText, Role, Ui, WidgetInfo};
 
 /// All branches.
 pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let fork = ui.button("Branch here").on_hover_text("Leave this branch at the time you look at (B)");
+    let fork = ui.button("Branch here").on_hover_text("Fork this branch at the time shown (B)");
     on_click(&fork, Action::Fork, out);
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         for (index, branch) in app_state.branches.iter().enumerate() {
@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
             }
             if let Some((parent, time)) = branch.parent {
                 let from = app_state.branches.get(parent).map_or("", |parent| &parent.name);
-                ui.weak(format!("leaves {from} at {} s", fixed(time, 2)));
+                ui.weak(format!("forks from {from} at {} s", fixed(time, 2)));
             }
             let own = branch.parent.map_or(0.0, |(_, time)| time);
             for change in branch.changes.iter().filter(|change| change.time >= own) {

@@ -1,4 +1,4 @@
-//! Rows with a symbol, a slider and a way back to the default.
+//! Rows with a symbol, a slider and a reset to the default.
 
 use super::{pair, tune};
 use crate::action::Action;
@@ -6,30 +6,30 @@ use crate::numbers::toml_number;
 use crate::symbols::Symbol;
 use eframe::egui::{self, Slider, Ui};
 
-/// How a slider goes.
+/// Range and scale of a slider.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Range {
-    /// Least and largest value on the slider; more can be typed.
+    /// Limits of the slider; other values can be typed.
     pub(crate) span: [f64; 2],
-    /// Least and largest value at all.
+    /// Limits of typed values.
     pub(crate) hard: [f64; 2],
-    /// Whether it goes by factors.
+    /// Whether the scale is logarithmic.
     pub(crate) logarithmic: bool,
 }
 
 impl Range {
-    /// Steps of the same size.
+    /// A linear scale.
     pub(crate) const fn linear(low: f64, high: f64) -> Self {
         Self { span: [low, high], hard: [low, f64::INFINITY], logarithmic: false }
     }
 
-    /// Steps by the same factor.
+    /// A logarithmic scale.
     pub(crate) const fn factors(low: f64, high: f64) -> Self {
         Self { span: [low, high], hard: [f64::MIN_POSITIVE, f64::INFINITY], logarithmic: true }
     }
 }
 
-/// A quantity of the scene behind a slider.
+/// A slider for a quantity of the scene.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SliderRow {
     pub(crate) symbol: Symbol,
@@ -40,19 +40,19 @@ pub(crate) struct SliderRow {
 }
 
 impl SliderRow {
-    /// Of a quantity under a key of the scene.
+    /// A slider for the quantity at a key of the scene.
     pub(crate) const fn new(symbol: Symbol, key: &'static str, range: Range, decimals: usize) -> Self {
         Self { symbol, key, range, decimals }
     }
 
-    /// A row for one value; the default is shown beside the way back to it.
+    /// A row for one value and its default.
     pub(crate) fn one(&self, ui: &mut Ui, value: f64, default: f64, out: &mut Vec<Action>) {
         self.frame(ui, value != default, &toml_number(default), out, |ui, out| {
             self.edit(ui, value, self.symbol.name, out, toml_number);
         });
     }
 
-    /// A row for a pair: one slider where both are the same and nobody wants them apart, else two.
+    /// A row for a pair: one slider if both are equal and `apart` is not set, else two.
     pub(crate) fn two(
         &self,
         ui: &mut Ui,
@@ -68,14 +68,14 @@ impl SliderRow {
             }
             ui.vertical(|ui| {
                 let [distance, bearing] =
-                    ["distance", "bearing"].map(|of| format!("{} of the {of}", self.symbol.name));
+                    ["distance", "bearing"].map(|of| format!("{} for {of}", self.symbol.name));
                 self.edit(ui, value[0], &distance, out, |new| pair([new, value[1]]));
                 self.edit(ui, value[1], &bearing, out, |new| pair([value[0], new]));
             });
         });
     }
 
-    /// A slider for a value, which `toml` writes as the value of the key.
+    /// A slider for a value; `toml` formats a new one for the scene.
     fn edit(
         &self,
         ui: &mut Ui,
@@ -130,7 +130,7 @@ impl SliderRow {
             .logarithmic(self.range.logarithmic)
             .max_decimals(self.decimals)
             .suffix(suffix)
-            // Beyond the slider, numbers can be typed.
+            // Numbers beyond the slider can be typed.
             .clamping(egui::SliderClamping::Never);
         if self.range.logarithmic {
             slider = slider.smallest_positive(low.max(1e-9));
@@ -144,9 +144,9 @@ impl SliderRow {
     }
 }
 
-/// Tells when a slider is let go.
+/// Emits an action when a slider is released.
 pub(crate) fn released(response: &egui::Response, out: &mut Vec<Action>) {
     if response.drag_stopped() || response.lost_focus() {
-        out.push(Action::Rest);
+        out.push(Action::Release);
     }
 }

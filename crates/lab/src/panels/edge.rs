@@ -1,6 +1,6 @@
 //! The selected edge: its set point in numbers, and the shape of the whole formation.
 
-use super::nobody;
+use super::empty_panel;
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::numbers::fixed;
@@ -13,7 +13,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let Some((edge, (_, name, follow))) =
         app_state.chosen_edge().and_then(|e| Some((e, app_state.follower(e)?)))
     else {
-        return nobody(ui, app_state, "Click a follower or its edge.");
+        return empty_panel(ui, app_state, "Click a follower or its edge.");
     };
     ui.label(RichText::new(format!("{} → {name}", follow.leader)).strong());
     let state = app_state.shown().and_then(|record| record.edges.get(edge).copied());
@@ -46,7 +46,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         (&follow.distance, &follow.bearing),
         (ScalarTrajectory::Constant(_), ScalarTrajectory::Constant(_))
     ) {
-        ui.weak("It moves in time; what you set here stays.");
+        ui.weak("This set point changes over time; a value set here is constant.");
     }
     let mut mirror = app_state.mirror;
     let tip = "The follower on the other side of the same leader moves too";
@@ -56,7 +56,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     if app_state.mirror
         && app_state.set_point(edge).is_some_and(|place| app_state.twin(edge, place).is_none())
     {
-        ui.weak("Nobody stands at its mirror image.");
+        ui.weak("No follower is at its mirror image.");
     }
     if let Some(state) = state {
         ui.weak(format!("error {} m, {}°", fixed(state.error[0], 3), fixed(state.error[1].to_degrees(), 2)));
@@ -81,13 +81,13 @@ fn shape(ui: &mut Ui, out: &mut Vec<Action>) {
         ] {
             if ui.button(text).on_hover_text(tip).clicked() {
                 out.push(Action::Shape { scale, turn: f64::to_radians(turn) });
-                out.push(Action::Rest);
+                out.push(Action::Release);
             }
         }
     });
 }
 
-/// What the prediction says of the edge.
+/// What the prediction tells about the edge.
 fn ahead(ui: &mut Ui, app_state: &AppState, edge: usize) {
     let Some(prediction) = app_state.prediction.as_ref().filter(|ahead| ahead.branch == app_state.branch)
     else {

@@ -1,4 +1,4 @@
-//! What is drawn, and pictures and films of it.
+//! Films, pictures and the elements that they show.
 
 use super::on_click;
 use crate::action::Action;
@@ -6,9 +6,9 @@ use crate::app_state::AppState;
 use eframe::egui::{self, Slider, Ui, WidgetInfo};
 use rendering::Style;
 
-/// Elements that a person may want to switch, and what they are.
+/// Elements that can be switched, with their labels.
 const ELEMENTS: [(&str, &str); 10] = [
-    ("ribbons", "Ribbons where robots drove"),
+    ("ribbons", "Ribbons along driven paths"),
     ("ghosts", "Ghosts of past poses"),
     ("set-points", "Rings at set points"),
     ("edges", "Edges"),
@@ -20,14 +20,18 @@ const ELEMENTS: [(&str, &str); 10] = [
     ("shadows", "Shadows"),
 ];
 
-/// Films, pictures and what they show.
+/// Films, pictures and their elements.
 pub fn show(ui: &mut Ui, app_state: &AppState, style: &Style, filming: Option<&str>, out: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let text = if filming.is_some() { "■ End the film" } else { "● Film" };
         for (text, tip, action) in [
-            (text, "An MP4 of what is seen, every moment of it (F)", Action::Film),
-            ("Picture", "A PNG that remembers its settings (P)", Action::Picture),
-            ("Keep the run", "The run as a scene with its changes, and its tables", Action::KeepRun),
+            (text, "An MP4 of the view, without lost frames (F)", Action::Film),
+            ("Picture", "A PNG with the scene, the time and the view embedded (P)", Action::Picture),
+            (
+                "Keep the run",
+                "Write the run to a folder: the scene with its changes, and the tables (K)",
+                Action::KeepRun,
+            ),
         ] {
             on_click(&ui.button(text).on_hover_text(tip), action, out);
         }
@@ -56,7 +60,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, style: &Style, filming: Option<&s
     });
 }
 
-/// The view that films are taken from.
+/// The box to choose the view of films.
 fn from(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let robots = app_state.fleet().map_or(&[][..], |fleet| &fleet.robots);
     let now = app_state.film_from.as_deref().unwrap_or(SEEN);
@@ -80,5 +84,5 @@ fn from(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     });
 }
 
-/// What is filmed if nothing else is chosen.
-const SEEN: &str = "what is seen";
+/// The default view of films.
+const SEEN: &str = "the current view";

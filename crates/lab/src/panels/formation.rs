@@ -1,4 +1,4 @@
-//! The tree of robots: who follows whom. Drag a robot onto the one that it shall follow.
+//! The tree of leaders and followers. Dragging a robot onto another makes that its leader.
 
 use super::{colour, menu_item, naming, nothing, on_click};
 use crate::action::Action;
@@ -6,7 +6,7 @@ use crate::app_state::{AppState, Selection, Tool};
 use eframe::egui::{self, RichText, Role, Sense, Ui, WidgetInfo};
 use vocabulary::{FleetInfo, StepRecord};
 
-/// Robots as a tree.
+/// The tree of robots.
 pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let Some(fleet) = app_state.fleet() else {
         return nothing(ui, "No scene is open.");
@@ -15,9 +15,9 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         let add = ui.button("+ Robot").on_hover_text("A robot that follows the selected one (Insert)");
         on_click(&add, Action::AddRobot, out);
         let connects = app_state.tool == Tool::Connect;
-        let tip = "Drag in the view from a robot to the one that it shall follow (C)";
+        let tip = "Drag in the view from a robot to its new leader (C)";
         let label = ui.selectable_label(connects, "Connect").on_hover_text(tip);
-        on_click(&label, Action::Take(Tool::Connect), out);
+        on_click(&label, Action::UseTool(Tool::Connect), out);
     });
     let record = app_state.shown();
     let rows = order(fleet);
@@ -67,7 +67,7 @@ fn row(
                 let text = format!("{} m", crate::numbers::fixed(error[0], 2));
                 let weak = RichText::new(text).small();
                 let text = if size > 0.05 { weak.color(ui.visuals().warn_fg_color) } else { weak.weak() };
-                ui.label(text).on_hover_text("Error of the distance");
+                ui.label(text).on_hover_text("Distance error");
             }
             label
         })
@@ -83,7 +83,7 @@ fn row(
         let stroke = ui.visuals().selection.stroke;
         ui.painter().rect_stroke(response.rect, 3.0, stroke, egui::StrokeKind::Inside);
     }
-    on_click(&response, Action::Choose(Selection::Robot(robot)), out);
+    on_click(&response, Action::Select(Selection::Robot(robot)), out);
     if response.double_clicked() {
         out.push(Action::Follow(Some(robot)));
     }

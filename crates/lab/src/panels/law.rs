@@ -1,7 +1,7 @@
 //! Law, gains and observer.
 
 use super::controls::{Range, SliderRow};
-use super::{choice, nobody, nothing, on_click, tune};
+use super::{choice, empty_panel, nothing, on_click, tune};
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::symbols;
@@ -24,10 +24,10 @@ const ALPHA_ONE: SliderRow =
 const ALPHA_TWO: SliderRow =
     SliderRow::new(symbols::ALPHA_TWO, "observer.alpha2", Range::factors(0.1, 10.0), 3);
 
-/// The law of the follower that is selected.
+/// The law of the selected follower.
 pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let Some((_, robot, name, follow)) = app_state.tuned_follower() else {
-        return nobody(ui, app_state, "Nobody follows: there is no law to tune.");
+        return empty_panel(ui, app_state, "There is no follower, so there is no law to tune.");
     };
     scope(ui, app_state, name, out);
     let kind = vehicle(app_state, robot);
@@ -48,25 +48,25 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     }
 }
 
-/// The observer of the follower that is selected.
+/// The observer of the selected follower.
 pub fn observer(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let Some((_, robot, name, follow)) = app_state.tuned_follower() else {
-        return nobody(ui, app_state, "Nobody follows: there is nothing to observe.");
+        return empty_panel(ui, app_state, "There is no follower, so there is nothing to observe.");
     };
     let looks = follow.sensing.kind != scene::SensingKind::Truth;
     if follow.law.kind != LawKind::OutputFeedback && !looks {
-        return nothing(ui, "This law is told the rates. Output feedback observes them.");
+        return nothing(ui, "This law knows the rates. Output feedback estimates them.");
     }
     scope(ui, app_state, name, out);
     let (observer, default) = (&follow.observer, Observer::fitting(vehicle(app_state, robot)));
     if looks {
         let mut adaptive = observer.adaptive;
-        if ui.checkbox(&mut adaptive, "ε follows from the noise of each look").changed() {
+        if ui.checkbox(&mut adaptive, "Adapt ε to the noise of each measurement").changed() {
             out.push(tune("Adaptive ε", "observer.adaptive", adaptive.to_string()));
-            out.push(Action::Rest);
+            out.push(Action::Release);
         }
         if observer.kind == ObserverKind::Unscented {
-            ui.weak("Two unscented Kalman filters stand in for the observer.");
+            ui.weak("Two unscented Kalman filters replace the observer.");
         }
     }
     ui.add_enabled_ui(!(looks && observer.adaptive), |ui| {
@@ -77,7 +77,7 @@ pub fn observer(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     if !(looks && observer.adaptive) {
         ui.weak(format!("Poles at {}", poles(observer)));
     }
-    let disturb = ui.button("Disturb it and begin again");
+    let disturb = ui.button("Disturb and restart");
     if disturb.on_hover_text("It starts 0.2 m and 10° off, and peaks like 1/ε").clicked() {
         out.push(Action::Set {
             what: "Observer starts 0.2 m and 10° off".to_owned(),
@@ -87,7 +87,7 @@ pub fn observer(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     }
 }
 
-/// Where the observer's poles are, in words.
+/// The observer's poles as text.
 fn poles(observer: &Observer) -> String {
     let one = |k: usize| {
         let [epsilon, a, b] = [observer.epsilon[k], observer.alpha1[k], observer.alpha2[k]];
@@ -111,7 +111,7 @@ fn short(value: f64) -> String {
     crate::numbers::fixed(value, digits)
 }
 
-/// Whether changes are for all followers or for one.
+/// The choice whether changes apply to all followers or to one.
 pub(crate) fn scope(ui: &mut Ui, app_state: &AppState, name: &str, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         on_click(&ui.selectable_label(app_state.for_all, "All followers"), Action::ForAll(true), out);
@@ -130,7 +130,7 @@ fn switching(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
             let label = ui.selectable_label(law.switching == kind, kind.word()).on_hover_text(tip);
             if label.clicked() && law.switching != kind {
                 out.push(tune("Switching term", "law.switching", format!("{:?}", kind.word())));
-                out.push(Action::Rest);
+                out.push(Action::Release);
             }
         }
     });

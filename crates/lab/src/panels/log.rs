@@ -15,7 +15,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         for event in &app_state.log {
             ui.horizontal_wrapped(|ui| {
                 let time = RichText::new(format!("{} s", fixed(event.time, 2))).monospace().weak();
-                on_click(&ui.link(time).on_hover_text("Look at this time"), Action::Seek(event.time), out);
+                on_click(&ui.link(time).on_hover_text("Go to this time"), Action::Seek(event.time), out);
                 let text = event.text.trim_end_matches('…');
                 if event.fault {
                     ui.colored_label(ui.visuals().error_fg_color, text);

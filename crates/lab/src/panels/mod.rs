@@ -1,4 +1,4 @@
-//! Panels: each shows part of the state and tells what a person asks for. None of them changes anything by itself.
+//! Panels: each shows part of the state and emits actions. None of them changes the state itself.
 
 pub mod branches;
 pub mod certificates;
@@ -20,14 +20,14 @@ use crate::numbers::toml_number;
 use eframe::egui::{self, Color32, ComboBox, Popup, PopupCloseBehavior, Response, TextEdit, Ui};
 use vocabulary::Word;
 
-/// Asks for something where a widget was clicked.
+/// Emits an action if a widget was clicked.
 pub(crate) fn on_click(widget: &Response, action: Action, out: &mut Vec<Action>) {
     if widget.clicked() {
         out.push(action);
     }
 }
 
-/// An item of a menu, which closes that.
+/// A menu item that emits an action and closes the menu.
 pub(crate) fn menu_item(ui: &mut Ui, enabled: bool, text: &str, action: Action, out: &mut Vec<Action>) {
     if ui.add_enabled(enabled, egui::Button::new(text)).clicked() {
         out.push(action);
@@ -35,7 +35,7 @@ pub(crate) fn menu_item(ui: &mut Ui, enabled: bool, text: &str, action: Action, 
     }
 }
 
-/// Says that there is nothing to show, and why.
+/// Shows why a panel is empty.
 pub(crate) fn nothing(ui: &mut Ui, why: &str) {
     ui.weak(why);
 }
@@ -43,7 +43,7 @@ pub(crate) fn nothing(ui: &mut Ui, why: &str) {
 /// A menu with a field for a name on top; the name once it is entered.
 pub(crate) fn naming(response: &Response, name: &str, more: impl FnOnce(&mut Ui)) -> Option<String> {
     let id = response.id.with("name");
-    // What was typed the last time is forgotten.
+    // Clears the text of the last time.
     if response.secondary_clicked() {
         response.ctx.data_mut(|data| data.remove::<String>(id));
     }
@@ -65,7 +65,7 @@ pub(crate) fn naming(response: &Response, name: &str, more: impl FnOnce(&mut Ui)
     entered?.inner.filter(|text| !text.is_empty() && text != name)
 }
 
-/// A box to choose one of `kinds` from, each with its name and what it is: the value of a key of the scene.
+/// A box to choose the value of a scene's key from `kinds`, each with its name and description.
 pub(crate) fn choice<K: Word>(
     ui: &mut Ui,
     name: &str,
@@ -81,14 +81,14 @@ pub(crate) fn choice<K: Word>(
             let label = ui.selectable_label(*kind == now, *shown).on_hover_text(*tip);
             if label.clicked() && *kind != now {
                 out.push(tune(name, key, format!("{:?}", kind.word())));
-                out.push(Action::Rest);
+                out.push(Action::Release);
             }
         }
     });
     chosen(&response.response, name, shown);
 }
 
-/// What a box to choose from is called, and what is chosen.
+/// Gives a box its accessible name and value.
 pub(crate) fn chosen(response: &Response, name: &str, now: &str) {
     response.widget_info(|| egui::WidgetInfo {
         current_text_value: Some(now.to_owned()),
@@ -96,15 +96,15 @@ pub(crate) fn chosen(response: &Response, name: &str, now: &str) {
     });
 }
 
-/// Lets a field have the keyboard if nothing else has it: what is typed into an open menu is text.
+/// Gives a field the keyboard focus if nothing else has it: keys typed into an open menu are text.
 pub(crate) fn take_focus(field: &Response, ui: &Ui) {
     if ui.memory(|memory| memory.focused().is_none()) {
         field.request_focus();
     }
 }
 
-/// Says that there is nothing to show: no scene, or because of this.
-pub(crate) fn nobody(ui: &mut Ui, app_state: &AppState, why: &str) {
+/// Shows why a panel is empty: no scene is open, or `why`.
+pub(crate) fn empty_panel(ui: &mut Ui, app_state: &AppState, why: &str) {
     nothing(ui, if app_state.scene().is_none() { "No scene is open." } else { why });
 }
 
@@ -114,7 +114,7 @@ pub(crate) fn colour(app_state: &AppState, robot: usize, ui: &Ui) -> Color32 {
     let colours = rendering::robot_colours(fleet);
     let leads = fleet.robots.get(robot).is_some_and(|member| member.leads);
     if leads && ui.visuals().dark_mode {
-        // Near-black would be lost, and the gold of its stripe is too near to the first follower's orange.
+        // Near-black would be invisible, and the gold of its stripe is too close to the first follower's orange.
         return Color32::from_rgb(0xe6, 0xe2, 0xd6);
     }
     let [r, g, b] = colours.get(robot).copied().unwrap_or([0.5; 3]).map(|c| (c * 255.0).round() as u8);
@@ -131,7 +131,7 @@ fn dim(channel: u8) -> u8 {
     (f32::from(channel) * 0.82) as u8
 }
 
-/// A change of one value of the follower that is selected, or of all.
+/// The action that sets one value of the selected follower or of all followers.
 pub(crate) fn tune(what: &str, key: &'static str, value: String) -> Action {
     Action::Tune { what: format!("{what}…"), key, value: Some(value) }
 }

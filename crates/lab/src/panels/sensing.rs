@@ -2,7 +2,7 @@
 
 use super::controls::{Range, SliderRow};
 use super::law::scope;
-use super::{choice, nobody};
+use super::{choice, empty_panel};
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::symbols;
@@ -11,10 +11,10 @@ use scene::{Sensing, SensingKind};
 use vocabulary::TrackingState;
 
 const KINDS: [(SensingKind, &str, &str); 4] = [
-    (SensingKind::Truth, "Truth", "Every follower is told distance and bearing."),
-    (SensingKind::Noise, "Noise", "Looks at the truth, with errors."),
-    (SensingKind::Geometric, "Tags", "Corners of tags, with errors; nothing is drawn."),
-    (SensingKind::Camera, "Camera", "Each follower's own pictures, drawn, searched for tags."),
+    (SensingKind::Truth, "Truth", "Followers know distance and bearing exactly."),
+    (SensingKind::Noise, "Noise", "The true values with noise."),
+    (SensingKind::Geometric, "Tags", "Projected corners of tags with noise; no images are rendered."),
+    (SensingKind::Camera, "Camera", "Detects tags in rendered images of each follower's camera."),
 ];
 
 const RATE: SliderRow = SliderRow::new(symbols::RATE, "sensing.rate", Range::factors(1.0, 100.0), 1);
@@ -25,10 +25,10 @@ const DISTANCE_NOISE: SliderRow =
 const PIXEL_NOISE: SliderRow =
     SliderRow::new(symbols::PIXEL_NOISE, "sensing.pixel_noise", Range::linear(0.0, 2.0), 3);
 
-/// Sensing of the follower that is selected.
+/// Sensing of the selected follower.
 pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let Some((edge, _, name, follow)) = app_state.tuned_follower() else {
-        return nobody(ui, app_state, "Nobody follows: nobody has to see.");
+        return empty_panel(ui, app_state, "There is no follower, so nothing is sensed.");
     };
     scope(ui, app_state, name, out);
     let (sensing, default) = (&follow.sensing, Sensing::default());
@@ -46,14 +46,14 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     }
     if let Some(state) = app_state.record().and_then(|record| record.edges.get(edge).copied()) {
         let word = match state.sight {
-            TrackingState::Truth => "is told the truth",
+            TrackingState::Truth => "uses the true values",
             TrackingState::Waiting => "has not seen its leader yet",
             TrackingState::Tracking => "sees its leader",
-            TrackingState::Coasting => "coasts on what it believes",
+            TrackingState::Coasting => "coasts on its estimate",
             TrackingState::Lost => "has lost its leader",
         };
         ui.label(format!("{name} {word}"));
-        ui.weak(format!("last look {} ms ago", crate::numbers::fixed(state.age * 1e3, 0)));
+        ui.weak(format!("last measurement {} ms ago", crate::numbers::fixed(state.age * 1e3, 0)));
     }
-    ui.weak("A change of sensing runs the scene again from the start.");
+    ui.weak("Changing the sensing restarts the run.");
 }

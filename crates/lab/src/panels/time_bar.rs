@@ -1,4 +1,4 @@
-//! Play, pace, time, and the line on which to go back and forth, with a row for each branch.
+//! The bar at the top: playback, pace, and the timeline with a row for each branch.
 
 use super::icons::{Icon, button};
 use super::{menu_item, on_click};
@@ -9,7 +9,7 @@ use crate::session::history::History;
 use eframe::egui::containers::menu::{MenuConfig, SubMenuButton};
 use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInfo};
 
-/// Rows of branches that are shown, at most.
+/// Maximum number of branches in the timeline.
 const MOST_ROWS: usize = 5;
 
 /// The bar at the top.
@@ -23,9 +23,9 @@ pub fn show(ui: &mut Ui, app_state: &AppState, filming: bool, out: &mut Vec<Acti
         }
         let text = format!("t = {} s", fixed(app_state.time(), 2));
         ui.add_sized([92.0, 20.0], egui::Label::new(RichText::new(text).monospace()))
-            .on_hover_text("Simulated time that is seen");
+            .on_hover_text("Simulated time shown");
         let tail = 214.0;
-        // Where there is little room, the line of time comes first.
+        // In a narrow window the timeline comes first.
         let narrow = ui.available_width() < tail + 60.0;
         let wide = ui.available_width() - if narrow { 40.0 } else { tail };
         line(ui, app_state, wide.max(30.0), out);
@@ -43,8 +43,7 @@ fn buttons(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     on_click(&play, Action::Toggle, out);
     let step = button(ui, Icon::Step, "", "Step", None).on_hover_text("One control sample (→)");
     on_click(&step, Action::Step, out);
-    let restart =
-        button(ui, Icon::Restart, "", "Restart", None).on_hover_text("Begin again at 0 (Shift Home)");
+    let restart = button(ui, Icon::Restart, "", "Restart", None).on_hover_text("Restart at 0 s (Shift Home)");
     on_click(&restart, Action::Restart, out);
 }
 
@@ -61,16 +60,16 @@ fn pace(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     if response.double_clicked() {
         out.push(Action::Pace(1.0));
     } else if response.changed() {
-        // 1× is easy to find again.
+        // Snaps to 1×.
         out.push(Action::Pace(if (0.93..1.07).contains(&pace) { 1.0 } else { pace }));
     }
 }
 
-/// The line of time. Every branch is a row of it; dragging looks at the past.
+/// The timeline. Every branch is a row of it; dragging shows the past.
 fn line(ui: &mut Ui, app_state: &AppState, wide: f32, out: &mut Vec<Action>) {
     let rows = app_state.branches.len().clamp(1, MOST_ROWS);
     let (rect, response) = ui.allocate_exact_size(egui::vec2(wide, 26.0), Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::slider(true, app_state.time(), "Time line"));
+    response.widget_info(|| WidgetInfo::slider(true, app_state.time(), "Timeline"));
     let span = span(app_state);
     let x_of = |time: f64| rect.left() + (time / span) as f32 * rect.width();
     let painter = ui.painter_at(rect.expand(1.0));
@@ -104,14 +103,14 @@ fn line(ui: &mut Ui, app_state: &AppState, wide: f32, out: &mut Vec<Action>) {
     }
 }
 
-/// Seconds on the line: at least the scene's, and some more than there is.
+/// Length of the timeline, s: at least the scene's duration, and a little more than is simulated.
 fn span(app_state: &AppState) -> f64 {
     let end = app_state.history.as_ref().map_or(0.0, History::latest);
     let planned = app_state.scene().map_or(1.0, |scene| scene.time.duration);
     if end <= planned { planned } else { end * 1.02 }.max(1e-3)
 }
 
-/// Quiet for branches that are not looked at.
+/// The colour of a branch: pale for all but the active one.
 pub(crate) fn branch_colour(index: usize, active: usize, visuals: &egui::Visuals) -> Color32 {
     if index == active { visuals.selection.bg_fill } else { visuals.weak_text_color().gamma_multiply(0.6) }
 }
@@ -121,19 +120,19 @@ fn buttons_of_work(ui: &mut Ui, filming: bool, out: &mut Vec<Action>) {
     let (icon, tip, colour) = if filming {
         (Icon::Stop, "End the film (F)", Some(ui.visuals().error_fg_color))
     } else {
-        (Icon::Record, "Film what is seen (F)", None)
+        (Icon::Record, "Film the view (F)", None)
     };
     on_click(&button(ui, icon, "Film", "Film", colour).on_hover_text(tip), Action::Film, out);
-    let picture = button(ui, Icon::Camera, "", "Picture", None).on_hover_text("A PNG of what is seen (P)");
+    let picture = button(ui, Icon::Camera, "", "Picture", None).on_hover_text("A PNG of the view (P)");
     on_click(&picture, Action::Picture, out);
     let scenes = button(ui, Icon::Menu, "Scenes", "Scenes", None).on_hover_text("Open a scene (Ctrl O)");
     on_click(&scenes, Action::Gallery, out);
 }
 
-/// Everything else.
+/// The menu for everything else.
 fn menu(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let more = button(ui, Icon::More, "", "More", None);
-    // Items close the menu themselves; a click into its field does not.
+    // Items close the menu themselves; a click into its text field does not.
     let stays = egui::PopupCloseBehavior::CloseOnClickOutside;
     egui::Popup::menu(&more).close_behavior(stays).show(|ui| {
         let on_disk = app_state.draft.as_ref().is_some_and(|draft| draft.path.is_some());

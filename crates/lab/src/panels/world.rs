@@ -2,7 +2,7 @@
 
 use super::controls::{Range, SliderRow};
 use super::law::scope;
-use super::{nobody, nothing, on_click};
+use super::{empty_panel, nothing, on_click};
 use crate::action::Action;
 use crate::app_state::{AppState, Tool};
 use crate::numbers::toml_number;
@@ -24,10 +24,10 @@ const TURN_MAX: SliderRow =
 const ACCELERATION_MAX: SliderRow =
     SliderRow::new(symbols::ACCELERATION_MAX, "vehicle.acceleration_max", Range::factors(0.2, 50.0), 2);
 
-/// Limits of the follower that is selected.
+/// Limits of the selected follower.
 pub fn limits(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let Some((_, robot, name, _)) = app_state.tuned_follower() else {
-        return nobody(ui, app_state, "Nobody follows.");
+        return empty_panel(ui, app_state, "There is no follower.");
     };
     let Some(vehicle) = app_state.scene_now().and_then(|scene| scene.robots.get(robot)).map(|r| r.vehicle)
     else {
@@ -44,8 +44,8 @@ pub fn limits(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         ui.horizontal(|ui| {
             symbols::ACCELERATION_MAX.label(ui);
             ui.weak("unbounded, as in the paper");
-            if ui.button("Bound it").clicked() {
-                let (what, value) = ("Largest acceleration".to_owned(), Some("4.0".to_owned()));
+            if ui.button("Set a limit").clicked() {
+                let (what, value) = ("Maximum acceleration".to_owned(), Some("4.0".to_owned()));
                 out.push(Action::Tune { what, key: ACCELERATION_MAX.key, value });
             }
         });
@@ -59,7 +59,7 @@ pub fn surroundings(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         let pillar = app_state.tool == Tool::Pillar;
         let tip = "Click on the ground to place a pillar (O)";
         let label = ui.selectable_label(pillar, "+ Pillar").on_hover_text(tip);
-        on_click(&label, Action::Take(Tool::Pillar), out);
+        on_click(&label, Action::UseTool(Tool::Pillar), out);
         ui.weak(match scene.props.len() {
             0 => "no obstacles".to_owned(),
             count => counted(count, "obstacle"),
@@ -84,7 +84,7 @@ pub fn surroundings(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     ] {
         ui.horizontal(|ui| {
             ui.label(name);
-            // The light changes when the slider is let go.
+            // The light changes when the slider is released.
             let id = ui.scope_id().with(key);
             let mut new: f64 = ui.data(|data| data.get_temp(id)).unwrap_or(value);
             let response = ui.add(Slider::new(&mut new, span).suffix("°").max_decimals(0));

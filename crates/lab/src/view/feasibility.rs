@@ -1,32 +1,32 @@
-//! Ground on which the follower of an edge could not keep its place, for shading.
+//! Ground that is infeasible for the follower of an edge, for shading.
 
 use crate::app_state::AppState;
 use crate::session::prediction::Prediction;
 use formation::feasible::unholdable;
 use vocabulary::{Limits, Pose, StepRecord};
 
-/// Side of a square of the field, m.
+/// Size of a cell, m.
 pub const STEP: f64 = 0.25;
-/// Squares on a side of the field.
+/// Number of cells along a side of the map.
 pub const SIDE: usize = 49;
-/// Records of the leader's way that are looked at.
+/// Number of the leader's predicted motions that are checked.
 const GLANCES: usize = 12;
 
-/// What an edge asks of a place.
+/// The requirements of an edge on a set point.
 #[derive(Debug, Clone)]
 pub struct PlaceConstraints {
     /// The follower's limits.
     pub limits: Limits,
     /// Least distance of its law, m.
     pub distance_min: f64,
-    /// How far it can see, m, and how far its camera turns with its picture, rad; `None` where it need not see.
+    /// Sensor range, m, and largest viewing angle, rad; `None` if it senses the truth.
     pub sight: Option<[f64; 2]>,
-    /// Places of others in the leader's frame, m, and how near they may come, m.
+    /// Positions of other robots in the leader's frame, m, and their least distances, m.
     pub others: Vec<([f64; 2], f64)>,
 }
 
 impl PlaceConstraints {
-    /// What stands against a place while the leader drives at one of `motions` (m/s, rad/s); `None` if nothing does.
+    /// Whether a place is infeasible while the leader moves at one of `motions` (m/s, rad/s).
     pub fn refuses(&self, place: [f64; 2], motions: &[[f64; 2]]) -> bool {
         self.others.iter().any(|(at, near)| (place[0] - at[0]).hypot(place[1] - at[1]) < *near)
             || motions.iter().any(|motion| self.refuses_at(place, *motion))
@@ -38,14 +38,14 @@ impl PlaceConstraints {
             return true;
         }
         let Some([far, pan]) = self.sight else { return false };
-        // Where the follower heads, and where its leader is from there.
+        // The follower's heading, and the leader's direction from it.
         let heading = (turn_rate * place[0]).atan2(speed - turn_rate * place[1]);
         let to_leader = (-place[1]).atan2(-place[0]);
         place[0].hypot(place[1]) > far || vocabulary::wrap(to_leader - heading).abs() > pan
     }
 }
 
-/// The leader of `edge` and the field around it, as [`shade`] has it.
+/// The leader of `edge` and the map around it, as [`shade`] returns it.
 pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(Pose, Vec<f32>)> {
     let fleet = app_state.fleet()?;
     let ends = *fleet.edges.get(edge)?;
@@ -78,21 +78,21 @@ pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(
     Some((leader.motion.pose, shade(&wanted, &motions)))
 }
 
-/// How the leader drives now and on its way to come.
+/// The leader's present and predicted motions.
 fn motions(prediction: Option<&Prediction>, leader: usize, now: [f64; 2]) -> Vec<[f64; 2]> {
     let ahead = prediction.and_then(|prediction| prediction.motions.get(leader)).map_or(&[][..], |all| all);
     let every = (ahead.len() / GLANCES).max(1);
     [now].into_iter().chain(ahead.iter().step_by(every).copied()).collect()
 }
 
-/// Where a set point cannot be, in the leader's frame: opacities from 0 to 1 in squares, row by row from behind to ahead,
+/// The map of infeasible set points in the leader's frame: opacities from 0 to 1, row by row from behind to ahead,
 /// each from the right to the left.
 pub fn shade(wanted: &PlaceConstraints, motions: &[[f64; 2]]) -> Vec<f32> {
     let half = 0.5 * (SIDE - 1) as f64 * STEP;
     let alpha = |square: usize| {
         let place = [square / SIDE, square % SIDE].map(|k| k as f64 * STEP - half);
         let away = place[0].hypot(place[1]) / half;
-        // It fades towards its rim, so that it is no square.
+        // It fades towards its rim, so that the square is not visible.
         let rim = ((1.0 - away) / 0.2).clamp(0.0, 1.0) as f32;
         if wanted.refuses(place, motions) { rim } else { 0.0 }
     };
@@ -112,7 +112,7 @@ mod tests {
         let free = shade(&wanted(), &[[1.0, 0.0]]);
         let taken = shade(&wanted(), &[[1.0, 0.3]]);
         let count = |alphas: &[f32]| alphas.iter().filter(|a| **a > 0.0).count();
-        // What is nearer than the law allows is one square.
+        // Places nearer than the law allows.
         assert_eq!(count(&free), 1);
         assert!(count(&taken) > 300);
     }

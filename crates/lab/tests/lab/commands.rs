@@ -237,11 +237,11 @@ fn gains_are_tuned_for_all_or_for_one() {
     // Robots come before those that groups make.
     assert_eq!(gains(&app_state), [2.5, 4.0, 4.0, 4.0]);
     app_state.act(&Action::ForAll(false));
-    app_state.act(&Action::Choose(Selection::Edge(2)));
+    app_state.act(&Action::Select(Selection::Edge(2)));
     app_state.act(&tune("law.k", "6.0"));
     assert_eq!(gains(&app_state), [2.5, 4.0, 6.0, 4.0], "{}", text(&app_state));
     let (robot, ..) = app_state.follower(0).expect("a follower");
-    app_state.act(&Action::Choose(Selection::Robot(robot)));
+    app_state.act(&Action::Select(Selection::Robot(robot)));
     app_state.act(&tune("law.k", "[1.0, 2.0]"));
     assert_eq!(gains(&app_state), [1.0, 4.0, 6.0, 4.0]);
     app_state.act(&untune("law.k"));
@@ -304,9 +304,9 @@ fn a_lead_robot_becomes_a_follower_where_it_is() {
 #[test]
 fn robots_are_added_where_there_is_room() {
     let mut rig = Rig::new(THREE);
-    rig.act(&[Action::Choose(Selection::Robot(0)), Action::AddRobot]);
+    rig.act(&[Action::Select(Selection::Robot(0)), Action::AddRobot]);
     assert_eq!(rig.app_state.selection, Selection::Robot(3), "the new one is selected");
-    rig.act(&[Action::Choose(Selection::Robot(0)), Action::AddRobot, Action::AddRobot]);
+    rig.act(&[Action::Select(Selection::Robot(0)), Action::AddRobot, Action::AddRobot]);
     assert_eq!(rig.app_state.notice, None);
     let scene = rig.app_state.scene().expect("a scene").clone();
     let names: Vec<&str> = scene.robots.iter().map(|robot| &*robot.name).collect();
@@ -417,10 +417,10 @@ fn the_run_is_led_by_hand() {
     }
     app_state.act(&Action::Ahead(0.0));
     assert!(app_state.ahead == 0.0 && app_state.prediction.is_none());
-    app_state.act(&Action::Take(Tool::Pillar));
+    app_state.act(&Action::UseTool(Tool::Pillar));
     assert_eq!(app_state.tool, Tool::Pillar);
-    app_state.act(&Action::Take(Tool::Pillar));
-    assert_eq!(app_state.tool, Tool::Hand, "taken twice is put down");
+    app_state.act(&Action::UseTool(Tool::Pillar));
+    assert_eq!(app_state.tool, Tool::Select, "taken twice is put down");
     app_state.act(&Action::NameBranch(0, "trunk".to_owned()));
     assert_eq!(app_state.branches[0].name, "trunk");
     app_state.requests.clear();
@@ -437,10 +437,10 @@ fn what_is_selected_is_there() {
         (Selection::Edge(0), Some(1)),
         "an edge, to begin with"
     );
-    rig.act(&[Action::Choose(Selection::Robot(2))]);
+    rig.act(&[Action::Select(Selection::Robot(2))]);
     assert_eq!(rig.app_state.chosen_edge(), Some(1));
     rig.act(&[Action::RemoveRobot("right".to_owned())]);
     assert_eq!(rig.app_state.selection, Selection::Nothing, "nobody selects who is gone");
-    rig.act(&[Action::Choose(Selection::Robot(0))]);
+    rig.act(&[Action::Select(Selection::Robot(0))]);
     assert_eq!((rig.app_state.chosen_edge(), rig.app_state.chosen_robot()), (None, Some(0)));
 }

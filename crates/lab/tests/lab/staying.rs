@@ -7,10 +7,10 @@ use lab::app_state::Selection;
 #[test]
 fn what_is_selected_stays_so_by_its_name() {
     let mut rig = Rig::new(THREE);
-    rig.act(&[Action::Choose(Selection::Robot(2))]);
+    rig.act(&[Action::Select(Selection::Robot(2))]);
     rig.act(&[Action::RenameRobot("right".to_owned(), "tail".to_owned())]);
     assert_eq!(rig.app_state.selection, Selection::Robot(2));
-    rig.act(&[Action::Choose(Selection::Edge(1)), Action::AddProp("pillar", [9.0, 9.0])]);
+    rig.act(&[Action::Select(Selection::Edge(1)), Action::AddProp("pillar", [9.0, 9.0])]);
     assert_eq!(rig.app_state.selection, Selection::Edge(1));
 }
 

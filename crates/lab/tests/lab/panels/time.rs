@@ -45,20 +45,20 @@ fn the_run_is_played_from_the_bar() {
 #[test]
 fn the_line_leads_to_the_past() {
     let mut bar = bar(app_state(THREE, 601), false);
-    assert_eq!(value(&bar, Role::Slider, "Time line"), 6.0);
-    bar.get_by_role_and_label(Role::Slider, "Time line").click();
+    assert_eq!(value(&bar, Role::Slider, "Timeline"), 6.0);
+    bar.get_by_role_and_label(Role::Slider, "Timeline").click();
     // 9 s are planned.
     let times = seeks(&asked(&mut bar));
     assert!(times.len() == 1 && (times[0] - 4.5).abs() < 0.05, "{times:?}");
-    let times = seeks(&drag(&mut bar, Role::Slider, "Time line", [0.6, 0.2]));
+    let times = seeks(&drag(&mut bar, Role::Slider, "Timeline", [0.6, 0.2]));
     assert!((times[times.len() - 1] - 1.8).abs() < 0.05, "{times:?}");
     bar.state_mut().app_state.act(&Action::Seek(2.5));
     bar.run();
-    assert_eq!(value(&bar, Role::Slider, "Time line"), 2.5);
+    assert_eq!(value(&bar, Role::Slider, "Timeline"), 2.5);
     assert_says(&bar, &["t = 2.50 s"]);
     // A run that is longer than planned has room.
     let mut long = self::bar(app_state(THREE, 1001), false);
-    long.get_by_role_and_label(Role::Slider, "Time line").click();
+    long.get_by_role_and_label(Role::Slider, "Timeline").click();
     assert!((seeks(&asked(&mut long))[0] - 5.1).abs() < 0.05);
 }
 
