@@ -60,7 +60,9 @@ pub fn annotations(app_state: &AppState, record: &StepRecord, pointer: &PointerS
 /// Ground that is infeasible for the follower of an edge.
 fn refused(app_state: &AppState, edge: usize, record: &StepRecord, annotations: &mut Annotations) {
     let Some((leader, mut alphas)) = feasibility::field(app_state, edge, record) else { return };
-    alphas.iter_mut().for_each(|alpha| *alpha *= 0.34);
+    for alpha in &mut alphas {
+        *alpha *= 0.34;
+    }
     let half = 0.5 * (SIDE - 1) as f64 * STEP;
     let area = ShadedArea::field([-half; 2], STEP, SIDE, &alphas, REFUSED, true);
     // In the leader's frame: rows run ahead, columns to the left.
