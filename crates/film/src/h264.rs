@@ -46,7 +46,7 @@ impl H264 {
         Ok(Self::with(path, format, store, FilmJournal::default()))
     }
 
-    /// Goes on with a film that was made of the same; how many frames there are.
+    /// Continues a film made from the same source; also returns how many frames there are.
     pub(crate) fn resume(path: &Path, format: VideoFormat, made_of: &str) -> Result<(Self, u64), Error> {
         let VideoFormat { width, height, rate } = format;
         // A film goes on only with the colours that it began with.
@@ -62,7 +62,7 @@ impl H264 {
         Self { encoder: None, planes, format, store, goal: path.to_owned(), track }
     }
 
-    /// Writes the film as far as it is.
+    /// Writes the film with the frames so far.
     fn write(&mut self) -> Result<(), Error> {
         let goal = &self.goal;
         let failed = |e: std::io::Error| Error::write(goal, e);

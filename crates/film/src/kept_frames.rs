@@ -1,4 +1,4 @@
-//! What of a film is kept on disk while it is made, so that it can go on after the program has ended in the middle.
+//! The files that keep an unfinished film on disk, so that a later program can continue it.
 //!
 //! Frames go to one file as they come, their sizes to another, the journal: whole groups of frames count, the rest is made
 //! again. Every group starts an encoder of its own, so that the film is the same in the end.
@@ -39,7 +39,7 @@ fn paths(goal: &Path) -> [PathBuf; 2] {
 }
 
 impl KeptFrames {
-    /// Opens what there is of the film `goal` that was made of the same (`made_of`, one line), or begins anew; `group` is
+    /// Opens the kept frames of the film `goal` from the same source (`made_of`, one line), or starts again; `group` is
     /// the number of frames in a group. Also returns the frames of whole groups that were there.
     pub(crate) fn open(goal: &Path, made_of: &str, group: usize) -> Result<(Self, FilmJournal), Error> {
         let failed = |e: std::io::Error| Error::write(goal, e);
@@ -107,7 +107,7 @@ impl KeptFrames {
 impl Drop for KeptFrames {
     fn drop(&mut self) {
         if !self.groups {
-            // What cannot be removed will be found and begun anew.
+            // Files that cannot be removed are overwritten later.
             for path in paths(&self.goal) {
                 let _ = std::fs::remove_file(path);
             }
@@ -145,7 +145,7 @@ fn written(found: &FilmJournal, made_of: &str) -> String {
     text
 }
 
-/// What a journal says of whole groups; `length` bytes of frames are there.
+/// The whole groups in a journal; `length` bytes of frames are there.
 fn read(text: &str, made_of: &str, group: usize, length: u64) -> Option<FilmJournal> {
     let rest = text.strip_prefix(HEAD)?.strip_prefix('\n')?.strip_prefix(made_of)?.strip_prefix('\n')?;
     let mut found = FilmJournal::default();

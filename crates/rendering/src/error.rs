@@ -1,4 +1,4 @@
-//! What can go wrong while drawing, told apart by who can mend it: the user's words or the machine.
+//! Errors of rendering: those of the user's input, and those of the machine.
 
 /// Everything this crate can fail with.
 #[derive(Debug, thiserror::Error)]
@@ -46,20 +46,20 @@ pub enum Error {
     /// Samples per pixel that adapters do not offer.
     #[error("{0} samples a pixel are not offered: use 4, or 1 for speed")]
     Samples(u32),
-    /// A moment whose robots or edges are not those of the cast.
+    /// A moment whose robots or edges are not those of the fleet.
     #[error("the moment has {got} {what}, the cast {want}")]
     FleetInfo {
         /// Robots or edges.
         what: &'static str,
         /// In the moment.
         got: usize,
-        /// In the cast.
+        /// In the fleet.
         want: usize,
     },
 }
 
 impl Error {
-    /// Whether other words on the command line would mend it; otherwise the machine is to blame.
+    /// Whether the user's input is at fault; otherwise the machine is.
     pub fn is_usage(&self) -> bool {
         !matches!(self, Self::NoAdapter { .. } | Self::Device(_))
     }

@@ -3,7 +3,7 @@
 pub use vocabulary::colours::robot_colours;
 pub(crate) use vocabulary::colours::{Rgb, hex};
 
-/// The stripe on robots that follow nobody.
+/// The stripe on robots without a leader.
 pub(crate) const GOLD: Rgb = hex(0x00e3_b341);
 /// The names of robots in trouble.
 pub(crate) const ALARM: Rgb = hex(0x00ff_9a7a);

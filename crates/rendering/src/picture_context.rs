@@ -1,4 +1,4 @@
-//! What everything that is drawn in a picture is made from.
+//! The data that all parts of a picture share.
 
 use crate::annotation::labels::detail;
 use crate::compose::{local_origin, shadowed, towards_sun};

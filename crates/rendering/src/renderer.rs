@@ -21,7 +21,7 @@ use std::sync::{Mutex, PoisonError};
 use vocabulary::{FleetInfo, Picture, StepRecord};
 use wgpu::TextureFormat;
 
-/// Draws moments of one cast at one size.
+/// Renders moments of one fleet at one size.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
@@ -29,7 +29,7 @@ pub struct Renderer {
     canvas: Canvas,
     attachments: Attachments,
     passes: Passes,
-    /// Behind a lock, since whoever asks how a view is seen has to know how long its words are.
+    /// Behind a lock, since sightlines depend on the lengths of the texts.
     letters: Mutex<TextShaper>,
     /// Two, so that one picture can be drawn while the one before is read.
     offscreen: Vec<Readback>,
@@ -185,7 +185,7 @@ impl Renderer {
         let plan = self.plan(spec);
         let context = PictureContext::new(&self.model, spec.trail, spec.record, spec.style);
         let cameras = cameras(&plan, &context);
-        // Cameras on robots see nothing that is drawn to explain.
+        // Cameras on robots do not see annotations.
         let bare = Style { shadows: spec.style.shadows, ..Style::bare() };
         let (crowd, props) = (crowd(&context), props(&context));
         let sun = sun_over(&context);
@@ -224,8 +224,8 @@ impl Renderer {
         Ok(prepared)
     }
 
-    /// How each view of a picture is seen when it is drawn like this, in the order in which they are drawn: the small
-    /// picture of [`Style::picture_in_picture`], which lies over others, is the last.
+    /// The sightlines of the views of a picture, in the order in which they are drawn: that of the small
+    /// picture of [`Style::picture_in_picture`], which lies over others, is last.
     ///
     /// # Errors
     /// [`Error::FleetInfo`] for a moment of other robots.

@@ -1,4 +1,4 @@
-//! What a figure is said to show, held against what the runs showed. Nothing here is asserted: a claim is made of measured
+//! Claims of figures, checked against the runs. Nothing here is asserted: a claim consists of measured
 //! values, and its verdict follows from them.
 
 use crate::trace::Trace;
@@ -16,7 +16,7 @@ pub struct ClaimValue {
     pub unit: &'static str,
 }
 
-/// One sentence about a figure and what became of it.
+/// A claim about a figure, and its verdict.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FigureClaim {
     /// Which figure is to show it.
@@ -27,12 +27,12 @@ pub struct FigureClaim {
     pub quantity: String,
     /// The numbers, in the order of the claim.
     pub values: Vec<ClaimValue>,
-    /// What they have to do.
+    /// The condition on them.
     pub wanted: String,
-    /// What they may not exceed, if that is it.
+    /// Their upper limit, if the condition is one.
     #[serde(skip)]
     pub(crate) limit: Option<f64>,
-    /// Whether they do.
+    /// Whether they meet it.
     pub holds: bool,
 }
 
@@ -108,7 +108,7 @@ impl FigureClaim {
     }
 }
 
-/// The formation is taken up: every follower ends within the band of its scene, and stays there.
+/// The formation is reached: every follower ends within the band of its scene and stays there.
 pub(crate) fn takes_up(figure: &str, run: &Trace) -> Vec<FigureClaim> {
     let claim = "The controller drives each robot to the desired distance and bearing.";
     let band = run.metrics.settling_band;
@@ -139,7 +139,7 @@ fn worst(mut values: Vec<(&str, f64)>) -> Vec<(&str, f64)> {
     values
 }
 
-/// Nobody touches anybody.
+/// There is no contact.
 pub(crate) fn no_contact(figure: &str, run: &Trace) -> FigureClaim {
     let claim = "The formation drives without contact.";
     let subject = ClaimSubject::new(figure, claim, "contacts", "");

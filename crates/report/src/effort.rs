@@ -1,4 +1,4 @@
-//! What a follower's commands cost, above all while its observer has not yet settled.
+//! The effort of a follower's commands, above all in the observer's transient.
 
 use vocabulary::Command;
 
@@ -31,7 +31,7 @@ impl EffortSums {
         Self { sums: CommandEffort { transient, ..CommandEffort::default() }, last: None }
     }
 
-    /// Takes in a sample. A command holds from its sample to the next one.
+    /// Adds a sample. A command holds from its sample to the next one.
     pub(crate) fn push(&mut self, time: f64, asked: Command, applied: Command) {
         let sizes = |c: Command| [c.acceleration.abs(), c.turn_rate.abs()];
         let (asked, applied) = (sizes(asked), sizes(applied));

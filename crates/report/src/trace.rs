@@ -1,4 +1,4 @@
-//! All of a run that figures are drawn from: what every robot and every edge did, and what it cost.
+//! The data of a run behind its figures: motions of robots, states of edges, and efforts.
 
 use crate::effort::{CommandEffort, EffortSums};
 use figures::Rgb;
@@ -12,15 +12,15 @@ use vocabulary::{Command, Edge, FleetInfo, Motion, Pose, StepRecord, wrap};
 pub struct EdgeRow {
     /// Set point minus truth, [m, rad].
     pub error: [f64; 2],
-    /// What the law asked for, before limits.
+    /// Command before limits.
     pub asked: Command,
-    /// What was applied.
+    /// Applied command.
     pub applied: Command,
     /// Rates of [distance, bearing] as the law knew them, [m/s, rad/s].
     pub estimated: [f64; 2],
     /// The true ones: of unicycles by eqs 6-7, on wheels by differences.
     pub rates: [f64; 2],
-    /// Wanted [distance in m, bearing in rad].
+    /// Set point: [distance in m, bearing in rad].
     pub set_point: [f64; 2],
 }
 
@@ -103,7 +103,7 @@ impl Trace {
     }
 }
 
-/// Takes in a run.
+/// Builds a [`Trace`] from records.
 pub struct Tracer {
     trace: Trace,
     metrics: MetricsBuilder,
@@ -147,7 +147,7 @@ impl Tracer {
         }
     }
 
-    /// Takes in a moment.
+    /// Adds a moment.
     pub fn push(&mut self, record: &StepRecord) {
         let time = record.snapshot.time;
         self.metrics.push(record);
@@ -180,7 +180,7 @@ impl Tracer {
         }
     }
 
-    /// The run as far as it went.
+    /// The trace of the run so far.
     pub fn finish(mut self) -> Trace {
         self.trace.metrics = self.metrics.finish();
         self.trace.efforts = self.efforts.iter().map(|effort| effort.sums).collect();

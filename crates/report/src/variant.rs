@@ -47,7 +47,7 @@ pub(crate) fn short(kind: LawKind) -> &'static str {
     }
 }
 
-/// The three laws, from the one that has to know most.
+/// The three laws, in descending order of what they have to know.
 pub(crate) const LAWS: [LawKind; 3] = [LawKind::FullState, LawKind::RobustState, LawKind::OutputFeedback];
 
 /// Law and ε, s, of the scene's first follower.
@@ -55,7 +55,7 @@ pub(crate) fn of(scene: &Scene) -> Option<(LawKind, f64)> {
     followers(scene).next().map(|follow| (follow.law.kind, follow.observer.epsilon[0]))
 }
 
-/// How the followers of a scene follow.
+/// The follower parameters of a scene.
 fn followers(scene: &Scene) -> impl Iterator<Item = &Follow> {
     scene.robots.iter().filter_map(|robot| match &robot.role {
         Role::Follow(follow) => Some(&**follow),

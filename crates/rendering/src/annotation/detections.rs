@@ -1,4 +1,4 @@
-//! What a follower made of its camera's last picture, drawn over its view: tags, region, and the leader's shell where
+//! The result of a follower's last camera image, drawn over its view: tags, region, and the leader's shell where
 //! the estimate has it.
 
 use crate::annotation::labels::{Ink, LabelPlacer, Window};
@@ -10,7 +10,7 @@ use vocabulary::{
     CameraModel, Edge, FACES, MeasurementRecord, Outcome, Relative, Rigid, RobotInfo, Shell, tag_code, wrap,
 };
 
-/// Older looks are forgotten, s.
+/// Older measurements are not drawn, s.
 const FORGOTTEN: f64 = 2.0;
 
 const USED: Rgb = hex(0x0048_e08a);
@@ -32,7 +32,7 @@ struct DetectionOverlay<'a, 'b, 'c> {
     words: &'a mut LabelPlacer<'b>,
     window: Window<'c>,
     camera_model: CameraModel,
-    /// How far the camera has turned to the left of its leader since the look, rad.
+    /// How far the camera has turned to the left of its leader since the measurement, rad.
     turn: f64,
     width: f32,
 }
@@ -44,8 +44,8 @@ fn turned([x, y]: [f64; 2], turn: f64) -> Option<[f64; 2]> {
     (ahead > 0.02).then(|| [(x * cos + sin) / ahead, y / ahead])
 }
 
-/// How far the camera has turned to the left of its leader since a look, rad: what was seen then is drawn over what is
-/// seen now.
+/// How far the camera has turned to the left of its leader since a measurement, rad: the detection of then is drawn over
+/// the view of now.
 fn turn_since(context: &PictureContext<'_>, edge: &Edge, frame: &MeasurementRecord) -> f64 {
     let robots = &context.record.snapshot.robots;
     let (Some(own), Some(leader), Some(member)) =
@@ -63,7 +63,7 @@ fn turn_since(context: &PictureContext<'_>, edge: &Edge, frame: &MeasurementReco
 }
 
 impl DetectionOverlay<'_, '_, '_> {
-    /// Where a direction of the look (x/z right, y/z down) is seen, pixels of the whole picture.
+    /// Where a direction of the measurement (x/z right, y/z down) appears, pixels of the whole picture.
     fn at(&self, direction: [f64; 2]) -> Option<Vec2> {
         turned(direction, self.turn).map(|[x, y]| self.window.direction(x, -y))
     }
@@ -134,7 +134,7 @@ fn clipped(a: Vec2, b: Vec2, tile: &Tile) -> Option<(Vec2, Vec2)> {
     (from < to).then(|| (a + along * from, a + along * to))
 }
 
-/// The leader's body as the estimate has it, in the frame of the follower's camera at the look.
+/// The estimated body of the leader, in the frame of the follower's camera at the measurement.
 fn estimated(frame: &MeasurementRecord, follower: &RobotInfo) -> Rigid {
     let relative = frame.measurement.relative;
     let (sin, cos) = relative.view_angle.sin_cos();
@@ -159,7 +159,7 @@ pub(crate) fn camera_words(
     words.write(format!("camera: {}", member.name), at, 12.0, true, Ink::LIGHT);
 }
 
-/// Everything about the last look of each edge of a robot, over the view of its camera.
+/// Draws the last measurement of each edge of a robot over the view of its camera.
 fn detections(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window: Window<'_>, robot: usize) {
     let now = context.record.snapshot.time;
     let mut row = 0.0;
@@ -232,7 +232,7 @@ fn ids(overlay: &mut DetectionOverlay<'_, '_, '_>, frame: &MeasurementRecord, le
     }
 }
 
-/// Numbers and outcome of a look in two lines at the foot of a tile.
+/// Numbers and outcome of a measurement in two lines at the foot of a tile.
 fn report(words: &mut LabelPlacer<'_>, tile: Tile, leader: &str, frame: &MeasurementRecord, row: &mut f32) {
     let told = Ink { colour: colour(frame.outcome), ..Ink::LIGHT };
     let left = tile.x as f32 + words.scaled(10.0);

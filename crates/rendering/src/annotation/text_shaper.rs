@@ -61,7 +61,7 @@ pub(crate) struct TextShaper {
     /// Only what is embedded, so that a picture looks the same on every machine.
     own: FontSystem,
     /// The same and those of the machine, once a text needs a letter that the embedded fonts lack. Its embedded fonts have the
-    /// same numbers: whoever draws with it draws both.
+    /// same numbers, so that text shaped with either can be drawn with it.
     all: Option<FontSystem>,
     shaped: Shaped,
     pictures: u64,
@@ -77,7 +77,7 @@ impl TextShaper {
         let (own, all, used) = (&mut self.own, &mut self.all, self.pictures);
         let entry = self.shaped.texts.entry(key(text, size, bold, block)).or_insert_with(|| {
             let mut buffer = shape(own, text, Font { size, bold }, block, &BTreeSet::new());
-            // An ellipsis may have left out what is lacking; nobody sees that.
+            // An ellipsis may have left the missing characters out.
             let lacks: BTreeSet<char> = lacking(&buffer).collect();
             if !lacks.is_empty() {
                 buffer =

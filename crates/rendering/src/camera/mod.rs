@@ -20,7 +20,7 @@ use crate::picture_context::PictureContext;
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
 use vocabulary::{Edge, Snapshot};
 
-/// Whence and how a picture is seen; only cameras on robots roll.
+/// The pose and projection of a camera; only cameras on robots roll.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Camera {
     pub(crate) eye: DVec3,
@@ -39,7 +39,7 @@ const NEAR: f64 = 0.05;
 const FAR: f64 = 600.0;
 /// Of an eye that the ground would hide, m.
 const LEAST_OVER_GROUND: f64 = 0.28;
-/// Of an eye that somebody has put somewhere, m.
+/// Of an eye that the user has placed, m.
 const LEAST_OVER_FLOOR: f64 = 0.06;
 
 /// Nearer the eye does not come, m.
@@ -62,7 +62,7 @@ impl Camera {
             Viewpoint::Camera(robot) => return onboard(snapshot, fleet, *robot, aspect),
             Viewpoint::Fixed { eye, target, field_of_view } => {
                 let [mut eye, target] = [eye, target].map(|place| DVec3::from_array(*place));
-                // Somebody has put it there: it stays, unless the floor is in the way.
+                // The user has placed it: it stays, unless the floor is in the way.
                 eye.z = eye.z.max(floor.height(eye.truncate()) + LEAST_OVER_FLOOR);
                 return Self::looking(eye, target, *field_of_view, aspect);
             }

@@ -7,17 +7,17 @@ use crate::ground::trail::{set_points, sizes};
 use glam::{DVec2, DVec3};
 use vocabulary::{FleetInfo, RobotInfo, RobotState, StepRecord};
 
-/// What is this near to a pixel is meant, pixels.
+/// Objects this near to a pixel count as hit, pixels.
 const NEAR: f64 = 5.0;
 
-/// What somebody points at.
+/// An object under the pointer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Picked {
-    /// A robot, by its index in the cast.
+    /// A robot, by its index in the fleet.
     Robot(usize),
-    /// Where an edge wants its follower, by the index of the edge in the cast.
+    /// The set point of an edge, by the index of the edge in the fleet.
     SetPoint(usize),
-    /// The line from a leader to its follower, by the index of the edge in the cast.
+    /// The line from a leader to its follower, by the index of the edge in the fleet.
     Edge(usize),
 }
 
@@ -29,7 +29,7 @@ pub(crate) fn pick(
     pixel: [f64; 2],
 ) -> Vec<Picked> {
     let ray = sight.ray(pixel);
-    // What is behind a hill is not meant.
+    // Objects behind a hill do not count.
     let ground = sight.depth(&ray).map_or(f64::INFINITY, |far| far + 0.02 * far + 0.3);
     let robots = record.snapshot.robots.iter().zip(&fleet.robots).enumerate();
     let mut found: Vec<((f64, f64), Picked)> = robots

@@ -1,11 +1,11 @@
-//! From places in the world to pixels and back, for whoever points at a picture.
+//! From places in the world to pixels and back, for pointing at a picture.
 
 use crate::camera::Camera;
 use crate::camera::viewpoint::{FreeCamera, Tile, Viewpoint};
 use crate::ground::floor::Floor;
 use glam::{DVec2, DVec3};
 
-/// Nothing is looked for farther away than this, m.
+/// Maximum distance of a search, m.
 const FAR: f64 = 2_000.0;
 
 /// How one view of a picture is seen. Pixels are those of the whole picture, from its upper left corner, and whole
@@ -72,7 +72,7 @@ impl Sightline {
         self.camera.metres_per_pixel(DVec3::from_array(place), f64::from(self.tile.height))
     }
 
-    /// The free camera that shows the same ground in the same places, so that a hand can take over: it turns about what
+    /// The free camera that shows the same ground in the same places, for the user to take over: it orbits around what
     /// is in the middle of the tile. A view without perspective gets one, and a view through a camera loses its lean.
     pub fn free(&self) -> FreeCamera {
         let camera = &self.camera;

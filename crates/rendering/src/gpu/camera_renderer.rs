@@ -1,4 +1,4 @@
-//! What cameras on robots see: monochrome pictures, linear in light, of the same world that the views show.
+//! Camera images of robots: monochrome, linear in light, of the same world that the views show.
 
 use crate::camera::Camera;
 use crate::camera::viewpoint::{Tile, Viewpoint};
@@ -25,7 +25,7 @@ const SHADOWS: u32 = 1024;
 /// Most atlases that are kept.
 const ATLASES: usize = 4;
 
-/// Cameras on the robots of a cast: all pictures of an instant are drawn together.
+/// Renders the camera images of a fleet: all images of an instant are rendered together.
 #[derive(Debug)]
 pub struct GpuCameraRenderer {
     gpu: Gpu,
@@ -46,7 +46,7 @@ struct CameraScene {
 }
 
 impl GpuCameraRenderer {
-    /// Eyes for the robots of `fleet`.
+    /// A renderer for the cameras of `fleet`.
     ///
     /// # Errors
     /// [`Error::Device`] where the device fails.

@@ -114,7 +114,7 @@ impl Passes {
         Ok(())
     }
 
-    /// After a picture failed nobody knows what is in the shadow map.
+    /// Forgets the shadow map, whose content is unknown after a failed picture.
     pub(crate) fn forget(&mut self) {
         self.shadowed = None;
     }

@@ -16,7 +16,7 @@ const BARREL: Rgb = hex(0x00a8_7a42);
 /// What moves by itself is none of the robots' colours.
 const GUIDED: Rgb = hex(0x00a5_434c);
 
-/// Every prop of the cast with its index and its place: that of the moment, else the one where it starts.
+/// Every prop of the fleet with its index and its pose: that of the moment, else its initial one.
 pub(crate) fn placed<'a>(
     context: &PictureContext<'a>,
 ) -> impl Iterator<Item = (usize, &'a Prop, Placement)> + use<'a> {

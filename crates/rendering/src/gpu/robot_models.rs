@@ -14,7 +14,7 @@ use vocabulary::{Attitude, FleetInfo, Pose, RobotInfo, RobotState};
 /// Opacity of a ghost.
 const GHOST: f32 = 0.18;
 
-/// The builds of a cast, each once, and which of them every robot has.
+/// The distinct builds of a fleet, and which of them every robot has.
 #[derive(Debug)]
 pub(crate) struct RobotModels {
     pub(crate) builds: Vec<Build>,
@@ -112,7 +112,7 @@ impl RobotAppearance {
     }
 }
 
-/// The number that ends a robot's name, else its place on stage.
+/// The number at the end of a robot's name, else its place in the fleet.
 fn roof_number(member: &RobotInfo, index: usize) -> f32 {
     let digits = member.name.chars().rev().take_while(char::is_ascii_digit).count();
     let tail = &member.name[member.name.len() - digits..];

@@ -130,7 +130,7 @@ impl Readback {
     ) -> Result<(), Error> {
         let (sender, receiver) = mpsc::channel();
         self.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // Nobody listens any more only where reading has already failed.
+            // The receiver is gone only if reading has already failed.
             let _ = sender.send(result);
         });
         let failed = |e: &dyn std::fmt::Display| Error::Device(e.to_string());

@@ -158,7 +158,7 @@ fn panel(label: &str, series: Vec<Series>) -> Panel {
     Panel { axis: Axis { label: label.to_owned(), ..Axis::default() }, series, guides: vec![] }
 }
 
-/// Speed, what the law asked of it, and turn rate of followers, with grey where they cannot go.
+/// Speed, commanded acceleration and turn rate of followers, with grey beyond their limits.
 pub(crate) fn inputs(curves: &[EdgeCurve<'_>], magnify: Magnify) -> Drawn {
     let limits = curves.first().and_then(EdgeCurve::limits).unwrap_or(Limits::PAPER);
     let mut columns = vec![];

@@ -1,4 +1,4 @@
-//! The formation graph: who follows whom, laid out from the set points themselves.
+//! The formation graph, laid out from the set points.
 
 use super::{Drawn, NAMED, number, quoted};
 use crate::trace::Trace;

@@ -14,7 +14,7 @@ pub(crate) use shell::{camera, faces};
 pub(crate) use solid::solids;
 pub(crate) use wheel::wheel;
 
-/// What a surface is made of; the shader's table has the same order.
+/// Material of a surface; the shader's table has the same order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub(crate) enum Material {

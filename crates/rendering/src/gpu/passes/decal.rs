@@ -53,7 +53,7 @@ pub(crate) enum DecalForm {
 pub(crate) enum DecalLayer {
     /// Paint on the ground.
     Paint,
-    /// What somebody draws there to explain.
+    /// Annotations.
     Annotations,
     /// Cast shadows over it.
     Shadow,

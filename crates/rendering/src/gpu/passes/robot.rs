@@ -109,7 +109,7 @@ impl Models {
         self.draw(pass, first, squads.map(|(kit, squad)| (&kit.ghost, squad.ghosts.len())));
     }
 
-    /// Meshes, each as often as told; their copies follow each other from `first` on.
+    /// Draws meshes with their numbers of copies; the copies follow each other from `first` on.
     fn draw<'a>(
         &self,
         pass: &mut RenderPass<'_>,

@@ -23,7 +23,7 @@ pub(crate) const RING: f64 = 0.25;
 /// Position errors above this are shown by an arrow, m.
 const ARROW_ABOVE: f64 = 0.05;
 
-/// How far it is to where the size of a pixel is looked up, m.
+/// Step for measuring the size of a pixel, m.
 pub(crate) const STEP: f64 = 0.05;
 /// Lines of quick pictures are this near to where they belong, pixels.
 const UNSEEN: f64 = 0.4;
