@@ -1,6 +1,8 @@
 //! What pictures of the scenes cover: words and panels lie where no robot, set point or label is, in every view and size.
 
-use rendering::{Composition, CurvePanel, Overlays, ReservedSpace, Style, Subtitle, Trail, ViewLayout};
+use rendering::{
+    Composition, CurvePanel, Overlays, PictureSpec, ReservedSpace, Style, Subtitle, Trail, ViewLayout,
+};
 use scene::Scene;
 use simulation::{Simulation, build};
 use std::path::Path;
@@ -43,10 +45,7 @@ fn composed(
     let style = Style { scale: Style::scale_for(size.0, size.1), ..style.clone() };
     Composition::new(
         fleet,
-        &at.0,
-        &at.1,
-        &ViewLayout::parse(view, &names).expect("a view"),
-        &style,
+        PictureSpec::new(&at.0, &at.1, &ViewLayout::parse(view, &names).expect("a view"), &style),
         size.into(),
     )
 }

@@ -1,7 +1,7 @@
 //! The same scene, seed and build: the same digest, whether or not pictures are drawn and on whatever thread.
 
 use metrics::Digest;
-use rendering::{AdapterChoice, Gpu, Renderer, Style, Trail, ViewLayout, Viewpoint};
+use rendering::{AdapterChoice, Gpu, PictureSpec, Renderer, Style, Trail, ViewLayout, Viewpoint};
 use scene::Scene;
 use simulation::{Simulation, build};
 use std::path::Path;
@@ -106,7 +106,7 @@ fn drawn(name: &str) -> String {
         sum.push(record);
         trail.push(record);
         if step % 60 == 0 {
-            renderer.draw(&trail, record, &layout, &style).expect("a picture");
+            renderer.draw(PictureSpec::new(&trail, record, &layout, &style)).expect("a picture");
         }
         step += 1;
     }

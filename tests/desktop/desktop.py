@@ -26,7 +26,7 @@ SCENES = Path(__file__).parents[2] / "scenes"
 BUTTON, WELL, ACCENT = (50, 50, 50), (0x14, 0x16, 0x1A), (0x3D, 0x8B, 0xE0)
 # The view `fixed`: eye, target (m), vertical field of view (rad).
 EYE, TARGET, FIELD = (-8.0, -8.0, 6.0), (0.0, 0.0, 0.0), 0.7
-# Simulated time that the scene plans, s: the span of the line of time.
+# Simulated time that the scene plans, s: the span of the timeline.
 DURATION = 15.0
 
 
@@ -95,7 +95,7 @@ class Lab:
         return last
 
     def line_of_time(self):
-        """The row above the bars on the line of time, and its ends."""
+        """The row above the bars on the timeline, and its ends."""
         look = self.screen.look()
         wells = [run for run in look.runs(WELL, (200, 2, 1200, 20), 20)]
         check(wells, "there is no line of time")
@@ -107,7 +107,7 @@ class Lab:
         """The time that is looked at, s, from where the mark is."""
         look, y, left, right = self.line_of_time()
         mark = [x for x in range(left - 6, right + 6) if min(look.at(x, y)) > 230]
-        check(mark, "there is no mark on the line of time")
+        check(mark, "there is no mark on the timeline")
         return (sum(mark) / len(mark) + 0.5 - left) / (right - left) * DURATION
 
     def stand(self):
@@ -119,7 +119,7 @@ class Lab:
     def run_until(self, end, meanwhile=lambda: None):
         """Plays up to a time, and stands."""
         self.key("space")
-        wait(f"{end} s on the line of time", lambda: self.time() >= end, 60)
+        wait(f"{end} s on the timeline", lambda: self.time() >= end, 60)
         meanwhile()
         self.stand()
 
@@ -354,7 +354,7 @@ class Test:
         lab.still()
         self.see("in-the-past")
         lab.key("b")
-        at = float(lab.hears(r"^log ([\d.]+) s: branch 1 leaves main").group(1))
+        at = float(lab.hears(r"^log ([\d.]+) s: branch 1 forks from main").group(1))
         check(abs(at - 0.8) < 0.12, f"the branch leaves at {at} s, not at 0.8 s")
         # The first slider of the laws: a bar in the accent that is not as high as a button.
         rails = [p for p in self.screen.look().plates(ACCENT, (960, 60, 1280, 320), 6) if p[3] - p[1] <= 10]
@@ -388,7 +388,7 @@ class Test:
         two = ['distance = 2.0\nbearing = "135 deg"', 'distance = 2.4\nbearing = "150 deg"']
         self.scene.write_text(before.replace(*two))
         check(self.scene.read_text() != before, "nothing to change in the file")
-        lab.hears(r"^log .*Read again from disk", 15)
+        lab.hears(r"^log .*Reloaded from disk", 15)
         lab.still()
         self.see("read-again")
         return "the window took what another program wrote"
@@ -486,7 +486,7 @@ class Test:
     def opens_picture(self):
         lab = Lab(self, self.picture.name)
         told = lab.hears(r"^(log|fault) .*$").group(0)
-        check(told.startswith("log") and "As in" in told, told)
+        check(told.startswith("log") and "Restored from" in told, told)
         look = lab.still()
         self.see("picture-opened")
         left, top, right, bottom = self.view()

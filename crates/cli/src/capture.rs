@@ -14,7 +14,7 @@ use crate::{interrupt, times};
 use clap::Args;
 use film::png;
 use output::Place;
-use rendering::Gpu;
+use rendering::{Gpu, PictureSpec};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use studies::RecordSource;
@@ -84,7 +84,8 @@ pub(crate) fn draw(
             let end = times::shown(end);
             note(&format!("the run ended at {end} s: a picture shows its end, later times have none"));
         }
-        let picture = studio.renderer.draw(playback.trail(), &record, &studio.layout, &studio.style)?;
+        let spec = PictureSpec::new(playback.trail(), &record, &studio.layout, &studio.style);
+        let picture = studio.renderer.draw(spec)?;
         let path = job.out.join(format!("{name}-{}.png", times::in_names(time)));
         let time_text = time.to_string();
         let scene_text = job.of.display().to_string();

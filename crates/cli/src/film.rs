@@ -23,7 +23,7 @@ use metrics::MetricsBuilder;
 use output::Place;
 use plots::Plots;
 pub(crate) use preset::Preset;
-use rendering::{Gpu, Overlays, ReservedSpace};
+use rendering::{Gpu, Overlays, PictureSpec, ReservedSpace};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -178,7 +178,8 @@ pub(crate) fn shoot(
             if let Some((_, caption)) = job.captions.iter().rfind(|(at, _)| *at <= record.snapshot.time) {
                 studio.renderer.retitle(&fleet.title, caption);
             }
-            let ready = studio.renderer.draw_next(playback.trail(), &record, &frame.layout, &style)?;
+            let spec = PictureSpec::new(playback.trail(), &record, &frame.layout, &style);
+            let ready = studio.renderer.draw_next(spec)?;
             ready.map_or(Ok(()), |picture| film.push(picture)).map_err(|e| refused(e, &job, kind, rate))?;
         }
         (index, shot) = (index + 1, shot + 1);

@@ -15,7 +15,7 @@ use crate::progress::Progress;
 use crate::replaced::Replaced;
 use clap::Args;
 use output::Place;
-use rendering::{Style, ViewLayout};
+use rendering::{PictureSpec, Style, ViewLayout};
 use serde_json::json;
 use std::path::PathBuf;
 use studies::RecordSource;
@@ -70,7 +70,8 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
         }
         // Title and law stand on the first picture for all of them.
         let style = Style { caption: small.style.caption && k == 0, inset: false, ..small.style.clone() };
-        tiles.push(small.renderer.draw(playback.trail(), &record, &small.layout, &style)?);
+        let spec = PictureSpec::new(playback.trail(), &record, &small.layout, &style);
+        tiles.push(small.renderer.draw(spec)?);
         records.push(record);
         progress.at(u64::from(k) + 1);
     }
@@ -94,7 +95,7 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
         if interrupt::asked() {
             return Err(Failure::Interrupted("nothing was written".into()));
         }
-        pictures.push(big.draw(playback.trail(), record, &layout, &style)?);
+        pictures.push(big.draw(PictureSpec::new(playback.trail(), record, &layout, &style))?);
         progress.at(u64::from(args.count) + k as u64 + 1);
     }
     let strobe = strobe::together(&pictures);

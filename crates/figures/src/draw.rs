@@ -2,14 +2,13 @@
 
 use crate::axis::{CUT, Ruler, Tick};
 use crate::place::spread;
-use crate::svg::{Anchor, Svg, ink, point, width};
+use crate::svg::{Anchor, Svg, ink, point, polyline, width};
 use crate::trim::{thinned, within};
 use crate::{Axis, Figure, Guide, Key, Marker, Panel, Series, Stroke};
-use std::fmt::Write;
 
 /// Sizes of text, points of print.
 pub(crate) const SMALL: f64 = 7.0;
-pub(crate) const TITLE: f64 = 8.5;
+const TITLE: f64 = 8.5;
 /// From one line of small text to the next.
 const LINE: f64 = 8.6;
 /// Over a panel: its label, and air.
@@ -49,7 +48,6 @@ impl PanelArea {
 }
 
 pub(crate) fn draw(figure: &Figure) -> String {
-    let points = |mm: f64| if mm.is_finite() { mm.clamp(5.0, 2000.0) } else { 85.0 } * 72.0 / 25.4;
     let (sheet, height) = (points(figure.width), points(figure.height));
     let rulers: Vec<Ruler> = figure.panels.iter().map(|p| Ruler::new(&p.axis, ordinates(p), false)).collect();
     let most = ((height / 11.0) as usize).max(2);
@@ -61,14 +59,10 @@ pub(crate) fn draw(figure: &Figure) -> String {
     let along = (sheet - left - names - MARGIN).max(20.0);
     let columns = columns(figure, left, along);
 
-    let mut svg = Svg::new();
+    let mut svg = Svg::default();
     // Without a title, the first panel's label is the first line.
     let mut top = if figure.title.is_empty() && figure.keys.is_empty() { MARGIN - BARE } else { MARGIN };
-    for line in wrapped(&figure.title, (sheet - 2.0 * MARGIN) / TITLE) {
-        top += TITLE + 1.0;
-        svg.text([MARGIN, top], &line, Anchor::Start, &format!("font-size=\"{TITLE}\" font-weight=\"600\""));
-    }
-    top = keys(&mut svg, &figure.keys, [left.min(MARGIN), top], sheet);
+    top = heading(&mut svg, &figure.title, &figure.keys, top, sheet);
     for (index, panel) in figure.panels.iter().enumerate() {
         let last = index + 1 == figure.panels.len();
         top += HEAD;
@@ -134,8 +128,23 @@ fn ordinates(panel: &Panel) -> impl Iterator<Item = f64> {
     panel.series.iter().flat_map(|s| s.points.iter().map(|p| p[1])).chain(guides)
 }
 
+/// A length in points of print, within what a sheet can be.
+pub(crate) fn points(millimetres: f64) -> f64 {
+    let millimetres = if millimetres.is_finite() { millimetres.clamp(5.0, 2000.0) } else { 85.0 };
+    millimetres * 72.0 / 25.4
+}
+
+/// Title and keys over everything, from `top` on; where they end.
+pub(crate) fn heading(svg: &mut Svg, title: &str, entries: &[Key], mut top: f64, sheet: f64) -> f64 {
+    for line in wrapped(title, (sheet - 2.0 * MARGIN) / TITLE) {
+        top += TITLE + 1.0;
+        svg.text([MARGIN, top], &line, Anchor::Start, &format!("font-size=\"{TITLE}\" font-weight=\"600\""));
+    }
+    keys(svg, entries, [MARGIN, top], sheet)
+}
+
 /// A text in lines of at most about `em` times its size.
-pub(crate) fn wrapped(text: &str, em: f64) -> Vec<String> {
+fn wrapped(text: &str, em: f64) -> Vec<String> {
     let mut lines: Vec<String> = vec![];
     for word in text.split_whitespace() {
         match lines.last_mut() {
@@ -150,7 +159,7 @@ pub(crate) fn wrapped(text: &str, em: f64) -> Vec<String> {
 }
 
 /// What strokes and markers stand for, in rows; where they end.
-pub(crate) fn keys(svg: &mut Svg, keys: &[Key], [left, top]: [f64; 2], sheet: f64) -> f64 {
+fn keys(svg: &mut Svg, keys: &[Key], [left, top]: [f64; 2], sheet: f64) -> f64 {
     const SAMPLE: f64 = 16.0;
     let (mut x, mut y) = (left, top + if keys.is_empty() { 0.0 } else { LINE + 1.5 });
     for key in keys {
@@ -249,9 +258,7 @@ fn series(svg: &mut Svg, series: &Series, area: &PanelArea, [across, up]: [&Rule
     let mut finish = |run: &mut Vec<[f64; 2]>| {
         for part in within(run, edges) {
             let part = if series.marker == Marker::None { thinned(&part, 0.03) } else { part };
-            part.iter().enumerate().for_each(|(k, p)| {
-                let _ = write!(d, "{}{}", if k == 0 { 'M' } else { 'L' }, point(*p));
-            });
+            d.push_str(&polyline(&part));
             end = part.last().copied().or(end);
         }
         run.clear();
@@ -306,20 +313,19 @@ pub(crate) fn stroke(svg: &mut Svg, d: &str, stroke: Stroke, colour: &str, faint
 
 fn marker(svg: &mut Svg, marker: Marker, [x, y]: [f64; 2], colour: &str) {
     let m = point([x, y]);
-    let (d, open) = match marker {
+    let (d, stroke) = match marker {
         Marker::None => return,
-        Marker::Disc => (format!("M{m}m-1.6 0a1.6 1.6 0 1 0 3.2 0a1.6 1.6 0 1 0 -3.2 0Z"), false),
-        Marker::Square => (format!("M{m}m-1.5 -1.5h3v3h-3Z"), false),
-        Marker::Triangle => (format!("M{m}m0 -2l1.9 3.3h-3.8Z"), false),
-        Marker::Wedge => (format!("M{m}m0 2l1.9 -3.3h-3.8Z"), false),
-        Marker::Plus => (format!("M{m}m-2 0h4m-2 -2v4"), true),
-        Marker::Cross => (format!("M{m}m-1.5 -1.5l3 3m-3 0l3 -3"), true),
-        Marker::Diamond => (format!("M{m}m0 -3.4l3.4 3.4l-3.4 3.4l-3.4 -3.4Z"), true),
+        Marker::Disc => (format!("M{m}m-1.6 0a1.6 1.6 0 1 0 3.2 0a1.6 1.6 0 1 0 -3.2 0Z"), None),
+        Marker::Square => (format!("M{m}m-1.5 -1.5h3v3h-3Z"), None),
+        Marker::Triangle => (format!("M{m}m0 -2l1.9 3.3h-3.8Z"), None),
+        Marker::Wedge => (format!("M{m}m0 2l1.9 -3.3h-3.8Z"), None),
+        Marker::Plus => (format!("M{m}m-2 0h4m-2 -2v4"), Some(1.0)),
+        Marker::Cross => (format!("M{m}m-1.5 -1.5l3 3m-3 0l3 -3"), Some(1.0)),
+        Marker::Diamond => (format!("M{m}m0 -3.4l3.4 3.4l-3.4 3.4l-3.4 -3.4Z"), Some(1.1)),
     };
-    let paint = match (open, marker) {
-        (true, Marker::Diamond) => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.1\""),
-        (true, _) => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1\""),
-        (false, _) => format!("fill=\"{colour}\""),
+    let paint = match stroke {
+        Some(width) => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\""),
+        None => format!("fill=\"{colour}\""),
     };
     svg.path(&d, &paint);
 }

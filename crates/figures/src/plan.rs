@@ -1,11 +1,10 @@
 //! What lies on a plane, drawn to one scale in both directions: ways, bodies, graphs.
 
 use crate::axis::{Ruler, Tick};
-use crate::draw::{BARE, GREY, MARGIN, SMALL, TICK, TITLE, keys, stroke, wrapped};
-use crate::svg::{Anchor, Svg, ink, point, width};
+use crate::draw::{BARE, GREY, MARGIN, SMALL, TICK, heading, points, stroke};
+use crate::svg::{Anchor, Svg, ink, point, polyline, width};
 use crate::trim::thinned;
 use crate::{Axis, Key, Rgb, Stroke};
-use std::fmt::Write;
 
 /// A way over the plane.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -154,16 +153,9 @@ impl Projection {
 impl Plan {
     /// The map as SVG.
     pub fn svg(&self) -> String {
-        let points = |mm: f64| mm.clamp(5.0, 2000.0) * 72.0 / 25.4;
         let (sheet, most) = (points(self.width), points(self.height));
-        let mut svg = Svg::new();
-        let mut top = MARGIN;
-        for line in wrapped(&self.title, (sheet - 2.0 * MARGIN) / TITLE) {
-            top += TITLE + 1.0;
-            let bold = format!("font-size=\"{TITLE}\" font-weight=\"600\"");
-            svg.text([MARGIN, top], &line, Anchor::Start, &bold);
-        }
-        top = keys(&mut svg, &self.keys, [MARGIN, top], sheet);
+        let mut svg = Svg::default();
+        let mut top = heading(&mut svg, &self.title, &self.keys, MARGIN, sheet);
         let (left, foot) = if self.axes.is_some() { (24.0, 23.0) } else { (MARGIN, MARGIN) };
         top += if self.axes.is_some() { 16.0 } else { 3.0 };
         if self.title.is_empty() && self.keys.is_empty() && self.axes.is_some() {
@@ -209,10 +201,10 @@ impl Plan {
         for track in &self.tracks {
             let run: Vec<[f64; 2]> =
                 track.points.iter().filter(|p| p.iter().all(|x| x.is_finite())).map(|p| on.at(*p)).collect();
-            stroke(svg, &path(&thinned(&run, 0.03)), track.stroke, &ink(track.colour), track.faint);
+            stroke(svg, &polyline(&thinned(&run, 0.03)), track.stroke, &ink(track.colour), track.faint);
         }
         for outline in &self.outlines {
-            let d = path(&outline.points.iter().map(|p| on.at(*p)).collect::<Vec<_>>());
+            let d = polyline(&outline.points.iter().map(|p| on.at(*p)).collect::<Vec<_>>());
             let (colour, filled) = (ink(outline.colour), outline.filled.clamp(0.0, 1.0));
             svg.path(&format!("{d}Z"), "fill=\"#fff\"");
             svg.path(
@@ -244,13 +236,6 @@ impl Plan {
     }
 }
 
-fn path(points: &[[f64; 2]]) -> String {
-    points.iter().enumerate().fold(String::new(), |mut d, (k, p)| {
-        let _ = write!(d, "{}{}", if k == 0 { 'M' } else { 'L' }, point(*p));
-        d
-    })
-}
-
 fn arrow(svg: &mut Svg, arrow: &Arrow, on: &Projection) {
     const HEAD: f64 = 4.6;
     let (from, to) = (on.at(arrow.from), on.at(arrow.to));
@@ -268,7 +253,7 @@ fn arrow(svg: &mut Svg, arrow: &Arrow, on: &Projection) {
     let line = format!("stroke=\"{colour}\" stroke-width=\"0.9\" fill=\"none\"");
     svg.line(at(arrow.free, 0.0), at(tip - head, 0.0), &line);
     let triangle = [at(tip, 0.0), at(tip - head, 0.36 * head), at(tip - head, -0.36 * head)];
-    svg.path(&format!("{}Z", path(&triangle)), &format!("fill=\"{colour}\""));
+    svg.path(&format!("{}Z", polyline(&triangle)), &format!("fill=\"{colour}\""));
 }
 
 fn disc(svg: &mut Svg, node: &PlanNode, [x, y]: [f64; 2]) {

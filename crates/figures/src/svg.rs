@@ -9,6 +9,7 @@ pub type Rgb = [f32; 3];
 const FONT: &str = "Inter, Helvetica, Arial, sans-serif";
 
 /// A picture that grows.
+#[derive(Default)]
 pub(crate) struct Svg(String);
 
 /// Where a text begins.
@@ -20,10 +21,6 @@ pub(crate) enum Anchor {
 }
 
 impl Svg {
-    pub(crate) fn new() -> Self {
-        Self(String::new())
-    }
-
     /// A path with any attributes.
     pub(crate) fn path(&mut self, d: &str, attributes: &str) {
         let _ = writeln!(self.0, "<path d=\"{d}\" {attributes}/>");
@@ -69,6 +66,12 @@ impl Svg {
 /// Two coordinates of a path.
 pub(crate) fn point([x, y]: [f64; 2]) -> String {
     format!("{} {}", number(x), number(y))
+}
+
+/// A path through points.
+pub(crate) fn polyline(points: &[[f64; 2]]) -> String {
+    let step = |(k, p): (usize, &[f64; 2])| format!("{}{}", if k == 0 { 'M' } else { 'L' }, point(*p));
+    points.iter().enumerate().map(step).collect()
 }
 
 /// Two decimals, a hundredth of a point of print, without zeros at the end.

@@ -1,4 +1,4 @@
-//! Curves cut at the edges of their panel, and without the points that nobody would miss in print.
+//! Curves clipped to their panel, without points that make no difference in print.
 
 /// Parts of the polyline `points` that lie within [x from, y from, x to, y to].
 pub(crate) fn within(points: &[[f64; 2]], edges: [f64; 4]) -> Vec<Vec<[f64; 2]>> {

@@ -1,4 +1,4 @@
-//! What can go wrong while a film or a picture is written, told apart by who can mend it: the user's words or the machine.
+//! Errors of writing films and pictures: those of the user's input, and those of the machine.
 
 use crate::FilmKind;
 use std::path::{Path, PathBuf};
@@ -79,18 +79,12 @@ pub enum Error {
 }
 
 impl Error {
-    /// Whether other words on the command line would mend it; otherwise the machine is to blame.
+    /// Whether the user's input is at fault; otherwise the machine is.
     pub fn is_usage(&self) -> bool {
         match self {
             Self::Output(error) => error.is_usage(),
             Self::Read { .. } | Self::Encode(_) | Self::NoFfmpeg => false,
-            Self::Busy(_)
-            | Self::Ending { .. }
-            | Self::Size { .. }
-            | Self::OddSize { .. }
-            | Self::FrameRate(_)
-            | Self::GifRate(_)
-            | Self::Mismatch { .. } => true,
+            _ => true,
         }
     }
 

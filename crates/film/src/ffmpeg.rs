@@ -96,13 +96,8 @@ fn arguments(format: VideoFormat, file: &Path) -> Vec<OsString> {
     // Said as well as done: players guess the colours of a film that does not say them.
     let colours =
         ["-color_primaries", "bt709", "-color_trc", "bt709", "-colorspace", "bt709", "-color_range", "tv"];
-    words
-        .into_iter()
-        .chain(output)
-        .chain(colours)
-        .map(OsString::from)
-        .chain([file.as_os_str().to_owned()])
-        .collect()
+    let words = words.into_iter().chain(output).chain(colours).map(OsString::from);
+    words.chain([file.as_os_str().to_owned()]).collect()
 }
 
 #[cfg(test)]

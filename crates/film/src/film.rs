@@ -48,7 +48,7 @@ impl Film {
         Self::begin(path, format, sink, 0)
     }
 
-    /// Goes on with an .mp4 of `rate` frames a second that was interrupted, or begins it; and how many frames there are
+    /// Continues an interrupted .mp4 of `rate` frames a second, or begins it; also returns how many frames there are
     /// already. `made_of` is a line that is the same only for the same film.
     ///
     /// # Errors
@@ -139,7 +139,7 @@ impl Film {
 
 impl Drop for Film {
     fn drop(&mut self) {
-        // The temporary file is gone when this returns. An abandoned film has nobody to report errors to.
+        // The temporary file is gone when this returns. An abandoned film cannot report errors.
         if self.thread.is_some() {
             let _ = self.join();
         }

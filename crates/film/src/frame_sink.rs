@@ -1,4 +1,4 @@
-//! What every kind of film does with its pictures.
+//! The interface of all film encoders.
 
 use crate::Error;
 use vocabulary::Picture;

@@ -1,9 +1,10 @@
 //! H.264 by the built-in encoder. Frames go to a file as they come, so that memory stays flat.
 
+use crate::Error;
 use crate::frame_sink::FrameSink;
-use crate::kept_frames::KeptFrames;
+use crate::kept_frames::{FilmJournal, KeptFrames};
+use crate::mp4::Mp4Track;
 use crate::video_format::VideoFormat;
-use crate::{Error, mp4};
 use openh264::encoder::{
     Complexity, Encoder, EncoderConfig, FrameRate, FrameType, IntraFramePeriod, RateControlMode, UsageType,
     VuiConfig,
@@ -23,7 +24,7 @@ pub(crate) struct H264 {
     format: VideoFormat,
     store: Store,
     goal: PathBuf,
-    track: mp4::Mp4Track,
+    track: Mp4Track,
 }
 
 /// Where frames wait for the end of the film.
@@ -42,27 +43,26 @@ impl H264 {
         let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let file = tempfile::tempfile_in(folder).map_err(|e| Error::write(path, e))?;
         let store = Store::Hidden(BufWriter::with_capacity(1 << 18, file));
-        let track = mp4::Mp4Track::new(format.width, format.height, format.rate);
-        Ok(Self::with(path, format, store, track))
+        Ok(Self::with(path, format, store, FilmJournal::default()))
     }
 
-    /// Goes on with a film that was made of the same; how many frames there are.
+    /// Continues a film made from the same source; also returns how many frames there are.
     pub(crate) fn resume(path: &Path, format: VideoFormat, made_of: &str) -> Result<(Self, u64), Error> {
         let VideoFormat { width, height, rate } = format;
         // A film goes on only with the colours that it began with.
         let made_of = format!("{width}x{height} {rate} BT.709 {made_of}");
-        let kept = KeptFrames::open(path, &made_of, group(rate))?;
-        let track = mp4::Mp4Track::new(width, height, rate).going_on(&kept.found);
-        let frames = kept.found.sizes.len() as u64;
-        Ok((Self::with(path, format, Store::Kept(Box::new(kept)), track), frames))
+        let (kept, found) = KeptFrames::open(path, &made_of, group(rate))?;
+        let frames = found.sizes.len() as u64;
+        Ok((Self::with(path, format, Store::Kept(Box::new(kept)), found), frames))
     }
 
-    fn with(path: &Path, format: VideoFormat, store: Store, track: mp4::Mp4Track) -> Self {
+    fn with(path: &Path, format: VideoFormat, store: Store, found: FilmJournal) -> Self {
         let planes = Planes::new(format.width as usize, format.height as usize);
+        let track = Mp4Track::new(format, found);
         Self { encoder: None, planes, format, store, goal: path.to_owned(), track }
     }
 
-    /// Writes the film as far as it is.
+    /// Writes the film with the frames so far.
     fn write(&mut self) -> Result<(), Error> {
         let goal = &self.goal;
         let failed = |e: std::io::Error| Error::write(goal, e);
@@ -115,7 +115,7 @@ fn refused(error: &openh264::Error) -> Error {
 
 impl FrameSink for H264 {
     fn add(&mut self, picture: &Picture) -> Result<(), Error> {
-        let number = self.track.frames();
+        let number = self.track.journal.sizes.len();
         // The first of a group is encoded as if it were the first of all, so that a film can go on there.
         if number.is_multiple_of(group(self.format.rate)) {
             self.encoder = None;
@@ -138,7 +138,7 @@ impl FrameSink for H264 {
             Store::Hidden(samples) => samples.write_all(&frame).map_err(|e| Error::write(&self.goal, e)),
             Store::Kept(kept) => {
                 if number == 0 {
-                    kept.parameters(self.track.parameters())?;
+                    kept.parameters(&self.track.journal.parameters)?;
                 }
                 kept.add(&frame, key)?;
                 let last = (number + 1).is_multiple_of(group(self.format.rate));

@@ -1,4 +1,4 @@
-//! What of a film is kept on disk while it is made, so that it can go on after the program has ended in the middle.
+//! The files that keep an unfinished film on disk, so that a later program can continue it.
 //!
 //! Frames go to one file as they come, their sizes to another, the journal: whole groups of frames count, the rest is made
 //! again. Every group starts an encoder of its own, so that the film is the same in the end.
@@ -13,12 +13,11 @@ pub(crate) struct KeptFrames {
     goal: PathBuf,
     frames: BufWriter<File>,
     journal: BufWriter<File>,
-    /// Frames in them that make whole groups.
-    pub(crate) found: FilmJournal,
+    /// Whether there are whole groups.
     groups: bool,
 }
 
-/// What an earlier program has left.
+/// The frames of a film so far.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct FilmJournal {
     /// Size of every frame, and whether playing can start at it.
@@ -27,15 +26,22 @@ pub(crate) struct FilmJournal {
     pub(crate) parameters: [Vec<u8>; 2],
 }
 
+impl FilmJournal {
+    /// Bytes of all frames.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.sizes.iter().map(|(size, _)| u64::from(*size)).sum()
+    }
+}
+
 fn paths(goal: &Path) -> [PathBuf; 2] {
     let name = goal.file_name().unwrap_or_default().to_string_lossy();
     ["frames", "journal"].map(|ending| goal.with_file_name(format!(".{name}.{ending}")))
 }
 
 impl KeptFrames {
-    /// Opens what there is of the film `goal` that was made of the same (`made_of`, one line), or begins anew; `group` is
-    /// the number of frames in a group.
-    pub(crate) fn open(goal: &Path, made_of: &str, group: usize) -> Result<Self, Error> {
+    /// Opens the kept frames of the film `goal` from the same source (`made_of`, one line), or starts again; `group` is
+    /// the number of frames in a group. Also returns the frames of whole groups that were there.
+    pub(crate) fn open(goal: &Path, made_of: &str, group: usize) -> Result<(Self, FilmJournal), Error> {
         let failed = |e: std::io::Error| Error::write(goal, e);
         let [frames, journal] = paths(goal);
         let open = |path: &Path| {
@@ -53,14 +59,13 @@ impl KeptFrames {
         }
         let length = frames.metadata().map_err(failed)?.len();
         let found = read(&text, made_of, group, length).unwrap_or_default();
-        let used: u64 = found.sizes.iter().map(|(size, _)| u64::from(*size)).sum();
-        frames.set_len(used).and_then(|()| frames.seek(SeekFrom::End(0))).map_err(failed)?;
+        frames.set_len(found.bytes()).and_then(|()| frames.seek(SeekFrom::End(0))).map_err(failed)?;
         let text = written(&found, made_of);
         journal.set_len(0).and_then(|()| journal.rewind()).map_err(failed)?;
         journal.write_all(text.as_bytes()).and_then(|()| journal.sync_data()).map_err(failed)?;
         let groups = !found.sizes.is_empty();
         let (frames, journal) = (BufWriter::with_capacity(1 << 18, frames), BufWriter::new(journal));
-        Ok(Self { goal: goal.to_owned(), frames, journal, found, groups })
+        Ok((Self { goal: goal.to_owned(), frames, journal, groups }, found))
     }
 
     /// Adds a frame.
@@ -71,7 +76,7 @@ impl KeptFrames {
     }
 
     /// The encoder's parameters are known.
-    pub(crate) fn parameters(&mut self, parameters: [&[u8]; 2]) -> Result<(), Error> {
+    pub(crate) fn parameters(&mut self, parameters: &[Vec<u8>; 2]) -> Result<(), Error> {
         let failed = |e: std::io::Error| Error::write(&self.goal, e);
         self.journal.write_all(parameter_line(parameters).as_bytes()).map_err(failed)
     }
@@ -102,7 +107,7 @@ impl KeptFrames {
 impl Drop for KeptFrames {
     fn drop(&mut self) {
         if !self.groups {
-            // What cannot be removed will be found and begun anew.
+            // Files that cannot be removed are overwritten later.
             for path in paths(&self.goal) {
                 let _ = std::fs::remove_file(path);
             }
@@ -125,22 +130,22 @@ fn line(size: u32, key: bool) -> String {
     format!("{size} {}\n", u8::from(key))
 }
 
-fn parameter_line(parameters: [&[u8]; 2]) -> String {
+fn parameter_line([sequence, picture]: &[Vec<u8>; 2]) -> String {
     let digit = |nibble: u8| char::from_digit(u32::from(nibble), 16).unwrap_or('0');
     let hex = |bytes: &[u8]| bytes.iter().flat_map(|b| [digit(b >> 4), digit(b & 15)]).collect::<String>();
-    format!("p {} {}\n", hex(parameters[0]), hex(parameters[1]))
+    format!("p {} {}\n", hex(sequence), hex(picture))
 }
 
 fn written(found: &FilmJournal, made_of: &str) -> String {
     let mut text = format!("{HEAD}\n{made_of}\n");
     if !found.sizes.is_empty() {
-        text.push_str(&parameter_line([&found.parameters[0], &found.parameters[1]]));
+        text.push_str(&parameter_line(&found.parameters));
     }
     text.extend(found.sizes.iter().map(|(size, key)| line(*size, *key)));
     text
 }
 
-/// What a journal says of whole groups; `length` bytes of frames are there.
+/// The whole groups in a journal; `length` bytes of frames are there.
 fn read(text: &str, made_of: &str, group: usize, length: u64) -> Option<FilmJournal> {
     let rest = text.strip_prefix(HEAD)?.strip_prefix('\n')?.strip_prefix(made_of)?.strip_prefix('\n')?;
     let mut found = FilmJournal::default();

@@ -1,50 +1,29 @@
 //! The boxes of an .mp4 with one H.264 track (ISO/IEC 14496-12 and -15).
 //!
-//! Muxers at hand keep all frames in memory until the end; this one keeps five bytes a frame. The index comes
+//! Muxers at hand keep all frames in memory until the end; this one keeps eight bytes a frame. The index comes
 //! first, so that a film starts to play while it is still being loaded.
+
+use crate::kept_frames::FilmJournal;
+use crate::video_format::VideoFormat;
 
 /// Ticks of the track's clock to a frame; the clock runs at the frame rate times this, so frame times are exact.
 const TICKS: u32 = 1000;
 
-/// Sizes of the frames so far, and the parameter sets of the encoder.
+/// What the boxes tell of the film and of its frames so far.
 #[derive(Debug)]
 pub(crate) struct Mp4Track {
     width: u32,
     height: u32,
     /// Ticks a second.
     clock: u32,
-    sizes: Vec<u32>,
-    /// Numbers of the frames at which playing can start, from 1.
-    keys: Vec<u32>,
-    sequence: Vec<u8>,
-    picture: Vec<u8>,
+    pub(crate) journal: FilmJournal,
 }
 
 impl Mp4Track {
-    pub(crate) fn new(width: u32, height: u32, rate: f64) -> Self {
-        let clock = (rate * f64::from(TICKS)).round() as u32;
-        Self { width, height, clock, sizes: vec![], keys: vec![], sequence: vec![], picture: vec![] }
-    }
-
-    /// With frames that are there already.
-    pub(crate) fn going_on(mut self, found: &crate::kept_frames::FilmJournal) -> Self {
-        [self.sequence, self.picture] = found.parameters.clone();
-        for (size, key) in &found.sizes {
-            self.sizes.push(*size);
-            if *key {
-                self.keys.push(self.sizes.len() as u32);
-            }
-        }
-        self
-    }
-
-    /// Sequence and picture parameters of the encoder.
-    pub(crate) fn parameters(&self) -> [&[u8]; 2] {
-        [&self.sequence, &self.picture]
-    }
-
-    pub(crate) fn frames(&self) -> usize {
-        self.sizes.len()
+    /// With the frames that are there already.
+    pub(crate) fn new(format: VideoFormat, journal: FilmJournal) -> Self {
+        let clock = (format.rate * f64::from(TICKS)).round() as u32;
+        Self { width: format.width, height: format.height, clock, journal }
     }
 
     /// Takes in a frame in the encoder's format (start codes) and returns it in the file's (lengths).
@@ -52,8 +31,8 @@ impl Mp4Track {
         let mut frame = Vec::with_capacity(stream.len() + 16);
         for unit in units(stream) {
             match unit[0] & 31 {
-                7 => self.sequence = unit.to_vec(),
-                8 => self.picture = unit.to_vec(),
+                7 => self.journal.parameters[0] = unit.to_vec(),
+                8 => self.journal.parameters[1] = unit.to_vec(),
                 _ => {
                     frame.extend((unit.len() as u32).to_be_bytes());
                     frame.extend(unit);
@@ -61,10 +40,7 @@ impl Mp4Track {
             }
         }
         if !frame.is_empty() {
-            self.sizes.push(frame.len() as u32);
-            if key {
-                self.keys.push(self.sizes.len() as u32);
-            }
+            self.journal.sizes.push((frame.len() as u32, key));
         }
         frame
     }
@@ -72,7 +48,7 @@ impl Mp4Track {
     /// Everything in front of the frames, which then follow in one piece.
     pub(crate) fn head(&self) -> Vec<u8> {
         let kind = boxed(*b"ftyp", &[b"isom", &512_u32.to_be_bytes(), b"isomiso2avc1mp41"]);
-        let frames: u64 = self.sizes.iter().map(|s| u64::from(*s)).sum();
+        let frames = self.journal.bytes();
         // The place of the frames depends on the index's length, not on its content.
         let index = self.index(0).len() as u64;
         let at = kind.len() as u64 + index + 16;
@@ -86,7 +62,7 @@ impl Mp4Track {
     }
 
     fn duration(&self) -> u64 {
-        self.sizes.len() as u64 * u64::from(TICKS)
+        self.journal.sizes.len() as u64 * u64::from(TICKS)
     }
 
     fn index(&self, frames_at: u64) -> Vec<u8> {
@@ -123,17 +99,20 @@ impl Mp4Track {
     }
 
     fn table(&self, frames_at: u64) -> Vec<u8> {
-        let count = self.sizes.len() as u32;
-        let keys = [words(&[self.keys.len() as u32]), words(&self.keys)].concat();
+        let (sizes, count) = (&self.journal.sizes, self.journal.sizes.len() as u32);
+        // Frames count from 1.
+        let keys: Vec<u32> =
+            (1..).zip(sizes).filter(|(_, (_, key))| *key).map(|(number, _)| number).collect();
+        let sizes: Vec<u32> = sizes.iter().map(|(size, _)| *size).collect();
         boxed(
             *b"stbl",
             &[
                 &full(*b"stsd", 0, &[&words(&[1]), &self.description()]),
                 &full(*b"stts", 0, &[&words(&[1, count, TICKS])]),
-                &full(*b"stss", 0, &[&keys]),
+                &full(*b"stss", 0, &[&words(&[keys.len() as u32]), &words(&keys)]),
                 // One chunk holds all frames.
                 &full(*b"stsc", 0, &[&words(&[1, 1, count, 1])]),
-                &full(*b"stsz", 0, &[&words(&[0, count]), &words(&self.sizes)]),
+                &full(*b"stsz", 0, &[&words(&[0, count]), &words(&sizes)]),
                 &full(*b"co64", 0, &[&words(&[1]), &frames_at.to_be_bytes()]),
             ],
         )
@@ -141,19 +120,20 @@ impl Mp4Track {
 
     fn description(&self) -> Vec<u8> {
         let short = |n: u32| (n as u16).to_be_bytes();
-        let trajectory: Vec<u8> = self.sequence.get(1..4).unwrap_or(&[66, 0, 31]).to_vec();
+        let [sequence, picture] = &self.journal.parameters;
+        // The profile and the level of the stream.
         let parameters = boxed(
             *b"avcC",
             &[
                 &[1],
-                &trajectory,
+                sequence.get(1..4).unwrap_or(&[66, 0, 31]),
                 // Lengths of four bytes; one sequence and one picture parameter set.
                 &[0xff, 0xe1],
-                &short(self.sequence.len() as u32),
-                &self.sequence,
+                &short(sequence.len() as u32),
+                sequence,
                 &[1],
-                &short(self.picture.len() as u32),
-                &self.picture,
+                &short(picture.len() as u32),
+                picture,
             ],
         );
         // BT.709 in video range, as the pictures are converted.
@@ -224,13 +204,11 @@ mod tests {
 
     #[test]
     fn start_codes_become_lengths() {
-        let mut track = Mp4Track::new(64, 32, 30.0);
+        let format = VideoFormat { width: 64, height: 32, rate: 30.0 };
+        let mut track = Mp4Track::new(format, FilmJournal::default());
         let stream = [0, 0, 0, 1, 0x67, 66, 0, 31, 0, 0, 0, 1, 0x68, 9, 0, 0, 1, 0x65, 7, 8];
         assert_eq!(track.add(&stream, true), [0, 0, 0, 3, 0x65, 7, 8]);
-        assert_eq!(
-            (track.sequence.as_slice(), track.picture.as_slice()),
-            (&[0x67, 66, 0, 31][..], &[0x68, 9][..])
-        );
-        assert_eq!((track.sizes, track.keys), (vec![7], vec![1]));
+        assert_eq!(track.journal.parameters, [vec![0x67, 66, 0, 31], vec![0x68, 9]]);
+        assert_eq!(track.journal.sizes, [(7, true)]);
     }
 }

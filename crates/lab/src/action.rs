@@ -1,79 +1,65 @@
-//! Everything a person can ask the lab for. Clicks, keys and panels all end here, so each can be done in several ways.
+//! The commands of the lab. Clicks, keys and panels all produce them, so most can be given in several ways.
 
 use crate::app_state::{Selection, Tool};
 use std::path::PathBuf;
 
-/// One thing to do.
+/// A command of the user.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
-    /// Run on or stand.
+    /// Play or pause.
     Toggle,
-    /// One control sample.
+    /// Advance one control sample.
     Step,
-    /// Back by this many control samples, s.
+    /// Go back by this much time, s; forward where it is negative.
     Back(f64),
     /// Simulated seconds per second.
     Pace(f64),
-    /// Look at this time, s.
+    /// Go to this time, s.
     Seek(f64),
-    /// Look at the present again.
+    /// Show the present again.
     Present,
-    /// Look at a branch, and go on with it.
+    /// Show a branch and continue it.
     Branch(usize),
-    /// Leave the branch that is looked at here.
+    /// Fork the shown branch at the shown time.
     Fork,
-    /// Call a branch something else.
+    /// Rename a branch: its index and the new name.
     NameBranch(usize, String),
     /// Select something.
-    Choose(Selection),
-    /// Keep the camera with a robot; `None` lets it go.
+    Select(Selection),
+    /// Attach the camera to a robot; `None` detaches it.
     Follow(Option<usize>),
-    /// Look from a view called this.
+    /// Select a view by its name.
     Viewpoint(String),
-    /// Show what a robot's camera sees in a corner; `None` for nothing.
+    /// Show the camera image of a robot in a corner; `None` hides it.
     Inset(Option<usize>),
-    /// Change values of the scene, each a dotted path and TOML.
+    /// Set values of the scene.
     Set {
-        /// For undo and the log; with `…` at its end it goes on.
+        /// For undo and the log; a `…` at its end marks an edit in progress.
         what: String,
-        /// Path and value.
+        /// Dotted paths and TOML values.
         values: Vec<(String, String)>,
     },
-    /// Take keys of the scene back to their defaults.
-    Reset {
-        /// For undo and the log.
-        what: String,
-        /// Paths.
-        paths: Vec<String>,
-    },
-    /// Change a value of the follower that is selected, or of all of them.
+    /// Set a value of the selected follower or of all followers.
     Tune {
-        /// For undo and the log; with `…` at its end it goes on.
+        /// For undo and the log; a `…` at its end marks an edit in progress.
         what: String,
         /// Its key, without the robot.
         key: &'static str,
-        /// TOML.
-        value: String,
+        /// TOML; `None` for its default.
+        value: Option<String>,
     },
-    /// Take a value of the follower that is selected, or of all of them, back to its default.
-    Untune {
-        /// For undo and the log.
-        what: String,
-        /// Its key, without the robot.
-        key: &'static str,
-    },
-    /// Whether changes of gains are for all followers.
+    /// Whether gain changes apply to all followers.
     ForAll(bool),
-    /// Whether a set point's mirror image moves with it.
+    /// Whether the mirror image of a set point moves with it.
     Mirror(bool),
-    /// Scale the whole formation, and turn it, rad.
+    /// Scale and rotate the whole formation.
     Shape {
-        /// Factor on all distances.
+        /// Factor of all distances.
         scale: f64,
-        /// Added to all bearings, rad.
+        /// Added to all bearings, rad; left is positive.
         turn: f64,
     },
-    /// The set point of an edge, m and rad.
+    /// Move the set point of an edge.
     SetPoint {
         /// The edge.
         edge: usize,
@@ -82,75 +68,75 @@ pub enum Action {
         /// rad.
         bearing: f64,
     },
-    /// The value under the hand is let go.
-    Rest,
-    /// Let a robot follow another, by their indices.
+    /// The user has released the dragged value.
+    Release,
+    /// Let a robot follow another; both by index.
     Connect {
-        /// Who is followed.
+        /// Index of the leader.
         leader: usize,
-        /// Who follows.
+        /// Index of the follower.
         follower: usize,
     },
-    /// A robot behind the one that is selected.
+    /// Add a robot behind the selected one.
     AddRobot,
-    /// Take a robot out, by its name.
+    /// Remove a robot by its name.
     RemoveRobot(String),
-    /// Call a robot something else.
+    /// Rename a robot: its name and the new name.
     RenameRobot(String, String),
-    /// A pillar or so at a place, m.
+    /// Add a prop of this shape at a place, m.
     AddProp(&'static str, [f64; 2]),
-    /// Take a prop out, by its name.
+    /// Remove a prop by its name.
     RemoveProp(String),
-    /// What clicks on the ground do.
-    Take(Tool),
-    /// One step back.
+    /// Select a tool for clicks on the ground.
+    UseTool(Tool),
+    /// Undo the last edit.
     Undo,
-    /// One step forward again.
+    /// Redoes a step; its name and its effect on the run.
     Redo,
     /// Write the scene to its file.
     Save,
     /// Write the scene to another file.
     SaveAs(PathBuf),
-    /// Open a scene from its file, or a picture with the scene that made it.
+    /// Open a scene, a recorded run, or a picture with an embedded scene.
     Open(PathBuf),
-    /// Open one of the scenes that come with the program.
+    /// Open a shipped scene.
     OpenShipped(&'static str),
-    /// Read the file again.
+    /// Reload the file.
     Reload,
-    /// Go on from the work that a crash left.
+    /// Restore the unsaved work of an earlier session.
     Recover,
-    /// Forget the work that a crash left.
+    /// Discard the unsaved work of an earlier session.
     Forget,
-    /// Begin again at time 0.
+    /// Restart at time 0.
     Restart,
-    /// Write the run down as a scene with its changes, and as a run folder.
+    /// Write the run to a folder, with its scene and its changes.
     KeepRun,
-    /// A PNG of what is seen.
+    /// Write a PNG of the view.
     Picture,
-    /// A PNG of the whole window.
+    /// Write a PNG of the whole window.
     WindowPicture,
-    /// Begin or end a film.
+    /// Start or end a film.
     Film,
-    /// Film from a view called this; `None` is what is seen.
+    /// Film a named view; `None` films the current view.
     FilmFrom(Option<String>),
     /// Write the curves as CSV.
     CurvesCsv,
     /// Write the curves as SVG.
     CurvesSvg,
-    /// Look this far ahead, s.
+    /// Set the prediction horizon, s.
     Ahead(f64),
-    /// Switch an element of the picture by its name.
+    /// Show or hide an element of the picture by its name.
     Element(&'static str, bool),
     /// Show or hide a panel by its name.
     Panel(&'static str),
-    /// Light or dark.
+    /// Switch between the light and the dark theme.
     Theme,
-    /// Size of everything, 1 for usual.
+    /// Set the zoom of the interface; 1 is normal.
     Scale(f32),
     /// Show or hide the shortcuts.
     Help,
-    /// Show or hide the menu of scenes.
+    /// Show or hide the list of scenes.
     Gallery,
-    /// Close whatever lies over the view.
+    /// Close what covers the view, or put the tool away.
     Dismiss,
 }

@@ -1,40 +1,40 @@
-//! Unsaved work, safe on disk while it is being done, and offered again after a crash.
+//! Saves unsaved work automatically and offers it after a crash.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Where this window keeps its work.
+/// The file in which this window saves its work.
 #[derive(Debug)]
 pub struct Autosave {
     file: Option<PathBuf>,
     written: String,
 }
 
-/// Work that another window has left.
+/// Unsaved work of a window that is gone.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RecoverableWork {
     /// The file that holds it.
     pub file: PathBuf,
-    /// The scene it belongs to.
+    /// The file of its scene.
     pub path: Option<PathBuf>,
     /// The text.
     pub text: String,
 }
 
-/// First line of a kept text: the scene it belongs to.
+/// Prefix of the first line of an autosave: the file of its scene follows.
 const HEAD: &str = "# unsaved work on ";
 
 impl Autosave {
-    /// Keeps work in `folder`; `None` where there is none to keep it in.
+    /// Saves work in `folder`; `None` if there is no such folder.
     pub fn new(folder: Option<&Path>) -> Self {
         let file = folder.map(|folder| folder.join(format!("work-{}.toml", std::process::id())));
         Self { file, written: String::new() }
     }
 
-    /// Puts the text on disk if it is new.
+    /// Writes the text if it has changed.
     ///
     /// # Errors
-    /// Why it cannot be kept, in words.
+    /// Why it cannot be written.
     pub fn keep(&mut self, text: &str, path: Option<&Path>) -> Result<(), String> {
         let Some(file) = &self.file else { return Ok(()) };
         if text == self.written {
@@ -49,19 +49,19 @@ impl Autosave {
             .map_err(|error| format!("unsaved work cannot be kept: {error}"))
     }
 
-    /// There is nothing unsaved any more.
+    /// Removes the autosave: nothing is unsaved any more.
     pub fn done(&mut self) {
         if !self.written.is_empty() {
             self.written.clear();
             if let Some(file) = &self.file {
-                // What is not there need not be removed.
+                // The file may not exist.
                 let _ = fs::remove_file(file);
             }
         }
     }
 }
 
-/// The newest work in `folder` of a window that is gone; `alive` says whether a process is.
+/// The newest work in `folder` of a window that is gone; `alive` tells whether a process is running.
 pub fn left(folder: &Path, alive: impl Fn(u32) -> bool) -> Option<RecoverableWork> {
     let files = fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path());
     let orphaned = files.filter(|file| {
@@ -77,9 +77,9 @@ pub fn left(folder: &Path, alive: impl Fn(u32) -> bool) -> Option<RecoverableWor
     Some(RecoverableWork { file: newest, path, text: text.to_owned() })
 }
 
-/// Whether a process runs, as far as that can be told.
+/// Whether a process is running, as far as the system tells.
 pub fn alive(process: u32) -> bool {
-    // One that has ended and is not yet buried has nothing to say any more.
+    // A zombie process has ended.
     let state = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
     let dead = state
         .rsplit(')')

@@ -1,7 +1,8 @@
-//! Pictures and films, drawn on a thread of their own so that the window never waits for them.
+//! Pictures and films, rendered on their own thread so that the window never waits for them.
 
 use film::{Film, FilmKind, png};
-use rendering::{Gpu, Renderer, Style, Trail, ViewLayout};
+use rendering::{Gpu, PictureSpec, Renderer, Style, Trail, ViewLayout};
+use std::error::Error;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{
@@ -9,95 +10,81 @@ use std::sync::{
     atomic::{AtomicUsize, Ordering::Relaxed},
 };
 use std::thread::JoinHandle;
-use vocabulary::{FleetInfo, StepRecord};
+use vocabulary::{FleetInfo, Picture, StepRecord};
 
 /// Frames of a film a second.
 pub const RATE: f64 = 30.0;
 
-/// How something is seen.
+/// A frame to render.
 #[derive(Clone)]
 pub struct FrameSpec {
-    /// What is drawn.
+    /// The moment.
     pub record: Arc<StepRecord>,
-    /// From where.
+    /// The views.
     pub layout: ViewLayout,
-    /// And how.
+    /// Elements and annotations.
     pub style: Style,
     /// Title and caption.
     pub words: [String; 2],
 }
 
-/// What is asked of the exporter.
+/// A file to write, and what all its frames share.
+pub struct ExportTarget {
+    /// The file.
+    pub path: PathBuf,
+    /// Robots and edges.
+    pub fleet: Arc<FleetInfo>,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// The past of the moment.
+    pub trail: Trail,
+}
+
+/// A job of the exporter.
 pub enum ExportJob {
     /// A picture.
     Picture {
         /// Its file.
-        path: PathBuf,
-        /// Who is on stage.
-        fleet: Arc<FleetInfo>,
-        /// Width and height, pixels.
-        size: [u32; 2],
-        /// The past.
-        trail: Box<Trail>,
-        /// What is seen.
+        target: Box<ExportTarget>,
+        /// The frame.
         shot: Box<FrameSpec>,
-        /// What the file tells besides.
+        /// Text chunks of the file.
         texts: Vec<(&'static str, String)>,
     },
-    /// A film begins.
-    Begin {
-        /// Its file.
-        path: PathBuf,
-        /// Who is on stage.
-        fleet: Arc<FleetInfo>,
-        /// Width and height, pixels, even.
-        size: [u32; 2],
-        /// The past.
-        trail: Box<Trail>,
-    },
-    /// The past is another: somebody changed the branch.
+    /// Start a film; its width and height are even.
+    Begin(Box<ExportTarget>),
+    /// Replace the past: the branch has changed.
     Trail(Box<Trail>),
-    /// What has happened since the last frame.
+    /// Records since the last frame.
     Records(Vec<Arc<StepRecord>>),
-    /// The next frame.
+    /// Add a frame to the film.
     Frame(Box<FrameSpec>),
-    /// The film ends.
+    /// End the film.
     End,
 }
 
-/// What the exporter tells.
+/// A result of the exporter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ExportEvent {
     /// A file is complete.
     Written(PathBuf),
-    /// A file could not be made, and why.
+    /// Why a file could not be written.
     Failed(String),
-}
-
-/// Why a picture or a film could not be made.
-#[derive(Debug, thiserror::Error)]
-enum ExportError {
-    /// It could not be drawn.
-    #[error(transparent)]
-    Rendering(#[from] rendering::Error),
-    /// It could not be written.
-    #[error(transparent)]
-    Film(#[from] film::Error),
 }
 
 /// The thread and its channels.
 pub struct Exporter {
     jobs: Option<Sender<ExportJob>>,
-    told: Receiver<ExportEvent>,
+    events: Receiver<ExportEvent>,
     waiting: Arc<AtomicUsize>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Exporter {
-    /// Starts the thread; `wake` is called when it has something to tell.
+    /// Starts the thread; it calls `wake` for every event.
     pub fn start(gpu: Gpu, wake: impl Fn() + Send + 'static) -> Self {
         let (jobs, inbox) = channel();
-        let (outbox, told) = channel();
+        let (outbox, events) = channel();
         let waiting = Arc::new(AtomicUsize::new(0));
         let left = Arc::clone(&waiting);
         let work = move || {
@@ -110,18 +97,18 @@ impl Exporter {
                     Ok(Some(path)) => ExportEvent::Written(path),
                     Err(error) => ExportEvent::Failed(error.to_string()),
                 };
-                // Where nobody listens any more, the last film is still finished.
+                // Without a listener the last film is still finished.
                 let _ = outbox.send(word);
                 wake();
             }
-            // The window was closed in the middle of a film: what there is of it is kept.
+            // The window was closed during a film: the film is completed as far as it is.
             let _ = work.take(ExportJob::End);
         };
         let thread = std::thread::Builder::new().name("studio".to_owned()).spawn(work).ok();
-        Self { jobs: Some(jobs), told, waiting, thread }
+        Self { jobs: Some(jobs), events, waiting, thread }
     }
 
-    /// Asks for something.
+    /// Sends a request.
     pub fn ask(&self, job: ExportJob) {
         if let Some(jobs) = &self.jobs {
             self.waiting.fetch_add(1, Relaxed);
@@ -129,12 +116,12 @@ impl Exporter {
         }
     }
 
-    /// What it has to tell, if anything.
-    pub fn told(&self) -> Option<ExportEvent> {
-        self.told.try_recv().ok()
+    /// The next event, if there is one.
+    pub fn next_event(&self) -> Option<ExportEvent> {
+        self.events.try_recv().ok()
     }
 
-    /// Jobs that wait.
+    /// Number of jobs that are not finished.
     pub fn waiting(&self) -> usize {
         self.waiting.load(Relaxed)
     }
@@ -158,40 +145,36 @@ struct ExportWorker {
 
 /// A film under way.
 struct OpenFilm {
-    path: PathBuf,
     film: Film,
-    fleet: Arc<FleetInfo>,
-    size: [u32; 2],
-    trail: Trail,
+    target: ExportTarget,
 }
 
 impl ExportWorker {
-    /// Does a job; the file that is complete with it.
-    fn take(&mut self, job: ExportJob) -> Result<Option<PathBuf>, ExportError> {
+    /// Does a job; the file that it completes, if any.
+    fn take(&mut self, job: ExportJob) -> Result<Option<PathBuf>, Box<dyn Error>> {
         match job {
-            ExportJob::Picture { path, fleet, size, trail, shot, texts } => {
-                let drawer = self.drawer(&fleet, size)?;
-                drawer.retitle(&shot.words[0], &shot.words[1]);
-                let picture = drawer.draw(&trail, &shot.record, &shot.layout, &shot.style)?;
+            ExportJob::Picture { target, shot, texts } => {
+                let picture = self.draw(&target, &shot)?;
                 let texts: Vec<(&str, &str)> = texts.iter().map(|(key, text)| (*key, &**text)).collect();
-                png::write(&path, &picture, &texts)?;
-                Ok(Some(path))
+                png::write(&target.path, &picture, &texts)?;
+                Ok(Some(target.path))
             }
-            ExportJob::Begin { path, fleet, size, trail } => {
-                let film = Film::create(&path, FilmKind::of(&path, false)?, size[0], size[1], RATE)?;
-                self.film = Some(OpenFilm { path, film, fleet, size, trail: *trail });
+            ExportJob::Begin(target) => {
+                let ExportTarget { path, size: [width, height], .. } = &*target;
+                let film = Film::create(path, FilmKind::of(path, false)?, *width, *height, RATE)?;
+                self.film = Some(OpenFilm { film, target: *target });
                 Ok(None)
             }
             ExportJob::Trail(trail) => {
                 if let Some(reel) = &mut self.film {
-                    reel.trail = *trail;
+                    reel.target.trail = *trail;
                 }
                 Ok(None)
             }
             ExportJob::Records(records) => {
                 if let Some(reel) = &mut self.film {
                     for record in &records {
-                        reel.trail.push(record);
+                        reel.target.trail.push(record);
                     }
                 }
                 Ok(None)
@@ -199,7 +182,7 @@ impl ExportWorker {
             ExportJob::Frame(shot) => {
                 let done = self.frame(&shot);
                 if done.is_err() {
-                    // Nothing half is left: a film that is dropped removes its file.
+                    // A dropped film removes its incomplete file.
                     self.film = None;
                 }
                 done.map(|()| None)
@@ -207,31 +190,30 @@ impl ExportWorker {
             ExportJob::End => match self.film.take() {
                 Some(reel) if reel.film.frames() > 0 => {
                     reel.film.finish()?;
-                    Ok(Some(reel.path))
+                    Ok(Some(reel.target.path))
                 }
                 _ => Ok(None),
             },
         }
     }
 
-    fn frame(&mut self, shot: &FrameSpec) -> Result<(), ExportError> {
+    fn frame(&mut self, shot: &FrameSpec) -> Result<(), Box<dyn Error>> {
         let Some(mut reel) = self.film.take() else { return Ok(()) };
-        let drawer = self.drawer(&reel.fleet, reel.size)?;
-        drawer.retitle(&shot.words[0], &shot.words[1]);
-        let picture = drawer.draw(&reel.trail, &shot.record, &shot.layout, &shot.style)?;
-        reel.film.push(picture)?;
+        reel.film.push(self.draw(&reel.target, shot)?)?;
         self.film = Some(reel);
         Ok(())
     }
 
-    fn drawer(&mut self, fleet: &Arc<FleetInfo>, size: [u32; 2]) -> Result<&mut Renderer, ExportError> {
+    fn draw(&mut self, target: &ExportTarget, shot: &FrameSpec) -> Result<Picture, Box<dyn Error>> {
+        let ExportTarget { fleet, size: [width, height], trail, .. } = target;
         let fitting = self.drawer.take().filter(|(known, _)| Arc::ptr_eq(known, fleet));
         let drawer = match fitting {
             Some(drawer) => drawer,
-            None => (Arc::clone(fleet), Renderer::new(&self.gpu, fleet, size[0], size[1], 4)?),
+            None => (Arc::clone(fleet), Renderer::new(&self.gpu, fleet, *width, *height, 4)?),
         };
         let (_, renderer) = self.drawer.insert(drawer);
-        renderer.resize(size[0], size[1])?;
-        Ok(renderer)
+        renderer.resize(*width, *height)?;
+        renderer.retitle(&shot.words[0], &shot.words[1]);
+        Ok(renderer.draw(PictureSpec::new(trail, &shot.record, &shot.layout, &shot.style))?)
     }
 }

@@ -1,14 +1,14 @@
-//! How fast the window is: measured while it is used, printed when it is closed.
+//! Frame times of the window, printed when it closes.
 
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::session::prediction::Prediction;
 use std::time::{Duration, Instant};
 
-/// Figures of the speed of a window.
+/// Frame times of a window.
 #[derive(Debug, Default)]
 pub(crate) struct FrameTimings {
-    /// When the window was asked for, and how long until its first 3D picture was on its way.
+    /// When the window was requested, and the time until its first 3D picture, s.
     started: Option<Instant>,
     first: Option<Duration>,
     /// Time spent in a frame, ms.
@@ -17,17 +17,17 @@ pub(crate) struct FrameTimings {
     between: Vec<f32>,
     last: Option<Instant>,
     predictions: Vec<f32>,
-    /// When a set point was moved whose prediction has not come back.
+    /// When a set point was moved whose prediction is still pending.
     asked: Option<Instant>,
     answered: Vec<f32>,
     pictures: u64,
 }
 
-/// Frames that are remembered.
+/// Number of frames that are kept.
 const MOST: usize = 100_000;
 
 impl FrameTimings {
-    /// For a window that was asked for at `began`.
+    /// For a window that was requested at `began`.
     pub(crate) fn since(began: Instant) -> Self {
         Self { started: Some(began), ..Self::default() }
     }
@@ -67,21 +67,21 @@ impl FrameTimings {
         use std::io::Write;
         let mut out = std::io::stdout();
         if let Some(first) = self.first {
-            // A closed pipe loses figures only.
+            // A closed pipe loses only these numbers.
             let _ = writeln!(out, "first 3D picture after {:.2} s", first.as_secs_f64());
         }
         for (name, values) in [
             ("work in a frame", &self.frames),
             ("from frame to frame", &self.between),
-            ("a look ahead", &self.predictions),
-            ("from a change to its look ahead", &self.answered),
+            ("a prediction", &self.predictions),
+            ("from a change to its prediction", &self.answered),
         ] {
             let mut sorted = values.clone();
             sorted.sort_by(f32::total_cmp);
             let at =
                 |share: f32| sorted.get(((sorted.len() as f32 - 1.0) * share).max(0.0) as usize).copied();
             if let (Some(middle), Some(late)) = (at(0.5), at(0.95)) {
-                // A closed pipe loses figures only.
+                // A closed pipe loses only these numbers.
                 let _ =
                     writeln!(out, "{name}: median {middle:.1} ms, 95 % {late:.1} ms, {} times", sorted.len());
             }

@@ -1,6 +1,7 @@
-//! The scenes that come with the program, with thumbnails, and those opened before.
+//! The list of shipped scenes, with thumbnails, and of recent scenes.
 
 use crate::action::Action;
+use crate::panels::on_click;
 use eframe::egui::{self, RichText, TextureHandle, Ui};
 use scene::{SHIPPED, Shipped};
 use std::collections::BTreeMap;
@@ -12,7 +13,7 @@ macro_rules! thumbnails {
     };
 }
 
-/// PNG pictures of the scenes that come with the program, by name.
+/// PNG pictures of the shipped scenes by name.
 const THUMBNAILS: &[(&str, &[u8])] = &thumbnails![
     "circle-three",
     "line-three",
@@ -50,10 +51,10 @@ fn thumbnail(name: &str) -> Option<egui::ColorImage> {
     decode(bytes)
 }
 
-/// The scene that the lab opens with when none is named.
+/// The scene that the lab opens by default.
 pub const FIRST: &str = "figure-eight-seven";
 
-/// The menu of scenes.
+/// The list of scenes.
 #[derive(Default)]
 pub struct Gallery {
     textures: BTreeMap<&'static str, TextureHandle>,
@@ -64,18 +65,17 @@ pub struct Gallery {
 const THUMBNAIL: egui::Vec2 = egui::vec2(176.0, 99.0);
 
 impl Gallery {
-    /// Shows the menu.
+    /// Shows the list.
     pub fn show(&mut self, ui: &mut Ui, recent: &[PathBuf], out: &mut Vec<Action>) {
         self.own(ui, out);
         if !recent.is_empty() {
             ui.horizontal_wrapped(|ui| {
-                ui.label(RichText::new("Opened before").strong());
+                ui.label(RichText::new("Recent").strong());
                 for path in recent {
                     let name =
                         path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-                    if ui.link(name).on_hover_text(path.display().to_string()).clicked() {
-                        out.push(Action::Open(path.clone()));
-                    }
+                    let link = ui.link(name).on_hover_text(path.display().to_string());
+                    on_click(&link, Action::Open(path.clone()), out);
                 }
             });
         }
@@ -93,12 +93,12 @@ impl Gallery {
         });
     }
 
-    /// A scene of one's own, by its path.
+    /// A field for the path of a scene.
     fn own(&mut self, ui: &mut Ui, out: &mut Vec<Action>) {
         ui.horizontal(|ui| {
             ui.label("File");
             let edit =
-                egui::TextEdit::singleline(&mut self.path).hint_text("path of a scene, or drop one here");
+                egui::TextEdit::singleline(&mut self.path).hint_text("path of a scene, or drop a file here");
             let edit = ui.add(edit.desired_width(360.0));
             let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
             if !entered {
@@ -127,9 +127,7 @@ impl Gallery {
             })
             .inner;
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, scene.name));
-        if response.on_hover_text(scene.title()).clicked() {
-            out.push(Action::OpenShipped(scene.name));
-        }
+        on_click(&response.on_hover_text(scene.title()), Action::OpenShipped(scene.name), out);
     }
 }
 

@@ -1,4 +1,4 @@
-//! A run of the lab, written down: run again from its scene and its changes, with tables and digest.
+//! Keeps a run of the lab: simulates its scene with its changes again, and writes tables and digest.
 
 use recording::log::Roll;
 use recording::{Recorder, RunOptions, Status};
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use studies::run_options;
 use vocabulary::counted;
 
-/// What was seen in the window.
+/// The run in the window, for comparison.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SeenRun {
     /// Samples of the run.
@@ -18,10 +18,10 @@ pub struct SeenRun {
     pub digest: String,
 }
 
-/// Runs the scene of `text` again and records it in `folder`; what it was, in words.
+/// Runs the scene of `text` again and records it in `folder`; returns a description of the result.
 ///
 /// # Errors
-/// Why it could not be written, in words.
+/// Why it could not be written.
 pub fn keep(
     text: &str,
     home: &Path,
@@ -34,7 +34,7 @@ pub fn keep(
     let mut run = Simulation::new(setup);
     let roll = Roll::default();
     if run.needs_cameras() {
-        let gpu = gpu.ok_or("there is no adapter to draw what cameras see")?;
+        let gpu = gpu.ok_or("there is no adapter to render camera images")?;
         let eyes = GpuCameraRenderer::new(gpu, run.fleet()).map_err(|error| error.to_string())?;
         run.attach_cameras(roll.through(Box::new(eyes)));
     }
@@ -47,13 +47,13 @@ pub fn keep(
     let digest = manifest.digest.unwrap_or_default();
     let (place, samples) = (folder.display(), counted(manifest.samples, "sample"));
     if (manifest.samples, &*digest) == (seen.samples, &*seen.digest) {
-        Ok(format!("The run is in {place}: {samples}, digest {digest}, as seen here"))
+        Ok(format!("The run is in {place}: {samples}, digest {digest}, the same as in the window"))
     } else {
-        Err(format!("{place} holds {samples} with digest {digest}, not what was seen here"))
+        Err(format!("{place} holds {samples} with digest {digest}, which differs from the run in the window"))
     }
 }
 
-/// The first of `stem-001.ending`, `stem-002.ending`, … in `folder` that is not there.
+/// The first of `stem-001.ending`, `stem-002.ending`, … that does not exist in `folder`.
 pub fn free(folder: &Path, stem: &str, ending: &str) -> PathBuf {
     let name = |number: u32| {
         let dot = if ending.is_empty() { "" } else { "." };

@@ -1,34 +1,37 @@
-//! Keyboard shortcuts: one list for what keys do, for the page that shows them and for the book.
+//! Keyboard shortcuts: one list for key handling, the page of shortcuts and the book.
 
 use crate::action::Action;
 use crate::app_state::{AppState, Selection, Tool};
-use crate::session::history::History;
 use eframe::egui::{self, Key, Modifiers};
 use std::f64::consts::PI;
 
-/// What a key or the mouse does: for people, and for the window.
+/// A shortcut, for people and for the window.
 pub struct Shortcut {
-    /// As it is written.
+    /// The keys as text.
     pub keys: &'static str,
     /// What it does.
     pub what: &'static str,
-    /// The keys, each with its modifiers; none for what the view does by itself.
+    /// The bindings; none for mouse gestures of the view.
     bindings: &'static [Binding],
 }
 
-/// A key and what it asks for.
+/// A key and its effect.
 struct Binding {
     modifiers: Modifiers,
     key: Key,
     effect: KeyEffect,
 }
 
-/// What pressing a key comes to.
+/// The effect of a key.
 enum KeyEffect {
-    /// An action, where there is something to do it to.
+    /// An action, if there is an object for it.
     Act(fn(&AppState) -> Option<Action>),
-    /// The selected set point moves by m and degrees. Every press of a frame counts, and all of them are one move.
+    /// Moves the selected set point by m and degrees. All presses of a frame count and make one move.
     Nudge([f64; 2]),
+}
+
+const fn row(keys: &'static str, what: &'static str, bindings: &'static [Binding]) -> Shortcut {
+    Shortcut { keys, what, bindings }
 }
 
 const fn bare(key: Key, action: fn(&AppState) -> Option<Action>) -> Binding {
@@ -39,7 +42,7 @@ const fn shift(key: Key, action: fn(&AppState) -> Option<Action>) -> Binding {
     Binding { modifiers: Modifiers::SHIFT, key, effect: KeyEffect::Act(action) }
 }
 
-/// With Ctrl, or ⌘ on a Mac; also while a text is written.
+/// With Ctrl, or ⌘ on a Mac; also active in text fields.
 const fn command(key: Key, action: fn(&AppState) -> Option<Action>) -> Binding {
     Binding { modifiers: Modifiers::COMMAND, key, effect: KeyEffect::Act(action) }
 }
@@ -48,194 +51,145 @@ const fn nudge(key: Key, by: [f64; 2]) -> Binding {
     Binding { modifiers: Modifiers::NONE, key, effect: KeyEffect::Nudge(by) }
 }
 
-/// All shortcuts and what the mouse does: the window goes by this list, and the page of shortcuts shows it.
-pub const LIST: &[(&str, &[Shortcut])] = &[
-    (
-        "Time",
+const TIME: &[Shortcut] = &[
+    row("Space", "play or pause", &[bare(Key::Space, |_| Some(Action::Toggle))]),
+    row(
+        "→  ←",
+        "one sample forward, one sample back; with Shift one second",
         &[
-            Shortcut {
-                keys: "Space",
-                what: "play or pause",
-                bindings: &[bare(Key::Space, |_| Some(Action::Toggle))],
-            },
-            Shortcut {
-                keys: "→  ←",
-                what: "a sample on, a sample back; with Shift a second",
-                bindings: &[
-                    bare(Key::ArrowRight, |_| Some(Action::Step)),
-                    bare(Key::ArrowLeft, |state| Some(Action::Back(period(state)))),
-                    shift(Key::ArrowRight, |_| Some(Action::Back(-1.0))),
-                    shift(Key::ArrowLeft, |_| Some(Action::Back(1.0))),
-                ],
-            },
-            Shortcut {
-                keys: "Home  End",
-                what: "look at the start, at the present",
-                bindings: &[
-                    bare(Key::Home, |_| Some(Action::Seek(0.0))),
-                    bare(Key::End, |_| Some(Action::Present)),
-                ],
-            },
-            Shortcut {
-                keys: ",  .",
-                what: "slower, faster",
-                bindings: &[
-                    bare(Key::Comma, |state| Some(Action::Pace(slower(state.pace)))),
-                    bare(Key::Period, |state| Some(Action::Pace(faster(state.pace)))),
-                ],
-            },
-            Shortcut { keys: "B", what: "branch here", bindings: &[bare(Key::B, |_| Some(Action::Fork))] },
-            Shortcut {
-                keys: "[  ]",
-                what: "branch before, next branch",
-                bindings: &[
-                    bare(Key::OpenBracket, |state| Some(Action::Branch(state.branch.saturating_sub(1)))),
-                    bare(Key::CloseBracket, |state| Some(Action::Branch(state.branch + 1))),
-                ],
-            },
-            Shortcut {
-                keys: "Shift Home",
-                what: "begin again at 0",
-                bindings: &[shift(Key::Home, |_| Some(Action::Restart))],
-            },
+            bare(Key::ArrowRight, |_| Some(Action::Step)),
+            bare(Key::ArrowLeft, |state| Some(Action::Back(state.period()))),
+            shift(Key::ArrowRight, |_| Some(Action::Back(-1.0))),
+            shift(Key::ArrowLeft, |_| Some(Action::Back(1.0))),
         ],
     ),
-    (
-        "Formation",
+    row(
+        "Home  End",
+        "show the start, the present",
+        &[bare(Key::Home, |_| Some(Action::Seek(0.0))), bare(Key::End, |_| Some(Action::Present))],
+    ),
+    row(
+        ",  .",
+        "slower, faster",
         &[
-            Shortcut {
-                keys: "Tab",
-                what: "next edge; with Shift the one before",
-                bindings: &[
-                    bare(Key::Tab, |state| Some(Action::Choose(next(state, 1)))),
-                    shift(Key::Tab, |state| Some(Action::Choose(next(state, -1)))),
-                ],
-            },
-            Shortcut {
-                keys: "W  S",
-                what: "set point 0.1 m nearer, farther",
-                bindings: &[nudge(Key::W, [-0.1, 0.0]), nudge(Key::S, [0.1, 0.0])],
-            },
-            Shortcut {
-                keys: "A  D",
-                what: "set point 5° to the left, to the right",
-                bindings: &[nudge(Key::A, [0.0, 5.0]), nudge(Key::D, [0.0, -5.0])],
-            },
-            Shortcut {
-                keys: "M",
-                what: "mirror: both sides move",
-                bindings: &[bare(Key::M, |state| Some(Action::Mirror(!state.mirror)))],
-            },
-            Shortcut {
-                keys: "Ctrl −  Ctrl +",
-                what: "whole formation smaller, larger",
-                bindings: &[
-                    command(Key::Minus, |_| Some(Action::Shape { scale: 1.0 / 1.1, turn: 0.0 })),
-                    command(Key::Plus, |_| Some(Action::Shape { scale: 1.1, turn: 0.0 })),
-                    command(Key::Equals, |_| Some(Action::Shape { scale: 1.1, turn: 0.0 })),
-                ],
-            },
-            Shortcut {
-                keys: "Insert  Delete",
-                what: "add a robot, remove the selected one",
-                bindings: &[
-                    bare(Key::Insert, |_| Some(Action::AddRobot)),
-                    bare(Key::Delete, |state| chosen(state).map(|(_, name)| Action::RemoveRobot(name))),
-                ],
-            },
-            Shortcut {
-                keys: "C  O  Esc",
-                what: "connect robots, place pillars, neither",
-                bindings: &[
-                    bare(Key::C, |_| Some(Action::Take(Tool::Connect))),
-                    bare(Key::O, |_| Some(Action::Take(Tool::Pillar))),
-                    bare(Key::Escape, |_| Some(Action::Dismiss)),
-                ],
-            },
+            bare(Key::Comma, |state| Some(Action::Pace(slower(state.pace)))),
+            bare(Key::Period, |state| Some(Action::Pace(faster(state.pace)))),
         ],
     ),
-    (
-        "View",
+    row("B", "branch here", &[bare(Key::B, |_| Some(Action::Fork))]),
+    row(
+        "[  ]",
+        "previous branch, next branch",
         &[
-            Shortcut {
-                keys: "1 … 5",
-                what: "snake, snake eye, top, orbit, camera of the selected robot",
-                bindings: &[
-                    bare(Key::Num1, |_| Some(Action::Viewpoint("snake".to_owned()))),
-                    bare(Key::Num2, |_| Some(Action::Viewpoint("snake-eye".to_owned()))),
-                    bare(Key::Num3, |_| Some(Action::Viewpoint("top".to_owned()))),
-                    bare(Key::Num4, |_| Some(Action::Viewpoint("orbit".to_owned()))),
-                    bare(Key::Num5, |state| {
-                        chosen(state).map(|(_, name)| Action::Viewpoint(format!("camera:{name}")))
-                    }),
-                ],
-            },
-            Shortcut {
-                keys: "G",
-                what: "follow the selected robot",
-                bindings: &[bare(Key::G, |state| {
-                    chosen(state).map(|(robot, _)| Action::Follow(Some(robot)))
-                })],
-            },
-            Shortcut {
-                keys: "I",
-                what: "its camera in the corner",
-                bindings: &[bare(Key::I, |state| chosen(state).map(|(robot, _)| Action::Inset(Some(robot))))],
-            },
-            Shortcut { keys: "Drag", what: "turn; with the right button move; wheel to zoom", bindings: &[] },
-            Shortcut {
-                keys: "Drag a ring",
-                what: "set point, in steps of 0.1 m and 5°; Shift without steps",
-                bindings: &[],
-            },
-            Shortcut { keys: "Ctrl drag a ring", what: "whole formation", bindings: &[] },
-            Shortcut { keys: "T", what: "light or dark", bindings: &[bare(Key::T, |_| Some(Action::Theme))] },
+            bare(Key::OpenBracket, |state| Some(Action::Branch(state.branch.saturating_sub(1)))),
+            bare(Key::CloseBracket, |state| Some(Action::Branch(state.branch + 1))),
         ],
     ),
-    (
-        "Work",
+    row("Shift Home", "restart at 0 s", &[shift(Key::Home, |_| Some(Action::Restart))]),
+];
+
+const FORMATION: &[Shortcut] = &[
+    row(
+        "Tab",
+        "next edge; with Shift the previous edge",
         &[
-            Shortcut {
-                keys: "Ctrl S",
-                what: "save the scene",
-                bindings: &[command(Key::S, |_| Some(Action::Save))],
-            },
-            Shortcut {
-                keys: "Ctrl O",
-                what: "scenes",
-                bindings: &[command(Key::O, |_| Some(Action::Gallery))],
-            },
-            Shortcut {
-                keys: "Ctrl R",
-                what: "read the file again",
-                bindings: &[command(Key::R, |_| Some(Action::Reload))],
-            },
-            Shortcut {
-                keys: "Ctrl Z  Ctrl Y",
-                what: "undo, redo",
-                bindings: &[command(Key::Z, |_| Some(Action::Undo)), command(Key::Y, |_| Some(Action::Redo))],
-            },
-            Shortcut {
-                keys: "P  F  K",
-                what: "picture, film, keep the run",
-                bindings: &[
-                    bare(Key::P, |_| Some(Action::Picture)),
-                    bare(Key::F, |_| Some(Action::Film)),
-                    bare(Key::K, |_| Some(Action::KeepRun)),
-                ],
-            },
-            Shortcut {
-                keys: "Ctrl P",
-                what: "picture of the whole window",
-                bindings: &[command(Key::P, |_| Some(Action::WindowPicture))],
-            },
-            // `?` is where a keyboard has it: `pressed` takes it as a text.
-            Shortcut { keys: "?  F1", what: "this page", bindings: &[bare(Key::F1, |_| Some(Action::Help))] },
+            bare(Key::Tab, |state| Some(Action::Select(next(state, 1)))),
+            shift(Key::Tab, |state| Some(Action::Select(next(state, -1)))),
+        ],
+    ),
+    row("W  S", "set point 0.1 m nearer, farther", &[nudge(Key::W, [-0.1, 0.0]), nudge(Key::S, [0.1, 0.0])]),
+    row(
+        "A  D",
+        "set point 5° to the left, to the right",
+        &[nudge(Key::A, [0.0, 5.0]), nudge(Key::D, [0.0, -5.0])],
+    ),
+    row("M", "mirror: both sides move", &[bare(Key::M, |state| Some(Action::Mirror(!state.mirror)))]),
+    row(
+        "Ctrl −  Ctrl +",
+        "whole formation smaller, larger",
+        &[
+            command(Key::Minus, |_| Some(Action::Shape { scale: 1.0 / 1.1, turn: 0.0 })),
+            command(Key::Plus, |_| Some(Action::Shape { scale: 1.1, turn: 0.0 })),
+            command(Key::Equals, |_| Some(Action::Shape { scale: 1.1, turn: 0.0 })),
+        ],
+    ),
+    row(
+        "Insert  Delete",
+        "add a robot, remove the selected one",
+        &[
+            bare(Key::Insert, |_| Some(Action::AddRobot)),
+            bare(Key::Delete, |state| chosen(state).map(|(_, name)| Action::RemoveRobot(name))),
+        ],
+    ),
+    row(
+        "C  O  Esc",
+        "connect robots, place pillars, cancel",
+        &[
+            bare(Key::C, |_| Some(Action::UseTool(Tool::Connect))),
+            bare(Key::O, |_| Some(Action::UseTool(Tool::Pillar))),
+            bare(Key::Escape, |_| Some(Action::Dismiss)),
         ],
     ),
 ];
 
-/// What keys ask for in this frame; nothing while a text is written, and nothing behind a menu or, where the view is
+const VIEW: &[Shortcut] = &[
+    row(
+        "1 … 5",
+        "snake, snake eye, top, orbit, camera of the selected robot",
+        &[
+            bare(Key::Num1, |_| Some(Action::Viewpoint("snake".to_owned()))),
+            bare(Key::Num2, |_| Some(Action::Viewpoint("snake-eye".to_owned()))),
+            bare(Key::Num3, |_| Some(Action::Viewpoint("top".to_owned()))),
+            bare(Key::Num4, |_| Some(Action::Viewpoint("orbit".to_owned()))),
+            bare(Key::Num5, |state| {
+                chosen(state).map(|(_, name)| Action::Viewpoint(format!("camera:{name}")))
+            }),
+        ],
+    ),
+    row(
+        "G",
+        "follow the selected robot",
+        &[bare(Key::G, |state| chosen(state).map(|(robot, _)| Action::Follow(Some(robot))))],
+    ),
+    row(
+        "I",
+        "its camera image in the corner",
+        &[bare(Key::I, |state| chosen(state).map(|(robot, _)| Action::Inset(Some(robot))))],
+    ),
+    row("Drag", "turn; right button: move; wheel: zoom", &[]),
+    row("Drag a ring", "set point, in steps of 0.1 m and 5°; Shift: freely", &[]),
+    row("Ctrl drag a ring", "whole formation", &[]),
+    row("T", "light or dark", &[bare(Key::T, |_| Some(Action::Theme))]),
+];
+
+const WORK: &[Shortcut] = &[
+    row("Ctrl S", "save the scene", &[command(Key::S, |_| Some(Action::Save))]),
+    row("Ctrl O", "scenes", &[command(Key::O, |_| Some(Action::Gallery))]),
+    row("Ctrl R", "reload the file", &[command(Key::R, |_| Some(Action::Reload))]),
+    row(
+        "Ctrl Z  Ctrl Y",
+        "undo, redo",
+        &[command(Key::Z, |_| Some(Action::Undo)), command(Key::Y, |_| Some(Action::Redo))],
+    ),
+    row(
+        "P  F  K",
+        "picture, film, keep the run",
+        &[
+            bare(Key::P, |_| Some(Action::Picture)),
+            bare(Key::F, |_| Some(Action::Film)),
+            bare(Key::K, |_| Some(Action::KeepRun)),
+        ],
+    ),
+    row("Ctrl P", "picture of the whole window", &[command(Key::P, |_| Some(Action::WindowPicture))]),
+    // `?` depends on the keyboard layout: `pressed` reads it as text.
+    row("?  F1", "this page", &[bare(Key::F1, |_| Some(Action::Help))]),
+];
+
+/// All shortcuts and mouse gestures: the window obeys this list, and the page of shortcuts shows it.
+pub const LIST: &[(&str, &[Shortcut])] =
+    &[("Time", TIME), ("Formation", FORMATION), ("View", VIEW), ("Work", WORK)];
+
+/// Actions of the keys pressed in this frame; none in a text field, and none behind a menu or, where the view is
 /// `covered`, a window.
 pub fn pressed(ctx: &egui::Context, app_state: &AppState, covered: bool, out: &mut Vec<Action>) {
     take(ctx, app_state, Modifiers::COMMAND, out);
@@ -245,7 +199,7 @@ pub fn pressed(ctx: &egui::Context, app_state: &AppState, covered: bool, out: &m
     if ctx.egui_wants_keyboard_input() || covered || egui::Popup::is_any_open(ctx) {
         return;
     }
-    // A key without modifiers is also found where Shift is held, so those with Shift come first.
+    // A key without modifiers also matches with Shift held, so bindings with Shift come first.
     take(ctx, app_state, Modifiers::SHIFT, out);
     take(ctx, app_state, Modifiers::NONE, out);
     if ctx.input(|input| input.events.iter().any(|e| matches!(e, egui::Event::Text(text) if text == "?"))) {
@@ -253,7 +207,7 @@ pub fn pressed(ctx: &egui::Context, app_state: &AppState, covered: bool, out: &m
     }
 }
 
-/// What the keys of the list with these modifiers ask for.
+/// Actions of the pressed keys of the list with these modifiers.
 fn take(ctx: &egui::Context, app_state: &AppState, modifiers: Modifiers, out: &mut Vec<Action>) {
     let mut moved = [0.0; 2];
     let edge = app_state.chosen_edge();
@@ -261,7 +215,7 @@ fn take(ctx: &egui::Context, app_state: &AppState, modifiers: Modifiers, out: &m
     for binding in bindings.filter(|binding| binding.modifiers == modifiers) {
         let count = || ctx.input_mut(|input| input.count_and_consume_key(modifiers, binding.key));
         match &binding.effect {
-            // Without an edge the keys are left to others.
+            // Without an edge the keys are left to other widgets.
             KeyEffect::Nudge([metres, degrees]) if edge.is_some() => {
                 let times = count() as f64;
                 moved = [moved[0] + times * metres, moved[1] + times * degrees];
@@ -281,19 +235,14 @@ fn take(ctx: &egui::Context, app_state: &AppState, modifiers: Modifiers, out: &m
     }
 }
 
-/// Control period of the run, s.
-fn period(app_state: &AppState) -> f64 {
-    app_state.history.as_ref().map_or(0.01, History::period)
-}
-
 fn chosen(app_state: &AppState) -> Option<(usize, String)> {
     let robot = app_state.chosen_robot()?;
-    Some((robot, app_state.history.as_ref()?.fleet().robots.get(robot)?.name.clone()))
+    Some((robot, app_state.fleet()?.robots.get(robot)?.name.clone()))
 }
 
-/// The edge after or before the one that is selected.
+/// The edge after or before the selected one.
 fn next(app_state: &AppState, by: i64) -> Selection {
-    let edges = app_state.history.as_ref().map_or(0, |history| history.fleet().edges.len()) as i64;
+    let edges = app_state.fleet().map_or(0, |fleet| fleet.edges.len()) as i64;
     if edges == 0 {
         return Selection::Nothing;
     }
@@ -301,7 +250,7 @@ fn next(app_state: &AppState, by: i64) -> Selection {
     Selection::Edge((now + by).rem_euclid(edges) as usize)
 }
 
-/// A set point moved by m and degrees.
+/// The action that moves the set point of an edge by m and degrees.
 fn nudged(app_state: &AppState, edge: usize, [metres, degrees]: [f64; 2]) -> Option<Action> {
     let [distance, bearing] = app_state.set_point(edge)?;
     let bearing = vocabulary::wrap(bearing + degrees / 180.0 * PI);
@@ -350,7 +299,7 @@ fn part(ui: &mut egui::Ui, head: &str, shortcuts: &[Shortcut]) {
 mod tests {
     use super::*;
 
-    /// As a binding is written in the list.
+    /// A binding in the notation of the list.
     fn written(binding: &Binding) -> String {
         let key = match binding.key {
             Key::ArrowRight => "→",
@@ -392,7 +341,7 @@ mod tests {
         assert!(all.len() > 40, "{}", all.len());
     }
 
-    /// The book names keys in the same words.
+    /// The book names keys in the same notation.
     #[test]
     fn the_book_names_keys_that_are_bound() {
         let book = include_str!("../../../docs/lab.md");
@@ -421,7 +370,7 @@ mod tests {
         out
     }
 
-    /// Without modifiers the arrow was found first, and Shift made no difference.
+    /// The arrow without modifiers must not shadow the one with Shift.
     #[test]
     fn shift_makes_a_second_of_a_sample() {
         assert_eq!(asked(Modifiers::NONE, Key::ArrowRight), [Action::Step]);

@@ -1,7 +1,7 @@
 //! The lab: a window in which set points and gains are tuned while a formation drives.
 //!
-//! [`open`] shows it. Whatever a person asks for is an [`Action`](action::Action), whether it comes from a panel, a key or
-//! the view. The [`AppState`](app_state::AppState) decides what it means. The run has a thread of its own ([`session`]), and
+//! [`open`] shows it. Every command is an [`Action`](action::Action), whether it comes from a panel, a key or
+//! the view. The [`AppState`](app_state::AppState) carries it out. The run has a thread of its own ([`session`]), and
 //! so have predictions, pictures and films. The window never waits for the run, nor the run for the window: results depend
 //! on neither frame rate nor mouse.
 
@@ -15,26 +15,26 @@ mod frame_timings;
 pub mod gallery;
 pub mod kept_run;
 pub mod keys;
-pub mod look;
+pub mod numbers;
 pub mod panels;
 pub mod panes;
 pub mod quantities;
 pub mod session;
 pub mod symbols;
-pub mod tidy;
+pub mod theme;
 pub mod view;
 mod window;
 mod window_guard;
 
 pub use window::{Options, open};
 
-/// Why the window ended before its time.
+/// Why the window ended early.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// There is no window system, no adapter, or it was lost.
     #[error("{0}")]
     Window(String),
-    /// The program was told to end.
+    /// The program was terminated from outside.
     #[error("the window is closed; what was not saved is offered at the next start")]
     Interrupted,
 }

@@ -1,10 +1,10 @@
-//! How panels share the window: a tree of tiles that a person rearranges, and that is remembered.
+//! The layout of panels: a tree of tiles that the user rearranges and the lab remembers.
 
 use crate::action::Action;
 use crate::app_state::AppState;
-use crate::panels;
+use crate::panels::{branches, certificates, curves, edge, film, formation, law, log, sensing, world};
 use crate::quantities::PlotQuantity;
-use eframe::egui::{Ui, WidgetText};
+use eframe::egui::{Frame, Id, ScrollArea, Ui, WidgetText};
 use egui_tiles::{Behavior, Linear, LinearDir, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
 use rendering::Style;
 use serde::{Deserialize, Serialize};
@@ -13,41 +13,46 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Pane(usize);
 
-/// Names of the panels.
-pub const NAMES: &[&str] = &[
-    "View",
-    "Formation",
-    "Edge",
-    "Law",
-    "Observer",
-    "Sensing",
-    "Limits",
-    "World",
-    "Film",
-    "Branches",
-    "Log",
-    "Errors",
-    "Commands",
-    "Speeds",
-    "Observer error",
-    "Energy",
-    "Clearance",
-    "Certificates",
+/// Draws a panel.
+type Draw = fn(&mut Ui, &mut Panels<'_>);
+
+/// The panels by name; the first is the 3D view.
+pub const PANES: &[(&str, Draw)] = &[
+    ("View", |ui, on| (on.view)(ui, on.out)),
+    ("Formation", |ui, on| formation::show(ui, on.app_state, on.out)),
+    ("Edge", |ui, on| edge::show(ui, on.app_state, on.out)),
+    ("Law", |ui, on| law::show(ui, on.app_state, on.out)),
+    ("Observer", |ui, on| law::observer(ui, on.app_state, on.out)),
+    ("Sensing", |ui, on| sensing::show(ui, on.app_state, on.out)),
+    ("Limits", |ui, on| world::limits(ui, on.app_state, on.out)),
+    ("World", |ui, on| world::surroundings(ui, on.app_state, on.out)),
+    ("Film", |ui, on| film::show(ui, on.app_state, on.style, on.filming, on.out)),
+    ("Branches", |ui, on| branches::show(ui, on.app_state, on.out)),
+    ("Log", |ui, on| log::show(ui, on.app_state, on.out)),
+    ("Errors", |ui, on| on.curves(ui, &[PlotQuantity::DistanceError, PlotQuantity::BearingError])),
+    ("Commands", |ui, on| on.curves(ui, &[PlotQuantity::Acceleration, PlotQuantity::TurnRate])),
+    ("Speeds", |ui, on| on.curves(ui, &[PlotQuantity::Speed])),
+    ("Observer error", |ui, on| {
+        on.curves(ui, &[PlotQuantity::DistanceRateError, PlotQuantity::BearingRateError]);
+    }),
+    ("Energy", |ui, on| on.curves(ui, &[PlotQuantity::TrackingEnergy, PlotQuantity::ObserverEnergy])),
+    ("Clearance", |ui, on| on.curves(ui, &[PlotQuantity::Clearance])),
+    ("Certificates", |ui, on| certificates::show(ui, on.app_state, on.out)),
 ];
 
 impl Pane {
-    /// By its name.
+    /// The panel of this name.
     pub fn named(name: &str) -> Option<Self> {
-        NAMES.iter().position(|known| *known == name).map(Self)
+        PANES.iter().position(|(known, _)| *known == name).map(Self)
     }
 
     /// Its name.
     pub fn name(self) -> &'static str {
-        NAMES.get(self.0).copied().unwrap_or("")
+        PANES.get(self.0).map_or("", |(name, _)| name)
     }
 }
 
-/// The arrangement at first.
+/// The initial layout.
 pub fn arrangement() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let mut tabs = |names: &[&str]| {
@@ -73,21 +78,21 @@ pub fn arrangement() -> Tree<Pane> {
     let middle = tiles.insert_container(middle);
     let plots = tiles.insert_horizontal_tile(plots.to_vec());
     let root = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [middle, plots], 0.74));
-    Tree::new(eframe::egui::Id::unique("panels"), root, tiles)
+    Tree::new(Id::unique("panels"), root, tiles)
 }
 
-/// Whether a tree from an earlier start can be used: the view is in it, and no panel twice.
+/// Whether a remembered layout is valid: it contains the view, and no panel twice.
 pub fn sound(tree: &Tree<Pane>) -> bool {
     let count = |pane: Pane| {
         tree.tiles.iter().filter(|(_, tile)| matches!(tile, Tile::Pane(p) if *p == pane)).count()
     };
     tree.root().is_some()
-        && (0..NAMES.len()).all(|k| count(Pane(k)) <= 1)
+        && (0..PANES.len()).all(|k| count(Pane(k)) <= 1)
         && count(Pane(0)) == 1
-        && tree.tiles.iter().all(|(_, tile)| !matches!(tile, Tile::Pane(pane) if pane.0 >= NAMES.len()))
+        && tree.tiles.iter().all(|(_, tile)| !matches!(tile, Tile::Pane(pane) if pane.0 >= PANES.len()))
 }
 
-/// Shows a panel that is hidden, hides one that is shown.
+/// Toggles a panel.
 pub fn toggle(tree: &mut Tree<Pane>, name: &str) {
     let Some(pane) = Pane::named(name) else { return };
     match tree.tiles.find_pane(&pane) {
@@ -108,33 +113,31 @@ pub fn toggle(tree: &mut Tree<Pane>, name: &str) {
 
 /// What draws the panels.
 pub struct Panels<'a> {
-    /// What they show.
+    /// The state that they show.
     pub app_state: &'a AppState,
-    /// What is drawn in the view.
+    /// Elements of the view.
     pub style: &'a Style,
-    /// How far a film is.
+    /// Progress of a film.
     pub filming: Option<&'a str>,
     /// Draws the 3D view.
     pub view: &'a mut dyn FnMut(&mut Ui, &mut Vec<Action>),
-    /// The tile of the view.
+    /// The tile that shows the view.
     pub view_tile: Option<TileId>,
-    /// What is asked for.
+    /// Actions of the user.
     pub out: &'a mut Vec<Action>,
 }
 
 impl Behavior<Pane> for Panels<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _: TileId, pane: &mut Pane) -> UiResponse {
-        if pane.name() == "View" {
-            (self.view)(ui, self.out);
+        let Some((name, draw)) = PANES.get(pane.0) else { return UiResponse::None };
+        if pane.0 == 0 {
+            draw(ui, self);
             return UiResponse::None;
         }
-        let frame = eframe::egui::Frame::new().inner_margin(6.0);
-        frame.show(ui, |ui| {
-            // What is too wide for a narrow panel can still be reached.
-            eframe::egui::ScrollArea::horizontal()
-                .id_salt(pane.name())
-                .auto_shrink([false, false])
-                .show(ui, |ui| show(ui, *pane, self));
+        Frame::new().inner_margin(6.0).show(ui, |ui| {
+            // Content that is wider than the panel can be scrolled to.
+            let scroll = ScrollArea::horizontal().id_salt(name).auto_shrink([false, false]);
+            scroll.show(ui, |ui| draw(ui, self));
         });
         UiResponse::None
     }
@@ -148,7 +151,7 @@ impl Behavior<Pane> for Panels<'_> {
     }
 
     fn is_tab_bar_visible(&self, _: TileId, tabs: &egui_tiles::Tabs) -> bool {
-        // The view needs no name.
+        // The view needs no tab.
         tabs.children.len() > 1 || !self.only_view(tabs)
     }
 
@@ -166,50 +169,11 @@ impl Behavior<Pane> for Panels<'_> {
 }
 
 impl Panels<'_> {
+    fn curves(&mut self, ui: &mut Ui, quantities: &[PlotQuantity]) {
+        curves::show(ui, self.app_state, quantities, self.out);
+    }
+
     fn only_view(&self, tabs: &egui_tiles::Tabs) -> bool {
         tabs.children.len() == 1 && self.view_tile == tabs.active
-    }
-}
-
-fn show(ui: &mut Ui, pane: Pane, panels: &mut Panels<'_>) {
-    let (app_state, out) = (panels.app_state, &mut *panels.out);
-    match pane.name() {
-        "Formation" => panels::formation::show(ui, app_state, out),
-        "Edge" => panels::edge::show(ui, app_state, out),
-        "Law" => panels::law::show(ui, app_state, out),
-        "Observer" => panels::law::observer(ui, app_state, out),
-        "Sensing" => panels::sensing::show(ui, app_state, out),
-        "Limits" => panels::world::limits(ui, app_state, out),
-        "World" => panels::world::surroundings(ui, app_state, out),
-        "Film" => panels::film::show(ui, app_state, panels.style, panels.filming, out),
-        "Branches" => panels::branches::show(ui, app_state, out),
-        "Log" => panels::log::show(ui, app_state, out),
-        "Errors" => {
-            panels::curves::show(
-                ui,
-                app_state,
-                &[PlotQuantity::DistanceError, PlotQuantity::BearingError],
-                out,
-            );
-        }
-        "Commands" => {
-            panels::curves::show(ui, app_state, &[PlotQuantity::Acceleration, PlotQuantity::TurnRate], out);
-        }
-        "Speeds" => panels::curves::show(ui, app_state, &[PlotQuantity::Speed], out),
-        "Observer error" => {
-            let both = [PlotQuantity::DistanceRateError, PlotQuantity::BearingRateError];
-            panels::curves::show(ui, app_state, &both, out);
-        }
-        "Energy" => {
-            panels::curves::show(
-                ui,
-                app_state,
-                &[PlotQuantity::TrackingEnergy, PlotQuantity::ObserverEnergy],
-                out,
-            );
-        }
-        "Certificates" => panels::certificates::show(ui, app_state, out),
-        "Clearance" => panels::curves::show(ui, app_state, &[PlotQuantity::Clearance], out),
-        _ => {}
     }
 }

@@ -1,7 +1,6 @@
-//! Curves over time: what is plotted and what is exported, made of records in one place.
+//! Curves over time, computed from records, for plots and exports.
 
 use crate::app_state::AppState;
-use crate::session::history::History;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
 use formation::relative::Geometry;
 use scene::Follow;
@@ -9,86 +8,65 @@ use std::fmt::Write;
 use studies::certify::{WitnessRow, rows};
 use vocabulary::{Edge, EdgeState, LawKind, Snapshot, StepRecord};
 
-/// What a plot shows.
+/// A plotted quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlotQuantity {
-    /// Error of the distance, m.
+    /// Distance error, m.
     DistanceError,
-    /// Error of the bearing, degrees.
+    /// Bearing error, degrees.
     BearingError,
-    /// Acceleration that was applied, m/s².
+    /// Applied acceleration, m/s².
     Acceleration,
-    /// Turn rate that was applied, rad/s.
+    /// Applied turn rate, rad/s.
     TurnRate,
     /// Forward speed, m/s.
     Speed,
-    /// What the observer is off in the rate of the distance, m/s.
+    /// Error of the observed distance rate, m/s.
     DistanceRateError,
-    /// What the observer is off in the rate of the bearing, degrees/s.
+    /// Error of the observed bearing rate, degrees/s.
     BearingRateError,
     /// ½‖r‖², logarithm to the base of 10.
     TrackingEnergy,
     /// W of the observer, logarithm to the base of 10.
     ObserverEnergy,
-    /// Least room between bodies, m.
+    /// Least clearance between bodies, m.
     Clearance,
-    /// By how much β is above what Lemma 4.1 asks for, m/s².
+    /// Margin of β above the bound of Lemma 4.1, m/s².
     RobustMargin,
     /// V of eq 29: ½‖r‖² and P.
     Lyapunov,
 }
 
 impl PlotQuantity {
-    /// All of them, in the order of the panels.
-    pub const ALL: [Self; 12] = [
-        Self::DistanceError,
-        Self::BearingError,
-        Self::Acceleration,
-        Self::TurnRate,
-        Self::Speed,
-        Self::DistanceRateError,
-        Self::BearingRateError,
-        Self::TrackingEnergy,
-        Self::ObserverEnergy,
-        Self::Clearance,
-        Self::RobustMargin,
-        Self::Lyapunov,
+    /// All quantities in the order of declaration, with their axis label and table column.
+    const TABLE: [(Self, &'static str, &'static str); 12] = [
+        (Self::DistanceError, "error of ℓ (m)", "distance_error_m"),
+        (Self::BearingError, "error of ψ (°)", "bearing_error_deg"),
+        (Self::Acceleration, "dv/dt (m/s²)", "acceleration_m_s2"),
+        (Self::TurnRate, "ω (rad/s)", "turn_rate_rad_s"),
+        (Self::Speed, "v (m/s)", "speed_m_s"),
+        (Self::DistanceRateError, "dℓ/dt − ŝ₂ (m/s)", "distance_rate_error_m_s"),
+        (Self::BearingRateError, "dψ/dt − ŝ₂ (°/s)", "bearing_rate_error_deg_s"),
+        (Self::TrackingEnergy, "½‖r‖²", "log10_tracking_energy"),
+        (Self::ObserverEnergy, "W", "log10_observer_energy"),
+        (Self::Clearance, "clearance (m)", "clearance_m"),
+        (Self::RobustMargin, "β margin (m/s²)", "beta_margin_m_s2"),
+        (Self::Lyapunov, "V (eq 29)", "lyapunov_v"),
     ];
 
-    /// For an axis: symbol and unit.
-    pub fn axis(self) -> &'static str {
-        match self {
-            Self::DistanceError => "error of ℓ (m)",
-            Self::BearingError => "error of ψ (°)",
-            Self::Acceleration => "dv/dt (m/s²)",
-            Self::TurnRate => "ω (rad/s)",
-            Self::Speed => "v (m/s)",
-            Self::DistanceRateError => "dℓ/dt − ŝ₂ (m/s)",
-            Self::BearingRateError => "dψ/dt − ŝ₂ (°/s)",
-            Self::TrackingEnergy => "½‖r‖²",
-            Self::ObserverEnergy => "W",
-            Self::Clearance => "room (m)",
-            Self::RobustMargin => "margin of β (m/s²)",
-            Self::Lyapunov => "V (eq 29)",
-        }
+    /// All of them, in order.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::TABLE.into_iter().map(|(quantity, ..)| quantity)
     }
 
-    /// For a column of a table.
+    /// The label of its axis: symbol and unit.
+    pub fn axis(self) -> &'static str {
+        Self::TABLE[self as usize].1
+    }
+
+    /// The name of its table column.
     pub fn column(self) -> &'static str {
-        match self {
-            Self::DistanceError => "distance_error_m",
-            Self::BearingError => "bearing_error_deg",
-            Self::Acceleration => "acceleration_m_s2",
-            Self::TurnRate => "turn_rate_rad_s",
-            Self::Speed => "speed_m_s",
-            Self::DistanceRateError => "distance_rate_error_m_s",
-            Self::BearingRateError => "bearing_rate_error_deg_s",
-            Self::TrackingEnergy => "log10_tracking_energy",
-            Self::ObserverEnergy => "log10_observer_energy",
-            Self::Clearance => "clearance_m",
-            Self::RobustMargin => "beta_margin_m_s2",
-            Self::Lyapunov => "lyapunov_v",
-        }
+        Self::TABLE[self as usize].2
     }
 
     /// Whether values are logarithms to the base of 10.
@@ -102,64 +80,53 @@ impl PlotQuantity {
 pub struct QuantityCurve {
     /// The branch.
     pub branch: usize,
-    /// The robot; `None` for what belongs to all.
+    /// The robot; `None` for a quantity of the whole formation.
     pub robot: Option<usize>,
     /// Time in s, value.
     pub points: Vec<[f64; 2]>,
 }
 
-/// The smallest energy that is shown: rounding is below it.
+/// The smallest energy that is shown; smaller values are rounding errors.
 const FLOOR: f64 = 1e-18;
-/// The least margin of β that is shown, m/s².
+/// The smallest margin of β that is shown, m/s².
 const LEAST_MARGIN: f64 = -20.0;
 
-/// The curves of a quantity in a span of time, of all branches, the one that is looked at last.
-pub fn curves(
-    app_state: &AppState,
-    quantity: PlotQuantity,
-    span: [f64; 2],
-    most: usize,
-) -> Vec<QuantityCurve> {
+/// The curves of a quantity on all branches, the shown branch last; each of at most about `most` points.
+pub fn curves(app_state: &AppState, quantity: PlotQuantity, most: usize) -> Vec<QuantityCurve> {
     let Some(history) = &app_state.history else { return Vec::new() };
     let mut order: Vec<usize> = (0..history.branches()).filter(|b| *b != app_state.branch).collect();
     order.push(app_state.branch);
     let mut all = Vec::new();
     for branch in order {
-        // What a branch shares with the one that is looked at is drawn once.
-        let own = app_state.branches.get(branch).and_then(|b| b.parent).map_or(span[0], |(_, time)| time);
-        let from = if branch == app_state.branch { span[0] } else { own.max(span[0]) };
+        // The past that branches share is drawn once.
+        let own = app_state.branches.get(branch).filter(|_| branch != app_state.branch);
+        let span = [own.and_then(|b| b.parent).map_or(0.0, |(_, time)| time), f64::INFINITY];
         if quantity == PlotQuantity::Clearance {
-            let points = history.rooms(branch, [from, span[1]]);
+            let points = history.rooms(branch, span);
             all.push(QuantityCurve { branch, robot: None, points });
             continue;
         }
-        let records = history.between(branch, [from, span[1]], most);
+        let records = history.between(branch, span, most);
         for (edge, ends) in history.fleet().edges.iter().enumerate() {
             let Some((_, _, follow)) = app_state.follower(edge) else { continue };
-            if let Some(points) = certified(quantity, &records, edge, *ends, follow) {
-                all.push(QuantityCurve { branch, robot: Some(ends.follower), points });
-                continue;
-            }
             let point = |m: &&StepRecord| Some([m.snapshot.time, value(quantity, m, edge, *ends, follow)?]);
-            let points = records.iter().filter_map(point).collect();
+            let points = certified(quantity, &records, edge, *ends, follow)
+                .unwrap_or_else(|| records.iter().filter_map(point).collect());
             all.push(QuantityCurve { branch, robot: Some(ends.follower), points });
         }
         if quantity == PlotQuantity::Speed {
             for (robot, _) in history.fleet().robots.iter().enumerate().filter(|(_, member)| member.leads) {
                 let speed =
                     |m: &&StepRecord| Some([m.snapshot.time, m.snapshot.robots.get(robot)?.motion.speed]);
-                all.push(QuantityCurve {
-                    branch,
-                    robot: Some(robot),
-                    points: records.iter().filter_map(speed).collect(),
-                });
+                let points = records.iter().filter_map(speed).collect();
+                all.push(QuantityCurve { branch, robot: Some(robot), points });
             }
         }
     }
     all
 }
 
-/// Quantities that go by how a run came to be: they need all records. `None` for others.
+/// Curves of quantities that depend on the whole run and need all records. `None` for other quantities.
 fn certified(
     quantity: PlotQuantity,
     records: &[&StepRecord],
@@ -168,7 +135,7 @@ fn certified(
     follow: &Follow,
 ) -> Option<Vec<[f64; 2]>> {
     let value: fn(&WitnessRow) -> f64 = match quantity {
-        // What the first samples ask for would flatten all that follows.
+        // The first samples would flatten everything after them.
         PlotQuantity::RobustMargin => |row| row.margin.max(LEAST_MARGIN),
         PlotQuantity::Lyapunov => |row| row.v,
         _ => return None,
@@ -178,7 +145,7 @@ fn certified(
     Some(rows.iter().map(|row| [row.time, value(row)]).filter(|p| p[1].is_finite()).collect())
 }
 
-/// A quantity of an edge in a record; `None` where there is none.
+/// A quantity of an edge in a record; `None` if it is not defined.
 fn value(
     quantity: PlotQuantity,
     record: &StepRecord,
@@ -223,7 +190,7 @@ fn value(
     value.is_finite().then_some(value)
 }
 
-/// ds/dt as it truly is (eq 7).
+/// The true ds/dt (eq 7).
 fn true_rates(snapshot: &Snapshot, edge: Edge, state: &EdgeState, distance_min: f64) -> Option<[f64; 2]> {
     let (leader, follower) =
         (snapshot.robots.get(edge.leader)?.motion, snapshot.robots.get(edge.follower)?.motion);
@@ -231,7 +198,7 @@ fn true_rates(snapshot: &Snapshot, edge: Edge, state: &EdgeState, distance_min: 
     Some(geometry.rates(follower.speed, leader.speed, leader.turn_rate).into())
 }
 
-/// Bounds of a quantity, of the follower that is selected, for grey lines.
+/// Bounds of a quantity for the selected follower, drawn as dashed lines.
 pub fn bounds(app_state: &AppState, quantity: PlotQuantity) -> Vec<f64> {
     let robot = app_state.chosen_robot().or_else(|| app_state.follower(0).map(|(robot, ..)| robot));
     let vehicle = robot.and_then(|robot| Some(app_state.scene_now()?.robots.get(robot)?.vehicle));
@@ -258,14 +225,14 @@ pub fn csv(app_state: &AppState) -> String {
             name.to_owned()
         }
     };
-    for quantity in PlotQuantity::ALL {
-        for curve in curves(app_state, quantity, [0.0, f64::INFINITY], usize::MAX) {
+    for quantity in PlotQuantity::all() {
+        for curve in curves(app_state, quantity, usize::MAX) {
             let branch = app_state.branches.get(curve.branch).map_or("", |b| &b.name);
-            let fleet = app_state.history.as_ref().map(History::fleet);
-            let robot = curve.robot.and_then(|robot| fleet?.robots.get(robot)).map_or("", |m| &m.name);
+            let robot =
+                curve.robot.and_then(|robot| app_state.fleet()?.robots.get(robot)).map_or("", |m| &m.name);
             let head = format!("{},{},{}", quoted(branch), quoted(robot), quantity.column());
             for [time, value] in curve.points {
-                // Writing to a text cannot fail.
+                // Writing to a string cannot fail.
                 let _ = writeln!(text, "{head},{time:.6},{value:e}");
             }
         }
@@ -273,11 +240,11 @@ pub fn csv(app_state: &AppState) -> String {
     text
 }
 
-/// The curves as a figure for print.
+/// The curves as an SVG figure.
 pub fn svg(app_state: &AppState) -> String {
     use figures::{Axis, Figure, Guide, Panel, Series};
-    let fleet = app_state.history.as_ref().map(|history| history.fleet().clone());
-    let colours = fleet.as_ref().map(|fleet| rendering::robot_colours(fleet)).unwrap_or_default();
+    let fleet = app_state.fleet();
+    let colours = fleet.map(|fleet| rendering::robot_colours(fleet)).unwrap_or_default();
     let shown = [
         PlotQuantity::DistanceError,
         PlotQuantity::BearingError,
@@ -287,8 +254,8 @@ pub fn svg(app_state: &AppState) -> String {
         PlotQuantity::Clearance,
     ];
     let panels = shown.into_iter().map(|quantity| {
-        let series = curves(app_state, quantity, [0.0, f64::INFINITY], 600).into_iter().map(|curve| {
-            let name = curve.robot.and_then(|r| fleet.as_ref()?.robots.get(r)).map_or("all", |m| &m.name);
+        let series = curves(app_state, quantity, 600).into_iter().map(|curve| {
+            let name = curve.robot.and_then(|r| fleet?.robots.get(r)).map_or("all", |m| &m.name);
             let active = curve.branch == app_state.branch;
             let branch = app_state.branches.get(curve.branch).map_or("", |b| &b.name);
             Series {

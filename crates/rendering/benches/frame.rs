@@ -14,7 +14,7 @@ mod stage;
 use course::{TRUCK, furnish};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use film::{Film, FilmKind};
-use rendering::{AdapterChoice, Gpu, GpuCameraRenderer, Renderer, Style, ViewLayout};
+use rendering::{AdapterChoice, Gpu, GpuCameraRenderer, PictureSpec, Renderer, Style, ViewLayout};
 use sight::shots;
 use stage::{Path, Play};
 use vocabulary::{Region, Shot};
@@ -51,7 +51,7 @@ fn frames(criterion: &mut Criterion) {
             group.bench_function(
                 format!("{view}, {robots} robots, {width}x{height}, {samples} samples"),
                 |b| {
-                    b.iter(|| renderer.draw(&trail, &record, &layout, &style));
+                    b.iter(|| renderer.draw(PictureSpec::new(&trail, &record, &layout, &style)));
                 },
             );
         }
@@ -76,7 +76,9 @@ fn film(criterion: &mut Criterion) {
                 let mut film = Film::create(&folder.path().join("a.mp4"), FilmKind::Mp4, 1280, 720, 30.0)?;
                 for record in &records {
                     trail.push(record);
-                    if let Some(picture) = renderer.draw_next(&trail, record, &layout, &Style::default())? {
+                    if let Some(picture) =
+                        renderer.draw_next(PictureSpec::new(&trail, record, &layout, &Style::default()))?
+                    {
                         film.push(picture)?;
                     }
                 }

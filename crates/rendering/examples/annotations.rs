@@ -11,8 +11,8 @@ mod stage;
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded};
 use film::png;
 use rendering::{
-    AdapterChoice, AnnotationArrow, AnnotationStroke, Annotations, Ghost, Gpu, Renderer, Ring, ShadedArea,
-    StrokePoint, Style, Trail, ViewLayout, robot_colours,
+    AdapterChoice, AnnotationArrow, AnnotationStroke, Annotations, Ghost, Gpu, PictureSpec, Renderer, Ring,
+    ShadedArea, StrokePoint, Style, Trail, ViewLayout, robot_colours,
 };
 use stage::{Path, Play};
 use vocabulary::{Body, Pose, StepRecord};
@@ -103,6 +103,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Renderer::new(&gpu, &play.fleet, number(5, 1280.0) as u32, number(6, 800.0) as u32, 4)?;
     let interactive = word(9, "") == "interactive";
     let style = Style { annotations: sketched(&play, &at, time, scale), interactive, ..Style::default() };
-    let picture = renderer.draw(&trail, &at(time), &layout, &style)?;
+    let picture = renderer.draw(PictureSpec::new(&trail, &at(time), &layout, &style))?;
     Ok(png::write(word(0, "annotations.png").as_ref(), &picture, &[("Adapter", &gpu.description())])?)
 }

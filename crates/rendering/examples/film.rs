@@ -4,7 +4,7 @@
 mod stage;
 
 use film::{Film, FilmKind};
-use rendering::{AdapterChoice, Gpu, Renderer, Style, ViewLayout};
+use rendering::{AdapterChoice, Gpu, PictureSpec, Renderer, Style, ViewLayout};
 use stage::{Path, Play};
 use std::time::Instant;
 
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for k in 0..(number(3, 15.0) * rate) as u32 {
         let record = play.at(f64::from(k) / rate);
         trail.push(&record);
-        if let Some(picture) = renderer.draw_next(&trail, &record, &layout, &style)? {
+        if let Some(picture) = renderer.draw_next(PictureSpec::new(&trail, &record, &layout, &style))? {
             film.push(picture)?;
         }
     }

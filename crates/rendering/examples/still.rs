@@ -11,7 +11,7 @@ mod stage;
 
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded, overturn, touch};
 use film::png;
-use rendering::{AdapterChoice, Gpu, Renderer, Style, Trail, ViewLayout};
+use rendering::{AdapterChoice, Gpu, PictureSpec, Renderer, Style, Trail, ViewLayout};
 use sight::measurements;
 use stage::{Path, Play};
 use std::time::Instant;
@@ -75,7 +75,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     measurements(&play.fleet, &mut record);
     style.detections = !without.contains("detections");
     style.picture_in_picture = words.get(12).and_then(|w| w.parse().ok());
-    let picture = renderer.draw(&trail, &record, &layout, &style)?;
+    let picture = renderer.draw(PictureSpec::new(&trail, &record, &layout, &style))?;
     let drawn = start.elapsed();
     let file = word(0, "still.png");
     png::write(file.as_ref(), &picture, &[("Adapter", &gpu.description())])?;
@@ -87,7 +87,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut times: Vec<_> = (0..15)
         .map(|_| {
             let start = Instant::now();
-            renderer.draw(&trail, &record, &layout, &style).map(|_| start.elapsed())
+            renderer.draw(PictureSpec::new(&trail, &record, &layout, &style)).map(|_| start.elapsed())
         })
         .collect::<Result<_, _>>()?;
     times.sort();

@@ -9,7 +9,7 @@ mod course;
 mod stage;
 
 use course::{CAR, enlarge, furnish, grounded};
-use rendering::{AdapterChoice, Gpu, Renderer, Style, Trail, ViewLayout};
+use rendering::{AdapterChoice, Gpu, PictureSpec, Renderer, Style, Trail, ViewLayout};
 use stage::{Path, Play};
 use std::time::{Duration, Instant};
 use vocabulary::{Body, StepRecord};
@@ -87,7 +87,7 @@ fn main() -> Result<(), rendering::Error> {
                     now += if *list == "(still)" { 0.0 } else { 0.01 };
                     let record = at(now);
                     let start = Instant::now();
-                    renderer.draw_into(&view, &trail, &record, &layout, &style)?;
+                    renderer.draw_into(&view, PictureSpec::new(&trail, &record, &layout, &style))?;
                     prepared.push(start.elapsed());
                     let waited = gpu.device.poll(wgpu::PollType::wait_indefinitely());
                     waited.map_err(|e| rendering::Error::Device(e.to_string()))?;

@@ -6,10 +6,11 @@ use crate::annotation::labels::{LabelPlacer, Window, ring_boxes, robot_boxes, vi
 use crate::annotation::overlays::{line_place, show};
 use crate::annotation::text_shaper::TextShaper;
 use crate::camera::Camera;
+use crate::gpu::passes::backdrop::TILE;
 use crate::gpu::passes::frame::FrameUniforms;
-use crate::gpu::passes::ground::TILE;
 use crate::gpu::passes::shadow::{ShadowPass, SunView, sun_view};
 use crate::ground::floor::DrivableSurface;
+use crate::ground::trail::sizes;
 use crate::picture_context::PictureContext;
 use crate::picture_plan::{Area, PicturePlan, overlap};
 use glam::{DVec2, DVec3};
@@ -61,11 +62,11 @@ fn robots_within(fleet: &FleetInfo, record: &StepRecord) -> Option<(DVec3, f64)>
     };
     let low = places().fold(DVec3::INFINITY, DVec3::min);
     let high = places().fold(DVec3::NEG_INFINITY, DVec3::max);
-    let size = fleet.robots.iter().map(|m| crate::gpu::model::size(&m.body)).fold(1.0, f64::max);
+    let size = sizes(fleet).max(1.0);
     low.is_finite().then(|| ((low + high) * 0.5, (0.5 * low.distance(high) + 0.8 * size).min(40.0)))
 }
 
-/// The view that the sun of a stage has of all robots and the props around them.
+/// The sun's view of all robots and the props around them, for the shadow map.
 pub(crate) fn sun_over(context: &PictureContext<'_>) -> SunView {
     match robots_within(context.fleet, context.record) {
         Some((middle, _)) => sun_view(context.sun, middle - context.origin, context.shadowed.1),
@@ -73,8 +74,8 @@ pub(crate) fn sun_over(context: &PictureContext<'_>) -> SunView {
     }
 }
 
-/// Depth up to which props are seen through: just short of the nearest robot that is in the picture. Where somebody
-/// has put the eye, or above all, they stay as they are.
+/// Depth up to which props are transparent: just short of the nearest robot in the picture. Where the user
+/// has placed the eye, or in views from above, they stay opaque.
 fn veiled(camera: &Camera, context: &PictureContext<'_>, view: &Viewpoint) -> f64 {
     if matches!(view, Viewpoint::Top | Viewpoint::Camera(_) | Viewpoint::Fixed { .. }) {
         return f64::NEG_INFINITY;
@@ -92,10 +93,10 @@ fn veiled(camera: &Camera, context: &PictureContext<'_>, view: &Viewpoint) -> f6
     robots.map(|(k, robot)| nearest(k, robot)).fold(f64::INFINITY, f64::min) - 0.9 * context.size
 }
 
-/// In a larger formation no robot is looked for behind decks.
+/// In larger formations decks are not checked for hidden robots.
 const MOST_LOOKED_FOR: usize = 500;
 
-/// Which decks hide most of a robot. Others stay as they are: who looks at a ramp wants to see it.
+/// Which decks hide most of a robot. Others stay opaque, since a viewer may want to see the ramp.
 pub(crate) fn veiled_decks(camera: &Camera, context: &PictureContext<'_>, view: &Viewpoint) -> Vec<bool> {
     let robots = &context.record.snapshot.robots;
     let drivables = &context.floor.drivables;

@@ -1,15 +1,14 @@
 //! Where things are in a picture, without drawing it: what words and panels cover, and what they should not.
 
-use crate::annotation::labels::{Window, detail, ring_boxes, robot_boxes};
+use crate::annotation::labels::{Window, ring_boxes, robot_boxes};
 use crate::annotation::text_shaper::TextShaper;
-use crate::compose::{local_origin, shadowed, towards_sun, words};
-use crate::ground::floor::Floor;
-use crate::palette::robot_colours;
+use crate::compose::words;
+use crate::fleet_model::FleetModel;
 use crate::picture_context::PictureContext;
-use crate::picture_plan::{PicturePlan, area, overlap};
+use crate::picture_plan::{PicturePlan, overlap};
 use crate::renderer::cameras;
-use crate::{Style, Trail, ViewLayout, Viewpoint};
-use vocabulary::{FleetInfo, StepRecord};
+use crate::{PictureSpec, Tile, Viewpoint};
+use vocabulary::FleetInfo;
 
 /// Rectangles of a picture: left, top, width and height in pixels from its upper left corner.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -30,36 +29,16 @@ pub struct Composition {
 
 impl Composition {
     /// That of the picture that a renderer of `fleet` draws at a size.
-    pub fn new(
-        fleet: &FleetInfo,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-        size: [u32; 2],
-    ) -> Self {
+    pub fn new(fleet: &FleetInfo, spec: PictureSpec<'_>, size: [u32; 2]) -> Self {
         let mut letters = TextShaper::new();
-        let floor = Floor::new(fleet);
-        let colours = robot_colours(fleet);
-        let plan = PicturePlan::new(&mut letters, fleet, layout, style, size);
-        let cameras = cameras(&plan, trail, record, fleet, &floor);
-        let context = PictureContext {
-            fleet,
-            floor: &floor,
-            colours: &colours,
-            trail,
-            record,
-            style,
-            origin: local_origin(record),
-            sun: towards_sun(&fleet.light),
-            size: trail.smoothed.formation().size,
-            shadowed: shadowed(fleet, record),
-            detail: detail(fleet.robots.len()),
-        };
+        let model = FleetModel::new(fleet);
+        let plan = PicturePlan::new(&mut letters, fleet, spec.layout, spec.style, size);
+        let context = PictureContext::new(&model, spec.trail, spec.record, spec.style);
+        let cameras = cameras(&plan, &context);
         let windows: Vec<_> =
             cameras.iter().zip(&plan.tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
         let (words, panels) = words(&mut letters, &context, &plan, &windows, size);
-        let views: Vec<_> = plan.tiles.iter().map(area).collect();
+        let views: Vec<_> = plan.tiles.iter().map(Tile::area).collect();
         let mut composition = Self {
             panels: [&panels, &views[views.len() - plan.upper..]].concat(),
             captions: plan.captions().collect(),
@@ -69,7 +48,7 @@ impl Composition {
         for (view, window) in plan.views.iter().zip(&windows) {
             if !matches!(view, Viewpoint::Camera(_)) {
                 let seen =
-                    |boxes: Vec<[f32; 4]>| boxes.into_iter().filter(|b| overlap(b, &area(&window.tile)));
+                    |boxes: Vec<[f32; 4]>| boxes.into_iter().filter(|b| overlap(b, &window.tile.area()));
                 composition.robots.extend(seen(robot_boxes(&context, *window)));
                 composition.set_points.extend(seen(ring_boxes(&context, *window)));
             }

@@ -1,4 +1,4 @@
-//! What can go wrong while drawing, told apart by who can mend it: the user's words or the machine.
+//! Errors of rendering: those of the user's input, and those of the machine.
 
 /// Everything this crate can fail with.
 #[derive(Debug, thiserror::Error)]
@@ -18,9 +18,11 @@ pub enum Error {
     /// The graphics device refused or was lost.
     #[error("the graphics device failed: {0}")]
     Device(String),
-    /// A view that does not exist.
-    #[error("unknown view {given:?}{}; views are {valid}, and several joined by '+'", .nearest.as_ref().map_or(String::new(), |n| format!(" (did you mean {n:?}?)")))]
-    Viewpoint {
+    /// A view or an element of the picture that does not exist.
+    #[error("unknown {what} {given:?}{}; {what}s are {valid}", .nearest.as_ref().map_or(String::new(), |n| format!(" (did you mean {n:?}?)")))]
+    Unknown {
+        /// `view` or `element`.
+        what: &'static str,
         /// What was asked for.
         given: String,
         /// The valid name nearest to it.
@@ -31,16 +33,6 @@ pub enum Error {
     /// More views than a picture is split into.
     #[error("{0} views are too many for one picture: join at most four")]
     TooManyViews(usize),
-    /// An element of the picture that does not exist.
-    #[error("unknown element {given:?}{}; elements are {valid}", .nearest.as_ref().map_or(String::new(), |n| format!(" (did you mean {n:?}?)")))]
-    Element {
-        /// What was asked for.
-        given: String,
-        /// The valid name nearest to it.
-        nearest: Option<String>,
-        /// All valid names.
-        valid: String,
-    },
     /// A picture size that cannot be drawn.
     #[error("a picture of {width}×{height} cannot be drawn: width and height must be 16 to {most} pixels")]
     Size {
@@ -54,20 +46,20 @@ pub enum Error {
     /// Samples per pixel that adapters do not offer.
     #[error("{0} samples a pixel are not offered: use 4, or 1 for speed")]
     Samples(u32),
-    /// A moment whose robots or edges are not those of the cast.
+    /// A moment whose robots or edges are not those of the fleet.
     #[error("the moment has {got} {what}, the cast {want}")]
     FleetInfo {
         /// Robots or edges.
         what: &'static str,
         /// In the moment.
         got: usize,
-        /// In the cast.
+        /// In the fleet.
         want: usize,
     },
 }
 
 impl Error {
-    /// Whether other words on the command line would mend it; otherwise the machine is to blame.
+    /// Whether the user's input is at fault; otherwise the machine is.
     pub fn is_usage(&self) -> bool {
         !matches!(self, Self::NoAdapter { .. } | Self::Device(_))
     }

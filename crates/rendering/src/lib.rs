@@ -1,7 +1,7 @@
 //! Step records to pictures.
 //!
 //! ```no_run
-//! use rendering::{AdapterChoice, Gpu, ViewLayout, Renderer, Style, Trail, Viewpoint};
+//! use rendering::{AdapterChoice, Gpu, PictureSpec, ViewLayout, Renderer, Style, Trail, Viewpoint};
 //! # fn shown(fleet: &vocabulary::FleetInfo, records: &[vocabulary::StepRecord]) -> Result<(), rendering::Error> {
 //! let gpu = Gpu::open(&AdapterChoice::Auto)?;
 //! let mut renderer = Renderer::new(&gpu, fleet, 1280, 720, 4)?;
@@ -10,7 +10,7 @@
 //!     trail.push(record);
 //! }
 //! if let Some(last) = records.last() {
-//!     let picture = renderer.draw(&trail, last, &ViewLayout::single(Viewpoint::Snake), &Style::default())?;
+//!     let picture = renderer.draw(PictureSpec::new(&trail, last, &ViewLayout::single(Viewpoint::Snake), &Style::default()))?;
 //!     println!("{} bytes by {}", picture.rgba.len(), gpu.description());
 //! }
 //! # Ok(())
@@ -26,11 +26,13 @@ mod camera;
 mod compose;
 mod composition;
 mod error;
+mod fleet_model;
 mod gpu;
 mod ground;
 mod palette;
 mod picture_context;
 mod picture_plan;
+mod picture_spec;
 mod renderer;
 mod style;
 
@@ -48,5 +50,6 @@ pub use gpu::camera_renderer::GpuCameraRenderer;
 pub use gpu::{AdapterChoice, AdapterInfo, Gpu, adapters};
 pub use ground::trail::{Trail, set_points};
 pub use palette::robot_colours;
+pub use picture_spec::PictureSpec;
 pub use renderer::Renderer;
 pub use style::Style;

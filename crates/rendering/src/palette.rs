@@ -3,7 +3,7 @@
 pub use vocabulary::colours::robot_colours;
 pub(crate) use vocabulary::colours::{Rgb, hex};
 
-/// The stripe on robots that follow nobody.
+/// The stripe on robots without a leader.
 pub(crate) const GOLD: Rgb = hex(0x00e3_b341);
 /// The names of robots in trouble.
 pub(crate) const ALARM: Rgb = hex(0x00ff_9a7a);
@@ -11,6 +11,11 @@ pub(crate) const ALARM: Rgb = hex(0x00ff_9a7a);
 pub(crate) const INK: Rgb = hex(0x0012_161c);
 /// Halo, and text on dark ground.
 pub(crate) const PAPER: Rgb = hex(0x00fb_faf6);
+
+/// A colour with an opacity.
+pub(crate) fn with_alpha([red, green, blue]: Rgb, alpha: f32) -> [f32; 4] {
+    [red, green, blue, alpha]
+}
 
 /// Linear light of an sRGB colour.
 pub(crate) fn linear(colour: Rgb) -> Rgb {

@@ -1,5 +1,9 @@
-//! What everything that is drawn in a picture is made from.
+//! The data that all parts of a picture share.
 
+use crate::annotation::labels::detail;
+use crate::compose::{local_origin, shadowed, towards_sun};
+use crate::fleet_model::FleetModel;
+use crate::gpu::robot_models::RobotModels;
 use crate::ground::floor::Floor;
 use crate::palette::Rgb;
 use crate::{Style, Trail};
@@ -12,6 +16,7 @@ pub(crate) struct PictureContext<'a> {
     pub(crate) fleet: &'a FleetInfo,
     pub(crate) floor: &'a Floor,
     pub(crate) colours: &'a [Rgb],
+    pub(crate) robot_models: &'a RobotModels,
     pub(crate) trail: &'a Trail,
     pub(crate) record: &'a StepRecord,
     pub(crate) style: &'a Style,
@@ -26,7 +31,30 @@ pub(crate) struct PictureContext<'a> {
     pub(crate) detail: f32,
 }
 
-impl PictureContext<'_> {
+impl<'a> PictureContext<'a> {
+    pub(crate) fn new(
+        model: &'a FleetModel,
+        trail: &'a Trail,
+        record: &'a StepRecord,
+        style: &'a Style,
+    ) -> Self {
+        let FleetModel { fleet, colours, robots, floor } = model;
+        Self {
+            fleet,
+            floor,
+            colours,
+            robot_models: robots,
+            trail,
+            record,
+            style,
+            origin: local_origin(record),
+            sun: towards_sun(&fleet.light),
+            size: trail.smoothed.formation().size,
+            shadowed: shadowed(fleet, record),
+            detail: detail(fleet.robots.len()),
+        }
+    }
+
     /// The point of the floor at (x, y), m.
     pub(crate) fn on_floor(&self, x: f64, y: f64) -> DVec3 {
         DVec3::new(x, y, self.floor.height(DVec2::new(x, y)))

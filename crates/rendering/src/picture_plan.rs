@@ -71,7 +71,7 @@ impl PicturePlan {
         let mut words = LabelPlacer::new(letters, style.scale);
         let onboard = |view: &Viewpoint| matches!(view, Viewpoint::Camera(_));
         let titled = !views.iter().all(onboard);
-        let small = tiles.get(tiles.len() - upper).map(area);
+        let small = tiles.get(tiles.len() - upper).map(Tile::area);
         let mut plan = Self {
             headings: Vec::new(),
             clock: None,
@@ -124,7 +124,7 @@ impl PicturePlan {
         let tile = self.tiles[index];
         // Only what lies over the tile; a small picture in a corner has none of that.
         let lower = index + self.upper < self.tiles.len();
-        let own = |taken: &&Area| lower && overlap(taken, &area(&tile));
+        let own = |taken: &&Area| lower && overlap(taken, &tile.area());
         let taken = self.taken.iter().filter(own);
         let apart = APART * self.scale;
         let grown = taken.map(|[x, y, width, height]| {
@@ -148,7 +148,7 @@ impl PicturePlan {
             let rim = if bottom > sky { 0.5 } else { 0.0 };
             let dark = Ink { halo: (rim, palette::PAPER), ..Ink::DARK };
             let ink = if middle < 1.6 * sky { dark } else { Ink::LIGHT };
-            words.write_block(text.clone(), [area[0], first], *size, *bold, ink, *block);
+            words.write_block(text.clone(), [area[0], first], *size, *bold, ink, Some(*block));
         }
         if let Some(area) = self.clock {
             words.reserve(area);
@@ -160,10 +160,6 @@ impl PicturePlan {
     pub(crate) fn captions(&self) -> impl Iterator<Item = Area> {
         self.headings.iter().map(|heading| heading.area).chain(self.clock)
     }
-}
-
-pub(crate) fn area(tile: &Tile) -> Area {
-    [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32)
 }
 
 /// Size of the clock's letters at scale 1, pixels.

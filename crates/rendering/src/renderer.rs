@@ -1,43 +1,38 @@
 //! Moments to pictures.
 
-use crate::annotation::labels::{Window, detail};
+use crate::annotation::labels::Window;
 use crate::annotation::text_shaper::TextShaper;
 use crate::camera::Camera;
 use crate::camera::pick::pick;
-use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun, veiled_decks, words};
-use crate::gpu::encode::{EncodeTarget, Passes, Prepared};
+use crate::compose::{frame, sun_over, veiled_decks, words};
+use crate::fleet_model::FleetModel;
+use crate::gpu::encode::{Passes, Prepared, PreparedView};
 use crate::gpu::passes::Canvas;
 use crate::gpu::passes::decal::{DecalLayer, DecalVertex};
 use crate::gpu::props::props;
-use crate::gpu::robot_models::{RobotModels, crowd, part};
-use crate::gpu::target::{Attachments, Offscreen, PICTURE_FORMAT, check_size};
+use crate::gpu::robot_models::{crowd, part};
+use crate::gpu::target::{Attachments, PICTURE_FORMAT, Readback, check_size};
 use crate::ground::decal_builder::build_decals;
-use crate::ground::floor::Floor;
-use crate::palette::{Rgb, robot_colours};
 use crate::picture_context::PictureContext;
 use crate::picture_plan::PicturePlan;
-use crate::{Error, Gpu, Picked, Sightline, Style, Trail, ViewLayout, Viewpoint};
+use crate::{Error, Gpu, Picked, PictureSpec, Sightline, Style, Viewpoint};
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 use vocabulary::{FleetInfo, Picture, StepRecord};
 use wgpu::TextureFormat;
 
-/// Draws moments of one cast at one size.
+/// Renders moments of one fleet at one size.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
-    fleet: FleetInfo,
-    colours: Vec<Rgb>,
-    robot_models: RobotModels,
-    floor: Floor,
-    size: (u32, u32),
+    model: FleetModel,
     canvas: Canvas,
     attachments: Attachments,
     passes: Passes,
-    /// Behind a lock, since whoever asks how a view is seen has to know how long its words are.
+    /// Behind a lock, since sightlines depend on the lengths of the texts.
     letters: Mutex<TextShaper>,
     /// Two, so that one picture can be drawn while the one before is read.
-    offscreen: Vec<Offscreen>,
+    offscreen: Vec<Readback>,
     waiting: Option<(usize, wgpu::SubmissionIndex)>,
 }
 
@@ -68,19 +63,13 @@ impl Renderer {
             return Err(Error::Samples(samples));
         }
         let canvas = Canvas { format, samples, mono: false };
-        let robot_models = RobotModels::new(fleet);
-        let floor = Floor::new(fleet);
-        let passes = Passes::new(gpu, canvas, fleet, &robot_models, &floor);
+        let model = FleetModel::new(fleet);
         let renderer = Self {
             gpu: gpu.clone(),
-            fleet: fleet.clone(),
-            colours: robot_colours(fleet),
-            robot_models,
-            floor,
-            size: (width, height),
+            passes: Passes::new(gpu, canvas, &model),
+            model,
             canvas,
-            attachments: Attachments::new(&gpu.device, [width, height], format, samples),
-            passes,
+            attachments: Attachments::new(gpu, [width, height], canvas),
             letters: Mutex::new(TextShaper::new()),
             offscreen: Vec::new(),
             waiting: None,
@@ -90,14 +79,14 @@ impl Renderer {
     }
 
     /// Width and height of the pictures, pixels.
-    pub fn size(&self) -> (u32, u32) {
-        self.size
+    pub fn size(&self) -> [u32; 2] {
+        self.attachments.size
     }
 
     /// Changes title and caption, as where gains are tuned while a run goes.
     pub fn retitle(&mut self, title: &str, caption: &str) {
-        title.clone_into(&mut self.fleet.title);
-        caption.clone_into(&mut self.fleet.caption);
+        title.clone_into(&mut self.model.fleet.title);
+        caption.clone_into(&mut self.model.fleet.caption);
     }
 
     /// Changes the size of the pictures.
@@ -106,10 +95,8 @@ impl Renderer {
     /// [`Error::Size`] for sizes that cannot be drawn.
     pub fn resize(&mut self, width: u32, height: u32) -> Result<(), Error> {
         check_size(&self.gpu, width, height)?;
-        if self.size != (width, height) {
-            self.size = (width, height);
-            self.attachments =
-                Attachments::new(&self.gpu.device, self.size.into(), self.canvas.format, self.canvas.samples);
+        if self.size() != [width, height] {
+            self.attachments = Attachments::new(&self.gpu, [width, height], self.canvas);
             self.offscreen.clear();
             self.waiting = None;
         }
@@ -120,15 +107,9 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::FleetInfo`] for a moment of other robots, [`Error::Device`] where the device fails.
-    pub fn draw(
-        &mut self,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-    ) -> Result<Picture, Error> {
-        let (slot, submission) = self.submit(trail, record, layout, style)?;
-        self.offscreen[slot].read(&self.gpu, submission)
+    pub fn draw(&mut self, spec: PictureSpec<'_>) -> Result<Picture, Error> {
+        let (slot, submission) = self.submit(spec)?;
+        self.offscreen[slot].picture(&self.gpu, submission)
     }
 
     /// Starts the picture of a moment and returns the one started before, if any: for films, where the device
@@ -136,16 +117,10 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::draw`].
-    pub fn draw_next(
-        &mut self,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-    ) -> Result<Option<Picture>, Error> {
-        let next = self.submit(trail, record, layout, style)?;
+    pub fn draw_next(&mut self, spec: PictureSpec<'_>) -> Result<Option<Picture>, Error> {
+        let next = self.submit(spec)?;
         let before = self.waiting.replace(next);
-        before.map(|(slot, submission)| self.offscreen[slot].read(&self.gpu, submission)).transpose()
+        before.map(|(slot, submission)| self.offscreen[slot].picture(&self.gpu, submission)).transpose()
     }
 
     /// The picture that [`Renderer::draw_next`] started last, if any.
@@ -154,7 +129,7 @@ impl Renderer {
     /// [`Error::Device`] where the device fails.
     pub fn finish(&mut self) -> Result<Option<Picture>, Error> {
         let last = self.waiting.take();
-        last.map(|(slot, submission)| self.offscreen[slot].read(&self.gpu, submission)).transpose()
+        last.map(|(slot, submission)| self.offscreen[slot].picture(&self.gpu, submission)).transpose()
     }
 
     /// Draws a moment into a texture of the renderer's format and size, such as a window's. It does not wait for the device.
@@ -164,46 +139,34 @@ impl Renderer {
     pub fn draw_into(
         &mut self,
         target: &wgpu::TextureView,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
+        spec: PictureSpec<'_>,
     ) -> Result<wgpu::SubmissionIndex, Error> {
-        self.encoded(trail, record, layout, style, target, None)
+        self.encoded(spec, target, None)
     }
 
-    fn submit(
-        &mut self,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-    ) -> Result<(usize, wgpu::SubmissionIndex), Error> {
+    fn submit(&mut self, spec: PictureSpec<'_>) -> Result<(usize, wgpu::SubmissionIndex), Error> {
         let slot = self.waiting.as_ref().map_or(0, |(busy, _)| 1 - busy);
         if !matches!(self.canvas.format, TextureFormat::Rgba8Unorm | TextureFormat::Bgra8Unorm) {
             return Err(Error::Device(format!("no picture can be read from {:?}", self.canvas.format)));
         }
         while self.offscreen.len() <= slot {
-            self.offscreen.push(Offscreen::new(&self.gpu.device, self.size.into(), self.canvas.format));
+            self.offscreen.push(Readback::new(&self.gpu, self.size(), self.canvas.format, 4));
         }
         let view = self.offscreen[slot].view.clone();
-        Ok((slot, self.encoded(trail, record, layout, style, &view, Some(slot))?))
+        Ok((slot, self.encoded(spec, &view, Some(slot))?))
     }
 
     /// Draws a moment into a target and copies it to where it is read, if it is.
     fn encoded(
         &mut self,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
+        spec: PictureSpec<'_>,
         target: &wgpu::TextureView,
         read: Option<usize>,
     ) -> Result<wgpu::SubmissionIndex, Error> {
-        let drawn = self.prepare(trail, record, layout, style).and_then(|prepared| {
+        let drawn = self.prepare(spec).and_then(|prepared| {
             let mut encoder =
                 self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            self.passes.encode(&mut encoder, self.surface(target), &prepared)?;
+            self.passes.encode(&mut encoder, target, &self.attachments, &prepared)?;
             if let Some(slot) = read {
                 self.offscreen[slot].copy(&mut encoder);
             }
@@ -217,101 +180,63 @@ impl Renderer {
     }
 
     /// Computes what the picture consists of and brings it to the device.
-    fn prepare(
-        &mut self,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-    ) -> Result<Prepared, Error> {
-        self.check(record)?;
-        let plan = self.plan(layout, style);
-        let (views, tiles) = (&plan.views, &plan.tiles);
-        let cameras = cameras(&plan, trail, record, &self.fleet, &self.floor);
-        // Cameras on robots see nothing that is drawn to explain.
-        let bare = Style { shadows: style.shadows, ..Style::bare() };
-        let context = PictureContext {
-            fleet: &self.fleet,
-            floor: &self.floor,
-            colours: &self.colours,
-            trail,
-            record,
-            style,
-            origin: local_origin(record),
-            sun: towards_sun(&self.fleet.light),
-            size: trail.smoothed.formation().size,
-            shadowed: shadowed(&self.fleet, record),
-            detail: detail(self.fleet.robots.len()),
-        };
-        let (crowd, props) = (crowd(&context, &self.robot_models), props(&context));
+    fn prepare(&mut self, spec: PictureSpec<'_>) -> Result<Prepared, Error> {
+        self.check(spec.record)?;
+        let plan = self.plan(spec);
+        let context = PictureContext::new(&self.model, spec.trail, spec.record, spec.style);
+        let cameras = cameras(&plan, &context);
+        // Cameras on robots do not see annotations.
+        let bare = Style { shadows: spec.style.shadows, ..Style::bare() };
+        let (crowd, props) = (crowd(&context), props(&context));
         let sun = sun_over(&context);
-        let shadow = &self.passes.world.shadow;
-        let context_of = |view: &Viewpoint| match view {
-            Viewpoint::Camera(_) => PictureContext { style: &bare, ..context },
-            _ => context,
-        };
-        let seen = || views.iter().zip(&cameras);
-        let frames: Vec<_> =
-            seen().map(|(view, camera)| frame(camera, &context_of(view), view, &sun, shadow)).collect();
-        let own = |(view, camera): (&Viewpoint, &Camera)| match view {
-            Viewpoint::Camera(robot) => Some(part(&crowd, &context, &self.robot_models, camera, *robot)),
-            _ => None,
-        };
-        let own = seen().map(own).collect();
-        let mut corners = Vec::new();
-        let mut decals = Vec::new();
-        for ((view, camera), tile) in seen().zip(tiles) {
+        let (mut frames, mut corners, mut views) = (Vec::new(), Vec::new(), Vec::new());
+        for ((view, camera), tile) in plan.views.iter().zip(&cameras).zip(&plan.tiles) {
+            let (seen, own) = match view {
+                Viewpoint::Camera(robot) => {
+                    (PictureContext { style: &bare, ..context }, Some(part(&crowd, &context, camera, *robot)))
+                }
+                _ => (context, None),
+            };
             let add = |(layer, more): (DecalLayer, Vec<DecalVertex>)| {
                 let first = corners.len() as u32;
                 corners.extend(more);
                 (layer, first..corners.len() as u32)
             };
-            decals.push(build_decals(&context_of(view), view, camera, f64::from(tile.height)).map(add));
+            frames.push(frame(camera, &seen, view, &sun, &self.passes.world.shadow));
+            views.push(PreparedView {
+                camera: *camera,
+                tile: *tile,
+                own,
+                veiled: veiled_decks(camera, &context, view),
+                decals: build_decals(&seen, view, camera, f64::from(tile.height)).map(add),
+                ghosts: !matches!(view, Viewpoint::SnakeEye | Viewpoint::Camera(_)),
+            });
         }
         let windows: Vec<_> =
-            cameras.iter().zip(tiles).map(|(camera, tile)| Window { camera, tile: *tile }).collect();
+            views.iter().map(|view| Window { camera: &view.camera, tile: view.tile }).collect();
         let letters = self.letters.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let (words, _) = words(letters, &context, &plan, &windows, self.size.into());
+        let size = self.attachments.size;
+        let (words, _) = words(letters, &context, &plan, &windows, size);
         let (lines, shapes) = (words.lines, words.shapes);
-        let ghosts =
-            views.iter().map(|view| !matches!(view, Viewpoint::SnakeEye | Viewpoint::Camera(_))).collect();
-        let veiled = seen().map(|(view, camera)| veiled_decks(camera, &context, view)).collect();
-        let mut prepared = Prepared {
-            crowd,
-            cameras,
-            own,
-            upper: plan.upper,
-            props,
-            tiles: plan.tiles,
-            veiled,
-            decals,
-            ghosts,
-            shapes,
-            lines,
-            shadowed: false,
-        };
-        self.passes.upload(&self.gpu, self.size.into(), &frames, &mut prepared, &corners, letters)?;
+        let upper = plan.upper;
+        let mut prepared = Prepared { crowd, props, views, upper, shapes, lines, shadowed: false };
+        self.passes.upload(&self.gpu, size, &frames, &mut prepared, &corners, letters)?;
         Ok(prepared)
     }
 
-    /// How each view of a picture is seen when it is drawn like this, in the order in which they are drawn: the small
-    /// picture of [`Style::picture_in_picture`], which lies over others, is the last.
+    /// The sightlines of the views of a picture, in the order in which they are drawn: that of the small
+    /// picture of [`Style::picture_in_picture`], which lies over others, is last.
     ///
     /// # Errors
     /// [`Error::FleetInfo`] for a moment of other robots.
-    pub fn sightlines(
-        &self,
-        trail: &Trail,
-        record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-    ) -> Result<Vec<Sightline>, Error> {
-        self.check(record)?;
-        let plan = self.plan(layout, style);
-        let cameras = cameras(&plan, trail, record, &self.fleet, &self.floor);
+    pub fn sightlines(&self, spec: PictureSpec<'_>) -> Result<Vec<Sightline>, Error> {
+        self.check(spec.record)?;
+        let plan = self.plan(spec);
+        let context = PictureContext::new(&self.model, spec.trail, spec.record, spec.style);
+        let cameras = cameras(&plan, &context);
         let seen = plan.views.into_iter().zip(plan.tiles).zip(cameras);
         Ok(seen
-            .map(|((view, tile), camera)| Sightline::new(view, tile, camera, self.floor.clone()))
+            .map(|((view, tile), camera)| Sightline { view, tile, camera, floor: self.model.floor.clone() })
             .collect())
     }
 
@@ -321,7 +246,7 @@ impl Renderer {
         if self.check(record).is_err() || !sightline.holds(pixel) {
             return Vec::new();
         }
-        pick(sightline, &self.fleet, record, pixel)
+        pick(sightline, &self.model.fleet, record, pixel)
     }
 
     /// The characters of some texts that neither the embedded fonts nor those of the machine have.
@@ -329,19 +254,15 @@ impl Renderer {
         self.letters.lock().unwrap_or_else(PoisonError::into_inner).lacks(texts.into_iter())
     }
 
-    fn plan(&self, layout: &ViewLayout, style: &Style) -> PicturePlan {
+    fn plan(&self, spec: PictureSpec<'_>) -> PicturePlan {
         let mut letters = self.letters.lock().unwrap_or_else(PoisonError::into_inner);
-        PicturePlan::new(&mut letters, &self.fleet, layout, style, self.size.into())
-    }
-
-    /// A target with all that drawing into it takes.
-    fn surface<'a>(&'a self, target: &'a wgpu::TextureView) -> EncodeTarget<'a> {
-        EncodeTarget { target, attachments: &self.attachments, size: self.size }
+        PicturePlan::new(&mut letters, &self.model.fleet, spec.layout, spec.style, self.size())
     }
 
     fn check(&self, record: &StepRecord) -> Result<(), Error> {
-        let robots = (record.snapshot.robots.len(), self.fleet.robots.len());
-        let edges = (record.edges.len(), self.fleet.edges.len());
+        let fleet = &self.model.fleet;
+        let robots = (record.snapshot.robots.len(), fleet.robots.len());
+        let edges = (record.edges.len(), fleet.edges.len());
         for (what, (got, want)) in [("robots", robots), ("edges", edges)] {
             if got != want {
                 return Err(Error::FleetInfo { what, got, want });
@@ -352,15 +273,7 @@ impl Renderer {
 }
 
 /// The cameras of a picture's views.
-pub(crate) fn cameras(
-    plan: &PicturePlan,
-    trail: &Trail,
-    record: &StepRecord,
-    fleet: &FleetInfo,
-    floor: &Floor,
-) -> Vec<Camera> {
-    let camera = |(k, view): (usize, &Viewpoint)| {
-        Camera::of(view, &trail.smoothed, &record.snapshot, fleet, floor, &plan.room(k))
-    };
+pub(crate) fn cameras(plan: &PicturePlan, context: &PictureContext<'_>) -> Vec<Camera> {
+    let camera = |(k, view): (usize, &Viewpoint)| Camera::of(view, context, &plan.room(k));
     plan.views.iter().enumerate().map(camera).collect()
 }

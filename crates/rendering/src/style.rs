@@ -1,4 +1,4 @@
-//! What is drawn besides ground, sky and robots, each element by a name that can be switched off.
+//! The elements of a picture besides ground, sky and robots; each has a name by which it can be switched off.
 
 use crate::Error;
 use crate::error::nearest;
@@ -13,11 +13,11 @@ macro_rules! elements {
             /// Size of text and lines relative to a picture of 720 lines at arm's length; 2 for dense screens, and
             /// [`Style::scale_for`] for files.
             pub scale: f64,
-            /// Over views through cameras: tags as they were found, and the leader where the estimate has it.
+            /// Over views through cameras: the detected tags, and the estimated leader.
             pub detections: bool,
             /// The robot through whose camera a small picture in the corner is seen, by its index.
             pub picture_in_picture: Option<usize>,
-            /// What is drawn on the ground to explain; views through cameras do not show it.
+            /// Annotations on the ground; views through cameras do not show them.
             pub annotations: Annotations,
             /// What films add: cards, a line, plots.
             pub show: Overlays,
@@ -98,7 +98,7 @@ impl Style {
     /// Everything except the elements named.
     ///
     /// # Errors
-    /// [`Error::Element`] for the first name that is none.
+    /// [`Error::Unknown`] for the first name that is none.
     pub fn without<S: AsRef<str>>(names: &[S]) -> Result<Self, Error> {
         let mut style = Self::default();
         for name in names {
@@ -127,14 +127,15 @@ impl Style {
     /// Switches one element.
     ///
     /// # Errors
-    /// [`Error::Element`] where there is none of that name.
+    /// [`Error::Unknown`] where there is none of that name.
     pub fn set(&mut self, name: &str, on: bool) -> Result<(), Error> {
         match self.switch(name) {
             Some(switch) => {
                 *switch = on;
                 Ok(())
             }
-            None => Err(Error::Element {
+            None => Err(Error::Unknown {
+                what: "element",
                 given: name.to_owned(),
                 nearest: nearest(name, Self::ELEMENTS.iter().copied()),
                 valid: Self::ELEMENTS.join(", "),

@@ -5,7 +5,7 @@ mod course;
 mod stage;
 
 use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded, hills, overturn, prop, props, touch};
-use rendering::{AdapterChoice, Gpu, Renderer, Style, Trail, ViewLayout, Viewpoint};
+use rendering::{AdapterChoice, Gpu, PictureSpec, Renderer, Style, Trail, ViewLayout, Viewpoint};
 use stage::{Path, Play};
 use std::sync::{Arc, OnceLock};
 use vocabulary::{Body, FleetInfo, Mobility, Picture, Solid, StepRecord, Terrain};
@@ -27,7 +27,7 @@ fn snap(fleet: &FleetInfo, record: &StepRecord, view: Viewpoint, style: &Style) 
 
 fn shot(fleet: &FleetInfo, trail: &Trail, record: &StepRecord, view: Viewpoint, style: &Style) -> Picture {
     let mut renderer = Renderer::new(gpu(), fleet, SIZE.0, SIZE.1, 4).unwrap();
-    renderer.draw(trail, record, &ViewLayout::single(view), style).unwrap()
+    renderer.draw(PictureSpec::new(trail, record, &ViewLayout::single(view), style)).unwrap()
 }
 
 /// Straight down on the x-y plane from 9 m over `ground`.
@@ -324,7 +324,7 @@ fn a_platform_before_a_robot_is_seen_through() {
         trail.push(&record);
         let mut renderer = Renderer::new(gpu(), &fleet, SIZE.0, SIZE.1, samples).unwrap();
         let layout = ViewLayout::single(Viewpoint::Follow(1));
-        let picture = renderer.draw(&trail, &record, &layout, &Style::bare()).unwrap();
+        let picture = renderer.draw(PictureSpec::new(&trail, &record, &layout, &Style::bare())).unwrap();
         assert!(picture.rgba.chunks_exact(4).all(|p| p[3] == 255));
         count(&picture, |[r, g, b]| r > g + 12 && g > b + 25)
     };
@@ -415,7 +415,9 @@ fn golden_course() {
     }
     let mut renderer = Renderer::new(gpu(), &play.fleet, 216, 122, 4).unwrap();
     let style = Style { scale: 0.6, ..Style::default() };
-    let picture = renderer.draw(&trail, &last, &ViewLayout::single(Viewpoint::Snake), &style).unwrap();
+    let picture = renderer
+        .draw(PictureSpec::new(&trail, &last, &ViewLayout::single(Viewpoint::Snake), &style))
+        .unwrap();
     let file = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/course.png");
     if std::env::var_os("ECHELON_BLESS").is_some() {
         return film::png::write(&file, &picture, &[]).unwrap();

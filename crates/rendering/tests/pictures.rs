@@ -6,7 +6,7 @@
 mod sight;
 mod stage;
 
-use rendering::{AdapterChoice, Error, Gpu, Renderer, Style, ViewLayout, Viewpoint};
+use rendering::{AdapterChoice, Error, Gpu, PictureSpec, Renderer, Style, ViewLayout, Viewpoint};
 use stage::{Path, Play};
 use std::sync::OnceLock;
 use vocabulary::{Contact, EntityId, Picture, Pose, StepRecord};
@@ -21,7 +21,9 @@ fn gpu() -> &'static Gpu {
 
 fn draw(play: &Play, view: Viewpoint, time: f64, style: &Style) -> Picture {
     let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
-    renderer.draw(&play.trail(time), &play.at(time), &ViewLayout::single(view), style).unwrap()
+    renderer
+        .draw(PictureSpec::new(&play.trail(time), &play.at(time), &ViewLayout::single(view), style))
+        .unwrap()
 }
 
 /// Straight down on the x-y plane, 9 m high: pixels are easily computed.
@@ -100,7 +102,9 @@ fn no_picture_is_black_or_clipped() {
     let split = ViewLayout { views: single[..3].to_vec() };
     for view in single.into_iter().map(ViewLayout::single).chain([split]) {
         let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
-        let picture = renderer.draw(&play.trail(9.0), &play.at(9.0), &view, &Style::default()).unwrap();
+        let picture = renderer
+            .draw(PictureSpec::new(&play.trail(9.0), &play.at(9.0), &view, &Style::default()))
+            .unwrap();
         let pixels = picture.rgba.chunks_exact(4);
         let total = pixels.len();
         let dark = pixels.clone().filter(|p| p[..3].iter().all(|c| *c < 12)).count();
@@ -145,7 +149,9 @@ fn every_element_can_be_switched_off() {
         let (mut trail, mut record) = (play.trail(1.9), play.at(2.0));
         record.contacts = vec![touch(record.snapshot.robots[0].motion.pose)];
         trail.push(&record);
-        renderer.draw(&trail, &record, &ViewLayout::single(Viewpoint::Snake), style).unwrap()
+        renderer
+            .draw(PictureSpec::new(&trail, &record, &ViewLayout::single(Viewpoint::Snake), style))
+            .unwrap()
     };
     let full = draw(&Style::default());
     for name in Style::ELEMENTS {
@@ -168,15 +174,31 @@ fn the_same_moments_give_the_same_bytes() {
     let layout = ViewLayout::parse("snake+top", &[]).unwrap();
     let mut renderer = Renderer::new(gpu(), &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
     let trail = play.trail(6.0);
-    let first = renderer.draw(&trail, &play.at(6.0), &layout, &Style::default()).unwrap();
+    let first = renderer.draw(PictureSpec::new(&trail, &play.at(6.0), &layout, &Style::default())).unwrap();
     // Other pictures in between, and the pipelined way, must not show.
     renderer
-        .draw(&play.trail(3.0), &play.at(3.0), &ViewLayout::single(Viewpoint::Top), &Style::default())
+        .draw(PictureSpec::new(
+            &play.trail(3.0),
+            &play.at(3.0),
+            &ViewLayout::single(Viewpoint::Top),
+            &Style::default(),
+        ))
         .unwrap();
-    assert_eq!(renderer.draw(&trail, &play.at(6.0), &layout, &Style::default()).unwrap(), first);
-    assert!(renderer.draw_next(&trail, &play.at(6.0), &layout, &Style::default()).unwrap().is_none());
     assert_eq!(
-        renderer.draw_next(&trail, &play.at(6.0), &layout, &Style::default()).unwrap().as_ref(),
+        renderer.draw(PictureSpec::new(&trail, &play.at(6.0), &layout, &Style::default())).unwrap(),
+        first
+    );
+    assert!(
+        renderer
+            .draw_next(PictureSpec::new(&trail, &play.at(6.0), &layout, &Style::default()))
+            .unwrap()
+            .is_none()
+    );
+    assert_eq!(
+        renderer
+            .draw_next(PictureSpec::new(&trail, &play.at(6.0), &layout, &Style::default()))
+            .unwrap()
+            .as_ref(),
         Some(&first)
     );
     assert_eq!(renderer.finish().unwrap().as_ref(), Some(&first));
@@ -202,7 +224,11 @@ fn a_formation_far_from_the_origin_looks_the_same() {
             last = if shifted { away(&record) } else { record };
             trail.push(&last);
         }
-        pictures.push(renderer.draw(&trail, &last, &ViewLayout::single(Viewpoint::Snake), &style).unwrap());
+        pictures.push(
+            renderer
+                .draw(PictureSpec::new(&trail, &last, &ViewLayout::single(Viewpoint::Snake), &style))
+                .unwrap(),
+        );
     }
     let differ = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 3;
     let count = pictures[0].rgba.iter().zip(&pictures[1].rgba).filter(|p| differ(*p)).count();
@@ -219,12 +245,12 @@ fn bad_input_is_refused_with_reasons() {
     assert!(matches!(Renderer::new(gpu(), &play.fleet, 64, 64, 3), Err(Error::Samples(3))));
     let mut renderer = Renderer::new(gpu(), &play.fleet, 64, 64, 1).unwrap();
     let other = Play::new(2, Path::Straight);
-    let error = renderer.draw(
+    let error = renderer.draw(PictureSpec::new(
         &other.trail(0.0),
         &other.at(0.0),
         &ViewLayout::single(Viewpoint::Top),
         &Style::default(),
-    );
+    ));
     assert!(matches!(error, Err(Error::FleetInfo { what: "robots", got: 2, want: 3 })));
     let error = Gpu::open(&AdapterChoice::from("voodoo")).unwrap_err();
     assert!(!error.is_usage() && error.to_string().contains("mesa-vulkan-drivers"), "{error}");
@@ -249,8 +275,9 @@ fn golden_pictures() {
     let mut renderer = Renderer::new(gpu(), &play.fleet, 216, 122, 4).unwrap();
     let style = Style { scale: 0.6, ..Style::default() };
     for (name, view) in [("snake", Viewpoint::Snake), ("top", Viewpoint::Top), ("orbit", Viewpoint::Orbit)] {
-        let picture =
-            renderer.draw(&play.trail(5.0), &play.at(5.0), &ViewLayout::single(view), &style).unwrap();
+        let picture = renderer
+            .draw(PictureSpec::new(&play.trail(5.0), &play.at(5.0), &ViewLayout::single(view), &style))
+            .unwrap();
         golden(name, &picture);
     }
 }
@@ -268,7 +295,7 @@ fn views_through_cameras_show_what_the_robot_sees() {
     let inside = Style { picture_in_picture: Some(1), ..bare.clone() };
     let draw = |view: Viewpoint, style: &Style| {
         let mut renderer = Renderer::new(gpu(), &play.fleet, 640, 480, 4).unwrap();
-        renderer.draw(&play.trail(12.0), &record, &ViewLayout::single(view), style).unwrap()
+        renderer.draw(PictureSpec::new(&play.trail(12.0), &record, &ViewLayout::single(view), style)).unwrap()
     };
     let (plain, drawn) = (draw(Viewpoint::Camera(1), &bare), draw(Viewpoint::Camera(1), &marked));
     for [x, y] in corners {

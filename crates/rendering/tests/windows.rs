@@ -3,7 +3,7 @@
 #[expect(dead_code, reason = "shared with other tests")]
 mod stage;
 
-use rendering::{AdapterChoice, Error, Gpu, Renderer, Style, ViewLayout, Viewpoint};
+use rendering::{AdapterChoice, Error, Gpu, PictureSpec, Renderer, Style, ViewLayout, Viewpoint};
 use stage::{Path, Play};
 use vocabulary::Picture;
 use wgpu::{Limits, TextureFormat, TextureUsages};
@@ -65,8 +65,8 @@ fn drawn(gpu: &Gpu, play: &Play, samples: u32, format: TextureFormat) -> (Vec<u8
     let texture = target(gpu, SIZE, format);
     let (trail, record, style) = (play.trail(3.0), play.at(3.0), Style::default());
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    renderer.draw_into(&view, &trail, &record, &layout, &style).unwrap();
-    (bytes(gpu, &texture), renderer.draw(&trail, &record, &layout, &style).unwrap())
+    renderer.draw_into(&view, PictureSpec::new(&trail, &record, &layout, &style)).unwrap();
+    (bytes(gpu, &texture), renderer.draw(PictureSpec::new(&trail, &record, &layout, &style)).unwrap())
 }
 
 #[test]
@@ -102,7 +102,10 @@ fn renderers_share_a_device() {
     let layout = ViewLayout { views: vec![Viewpoint::Snake, Viewpoint::Top] };
     for _ in 0..2 {
         for ((renderer, play), alone) in both.iter_mut().zip(&plays).zip(&alone) {
-            assert!(renderer.draw(&play.trail(3.0), &play.at(3.0), &layout, &style).unwrap() == *alone);
+            assert!(
+                renderer.draw(PictureSpec::new(&play.trail(3.0), &play.at(3.0), &layout, &style)).unwrap()
+                    == *alone
+            );
         }
     }
 }
@@ -116,10 +119,12 @@ fn what_does_not_fit_is_an_error_and_the_next_is_drawn() {
     let layout = ViewLayout::single(Viewpoint::Snake);
     let view = |size, format| target(&gpu, size, format).create_view(&wgpu::TextureViewDescriptor::default());
     for (size, format) in [((64, 64), TextureFormat::Rgba8Unorm), (SIZE, TextureFormat::Rgba8UnormSrgb)] {
-        let error = renderer.draw_into(&view(size, format), &trail, &record, &layout, &style).unwrap_err();
+        let error = renderer
+            .draw_into(&view(size, format), PictureSpec::new(&trail, &record, &layout, &style))
+            .unwrap_err();
         assert!(matches!(error, Error::Device(_)), "{error}");
         let fits = view(SIZE, TextureFormat::Rgba8Unorm);
-        renderer.draw_into(&fits, &trail, &record, &layout, &style).unwrap();
+        renderer.draw_into(&fits, PictureSpec::new(&trail, &record, &layout, &style)).unwrap();
     }
 }
 
@@ -132,14 +137,14 @@ fn a_lost_device_is_an_error_every_time() {
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
     let (trail, record, style) = (play.trail(1.0), play.at(1.0), Style::default());
     let layout = ViewLayout::single(Viewpoint::Snake);
-    renderer.draw_into(&view, &trail, &record, &layout, &style).unwrap();
+    renderer.draw_into(&view, PictureSpec::new(&trail, &record, &layout, &style)).unwrap();
     gpu.device.destroy();
     // What is already on the way may still arrive.
     let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
     for _ in 0..2 {
-        let into = renderer.draw_into(&view, &trail, &record, &layout, &style);
+        let into = renderer.draw_into(&view, PictureSpec::new(&trail, &record, &layout, &style));
         assert!(matches!(into, Err(Error::Device(_))), "{into:?}");
-        let draw = renderer.draw(&trail, &record, &layout, &style);
+        let draw = renderer.draw(PictureSpec::new(&trail, &record, &layout, &style));
         assert!(matches!(draw, Err(Error::Device(_))), "{draw:?}");
         assert!(renderer.resize(300, 180).is_ok());
     }
@@ -162,7 +167,7 @@ fn memory_stays_bounded_while_a_window_is_dragged() {
             .create_view(&wgpu::TextureViewDescriptor::default());
         let style = Style { scale: 0.6 + 0.002 * f64::from(k % 90), ..Style::default() };
         let record = play.at(1.0 + 0.01 * f64::from(k));
-        renderer.draw_into(&view, &trail, &record, &layout, &style).unwrap();
+        renderer.draw_into(&view, PictureSpec::new(&trail, &record, &layout, &style)).unwrap();
         if k % 40 == 39 {
             wait(&gpu);
             after.push(held());
@@ -187,12 +192,12 @@ fn a_picture_does_not_hang_on_the_one_before() {
     {
         let (record, layout) = (play.at(time), ViewLayout::single(view));
         let fresh = Renderer::new(&gpu, &play.fleet, SIZE.0, SIZE.1, 4)
-            .and_then(|mut renderer| renderer.draw(&trail, &record, &layout, &style))
+            .and_then(|mut renderer| renderer.draw(PictureSpec::new(&trail, &record, &layout, &style)))
             .unwrap();
-        assert!(kept.draw(&trail, &record, &layout, &style).unwrap() == fresh);
-        assert!(kept.draw_into(&small, &trail, &play.at(1.0), &layout, &style).is_err());
-        assert!(kept.draw(&trail, &record, &layout, &style).unwrap() == fresh);
-        assert!(kept.draw(&trail, &record, &layout, &style).unwrap() == fresh);
+        assert!(kept.draw(PictureSpec::new(&trail, &record, &layout, &style)).unwrap() == fresh);
+        assert!(kept.draw_into(&small, PictureSpec::new(&trail, &play.at(1.0), &layout, &style)).is_err());
+        assert!(kept.draw(PictureSpec::new(&trail, &record, &layout, &style)).unwrap() == fresh);
+        assert!(kept.draw(PictureSpec::new(&trail, &record, &layout, &style)).unwrap() == fresh);
     }
 }
 
@@ -205,7 +210,9 @@ fn quick_pictures_look_like_others() {
     for view in [Viewpoint::Snake, Viewpoint::Orbit, Viewpoint::Top] {
         let mut draw = |interactive: bool| {
             let style = Style { interactive, ..Style::default() };
-            renderer.draw(&trail, &record, &ViewLayout::single(view.clone()), &style).unwrap()
+            renderer
+                .draw(PictureSpec::new(&trail, &record, &ViewLayout::single(view.clone()), &style))
+                .unwrap()
         };
         let (whole, quick) = (draw(false), draw(true));
         let apart: Vec<_> = whole.rgba.iter().zip(&quick.rgba).map(|(a, b)| a.abs_diff(*b)).collect();

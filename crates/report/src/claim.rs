@@ -1,4 +1,4 @@
-//! What a figure is said to show, held against what the runs showed. Nothing here is asserted: a claim is made of measured
+//! Claims of figures, checked against the runs. Nothing here is asserted: a claim consists of measured
 //! values, and its verdict follows from them.
 
 use crate::trace::Trace;
@@ -16,7 +16,7 @@ pub struct ClaimValue {
     pub unit: &'static str,
 }
 
-/// One sentence about a figure and what became of it.
+/// A claim about a figure, and its verdict.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FigureClaim {
     /// Which figure is to show it.
@@ -27,12 +27,12 @@ pub struct FigureClaim {
     pub quantity: String,
     /// The numbers, in the order of the claim.
     pub values: Vec<ClaimValue>,
-    /// What they have to do.
+    /// The condition on them.
     pub wanted: String,
-    /// What they may not exceed, if that is it.
+    /// Their upper limit, if the condition is one.
     #[serde(skip)]
     pub(crate) limit: Option<f64>,
-    /// Whether they do.
+    /// Whether they meet it.
     pub holds: bool,
 }
 
@@ -47,6 +47,13 @@ pub struct ClaimSubject<'a> {
     pub quantity: &'a str,
     /// Their unit; empty where they have none.
     pub unit: &'static str,
+}
+
+impl<'a> ClaimSubject<'a> {
+    /// What a figure should show of a quantity with a unit.
+    pub const fn new(figure: &'a str, claim: &'a str, quantity: &'a str, unit: &'static str) -> Self {
+        Self { figure, claim, quantity, unit }
+    }
 }
 
 /// Differences below this share are rounding.
@@ -101,7 +108,7 @@ impl FigureClaim {
     }
 }
 
-/// The formation is taken up: every follower ends within the band of its scene, and stays there.
+/// The formation is reached: every follower ends within the band of its scene and stays there.
 pub(crate) fn takes_up(figure: &str, run: &Trace) -> Vec<FigureClaim> {
     let claim = "The controller drives each robot to the desired distance and bearing.";
     let band = run.metrics.settling_band;
@@ -110,18 +117,15 @@ pub(crate) fn takes_up(figure: &str, run: &Trace) -> Vec<FigureClaim> {
         worst(edges.map(|e| (e.follower.as_str(), e.late_peak_error[channel])).collect())
     };
     let quantity = format!("largest error from {} on", quantity(run.late_from(), "s"));
-    vec![
-        FigureClaim::at_most(
-            ClaimSubject { figure, claim, quantity: &format!("{quantity}, distance"), unit: "m" },
-            &values(0),
-            band[0],
-        ),
-        FigureClaim::at_most(
-            ClaimSubject { figure, claim, quantity: &format!("{quantity}, bearing"), unit: "rad" },
-            &values(1),
-            band[1],
-        ),
-    ]
+    [("distance", "m"), ("bearing", "rad")]
+        .into_iter()
+        .enumerate()
+        .map(|(channel, (name, unit))| {
+            let quantity = format!("{quantity}, {name}");
+            let subject = ClaimSubject::new(figure, claim, &quantity, unit);
+            FigureClaim::at_most(subject, &values(channel), band[channel])
+        })
+        .collect()
 }
 
 /// Values that a claim lists one by one; of more, the largest.
@@ -135,14 +139,11 @@ fn worst(mut values: Vec<(&str, f64)>) -> Vec<(&str, f64)> {
     values
 }
 
-/// Nobody touches anybody.
+/// There is no contact.
 pub(crate) fn no_contact(figure: &str, run: &Trace) -> FigureClaim {
     let claim = "The formation drives without contact.";
-    FigureClaim::at_most(
-        ClaimSubject { figure, claim, quantity: "contacts", unit: "" },
-        &[("contacts", run.metrics.contacts as f64)],
-        0.0,
-    )
+    let subject = ClaimSubject::new(figure, claim, "contacts", "");
+    FigureClaim::at_most(subject, &[("contacts", run.metrics.contacts as f64)], 0.0)
 }
 
 /// Runs of one scene with their short names, in the order of a comparison.
@@ -161,11 +162,8 @@ pub fn knowing_less_costs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec
         runs.first().into_iter().chain(runs.last().filter(|_| runs.len() > 1)).copied().collect();
     let applied = |channel: usize| each(&ends, |run| Some(run.efforts.get(edge)?.applied[channel]));
     vec![
-        FigureClaim::rises(ClaimSubject { figure, claim, quantity: "∫|dv/dt| dt", unit: "m/s" }, &applied(0)),
-        FigureClaim::rises(
-            ClaimSubject { figure, claim, quantity: "∫|ω| dt", unit: "rad in all" },
-            &applied(1),
-        ),
+        FigureClaim::rises(ClaimSubject::new(figure, claim, "∫|dv/dt| dt", "m/s"), &applied(0)),
+        FigureClaim::rises(ClaimSubject::new(figure, claim, "∫|ω| dt", "rad in all"), &applied(1)),
     ]
 }
 
@@ -173,19 +171,15 @@ pub fn knowing_less_costs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec
 pub fn knowing_less_errs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<FigureClaim> {
     let claim = "The less a law knows, the larger the error that stays.";
     let settled = each(runs, |run| run.settled(edge));
-    let mut claims =
-        vec![FigureClaim::rises(ClaimSubject { figure, claim, quantity: "settled ‖e‖", unit: "" }, &settled)];
+    let mut claims = vec![FigureClaim::rises(ClaimSubject::new(figure, claim, "settled ‖e‖", ""), &settled)];
     if let Some(last) = settled.last() {
         let claim = "The behaviour under output feedback is quite satisfactory.";
         let band = runs.last().map_or(0.0, |(_, run)| {
             let [distance, bearing] = run.metrics.settling_band;
             distance.hypot(bearing)
         });
-        claims.push(FigureClaim::at_most(
-            ClaimSubject { figure, claim, quantity: "settled ‖e‖", unit: "" },
-            &[*last],
-            band,
-        ));
+        let subject = ClaimSubject::new(figure, claim, "settled ‖e‖", "");
+        claims.push(FigureClaim::at_most(subject, &[*last], band));
     }
     claims
 }
@@ -197,34 +191,22 @@ pub fn faster_observers_cost(figure: &str, runs: &Compared<'_>, edge: usize) -> 
         |value: &dyn Fn(&crate::CommandEffort) -> f64| each(runs, |run| run.efforts.get(edge).map(value));
     let until = runs.first().and_then(|(_, run)| run.efforts.get(edge)).map_or(0.0, |e| e.transient);
     let over = |what: &str| format!("{what}, first {}", quantity(until, "s"));
+    let about = |quantity, unit| ClaimSubject::new(figure, claim, quantity, unit);
     vec![
-        FigureClaim::rises(
-            ClaimSubject { figure, claim, quantity: &over("peak |dv/dt| asked for"), unit: "m/s²" },
-            &of(&|e| e.peak_asked[0]),
-        ),
-        FigureClaim::rises(
-            ClaimSubject { figure, claim, quantity: &over("∫|dv/dt asked for| dt"), unit: "m/s" },
-            &of(&|e| e.transient_asked[0]),
-        ),
-        FigureClaim::rises(
-            ClaimSubject { figure, claim, quantity: &over("∫|ω| dt"), unit: "rad in all" },
-            &of(&|e| e.transient_applied[1]),
-        ),
+        FigureClaim::rises(about(&over("peak |dv/dt| asked for"), "m/s²"), &of(&|e| e.peak_asked[0])),
+        FigureClaim::rises(about(&over("∫|dv/dt asked for| dt"), "m/s"), &of(&|e| e.transient_asked[0])),
+        FigureClaim::rises(about(&over("∫|ω| dt"), "rad in all"), &of(&|e| e.transient_applied[1])),
     ]
 }
 
 /// As ε falls, errors fall: those that stay, and those of the whole run. `runs` go from the largest ε to the smallest.
 pub fn faster_observers_err_less(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<FigureClaim> {
     let claim = "As ε decreases, tracking errors decrease.";
+    let about = |quantity, unit| ClaimSubject::new(figure, claim, quantity, unit);
+    let (settled, whole) = (each(runs, |run| run.settled(edge)), each(runs, |run| run.over_the_run(edge)));
     vec![
-        FigureClaim::falls(
-            ClaimSubject { figure, claim, quantity: "settled ‖e‖", unit: "" },
-            &each(runs, |run| run.settled(edge)),
-        ),
-        FigureClaim::falls(
-            ClaimSubject { figure, claim, quantity: "(∫‖e‖² dt)^½ over the run", unit: "s^½" },
-            &each(runs, |run| run.over_the_run(edge)),
-        ),
+        FigureClaim::falls(about("settled ‖e‖", ""), &settled),
+        FigureClaim::falls(about("(∫‖e‖² dt)^½ over the run", "s^½"), &whole),
     ]
 }
 

@@ -1,4 +1,4 @@
-//! What a follower's commands cost, above all while its observer has not yet settled.
+//! The effort of a follower's commands, above all in the observer's transient.
 
 use vocabulary::Command;
 
@@ -22,7 +22,7 @@ pub struct CommandEffort {
 /// Running sums of an [`CommandEffort`].
 #[derive(Debug, Clone, Default)]
 pub(crate) struct EffortSums {
-    sums: CommandEffort,
+    pub(crate) sums: CommandEffort,
     last: Option<(f64, [f64; 2], [f64; 2])>,
 }
 
@@ -31,7 +31,7 @@ impl EffortSums {
         Self { sums: CommandEffort { transient, ..CommandEffort::default() }, last: None }
     }
 
-    /// Takes in a sample. A command holds from its sample to the next one.
+    /// Adds a sample. A command holds from its sample to the next one.
     pub(crate) fn push(&mut self, time: f64, asked: Command, applied: Command) {
         let sizes = |c: Command| [c.acceleration.abs(), c.turn_rate.abs()];
         let (asked, applied) = (sizes(asked), sizes(applied));
@@ -53,10 +53,6 @@ impl EffortSums {
         }
         self.last = Some((time, asked, applied));
     }
-
-    pub(crate) fn finish(&self) -> CommandEffort {
-        self.sums
-    }
 }
 
 #[cfg(test)]
@@ -71,7 +67,7 @@ mod tests {
             let applied = Command { acceleration: 0.5 * a, turn_rate: a };
             sums.push(0.1 * k as f64, asked, applied);
         }
-        let found = sums.finish();
+        let found = sums.sums;
         assert_eq!(found.peak_asked, [4.0, 8.0]);
         let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
         assert!(near(found.transient_asked[0], 0.4 + 0.2 + 0.05), "{found:?}");

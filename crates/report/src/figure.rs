@@ -1,4 +1,4 @@
-//! What a set of figures consists of, before it is written.
+//! Figures, tables and films of a report, before they are written.
 
 use crate::claim::FigureClaim;
 
@@ -7,13 +7,13 @@ use crate::claim::FigureClaim;
 pub struct ReportFigure {
     /// File name without its ending.
     pub stem: String,
-    /// What is seen, in a sentence or two.
+    /// Its caption, in a sentence or two.
     pub caption: String,
     /// The figure itself.
     pub svg: String,
     /// The numbers behind it.
     pub csv: String,
-    /// What it is said to show.
+    /// Its claims.
     pub claims: Vec<FigureClaim>,
     /// A drawn picture (PNG) in place of curves; the SVG then holds it.
     pub picture: Option<Vec<u8>>,
@@ -21,23 +21,11 @@ pub struct ReportFigure {
 
 impl ReportFigure {
     /// A figure without claims.
-    pub fn new(
-        stem: impl Into<String>,
-        caption: impl Into<String>,
-        svg: impl Into<String>,
-        csv: impl Into<String>,
-    ) -> Self {
-        Self {
-            stem: stem.into(),
-            caption: caption.into(),
-            svg: svg.into(),
-            csv: csv.into(),
-            claims: vec![],
-            picture: None,
-        }
+    pub fn new(stem: impl Into<String>, caption: impl Into<String>, svg: String, csv: String) -> Self {
+        Self { stem: stem.into(), caption: caption.into(), svg, csv, claims: vec![], picture: None }
     }
 
-    /// With what it is said to show.
+    /// The figure with these claims.
     #[must_use]
     pub fn with(mut self, claims: Vec<FigureClaim>) -> Self {
         self.claims.extend(claims);
@@ -45,7 +33,7 @@ impl ReportFigure {
     }
 }
 
-/// A film, and what is to be seen in it.
+/// A film and its caption.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReportFilm {
     /// File name.

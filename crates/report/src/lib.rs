@@ -1,4 +1,4 @@
-//! Figures of runs, and whether they show what they are said to show.
+//! Figures of runs, with claims that are checked.
 //!
 //! [`paper_runs`] names the runs behind the figures of Orqueda, Zhang and Fierro (2007), [`scene_runs`] those behind the
 //! same figures of any scene. Whoever runs them hands every moment to a [`Tracer`]; of the [`Trace`]s that come out,

@@ -161,7 +161,10 @@ mod tests {
         ];
         Report {
             title: "One & all".to_owned(),
-            items: vec![ReportFigure::new("figure-07", "caption", "<svg></svg>", "").with(claims)],
+            items: vec![
+                ReportFigure::new("figure-07", "caption", "<svg></svg>".to_owned(), String::new())
+                    .with(claims),
+            ],
             films: vec![ReportFilm {
                 file: "a.mp4".to_owned(),
                 caption: "film".to_owned(),

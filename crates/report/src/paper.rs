@@ -79,7 +79,7 @@ pub(crate) fn ways(stem: &str, run: &Trace, words: &str) -> ReportFigure {
     drawn.item(stem, caption).with(takes_up(stem, run))
 }
 
-/// Figure 15: the graph, and whether the robots came to stand as it says.
+/// Figure 15: the graph, and the claim that the robots reach its places.
 fn formation(run: &Trace) -> ReportFigure {
     let stem = stem(15);
     let drawn = graph(run, run.scene.time.duration);
@@ -88,7 +88,7 @@ fn formation(run: &Trace) -> ReportFigure {
     drawn.item(&stem, caption).with(vec![stands_so(&stem, run)])
 }
 
-/// At the end every robot stands where the set points of the edges up to its leader want it.
+/// At the end every robot is where the set points of the edges above it place it.
 pub(crate) fn stands_so(stem: &str, run: &Trace) -> FigureClaim {
     let last = run.times.len().saturating_sub(1);
     let off = farthest(run, last).unwrap_or(f64::NAN);
@@ -96,7 +96,7 @@ pub(crate) fn stands_so(stem: &str, run: &Trace) -> FigureClaim {
     let limit = run.metrics.settling_band[0] * depth.max(1) as f64;
     let claim = "At the end the robots stand as the graph says, seen from their lead robot.";
     let quantity = "largest distance of a robot from its place";
-    let subject = ClaimSubject { figure: stem, claim, quantity, unit: "m" };
+    let subject = ClaimSubject::new(stem, claim, quantity, "m");
     FigureClaim::at_most(subject, &[("largest", off)], limit)
 }
 
@@ -114,7 +114,7 @@ fn depth(run: &Trace) -> usize {
     depths.into_iter().max().unwrap_or(0)
 }
 
-/// What figures 13 and 14 are said to show.
+/// The claims of figures 13 and 14.
 pub(crate) fn drawn_claims(stem: &str, run: &Trace) -> Vec<FigureClaim> {
     let mut claims = takes_up(stem, run);
     claims.push(no_contact(stem, run));

@@ -15,11 +15,11 @@ pub enum Case {
     Circle,
     /// Seven robots.
     Seven,
-    /// A scene of somebody's own.
+    /// A scene of the user.
     Own,
 }
 
-/// One run to be done.
+/// A planned run.
 #[derive(Debug, Clone)]
 pub struct PlannedRun {
     /// Which scene it belongs to.
@@ -34,7 +34,7 @@ pub struct PlannedRun {
     pub transient: f64,
 }
 
-/// A run that has been done.
+/// A finished run.
 #[derive(Clone)]
 pub struct FinishedRun {
     /// Which scene it belongs to.
@@ -45,7 +45,7 @@ pub struct FinishedRun {
     pub trace: Trace,
 }
 
-/// The run of a case and a variant, if it has been done.
+/// The finished run of a case and a variant, if there is one.
 pub fn find(runs: &[FinishedRun], case: Case, variant: Variant) -> Option<&Trace> {
     runs.iter().find(|ran| ran.case == case && ran.variant == variant).map(|ran| &ran.trace)
 }
@@ -115,7 +115,7 @@ pub fn paper_runs() -> Result<Vec<PlannedRun>, Diagnostics> {
 
 /// Factors on a scene's own ε that it is compared with.
 pub(crate) const FACTORS: [f64; 3] = [10.0, 1.0, 0.1];
-/// What the reader of scenes takes, s.
+/// Limits of ε in scenes, s.
 const EPSILON_MAX: f64 = 100.0;
 
 /// The observer constants that a scene is compared by, from the largest, s.

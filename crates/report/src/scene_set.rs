@@ -23,7 +23,7 @@ pub fn of_scene(scene: &Scene, runs: &[FinishedRun]) -> Report {
         tables: vec![tables::edges(run), tables::digests(runs)],
         ..Report::default()
     };
-    // Its own expectations are what a scene claims.
+    // The claims of a scene are its own expectations.
     let mut first = ways("trajectories", run, &scene.title);
     first.claims = expectations(run);
     report.items.push(first);

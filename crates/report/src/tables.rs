@@ -8,8 +8,8 @@ use crate::variant::Variant;
 use crate::words::{digits, quantity};
 use vocabulary::LawKind;
 
-fn words(words: &[&str]) -> Vec<String> {
-    words.iter().map(|word| (*word).to_owned()).collect()
+fn words(first: &[&str], then: &[&str]) -> Vec<String> {
+    first.iter().chain(then).map(|word| (*word).to_owned()).collect()
 }
 
 /// One follower under all laws and observer constants.
@@ -24,27 +24,25 @@ pub(crate) fn laws(runs: &[FinishedRun], cases: &[Case], edge: usize) -> ReportT
             "Follower 1 under every law and observer constant. Settled: root mean square over the last fifth of the run. \
              Settles: time from which the error stays within the band of the scene. Asked for: before limits, over the {first}."
         ),
-        head: vec![
-            "run".to_owned(),
-            "settled distance error".to_owned(),
-            "settled bearing error".to_owned(),
-            "(∫‖e‖² dt)^½".to_owned(),
-            "settles".to_owned(),
-            "peak |dv/dt| asked for".to_owned(),
-            "∫|dv/dt| dt".to_owned(),
-            "∫|ω| dt".to_owned(),
-        ],
+        head: words(&["run", "settled distance error", "settled bearing error", "(∫‖e‖² dt)^½"], &COSTS),
         rows: traces.filter_map(|trace| law_row(trace, edge)).collect(),
     }
 }
 
 fn law_row(trace: &Trace, edge: usize) -> Option<Vec<String>> {
+    let [distance, bearing] = trace.metrics.edges.get(edge)?.late_rms_error;
+    let errors = [quantity(distance, "m"), quantity(bearing, "rad")];
+    let whole = trace.over_the_run(edge).map_or_else(String::new, digits);
+    Some([&[trace.name.clone()][..], &errors, &[whole], &costs(trace, edge)?].concat())
+}
+
+/// Names of the cells that [`costs`] makes.
+const COSTS: [&str; 4] = ["settles", "peak |dv/dt| asked for", "∫|dv/dt| dt", "∫|ω| dt"];
+
+/// When an edge settles, and what its commands cost.
+fn costs(trace: &Trace, edge: usize) -> Option<[String; 4]> {
     let (metrics, effort) = (trace.metrics.edges.get(edge)?, trace.efforts.get(edge)?);
-    Some(vec![
-        trace.name.clone(),
-        quantity(metrics.late_rms_error[0], "m"),
-        quantity(metrics.late_rms_error[1], "rad"),
-        trace.over_the_run(edge).map_or_else(String::new, digits),
+    Some([
         metrics.settling_time.map_or_else(|| "never".to_owned(), |t| quantity(t, "s")),
         quantity(effort.peak_asked[0], "m/s²"),
         quantity(effort.applied[0], "m/s"),
@@ -64,16 +62,10 @@ pub(crate) fn edges(run: &Trace) -> ReportTable {
         order.truncate(LISTED);
     }
     let row = |edge: usize| {
-        let (metrics, effort) = (run.metrics.edges.get(edge)?, run.efforts.get(edge)?);
-        Some(vec![
-            format!("{} → {}", metrics.leader, metrics.follower),
-            quantity(metrics.final_error[0], "m"),
-            quantity(metrics.final_error[1], "rad"),
-            metrics.settling_time.map_or_else(|| "never".to_owned(), |t| quantity(t, "s")),
-            quantity(effort.peak_asked[0], "m/s²"),
-            quantity(effort.applied[0], "m/s"),
-            format!("{} rad", digits(effort.applied[1])),
-        ])
+        let metrics = run.metrics.edges.get(edge)?;
+        let name = format!("{} → {}", metrics.leader, metrics.follower);
+        let errors = [quantity(metrics.final_error[0], "m"), quantity(metrics.final_error[1], "rad")];
+        Some([&[name][..], &errors, &costs(run, edge)?].concat())
     };
     ReportTable {
         caption: if run.fleet.edges.len() > LISTED {
@@ -81,15 +73,7 @@ pub(crate) fn edges(run: &Trace) -> ReportTable {
         } else {
             "All edges.".to_owned()
         },
-        head: words(&[
-            "edge",
-            "final distance error",
-            "final bearing error",
-            "settles",
-            "peak |dv/dt| asked for",
-            "∫|dv/dt| dt",
-            "∫|ω| dt",
-        ]),
+        head: words(&["edge", "final distance error", "final bearing error"], &COSTS),
         rows: order.into_iter().filter_map(row).collect(),
     }
 }
@@ -103,7 +87,7 @@ pub(crate) fn digests(runs: &[FinishedRun]) -> ReportTable {
     };
     ReportTable {
         caption: "Digest of every run: the same scene, seed and build give the same one.".to_owned(),
-        head: words(&["run", "length", "seed", "digest"]),
+        head: words(&["run", "length", "seed", "digest"], &[]),
         rows: runs.iter().map(row).collect(),
     }
 }

@@ -1,26 +1,26 @@
-//! All of a run that figures are drawn from: what every robot and every edge did, and what it cost.
+//! The data of a run behind its figures: motions of robots, states of edges, and efforts.
 
 use crate::effort::{CommandEffort, EffortSums};
 use figures::Rgb;
 use metrics::{Digest, Metrics, MetricsBuilder};
 use scene::Scene;
 use simulation::Simulation;
-use vocabulary::{Command, Edge, FleetInfo, Motion, StepRecord, wrap};
+use vocabulary::{Command, Edge, FleetInfo, Motion, Pose, StepRecord, wrap};
 
 /// One edge at one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EdgeRow {
     /// Set point minus truth, [m, rad].
     pub error: [f64; 2],
-    /// What the law asked for, before limits.
+    /// Command before limits.
     pub asked: Command,
-    /// What was applied.
+    /// Applied command.
     pub applied: Command,
     /// Rates of [distance, bearing] as the law knew them, [m/s, rad/s].
     pub estimated: [f64; 2],
     /// The true ones: of unicycles by eqs 6-7, on wheels by differences.
     pub rates: [f64; 2],
-    /// Wanted [distance in m, bearing in rad].
+    /// Set point: [distance in m, bearing in rad].
     pub set_point: [f64; 2],
 }
 
@@ -76,6 +76,21 @@ impl Trace {
         Some((distance + bearing).sqrt())
     }
 
+    /// Pose of a robot at a kept sample.
+    pub(crate) fn pose(&self, robot: usize, sample: usize) -> Option<Pose> {
+        Some(self.robots.get(robot)?.get(sample)?.pose)
+    }
+
+    /// The first robot that leads, or the first of all.
+    pub(crate) fn guide(&self) -> usize {
+        self.fleet.robots.iter().position(|member| member.leads).unwrap_or(0)
+    }
+
+    /// The colour of a robot.
+    pub(crate) fn robot_colour(&self, robot: usize) -> Rgb {
+        self.colours.get(robot).copied().unwrap_or_default()
+    }
+
     /// Name of an edge's follower.
     pub fn follower(&self, edge: usize) -> &str {
         let robot = self.fleet.edges.get(edge).and_then(|edge| self.fleet.robots.get(edge.follower));
@@ -84,12 +99,11 @@ impl Trace {
 
     /// The follower's colour.
     pub(crate) fn colour(&self, edge: usize) -> Rgb {
-        let robot = self.fleet.edges.get(edge).and_then(|edge| self.colours.get(edge.follower));
-        robot.copied().unwrap_or_default()
+        self.fleet.edges.get(edge).map_or_else(Rgb::default, |edge| self.robot_colour(edge.follower))
     }
 }
 
-/// Takes in a run.
+/// Builds a [`Trace`] from records.
 pub struct Tracer {
     trace: Trace,
     metrics: MetricsBuilder,
@@ -133,7 +147,7 @@ impl Tracer {
         }
     }
 
-    /// Takes in a moment.
+    /// Adds a moment.
     pub fn push(&mut self, record: &StepRecord) {
         let time = record.snapshot.time;
         self.metrics.push(record);
@@ -166,10 +180,10 @@ impl Tracer {
         }
     }
 
-    /// The run as far as it went.
+    /// The trace of the run so far.
     pub fn finish(mut self) -> Trace {
         self.trace.metrics = self.metrics.finish();
-        self.trace.efforts = self.efforts.iter().map(EffortSums::finish).collect();
+        self.trace.efforts = self.efforts.iter().map(|effort| effort.sums).collect();
         self.trace.digest = self.digest.text();
         // Wheels slip sideways, and what a heading and a speed say is not all of the motion.
         if self.trace.scene.robots.iter().any(|robot| robot.vehicle.kind.has_wheels()) {

@@ -1,6 +1,6 @@
 //! A scene with another law or another observer constant for all its followers: what comparisons are made of.
 
-use scene::{Role, Scene, SensingKind, VehicleKind};
+use scene::{Follow, Role, Scene, SensingKind, VehicleKind};
 use vocabulary::{LawKind, TimeMode};
 
 /// What differs from the scene as it is written.
@@ -47,13 +47,18 @@ pub(crate) fn short(kind: LawKind) -> &'static str {
     }
 }
 
-/// The three laws, from the one that has to know most.
+/// The three laws, in descending order of what they have to know.
 pub(crate) const LAWS: [LawKind; 3] = [LawKind::FullState, LawKind::RobustState, LawKind::OutputFeedback];
 
 /// Law and ε, s, of the scene's first follower.
 pub(crate) fn of(scene: &Scene) -> Option<(LawKind, f64)> {
-    scene.robots.iter().find_map(|robot| match &robot.role {
-        Role::Follow(follow) => Some((follow.law.kind, follow.observer.epsilon[0])),
+    followers(scene).next().map(|follow| (follow.law.kind, follow.observer.epsilon[0]))
+}
+
+/// The follower parameters of a scene.
+fn followers(scene: &Scene) -> impl Iterator<Item = &Follow> {
+    scene.robots.iter().filter_map(|robot| match &robot.role {
+        Role::Follow(follow) => Some(&**follow),
         Role::Lead { .. } => None,
     })
 }
@@ -63,13 +68,9 @@ const MANY: usize = 30;
 
 /// Why the three laws cannot be compared on a scene, if they cannot.
 pub(crate) fn laws_apart(scene: &Scene) -> Option<&'static str> {
-    let truth = |robot: &scene::Robot| match &robot.role {
-        Role::Follow(follow) => follow.sensing.kind == SensingKind::Truth,
-        Role::Lead { .. } => true,
-    };
-    if scene.robots.iter().all(|robot| matches!(robot.role, Role::Lead { .. })) {
+    if followers(scene).next().is_none() {
         Some("nobody follows")
-    } else if !scene.robots.iter().all(truth) {
+    } else if followers(scene).any(|follow| follow.sensing.kind != SensingKind::Truth) {
         Some("followers measure, and two of the laws need more than measurements tell")
     } else if scene.robots.iter().any(|robot| robot.vehicle.kind != VehicleKind::Unicycle) {
         Some("gains on wheels are found for output feedback, and would not fit the other laws")
@@ -82,17 +83,11 @@ pub(crate) fn laws_apart(scene: &Scene) -> Option<&'static str> {
 
 /// Why observer constants cannot be compared on a scene, if they cannot.
 pub(crate) fn constants_apart(scene: &Scene) -> Option<&'static str> {
-    let followers = || {
-        scene.robots.iter().filter_map(|robot| match &robot.role {
-            Role::Follow(follow) => Some(follow),
-            Role::Lead { .. } => None,
-        })
-    };
-    if !followers().any(|follow| follow.law.kind == LawKind::OutputFeedback) {
+    if !followers(scene).any(|follow| follow.law.kind == LawKind::OutputFeedback) {
         Some("no observer runs")
-    } else if followers().any(|follow| follow.sensing.kind == SensingKind::Camera) {
+    } else if followers(scene).any(|follow| follow.sensing.kind == SensingKind::Camera) {
         Some("drawing for cameras over and over takes minutes: `echelon budget --epsilon` does it")
-    } else if followers().any(|follow| follow.sensing.kind != SensingKind::Truth) {
+    } else if followers(scene).any(|follow| follow.sensing.kind != SensingKind::Truth) {
         Some("ε follows from the noise of measurements: `echelon budget --epsilon` compares")
     } else if scene.time.mode == TimeMode::Continuous {
         Some("continuous time takes steps of an eighth of ε, and small ones do not come to an end")

@@ -1,4 +1,4 @@
-//! Numbers as people read them.
+//! Numbers as text.
 
 use std::f64::consts::PI;
 
@@ -54,6 +54,11 @@ fn digits_to(count: i32, value: f64) -> String {
     let raised: String = format!("{decade}").chars().map(raise).collect();
     let decimals = (count - 1) as usize;
     format!("{factor:.decimals$}·10{raised}").replace('-', "−")
+}
+
+/// A number without zeros at the end of its decimals.
+pub(crate) fn trimmed(text: String) -> String {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 fn raise(c: char) -> char {

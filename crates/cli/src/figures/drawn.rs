@@ -6,7 +6,7 @@ use super::{Subject, ready, stop};
 use crate::failure::Failure;
 use crate::playback::Playback;
 use film::{FilmKind, png};
-use rendering::{Gpu, Renderer, Style, ViewLayout};
+use rendering::{Gpu, PictureSpec, Renderer, Style, ViewLayout};
 use report::{Case, FinishedRun, PlannedRun, Report, ReportFilm, ReportPicture, add_picture, find};
 use studies::{PROGRAM, RecordSource};
 use vocabulary::FleetInfo;
@@ -103,7 +103,7 @@ pub(super) fn draw(
         let record = playback.at(time);
         playback.check()?;
         stop(meter)?;
-        let ready = renderer.draw_next(playback.trail(), &record, &layout, &style)?;
+        let ready = renderer.draw_next(PictureSpec::new(playback.trail(), &record, &layout, &style))?;
         ready.map_or(Ok(()), |picture| film.push(picture))?;
         meter.frame();
     }
@@ -143,7 +143,7 @@ fn picture(
     let mut renderer = Renderer::new(gpu, fleet, PICTURE[0], PICTURE[1], 4)?;
     let record = playback.at(time);
     playback.check()?;
-    let picture = renderer.draw(playback.trail(), &record, layout, &style)?;
+    let picture = renderer.draw(PictureSpec::new(playback.trail(), &record, layout, &style))?;
     let (at, adapter) = (format!("{time}"), gpu.description());
     let texts = [("Software", PROGRAM), ("Title", &*fleet.title), ("Time", &*at), ("Adapter", &*adapter)];
     let view =

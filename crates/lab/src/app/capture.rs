@@ -1,32 +1,50 @@
-//! Pictures and films of what is seen.
+//! Pictures and films of the view.
 
 use super::LabApp;
-use super::film_capture::FilmCapture;
-use crate::exporter::{ExportJob, FrameSpec, RATE};
+use crate::exporter::{ExportJob, ExportTarget, FrameSpec, RATE};
 use crate::kept_run::free;
 use eframe::egui;
 use rendering::{Annotations, Style, ViewLayout};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use vocabulary::counted;
+
+/// A film under way.
+pub(crate) struct FilmCapture {
+    path: PathBuf,
+    /// Time of the next frame, s, and the branch.
+    next: f64,
+    branch: usize,
+    /// Records up to this time have been sent, s.
+    sent: f64,
+    frames: u64,
+}
+
+impl FilmCapture {
+    /// Its progress, in words.
+    pub(crate) fn words(&self, waiting: usize) -> String {
+        format!("{}: {}, {waiting} waiting", self.path.display(), counted(self.frames, "frame"))
+    }
+}
 
 impl LabApp {
-    /// What is seen now, for a picture `size` large.
+    /// The current view, for a picture of `size` pixels.
     pub(crate) fn shot(&self, record: &Arc<vocabulary::StepRecord>, size: [u32; 2]) -> Option<FrameSpec> {
-        let fleet = self.app_state.history.as_ref()?.fleet();
+        let fleet = self.app_state.fleet()?;
         let scale = (f64::from(size[1]) / 720.0).max(0.5);
         Some(FrameSpec {
             record: Arc::clone(record),
             layout: self.viewport.layout(fleet, record),
-            style: self.viewport.dressed(&self.app_state, record, scale),
+            style: self.viewport.annotated_style(&self.app_state, record, scale),
             words: self.app_state.words(),
         })
     }
 
-    /// What a film shows now: what is seen, or the view that was chosen for it, without what only the hand needs.
+    /// The frame of a film: the current view or the view chosen for films, without handles.
     pub(crate) fn film_shot(&self, record: &Arc<vocabulary::StepRecord>) -> Option<FrameSpec> {
         let shot = self.shot(record, [1280, 720])?;
         let Some(view) = &self.app_state.film_from else { return Some(shot) };
-        let fleet = self.app_state.history.as_ref()?.fleet();
+        let fleet = self.app_state.fleet()?;
         let names: Vec<String> = fleet.robots.iter().map(|member| member.name.clone()).collect();
         let style = Style { annotations: Annotations::default(), inset: true, ..shot.style };
         Some(FrameSpec { layout: ViewLayout::parse(view, &names).unwrap_or(shot.layout), style, ..shot })
@@ -34,34 +52,22 @@ impl LabApp {
 
     pub(crate) fn picture(&mut self) {
         let size = [1920, 1080];
-        let (Some(record), Some(history)) = (self.app_state.record(), &self.app_state.history) else {
-            return;
-        };
-        let time = self.app_state.time();
-        let Some(trail) = history.trail(self.app_state.branch, time).cloned() else { return };
-        let (fleet, Some(shot)) = (Arc::clone(history.fleet()), self.shot(&record, size)) else { return };
+        let Some(record) = self.app_state.record() else { return };
+        let (Some(fleet), Some(trail)) = (self.app_state.fleet(), self.app_state.trail()) else { return };
+        let Some(shot) = self.shot(&record, size) else { return };
         let path = free(Path::new("."), &self.name(), "png");
-        let home = self
-            .app_state
-            .draft
-            .as_ref()
-            .map_or_else(String::new, |draft| draft.home().display().to_string());
+        let home = self.app_state.draft.as_ref().map(|draft| draft.home().display().to_string());
         let texts = vec![
             ("Software", studies::PROGRAM.to_owned()),
             ("Scene", self.app_state.script().unwrap_or_default()),
-            ("Home", home),
-            ("Time", format!("{time:?}")),
+            ("Home", home.unwrap_or_default()),
+            ("Time", format!("{:?}", self.app_state.time())),
             ("View", words_of(&shot.layout, &self.viewport.view)),
-            ("Adapter", self.viewport.gpu().description()),
+            ("Adapter", self.viewport.gpu.description()),
         ];
-        self.exporter.ask(ExportJob::Picture {
-            path,
-            fleet,
-            size,
-            trail: Box::new(trail),
-            shot: Box::new(shot),
-            texts,
-        });
+        let target = ExportTarget { path, fleet: Arc::clone(fleet), size, trail: trail.clone() };
+        let (target, shot) = (Box::new(target), Box::new(shot));
+        self.exporter.ask(ExportJob::Picture { target, shot, texts });
     }
 
     /// Writes a picture of the whole window.
@@ -74,7 +80,7 @@ impl LabApp {
             let picture = vocabulary::Picture { width, height, rgba };
             let texts = [("Software", studies::PROGRAM)];
             let written = film::png::write(&path, &picture, &texts);
-            // A window that is closed does not wait for it.
+            // A closing window does not wait for it.
             let _ = sender.send(match written {
                 Ok(()) => Ok(format!("Written: {}", path.display())),
                 Err(error) => Err(error.to_string()),
@@ -89,12 +95,8 @@ impl LabApp {
         let Some(trail) = history.trail(branch, time).cloned() else { return };
         let fleet = Arc::clone(history.fleet());
         let path = free(Path::new("."), &self.name(), "mp4");
-        self.exporter.ask(ExportJob::Begin {
-            path: path.clone(),
-            fleet,
-            size: [1280, 720],
-            trail: Box::new(trail),
-        });
+        let target = ExportTarget { path: path.clone(), fleet, size: [1280, 720], trail };
+        self.exporter.ask(ExportJob::Begin(Box::new(target)));
         self.app_state.note(format!("Filming to {}", path.display()));
         let next = time + self.app_state.pace / RATE;
         self.film = Some(FilmCapture { path, next, branch, sent: time, frames: 0 });
@@ -103,13 +105,13 @@ impl LabApp {
     pub(crate) fn end_film(&mut self) {
         if let Some(film) = self.film.take() {
             if film.frames == 0 {
-                self.app_state.note("Nothing was filmed: the run stood still");
+                self.app_state.note("Nothing was filmed: the run was paused");
             }
             self.exporter.ask(ExportJob::End);
         }
     }
 
-    /// Frames of a film that are due, at even steps of simulated time whatever the window's pace.
+    /// Requests the frames of a film that are due, at even steps of simulated time at any pace.
     pub(crate) fn film_on(&mut self) {
         let Some(mut film) = self.film.take() else { return };
         let Some(history) = &self.app_state.history else { return };
@@ -122,25 +124,21 @@ impl LabApp {
             }
         }
         let end = history.end(film.branch);
-        let mut jobs = Vec::new();
         while film.next <= end + 1e-9 {
             let Some(record) = history.at(film.branch, film.next) else { break };
-            jobs.push(ExportJob::Records(history.since(film.branch, [film.sent, film.next])));
+            self.exporter.ask(ExportJob::Records(history.since(film.branch, [film.sent, film.next])));
             film.sent = film.next;
             if let Some(shot) = self.film_shot(&record) {
-                jobs.push(ExportJob::Frame(Box::new(shot)));
+                self.exporter.ask(ExportJob::Frame(Box::new(shot)));
                 film.frames += 1;
             }
             film.next += self.app_state.pace / RATE;
-        }
-        for job in jobs {
-            self.exporter.ask(job);
         }
         self.film = Some(film);
     }
 }
 
-/// Where a picture was taken from, in the words of `--view`.
+/// The view of a picture, in the syntax of `--view`.
 fn words_of(layout: &rendering::ViewLayout, named: &str) -> String {
     match layout.views.first() {
         Some(rendering::Viewpoint::Fixed { eye, target, field_of_view }) => {

@@ -1,31 +1,43 @@
-//! Draws what lies over the panels: notices, the menu of scenes, shortcuts, hints, questions.
+//! Draws what covers the panels: notices, the list of scenes, shortcuts, hints and questions.
 
-use super::dialog::Dialog;
 use super::{BARE, LabApp};
 use crate::action::Action;
+use crate::panels::on_click;
 use eframe::egui::{self, Context, Ui};
 
+/// What covers the view.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Dialog {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The list of scenes.
+    Gallery,
+    /// The shortcuts.
+    Help,
+    /// The question before closing with unsaved changes.
+    Closing,
+    /// The question before another scene replaces unsaved changes.
+    Leaving,
+}
+
 impl LabApp {
-    /// A line under the bar: work that a crash has left.
+    /// Shows the offer to restore unsaved work, in a line under the bar.
     pub(crate) fn notices(&mut self, ui: &mut Ui, out: &mut Vec<Action>) {
         if let Some(left) = &self.left {
             let name =
                 left.path.as_ref().map_or_else(|| "a scene".to_owned(), |path| path.display().to_string());
             egui::Panel::top("left").frame(BARE).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
-                    ui.label(format!("Unsaved work on {name} was left when Echelon ended last time."));
-                    if ui.button("Go on with it").clicked() {
-                        out.push(Action::Recover);
-                    }
-                    if ui.button("Forget it").clicked() {
-                        out.push(Action::Forget);
-                    }
+                    ui.label(format!("The last session ended with unsaved changes to {name}."));
+                    on_click(&ui.button("Restore them"), Action::Recover, out);
+                    on_click(&ui.button("Discard them"), Action::Forget, out);
                 });
             });
         }
     }
 
-    /// What went wrong, over the view, so that nothing moves under the pointer.
+    /// Shows an error over the view, so that nothing moves under the pointer.
     fn show_notice(&self, ctx: &Context, out: &mut Vec<Action>) {
         let Some(notice) = self.app_state.notice.clone() else { return };
         let view = self.viewport.rect;
@@ -42,14 +54,12 @@ impl LabApp {
                         let text = egui::RichText::new(notice).color(colour).monospace();
                         ui.add(egui::Label::new(text).wrap());
                     });
-                    if ui.button("Dismiss").on_hover_text("Esc").clicked() {
-                        out.push(Action::Dismiss);
-                    }
+                    on_click(&ui.button("Dismiss").on_hover_text("Esc"), Action::Dismiss, out);
                 });
             });
     }
 
-    /// Windows over the view.
+    /// Shows the windows over the view.
     pub(crate) fn windows(&mut self, ctx: &Context, out: &mut Vec<Action>) {
         let mut open = true;
         let window = |name: &'static str| {
@@ -95,10 +105,10 @@ impl LabApp {
             .default_width(300.0)
             .show(ctx, |ui| {
                 ui.label(
-                    "1.  Drag the bright ring: the set point moves, and the thin lines show the future.",
+                    "1.  Drag the bright ring: the set point moves, and the thin lines show the prediction.",
                 );
-                ui.label("2.  Drag ε in the panel Observer, then press Shift Home, and watch it peak.");
-                ui.label("3.  Drag back on the line of time, change a gain, and play: a branch.");
+                ui.label("2.  Drag ε in the panel Observer, press Shift Home, and watch it peak.");
+                ui.label("3.  Drag back on the timeline, change a gain, and play: this makes a branch.");
                 if ui.button("Got it").clicked() {
                     self.hints = false;
                 }
@@ -107,49 +117,47 @@ impl LabApp {
     }
 
     fn ask_before_closing(&mut self, ctx: &Context, out: &mut Vec<Action>) {
-        egui::Modal::new(egui::Id::unique("closing")).show(ctx, |ui| {
-            ui.label("The scene has changes that are not saved.");
-            ui.horizontal(|ui| {
-                if ui.button("Save and close").clicked() {
-                    out.push(Action::Save);
-                    self.dialog = Dialog::Nothing;
-                    ctx.send_viewport_cmd(egui::ViewportCommand::Close);
-                }
-                if ui.button("Close without saving").clicked() {
-                    self.autosave.done();
-                    self.app_state.draft = None;
-                    self.dialog = Dialog::Nothing;
-                    ctx.send_viewport_cmd(egui::ViewportCommand::Close);
-                }
-                if ui.button("Stay").clicked() {
-                    self.dialog = Dialog::Nothing;
-                }
-            });
-        });
+        let answers = ["Save and close", "Close without saving", "Cancel"];
+        let [save, close, stay] = ask_about_changes(ctx, answers);
+        if close {
+            self.autosave.done();
+            self.app_state.draft = None;
+        }
+        if save {
+            out.push(Action::Save);
+        }
+        if save || close {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        if save || close || stay {
+            self.dialog = Dialog::Nothing;
+        }
     }
 
     fn ask_before_leaving(&mut self, ctx: &Context, out: &mut Vec<Action>) {
-        egui::Modal::new(egui::Id::unique("leaving")).show(ctx, |ui| {
-            ui.label("The scene has changes that are not saved.");
-            ui.horizontal(|ui| {
-                let (save, go) =
-                    (ui.button("Save and open").clicked(), ui.button("Open without saving").clicked());
-                let stay = ui.button("Stay").clicked();
-                if save || go || stay {
-                    self.dialog = Dialog::Nothing;
-                    let next = self.next.take();
-                    if save {
-                        out.push(Action::Save);
-                    }
-                    if go && let Some(draft) = &mut self.app_state.draft {
-                        draft.abandon();
-                    }
-                    if !stay {
-                        // Where saving failed, the question comes again.
-                        out.extend(next);
-                    }
-                }
-            });
-        });
+        let [save, go, stay] = ask_about_changes(ctx, ["Save and open", "Open without saving", "Cancel"]);
+        if save || go || stay {
+            self.dialog = Dialog::Nothing;
+            let next = self.next.take();
+            if save {
+                out.push(Action::Save);
+            }
+            if go && let Some(draft) = &mut self.app_state.draft {
+                draft.abandon();
+            }
+            if !stay {
+                // If saving failed, the question is asked again.
+                out.extend(next);
+            }
+        }
     }
+}
+
+/// Asks what to do with unsaved changes; which of the answers was clicked.
+fn ask_about_changes(ctx: &Context, answers: [&str; 3]) -> [bool; 3] {
+    let asked = egui::Modal::new(egui::Id::unique("unsaved")).show(ctx, |ui| {
+        ui.label("The scene has unsaved changes.");
+        ui.horizontal(|ui| answers.map(|answer| ui.button(answer).clicked())).inner
+    });
+    asked.inner
 }

@@ -1,15 +1,14 @@
-//! Scenes from and to disk: open, save, read again, recover, and runs that are kept.
+//! Scenes on disk: open, save, reload and recover; and runs that are kept.
 
 use super::LabApp;
-use super::dialog::Dialog;
+use super::dialogs::Dialog;
 use crate::kept_run::{SeenRun, free, keep};
-use crate::session::scene_draft::SceneDraft;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Scenes opened before that are remembered.
+/// Recent scenes that are remembered.
 const MOST_RECENT: usize = 8;
-/// Between two times that unsaved work is put on disk.
+/// Interval between two autosaves.
 const KEEP_EVERY: Duration = Duration::from_secs(1);
 
 impl LabApp {
@@ -37,24 +36,22 @@ impl LabApp {
         }
     }
 
-    /// A run that was recorded, to look through.
+    /// Opens a recorded run.
     fn open_recorded(&mut self, path: &Path) {
         let log = match recording::log::Log::open(path) {
             Ok(log) => log,
             Err(error) => return self.app_state.fault(error.to_string()),
         };
         self.end_film();
-        // Beside the log lies what its scene was read from, if anything.
-        match self.app_state.open_recorded(log, &path.with_file_name("scene.toml")) {
-            Ok(()) => {
-                self.app_state.notice = None;
-                self.dialog = Dialog::Nothing;
-                self.viewport.look("snake");
-                self.file_watcher.look_at(None);
-                self.app_state.note(format!("As recorded in {}", path.display()));
-            }
-            Err(faults) => self.app_state.fault(faults),
+        // The scene file may lie beside the log.
+        if let Err(faults) = self.app_state.open_recorded(log, &path.with_file_name("scene.toml")) {
+            return self.app_state.fault(faults);
         }
+        self.app_state.notice = None;
+        self.dialog = Dialog::Nothing;
+        self.viewport.look("snake");
+        self.file_watcher.look_at(None);
+        self.app_state.note(format!("Opened the recording {}", path.display()));
     }
 
     pub(crate) fn open_shipped(&mut self, name: &str) {
@@ -63,30 +60,23 @@ impl LabApp {
         }
     }
 
-    /// A scene in place of the one that is open; where it cannot be opened, that one stays.
+    /// Replaces the open scene; if the new one cannot be opened, the old one stays.
     pub(crate) fn take_scene(&mut self, text: String, path: Option<PathBuf>, home: &Path) -> bool {
         self.end_film();
-        match self.app_state.open(text, path.clone(), home) {
-            Ok(()) => {
-                self.app_state.notice = None;
-                self.dialog = Dialog::Nothing;
-                let view = self
-                    .app_state
-                    .scene()
-                    .map_or_else(|| "snake".to_owned(), |scene| scene.views.default.clone());
-                self.viewport.look(&view);
-                self.viewport.style.picture_in_picture = None;
-                self.file_watcher.look_at(path);
-                true
-            }
-            Err(faults) => {
-                self.app_state.fault(faults);
-                false
-            }
+        if let Err(faults) = self.app_state.open(text, path.clone(), home) {
+            self.app_state.fault(faults);
+            return false;
         }
+        self.app_state.notice = None;
+        self.dialog = Dialog::Nothing;
+        let view = self.app_state.scene().map(|scene| &*scene.views.default);
+        self.viewport.look(view.unwrap_or("snake"));
+        self.viewport.style.picture_in_picture = None;
+        self.file_watcher.look_at(path);
+        true
     }
 
-    /// A picture brings back the scene, the time and the view that made it.
+    /// Restores the scene, the time and the view that are embedded in a picture.
     pub(crate) fn open_picture(&mut self, path: &Path) {
         let texts = match film::png::read_texts(path) {
             Ok(texts) => texts,
@@ -94,9 +84,8 @@ impl LabApp {
         };
         let of = |key: &str| texts.iter().find(|(known, _)| known == key).map(|(_, text)| text.clone());
         let Some(scene) = of("Scene") else {
-            return self
-                .app_state
-                .fault(format!("{} was not made by the lab: it holds no scene", path.display()));
+            let text = format!("{} holds no scene: the lab did not write it", path.display());
+            return self.app_state.fault(text);
         };
         let home = of("Home").map_or_else(|| path.to_owned(), PathBuf::from);
         if !self.take_scene(scene, None, &home) {
@@ -110,17 +99,16 @@ impl LabApp {
         if let Some(view) = of("View") {
             self.viewport.look(&view);
         }
-        self.app_state.note(format!("As in {}", path.display()));
+        self.app_state.note(format!("Restored from {}", path.display()));
     }
 
     pub(crate) fn save(&mut self, path: Option<PathBuf>) {
         let Some(draft) = &mut self.app_state.draft else { return };
-        // A scene that came with the program is saved beside where one works.
+        // A shipped scene is saved in the current folder.
         let own = || free(Path::new("."), &stem(draft.home()), "toml");
         let path = path.or_else(|| draft.path.clone()).unwrap_or_else(own);
         if path.exists() && draft.path.as_ref() != Some(&path) {
-            let text =
-                format!("{} is there already: choose another name, or remove it first", path.display());
+            let text = format!("{} exists already: choose another name, or remove it first", path.display());
             return self.app_state.fault(text);
         }
         match output::write_whole(&path, draft.text().as_bytes()) {
@@ -138,7 +126,7 @@ impl LabApp {
     pub(crate) fn reload(&mut self) {
         let Some(path) = self.app_state.draft.as_ref().and_then(|draft| draft.path.clone()) else { return };
         match std::fs::read_to_string(&path) {
-            Ok(text) => self.take_text("Read again from disk", text),
+            Ok(text) => self.take_text("Reloaded from disk", text),
             Err(error) => self.app_state.fault(format!("{} cannot be read: {error}", path.display())),
         }
     }
@@ -158,8 +146,8 @@ impl LabApp {
     }
 
     pub(crate) fn changed_on_disk(&mut self) {
-        if self.app_state.draft.as_ref().is_some_and(SceneDraft::unsaved) {
-            let text = "The file has changed on disk, and there are changes here: Ctrl R takes the file, Ctrl S keeps yours.";
+        if self.app_state.unsaved() {
+            let text = "The file has changed on disk, and the lab has unsaved changes: Ctrl R loads the file, Ctrl S keeps yours.";
             self.app_state.fault(text);
         } else {
             self.reload();
@@ -172,9 +160,9 @@ impl LabApp {
         let saved = left.path.as_ref().and_then(|path| std::fs::read_to_string(path).ok());
         let text = saved.unwrap_or_else(|| left.text.clone());
         if self.take_scene(text, left.path.clone(), &home) {
-            // The work is an edit of what is on disk, so that it can be undone.
+            // The recovered text is an edit of the file, so that it can be undone.
             if let Some(draft) = &mut self.app_state.draft {
-                match draft.replace("Work from before", left.text.clone()) {
+                match draft.replace("Recovered work", left.text.clone()) {
                     Ok(_) => self.app_state.restart(0.0),
                     Err(faults) => return self.app_state.fault(faults),
                 }
@@ -207,11 +195,11 @@ impl LabApp {
         };
         let home = self.app_state.draft.as_ref().map_or_else(PathBuf::new, |draft| draft.home().to_owned());
         let folder = free(Path::new("runs"), &format!("{}-lab", self.name()), "");
-        let (sender, gpu, ctx) = (self.words.0.clone(), self.viewport.gpu().clone(), self.ctx.clone());
-        self.app_state.note("The run is being written down");
+        let (sender, gpu, ctx) = (self.words.0.clone(), self.viewport.gpu.clone(), self.ctx.clone());
+        self.app_state.note("Writing the run to disk");
         let work = move || {
             let word = keep(&text, &home, &folder, &seen, Some(&gpu));
-            // A window that is closed does not wait for it.
+            // A closing window does not wait for it.
             let _ = sender.send(word);
             ctx.request_repaint();
         };

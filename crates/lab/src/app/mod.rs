@@ -1,15 +1,11 @@
-//! The window itself: it hears events, shows panels, and does what is asked for.
+//! The window itself: it receives events, shows panels and carries out actions.
 
 mod capture;
-mod dialog;
 mod dialogs;
 mod files;
-mod film_capture;
-mod memory;
 
-use self::dialog::Dialog;
-use self::film_capture::FilmCapture;
-use self::memory::Memory;
+use self::capture::FilmCapture;
+use self::dialogs::Dialog;
 use crate::Error;
 use crate::action::Action;
 use crate::app_state::{AppState, Selection, Tool};
@@ -19,14 +15,14 @@ use crate::file_watcher::FileWatcher;
 use crate::frame_timings::FrameTimings;
 use crate::gallery::{self, Gallery};
 use crate::kept_run::SeenRun;
-use crate::look;
 use crate::panels::time_bar;
 use crate::panes::{self, Pane, Panels};
 use crate::quantities;
 use crate::session::prediction::{Prediction, Predictor};
 use crate::session::runner::{RunEvent, RunRequest, Runner};
 use crate::session::scene_draft::SceneDraft;
-use crate::view::viewport::{ViewInput, Viewport};
+use crate::theme;
+use crate::view::viewport::Viewport;
 use crate::window::{NAME, Options};
 use eframe::egui::{self, Context, Ui};
 use egui_tiles::Tree;
@@ -49,7 +45,7 @@ pub(crate) struct LabApp {
     pub(crate) dialog: Dialog,
     pub(crate) hints: bool,
     title: String,
-    /// What waits for an answer about unsaved work.
+    /// The action that waits for the answer about unsaved changes.
     pub(crate) next: Option<Action>,
     pub(crate) recent: Vec<PathBuf>,
     pub(crate) autosave: Autosave,
@@ -64,7 +60,16 @@ pub(crate) struct LabApp {
     pub(crate) print: bool,
 }
 
-/// A word from a thread: what was done, or why it could not be.
+/// What the window remembers between sessions.
+#[derive(serde::Serialize, serde::Deserialize, Default)]
+struct Memory {
+    tree: Option<Tree<Pane>>,
+    recent: Vec<PathBuf>,
+    hints_seen: bool,
+    scale: Option<f32>,
+}
+
+/// A message from a thread: what was done, or why it failed.
 type Word = Result<String, String>;
 
 impl LabApp {
@@ -76,7 +81,7 @@ impl LabApp {
     ) -> Result<Self, String> {
         let state = context.wgpu_render_state.as_ref().ok_or("there is no graphics device")?;
         let ctx = context.egui_ctx.clone();
-        look::dress(&ctx);
+        theme::apply(&ctx);
         let wake = || {
             let ctx = ctx.clone();
             move || ctx.request_repaint()
@@ -89,9 +94,9 @@ impl LabApp {
         let folder = eframe::storage_dir(NAME);
         let mut lab = Self {
             app_state: AppState::new(),
-            runner: Runner::start(predictor, wake()),
+            runner: Runner::start(predictor, Some(viewport.gpu.clone()), wake()),
             predictions,
-            exporter: Exporter::start(viewport.gpu().clone(), wake()),
+            exporter: Exporter::start(viewport.gpu.clone(), wake()),
             viewport,
             tree: memory.tree.filter(panes::sound).unwrap_or_else(panes::arrangement),
             gallery: Gallery::default(),
@@ -112,7 +117,7 @@ impl LabApp {
             print: options.timings,
         };
         if let Some([width, height]) = options.size {
-            // A size that was asked for comes before the one that is remembered.
+            // A requested size takes precedence over the remembered one.
             ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(egui::vec2(width, height)));
         }
         lab.app_state.playing = !options.paused;
@@ -127,15 +132,15 @@ impl LabApp {
             None => self.open_shipped(gallery::FIRST),
         }
         if let Some(fault) = self.app_state.notice.as_ref().filter(|_| self.app_state.draft.is_none()) {
-            // Whoever started it from a terminal looks there first.
+            // Users who start it from a terminal look there first.
             let _ = writeln!(std::io::stderr(), "error: {fault}");
         }
         if !options.set.is_empty() && self.app_state.draft.is_some() {
             let set = options.set.clone();
-            self.app_state.edit("Changes of the command line", |text| {
+            self.app_state.edit("Changes from the command line", |text| {
                 set.iter().try_for_each(|set| {
                     let (path, value) = set.parts();
-                    text.set(path, value).map_err(|error| error.to_string())
+                    text.set(path, value)
                 })
             });
         }
@@ -148,7 +153,7 @@ impl LabApp {
                     self.keep_run(branch, SeenRun { samples, digest });
                 }
                 RunEvent::Opened { .. } => {
-                    // Another run, or the same from the start: a film goes forward only.
+                    // Another run, or the same from the start: time in a film only increases.
                     self.end_film();
                     self.app_state.handle_event(run_event);
                 }
@@ -161,7 +166,7 @@ impl LabApp {
                 self.app_state.prediction = Some(prediction);
             }
         }
-        while let Some(told) = self.exporter.told() {
+        while let Some(told) = self.exporter.next_event() {
             match told {
                 ExportEvent::Written(path) => self.app_state.note(format!("Written: {}", path.display())),
                 ExportEvent::Failed(why) => {
@@ -183,18 +188,9 @@ impl LabApp {
         self.keep_work();
     }
 
-    /// Sends what the state has requested.
+    /// Sends the pending requests of the state.
     fn send(&mut self) {
-        for request in std::mem::take(&mut self.app_state.requests) {
-            let request = match request {
-                RunRequest::ResumeRecording { scene, .. } => {
-                    RunRequest::ResumeRecording { scene, gpu: Some(self.viewport.gpu().clone()) }
-                }
-                RunRequest::Open { scene, until, .. } => {
-                    RunRequest::Open { scene, until, gpu: Some(self.viewport.gpu().clone()) }
-                }
-                request => request,
-            };
+        for request in self.app_state.requests.drain(..) {
             self.runner.request(request);
         }
     }
@@ -218,14 +214,7 @@ impl LabApp {
         let view_tile = Pane::named("View").and_then(|pane| self.tree.tiles.find_pane(&pane));
         let viewport = &mut self.viewport;
         let mut view = |ui: &mut Ui, out: &mut Vec<Action>| {
-            let empty = Arc::default();
-            let seen = ViewInput {
-                app_state,
-                fleet: app_state.history.as_ref().map_or(&empty, |history| history.fleet()),
-                record: app_state.shown(),
-                trail: app_state.history.as_ref().and_then(|history| history.trail(branch, time)),
-            };
-            viewport.show(ui, &seen, out);
+            viewport.show(ui, app_state, out);
         };
         let mut panels = Panels {
             app_state,
@@ -238,7 +227,7 @@ impl LabApp {
         let tree = &mut self.tree;
         egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| {
             let room = ui.available_size();
-            // In a window as small as a hand there is room for the view alone.
+            // A tiny window has room for the view only.
             if room.x < LEAST.x || room.y < LEAST.y {
                 (panels.view)(ui, panels.out);
             } else {
@@ -262,10 +251,10 @@ impl LabApp {
                 self.viewport.style.detections = now.is_some();
             }
             Action::Element(name, on) => {
-                // The names are the panel's own.
+                // The names are those of the panel.
                 let _ = self.viewport.style.set(name, on);
             }
-            Action::Open(_) | Action::OpenShipped(_) if self.unsaved() => {
+            Action::Open(_) | Action::OpenShipped(_) if self.app_state.unsaved() => {
                 self.next = Some(action);
                 self.dialog = Dialog::Leaving;
             }
@@ -280,11 +269,11 @@ impl LabApp {
             Action::WindowPicture => self.window_picture(),
             Action::Film if self.film.is_some() => self.end_film(),
             Action::Film if self.app_state.recorded => {
-                self.app_state.fault("A recorded run is filmed by: echelon replay RUN --film FILE");
+                self.app_state.fault("To film a recorded run, use: echelon replay RUN --film FILE");
             }
             Action::Film => self.begin_film(),
             Action::KeepRun if self.app_state.recorded => {
-                self.app_state.fault("This run is recorded already");
+                self.app_state.fault("This run is a recording already");
             }
             Action::KeepRun => self.app_state.requests.push(RunRequest::Summarize(self.app_state.branch)),
             Action::CurvesCsv => self.write_curves("csv", &quantities::csv(&self.app_state)),
@@ -302,11 +291,7 @@ impl LabApp {
         }
     }
 
-    pub(crate) fn unsaved(&self) -> bool {
-        self.app_state.draft.as_ref().is_some_and(SceneDraft::unsaved)
-    }
-
-    /// The window is called as its scene.
+    /// Sets the window's title to that of its scene.
     fn name_window(&mut self, ctx: &Context) {
         let title = self.app_state.scene().map_or_else(String::new, |scene| scene.title.clone());
         if title != self.title {
@@ -324,30 +309,35 @@ impl LabApp {
             (self.dialog, self.hints) = (Dialog::Nothing, false);
         } else if self.app_state.notice.is_some() {
             self.app_state.notice = None;
-        } else if self.app_state.tool != Tool::Hand {
-            self.app_state.tool = Tool::Hand;
+        } else if self.app_state.tool != Tool::Select {
+            self.app_state.tool = Tool::Select;
         } else {
             self.app_state.selection = Selection::Nothing;
         }
     }
 
-    /// Somebody ended the program from outside: unsaved work is put on disk and offered at the next start.
+    /// The program was terminated from outside: writes unsaved work, which the next start offers.
     fn interrupted(&mut self, ctx: &Context) {
         if let Some(draft) = self.app_state.draft.take().filter(SceneDraft::unsaved)
             && let Err(why) = self.autosave.keep(draft.text(), draft.path.as_deref())
         {
             self.app_state.fault(why);
         }
-        *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(Error::Interrupted);
+        self.end(ctx, Error::Interrupted);
+    }
+
+    /// Closes the window and keeps the reason.
+    fn end(&self, ctx: &Context, why: Error) {
+        *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
         ctx.send_viewport_cmd(egui::ViewportCommand::Close);
     }
 }
 
-/// The window is cleared in the colour of panels; to paint it once more costs as much as the robots on a processor.
+/// The window is cleared in the colour of panels. On a CPU, painting it again would cost as much as the robots.
 pub(crate) const BARE: egui::Frame =
     egui::Frame { inner_margin: egui::Margin::symmetric(6, 2), ..egui::Frame::NONE };
 
-/// Room for panels, points.
+/// Size of the panel area, points.
 const LEAST: egui::Vec2 = egui::vec2(560.0, 340.0);
 
 impl eframe::App for LabApp {
@@ -365,20 +355,17 @@ impl eframe::App for LabApp {
         for file in dropped {
             self.act(Action::Open(file.path().to_owned()));
         }
-        if let Some(why) = self.viewport.gpu().lost() {
-            let text = format!(
-                "the graphics device is gone: {why}; unsaved work is kept and offered at the next start"
-            );
-            *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(Error::Window(text));
+        if let Some(why) = self.viewport.gpu.lost() {
+            let text = format!("the graphics device was lost: {why}; the next start offers unsaved work");
             self.app_state.draft = None;
-            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            self.end(ctx, Error::Window(text));
         }
         if self.file_watcher.stopped() {
             return self.interrupted(ctx);
         }
         self.name_window(ctx);
         let asked = ctx.input(|input| input.viewport().close_requested());
-        if asked && self.unsaved() {
+        if asked && self.app_state.unsaved() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.dialog = Dialog::Closing;
         }
@@ -415,7 +402,7 @@ impl eframe::App for LabApp {
     fn on_exit(&mut self) {
         self.end_film();
         if self.exporter.waiting() > 1 {
-            // Where nobody reads it, the film is finished all the same.
+            // Without a reader the film is finished all the same.
             let _ = writeln!(
                 std::io::stderr(),
                 "finishing the film: {} to draw",

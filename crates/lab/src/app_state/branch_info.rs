@@ -5,23 +5,23 @@ use crate::session::branches::BranchChange;
 /// A branch as the window knows it.
 #[derive(Debug, Clone)]
 pub struct BranchInfo {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// Branch and time at which it leaves its parent, s.
+    /// Parent branch and the time of the fork, s.
     pub parent: Option<(usize, f64)>,
-    /// What was changed on it, from time 0 on.
+    /// Its changes since time 0.
     pub changes: Vec<BranchChange>,
-    /// The scene's text from a sample on.
+    /// Texts of the scene, each with the first sample it holds for.
     pub(super) texts: Vec<(u64, String)>,
 }
 
 impl BranchInfo {
-    /// The first.
+    /// The first branch.
     pub(crate) fn trunk() -> Self {
         Self { name: "main".to_owned(), parent: None, changes: Vec::new(), texts: Vec::new() }
     }
 
-    /// The scene's text as it held before a sample.
+    /// The scene's text that holds before a sample.
     pub(super) fn text_at(&self, sample: u64, base: &str) -> String {
         let last = self.texts.iter().filter(|(at, _)| *at < sample).max_by_key(|(at, _)| *at);
         last.map_or_else(|| base.to_owned(), |(_, text)| text.clone())

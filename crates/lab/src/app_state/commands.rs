@@ -1,14 +1,15 @@
-//! What actions mean for the scene and its run. Files, pictures and the window itself are the window's.
+//! Actions on the scene and its run. The window handles files, pictures and itself.
 
 use super::{AppState, Tool};
 use crate::action::Action;
+use crate::numbers::{fixed, toml_number};
 use crate::session::branches::BranchChange;
 use crate::session::runner::RunRequest;
-use crate::tidy::{fixed, tidy};
-use scene::{Role, SceneText};
+use crate::session::scene_draft::SceneDraft;
+use scene::Role;
 use vocabulary::{Relative, wrap};
 
-/// Where a new follower may stand behind its leader: m, degrees.
+/// Candidate set points of a new follower: m, degrees.
 const PLACES: [[f64; 2]; 8] = [
     [2.0, -135.0],
     [2.0, 135.0],
@@ -19,17 +20,15 @@ const PLACES: [[f64; 2]; 8] = [
     [6.0, -135.0],
     [6.0, 135.0],
 ];
-/// Mirror images may be this far apart, m and rad.
+/// Tolerance of a mirror image, m and rad.
 const ALIKE: [f64; 2] = [0.05, 0.09];
 
-/// Whether an action asks for another scene.
+/// Whether an action edits the scene.
 fn changes_the_scene(action: &Action) -> bool {
     matches!(
         action,
         Action::Tune { .. }
-            | Action::Untune { .. }
             | Action::Set { .. }
-            | Action::Reset { .. }
             | Action::SetPoint { .. }
             | Action::Shape { .. }
             | Action::Connect { .. }
@@ -44,7 +43,7 @@ fn changes_the_scene(action: &Action) -> bool {
 }
 
 impl AppState {
-    /// Does what can be done without files and without a window; whether that was all.
+    /// Carries out an action that needs no files and no window; whether it was one.
     pub fn act(&mut self, action: &Action) -> bool {
         match action {
             Action::Toggle if self.playing => self.pause(),
@@ -68,11 +67,11 @@ impl AppState {
                     face.name.clone_from(name);
                 }
             }
-            Action::Choose(selection) => self.selection = *selection,
+            Action::Select(selection) => self.selection = *selection,
             Action::ForAll(all) => self.for_all = *all,
             Action::Mirror(on) => self.mirror = *on,
             Action::FilmFrom(view) => self.film_from.clone_from(view),
-            Action::Take(tool) => self.tool = if self.tool == *tool { Tool::Hand } else { *tool },
+            Action::UseTool(tool) => self.tool = if self.tool == *tool { Tool::Select } else { *tool },
             Action::Ahead(seconds) => {
                 self.ahead = seconds.clamp(0.0, 60.0);
                 self.requests.push(RunRequest::Ahead(self.ahead));
@@ -81,45 +80,34 @@ impl AppState {
                 }
             }
             Action::Restart => self.restart(0.0),
-            Action::Rest => self.rest(),
+            Action::Release => self.rest(),
             _ => return self.edit_scene(action),
         }
         true
     }
 
-    /// Does what changes the scene; whether that was it.
+    /// Carries out an action that edits the scene; whether it was one.
     fn edit_scene(&mut self, action: &Action) -> bool {
         if changes_the_scene(action) {
             self.leave_recording();
         }
         match action {
-            Action::Tune { what, key, value } => self.tune(what, key, Some(value)),
-            Action::Untune { what, key } => self.tune(what, key, None),
+            Action::Tune { what, key, value } => self.tune(what, key, value.as_deref()),
             Action::Set { what, values } => self.set(what, values),
-            Action::Reset { what, paths } => {
-                self.edit(what, |text| {
-                    paths.iter().try_for_each(|path| text.remove(path).map(drop).map_err(|e| e.to_string()))
-                });
-            }
             Action::SetPoint { edge, distance, bearing } => self.move_set_point(*edge, [*distance, *bearing]),
             Action::Shape { scale, turn } => self.reshape(*scale, *turn),
             Action::Connect { leader, follower } => self.connect(*leader, *follower),
             Action::AddRobot => self.add_robot(),
             Action::RemoveRobot(name) => self.remove_robot(name),
             Action::RenameRobot(old, new) => {
-                let (old, new) = (old.clone(), new.clone());
-                let done = self.edit(&format!("{old} is called {new}"), |text| {
-                    text.rename_robot(&old, &new).map_err(|error| error.to_string())
-                });
-                if done && self.chosen.as_ref() == Some(&old) {
-                    self.chosen = Some(new);
+                let done = self.edit(&format!("{old} renamed to {new}"), |text| text.rename_robot(old, new));
+                if done && self.chosen.as_ref() == Some(old) {
+                    self.chosen = Some(new.clone());
                 }
             }
             Action::AddProp(kind, place) => self.add_prop(kind, *place),
             Action::RemoveProp(name) => {
-                self.edit(&format!("Without {name}"), |text| {
-                    text.remove_item("props", name).map_err(|error| error.to_string())
-                });
+                self.edit(&format!("Removed {name}"), |text| text.remove_item("props", name));
             }
             Action::Undo => self.undo(),
             Action::Redo => self.redo(),
@@ -132,9 +120,8 @@ impl AppState {
         if self.recorded && self.cursor.is_none() {
             return;
         }
-        if let (Some(time), Some(history)) = (self.cursor, &self.history) {
-            let next = time + history.period();
-            self.seek(next);
+        if let Some(time) = self.cursor {
+            self.seek(time + self.period());
         } else {
             self.playing = false;
             self.requests.push(RunRequest::Step);
@@ -151,7 +138,7 @@ impl AppState {
         if self.in_the_past() {
             return self.undo_past();
         }
-        let step = self.draft.as_mut().and_then(crate::session::scene_draft::SceneDraft::undo);
+        let step = self.draft.as_mut().and_then(SceneDraft::undo);
         if let Some((what, effect)) = step {
             self.take(&format!("Undo: {}", what.trim_end_matches('…')), &effect);
         }
@@ -159,26 +146,22 @@ impl AppState {
 
     fn redo(&mut self) {
         if self.in_the_past() {
-            return self.note("Nothing was taken back here: what came later is on the branch that has it");
+            return self.note("Nothing was undone here: later changes stay on their branch");
         }
-        let step = self.draft.as_mut().and_then(crate::session::scene_draft::SceneDraft::redo);
+        let step = self.draft.as_mut().and_then(SceneDraft::redo);
         if let Some((what, effect)) = step {
             self.take(&format!("Redo: {}", what.trim_end_matches('…')), &effect);
         }
     }
 
     fn set(&mut self, what: &str, values: &[(String, String)]) {
-        self.edit(what, |text| {
-            values.iter().try_for_each(|(path, value)| text.set(path, value).map_err(|e| e.to_string()))
-        });
+        self.edit(what, |text| values.iter().try_for_each(|(path, value)| text.set(path, value)));
     }
 
-    /// Sets a value of the follower that is selected, or of all followers; `None` is the default.
+    /// Sets a value of the selected follower or of all followers; `None` restores the default.
     fn tune(&mut self, what: &str, key: &str, value: Option<&str>) {
         let all = self.for_all;
-        let Some((_, name, _)) = self.chosen_edge().or(Some(0)).and_then(|edge| self.follower(edge)) else {
-            return;
-        };
+        let Some((_, _, name, _)) = self.tuned_follower() else { return };
         let name = name.to_owned();
         let followers: Vec<String> =
             (0..).map_while(|edge| self.follower(edge).map(|(_, name, _)| name.to_owned())).collect();
@@ -190,23 +173,23 @@ impl AppState {
         };
         self.edit(&what, |text| {
             if all {
-                // What single robots and groups say of it would stand before what holds for all.
+                // Values of single robots and groups would override the common value.
                 for name in &followers {
-                    clear(text, &format!("robots.{name}.{key}"))?;
+                    text.remove(&format!("robots.{name}.{key}"))?;
                 }
                 for group in 0..text.count("groups") {
-                    clear(text, &format!("groups.{group}.{key}"))?;
+                    text.remove(&format!("groups.{group}.{key}"))?;
                 }
             }
             let path = if all { key.to_owned() } else { format!("robots.{name}.{key}") };
             match value {
-                Some(value) => text.set(&path, value).map_err(|error| error.to_string()),
-                None => clear(text, &path),
+                Some(value) => text.set(&path, value),
+                None => text.remove(&path).map(drop),
             }
         });
     }
 
-    /// Moves a set point, and its mirror image where that is wanted.
+    /// Moves a set point, and its mirror image if that is enabled.
     fn move_set_point(&mut self, edge: usize, [distance, bearing]: [f64; 2]) {
         let Some([_, name_and]) = self.names_of(edge) else { return };
         let before = self.set_point(edge);
@@ -224,7 +207,7 @@ impl AppState {
         for (edge, [distance, bearing]) in moves {
             let Some([_, name]) = self.names_of(*edge) else { continue };
             let least = self.follower(*edge).map_or(0.1, |(_, _, follow)| follow.law.distance_min);
-            values.push((format!("robots.{name}.distance"), tidy(distance.clamp(least, 1000.0))));
+            values.push((format!("robots.{name}.distance"), toml_number(distance.clamp(least, 1000.0))));
             values.push((format!("robots.{name}.bearing"), degrees(*bearing)));
         }
         self.set(what, &values);
@@ -232,7 +215,7 @@ impl AppState {
 
     /// The edge on the other side of the same leader.
     pub(crate) fn twin(&self, edge: usize, [distance, bearing]: [f64; 2]) -> Option<usize> {
-        let fleet = self.history.as_ref()?.fleet();
+        let fleet = self.fleet()?;
         let leader = fleet.edges.get(edge)?.leader;
         (0..fleet.edges.len()).filter(|other| *other != edge && fleet.edges[*other].leader == leader).find(
             |other| {
@@ -244,23 +227,23 @@ impl AppState {
     }
 
     fn reshape(&mut self, scale: f64, turn: f64) {
-        let edges = self.history.as_ref().map_or(0, |history| history.fleet().edges.len());
+        let edges = self.fleet().map_or(0, |fleet| fleet.edges.len());
         let moved = |edge: usize| {
             let [distance, bearing] = self.set_point(edge)?;
             Some((edge, [distance * scale, wrap(bearing + turn)]))
         };
         let moves: Vec<_> = (0..edges).filter_map(moved).collect();
-        self.put_set_points("The whole formation…", &moves);
+        self.put_set_points("Whole formation…", &moves);
     }
 
     /// Names of leader and follower of an edge.
     fn names_of(&self, edge: usize) -> Option<[String; 2]> {
-        let fleet = self.history.as_ref()?.fleet();
+        let fleet = self.fleet()?;
         let ends = fleet.edges.get(edge)?;
         Some([fleet.robots.get(ends.leader)?.name.clone(), fleet.robots.get(ends.follower)?.name.clone()])
     }
 
-    /// Lets one robot follow another, from where it is now.
+    /// Lets one robot follow another at its current distance and bearing.
     fn connect(&mut self, leader: usize, follower: usize) {
         let Some(scene) = self.scene().cloned() else { return };
         let (Some(ahead), Some(behind)) = (scene.robots.get(leader), scene.robots.get(follower)) else {
@@ -281,14 +264,14 @@ impl AppState {
         let leads = matches!(behind.role, Role::Lead { .. });
         self.edit(&format!("{name} follows {ahead}"), |text| {
             if leads {
-                clear(text, &format!("robots.{name}.path"))?;
+                text.remove(&format!("robots.{name}.path"))?;
             }
             for (key, value) in [
                 ("leader", format!("{ahead:?}")),
-                ("distance", tidy((now.distance * 20.0).round() / 20.0)),
+                ("distance", toml_number((now.distance * 20.0).round() / 20.0)),
                 ("bearing", degrees(now.bearing)),
             ] {
-                text.set(&format!("robots.{name}.{key}"), &value).map_err(|error| error.to_string())?;
+                text.set(&format!("robots.{name}.{key}"), &value)?;
             }
             Ok(())
         });
@@ -312,17 +295,15 @@ impl AppState {
         let Some(name) = name else { return };
         let lines = format!(
             "name = {name:?}\npose = [{}, {}, \"{} deg\"]\nspeed = {}\nleader = {:?}\ndistance = {}\nbearing = \"{} deg\"\n",
-            tidy(x),
-            tidy(y),
-            tidy(leader.pose.heading.to_degrees()),
-            tidy(speed),
+            toml_number(x),
+            toml_number(y),
+            toml_number(leader.pose.heading.to_degrees()),
+            toml_number(speed),
             leader.name,
-            tidy(place[0]),
-            tidy(place[1]),
+            toml_number(place[0]),
+            toml_number(place[1]),
         );
-        if self.edit(&format!("{name} follows {}", leader.name), |text| {
-            text.add_robot(&lines).map_err(|error| error.to_string())
-        }) {
+        if self.edit(&format!("{name} follows {}", leader.name), |text| text.add_robot(&lines)) {
             self.chosen = Some(name);
         }
     }
@@ -336,9 +317,7 @@ impl AppState {
             return self
                 .fault(format!("{name} stays: {them} {verb} it. Connect {them} to another robot first."));
         }
-        self.edit(&format!("Without {name}"), |text| {
-            text.remove_item("robots", name).map_err(|error| error.to_string())
-        });
+        self.edit(&format!("Removed {name}"), |text| text.remove_item("robots", name));
     }
 
     fn add_prop(&mut self, kind: &str, [x, y]: [f64; 2]) {
@@ -348,16 +327,15 @@ impl AppState {
         let name = name.unwrap_or_default();
         let lines = format!(
             "name = {name:?}\nshape = \"cylinder\"\nradius = 0.15\nheight = 0.6\npose = [{}, {}, 0.0]\n",
-            tidy(x),
-            tidy(y)
+            toml_number(x),
+            toml_number(y)
         );
-        self.edit(&format!("{name} at {}, {} m", fixed(x, 1), fixed(y, 1)), |text| {
-            text.add_table("props", &lines).map_err(|error| error.to_string())
-        });
+        let what = format!("{name} at {}, {} m", fixed(x, 1), fixed(y, 1));
+        self.edit(&what, |text| text.add_table("props", &lines));
     }
 }
 
-/// A change in few words: what holds for several robots is said once.
+/// A short description of a change: equal values of several robots are listed once.
 pub fn words(change: &BranchChange) -> String {
     let mut said: Vec<(String, Vec<&str>)> = Vec::new();
     for set in &change.set {
@@ -376,18 +354,13 @@ pub fn words(change: &BranchChange) -> String {
     said.into_iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// A value as people say it: angles in degrees, numbers short.
+/// A value for people: angles in degrees, numbers short.
 fn said_of(key: &str, value: &str) -> String {
     match value.parse::<f64>() {
         Ok(angle) if key == "bearing" => format!("bearing = {}°", fixed(angle.to_degrees(), 1)),
-        Ok(number) => format!("{key} = {}", crate::tidy::plain(number)),
+        Ok(number) => format!("{key} = {}", crate::numbers::plain(number)),
         Err(_) => format!("{key} = {value}"),
     }
-}
-
-/// Takes a key out; one that is not there is out already.
-fn clear(text: &mut SceneText, path: &str) -> Result<(), String> {
-    text.remove(path).map(drop).map_err(|error| error.to_string())
 }
 
 /// An angle as scenes write it.
@@ -395,7 +368,7 @@ fn degrees(angle: f64) -> String {
     let degrees = (angle.to_degrees() * 1000.0).round() / 1000.0;
     // −180 is written 180.
     let degrees = if degrees <= -180.0 { degrees + 360.0 } else { degrees };
-    format!("\"{} deg\"", crate::tidy::plain(degrees))
+    format!("\"{} deg\"", crate::numbers::plain(degrees))
 }
 
 /// A place at a distance (m) and bearing (degrees) of a pose, m.
@@ -403,7 +376,7 @@ fn seen_from(pose: vocabulary::Pose, [distance, bearing]: [f64; 2]) -> [f64; 2] 
     pose.polar(distance, bearing.to_radians())
 }
 
-/// The circle that would close if `follower` followed `leader`, in names.
+/// Names on the cycle that would arise if `follower` followed `leader`.
 fn circle(scene: &scene::Scene, leader: usize, follower: usize) -> Option<String> {
     let wanted = &scene.robots.get(follower)?.name;
     let mut names = vec![wanted.clone()];

@@ -1,21 +1,17 @@
-//! Edits and the run: what an edit makes of it, and the branches that edits in the past begin.
+//! How edits affect the run, and the branches that edits in the past start.
 
 use super::AppState;
 use super::branch_info::BranchInfo;
 use super::past_changes::PastChanges;
 use crate::session::branches::{BranchChange, script};
-use crate::session::history::History;
-use crate::session::runner::RunRequest;
+use crate::session::runner::{Fork, RunRequest};
 use crate::session::scene_draft::{Effect, SceneDraft};
+use scene::{EditError, SceneText};
 use std::sync::Arc;
 
 impl AppState {
-    /// Edits the scene, and lets the run take it.
-    pub fn edit(
-        &mut self,
-        what: &str,
-        edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
-    ) -> bool {
+    /// Edits the scene and passes the edit to the run; whether it succeeded.
+    pub fn edit(&mut self, what: &str, edit: impl FnOnce(&mut SceneText) -> Result<(), EditError>) -> bool {
         let past_changes = self.in_the_past();
         let time = self.time();
         let done = match &mut self.draft {
@@ -36,19 +32,19 @@ impl AppState {
         true
     }
 
-    /// Whether it is the past that is looked at, where an edit makes another future.
+    /// Whether the past is shown, where an edit starts a branch.
     pub(crate) fn in_the_past(&self) -> bool {
         self.forks == 0 && self.cursor.is_some_and(|time| time < self.end() - 1e-9)
     }
 
-    /// What undo would take back: in the past, the last change that holds there.
+    /// The edit that undo would revert: in the past, the last one that applies there.
     pub fn undoes(&self) -> Option<String> {
         let draft = self.draft.as_ref()?;
         let what = if self.in_the_past() { draft.step_to(&self.there()?.1)?.0 } else { draft.undoes()? };
         Some(what.trim_end_matches('…').to_owned())
     }
 
-    /// Takes back the last change that holds where it is looked at: a future without it.
+    /// Reverts the last change that applies at the shown time, on a branch of its own.
     pub(crate) fn undo_past(&mut self) {
         let step = self.there().zip(self.draft.as_ref()).and_then(|((_, there), draft)| {
             let (what, before) = draft.step_to(&there)?;
@@ -65,11 +61,11 @@ impl AppState {
         }
     }
 
-    /// In the past, an edit makes another future; one that cannot be makes none.
+    /// Edits in the past: starts a branch, unless the edit fails.
     fn edit_past(
         &mut self,
         what: &str,
-        edit: impl FnOnce(&mut scene::SceneText) -> Result<(), String>,
+        edit: impl FnOnce(&mut SceneText) -> Result<(), EditError>,
     ) -> Result<Effect, String> {
         let (Some((_, there)), Some(draft)) = (self.there(), &self.draft) else { return Ok(Effect::None) };
         let settled = PastChanges::of(&draft.read(&there)?, self.time());
@@ -79,7 +75,7 @@ impl AppState {
         Ok(self.draft.as_mut().map_or(Effect::None, |draft| draft.put(what, edited)))
     }
 
-    /// Lets the run take what has become of the scene.
+    /// Passes an edited scene to the run.
     pub fn take(&mut self, what: &str, effect: &Effect) {
         match effect {
             Effect::None => {}
@@ -103,33 +99,33 @@ impl AppState {
                 }
             }
             Effect::Restart(_) => {
-                self.note(format!("{what} (the run begins anew)"));
+                self.note(format!("{what} (the run restarts)"));
                 let until = self.time();
                 self.restart(until);
             }
         }
     }
 
-    /// Leaves the branch that is looked at, at the time that is looked at.
+    /// Forks the shown branch at the shown time.
     pub fn fork(&mut self) {
         let Some((sample, text)) = self.there() else { return };
         let name = format!("branch {}", self.branches.len() + self.forks);
         self.requests.push(RunRequest::Fork { from: self.branch, sample, name });
         self.forks += 1;
-        // The scene is again what it was there.
+        // The scene returns to its state at that time.
         if let Some(draft) = &mut self.draft {
-            // It was a scene before.
+            // This text has been valid before.
             let _ = draft.turn_to(text);
         }
     }
 
-    /// The sample after the time that is looked at, and the text of the scene there.
+    /// The sample after the shown time, and the scene's text there.
     fn there(&self) -> Option<(u64, String)> {
         let sample = self.history.as_ref()?.sample(self.time()) + 1;
         Some((sample, self.branches.get(self.branch)?.text_at(sample, &self.base)))
     }
 
-    /// Goes on with another branch.
+    /// Continues another branch.
     pub fn switch(&mut self, branch: usize) {
         if branch >= self.branches.len() || branch == self.branch {
             return;
@@ -144,24 +140,16 @@ impl AppState {
         }
     }
 
-    /// The scene that runs as the branch that is looked at ran so far.
+    /// The scene that reproduces the shown branch so far.
     ///
     /// # Errors
-    /// Why there is none, in words.
+    /// Why there is none.
     pub fn script(&self) -> Result<String, String> {
         let branch = self.branches.get(self.branch).ok_or("There is no run.")?;
-        let period = self.history.as_ref().map_or(0.01, History::period);
-        script(&self.base, &self.own, &branch.changes, self.end().max(period))
+        script(&self.base, &self.own, &branch.changes, self.end().max(self.period()))
     }
 
-    pub(crate) fn forked(
-        &mut self,
-        branch: usize,
-        from: usize,
-        sample: u64,
-        name: String,
-        changes: Vec<BranchChange>,
-    ) {
+    pub(crate) fn forked(&mut self, Fork { branch, from, sample, name, changes }: Fork) {
         let Some(history) = &mut self.history else { return };
         history.fork(from, sample);
         let time = (sample as f64 - 1.0) * history.period();
@@ -170,14 +158,14 @@ impl AppState {
         self.branches.truncate(branch);
         self.forks = self.forks.saturating_sub(1);
         let left = self.branches.get(from).map_or("", |branch| &branch.name);
-        let what = format!("{name} leaves {left} here");
+        let what = format!("{name} forks from {left} here");
         self.branches.push(BranchInfo { name, parent: Some((from, time)), changes, texts });
         (self.branch, self.cursor) = (branch, None);
         self.note(what);
     }
 
     pub(crate) fn changed(&mut self, branch: usize, change: &BranchChange) {
-        // The draft may have gone on since.
+        // The draft may have changed since.
         let sent = self.sent.iter().position(|(scene, _)| Arc::ptr_eq(scene, &change.scene));
         let sent = sent.and_then(|sent| self.sent.drain(..=sent).next_back());
         let text = sent.map(|(_, text)| text).or_else(|| Some(self.draft.as_ref()?.text().to_owned()));

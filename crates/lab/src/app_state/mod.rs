@@ -1,4 +1,4 @@
-//! What the window knows: scene, past, present and what is selected. It decides what an action means, without a window.
+//! The state of the lab: scene, history, branches and selection. It carries out actions without a window.
 
 mod branch_info;
 pub mod commands;
@@ -11,11 +11,12 @@ use crate::session::prediction::Prediction;
 use crate::session::runner::{RunEvent, RunRequest};
 use crate::session::scene_draft::SceneDraft;
 pub use branch_info::BranchInfo;
+use rendering::Trail;
 use scene::{Follow, Role, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{EdgeState, ScalarTrajectory, StepRecord, wrap};
+use vocabulary::{EdgeState, FleetInfo, ScalarTrajectory, StepRecord, wrap};
 
 /// What is selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,13 +30,13 @@ pub enum Selection {
     Edge(usize),
 }
 
-/// What clicks on the ground do.
+/// Select a tool for clicks on the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tool {
     /// Select, and drag set points.
     #[default]
-    Hand,
-    /// Drag from a robot to the one that it shall follow.
+    Select,
+    /// Drag from a robot to its new leader.
     Connect,
     /// Place a pillar.
     Pillar,
@@ -55,58 +56,58 @@ pub struct LogEntry {
 /// Lines of the log that are kept.
 const MOST_EVENTS: usize = 2000;
 
-/// What the window knows.
+/// The state of the lab.
 #[expect(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
 pub struct AppState {
-    /// The scene under work; `None` where none could be opened.
+    /// The scene being edited; `None` if none could be opened.
     pub draft: Option<SceneDraft>,
-    /// Everything simulated.
+    /// Everything simulated so far.
     pub history: Option<History>,
-    /// The branches, as in the history.
+    /// The branches, in the order of the history.
     pub branches: Vec<BranchInfo>,
-    /// The branch that is looked at, which is the one that goes on.
+    /// The branch that is shown and simulated.
     pub branch: usize,
-    /// The time that is looked at, s; `None` for the present.
+    /// The shown time, s; `None` for the present.
     pub cursor: Option<f64>,
-    /// Whether the run goes.
+    /// Whether the run is playing.
     pub playing: bool,
-    /// Whether the past was recorded earlier, and there is no run behind it.
+    /// Whether the history is a recording, without a simulation behind it.
     pub recorded: bool,
     /// Simulated seconds per second.
     pub pace: f64,
     /// What is selected.
     pub selection: Selection,
-    /// What clicks do.
+    /// Select a tool for clicks on the ground.
     pub tool: Tool,
     /// The newest prediction.
     pub prediction: Option<Prediction>,
-    /// How far to look ahead, s.
+    /// Prediction horizon, s.
     pub ahead: f64,
-    /// Whether a change of a gain is for all followers.
+    /// Whether gain changes apply to all followers.
     pub for_all: bool,
-    /// Whether a set point's mirror image moves with it.
+    /// Whether the mirror image of a set point moves with it.
     pub mirror: bool,
-    /// The view that films are taken from; `None` is what is seen.
+    /// The view of films; `None` is the current view.
     pub film_from: Option<String>,
     /// What happened.
     pub log: Vec<LogEntry>,
-    /// A message in place, until it is dismissed.
+    /// An error message, until the user dismisses it.
     pub notice: Option<String>,
-    /// Where what happens is printed, too.
+    /// Where log entries are also printed.
     pub aloud: Option<std::io::Stdout>,
     /// Text of the scene at time 0 of the run.
     pub(crate) base: String,
-    /// Branches that are asked for and not there yet.
+    /// Branches that are requested and not yet made.
     pub(crate) forks: usize,
-    /// Scenes that the run was told to take, with their texts.
+    /// Scenes sent to the run, with their texts.
     pub(crate) sent: Vec<(Arc<Scene>, String)>,
     /// The scene of this text.
     first: Option<Arc<Scene>>,
-    /// The robot that is selected, by its name, while a run begins anew.
+    /// The name of the selected robot while a run restarts.
     pub(crate) chosen: Option<String>,
-    /// Changes that this text has itself.
+    /// The `[[changes]]` of that text.
     pub(crate) own: Vec<scene::Change>,
-    /// For the thread of the run.
+    /// Requests to the thread of the run.
     pub requests: Vec<RunRequest>,
 }
 
@@ -123,7 +124,7 @@ impl AppState {
             recorded: false,
             pace: 1.0,
             selection: Selection::Nothing,
-            tool: Tool::Hand,
+            tool: Tool::Select,
             prediction: None,
             ahead: 6.0,
             for_all: true,
@@ -142,7 +143,7 @@ impl AppState {
         }
     }
 
-    /// Opens a scene from its text; `path` is where it is saved, `home` where its files are looked for.
+    /// Opens a scene from its text; `path` is its file, `home` the folder of the files it names.
     ///
     /// # Errors
     /// All that is wrong with the text; then the state is as before.
@@ -153,17 +154,17 @@ impl AppState {
         Ok(())
     }
 
-    /// The scene as it stands.
+    /// The current scene.
     pub fn scene(&self) -> Option<&Arc<Scene>> {
         self.draft.as_ref().map(SceneDraft::scene)
     }
 
-    /// Runs the scene as it stands from time 0, at once up to `until` s.
+    /// Restarts the run with the current scene and simulates it up to `until` s at once.
     pub fn restart(&mut self, until: f64) {
         self.begin();
         self.recorded = false;
         let Some(draft) = &self.draft else { return };
-        self.requests.push(RunRequest::Open { scene: Arc::clone(draft.scene()), gpu: None, until });
+        self.requests.push(RunRequest::Open { scene: Arc::clone(draft.scene()), until });
         self.requests.push(RunRequest::Ahead(self.ahead));
         self.requests.push(RunRequest::Play(self.playing));
     }
@@ -177,7 +178,7 @@ impl AppState {
         self.cursor = None;
     }
 
-    /// The scene as it was written by the time that is looked at.
+    /// The scene as it was at the shown time.
     fn held(&self) -> Option<&Scene> {
         let Some(time) = self.cursor else { return self.scene().map(|scene| &**scene) };
         let changes = self.branches.get(self.branch).map_or(&[][..], |branch| &branch.changes);
@@ -185,25 +186,45 @@ impl AppState {
         last.map(|change| &*change.scene).or(self.first.as_deref())
     }
 
-    fn chosen_name(&self) -> Option<String> {
-        let robot = self.chosen_robot()?;
-        Some(self.history.as_ref()?.fleet().robots.get(robot)?.name.clone())
+    /// Robots and edges of the run.
+    pub(crate) fn fleet(&self) -> Option<&Arc<FleetInfo>> {
+        self.history.as_ref().map(History::fleet)
     }
 
-    /// The scene with what its own changes have made of it by the time that is looked at.
+    /// Control period of the run, s.
+    pub(crate) fn period(&self) -> f64 {
+        self.history.as_ref().map_or(0.01, History::period)
+    }
+
+    /// The trail up to the shown time, for pictures.
+    pub(crate) fn trail(&self) -> Option<&Trail> {
+        self.history.as_ref()?.trail(self.branch, self.time())
+    }
+
+    /// Whether the scene has changes that are not saved.
+    pub(crate) fn unsaved(&self) -> bool {
+        self.draft.as_ref().is_some_and(SceneDraft::unsaved)
+    }
+
+    fn chosen_name(&self) -> Option<String> {
+        let robot = self.chosen_robot()?;
+        Some(self.fleet()?.robots.get(robot)?.name.clone())
+    }
+
+    /// The scene with those of its own changes that apply by the shown time.
     pub fn scene_now(&self) -> Option<&Scene> {
         let (scene, time) = (self.held()?, self.time());
         let due = scene.changes.iter().rfind(|change| change.at <= time + 1e-9);
         Some(due.map_or(scene, |change| &change.then))
     }
 
-    /// Title and caption of pictures: those of the scene as it stands.
+    /// Title and caption of pictures, from the current scene.
     pub fn words(&self) -> [String; 2] {
         self.scene_now()
             .map_or_else(Default::default, |scene| [scene.title.clone(), simulation::caption(scene)])
     }
 
-    /// The record that is shown.
+    /// The record at the shown time.
     pub fn record(&self) -> Option<Arc<StepRecord>> {
         let history = self.history.as_ref()?;
         match self.cursor {
@@ -212,7 +233,7 @@ impl AppState {
         }
     }
 
-    /// The record that is shown, with set points as they are wanted now: a run that stands shows what a hand moves.
+    /// The record at the shown time, with the current set points: a paused run shows edits at once.
     pub fn shown(&self) -> Option<Arc<StepRecord>> {
         let record = self.record()?;
         if self.cursor.is_some() || self.playing {
@@ -234,27 +255,34 @@ impl AppState {
         Some(Arc::new(record))
     }
 
-    /// The time that is looked at, s.
+    /// The shown time, s.
     pub fn time(&self) -> f64 {
         self.cursor.unwrap_or_else(|| self.end())
     }
 
-    /// The last time of the branch, s.
+    /// The last time of the shown branch, s.
     pub fn end(&self) -> f64 {
         self.history.as_ref().map_or(0.0, |history| history.end(self.branch))
     }
 
-    /// The follower of an edge: its index among the robots, its name, and how it follows.
+    /// The follower of an edge: its index among the robots, its name and its parameters.
     pub fn follower(&self, edge: usize) -> Option<(usize, &str, &Follow)> {
         let scene = self.scene_now()?;
-        let followers = scene.robots.iter().enumerate().filter_map(|(index, robot)| match &robot.role {
+        let mut followers = scene.robots.iter().enumerate().filter_map(|(index, robot)| match &robot.role {
             Role::Follow(follow) => Some((index, &*robot.name, &**follow)),
             Role::Lead { .. } => None,
         });
-        followers.into_iter().nth(edge)
+        followers.nth(edge)
     }
 
-    /// The set point of an edge as it is wanted now, m and rad.
+    /// The follower that panels tune, that of the selected edge or else the first: its edge and what
+    /// [`AppState::follower`] returns.
+    pub fn tuned_follower(&self) -> Option<(usize, usize, &str, &Follow)> {
+        let edge = self.chosen_edge().unwrap_or(0);
+        self.follower(edge).map(|(robot, name, follow)| (edge, robot, name, follow))
+    }
+
+    /// The current set point of an edge, m and rad.
     pub fn set_point(&self, edge: usize) -> Option<[f64; 2]> {
         let (_, _, follow) = self.follower(edge)?;
         let now = self.record().and_then(|record| Some(record.edges.get(edge)?.set_point));
@@ -265,7 +293,7 @@ impl AppState {
         Some([value(&follow.distance, now.map(|n| n[0]))?, value(&follow.bearing, now.map(|n| n[1]))?])
     }
 
-    /// The edge that is selected, or that of the robot that is.
+    /// The selected edge, or that of the selected robot.
     pub fn chosen_edge(&self) -> Option<usize> {
         match self.selection {
             Selection::Edge(edge) => Some(edge),
@@ -274,17 +302,16 @@ impl AppState {
         }
     }
 
-    /// The edge on which a robot follows.
+    /// The edge of a follower.
     pub fn edge_of(&self, robot: usize) -> Option<usize> {
-        let fleet = self.history.as_ref()?.fleet();
-        fleet.edges.iter().position(|edge| edge.follower == robot)
+        self.fleet()?.edges.iter().position(|edge| edge.follower == robot)
     }
 
-    /// The robot that is selected, or the follower of the edge that is.
+    /// The selected robot, or the follower of the selected edge.
     pub fn chosen_robot(&self) -> Option<usize> {
         match self.selection {
             Selection::Robot(robot) => Some(robot),
-            Selection::Edge(edge) => self.history.as_ref()?.fleet().edges.get(edge).map(|edge| edge.follower),
+            Selection::Edge(edge) => self.fleet()?.edges.get(edge).map(|edge| edge.follower),
             Selection::Nothing => None,
         }
     }
@@ -294,7 +321,7 @@ impl AppState {
         self.event(text.into(), false);
     }
 
-    /// Adds a fault to the log and shows it.
+    /// Adds an error to the log and shows it.
     pub fn fault(&mut self, text: impl Into<String>) {
         let text = text.into();
         self.notice = Some(text.clone());
@@ -305,10 +332,10 @@ impl AppState {
         let time = self.time();
         if let Some(out) = &mut self.aloud {
             let kind = if fault { "fault" } else { "log" };
-            // Where nobody reads any more, the window goes on.
+            // If the pipe is closed, the window continues.
             let _ = writeln!(out, "{kind} {time:.2} s: {text}");
         }
-        // What goes on under a hand is one line.
+        // A drag is one line.
         let again = text.ends_with('…') && self.log.last().is_some_and(|last| last.text == text);
         if !again {
             self.log.push(LogEntry { time, text, fault });
@@ -318,20 +345,20 @@ impl AppState {
         }
     }
 
-    /// Looks at a time of the branch, s.
+    /// Shows a time of the branch, s.
     pub fn seek(&mut self, time: f64) {
         let end = self.end();
         if time >= end {
             self.cursor = None;
         } else {
             self.pause();
-            // Between two samples there is nothing to see.
-            let period = self.history.as_ref().map_or(0.01, History::period);
+            // There is no record between two samples.
+            let period = self.period();
             self.cursor = Some((time.max(0.0) / period).round() * period);
         }
     }
 
-    /// Lets the run stand.
+    /// Pauses the run.
     pub fn pause(&mut self) {
         if self.playing {
             self.playing = false;
@@ -339,11 +366,11 @@ impl AppState {
         }
     }
 
-    /// Lets the run go, from the present.
+    /// Plays the run, from the present.
     pub fn play(&mut self) {
         self.playing = true;
         if self.recorded {
-            // From its end it begins anew.
+            // At its end it starts again.
             self.cursor = self.cursor.or(Some(0.0));
             return;
         }
@@ -351,7 +378,7 @@ impl AppState {
         self.requests.push(RunRequest::Play(true));
     }
 
-    /// Takes in what the thread of the run tells.
+    /// Handles an event from the thread of the run.
     pub fn handle_event(&mut self, run_event: RunEvent) {
         match run_event {
             RunEvent::Opened { fleet, period } => {
@@ -368,9 +395,7 @@ impl AppState {
                     }
                 }
             }
-            RunEvent::Forked { branch, from, sample, name, changes } => {
-                self.forked(branch, from, sample, name, changes);
-            }
+            RunEvent::Forked(fork) => self.forked(fork),
             RunEvent::Changed(branch, change) => self.changed(branch, &change),
             RunEvent::RecordingResumed(same) => self.recording_resumed(same),
             RunEvent::Summary { .. } => {}
@@ -384,9 +409,9 @@ impl AppState {
         }
     }
 
-    /// What was selected stays so by its name; what is not there any more is not.
+    /// Keeps the selection by name; clears it where the robot is gone.
     fn check_choice(&mut self) {
-        let Some(fleet) = self.history.as_ref().map(History::fleet) else { return };
+        let Some(fleet) = self.fleet() else { return };
         let named = |name: &String| fleet.robots.iter().position(|member| member.name == *name);
         let robot = self.chosen.as_ref().and_then(named);
         let edge = robot.and_then(|robot| fleet.edges.iter().position(|edge| edge.follower == robot));

@@ -1,7 +1,7 @@
-//! What a scene's own changes have done by some time, written into the scene as if it had always been so: a hand that
-//! takes hold of a run goes on from what is, not from what was.
+//! Writes those changes of a scene that are past at some time into its values: an edit during a run continues from the
+//! current values, not from the initial ones.
 
-use scene::{Scene, SceneText};
+use scene::{EditError, Scene, SceneText};
 
 /// Changes that are past.
 pub(crate) struct PastChanges {
@@ -16,22 +16,22 @@ impl PastChanges {
         Self { set: due.flat_map(|change| change.set.iter().cloned()).collect(), time }
     }
 
-    /// Writes them where they hold from the start on, and takes them out of the changes.
+    /// Writes them as initial values and removes them from the changes.
     ///
     /// # Errors
-    /// Why the text cannot be edited, in words.
-    pub(crate) fn settle(&self, text: &mut SceneText) -> Result<(), String> {
+    /// Why the text cannot be edited.
+    pub(crate) fn settle(&self, text: &mut SceneText) -> Result<(), EditError> {
         if self.set.is_empty() {
             return Ok(());
         }
         for set in &self.set {
             let (path, value) = set.split_once('=').unwrap_or((set, ""));
-            text.set(path, value).map_err(|error| error.to_string())?;
+            text.set(path, value)?;
         }
         for item in (0..text.count("changes")).rev() {
             let at = text.get(&format!("changes.{item}.at")).and_then(|at| at.parse::<f64>().ok());
             if at.is_some_and(|at| at <= self.time + 1e-9) {
-                text.remove_item("changes", &item.to_string()).map_err(|error| error.to_string())?;
+                text.remove_item("changes", &item.to_string())?;
             }
         }
         Ok(())

@@ -1,4 +1,4 @@
-//! Runs that were recorded: to look through, to play, and to take up where one looks.
+//! Recorded runs: browsing, playback, and continuing from them.
 
 use super::{AppState, Selection};
 use crate::session::runner::RunRequest;
@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 impl AppState {
-    /// Opens a run that was recorded, to look through it; its files are looked for at `home`.
+    /// Opens a recorded run; `home` is the folder of the files that its scene names.
     ///
     /// # Errors
     /// All that is wrong with its scene; then the state is as before.
@@ -22,34 +22,36 @@ impl AppState {
         Ok(())
     }
 
-    /// Takes a recorded run up: its scene runs anew, unseen, as far as that came, so that branches can leave it anywhere.
+    /// Simulates the scene of a recorded run again in the background, so that branches can fork from it anywhere.
     pub(crate) fn leave_recording(&mut self) {
         let Some(draft) = self.draft.as_ref().filter(|_| self.recorded) else { return };
         let scene = Arc::clone(draft.scene());
         self.recorded = false;
         if sees(&scene) {
-            // Pictures take too long to be drawn again unseen.
+            // Rendering camera images again in the background would take too long.
             let until = self.time();
             self.restart(until);
-            return self.note("The scene runs anew from here on: what cameras saw is drawn again");
+            return self.note("The run restarts from its scene, and camera images are rendered again");
         }
-        self.requests.push(RunRequest::ResumeRecording { scene, gpu: None });
+        self.requests.push(RunRequest::ResumeRecording(scene));
         self.requests.push(RunRequest::Ahead(self.ahead));
-        self.note("What was recorded is taken up: the scene runs anew, unseen, as far as that came");
+        self.note("The scene is simulated again in the background, up to the end of the recording");
     }
 
-    /// A recorded run was taken up.
+    /// A recorded run was simulated again; `same` tells whether it is equal bit for bit.
     pub(crate) fn recording_resumed(&mut self, same: bool) {
         if same {
-            return self.note("It is the same run, bit for bit: what changes from here on is a branch of it");
+            return self.note("The run is the same bit for bit; a change now makes a branch of it");
         }
-        // Branches of another run would not fit the past that is shown.
+        // Branches of a different run would not fit the shown history.
         let until = self.time();
         self.restart(until);
-        self.fault("The scene does not run as it was recorded, by another program perhaps: it begins anew");
+        self.fault(
+            "The run differs from the recording, perhaps made by another program: the scene starts again",
+        );
     }
 
-    /// Goes on through a recorded run, `seconds` of the clock; whether it goes on after that.
+    /// Plays a recorded run for `seconds` of wall time; whether it is still playing.
     pub fn roll(&mut self, seconds: f64) -> bool {
         if !self.recorded || !self.playing {
             return false;
@@ -61,7 +63,7 @@ impl AppState {
     }
 }
 
-/// Whether robots of a scene see by camera.
+/// Whether any robot of a scene senses with a camera.
 fn sees(scene: &Scene) -> bool {
     let camera =
         |role: &Role| matches!(role, Role::Follow(follow) if follow.sensing.kind == SensingKind::Camera);

@@ -1,4 +1,4 @@
-//! What the theorems say of the follower that is chosen, so far, over the curves they speak of.
+//! The theorems' statements for the selected follower so far, above their curves.
 
 use super::nothing;
 use crate::action::Action;
@@ -8,12 +8,12 @@ use crate::quantities::PlotQuantity;
 use eframe::egui::{RichText, Ui};
 use studies::certify::{Premise, StatementFinding, StatementOutcome, so_far};
 
-/// Moments that are looked at, at most.
+/// Maximum number of moments that are checked.
 const MOST: usize = 2000;
 
 /// Statements, then curves.
 pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let Some(findings) = findings(app_state) else { return nothing(ui, "Nobody follows anybody.") };
+    let Some(findings) = findings(app_state) else { return nothing(ui, "There is no follower.") };
     ui.horizontal_wrapped(|ui| {
         for finding in &findings {
             let mark = match finding.outcome() {
@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     curves::show(ui, app_state, &[PlotQuantity::RobustMargin, PlotQuantity::Lyapunov], out);
 }
 
-/// What the theorems say of the follower that is chosen, or else of the first.
+/// The theorems' statements for the selected follower, or else for the first.
 fn findings(app_state: &AppState) -> Option<Vec<StatementFinding>> {
     let (history, scene) = (app_state.history.as_ref()?, app_state.scene_now()?);
     let chosen = app_state.chosen_robot();

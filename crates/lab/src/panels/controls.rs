@@ -1,35 +1,35 @@
-//! Rows with a symbol, a slider and a way back to the default.
+//! Rows with a symbol, a slider and a reset to the default.
 
 use super::{pair, tune};
 use crate::action::Action;
+use crate::numbers::toml_number;
 use crate::symbols::Symbol;
-use crate::tidy::tidy;
 use eframe::egui::{self, Slider, Ui};
 
-/// How a slider goes.
+/// Range and scale of a slider.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Range {
-    /// Least and largest value on the slider; more can be typed.
+    /// Limits of the slider; other values can be typed.
     pub(crate) span: [f64; 2],
-    /// Least and largest value at all.
+    /// Limits of typed values.
     pub(crate) hard: [f64; 2],
-    /// Whether it goes by factors.
+    /// Whether the scale is logarithmic.
     pub(crate) logarithmic: bool,
 }
 
 impl Range {
-    /// Steps of the same size.
+    /// A linear scale.
     pub(crate) const fn linear(low: f64, high: f64) -> Self {
         Self { span: [low, high], hard: [low, f64::INFINITY], logarithmic: false }
     }
 
-    /// Steps by the same factor.
+    /// A logarithmic scale.
     pub(crate) const fn factors(low: f64, high: f64) -> Self {
         Self { span: [low, high], hard: [f64::MIN_POSITIVE, f64::INFINITY], logarithmic: true }
     }
 }
 
-/// A quantity of the scene behind a slider.
+/// A slider for a quantity of the scene.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SliderRow {
     pub(crate) symbol: Symbol,
@@ -40,19 +40,19 @@ pub(crate) struct SliderRow {
 }
 
 impl SliderRow {
-    /// A row for one value; the default is shown beside the way back to it.
+    /// A slider for the quantity at a key of the scene.
+    pub(crate) const fn new(symbol: Symbol, key: &'static str, range: Range, decimals: usize) -> Self {
+        Self { symbol, key, range, decimals }
+    }
+
+    /// A row for one value and its default.
     pub(crate) fn one(&self, ui: &mut Ui, value: f64, default: f64, out: &mut Vec<Action>) {
-        self.frame(ui, value != default, &tidy(default), out, |ui, out| {
-            let mut new = value;
-            let response = self.slider(ui, &mut new, self.symbol.name);
-            if response.changed() && new != value {
-                out.push(tune(self.symbol.name, self.key, tidy(new)));
-            }
-            released(&response, out);
+        self.frame(ui, value != default, &toml_number(default), out, |ui, out| {
+            self.edit(ui, value, self.symbol.name, out, toml_number);
         });
     }
 
-    /// A row for a pair: one slider where both are the same and nobody wants them apart, else two.
+    /// A row for a pair: one slider if both are equal and `apart` is not set, else two.
     pub(crate) fn two(
         &self,
         ui: &mut Ui,
@@ -61,32 +61,35 @@ impl SliderRow {
         apart: bool,
         out: &mut Vec<Action>,
     ) {
-        let shown = if default[0] == default[1] {
-            tidy(default[0])
-        } else {
-            format!("{}, {}", tidy(default[0]), tidy(default[1]))
-        };
-        self.frame(ui, value != default, &shown, out, |ui, out| {
+        let shown = pair(default);
+        self.frame(ui, value != default, shown.trim_matches(['[', ']']), out, |ui, out| {
             if value[0] == value[1] && !apart {
-                let mut new = value[0];
-                let response = self.slider(ui, &mut new, self.symbol.name);
-                if response.changed() && new != value[0] {
-                    out.push(tune(self.symbol.name, self.key, pair([new; 2])));
-                }
-                return released(&response, out);
+                return self.edit(ui, value[0], self.symbol.name, out, |new| pair([new; 2]));
             }
             ui.vertical(|ui| {
-                for (channel, word) in ["of the distance", "of the bearing"].into_iter().enumerate() {
-                    let mut new = value;
-                    let response =
-                        self.slider(ui, &mut new[channel], &format!("{} {word}", self.symbol.name));
-                    if response.changed() && new != value {
-                        out.push(tune(self.symbol.name, self.key, pair(new)));
-                    }
-                    released(&response, out);
-                }
+                let [distance, bearing] =
+                    ["distance", "bearing"].map(|of| format!("{} for {of}", self.symbol.name));
+                self.edit(ui, value[0], &distance, out, |new| pair([new, value[1]]));
+                self.edit(ui, value[1], &bearing, out, |new| pair([value[0], new]));
             });
         });
+    }
+
+    /// A slider for a value; `toml` formats a new one for the scene.
+    fn edit(
+        &self,
+        ui: &mut Ui,
+        value: f64,
+        name: &str,
+        out: &mut Vec<Action>,
+        toml: impl FnOnce(f64) -> String,
+    ) {
+        let mut new = value;
+        let response = self.slider(ui, &mut new, name);
+        if response.changed() && new != value {
+            out.push(tune(self.symbol.name, self.key, toml(new)));
+        }
+        released(&response, out);
     }
 
     fn frame(
@@ -111,7 +114,7 @@ impl SliderRow {
             let name = format!("Reset {}", self.symbol.name.to_lowercase());
             back.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, differs, name.clone()));
             if back.on_hover_text(format!("{name}: {default} {}", self.symbol.unit)).clicked() {
-                out.push(Action::Untune { what: name.clone(), key: self.key });
+                out.push(Action::Tune { what: name.clone(), key: self.key, value: None });
             }
         });
     }
@@ -127,7 +130,7 @@ impl SliderRow {
             .logarithmic(self.range.logarithmic)
             .max_decimals(self.decimals)
             .suffix(suffix)
-            // Beyond the slider, numbers can be typed.
+            // Numbers beyond the slider can be typed.
             .clamping(egui::SliderClamping::Never);
         if self.range.logarithmic {
             slider = slider.smallest_positive(low.max(1e-9));
@@ -141,9 +144,9 @@ impl SliderRow {
     }
 }
 
-/// Tells when a slider is let go.
+/// Emits an action when a slider is released.
 pub(crate) fn released(response: &egui::Response, out: &mut Vec<Action>) {
     if response.drag_stopped() || response.lost_focus() {
-        out.push(Action::Rest);
+        out.push(Action::Release);
     }
 }

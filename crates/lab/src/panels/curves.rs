@@ -3,14 +3,15 @@
 use super::{colour, nothing};
 use crate::action::Action;
 use crate::app_state::AppState;
+use crate::numbers::fixed;
 use crate::quantities::{PlotQuantity, QuantityCurve, bounds, curves};
-use crate::tidy::fixed;
+use crate::session::history::History;
 use eframe::egui::{self, Color32, Id, Stroke, Ui};
 use egui_plot::{GridMark, HLine, HoverPosition, LineStyle, Plot, PlotPoint, VLine};
 
-/// Points of a curve, at most, before what is straight is left out.
+/// Maximum number of points of a curve, before straight parts are simplified.
 const MOST_POINTS: usize = 400;
-/// How far a curve may be off, points of the screen.
+/// Tolerance of the simplification, screen points.
 const OFF: f64 = 0.35;
 
 /// Plots of some quantities, one above the other.
@@ -33,20 +34,15 @@ fn plot(
     last: bool,
     out: &mut Vec<Action>,
 ) {
-    let end = app_state
-        .history
-        .as_ref()
-        .map_or(0.0, |history| (0..history.branches()).map(|branch| history.end(branch)).fold(0.0, f64::max));
+    let end = app_state.history.as_ref().map_or(0.0, History::latest);
     let group = Id::unique("time axis");
     let logarithmic = quantity.logarithmic();
     let weak = ui.visuals().weak_text_color();
-    let text = |value: f64| {
-        match logarithmic {
-            // Decades only: between them a label would be one of its neighbours'.
-            true if (value - value.round()).abs() > 0.01 => String::new(),
-            true => format!("1e{}", fixed(value, 0)),
-            false => short(value),
-        }
+    let text = |value: f64| match logarithmic {
+        // Decades only: labels between them would repeat their neighbours'.
+        true if (value - value.round()).abs() > 0.01 => String::new(),
+        true => format!("1e{}", fixed(value, 0)),
+        false => short(value),
     };
     let plot = Plot::new(("plot", quantity.column()))
         .height(high.max(30.0))
@@ -76,7 +72,7 @@ fn plot(
             let value = if logarithmic { format!("{:.1e}", 10_f64.powf(at.y)) } else { fixed(at.y, 3) };
             Some(format!("{} s\n{value}", fixed(at.x, 2)))
         });
-    let all = curves(app_state, quantity, [0.0, f64::INFINITY], MOST_POINTS);
+    let all = curves(app_state, quantity, MOST_POINTS);
     let colours: Vec<Color32> = all
         .iter()
         .map(|curve| curve.robot.map_or(ui.visuals().text_color(), |robot| colour(app_state, robot, ui)))
@@ -89,11 +85,10 @@ fn plot(
         plot.set_plot_bounds_y(span[0]..=span[1]);
         for bound in bounds(app_state, quantity) {
             let near = all.iter().flat_map(|c| &c.points).any(|p| p[1].abs() > 0.4 * bound.abs());
-            // A bound that is far away would only flatten the curves.
+            // A distant bound would flatten the curves.
             if near {
-                plot.hline(
-                    HLine::new("bound", bound).color(weak).width(1.0).style(LineStyle::dashed_loose()),
-                );
+                let line = HLine::new("bound", bound).color(weak).width(1.0);
+                plot.hline(line.style(LineStyle::dashed_loose()));
             }
         }
         plot.vline(VLine::new("now", app_state.time()).color(cursor).width(1.0));
@@ -111,7 +106,7 @@ fn plot(
         let colour = if active { colour } else { colour.gamma_multiply(0.5) };
         let on_screen = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
         let points: Vec<_> = straightened(&curve.points, span, off).into_iter().map(on_screen).collect();
-        // Piece by piece: a path that turns back on itself is drawn with filled corners.
+        // Piece by piece: the corners of a path that turns back on itself would be filled.
         if active {
             let pieces = points
                 .windows(2)
@@ -121,7 +116,7 @@ fn plot(
             painter.extend(egui::Shape::dashed_line(&points, Stroke::new(wide, colour), 5.0, 4.0));
         }
     }
-    // The quantity stands in the plot, where it takes no room.
+    // The label lies in the plot, where it takes no space.
     let at = response.response.rect.right_top() + egui::vec2(-6.0, 2.0);
     let font = egui::FontId::proportional(11.5);
     let mut words = quantity.axis().to_owned();
@@ -140,13 +135,13 @@ fn plot(
     }
 }
 
-/// The largest value that lies beside the plot, if any does.
+/// The largest value outside the plot, if there is one.
 fn peak(curves: &[QuantityCurve], [low, high]: [f64; 2]) -> Option<f64> {
     let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]);
     values.filter(|value| *value < low || *value > high).max_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
 
-/// Marks of an axis at round values, about so many, and not nearer than `least`.
+/// Marks of an axis at round values: about `about` of them, at least `least` apart.
 fn marks([low, high]: [f64; 2], about: f64, least: f64) -> Vec<GridMark> {
     let rough = ((high - low) / about.max(2.0)).max(least);
     let step = vocabulary::round_step(rough, 0.0);
@@ -155,26 +150,26 @@ fn marks([low, high]: [f64; 2], about: f64, least: f64) -> Vec<GridMark> {
     if !(last - first).is_finite() || last - first > 200.0 {
         return Vec::new();
     }
-    // Every mark has its label.
+    // Every mark has a label.
     let wide = 0.5 * (high - low);
     (0..=(last - first).max(0.0) as u32)
         .map(|k| GridMark { value: (first + f64::from(k)) * step, step_size: wide })
         .collect()
 }
 
-/// Share of the values, at either end, that may lie beside the plot: spikes of a sample would flatten all else.
+/// Share of the values at either end that may lie outside the plot: short spikes would flatten everything else.
 const SPIKES: f64 = 0.015;
 
-/// A curve without the points that lie on a straight line between others, give or take `off`: what is at rest costs
+/// A curve without the points that lie on a straight line between others, within `off`: constant curves cost next to
 /// nothing to draw.
 fn straightened(points: &[[f64; 2]], [low, high]: [f64; 2], off: f64) -> Vec<[f64; 2]> {
-    // What is far beside the plot is only known to be beside it.
+    // Points far outside the plot are clamped.
     let beside = 0.2 * (high - low);
     let within = |[x, y]: &[f64; 2]| [*x, y.clamp(low - beside, high + beside)];
     let points: Vec<[f64; 2]> = points.iter().map(within).collect();
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return Vec::new() };
     let mut kept = vec![*first];
-    // Slopes from the last point kept that pass all points since within `off`.
+    // Slopes from the last kept point that pass all points since within `off`.
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
     let mut before = *first;
     for point in points[1..].iter().filter(|point| point[0].is_finite()) {
@@ -198,7 +193,7 @@ fn straightened(points: &[[f64; 2]], [low, high]: [f64; 2], off: f64) -> Vec<[f6
     kept
 }
 
-/// What a plot shows of its values.
+/// The vertical range of a plot.
 fn span(curves: &[QuantityCurve], quantity: PlotQuantity) -> [f64; 2] {
     let mut values: Vec<f64> = curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]).collect();
     values.sort_by(f64::total_cmp);
@@ -211,7 +206,7 @@ fn span(curves: &[QuantityCurve], quantity: PlotQuantity) -> [f64; 2] {
     let low = values.get(beside).unwrap_or(low);
     let high = values.get(values.len() - 1 - beside).unwrap_or(high);
     let (low, high) = if quantity.logarithmic() { (*low, *high) } else { (low.min(0.0), high.max(0.0)) };
-    // What is at rest is shown at rest.
+    // Constant values are shown as constant.
     let room = 0.1 * (high - low).max(0.02);
     [low - room, high + room]
 }

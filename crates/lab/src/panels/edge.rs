@@ -1,10 +1,10 @@
 //! The selected edge: its set point in numbers, and the shape of the whole formation.
 
-use super::nobody;
+use super::empty_panel;
 use crate::action::Action;
 use crate::app_state::AppState;
+use crate::numbers::fixed;
 use crate::symbols;
-use crate::tidy::fixed;
 use eframe::egui::{self, DragValue, RichText, Ui, WidgetInfo};
 use vocabulary::ScalarTrajectory;
 
@@ -13,16 +13,11 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let Some((edge, (_, name, follow))) =
         app_state.chosen_edge().and_then(|e| Some((e, app_state.follower(e)?)))
     else {
-        return nobody(ui, app_state, "Click a follower or its edge.");
+        return empty_panel(ui, app_state, "Click a follower or its edge.");
     };
     ui.label(RichText::new(format!("{} → {name}", follow.leader)).strong());
     let state = app_state.shown().and_then(|record| record.edges.get(edge).copied());
-    let now = state.map_or([0.0; 2], |state| state.set_point);
-    let value = |channel: &ScalarTrajectory, now: f64| match channel {
-        ScalarTrajectory::Constant(value) => *value,
-        _ => now,
-    };
-    let (distance, bearing) = (value(&follow.distance, now[0]), value(&follow.bearing, now[1]));
+    let [distance, bearing] = app_state.set_point(edge).unwrap_or_default();
     let (mut new_distance, mut new_degrees) = (distance, bearing.to_degrees());
     egui::Grid::new("set point").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
         symbols::DISTANCE.label(ui);
@@ -51,7 +46,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         (&follow.distance, &follow.bearing),
         (ScalarTrajectory::Constant(_), ScalarTrajectory::Constant(_))
     ) {
-        ui.weak("It moves in time; what you set here stays.");
+        ui.weak("This set point changes over time; a value set here is constant.");
     }
     let mut mirror = app_state.mirror;
     let tip = "The follower on the other side of the same leader moves too";
@@ -61,7 +56,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     if app_state.mirror
         && app_state.set_point(edge).is_some_and(|place| app_state.twin(edge, place).is_none())
     {
-        ui.weak("Nobody stands at its mirror image.");
+        ui.weak("No follower is at its mirror image.");
     }
     if let Some(state) = state {
         ui.weak(format!("error {} m, {}°", fixed(state.error[0], 3), fixed(state.error[1].to_degrees(), 2)));
@@ -86,16 +81,15 @@ fn shape(ui: &mut Ui, out: &mut Vec<Action>) {
         ] {
             if ui.button(text).on_hover_text(tip).clicked() {
                 out.push(Action::Shape { scale, turn: f64::to_radians(turn) });
-                out.push(Action::Rest);
+                out.push(Action::Release);
             }
         }
     });
 }
 
-/// What the prediction says of the edge.
+/// What the prediction tells about the edge.
 fn ahead(ui: &mut Ui, app_state: &AppState, edge: usize) {
-    let Some(prediction) =
-        app_state.prediction.as_ref().filter(|prediction| prediction.branch == app_state.branch)
+    let Some(prediction) = app_state.prediction.as_ref().filter(|ahead| ahead.branch == app_state.branch)
     else {
         return;
     };
@@ -110,9 +104,9 @@ fn ahead(ui: &mut Ui, app_state: &AppState, edge: usize) {
         ));
     }
     if let Some((time, things)) = &prediction.contact
-        && let Some(history) = &app_state.history
+        && let Some(fleet) = app_state.fleet()
     {
-        let [a, b] = things.map(|thing| history.fleet().name(thing).to_owned());
+        let [a, b] = things.map(|thing| fleet.name(thing).to_owned());
         let text = format!("contact at {} s: {a} and {b}", fixed(*time, 1));
         ui.colored_label(ui.visuals().error_fg_color, text);
     }

@@ -1,13 +1,14 @@
-//! What is drawn, and pictures and films of it.
+//! Films, pictures and the elements that they show.
 
+use super::on_click;
 use crate::action::Action;
 use crate::app_state::AppState;
 use eframe::egui::{self, Slider, Ui, WidgetInfo};
 use rendering::Style;
 
-/// Elements that a person may want to switch, and what they are.
+/// Elements that can be switched, with their labels.
 const ELEMENTS: [(&str, &str); 10] = [
-    ("ribbons", "Ribbons where robots drove"),
+    ("ribbons", "Ribbons along driven paths"),
     ("ghosts", "Ghosts of past poses"),
     ("set-points", "Rings at set points"),
     ("edges", "Edges"),
@@ -19,22 +20,20 @@ const ELEMENTS: [(&str, &str); 10] = [
     ("shadows", "Shadows"),
 ];
 
-/// Films, pictures and what they show.
+/// Films, pictures and their elements.
 pub fn show(ui: &mut Ui, app_state: &AppState, style: &Style, filming: Option<&str>, out: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let text = if filming.is_some() { "■ End the film" } else { "● Film" };
-        if ui.button(text).on_hover_text("An MP4 of what is seen, every moment of it (F)").clicked() {
-            out.push(Action::Film);
-        }
-        if ui.button("Picture").on_hover_text("A PNG that remembers its settings (P)").clicked() {
-            out.push(Action::Picture);
-        }
-        if ui
-            .button("Keep the run")
-            .on_hover_text("The run as a scene with its changes, and its tables")
-            .clicked()
-        {
-            out.push(Action::KeepRun);
+        for (text, tip, action) in [
+            (text, "An MP4 of the view, without lost frames (F)", Action::Film),
+            ("Picture", "A PNG with the scene, the time and the view embedded (P)", Action::Picture),
+            (
+                "Keep the run",
+                "Write the run to a folder: the scene with its changes, and the tables (K)",
+                Action::KeepRun,
+            ),
+        ] {
+            on_click(&ui.button(text).on_hover_text(tip), action, out);
         }
     });
     if let Some(text) = filming {
@@ -61,11 +60,9 @@ pub fn show(ui: &mut Ui, app_state: &AppState, style: &Style, filming: Option<&s
     });
 }
 
-/// The view that films are taken from.
+/// The box to choose the view of films.
 fn from(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let names =
-        app_state.history.as_ref().map(|history| history.fleet().robots.iter().map(|m| m.name.clone()));
-    let robots: Vec<String> = names.map(Iterator::collect).unwrap_or_default();
+    let robots = app_state.fleet().map_or(&[][..], |fleet| &fleet.robots);
     let now = app_state.film_from.as_deref().unwrap_or(SEEN);
     ui.horizontal(|ui| {
         ui.label("Film from");
@@ -75,7 +72,8 @@ fn from(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
                 out.push(Action::FilmFrom(None));
             }
             let plain = ["snake", "snake-eye", "top", "orbit", "snake+top"].map(str::to_owned).into_iter();
-            let bound = robots.iter().flat_map(|name| [format!("follow:{name}"), format!("camera:{name}")]);
+            let names = robots.iter().map(|robot| &robot.name);
+            let bound = names.flat_map(|name| [format!("follow:{name}"), format!("camera:{name}")]);
             for view in plain.chain(bound.take(40)) {
                 if ui.selectable_label(app_state.film_from.as_ref() == Some(&view), &view).clicked() {
                     out.push(Action::FilmFrom(Some(view)));
@@ -86,5 +84,5 @@ fn from(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     });
 }
 
-/// What is filmed if nothing else is chosen.
-const SEEN: &str = "what is seen";
+/// The default view of films.
+const SEEN: &str = "the current view";

@@ -1,31 +1,29 @@
-//! The tree of robots: who follows whom. Drag a robot onto the one that it shall follow.
+//! The tree of leaders and followers. Dragging a robot onto another makes that its leader.
 
-use super::{colour, naming, nothing};
+use super::{colour, menu_item, naming, nothing, on_click};
 use crate::action::Action;
 use crate::app_state::{AppState, Selection, Tool};
 use eframe::egui::{self, RichText, Role, Sense, Ui, WidgetInfo};
 use vocabulary::{FleetInfo, StepRecord};
 
-/// Robots as a tree.
+/// The tree of robots.
 pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let Some(fleet) = app_state.history.as_ref().map(|history| history.fleet().clone()) else {
+    let Some(fleet) = app_state.fleet() else {
         return nothing(ui, "No scene is open.");
     };
     ui.horizontal_wrapped(|ui| {
-        if ui.button("+ Robot").on_hover_text("A robot that follows the selected one (Insert)").clicked() {
-            out.push(Action::AddRobot);
-        }
+        let add = ui.button("+ Robot").on_hover_text("A robot that follows the selected one (Insert)");
+        on_click(&add, Action::AddRobot, out);
         let connects = app_state.tool == Tool::Connect;
-        let tip = "Drag in the view from a robot to the one that it shall follow (C)";
-        if ui.selectable_label(connects, "Connect").on_hover_text(tip).clicked() {
-            out.push(Action::Take(if connects { Tool::Hand } else { Tool::Connect }));
-        }
+        let tip = "Drag in the view from a robot to its new leader (C)";
+        let label = ui.selectable_label(connects, "Connect").on_hover_text(tip);
+        on_click(&label, Action::UseTool(Tool::Connect), out);
     });
     let record = app_state.shown();
-    let rows = order(&fleet);
+    let rows = order(fleet);
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         for (robot, depth) in rows {
-            row(ui, app_state, &fleet, record.as_deref(), robot, depth, out);
+            row(ui, app_state, fleet, record.as_deref(), robot, depth, out);
         }
     });
 }
@@ -66,10 +64,10 @@ fn row(
                 app_state.edge_of(robot).and_then(|edge| Some(record?.edges.get(edge)?.error))
             {
                 let size = error[0].hypot(error[1]);
-                let text = format!("{} m", crate::tidy::fixed(error[0], 2));
+                let text = format!("{} m", crate::numbers::fixed(error[0], 2));
                 let weak = RichText::new(text).small();
                 let text = if size > 0.05 { weak.color(ui.visuals().warn_fg_color) } else { weak.weak() };
-                ui.label(text).on_hover_text("Error of the distance");
+                ui.label(text).on_hover_text("Distance error");
             }
             label
         })
@@ -85,9 +83,7 @@ fn row(
         let stroke = ui.visuals().selection.stroke;
         ui.painter().rect_stroke(response.rect, 3.0, stroke, egui::StrokeKind::Inside);
     }
-    if response.clicked() {
-        out.push(Action::Choose(Selection::Robot(robot)));
-    }
+    on_click(&response, Action::Select(Selection::Robot(robot)), out);
     if response.double_clicked() {
         out.push(Action::Follow(Some(robot)));
     }
@@ -97,16 +93,7 @@ fn row(
 }
 
 fn menu(ui: &mut Ui, name: &str, robot: usize, out: &mut Vec<Action>) {
-    if ui.button("Follow with the camera").clicked() {
-        out.push(Action::Follow(Some(robot)));
-        ui.close();
-    }
-    if ui.button("See through its camera").clicked() {
-        out.push(Action::Viewpoint(format!("camera:{name}")));
-        ui.close();
-    }
-    if ui.button("Remove").clicked() {
-        out.push(Action::RemoveRobot(name.to_owned()));
-        ui.close();
-    }
+    menu_item(ui, true, "Follow with the camera", Action::Follow(Some(robot)), out);
+    menu_item(ui, true, "See through its camera", Action::Viewpoint(format!("camera:{name}")), out);
+    menu_item(ui, true, "Remove", Action::RemoveRobot(name.to_owned()), out);
 }

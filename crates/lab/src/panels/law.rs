@@ -1,56 +1,38 @@
 //! Law, gains and observer.
 
 use super::controls::{Range, SliderRow};
-use super::{chosen, nobody, nothing, tune};
+use super::{choice, empty_panel, nothing, on_click, tune};
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::symbols;
-use eframe::egui::{ComboBox, Ui};
+use eframe::egui::{Id, Ui};
 use scene::{Law, Observer, SwitchingKind, VehicleKind};
-use vocabulary::{LawKind, ObserverKind};
+use vocabulary::{LawKind, ObserverKind, Word};
 
-const LAWS: [(LawKind, &str, &str, &str); 3] = [
-    (LawKind::FullState, "Full state feedback", "full-state", "Knows its leader's motion (eq 20)."),
-    (LawKind::RobustState, "Robust state feedback", "robust-state", "Knows the rates of ℓ and ψ (eq 22)."),
-    (LawKind::OutputFeedback, "Output feedback", "output-feedback", "Knows ℓ and ψ only (eq 42)."),
+const LAWS: [(LawKind, &str, &str); 3] = [
+    (LawKind::FullState, "Full state feedback", "Knows its leader's motion (eq 20)."),
+    (LawKind::RobustState, "Robust state feedback", "Knows the rates of ℓ and ψ (eq 22)."),
+    (LawKind::OutputFeedback, "Output feedback", "Knows ℓ and ψ only (eq 42)."),
 ];
 
-const GAIN: SliderRow =
-    SliderRow { symbol: symbols::GAIN, key: "law.k", range: Range::factors(0.1, 20.0), decimals: 3 };
-const ROBUST: SliderRow =
-    SliderRow { symbol: symbols::ROBUST, key: "law.beta", range: Range::linear(0.0, 20.0), decimals: 3 };
-const SLOPE: SliderRow =
-    SliderRow { symbol: symbols::SLOPE, key: "law.slope", range: Range::factors(1.0, 200.0), decimals: 2 };
-const EPSILON: SliderRow = SliderRow {
-    symbol: symbols::EPSILON,
-    key: "observer.epsilon",
-    range: Range::factors(1e-4, 1.0),
-    decimals: 5,
-};
-const ALPHA_ONE: SliderRow = SliderRow {
-    symbol: symbols::ALPHA_ONE,
-    key: "observer.alpha1",
-    range: Range::factors(0.1, 10.0),
-    decimals: 3,
-};
-const ALPHA_TWO: SliderRow = SliderRow {
-    symbol: symbols::ALPHA_TWO,
-    key: "observer.alpha2",
-    range: Range::factors(0.1, 10.0),
-    decimals: 3,
-};
+const GAIN: SliderRow = SliderRow::new(symbols::GAIN, "law.k", Range::factors(0.1, 20.0), 3);
+const ROBUST: SliderRow = SliderRow::new(symbols::ROBUST, "law.beta", Range::linear(0.0, 20.0), 3);
+const SLOPE: SliderRow = SliderRow::new(symbols::SLOPE, "law.slope", Range::factors(1.0, 200.0), 2);
+const EPSILON: SliderRow = SliderRow::new(symbols::EPSILON, "observer.epsilon", Range::factors(1e-4, 1.0), 5);
+const ALPHA_ONE: SliderRow =
+    SliderRow::new(symbols::ALPHA_ONE, "observer.alpha1", Range::factors(0.1, 10.0), 3);
+const ALPHA_TWO: SliderRow =
+    SliderRow::new(symbols::ALPHA_TWO, "observer.alpha2", Range::factors(0.1, 10.0), 3);
 
-/// The law of the follower that is selected.
+/// The law of the selected follower.
 pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let Some((robot, name, follow)) =
-        app_state.chosen_edge().or(Some(0)).and_then(|edge| app_state.follower(edge))
-    else {
-        return nobody(ui, app_state, "Nobody follows: there is no law to tune.");
+    let Some((_, robot, name, follow)) = app_state.tuned_follower() else {
+        return empty_panel(ui, app_state, "There is no follower, so there is no law to tune.");
     };
     scope(ui, app_state, name, out);
     let kind = vehicle(app_state, robot);
     let (law, default) = (&follow.law, Law::fitting(kind));
-    law_kind(ui, law, out);
+    choice(ui, "Law", "law.kind", law.kind, &LAWS, out);
     let apart = ui.data(|data| data.get_temp(apart_id()).unwrap_or(false));
     GAIN.two(ui, law.k, default.k, apart, out);
     if law.kind != LawKind::FullState {
@@ -66,27 +48,25 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     }
 }
 
-/// The observer of the follower that is selected.
+/// The observer of the selected follower.
 pub fn observer(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let Some((robot, name, follow)) =
-        app_state.chosen_edge().or(Some(0)).and_then(|edge| app_state.follower(edge))
-    else {
-        return nobody(ui, app_state, "Nobody follows: there is nothing to observe.");
+    let Some((_, robot, name, follow)) = app_state.tuned_follower() else {
+        return empty_panel(ui, app_state, "There is no follower, so there is nothing to observe.");
     };
     let measures = follow.sensing.kind != scene::SensingKind::Truth;
     if follow.law.kind != LawKind::OutputFeedback && !measures {
-        return nothing(ui, "This law is told the rates. Output feedback observes them.");
+        return nothing(ui, "This law knows the rates. Output feedback estimates them.");
     }
     scope(ui, app_state, name, out);
     let (observer, default) = (&follow.observer, Observer::fitting(vehicle(app_state, robot)));
     if measures {
         let mut adaptive = observer.adaptive;
-        if ui.checkbox(&mut adaptive, "ε follows from the noise of each measurement").changed() {
+        if ui.checkbox(&mut adaptive, "Adapt ε to the noise of each measurement").changed() {
             out.push(tune("Adaptive ε", "observer.adaptive", adaptive.to_string()));
-            out.push(Action::Rest);
+            out.push(Action::Release);
         }
         if observer.kind == ObserverKind::Unscented {
-            ui.weak("Two unscented Kalman filters stand in for the observer.");
+            ui.weak("Two unscented Kalman filters replace the observer.");
         }
     }
     ui.add_enabled_ui(!(measures && observer.adaptive), |ui| {
@@ -97,11 +77,8 @@ pub fn observer(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     if !(measures && observer.adaptive) {
         ui.weak(format!("Poles at {}", poles(observer)));
     }
-    if ui
-        .button("Disturb it and begin again")
-        .on_hover_text("It starts 0.2 m and 10° off, and peaks like 1/ε")
-        .clicked()
-    {
+    let disturb = ui.button("Disturb and restart");
+    if disturb.on_hover_text("It starts 0.2 m and 10° off, and peaks like 1/ε").clicked() {
         out.push(Action::Set {
             what: "Observer starts 0.2 m and 10° off".to_owned(),
             values: vec![("observer.start".to_owned(), "{ offset = [0.2, \"10 deg\"] }".to_owned())],
@@ -110,7 +87,7 @@ pub fn observer(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     }
 }
 
-/// Where the observer's poles are, in words.
+/// The observer's poles as text.
 fn poles(observer: &Observer) -> String {
     let one = |k: usize| {
         let [epsilon, a, b] = [observer.epsilon[k], observer.alpha1[k], observer.alpha2[k]];
@@ -131,46 +108,29 @@ fn poles(observer: &Observer) -> String {
 
 fn short(value: f64) -> String {
     let digits = usize::from(value.abs() < 100.0);
-    crate::tidy::fixed(value, digits)
+    crate::numbers::fixed(value, digits)
 }
 
-/// Whether changes are for all followers or for one.
+/// The choice whether changes apply to all followers or to one.
 pub(crate) fn scope(ui: &mut Ui, app_state: &AppState, name: &str, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
-        if ui.selectable_label(app_state.for_all, "All followers").clicked() {
-            out.push(Action::ForAll(true));
-        }
-        if ui.selectable_label(!app_state.for_all, format!("Only {name}")).clicked() {
-            out.push(Action::ForAll(false));
-        }
+        on_click(&ui.selectable_label(app_state.for_all, "All followers"), Action::ForAll(true), out);
+        let only = ui.selectable_label(!app_state.for_all, format!("Only {name}"));
+        on_click(&only, Action::ForAll(false), out);
     });
     ui.add_space(2.0);
 }
 
-fn law_kind(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
-    let now = LAWS.iter().find(|(kind, ..)| *kind == law.kind).map_or("", |(_, name, ..)| name);
-    let combo = ComboBox::from_id_salt("law").selected_text(now).width(ui.available_width() - 8.0);
-    let response = combo.show_ui(ui, |ui| {
-        for (kind, name, word, tip) in LAWS {
-            if ui.selectable_label(kind == law.kind, name).on_hover_text(tip).clicked() && kind != law.kind {
-                out.push(tune("Law", "law.kind", format!("{word:?}")));
-                out.push(Action::Rest);
-            }
-        }
-    });
-    chosen(&response.response, "Law", now);
-}
-
 fn switching(ui: &mut Ui, law: &Law, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
-        for (kind, word, name, tip) in [
-            (SwitchingKind::Tanh, "tanh", "tanh", "β tanh(κ e), as in the paper's simulations"),
-            (SwitchingKind::Sign, "sign", "sign", "β sign(e), as in the theorems; it chatters when sampled"),
+        for (kind, tip) in [
+            (SwitchingKind::Tanh, "β tanh(κ e), as in the paper's simulations"),
+            (SwitchingKind::Sign, "β sign(e), as in the theorems; it chatters when sampled"),
         ] {
-            let label = ui.selectable_label(law.switching == kind, name).on_hover_text(tip);
+            let label = ui.selectable_label(law.switching == kind, kind.word()).on_hover_text(tip);
             if label.clicked() && law.switching != kind {
-                out.push(tune("SwitchingKind term", "law.switching", format!("{word:?}")));
-                out.push(Action::Rest);
+                out.push(tune("Switching term", "law.switching", format!("{:?}", kind.word())));
+                out.push(Action::Release);
             }
         }
     });
@@ -183,8 +143,8 @@ pub(crate) fn vehicle(app_state: &AppState, robot: usize) -> VehicleKind {
         .map_or(VehicleKind::Unicycle, |r| r.vehicle.kind)
 }
 
-fn apart_id() -> eframe::egui::Id {
-    eframe::egui::Id::unique("gains apart")
+fn apart_id() -> Id {
+    Id::unique("gains apart")
 }
 
 const APART: &str = "A slider for each channel: K = diag(k₁, k₂), and so on";

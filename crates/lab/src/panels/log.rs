@@ -1,8 +1,9 @@
 //! What happened, newest last.
 
+use super::on_click;
 use crate::action::Action;
 use crate::app_state::AppState;
-use crate::tidy::fixed;
+use crate::numbers::fixed;
 use eframe::egui::{self, RichText, Ui};
 
 /// The log of events.
@@ -14,9 +15,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         for event in &app_state.log {
             ui.horizontal_wrapped(|ui| {
                 let time = RichText::new(format!("{} s", fixed(event.time, 2))).monospace().weak();
-                if ui.link(time).on_hover_text("Look at this time").clicked() {
-                    out.push(Action::Seek(event.time));
-                }
+                on_click(&ui.link(time).on_hover_text("Go to this time"), Action::Seek(event.time), out);
                 let text = event.text.trim_end_matches('…');
                 if event.fault {
                     ui.colored_label(ui.visuals().error_fg_color, text);

@@ -2,54 +2,37 @@
 
 use super::controls::{Range, SliderRow};
 use super::law::scope;
-use super::{chosen, nobody, tune};
+use super::{choice, empty_panel};
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::symbols;
-use eframe::egui::{ComboBox, Ui};
+use eframe::egui::Ui;
 use scene::{Sensing, SensingKind};
 use vocabulary::TrackingState;
 
-const KINDS: [(SensingKind, &str, &str, &str); 4] = [
-    (SensingKind::Truth, "Truth", "truth", "Every follower is told distance and bearing."),
-    (SensingKind::Noise, "Noise", "noise", "The truth, with errors."),
-    (SensingKind::Geometric, "Tags", "geometric", "Corners of tags, with errors; nothing is drawn."),
-    (SensingKind::Camera, "Camera", "camera", "Each follower's own pictures, drawn, searched for tags."),
+const KINDS: [(SensingKind, &str, &str); 4] = [
+    (SensingKind::Truth, "Truth", "Followers know distance and bearing exactly."),
+    (SensingKind::Noise, "Noise", "The true values with noise."),
+    (SensingKind::Geometric, "Tags", "Projected corners of tags with noise; no images are rendered."),
+    (SensingKind::Camera, "Camera", "Detects tags in rendered images of each follower's camera."),
 ];
 
-const RATE: SliderRow =
-    SliderRow { symbol: symbols::RATE, key: "sensing.rate", range: Range::factors(1.0, 100.0), decimals: 1 };
-const LATENCY: SliderRow = SliderRow {
-    symbol: symbols::LATENCY,
-    key: "sensing.latency",
-    range: Range::linear(0.0, 0.3),
-    decimals: 3,
-};
-const DROPS: SliderRow =
-    SliderRow { symbol: symbols::DROPS, key: "sensing.drop", range: Range::linear(0.0, 0.9), decimals: 2 };
-const DISTANCE_NOISE: SliderRow = SliderRow {
-    symbol: symbols::DISTANCE_NOISE,
-    key: "sensing.distance_noise",
-    range: Range::linear(0.0, 0.1),
-    decimals: 4,
-};
-const PIXEL_NOISE: SliderRow = SliderRow {
-    symbol: symbols::PIXEL_NOISE,
-    key: "sensing.pixel_noise",
-    range: Range::linear(0.0, 2.0),
-    decimals: 3,
-};
+const RATE: SliderRow = SliderRow::new(symbols::RATE, "sensing.rate", Range::factors(1.0, 100.0), 1);
+const LATENCY: SliderRow = SliderRow::new(symbols::LATENCY, "sensing.latency", Range::linear(0.0, 0.3), 3);
+const DROPS: SliderRow = SliderRow::new(symbols::DROPS, "sensing.drop", Range::linear(0.0, 0.9), 2);
+const DISTANCE_NOISE: SliderRow =
+    SliderRow::new(symbols::DISTANCE_NOISE, "sensing.distance_noise", Range::linear(0.0, 0.1), 4);
+const PIXEL_NOISE: SliderRow =
+    SliderRow::new(symbols::PIXEL_NOISE, "sensing.pixel_noise", Range::linear(0.0, 2.0), 3);
 
-/// Sensing of the follower that is selected.
+/// Sensing of the selected follower.
 pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let Some((edge, (_, name, follow))) =
-        app_state.chosen_edge().or(Some(0)).and_then(|edge| Some((edge, app_state.follower(edge)?)))
-    else {
-        return nobody(ui, app_state, "Nobody follows: nobody has to see.");
+    let Some((edge, _, name, follow)) = app_state.tuned_follower() else {
+        return empty_panel(ui, app_state, "There is no follower, so nothing is sensed.");
     };
     scope(ui, app_state, name, out);
     let (sensing, default) = (&follow.sensing, Sensing::default());
-    kind(ui, sensing, out);
+    choice(ui, "Sensing", "sensing.kind", sensing.kind, &KINDS, out);
     if sensing.kind == SensingKind::Truth {
         return;
     }
@@ -63,29 +46,14 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     }
     if let Some(state) = app_state.record().and_then(|record| record.edges.get(edge).copied()) {
         let word = match state.sight {
-            TrackingState::Truth => "is told the truth",
+            TrackingState::Truth => "uses the true values",
             TrackingState::Waiting => "has not seen its leader yet",
             TrackingState::Tracking => "sees its leader",
-            TrackingState::Coasting => "coasts on what it believes",
+            TrackingState::Coasting => "coasts on its estimate",
             TrackingState::Lost => "has lost its leader",
         };
         ui.label(format!("{name} {word}"));
-        ui.weak(format!("last measurement {} ms ago", crate::tidy::fixed(state.age * 1e3, 0)));
+        ui.weak(format!("last measurement {} ms ago", crate::numbers::fixed(state.age * 1e3, 0)));
     }
-    ui.weak("A change of sensing runs the scene again from the start.");
-}
-
-fn kind(ui: &mut Ui, sensing: &Sensing, out: &mut Vec<Action>) {
-    let now = KINDS.iter().find(|(kind, ..)| *kind == sensing.kind).map_or("", |(_, name, ..)| name);
-    let combo = ComboBox::from_id_salt("sensing").selected_text(now).width(ui.available_width() - 8.0);
-    let response = combo.show_ui(ui, |ui| {
-        for (kind, name, word, tip) in KINDS {
-            let label = ui.selectable_label(kind == sensing.kind, name).on_hover_text(tip);
-            if label.clicked() && kind != sensing.kind {
-                out.push(tune("Sensing", "sensing.kind", format!("{word:?}")));
-                out.push(Action::Rest);
-            }
-        }
-    });
-    chosen(&response.response, "Sensing", now);
+    ui.weak("Changing the sensing restarts the run.");
 }

@@ -1,13 +1,15 @@
-//! Play, pace, time, and the line on which to go back and forth, with a row for each branch.
+//! The bar at the top: playback, pace, and the timeline with a row for each branch.
 
 use super::icons::{Icon, button};
+use super::{menu_item, on_click};
 use crate::action::Action;
 use crate::app_state::AppState;
-use crate::tidy::fixed;
+use crate::numbers::fixed;
+use crate::session::history::History;
 use eframe::egui::containers::menu::{MenuConfig, SubMenuButton};
 use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInfo};
 
-/// Rows of branches that are shown, at most.
+/// Maximum number of branches in the timeline.
 const MOST_ROWS: usize = 5;
 
 /// The bar at the top.
@@ -21,9 +23,9 @@ pub fn show(ui: &mut Ui, app_state: &AppState, filming: bool, out: &mut Vec<Acti
         }
         let text = format!("t = {} s", fixed(app_state.time(), 2));
         ui.add_sized([92.0, 20.0], egui::Label::new(RichText::new(text).monospace()))
-            .on_hover_text("Simulated time that is seen");
+            .on_hover_text("Simulated time shown");
         let tail = 214.0;
-        // Where there is little room, the line of time comes first.
+        // In a narrow window the timeline comes first.
         let narrow = ui.available_width() < tail + 60.0;
         let wide = ui.available_width() - if narrow { 40.0 } else { tail };
         line(ui, app_state, wide.max(30.0), out);
@@ -35,21 +37,14 @@ pub fn show(ui: &mut Ui, app_state: &AppState, filming: bool, out: &mut Vec<Acti
 }
 
 fn buttons(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let (icon, name) = if app_state.playing && app_state.history.is_some() {
-        (Icon::Pause, "Pause")
-    } else {
-        (Icon::Play, "Play")
-    };
-    if button(ui, icon, "", name, None).on_hover_text(format!("{name} (Space)")).clicked() {
-        out.push(Action::Toggle);
-    }
-    if button(ui, Icon::Step, "", "Step", None).on_hover_text("One control sample (→)").clicked() {
-        out.push(Action::Step);
-    }
-    let tip = "Begin again at 0 (Shift Home)";
-    if button(ui, Icon::Restart, "", "Restart", None).on_hover_text(tip).clicked() {
-        out.push(Action::Restart);
-    }
+    let plays = app_state.playing && app_state.history.is_some();
+    let (icon, name) = if plays { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
+    let play = button(ui, icon, "", name, None).on_hover_text(format!("{name} (Space)"));
+    on_click(&play, Action::Toggle, out);
+    let step = button(ui, Icon::Step, "", "Step", None).on_hover_text("One control sample (→)");
+    on_click(&step, Action::Step, out);
+    let restart = button(ui, Icon::Restart, "", "Restart", None).on_hover_text("Restart at 0 s (Shift Home)");
+    on_click(&restart, Action::Restart, out);
 }
 
 fn pace(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
@@ -57,11 +52,7 @@ fn pace(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     ui.spacing_mut().slider_width = 84.0;
     let slider = Slider::new(&mut pace, 0.1..=50.0)
         .logarithmic(true)
-        .custom_formatter(
-            |value, _| {
-                if value < 10.0 { format!("{value:.1}×") } else { format!("{value:.0}×") }
-            },
-        )
+        .custom_formatter(|value, _| format!("{value:.*}×", usize::from(value < 10.0)))
         .custom_parser(|text| text.trim_end_matches(['×', 'x']).trim().parse().ok());
     let response =
         ui.add(slider).on_hover_text("Simulated seconds per second (, and .); double click for 1×");
@@ -69,16 +60,16 @@ fn pace(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     if response.double_clicked() {
         out.push(Action::Pace(1.0));
     } else if response.changed() {
-        // 1× is easy to find again.
+        // Snaps to 1×.
         out.push(Action::Pace(if (0.93..1.07).contains(&pace) { 1.0 } else { pace }));
     }
 }
 
-/// The line of time. Every branch is a row of it; dragging looks at the past.
+/// The timeline. Every branch is a row of it; dragging shows the past.
 fn line(ui: &mut Ui, app_state: &AppState, wide: f32, out: &mut Vec<Action>) {
     let rows = app_state.branches.len().clamp(1, MOST_ROWS);
     let (rect, response) = ui.allocate_exact_size(egui::vec2(wide, 26.0), Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::slider(true, app_state.time(), "Time line"));
+    response.widget_info(|| WidgetInfo::slider(true, app_state.time(), "Timeline"));
     let span = span(app_state);
     let x_of = |time: f64| rect.left() + (time / span) as f32 * rect.width();
     let painter = ui.painter_at(rect.expand(1.0));
@@ -96,18 +87,11 @@ fn line(ui: &mut Ui, app_state: &AppState, wide: f32, out: &mut Vec<Action>) {
             egui::Rect::from_x_y_ranges(x_of(from)..=x_of(end).max(x_of(from) + 1.0), y - half..=y + half);
         painter.rect_filled(bar, half.min(2.0), colour);
         for change in branch.changes.iter().filter(|change| change.time >= from) {
-            let x = x_of(change.time);
-            painter.line_segment(
-                [egui::pos2(x, y - half), egui::pos2(x, y + half)],
-                Stroke::new(1.0, visuals.extreme_bg_color),
-            );
+            let stroke = Stroke::new(1.0, visuals.extreme_bg_color);
+            painter.vline(x_of(change.time), y - half..=y + half, stroke);
         }
     }
-    let x = x_of(app_state.time());
-    painter.line_segment(
-        [egui::pos2(x, rect.top()), egui::pos2(x, rect.bottom())],
-        Stroke::new(2.0, visuals.strong_text_color()),
-    );
+    painter.vline(x_of(app_state.time()), rect.y_range(), Stroke::new(2.0, visuals.strong_text_color()));
     let under = |pos: egui::Pos2| f64::from(((pos.x - rect.left()) / rect.width()).clamp(0.0, 1.0)) * span;
     if let Some(pos) = response.interact_pointer_pos()
         && (response.dragged() || response.clicked())
@@ -119,15 +103,14 @@ fn line(ui: &mut Ui, app_state: &AppState, wide: f32, out: &mut Vec<Action>) {
     }
 }
 
-/// Seconds on the line: at least the scene's, and some more than there is.
+/// Length of the timeline, s: at least the scene's duration, and a little more than is simulated.
 fn span(app_state: &AppState) -> f64 {
-    let ends = (0..app_state.branches.len()).filter_map(|k| Some(app_state.history.as_ref()?.end(k)));
-    let end = ends.fold(0.0, f64::max);
+    let end = app_state.history.as_ref().map_or(0.0, History::latest);
     let planned = app_state.scene().map_or(1.0, |scene| scene.time.duration);
     if end <= planned { planned } else { end * 1.02 }.max(1e-3)
 }
 
-/// Quiet for branches that are not looked at.
+/// The colour of a branch: pale for all but the active one.
 pub(crate) fn branch_colour(index: usize, active: usize, visuals: &egui::Visuals) -> Color32 {
     if index == active { visuals.selection.bg_fill } else { visuals.weak_text_color().gamma_multiply(0.6) }
 }
@@ -137,36 +120,28 @@ fn buttons_of_work(ui: &mut Ui, filming: bool, out: &mut Vec<Action>) {
     let (icon, tip, colour) = if filming {
         (Icon::Stop, "End the film (F)", Some(ui.visuals().error_fg_color))
     } else {
-        (Icon::Record, "Film what is seen (F)", None)
+        (Icon::Record, "Film the view (F)", None)
     };
-    if button(ui, icon, "Film", "Film", colour).on_hover_text(tip).clicked() {
-        out.push(Action::Film);
-    }
-    if button(ui, Icon::Camera, "", "Picture", None).on_hover_text("A PNG of what is seen (P)").clicked() {
-        out.push(Action::Picture);
-    }
-    if button(ui, Icon::Menu, "Scenes", "Scenes", None).on_hover_text("Open a scene (Ctrl O)").clicked() {
-        out.push(Action::Gallery);
-    }
+    on_click(&button(ui, icon, "Film", "Film", colour).on_hover_text(tip), Action::Film, out);
+    let picture = button(ui, Icon::Camera, "", "Picture", None).on_hover_text("A PNG of the view (P)");
+    on_click(&picture, Action::Picture, out);
+    let scenes = button(ui, Icon::Menu, "Scenes", "Scenes", None).on_hover_text("Open a scene (Ctrl O)");
+    on_click(&scenes, Action::Gallery, out);
 }
 
-/// Everything else.
+/// The menu for everything else.
 fn menu(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let more = button(ui, Icon::More, "", "More", None);
-    // Items close the menu themselves; a click into its field does not.
+    // Items close the menu themselves; a click into its text field does not.
     let stays = egui::PopupCloseBehavior::CloseOnClickOutside;
     egui::Popup::menu(&more).close_behavior(stays).show(|ui| {
-        let unsaved = app_state.draft.as_ref().is_some_and(crate::session::scene_draft::SceneDraft::unsaved);
+        let on_disk = app_state.draft.as_ref().is_some_and(|draft| draft.path.is_some());
         for (text, action, on) in [
             ("Scenes   Ctrl O", Action::Gallery, true),
             ("Film   F", Action::Film, true),
             ("Picture   P", Action::Picture, true),
-            ("Save scene   Ctrl S", Action::Save, unsaved),
-            (
-                "Reload from disk   Ctrl R",
-                Action::Reload,
-                app_state.draft.as_ref().is_some_and(|d| d.path.is_some()),
-            ),
+            ("Save scene   Ctrl S", Action::Save, app_state.unsaved()),
+            ("Reload from disk   Ctrl R", Action::Reload, on_disk),
             ("Undo   Ctrl Z", Action::Undo, app_state.undoes().is_some()),
             ("Redo   Ctrl Y", Action::Redo, app_state.draft.as_ref().is_some_and(|d| d.redoes().is_some())),
             ("Keep the run   K", Action::KeepRun, true),
@@ -175,28 +150,19 @@ fn menu(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
             ("Light or dark   T", Action::Theme, true),
             ("Shortcuts   ?", Action::Help, true),
         ] {
-            if ui.add_enabled(on, egui::Button::new(text)).clicked() {
-                out.push(action);
-                ui.close();
-            }
+            menu_item(ui, on, text, action, out);
         }
         ui.separator();
         let config = MenuConfig::new().close_behavior(stays);
         SubMenuButton::new("Save as").config(config).ui(ui, |ui| save_as(ui, out));
         ui.menu_button("Panels", |ui| {
-            for name in crate::panes::NAMES {
-                if ui.button(*name).clicked() {
-                    out.push(Action::Panel(name));
-                    ui.close();
-                }
+            for (name, _) in crate::panes::PANES {
+                menu_item(ui, true, name, Action::Panel(name), out);
             }
         });
         ui.menu_button("Size", |ui| {
             for scale in [0.75, 1.0, 1.25, 1.5, 2.0, 3.0] {
-                if ui.button(format!("{:.0} %", scale * 100.0)).clicked() {
-                    out.push(Action::Scale(scale));
-                    ui.close();
-                }
+                menu_item(ui, true, &format!("{:.0} %", scale * 100.0), Action::Scale(scale), out);
             }
         });
     });

@@ -2,45 +2,32 @@
 
 use super::controls::{Range, SliderRow};
 use super::law::scope;
-use super::{nobody, nothing};
+use super::{empty_panel, nothing, on_click};
 use crate::action::Action;
 use crate::app_state::{AppState, Tool};
+use crate::numbers::toml_number;
 use crate::symbols;
-use crate::tidy::tidy;
 use eframe::egui::{self, Slider, Ui, WidgetInfo};
 use scene::Vehicle;
+use vocabulary::counted;
 
-const SPEED_MIN: SliderRow = SliderRow {
-    symbol: symbols::SPEED_MIN,
-    key: "vehicle.speed_min",
-    range: Range { span: [0.01, 1.0], hard: [0.001, 100.0], logarithmic: true },
-    decimals: 3,
-};
-const SPEED_MAX: SliderRow = SliderRow {
-    symbol: symbols::SPEED_MAX,
-    key: "vehicle.speed_max",
-    range: Range::factors(0.5, 20.0),
-    decimals: 2,
-};
-const TURN_MAX: SliderRow = SliderRow {
-    symbol: symbols::TURN_MAX,
-    key: "vehicle.turn_rate_max",
-    range: Range::factors(0.2, 20.0),
-    decimals: 2,
-};
-const ACCELERATION_MAX: SliderRow = SliderRow {
-    symbol: symbols::ACCELERATION_MAX,
-    key: "vehicle.acceleration_max",
-    range: Range::factors(0.2, 50.0),
-    decimals: 2,
-};
+const SPEED_MIN: SliderRow = SliderRow::new(
+    symbols::SPEED_MIN,
+    "vehicle.speed_min",
+    Range { span: [0.01, 1.0], hard: [0.001, 100.0], logarithmic: true },
+    3,
+);
+const SPEED_MAX: SliderRow =
+    SliderRow::new(symbols::SPEED_MAX, "vehicle.speed_max", Range::factors(0.5, 20.0), 2);
+const TURN_MAX: SliderRow =
+    SliderRow::new(symbols::TURN_MAX, "vehicle.turn_rate_max", Range::factors(0.2, 20.0), 2);
+const ACCELERATION_MAX: SliderRow =
+    SliderRow::new(symbols::ACCELERATION_MAX, "vehicle.acceleration_max", Range::factors(0.2, 50.0), 2);
 
-/// Limits of the follower that is selected.
+/// Limits of the selected follower.
 pub fn limits(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let Some((robot, name, _)) =
-        app_state.chosen_edge().or(Some(0)).and_then(|edge| app_state.follower(edge))
-    else {
-        return nobody(ui, app_state, "Nobody follows.");
+    let Some((_, robot, name, _)) = app_state.tuned_follower() else {
+        return empty_panel(ui, app_state, "There is no follower.");
     };
     let Some(vehicle) = app_state.scene_now().and_then(|scene| scene.robots.get(robot)).map(|r| r.vehicle)
     else {
@@ -57,8 +44,8 @@ pub fn limits(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         ui.horizontal(|ui| {
             symbols::ACCELERATION_MAX.label(ui);
             ui.weak("unbounded, as in the paper");
-            if ui.button("Bound it").clicked() {
-                let (what, value) = ("Largest acceleration".to_owned(), "4.0".to_owned());
+            if ui.button("Set a limit").clicked() {
+                let (what, value) = ("Maximum acceleration".to_owned(), Some("4.0".to_owned()));
                 out.push(Action::Tune { what, key: ACCELERATION_MAX.key, value });
             }
         });
@@ -71,13 +58,11 @@ pub fn surroundings(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         let pillar = app_state.tool == Tool::Pillar;
         let tip = "Click on the ground to place a pillar (O)";
-        if ui.selectable_label(pillar, "+ Pillar").on_hover_text(tip).clicked() {
-            out.push(Action::Take(if pillar { Tool::Hand } else { Tool::Pillar }));
-        }
+        let label = ui.selectable_label(pillar, "+ Pillar").on_hover_text(tip);
+        on_click(&label, Action::UseTool(Tool::Pillar), out);
         ui.weak(match scene.props.len() {
             0 => "no obstacles".to_owned(),
-            1 => "1 obstacle".to_owned(),
-            count => format!("{count} obstacles"),
+            count => counted(count, "obstacle"),
         });
     });
     egui::ScrollArea::vertical().id_salt("props").max_height(110.0).show(ui, |ui| {
@@ -87,9 +72,7 @@ pub fn surroundings(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
                 let remove = format!("Remove {}", prop.name);
                 let button = ui.small_button("×").on_hover_text(&remove);
                 button.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &remove));
-                if button.clicked() {
-                    out.push(Action::RemoveProp(prop.name.clone()));
-                }
+                on_click(&button, Action::RemoveProp(prop.name.clone()), out);
             });
         }
     });
@@ -101,7 +84,7 @@ pub fn surroundings(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     ] {
         ui.horizontal(|ui| {
             ui.label(name);
-            // The light changes when the slider is let go.
+            // The light changes when the slider is released.
             let id = ui.scope_id().with(key);
             let mut new: f64 = ui.data(|data| data.get_temp(id)).unwrap_or(value);
             let response = ui.add(Slider::new(&mut new, span).suffix("°").max_decimals(0));
@@ -111,7 +94,7 @@ pub fn surroundings(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
             } else {
                 ui.data_mut(|data| data.remove::<f64>(id));
                 if (response.drag_stopped() || response.changed()) && (new - value).abs() > 0.25 {
-                    let values = vec![(key.to_owned(), format!("\"{} deg\"", tidy(new.round())))];
+                    let values = vec![(key.to_owned(), format!("\"{} deg\"", toml_number(new.round())))];
                     out.push(Action::Set { what: name.to_owned(), values });
                 }
             }

@@ -1,8 +1,8 @@
-//! Runs that share a past: going back, changing something, and running on, exactly.
+//! Branches of a run: going back, changing parameters and continuing, exactly.
 //!
-//! A branch is its scene and a list of changes, each before a control sample. Where a branch stands, and where it stood
-//! every second or so, is kept as a saved simulation; going back starts from the one before and runs on to the sample
-//! asked for, which is the same run bit for bit.
+//! A branch is a scene and a list of changes, each before a control sample. The simulation of a branch is kept,
+//! with checkpoints about every second. Going back starts from the checkpoint before and simulates up to the requested
+//! sample, which gives the same run bit for bit.
 
 use super::checked_scene::{CheckedScene, build};
 use metrics::Digest;
@@ -12,12 +12,12 @@ use std::rc::Rc;
 use std::sync::Arc;
 use vocabulary::StepRecord;
 
-/// Simulated time between two saved states at first, s.
+/// Initial simulated time between two checkpoints, s.
 const MARK_EVERY: f64 = 1.0;
-/// Most saved states of a branch; when there are more, every second goes and their distance doubles.
+/// Maximum number of checkpoints of a branch; beyond it every second one is dropped and their distance doubles.
 const MOST_MARKS: usize = 48;
 
-/// Longer than anybody looks, s.
+/// Longer than any session, s.
 const FOR_EVER: f64 = 1e7;
 
 /// All branches of a run; the first is its trunk.
@@ -26,13 +26,13 @@ pub struct Branches {
     list: Vec<Branch>,
 }
 
-/// One future of the run.
+/// A branch of the run.
 pub struct Branch {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// Branch and control sample at which it leaves its parent.
+    /// Parent branch, and the control sample of the fork.
     pub parent: Option<(usize, u64)>,
-    /// What was changed, from time 0 on, in the order of the samples.
+    /// Its changes since time 0, in the order of the samples.
     pub changes: Vec<BranchChange>,
     simulation: Simulation,
     digest: Digest,
@@ -40,33 +40,33 @@ pub struct Branch {
     mark_every: u64,
 }
 
-/// Parameters that hold from a control sample on.
+/// A change of parameters at a control sample.
 #[derive(Debug, Clone)]
 pub struct BranchChange {
-    /// The first sample that is decided with them.
+    /// The first control sample with the new parameters.
     pub sample: u64,
     /// s.
     pub time: f64,
     /// The scene with these parameters.
     pub scene: Arc<Scene>,
-    /// What is different from before, as overrides.
+    /// The differences from before, as overrides.
     pub set: Vec<String>,
 }
 
-/// A branch as it stood before a sample.
+/// A checkpoint: the state of a branch before a sample.
 struct SavedState {
     simulation: Simulation,
     digest: Digest,
 }
 
 impl Branches {
-    /// The trunk of `scene` at time 0; `ready` gives its simulation what it needs besides, such as eyes.
+    /// The trunk of `scene` at time 0; `ready` completes its simulation, for example with a camera renderer.
     ///
     /// # Errors
     /// [`BuildError`] for a scene that cannot run.
     pub fn open(scene: Arc<Scene>, ready: impl FnOnce(&mut Simulation)) -> Result<Self, BuildError> {
         let mut simulation = Simulation::new(build(&scene)?);
-        // A laboratory runs on for as long as somebody looks.
+        // The lab has no end time.
         simulation.extend_to(FOR_EVER);
         ready(&mut simulation);
         let mark = Rc::new(SavedState { simulation: simulation.save(), digest: Digest::default() });
@@ -83,21 +83,21 @@ impl Branches {
         Ok(Self { scene, list: vec![trunk] })
     }
 
-    /// All of them, in the order in which they were made.
+    /// All branches in the order of creation.
     pub fn list(&self) -> &[Branch] {
         &self.list
     }
 
-    /// The next sample of a branch; `None` where it is over.
+    /// Simulates the next sample of a branch; `None` after its end.
     pub fn advance(&mut self, branch: usize) -> Option<&StepRecord> {
         self.list.get_mut(branch)?.advance()
     }
 
-    /// Lets the parameters of `scene` hold from the next sample of a branch on. A change that takes back what was changed
-    /// at the same sample sets nothing.
+    /// Applies the parameters of `scene` from the next sample of a branch on. A change that reverts an earlier one at
+    /// the same sample sets nothing.
     ///
     /// # Errors
-    /// What of the scene cannot change while a run goes, in words.
+    /// Which part of the scene cannot change during a run.
     pub fn change(&mut self, branch: usize, checked: &CheckedScene) -> Result<Option<BranchChange>, String> {
         let base = Arc::clone(&self.scene);
         match self.list.get_mut(branch) {
@@ -106,7 +106,7 @@ impl Branches {
         }
     }
 
-    /// A new branch that leaves `from` before control sample `sample`; its index.
+    /// Forks branch `from` before control sample `sample`; the index of the new branch.
     pub fn fork(&mut self, from: usize, sample: u64, name: String) -> Option<usize> {
         let branch = self.list.get(from)?.fork(&self.scene, from, sample, name);
         self.list.push(branch);
@@ -134,7 +134,7 @@ impl Branch {
         }
     }
 
-    /// Takes the parameters of `scene`; what of them is new. Changes before the same sample become one.
+    /// Applies the parameters of `scene` and returns the differences. Changes before the same sample are merged.
     fn change(&mut self, base: &Arc<Scene>, checked: &CheckedScene) -> Result<Option<BranchChange>, String> {
         let sample = self.simulation.sample();
         let earlier = self.changes.partition_point(|change| change.sample < sample);
@@ -159,10 +159,10 @@ impl Branch {
     fn fork(&self, base: &Scene, index: usize, until: u64, name: String) -> Self {
         let marks: Vec<_> = self.marks.iter().filter(|m| m.simulation.sample() <= until).cloned().collect();
         let changes: Vec<_> = self.changes.iter().filter(|c| c.sample < until).cloned().collect();
-        // The mark at time 0 is always there.
+        // The checkpoint at time 0 always exists.
         let start = marks.last().unwrap_or(&self.marks[0]);
         let (mut simulation, mut digest) = (start.simulation.save(), start.digest.clone());
-        // What was built once, when it was made, can be built again.
+        // It was built before, so it can be built again.
         if !base.changes.is_empty()
             && let Ok(setup) = planned(base, &changes)
         {
@@ -193,18 +193,18 @@ impl Branch {
         self.digest.text()
     }
 
-    /// The run as it stands, before its next sample.
+    /// The simulation before its next sample.
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
-    /// A copy of the run as it stands: it goes on to the same future.
+    /// A copy of the simulation, which continues identically.
     pub fn copy(&self) -> Simulation {
         self.simulation.save()
     }
 }
 
-/// The run of a scene that has changes of its own, with those of a branch among them: whichever is later holds.
+/// The changes of a scene merged with those of a branch; the later change wins.
 fn planned(base: &Scene, changes: &[BranchChange]) -> Result<Setup, String> {
     let last = changes.last().map_or(0.0, |change| change.time);
     let text =
@@ -213,11 +213,11 @@ fn planned(base: &Scene, changes: &[BranchChange]) -> Result<Setup, String> {
     build(&scene).map_err(|error| error.to_string())
 }
 
-/// The text of a scene that runs as a branch ran: `base`, which has changes `own`, with the branch's changes, for
+/// The text of a scene that reproduces a branch: `base`, which has changes `own`, with the branch's changes, for
 /// `duration` s.
 ///
 /// # Errors
-/// Why the text cannot be edited, in words.
+/// Why the text cannot be edited.
 pub fn script(
     base: &str,
     own: &[scene::Change],
@@ -225,13 +225,13 @@ pub fn script(
     duration: f64,
 ) -> Result<String, String> {
     let mut text = SceneText::parse(base).map_err(|error| error.to_string())?;
-    // What is expected is expected of the whole run, as it was written.
+    // Expectations apply to the original run.
     let whole = text.get("time.duration").and_then(|whole| whole.parse::<f64>().ok());
     if !changes.is_empty() || whole.is_none_or(|whole| duration < whole) {
         text.remove("expect").map_err(|error| error.to_string())?;
     }
     text.set("time.duration", &format!("{duration:?}")).map_err(|error| error.to_string())?;
-    // Robot by robot, so that what is set for all of them does not give way to what was set for one before.
+    // Robot by robot, so that a value for all robots is not overridden by an earlier value of one.
     if !own.is_empty() {
         while text.count("changes") > 0 {
             text.remove_item("changes", "0").map_err(|error| error.to_string())?;

@@ -1,4 +1,4 @@
-//! A scene that can run, with the run that it builds: whoever checks a change has built it, and hands it over.
+//! A scene with the run built from it: checking a change builds the run, which is then passed on.
 
 use scene::Scene;
 use simulation::{BuildError, Setup};
@@ -9,12 +9,12 @@ thread_local! {
     static BUILDS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// A scene and what it builds.
+/// A scene and its built run.
 #[derive(Debug)]
 pub struct CheckedScene {
     scene: Arc<Scene>,
     setup: Setup,
-    /// The scene that it was compared with, and the overrides that lead from there to here.
+    /// The scene that it was compared with, and the overrides that lead from that to this one.
     before: Option<Arc<Scene>>,
     set: Vec<String>,
 }
@@ -39,13 +39,13 @@ impl CheckedScene {
         &self.scene
     }
 
-    /// The run that it builds.
+    /// Its built run.
     pub fn setup(&self) -> &Setup {
         &self.setup
     }
 
-    /// The overrides that lead from `before` to this scene. Compares the two only where that has not been done: while a
-    /// run stands, every change of one sample is compared with the scene of the sample before.
+    /// The overrides that lead from `before` to this scene. Reuses an earlier comparison: while a run is paused, every
+    /// change of a sample is compared with the scene of the sample before.
     ///
     /// # Errors
     /// As [`Scene::sets_to`].
@@ -66,7 +66,7 @@ pub(crate) fn build(scene: &Scene) -> Result<Setup, BuildError> {
     simulation::build(scene)
 }
 
-/// How many runs this thread has built.
+/// Number of runs that this thread has built.
 pub fn builds() -> u64 {
     BUILDS.get()
 }

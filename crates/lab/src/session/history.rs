@@ -1,53 +1,53 @@
-//! Everything simulated so far, branch by branch, so that it can be looked at again: records, trails, and curves.
+//! Everything simulated so far, branch by branch: records, trails and clearances.
 
 use metrics::clearance::Clearance;
 use rendering::Trail;
 use std::sync::Arc;
 use vocabulary::{FleetInfo, StepRecord};
 
-/// Memory that the records of a branch may take, bytes.
+/// Maximum memory of the records of a branch, bytes.
 const MOST_BYTES: usize = 96 << 20;
-/// Records of a branch, at most and at least, whatever their size.
+/// Limits of the number of records of a branch, whatever their size.
 const MOST_MOMENTS: usize = 20_000;
 const LEAST_MOMENTS: usize = 600;
-/// Between two trails that are kept, s; doubles when there are too many.
+/// Initial time between two kept trails, s; it doubles when there are too many.
 const TRAIL_EVERY: f64 = 2.0;
 const MOST_TRAILS: usize = 40;
 
-/// The past of all branches.
+/// The history of all branches.
 pub struct History {
     fleet: Arc<FleetInfo>,
     period: f64,
     past: Vec<BranchHistory>,
-    /// Measures room, before it has seen anything.
+    /// Measures clearance; in its initial state.
     clearance: Option<Clearance>,
-    /// The trail that was asked for last, for the next question is near it.
+    /// The last trail, since the next request is usually near it.
     shown: Option<(usize, Trail)>,
 }
 
-/// The past of a branch, that of its parent before it left included.
+/// The history of a branch, including that of its parent before the fork.
 #[derive(Clone)]
 struct BranchHistory {
     records: Vec<Arc<StepRecord>>,
-    /// Only every so many samples are kept.
+    /// Every how many samples a record is kept.
     stride: u64,
     head: Option<Arc<StepRecord>>,
     trail: Trail,
     trails: Vec<Trail>,
     trail_every: f64,
-    /// Least room between bodies over time: s, m.
+    /// Least clearance between bodies over time: s, m.
     rooms: Vec<[f64; 2]>,
 }
 
-/// Between two looks at how much room there is, s.
+/// Interval between two measurements of clearance, s.
 const ROOM_EVERY: f64 = 0.1;
-/// In larger formations nobody measures the room of all to all while they drive.
+/// Maximum number of robots for which clearance is measured while they drive.
 const MOST_ROBOTS_WITH_ROOM: usize = 30;
-/// Rooms that are kept.
+/// Maximum number of kept clearances.
 const MOST_ROOMS: usize = 20_000;
 
 impl History {
-    /// Of a run of `fleet` with a control period in s.
+    /// The empty history of a run of `fleet` with a control period in s.
     pub fn new(fleet: Arc<FleetInfo>, period: f64) -> Self {
         let past = BranchHistory {
             records: Vec::new(),
@@ -62,12 +62,12 @@ impl History {
         Self { clearance, fleet, period, past: vec![past], shown: None }
     }
 
-    /// Who is on stage.
+    /// Robots and edges.
     pub fn fleet(&self) -> &Arc<FleetInfo> {
         &self.fleet
     }
 
-    /// The same run in another light, under another title.
+    /// Changes the appearance of the run: light, title, views.
     pub fn dress(&mut self, scene: &scene::Scene) {
         let light = vocabulary::Light {
             sun_elevation: scene.environment.sun_elevation,
@@ -88,12 +88,12 @@ impl History {
         self.past.len()
     }
 
-    /// Takes in the next record of a branch.
+    /// Adds the next record of a branch.
     pub fn push(&mut self, branch: usize, record: StepRecord) {
         let sample = self.sample(record.snapshot.time);
         let most = self.most_moments();
         if let Some(past) = self.past.get_mut(branch) {
-            // A branch is told where it begins; it may know already.
+            // A branch receives its first record again; it may have it already.
             if past.is_known(&record) {
                 return;
             }
@@ -104,7 +104,7 @@ impl History {
         }
     }
 
-    /// A branch that leaves `from` before `sample`.
+    /// Adds a branch that forks from `from` before `sample`.
     pub fn fork(&mut self, from: usize, sample: u64) {
         let until = (sample as f64 - 0.5) * self.period;
         let Some(parent) = self.past.get(from) else { return };
@@ -137,7 +137,12 @@ impl History {
         self.head(branch).map_or(0.0, |record| record.snapshot.time)
     }
 
-    /// The record of a branch at a time; between two that are kept, in between.
+    /// Time of the last record of any branch, s.
+    pub fn latest(&self) -> f64 {
+        (0..self.past.len()).map(|branch| self.end(branch)).fold(0.0, f64::max)
+    }
+
+    /// The record of a branch at a time; interpolated between two kept records.
     pub fn at(&self, branch: usize, time: f64) -> Option<Arc<StepRecord>> {
         let past = self.past.get(branch)?;
         let head = past.head.as_ref()?;
@@ -155,7 +160,7 @@ impl History {
         Some(Arc::new(StepRecord::between(before, next, ((time - a) / (b - a)).clamp(0.0, 1.0))))
     }
 
-    /// Makes the trail of a branch up to a time, for [`History::trail`].
+    /// Prepares the trail of a branch up to a time, for [`History::trail`].
     pub fn prepare_trail(&mut self, branch: usize, time: f64) {
         let Some(past) = self.past.get(branch) else { return };
         if past.is_head(time) {
@@ -173,7 +178,7 @@ impl History {
         self.shown = Some((branch, past.grow(start, time)));
     }
 
-    /// What a picture of a branch at a time needs to know of the past: of the present, or of the time prepared last.
+    /// The trail of a branch at a time, for pictures: that of the present, or of the time prepared last.
     pub fn trail(&self, branch: usize, time: f64) -> Option<&Trail> {
         let past = self.past.get(branch)?;
         if past.is_head(time) {
@@ -190,13 +195,13 @@ impl History {
         some.cloned().collect()
     }
 
-    /// At most `most` records of a branch between two times, s, evenly over all of it.
+    /// At most `most` evenly spaced records of a branch between two times, s.
     pub fn between(&self, branch: usize, [from, to]: [f64; 2], most: usize) -> Vec<&StepRecord> {
         let Some(past) = self.past.get(branch) else { return Vec::new() };
         let first = past.records.partition_point(|m| m.snapshot.time < from).saturating_sub(1);
         let last = (past.records.partition_point(|m| m.snapshot.time <= to) + 1).min(past.records.len());
         let some = &past.records[first.min(last)..last];
-        // Whole multiples of the step, so that curves do not tremble as they grow.
+        // Whole multiples of the step, so that curves do not jitter as they grow.
         let step = some.len().div_ceil(most.max(1)).next_power_of_two();
         let skip = first.next_multiple_of(step) - first;
         let mut records: Vec<&StepRecord> = some.iter().skip(skip).step_by(step).map(|m| &**m).collect();
@@ -206,7 +211,7 @@ impl History {
         records
     }
 
-    /// Least room between bodies of a branch between two times: s, m.
+    /// Least clearances between bodies of a branch between two times: s, m.
     pub fn rooms(&self, branch: usize, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
         let Some(past) = self.past.get(branch) else { return Vec::new() };
         past.rooms.iter().filter(|[time, _]| (from..=to).contains(time)).copied().collect()
@@ -269,7 +274,7 @@ impl BranchHistory {
         }
     }
 
-    /// The trail of everything up to a time.
+    /// The trail of all records up to a time.
     fn trail_until(&self, time: f64, fleet: &FleetInfo) -> Trail {
         let start = self.trails.iter().rev().find(|trail| before(trail, time));
         self.grow(start.cloned().unwrap_or_else(|| Trail::new(fleet)), time)

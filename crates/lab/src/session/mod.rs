@@ -1,4 +1,4 @@
-//! A run that is changed while it goes: branches, their past, what will come, and the text of the scene. No window here.
+//! A run that is edited while it is simulated: branches, history, prediction and the scene's text. No window here.
 
 pub mod branches;
 pub mod checked_scene;

@@ -1,4 +1,4 @@
-//! What will come if nobody changes anything: a copy of the run, sent ahead on a thread of its own.
+//! The prediction: a copy of the run, simulated ahead on its own thread.
 
 use metrics::clearance::Clearance;
 use simulation::Simulation;
@@ -10,60 +10,60 @@ use std::sync::{
 use std::time::Instant;
 use vocabulary::{EntityId, Pose, StepRecord};
 
-/// Points of a path, at most.
+/// Maximum number of points of a path.
 const MOST_POINTS: usize = 160;
-/// Between two looks at how much room there is, s.
+/// Interval between two measurements of clearance, s.
 const ROOM_EVERY: f64 = 0.1;
-/// Late share of the look in which the formation has to stand still to count as settled.
+/// Final share of the prediction over which [`Prediction::late_error`] is taken.
 const LATE: f64 = 0.1;
 
 /// The next seconds of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Prediction {
-    /// The branch it is of.
+    /// Its branch.
     pub branch: usize,
-    /// Where it begins and ends, s.
+    /// Start and end time, s.
     pub span: [f64; 2],
     /// One path per robot.
     pub paths: Vec<Vec<PathPoint>>,
-    /// Speed, m/s, and turn rate, rad/s, of every robot at the places of its path.
+    /// Speed, m/s, and turn rate, rad/s, of every robot at the points of its path.
     pub motions: Vec<Vec<[f64; 2]>>,
-    /// Where every robot ends.
+    /// Final pose of every robot.
     pub end: Vec<Pose>,
-    /// Largest |error| of every edge in the last tenth, [m, rad].
+    /// Largest |error| of every edge in the last tenth of the prediction, [m, rad].
     pub late_error: Vec<[f64; 2]>,
-    /// First contact ahead: s and the robots or props in it.
+    /// First contact: time, s, and the robots or props in it.
     pub contact: Option<(f64, [EntityId; 2])>,
-    /// First command that a limit cuts: s and edge.
+    /// First saturated command: time, s, and edge.
     pub limited: Option<(f64, usize)>,
-    /// How long it took to compute, s.
+    /// Computing time, s.
     pub took: f64,
-    /// Copies sent ahead before this one.
+    /// Number of predictions requested before this one.
     pub number: usize,
 }
 
-/// A robot's place on its way.
+/// A point of a predicted path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathPoint {
     /// m, world frame.
     pub at: [f64; 2],
-    /// What is wrong there.
+    /// The problem there.
     pub trouble: Trouble,
 }
 
-/// What is wrong with a place on the way.
+/// A problem at a point of a predicted path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum Trouble {
     /// Nothing.
     #[default]
     None,
-    /// A limit cuts the command.
+    /// The command is saturated.
     Limited,
     /// The robot touches something.
     Contact,
 }
 
-/// The thread that looks ahead. The newest question counts; older ones are dropped.
+/// The prediction thread. It serves the newest request and drops older ones.
 pub struct Predictor {
     questions: Sender<PredictionRequest>,
     open: Arc<AtomicUsize>,
@@ -77,7 +77,7 @@ struct PredictionRequest {
 }
 
 impl Predictor {
-    /// Starts the thread; predictions come out of the receiver, and `wake` is called for each.
+    /// Starts the thread; the receiver delivers predictions, and `wake` is called for each.
     pub fn start(wake: impl Fn() + Send + 'static) -> (Self, Receiver<Prediction>) {
         let (questions, inbox) = channel::<PredictionRequest>();
         let (outbox, predictions) = channel();
@@ -99,17 +99,17 @@ impl Predictor {
                 wake();
             }
         };
-        // Without a thread there are no predictions, and all else goes on.
+        // Without a thread there are no predictions, and everything else works.
         let _ = std::thread::Builder::new().name("ahead".to_owned()).spawn(work);
         (Self { questions, open }, predictions)
     }
 
-    /// Whether a prediction is under way.
+    /// Whether a prediction is being computed.
     pub fn busy(&self) -> bool {
         self.open.load(Relaxed) > 0
     }
 
-    /// Sends a copy of a run ahead by `seconds`.
+    /// Requests a prediction from a copy of a run over `seconds`.
     pub fn look(&self, branch: usize, run: Simulation, seconds: f64) {
         static NUMBER: AtomicUsize = AtomicUsize::new(0);
         self.open.fetch_add(1, Relaxed);
@@ -120,11 +120,11 @@ impl Predictor {
     }
 }
 
-/// Runs ahead; `None` where a newer question has come after a good part of the work.
+/// Computes a prediction; `None` if a newer request has arrived during the first quarter.
 fn ahead(question: PredictionRequest, newer: &dyn Fn() -> bool) -> Option<Prediction> {
     let began = Instant::now();
     let PredictionRequest { branch, mut run, seconds, number } = question;
-    // Pictures for cameras cannot be drawn ahead: there a follower is told the truth.
+    // Camera images cannot be rendered ahead of time: followers use the true values.
     if run.needs_cameras() {
         run.trust();
     }
@@ -138,7 +138,7 @@ fn ahead(question: PredictionRequest, newer: &dyn Fn() -> bool) -> Option<Predic
             break;
         };
         builder.take(k, record);
-        // What is half done is finished: under a stream of questions there would be no answer at all.
+        // Later the work is finished: otherwise a stream of requests would never get an answer.
         if k == samples / 4 && newer() && began.elapsed().as_millis() > 60 {
             return None;
         }
@@ -146,7 +146,7 @@ fn ahead(question: PredictionRequest, newer: &dyn Fn() -> bool) -> Option<Predic
     Some(Prediction { branch, number, took: began.elapsed().as_secs_f64(), ..builder.out })
 }
 
-/// Makes a prediction of records.
+/// Builds a prediction from records.
 struct PredictionBuilder {
     out: Prediction,
     stride: u64,
@@ -189,7 +189,7 @@ impl PredictionBuilder {
         }
     }
 
-    /// The last moment, be it because the run stops there.
+    /// Adds the last moment, also where the run stops early.
     fn end(&mut self, record: &StepRecord) {
         self.places(record);
         self.out.end = record.snapshot.robots.iter().map(|robot| robot.motion.pose).collect();
@@ -215,7 +215,7 @@ impl PredictionBuilder {
         }
     }
 
-    /// Contacts of bodies with weight, and bodies of those without that run through each other.
+    /// Contacts of dynamic bodies, and overlaps of kinematic ones.
     fn contacts(&mut self, k: u64, record: &StepRecord) {
         let time = record.snapshot.time;
         let mut touch = |things: [EntityId; 2]| {

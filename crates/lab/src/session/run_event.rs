@@ -1,50 +1,53 @@
-//! What the thread of the run reports to the window.
+//! Events that the thread of the run sends to the window.
 
 use super::branches::BranchChange;
 use std::sync::Arc;
 use vocabulary::{FleetInfo, StepRecord};
 
-/// What the window is told.
+/// A new branch.
+pub struct Fork {
+    /// Its index.
+    pub branch: usize,
+    /// The branch it forks from.
+    pub from: usize,
+    /// Its first own sample.
+    pub sample: u64,
+    /// Its name.
+    pub name: String,
+    /// Changes it shares with that branch.
+    pub changes: Vec<BranchChange>,
+}
+
+/// An event of the run.
 pub enum RunEvent {
     /// A scene was opened.
     Opened {
-        /// Who is on stage.
+        /// Robots and edges.
         fleet: Arc<FleetInfo>,
         /// Control period, s.
         period: f64,
     },
-    /// A branch was made and is the one that goes on.
-    Forked {
-        /// Its index.
-        branch: usize,
-        /// The branch it leaves.
-        from: usize,
-        /// The first sample that is its own.
-        sample: u64,
-        /// What it is called.
-        name: String,
-        /// Changes it shares with the branch it leaves.
-        changes: Vec<BranchChange>,
-    },
-    /// The run that was recorded was taken up: whether it is the same bit for bit.
+    /// A branch was made and is active.
+    Forked(Fork),
+    /// The recorded run was simulated again: whether it is the same bit for bit.
     RecordingResumed(bool),
-    /// Samples of a branch.
+    /// New records of a branch.
     Records(usize, Vec<StepRecord>),
-    /// Parameters of a branch were changed, or, where nothing is set, are as before again.
+    /// Parameters of a branch changed; an empty change reverts the one before the same sample.
     Changed(usize, BranchChange),
-    /// All there is to know of a branch so far.
+    /// Summary of a branch so far.
     Summary {
         /// Its index.
         branch: usize,
-        /// What was changed.
+        /// Its changes.
         changes: Vec<BranchChange>,
-        /// Samples so far.
+        /// Number of samples.
         samples: u64,
         /// Their digest.
         digest: String,
     },
-    /// The run stands, and why, where it was not asked to.
+    /// The run is paused; the reason, if it stopped by itself.
     Stopped(Option<String>),
-    /// Something cannot be done.
+    /// A request failed, and why.
     Refused(String),
 }

@@ -1,52 +1,44 @@
-//! What the window asks of the thread of the run.
+//! Requests of the window to the thread of the run.
 
 use super::checked_scene::CheckedScene;
 use recording::log::Log;
-use rendering::Gpu;
 use scene::Scene;
 use std::sync::Arc;
 
-/// What the window asks for.
+/// A request to the thread of the run.
 pub enum RunRequest {
-    /// Another scene, from time 0; its run is brought to `until` s at once.
+    /// Open a scene and simulate it from time 0 to `until` s at once.
     Open {
-        /// What to run.
+        /// The scene.
         scene: Arc<Scene>,
-        /// Draws for cameras on robots.
-        gpu: Option<Gpu>,
         /// s.
         until: f64,
     },
-    /// A run that was recorded: all of it is told at once, and nothing goes on.
+    /// Open a recorded run: all its records are sent at once, and nothing is simulated.
     Recorded(Box<Log>),
-    /// The scene of the run that was recorded: it runs unseen as far as that came, and can go on and branch from there.
-    ResumeRecording {
-        /// What to run.
-        scene: Arc<Scene>,
-        /// Draws for cameras on robots.
-        gpu: Option<Gpu>,
-    },
-    /// Run on, or stand.
+    /// Simulate the scene of the recorded run to the end of the recording, so that it can continue and branch.
+    ResumeRecording(Arc<Scene>),
+    /// Play or pause.
     Play(bool),
     /// Simulated seconds per second.
     Pace(f64),
-    /// One sample, then stand.
+    /// Simulate one sample, then pause.
     Step,
-    /// The parameters of this scene hold from the next sample on.
+    /// Apply the parameters of this scene from the next sample on.
     Change(Box<CheckedScene>),
-    /// A new branch that leaves another before a sample, and goes on by itself.
+    /// Fork a branch before a sample and continue the new one.
     Fork {
-        /// The branch that is left.
+        /// The branch to fork.
         from: usize,
-        /// Where.
+        /// The control sample.
         sample: u64,
-        /// What the new one is called.
+        /// Name of the new branch.
         name: String,
     },
-    /// Go on with another branch.
+    /// Continue another branch.
     Switch(usize),
-    /// How far to look ahead, s; 0 for not at all.
+    /// Prediction horizon, s; 0 turns predictions off.
     Ahead(f64),
-    /// What it takes to write the run of a branch down.
+    /// Request the summary of a branch.
     Summarize(usize),
 }

@@ -1,9 +1,9 @@
-//! The thread on which the run goes. Requests come in, events go out; neither side waits for the other.
+//! The simulation thread. It receives requests and sends events; neither side waits for the other.
 
 use super::branches::Branches;
 use super::checked_scene::CheckedScene;
 use super::prediction::Predictor;
-pub use super::run_event::RunEvent;
+pub use super::run_event::{Fork, RunEvent};
 pub use super::run_request::RunRequest;
 use metrics::Digest;
 use recording::log::Log;
@@ -20,27 +20,27 @@ use vocabulary::{FleetInfo, StepRecord};
 /// The thread and its channels.
 pub struct Runner {
     requests: Option<Sender<RunRequest>>,
-    run_event: Receiver<RunEvent>,
+    events: Receiver<RunEvent>,
     unread: Arc<AtomicUsize>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// Longest that samples are computed before orders are looked at, s.
-const STRETCH: Duration = Duration::from_millis(10);
-/// Batches that may wait for the window. A window that shows nothing for so long does not need the run to go on.
+/// Maximum computing time before requests are checked.
+const MOST_COMPUTING: Duration = Duration::from_millis(10);
+/// Maximum number of batches that wait for the window: if it falls this far behind, the run waits.
 const MOST_UNREAD: usize = 600;
-/// Samples of a recorded run that are told together.
+/// Records of a recorded run in a batch.
 const BATCH: usize = 200;
-/// Between two looks ahead while the run goes, s.
-const LOOK_EVERY: Duration = Duration::from_millis(300);
-/// Between two batches of samples while the run goes, s.
-const BEAT: Duration = Duration::from_millis(12);
+/// Interval between two predictions while the run plays.
+const PREDICTION_INTERVAL: Duration = Duration::from_millis(300);
+/// Interval between two batches of samples while the run plays.
+const BATCH_INTERVAL: Duration = Duration::from_millis(12);
 
 impl Runner {
-    /// Starts the thread; `wake` is called for every event.
-    pub fn start(predictor: Predictor, wake: impl Fn() + Send + 'static) -> Self {
+    /// Starts the thread; `gpu` renders camera images, and `wake` is called for every event.
+    pub fn start(predictor: Predictor, gpu: Option<Gpu>, wake: impl Fn() + Send + 'static) -> Self {
         let (requests, inbox) = channel();
-        let (outbox, run_event) = channel();
+        let (outbox, events) = channel();
         let unread = Arc::new(AtomicUsize::new(0));
         let count = Arc::clone(&unread);
         let work = move || {
@@ -56,28 +56,29 @@ impl Runner {
                 pace: 1.0,
                 owed: 0.0,
                 predictor,
+                gpu,
                 ahead: 0.0,
-                looked: None,
+                predicted: None,
             };
             work.work();
         };
         let thread = std::thread::Builder::new().name("run".to_owned()).spawn(work).ok();
-        Self { requests: Some(requests), run_event, unread, thread }
+        Self { requests: Some(requests), events, unread, thread }
     }
 
-    /// Asks for something.
+    /// Sends a request.
     pub fn request(&self, request: RunRequest) {
         if let Some(requests) = &self.requests {
-            // The thread ends only with the window.
+            // The thread lives as long as the window.
             let _ = requests.send(request);
         }
     }
 
     /// The next event, if there is one.
     pub fn next_event(&self) -> Option<RunEvent> {
-        let run_event = self.run_event.try_recv().ok()?;
+        let event = self.events.try_recv().ok()?;
         self.unread.fetch_sub(1, Relaxed);
-        Some(run_event)
+        Some(event)
     }
 }
 
@@ -85,7 +86,7 @@ impl Drop for Runner {
     fn drop(&mut self) {
         self.requests = None;
         if let Some(thread) = self.thread.take() {
-            // A panic over there has been printed already.
+            // A panic of the thread has been printed already.
             let _ = thread.join();
         }
     }
@@ -98,7 +99,7 @@ struct RunWorker {
     unread: Arc<AtomicUsize>,
     wake: Box<dyn Fn() + Send>,
     branches: Option<Branches>,
-    /// Samples of the run that was recorded, and their digest.
+    /// Number of samples of the recorded run, and their digest.
     recorded: (u64, String),
     active: usize,
     playing: bool,
@@ -106,8 +107,9 @@ struct RunWorker {
     /// Simulated time that is due, s.
     owed: f64,
     predictor: Predictor,
+    gpu: Option<Gpu>,
     ahead: f64,
-    looked: Option<Instant>,
+    predicted: Option<Instant>,
 }
 
 impl RunWorker {
@@ -115,41 +117,38 @@ impl RunWorker {
         let mut before = Instant::now();
         loop {
             let request = if self.playing {
-                match self.inbox.try_recv() {
-                    Ok(request) => Some(request),
-                    Err(TryRecvError::Empty) => None,
-                    Err(TryRecvError::Disconnected) => return,
-                }
+                self.inbox.try_recv()
             } else {
-                match self.inbox.recv() {
-                    Ok(request) => Some(request),
-                    Err(_) => return,
-                }
+                self.inbox.recv().map_err(|_| TryRecvError::Disconnected)
             };
-            if let Some(request) = request {
-                let stood = !self.playing;
-                self.follow(request);
-                if stood {
-                    before = Instant::now();
+            match request {
+                Ok(request) => {
+                    let stood = !self.playing;
+                    self.handle(request);
+                    if stood {
+                        before = Instant::now();
+                    }
+                    continue;
                 }
-                continue;
+                Err(TryRecvError::Empty) => {}
+                Err(TryRecvError::Disconnected) => return,
             }
             let now = Instant::now();
             let passed = (now - before).as_secs_f64();
             before = now;
-            // Where the run cannot keep up it is slower; it does not jump afterwards.
+            // A run that cannot keep up becomes slower; it does not jump afterwards.
             self.owed = (self.owed + passed * self.pace).min(0.1 * self.pace.max(1.0));
-            self.go_on();
-            match self.inbox.recv_timeout(BEAT.saturating_sub(now.elapsed())) {
-                Ok(request) => self.follow(request),
+            self.advance_due();
+            match self.inbox.recv_timeout(BATCH_INTERVAL.saturating_sub(now.elapsed())) {
+                Ok(request) => self.handle(request),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
             }
         }
     }
 
-    /// Samples that are due.
-    fn go_on(&mut self) {
+    /// Number of samples that are due.
+    fn advance_due(&mut self) {
         if self.unread.load(Relaxed) > MOST_UNREAD {
             return;
         }
@@ -158,7 +157,7 @@ impl RunWorker {
         let Some(branches) = &mut self.branches else { return };
         let period = branches.list()[self.active].simulation().period();
         let mut ended = false;
-        while self.owed >= period && began.elapsed() < STRETCH {
+        while self.owed >= period && began.elapsed() < MOST_COMPUTING {
             self.owed -= period;
             let Some(record) = branches.advance(self.active) else {
                 ended = true;
@@ -168,39 +167,39 @@ impl RunWorker {
         }
         self.report(records);
         if ended {
-            self.stand();
+            self.stop();
         }
-        self.look_ahead(false);
+        self.predict(false);
     }
 
-    fn stand(&mut self) {
+    fn stop(&mut self) {
         self.playing = false;
         let why = self.branches.as_ref().and_then(|branches| {
             let simulation = branches.list()[self.active].simulation();
             let touched = || simulation.stopped().then(|| "The run stops here: bodies touched.".to_owned());
             simulation.fault().map(ToString::to_string).or_else(touched)
         });
-        self.tell(RunEvent::Stopped(why));
+        self.send(RunEvent::Stopped(why));
     }
 
     fn report(&mut self, records: Vec<StepRecord>) {
         if !records.is_empty() {
-            self.tell(RunEvent::Records(self.active, records));
+            self.send(RunEvent::Records(self.active, records));
         }
     }
 
-    fn tell(&self, run_event: RunEvent) {
+    fn send(&self, event: RunEvent) {
         self.unread.fetch_add(1, Relaxed);
-        // Where nobody listens any more, the inbox is closed too and the thread ends.
-        let _ = self.outbox.send(run_event);
+        // Without a listener the inbox is closed too, and the thread ends.
+        let _ = self.outbox.send(event);
         (self.wake)();
     }
 
-    fn follow(&mut self, request: RunRequest) {
+    fn handle(&mut self, request: RunRequest) {
         match request {
-            RunRequest::Open { scene, gpu, until } => self.open(scene, gpu.as_ref(), until),
+            RunRequest::Open { scene, until } => self.open(scene, until),
             RunRequest::Recorded(log) => self.look_through(&log),
-            RunRequest::ResumeRecording { scene, gpu } => self.take_up(scene, gpu.as_ref()),
+            RunRequest::ResumeRecording(scene) => self.resume_recording(scene),
             RunRequest::Play(on) => {
                 self.playing = on && self.branches.is_some();
                 self.owed = 0.0;
@@ -215,56 +214,56 @@ impl RunWorker {
             RunRequest::Switch(branch) => {
                 if self.branches.as_ref().is_some_and(|branches| branch < branches.list().len()) {
                     self.active = branch;
-                    self.look_ahead(true);
+                    self.predict(true);
                 }
             }
             RunRequest::Ahead(seconds) => {
                 self.ahead = seconds;
-                self.look_ahead(true);
+                self.predict(true);
             }
-            RunRequest::Summarize(branch) => self.told(branch),
+            RunRequest::Summarize(branch) => self.summarize(branch),
         }
     }
 
-    /// The branches of a scene; `None` after saying why not.
-    fn branches_of(&self, scene: Arc<Scene>, gpu: Option<&Gpu>) -> Option<Branches> {
+    /// The branches of a scene; on failure `None`, after sending the reason.
+    fn branches_of(&self, scene: Arc<Scene>) -> Option<Branches> {
         let mut blind = None;
         let opened = Branches::open(scene, |simulation| {
             if simulation.needs_cameras() {
-                match gpu.map(|gpu| GpuCameraRenderer::new(gpu, simulation.fleet())) {
+                match self.gpu.as_ref().map(|gpu| GpuCameraRenderer::new(gpu, simulation.fleet())) {
                     Some(Ok(eyes)) => simulation.attach_cameras(Box::new(eyes)),
                     Some(Err(error)) => blind = Some(error.to_string()),
-                    None => blind = Some("There is no adapter to draw what cameras see.".to_owned()),
+                    None => blind = Some("There is no adapter to render camera images.".to_owned()),
                 }
             }
         });
         match (opened, blind) {
             (Ok(branches), None) => return Some(branches),
-            (Err(error), _) => self.tell(RunEvent::Refused(error.to_string())),
-            (Ok(_), Some(why)) => self.tell(RunEvent::Refused(why)),
+            (Err(error), _) => self.send(RunEvent::Refused(error.to_string())),
+            (Ok(_), Some(why)) => self.send(RunEvent::Refused(why)),
         }
         None
     }
 
-    fn open(&mut self, scene: Arc<Scene>, gpu: Option<&Gpu>, until: f64) {
+    fn open(&mut self, scene: Arc<Scene>, until: f64) {
         let planned = scene.time.duration;
-        let Some(branches) = self.branches_of(scene, gpu) else { return };
+        let Some(branches) = self.branches_of(scene) else { return };
         let simulation = branches.list()[0].simulation();
         let fleet = FleetInfo { duration: planned, ..simulation.fleet().clone() };
         let (fleet, period) = (Arc::new(fleet), simulation.period());
         self.active = 0;
         self.owed = 0.0;
         self.branches = Some(branches);
-        self.tell(RunEvent::Opened { fleet, period });
+        self.send(RunEvent::Opened { fleet, period });
         self.catch_up(until);
-        self.look_ahead(true);
+        self.predict(true);
     }
 
-    /// Tells what was recorded.
+    /// Sends the records of a recorded run.
     fn look_through(&mut self, log: &Log) {
         (self.branches, self.active, self.playing) = (None, 0, false);
         let (fleet, period) = (Arc::new(log.fleet().clone()), log.manifest().period);
-        self.tell(RunEvent::Opened { fleet, period });
+        self.send(RunEvent::Opened { fleet, period });
         let (mut batch, mut digest, mut samples) = (Vec::new(), Digest::default(), 0);
         let mut fault = None;
         for record in log.records() {
@@ -283,22 +282,22 @@ impl RunWorker {
         self.report(batch);
         self.recorded = (samples, digest.text());
         if let Some(fault) = fault {
-            self.tell(RunEvent::Refused(fault));
+            self.send(RunEvent::Refused(fault));
         }
     }
 
-    /// Runs the scene of the recorded run as far as that came. The window has seen it.
-    fn take_up(&mut self, scene: Arc<Scene>, gpu: Option<&Gpu>) {
-        let Some(mut branches) = self.branches_of(scene, gpu) else { return };
+    /// Simulates the scene of the recorded run to the end of the recording. The window has its records already.
+    fn resume_recording(&mut self, scene: Arc<Scene>) {
+        let Some(mut branches) = self.branches_of(scene) else { return };
         let (samples, digest) = &self.recorded;
         while branches.list()[0].simulation().sample() < *samples && branches.advance(0).is_some() {}
         let same = branches.list()[0].digest() == *digest;
         (self.active, self.owed) = (0, 0.0);
         self.branches = Some(branches);
-        self.tell(RunEvent::RecordingResumed(same));
+        self.send(RunEvent::RecordingResumed(same));
     }
 
-    /// At least the first sample, and all up to `until` s, within a second of waiting.
+    /// Simulates at least the first sample, and up to `until` s unless that takes more than a second.
     fn catch_up(&mut self, until: f64) {
         let began = Instant::now();
         let Some(branches) = &mut self.branches else { return };
@@ -312,7 +311,7 @@ impl RunWorker {
         let ended = records.is_empty();
         self.report(records);
         if ended {
-            self.stand();
+            self.stop();
         }
     }
 
@@ -320,19 +319,19 @@ impl RunWorker {
         let Some(branches) = &mut self.branches else { return };
         match branches.advance(self.active).cloned() {
             Some(record) => self.report(vec![record]),
-            None => self.stand(),
+            None => self.stop(),
         }
-        self.look_ahead(true);
+        self.predict(true);
     }
 
     fn change(&mut self, checked: &CheckedScene) {
         let Some(branches) = &mut self.branches else { return };
         match branches.change(self.active, checked) {
-            Ok(Some(change)) => self.tell(RunEvent::Changed(self.active, change)),
+            Ok(Some(change)) => self.send(RunEvent::Changed(self.active, change)),
             Ok(None) => {}
-            Err(standing) => self.tell(RunEvent::Refused(standing)),
+            Err(standing) => self.send(RunEvent::Refused(standing)),
         }
-        self.look_ahead(true);
+        self.predict(true);
     }
 
     fn fork(&mut self, from: usize, sample: u64, name: String) {
@@ -340,33 +339,33 @@ impl RunWorker {
         let Some(branch) = branches.fork(from, sample, name.clone()) else { return };
         let made = &branches.list()[branch];
         let changes = made.changes.clone();
-        // Of a long past the window does not keep every sample.
+        // The window does not keep every sample of a long history.
         let here = (made.simulation().sample() > 0).then(|| made.simulation().record().clone());
         self.active = branch;
         self.owed = 0.0;
-        self.tell(RunEvent::Forked { branch, from, sample, name, changes });
+        self.send(RunEvent::Forked(Fork { branch, from, sample, name, changes }));
         self.report(here.into_iter().collect());
-        self.look_ahead(true);
+        self.predict(true);
     }
 
-    fn told(&mut self, branch: usize) {
+    fn summarize(&mut self, branch: usize) {
         let Some(made) = self.branches.as_ref().and_then(|branches| branches.list().get(branch)) else {
             return;
         };
         let (changes, samples) = (made.changes.clone(), made.simulation().sample());
-        self.tell(RunEvent::Summary { branch, changes, samples, digest: made.digest() });
+        self.send(RunEvent::Summary { branch, changes, samples, digest: made.digest() });
     }
 
-    /// Sends a copy of the run ahead: now, or when the last look is old enough and has come back.
-    fn look_ahead(&mut self, now: bool) {
-        let recent = self.looked.is_some_and(|at| at.elapsed() < LOOK_EVERY);
+    /// Requests a prediction: now, or once the last one is finished and old enough.
+    fn predict(&mut self, now: bool) {
+        let recent = self.predicted.is_some_and(|at| at.elapsed() < PREDICTION_INTERVAL);
         if self.ahead <= 0.0 || (!now && (recent || self.predictor.busy())) {
             return;
         }
         if let Some(branches) = &self.branches {
             let copy: Simulation = branches.list()[self.active].copy();
             self.predictor.look(self.active, copy, self.ahead);
-            self.looked = Some(Instant::now());
+            self.predicted = Some(Instant::now());
         }
     }
 }

@@ -1,60 +1,61 @@
-//! The scene as text that is being worked on: edits, undo, and what an edit means for the run.
+//! The text of the scene being edited: edits, undo, and the effect of an edit on the run.
 
 use super::checked_scene::CheckedScene;
 use scene::{Environment, Expect, Film, Scene, SceneText, Views};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Steps back that are kept.
+/// Maximum number of undo steps.
 const MOST_STEPS: usize = 500;
 
-/// A scene file under work.
+/// A scene file being edited.
 pub struct SceneDraft {
-    /// Where it is saved; `None` for one that never was.
+    /// Its file; `None` if it was never saved.
     pub path: Option<PathBuf>,
-    /// Names the scene in messages, and where its tables are looked for.
+    /// Names the scene in messages; its folder holds the files that the scene names.
     home: PathBuf,
     text: String,
-    /// The text as it is edited, where it has been parsed.
+    /// The parsed document, if the text has been parsed.
     document: Option<SceneText>,
     scene: Arc<Scene>,
-    /// What the scene builds, until the run takes it.
+    /// The built run, until the run thread takes it.
     checked: Option<CheckedScene>,
     saved: String,
     undo: Vec<UndoStep>,
     redo: Vec<UndoStep>,
 }
 
-/// A state to go back to.
+/// An undo step.
 struct UndoStep {
     text: String,
     scene: Arc<Scene>,
-    /// What was done from here on, for people.
+    /// The name of the edit after it.
     what: String,
 }
 
-/// Another text of a scene, and the scene that it is.
+/// A text and its scene.
 #[derive(Debug)]
 pub struct EditedScene {
     text: String,
     checked: CheckedScene,
 }
 
-/// What an edit means for the run.
+/// The effect of an edit on the run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
     /// Nothing has changed.
     None,
-    /// The run can take it as it goes.
+    /// The run can apply it while it goes on.
     Retune,
-    /// The run is the same, and looks different: light, title, views.
+    /// Only the appearance changes: light, title, views.
     Dress,
-    /// The run has to begin anew, because of this.
+    /// The run has to restart, and why.
     Restart(String),
 }
 
 impl SceneDraft {
-    /// A scene from its text; `path` is where it is saved.
+    /// A draft from a scene's text; `path` is its file.
     ///
     /// # Errors
     /// All that is wrong with the text.
@@ -74,7 +75,7 @@ impl SceneDraft {
         })
     }
 
-    /// The text as it stands.
+    /// The current text.
     pub fn text(&self) -> &str {
         &self.text
     }
@@ -84,57 +85,57 @@ impl SceneDraft {
         &self.scene
     }
 
-    /// Where the scene comes from: its file, or the name it was opened under.
+    /// The origin of the scene: its file, or the name under which it was opened.
     pub fn home(&self) -> &Path {
         &self.home
     }
 
-    /// Whether there is something to save.
+    /// Whether there are unsaved changes.
     pub fn unsaved(&self) -> bool {
         self.text != self.saved
     }
 
-    /// The text is on disk now, at `path`.
+    /// Marks the text as saved at `path`.
     pub fn saved_to(&mut self, path: PathBuf) {
         self.saved.clone_from(&self.text);
         self.home.clone_from(&path);
         self.path = Some(path);
     }
 
-    /// Edits the text. Edits in a row with the same `what` that ends in `…` are one step back.
+    /// Edits the text. Successive edits with the same `what` ending in `…` are one undo step.
     ///
     /// # Errors
-    /// Why the edit cannot be, in words; then nothing has changed.
-    pub fn edit(
+    /// Why the edit failed; then nothing has changed.
+    pub fn edit<E: Display>(
         &mut self,
         what: &str,
-        edit: impl FnOnce(&mut SceneText) -> Result<(), String>,
+        edit: impl FnOnce(&mut SceneText) -> Result<(), E>,
     ) -> Result<Effect, String> {
-        // Taken out, so that an edit that fails half-way leaves nothing behind.
+        // Taken out, so that an edit that fails half-way leaves no trace.
         let mut document = match self.document.take() {
             Some(document) => document,
             None => SceneText::parse(&self.text).map_err(|error| error.to_string())?,
         };
-        edit(&mut document)?;
+        edit(&mut document).map_err(|error| error.to_string())?;
         let text = document.text();
-        // A document with new tables is parsed again: only then do later edits find them where a reader would.
+        // A document with new tables is parsed again: only then do later edits find them in their place.
         let kept = text.lines().count() == self.text.lines().count();
         let effect = self.replace(what, text)?;
         self.document = kept.then_some(document);
         Ok(effect)
     }
 
-    /// Another text with an edit, which is not put in place, and its scene; `None` where the edit changes nothing.
+    /// Applies an edit to another text, without adopting it; `None` if the edit changes nothing.
     ///
     /// # Errors
-    /// Why the edit cannot be, in words.
-    pub fn edited(
+    /// Why the edit failed.
+    pub fn edited<E: Display>(
         &self,
         text: &str,
-        edit: impl FnOnce(&mut SceneText) -> Result<(), String>,
+        edit: impl FnOnce(&mut SceneText) -> Result<(), E>,
     ) -> Result<Option<EditedScene>, String> {
         let mut document = SceneText::parse(text).map_err(|error| error.to_string())?;
-        edit(&mut document)?;
+        edit(&mut document).map_err(|error| error.to_string())?;
         let edited = document.text();
         if edited == text {
             return Ok(None);
@@ -151,7 +152,7 @@ impl SceneDraft {
         Ok(Scene::parse(text, &self.home, &[]).map_err(|faults| faults.to_string())?.scene)
     }
 
-    /// The scene of a text, if it can run.
+    /// The scene of a text, built to check that it can run.
     ///
     /// # Errors
     /// All that is wrong with the text.
@@ -159,10 +160,10 @@ impl SceneDraft {
         CheckedScene::new(Arc::new(self.read(text)?)).map_err(|error| error.to_string())
     }
 
-    /// The scene with what it builds, for the run; built anew only where the text was not checked just now.
+    /// The scene with its built run; built again only if the text was not checked just now.
     ///
     /// # Errors
-    /// Why the scene cannot run, in words.
+    /// Why the scene cannot run.
     pub fn take_checked(&mut self) -> Result<CheckedScene, String> {
         match self.checked.take() {
             Some(checked) => Ok(checked),
@@ -170,7 +171,7 @@ impl SceneDraft {
         }
     }
 
-    /// Puts another text in place.
+    /// Replaces the text.
     ///
     /// # Errors
     /// All that is wrong with the text; then nothing has changed.
@@ -182,7 +183,7 @@ impl SceneDraft {
         Ok(self.put(what, EditedScene { text, checked }))
     }
 
-    /// Puts an edited text in place.
+    /// Adopts an edited text.
     pub fn put(&mut self, what: &str, edited: EditedScene) -> Effect {
         let EditedScene { text, checked } = edited;
         let (effect, set) = self.effect_of(checked.scene());
@@ -192,7 +193,7 @@ impl SceneDraft {
             what: what.to_owned(),
         };
         self.document = None;
-        // What is not taken by a run that goes on is not kept.
+        // The run takes it only for a change that it applies as it goes on.
         self.checked = (effect == Effect::Retune).then(|| checked.compared(Arc::clone(&before.scene), set));
         let goes_on = what.ends_with('…')
             && self.redo.is_empty()
@@ -207,13 +208,13 @@ impl SceneDraft {
         effect
     }
 
-    /// Goes to the text of another branch: what was done on this one cannot be undone there.
+    /// Switches to the text of another branch, where edits of this one cannot be undone.
     ///
     /// # Errors
     /// All that is wrong with the text; then nothing has changed.
     pub fn turn_to(&mut self, text: String) -> Result<(), String> {
         if text != self.text {
-            // It ran before, so it need not be built to know that it can.
+            // It ran before, so it need not be built to check that it can run.
             self.scene = Arc::new(self.read(&text)?);
             self.text = text;
             (self.document, self.checked) = (None, None);
@@ -223,12 +224,12 @@ impl SceneDraft {
         Ok(())
     }
 
-    /// What is not saved need not be.
+    /// Gives up unsaved changes.
     pub fn abandon(&mut self) {
         self.saved.clone_from(&self.text);
     }
 
-    /// Ends a row of edits: the next is a step of its own.
+    /// Ends a series of edits: the next one is a new undo step.
     pub fn rest(&mut self) {
         if let Some(last) = self.undo.last_mut()
             && let Some(done) = last.what.strip_suffix('…')
@@ -237,7 +238,7 @@ impl SceneDraft {
         }
     }
 
-    /// One step back; what it was and what going back means.
+    /// Undoes a step; its name and its effect on the run.
     pub fn undo(&mut self) -> Option<(String, Effect)> {
         let step = self.undo.pop()?;
         let (now, effect) = self.swap(step);
@@ -246,7 +247,7 @@ impl SceneDraft {
         Some((what, effect))
     }
 
-    /// One step forward again.
+    /// Redoes a step; its name and its effect on the run.
     pub fn redo(&mut self) -> Option<(String, Effect)> {
         let step = self.redo.pop()?;
         let (now, effect) = self.swap(step);
@@ -255,19 +256,19 @@ impl SceneDraft {
         Some((what, effect))
     }
 
-    /// The step that made `text`: what it was, and the text before it. The newest, where several did.
+    /// The newest step that led to `text`: its name, and the text before it.
     pub fn step_to(&self, text: &str) -> Option<(&str, &str)> {
         let after = self.undo.iter().skip(1).map(|step| &*step.text).chain([&*self.text]);
         let steps: Vec<_> = self.undo.iter().zip(after).collect();
         steps.into_iter().rfind(|(_, after)| *after == text).map(|(step, _)| (&*step.what, &*step.text))
     }
 
-    /// What undo would take back.
+    /// The name of the edit that undo would revert.
     pub fn undoes(&self) -> Option<&str> {
         self.undo.last().map(|step| step.what.trim_end_matches('…'))
     }
 
-    /// What redo would do again.
+    /// The name of the edit that redo would apply.
     pub fn redoes(&self) -> Option<&str> {
         self.redo.last().map(|step| step.what.trim_end_matches('…'))
     }
@@ -283,7 +284,7 @@ impl SceneDraft {
         (now, effect)
     }
 
-    /// What another scene means for the run, and the overrides that lead to it where the run can take it.
+    /// The effect of another scene on the run, and the overrides that lead to it if the run can apply them.
     fn effect_of(&self, scene: &Scene) -> (Effect, Vec<String>) {
         let redressed = dress(&self.scene) != dress(scene);
         let sets = if redressed {
@@ -301,7 +302,7 @@ impl SceneDraft {
         } else {
             self.scene.sets_to(scene)
         };
-        // What was past may have become what is, and what is to come depends on what is. Else changes are as they were.
+        // Past changes may have become initial values, on which future changes depend. Otherwise changes are as before.
         let [before, after] = [&self.scene.changes, &scene.changes];
         let left = &before[before.len().saturating_sub(after.len())..];
         let same = |(a, b): (&scene::Change, &scene::Change)| (a.at, &a.set) == (b.at, &b.set);
@@ -313,7 +314,7 @@ impl SceneDraft {
             }
             Ok(set) if set.is_empty() && !redressed => Effect::None,
             Ok(set) if set.is_empty() => Effect::Dress,
-            // Both at once come from a file that was edited elsewhere.
+            // Both at once: the file was edited by another program.
             Ok(_) if redressed => Effect::Restart("the scene is another".to_owned()),
             Ok(_) => Effect::Retune,
             Err(standing) => Effect::Restart(standing.join(", ")),
@@ -322,7 +323,7 @@ impl SceneDraft {
     }
 }
 
-/// What of a scene changes how its run looks or is judged, and not the run.
+/// The parts of a scene that affect the appearance or the evaluation of its run, not the run itself.
 fn dress(scene: &Scene) -> (&String, &String, &Environment, &Views, &Film, &Expect) {
     let Scene { title, description, environment, views, film, expect, .. } = scene;
     (title, description, environment, views, film, expect)

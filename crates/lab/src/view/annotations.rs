@@ -1,6 +1,6 @@
-//! What is drawn on the ground to explain: the future, handles, other branches, ground that cannot be held.
+//! Annotations on the ground: the prediction, handles, other branches and infeasible ground.
 
-use super::feasibility;
+use super::feasibility::{self, SIDE, STEP};
 use crate::app_state::{AppState, Selection};
 use crate::session::prediction::{PathPoint, Prediction, Trouble};
 use rendering::{
@@ -9,35 +9,35 @@ use rendering::{
 use std::sync::Arc;
 use vocabulary::{FleetInfo, StepRecord};
 
-/// Where something is wrong ahead.
+/// The colour of predicted problems.
 const ALARM: [f32; 3] = [0.90, 0.16, 0.10];
-/// The accent of the window.
+/// The accent colour of the window.
 pub const ACCENT: [f32; 3] = [0.25, 0.62, 1.0];
-/// Ground that cannot be held.
+/// The colour of infeasible ground.
 const REFUSED: [f32; 3] = [0.72, 0.10, 0.08];
-/// Radius of the ring at a set point for a robot of the usual size, m.
+/// Radius of the ring at a set point for a robot of the default size, m.
 pub const RING: f64 = 0.25;
 
-/// What the hand does, as far as it is drawn.
+/// The state of the pointer, as far as it is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PointerState {
     /// The edge whose set point is under the pointer.
     pub ring: Option<usize>,
     /// The edge whose set point is dragged.
-    pub held: Option<usize>,
+    pub dragged: Option<usize>,
     /// The robot under the pointer.
     pub robot: Option<usize>,
     /// A connection being drawn: from a robot to a place, m.
     pub connecting: Option<(usize, [f64; 2])>,
 }
 
-/// The annotations of what is shown.
-pub fn annotations(app_state: &AppState, record: &StepRecord, hand: &PointerState) -> Annotations {
+/// The annotations of the shown moment.
+pub fn annotations(app_state: &AppState, record: &StepRecord, pointer: &PointerState) -> Annotations {
     let mut annotations = Annotations::default();
     let Some(history) = &app_state.history else { return annotations };
     let fleet = Arc::clone(history.fleet());
     let colours = rendering::robot_colours(&fleet);
-    if let Some(held) = hand.held {
+    if let Some(held) = pointer.dragged {
         refused(app_state, held, record, &mut annotations);
     }
     others(app_state, &colours, &mut annotations);
@@ -47,8 +47,8 @@ pub fn annotations(app_state: &AppState, record: &StepRecord, hand: &PointerStat
     {
         future(prediction, &colours, &fleet, &mut annotations);
     }
-    handles(app_state, &fleet, record, &colours, hand, &mut annotations);
-    if let Some((robot, to)) = hand.connecting
+    handles(app_state, &fleet, record, &colours, pointer, &mut annotations);
+    if let Some((robot, to)) = pointer.connecting
         && let Some(state) = record.snapshot.robots.get(robot)
     {
         let from = [state.motion.pose.x, state.motion.pose.y];
@@ -57,13 +57,15 @@ pub fn annotations(app_state: &AppState, record: &StepRecord, hand: &PointerStat
     annotations
 }
 
-/// Ground that the follower of an edge cannot hold.
+/// Ground that is infeasible for the follower of an edge.
 fn refused(app_state: &AppState, edge: usize, record: &StepRecord, annotations: &mut Annotations) {
-    let Some((leader, field)) = feasibility::field(app_state, edge, record) else { return };
-    let half = 0.5 * (field.side - 1) as f64 * field.step;
-    let area =
-        ShadedArea::field([-half; 2], field.step, field.side, &scaled(&field.alphas, 0.34), REFUSED, true);
-    // The field is the leader's; rows run ahead, columns to the left.
+    let Some((leader, mut alphas)) = feasibility::field(app_state, edge, record) else { return };
+    for alpha in &mut alphas {
+        *alpha *= 0.34;
+    }
+    let half = 0.5 * (SIDE - 1) as f64 * STEP;
+    let area = ShadedArea::field([-half; 2], STEP, SIDE, &alphas, REFUSED, true);
+    // In the leader's frame: rows run ahead, columns to the left.
     let turned = area.corners.into_iter().map(|spot| {
         let [left, ahead] = spot.at;
         StrokePoint { at: leader.world_from_body(ahead, left), ..spot }
@@ -71,16 +73,12 @@ fn refused(app_state: &AppState, edge: usize, record: &StepRecord, annotations: 
     annotations.areas.push(ShadedArea { corners: turned.collect(), hatched: true });
 }
 
-fn scaled(alphas: &[f32], by: f32) -> Vec<f32> {
-    alphas.iter().map(|alpha| alpha * by).collect()
-}
-
-/// Paths of branches that are not looked at.
+/// Paths of the other branches.
 fn others(app_state: &AppState, colours: &[[f32; 3]], annotations: &mut Annotations) {
     let Some(history) = &app_state.history else { return };
     for branch in (0..history.branches()).filter(|branch| *branch != app_state.branch) {
         let from = app_state.branches.get(branch).and_then(|face| face.parent).map_or(0.0, |(_, time)| time);
-        // What is long past would cover the ground.
+        // Old paths would cover the ground.
         let from = from.max(app_state.time() - 12.0);
         let records = history.between(branch, [from, app_state.time() + 12.0], 160);
         for (robot, colour) in colours.iter().enumerate() {
@@ -105,10 +103,10 @@ fn others(app_state: &AppState, colours: &[[f32; 3]], annotations: &mut Annotati
     }
 }
 
-/// The next seconds, and where the formation will be.
+/// The predicted paths and final poses.
 fn future(prediction: &Prediction, colours: &[[f32; 3]], fleet: &FleetInfo, annotations: &mut Annotations) {
     for (robot, path) in prediction.paths.iter().enumerate() {
-        // Paler than the ribbons, which are the past.
+        // Paler than the ribbons of the past.
         let colour = light(colours.get(robot).copied().unwrap_or([0.6; 3])).map(|c| 0.4 + 0.6 * c);
         let last = path.len().saturating_sub(1).max(1) as f32;
         let spot = |(k, place): (usize, &PathPoint)| {
@@ -125,20 +123,20 @@ fn future(prediction: &Prediction, colours: &[[f32; 3]], fleet: &FleetInfo, anno
         let pixels = if path.iter().any(|p| p.trouble == Trouble::Contact) { 3.0 } else { 2.2 };
         annotations.strokes.push(AnnotationStroke { pixels, ..AnnotationStroke::new(spots) });
     }
-    // Where they stand in the end; in a crowd the paths say enough.
+    // The final poses; in a large formation the paths suffice.
     if fleet.robots.len() <= 30 {
         let ghost = |(robot, pose): (usize, &vocabulary::Pose)| Ghost { robot, pose: *pose, alpha: 0.30 };
         annotations.ghosts.extend(prediction.end.iter().enumerate().map(ghost));
     }
 }
 
-/// Rings to grasp, and a ring under what is selected.
+/// Rings as handles of set points, and a ring under the selected robot.
 fn handles(
     app_state: &AppState,
     fleet: &FleetInfo,
     record: &StepRecord,
     colours: &[[f32; 3]],
-    hand: &PointerState,
+    pointer: &PointerState,
     annotations: &mut Annotations,
 ) {
     for (edge, at) in set_points(fleet, record).into_iter().enumerate() {
@@ -146,9 +144,9 @@ fn handles(
         let follower = fleet.edges[edge].follower;
         let ring =
             Ring { least: 17.0, ..Ring::new(at, RING * size(fleet, follower), light(colours[follower])) };
-        if hand.held == Some(edge) || app_state.chosen_edge() == Some(edge) {
+        if pointer.dragged == Some(edge) || app_state.chosen_edge() == Some(edge) {
             annotations.rings.push(ring.selected());
-        } else if hand.ring == Some(edge) {
+        } else if pointer.ring == Some(edge) {
             annotations.rings.push(ring.hovered());
         }
     }
@@ -161,12 +159,12 @@ fn handles(
     if let Selection::Robot(robot) = app_state.selection {
         annotations.rings.extend(under(robot));
     }
-    if let Some(robot) = hand.robot {
+    if let Some(robot) = pointer.robot {
         annotations.rings.extend(under(robot).map(|ring| Ring { alpha: 0.5, ..ring }));
     }
 }
 
-/// How many times as large as the usual robot one is.
+/// Size of a robot relative to the default one.
 fn size(fleet: &FleetInfo, robot: usize) -> f64 {
     fleet.robots.get(robot).map_or(1.0, |member| member.body.length / 0.42)
 }

@@ -1,21 +1,21 @@
-//! A free camera that stays with a robot while it drives, or with a place.
+//! A free camera that stays with a moving robot or with a place.
 
 use rendering::{FreeCamera, Viewpoint};
 use vocabulary::Snapshot;
 
-/// A drag across the height of the view turns by this, rad.
+/// Rotation by a drag across the height of the view, rad.
 const TURN: f64 = std::f64::consts::PI;
 
-/// A camera in the hand.
+/// A camera that the user moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeldCamera {
+pub struct CameraControl {
     /// The robot it stays with; `None` for a place in the world.
     pub robot: Option<usize>,
-    /// Its target is seen from the robot's place.
+    /// Its target is relative to that robot's position.
     free: FreeCamera,
 }
 
-impl HeldCamera {
+impl CameraControl {
     /// Takes over from a camera without a jump, and stays with a robot.
     pub fn take(free: FreeCamera, robot: Option<usize>, snapshot: &Snapshot) -> Self {
         Self { robot, free: moved(free, place(robot, snapshot), -1.0) }
@@ -30,21 +30,21 @@ impl HeldCamera {
         moved(self.free, place(self.robot, snapshot), 1.0)
     }
 
-    /// Turned by a drag, in shares of the view's height: right and down positive.
+    /// Rotates it by a drag, in fractions of the view's height: right and down are positive.
     pub fn orbit(&mut self, [across, down]: [f64; 2]) {
         self.free = self.free.turned(-across * TURN, down * TURN);
     }
 
-    /// Moved so that what was at `from` is where `to` was, m.
+    /// Moves it so that the place `from` appears where `to` was, m.
     pub fn pan(&mut self, from: [f64; 2], to: [f64; 2]) {
-        // Near the horizon a pixel is a long way.
+        // Near the horizon a pixel spans a large distance.
         let most = 2.0 * self.free.distance;
         for k in 0..2 {
             self.free.target[k] += (from[k] - to[k]).clamp(-most, most);
         }
     }
 
-    /// Nearer (below 1) or farther by a factor; a place on the ground stays where it appears.
+    /// Zooms by a factor, below 1 nearer; a place on the ground stays at its pixel.
     pub fn zoom(&mut self, factor: f64, about: Option<[f64; 2]>, snapshot: &Snapshot) {
         if factor.is_finite() && factor > 0.0 {
             let about = about.map(|[x, y]| [x, y, 0.0]);
@@ -53,14 +53,14 @@ impl HeldCamera {
         }
     }
 
-    /// Looks at a robot and stays with it.
+    /// Attaches it to a robot.
     pub fn follow(&mut self, robot: usize) {
         self.robot = Some(robot);
         self.free.target = [0.0, 0.0, 0.1];
         self.free.distance = self.free.distance.min(5.0);
     }
 
-    /// Stays where it is.
+    /// Detaches it from its robot.
     pub fn let_go(&mut self, snapshot: &Snapshot) {
         *self = Self::take(self.in_world(snapshot), None, snapshot);
     }
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn it_takes_over_without_a_jump_stays_with_its_robot_and_lets_it_go() {
-        let mut camera = HeldCamera::take(FREE, Some(0), &snapshot(5.0));
+        let mut camera = CameraControl::take(FREE, Some(0), &snapshot(5.0));
         let (before, now) = (eye(&FREE.view()), eye(&camera.view(&snapshot(5.0))));
         assert!((0..3).all(|k| (before[k] - now[k]).abs() < 1e-12));
         assert!((eye(&camera.view(&snapshot(7.0)))[0] - before[0] - 2.0).abs() < 1e-12);
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn it_stays_above_the_ground_and_within_reach() {
-        let mut camera = HeldCamera::take(FREE, None, &snapshot(0.0));
+        let mut camera = CameraControl::take(FREE, None, &snapshot(0.0));
         for _ in 0..50 {
             camera.orbit([0.3, -0.4]);
             camera.zoom(2.0, Some([1.0, 1.0]), &snapshot(0.0));

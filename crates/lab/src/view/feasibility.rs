@@ -1,42 +1,32 @@
-//! Ground on which the follower of an edge could not keep its place, for shading.
+//! Ground that is infeasible for the follower of an edge, for shading.
 
 use crate::app_state::AppState;
 use crate::session::prediction::Prediction;
 use formation::feasible::infeasible;
 use vocabulary::{Limits, MotionInput, Pose, StepRecord};
 
-/// Side of a square of the field, m, and squares on a side.
-const STEP: f64 = 0.25;
-const SIDE: usize = 49;
-/// Records of the leader's way that are looked at.
+/// Size of a cell, m.
+pub const STEP: f64 = 0.25;
+/// Number of cells along a side of the map.
+pub const SIDE: usize = 49;
+/// Number of the leader's predicted motions that are checked.
 const GLANCES: usize = 12;
 
-/// Where a set point cannot be, in the leader's frame: a field of opacities from 0 to 1.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FeasibilityMap {
-    /// Row by row from behind to ahead, each from the right to the left; share of what stands against it.
-    pub alphas: Vec<f32>,
-    /// Squares on a side.
-    pub side: usize,
-    /// Side of a square, m.
-    pub step: f64,
-}
-
-/// What an edge asks of a place.
+/// The requirements of an edge on a set point.
 #[derive(Debug, Clone)]
 pub struct PlaceConstraints {
     /// The follower's limits.
     pub limits: Limits,
     /// Least distance of its law, m.
     pub distance_min: f64,
-    /// How far it can see, m, and how far its camera turns with its picture, rad; `None` where it need not see.
+    /// Sensor range, m, and largest viewing angle, rad; `None` if it senses the truth.
     pub sight: Option<[f64; 2]>,
-    /// Places of others in the leader's frame, m, and how near they may come, m.
+    /// Positions of other robots in the leader's frame, m, and their least distances, m.
     pub others: Vec<([f64; 2], f64)>,
 }
 
 impl PlaceConstraints {
-    /// What stands against a place while the leader drives at one of `motions` (m/s, rad/s); `None` if nothing does.
+    /// Whether a place is infeasible while the leader moves at one of `motions` (m/s, rad/s).
     pub fn refuses(&self, place: [f64; 2], motions: &[[f64; 2]]) -> bool {
         self.others.iter().any(|(at, near)| (place[0] - at[0]).hypot(place[1] - at[1]) < *near)
             || motions.iter().any(|motion| self.refuses_at(place, *motion))
@@ -48,17 +38,16 @@ impl PlaceConstraints {
             return true;
         }
         let Some([far, pan]) = self.sight else { return false };
-        // Where the follower heads, and where its leader is from there.
+        // The follower's heading, and the leader's direction from it.
         let heading = (turn_rate * place[0]).atan2(speed - turn_rate * place[1]);
         let to_leader = (-place[1]).atan2(-place[0]);
         place[0].hypot(place[1]) > far || vocabulary::wrap(to_leader - heading).abs() > pan
     }
 }
 
-/// The field around the leader of `edge`.
-pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(Pose, FeasibilityMap)> {
-    let history = app_state.history.as_ref()?;
-    let fleet = history.fleet();
+/// The leader of `edge` and the map around it, as [`shade`] returns it.
+pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(Pose, Vec<f32>)> {
+    let fleet = app_state.fleet()?;
     let ends = *fleet.edges.get(edge)?;
     let (robot, _, follow) = app_state.follower(edge)?;
     let scene = app_state.scene_now()?;
@@ -89,27 +78,25 @@ pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(
     Some((leader.motion.pose, shade(&wanted, &motions)))
 }
 
-/// How the leader drives now and on its way to come.
+/// The leader's present and predicted motions.
 fn motions(prediction: Option<&Prediction>, leader: usize, now: [f64; 2]) -> Vec<[f64; 2]> {
     let ahead = prediction.and_then(|prediction| prediction.motions.get(leader)).map_or(&[][..], |all| all);
     let every = (ahead.len() / GLANCES).max(1);
     [now].into_iter().chain(ahead.iter().step_by(every).copied()).collect()
 }
 
-/// The field of what is wanted.
-pub fn shade(wanted: &PlaceConstraints, motions: &[[f64; 2]]) -> FeasibilityMap {
+/// The map of infeasible set points in the leader's frame: opacities from 0 to 1, row by row from behind to ahead,
+/// each from the right to the left.
+pub fn shade(wanted: &PlaceConstraints, motions: &[[f64; 2]]) -> Vec<f32> {
     let half = 0.5 * (SIDE - 1) as f64 * STEP;
-    let mut alphas = Vec::with_capacity(SIDE * SIDE);
-    for row in 0..SIDE {
-        for column in 0..SIDE {
-            let place = [row as f64 * STEP - half, column as f64 * STEP - half];
-            let away = place[0].hypot(place[1]) / half;
-            // It fades towards its rim, so that it is no square.
-            let rim = ((1.0 - away) / 0.2).clamp(0.0, 1.0) as f32;
-            alphas.push(if wanted.refuses(place, motions) { rim } else { 0.0 });
-        }
-    }
-    FeasibilityMap { alphas, side: SIDE, step: STEP }
+    let alpha = |square: usize| {
+        let place = [square / SIDE, square % SIDE].map(|k| k as f64 * STEP - half);
+        let away = place[0].hypot(place[1]) / half;
+        // It fades towards its rim, so that the square is not visible.
+        let rim = ((1.0 - away) / 0.2).clamp(0.0, 1.0) as f32;
+        if wanted.refuses(place, motions) { rim } else { 0.0 }
+    };
+    (0..SIDE * SIDE).map(alpha).collect()
 }
 
 #[cfg(test)]
@@ -124,8 +111,8 @@ mod tests {
     fn a_straight_way_leaves_all_ground_and_a_bend_takes_the_outside() {
         let free = shade(&wanted(), &[[1.0, 0.0]]);
         let taken = shade(&wanted(), &[[1.0, 0.3]]);
-        let count = |field: &FeasibilityMap| field.alphas.iter().filter(|a| **a > 0.0).count();
-        // What is nearer than the law allows is one square.
+        let count = |alphas: &[f32]| alphas.iter().filter(|a| **a > 0.0).count();
+        // Places nearer than the law allows.
         assert_eq!(count(&free), 1);
         assert!(count(&taken) > 300);
     }

@@ -1,4 +1,4 @@
-//! The 3D view: a camera in the hand, handles on the ground, and what is drawn to explain.
+//! The 3D view: the free camera, the pointer and annotations on the ground.
 
 pub mod annotations;
 pub mod camera;

@@ -38,7 +38,7 @@ fn text(app_state: &AppState) -> String {
 /// What the run is asked for.
 fn requests(app_state: &AppState) -> Vec<&'static str> {
     let word = |request: &RunRequest| match request {
-        RunRequest::ResumeRecording { .. } => "take up",
+        RunRequest::ResumeRecording(_) => "take up",
         RunRequest::Open { .. } => "open",
         RunRequest::Recorded(_) => "recorded",
         RunRequest::Play(_) => "play",
@@ -57,11 +57,11 @@ const RETUNE: &[&str] = &["change"];
 const RESTART: &[&str] = &["open", "ahead", "play"];
 
 pub(crate) fn tune(key: &'static str, value: &str) -> Action {
-    Action::Tune { what: "Gain…".to_owned(), key, value: value.to_owned() }
+    Action::Tune { what: "Gain…".to_owned(), key, value: Some(value.to_owned()) }
 }
 
 fn untune(key: &'static str) -> Action {
-    Action::Untune { what: "Reset gain".to_owned(), key }
+    Action::Tune { what: "Reset gain".to_owned(), key, value: None }
 }
 
 pub(crate) fn set(path: &str, value: &str) -> Action {
@@ -102,12 +102,7 @@ fn commands() -> Vec<(Action, String, Vec<&'static str>, &'static [&'static str]
             vec!["[-3.0, 1.0, 0.0] # where it starts"],
             RESTART,
         ),
-        (
-            Action::Reset { what: "Less".to_owned(), paths: vec!["law.k".to_owned(), "law.beta".to_owned()] },
-            three(),
-            vec!["# Gains of all."],
-            RETUNE,
-        ),
+        (untune("law.k"), three(), vec!["# Gains of all."], RETUNE),
         (Action::Connect { leader: 1, follower: 2 }, three(), vec!["leader = \"left\""], RESTART),
         (Action::AddRobot, three(), vec!["name = \"follower-1\"", "leader = \"left\""], RESTART),
         (Action::RemoveRobot("right".to_owned()), three(), vec!["# To the left."], RESTART),
@@ -242,11 +237,11 @@ fn gains_are_tuned_for_all_or_for_one() {
     // Robots come before those that groups make.
     assert_eq!(gains(&app_state), [2.5, 4.0, 4.0, 4.0]);
     app_state.act(&Action::ForAll(false));
-    app_state.act(&Action::Choose(Selection::Edge(2)));
+    app_state.act(&Action::Select(Selection::Edge(2)));
     app_state.act(&tune("law.k", "6.0"));
     assert_eq!(gains(&app_state), [2.5, 4.0, 6.0, 4.0], "{}", text(&app_state));
     let (robot, ..) = app_state.follower(0).expect("a follower");
-    app_state.act(&Action::Choose(Selection::Robot(robot)));
+    app_state.act(&Action::Select(Selection::Robot(robot)));
     app_state.act(&tune("law.k", "[1.0, 2.0]"));
     assert_eq!(gains(&app_state), [1.0, 4.0, 6.0, 4.0]);
     app_state.act(&untune("law.k"));
@@ -309,9 +304,9 @@ fn a_lead_robot_becomes_a_follower_where_it_is() {
 #[test]
 fn robots_are_added_where_there_is_room() {
     let mut rig = Rig::new(THREE);
-    rig.act(&[Action::Choose(Selection::Robot(0)), Action::AddRobot]);
+    rig.act(&[Action::Select(Selection::Robot(0)), Action::AddRobot]);
     assert_eq!(rig.app_state.selection, Selection::Robot(3), "the new one is selected");
-    rig.act(&[Action::Choose(Selection::Robot(0)), Action::AddRobot, Action::AddRobot]);
+    rig.act(&[Action::Select(Selection::Robot(0)), Action::AddRobot, Action::AddRobot]);
     assert_eq!(rig.app_state.notice, None);
     let scene = rig.app_state.scene().expect("a scene").clone();
     let names: Vec<&str> = scene.robots.iter().map(|robot| &*robot.name).collect();
@@ -352,7 +347,6 @@ fn what_cannot_be_changes_nothing_and_is_said_once() {
         (Action::RenameRobot("nobody".to_owned(), "x".to_owned()), "nobody"),
         (Action::RemoveRobot("nobody".to_owned()), "nobody"),
         (Action::RemoveProp("nothing".to_owned()), "nothing"),
-        (Action::Reset { what: "x".to_owned(), paths: vec!["robots.nobody.law.k".to_owned()] }, "nobody"),
     ];
     let continuous = with(THREE, &[("time.mode", "continuous"), ("observer.epsilon", "0.02")]);
     for past in [false, true] {
@@ -384,7 +378,6 @@ fn a_deed_that_changes_nothing_is_none() {
             tune("law.k", "3.0"),
             Action::RenameRobot("left".to_owned(), "left".to_owned()),
             untune("law.slope"),
-            Action::Reset { what: "x".to_owned(), paths: vec!["law.slope".to_owned()] },
         ] {
             app_state.act(&action);
             assert!(
@@ -424,10 +417,10 @@ fn the_run_is_led_by_hand() {
     }
     app_state.act(&Action::Ahead(0.0));
     assert!(app_state.ahead == 0.0 && app_state.prediction.is_none());
-    app_state.act(&Action::Take(Tool::Pillar));
+    app_state.act(&Action::UseTool(Tool::Pillar));
     assert_eq!(app_state.tool, Tool::Pillar);
-    app_state.act(&Action::Take(Tool::Pillar));
-    assert_eq!(app_state.tool, Tool::Hand, "taken twice is put down");
+    app_state.act(&Action::UseTool(Tool::Pillar));
+    assert_eq!(app_state.tool, Tool::Select, "taken twice is put down");
     app_state.act(&Action::NameBranch(0, "trunk".to_owned()));
     assert_eq!(app_state.branches[0].name, "trunk");
     app_state.requests.clear();
@@ -444,10 +437,10 @@ fn what_is_selected_is_there() {
         (Selection::Edge(0), Some(1)),
         "an edge, to begin with"
     );
-    rig.act(&[Action::Choose(Selection::Robot(2))]);
+    rig.act(&[Action::Select(Selection::Robot(2))]);
     assert_eq!(rig.app_state.chosen_edge(), Some(1));
     rig.act(&[Action::RemoveRobot("right".to_owned())]);
     assert_eq!(rig.app_state.selection, Selection::Nothing, "nobody selects who is gone");
-    rig.act(&[Action::Choose(Selection::Robot(0))]);
+    rig.act(&[Action::Select(Selection::Robot(0))]);
     assert_eq!((rig.app_state.chosen_edge(), rig.app_state.chosen_robot()), (None, Some(0)));
 }

@@ -111,7 +111,7 @@ impl Rig {
     pub(crate) fn new(text: &str) -> Self {
         let (wake, wakes) = channel();
         let (predictor, _) = Predictor::start(|| ());
-        let runner = Runner::start(predictor, move || wake.send(()).unwrap_or(()));
+        let runner = Runner::start(predictor, None, move || wake.send(()).unwrap_or(()));
         let mut app_state = AppState::new();
         (app_state.playing, app_state.ahead) = (false, 0.0);
         app_state.open(text.to_owned(), None, Path::new("t.toml")).expect("a scene");

@@ -16,7 +16,7 @@ fn an_edit_in_the_past_makes_another_future() {
     let mut rig = Rig::new(THREE);
     rig.steps(99);
     let trunk = rig.told(0);
-    rig.act(&[Action::Seek(0.4), tune("law.k", "6.0"), Action::Rest]);
+    rig.act(&[Action::Seek(0.4), tune("law.k", "6.0"), Action::Release]);
     assert_eq!((rig.app_state.branches.len(), rig.app_state.branch, rig.app_state.cursor), (2, 1, None));
     assert_eq!(rig.app_state.branches[1].parent, Some((0, 0.4)));
     assert_eq!(rig.app_state.end(), 0.4, "it goes on from where one looked");
@@ -44,7 +44,7 @@ fn a_drag_in_the_past_makes_one_branch_however_long_the_run_takes_for_it() {
         rig.app_state.act(&point(0, 2.0 - 0.05 * f64::from(step), 135.0));
         rig.send();
     }
-    rig.app_state.act(&Action::Rest);
+    rig.app_state.act(&Action::Release);
     rig.settle();
     assert_eq!((rig.app_state.branches.len(), rig.app_state.branch), (2, 1));
     assert_eq!(rig.app_state.set_point(0).map(|[d, _]| d), Some(1.6));
@@ -112,7 +112,7 @@ fn edits_that_the_run_takes_one_by_one_are_remembered_one_by_one() {
 fn there_and_back_while_the_run_stands_is_no_change() {
     let mut rig = Rig::new(THREE);
     rig.steps(30);
-    rig.act(&[tune("law.k", "5.0"), Action::Rest]);
+    rig.act(&[tune("law.k", "5.0"), Action::Release]);
     assert_eq!(rig.app_state.branches[0].changes.len(), 1);
     rig.act(&[Action::Undo]);
     assert!(rig.app_state.branches[0].changes.is_empty());
@@ -131,7 +131,7 @@ fn a_scene_with_changes_of_its_own_is_tuned_as_it_goes() {
     // What is expected is expected of the whole run.
     let told = rig.told(0);
     assert_eq!(run(&rig.app_state.script().expect("a script")), (told.samples, told.digest));
-    rig.act(&[point(0, 2.2, -120.0), tune("law.k", "6.0"), Action::Rest]);
+    rig.act(&[point(0, 2.2, -120.0), tune("law.k", "6.0"), Action::Release]);
     assert_eq!(
         (rig.app_state.end(), rig.app_state.branches[0].changes.len()),
         (0.2, 1),
@@ -143,7 +143,7 @@ fn a_scene_with_changes_of_its_own_is_tuned_as_it_goes() {
     assert_eq!(run(&rig.app_state.script().expect("a script")), (told.samples, told.digest));
     // What is past has become what is, and what is to come still comes.
     rig.steps(620);
-    rig.act(&[tune("law.beta", "3.0"), Action::Rest]);
+    rig.act(&[tune("law.beta", "3.0"), Action::Release]);
     assert_eq!(
         (rig.app_state.branches[0].changes.len(), rig.app_state.scene().expect("a scene").changes.len()),
         (2, 2)
@@ -164,9 +164,9 @@ fn a_scene_with_changes_of_its_own_is_tuned_as_it_goes() {
 fn undo_in_the_past_takes_back_what_holds_there() {
     let mut rig = Rig::new(THREE);
     rig.steps(30);
-    rig.act(&[tune("law.k", "6.0"), Action::Rest]);
+    rig.act(&[tune("law.k", "6.0"), Action::Release]);
     rig.steps(30);
-    rig.act(&[tune("law.k", "9.0"), Action::Rest]);
+    rig.act(&[tune("law.k", "9.0"), Action::Release]);
     rig.steps(30);
     let trunk = rig.told(0);
     let text = rig.text().to_owned();

@@ -3,7 +3,7 @@
 use crate::common::{BranchSummary, Rig, THREE, checked, run, scene, with};
 use lab::action::Action;
 use lab::session::branches::script;
-use lab::session::runner::{RunEvent, RunRequest};
+use lab::session::runner::{Fork, RunEvent, RunRequest};
 
 /// Runs on at a pace until a branch has more than `samples` samples, then stands.
 fn stride(rig: &mut Rig, pace: f64, samples: u64) {
@@ -69,7 +69,7 @@ fn a_branch_is_told_where_it_begins() {
     let mut rig = Rig::new(THREE);
     rig.steps(50);
     rig.runner.request(RunRequest::Fork { from: 0, sample: 37, name: "back".to_owned() });
-    let RunEvent::Forked { branch: 1, from: 0, sample: 37, name, changes } = rig.next() else {
+    let RunEvent::Forked(Fork { branch: 1, from: 0, sample: 37, name, changes }) = rig.next() else {
         panic!("no branch")
     };
     assert!(name == "back" && changes.is_empty());
@@ -114,7 +114,7 @@ fn a_scene_that_cannot_run_is_refused() {
     assert!(notice.contains("`seed` cannot change while a run goes"), "{notice}");
     // Cameras need an adapter, and there is none here.
     let eyes = include_str!("../../../../scenes/vision-line-three.toml");
-    rig.runner.request(RunRequest::Open { scene: scene(eyes), gpu: None, until: 0.0 });
+    rig.runner.request(RunRequest::Open { scene: scene(eyes), until: 0.0 });
     rig.settle();
     let notice = rig.app_state.notice.take().expect("a notice");
     assert!(notice.contains("adapter"), "{notice}");
@@ -125,7 +125,7 @@ fn a_scene_that_cannot_run_is_refused() {
 #[test]
 fn opening_brings_a_run_to_where_the_last_one_was() {
     let mut rig = Rig::new(THREE);
-    rig.runner.request(RunRequest::Open { scene: scene(THREE), gpu: None, until: 0.5 });
+    rig.runner.request(RunRequest::Open { scene: scene(THREE), until: 0.5 });
     rig.settle();
     assert_eq!(rig.told(0).samples, 51);
     assert_eq!(rig.app_state.end(), 0.5);

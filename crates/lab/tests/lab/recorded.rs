@@ -122,7 +122,7 @@ fn a_recording_of_another_program_begins_anew() {
     rig.act(&[Action::Fork]);
     rig.settle();
     assert!(
-        rig.app_state.notice.as_ref().is_some_and(|notice| notice.contains("not run as it was recorded"))
+        rig.app_state.notice.as_ref().is_some_and(|notice| notice.contains("run differs from the recording"))
     );
     assert_eq!(rig.app_state.branches.len(), 1);
     assert!(rig.app_state.end() < 3.0);

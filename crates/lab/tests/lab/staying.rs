@@ -7,10 +7,10 @@ use lab::app_state::Selection;
 #[test]
 fn what_is_selected_stays_so_by_its_name() {
     let mut rig = Rig::new(THREE);
-    rig.act(&[Action::Choose(Selection::Robot(2))]);
+    rig.act(&[Action::Select(Selection::Robot(2))]);
     rig.act(&[Action::RenameRobot("right".to_owned(), "tail".to_owned())]);
     assert_eq!(rig.app_state.selection, Selection::Robot(2));
-    rig.act(&[Action::Choose(Selection::Edge(1)), Action::AddProp("pillar", [9.0, 9.0])]);
+    rig.act(&[Action::Select(Selection::Edge(1)), Action::AddProp("pillar", [9.0, 9.0])]);
     assert_eq!(rig.app_state.selection, Selection::Edge(1));
 }
 
@@ -18,7 +18,8 @@ fn what_is_selected_stays_so_by_its_name() {
 fn undo_stays_on_its_branch_and_the_past_shows_what_held_then() {
     let mut rig = Rig::new(THREE);
     rig.steps(50);
-    let gain = |value: &str| Action::Tune { what: "Gain".to_owned(), key: "law.k", value: value.to_owned() };
+    let gain =
+        |value: &str| Action::Tune { what: "Gain".to_owned(), key: "law.k", value: Some(value.to_owned()) };
     rig.act(&[gain("7.0")]);
     rig.steps(20);
     let now = |rig: &Rig| rig.app_state.follower(0).map(|(_, _, follow)| follow.law.k[0]);

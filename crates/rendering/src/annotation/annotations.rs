@@ -1,32 +1,21 @@
-//! What somebody draws on the ground to explain: paths to come, handles, areas, arrows and faint bodies.
+//! Annotations on the ground: predicted paths, handles, areas, arrows and faint bodies.
 
 use vocabulary::Pose;
 
-/// Things on the ground, in the order in which they are drawn. They lie under the robots and follow the floor as
-/// ribbons do; what has places or colours that are not finite is left out.
+/// Annotations on the ground, in the order in which they are drawn. They lie under the robots and follow the floor as
+/// ribbons do; items with a place or a colour that is not finite are left out.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Annotations {
     /// Shaded ground.
     pub areas: Vec<ShadedArea>,
     /// Arrows from place to place.
     pub arrows: Vec<AnnotationArrow>,
-    /// Lines, such as paths to come.
+    /// Lines, such as predicted paths.
     pub strokes: Vec<AnnotationStroke>,
     /// Rings, such as handles.
     pub rings: Vec<Ring>,
     /// Faint bodies of robots where they are not; as other ghosts, not seen from just above the ground.
     pub ghosts: Vec<Ghost>,
-}
-
-impl Annotations {
-    /// Whether there is nothing to draw.
-    pub fn is_empty(&self) -> bool {
-        self.areas.is_empty()
-            && self.arrows.is_empty()
-            && self.strokes.is_empty()
-            && self.rings.is_empty()
-            && self.ghosts.is_empty()
-    }
 }
 
 /// A place with its colour, of a line or an area.
@@ -59,7 +48,7 @@ impl AnnotationStroke {
         Self { spots, pixels: 3.0, metres: 0.0, dashed: false }
     }
 
-    /// A thin line of one colour that fades away towards its end, as what is to come is less and less certain.
+    /// A thin line of one colour that fades towards its end, like a prediction that becomes less certain.
     pub fn fading(places: &[[f64; 2]], colour: [f32; 3], alpha: f32) -> Self {
         let last = places.len().saturating_sub(1).max(1) as f32;
         // Slowly at first, so that most of the line is well seen.
@@ -100,13 +89,13 @@ impl Ring {
         Self { at, radius, least: 9.0, pixels: 2.5, colour, alpha: 0.95, fill: 0.0, glow: 0.0, dot: 0.0 }
     }
 
-    /// A handle that the pointer is over: the line is wider, and there is a dot to grasp.
+    /// A handle under the pointer: the line is wider, and there is a dot to grasp.
     #[must_use]
     pub fn hovered(self) -> Self {
         Self { pixels: 3.0, alpha: 1.0, fill: 0.12, glow: 0.35, dot: 0.8, ..self }
     }
 
-    /// A handle that is held or selected.
+    /// A handle that is dragged or selected.
     #[must_use]
     pub fn selected(self) -> Self {
         Self { pixels: 3.5, alpha: 1.0, fill: 0.16, glow: 0.8, dot: 1.0, ..self }
@@ -174,7 +163,7 @@ pub struct AnnotationArrow {
 /// The faint body of a robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ghost {
-    /// Whose, by its index in the cast.
+    /// The robot, by its index in the fleet.
     pub robot: usize,
     /// Where it stands; its height and lean are those of the floor.
     pub pose: Pose,

@@ -1,9 +1,9 @@
-//! What a follower made of its camera's last picture, drawn over its view: tags, region, and the leader's shell where
+//! The result of a follower's last camera image, drawn over its view: tags, region, and the leader's shell where
 //! the estimate has it.
 
 use crate::annotation::labels::{Ink, LabelPlacer, Window};
 use crate::camera::viewpoint::Tile;
-use crate::palette::{Rgb, hex};
+use crate::palette::{Rgb, hex, with_alpha};
 use crate::picture_context::PictureContext;
 use glam::Vec2;
 use vocabulary::{
@@ -11,7 +11,7 @@ use vocabulary::{
     wrap,
 };
 
-/// Older measurements are forgotten, s.
+/// Older measurements are not drawn, s.
 const FORGOTTEN: f64 = 2.0;
 
 const USED: Rgb = hex(0x0048_e08a);
@@ -45,8 +45,8 @@ fn turned([x, y]: [f64; 2], turn: f64) -> Option<[f64; 2]> {
     (ahead > 0.02).then(|| [(x * cos + sin) / ahead, y / ahead])
 }
 
-/// How far the camera has turned to the left of its leader since a measurement, rad: what was seen then is drawn over
-/// what is seen now.
+/// How far the camera has turned to the left of its leader since a measurement, rad: the detection of then is drawn over
+/// the view of now.
 fn turn_since(context: &PictureContext<'_>, edge: &Edge, frame: &MeasurementRecord) -> f64 {
     let robots = &context.record.snapshot.robots;
     let (Some(own), Some(leader), Some(member)) =
@@ -64,7 +64,7 @@ fn turn_since(context: &PictureContext<'_>, edge: &Edge, frame: &MeasurementReco
 }
 
 impl DetectionOverlay<'_, '_, '_> {
-    /// Where a direction of the measurement (x/z right, y/z down) is seen, pixels of the whole picture.
+    /// Where a direction of the measurement (x/z right, y/z down) appears, pixels of the whole picture.
     fn at(&self, direction: [f64; 2]) -> Option<Vec2> {
         turned(direction, self.turn).map(|[x, y]| self.window.direction(x, -y))
     }
@@ -72,8 +72,7 @@ impl DetectionOverlay<'_, '_, '_> {
     fn line(&mut self, from: [f64; 2], to: [f64; 2], colour: Rgb, alpha: f32) {
         let (Some(from), Some(to)) = (self.at(from), self.at(to)) else { return };
         if let Some((a, b)) = clipped(from, to, &self.window.tile) {
-            let [red, green, blue] = colour;
-            self.words.shapes.line(a, b, self.width, [red, green, blue, alpha]);
+            self.words.shapes.line(a, b, self.width, with_alpha(colour, alpha));
         }
     }
 
@@ -136,7 +135,7 @@ fn clipped(a: Vec2, b: Vec2, tile: &Tile) -> Option<(Vec2, Vec2)> {
     (from < to).then(|| (a + along * from, a + along * to))
 }
 
-/// The leader's body as the estimate has it, in the frame of the follower's camera at the measurement.
+/// The estimated body of the leader, in the frame of the follower's camera at the measurement.
 fn estimated(frame: &MeasurementRecord, follower: &RobotInfo) -> Rigid {
     let relative = frame.measurement.relative;
     let (sin, cos) = relative.view_angle.sin_cos();
@@ -161,7 +160,7 @@ pub(crate) fn camera_words(
     words.write(format!("camera: {}", member.name), at, 12.0, true, Ink::LIGHT);
 }
 
-/// Everything about the last measurement of each edge of a robot, over the view of its camera.
+/// Draws the last measurement of each edge of a robot over the view of its camera.
 fn detections(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window: Window<'_>, robot: usize) {
     let now = context.record.snapshot.time;
     let mut row = 0.0;
@@ -275,9 +274,9 @@ fn report(words: &mut LabelPlacer<'_>, tile: Tile, leader: &str, frame: &Measure
 mod tests {
     use super::*;
     use crate::camera::onboard::onboard;
-    use crate::ground::floor::Floor;
+    use crate::fleet_model::FleetModel;
     use crate::{Style, Trail};
-    use glam::{DVec2, DVec3};
+    use glam::DVec3;
     use vocabulary::{Body, FleetInfo, Pose, RobotState, Snapshot, StepRecord};
 
     /// A leader that drives past, and a follower that drives and turns while its camera pans, at a time.
@@ -298,22 +297,10 @@ mod tests {
             edges: vec![edge],
             ..FleetInfo::default()
         };
-        let (trail, style) = (Trail::new(&fleet), Style::default());
+        let (model, trail, style) = (FleetModel::new(&fleet), Trail::new(&fleet), Style::default());
         for rates in [[0.0; 3], [0.0, 1.5, 0.0], [1.0, -1.5, 0.0], [0.8, 0.0, 0.0], [0.3, 0.2, 0.8]] {
             let (then, now) = (record(0.45, rates), record(0.5, rates));
-            let context = PictureContext {
-                fleet: &fleet,
-                floor: &Floor::new(&fleet),
-                colours: &[vocabulary::colours::LEAD; 2],
-                trail: &trail,
-                record: &now,
-                style: &style,
-                origin: DVec3::ZERO,
-                sun: DVec3::Z,
-                size: 1.0,
-                shadowed: (DVec2::ZERO, 1.0),
-                detail: 1.0,
-            };
+            let context = PictureContext::new(&model, &trail, &now, &style);
             // The leader's middle, as the camera saw it at the measurement.
             let [leader, own] = [0, 1].map(|k| then.snapshot.robots[k]);
             let Pose { x, y, .. } = leader.motion.pose;

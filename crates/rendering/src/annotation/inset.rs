@@ -2,6 +2,7 @@
 
 use crate::annotation::labels::{Ink, LabelPlacer, MARGIN};
 use crate::camera::viewpoint::Tile;
+use crate::palette::with_alpha;
 use crate::picture_context::PictureContext;
 use crate::picture_plan::{Area, overlap};
 use glam::Vec2;
@@ -170,30 +171,16 @@ fn curves(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, axes: &Axes
     let wide = words.scaled(if context.fleet.edges.len() > 12 { 1.0 } else { 1.6 });
     let pick = |error: f32| error * quantity.factor;
     for (index, edge) in context.fleet.edges.iter().enumerate() {
-        let [r, g, b] = context.colours[edge.follower];
         // A little darker than on the ground: the panel is bright.
-        let colour = [r * 0.86, g * 0.86, b * 0.86, 0.95 * axes.clear];
+        let colour = context.colours[edge.follower].map(|c| c * 0.86);
         let last = context.record.edges.get(index).map(|e| (now, pick(e.error[quantity.index] as f32)));
         let past = context.trail.errors.entries.iter();
         let past = past.filter_map(|(t, e)| e.get(index).map(|e| (*t, pick(e[quantity.index]))));
         let points = past.filter(|(t, _)| *t < now).chain(last).filter(|(_, e)| e.is_finite());
-        let mut before: Option<(Vec2, f32)> = None;
-        for (time, error) in points {
-            let at = axes.at(time, error);
-            // Steps below a pixel would only cost time.
-            if before.is_some_and(|(b, _)| b.distance(at) <= 0.9) {
-                continue;
-            }
-            // A bearing that goes through ±180° goes round, not through zero.
-            let round = quantity.unit == "°" && before.is_some_and(|(_, e)| (e - error).abs() > 180.0);
-            if let (Some((from, _)), false) = (before, round) {
-                words.shapes.line(from, at, wide, colour);
-            }
-            before = Some((at, error));
-        }
-        if let Some((end, _)) = before {
-            let dot = words.scaled(2.5);
-            words.shapes.panel([end.x - dot, end.y - dot, 2.0 * dot, 2.0 * dot], dot, colour);
-        }
+        let places = points.map(|(time, error)| (axes.at(time, error), error));
+        // A bearing that goes through ±180° goes round, not through zero.
+        let joins = |from: f32, to: f32| quantity.unit != "°" || (from - to).abs() <= 180.0;
+        let dot = words.scaled(2.5);
+        words.shapes.curve(places, joins, wide, dot, with_alpha(colour, 0.95 * axes.clear));
     }
 }

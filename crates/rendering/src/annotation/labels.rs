@@ -10,7 +10,7 @@ use crate::ground::decal_builder::RING;
 use crate::ground::trail::set_points;
 use crate::palette::{self, Rgb};
 use crate::picture_context::PictureContext;
-use crate::picture_plan::{Area, area, overlap};
+use crate::picture_plan::{Area, overlap};
 use crate::{Viewpoint, camera::viewpoint::Tile};
 use glam::{DVec2, DVec3, Vec2};
 use vocabulary::{Condition, RobotInfo, RobotState};
@@ -81,15 +81,14 @@ impl<'a> LabelPlacer<'a> {
 
     /// A thin frame around a tile, from which words keep away.
     pub(crate) fn framed(&mut self, tile: Tile) {
-        let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
+        let [x, y, width, height] = tile.area();
         let thick = self.scaled(1.5);
         let [a, b] = [Vec2::new(x, y), Vec2::new(x + width, y + height)];
         let (c, d) = (Vec2::new(b.x, a.y), Vec2::new(a.x, b.y));
-        let [red, green, blue] = palette::PAPER;
         for (from, to) in [(a, c), (c, b), (b, d), (d, a)] {
-            self.shapes.line(from, to, thick, [red, green, blue, 0.95]);
+            self.shapes.line(from, to, thick, palette::with_alpha(palette::PAPER, 0.95));
         }
-        self.reserve(area(&tile));
+        self.reserve(tile.area());
     }
 
     pub(crate) fn scaled(&self, size: f32) -> f32 {
@@ -107,10 +106,10 @@ impl<'a> LabelPlacer<'a> {
 
     /// Writes a line whose left end and middle are at `at`, whatever is there.
     pub(crate) fn write(&mut self, text: String, at: [f32; 2], size: f32, bold: bool, ink: Ink) {
-        self.push(text, at, size, bold, ink, None);
+        self.write_block(text, at, size, bold, ink, None);
     }
 
-    /// Writes a text that may have several lines; the middle of its first is at `at`.
+    /// Writes a text that may have several lines where it has a block; the middle of its first is at `at`.
     pub(crate) fn write_block(
         &mut self,
         text: String,
@@ -118,12 +117,8 @@ impl<'a> LabelPlacer<'a> {
         size: f32,
         bold: bool,
         ink: Ink,
-        block: Block,
+        block: Option<Block>,
     ) {
-        self.push(text, at, size, bold, ink, Some(block));
-    }
-
-    fn push(&mut self, text: String, at: [f32; 2], size: f32, bold: bool, ink: Ink, block: Option<Block>) {
         let size = self.scaled(size);
         let Ink { colour, alpha, halo } = ink;
         self.lines.push(TextLine { text, at, size, bold, block, colour, alpha, halo });
@@ -322,17 +317,11 @@ pub(crate) fn robot_boxes(context: &PictureContext<'_>, window: Window<'_>) -> V
         let (middle, reach) = (0.5 * body.wheelbase, 0.5 * body.length + 0.05);
         let side = 0.5 * body.width + 0.06;
         let half = 0.5 * Build::new(member).top();
-        let mut low = Vec2::INFINITY;
-        let mut high = Vec2::NEG_INFINITY;
-        for k in 0..8 {
+        around((0..8).map(|k| {
             let sign = |bit: usize| if k & bit == 0 { -1.0 } else { 1.0 };
             let [x, y] = robot.motion.pose.world_from_body(middle + sign(1) * reach, sign(2) * side);
-            let up = robot.attitude.height + half + sign(4) * half;
-            let at = window.anywhere(DVec3::new(x, y, up))?;
-            (low, high) = (low.min(at), high.max(at));
-        }
-        let size = high - low;
-        size.is_finite().then_some([low.x, low.y, size.x, size.y])
+            window.anywhere(DVec3::new(x, y, robot.attitude.height + half + sign(4) * half))
+        }))
     };
     robots.filter_map(area).collect()
 }
@@ -341,17 +330,21 @@ pub(crate) fn robot_boxes(context: &PictureContext<'_>, window: Window<'_>) -> V
 pub(crate) fn ring_boxes(context: &PictureContext<'_>, window: Window<'_>) -> Vec<Area> {
     let reach = RING * context.size;
     let ring = |[x, y]: [f64; 2]| {
-        let around = (0..8).map(|k| {
+        around((0..8).map(|k| {
             let (sin, cos) = (std::f64::consts::FRAC_PI_4 * f64::from(k)).sin_cos();
             window.anywhere(context.on_floor(x + reach * cos, y + reach * sin))
-        });
-        let points: Option<Vec<_>> = around.collect();
-        let points = points?;
-        let low = points.iter().copied().fold(Vec2::INFINITY, Vec2::min);
-        let size = points.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max) - low;
-        size.is_finite().then_some([low.x, low.y, size.x, size.y])
+        }))
     };
     set_points(context.fleet, context.record).into_iter().flatten().filter_map(ring).collect()
+}
+
+/// The rectangle around points of the picture; `None` where one of them is behind the eye.
+fn around(mut points: impl Iterator<Item = Option<Vec2>>) -> Option<Area> {
+    let [low, high] = points.try_fold([Vec2::INFINITY, Vec2::NEG_INFINITY], |[low, high], point| {
+        point.map(|point| [low.min(point), high.max(point)])
+    })?;
+    let size = high - low;
+    size.is_finite().then_some([low.x, low.y, size.x, size.y])
 }
 
 /// Coordinates where the strong lines of the ground cross.
@@ -397,7 +390,7 @@ pub(crate) fn detail(robots: usize) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ground::floor::Floor;
+    use crate::fleet_model::FleetModel;
     use crate::{Style, Trail};
     use vocabulary::{Body, FleetInfo, Pose, Snapshot, StepRecord};
 
@@ -412,19 +405,8 @@ mod tests {
             ..StepRecord::default()
         };
         let (trail, style) = (Trail::new(&fleet), Style::default());
-        let context = PictureContext {
-            fleet: &fleet,
-            floor: &Floor::new(&fleet),
-            colours: &[vocabulary::colours::LEAD],
-            trail: &trail,
-            record: &record,
-            style: &style,
-            origin: DVec3::ZERO,
-            sun: DVec3::Z,
-            size: 1.0,
-            shadowed: (DVec2::ZERO, 1.0),
-            detail: 1.0,
-        };
+        let model = FleetModel::new(&fleet);
+        let context = PictureContext::new(&model, &trail, &record, &style);
         let camera = Camera::looking(DVec3::new(-2.0, 2.0, 1.5), DVec3::new(1.0, 2.0, 0.0), 0.7, 1.0);
         let window = Window { camera: &camera, tile: Tile { x: 100, y: 0, width: 400, height: 400 } };
         let boxes = robot_boxes(&context, window);

@@ -1,4 +1,4 @@
-//! What explains a picture: texts, charts, cards, and shapes on the ground.
+//! Annotations of a picture: texts, charts, cards, and shapes on the ground.
 
 pub(crate) mod annotations;
 pub(crate) mod detections;

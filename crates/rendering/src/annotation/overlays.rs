@@ -1,8 +1,8 @@
 //! What films add to pictures: cards, a line at the bottom, plots beside the view.
 
 use crate::annotation::labels::{Ink, LabelPlacer};
-use crate::annotation::text_shaper::{Block, line_height};
-use crate::palette::{self, Rgb};
+use crate::annotation::text_shaper::{Block, Measure, line_height};
+use crate::palette::{self, Rgb, with_alpha};
 use crate::picture_plan::Area;
 use glam::Vec2;
 use vocabulary::round_step;
@@ -122,8 +122,7 @@ fn plots(
     colours: &[Rgb],
     [x, y, width, height]: [f32; 4],
 ) {
-    let [red, green, blue] = palette::PAPER;
-    words.shapes.panel([x, y, width, height], 0.0, [red, green, blue, 1.0]);
+    words.shapes.panel([x, y, width, height], 0.0, with_alpha(palette::PAPER, 1.0));
     let margin = words.scaled(20.0);
     let each = (height - margin) / plots.len() as f32;
     for (k, plot) in plots.iter().enumerate() {
@@ -158,11 +157,15 @@ fn one_plot(
         bottom - ((value - range[0]) / (range[1] - range[0])).clamp(0.0, 1.0) as f32 * (bottom - top)
     };
     let thin = words.scaled(1.0);
-    let ink = |alpha: f32| [palette::INK[0], palette::INK[1], palette::INK[2], alpha];
     for (value, text) in texts {
         let level = up(value).round() + 0.5;
         let alpha = if value == 0.0 { 0.5 } else { 0.13 };
-        words.shapes.line(Vec2::new(left, level), Vec2::new(right, level), thin, ink(alpha));
+        words.shapes.line(
+            Vec2::new(left, level),
+            Vec2::new(right, level),
+            thin,
+            with_alpha(palette::INK, alpha),
+        );
         let width = words.width(&text, 12.0, false);
         words.write(text, [left - width - words.scaled(6.0), level], 12.0, false, Ink::ON_PANEL);
     }
@@ -177,25 +180,12 @@ fn one_plot(
     }
     let wide = words.scaled(if plot.curves.len() > 12 { 1.2 } else { 2.2 });
     for curve in &plot.curves {
-        let [r, g, b] = colours.get(curve.robot).copied().unwrap_or(palette::INK);
         // A little darker than on the ground: the panel is bright.
-        let colour = [r * 0.86, g * 0.86, b * 0.86, 0.95];
-        let mut before: Option<Vec2> = None;
-        for [time, value] in curve.points.iter().filter(|p| p[1].is_finite()) {
-            let at = Vec2::new(across(*time), up(*value));
-            // Steps below a pixel would only cost time.
-            if before.is_some_and(|b| b.distance(at) <= 0.9) {
-                continue;
-            }
-            if let Some(from) = before {
-                words.shapes.line(from, at, wide, colour);
-            }
-            before = Some(at);
-        }
-        if let Some(end) = before {
-            let dot = words.scaled(3.5);
-            words.shapes.panel([end.x - dot, end.y - dot, 2.0 * dot, 2.0 * dot], dot, colour);
-        }
+        let colour = colours.get(curve.robot).copied().unwrap_or(palette::INK).map(|c| c * 0.86);
+        let points = curve.points.iter().filter(|[_, value]| value.is_finite());
+        let places = points.map(|[time, value]| (Vec2::new(across(*time), up(*value)), *value as f32));
+        let dot = words.scaled(3.5);
+        words.shapes.curve(places, |_, _| true, wide, dot, with_alpha(colour, 0.95));
     }
 }
 
@@ -234,18 +224,15 @@ fn number(value: f64, [low, high]: [f64; 2]) -> String {
 const LINE: f32 = 17.0;
 const LINE_ROWS: usize = 2;
 
-/// The rows of a line at the bottom: each with its room and the lines it takes, and the size of its letters.
-fn line_rows(words: &mut LabelPlacer<'_>, said: &Subtitle, width: f32) -> (Vec<(Block, f32, usize)>, f32) {
+/// What the rows of a line at the bottom take, the room of each, and the size of its letters.
+fn line_rows(words: &mut LabelPlacer<'_>, said: &Subtitle, width: f32) -> (Vec<Measure>, Block, f32) {
     let most = 0.9 * width;
     let widest = said.rows.iter().map(|row| words.width(row, LINE, true)).fold(1.0_f32, f32::max);
     // A little too long, it is smaller; much too long, it wraps.
     let size = LINE * (0.995 * most / widest).clamp(0.75, 1.0);
     let block = Block { width: most, rows: LINE_ROWS, centred: false };
-    let rows = said.rows.iter().map(|row| {
-        let measure = words.measure(row, size, true, Some(block));
-        (block, measure.width, measure.rows)
-    });
-    (rows.collect(), size)
+    let rows = said.rows.iter().map(|row| words.measure(row, size, true, Some(block)));
+    (rows.collect(), block, size)
 }
 
 /// The panel behind `rows` lines of a line at the bottom, `wide` pixels across.
@@ -259,9 +246,9 @@ fn line_panel(words: &LabelPlacer<'_>, [width, height]: [f32; 2], wide: f32, row
 
 /// Where a line at the bottom is.
 pub(crate) fn line_place(words: &mut LabelPlacer<'_>, said: &Subtitle, views: [f32; 2]) -> Area {
-    let (rows, _) = line_rows(words, said, views[0]);
-    let wide = rows.iter().map(|row| row.1).fold(1.0, f32::max);
-    line_panel(words, views, wide, rows.iter().map(|row| row.2).sum())
+    let (rows, ..) = line_rows(words, said, views[0]);
+    let wide = rows.iter().map(|row| row.width).fold(1.0, f32::max);
+    line_panel(words, views, wide, rows.iter().map(|row| row.rows).sum())
 }
 
 /// Where a line at the bottom is or may come to be in the film.
@@ -279,17 +266,16 @@ pub(crate) fn line_room(words: &mut LabelPlacer<'_>, show: &Overlays, views: [f3
 
 fn line(words: &mut LabelPlacer<'_>, said: &Subtitle, views: [f32; 2]) {
     let alpha = said.opacity as f32;
-    let (rows, size) = line_rows(words, said, views[0]);
+    let (rows, block, size) = line_rows(words, said, views[0]);
     let place = line_place(words, said, views);
-    let [r, g, b] = palette::INK;
     let (radius, row, pad) = (words.scaled(8.0), words.scaled(1.45 * LINE), words.scaled(12.0));
-    words.shapes.panel(place, radius, [r, g, b, 0.72 * alpha]);
+    words.shapes.panel(place, radius, with_alpha(palette::INK, 0.72 * alpha));
     let ink = Ink { halo: (0.0, palette::INK), ..Ink::LIGHT }.faded(alpha);
     let mut down = place[1] + 0.5 * pad;
-    for (text, (block, own, lines)) in said.rows.iter().zip(rows) {
-        let left = 0.5 * (views[0] - own);
-        words.write_block(text.clone(), [left, down + 0.5 * row], size, true, ink, block);
-        down += row * lines as f32;
+    for (text, row_size) in said.rows.iter().zip(rows) {
+        let left = 0.5 * (views[0] - row_size.width);
+        words.write_block(text.clone(), [left, down + 0.5 * row], size, true, ink, Some(block));
+        down += row * row_size.rows as f32;
     }
 }
 
@@ -300,12 +286,11 @@ const CARD_WIDTH: f32 = 800.0;
 
 fn card(words: &mut LabelPlacer<'_>, shown: &Card, [width, height]: [f32; 2]) {
     let alpha = shown.opacity as f32;
-    let [r, g, b] = palette::INK;
     // What is written below the card is not to be read through it.
     for said in &mut words.lines {
         said.alpha *= 1.0 - 0.96 * alpha;
     }
-    words.shapes.panel([0.0, 0.0, width, height], 0.0, [r, g, b, 0.78 * alpha]);
+    words.shapes.panel([0.0, 0.0, width, height], 0.0, with_alpha(palette::INK, 0.78 * alpha));
     let [(large, title_rows), (small, rows)] = CARD;
     // Where it is a little too long for the picture, in smaller letters; then in several lines.
     let most = 0.86 * width;
@@ -331,7 +316,7 @@ fn card(words: &mut LabelPlacer<'_>, shown: &Card, [width, height]: [f32; 2]) {
     let ink = Ink { halo: (0.0, palette::INK), ..Ink::LIGHT }.faded(alpha);
     for (text, size, bold, block, line, high) in texts {
         let left = 0.5 * (width - block.width);
-        words.write_block(text.clone(), [left, down + 0.5 * line], size, bold, ink, block);
+        words.write_block(text.clone(), [left, down + 0.5 * line], size, bold, ink, Some(block));
         down += high;
     }
 }

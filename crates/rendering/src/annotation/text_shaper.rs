@@ -36,6 +36,7 @@ pub(crate) struct Measure {
 
 type Key = (String, u32, bool, Option<(u32, usize, bool)>);
 
+#[derive(Debug)]
 struct ShapedText {
     buffer: Buffer,
     measure: Measure,
@@ -43,7 +44,7 @@ struct ShapedText {
 }
 
 /// Texts that are shaped.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Shaped {
     texts: HashMap<Key, ShapedText>,
 }
@@ -55,20 +56,15 @@ impl Shaped {
 }
 
 /// Fonts, and what was shaped with them.
+#[derive(Debug)]
 pub(crate) struct TextShaper {
     /// Only what is embedded, so that a picture looks the same on every machine.
     own: FontSystem,
     /// The same and those of the machine, once a text needs a letter that the embedded fonts lack. Its embedded fonts have the
-    /// same numbers: whoever draws with it draws both.
+    /// same numbers, so that text shaped with either can be drawn with it.
     all: Option<FontSystem>,
     shaped: Shaped,
     pictures: u64,
-}
-
-impl std::fmt::Debug for TextShaper {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Letters").field("shaped", &self.shaped.texts.len()).finish_non_exhaustive()
-    }
 }
 
 impl TextShaper {
@@ -81,7 +77,7 @@ impl TextShaper {
         let (own, all, used) = (&mut self.own, &mut self.all, self.pictures);
         let entry = self.shaped.texts.entry(key(text, size, bold, block)).or_insert_with(|| {
             let mut buffer = shape(own, text, Font { size, bold }, block, &BTreeSet::new());
-            // An ellipsis may have left out what is lacking; nobody sees that.
+            // An ellipsis may have left the missing characters out.
             let lacks: BTreeSet<char> = lacking(&buffer).collect();
             if !lacks.is_empty() {
                 buffer =
@@ -153,10 +149,10 @@ fn shape(
 ) -> Buffer {
     let Some(Block { width, rows, centred }) = block else {
         let line = text.split(['\n', '\r']).collect::<Vec<_>>().join(" ");
-        return laid(fonts, &line, font, lacks, None, |_| None);
+        return laid(fonts, &line, font, lacks, None, None);
     };
     let width = Some(width.max(1.0));
-    let wrapped = laid(fonts, text, font, lacks, width, |_| None);
+    let wrapped = laid(fonts, text, font, lacks, width, None);
     // Each line by itself, since a line that is wrapped keeps the space before it, and the last with all that is left.
     let ends = |run: &LayoutRun<'_>| {
         let from = run.glyphs.iter().map(|glyph| glyph.start).min().unwrap_or(0);
@@ -168,20 +164,17 @@ fn shape(
     let rest = lines.split_off(lines.len().min(rows.saturating_sub(1)));
     lines.extend((!rest.is_empty()).then(|| rest.join(" ")));
     let align = if centred { Align::Center } else { Align::Left };
-    laid(fonts, &lines.join("\n"), font, lacks, width, |buffer| {
-        buffer.set_ellipsize(Ellipsize::End(EllipsizeHeightLimit::Lines(1)));
-        Some(align)
-    })
+    laid(fonts, &lines.join("\n"), font, lacks, width, Some(align))
 }
 
-/// A text laid out in lines of some width; `with` sets what is not said here, and its alignment.
+/// A text laid out in lines of some width; lines that are aligned end in "…" where they are too long.
 fn laid(
     fonts: &mut FontSystem,
     text: &str,
     Font { size, bold }: Font,
     lacks: &BTreeSet<char>,
     width: Option<f32>,
-    with: impl FnOnce(&mut Buffer) -> Option<Align>,
+    align: Option<Align>,
 ) -> Buffer {
     let mut features = FontFeatures::new();
     // Tabular figures: numbers keep their width while they count.
@@ -191,7 +184,9 @@ fn laid(
     let mut buffer = Buffer::new(fonts, Metrics::new(size, line_height(size)));
     buffer.set_size(width, None);
     buffer.set_wrap(Wrap::WordOrGlyph);
-    let align = with(&mut buffer);
+    if align.is_some() {
+        buffer.set_ellipsize(Ellipsize::End(EllipsizeHeightLimit::Lines(1)));
+    }
     // Few families have weights between the usual two, and whole words keep letters joined that are written so.
     let usual = if bold { Weight::BOLD } else { Weight::NORMAL };
     let other = Attrs::new().family(Family::SansSerif).weight(usual);

@@ -16,10 +16,11 @@ use crate::camera::smoothing::{Extent, SmoothedFormation};
 use crate::camera::snake::snake;
 use crate::camera::transition::between;
 use crate::ground::floor::Floor;
+use crate::picture_context::PictureContext;
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
-use vocabulary::{Edge, FleetInfo, Snapshot};
+use vocabulary::{Edge, Snapshot};
 
-/// Whence and how a picture is seen; only cameras on robots roll.
+/// The pose and projection of a camera; only cameras on robots roll.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Camera {
     pub(crate) eye: DVec3,
@@ -38,7 +39,7 @@ const NEAR: f64 = 0.05;
 const FAR: f64 = 600.0;
 /// Of an eye that the ground would hide, m.
 const LEAST_OVER_GROUND: f64 = 0.28;
-/// Of an eye that somebody has put somewhere, m.
+/// Of an eye that the user has placed, m.
 const LEAST_OVER_FLOOR: f64 = 0.06;
 
 /// Nearer the eye does not come, m.
@@ -48,14 +49,9 @@ pub(crate) const REACH: f64 = 0.28;
 
 impl Camera {
     /// The camera of `view`, which keeps robots in `room` where it can.
-    pub(crate) fn of(
-        view: &Viewpoint,
-        smoothed: &SmoothedFormation,
-        snapshot: &Snapshot,
-        fleet: &FleetInfo,
-        floor: &Floor,
-        room: &FreeSpace,
-    ) -> Self {
+    pub(crate) fn of(view: &Viewpoint, context: &PictureContext<'_>, room: &FreeSpace) -> Self {
+        let PictureContext { fleet, floor, .. } = *context;
+        let (smoothed, snapshot) = (&context.trail.smoothed, &context.record.snapshot);
         let aspect = room.aspect();
         let mut camera = match view {
             Viewpoint::Snake => snake(smoothed, room),
@@ -66,13 +62,12 @@ impl Camera {
             Viewpoint::Camera(robot) => return onboard(snapshot, fleet, *robot, aspect),
             Viewpoint::Fixed { eye, target, field_of_view } => {
                 let [mut eye, target] = [eye, target].map(|place| DVec3::from_array(*place));
-                // Somebody has put it there: it stays, unless the floor is in the way.
+                // The user has placed it: it stays, unless the floor is in the way.
                 eye.z = eye.z.max(floor.height(eye.truncate()) + LEAST_OVER_FLOOR);
                 return Self::looking(eye, target, *field_of_view, aspect);
             }
             Viewpoint::Between(from, to, share) => {
-                let [from, to] =
-                    [from, to].map(|view| Self::of(view, smoothed, snapshot, fleet, floor, room));
+                let [from, to] = [from, to].map(|view| Self::of(view, context, room));
                 return between(&from, &to, *share, smoothed);
             }
         };
@@ -99,6 +94,11 @@ impl Camera {
         let right = DVec3::new(heading.y, -heading.x, 0.0);
         let tangent = (0.5 * field_of_view).tan();
         let half = DVec2::new(tangent * aspect, tangent);
+        Self::upright(eye, forward, right, half)
+    }
+
+    /// A camera with perspective that does not lean and looks straight ahead.
+    pub(crate) fn upright(eye: DVec3, forward: DVec3, right: DVec3, half: DVec2) -> Self {
         Self {
             eye,
             forward,
@@ -115,16 +115,7 @@ impl Camera {
         let forward = DVec3::new(heading.cos() * pitch.cos(), heading.sin() * pitch.cos(), -pitch.sin());
         let right = DVec3::new(heading.sin(), -heading.cos(), 0.0);
         let half = DVec2::new(tangent * aspect, tangent);
-        Self {
-            eye: DVec3::ZERO,
-            forward,
-            right,
-            up: right.cross(forward),
-            half,
-            shift: DVec2::ZERO,
-            near: NEAR,
-            perspective: true,
-        }
+        Self::upright(DVec3::ZERO, forward, right, half)
     }
 
     /// Coordinates of a world point along right, up and forward, from the eye, m.
@@ -245,31 +236,18 @@ fn snake_eye(smoothed: &SmoothedFormation, aspect: f64) -> Camera {
 
 fn top(smoothed: &SmoothedFormation, room: &FreeSpace) -> Camera {
     let extent = smoothed.formation();
-    let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
-    // A circle around the formation, so that turning does not zoom.
-    let grown = extent.grown(0.45 * extent.size);
-    let across = 0.5 * (grown.forward[1] - grown.forward[0]).hypot(grown.left[1] - grown.left[0]);
+    let ([x, y], across) = (extent.middle(), extent.radius(0.45 * extent.size));
     let (middle, radius) = room.disc();
     let half = across.max(1.2 * extent.size) / radius;
     let half = DVec2::new(half * room.aspect(), half);
     let eye = DVec2::new(x, y) - DVec2::from_array(middle) * half;
-    Camera {
-        eye: eye.extend(100.0 + extent.ground[1]),
-        forward: DVec3::NEG_Z,
-        right: DVec3::X,
-        up: DVec3::Y,
-        half,
-        shift: DVec2::ZERO,
-        near: NEAR,
-        perspective: false,
-    }
+    let eye = eye.extend(100.0 + extent.ground[1]);
+    Camera { up: DVec3::Y, perspective: false, ..Camera::upright(eye, DVec3::NEG_Z, DVec3::X, half) }
 }
 
 fn orbit(smoothed: &SmoothedFormation, time: f64, alone: bool, room: &FreeSpace) -> Camera {
     let extent = smoothed.formation();
-    let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
-    let grown = extent.grown(REACH * extent.size);
-    let radius = 0.5 * (grown.forward[1] - grown.forward[0]).hypot(grown.left[1] - grown.left[0]);
+    let ([x, y], radius) = (extent.middle(), extent.radius(REACH * extent.size));
     let tangent = (19.0_f64).to_radians().tan();
     // A full turn in 40 s, so that no side stays hidden: from behind a formation on the left; robots of which none
     // follows another often meet, and meetings are seen from the side.
@@ -277,7 +255,6 @@ fn orbit(smoothed: &SmoothedFormation, time: f64, alone: bool, room: &FreeSpace)
     let (turn, rise) = (start + time * 0.157, 0.42_f64);
     let heading = turn + std::f64::consts::PI;
     let mut camera = Camera::pitched(heading, rise, tangent, room.aspect());
-    // A circle around the formation, so that turning does not zoom.
     let [low, high] = [extent.ground[0], extent.ground[1] + 0.3 * extent.size];
     let around = (0..32).flat_map(|k| {
         let (sin, cos) = (heading + std::f64::consts::TAU * f64::from(k) / 32.0).sin_cos();

@@ -7,17 +7,17 @@ use crate::ground::trail::{set_points, sizes};
 use glam::{DVec2, DVec3};
 use vocabulary::{FleetInfo, RobotInfo, RobotState, StepRecord};
 
-/// What is this near to a pixel is meant, pixels.
+/// Objects this near to a pixel count as hit, pixels.
 const NEAR: f64 = 5.0;
 
-/// What somebody points at.
+/// An object under the pointer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Picked {
-    /// A robot, by its index in the cast.
+    /// A robot, by its index in the fleet.
     Robot(usize),
-    /// Where an edge wants its follower, by the index of the edge in the cast.
+    /// The set point of an edge, by the index of the edge in the fleet.
     SetPoint(usize),
-    /// The line from a leader to its follower, by the index of the edge in the cast.
+    /// The line from a leader to its follower, by the index of the edge in the fleet.
     Edge(usize),
 }
 
@@ -29,7 +29,7 @@ pub(crate) fn pick(
     pixel: [f64; 2],
 ) -> Vec<Picked> {
     let ray = sight.ray(pixel);
-    // What is behind a hill is not meant.
+    // Objects behind a hill do not count.
     let ground = sight.depth(&ray).map_or(f64::INFINITY, |far| far + 0.02 * far + 0.3);
     let robots = record.snapshot.robots.iter().zip(&fleet.robots).enumerate();
     let mut found: Vec<((f64, f64), Picked)> = robots
@@ -84,19 +84,14 @@ fn entered(ray: &ViewRay, low: DVec3, high: DVec3) -> Option<f64> {
 fn goals(sight: &Sightline, fleet: &FleetInfo, record: &StepRecord, pixel: [f64; 2]) -> Vec<Picked> {
     let Some(place) = sight.ground(pixel).map(DVec2::from_array) else { return Vec::new() };
     let reach = RING * sizes(fleet).max(1.0);
-    let mut found: Vec<_> = set_points(fleet, record)
-        .into_iter()
-        .enumerate()
-        .filter_map(|(k, goal)| {
-            let goal = goal?;
-            let away = place.distance(DVec2::from_array(goal));
-            let [x, y] = goal;
-            let pixel = sight.metres_per_pixel([x, y, sight.height(goal)]);
-            (away < reach.max(2.0 * NEAR * pixel)).then_some((away, Picked::SetPoint(k)))
-        })
-        .collect();
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.into_iter().map(|(_, goal)| goal).collect()
+    let goals = set_points(fleet, record).into_iter().enumerate();
+    nearest_first(goals.filter_map(|(k, goal)| {
+        let goal = goal?;
+        let away = place.distance(DVec2::from_array(goal));
+        let [x, y] = goal;
+        let pixel = sight.metres_per_pixel([x, y, sight.height(goal)]);
+        (away < reach.max(2.0 * NEAR * pixel)).then_some((away, Picked::SetPoint(k)))
+    }))
 }
 
 /// The edges that pass a pixel, the nearest first.
@@ -105,17 +100,17 @@ fn edges(sight: &Sightline, fleet: &FleetInfo, record: &StepRecord, pixel: DVec2
         let pose = record.snapshot.robots.get(k)?.motion.pose;
         sight.pixel_of_ground([pose.x, pose.y]).map(DVec2::from_array)
     };
-    let mut found: Vec<_> = fleet
-        .edges
-        .iter()
-        .enumerate()
-        .filter_map(|(k, edge)| {
-            let away = beside(pixel, place(edge.leader)?, place(edge.follower)?);
-            (away < NEAR).then_some((away, Picked::Edge(k)))
-        })
-        .collect();
+    nearest_first(fleet.edges.iter().enumerate().filter_map(|(k, edge)| {
+        let away = beside(pixel, place(edge.leader)?, place(edge.follower)?);
+        (away < NEAR).then_some((away, Picked::Edge(k)))
+    }))
+}
+
+/// What was found at some distances, in the order of these.
+fn nearest_first(found: impl Iterator<Item = (f64, Picked)>) -> Vec<Picked> {
+    let mut found: Vec<_> = found.collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.into_iter().map(|(_, edge)| edge).collect()
+    found.into_iter().map(|(_, picked)| picked).collect()
 }
 
 /// How far a point is from the line between two others.
@@ -151,7 +146,7 @@ mod tests {
     fn sight(eye: [f64; 3], to: [f64; 3]) -> Sightline {
         let camera = Camera::looking(DVec3::from_array(eye), DVec3::from_array(to), 0.7, 2.0);
         let tile = Tile { x: 30, y: 10, width: 800, height: 400 };
-        Sightline::new(Viewpoint::Snake, tile, camera, Floor::default())
+        Sightline { view: Viewpoint::Snake, tile, camera, floor: Floor::default() }
     }
 
     #[test]

@@ -1,21 +1,23 @@
-//! From places in the world to pixels and back, for whoever points at a picture.
+//! From places in the world to pixels and back, for pointing at a picture.
 
 use crate::camera::Camera;
 use crate::camera::viewpoint::{FreeCamera, Tile, Viewpoint};
 use crate::ground::floor::Floor;
 use glam::{DVec2, DVec3};
 
-/// Nothing is looked for farther away than this, m.
+/// Maximum distance of a search, m.
 const FAR: f64 = 2_000.0;
 
 /// How one view of a picture is seen. Pixels are those of the whole picture, from its upper left corner, and whole
 /// numbers are between two of them; places are in the world frame, m.
 #[derive(Debug, Clone)]
 pub struct Sightline {
-    view: Viewpoint,
-    tile: Tile,
-    camera: Camera,
-    floor: Floor,
+    /// The view.
+    pub view: Viewpoint,
+    /// Its part of the picture.
+    pub tile: Tile,
+    pub(crate) camera: Camera,
+    pub(crate) floor: Floor,
 }
 
 /// A half line from the eye.
@@ -33,20 +35,6 @@ impl ViewRay {
 }
 
 impl Sightline {
-    pub(crate) fn new(view: Viewpoint, tile: Tile, camera: Camera, floor: Floor) -> Self {
-        Self { view, tile, camera, floor }
-    }
-
-    /// The view.
-    pub fn view(&self) -> &Viewpoint {
-        &self.view
-    }
-
-    /// Its part of the picture.
-    pub fn tile(&self) -> Tile {
-        self.tile
-    }
-
     /// Whether a pixel is in its part of the picture.
     pub fn holds(&self, [x, y]: [f64; 2]) -> bool {
         let inside =
@@ -84,39 +72,24 @@ impl Sightline {
         self.camera.metres_per_pixel(DVec3::from_array(place), f64::from(self.tile.height))
     }
 
-    /// Where the eye is, m; for a view without perspective it is far above what it shows.
-    pub fn eye(&self) -> [f64; 3] {
-        self.camera.eye.to_array()
-    }
-
-    /// The free camera that shows the same ground in the same places, so that a hand can take over: it turns about what
+    /// The free camera that shows the same ground in the same places, for the user to take over: it orbits around what
     /// is in the middle of the tile. A view without perspective gets one, and a view through a camera loses its lean.
     pub fn free(&self) -> FreeCamera {
         let camera = &self.camera;
-        let heading = if camera.forward.truncate().length() > 1e-6 {
-            camera.forward.y.atan2(camera.forward.x)
-        } else {
-            camera.up.y.atan2(camera.up.x)
-        };
-        let pitch = (-camera.forward.z).clamp(-1.0, 1.0).asin();
+        let flat = if camera.forward.truncate().length() > 1e-6 { camera.forward } else { camera.up };
+        let (heading, pitch) = (flat.y.atan2(flat.x), (-camera.forward.z).clamp(-1.0, 1.0).asin());
         let middle = ViewRay { from: camera.eye, along: camera.forward };
-        if !camera.perspective {
-            let depth = self.depth(&middle).unwrap_or(camera.eye.z);
+        let (depth, distance, field_of_view) = if camera.perspective {
+            // Where the middle is sky or far away, something near that is not.
+            let most = 12.0 * (camera.eye.z - self.floor.ground(camera.eye.truncate())).max(0.5);
+            let distance = self.depth(&middle).unwrap_or(most).min(most);
+            (distance, distance, 2.0 * camera.half.y.atan())
+        } else {
             let field_of_view = FreeCamera::FIELD_OF_VIEW;
             let distance = camera.half.y / (0.5 * field_of_view).tan();
-            return FreeCamera {
-                target: middle.at(depth).to_array(),
-                heading,
-                pitch,
-                distance,
-                field_of_view,
-            };
-        }
-        // Where the middle is sky or far away, something near that is not.
-        let most = 12.0 * (camera.eye.z - self.floor.ground(camera.eye.truncate())).max(0.5);
-        let distance = self.depth(&middle).unwrap_or(most).min(most);
-        let field_of_view = 2.0 * camera.half.y.atan();
-        FreeCamera { target: middle.at(distance).to_array(), heading, pitch, distance, field_of_view }
+            (self.depth(&middle).unwrap_or(camera.eye.z), distance, field_of_view)
+        };
+        FreeCamera { target: middle.at(depth).to_array(), heading, pitch, distance, field_of_view }
     }
 
     /// The ray that is seen at a pixel.
@@ -143,7 +116,7 @@ impl Sightline {
             let at = ray.at(far);
             at.z - self.floor.height(at.truncate())
         };
-        let [low, high] = self.floor.range();
+        let [low, high] = self.floor.range;
         // From where it may meet the floor to where it no longer can.
         let reach = |height: f64| (height - ray.from.z) / ray.along.z;
         let (mut from, until) = if ray.along.z < -1e-9 {
@@ -188,7 +161,7 @@ mod tests {
     const TILE: Tile = Tile { x: 100, y: 40, width: 640, height: 360 };
 
     fn line(camera: Camera, floor: Floor) -> Sightline {
-        Sightline::new(Viewpoint::Snake, TILE, camera, floor)
+        Sightline { view: Viewpoint::Snake, tile: TILE, camera, floor }
     }
 
     fn looking(eye: [f64; 3]) -> Camera {

@@ -29,8 +29,16 @@ pub(crate) struct Extent {
 }
 
 impl Extent {
+    /// Its middle in the world, m.
     pub(crate) fn middle(&self) -> [f64; 2] {
-        [0.5 * (self.forward[0] + self.forward[1]), 0.5 * (self.left[0] + self.left[1])]
+        let [forward, left] = [self.forward, self.left].map(|[low, high]| 0.5 * (low + high));
+        self.frame.world_from_body(forward, left)
+    }
+
+    /// Radius of the circle around it, `margin` wider on all sides, m: a view of that does not zoom where it turns.
+    pub(crate) fn radius(&self, margin: f64) -> f64 {
+        let Self { forward, left, .. } = self.grown(margin);
+        0.5 * (forward[1] - forward[0]).hypot(left[1] - left[0])
     }
 
     /// The eight corners of the outline, `margin` wider on all sides, in the frame, m.
@@ -57,7 +65,8 @@ const CORNERS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SmoothedFormation {
     lead: usize,
-    time: Option<f64>,
+    /// When the last moment was, s.
+    pub(crate) time: Option<f64>,
     size: f64,
     headings: Vec<f64>,
     heights: Vec<f64>,
@@ -80,11 +89,6 @@ impl SmoothedFormation {
         let Some(wanted) = self.measure(record, set_points) else { return };
         let old = self.extent.unwrap_or(wanted);
         self.extent = Some(approach(&old, &wanted, step));
-    }
-
-    /// When the last moment was, s.
-    pub(crate) fn time(&self) -> Option<f64> {
-        self.time
     }
 
     /// The filtered heading of a robot, rad, not wrapped.

@@ -6,7 +6,7 @@ use crate::camera::{Camera, NEAREST, REACH, corners, sides};
 use glam::DVec3;
 
 /// How the snake view is composed, from looking at pictures: as it is for small formations, and as it is at the most for
-/// wide ones, which would lie in a thin band of the picture if nobody looked down on them.
+/// wide ones, which would fill only a thin band of the picture if seen from low down.
 struct SnakeComposition {
     /// Where the horizon stands, as a share of the height from the top; negative above the picture.
     horizon: f64,

@@ -15,7 +15,7 @@ pub(crate) fn between(from: &Camera, to: &Camera, share: f64, smoothed: &Smoothe
         return *to;
     }
     let extent = smoothed.formation();
-    let [x, y] = extent.frame.world_from_body(extent.middle()[0], extent.middle()[1]);
+    let [x, y] = extent.middle();
     let middle = DVec3::new(x, y, extent.ground[0]);
     let (a, b) = (CameraFraming::of(from, middle), CameraFraming::of(to, middle));
     let mix = |p: f64, q: f64| p + (q - p) * share;
@@ -26,17 +26,9 @@ pub(crate) fn between(from: &Camera, to: &Camera, share: f64, smoothed: &Smoothe
     let target = a.target.lerp(b.target, share);
     let (ahead, right) = (heading.sin_cos(), DVec3::new(heading.sin(), -heading.cos(), 0.0));
     let forward = DVec3::new(ahead.1 * pitch.cos(), ahead.0 * pitch.cos(), -pitch.sin());
-    let up = right.cross(forward);
-    Camera {
-        eye: target - forward * distance,
-        forward,
-        right,
-        up,
-        half: DVec2::new(tangent * from.half.x / from.half.y, tangent),
-        shift: from.shift.lerp(to.shift, share),
-        near: from.near,
-        perspective: true,
-    }
+    let half = DVec2::new(tangent * from.half.x / from.half.y, tangent);
+    let camera = Camera::upright(target - forward * distance, forward, right, half);
+    Camera { shift: from.shift.lerp(to.shift, share), near: from.near, ..camera }
 }
 
 /// A camera by what it sees.

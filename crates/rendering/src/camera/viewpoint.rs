@@ -4,12 +4,12 @@ use crate::Error;
 use crate::error::nearest;
 use std::f64::consts::FRAC_PI_2;
 
-/// A place to look from.
+/// Where a view is seen from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Viewpoint {
     /// Behind and above the formation, along the lead robot's smoothed heading.
     Snake,
-    /// A hand's breadth above the ground behind the last robot.
+    /// Just above the ground behind the last robot.
     SnakeEye,
     /// Straight down, x to the right, without perspective.
     Top,
@@ -32,14 +32,14 @@ pub enum Viewpoint {
     Between(Box<Viewpoint>, Box<Viewpoint>, f64),
 }
 
-/// A camera in somebody's hand: it looks at a place from some way off and never leans.
+/// A camera that the user moves: it looks at a target from a distance and never rolls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeCamera {
     /// What it looks at, m, world frame.
     pub target: [f64; 3],
-    /// The way it looks, as on a compass: rad from x towards y.
+    /// Heading, rad from x towards y.
     pub heading: f64,
-    /// How far it looks down, rad: π/2 is straight down.
+    /// Pitch, rad: downwards is positive, π/2 is straight down.
     pub pitch: f64,
     /// From the eye to the target, m.
     pub distance: f64,
@@ -50,14 +50,14 @@ pub struct FreeCamera {
 impl FreeCamera {
     /// A field of view that suits most, rad.
     pub const FIELD_OF_VIEW: f64 = 0.66;
-    /// Between which pitches a hand may turn it, rad: from nearly level to straight down.
+    /// Limits of the pitch, rad: from nearly level to straight down.
     pub const PITCHES: [f64; 2] = [0.05, FRAC_PI_2];
-    /// Between which distances a hand may move it, m: farther, nothing would be left of the robots.
+    /// Limits of the distance, m: from farther away the robots would not be visible.
     pub const DISTANCES: [f64; 2] = [0.3, 400.0];
 
     /// The view through it. Where the floor is in the way, the eye is drawn above it.
     pub fn view(&self) -> Viewpoint {
-        // Not quite straight down: what looks straight down has no heading.
+        // Not quite straight down, where the heading would be undefined.
         let pitch = self.pitch.clamp(1e-6 - FRAC_PI_2, FRAC_PI_2 - 1e-6);
         let away = [self.heading.cos() * pitch.cos(), self.heading.sin() * pitch.cos(), -pitch.sin()];
         Viewpoint::Fixed {
@@ -67,7 +67,7 @@ impl FreeCamera {
         }
     }
 
-    /// Turned by a hand, rad, within [`Self::PITCHES`].
+    /// Turned by these angles, rad, within [`Self::PITCHES`].
     #[must_use]
     pub fn turned(self, heading: f64, pitch: f64) -> Self {
         let [low, high] = Self::PITCHES;
@@ -93,7 +93,7 @@ impl Viewpoint {
     /// `follow:NAME`, `camera:NAME`, `fixed` or `fixed:ex,ey,ez,tx,ty,tz[,degrees]`.
     ///
     /// # Errors
-    /// [`Error::Viewpoint`] with the valid forms and the nearest of them.
+    /// [`Error::Unknown`] with the valid forms and the nearest of them.
     pub fn parse(text: &str, names: &[String]) -> Result<Self, Error> {
         let text = text.trim();
         let view = match text {
@@ -102,15 +102,14 @@ impl Viewpoint {
             "top" => Some(Self::Top),
             "orbit" => Some(Self::Orbit),
             "fixed" => Some(Self::Fixed { eye: [-8.0, -8.0, 6.0], target: [0.0; 3], field_of_view: 0.7 }),
-            _ => text
-                .strip_prefix("follow:")
-                .and_then(|name| names.iter().position(|n| n == name.trim()))
-                .map(Self::Follow)
-                .or_else(|| {
-                    let name = text.strip_prefix("camera:")?.trim();
-                    names.iter().position(|n| n == name).map(Self::Camera)
-                })
-                .or_else(|| text.strip_prefix("fixed:").and_then(fixed)),
+            _ => {
+                let named = |kind: &str| {
+                    let name = text.strip_prefix(kind)?.trim();
+                    names.iter().position(|n| n == name)
+                };
+                let fixed = || text.strip_prefix("fixed:").and_then(fixed);
+                named("follow:").map(Self::Follow).or(named("camera:").map(Self::Camera)).or_else(fixed)
+            }
         };
         view.ok_or_else(|| unknown(text, names))
     }
@@ -137,11 +136,12 @@ fn unknown(given: &str, names: &[String]) -> Error {
         let more = if all.len() > 6 { ", …" } else { "" };
         format!("{}{more}", all[..all.len().min(6)].join(", "))
     };
-    Error::Viewpoint {
+    Error::Unknown {
+        what: "view",
         given: given.to_owned(),
         nearest: nearest(given, valid),
         valid: format!(
-            "{}:ex,ey,ez,tx,ty,tz[,degrees], {}, {}",
+            "{}:ex,ey,ez,tx,ty,tz[,degrees], {}, {}, and several joined by '+'",
             PLAIN.join(", "),
             few(&follow),
             few(&camera)
@@ -169,6 +169,13 @@ pub struct Tile {
     pub height: u32,
 }
 
+impl Tile {
+    /// Left, top, width and height, pixels.
+    pub(crate) fn area(&self) -> [f32; 4] {
+        [self.x, self.y, self.width, self.height].map(|n| n as f32)
+    }
+}
+
 impl ViewLayout {
     /// A single view.
     pub fn single(view: Viewpoint) -> Self {
@@ -178,7 +185,7 @@ impl ViewLayout {
     /// Views joined by '+', at most four.
     ///
     /// # Errors
-    /// [`Error::Viewpoint`] for the first that is unknown, [`Error::TooManyViews`] for more than four.
+    /// [`Error::Unknown`] for the first that is unknown, [`Error::TooManyViews`] for more than four.
     pub fn parse(text: &str, names: &[String]) -> Result<Self, Error> {
         let views =
             text.split('+').map(|part| Viewpoint::parse(part, names)).collect::<Result<Vec<_>, _>>()?;

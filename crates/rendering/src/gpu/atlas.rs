@@ -2,18 +2,15 @@
 
 use crate::camera::viewpoint::Tile;
 use crate::gpu::passes::Canvas;
-use crate::gpu::target::{Attachments, mapped};
+use crate::gpu::target::{Attachments, Readback};
 use crate::{Error, Gpu};
 use vocabulary::Grey;
-use wgpu::{TextureFormat, TextureUsages};
+use wgpu::TextureFormat;
 
 /// Linear light, a byte a pixel.
 pub(crate) const CANVAS: Canvas = Canvas { format: TextureFormat::R8Unorm, samples: 4, mono: true };
 /// Sizes are multiples of this, pixels, so that regions that grow a little fit what is there.
 const STEP: u32 = 64;
-/// Rows come back in multiples of so many bytes.
-const PITCH: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
-
 /// Places for rectangles of the given sizes in an area, and its width and height.
 pub(crate) fn pack(sizes: &[[u32; 2]], most: u32) -> Option<(Vec<Tile>, [u32; 2])> {
     let area: f64 = sizes.iter().map(|[w, h]| f64::from(*w) * f64::from(*h)).sum();
@@ -38,63 +35,26 @@ pub(crate) fn pack(sizes: &[[u32; 2]], most: u32) -> Option<(Vec<Tile>, [u32; 2]
     (widest <= most && y + row <= most).then_some((tiles, size))
 }
 
-/// Attachments of a size, and the buffer behind them.
+/// Attachments of a size, and the texture that is read.
 #[derive(Debug)]
 pub(crate) struct Atlas {
-    pub(crate) size: [u32; 2],
     pub(crate) attachments: Attachments,
-    pub(crate) view: wgpu::TextureView,
-    texture: wgpu::Texture,
-    buffer: wgpu::Buffer,
-    pitch: u32,
+    pub(crate) readback: Readback,
 }
 
 impl Atlas {
     pub(crate) fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
-        let device = &gpu.device;
-        let [width, height] = size;
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("eyes"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: CANVAS.format,
-            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        let pitch = width.next_multiple_of(PITCH);
         Self {
-            size,
-            attachments: Attachments::new(device, [width, height], CANVAS.format, CANVAS.samples),
-            view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
-            texture,
-            buffer: device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("eyes"),
-                size: u64::from(pitch) * u64::from(height),
-                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }),
-            pitch,
+            attachments: Attachments::new(gpu, size, CANVAS),
+            readback: Readback::new(gpu, size, CANVAS.format, 1),
         }
     }
 
     /// Whether it holds an area without wasting much of its own.
     pub(crate) fn suits(&self, [width, height]: [u32; 2]) -> bool {
-        let [w, h] = self.size.map(u64::from);
-        let wanted = u64::from(width) * u64::from(height);
-        self.size[0] >= width && self.size[1] >= height && 4 * w * h <= 5 * wanted
-    }
-
-    /// Copies the pictures into the buffer once they are drawn.
-    pub(crate) fn copy(&self, encoder: &mut wgpu::CommandEncoder) {
-        let layout =
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(self.pitch), rows_per_image: None };
-        encoder.copy_texture_to_buffer(
-            self.texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo { buffer: &self.buffer, layout },
-            self.texture.size(),
-        );
+        let [w, h] = self.attachments.size;
+        let area = |width: u32, height: u32| u64::from(width) * u64::from(height);
+        w >= width && h >= height && 4 * area(w, h) <= 5 * area(width, height)
     }
 
     /// Waits for the submission and takes the pictures out of the buffer.
@@ -105,12 +65,12 @@ impl Atlas {
         tiles: &[Tile],
         pictures: &mut [Grey],
     ) -> Result<(), Error> {
-        mapped(gpu, &self.buffer, submission, |bytes| {
+        self.readback.read(gpu, submission, |rows| {
             for (tile, picture) in tiles.iter().zip(pictures) {
                 (picture.width, picture.height) = (tile.width, tile.height);
                 picture.values.clear();
                 let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as usize);
-                let rows = bytes.chunks(self.pitch as usize).skip(y).take(height);
+                let rows = rows.clone().skip(y).take(height);
                 rows.for_each(|row| picture.values.extend_from_slice(&row[x..x + width]));
             }
         })

@@ -1,19 +1,19 @@
-//! What cameras on robots see: monochrome pictures, linear in light, of the same world that the views show.
+//! Camera images of robots: monochrome, linear in light, of the same world that the views show.
 
 use crate::camera::Camera;
 use crate::camera::viewpoint::{Tile, Viewpoint};
-use crate::compose::{frame, local_origin, shadowed, sun_over, towards_sun};
+use crate::compose::{frame, sun_over};
+use crate::fleet_model::FleetModel;
 use crate::gpu::atlas::{Atlas, CANVAS, pack};
 use crate::gpu::model::Detail;
 use crate::gpu::passes::decal::{DecalLayer, DecalVertex};
 use crate::gpu::passes::prop::PropInstances;
 use crate::gpu::passes::robot::RobotInstances;
 use crate::gpu::props::props;
-use crate::gpu::robot_models::{RobotModels, crowd, part};
+use crate::gpu::robot_models::{crowd, part};
+use crate::gpu::target::confine;
 use crate::gpu::world_passes::{SceneView, WorldPasses};
 use crate::ground::decal_builder::shade;
-use crate::ground::floor::Floor;
-use crate::palette::{Rgb, robot_colours};
 use crate::picture_context::PictureContext;
 use crate::{Error, Gpu, Style, Trail};
 use std::iter::once;
@@ -25,20 +25,16 @@ const SHADOWS: u32 = 1024;
 /// Most atlases that are kept.
 const ATLASES: usize = 4;
 
-/// Cameras on the robots of a cast: all pictures of an instant are drawn together.
+/// Renders the camera images of a fleet: all images of an instant are rendered together.
 #[derive(Debug)]
 pub struct GpuCameraRenderer {
     gpu: Gpu,
-    fleet: FleetInfo,
-    colours: Vec<Rgb>,
-    robot_models: RobotModels,
-    floor: Floor,
+    model: FleetModel,
     trail: Trail,
     style: Style,
     world: WorldPasses,
     /// Old to new.
     atlases: Vec<Atlas>,
-    size: f64,
 }
 
 /// What one shot shows.
@@ -50,26 +46,22 @@ struct CameraScene {
 }
 
 impl GpuCameraRenderer {
-    /// Eyes for the robots of `fleet`.
+    /// A renderer for the cameras of `fleet`.
     ///
     /// # Errors
     /// [`Error::Device`] where the device fails.
     pub fn new(gpu: &Gpu, fleet: &FleetInfo) -> Result<Self, Error> {
-        let (robot_models, floor) = (RobotModels::new(fleet), Floor::new(fleet));
-        let world = WorldPasses::new(gpu, CANVAS, fleet, &robot_models, &floor, Detail::Coarse, SHADOWS);
+        let model = FleetModel::new(fleet);
+        let world = WorldPasses::new(gpu, CANVAS, &model, Detail::Coarse, SHADOWS);
         gpu.check()?;
         Ok(Self {
             gpu: gpu.clone(),
-            colours: robot_colours(fleet),
-            robot_models,
-            floor,
+            model,
             // Cameras see no past.
             trail: Trail::new(fleet),
             style: Style::bare(),
             world,
             atlases: Vec::new(),
-            size: fleet.robots.iter().map(|m| crate::gpu::model::size(&m.body)).fold(1.0, f64::max),
-            fleet: fleet.clone(),
         })
     }
 
@@ -79,7 +71,7 @@ impl GpuCameraRenderer {
     /// [`Error::FleetInfo`] for a snapshot of other robots, [`Error::Size`] for regions that are empty or too large,
     /// [`Error::Device`] where the device fails.
     pub fn take(&mut self, snapshot: &Snapshot, shots: &[Shot], images: &mut Vec<Grey>) -> Result<(), Error> {
-        let (got, want) = (snapshot.robots.len(), self.fleet.robots.len());
+        let (got, want) = (snapshot.robots.len(), self.model.fleet.robots.len());
         if got != want {
             return Err(Error::FleetInfo { what: "robots", got, want });
         }
@@ -87,21 +79,10 @@ impl GpuCameraRenderer {
         let Some(first) = shots.first() else { return Ok(()) };
         let (tiles, size) = self.places(shots)?;
         let record = StepRecord { snapshot: snapshot.clone(), ..StepRecord::default() };
-        let context = PictureContext {
-            fleet: &self.fleet,
-            floor: &self.floor,
-            colours: &self.colours,
-            trail: &self.trail,
-            record: &record,
-            style: &self.style,
-            origin: local_origin(&record),
-            sun: towards_sun(&self.fleet.light),
-            size: self.size,
-            shadowed: shadowed(&self.fleet, &record),
-            detail: 0.0,
-        };
+        let context = PictureContext::new(&self.model, &self.trail, &record, &self.style);
+        let context = PictureContext { detail: 0.0, ..context };
         let sun = sun_over(&context);
-        let (mut all, mut things) = (crowd(&context, &self.robot_models), props(&context));
+        let (mut all, mut things) = (crowd(&context), props(&context));
         let mut corners: Vec<DecalVertex> = Vec::new();
         let under = shade(&context, &Camera::shot(first)).map(|(layer, more)| {
             let from = corners.len() as u32;
@@ -118,7 +99,7 @@ impl GpuCameraRenderer {
             frames.push(frame);
             scenes.push(CameraScene {
                 camera,
-                crowd: part(&all, &context, &self.robot_models, &camera, shot.robot),
+                crowd: part(&all, &context, &camera, shot.robot),
                 props: things.part(&camera, context.origin),
                 tile: *tile,
             });
@@ -171,13 +152,9 @@ impl GpuCameraRenderer {
         let atlas = &self.atlases[atlas];
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.world.encode_shadow(&mut encoder, crowd, props);
-        {
-            let mut pass = atlas.attachments.begin(&mut encoder, &atlas.view, wgpu::Color::BLACK);
+        atlas.attachments.draw(&mut encoder, &atlas.readback.view, wgpu::Color::BLACK, |pass| {
             for (index, scene) in scenes.iter().enumerate() {
-                let tile = scene.tile;
-                let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
-                pass.set_viewport(x, y, width, height, 0.0, 1.0);
-                pass.set_scissor_rect(tile.x, tile.y, tile.width, tile.height);
+                confine(pass, &scene.tile, [0.0, 1.0]);
                 let sight = SceneView {
                     index,
                     camera: &scene.camera,
@@ -188,12 +165,10 @@ impl GpuCameraRenderer {
                     over: None,
                     ghosts: false,
                 };
-                self.world.draw(&mut pass, &sight);
+                self.world.draw(pass, &sight);
             }
-            // On GL the samples are resolved at the end of the pass within whatever scissor is set then.
-            pass.set_scissor_rect(0, 0, atlas.size[0], atlas.size[1]);
-        }
-        atlas.copy(&mut encoder);
+        });
+        atlas.readback.copy(&mut encoder);
         self.gpu.queue.submit(once(encoder.finish()))
     }
 }

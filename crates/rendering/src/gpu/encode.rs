@@ -2,6 +2,7 @@
 
 use crate::annotation::text_shaper::TextShaper;
 use crate::camera::Camera;
+use crate::fleet_model::FleetModel;
 use crate::gpu::model::Detail;
 use crate::gpu::passes::Canvas;
 use crate::gpu::passes::decal::{DecalLayer, DecalVertex};
@@ -10,10 +11,8 @@ use crate::gpu::passes::overlay::{OverlayPass, Shapes};
 use crate::gpu::passes::prop::PropInstances;
 use crate::gpu::passes::robot::RobotInstances;
 use crate::gpu::passes::text::{TextLine, TextPass};
-use crate::gpu::robot_models::RobotModels;
-use crate::gpu::target::Attachments;
+use crate::gpu::target::{Attachments, confine};
 use crate::gpu::world_passes::{SceneView, WorldPasses};
-use crate::ground::floor::Floor;
 use crate::{Error, Gpu, camera::viewpoint::Tile};
 use std::iter::once;
 use std::ops::Range;
@@ -38,19 +37,10 @@ pub(crate) struct Passes {
 /// What a picture consists of, once its data is on the device.
 pub(crate) struct Prepared {
     pub(crate) crowd: RobotInstances,
-    pub(crate) cameras: Vec<Camera>,
-    /// Of views through cameras: what they may see.
-    pub(crate) own: Vec<Option<RobotInstances>>,
-    /// How many of the tiles, the last, lie over others.
-    pub(crate) upper: usize,
     pub(crate) props: PropInstances,
-    pub(crate) tiles: Vec<Tile>,
-    /// Which decks hide a robot in each view.
-    pub(crate) veiled: Vec<Vec<bool>>,
-    /// Corners of each view.
-    pub(crate) decals: Vec<[(DecalLayer, Range<u32>); 5]>,
-    /// Whether a view shows ghosts: near the ground they would veil what is behind them.
-    pub(crate) ghosts: Vec<bool>,
+    pub(crate) views: Vec<PreparedView>,
+    /// How many of the views, the last, lie over others.
+    pub(crate) upper: usize,
     pub(crate) shapes: Shapes,
     /// Its texts.
     pub(crate) lines: Vec<TextLine>,
@@ -58,46 +48,46 @@ pub(crate) struct Prepared {
     pub(crate) shadowed: bool,
 }
 
+/// What one view consists of.
+pub(crate) struct PreparedView {
+    pub(crate) camera: Camera,
+    pub(crate) tile: Tile,
+    /// Of a view through a camera: what it may see.
+    pub(crate) own: Option<RobotInstances>,
+    /// Which decks hide a robot.
+    pub(crate) veiled: Vec<bool>,
+    pub(crate) decals: [(DecalLayer, Range<u32>); 5],
+    /// Whether it shows ghosts: near the ground they would veil what is behind them.
+    pub(crate) ghosts: bool,
+}
+
 impl Prepared {
     fn sight(&self, index: usize) -> SceneView<'_> {
-        let [under @ .., over] = &self.decals[index];
+        let view = &self.views[index];
+        let [under @ .., over] = &view.decals;
         SceneView {
             index,
-            camera: &self.cameras[index],
-            crowd: self.own[index].as_ref().unwrap_or(&self.crowd),
+            camera: &view.camera,
+            crowd: view.own.as_ref().unwrap_or(&self.crowd),
             props: &self.props,
-            veiled: &self.veiled[index],
+            veiled: &view.veiled,
             under,
             over: Some(over),
-            ghosts: self.ghosts[index],
+            ghosts: view.ghosts,
         }
     }
 }
 
-/// What a picture is drawn into.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct EncodeTarget<'a> {
-    pub(crate) target: &'a wgpu::TextureView,
-    pub(crate) attachments: &'a Attachments,
-    pub(crate) size: (u32, u32),
-}
-
 impl Passes {
-    pub(crate) fn new(
-        gpu: &Gpu,
-        canvas: Canvas,
-        fleet: &FleetInfo,
-        robot_models: &RobotModels,
-        floor: &Floor,
-    ) -> Self {
-        let detail = if fleet.robots.len() > PLAIN_ABOVE { Detail::Plain } else { Detail::Full };
+    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, model: &FleetModel) -> Self {
+        let FleetInfo { robots, props, .. } = &model.fleet;
+        let detail = if robots.len() > PLAIN_ABOVE { Detail::Plain } else { Detail::Full };
         let flat = Canvas { samples: 1, ..canvas };
-        let robots = fleet.robots.len();
-        let side = if robots > 12 || !fleet.props.is_empty() { 2048 } else { 1024 };
+        let side = if robots.len() > 12 || !props.is_empty() { 2048 } else { 1024 };
         Self {
-            world: WorldPasses::new(gpu, canvas, fleet, robot_models, floor, detail, side),
-            overlay: OverlayPass::new(&gpu.device, flat),
-            text: TextPass::new(&gpu.device, &gpu.queue, flat),
+            world: WorldPasses::new(gpu, canvas, model, detail, side),
+            overlay: OverlayPass::new(gpu, flat),
+            text: TextPass::new(gpu, flat),
             shadowed: None,
         }
     }
@@ -106,18 +96,17 @@ impl Passes {
     pub(crate) fn upload(
         &mut self,
         gpu: &Gpu,
-        [width, height]: [u32; 2],
+        size: [u32; 2],
         frames: &[FrameUniforms],
         prepared: &mut Prepared,
         corners: &[DecalVertex],
         letters: &mut TextShaper,
     ) -> Result<(), Error> {
-        let (device, queue) = (&gpu.device, &gpu.queue);
-        let (crowds, props) =
-            (once(&mut prepared.crowd).chain(prepared.own.iter_mut().flatten()), once(&mut prepared.props));
+        let own = prepared.views.iter_mut().filter_map(|view| view.own.as_mut());
+        let (crowds, props) = (once(&mut prepared.crowd).chain(own), once(&mut prepared.props));
         self.world.upload(gpu, frames, crowds, props, corners);
-        self.overlay.fill(device, queue, [width as f32, height as f32], &prepared.shapes);
-        let written = self.text.fill(device, queue, [width, height], &prepared.lines, letters);
+        self.overlay.fill(gpu, size.map(|side| side as f32), &prepared.shapes);
+        let written = self.text.fill(gpu, size, &prepared.lines, letters);
         written.map_err(|e| Error::Device(e.to_string()))?;
         let casting = Some(casting(frames, prepared));
         prepared.shadowed = self.shadowed == casting;
@@ -125,45 +114,36 @@ impl Passes {
         Ok(())
     }
 
-    /// After a picture failed nobody knows what is in the shadow map.
+    /// Forgets the shadow map, whose content is unknown after a failed picture.
     pub(crate) fn forget(&mut self) {
         self.shadowed = None;
     }
 
+    /// Draws a picture into a target.
     pub(crate) fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        surface: EncodeTarget<'_>,
+        target: &wgpu::TextureView,
+        attachments: &Attachments,
         prepared: &Prepared,
     ) -> Result<(), Error> {
         if !prepared.shadowed {
             self.world.encode_shadow(encoder, &prepared.crowd, &prepared.props);
         }
-        self.encode_world(encoder, surface, prepared);
-        self.encode_overlay(encoder, surface.target, prepared)
-    }
-
-    fn encode_world(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        surface: EncodeTarget<'_>,
-        prepared: &Prepared,
-    ) {
-        let mut pass = surface.attachments.begin(encoder, surface.target, STONE);
-        for (index, tile) in prepared.tiles.iter().enumerate() {
-            let [x, y, width, height] = [tile.x, tile.y, tile.width, tile.height].map(|n| n as f32);
-            // What lies over others is nearer than all of them.
-            let (near, far) = match (prepared.upper, index + prepared.upper < prepared.tiles.len()) {
-                (0, _) => (0.0, 1.0),
-                (_, true) => (0.5, 1.0),
-                (_, false) => (0.0, 0.5),
-            };
-            pass.set_viewport(x, y, width, height, near, far);
-            pass.set_scissor_rect(tile.x, tile.y, tile.width, tile.height);
-            self.world.draw(&mut pass, &prepared.sight(index));
-        }
-        // On GL the samples are resolved at the end of the pass within whatever scissor is set then.
-        pass.set_scissor_rect(0, 0, surface.size.0, surface.size.1);
+        let views = &prepared.views;
+        attachments.draw(encoder, target, STONE, |pass| {
+            for (index, view) in views.iter().enumerate() {
+                // What lies over others is nearer than all of them.
+                let depths = match (prepared.upper, index + prepared.upper < views.len()) {
+                    (0, _) => [0.0, 1.0],
+                    (_, true) => [0.5, 1.0],
+                    (_, false) => [0.0, 0.5],
+                };
+                confine(pass, &view.tile, depths);
+                self.world.draw(pass, &prepared.sight(index));
+            }
+        });
+        self.encode_overlay(encoder, target, prepared)
     }
 
     fn encode_overlay(

@@ -6,6 +6,7 @@ pub(crate) mod encode;
 pub(crate) mod model;
 pub(crate) mod passes;
 pub(crate) mod props;
+pub(crate) mod resources;
 pub(crate) mod robot_models;
 pub(crate) mod target;
 pub(crate) mod world_passes;
@@ -52,7 +53,7 @@ impl From<&str> for AdapterChoice {
 /// What the machine offers, for humans.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AdapterInfo {
-    /// As the driver calls itself.
+    /// The adapter's name.
     pub name: String,
     /// `vulkan`, `gl`, `metal` or `dx12`.
     pub backend: String,
@@ -89,12 +90,12 @@ pub struct Gpu {
     fault: Arc<Mutex<DeviceFault>>,
 }
 
-/// What a device has complained of.
+/// Errors that a device has reported.
 #[derive(Debug, Default)]
 struct DeviceFault {
-    /// Since somebody asked last.
+    /// Since the last query.
     error: Option<String>,
-    /// For ever.
+    /// Permanent.
     lost: Option<String>,
 }
 

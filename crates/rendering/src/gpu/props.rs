@@ -1,8 +1,8 @@
 //! Where the props of a moment stand, and what they are made of.
 
+use crate::gpu::passes::instanced::Instance;
 use crate::gpu::passes::prop::{PropAppearance, PropInstances};
-use crate::gpu::passes::robot::Instance;
-use crate::palette::{Rgb, hex, linear};
+use crate::palette::{Rgb, hex, linear, with_alpha};
 use crate::picture_context::PictureContext;
 use glam::{DQuat, DVec3, Mat4};
 use vocabulary::{Mobility, Placement, Prop, Solid};
@@ -16,7 +16,7 @@ const BARREL: Rgb = hex(0x00a8_7a42);
 /// What moves by itself is none of the robots' colours.
 const GUIDED: Rgb = hex(0x00a5_434c);
 
-/// Every prop of the cast with its index and its place: that of the moment, else the one where it starts.
+/// Every prop of the fleet with its index and its pose: that of the moment, else its initial one.
 pub(crate) fn placed<'a>(
     context: &PictureContext<'a>,
 ) -> impl Iterator<Item = (usize, &'a Prop, Placement)> + use<'a> {
@@ -50,28 +50,40 @@ pub(crate) fn props(context: &PictureContext<'_>) -> PropInstances {
     let mut copies = PropInstances::default();
     for (_, prop, placement) in placed(context).filter(|(k, ..)| !context.floor.is_drivable(*k)) {
         let ground = context.floor.height(DVec3::from_array(placement.position).truncate());
-        copies.others[look(prop) as usize].push(instance(context, prop, &placement, ground));
+        let (look, colour) = appearance(prop);
+        copies.others[look as usize].push(instance(context, prop, &placement, ground, colour));
     }
     for drivable in &context.floor.drivables {
         let prop = &context.fleet.props[drivable.prop];
         let ground = context.floor.ground(DVec3::from_array(prop.placement.position).truncate());
-        copies.drivables.push((look(prop), instance(context, prop, &prop.placement, ground)));
+        let (look, colour) = appearance(prop);
+        copies.drivables.push((look, instance(context, prop, &prop.placement, ground, colour)));
     }
     copies
 }
 
-fn look(prop: &Prop) -> PropAppearance {
+/// How a prop is painted, and its colour.
+fn appearance(prop: &Prop) -> (PropAppearance, Rgb) {
     match (prop.solid, prop.mobility) {
-        (Solid::Block { .. }, Mobility::Fixed) => PropAppearance::Concrete,
-        (Solid::Block { .. }, Mobility::Loose) => PropAppearance::Timber,
-        (Solid::Block { .. }, Mobility::Guided) => PropAppearance::Machine,
-        (Solid::Cylinder { .. }, _) => PropAppearance::Pillar,
-        (Solid::Cone { .. }, _) => PropAppearance::Cone,
-        (Solid::Wedge { .. }, _) => PropAppearance::Ramp,
+        (Solid::Block { .. }, Mobility::Fixed) => (PropAppearance::Concrete, CONCRETE),
+        (Solid::Block { .. }, Mobility::Loose) => (PropAppearance::Timber, CRATE),
+        (Solid::Block { .. }, Mobility::Guided) => (PropAppearance::Machine, GUIDED),
+        (Solid::Cylinder { .. }, Mobility::Fixed) => (PropAppearance::Pillar, PALE),
+        (Solid::Cylinder { .. }, Mobility::Loose) => (PropAppearance::Pillar, BARREL),
+        (Solid::Cylinder { .. }, Mobility::Guided) => (PropAppearance::Pillar, GUIDED),
+        (Solid::Cone { .. }, _) => (PropAppearance::Cone, ORANGE),
+        (Solid::Wedge { .. }, Mobility::Guided) => (PropAppearance::Ramp, GUIDED),
+        (Solid::Wedge { .. }, _) => (PropAppearance::Ramp, PLYWOOD),
     }
 }
 
-fn instance(context: &PictureContext<'_>, prop: &Prop, placement: &Placement, ground: f64) -> Instance {
+fn instance(
+    context: &PictureContext<'_>,
+    prop: &Prop,
+    placement: &Placement,
+    ground: f64,
+    colour: Rgb,
+) -> Instance {
     let scale = match prop.solid {
         Solid::Block { size } | Solid::Wedge { size } => DVec3::from_array(size),
         Solid::Cylinder { radius, height } | Solid::Cone { radius, height } => {
@@ -82,24 +94,7 @@ fn instance(context: &PictureContext<'_>, prop: &Prop, placement: &Placement, gr
     let turn = turn(placement).as_quat();
     let model =
         Mat4::from_scale_rotation_translation(scale.as_vec3(), turn, (place - context.origin).as_vec3());
-    let rows = model.transpose();
-    let [r, g, b] = linear(colour(prop));
     let guided = f32::from(u8::from(prop.mobility == Mobility::Guided));
-    Instance {
-        rows: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.to_array()),
-        colour: [r, g, b, 1.0],
-        marks: [guided, 0.0, (ground - context.origin.z) as f32, 0.0],
-    }
-}
-
-fn colour(prop: &Prop) -> Rgb {
-    match (prop.solid, prop.mobility) {
-        (Solid::Cone { .. }, _) => ORANGE,
-        (_, Mobility::Guided) => GUIDED,
-        (Solid::Wedge { .. }, _) => PLYWOOD,
-        (Solid::Cylinder { .. }, Mobility::Loose) => BARREL,
-        (Solid::Cylinder { .. }, Mobility::Fixed) => PALE,
-        (Solid::Block { .. }, Mobility::Loose) => CRATE,
-        (Solid::Block { .. }, Mobility::Fixed) => CONCRETE,
-    }
+    let marks = [guided, 0.0, (ground - context.origin.z) as f32, 0.0];
+    Instance::new(model, with_alpha(linear(colour), 1.0), marks)
 }

@@ -3,9 +3,10 @@
 use crate::Ghost;
 use crate::camera::Camera;
 use crate::gpu::model::Build;
-use crate::gpu::passes::robot::{Instance, RobotInstances, Squad};
+use crate::gpu::passes::instanced::Instance;
+use crate::gpu::passes::robot::{RobotInstances, Squad};
 use crate::ground::decal_builder::flat;
-use crate::palette::{Rgb, linear};
+use crate::palette::{Rgb, linear, with_alpha};
 use crate::picture_context::PictureContext;
 use glam::{DVec3, Mat3, Mat4, Vec3};
 use vocabulary::{Attitude, FleetInfo, Pose, RobotInfo, RobotState};
@@ -13,7 +14,7 @@ use vocabulary::{Attitude, FleetInfo, Pose, RobotInfo, RobotState};
 /// Opacity of a ghost.
 const GHOST: f32 = 0.18;
 
-/// The builds of a cast, each once, and which of them every robot has.
+/// The distinct builds of a fleet, and which of them every robot has.
 #[derive(Debug)]
 pub(crate) struct RobotModels {
     pub(crate) builds: Vec<Build>,
@@ -36,7 +37,8 @@ impl RobotModels {
 }
 
 /// All copies of the models in a picture.
-pub(crate) fn crowd(context: &PictureContext<'_>, robot_models: &RobotModels) -> RobotInstances {
+pub(crate) fn crowd(context: &PictureContext<'_>) -> RobotInstances {
+    let robot_models = context.robot_models;
     let mut crowd = RobotInstances {
         squads: vec![Squad::default(); robot_models.builds.len()],
         ..RobotInstances::default()
@@ -52,9 +54,9 @@ pub(crate) fn crowd(context: &PictureContext<'_>, robot_models: &RobotModels) ->
         crowd.cameras.push(stand(squad, robot, build, &look, context.origin));
     }
     if context.style.ghosts && context.detail > 0.0 {
-        ghosts(&mut crowd, context, robot_models);
+        ghosts(&mut crowd, context);
     }
-    sketched(&mut crowd, context, robot_models);
+    sketched(&mut crowd, context);
     crowd
 }
 
@@ -62,10 +64,10 @@ pub(crate) fn crowd(context: &PictureContext<'_>, robot_models: &RobotModels) ->
 pub(crate) fn part(
     all: &RobotInstances,
     context: &PictureContext<'_>,
-    robot_models: &RobotModels,
     camera: &Camera,
     own: usize,
 ) -> RobotInstances {
+    let robot_models = context.robot_models;
     let mut part =
         RobotInstances { squads: vec![Squad::default(); all.squads.len()], ..RobotInstances::default() };
     let mut counts = vec![0; all.squads.len()];
@@ -106,17 +108,11 @@ impl RobotAppearance {
     }
 
     fn instance(&self, local_from_model: Mat4, alpha: f32) -> Instance {
-        let rows = local_from_model.transpose();
-        let [r, g, b] = linear(self.colour);
-        Instance {
-            rows: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.to_array()),
-            colour: [r, g, b, alpha],
-            marks: self.marks,
-        }
+        Instance::new(local_from_model, with_alpha(linear(self.colour), alpha), self.marks)
     }
 }
 
-/// The number that ends a robot's name, else its place on stage.
+/// The number at the end of a robot's name, else its place in the fleet.
 fn roof_number(member: &RobotInfo, index: usize) -> f32 {
     let digits = member.name.chars().rev().take_while(char::is_ascii_digit).count();
     let tail = &member.name[member.name.len() - digits..];
@@ -163,7 +159,7 @@ fn stand(
     look.instance(camera, 1.0)
 }
 
-fn ghosts(crowd: &mut RobotInstances, context: &PictureContext<'_>, robot_models: &RobotModels) {
+fn ghosts(crowd: &mut RobotInstances, context: &PictureContext<'_>) {
     let now = context.record.snapshot.time;
     for row in &context.trail.ghosts {
         let age = now - row.time;
@@ -179,20 +175,20 @@ fn ghosts(crowd: &mut RobotInstances, context: &PictureContext<'_>, robot_models
             if alpha > 0.01 {
                 let look = RobotAppearance::new(member, index, context.colours[index]);
                 let base = local_from_body(pose, &lying(context, pose), context.origin);
-                crowd.squads[robot_models.of[index]].ghosts.push(look.instance(base, alpha));
+                crowd.squads[context.robot_models.of[index]].ghosts.push(look.instance(base, alpha));
             }
         }
     }
 }
 
 /// The faint bodies among annotations.
-fn sketched(crowd: &mut RobotInstances, context: &PictureContext<'_>, robot_models: &RobotModels) {
+fn sketched(crowd: &mut RobotInstances, context: &PictureContext<'_>) {
     for Ghost { robot, pose, alpha } in &context.style.annotations.ghosts {
         let finite = [pose.x, pose.y, pose.heading].iter().all(|x| x.is_finite());
         let Some(member) = context.fleet.robots.get(*robot).filter(|_| finite) else { continue };
         let look = RobotAppearance::new(member, *robot, context.colours[*robot]);
         let base = local_from_body(pose, &lying(context, pose), context.origin);
-        crowd.squads[robot_models.of[*robot]].ghosts.push(look.instance(base, alpha.clamp(0.0, 1.0)));
+        crowd.squads[context.robot_models.of[*robot]].ghosts.push(look.instance(base, alpha.clamp(0.0, 1.0)));
     }
 }
 

@@ -1,10 +1,15 @@
 //! What pictures are drawn into, and how they come back from the device.
 
-use crate::gpu::passes::frame::depth_texture;
+use crate::camera::viewpoint::Tile;
+use crate::gpu::passes::{Canvas, DEPTH};
+use crate::gpu::resources::{flat_texture, rows};
 use crate::{Error, Gpu};
 use std::sync::mpsc;
 use vocabulary::Picture;
-use wgpu::{Device, Texture, TextureFormat, TextureUsages, TextureView};
+use wgpu::{
+    BufferUsages, RenderPass, Texture, TextureDescriptor, TextureFormat, TextureUsages, TextureView,
+    TextureViewDescriptor,
+};
 
 /// Largest side of a picture, pixels.
 const MOST: u32 = 8192;
@@ -26,28 +31,35 @@ pub(crate) fn check_size(gpu: &Gpu, width: u32, height: u32) -> Result<(), Error
 /// Colour with its samples, and depth.
 #[derive(Debug)]
 pub(crate) struct Attachments {
+    /// Width and height, pixels.
+    pub(crate) size: [u32; 2],
     /// Several samples a pixel; `None` where there is one and the target itself is drawn into.
-    pub(crate) sampled: Option<TextureView>,
-    pub(crate) depth: TextureView,
+    sampled: Option<TextureView>,
+    depth: TextureView,
 }
 
 impl Attachments {
-    pub(crate) fn new(device: &Device, size: [u32; 2], format: TextureFormat, samples: u32) -> Self {
-        let sampled =
-            (samples > 1).then(|| view(&colour(device, size, format, samples, TextureUsages::empty())));
-        Self { sampled, depth: depth_texture(device, size, samples, false) }
+    pub(crate) fn new(gpu: &Gpu, size: [u32; 2], canvas: Canvas) -> Self {
+        let attachment = |format: TextureFormat| {
+            let flat = flat_texture("attachment", size, format, TextureUsages::RENDER_ATTACHMENT);
+            let descriptor = TextureDescriptor { sample_count: canvas.samples, ..flat };
+            gpu.device.create_texture(&descriptor).create_view(&TextureViewDescriptor::default())
+        };
+        let sampled = (canvas.samples > 1).then(|| attachment(canvas.format));
+        Self { size, sampled, depth: attachment(DEPTH) }
     }
 
-    /// A pass that clears and then draws into `target`.
-    pub(crate) fn begin<'a>(
+    /// Clears `target` and draws into it.
+    pub(crate) fn draw(
         &self,
-        encoder: &'a mut wgpu::CommandEncoder,
+        encoder: &mut wgpu::CommandEncoder,
         target: &TextureView,
         clear: wgpu::Color,
-    ) -> wgpu::RenderPass<'a> {
+        draw: impl FnOnce(&mut RenderPass<'_>),
+    ) {
         let sampled = self.sampled.as_ref();
         let store = if sampled.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
-        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("world"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: sampled.unwrap_or(target),
@@ -64,106 +76,83 @@ impl Attachments {
                 stencil_ops: None,
             }),
             ..Default::default()
-        })
+        });
+        draw(&mut pass);
+        // On GL the samples are resolved at the end of the pass within whatever scissor is set then.
+        pass.set_scissor_rect(0, 0, self.size[0], self.size[1]);
     }
 }
 
-fn view(texture: &Texture) -> TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+/// Confines a pass to a tile, and its depths to a part of those from 0 to 1.
+pub(crate) fn confine(pass: &mut RenderPass<'_>, tile: &Tile, [near, far]: [f32; 2]) {
+    let [x, y, width, height] = tile.area();
+    pass.set_viewport(x, y, width, height, near, far);
+    pass.set_scissor_rect(tile.x, tile.y, tile.width, tile.height);
 }
 
-fn colour(
-    device: &Device,
-    size: [u32; 2],
-    format: TextureFormat,
-    samples: u32,
-    usage: TextureUsages,
-) -> Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("picture"),
-        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: samples,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: TextureUsages::RENDER_ATTACHMENT | usage,
-        view_formats: &[],
-    })
-}
-
-/// A picture on the device and the buffer through which it comes back.
+/// A texture to draw into and the buffer through which its pixels come back.
 #[derive(Debug)]
-pub(crate) struct Offscreen {
+pub(crate) struct Readback {
     texture: Texture,
     pub(crate) view: TextureView,
     buffer: wgpu::Buffer,
+    /// Bytes from one row in the buffer to the next.
     pitch: u32,
-    /// Whether blue comes before red.
-    swapped: bool,
 }
 
-impl Offscreen {
-    /// Of a `format` with four bytes a pixel.
-    pub(crate) fn new(device: &Device, [width, height]: [u32; 2], format: TextureFormat) -> Self {
-        let texture = colour(device, [width, height], format, 1, TextureUsages::COPY_SRC);
-        let pitch = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("readback"),
-            size: u64::from(pitch) * u64::from(height),
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let swapped = format == TextureFormat::Bgra8Unorm;
-        Self { view: view(&texture), texture, buffer, pitch, swapped }
+impl Readback {
+    /// Of a `format` with `depth` bytes a pixel.
+    pub(crate) fn new(gpu: &Gpu, size: [u32; 2], format: TextureFormat, depth: u32) -> Self {
+        let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC;
+        let texture = gpu.device.create_texture(&flat_texture("picture", size, format, usage));
+        let pitch = (depth * size[0]).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let bytes = u64::from(pitch) * u64::from(size[1]);
+        Self {
+            view: texture.create_view(&TextureViewDescriptor::default()),
+            buffer: gpu.buffer("readback", bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST),
+            texture,
+            pitch,
+        }
     }
 
-    /// Copies the picture into the buffer once it is drawn.
+    /// Copies the texture into the buffer once it is drawn.
     pub(crate) fn copy(&self, encoder: &mut wgpu::CommandEncoder) {
-        let layout =
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(self.pitch), rows_per_image: None };
-        encoder.copy_texture_to_buffer(
-            self.texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo { buffer: &self.buffer, layout },
-            self.texture.size(),
-        );
+        let buffer = wgpu::TexelCopyBufferInfo { buffer: &self.buffer, layout: rows(self.pitch) };
+        encoder.copy_texture_to_buffer(self.texture.as_image_copy(), buffer, self.texture.size());
     }
 
-    /// Waits for the submission and takes the picture out of the buffer.
-    pub(crate) fn read(&self, gpu: &Gpu, submission: wgpu::SubmissionIndex) -> Result<Picture, Error> {
+    /// Waits for the submission and shows the rows that it has put into the buffer.
+    pub(crate) fn read(
+        &self,
+        gpu: &Gpu,
+        submission: wgpu::SubmissionIndex,
+        look: impl FnOnce(std::slice::Chunks<'_, u8>),
+    ) -> Result<(), Error> {
+        let (sender, receiver) = mpsc::channel();
+        self.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver is gone only if reading has already failed.
+            let _ = sender.send(result);
+        });
+        let failed = |e: &dyn std::fmt::Display| Error::Device(e.to_string());
+        gpu.device
+            .poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None })
+            .map_err(|e| failed(&e))?;
+        gpu.check()?;
+        receiver.recv().map_err(|e| failed(&e))?.map_err(|e| failed(&e))?;
+        look(self.buffer.get_mapped_range(..).map_err(|e| failed(&e))?.chunks(self.pitch as usize));
+        self.buffer.unmap();
+        Ok(())
+    }
+
+    /// Waits for the submission and takes the picture, of four bytes a pixel, out of the buffer.
+    pub(crate) fn picture(&self, gpu: &Gpu, submission: wgpu::SubmissionIndex) -> Result<Picture, Error> {
         let size = self.texture.size();
         let row = 4 * size.width as usize;
         let mut rgba = Vec::with_capacity(row * size.height as usize);
-        mapped(gpu, &self.buffer, submission, |bytes| {
-            for line in bytes.chunks(self.pitch as usize) {
-                rgba.extend_from_slice(&line[..row]);
-            }
-        })?;
-        if self.swapped {
+        self.read(gpu, submission, |rows| rows.for_each(|line| rgba.extend_from_slice(&line[..row])))?;
+        if self.texture.format() == TextureFormat::Bgra8Unorm {
             rgba.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
         }
         Ok(Picture { width: size.width, height: size.height, rgba })
     }
-}
-
-/// Waits for the submission and shows what it has put into the buffer.
-pub(crate) fn mapped(
-    gpu: &Gpu,
-    buffer: &wgpu::Buffer,
-    submission: wgpu::SubmissionIndex,
-    look: impl FnOnce(&[u8]),
-) -> Result<(), Error> {
-    let (sender, receiver) = mpsc::channel();
-    buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-        // Nobody listens any more only where reading has already failed.
-        let _ = sender.send(result);
-    });
-    let failed = |e: &dyn std::fmt::Display| Error::Device(e.to_string());
-    gpu.device
-        .poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None })
-        .map_err(|e| failed(&e))?;
-    gpu.check()?;
-    receiver.recv().map_err(|e| failed(&e))?.map_err(|e| failed(&e))?;
-    look(&buffer.get_mapped_range(..).map_err(|e| failed(&e))?);
-    buffer.unmap();
-    Ok(())
 }

@@ -2,22 +2,19 @@
 
 use crate::Gpu;
 use crate::camera::Camera;
+use crate::fleet_model::FleetModel;
 use crate::gpu::model::Detail;
 use crate::gpu::passes::Canvas;
 use crate::gpu::passes::asphalt::Asphalt;
+use crate::gpu::passes::backdrop::BackdropPass;
 use crate::gpu::passes::decal::{DecalLayer, DecalPass, DecalVertex};
 use crate::gpu::passes::frame::{FrameGroups, FrameUniforms};
-use crate::gpu::passes::ground::GroundPass;
 use crate::gpu::passes::prop::{PropInstances, PropPass, Veil};
 use crate::gpu::passes::robot::{Models, RobotInstances, RobotPass};
 use crate::gpu::passes::shadow::ShadowPass;
-use crate::gpu::passes::sky::SkyPass;
 use crate::gpu::passes::tag::TagPass;
 use crate::gpu::passes::terrain::TerrainPass;
-use crate::gpu::robot_models::RobotModels;
-use crate::ground::floor::Floor;
 use std::ops::Range;
-use vocabulary::FleetInfo;
 
 /// Every pass with what it keeps on the device.
 #[derive(Debug)]
@@ -25,15 +22,13 @@ pub(crate) struct WorldPasses {
     groups: FrameGroups,
     models: Models,
     pub(crate) shadow: ShadowPass,
-    asphalt: Asphalt,
     robot: RobotPass,
     tag: TagPass,
-    ground: GroundPass,
+    backdrop: BackdropPass,
     /// In place of the flat ground.
     terrain: Option<TerrainPass>,
     prop: Option<PropPass>,
     decal: DecalPass,
-    sky: SkyPass,
 }
 
 /// What there is to see in a view.
@@ -56,19 +51,11 @@ pub(crate) struct SceneView<'a> {
 
 impl WorldPasses {
     /// `shadows` is the side of the shadow map in texels.
-    pub(crate) fn new(
-        gpu: &Gpu,
-        canvas: Canvas,
-        fleet: &FleetInfo,
-        robot_models: &RobotModels,
-        floor: &Floor,
-        detail: Detail,
-        shadows: u32,
-    ) -> Self {
-        let (device, queue) = (&gpu.device, &gpu.queue);
-        let map = ShadowPass::map(device, shadows);
-        let groups = FrameGroups::new(device, &map);
-        let asphalt = Asphalt::new(device, queue);
+    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, model: &FleetModel, detail: Detail, shadows: u32) -> Self {
+        let FleetModel { fleet, floor, robots, .. } = model;
+        let map = ShadowPass::map(gpu, shadows);
+        let groups = FrameGroups::new(gpu, &map);
+        let asphalt = Asphalt::new(gpu);
         let terrain = fleet.terrain.as_deref();
         // What is seen through needs an opacity, which a monochrome picture has not.
         let veil = match (canvas.mono, floor.drivables.is_empty()) {
@@ -76,18 +63,16 @@ impl WorldPasses {
             (false, true) => Veil::All,
             (false, false) => Veil::ButDecks,
         };
-        let prop = || PropPass::new(device, queue, canvas, &groups, &asphalt, veil);
+        let prop = || PropPass::new(gpu, canvas, &groups, &asphalt, veil);
         Self {
-            models: Models::new(device, queue, detail, &robot_models.builds),
-            robot: RobotPass::new(device, queue, canvas, &groups),
-            tag: TagPass::new(device, queue, canvas, &groups),
-            ground: GroundPass::new(device, canvas, &groups, &asphalt),
-            terrain: terrain.map(|t| TerrainPass::new(device, queue, canvas, &groups, &asphalt, t)),
+            models: Models::new(gpu, detail, &robots.builds),
+            robot: RobotPass::new(gpu, canvas, &groups),
+            tag: TagPass::new(gpu, canvas, &groups),
+            backdrop: BackdropPass::new(gpu, canvas, &groups, &asphalt),
+            terrain: terrain.map(|t| TerrainPass::new(gpu, canvas, &groups, &asphalt, t)),
             prop: (!fleet.props.is_empty()).then(prop),
-            decal: DecalPass::new(device, canvas, &groups, !floor.is_plane()),
-            sky: SkyPass::new(device, canvas, &groups),
-            shadow: ShadowPass::new(device, &groups, map, shadows),
-            asphalt,
+            decal: DecalPass::new(gpu, canvas, &groups, !floor.is_plane()),
+            shadow: ShadowPass::new(gpu, &groups, map, shadows),
             groups,
         }
     }
@@ -101,13 +86,12 @@ impl WorldPasses {
         props: impl Iterator<Item = &'a mut PropInstances>,
         corners: &[DecalVertex],
     ) {
-        let (device, queue) = (&gpu.device, &gpu.queue);
-        self.groups.fill(device, queue, frames);
-        self.models.fill(device, queue, crowds);
+        self.groups.fill(gpu, frames);
+        self.models.fill(gpu, crowds);
         if let Some(prop) = &mut self.prop {
-            prop.fill(device, queue, props);
+            prop.fill(gpu, props);
         }
-        self.decal.fill(device, queue, corners);
+        self.decal.fill(gpu, corners);
     }
 
     pub(crate) fn encode_shadow(
@@ -129,13 +113,13 @@ impl WorldPasses {
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, sight: &SceneView<'_>) {
         pass.set_bind_group(0, &self.groups.view, &[FrameGroups::offset(sight.index)]);
         pass.set_bind_group(1, &self.groups.light, &[]);
-        self.sky.draw(pass);
+        self.backdrop.draw_sky(pass);
         match &self.terrain {
-            Some(terrain) => terrain.draw(pass, &self.asphalt, sight.camera),
-            None => self.ground.draw(pass, &self.asphalt),
+            Some(terrain) => terrain.draw(pass, sight.camera),
+            None => self.backdrop.draw_ground(pass),
         }
         if let Some(prop) = &self.prop {
-            prop.draw_decks(pass, &self.asphalt, sight.props, sight.veiled);
+            prop.draw_decks(pass, sight.props, sight.veiled);
         }
         for (layer, corners) in sight.under {
             self.decal.draw(pass, corners, *layer);
@@ -145,7 +129,7 @@ impl WorldPasses {
         self.robot.draw_solid(pass, &self.models, sight.crowd);
         // After the robots, which show through those in front of them.
         if let Some(prop) = &self.prop {
-            prop.draw(pass, &self.asphalt, sight.props, sight.veiled);
+            prop.draw(pass, sight.props, sight.veiled);
         }
         if sight.ghosts {
             self.robot.draw_ghosts(pass, &self.models, sight.crowd);

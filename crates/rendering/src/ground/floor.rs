@@ -1,4 +1,4 @@
-//! What robots drive on: the plane or the terrain, and the tops of the fixed ramps and platforms that stand on it.
+//! The floor: the plane or the terrain, and the tops of the fixed ramps and platforms on it.
 
 use crate::gpu::props::turn;
 use glam::{DQuat, DVec2, DVec3};
@@ -7,22 +7,22 @@ use vocabulary::{FleetInfo, Mobility, Prop, Solid, Terrain};
 
 /// A block narrower than this is a wall or a kerb, m.
 const LEAST_WIDTH: f64 = 1.0;
-/// Nobody drives on a block whose top is higher than this over the ground, m.
+/// A block whose top is higher than this over the ground is an obstacle, m.
 const MOST_HEIGHT: f64 = 1.0;
 
-/// The ground of a cast with its decks.
+/// The ground of a fleet with its decks.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Floor {
     pub(crate) terrain: Option<Arc<Terrain>>,
     pub(crate) drivables: Vec<DrivableSurface>,
     /// Lowest and highest of it, m.
-    range: [f64; 2],
+    pub(crate) range: [f64; 2],
 }
 
 /// The top of a prop that robots can drive on.
 #[derive(Debug, Clone)]
 pub(crate) struct DrivableSurface {
-    /// Its prop's index in the cast.
+    /// The index of its prop in the fleet.
     pub(crate) prop: usize,
     /// Outline from above, counter-clockwise.
     outline: [DVec2; 4],
@@ -52,11 +52,6 @@ impl Floor {
     /// Whether it is nothing but the plane z = 0.
     pub(crate) fn is_plane(&self) -> bool {
         self.terrain.is_none() && self.drivables.is_empty()
-    }
-
-    /// Lowest and highest of it, m.
-    pub(crate) fn range(&self) -> [f64; 2] {
-        self.range
     }
 
     /// What is smaller than this is not told apart, m.
@@ -89,7 +84,7 @@ impl Floor {
         })
     }
 
-    /// The deck that a prop of the cast is, by the index of the prop.
+    /// The deck of a prop, by the prop's index; `None` if it is not a deck.
     pub(crate) fn is_drivable(&self, prop: usize) -> bool {
         self.drivables.binary_search_by_key(&prop, |drivable| drivable.prop).is_ok()
     }
@@ -111,17 +106,13 @@ impl DrivableSurface {
         let corners = [(-0.5, -0.5, rise), (0.5, -0.5, height), (0.5, 0.5, height), (-0.5, 0.5, rise)]
             .map(|(x, y, z)| foot + turn * DVec3::new(x * length, y * width, z));
         let point = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-        let broad = match prop.solid {
-            Solid::Block { .. } => {
-                length.min(width) >= LEAST_WIDTH && point.z - floor.ground(point.truncate()) < MOST_HEIGHT
-            }
-            _ => true,
-        };
+        let low = length.min(width) >= LEAST_WIDTH && point.z - floor.ground(point.truncate()) < MOST_HEIGHT;
+        let broad = low || !matches!(prop.solid, Solid::Block { .. });
         let normal = (corners[1] - corners[0]).cross(corners[3] - corners[0]).normalize_or_zero();
         let outline = corners.map(DVec3::truncate);
         let low = outline.into_iter().fold(DVec2::INFINITY, DVec2::min);
         let high = outline.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
-        // What lies on its side or on its back carries nobody.
+        // A prop on its side or upside down is no deck.
         let lies = normal.z > 0.5;
         (broad && lies).then_some(Self {
             prop: index,

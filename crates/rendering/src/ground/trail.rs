@@ -1,4 +1,4 @@
-//! Memory of the past, bounded however long the run: ribbons, ghosts, errors over time, and the steady camera.
+//! The past of a run in bounded memory: ribbons, ghosts, errors over time, and the smoothed camera.
 
 use crate::camera::smoothing::SmoothedFormation;
 use std::collections::VecDeque;
@@ -19,8 +19,8 @@ const TOUCHES: usize = 256;
 /// A tyre that slides by less than this does not show it, rad; by the second it leaves all its rubber.
 const SLIDE: [f64; 2] = [0.052, 0.35];
 
-/// What a picture needs to know of the past. It depends on the pushed moments alone. A copy shares what it remembers
-/// with the original, so that one may be kept every few seconds of a run, to go back to.
+/// The past that a picture shows. It depends on the pushed moments alone. A copy shares its data with
+/// the original, so that a run can keep one every few seconds to go back to.
 #[derive(Debug, Clone)]
 pub struct Trail {
     pub(crate) smoothed: SmoothedFormation,
@@ -77,17 +77,17 @@ impl Trail {
         }
     }
 
-    /// The time of the last moment that was taken in, s.
+    /// The time of the last moment, s.
     pub fn time(&self) -> Option<f64> {
-        self.smoothed.time()
+        self.smoothed.time
     }
 
-    /// Takes in the next moment; every control sample, or at least 30 a second.
+    /// Adds the next moment; every control sample, or at least 30 a second.
     ///
     /// A moment that is not later than the last one is ignored.
     pub fn push(&mut self, record: &StepRecord) {
         let time = record.snapshot.time;
-        if !time.is_finite() || self.smoothed.time().is_some_and(|last| time <= last) {
+        if !time.is_finite() || self.smoothed.time.is_some_and(|last| time <= last) {
             return;
         }
         let goals: Vec<_> = set_points(&self.fleet, record).into_iter().flatten().collect();
@@ -133,7 +133,7 @@ impl Trail {
         }
     }
 
-    /// Compares where the robots went since the moment before with where they look.
+    /// Compares the robots' motion since the moment before with their headings.
     fn slide(&mut self, record: &StepRecord) {
         let poses = || record.snapshot.robots.iter().map(|r| r.motion.pose);
         self.slides.resize(poses().len(), 0.0);
@@ -163,7 +163,7 @@ pub(crate) fn sizes(fleet: &FleetInfo) -> f64 {
     fleet.robots.iter().map(|m| crate::gpu::model::size(&m.body)).fold(0.0, f64::max)
 }
 
-/// Where on the ground each edge wants its follower, m.
+/// The set point of each edge on the ground, m.
 pub fn set_points(fleet: &FleetInfo, record: &StepRecord) -> Vec<Option<[f64; 2]>> {
     let place = |k: usize| {
         let state = record.edges.get(k)?;

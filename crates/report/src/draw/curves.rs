@@ -63,6 +63,11 @@ impl<'a> EdgeCurve<'a> {
         curves
     }
 
+    /// Its name in a table.
+    fn column_name(&self) -> &str {
+        if self.name.is_empty() { self.run.follower(self.edge) } else { &self.name }
+    }
+
     fn rows(&self) -> impl Iterator<Item = (f64, &EdgeRow)> {
         self.run.times.iter().copied().zip(self.run.edges.get(self.edge).into_iter().flatten())
     }
@@ -153,7 +158,7 @@ fn panel(label: &str, series: Vec<Series>) -> Panel {
     Panel { axis: Axis { label: label.to_owned(), ..Axis::default() }, series, guides: vec![] }
 }
 
-/// Speed, what the law asked of it, and turn rate of followers, with grey where they cannot go.
+/// Speed, commanded acceleration and turn rate of followers, with grey beyond their limits.
 pub(crate) fn inputs(curves: &[EdgeCurve<'_>], magnify: Magnify) -> Drawn {
     let limits = curves.first().and_then(EdgeCurve::limits).unwrap_or(Limits::PAPER);
     let mut columns = vec![];
@@ -166,7 +171,7 @@ pub(crate) fn inputs(curves: &[EdgeCurve<'_>], magnify: Magnify) -> Drawn {
         speed.push(curve.series(true, points(times, &v)));
         asked.push(curve.series(false, held(times, &a)));
         turn.push(curve.series(false, held(times, &w)));
-        let name = if curve.name.is_empty() { curve.run.follower(curve.edge) } else { &curve.name };
+        let name = curve.column_name();
         columns.extend([
             (format!("{name} speed_m_s"), v),
             (format!("{name} asked_acceleration_m_s2"), a),
@@ -226,7 +231,7 @@ pub(crate) fn errors(curves: &[EdgeCurve<'_>], magnify: Magnify) -> Drawn {
         // What is below the axis would have no logarithm to draw at zero.
         let drawn: Vec<f64> = sizes.iter().map(|e| e.max(1e-30)).collect();
         norm.push(curve.series(false, points(times, &drawn)));
-        let name = if curve.name.is_empty() { curve.run.follower(curve.edge) } else { &curve.name };
+        let name = curve.column_name();
         let [metres, radians] = each;
         columns.extend([
             (format!("{name} error_distance_m"), metres),

@@ -1,28 +1,29 @@
-//! The formation graph: who follows whom, laid out from the set points themselves.
+//! The formation graph, laid out from the set points.
 
 use super::{Drawn, NAMED, number, quoted};
 use crate::trace::Trace;
 use figures::{Arrow, Note, Plan, PlanNode, Side};
 use std::fmt::Write;
 
-/// Places of all robots at a sample if every follower stood at its set point with its leader's heading, in the first
-/// leader's frame: x forward, y left, m.
-pub(crate) fn places(run: &Trace, sample: usize) -> Vec<[f64; 2]> {
-    let pose = |robot: usize| run.robots.get(robot).and_then(|m| m.get(sample)).map(|m| m.pose);
-    let first = run.fleet.robots.iter().position(|m| m.leads).unwrap_or(0);
-    let origin = pose(first).unwrap_or_default();
+/// Where robots are at a sample in the frame of the guide: x forward, y left, m.
+fn seen_from_guide(run: &Trace, sample: usize) -> Vec<Option<[f64; 2]>> {
+    let origin = run.pose(run.guide(), sample).unwrap_or_default();
     let (sin, cos) = origin.heading.sin_cos();
-    let mut places: Vec<Option<[f64; 2]>> = run
-        .fleet
-        .robots
-        .iter()
-        .enumerate()
-        .map(|(robot, member)| {
-            let pose = pose(robot).filter(|_| member.leads)?;
-            let d = [pose.x - origin.x, pose.y - origin.y];
-            Some([d[0] * cos + d[1] * sin, d[1] * cos - d[0] * sin])
-        })
-        .collect();
+    let place = |robot: usize| {
+        let pose = run.pose(robot, sample)?;
+        let d = [pose.x - origin.x, pose.y - origin.y];
+        Some([d[0] * cos + d[1] * sin, d[1] * cos - d[0] * sin])
+    };
+    (0..run.fleet.robots.len()).map(place).collect()
+}
+
+/// Places of all robots at a sample if every follower stood at its set point with its leader's heading, in the frame of the
+/// guide, m.
+pub(crate) fn places(run: &Trace, sample: usize) -> Vec<[f64; 2]> {
+    let mut places = seen_from_guide(run, sample);
+    for (place, member) in places.iter_mut().zip(&run.fleet.robots) {
+        *place = place.filter(|_| member.leads);
+    }
     // A formation is a forest: every round places the followers of those placed before.
     for _ in 0..run.fleet.robots.len() {
         for (index, edge) in run.fleet.edges.iter().enumerate() {
@@ -37,18 +38,12 @@ pub(crate) fn places(run: &Trace, sample: usize) -> Vec<[f64; 2]> {
     places.into_iter().map(Option::unwrap_or_default).collect()
 }
 
-/// Largest distance of a robot from where the set points want it, at a sample, in the first leader's frame, m.
+/// Largest distance of a robot from where the set points want it, at a sample, in the frame of the guide, m.
 pub(crate) fn farthest(run: &Trace, sample: usize) -> Option<f64> {
-    let pose = |robot: usize| run.robots.get(robot).and_then(|m| m.get(sample)).map(|m| m.pose);
-    let origin = pose(run.fleet.robots.iter().position(|m| m.leads).unwrap_or(0))?;
-    let (sin, cos) = origin.heading.sin_cos();
-    let off = |(robot, place): (usize, &[f64; 2])| {
-        let pose = pose(robot)?;
-        let d = [pose.x - origin.x, pose.y - origin.y];
-        Some((d[0] * cos + d[1] * sin - place[0]).hypot(d[1] * cos - d[0] * sin - place[1]))
-    };
-    let places = places(run, sample);
-    places.iter().enumerate().map(off).try_fold(0.0, |most: f64, off| off.map(|off| most.max(off)))
+    let (seen, wanted) = (seen_from_guide(run, sample), places(run, sample));
+    seen.iter().zip(wanted).try_fold(0.0, |most: f64, (seen, wanted)| {
+        seen.map(|[x, y]| most.max((x - wanted[0]).hypot(y - wanted[1])))
+    })
 }
 
 /// Nodes, directed edges, and set points on edges, at a time.
@@ -87,13 +82,8 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
             let at = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
             let degrees = format!("{:+.0}°", bearing.to_degrees()).replace('-', "−");
             let side = if at[0] > middle { Side::Right } else { Side::Left };
-            plan.notes.push(Note {
-                at,
-                text: format!("{distance:.2} m, {degrees}"),
-                side,
-                off: 6.0,
-                colour: None,
-            });
+            let text = format!("{distance:.2} m, {degrees}");
+            plan.notes.push(Note { at, text, side, off: 6.0, colour: None });
         }
     }
     let signs = signs(run);
@@ -103,7 +93,7 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
             at,
             name: if labels { signs[robot].clone() } else { String::new() },
             radius,
-            colour: run.colours.get(robot).copied().unwrap_or_default(),
+            colour: run.robot_colour(robot),
             filled: member.leads,
         });
     }

@@ -9,7 +9,9 @@ pub(crate) use graph::{farthest, graph};
 pub(crate) use ways::trajectories;
 
 use crate::figure::ReportFigure;
+use crate::words::trimmed;
 use figures::{Rgb, Stroke};
+use std::iter::once;
 
 /// A figure as it leaves this folder: SVG, and a table of what it shows.
 pub(crate) struct Drawn {
@@ -43,19 +45,12 @@ const CELLS: usize = 400_000;
 pub(crate) fn table(times: &[f64], columns: &[(String, Vec<f64>)]) -> String {
     let most = (CELLS / (columns.len() + 1)).clamp(100, ROWS);
     let every = times.len().div_ceil(most).max(1);
-    let mut csv = String::from("time_s");
-    for (name, _) in columns {
-        csv.push(',');
-        csv.push_str(&quoted(name));
-    }
-    csv.push('\n');
+    let names = columns.iter().map(|(name, _)| quoted(name));
+    let mut csv = once("time_s".to_owned()).chain(names).collect::<Vec<_>>().join(",") + "\n";
     for (row, time) in times.iter().enumerate().step_by(every) {
-        csv.push_str(&number(*time));
-        for (_, values) in columns {
-            csv.push(',');
-            csv.push_str(&values.get(row).map_or_else(String::new, |v| number(*v)));
-        }
-        csv.push('\n');
+        let cells =
+            columns.iter().map(|(_, values)| values.get(row).map_or_else(String::new, |v| number(*v)));
+        csv += &(once(number(*time)).chain(cells).collect::<Vec<_>>().join(",") + "\n");
     }
     csv
 }
@@ -67,8 +62,7 @@ pub(crate) fn number(value: f64) -> String {
     }
     let digits = 8 - value.abs().log10().floor() as i32;
     if (0..=12).contains(&digits) {
-        let text = format!("{value:.*}", digits as usize);
-        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+        trimmed(format!("{value:.*}", digits as usize))
     } else {
         format!("{value:.8e}")
     }

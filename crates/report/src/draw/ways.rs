@@ -2,7 +2,7 @@
 
 use super::{Drawn, NAMED, stroke, table};
 use crate::trace::Trace;
-use crate::words::{digits, round};
+use crate::words::{digits, round, trimmed};
 use figures::{Key, Note, Plan, PlanOutline, PlanPath, Side, Stroke};
 use vocabulary::{Body, Pose};
 
@@ -24,7 +24,7 @@ pub(crate) fn trajectories(run: &Trace) -> (Drawn, f64) {
         let leads = run.fleet.robots.get(robot).is_some_and(|m| m.leads);
         plan.tracks.push(PlanPath {
             points: motions.iter().map(|m| [m.pose.x, m.pose.y]).collect(),
-            colour: run.colours.get(robot).copied().unwrap_or_default(),
+            colour: run.robot_colour(robot),
             stroke: if leads || crowd { Stroke::Solid } else { stroke(robot) },
             faint: crowd && !leads,
         });
@@ -74,7 +74,7 @@ fn enlargement(run: &Trace, scale: f64, times: &[f64]) -> f64 {
 
 /// Least distance of two robots, m.
 fn nearest(run: &Trace, sample: usize) -> f64 {
-    let poses: Vec<Pose> = run.robots.iter().filter_map(|m| Some(m.get(sample)?.pose)).collect();
+    let poses: Vec<Pose> = (0..run.robots.len()).filter_map(|robot| run.pose(robot, sample)).collect();
     let from = |(k, a): (usize, &Pose)| {
         let apart = poses[k + 1..].iter().map(|b| (a.x - b.x).hypot(a.y - b.y));
         apart.fold(f64::INFINITY, f64::min)
@@ -94,7 +94,7 @@ fn marked(end: f64, crowd: bool) -> Vec<f64> {
 /// Outlines at a time, and thin lines from leaders to followers.
 fn mark(run: &Trace, time: f64, factor: f64, plan: &mut Plan) {
     let sample = run.sample_at(time);
-    let pose = |robot: usize| Some(run.robots.get(robot)?.get(sample)?.pose);
+    let pose = |robot: usize| run.pose(robot, sample);
     for edge in &run.fleet.edges {
         if let (Some(a), Some(b)) = (pose(edge.leader), pose(edge.follower)) {
             plan.tracks.push(PlanPath {
@@ -107,7 +107,7 @@ fn mark(run: &Trace, time: f64, factor: f64, plan: &mut Plan) {
     }
     for (robot, member) in run.fleet.robots.iter().enumerate() {
         let Some(pose) = pose(robot) else { continue };
-        let colour = run.colours.get(robot).copied().unwrap_or_default();
+        let colour = run.robot_colour(robot);
         let filled = if member.leads { 0.85 } else { 0.55 };
         plan.outlines.push(PlanOutline { points: outline(pose, &member.body, factor), colour, filled });
     }
@@ -125,14 +125,9 @@ fn outline(pose: Pose, body: &Body, factor: f64) -> Vec<[f64; 2]> {
     corners.map(at).to_vec()
 }
 
-/// The first robot that leads, or the first of all.
-fn guide(run: &Trace) -> usize {
-    run.fleet.robots.iter().position(|m| m.leads).unwrap_or(0)
-}
-
 /// +1 where the guide turns left on the whole, −1 where it turns right.
 fn turn(run: &Trace) -> f64 {
-    let turned: f64 = run.robots.get(guide(run)).into_iter().flatten().map(|m| m.turn_rate).sum();
+    let turned: f64 = run.robots.get(run.guide()).into_iter().flatten().map(|m| m.turn_rate).sum();
     if turned < -1e-9 { -1.0 } else { 1.0 }
 }
 
@@ -163,19 +158,18 @@ const POINTS: f64 = 72.0 / 25.4;
 
 /// The time beside the guide, outside of its turn.
 fn clock(run: &Trace, time: f64, magnified: f64, plan: &mut Plan) {
-    let robot = guide(run);
-    let Some(motion) = run.robots.get(robot).and_then(|m| m.get(run.sample_at(time))) else { return };
+    let robot = run.guide();
+    let Some(pose) = run.pose(robot, run.sample_at(time)) else { return };
     let text = if time == 0.0 { "t = 0".to_owned() } else { format!("{} s", plain(time)) };
-    let side = beside(motion.pose, -turn(run));
+    let side = beside(pose, -turn(run));
     let body = run.fleet.robots.get(robot).map_or_else(Body::default, |m| m.body);
-    let off = clear(motion.pose, &body, side, magnified);
-    plan.notes.push(Note { at: [motion.pose.x, motion.pose.y], text, side, off, colour: None });
+    let off = clear(pose, &body, side, magnified);
+    plan.notes.push(Note { at: [pose.x, pose.y], text, side, off, colour: None });
 }
 
 /// A time without digits that are none.
 fn plain(time: f64) -> String {
-    let text = digits(time);
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    trimmed(digits(time))
 }
 
 /// From where a word begins to its middle, points of print.
@@ -194,14 +188,14 @@ fn names(run: &Trace, times: &[f64], scale: f64, factor: f64, plan: &mut Plan) {
         _ => 0.6 * end,
     };
     let sample = run.sample_at(at);
-    let pose = |robot: usize| run.robots.get(robot).and_then(|m| m.get(sample)).map(|m| m.pose);
-    let Some(first) = pose(guide(run)) else { return };
+    let pose = |robot: usize| run.pose(robot, sample);
+    let Some(first) = pose(run.guide()) else { return };
     let (mut notes, mut astray): (Vec<Note>, bool) = (vec![], false);
     for (robot, member) in run.fleet.robots.iter().enumerate().filter(|(_, m)| few || m.leads) {
         let Some(pose) = pose(robot) else { continue };
         let (sin, cos) = first.heading.sin_cos();
         let inward = turn(run) * ((pose.y - first.y) * cos - (pose.x - first.x) * sin) * scale;
-        let outside = robot != guide(run) && inward < 0.0 && inward > -FREE;
+        let outside = robot != run.guide() && inward < 0.0 && inward > -FREE;
         let side = beside(pose, if outside { -turn(run) } else { turn(run) });
         // Outlines are not here, but a word may be longer than the way between two of them.
         let off = 0.5 * member.body.width * factor * scale * POINTS + 2.2;
@@ -217,8 +211,8 @@ fn names(run: &Trace, times: &[f64], scale: f64, factor: f64, plan: &mut Plan) {
         let distance = |other: Pose| (pose.x + dx - other.x).hypot(pose.y + dy - other.y);
         astray |= (0..run.fleet.robots.len())
             .filter(|other| *other != robot)
-            .filter_map(|other| run.robots.get(other)?.get(sample))
-            .any(|other| distance(other.pose) < dx.hypot(dy));
+            .filter_map(|other| run.pose(other, sample))
+            .any(|other| distance(other) < dx.hypot(dy));
         notes.push(Note { at: [pose.x, pose.y], text: member.name.clone(), side, off, colour });
     }
     if !astray && !meet(&notes, scale) {

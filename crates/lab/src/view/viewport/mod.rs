@@ -1,69 +1,68 @@
-//! The 3D view in its tile: drawn when something in it has changed, and under the hand.
+//! The 3D view in its tile: it is rendered when its content has changed.
 
 mod pointer;
 
 use self::pointer::Drag;
 use crate::action::Action;
 use crate::app_state::{AppState, Tool};
-use crate::tidy::fixed;
+use crate::numbers::fixed;
 use crate::view::annotations::{PointerState, annotations};
-use crate::view::camera::HeldCamera;
+use crate::view::camera::CameraControl;
 use eframe::egui::{self, Color32, Pos2, Rect, Sense, TextureId, Ui, Vec2};
 use eframe::egui_wgpu::RenderState;
-use rendering::{Error, Gpu, Renderer, Sightline, Style, Trail, ViewLayout, Viewpoint};
+use rendering::{Error, Gpu, PictureSpec, Renderer, Sightline, Style, Trail, ViewLayout, Viewpoint};
 use std::sync::Arc;
 use vocabulary::{FleetInfo, StepRecord};
 
-/// Rooms for pixels of the view, both ways.
+/// Minimum and maximum size of the view, pixels.
 const SIZES: [u32; 2] = [16, 8192];
 
 /// The 3D view.
 pub struct Viewport {
     pub(super) state: RenderState,
-    pub(super) gpu: Gpu,
+    /// The graphics device, for other renderers.
+    pub gpu: Gpu,
     pub(super) view_renderer: Option<ViewRenderer>,
-    /// What is looked from: a named view, or the camera in the hand.
+    /// The named view, in use unless the free camera is.
     pub view: String,
-    pub(super) held: Option<HeldCamera>,
-    /// What is drawn besides the scene; its annotations are made anew for each picture.
+    pub(super) camera_control: Option<CameraControl>,
+    /// Elements of the picture; annotations are made for each picture.
     pub style: Style,
-    pub(super) hand: PointerState,
+    pub(super) pointer: PointerState,
     drag: Option<Drag>,
     /// Samples a pixel.
     pub(super) samples: u32,
-    /// Why nothing can be drawn.
+    /// Why nothing can be rendered.
     pub fault: Option<String>,
-    /// Pictures drawn so far.
+    /// Number of rendered pictures.
     pub pictures: u64,
-    /// Where it is in the window, points.
+    /// Its rectangle in the window, points.
     pub rect: Rect,
 }
 
-/// What draws the robots of one run.
+/// The renderer of one run.
 pub(super) struct ViewRenderer {
     pub(super) fleet: Arc<FleetInfo>,
     pub(super) renderer: Renderer,
-    pub(super) texture: wgpu::Texture,
+    pub(super) texture: wgpu::TextureView,
     pub(super) id: TextureId,
-    /// Draws what stands still with more samples, where the first draws with one.
+    /// Renders still pictures with more samples, if the first renders with one.
     pub(super) finer: Option<Renderer>,
-    /// What was drawn last, and whether as well as can be.
+    /// The last frame, and whether it has full quality.
     pub(super) shown: Option<(DrawnFrame, bool)>,
     pub(super) sight: Option<Sightline>,
 }
 
 impl ViewRenderer {
-    /// Draws with all samples.
+    /// Renders a frame with full quality.
     fn fine(
         &mut self,
         gpu: &Gpu,
         trail: &Trail,
         record: &StepRecord,
-        layout: &ViewLayout,
-        style: &Style,
-        [title, caption]: &[String; 2],
+        frame: &DrawnFrame,
     ) -> Result<(), Error> {
-        let (width, height) = self.renderer.size();
+        let [width, height] = frame.size;
         let finer = match self.finer.take() {
             Some(mut finer) => {
                 finer.resize(width, height)?;
@@ -74,13 +73,13 @@ impl ViewRenderer {
             }
         };
         let finer = self.finer.insert(finer);
-        finer.retitle(title, caption);
-        let view = self.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        finer.draw_into(&view, trail, record, layout, style).map(drop)
+        finer.retitle(&frame.words[0], &frame.words[1]);
+        let style = Style { interactive: false, ..frame.style.clone() };
+        finer.draw_into(&self.texture, PictureSpec::new(trail, record, &frame.layout, &style)).map(drop)
     }
 }
 
-/// What a picture was made of: where nothing of it has changed, it stands.
+/// The inputs of a picture: it is rendered again only if they change.
 #[derive(PartialEq)]
 pub(super) struct DrawnFrame {
     branch: usize,
@@ -93,10 +92,10 @@ pub(super) struct DrawnFrame {
 }
 
 impl Viewport {
-    /// A view that draws on the window's device.
+    /// A view that renders on the window's device.
     pub fn new(state: &RenderState) -> Self {
         let gpu = Gpu::from_device(state.device.clone(), state.queue.clone(), &state.adapter.get_info());
-        // A processor that draws has enough to do with one sample.
+        // A software driver manages one sample.
         let samples = if gpu.info().software { 1 } else { 4 };
         let style = Style { inset: false, ..Style::default() };
         Self {
@@ -104,9 +103,9 @@ impl Viewport {
             gpu,
             view_renderer: None,
             view: "snake".to_owned(),
-            held: None,
+            camera_control: None,
             style,
-            hand: PointerState::default(),
+            pointer: PointerState::default(),
             drag: None,
             samples,
             fault: None,
@@ -115,24 +114,19 @@ impl Viewport {
         }
     }
 
-    /// The device, for whoever else draws.
-    pub fn gpu(&self) -> &Gpu {
-        &self.gpu
-    }
-
-    /// Looks from a view called this.
+    /// Selects a named view.
     pub fn look(&mut self, view: &str) {
         view.clone_into(&mut self.view);
-        self.held = None;
+        self.camera_control = None;
     }
 
-    /// Keeps the camera with a robot; `None` lets it go.
+    /// Attaches the camera to a robot; `None` detaches it.
     pub fn follow(&mut self, robot: Option<usize>, app_state: &AppState) {
         let Some(record) = app_state.record() else { return };
-        if self.held.is_none() {
+        if self.camera_control.is_none() {
             self.take_camera(&record, robot);
         }
-        if let Some(held) = &mut self.held {
+        if let Some(held) = &mut self.camera_control {
             match robot {
                 Some(robot) => held.follow(robot),
                 None => held.let_go(&record.snapshot),
@@ -140,106 +134,98 @@ impl Viewport {
         }
     }
 
-    /// Views of the picture.
+    /// The views of the picture.
     pub fn layout(&self, fleet: &FleetInfo, record: &StepRecord) -> ViewLayout {
-        if let Some(held) = &self.held {
+        if let Some(held) = &self.camera_control {
             return ViewLayout::single(held.view(&record.snapshot));
         }
         let names: Vec<String> = fleet.robots.iter().map(|member| member.name.clone()).collect();
         ViewLayout::parse(&self.view, &names).unwrap_or_else(|_| ViewLayout::single(Viewpoint::Snake))
     }
 
-    /// The style of a picture with all that explains it.
-    pub fn dressed(&self, app_state: &AppState, record: &StepRecord, scale: f64) -> Style {
-        Style { scale, annotations: annotations(app_state, record, &self.hand), ..self.style.clone() }
+    /// The style of a picture with its annotations.
+    pub fn annotated_style(&self, app_state: &AppState, record: &StepRecord, scale: f64) -> Style {
+        Style { scale, annotations: annotations(app_state, record, &self.pointer), ..self.style.clone() }
     }
 
-    /// The view in all the room there is.
-    pub fn show(&mut self, ui: &mut Ui, input: &ViewInput<'_>, out: &mut Vec<Action>) {
+    /// Shows the view in the available space.
+    pub fn show(&mut self, ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "3D view"));
         self.rect = rect;
-        let Some(record) = input.record.clone() else {
+        let (Some(record), Some(fleet)) = (app_state.shown(), app_state.fleet()) else {
             return centred(ui, rect, "Open a scene: Ctrl O, or drop a file here.");
         };
-        self.handle_pointer(ui, &response, input.app_state, &record, rect, out);
+        self.handle_pointer(ui, &response, app_state, &record, rect, out);
         let pixels = ui.pixels_per_point();
         let size =
             [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(SIZES[0], SIZES[1]));
-        if let Err(error) = self.draw(input, &record, size, f64::from(pixels)) {
+        if let Err(error) = self.draw(app_state, fleet, &record, size, f64::from(pixels)) {
             self.fault = Some(error.to_string());
         }
         if let Some(fault) = &self.fault {
-            return centred(
-                ui,
-                rect,
-                &format!("The view cannot be drawn: {fault}\nYour scene and its run are kept."),
-            );
+            let text = format!("The view cannot be drawn: {fault}\nYour scene and its run are kept.");
+            return centred(ui, rect, &text);
         }
         if let Some(view_renderer) = &self.view_renderer {
             let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
             ui.painter().image(view_renderer.id, rect, whole, Color32::WHITE);
         }
-        self.readout(ui, input.app_state, &record, rect);
+        self.readout(ui, app_state, &record, rect);
     }
 
     fn draw(
         &mut self,
-        input: &ViewInput<'_>,
+        app_state: &AppState,
+        fleet: &Arc<FleetInfo>,
         record: &Arc<StepRecord>,
         size: [u32; 2],
         pixels: f64,
     ) -> Result<(), Error> {
-        let fleet = Arc::clone(input.fleet);
-        // Text keeps its size on small views, and grows with the density of the screen.
+        // Text keeps its size in small views and scales with the screen's pixel density.
         let scale = (0.92 * pixels).clamp(0.5, 6.0);
-        let layout = self.layout(&fleet, record);
-        let style = Style { interactive: true, ..self.dressed(input.app_state, record, scale) };
-        if self.view_renderer.as_ref().is_none_or(|view_renderer| !Arc::ptr_eq(&view_renderer.fleet, &fleet))
-        {
-            self.set_view_renderer(&fleet, size)?;
+        let layout = self.layout(fleet, record);
+        let style = Style { interactive: true, ..self.annotated_style(app_state, record, scale) };
+        if self.view_renderer.as_ref().is_none_or(|drawn| !Arc::ptr_eq(&drawn.fleet, fleet)) {
+            self.set_view_renderer(fleet, size)?;
         }
         let Some(view_renderer) = &mut self.view_renderer else { return Ok(()) };
-        if <[u32; 2]>::from(view_renderer.renderer.size()) != size {
+        if view_renderer.renderer.size() != size {
             view_renderer.renderer.resize(size[0], size[1])?;
             view_renderer.texture = texture(&self.state.device, size);
-            let view = view_renderer.texture.create_view(&wgpu::TextureViewDescriptor::default());
             self.state.renderer.write().update_egui_texture_from_wgpu_texture(
                 &self.state.device,
-                &view,
+                &view_renderer.texture,
                 wgpu::FilterMode::Nearest,
                 view_renderer.id,
             );
             view_renderer.shown = None;
         }
         let shown = DrawnFrame {
-            branch: input.app_state.branch,
-            words: input.app_state.words(),
+            branch: app_state.branch,
+            words: app_state.words(),
             time: record.snapshot.time,
             goals: record.edges.iter().map(|edge| edge.set_point).collect(),
-            layout: layout.clone(),
-            style: style.clone(),
+            layout,
+            style,
             size,
         };
-        let Some(trail) = input.trail else { return Ok(()) };
-        match &view_renderer.shown {
-            Some((last, true)) if *last == shown => return Ok(()),
-            Some((last, false)) if *last == shown => {
-                // Nothing moves any more: there is time for a better picture.
-                let fine = Style { interactive: false, ..style };
-                view_renderer.fine(&self.gpu, trail, record, &layout, &fine, &shown.words)?;
+        let Some(trail) = app_state.trail() else { return Ok(()) };
+        if let Some((_, fine)) = view_renderer.shown.as_ref().filter(|(last, _)| *last == shown) {
+            if !fine {
+                // Nothing moves: there is time for a better picture.
+                view_renderer.fine(&self.gpu, trail, record, &shown)?;
                 view_renderer.shown = Some((shown, true));
                 self.pictures += 1;
-                return Ok(());
             }
-            _ => {}
+            return Ok(());
         }
-        let [title, caption] = &shown.words;
-        view_renderer.renderer.retitle(title, caption);
-        view_renderer.sight =
-            view_renderer.renderer.sightlines(trail, record, &layout, &style)?.into_iter().next();
-        let view = view_renderer.texture.create_view(&wgpu::TextureViewDescriptor::default());
-        view_renderer.renderer.draw_into(&view, trail, record, &layout, &style)?;
+        let DrawnFrame { words: [title, caption], layout, style, .. } = &shown;
+        let spec = PictureSpec::new(trail, record, layout, style);
+        let renderer = &mut view_renderer.renderer;
+        renderer.retitle(title, caption);
+        view_renderer.sight = renderer.sightlines(spec)?.into_iter().next();
+        renderer.draw_into(&view_renderer.texture, spec)?;
         view_renderer.shown = Some((shown, self.samples > 1));
         self.fault = None;
         self.pictures += 1;
@@ -250,12 +236,11 @@ impl Viewport {
         let format = wgpu::TextureFormat::Rgba8Unorm;
         let renderer = Renderer::with_format(&self.gpu, fleet, size[0], size[1], self.samples, format)?;
         let texture = texture(&self.state.device, size);
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut drawer = self.state.renderer.write();
         if let Some(before) = self.view_renderer.take() {
             drawer.free_texture(&before.id);
         }
-        let id = drawer.register_native_texture(&self.state.device, &view, wgpu::FilterMode::Nearest);
+        let id = drawer.register_native_texture(&self.state.device, &texture, wgpu::FilterMode::Nearest);
         drop(drawer);
         self.view_renderer = Some(ViewRenderer {
             fleet: Arc::clone(fleet),
@@ -269,13 +254,13 @@ impl Viewport {
         Ok(())
     }
 
-    /// Whether what is seen could be drawn better when nothing moves.
+    /// Whether the shown picture can be improved when nothing moves.
     pub fn rough(&self) -> bool {
         let shown = self.view_renderer.as_ref().and_then(|view_renderer| view_renderer.shown.as_ref());
         self.fault.is_none() && shown.is_some_and(|(_, fine)| !fine)
     }
 
-    /// Numbers beside the ring that is dragged, and what the tool does.
+    /// Shows numbers beside the dragged ring, and the help text of the tool.
     fn readout(&self, ui: &Ui, app_state: &AppState, record: &StepRecord, rect: Rect) {
         let font = egui::FontId::proportional(14.0);
         let plate = |text: String, at: Pos2, align: egui::Align2| {
@@ -284,7 +269,7 @@ impl Viewport {
             ui.painter().rect_filled(place, 6.0, Color32::from_black_alpha(190));
             ui.painter().galley(place.min + Vec2::new(8.0, 5.0), galley, Color32::WHITE);
         };
-        if let Some(edge) = self.hand.held
+        if let Some(edge) = self.pointer.dragged
             && let Some([distance, bearing]) = app_state.set_point(edge)
             && let Some(pos) = ui.input(|input| input.pointer.latest_pos())
         {
@@ -294,28 +279,16 @@ impl Viewport {
             plate(text, pos + Vec2::new(18.0, -14.0), egui::Align2::LEFT_BOTTOM);
         }
         let hint = match app_state.tool {
-            Tool::Hand => return,
-            Tool::Connect => "Drag from a robot to the one that it shall follow. Esc ends it.",
-            Tool::Pillar => "Click on the ground to place a pillar. Esc ends it.",
+            Tool::Select => return,
+            Tool::Connect => "Drag from a robot to its new leader. Esc cancels.",
+            Tool::Pillar => "Click on the ground to place a pillar. Esc cancels.",
         };
         plate(hint.to_owned(), rect.center_top() + Vec2::new(0.0, 14.0), egui::Align2::CENTER_TOP);
     }
 }
 
-/// What the view needs of the state, borrowed in parts.
-pub struct ViewInput<'a> {
-    /// All of it.
-    pub app_state: &'a AppState,
-    /// Who is on stage.
-    pub fleet: &'a Arc<FleetInfo>,
-    /// What is looked at.
-    pub record: Option<Arc<StepRecord>>,
-    /// The past of it.
-    pub trail: Option<&'a Trail>,
-}
-
-fn texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
+fn texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("3D view"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
@@ -324,7 +297,8 @@ fn texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Texture {
         format: wgpu::TextureFormat::Rgba8Unorm,
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
-    })
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 fn centred(ui: &Ui, rect: Rect, text: &str) {

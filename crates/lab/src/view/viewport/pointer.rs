@@ -1,20 +1,19 @@
-//! The pointer in the view: what it is over, what it drags, what a click means.
+//! The pointer in the view: hovering, dragging and clicking.
 
 use super::Viewport;
 use crate::action::Action;
 use crate::app_state::{AppState, Selection, Tool};
-use crate::tidy::snap;
-use crate::view::camera::HeldCamera;
+use crate::numbers::snap;
+use crate::view::camera::CameraControl;
 use eframe::egui::{self, Pos2, Rect, Ui, Vec2};
 use rendering::{Picked, Sightline, set_points};
-use std::sync::Arc;
 use vocabulary::{StepRecord, wrap};
 
-/// Steps of a set point under the hand: m and degrees.
+/// Steps of a dragged set point: m and degrees.
 const STEPS: [f64; 2] = [0.1, 5.0];
-/// How near to a ring's middle the pointer grasps it, points.
+/// Distance from a ring's centre within which the pointer grasps it, points.
 const GRASP: f32 = 16.0;
-/// What a button held down moves.
+/// What a drag moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Drag {
     Orbit,
@@ -23,14 +22,23 @@ pub(super) enum Drag {
     Connect(usize),
 }
 
+/// The context of the pointer in a frame.
+struct PointerFrame<'a> {
+    ui: &'a Ui,
+    response: &'a egui::Response,
+    app_state: &'a AppState,
+    record: &'a StepRecord,
+    sight: Sightline,
+}
+
 impl Viewport {
-    /// Everything the pointer does in the view.
+    /// Handles the pointer in the view.
     pub(super) fn handle_pointer(
         &mut self,
         ui: &Ui,
         response: &egui::Response,
         app_state: &AppState,
-        record: &Arc<StepRecord>,
+        record: &StepRecord,
         rect: Rect,
         out: &mut Vec<Action>,
     ) {
@@ -40,12 +48,14 @@ impl Viewport {
         else {
             return;
         };
+        let frame = PointerFrame { ui, response, app_state, record, sight };
+        let sight = &frame.sight;
         let pointer = response.hover_pos().or_else(|| response.interact_pointer_pos());
-        self.hover(app_state, record, &sight, pointer.map(pixel), f64::from(pixels * GRASP));
+        self.hover(&frame, pointer.map(pixel));
         if response.drag_started() {
-            // What was pressed counts, wherever the pointer is by now.
+            // The place of the press counts, wherever the pointer is now.
             let origin = ui.input(|input| input.pointer.press_origin());
-            self.hover(app_state, record, &sight, origin.or(pointer).map(pixel), f64::from(pixels * GRASP));
+            self.hover(&frame, origin.or(pointer).map(pixel));
             self.begin_drag(ui, app_state);
         }
         let share = |delta: Vec2| [delta.x, delta.y].map(|x| f64::from(x / rect.height().max(1.0)));
@@ -55,45 +65,40 @@ impl Viewport {
                 Drag::Orbit | Drag::Pan if delta == Vec2::ZERO => {}
                 Drag::Orbit => {
                     self.take_camera(record, None);
-                    if let Some(held) = &mut self.held {
+                    if let Some(held) = &mut self.camera_control {
                         held.orbit(share(delta));
                     }
                 }
                 Drag::Pan => {
                     let (from, to) = (sight.ground(pixel(pos - delta)), sight.ground(pixel(pos)));
                     self.take_camera(record, None);
-                    if let (Some(held), Some(from), Some(to)) = (&mut self.held, from, to) {
+                    if let (Some(held), Some(from), Some(to)) = (&mut self.camera_control, from, to) {
                         held.pan(from, to);
                     }
                 }
                 Drag::SetPoint(edge) => {
                     if let Some(place) = sight.ground(pixel(pos)) {
-                        out.extend(dragged(ui, app_state, record, edge, place));
+                        out.extend(dragged(&frame, edge, place));
                     }
                 }
                 Drag::Connect(robot) => {
-                    self.hand.connecting = sight.ground(pixel(pos)).map(|place| (robot, place));
+                    self.pointer.connecting = sight.ground(pixel(pos)).map(|place| (robot, place));
                 }
             }
         }
         if response.drag_stopped() {
             self.end_drag(out);
         }
-        self.wheel(ui, response, &sight, pointer.map(pixel), record);
-        self.clicks(response, app_state, &sight, pointer.map(pixel), out);
+        self.wheel(&frame, pointer.map(pixel));
+        self.clicks(&frame, pointer.map(pixel), out);
     }
 
-    /// What is under the pointer.
-    fn hover(
-        &mut self,
-        app_state: &AppState,
-        record: &StepRecord,
-        sight: &Sightline,
-        pixel: Option<[f64; 2]>,
-        grasp: f64,
-    ) {
-        self.hand.ring = None;
-        self.hand.robot = None;
+    /// Finds what is under the pointer.
+    fn hover(&mut self, frame: &PointerFrame<'_>, pixel: Option<[f64; 2]>) {
+        let PointerFrame { app_state, record, sight, .. } = frame;
+        let grasp = f64::from(frame.ui.pixels_per_point() * GRASP);
+        self.pointer.ring = None;
+        self.pointer.robot = None;
         let (Some(pixel), Some(view_renderer)) = (pixel, &self.view_renderer) else { return };
         let near =
             set_points(&view_renderer.fleet, record).into_iter().enumerate().filter_map(|(edge, at)| {
@@ -103,19 +108,19 @@ impl Viewport {
                     crate::view::annotations::RING / sight.metres_per_pixel([at?[0], at?[1], 0.0]).max(1e-9);
                 (away < grasp.max(0.8 * radius)).then_some((away, edge))
             });
-        // The set point that is selected comes before those that it lies under.
+        // The selected set point comes before others at the same place.
         let first = |(away, edge): &(f64, usize)| {
             if app_state.chosen_edge() == Some(*edge) { 0.5 * away } else { *away }
         };
-        if app_state.tool == Tool::Hand {
-            self.hand.ring = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
+        if app_state.tool == Tool::Select {
+            self.pointer.ring = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
         }
         let robot =
             view_renderer.renderer.pick(sight, record, pixel).into_iter().find_map(|picked| match picked {
                 Picked::Robot(robot) => Some(robot),
                 _ => None,
             });
-        self.hand.robot = robot;
+        self.pointer.robot = robot;
     }
 
     fn begin_drag(&mut self, ui: &Ui, app_state: &AppState) {
@@ -123,104 +128,91 @@ impl Viewport {
             let pointer = &input.pointer;
             (pointer.secondary_down() || pointer.middle_down(), input.modifiers.shift)
         });
-        self.drag = Some(match (right, app_state.tool, self.hand.robot, self.hand.ring) {
+        self.drag = Some(match (right, app_state.tool, self.pointer.robot, self.pointer.ring) {
             (true, ..) => Drag::Pan,
             (_, Tool::Connect, Some(robot), _) => Drag::Connect(robot),
-            (_, Tool::Hand, _, Some(edge)) => Drag::SetPoint(edge),
+            (_, Tool::Select, _, Some(edge)) => Drag::SetPoint(edge),
             _ if shift => Drag::Pan,
             _ => Drag::Orbit,
         });
         if let Some(Drag::SetPoint(edge)) = self.drag {
-            self.hand.held = Some(edge);
+            self.pointer.dragged = Some(edge);
         }
     }
 
     fn end_drag(&mut self, out: &mut Vec<Action>) {
         match self.drag.take() {
             Some(Drag::SetPoint(edge)) => {
-                out.push(Action::Rest);
-                out.push(Action::Choose(Selection::Edge(edge)));
+                out.push(Action::Release);
+                out.push(Action::Select(Selection::Edge(edge)));
             }
             Some(Drag::Connect(follower)) => {
-                if let Some(leader) = self.hand.robot.filter(|leader| *leader != follower) {
+                if let Some(leader) = self.pointer.robot.filter(|leader| *leader != follower) {
                     out.push(Action::Connect { leader, follower });
                 }
             }
             _ => {}
         }
-        self.hand.held = None;
-        self.hand.connecting = None;
+        self.pointer.dragged = None;
+        self.pointer.connecting = None;
     }
 
-    fn wheel(
-        &mut self,
-        ui: &Ui,
-        response: &egui::Response,
-        sight: &Sightline,
-        pixel: Option<[f64; 2]>,
-        record: &StepRecord,
-    ) {
-        if !response.hovered() {
+    fn wheel(&mut self, frame: &PointerFrame<'_>, pixel: Option<[f64; 2]>) {
+        if !frame.response.hovered() {
             return;
         }
-        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        let (scroll, pinch) = frame.ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
         let factor = f64::from((-scroll * 0.004).exp() / pinch.max(1e-3));
         if (factor - 1.0).abs() > 1e-4 {
-            let about = pixel.and_then(|pixel| sight.ground(pixel));
-            self.take_camera(record, None);
-            if let Some(held) = &mut self.held {
-                held.zoom(factor, about, &record.snapshot);
+            let about = pixel.and_then(|pixel| frame.sight.ground(pixel));
+            self.take_camera(frame.record, None);
+            if let Some(held) = &mut self.camera_control {
+                held.zoom(factor, about, &frame.record.snapshot);
             }
         }
     }
 
-    fn clicks(
-        &self,
-        response: &egui::Response,
-        app_state: &AppState,
-        sight: &Sightline,
-        pixel: Option<[f64; 2]>,
-        out: &mut Vec<Action>,
-    ) {
+    fn clicks(&self, frame: &PointerFrame<'_>, pixel: Option<[f64; 2]>, out: &mut Vec<Action>) {
         let Some(pixel) = pixel else { return };
-        if response.double_clicked() {
-            if let Some(robot) = self.hand.robot {
+        if frame.response.double_clicked() {
+            if let Some(robot) = self.pointer.robot {
                 out.push(Action::Follow(Some(robot)));
             }
-        } else if response.clicked() {
-            match (app_state.tool, sight.ground(pixel)) {
+        } else if frame.response.clicked() {
+            match (frame.app_state.tool, frame.sight.ground(pixel)) {
                 (Tool::Pillar, Some(place)) => out.push(Action::AddProp("pillar", place)),
-                _ => out.extend(self.chosen(sight, app_state, pixel)),
+                _ => out.extend(self.chosen(frame, pixel)),
             }
         }
     }
 
-    fn chosen(&self, sight: &Sightline, app_state: &AppState, pixel: [f64; 2]) -> Option<Action> {
-        if let Some(edge) = self.hand.ring {
-            return Some(Action::Choose(Selection::Edge(edge)));
+    fn chosen(&self, frame: &PointerFrame<'_>, pixel: [f64; 2]) -> Option<Action> {
+        if let Some(edge) = self.pointer.ring {
+            return Some(Action::Select(Selection::Edge(edge)));
         }
         let view_renderer = self.view_renderer.as_ref()?;
-        let picked = view_renderer.renderer.pick(sight, &*app_state.record()?, pixel).into_iter().next()?;
-        Some(Action::Choose(match picked {
+        let record = frame.app_state.record()?;
+        let picked = view_renderer.renderer.pick(&frame.sight, &record, pixel).into_iter().next()?;
+        Some(Action::Select(match picked {
             Picked::Robot(robot) => Selection::Robot(robot),
             Picked::Edge(edge) | Picked::SetPoint(edge) => Selection::Edge(edge),
         }))
     }
 
-    /// The hand takes the camera over from a named view.
+    /// Switches from the named view to the free camera.
     pub(super) fn take_camera(&mut self, record: &StepRecord, robot: Option<usize>) {
-        if self.held.is_some() {
+        if self.camera_control.is_some() {
             return;
         }
         let Some(view_renderer) = &self.view_renderer else { return };
         let lead = view_renderer.fleet.robots.iter().position(|member| member.leads);
         if let Some(sight) = &view_renderer.sight {
-            self.held = Some(HeldCamera::take(sight.free(), robot.or(lead), &record.snapshot));
+            self.camera_control = Some(CameraControl::take(sight.free(), robot.or(lead), &record.snapshot));
         }
     }
 }
 
-/// Where a button was let go in this frame: the pointer may be elsewhere by its end.
+/// Where a button was released in this frame: the pointer may have moved since.
 fn released_at(ui: &Ui) -> Option<Pos2> {
     ui.input(|input| {
         input.events.iter().rev().find_map(|event| match event {
@@ -230,15 +222,10 @@ fn released_at(ui: &Ui) -> Option<Pos2> {
     })
 }
 
-/// What a set point that is dragged to a place asks for.
-fn dragged(
-    ui: &Ui,
-    app_state: &AppState,
-    record: &StepRecord,
-    edge: usize,
-    place: [f64; 2],
-) -> Option<Action> {
-    let ends = *app_state.history.as_ref()?.fleet().edges.get(edge)?;
+/// The action of a set point that is dragged to a place.
+fn dragged(frame: &PointerFrame<'_>, edge: usize, place: [f64; 2]) -> Option<Action> {
+    let PointerFrame { ui, app_state, record, .. } = frame;
+    let ends = *app_state.fleet()?.edges.get(edge)?;
     let leader = record.snapshot.robots.get(ends.leader)?.motion.pose;
     let [dx, dy] = [place[0] - leader.x, place[1] - leader.y];
     let (distance, bearing) = (dx.hypot(dy), wrap(dy.atan2(dx) - leader.heading));

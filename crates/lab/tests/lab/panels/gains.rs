@@ -12,7 +12,7 @@ use lab::symbols;
 /// The values that are asked for, all of one key.
 fn values(actions: &[Action], key: &str) -> Vec<String> {
     let value = |action: &Action| match action {
-        Action::Tune { key: of, value, .. } => {
+        Action::Tune { key: of, value: Some(value), .. } => {
             assert_eq!(*of, key);
             Some(value.clone())
         }
@@ -38,7 +38,7 @@ fn check_rows(
         assert!((value(&panel, Role::Slider, name) - now).abs() < 1e-9, "{name}");
         let actions = drag(&mut panel, Role::Slider, name, [0.15, 0.3]);
         assert!(tuned(&actions, key) > 0.0 || *now == 0.0, "{name}: {actions:?}");
-        assert_eq!(actions.last(), Some(&Action::Rest), "{name}: the hand lets go");
+        assert_eq!(actions.last(), Some(&Action::Release), "{name}: the hand lets go");
         panel.get_by_role_and_label(Role::Slider, name).set_value_accesskit(*next);
         let actions = asked(&mut panel);
         assert!((tuned(&actions, key) - next).abs() < 1e-9, "{name}: {actions:?}");
@@ -46,7 +46,7 @@ fn check_rows(
         assert_eq!(*what, format!("{name}…"));
         let back = format!("Reset {}", name.to_lowercase());
         let actions = click(&mut panel, Role::Button, &back);
-        let untuned = Action::Untune { what: back, key };
+        let untuned = Action::Tune { what: back, key, value: None };
         assert!(actions.is_empty() || actions == [untuned.clone()], "{actions:?}");
         // Where the value is the default there is no way back.
         assert_eq!(
@@ -98,13 +98,13 @@ fn what_is_dragged_is_tuned() {
 fn gains_of_distance_and_bearing_come_apart() {
     let text = with(THREE, &[("law.k", "[4.0, 2.0]")]);
     let mut panel = panel(app_state(&text, 5), law::show);
-    assert_eq!(value(&panel, Role::Slider, "Gain of the distance"), 4.0);
-    assert_eq!(value(&panel, Role::Slider, "Gain of the bearing"), 2.0);
-    panel.get_by_role_and_label(Role::Slider, "Gain of the bearing").set_value_accesskit(2.5);
+    assert_eq!(value(&panel, Role::Slider, "Gain for distance"), 4.0);
+    assert_eq!(value(&panel, Role::Slider, "Gain for bearing"), 2.0);
+    panel.get_by_role_and_label(Role::Slider, "Gain for bearing").set_value_accesskit(2.5);
     assert_eq!(values(&asked(&mut panel), "law.k"), ["[4.0, 2.5]"]);
-    assert!(panel.query_by_role_and_label(Role::Slider, "Slope of the distance").is_none());
+    assert!(panel.query_by_role_and_label(Role::Slider, "Slope for distance").is_none());
     assert!(click(&mut panel, Role::CheckBox, "Distance and bearing apart").is_empty());
-    panel.get_by_role_and_label(Role::Slider, "Slope of the distance").set_value_accesskit(20.0);
+    panel.get_by_role_and_label(Role::Slider, "Slope for distance").set_value_accesskit(20.0);
     let slope = scene_slope();
     let asked = values(&asked(&mut panel), "law.slope");
     assert_eq!(asked, [format!("[20.0, {slope:?}]")]);
@@ -115,7 +115,7 @@ fn one_follower_or_all() {
     let mut panel = panel(app_state(THREE, 5), law::show);
     assert_eq!(click(&mut panel, Role::Button, "Only left"), [Action::ForAll(false)]);
     assert_eq!(click(&mut panel, Role::Button, "All followers"), [Action::ForAll(true)]);
-    panel.state_mut().app_state.act(&Action::Choose(Selection::Robot(2)));
+    panel.state_mut().app_state.act(&Action::Select(Selection::Robot(2)));
     panel.run();
     assert_says(&panel, &["Only right"]);
 }
@@ -126,7 +126,7 @@ fn the_law_is_chosen_by_name() {
     assert!(click(&mut panel, Role::ComboBox, "Law").is_empty());
     let actions = click(&mut panel, Role::Button, "Full state feedback");
     assert_eq!(values(&actions, "law.kind"), ["\"full-state\""]);
-    assert_eq!(actions[1], Action::Rest);
+    assert_eq!(actions[1], Action::Release);
     for action in &actions {
         assert!(panel.state_mut().app_state.act(action));
     }
@@ -165,15 +165,15 @@ fn the_observer_is_shown_tuned_and_explained() {
     let mut panel = panel(app_state(&text, 5), law::observer);
     // s² + 3 s + 1 at ε = 0.02 s: (−3 ± √5) / 0.04.
     assert_says(&panel, &["Poles at −131 and −19.1 1/s"]);
-    let actions = click(&mut panel, Role::Button, "Disturb it and begin again");
+    let actions = click(&mut panel, Role::Button, "Disturb and restart");
     assert!(
         matches!(&actions[..], [Action::Set { values, .. }, Action::Restart] if values[0].0 == "observer.start")
     );
     let told = with(THREE, &[("law.kind", "full-state")]);
-    assert_says(&self::panel(app_state(&told, 5), law::observer), &["This law is told the rates."]);
+    assert_says(&self::panel(app_state(&told, 5), law::observer), &["This law knows the rates."]);
     let looking = with(THREE, &[("sensing", "{ kind = \"noise\" }")]);
     let mut panel = self::panel(app_state(&looking, 5), law::observer);
-    let actions = click(&mut panel, Role::CheckBox, "ε follows from the noise of each measurement");
+    let actions = click(&mut panel, Role::CheckBox, "Adapt ε to the noise of each measurement");
     assert_eq!(values(&actions, "observer.adaptive").len(), 1);
 }
 
@@ -238,7 +238,7 @@ fn limits_are_shown_tuned_and_explained() {
     );
     let mut panel = panel(app_state(THREE, 5), world::limits);
     assert_says(&panel, &["unbounded, as in the paper"]);
-    let actions = click(&mut panel, Role::Button, "Bound it");
+    let actions = click(&mut panel, Role::Button, "Set a limit");
     assert_eq!(values(&actions, "vehicle.acceleration_max"), ["4.0"]);
 }
 

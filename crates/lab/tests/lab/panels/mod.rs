@@ -30,7 +30,7 @@ pub(crate) fn panel(
     let bench = Bench { app_state, out: Vec::new() };
     let mut panel = Harness::builder()
         .with_size([520.0, 900.0])
-        .with_context_setup(lab::look::dress)
+        .with_context_setup(lab::theme::apply)
         .build_ui_state(move |ui, bench: &mut Bench| show(ui, &bench.app_state, &mut bench.out), bench);
     panel.run();
     panel
@@ -134,7 +134,7 @@ fn every_letter_has_a_face() {
                 ui.label(shortcut.what);
             }
         }
-        for quantity in lab::quantities::PlotQuantity::ALL {
+        for quantity in lab::quantities::PlotQuantity::all() {
             ui.label(quantity.axis());
         }
     });

@@ -27,11 +27,11 @@ fn the_tree_shows_who_follows_whom() {
 #[test]
 fn robots_are_selected_and_made_in_the_tree() {
     let mut panel = panel(app_state(THREE, 5), formation::show);
-    assert_eq!(click(&mut panel, Role::Button, "right"), [Action::Choose(Selection::Robot(2))]);
+    assert_eq!(click(&mut panel, Role::Button, "right"), [Action::Select(Selection::Robot(2))]);
     assert_eq!(click(&mut panel, Role::Button, "+ Robot"), [Action::AddRobot]);
-    assert_eq!(click(&mut panel, Role::Button, "Connect"), [Action::Take(Tool::Connect)]);
-    panel.state_mut().app_state.act(&Action::Take(Tool::Connect));
-    assert_eq!(click(&mut panel, Role::Button, "Connect"), [Action::Take(Tool::Hand)]);
+    assert_eq!(click(&mut panel, Role::Button, "Connect"), [Action::UseTool(Tool::Connect)]);
+    panel.state_mut().app_state.act(&Action::UseTool(Tool::Connect));
+    assert_eq!(click(&mut panel, Role::Button, "Connect"), [Action::UseTool(Tool::Connect)]);
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn set_points_are_typed_and_dragged() {
         let mut panel = panel(app_state(THREE, 5), edge::show);
         let actions = enter(&mut panel, Role::SpinButton, "Distance", text);
         assert_eq!(points(&actions).first(), Some(&(0, distance, 135.0)), "{text}: {actions:?}");
-        assert!(actions.contains(&Action::Rest), "{text}");
+        assert!(actions.contains(&Action::Release), "{text}");
     }
     for (text, degrees) in [("-90", -90.0), ("−45°", -45.0), ("500", 180.0)] {
         let mut panel = panel(app_state(THREE, 5), edge::show);
@@ -134,7 +134,7 @@ fn set_points_are_typed_and_dragged() {
     assert!(points(&actions).is_empty(), "{actions:?}");
     let actions = super::drag(&mut panel, Role::SpinButton, "Distance", [0.5, 1.5]);
     assert!(points(&actions).iter().all(|(edge, distance, _)| *edge == 0 && *distance > 2.0), "{actions:?}");
-    assert!(!points(&actions).is_empty() && actions.last() == Some(&Action::Rest), "{actions:?}");
+    assert!(!points(&actions).is_empty() && actions.last() == Some(&Action::Release), "{actions:?}");
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn the_formation_is_mirrored_scaled_and_turned() {
         [("+10 %", (1.1, 0.0)), ("−10 %", (1.0 / 1.1, 0.0)), ("↺ 5°", (1.0, 5.0)), ("↻ 5°", (1.0, -5.0))]
     {
         let actions = click(&mut panel, Role::Button, name);
-        let [Action::Shape { scale, turn }, Action::Rest] = &actions[..] else { panic!("{actions:?}") };
+        let [Action::Shape { scale, turn }, Action::Release] = &actions[..] else { panic!("{actions:?}") };
         assert_eq!((*scale, turn.to_degrees().round()), wanted, "{name}");
     }
 }
@@ -169,18 +169,18 @@ fn an_edge_tells_what_comes() {
     let limited = with(THREE, &[("robots.left.vehicle.speed_max", "0.82")]);
     assert_says(&self::panel(self::app_state(&limited, 60), edge::show), &["a limit cuts the command"]);
     let moving = include_str!("../../../../../scenes/moving-set-point.toml");
-    assert_says(&self::panel(self::app_state(moving, 60), edge::show), &["It moves in time"]);
+    assert_says(&self::panel(self::app_state(moving, 60), edge::show), &["This set point changes over time"]);
 }
 
 #[test]
 fn branches_are_shown_with_their_changes() {
     let mut rig = Rig::new(THREE);
     rig.steps(50);
-    let gain = Action::Tune { what: "Gain".to_owned(), key: "law.k", value: "5.0".to_owned() };
+    let gain = Action::Tune { what: "Gain".to_owned(), key: "law.k", value: Some("5.0".to_owned()) };
     rig.act(&[Action::Seek(0.2), gain]);
     rig.steps(10);
     let mut panel = panel(rig.app_state, branches::show);
-    assert_says(&panel, &["main", "branch 1", "leaves main at 0.20 s", "law.k = [5.0, 5.0] of 2 robots"]);
+    assert_says(&panel, &["main", "branch 1", "forks from main at 0.20 s", "law.k = [5.0, 5.0] of 2 robots"]);
     assert_eq!(click(&mut panel, Role::Button, "main"), [Action::Branch(0)]);
     assert_eq!(click(&mut panel, Role::Button, "Branch here"), [Action::Fork]);
     panel.get_by_role_and_label(Role::Button, "branch 1").click_secondary();

@@ -48,7 +48,7 @@ fn the_look_ahead_is_set() {
 fn elements_are_switched_by_words() {
     let style = Style::default();
     for (text, name) in
-        [("Ribbons where robots drove", "ribbons"), ("Names", "names"), ("Shadows", "shadows")]
+        [("Ribbons along driven paths", "ribbons"), ("Names", "names"), ("Shadows", "shadows")]
     {
         let mut panel = film(None);
         assert_eq!(
@@ -68,7 +68,7 @@ fn obstacles_come_and_go() {
     let pillar = "\n[[props]]\nname = \"post\"\nshape = \"cylinder\"\nradius = 0.1\nheight = 0.5\npose = [5.0, 5.0, 0.0]\n";
     let mut panel = panel(app_state(&format!("{THREE}{pillar}"), 5), world::surroundings);
     assert_says(&panel, &["1 obstacle", "post"]);
-    assert_eq!(click(&mut panel, Role::Button, "+ Pillar"), [Action::Take(Tool::Pillar)]);
+    assert_eq!(click(&mut panel, Role::Button, "+ Pillar"), [Action::UseTool(Tool::Pillar)]);
     assert_eq!(click(&mut panel, Role::Button, "Remove post"), [Action::RemoveProp("post".to_owned())]);
     assert_says(&self::panel(app_state(THREE, 5), world::surroundings), &["no obstacles"]);
 }

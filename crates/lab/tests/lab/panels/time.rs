@@ -45,20 +45,20 @@ fn the_run_is_played_from_the_bar() {
 #[test]
 fn the_line_leads_to_the_past() {
     let mut bar = bar(app_state(THREE, 601), false);
-    assert_eq!(value(&bar, Role::Slider, "Time line"), 6.0);
-    bar.get_by_role_and_label(Role::Slider, "Time line").click();
+    assert_eq!(value(&bar, Role::Slider, "Timeline"), 6.0);
+    bar.get_by_role_and_label(Role::Slider, "Timeline").click();
     // 9 s are planned.
     let times = seeks(&asked(&mut bar));
     assert!(times.len() == 1 && (times[0] - 4.5).abs() < 0.05, "{times:?}");
-    let times = seeks(&drag(&mut bar, Role::Slider, "Time line", [0.6, 0.2]));
+    let times = seeks(&drag(&mut bar, Role::Slider, "Timeline", [0.6, 0.2]));
     assert!((times[times.len() - 1] - 1.8).abs() < 0.05, "{times:?}");
     bar.state_mut().app_state.act(&Action::Seek(2.5));
     bar.run();
-    assert_eq!(value(&bar, Role::Slider, "Time line"), 2.5);
+    assert_eq!(value(&bar, Role::Slider, "Timeline"), 2.5);
     assert_says(&bar, &["t = 2.50 s"]);
     // A run that is longer than planned has room.
     let mut long = self::bar(app_state(THREE, 1001), false);
-    long.get_by_role_and_label(Role::Slider, "Time line").click();
+    long.get_by_role_and_label(Role::Slider, "Timeline").click();
     assert!((seeks(&asked(&mut long))[0] - 5.1).abs() < 0.05);
 }
 
@@ -100,7 +100,7 @@ fn more_is_in_a_menu() {
         |bar: &Panel| words.map(|word| bar.get_by_label_contains(word).accesskit_node().is_disabled());
     assert_eq!(disabled(&open(app_state(THREE, 5))), [true; 4]);
     let mut app_state = app_state(THREE, 5);
-    app_state.act(&Action::Tune { what: "Gain".to_owned(), key: "law.k", value: "5.0".to_owned() });
+    app_state.act(&Action::Tune { what: "Gain".to_owned(), key: "law.k", value: Some("5.0".to_owned()) });
     let mut bar = open(app_state);
     assert_eq!(disabled(&bar), [false, true, false, true]);
     bar.get_by_label_contains("Undo").click();
@@ -143,7 +143,7 @@ fn a_film_under_way_is_ended() {
 
 #[test]
 fn a_click_on_a_curve_looks_at_its_time() {
-    for quantity in PlotQuantity::ALL {
+    for quantity in PlotQuantity::all() {
         let mut panel = panel(app_state(THREE, 601), move |ui, app_state, out| {
             curves::show(ui, app_state, &[quantity], out);
         });
@@ -166,7 +166,7 @@ fn a_click_on_a_curve_looks_at_its_time() {
 fn curves_are_those_of_the_run() {
     let mut rig = Rig::new(THREE);
     rig.steps(100);
-    let gain = Action::Tune { what: "Gain".to_owned(), key: "law.k", value: "5.0".to_owned() };
+    let gain = Action::Tune { what: "Gain".to_owned(), key: "law.k", value: Some("5.0".to_owned()) };
     rig.act(&[Action::Seek(0.5), gain, Action::NameBranch(0, "a, b".to_owned())]);
     rig.steps(50);
     let table = csv(&rig.app_state);

@@ -57,20 +57,11 @@ fn cabin(mesh: &mut Mesh, detail: Detail) {
     let at = |p: [f32; 2], side: f32, z: f32| Vec3::new(p[0], p[1] * side, z);
     for k in 0..3 {
         let glass = if k == 2 { Material::Paint } else { Material::Glass };
-        let left = [
-            at(foot[k + 1], 1.0, base),
-            at(foot[k], 1.0, base),
-            at(head[k], 1.0, roof),
-            at(head[k + 1], 1.0, roof),
-        ];
-        let right = [
-            at(foot[k], -1.0, base),
-            at(foot[k + 1], -1.0, base),
-            at(head[k + 1], -1.0, roof),
-            at(head[k], -1.0, roof),
-        ];
-        mesh.quad(left, glass);
-        mesh.quad(right, glass);
+        for (a, b, side) in [(k + 1, k, 1.0), (k, k + 1, -1.0)] {
+            let [p, q] = [foot[a], foot[b]].map(|place| at(place, side, base));
+            let [r, s] = [head[b], head[a]].map(|place| at(place, side, roof));
+            mesh.quad([p, q, r, s], glass);
+        }
     }
     mesh.quad(
         [at(foot[0], 1.0, base), at(foot[0], -1.0, base), at(head[0], -1.0, roof), at(head[0], 1.0, roof)],

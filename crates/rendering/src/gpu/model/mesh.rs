@@ -4,6 +4,7 @@ use super::Material;
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// A corner as the shader reads it.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -120,8 +121,9 @@ impl Mesh {
         self.vertices.extend(other.vertices.iter().map(moved));
     }
 
-    /// Appends the corners, each once, and the triangles between them.
-    pub(crate) fn weld(&self, vertices: &mut Vec<Vertex>, indices: &mut Vec<u32>) {
+    /// Appends the corners, each once, and the triangles between them; the range of these among the indices.
+    pub(crate) fn weld(&self, vertices: &mut Vec<Vertex>, indices: &mut Vec<u32>) -> Range<u32> {
+        let first = indices.len() as u32;
         let mut seen = HashMap::new();
         for vertex in &self.vertices {
             let bits: [u8; size_of::<Vertex>()] = bytemuck::cast(*vertex);
@@ -131,6 +133,7 @@ impl Mesh {
             });
             indices.push(index);
         }
+        first..indices.len() as u32
     }
 
     /// Rounds the shading over edges where faces of one material meet at less than `crease` (cosine).

@@ -10,9 +10,11 @@ mod wheel;
 
 pub(crate) use build::{Build, size};
 pub(crate) use mesh::{Mesh, Vertex};
+pub(crate) use shell::{camera, faces};
 pub(crate) use solid::solids;
+pub(crate) use wheel::wheel;
 
-/// What a surface is made of; the shader's table has the same order.
+/// Material of a surface; the shader's table has the same order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub(crate) enum Material {
@@ -54,19 +56,4 @@ pub(crate) fn ghost(build: &Build) -> Mesh {
     build.fit(&mut mesh);
     shell::outline(&mut mesh, build);
     mesh
-}
-
-/// A wheel around its hub, the outer face to the left; with `lugs` for rough ground.
-pub(crate) fn wheel(detail: Detail, lugs: bool) -> Mesh {
-    wheel::wheel(detail < Detail::Full, lugs)
-}
-
-/// The camera's head around its pan axis.
-pub(crate) fn camera(detail: Detail) -> Mesh {
-    shell::camera(detail)
-}
-
-/// The outside of the faces that carry tags; the body leaves them out.
-pub(crate) fn faces(build: &Build) -> Mesh {
-    shell::faces(build)
 }

@@ -65,9 +65,9 @@ pub(super) fn outline(mesh: &mut Mesh, build: &Build) {
     }
 }
 
-/// The outside of the faces, each with its number for a material and its cells for a picture: column and row of a
+/// The outside of the faces that carry tags, which the body leaves out, each with its number for a material and its cells for a picture: column and row of a
 /// place on the tag, from the upper left.
-pub(super) fn faces(build: &Build) -> Mesh {
+pub(crate) fn faces(build: &Build) -> Mesh {
     let mut mesh = Mesh::default();
     let Some(shell) = &build.shell else { return mesh };
     let [low, high] = span(shell);
@@ -118,25 +118,21 @@ pub(super) fn build(mesh: &mut Mesh, detail: Detail, build: &Build) {
 /// What carries the paper's shell, from the middle of its lower edge.
 fn struts() -> Mesh {
     let mut mesh = Mesh::default();
+    // From a place beside the hull to the strut at `y`.
+    let across = |y: f32| [y.min(0.07 * y.signum()), y.max(0.07 * y.signum())];
     for y in [-0.085_f32, 0.085] {
+        let [low, high] = across(y);
         mesh.cuboid([-0.17, y - 0.006, -0.016], [0.05, y + 0.006, -0.008], Material::Plastic);
-        mesh.cuboid(
-            [-0.05, y.min(0.07 * y.signum()), -0.022],
-            [-0.03, y.max(0.07 * y.signum()), -0.008],
-            Material::Plastic,
-        );
+        mesh.cuboid([-0.05, low, -0.022], [-0.03, high, -0.008], Material::Plastic);
     }
-    for y in [-0.186_f32, 0.180] {
-        mesh.cuboid(
-            [-0.045, y.min(0.07 * y.signum()), -0.012],
-            [-0.030, y.max(0.07 * y.signum()), -0.004],
-            Material::Plastic,
-        );
+    for [low, high] in [-0.186_f32, 0.180].map(across) {
+        mesh.cuboid([-0.045, low, -0.012], [-0.030, high, -0.004], Material::Plastic);
     }
     mesh
 }
 
-pub(super) fn camera(detail: Detail) -> Mesh {
+/// The camera's head around its pan axis.
+pub(crate) fn camera(detail: Detail) -> Mesh {
     let mut mesh = Mesh::default();
     mesh.cuboid([-0.022, -0.021, -0.018], [0.016, 0.021, 0.018], Material::Plastic);
     if detail == Detail::Coarse {

@@ -1,6 +1,6 @@
 //! A wheel whose spokes show that it rolls.
 
-use super::{Material, Mesh};
+use super::{Detail, Material, Mesh};
 use glam::{Vec2, Vec3};
 
 /// As modelled, m.
@@ -9,8 +9,9 @@ const SPOKES: usize = 5;
 /// Blocks in each of the two rows of a coarse tread.
 const LUGS: usize = 15;
 
-/// Turned tyre and rim, spokes, hub; `plain` is a disc with spokes.
-pub(super) fn wheel(plain: bool, lugs: bool) -> Mesh {
+/// A wheel around its hub, the outer face to the left, with `lugs` for rough ground: turned tyre and rim, spokes, hub; in
+/// less than full detail a disc with spokes.
+pub(crate) fn wheel(detail: Detail, lugs: bool) -> Mesh {
     let mut mesh = Mesh::default();
     let half = 0.018;
     let trajectory = [
@@ -23,7 +24,7 @@ pub(super) fn wheel(plain: bool, lugs: bool) -> Mesh {
         [0.008, 0.0295],
         [0.007, 0.0],
     ];
-    if plain {
+    if detail < Detail::Full {
         mesh.turned(&[[-half, 0.0], [-half, RADIUS], [half, RADIUS], [half, 0.0]], 8, |_| Material::Tyre);
         mesh.turned(&[[half, 0.028], [half + 0.002, 0.0]], 5, |_| Material::Metal);
         return mesh;

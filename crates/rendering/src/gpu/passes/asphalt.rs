@@ -1,7 +1,7 @@
 //! Asphalt: two tiling textures made at the start, shared by all that shows stone.
 
 use super::{mipped, shrink, textured};
-use wgpu::{Device, Queue};
+use crate::Gpu;
 
 const SIZE: u32 = 512;
 const PATCHES: u32 = 128;
@@ -14,9 +14,9 @@ pub(crate) struct Asphalt {
 }
 
 impl Asphalt {
-    pub(crate) fn new(device: &Device, queue: &Queue) -> Self {
-        let texture = mipped(device, queue, "asphalt", [SIZE, SIZE], &shrink(asphalt(), SIZE, SIZE));
-        let patches = mipped(device, queue, "patches", [PATCHES, PATCHES], &[patches()]);
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let texture = mipped(gpu, "asphalt", [SIZE, SIZE], &shrink(asphalt(), SIZE, SIZE));
+        let patches = mipped(gpu, "patches", [PATCHES, PATCHES], &[patches()]);
         let repeat = wgpu::AddressMode::Repeat;
         let sampler = wgpu::SamplerDescriptor {
             address_mode_u: repeat,
@@ -27,7 +27,7 @@ impl Asphalt {
             mipmap_filter: wgpu::MipmapFilterMode::Nearest,
             ..Default::default()
         };
-        let (layout, group) = textured(device, "asphalt", &[&texture, &patches], &sampler);
+        let (layout, group) = textured(gpu, "asphalt", &[&texture, &patches], &sampler);
         Self { layout, group }
     }
 }
@@ -40,12 +40,10 @@ fn asphalt() -> Vec<u8> {
         let grain = 0.30 * noise(2, 1) + 0.30 * noise(4, 2) + 0.22 * noise(16, 3);
         let speck = chance(x / 2, y / 2, 4);
         // A few stones are bright, a few holes are dark.
-        let stone = if speck > 0.985 {
-            0.42
-        } else if speck < 0.02 {
-            -0.24
-        } else {
-            0.0
+        let stone = match speck {
+            0.0..0.02 => -0.24,
+            _ if speck > 0.985 => 0.42,
+            _ => 0.0,
         };
         let fine = grain + 0.18 * chance(x, y, 5) + stone;
         (fine.clamp(0.0, 1.0) * 255.0) as u8

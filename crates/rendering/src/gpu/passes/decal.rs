@@ -1,9 +1,12 @@
 //! Paint on the ground, in the order in which it lies there.
 
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, StreamBuffer, developed, shader};
+use super::{Canvas, Recipe, StreamBuffer, developed, shader, vertices};
+use crate::Gpu;
 use bytemuck::{Pod, Zeroable};
-use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
+use glam::DVec3;
+use std::ops::Range;
+use wgpu::{RenderPass, vertex_attr_array};
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "decal");
 
@@ -15,6 +18,13 @@ pub(crate) struct DecalVertex {
     pub(crate) kind: [f32; 2],
     pub(crate) shape: [f32; 2],
     pub(crate) colour: [f32; 4],
+}
+
+impl DecalVertex {
+    /// A corner at a place relative to the local origin, m.
+    pub(crate) fn new(place: DVec3, form: DecalForm, shape: [f32; 2], colour: [f32; 4]) -> Self {
+        Self { position: place.as_vec3().to_array(), kind: form.code(), shape, colour }
+    }
 }
 
 /// How a decal's edge is formed; see `coverage` in the shader.
@@ -43,7 +53,7 @@ pub(crate) enum DecalForm {
 pub(crate) enum DecalLayer {
     /// Paint on the ground.
     Paint,
-    /// What somebody draws there to explain.
+    /// Annotations.
     Annotations,
     /// Cast shadows over it.
     Shadow,
@@ -82,16 +92,12 @@ impl DecalPass {
         vertex_attr_array![0 => Float32x3, 1 => Float32x2, 2 => Float32x2, 3 => Float32x4];
 
     /// On hills and decks depth is tested.
-    pub(crate) fn new(device: &Device, canvas: Canvas, groups: &FrameGroups, uneven: bool) -> Self {
+    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, groups: &FrameGroups, uneven: bool) -> Self {
         let recipe = Recipe {
             label: "decal",
             source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout],
-            buffers: &[VertexBufferLayout {
-                array_stride: size_of::<DecalVertex>() as u64,
-                step_mode: VertexStepMode::Vertex,
-                attributes: &Self::ATTRIBUTES,
-            }],
+            buffers: &[vertices::<DecalVertex>(&Self::ATTRIBUTES)],
             colour: Some((canvas, Some(wgpu::BlendState::ALPHA_BLENDING))),
             depth: Some((wgpu::CompareFunction::Always, false)),
             ..Default::default()
@@ -101,26 +107,21 @@ impl DecalPass {
         // Where every millisecond counts.
         let shadow = if canvas.mono { "shadow_quick" } else { "shadow" };
         Self {
-            over: recipe.build(device),
-            paint: paint.build(device),
+            over: recipe.build(gpu),
+            paint: paint.build(gpu),
             annotations: (!canvas.mono)
-                .then(|| Recipe { label: "sketch", entry: "sketch", ..paint }.build(device)),
-            shadow: Recipe { label: "shadow decal", entry: shadow, ..paint }.build(device),
-            corners: StreamBuffer::new(device, "decals", wgpu::BufferUsages::VERTEX),
+                .then(|| Recipe { label: "sketch", entry: "sketch", ..paint }.build(gpu)),
+            shadow: Recipe { label: "shadow decal", entry: shadow, ..paint }.build(gpu),
+            corners: StreamBuffer::new(gpu, "decals", wgpu::BufferUsages::VERTEX),
         }
     }
 
-    pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, corners: &[DecalVertex]) {
-        self.corners.fill(device, queue, bytemuck::cast_slice(corners));
+    pub(crate) fn fill(&mut self, gpu: &Gpu, corners: &[DecalVertex]) {
+        self.corners.fill(gpu, bytemuck::cast_slice(corners));
     }
 
     /// Draws corners of one view.
-    pub(crate) fn draw(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        corners: &std::ops::Range<u32>,
-        layer: DecalLayer,
-    ) {
+    pub(crate) fn draw(&self, pass: &mut RenderPass<'_>, corners: &Range<u32>, layer: DecalLayer) {
         let pipeline = match layer {
             DecalLayer::Paint => Some(&self.paint),
             DecalLayer::Annotations => self.annotations.as_ref(),

@@ -1,10 +1,15 @@
 //! What every pass knows of a view, and the light they share.
 
-use super::DEPTH;
+use crate::Gpu;
 use crate::camera::Camera;
+use crate::gpu::resources::sampled;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Mat4};
-use wgpu::{BindGroup, BindGroupLayout, Device, ShaderStages};
+use std::num::NonZeroU64;
+use wgpu::{
+    BindGroup, BindGroupLayout, BindingResource, BindingType, BufferBindingType, BufferUsages,
+    SamplerBindingType, ShaderStages, TextureSampleType,
+};
 
 /// Mirrors `FrameUniforms` of the shaders.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
@@ -37,10 +42,7 @@ impl FrameUniforms {
             right: right.extend(slope).to_array(),
             up: up.extend(height).to_array(),
             forward: forward.extend(above).to_array(),
-            sun: [0.0; 4],
-            ground: [0.0; 4],
-            terrain: [0.0; 4],
-            spare: [0.0; 4],
+            ..Self::zeroed()
         }
     }
 }
@@ -56,35 +58,36 @@ pub(crate) struct FrameGroups {
 }
 
 impl FrameGroups {
-    pub(crate) fn new(device: &Device, shadow: &wgpu::TextureView) -> Self {
-        let view_layout = view_layout(device);
-        let light_layout = light_layout(device);
-        let (uniform, view) = views(device, &view_layout, 4);
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+    pub(crate) fn new(gpu: &Gpu, shadow: &wgpu::TextureView) -> Self {
+        let frame = BindingType::Buffer {
+            ty: BufferBindingType::Uniform,
+            has_dynamic_offset: true,
+            min_binding_size: FRAME_SIZE,
+        };
+        let view_layout = gpu.layout("frame", ShaderStages::VERTEX_FRAGMENT, &[frame]);
+        let map = sampled(TextureSampleType::Depth);
+        let comparison = BindingType::Sampler(SamplerBindingType::Comparison);
+        let light_layout = gpu.layout("light", ShaderStages::FRAGMENT, &[map, comparison]);
+        let (uniform, view) = views(gpu, &view_layout, 4);
+        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("shadow"),
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             compare: Some(wgpu::CompareFunction::LessEqual),
             ..Default::default()
         });
-        let light = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("light"),
-            layout: &light_layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(shadow) },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&sampler) },
-            ],
-        });
+        let resources = vec![BindingResource::TextureView(shadow), BindingResource::Sampler(&sampler)];
+        let light = gpu.group("light", &light_layout, resources);
         Self { view_layout, light_layout, view, light, uniform }
     }
 
-    pub(crate) fn fill(&mut self, device: &Device, queue: &wgpu::Queue, frames: &[FrameUniforms]) {
+    pub(crate) fn fill(&mut self, gpu: &Gpu, frames: &[FrameUniforms]) {
         let bytes: &[u8] = bytemuck::cast_slice(frames);
         if bytes.len() as u64 > self.uniform.size() {
             (self.uniform, self.view) =
-                views(device, &self.view_layout, frames.len().next_power_of_two() as u64);
+                views(gpu, &self.view_layout, frames.len().next_power_of_two() as u64);
         }
-        queue.write_buffer(&self.uniform, 0, bytes);
+        gpu.queue.write_buffer(&self.uniform, 0, bytes);
     }
 
     /// Where view `index` starts in the uniform.
@@ -93,79 +96,14 @@ impl FrameGroups {
     }
 }
 
+/// Bytes of the frame of one view.
+const FRAME_SIZE: Option<NonZeroU64> = NonZeroU64::new(size_of::<FrameUniforms>() as u64);
+
 /// Room for the frames of `count` views, and the group through which one at a time is read.
-fn views(device: &Device, layout: &BindGroupLayout, count: u64) -> (wgpu::Buffer, BindGroup) {
-    let uniform = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("frame"),
-        size: count * size_of::<FrameUniforms>() as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    let one = wgpu::BufferBinding {
-        buffer: &uniform,
-        offset: 0,
-        size: std::num::NonZeroU64::new(size_of::<FrameUniforms>() as u64),
-    };
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("frame"),
-        layout,
-        entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(one) }],
-    });
+fn views(gpu: &Gpu, layout: &BindGroupLayout, count: u64) -> (wgpu::Buffer, BindGroup) {
+    let size = count * size_of::<FrameUniforms>() as u64;
+    let uniform = gpu.buffer("frame", size, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+    let one = wgpu::BufferBinding { buffer: &uniform, offset: 0, size: FRAME_SIZE };
+    let group = gpu.group("frame", layout, vec![BindingResource::Buffer(one)]);
     (uniform, group)
-}
-
-fn view_layout(device: &Device) -> BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("frame"),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: ShaderStages::VERTEX_FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: true,
-                min_binding_size: std::num::NonZeroU64::new(size_of::<FrameUniforms>() as u64),
-            },
-            count: None,
-        }],
-    })
-}
-
-fn light_layout(device: &Device) -> BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("light"),
-        entries: &[
-            wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Depth,
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-                count: None,
-            },
-            wgpu::BindGroupLayoutEntry {
-                binding: 1,
-                visibility: ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
-                count: None,
-            },
-        ],
-    })
-}
-
-/// A depth texture to draw into, and to read where it is a shadow map.
-pub(crate) fn depth_texture(device: &Device, size: [u32; 2], samples: u32, read: bool) -> wgpu::TextureView {
-    let binding = if read { wgpu::TextureUsages::TEXTURE_BINDING } else { wgpu::TextureUsages::empty() };
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("depth"),
-        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: samples,
-        dimension: wgpu::TextureDimension::D2,
-        format: DEPTH,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | binding,
-        view_formats: &[],
-    });
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

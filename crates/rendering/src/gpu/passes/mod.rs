@@ -1,14 +1,14 @@
 //! One file per pass: its shader, its data, its pipeline and its draw. Here is what they share.
 
 pub(crate) mod asphalt;
+pub(crate) mod backdrop;
 pub(crate) mod decal;
 pub(crate) mod frame;
-pub(crate) mod ground;
+pub(crate) mod instanced;
 pub(crate) mod overlay;
 pub(crate) mod prop;
 pub(crate) mod robot;
 pub(crate) mod shadow;
-pub(crate) mod sky;
 pub(crate) mod tag;
 pub(crate) mod terrain;
 pub(crate) mod text;
@@ -16,7 +16,12 @@ pub(crate) mod text;
 #[cfg(test)]
 mod tests;
 
-use wgpu::{BindGroupLayout, Buffer, BufferUsages, Device, Queue, TextureFormat};
+use crate::Gpu;
+use crate::gpu::resources::{flat_texture, rows, sampled};
+use wgpu::{
+    BindGroup, BindGroupLayout, BindingResource, BindingType, Buffer, BufferUsages, Extent3d, TextureFormat,
+    TextureUsages, TextureViewDescriptor, VertexAttribute, VertexBufferLayout, VertexStepMode,
+};
 
 /// Light of the sky on flat ground, of one colour.
 macro_rules! grey_sky {
@@ -58,11 +63,11 @@ pub(crate) const SHADERS: [(&str, &[&str]); 9] = [
     ("shadow", &[shadow::SHADER]),
     ("robot", &robot::SHADERS),
     ("tag", &tag::SHADERS),
-    ("ground", &ground::SHADERS),
+    ("ground", &backdrop::GROUND),
     ("terrain", &terrain::SHADERS),
     ("decal", &decal::SHADERS),
     ("prop", &prop::SHADERS),
-    ("sky", &sky::SHADERS),
+    ("sky", &backdrop::SKY),
     ("overlay", &[overlay::SHADER]),
 ];
 
@@ -93,7 +98,7 @@ pub(crate) struct Recipe<'a> {
     /// The fragment stage's entry point.
     pub(crate) entry: &'a str,
     pub(crate) groups: &'a [&'a BindGroupLayout],
-    pub(crate) buffers: &'a [wgpu::VertexBufferLayout<'a>],
+    pub(crate) buffers: &'a [VertexBufferLayout<'a>],
     pub(crate) topology: wgpu::PrimitiveTopology,
     pub(crate) cull: bool,
     /// Colour target, its samples and blending; depth alone without.
@@ -128,7 +133,8 @@ impl Default for Recipe<'_> {
 }
 
 impl Recipe<'_> {
-    pub(crate) fn build(&self, device: &Device) -> wgpu::RenderPipeline {
+    pub(crate) fn build(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
+        let device = &gpu.device;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(self.label),
             source: wgpu::ShaderSource::Wgsl(self.source.into()),
@@ -198,120 +204,68 @@ pub(crate) struct StreamBuffer {
 }
 
 impl StreamBuffer {
-    pub(crate) fn new(device: &Device, label: &'static str, usage: BufferUsages) -> Self {
+    pub(crate) fn new(gpu: &Gpu, label: &'static str, usage: BufferUsages) -> Self {
         let usage = usage | BufferUsages::COPY_DST;
-        Self { buffer: Self::make(device, label, usage, 4096), usage, label }
+        Self { buffer: gpu.buffer(label, 4096, usage), usage, label }
     }
 
-    pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, bytes: &[u8]) {
+    /// One that never changes.
+    pub(crate) fn constant(gpu: &Gpu, label: &'static str, usage: BufferUsages, bytes: &[u8]) -> Self {
+        let mut stream = Self::new(gpu, label, usage);
+        stream.fill(gpu, bytes);
+        stream
+    }
+
+    pub(crate) fn fill(&mut self, gpu: &Gpu, bytes: &[u8]) {
         let size = bytes.len() as u64;
         if size > self.buffer.size() {
-            self.buffer = Self::make(device, self.label, self.usage, size.next_power_of_two());
+            self.buffer = gpu.buffer(self.label, size.next_power_of_two(), self.usage);
         }
         if size > 0 {
-            queue.write_buffer(&self.buffer, 0, bytes);
+            gpu.queue.write_buffer(&self.buffer, 0, bytes);
         }
     }
 
     pub(crate) fn slice(&self) -> wgpu::BufferSlice<'_> {
         self.buffer.slice(..)
     }
-
-    fn make(device: &Device, label: &str, usage: BufferUsages, size: u64) -> Buffer {
-        device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size,
-            usage,
-            mapped_at_creation: false,
-        })
-    }
 }
 
-/// A buffer that never changes.
-pub(crate) fn constant(
-    device: &Device,
-    queue: &Queue,
-    label: &'static str,
-    usage: BufferUsages,
-    bytes: &[u8],
-) -> StreamBuffer {
-    let mut stream = StreamBuffer::new(device, label, usage);
-    stream.fill(device, queue, bytes);
-    stream
+/// A buffer of vertices of type `T`.
+pub(crate) const fn vertices<T>(attributes: &[VertexAttribute]) -> VertexBufferLayout<'_> {
+    VertexBufferLayout { array_stride: size_of::<T>() as u64, step_mode: VertexStepMode::Vertex, attributes }
 }
 
 /// Layout and bind group of textures with their sampler: the first is binding 0, the sampler 1, others follow.
 pub(crate) fn textured(
-    device: &Device,
+    gpu: &Gpu,
     label: &str,
     textures: &[&wgpu::Texture],
     sampler: &wgpu::SamplerDescriptor<'_>,
-) -> (BindGroupLayout, wgpu::BindGroup) {
-    let place = |k: usize| if k == 0 { 0 } else { k as u32 + 1 };
-    let slot = |binding: u32, ty: wgpu::BindingType| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
-    let image = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
-    let mut slots = vec![slot(1, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering))];
-    slots.extend((0..textures.len()).map(|k| slot(place(k), image)));
-    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &slots };
-    let layout = device.create_bind_group_layout(&descriptor);
-    let sampler = device.create_sampler(sampler);
-    let views: Vec<_> =
-        textures.iter().map(|t| t.create_view(&wgpu::TextureViewDescriptor::default())).collect();
-    let mut entries =
-        vec![wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&sampler) }];
-    entries.extend(views.iter().enumerate().map(|(k, view)| wgpu::BindGroupEntry {
-        binding: place(k),
-        resource: wgpu::BindingResource::TextureView(view),
-    }));
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some(label),
-        layout: &layout,
-        entries: &entries,
-    });
+) -> (BindGroupLayout, BindGroup) {
+    let mut types = vec![sampled(wgpu::TextureSampleType::Float { filterable: true }); textures.len()];
+    types.insert(1, BindingType::Sampler(wgpu::SamplerBindingType::Filtering));
+    let layout = gpu.layout(label, wgpu::ShaderStages::FRAGMENT, &types);
+    let sampler = gpu.device.create_sampler(sampler);
+    let views: Vec<_> = textures.iter().map(|t| t.create_view(&TextureViewDescriptor::default())).collect();
+    let mut resources: Vec<_> = views.iter().map(BindingResource::TextureView).collect();
+    resources.insert(1, BindingResource::Sampler(&sampler));
+    let group = gpu.group(label, &layout, resources);
     (layout, group)
 }
 
 /// A texture of one byte a texel with the given mip levels, each half as large as the one before.
-pub(crate) fn mipped(
-    device: &Device,
-    queue: &Queue,
-    label: &str,
-    size: [u32; 2],
-    levels: &[Vec<u8>],
-) -> wgpu::Texture {
-    let extent = |level: u32| wgpu::Extent3d {
-        width: (size[0] >> level).max(1),
-        height: (size[1] >> level).max(1),
-        depth_or_array_layers: 1,
-    };
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: extent(0),
+pub(crate) fn mipped(gpu: &Gpu, label: &str, size: [u32; 2], levels: &[Vec<u8>]) -> wgpu::Texture {
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         mip_level_count: levels.len() as u32,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: TextureFormat::R8Unorm,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
+        ..flat_texture(label, size, TextureFormat::R8Unorm, usage)
     });
     for (level, texels) in (0..).zip(levels) {
-        let extent = extent(level);
+        let [width, height] = size.map(|side| (side >> level).max(1));
         let copy = wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() };
-        let rows = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(extent.width),
-            rows_per_image: None,
-        };
-        queue.write_texture(copy, texels, rows, extent);
+        let extent = Extent3d { width, height, depth_or_array_layers: 1 };
+        gpu.queue.write_texture(copy, texels, rows(width), extent);
     }
     texture
 }

@@ -1,9 +1,10 @@
 //! Flat shapes in front of the picture: panels, curves, marks.
 
-use super::{Canvas, Recipe, StreamBuffer, shader};
+use super::{Canvas, Recipe, StreamBuffer, shader, vertices};
+use crate::Gpu;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec2;
-use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
+use wgpu::{BufferUsages, vertex_attr_array};
 
 pub(crate) const SHADER: &str = shader!("overlay");
 
@@ -37,6 +38,31 @@ impl Shapes {
         self.push((from + to) * 0.5, along.normalize_or(Vec2::X), half, 0.5 * width, colour);
     }
 
+    /// A curve through places with their values that ends in a dot; `joins` tells whether a line leads from one value to
+    /// the next.
+    pub(crate) fn curve(
+        &mut self,
+        places: impl Iterator<Item = (Vec2, f32)>,
+        joins: impl Fn(f32, f32) -> bool,
+        width: f32,
+        dot: f32,
+        colour: [f32; 4],
+    ) {
+        let mut before: Option<(Vec2, f32)> = None;
+        for (at, value) in places {
+            match before {
+                // Steps below a pixel would only cost time.
+                Some((from, _)) if from.distance(at) <= 0.9 => continue,
+                Some((from, last)) if joins(last, value) => self.line(from, at, width, colour),
+                _ => {}
+            }
+            before = Some((at, value));
+        }
+        if let Some((end, _)) = before {
+            self.panel([end.x - dot, end.y - dot, 2.0 * dot, 2.0 * dot], dot, colour);
+        }
+    }
+
     fn push(&mut self, middle: Vec2, along: Vec2, half: Vec2, radius: f32, colour: [f32; 4]) {
         let across = Vec2::new(-along.y, along.x);
         // A pixel more on all sides, for the smooth edge.
@@ -66,55 +92,30 @@ impl OverlayPass {
     pub(crate) const ATTRIBUTES: [wgpu::VertexAttribute; 4] =
         vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Float32x3, 3 => Float32x4];
 
-    pub(crate) fn new(device: &Device, canvas: Canvas) -> Self {
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("screen"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-                count: None,
-            }],
-        });
-        let screen = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("screen"),
-            size: 16,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("screen"),
-            layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: screen.as_entire_binding() }],
-        });
+    pub(crate) fn new(gpu: &Gpu, canvas: Canvas) -> Self {
+        let uniform = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let layout = gpu.layout("screen", wgpu::ShaderStages::VERTEX, &[uniform]);
+        let screen = gpu.buffer("screen", 16, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+        let group = gpu.group("screen", &layout, vec![screen.as_entire_binding()]);
         let pipeline = Recipe {
             label: "overlay",
             source: SHADER,
             groups: &[&layout],
-            buffers: &[VertexBufferLayout {
-                array_stride: size_of::<OverlayVertex>() as u64,
-                step_mode: VertexStepMode::Vertex,
-                attributes: &Self::ATTRIBUTES,
-            }],
+            buffers: &[vertices::<OverlayVertex>(&Self::ATTRIBUTES)],
             colour: Some((canvas, Some(wgpu::BlendState::ALPHA_BLENDING))),
             ..Default::default()
         }
-        .build(device);
-        Self {
-            pipeline,
-            corners: StreamBuffer::new(device, "overlay", wgpu::BufferUsages::VERTEX),
-            screen,
-            group,
-        }
+        .build(gpu);
+        Self { pipeline, corners: StreamBuffer::new(gpu, "overlay", BufferUsages::VERTEX), screen, group }
     }
 
-    pub(crate) fn fill(&mut self, device: &Device, queue: &Queue, size: [f32; 2], shapes: &Shapes) {
-        queue.write_buffer(&self.screen, 0, bytemuck::bytes_of(&[size[0], size[1], 0.0, 0.0]));
-        self.corners.fill(device, queue, bytemuck::cast_slice(&shapes.corners));
+    pub(crate) fn fill(&mut self, gpu: &Gpu, size: [f32; 2], shapes: &Shapes) {
+        gpu.queue.write_buffer(&self.screen, 0, bytemuck::bytes_of(&[size[0], size[1], 0.0, 0.0]));
+        self.corners.fill(gpu, bytemuck::cast_slice(&shapes.corners));
     }
 
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, shapes: &Shapes) {

@@ -2,13 +2,14 @@
 
 use super::asphalt::Asphalt;
 use super::frame::FrameGroups;
-use super::robot::{Instance, Models};
-use super::{Canvas, Recipe, StreamBuffer, constant, developed, shader};
+use super::instanced::{Instance, InstancedMeshes, LAYOUTS};
+use super::{Canvas, Recipe, developed, shader};
+use crate::Gpu;
 use crate::camera::Camera;
 use crate::gpu::model::solids;
 use glam::DVec3;
 use std::ops::Range;
-use wgpu::{Device, Queue};
+use wgpu::{BindGroup, RenderPass};
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/robot", "common/asphalt", "prop");
 
@@ -81,28 +82,21 @@ pub(crate) struct PropPass {
     firm: Vec<wgpu::RenderPipeline>,
     /// Whether what is seen through leaves samples to what comes later.
     coverage: bool,
-    vertices: StreamBuffer,
-    indices: StreamBuffer,
-    solids: Vec<Range<u32>>,
-    instances: StreamBuffer,
+    asphalt: BindGroup,
+    meshes: InstancedMeshes,
+    solids: [Range<u32>; 4],
 }
 
 impl PropPass {
     pub(crate) fn new(
-        device: &Device,
-        queue: &Queue,
+        gpu: &Gpu,
         canvas: Canvas,
         groups: &FrameGroups,
         asphalt: &Asphalt,
         veil: Veil,
     ) -> Self {
         let (mut vertices, mut indices) = (Vec::new(), Vec::new());
-        let solids = solids().map(|mesh| {
-            let first = indices.len() as u32;
-            mesh.weld(&mut vertices, &mut indices);
-            first..indices.len() as u32
-        });
-        let (corners, triangles) = (bytemuck::cast_slice(&vertices), bytemuck::cast_slice(&indices));
+        let solids = solids().map(|mesh| mesh.weld(&mut vertices, &mut indices));
         // Seen through where a prop stands before the robots; with one sample a pixel, whatever is farther and comes
         // later is lost behind it.
         let coverage = canvas.samples > 1 && veil != Veil::None;
@@ -111,7 +105,7 @@ impl PropPass {
             label: "prop",
             source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout, &asphalt.layout],
-            buffers: &Models::LAYOUTS,
+            buffers: &LAYOUTS,
             cull: true,
             colour: Some((canvas, blend)),
             coverage,
@@ -121,47 +115,35 @@ impl PropPass {
         };
         let firm = Recipe { label: "deck", colour: Some((canvas, None)), coverage: false, ..recipe };
         let build = |recipe: Recipe<'_>| {
-            PropAppearance::ALL.map(|(entry, _)| Recipe { entry, ..recipe }.build(device)).to_vec()
+            PropAppearance::ALL.map(|(entry, _)| Recipe { entry, ..recipe }.build(gpu)).to_vec()
         };
         Self {
             pipelines: build(recipe),
             firm: if veil == Veil::ButDecks { build(firm) } else { Vec::new() },
             coverage,
-            vertices: constant(device, queue, "prop corners", wgpu::BufferUsages::VERTEX, corners),
-            indices: constant(device, queue, "prop triangles", wgpu::BufferUsages::INDEX, triangles),
-            solids: solids.to_vec(),
-            instances: StreamBuffer::new(device, "props", wgpu::BufferUsages::VERTEX),
+            asphalt: asphalt.group.clone(),
+            meshes: InstancedMeshes::new(gpu, &vertices, &indices),
+            solids,
         }
     }
 
     /// Brings the copies of all pictures to the device and notes where those of each begin.
-    pub(crate) fn fill<'a>(
-        &mut self,
-        device: &Device,
-        queue: &Queue,
-        pictures: impl Iterator<Item = &'a mut PropInstances>,
-    ) {
+    pub(crate) fn fill<'a>(&mut self, gpu: &Gpu, pictures: impl Iterator<Item = &'a mut PropInstances>) {
         let mut all: Vec<Instance> = Vec::new();
         for copies in pictures {
             copies.first = all.len() as u32;
             all.extend(copies.all());
         }
-        self.instances.fill(device, queue, bytemuck::cast_slice(&all));
+        self.meshes.fill(gpu, &all);
     }
 
     /// What robots drive on, before the paint on it; `veiled` tells which of it hides a robot from the eye.
-    pub(crate) fn draw_decks(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        asphalt: &Asphalt,
-        copies: &PropInstances,
-        veiled: &[bool],
-    ) {
+    pub(crate) fn draw_decks(&self, pass: &mut RenderPass<'_>, copies: &PropInstances, veiled: &[bool]) {
         if copies.drivables.is_empty() {
             return;
         }
-        pass.set_bind_group(2, &asphalt.group, &[]);
-        self.bind(pass);
+        pass.set_bind_group(2, &self.asphalt, &[]);
+        self.meshes.bind(pass);
         let seen_through = |k: usize| veiled.get(k).copied().unwrap_or_default();
         self.each_deck(pass, copies, |pass, k| {
             let look = copies.drivables[k].0 as usize;
@@ -175,15 +157,9 @@ impl PropPass {
     }
 
     /// All others, after the robots.
-    pub(crate) fn draw(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        asphalt: &Asphalt,
-        copies: &PropInstances,
-        veiled: &[bool],
-    ) {
-        pass.set_bind_group(2, &asphalt.group, &[]);
-        self.bind(pass);
+    pub(crate) fn draw(&self, pass: &mut RenderPass<'_>, copies: &PropInstances, veiled: &[bool]) {
+        pass.set_bind_group(2, &self.asphalt, &[]);
+        self.meshes.bind(pass);
         self.each_other(pass, copies, |pass, look| pass.set_pipeline(&self.pipelines[look]));
         self.each_deck(pass, copies, |pass, k| {
             let later = !self.coverage && veiled.get(k).copied().unwrap_or_default();
@@ -195,23 +171,17 @@ impl PropPass {
     }
 
     /// All copies with whatever pipeline is set.
-    pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, copies: &PropInstances) {
-        self.bind(pass);
+    pub(crate) fn draw_solid(&self, pass: &mut RenderPass<'_>, copies: &PropInstances) {
+        self.meshes.bind(pass);
         self.each_other(pass, copies, |_, _| ());
         self.each_deck(pass, copies, |_, _| true);
     }
 
-    fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_vertex_buffer(0, self.vertices.slice());
-        pass.set_vertex_buffer(1, self.instances.slice());
-        pass.set_index_buffer(self.indices.slice(), wgpu::IndexFormat::Uint32);
-    }
-
     fn each_other(
         &self,
-        pass: &mut wgpu::RenderPass<'_>,
+        pass: &mut RenderPass<'_>,
         copies: &PropInstances,
-        prepare: impl Fn(&mut wgpu::RenderPass<'_>, usize),
+        prepare: impl Fn(&mut RenderPass<'_>, usize),
     ) {
         let mut first = copies.first;
         for (look, ((_, solid), copies)) in PropAppearance::ALL.iter().zip(&copies.others).enumerate() {
@@ -227,9 +197,9 @@ impl PropPass {
     /// Draws the decks for which `prepare` says so.
     fn each_deck(
         &self,
-        pass: &mut wgpu::RenderPass<'_>,
+        pass: &mut RenderPass<'_>,
         copies: &PropInstances,
-        prepare: impl Fn(&mut wgpu::RenderPass<'_>, usize) -> bool,
+        prepare: impl Fn(&mut RenderPass<'_>, usize) -> bool,
     ) {
         let first = copies.first as usize + copies.others.iter().map(Vec::len).sum::<usize>();
         for (k, (look, _)) in copies.drivables.iter().enumerate() {

@@ -1,23 +1,15 @@
 //! Robots and their ghosts: a few models, drawn as often as there are copies.
 
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, StreamBuffer, constant, developed, mipped, shader, shrink, textured};
+use super::instanced::{Instance, InstancedMeshes, LAYOUTS};
+use super::{Canvas, Recipe, developed, mipped, shader, shrink, textured};
+use crate::Gpu;
 use crate::annotation::text_shaper::digits;
-use crate::gpu::model::{self, Build, Detail, Vertex};
-use bytemuck::{Pod, Zeroable};
+use crate::gpu::model::{self, Build, Detail};
 use std::ops::Range;
-use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
+use wgpu::RenderPass;
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/robot", "robot");
-
-/// Mirrors `Instance` of the shaders.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct Instance {
-    pub(crate) rows: [[f32; 4]; 3],
-    pub(crate) colour: [f32; 4],
-    pub(crate) marks: [f32; 4],
-}
 
 /// Copies of robots that share their measures.
 #[derive(Debug, Clone, Default)]
@@ -61,43 +53,17 @@ struct MeshRanges {
 /// Models on the device, and the copies of this picture.
 #[derive(Debug)]
 pub(crate) struct Models {
-    vertices: StreamBuffer,
-    indices: StreamBuffer,
+    meshes: InstancedMeshes,
     kits: Vec<MeshRanges>,
     camera: Range<u32>,
-    instances: StreamBuffer,
 }
 
 impl Models {
-    const CORNER: [wgpu::VertexAttribute; 4] =
-        vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Uint32];
-    const INSTANCE: [wgpu::VertexAttribute; 5] =
-        vertex_attr_array![4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Float32x4];
-
-    /// Layouts of the two vertex buffers.
-    pub(crate) const LAYOUTS: [VertexBufferLayout<'static>; 2] = [
-        VertexBufferLayout {
-            array_stride: size_of::<Vertex>() as u64,
-            step_mode: VertexStepMode::Vertex,
-            attributes: &Self::CORNER,
-        },
-        VertexBufferLayout {
-            array_stride: size_of::<Instance>() as u64,
-            step_mode: VertexStepMode::Instance,
-            attributes: &Self::INSTANCE,
-        },
-    ];
-
     /// One set of models for each build. In a crowd each robot is small in the picture: plainer models draw three
     /// times as fast.
-    pub(crate) fn new(device: &Device, queue: &Queue, detail: Detail, builds: &[Build]) -> Self {
-        let mut vertices = Vec::new();
-        let mut indices = Vec::new();
-        let mut add = |mesh: model::Mesh| {
-            let first = indices.len() as u32;
-            mesh.weld(&mut vertices, &mut indices);
-            first..indices.len() as u32
-        };
+    pub(crate) fn new(gpu: &Gpu, detail: Detail, builds: &[Build]) -> Self {
+        let (mut vertices, mut indices) = (Vec::new(), Vec::new());
+        let mut add = |mesh: model::Mesh| mesh.weld(&mut vertices, &mut indices);
         let wheels = [false, true].map(|lugs| add(model::wheel(detail, lugs)));
         let camera = add(model::camera(detail));
         let kit = |build: &Build| MeshRanges {
@@ -107,33 +73,21 @@ impl Models {
             ghost: add(model::ghost(build)),
         };
         let kits = builds.iter().map(kit).collect();
-        let (corners, triangles) = (bytemuck::cast_slice(&vertices), bytemuck::cast_slice(&indices));
-        Self {
-            vertices: constant(device, queue, "corners", wgpu::BufferUsages::VERTEX, corners),
-            indices: constant(device, queue, "triangles", wgpu::BufferUsages::INDEX, triangles),
-            kits,
-            camera,
-            instances: StreamBuffer::new(device, "instances", wgpu::BufferUsages::VERTEX),
-        }
+        Self { meshes: InstancedMeshes::new(gpu, &vertices, &indices), kits, camera }
     }
 
     /// Brings the copies of all crowds to the device and notes where each crowd begins.
-    pub(crate) fn fill<'a>(
-        &mut self,
-        device: &Device,
-        queue: &Queue,
-        crowds: impl Iterator<Item = &'a mut RobotInstances>,
-    ) {
+    pub(crate) fn fill<'a>(&mut self, gpu: &Gpu, crowds: impl Iterator<Item = &'a mut RobotInstances>) {
         let mut all: Vec<Instance> = Vec::new();
         for crowd in crowds {
             crowd.first = all.len() as u32;
             all.extend(crowd.copies());
         }
-        self.instances.fill(device, queue, bytemuck::cast_slice(&all));
+        self.meshes.fill(gpu, &all);
     }
 
     /// Bodies, wheels and cameras, without the faces of shells.
-    pub(crate) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &RobotInstances) {
+    pub(crate) fn draw_solid(&self, pass: &mut RenderPass<'_>, crowd: &RobotInstances) {
         let squads = self.kits.iter().zip(&crowd.squads);
         let parts = squads
             .flat_map(|(kit, squad)| [(&kit.body, squad.bodies.len()), (&kit.wheel, squad.wheels.len())]);
@@ -141,28 +95,28 @@ impl Models {
     }
 
     /// The faces of shells.
-    pub(crate) fn draw_faces(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &RobotInstances) {
+    pub(crate) fn draw_faces(&self, pass: &mut RenderPass<'_>, crowd: &RobotInstances) {
         let squads = self.kits.iter().zip(&crowd.squads);
         let parts =
             squads.flat_map(|(kit, squad)| [(&kit.faces, squad.bodies.len()), (&NONE, squad.wheels.len())]);
         self.draw(pass, crowd.first, parts);
     }
 
-    fn draw_ghosts(&self, pass: &mut wgpu::RenderPass<'_>, crowd: &RobotInstances) {
+    fn draw_ghosts(&self, pass: &mut RenderPass<'_>, crowd: &RobotInstances) {
         let solid: usize = crowd.squads.iter().map(|s| s.bodies.len() + s.wheels.len()).sum();
         let first = crowd.first + (solid + crowd.cameras.len()) as u32;
         let squads = self.kits.iter().zip(&crowd.squads);
         self.draw(pass, first, squads.map(|(kit, squad)| (&kit.ghost, squad.ghosts.len())));
     }
 
-    /// Meshes, each as often as told; their copies follow each other from `first` on.
+    /// Draws meshes with their numbers of copies; the copies follow each other from `first` on.
     fn draw<'a>(
         &self,
-        pass: &mut wgpu::RenderPass<'_>,
+        pass: &mut RenderPass<'_>,
         mut first: u32,
         parts: impl Iterator<Item = (&'a Range<u32>, usize)>,
     ) {
-        self.bind(pass);
+        self.meshes.bind(pass);
         for (mesh, copies) in parts {
             let last = first + copies as u32;
             if last > first && !mesh.is_empty() {
@@ -170,12 +124,6 @@ impl Models {
             }
             first = last;
         }
-    }
-
-    fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_vertex_buffer(0, self.vertices.slice());
-        pass.set_vertex_buffer(1, self.instances.slice());
-        pass.set_index_buffer(self.indices.slice(), wgpu::IndexFormat::Uint32);
     }
 }
 
@@ -192,21 +140,21 @@ pub(crate) struct RobotPass {
 
 impl RobotPass {
     /// The robots' pipelines, and the texture of the numbers on their roofs.
-    pub(crate) fn new(device: &Device, queue: &Queue, canvas: Canvas, groups: &FrameGroups) -> Self {
+    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, groups: &FrameGroups) -> Self {
         let (texels, width, height) = digits();
-        let texture = mipped(device, queue, "digits", [width, height], &shrink(texels, width, height)[..4]);
+        let texture = mipped(gpu, "digits", [width, height], &shrink(texels, width, height)[..4]);
         let sampler = wgpu::SamplerDescriptor {
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             mipmap_filter: wgpu::MipmapFilterMode::Linear,
             ..Default::default()
         };
-        let (layout, digits) = textured(device, "digits", &[&texture], &sampler);
+        let (layout, digits) = textured(gpu, "digits", &[&texture], &sampler);
         let recipe = Recipe {
             label: "robot",
             source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout, &layout],
-            buffers: &Models::LAYOUTS,
+            buffers: &LAYOUTS,
             cull: true,
             colour: Some((canvas, None)),
             depth: Some((wgpu::CompareFunction::Less, true)),
@@ -216,38 +164,28 @@ impl RobotPass {
         let blended = Some((canvas, Some(wgpu::BlendState::ALPHA_BLENDING)));
         let equal = Some((wgpu::CompareFunction::LessEqual, false));
         Self {
-            solid: Recipe { vertex, entry, ..recipe }.build(device),
+            solid: Recipe { vertex, entry, ..recipe }.build(gpu),
             ghost_depth: Recipe {
                 label: "ghost depth",
                 entry: "hidden",
                 write: wgpu::ColorWrites::empty(),
                 ..recipe
             }
-            .build(device),
+            .build(gpu),
             ghost: Recipe { label: "ghost", entry: "ghost", colour: blended, depth: equal, ..recipe }
-                .build(device),
+                .build(gpu),
             digits,
         }
     }
 
-    pub(crate) fn draw_solid(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        models: &Models,
-        crowd: &RobotInstances,
-    ) {
+    pub(crate) fn draw_solid(&self, pass: &mut RenderPass<'_>, models: &Models, crowd: &RobotInstances) {
         pass.set_pipeline(&self.solid);
         pass.set_bind_group(2, &self.digits, &[]);
         models.draw_solid(pass, crowd);
     }
 
     /// Depth first, so that only the faces in front shine through.
-    pub(crate) fn draw_ghosts(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        models: &Models,
-        crowd: &RobotInstances,
-    ) {
+    pub(crate) fn draw_ghosts(&self, pass: &mut RenderPass<'_>, models: &Models, crowd: &RobotInstances) {
         if crowd.squads.iter().all(|s| s.ghosts.is_empty()) {
             return;
         }

@@ -1,10 +1,12 @@
 //! The shadow map: depth of robots and props as the sun sees them, fitted to the formation and shared by all views.
 
-use super::frame::{FrameGroups, depth_texture};
-use super::robot::Models;
-use super::{Recipe, shader};
+use super::frame::FrameGroups;
+use super::instanced::LAYOUTS;
+use super::{DEPTH, Recipe, shader};
+use crate::Gpu;
+use crate::gpu::resources::flat_texture;
 use glam::{DMat4, DVec3, Mat4};
-use wgpu::Device;
+use wgpu::{CommandEncoder, RenderPass, TextureUsages};
 
 pub(crate) const SHADER: &str = shader!("common/frame", "common/robot", "shadow");
 
@@ -29,21 +31,23 @@ pub(crate) struct SunView {
 
 impl ShadowPass {
     /// The map comes before the bind groups that read it, the pipeline after.
-    pub(crate) fn map(device: &Device, size: u32) -> wgpu::TextureView {
-        depth_texture(device, [size, size], 1, true)
+    pub(crate) fn map(gpu: &Gpu, size: u32) -> wgpu::TextureView {
+        let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+        let texture = gpu.device.create_texture(&flat_texture("shadow", [size, size], DEPTH, usage));
+        texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    pub(crate) fn new(device: &Device, groups: &FrameGroups, map: wgpu::TextureView, size: u32) -> Self {
+    pub(crate) fn new(gpu: &Gpu, groups: &FrameGroups, map: wgpu::TextureView, size: u32) -> Self {
         let pipeline = Recipe {
             label: "shadow",
             source: SHADER,
             groups: &[&groups.view_layout],
-            buffers: &Models::LAYOUTS,
+            buffers: &LAYOUTS,
             depth: Some((wgpu::CompareFunction::Less, true)),
             bias: wgpu::DepthBiasState { constant: 2, slope_scale: 1.5, clamp: 0.0 },
             ..Default::default()
         }
-        .build(device);
+        .build(gpu);
         Self { map, size, pipeline }
     }
 
@@ -60,11 +64,7 @@ impl ShadowPass {
     }
 
     /// The pass into which all that casts shadows is drawn.
-    pub(crate) fn begin<'a>(
-        &self,
-        encoder: &'a mut wgpu::CommandEncoder,
-        groups: &FrameGroups,
-    ) -> wgpu::RenderPass<'a> {
+    pub(crate) fn begin<'a>(&self, encoder: &'a mut CommandEncoder, groups: &FrameGroups) -> RenderPass<'a> {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {

@@ -2,13 +2,14 @@
 
 use super::asphalt::Asphalt;
 use super::frame::FrameGroups;
-use super::{Canvas, Recipe, StreamBuffer, constant, developed, shader};
+use super::{Canvas, Recipe, StreamBuffer, developed, shader, vertices};
+use crate::Gpu;
 use crate::camera::Camera;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 use vocabulary::Terrain;
-use wgpu::{Device, Queue, VertexBufferLayout, VertexStepMode, vertex_attr_array};
+use wgpu::{BindGroup, BufferUsages, vertex_attr_array};
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/asphalt", "terrain");
 
@@ -29,6 +30,7 @@ pub(crate) struct TerrainVertex {
 pub(crate) struct TerrainPass {
     dry: wgpu::RenderPipeline,
     slick: wgpu::RenderPipeline,
+    asphalt: BindGroup,
     points: StreamBuffer,
     triangles: StreamBuffer,
     /// Those that grip come first.
@@ -50,8 +52,7 @@ impl TerrainPass {
         vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32];
 
     pub(crate) fn new(
-        device: &Device,
-        queue: &Queue,
+        gpu: &Gpu,
         canvas: Canvas,
         groups: &FrameGroups,
         asphalt: &Asphalt,
@@ -62,30 +63,27 @@ impl TerrainPass {
             label: "terrain",
             source: canvas.of(SHADERS),
             groups: &[&groups.view_layout, &groups.light_layout, &asphalt.layout],
-            buffers: &[VertexBufferLayout {
-                array_stride: size_of::<TerrainVertex>() as u64,
-                step_mode: VertexStepMode::Vertex,
-                attributes: &Self::ATTRIBUTES,
-            }],
+            buffers: &[vertices::<TerrainVertex>(&Self::ATTRIBUTES)],
             colour: Some((canvas, None)),
             depth: Some((wgpu::CompareFunction::Less, true)),
             ..Default::default()
         };
-        let (dry, slick) = (recipe.build(device), Recipe { entry: "slick", ..recipe }.build(device));
+        let (dry, slick) = (recipe.build(gpu), Recipe { entry: "slick", ..recipe }.build(gpu));
         let (triangles, pieces) = parted(&triangles, &points, terrain);
         let (corners, indices) = (bytemuck::cast_slice(&points), bytemuck::cast_slice(&triangles));
         Self {
             dry,
             slick,
-            points: constant(device, queue, "terrain", wgpu::BufferUsages::VERTEX, corners),
-            triangles: constant(device, queue, "terrain", wgpu::BufferUsages::INDEX, indices),
+            asphalt: asphalt.group.clone(),
+            points: StreamBuffer::constant(gpu, "terrain", BufferUsages::VERTEX, corners),
+            triangles: StreamBuffer::constant(gpu, "terrain", BufferUsages::INDEX, indices),
             pieces,
         }
     }
 
     /// What of it a camera may see.
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, asphalt: &Asphalt, camera: &Camera) {
-        pass.set_bind_group(2, &asphalt.group, &[]);
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, camera: &Camera) {
+        pass.set_bind_group(2, &self.asphalt, &[]);
         pass.set_vertex_buffer(0, self.points.slice());
         pass.set_index_buffer(self.triangles.slice(), wgpu::IndexFormat::Uint32);
         for (slick, pipeline) in [(false, &self.dry), (true, &self.slick)] {
@@ -146,12 +144,8 @@ fn parted(triangles: &[u32], points: &[TerrainVertex], terrain: &Terrain) -> (Ve
 /// Points relative to the terrain's origin, one more around the field on all sides, and triangles between them.
 fn mesh(terrain: &Terrain) -> (Vec<TerrainVertex>, Vec<u32>) {
     let (columns, rows) = (terrain.columns + 2, terrain.rows + 2);
-    let mut points = Vec::with_capacity(columns * rows);
-    for row in 0..rows {
-        for column in 0..columns {
-            points.push(point(terrain, column, row));
-        }
-    }
+    let row = |row| (0..columns).map(move |column| point(terrain, column, row));
+    let points: Vec<_> = (0..rows).flat_map(row).collect();
     let triangles = faces(&points, columns, rows);
     (points, triangles)
 }

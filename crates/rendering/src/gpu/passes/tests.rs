@@ -1,6 +1,7 @@
 //! Shaders without a device: they are valid, and their structures are those of Rust, byte for byte.
 
-use super::{SHADERS, decal, frame, overlay, robot, terrain};
+use super::instanced::{Instance, LAYOUTS};
+use super::{SHADERS, decal, frame, overlay, terrain};
 use crate::gpu::model::Vertex;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::mem::offset_of;
@@ -85,15 +86,15 @@ fn the_frame_is_the_shaders_frame() {
 #[test]
 fn vertices_are_the_shaders_vertices() {
     let robots = module("robot");
-    let [corner, instance] = robot::Models::LAYOUTS;
+    let [corner, instance] = LAYOUTS;
     agree(&robots, "Corner", corner.attributes, size_of::<Vertex>());
-    agree(&robots, "Instance", instance.attributes, size_of::<robot::Instance>());
+    agree(&robots, "Instance", instance.attributes, size_of::<Instance>());
     let tags = module("tag");
     agree(&tags, "Corner", corner.attributes, size_of::<Vertex>());
-    agree(&tags, "Instance", instance.attributes, size_of::<robot::Instance>());
+    agree(&tags, "Instance", instance.attributes, size_of::<Instance>());
     let props = module("prop");
     agree(&props, "Corner", corner.attributes, size_of::<Vertex>());
-    agree(&props, "Instance", instance.attributes, size_of::<robot::Instance>());
+    agree(&props, "Instance", instance.attributes, size_of::<Instance>());
     agree(
         &module("terrain"),
         "TerrainVertex",

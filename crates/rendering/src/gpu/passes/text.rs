@@ -1,13 +1,14 @@
 //! Text drawn last on the single-sample picture, from glyphs that [`TextShaper`] has shaped.
 
 use super::Canvas;
+use crate::Gpu;
 use crate::annotation::text_shaper::{Block, TextShaper, line_height};
 use crate::palette::Rgb;
 use glyphon::{
     Buffer, Cache, Color, ColorMode, Resolution, SwashCache, TextArea, TextAtlas, TextBounds, TextRenderer,
     Viewport,
 };
-use wgpu::{Device, Queue, TextureFormat};
+use wgpu::TextureFormat;
 
 /// A text in a picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,19 +44,19 @@ impl std::fmt::Debug for TextPass {
 }
 
 /// An atlas without any glyph, and what draws from it.
-fn blank(device: &Device, queue: &Queue, cache: &Cache, format: TextureFormat) -> (TextAtlas, TextRenderer) {
-    let mut atlas = TextAtlas::with_color_mode(device, queue, cache, format, ColorMode::Web);
-    let renderer = TextRenderer::new(&mut atlas, device, wgpu::MultisampleState::default(), None);
+fn blank(gpu: &Gpu, cache: &Cache, format: TextureFormat) -> (TextAtlas, TextRenderer) {
+    let mut atlas = TextAtlas::with_color_mode(&gpu.device, &gpu.queue, cache, format, ColorMode::Web);
+    let renderer = TextRenderer::new(&mut atlas, &gpu.device, wgpu::MultisampleState::default(), None);
     (atlas, renderer)
 }
 
 impl TextPass {
-    pub(crate) fn new(device: &Device, queue: &Queue, canvas: Canvas) -> Self {
-        let cache = Cache::new(device);
-        let (atlas, renderer) = blank(device, queue, &cache, canvas.format);
+    pub(crate) fn new(gpu: &Gpu, canvas: Canvas) -> Self {
+        let cache = Cache::new(&gpu.device);
+        let (atlas, renderer) = blank(gpu, &cache, canvas.format);
         Self {
             glyphs: SwashCache::new(),
-            viewport: Viewport::new(device, &cache),
+            viewport: Viewport::new(&gpu.device, &cache),
             cache,
             format: canvas.format,
             atlas,
@@ -66,8 +67,7 @@ impl TextPass {
     /// Makes `lines` ready to draw on a picture of `size` pixels; halos of all lines lie below all text.
     pub(crate) fn fill(
         &mut self,
-        device: &Device,
-        queue: &Queue,
+        gpu: &Gpu,
         size: [u32; 2],
         lines: &[TextLine],
         letters: &mut TextShaper,
@@ -76,14 +76,14 @@ impl TextPass {
             letters.measure(&line.text, line.size, line.bold, line.block);
         }
         letters.forget();
-        self.viewport.update(queue, Resolution { width: size[0], height: size[1] });
+        self.viewport.update(&gpu.queue, Resolution { width: size[0], height: size[1] });
         // What the picture before had may make room.
         self.atlas.trim();
-        match self.place(device, queue, lines, letters) {
+        match self.place(gpu, lines, letters) {
             // In hours of text of ever other sizes it is cut into pieces too small for anything.
             Err(glyphon::PrepareError::AtlasFull) => {
-                (self.atlas, self.renderer) = blank(device, queue, &self.cache, self.format);
-                self.place(device, queue, lines, letters)
+                (self.atlas, self.renderer) = blank(gpu, &self.cache, self.format);
+                self.place(gpu, lines, letters)
             }
             placed => placed,
         }
@@ -91,24 +91,20 @@ impl TextPass {
 
     fn place(
         &mut self,
-        device: &Device,
-        queue: &Queue,
+        gpu: &Gpu,
         lines: &[TextLine],
         letters: &mut TextShaper,
     ) -> Result<(), glyphon::PrepareError> {
         let (fonts, shaped) = letters.parts();
         let find = |line: &TextLine| shaped.find(&line.text, line.size, line.bold, line.block);
+        let found: Vec<_> = lines.iter().filter_map(|line| Some((line, find(line)?))).collect();
         let mut areas = Vec::new();
-        for line in lines {
-            if let Some(buffer) = find(line) {
-                halo(&mut areas, line, buffer);
-            }
+        for (line, buffer) in &found {
+            halo(&mut areas, line, buffer);
         }
-        for line in lines {
-            if let Some(buffer) = find(line) {
-                areas.push(area(line, buffer, [0.0, 0.0], line.colour, line.alpha));
-            }
-        }
+        areas
+            .extend(found.iter().map(|(line, buffer)| area(line, buffer, [0.0; 2], line.colour, line.alpha)));
+        let (device, queue) = (&gpu.device, &gpu.queue);
         self.renderer.prepare(device, queue, fonts, &mut self.atlas, &self.viewport, areas, &mut self.glyphs)
     }
 

@@ -108,7 +108,7 @@ impl DecalBuilder<'_> {
         let reach = ring.radius.max(ring.least * scaled);
         let mut disc = |reach: f64, form: DecalForm, colour: Rgb, alpha: f32| {
             if alpha > 0.0 && reach.is_finite() {
-                self.patch(at, DVec2::X * reach, DVec2::Y * reach, form, colour, alpha.min(1.0));
+                self.disc(at, reach, form, colour, alpha.min(1.0));
             }
         };
         let hole = |reach: f64, wide: f64| (1.0 - wide / reach).clamp(0.0, 1.0) as f32;

@@ -2,7 +2,7 @@
 
 use crate::gpu::passes::decal::{DecalForm, DecalVertex};
 use crate::ground::decal_builder::DecalBuilder;
-use crate::palette::Rgb;
+use crate::palette::{Rgb, with_alpha};
 use crate::picture_context::PictureContext;
 use glam::{DVec2, DVec3};
 
@@ -18,8 +18,7 @@ impl DecalBuilder<'_> {
         for touch in context.trail.touches.iter().filter(|t| t.begin <= context.record.snapshot.time) {
             let middle = DVec3::from_array(touch.place).truncate();
             let size = (0.075 * context.size).max(5.0 * self.stage_scale * self.pixel(middle));
-            let round = [DVec2::X, DVec2::Y].map(|axis| axis * (1.5 * size));
-            self.patch(middle, round[0], round[1], DecalForm::Blob, SOOT, 0.55);
+            self.disc(middle, 1.5 * size, DecalForm::Blob, SOOT, 0.55);
             // Turned by its number, so that a row of them does not look printed.
             let turn = DVec2::from_angle(0.6 + 1.7 * touch.number as f64);
             for arm in [turn, turn.perp()] {
@@ -79,12 +78,6 @@ impl DecalBuilder<'_> {
         alpha: f32,
     ) -> DecalVertex {
         let place = middle + self.camera.right * aside.x + self.camera.up * aside.y - self.origin;
-        let [r, g, b] = colour;
-        DecalVertex {
-            position: place.as_vec3().to_array(),
-            kind: form.code(),
-            shape,
-            colour: [r, g, b, alpha],
-        }
+        DecalVertex::new(place, form, shape, with_alpha(colour, alpha))
     }
 }

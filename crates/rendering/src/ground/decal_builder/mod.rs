@@ -23,7 +23,7 @@ pub(crate) const RING: f64 = 0.25;
 /// Position errors above this are shown by an arrow, m.
 const ARROW_ABOVE: f64 = 0.05;
 
-/// How far it is to where the size of a pixel is looked up, m.
+/// Step for measuring the size of a pixel, m.
 pub(crate) const STEP: f64 = 0.05;
 /// Lines of quick pictures are this near to where they belong, pixels.
 const UNSEEN: f64 = 0.4;
@@ -170,14 +170,12 @@ impl DecalBuilder<'_> {
         colour: Rgb,
         alpha: f32,
     ) -> DecalVertex {
-        let local = at.extend(0.0) - self.origin;
-        let [r, g, b] = colour;
-        DecalVertex {
-            position: local.as_vec3().to_array(),
-            kind: form.code(),
-            shape,
-            colour: [r, g, b, alpha],
-        }
+        DecalVertex::new(at.extend(0.0) - self.origin, form, shape, palette::with_alpha(colour, alpha))
+    }
+
+    /// A disc around `middle`, or what is formed of one.
+    pub(crate) fn disc(&mut self, middle: DVec2, radius: f64, form: DecalForm, colour: Rgb, alpha: f32) {
+        self.patch(middle, DVec2::X * radius, DVec2::Y * radius, form, colour, alpha);
     }
 
     /// A parallelogram around `middle`.
@@ -294,8 +292,7 @@ impl DecalBuilder<'_> {
             let alpha = ((26.0 - member.body.length / pixel) / 10.0).clamp(0.0, 0.95) as f32;
             if alpha > 0.0 {
                 let colour = if member.leads { palette::GOLD } else { *colour };
-                let radius = 6.5 * pixel;
-                self.patch(middle, DVec2::X * radius, DVec2::Y * radius, DecalForm::Ring(0.0), colour, alpha);
+                self.disc(middle, 6.5 * pixel, DecalForm::Ring(0.0), colour, alpha);
             }
         }
     }
@@ -321,8 +318,7 @@ impl DecalBuilder<'_> {
             let Some(goal) = goal.map(DVec2::from_array) else { continue };
             let colour = context.colours[edge.follower];
             let reach = RING * context.size;
-            let alpha = 0.16 * context.detail;
-            self.patch(goal, DVec2::X * reach, DVec2::Y * reach, DecalForm::Ring(0.0), colour, alpha);
+            self.disc(goal, reach, DecalForm::Ring(0.0), colour, 0.16 * context.detail);
             self.ring(goal, reach, colour, 0.35 + 0.6 * context.detail);
         }
     }
@@ -351,7 +347,7 @@ impl DecalBuilder<'_> {
     fn ring(&mut self, middle: DVec2, reach: f64, colour: Rgb, alpha: f32) {
         let thin = (3.6 * self.pixel(middle)).max(0.096 * reach);
         let hole = (1.0 - thin / reach).clamp(0.0, 1.0) as f32;
-        self.patch(middle, DVec2::X * reach, DVec2::Y * reach, DecalForm::Ring(hole), colour, alpha);
+        self.disc(middle, reach, DecalForm::Ring(hole), colour, alpha);
     }
 
     /// An arrow, larger by `rim` m on all sides.

@@ -1,7 +1,7 @@
-//! Numbers as people write them.
+//! Numbers as text, and rounded to steps.
 
 /// A number as TOML, to five significant digits, with a point.
-pub fn tidy(value: f64) -> String {
+pub fn toml_number(value: f64) -> String {
     let short = format!("{value:.4e}").parse::<f64>().unwrap_or(value);
     let plain = short.to_string();
     if plain.contains(['.', 'e', 'n']) { plain } else { format!("{plain}.0") }
@@ -9,7 +9,7 @@ pub fn tidy(value: f64) -> String {
 
 /// A number without a needless point.
 pub fn plain(value: f64) -> String {
-    let text = tidy(value);
+    let text = toml_number(value);
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
@@ -37,7 +37,7 @@ mod tests {
         let cases =
             [(5.0, "5.0"), (0.1 + 0.2, "0.3"), (1.234_567, "1.2346"), (0.001, "0.001"), (-2.5, "-2.5")];
         for (value, text) in cases {
-            assert_eq!(tidy(value), text);
+            assert_eq!(toml_number(value), text);
         }
         assert_eq!((fixed(-0.001, 2), fixed(-1.0, 1)), ("0.00".to_owned(), "−1.0".to_owned()));
         assert_eq!(snap(2.26, 0.1), 2.300_000_000_000_000_3);

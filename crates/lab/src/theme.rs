@@ -1,13 +1,13 @@
-//! How the window looks: one accent, calm panels, dark and light.
+//! The dark and the light theme of the window.
 
 use eframe::egui::{self, Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals};
 
-/// The accent on dark and on light ground.
+/// The accent colour of the dark and the light theme.
 const ACCENT: [Color32; 2] = [Color32::from_rgb(0x3d, 0x8b, 0xe0), Color32::from_rgb(0x1f, 0x6f, 0xc8)];
 
-/// Sets the looks of both themes.
-pub fn dress(ctx: &egui::Context) {
-    // The face of the pictures, before those that come with the library.
+/// Sets fonts, colours and spacing of the dark and the light theme.
+pub fn apply(ctx: &egui::Context) {
+    // The font of the pictures comes before those of the library.
     let mut fonts = egui::FontDefinitions::default();
     fonts.font_data.insert("Inter".to_owned(), egui::FontData::from_static(rendering::FONT).into());
     for family in [FontFamily::Proportional, FontFamily::Monospace] {
@@ -22,7 +22,7 @@ pub fn dress(ctx: &egui::Context) {
             style.spacing.item_spacing = egui::vec2(7.0, 5.0);
             style.spacing.button_padding = egui::vec2(7.0, 3.0);
             style.spacing.interact_size.y = 21.0;
-            // Nothing moves by itself but the robots.
+            // No animations: only the robots move.
             style.animation_time = 0.0;
             for (name, size) in [
                 (TextStyle::Body, 13.0),
