@@ -1,6 +1,7 @@
 //! A figure a column wide, to look at: `cargo run -p figures --example column > column.svg`.
 
 use figures::{Axis, Figure, Guide, Key, Marker, Panel, Rgb, Scale, Series, Stroke};
+use vocabulary::math;
 
 const COLOURS: [Rgb; 3] = [[0.902, 0.624, 0.0], [0.337, 0.706, 0.914], [0.941, 0.894, 0.259]];
 
@@ -9,7 +10,7 @@ fn main() {
     let panel = |label: &str, slope: f64, named: bool| {
         let series = COLOURS.iter().enumerate().flat_map(|(k, colour)| {
             let slope = slope * (1.0 + 0.4 * k as f64);
-            let error = |x: f64| (0.02 * slope).hypot(slope * x);
+            let error = |x: f64| math::hypot(0.02 * slope, slope * x);
             let name = if named { format!("follower-{}", k + 1) } else { String::new() };
             let points = noises.iter().map(|x| [*x, error(*x)]).collect();
             let mark = vec![[0.07, error(0.09)]];

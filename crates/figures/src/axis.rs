@@ -1,6 +1,7 @@
 //! From values to places along an axis, and where its ticks stand.
 
 use crate::{Axis, Scale};
+use vocabulary::math;
 
 /// An axis laid out over some values.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,9 +32,10 @@ impl Ruler {
     pub(crate) fn new(axis: &Axis, values: impl Iterator<Item = f64>, across: bool) -> Self {
         let all: Vec<f64> = values.chain(axis.show.iter().copied()).filter(|v| v.is_finite()).collect();
         let log = axis.scale == Scale::Log;
-        let taken = all.iter().copied().filter(|v| !log || *v > 0.0).map(|v| if log { v.log10() } else { v });
+        let taken =
+            all.iter().copied().filter(|v| !log || *v > 0.0).map(|v| if log { math::log10(v) } else { v });
         let (low, high) = taken.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
-        let asked = axis.range.map(|ends| if log { ends.map(f64::log10) } else { ends });
+        let asked = axis.range.map(|ends| if log { ends.map(math::log10) } else { ends });
         let ends = match asked.filter(|[low, high]| low < high && (high - low).is_finite()) {
             Some(ends) => ends,
             None if low > high => [0.0, 1.0],
@@ -47,7 +49,7 @@ impl Ruler {
     pub(crate) fn at(&self, value: f64) -> Option<f64> {
         let along = match self.scale {
             Scale::Linear => value,
-            Scale::Log if value > 0.0 => value.log10(),
+            Scale::Log if value > 0.0 => math::log10(value),
             Scale::Log if self.apart > 0.0 => return Some(0.3 * APART),
             Scale::Log => return None,
         };
@@ -97,9 +99,9 @@ impl Ruler {
         let [low, high] = self.ends;
         let (first, last) = (low.floor() as i32, high.ceil() as i32);
         let places = |factors: &[i32]| {
-            let inside = |v: f64| (low - 1e-9..=high + 1e-9).contains(&v.log10());
-            let all =
-                (first..=last).flat_map(|d| factors.iter().map(move |f| f64::from(*f) * 10_f64.powi(d)));
+            let inside = |v: f64| (low - 1e-9..=high + 1e-9).contains(&math::log10(v));
+            let all = (first..=last)
+                .flat_map(|d| factors.iter().map(move |f| f64::from(*f) * math::powi(10_f64, d)));
             all.filter(|v| inside(*v)).count()
         };
         // As many labels as there is room for: 1 2 5 10, 1 3 10, or decades only.
@@ -109,7 +111,7 @@ impl Ruler {
         let mut ticks = vec![];
         for decade in first..=last {
             for factor in 1..10 {
-                let value = f64::from(factor) * 10_f64.powi(decade);
+                let value = f64::from(factor) * math::powi(10_f64, decade);
                 let named = labelled.contains(&factor) && (factor > 1 || decade % every == 0);
                 // Where not even every decade has a label, steps within them would be a grey smear.
                 if every > 1 && !named {
@@ -145,7 +147,7 @@ fn step(least: f64) -> (f64, usize) {
         return (1.0, 0);
     }
     let step = vocabulary::round_step(least, 1e-9);
-    (step, (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize)
+    (step, (-(math::log10(step) + 1e-9).floor()).clamp(0.0, 12.0) as usize)
 }
 
 /// A digit times a power of ten, as one writes it.

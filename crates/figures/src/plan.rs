@@ -5,6 +5,7 @@ use crate::draw::{BARE, GREY, MARGIN, SMALL, TICK, heading, points, stroke};
 use crate::svg::{Anchor, Svg, ink, point, polyline, width};
 use crate::trim::thinned;
 use crate::{Axis, Key, Rgb, Stroke};
+use vocabulary::math;
 
 /// A way over the plane.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -240,7 +241,7 @@ fn arrow(svg: &mut Svg, arrow: &Arrow, on: &Projection) {
     const HEAD: f64 = 4.6;
     let (from, to) = (on.at(arrow.from), on.at(arrow.to));
     let d = [to[0] - from[0], to[1] - from[1]];
-    let long = d[0].hypot(d[1]);
+    let long = math::hypot(d[0], d[1]);
     if long <= 2.0 * arrow.free + 1.0 {
         return;
     }

@@ -1,5 +1,7 @@
 //! Curves clipped to their panel, without points that make no difference in print.
 
+use vocabulary::math;
+
 /// Parts of the polyline `points` that lie within [x from, y from, x to, y to].
 pub(crate) fn within(points: &[[f64; 2]], edges: [f64; 4]) -> Vec<Vec<[f64; 2]>> {
     let mut parts: Vec<Vec<[f64; 2]>> = vec![];
@@ -56,7 +58,7 @@ fn distance(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     let (d, q) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let square = d[0] * d[0] + d[1] * d[1];
     let share = if square > 0.0 { ((q[0] * d[0] + q[1] * d[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
-    (q[0] - share * d[0]).hypot(q[1] - share * d[1])
+    math::hypot(q[0] - share * d[0], q[1] - share * d[1])
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use formation::relative::Geometry;
 use scene::Follow;
 use std::fmt::Write;
 use studies::certify::{WitnessRow, rows};
+use vocabulary::math;
 use vocabulary::{Edge, EdgeState, LawKind, Snapshot, StepRecord};
 
 /// A plotted quantity.
@@ -166,7 +167,7 @@ fn value(
         PlotQuantity::BearingRateError => (rates()?[1] - state.rates[1]).to_degrees(),
         PlotQuantity::TrackingEnergy => {
             let rates = rates()?;
-            tracking_energy(state.error, [-rates[0], -rates[1]], follow.law.k).max(FLOOR).log10()
+            math::log10(tracking_energy(state.error, [-rates[0], -rates[1]], follow.law.k).max(FLOOR))
         }
         PlotQuantity::ObserverEnergy if observes => {
             let rates = rates()?;
@@ -178,7 +179,7 @@ fn value(
                 alpha1: follow.observer.alpha1,
                 alpha2: follow.observer.alpha2,
             };
-            observer_energy(&error).max(FLOOR).log10()
+            math::log10(observer_energy(&error).max(FLOOR))
         }
         PlotQuantity::ObserverEnergy
         | PlotQuantity::Clearance

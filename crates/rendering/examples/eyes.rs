@@ -17,6 +17,7 @@ use rendering::{AdapterChoice, Gpu, GpuCameraRenderer};
 use sight::{region_around, shots};
 use stage::{Path, Play};
 use std::time::Instant;
+use vocabulary::math;
 use vocabulary::{Body, Grey, Picture, Region, Shot, Snapshot};
 
 fn median(
@@ -45,7 +46,7 @@ fn sheet(pictures: &[Grey]) -> Picture {
         for (n, value) in picture.values.iter().enumerate() {
             let (x, y) = (left + n as u32 % width, top + n as u32 / width);
             // Displays want the sRGB curve; about that.
-            let shown = (f64::from(*value) / 255.0).powf(1.0 / 2.2) * 255.0;
+            let shown = math::powf(f64::from(*value) / 255.0, 1.0 / 2.2) * 255.0;
             let at = ((y * 2 * width + x) * 4) as usize;
             rgba[at..at + 3].fill(shown as u8);
         }

@@ -14,6 +14,7 @@ use crate::ground::trail::sizes;
 use crate::picture_context::PictureContext;
 use crate::picture_plan::{Area, PicturePlan, overlap};
 use glam::{DVec2, DVec3};
+use vocabulary::math;
 use vocabulary::{FleetInfo, Light, RobotInfo, RobotState, StepRecord};
 
 /// A multiple of the ground's tile near the robots, so that single precision is enough around it.
@@ -29,8 +30,8 @@ const LOWEST_SUN: f64 = 0.05;
 
 /// Direction to the sun.
 pub(crate) fn towards_sun(light: &Light) -> DVec3 {
-    let (sin, cos) = light.sun_elevation.clamp(LOWEST_SUN, std::f64::consts::FRAC_PI_2).sin_cos();
-    let (across, along) = light.sun_azimuth.sin_cos();
+    let (sin, cos) = math::sin_cos(light.sun_elevation.clamp(LOWEST_SUN, std::f64::consts::FRAC_PI_2));
+    let (across, along) = math::sin_cos(light.sun_azimuth);
     DVec3::new(along * cos, across * cos, sin)
 }
 
@@ -43,8 +44,8 @@ pub(crate) fn shadowed(fleet: &FleetInfo, record: &StepRecord) -> (DVec2, f64) {
     let mut reach = radius;
     for (k, prop) in fleet.props.iter().enumerate() {
         let place = record.snapshot.props.get(k).unwrap_or(&prop.placement).position;
-        let away =
-            middle.distance(DVec3::from_array(place)) + prop.solid.reach().hypot(prop.solid.extent()[2]);
+        let away = middle.distance(DVec3::from_array(place))
+            + math::hypot(prop.solid.reach(), prop.solid.extent()[2]);
         let away = away.min(PROPS_WITHIN.max(radius));
         // A prop that is too far for the map widens it to its limit only where it comes near.
         if away.is_finite() && middle.distance(DVec3::from_array(place)) < PROPS_WITHIN + radius {

@@ -9,6 +9,7 @@ use rendering::{
 };
 use stage::{Path, Play};
 use std::sync::{Arc, OnceLock};
+use vocabulary::math;
 use vocabulary::{Picture, Pose, Terrain};
 
 const SIZE: (u32, u32) = (640, 360);
@@ -35,7 +36,7 @@ fn plan() -> Viewpoint {
 }
 
 fn pixel([x, y]: [f64; 2]) -> [f64; 2] {
-    let scale = 0.5 * f64::from(SIZE.1) / (0.3_f64.tan() * 9.0);
+    let scale = 0.5 * f64::from(SIZE.1) / (math::tan(0.3_f64) * 9.0);
     [0.5 * f64::from(SIZE.0) - y * scale, 0.5 * f64::from(SIZE.1) - x * scale]
 }
 

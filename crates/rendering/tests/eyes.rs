@@ -5,6 +5,7 @@
 use rendering::{AdapterChoice, Gpu, GpuCameraRenderer};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
+use vocabulary::math;
 use vocabulary::{
     Attitude, Body, CameraModel, CameraRenderer, Edge, FACES, FleetInfo, Grey, Light, Motion, Placement,
     Pose, Prop, Region, Rigid, RobotInfo, RobotState, Shell, Shot, Snapshot, Solid, tag_cell,
@@ -123,7 +124,7 @@ fn edges_of_tags_are_where_they_are_projected() {
             for side in 0..4 {
                 let (a, b, c) = (seen[side], seen[(side + 1) % 4], seen[(side + 2) % 4]);
                 let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-                let length = dx.hypot(dy);
+                let length = math::hypot(dx, dy);
                 let inward = [-dy / length, dx / length];
                 // A cell is an eighth of the square.
                 let cell = ((c[0] - b[0]) * inward[0] + (c[1] - b[1]) * inward[1]) / 8.0;

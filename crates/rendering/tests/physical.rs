@@ -8,6 +8,7 @@ use course::{CAR, ROVER, TRUCK, enlarge, furnish, grounded, hills, overturn, pro
 use rendering::{AdapterChoice, Gpu, PictureSpec, Renderer, Style, Trail, ViewLayout, Viewpoint};
 use stage::{Path, Play};
 use std::sync::{Arc, OnceLock};
+use vocabulary::math;
 use vocabulary::{Body, FleetInfo, Mobility, Picture, Solid, StepRecord, Terrain};
 
 const SIZE: (u32, u32) = (640, 360);
@@ -37,7 +38,7 @@ fn plan(ground: f64) -> Viewpoint {
 
 /// The pixel of a point on the ground in [`plan`], whose picture has +x up and +y to the left.
 fn pixel(x: f64, y: f64) -> (u32, u32) {
-    let scale = 0.5 * f64::from(SIZE.1) / (0.3_f64.tan() * 9.0);
+    let scale = 0.5 * f64::from(SIZE.1) / (math::tan(0.3_f64) * 9.0);
     let at = |middle: u32, shift: f64| (0.5 * f64::from(middle) - shift * scale).round() as u32;
     (at(SIZE.0, y), at(SIZE.1, x - 6.0))
 }
@@ -179,7 +180,7 @@ fn a_hill_hides_what_is_behind_it() {
     let side = 41;
     let heights = (0..side * side).map(|k| {
         let (x, y) = ((k % side) as f64 * 0.5 - 10.0, (k / side) as f64 * 0.5 - 10.0);
-        2.0 * (-((x + 3.0).powi(2) + y * y) / 1.5).exp()
+        2.0 * math::exp(-(math::powi(x + 3.0, 2) + y * y) / 1.5)
     });
     let origin = [hidden.x - 10.0, hidden.y - 10.0];
     let heights = heights.collect();

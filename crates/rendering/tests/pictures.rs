@@ -9,6 +9,7 @@ mod stage;
 use rendering::{AdapterChoice, Error, Gpu, PictureSpec, Renderer, Style, ViewLayout, Viewpoint};
 use stage::{Path, Play};
 use std::sync::OnceLock;
+use vocabulary::math;
 use vocabulary::{Contact, EntityId, Picture, Pose, StepRecord};
 
 const SIZE: (u32, u32) = (640, 360);
@@ -33,7 +34,7 @@ fn plan() -> Viewpoint {
 
 /// The pixel of a point on the ground in [`plan`], whose picture has +x up and +y to the left.
 fn pixel(x: f64, y: f64) -> (u32, u32) {
-    let scale = 0.5 * f64::from(SIZE.1) / (0.3_f64.tan() * 9.0);
+    let scale = 0.5 * f64::from(SIZE.1) / (math::tan(0.3_f64) * 9.0);
     let at = |middle: u32, shift: f64| (0.5 * f64::from(middle) - shift * scale).round() as u32;
     (at(SIZE.0, y), at(SIZE.1, x - 6.0))
 }

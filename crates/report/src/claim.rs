@@ -4,6 +4,7 @@
 use crate::trace::Trace;
 use crate::words::{quantity, told_apart};
 use serde::Serialize;
+use vocabulary::math;
 
 /// A measured value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -176,7 +177,7 @@ pub fn knowing_less_errs(figure: &str, runs: &Compared<'_>, edge: usize) -> Vec<
         let claim = "The behaviour under output feedback is quite satisfactory.";
         let band = runs.last().map_or(0.0, |(_, run)| {
             let [distance, bearing] = run.metrics.settling_band;
-            distance.hypot(bearing)
+            math::hypot(distance, bearing)
         });
         let subject = ClaimSubject::new(figure, claim, "settled ‖e‖", "");
         claims.push(FigureClaim::at_most(subject, &[*last], band));

@@ -5,6 +5,7 @@ use figures::Rgb;
 use metrics::{Digest, Metrics, MetricsBuilder};
 use scene::Scene;
 use simulation::Simulation;
+use vocabulary::math;
 use vocabulary::{Command, Edge, FleetInfo, Motion, Pose, StepRecord, wrap};
 
 /// One edge at one sample.
@@ -67,7 +68,7 @@ impl Trace {
     /// Settled ‖e‖ of an edge: root mean square from [`Trace::late_from`] on, m and rad taken together.
     pub fn settled(&self, edge: usize) -> Option<f64> {
         let [distance, bearing] = self.metrics.edges.get(edge)?.late_rms_error;
-        Some(distance.hypot(bearing))
+        Some(math::hypot(distance, bearing))
     }
 
     /// √∫‖e‖² dt of an edge over the whole run, m and rad taken together.
@@ -213,7 +214,7 @@ fn rates(edge: Edge, motion: impl Fn(usize) -> Option<Motion>) -> [f64; 2] {
     let (Some(leader), Some(follower)) = (motion(edge.leader), motion(edge.follower)) else {
         return [0.0; 2];
     };
-    let velocity = |m: &Motion| [m.speed * m.pose.heading.cos(), m.speed * m.pose.heading.sin()];
+    let velocity = |m: &Motion| [m.speed * math::cos(m.pose.heading), m.speed * math::sin(m.pose.heading)];
     let (v, w) = (velocity(&follower), velocity(&leader));
     let apart = [follower.pose.x - leader.pose.x, follower.pose.y - leader.pose.y];
     let moving = [v[0] - w[0], v[1] - w[1]];
@@ -250,7 +251,7 @@ mod tests {
         let at = |time: f64| {
             let pose = |m: &Motion| {
                 let heading = m.pose.heading + m.turn_rate * time;
-                let (sin, cos) = (m.pose.heading + 0.5 * m.turn_rate * time).sin_cos();
+                let (sin, cos) = math::sin_cos(m.pose.heading + 0.5 * m.turn_rate * time);
                 Pose::new(m.pose.x + m.speed * time * cos, m.pose.y + m.speed * time * sin, heading)
             };
             Relative::between(pose(&start[0]), pose(&start[1]))

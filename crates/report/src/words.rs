@@ -1,6 +1,7 @@
 //! Numbers as text.
 
 use std::f64::consts::PI;
+use vocabulary::math;
 
 /// A value with its unit, in three digits, small lengths in mm and angles in degrees.
 pub(crate) fn quantity(value: f64, unit: &str) -> String {
@@ -41,16 +42,16 @@ fn digits_to(count: i32, value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 { "0".to_owned() } else { "—".to_owned() };
     }
-    let decade = value.abs().log10().floor();
+    let decade = math::log10(value.abs()).floor();
     // Rounding may carry into the next decade: 9.996 is 10.0.
-    let shift = 10_f64.powi(count - 1);
-    let carried = (value.abs() / 10_f64.powf(decade) * shift).round() >= 10.0 * shift;
+    let shift = math::powi(10_f64, count - 1);
+    let carried = (value.abs() / math::powf(10_f64, decade) * shift).round() >= 10.0 * shift;
     let decade = if carried { decade + 1.0 } else { decade };
     if (-3.0..6.0).contains(&decade) {
         let decimals = (f64::from(count - 1) - decade).max(0.0) as usize;
         return format!("{value:.decimals$}").replace('-', "−");
     }
-    let factor = value / 10_f64.powf(decade);
+    let factor = value / math::powf(10_f64, decade);
     let raised: String = format!("{decade}").chars().map(raise).collect();
     let decimals = (count - 1) as usize;
     format!("{factor:.decimals$}·10{raised}").replace('-', "−")
@@ -74,7 +75,7 @@ pub(crate) fn round(value: f64) -> f64 {
     if !value.is_finite() || value <= 0.0 {
         return 1.0;
     }
-    let decade = 10_f64.powf(value.log10().floor());
+    let decade = math::powf(10_f64, math::log10(value).floor());
     let factor = [5.0, 2.0, 1.0].into_iter().find(|f| f * decade <= value * (1.0 + 1e-9)).unwrap_or(1.0);
     factor * decade
 }

@@ -5,7 +5,7 @@
 //! `%`, `rem_euclid` and `mul_add` are exact everywhere and stay methods. Angles are in rad.
 
 pub use libm::{
-    acos, asin, atan, atan2, cos, exp, expm1 as exp_m1, hypot, log as ln, log1p as ln_1p, log2, log10,
+    acos, asin, atan, atan2, cos, exp, exp2, expm1 as exp_m1, hypot, log as ln, log1p as ln_1p, log2, log10,
     pow as powf, sin, sincos as sin_cos, tan, tanh,
 };
 
@@ -35,6 +35,7 @@ mod tests {
             atan2(x, y),
             exp(y),
             exp_m1(x),
+            exp2(y),
             hypot(x, y),
             ln(x),
             ln_1p(x),
@@ -53,6 +54,7 @@ mod tests {
             0x4006_c893_0887_4c97,
             0x3fb6_cf3b_e21d_16ea,
             0x3ff1_3dbc_58a0_9b6b,
+            0x3fc7_f365_848e_7be6,
             0x4004_3588_47be_bd48,
             0xbfd4_094f_7349_253f,
             0x3fe1_8fe4_1362_fbaf,

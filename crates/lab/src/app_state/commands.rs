@@ -7,6 +7,7 @@ use crate::session::branches::BranchChange;
 use crate::session::runner::RunRequest;
 use crate::session::scene_draft::SceneDraft;
 use scene::Role;
+use vocabulary::math;
 use vocabulary::{Relative, wrap};
 
 /// Candidate set points of a new follower: m, degrees.
@@ -286,7 +287,7 @@ impl AppState {
             .find(|name| scene.index_of(name).is_none());
         let free = |place: &&[f64; 2]| {
             let [x, y] = seen_from(leader.pose, **place);
-            let near = |robot: &scene::Robot| (robot.pose.x - x).hypot(robot.pose.y - y) < 1.0;
+            let near = |robot: &scene::Robot| math::hypot(robot.pose.x - x, robot.pose.y - y) < 1.0;
             !scene.robots.iter().any(near)
         };
         let place = PLACES.iter().find(free).copied().unwrap_or([8.0, 180.0]);

@@ -8,6 +8,7 @@ use crate::quantities::{PlotQuantity, QuantityCurve, bounds, curves};
 use crate::session::history::History;
 use eframe::egui::{self, Color32, Id, Stroke, Ui};
 use egui_plot::{GridMark, HLine, HoverPosition, LineStyle, Plot, PlotPoint, VLine};
+use vocabulary::math;
 
 /// Maximum number of points of a curve, before straight parts are simplified.
 const MOST_POINTS: usize = 400;
@@ -69,7 +70,8 @@ fn plot(
         .label_formatter(move |hover| {
             let (HoverPosition::NearDataPoint { position: at, .. }
             | HoverPosition::Elsewhere { position: at }) = hover;
-            let value = if logarithmic { format!("{:.1e}", 10_f64.powf(at.y)) } else { fixed(at.y, 3) };
+            let value =
+                if logarithmic { format!("{:.1e}", math::powf(10_f64, at.y)) } else { fixed(at.y, 3) };
             Some(format!("{} s\n{value}", fixed(at.x, 2)))
         });
     let all = curves(app_state, quantity, MOST_POINTS);
@@ -229,7 +231,7 @@ mod tests {
     fn straight_curves_keep_their_ends_and_bent_ones_their_shape() {
         let line: Vec<[f64; 2]> = (0..100).map(|k| [f64::from(k), 2.0 * f64::from(k)]).collect();
         assert_eq!(straightened(&line, [0.0, 200.0], 0.01).len(), 2);
-        let wave: Vec<[f64; 2]> = (0..200).map(|k| [f64::from(k), (f64::from(k) * 0.1).sin()]).collect();
+        let wave: Vec<[f64; 2]> = (0..200).map(|k| [f64::from(k), math::sin(f64::from(k) * 0.1)]).collect();
         let kept = straightened(&wave, [-1.0, 1.0], 0.02);
         assert!(kept.len() < 100, "{}", kept.len());
         for point in &wave {

@@ -4,6 +4,7 @@ use super::{colour, menu_item, naming, nothing, on_click};
 use crate::action::Action;
 use crate::app_state::{AppState, Selection, Tool};
 use eframe::egui::{self, RichText, Role, Sense, Ui, WidgetInfo};
+use vocabulary::math;
 use vocabulary::{FleetInfo, StepRecord};
 
 /// The tree of robots.
@@ -63,7 +64,7 @@ fn row(
             if let Some(error) =
                 app_state.edge_of(robot).and_then(|edge| Some(record?.edges.get(edge)?.error))
             {
-                let size = error[0].hypot(error[1]);
+                let size = math::hypot(error[0], error[1]);
                 let text = format!("{} m", crate::numbers::fixed(error[0], 2));
                 let weak = RichText::new(text).small();
                 let text = if size > 0.05 { weak.color(ui.visuals().warn_fg_color) } else { weak.weak() };

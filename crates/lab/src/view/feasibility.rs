@@ -3,6 +3,7 @@
 use crate::app_state::AppState;
 use crate::session::prediction::Prediction;
 use formation::feasible::infeasible;
+use vocabulary::math;
 use vocabulary::{Limits, MotionInput, Pose, StepRecord};
 
 /// Size of a cell, m.
@@ -28,7 +29,7 @@ pub struct PlaceConstraints {
 impl PlaceConstraints {
     /// Whether a place is infeasible while the leader moves at one of `motions` (m/s, rad/s).
     pub fn refuses(&self, place: [f64; 2], motions: &[[f64; 2]]) -> bool {
-        self.others.iter().any(|(at, near)| (place[0] - at[0]).hypot(place[1] - at[1]) < *near)
+        self.others.iter().any(|(at, near)| math::hypot(place[0] - at[0], place[1] - at[1]) < *near)
             || motions.iter().any(|motion| self.refuses_at(place, *motion))
     }
 
@@ -39,9 +40,9 @@ impl PlaceConstraints {
         }
         let Some([far, pan]) = self.sight else { return false };
         // The follower's heading, and the leader's direction from it.
-        let heading = (turn_rate * place[0]).atan2(speed - turn_rate * place[1]);
-        let to_leader = (-place[1]).atan2(-place[0]);
-        place[0].hypot(place[1]) > far || vocabulary::wrap(to_leader - heading).abs() > pan
+        let heading = math::atan2(turn_rate * place[0], speed - turn_rate * place[1]);
+        let to_leader = math::atan2(-place[1], -place[0]);
+        math::hypot(place[0], place[1]) > far || vocabulary::wrap(to_leader - heading).abs() > pan
     }
 }
 
@@ -58,14 +59,14 @@ pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(
     // A cell of a tag must be at least two pixels wide to be read.
     let cell = fleet.robots.get(ends.leader)?.shell.as_ref().map_or(0.015, |shell| shell.cell);
     let far = camera_model.focal * cell / 2.0;
-    let half_picture = (0.5 * f64::from(camera_model.width) / camera_model.focal).atan();
+    let half_picture = math::atan(0.5 * f64::from(camera_model.width) / camera_model.focal);
     let body = &fleet.robots[robot].body;
-    let reach = body.length.hypot(body.width);
+    let reach = math::hypot(body.length, body.width);
     let others =
         fleet.edges.iter().enumerate().filter(|(k, other)| *k != edge && other.leader == ends.leader);
     let places = others.filter_map(|(k, _)| {
         let [distance, bearing] = record.edges.get(k)?.set_point;
-        Some(([distance * bearing.cos(), distance * bearing.sin()], reach))
+        Some(([distance * math::cos(bearing), distance * math::sin(bearing)], reach))
     });
     let wanted = PlaceConstraints {
         limits: vehicle.limits(),
@@ -91,7 +92,7 @@ pub fn shade(wanted: &PlaceConstraints, motions: &[[f64; 2]]) -> Vec<f32> {
     let half = 0.5 * (SIDE - 1) as f64 * STEP;
     let alpha = |square: usize| {
         let place = [square / SIDE, square % SIDE].map(|k| k as f64 * STEP - half);
-        let away = place[0].hypot(place[1]) / half;
+        let away = math::hypot(place[0], place[1]) / half;
         // It fades towards its rim, so that the square is not visible.
         let rim = ((1.0 - away) / 0.2).clamp(0.0, 1.0) as f32;
         if wanted.refuses(place, motions) { rim } else { 0.0 }

@@ -4,6 +4,7 @@ use crate::common::{Rig, THREE, app_state, with};
 use lab::action::Action;
 use lab::app_state::{AppState, Selection, Tool};
 use lab::session::runner::RunRequest;
+use vocabulary::math;
 
 /// Two groups, and one robot that has gains of its own.
 const GROUPS: &str = "\
@@ -313,7 +314,7 @@ fn robots_are_added_where_there_is_room() {
     assert_eq!(names, ["leader", "left", "right", "follower-1", "follower-2", "follower-3"]);
     for (k, a) in scene.robots.iter().enumerate() {
         for b in &scene.robots[..k] {
-            let apart = (a.pose.x - b.pose.x).hypot(a.pose.y - b.pose.y);
+            let apart = math::hypot(a.pose.x - b.pose.x, a.pose.y - b.pose.y);
             assert!(apart >= 1.0, "{} and {} are {apart} m apart", a.name, b.name);
         }
     }

@@ -6,6 +6,7 @@ use crate::camera::viewpoint::Tile;
 use crate::palette::{Rgb, hex, with_alpha};
 use crate::picture_context::PictureContext;
 use glam::Vec2;
+use vocabulary::math;
 use vocabulary::{
     CameraModel, Edge, FACES, MeasurementRecord, Outcome, Relative, Rigid, RobotInfo, Shell, Word, tag_code,
     wrap,
@@ -40,7 +41,7 @@ struct DetectionOverlay<'a, 'b, 'c> {
 
 /// Where a direction (x/z right, y/z down) is for a camera that has turned to the left; `None` behind it.
 fn turned([x, y]: [f64; 2], turn: f64) -> Option<[f64; 2]> {
-    let (sin, cos) = turn.sin_cos();
+    let (sin, cos) = math::sin_cos(turn);
     let ahead = cos - x * sin;
     (ahead > 0.02).then(|| [(x * cos + sin) / ahead, y / ahead])
 }
@@ -55,9 +56,9 @@ fn turn_since(context: &PictureContext<'_>, edge: &Edge, frame: &MeasurementReco
         return 0.0;
     };
     let bearing = |relative: &Relative, pan: f64| {
-        let (sin, cos) = relative.view_angle.sin_cos();
+        let (sin, cos) = math::sin_cos(relative.view_angle);
         let ahead = -relative.distance * cos - member.camera_mount.forward;
-        (-relative.distance * sin).atan2(ahead) - pan
+        math::atan2(-relative.distance * sin, ahead) - pan
     };
     let now = Relative::between(leader.motion.pose, own.motion.pose);
     wrap(bearing(&frame.truth, frame.pan) - bearing(&now, own.camera_pan))
@@ -94,7 +95,7 @@ impl DetectionOverlay<'_, '_, '_> {
     }
 
     fn shell(&mut self, camera_from_body: &Rigid, shell: &Shell, colour: Rgb) {
-        let half = 0.5 * shell.face_height / shell.lean.cos().max(0.1);
+        let half = 0.5 * shell.face_height / math::cos(shell.lean).max(0.1);
         for face in 0..FACES {
             let frame = camera_from_body.after(&shell.body_from_face(face));
             let (low, high) = (shell.half_width(-half), shell.half_width(half));
@@ -138,7 +139,7 @@ fn clipped(a: Vec2, b: Vec2, tile: &Tile) -> Option<(Vec2, Vec2)> {
 /// The estimated body of the leader, in the frame of the follower's camera at the measurement.
 fn estimated(frame: &MeasurementRecord, follower: &RobotInfo) -> Rigid {
     let relative = frame.measurement.relative;
-    let (sin, cos) = relative.view_angle.sin_cos();
+    let (sin, cos) = math::sin_cos(relative.view_angle);
     let at = [-relative.distance * cos, -relative.distance * sin, 0.0];
     let leader = Rigid::turned(at, relative.view_angle - relative.bearing, 0.0, 0.0);
     follower.camera_mount.body_from_camera(frame.pan).inverse().after(&leader)

@@ -13,6 +13,7 @@ use crate::picture_context::PictureContext;
 use crate::picture_plan::{Area, overlap};
 use crate::{Viewpoint, camera::viewpoint::Tile};
 use glam::{DVec2, DVec3, Vec2};
+use vocabulary::math;
 use vocabulary::{Condition, RobotInfo, RobotState};
 
 /// Distance of words from the picture's edge at scale 1, pixels.
@@ -207,7 +208,7 @@ fn middle(robot: &RobotState, member: &RobotInfo) -> (DVec3, f64) {
     let size = crate::gpu::model::size(&member.body);
     let [x, y] = robot.motion.pose.world_from_body(0.12 * size, 0.0);
     // Over its ground point, or under it where it lies on its roof.
-    let upright = robot.attitude.roll.cos() * robot.attitude.pitch.cos();
+    let upright = math::cos(robot.attitude.roll) * math::cos(robot.attitude.pitch);
     (DVec3::new(x, y, robot.attitude.height + 0.15 * size * upright), size)
 }
 
@@ -284,7 +285,7 @@ fn edges(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window: Wind
 
 /// A length that reads well, near to `wanted`.
 fn round_length(wanted: f64) -> f64 {
-    let power = 10.0_f64.powf(wanted.log10().floor());
+    let power = math::powf(10.0_f64, math::log10(wanted).floor());
     [5.0, 2.0, 1.0].into_iter().map(|n| n * power).find(|n| *n <= wanted).unwrap_or(power)
 }
 
@@ -331,7 +332,7 @@ pub(crate) fn ring_boxes(context: &PictureContext<'_>, window: Window<'_>) -> Ve
     let reach = RING * context.size;
     let ring = |[x, y]: [f64; 2]| {
         around((0..8).map(|k| {
-            let (sin, cos) = (std::f64::consts::FRAC_PI_4 * f64::from(k)).sin_cos();
+            let (sin, cos) = math::sin_cos(std::f64::consts::FRAC_PI_4 * f64::from(k));
             window.anywhere(context.on_floor(x + reach * cos, y + reach * sin))
         }))
     };

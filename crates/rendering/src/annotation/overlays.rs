@@ -5,6 +5,7 @@ use crate::annotation::text_shaper::{Block, Measure, line_height};
 use crate::palette::{self, Rgb, with_alpha};
 use crate::picture_plan::Area;
 use glam::Vec2;
+use vocabulary::math;
 use vocabulary::round_step;
 
 /// What is shown over and beside the views of a picture.
@@ -213,7 +214,7 @@ fn ticks([low, high]: [f64; 2], rows: f64) -> Vec<f64> {
 
 /// A tick in as many digits as the range needs.
 fn number(value: f64, [low, high]: [f64; 2]) -> String {
-    let digits = (1.0 - (high - low).log10().floor()).clamp(0.0, 6.0) as usize;
+    let digits = (1.0 - math::log10(high - low).floor()).clamp(0.0, 6.0) as usize;
     let text = format!("{value:.digits$}");
     let text =
         if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text };

@@ -179,6 +179,7 @@ fn section(planes: &[[f64; 4]], z: f64) -> Vec<DVec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vocabulary::math;
 
     fn bounds(side: f64, [bottom, top]: [f64; 2]) -> [Bound; 4] {
         let bound = |across: f64, up: f64, most: f64| Bound { across, up, most };
@@ -191,7 +192,7 @@ mod tests {
         let points: Vec<_> = (0..40)
             .map(|k| {
                 let k = f64::from(k);
-                DVec3::new(4e4 + 3.0 * (1.7 * k).sin(), 1.5 * (2.3 * k).cos(), 0.8 * (0.9 * k).sin())
+                DVec3::new(4e4 + 3.0 * math::sin(1.7 * k), 1.5 * math::cos(2.3 * k), 0.8 * math::sin(0.9 * k))
             })
             .collect();
         let corner = Bound { across: 0.6, up: 0.8, most: 0.35 };

@@ -18,6 +18,7 @@ use crate::camera::transition::between;
 use crate::ground::floor::Floor;
 use crate::picture_context::PictureContext;
 use glam::{DMat4, DVec2, DVec3, DVec4, Mat4};
+use vocabulary::math;
 use vocabulary::{Edge, Snapshot};
 
 /// The pose and projection of a camera; only cameras on robots roll.
@@ -92,7 +93,7 @@ impl Camera {
         // Looking straight down, the picture's upper edge is where +x would be.
         let heading = if flat.length() < 1e-9 { DVec2::X } else { flat.normalize() };
         let right = DVec3::new(heading.y, -heading.x, 0.0);
-        let tangent = (0.5 * field_of_view).tan();
+        let tangent = math::tan(0.5 * field_of_view);
         let half = DVec2::new(tangent * aspect, tangent);
         Self::upright(eye, forward, right, half)
     }
@@ -112,8 +113,12 @@ impl Camera {
     }
 
     pub(crate) fn pitched(heading: f64, pitch: f64, tangent: f64, aspect: f64) -> Self {
-        let forward = DVec3::new(heading.cos() * pitch.cos(), heading.sin() * pitch.cos(), -pitch.sin());
-        let right = DVec3::new(heading.sin(), -heading.cos(), 0.0);
+        let forward = DVec3::new(
+            math::cos(heading) * math::cos(pitch),
+            math::sin(heading) * math::cos(pitch),
+            -math::sin(pitch),
+        );
+        let right = DVec3::new(math::sin(heading), -math::cos(heading), 0.0);
         let half = DVec2::new(tangent * aspect, tangent);
         Self::upright(DVec3::ZERO, forward, right, half)
     }
@@ -221,7 +226,7 @@ pub(crate) fn corners(extent: &Extent, margin: f64) -> Vec<DVec3> {
 fn snake_eye(smoothed: &SmoothedFormation, aspect: f64) -> Camera {
     let extent = smoothed.formation();
     let heading = extent.frame.heading;
-    let tangent = (27.5_f64).to_radians().tan();
+    let tangent = math::tan((27.5_f64).to_radians());
     let mut camera = Camera::pitched(heading, 0.08, tangent, aspect);
     // Far enough back for the last row to fit, unless that row is very wide.
     let aside = extent.left.map(|left| (left - extent.rear).abs());
@@ -248,7 +253,7 @@ fn top(smoothed: &SmoothedFormation, room: &FreeSpace) -> Camera {
 fn orbit(smoothed: &SmoothedFormation, time: f64, alone: bool, room: &FreeSpace) -> Camera {
     let extent = smoothed.formation();
     let ([x, y], radius) = (extent.middle(), extent.radius(REACH * extent.size));
-    let tangent = (19.0_f64).to_radians().tan();
+    let tangent = math::tan((19.0_f64).to_radians());
     // A full turn in 40 s, so that no side stays hidden: from behind a formation on the left; robots of which none
     // follows another often meet, and meetings are seen from the side.
     let start = if alone { 1.6 } else { 2.6 };
@@ -257,7 +262,7 @@ fn orbit(smoothed: &SmoothedFormation, time: f64, alone: bool, room: &FreeSpace)
     let mut camera = Camera::pitched(heading, rise, tangent, room.aspect());
     let [low, high] = [extent.ground[0], extent.ground[1] + 0.3 * extent.size];
     let around = (0..32).flat_map(|k| {
-        let (sin, cos) = (heading + std::f64::consts::TAU * f64::from(k) / 32.0).sin_cos();
+        let (sin, cos) = math::sin_cos(heading + std::f64::consts::TAU * f64::from(k) / 32.0);
         [low, high].map(|z| DVec3::new(x + radius * cos, y + radius * sin, z))
     });
     let [bottom, over] = room.rows();
@@ -281,17 +286,17 @@ fn follow(
     let leader = edges.iter().find(|e| e.follower == robot).and_then(|e| place(e.leader));
     let to_leader = leader.map_or(DVec2::ZERO, |l| DVec2::new(l.x - pose.x, l.y - pose.y));
     // The sine keeps the turn steady where the leader is straight behind.
-    let bearing = to_leader.y.atan2(to_leader.x) - heading;
-    let turn = if leader.is_some() { 0.6 * bearing.sin() } else { 0.0 };
+    let bearing = math::atan2(to_leader.y, to_leader.x) - heading;
+    let turn = if leader.is_some() { 0.6 * math::sin(bearing) } else { 0.0 };
     let forward = DVec2::from_angle(heading + turn);
-    let tangent = (25.0_f64).to_radians().tan();
+    let tangent = math::tan((25.0_f64).to_radians());
     let size = smoothed.formation().size;
     let (ahead, aside) = (to_leader.dot(forward), to_leader.perp_dot(forward).abs() + 0.2 * size);
     // Not farther: the robot that is followed must stay large.
     let back = (aside / (0.86 * tangent * aspect) - ahead).clamp(2.0 * size, 4.5 * size);
     let rise = 0.5 * back;
     // The robot stands in the lower third.
-    let pitch = (rise / back).atan() - (0.48 * tangent).atan();
+    let pitch = math::atan(rise / back) - math::atan(0.48 * tangent);
     let mut camera = Camera::pitched(heading + turn, pitch, tangent, aspect);
     camera.eye = (DVec2::new(pose.x, pose.y) - forward * back).extend(smoothed.height(robot) + rise);
     camera
@@ -337,7 +342,7 @@ mod tests {
     fn a_followed_robot_is_low_and_its_leader_in_the_picture() {
         let edges = [Edge { leader: 0, follower: 1 }];
         for degrees in [0.0, 45.0, 90.0, 120.0, -60.0, -120.0] {
-            let (sin, cos) = f64::to_radians(degrees).sin_cos();
+            let (sin, cos) = math::sin_cos(f64::to_radians(degrees));
             let robots = vec![vocabulary::RobotState::default(); 2];
             let mut snapshot = Snapshot { robots, ..Snapshot::default() };
             snapshot.robots[0].motion.pose = vocabulary::Pose::new(2.0 * cos, 2.0 * sin, 0.3);

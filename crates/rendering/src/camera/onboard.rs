@@ -2,6 +2,7 @@
 
 use crate::camera::Camera;
 use glam::{DVec2, DVec3};
+use vocabulary::math;
 use vocabulary::{Body, CameraModel, CameraMount, FleetInfo, Region, Shot, Snapshot};
 
 /// What is nearer is not seen, m.
@@ -40,7 +41,7 @@ impl Camera {
         }
         let p = self.view_from_world(middle);
         let beside = |at: f64, shift: f64, half: f64| {
-            let out = |edge: f64, side: f64| side * (at - edge * p.z) / edge.hypot(1.0) > radius;
+            let out = |edge: f64, side: f64| side * (at - edge * p.z) / math::hypot(edge, 1.0) > radius;
             out(shift + half, 1.0) || out(shift - half, -1.0)
         };
         p.z > -radius && !beside(p.x, self.shift.x, self.half.x) && !beside(p.y, self.shift.y, self.half.y)

@@ -127,6 +127,7 @@ mod tests {
     use crate::camera::Camera;
     use crate::camera::viewpoint::Tile;
     use crate::ground::floor::Floor;
+    use vocabulary::math;
     use vocabulary::{Body, Edge, EdgeState, Pose, Snapshot};
 
     fn context() -> (FleetInfo, StepRecord) {
@@ -160,7 +161,7 @@ mod tests {
         assert_eq!(pick(&sight, &fleet, &record, at(-1.9, 0.0, 0.05))[0], Picked::Robot(1));
         let between = pick(&sight, &fleet, &record, at(-1.0, 0.0, 0.0));
         assert!(between.ends_with(&[Picked::Edge(0)]), "{between:?}");
-        let goal = [2.0 * 2.5_f64.cos(), 2.0 * 2.5_f64.sin()];
+        let goal = [2.0 * math::cos(2.5_f64), 2.0 * math::sin(2.5_f64)];
         assert_eq!(pick(&sight, &fleet, &record, at(goal[0], goal[1], 0.0)), [Picked::SetPoint(0)]);
         assert!(pick(&sight, &fleet, &record, at(1.0, -2.0, 0.0)).is_empty());
     }

@@ -4,6 +4,7 @@ use crate::camera::Camera;
 use crate::camera::viewpoint::{FreeCamera, Tile, Viewpoint};
 use crate::ground::floor::Floor;
 use glam::{DVec2, DVec3};
+use vocabulary::math;
 
 /// Maximum distance of a search, m.
 const FAR: f64 = 2_000.0;
@@ -77,16 +78,17 @@ impl Sightline {
     pub fn free(&self) -> FreeCamera {
         let camera = &self.camera;
         let flat = if camera.forward.truncate().length() > 1e-6 { camera.forward } else { camera.up };
-        let (heading, pitch) = (flat.y.atan2(flat.x), (-camera.forward.z).clamp(-1.0, 1.0).asin());
+        let (heading, pitch) =
+            (math::atan2(flat.y, flat.x), math::asin((-camera.forward.z).clamp(-1.0, 1.0)));
         let middle = ViewRay { from: camera.eye, along: camera.forward };
         let (depth, distance, field_of_view) = if camera.perspective {
             // Where the middle is sky or far away, something near that is not.
             let most = 12.0 * (camera.eye.z - self.floor.ground(camera.eye.truncate())).max(0.5);
             let distance = self.depth(&middle).unwrap_or(most).min(most);
-            (distance, distance, 2.0 * camera.half.y.atan())
+            (distance, distance, 2.0 * math::atan(camera.half.y))
         } else {
             let field_of_view = FreeCamera::FIELD_OF_VIEW;
-            let distance = camera.half.y / (0.5 * field_of_view).tan();
+            let distance = camera.half.y / math::tan(0.5 * field_of_view);
             (self.depth(&middle).unwrap_or(camera.eye.z), distance, field_of_view)
         };
         FreeCamera { target: middle.at(depth).to_array(), heading, pitch, distance, field_of_view }
@@ -180,7 +182,7 @@ mod tests {
     }
 
     fn hills() -> Floor {
-        let height = |k: usize| 0.4 * ((k % 61) as f64 * 0.3).sin() * ((k / 61) as f64 * 0.2).cos();
+        let height = |k: usize| 0.4 * math::sin((k % 61) as f64 * 0.3) * math::cos((k / 61) as f64 * 0.2);
         let heights = (0..61 * 61).map(height).collect();
         let terrain = Terrain { origin: [-7.5; 2], cell: 0.25, columns: 61, rows: 61, heights, grip: vec![] };
         let ramp = Prop {
@@ -203,7 +205,7 @@ mod tests {
                     let Some(place) = sight.ground(pixel) else { continue };
                     let [x, y] = sight.pixel_of_ground(place).unwrap();
                     // At the foot of a ramp's side the floor jumps.
-                    found += usize::from((x - pixel[0]).hypot(y - pixel[1]) < 1e-6);
+                    found += usize::from(math::hypot(x - pixel[0], y - pixel[1]) < 1e-6);
                 }
                 assert!(found > 300, "{found} of {}", 24 * 14);
             }
@@ -231,7 +233,7 @@ mod tests {
             let free = line(Camera::looking(eye, target, field_of_view, 640.0 / 360.0), Floor::default());
             for pixel in [[101.0, 399.0], [420.0, 220.0], [700.0, 300.0], [739.0, 399.0]] {
                 let [x, y] = free.pixel_of_ground(sight.ground(pixel).unwrap()).unwrap();
-                assert!((x - pixel[0]).hypot(y - pixel[1]) < 0.01, "{pixel:?} {x} {y}");
+                assert!(math::hypot(x - pixel[0], y - pixel[1]) < 0.01, "{pixel:?} {x} {y}");
             }
         }
     }

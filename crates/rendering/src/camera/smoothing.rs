@@ -1,5 +1,6 @@
 //! What cameras follow: headings and the formation's extent, filtered so that a picture never jumps.
 
+use vocabulary::math;
 use vocabulary::{Condition, Pose, StepRecord, nearest_turn};
 
 /// Time constant of headings, s: calm in curves, and a first order filter cannot overshoot.
@@ -38,7 +39,7 @@ impl Extent {
     /// Radius of the circle around it, `margin` wider on all sides, m: a view of that does not zoom where it turns.
     pub(crate) fn radius(&self, margin: f64) -> f64 {
         let Self { forward, left, .. } = self.grown(margin);
-        0.5 * (forward[1] - forward[0]).hypot(left[1] - left[0])
+        0.5 * math::hypot(forward[1] - forward[0], left[1] - left[0])
     }
 
     /// The eight corners of the outline, `margin` wider on all sides, in the frame, m.
@@ -115,7 +116,7 @@ impl SmoothedFormation {
     }
 
     fn turn(&mut self, record: &StepRecord, step: f64) {
-        let share = 1.0 - (-step / HEADING_LAG).exp();
+        let share = 1.0 - math::exp(-step / HEADING_LAG);
         let robots = &record.snapshot.robots;
         self.headings.resize(robots.len(), f64::NAN);
         for (kept, robot) in self.headings.iter_mut().zip(robots) {
@@ -135,7 +136,7 @@ impl SmoothedFormation {
         let lead = robots.get(self.lead)?.motion.pose;
         let frame = Pose { heading: self.heading(self.lead)?, ..lead };
         let local = |[x, y]: [f64; 2]| {
-            let (sin, cos) = frame.heading.sin_cos();
+            let (sin, cos) = math::sin_cos(frame.heading);
             let (dx, dy) = (x - frame.x, y - frame.y);
             [dx * cos + dy * sin, dy * cos - dx * sin]
         };
@@ -148,7 +149,7 @@ impl SmoothedFormation {
         };
         let (forward, left) = (range(0), range(1));
         // Weighing softly keeps the place steady while robots take turns at being last.
-        let weigh = |p: &[f64; 2]| (-(p[0] - forward[0]) / 0.3).exp();
+        let weigh = |p: &[f64; 2]| math::exp(-(p[0] - forward[0]) / 0.3);
         let total: f64 = points.iter().map(weigh).sum();
         let rear = points.iter().map(|p| weigh(p) * p[1]).sum::<f64>() / total;
         let cuts = CORNERS.map(|[f, l]| {
@@ -166,7 +167,7 @@ impl SmoothedFormation {
 }
 
 fn approach(old: &Extent, wanted: &Extent, step: f64) -> Extent {
-    let share = 1.0 - (-step / EXTENT_LAG).exp();
+    let share = 1.0 - math::exp(-step / EXTENT_LAG);
     let mix = |a: f64, b: f64| a + share * (b - a);
     // Sizes below a metre do not drive the zoom, so they may change faster.
     let range = |a: [f64; 2], b: [f64; 2]| {

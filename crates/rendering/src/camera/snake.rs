@@ -4,6 +4,7 @@ use crate::camera::free_space::{Bound, FreeSpace};
 use crate::camera::smoothing::SmoothedFormation;
 use crate::camera::{Camera, NEAREST, REACH, corners, sides};
 use glam::DVec3;
+use vocabulary::math;
 
 /// How the snake view is composed, from looking at pictures: as it is for small formations, and as it is at the most for
 /// wide ones, which would fill only a thin band of the picture if seen from low down.
@@ -46,10 +47,10 @@ pub(crate) fn snake(smoothed: &SmoothedFormation, room: &FreeSpace) -> Camera {
     let places = corners(&extent, REACH * extent.size);
     let [bottom, over] = room.rows();
     let bottom = bottom.max(BOTTOM);
-    let tangent = (0.5 * FIELD_OF_VIEW).tan();
+    let tangent = math::tan(0.5 * FIELD_OF_VIEW);
     let at = |share: f64| {
         let form = SnakeComposition::at(share);
-        let pitch = ((1.0 - 2.0 * form.horizon) * tangent).atan();
+        let pitch = math::atan((1.0 - 2.0 * form.horizon) * tangent);
         let camera = Camera::pitched(extent.frame.heading, pitch, tangent, room.aspect());
         (camera, sides(form.width, [bottom, form.top.min(over)]))
     };
@@ -119,7 +120,7 @@ mod tests {
             .flat_map(|ray| {
                 (0..15).map(move |k| (f64::from(ray) / 6.0 * std::f64::consts::PI, 1.4 * f64::from(k)))
             })
-            .map(|(turn, far)| [-far * turn.sin(), far * turn.cos()])
+            .map(|(turn, far)| [-far * math::sin(turn), far * math::cos(turn)])
             .collect();
         for (size, least) in
             [([1280.0, 720.0], [0.7, 0.5]), ([640.0, 720.0], [0.7, 0.33]), ([720.0, 1280.0], [0.7, 0.2])]

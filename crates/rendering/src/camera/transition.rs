@@ -3,6 +3,7 @@
 use crate::camera::Camera;
 use crate::camera::smoothing::SmoothedFormation;
 use glam::{DVec2, DVec3};
+use vocabulary::math;
 use vocabulary::nearest_turn;
 
 /// The camera at `share` of the way, 0 to 1. What it looks at stays about as large as in both: place and size of what is
@@ -19,13 +20,13 @@ pub(crate) fn between(from: &Camera, to: &Camera, share: f64, smoothed: &Smoothe
     let middle = DVec3::new(x, y, extent.ground[0]);
     let (a, b) = (CameraFraming::of(from, middle), CameraFraming::of(to, middle));
     let mix = |p: f64, q: f64| p + (q - p) * share;
-    let geometric = |p: f64, q: f64| (mix(p.ln(), q.ln())).exp();
+    let geometric = |p: f64, q: f64| math::exp(mix(math::ln(p), math::ln(q)));
     let (heading, pitch) = (mix(a.heading, nearest_turn(b.heading, a.heading)), mix(a.pitch, b.pitch));
     let tangent = geometric(a.tangent, b.tangent);
     let distance = geometric(a.size, b.size) / tangent;
     let target = a.target.lerp(b.target, share);
-    let (ahead, right) = (heading.sin_cos(), DVec3::new(heading.sin(), -heading.cos(), 0.0));
-    let forward = DVec3::new(ahead.1 * pitch.cos(), ahead.0 * pitch.cos(), -pitch.sin());
+    let (ahead, right) = (math::sin_cos(heading), DVec3::new(math::sin(heading), -math::cos(heading), 0.0));
+    let forward = DVec3::new(ahead.1 * math::cos(pitch), ahead.0 * math::cos(pitch), -math::sin(pitch));
     let half = DVec2::new(tangent * from.half.x / from.half.y, tangent);
     let camera = Camera::upright(target - forward * distance, forward, right, half);
     Camera { shift: from.shift.lerp(to.shift, share), near: from.near, ..camera }
@@ -49,7 +50,8 @@ impl CameraFraming {
     fn of(camera: &Camera, middle: DVec3) -> Self {
         let away = (middle - camera.eye).dot(camera.forward).max(0.5);
         let flat = if camera.forward.z < -0.999_999 { camera.up } else { camera.forward };
-        let (heading, pitch) = (flat.y.atan2(flat.x), (-camera.forward.z).clamp(-1.0, 1.0).asin());
+        let (heading, pitch) =
+            (math::atan2(flat.y, flat.x), math::asin((-camera.forward.z).clamp(-1.0, 1.0)));
         let target = camera.eye + camera.forward * away;
         // Sides in metres where there is no perspective, tangents elsewhere.
         let (size, tangent) = if camera.perspective {

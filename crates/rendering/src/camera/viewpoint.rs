@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::error::nearest;
 use std::f64::consts::FRAC_PI_2;
+use vocabulary::math;
 
 /// Where a view is seen from.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +60,11 @@ impl FreeCamera {
     pub fn view(&self) -> Viewpoint {
         // Not quite straight down, where the heading would be undefined.
         let pitch = self.pitch.clamp(1e-6 - FRAC_PI_2, FRAC_PI_2 - 1e-6);
-        let away = [self.heading.cos() * pitch.cos(), self.heading.sin() * pitch.cos(), -pitch.sin()];
+        let away = [
+            math::cos(self.heading) * math::cos(pitch),
+            math::sin(self.heading) * math::cos(pitch),
+            -math::sin(pitch),
+        ];
         Viewpoint::Fixed {
             eye: std::array::from_fn(|k| self.target[k] - self.distance * away[k]),
             target: self.target,
@@ -273,7 +278,7 @@ mod tests {
         let down = camera.turned(0.1, 9.0);
         let Viewpoint::Fixed { eye, target, .. } = down.view() else { panic!("no place") };
         assert!((eye[2] - 10.0).abs() < 1e-9);
-        assert!(((target[1] - eye[1]).atan2(target[0] - eye[0]) - 2.1).abs() < 1e-6);
+        assert!((math::atan2(target[1] - eye[1], target[0] - eye[0]) - 2.1).abs() < 1e-6);
     }
 
     #[test]

@@ -9,6 +9,7 @@ use crate::ground::decal_builder::flat;
 use crate::palette::{Rgb, linear, with_alpha};
 use crate::picture_context::PictureContext;
 use glam::{DVec3, Mat3, Mat4, Vec3};
+use vocabulary::math;
 use vocabulary::{Attitude, FleetInfo, Pose, RobotInfo, RobotState};
 
 /// Opacity of a ghost.
@@ -169,7 +170,8 @@ fn ghosts(crowd: &mut RobotInstances, context: &PictureContext<'_>) {
         for (index, (pose, member)) in row.poses.iter().zip(&context.fleet.robots).enumerate() {
             let here = context.record.snapshot.robots.get(index).map(|r| r.motion.pose).unwrap_or_default();
             // A ghost steps out of its robot gradually and fades before it goes.
-            let away = ((here.x - pose.x).hypot(here.y - pose.y) / member.body.length - 0.8).clamp(0.0, 1.0);
+            let away =
+                (math::hypot(here.x - pose.x, here.y - pose.y) / member.body.length - 0.8).clamp(0.0, 1.0);
             let late = ((crate::ground::trail::RIBBON - age) / 1.5).clamp(0.0, 1.0);
             let alpha = GHOST * context.detail * (away * late) as f32;
             if alpha > 0.01 {
@@ -198,8 +200,8 @@ fn lying(context: &PictureContext<'_>, pose: &Pose) -> Attitude {
         return Attitude::default();
     }
     let (height, DVec3 { x, y, z }) = context.floor.surface(flat(pose));
-    let (sin, cos) = pose.heading.sin_cos();
-    Attitude { height, roll: (x * sin - y * cos).atan2(z), pitch: (x * cos + y * sin).atan2(z) }
+    let (sin, cos) = math::sin_cos(pose.heading);
+    Attitude { height, roll: math::atan2(x * sin - y * cos, z), pitch: math::atan2(x * cos + y * sin, z) }
 }
 
 #[cfg(test)]

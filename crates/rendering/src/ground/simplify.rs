@@ -35,12 +35,13 @@ fn near([(place, alpha), from, to]: [&(DVec2, f32); 3], bound: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vocabulary::math;
 
     #[test]
     fn what_is_left_out_lies_on_the_line() {
         let point = |k: u32| {
             let turn = 0.01 * f64::from(k);
-            (DVec2::new(turn, 0.3 * (3.0 * turn).sin()), if k < 200 { 0.8 } else { 0.2 })
+            (DVec2::new(turn, 0.3 * math::sin(3.0 * turn)), if k < 200 { 0.8 } else { 0.2 })
         };
         let points: Vec<_> = (0..400).map(point).collect();
         let thin = thinned(&points, |_| 0.002);

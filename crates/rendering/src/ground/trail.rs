@@ -3,6 +3,7 @@
 use crate::camera::smoothing::SmoothedFormation;
 use std::collections::VecDeque;
 use std::sync::Arc;
+use vocabulary::math;
 use vocabulary::{Contact, FleetInfo, MeasurementRecord, Pose, StepRecord, wrap};
 
 /// How long a ribbon is, s.
@@ -148,11 +149,11 @@ impl Trail {
 /// How much a robot slid between two poses, 0 to 1.
 fn slid(from: &Pose, to: &Pose) -> f32 {
     let (dx, dy) = (to.x - from.x, to.y - from.y);
-    if dx.hypot(dy) < 1e-3 {
+    if math::hypot(dx, dy) < 1e-3 {
         return 0.0;
     }
     let heading = from.heading + 0.5 * wrap(to.heading - from.heading);
-    let angle = wrap(dy.atan2(dx) - heading).abs();
+    let angle = wrap(math::atan2(dy, dx) - heading).abs();
     // Backwards is no slide.
     let angle = angle.min(std::f64::consts::PI - angle);
     ((angle - SLIDE[0]) / (SLIDE[1] - SLIDE[0])).clamp(0.0, 1.0) as f32

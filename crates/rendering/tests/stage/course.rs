@@ -1,6 +1,7 @@
 //! A course for tests and for looking: props of all kinds, hills, ice, and robots that stand on the ground.
 
 use std::sync::Arc;
+use vocabulary::math;
 use vocabulary::{
     Attitude, Body, Condition, Contact, EntityId, FleetInfo, Mobility, Placement, Pose, Prop, RobotInfo,
     Solid, StepRecord, Terrain,
@@ -61,14 +62,15 @@ pub(crate) fn hills() -> Terrain {
     let place = |k: usize| (origin[0] + (k % side) as f64 * cell, origin[1] + (k / side) as f64 * cell);
     let height = |k: usize| {
         let (x, y) = place(k);
-        let swell = 0.22 * (0.9 * x).sin() * (0.7 * y + 0.4).cos() + 0.10 * (1.9 * x + 1.1 * y).sin();
-        let hill = 1.5 * (-((x - 9.0).powi(2) + (y - 3.5).powi(2)) / 9.0).exp();
-        let ditch = -0.25 * (-(y + 4.0).powi(2) / 0.3).exp();
+        let swell =
+            0.22 * math::sin(0.9 * x) * math::cos(0.7 * y + 0.4) + 0.10 * math::sin(1.9 * x + 1.1 * y);
+        let hill = 1.5 * math::exp(-(math::powi(x - 9.0, 2) + math::powi(y - 3.5, 2)) / 9.0);
+        let ditch = -0.25 * math::exp(-math::powi(y + 4.0, 2) / 0.3);
         swell + hill + ditch
     };
     let grip = |k: usize| {
         let (x, y) = place(k);
-        if (x - 1.5).hypot(y - 2.2) < 1.4 { 0.25 } else { 1.0 }
+        if math::hypot(x - 1.5, y - 2.2) < 1.4 { 0.25 } else { 1.0 }
     };
     let count = side * side;
     Terrain {
@@ -133,8 +135,11 @@ pub(crate) fn grounded(fleet: &FleetInfo, mut record: StepRecord) -> StepRecord 
         let front = 0.5 * (wheels[0] + wheels[1]);
         let rear = 0.5 * (wheels[2] + wheels[3]);
         let left = 0.5 * (wheels[0] + wheels[2]) - 0.5 * (wheels[1] + wheels[3]);
-        robot.attitude =
-            Attitude { height: rear, roll: left.atan2(2.0 * half), pitch: -(front - rear).atan2(base) };
+        robot.attitude = Attitude {
+            height: rear,
+            roll: math::atan2(left, 2.0 * half),
+            pitch: -math::atan2(front - rear, base),
+        };
     }
     record
 }

@@ -1,6 +1,7 @@
 //! A play for tests: formations that move along prescribed curves, without any control law.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
+use vocabulary::math;
 use vocabulary::{
     Body, Edge, EdgeState, FleetInfo, Motion, Pose, Relative, RobotInfo, RobotState, Snapshot, StepRecord,
     Wheel, wrap,
@@ -77,8 +78,8 @@ impl Play {
     fn lead(&self, time: f64) -> [f64; 2] {
         match self.path {
             Path::Straight => [0.6 * time, 0.0],
-            Path::Circle => [3.0 * (0.2 * time).sin(), 3.0 - 3.0 * (0.2 * time).cos()],
-            Path::Eight => [4.0 * (TAU * time / 40.0).sin(), 2.0 * (2.0 * TAU * time / 40.0).sin()],
+            Path::Circle => [3.0 * math::sin(0.2 * time), 3.0 - 3.0 * math::cos(0.2 * time)],
+            Path::Eight => [4.0 * math::sin(TAU * time / 40.0), 2.0 * math::sin(2.0 * TAU * time / 40.0)],
         }
     }
 
@@ -88,8 +89,8 @@ impl Play {
         };
         let leader = self.pose(self.fleet.edges[k].leader, time);
         let [distance, bearing] = self.goals[k];
-        let off = 0.5 * (-time / 3.0).exp();
-        let (sin, cos) = (bearing + 0.5 * off).sin_cos();
+        let off = 0.5 * math::exp(-time / 3.0);
+        let (sin, cos) = math::sin_cos(bearing + 0.5 * off);
         leader.world_from_body((distance + off) * cos, (distance + off) * sin)
     }
 
@@ -102,7 +103,7 @@ impl Play {
         } else {
             (self.place(robot, time - h), self.place(robot, time + h))
         };
-        Pose::new(x, y, (b[1] - a[1]).atan2(b[0] - a[0]))
+        Pose::new(x, y, math::atan2(b[1] - a[1], b[0] - a[0]))
     }
 
     /// The moment at `time`, s.
@@ -112,9 +113,9 @@ impl Play {
             let (leader, follower) = (robots[edge.leader].motion.pose, robots[edge.follower].motion.pose);
             let (dx, dy) = (follower.x - leader.x, follower.y - leader.y);
             let relative = Relative {
-                distance: dx.hypot(dy),
-                bearing: wrap(dy.atan2(dx) - leader.heading),
-                view_angle: wrap(dy.atan2(dx) - follower.heading),
+                distance: math::hypot(dx, dy),
+                bearing: wrap(math::atan2(dy, dx) - leader.heading),
+                view_angle: wrap(math::atan2(dy, dx) - follower.heading),
             };
             let error = [goal[0] - relative.distance, wrap(goal[1] - relative.bearing)];
             EdgeState { relative, set_point: *goal, error, ..EdgeState::default() }
@@ -126,11 +127,11 @@ impl Play {
     fn robot(&self, robot: usize, time: f64) -> RobotState {
         let pose = self.pose(robot, time);
         let wheel = |steering| Wheel { rotation: 0.6 * time / 0.045, steering, compression: 0.0 };
-        let turn = 0.25 * (0.4 * time).sin();
+        let turn = 0.25 * math::sin(0.4 * time);
         RobotState {
             motion: Motion { pose, speed: 0.6, ..Motion::default() },
             wheels: [wheel(turn), wheel(turn), wheel(0.0), wheel(0.0)],
-            camera_pan: 0.4 * (0.3 * time).sin(),
+            camera_pan: 0.4 * math::sin(0.3 * time),
             ..RobotState::default()
         }
     }

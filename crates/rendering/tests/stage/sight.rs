@@ -1,5 +1,6 @@
 //! What cameras on robots look at, for tests and for looking.
 
+use vocabulary::math;
 use vocabulary::{
     Edge, FACES, FleetInfo, Measurement, MeasurementRecord, Region, Relative, Shell, Shot, Snapshot,
     StepRecord,
@@ -14,7 +15,7 @@ pub(crate) fn shots(fleet: &FleetInfo, snapshot: &mut Snapshot) -> Vec<Shot> {
         let target = leader.world_from_body().apply([shell.forward, 0.0, shell.height]);
         let from = robot.world_from_body().after(&member.camera_mount.body_from_camera(0.0)).inverse();
         let [x, _, z] = from.apply(target);
-        robot.camera_pan = -x.atan2(z);
+        robot.camera_pan = -math::atan2(x, z);
         Shot {
             robot: edge.follower,
             world_from_camera: member.camera_mount.world_from_camera(robot),

@@ -5,6 +5,7 @@ use crate::trace::{EdgeRow, Trace};
 use crate::words::round;
 use figures::{Axis, Figure, Guide, Key, Panel, Rgb, Scale, Series, Stroke};
 use vocabulary::Limits;
+use vocabulary::math;
 
 /// One edge of one run, as it is drawn.
 #[derive(Clone)]
@@ -225,7 +226,7 @@ pub(crate) fn errors(curves: &[EdgeCurve<'_>], magnify: Magnify) -> Drawn {
         let times = &curve.run.times;
         let each = [0, 1].map(|channel| curve.column(|row| row.error[channel]));
         let degrees: Vec<f64> = each[1].iter().map(|e| e.to_degrees()).collect();
-        let sizes: Vec<f64> = each[0].iter().zip(&each[1]).map(|(a, b)| a.hypot(*b)).collect();
+        let sizes: Vec<f64> = each[0].iter().zip(&each[1]).map(|(a, b)| math::hypot(*a, *b)).collect();
         distance.push(curve.series(true, points(times, &each[0])));
         bearing.push(curve.series(false, points(times, &degrees)));
         // What is below the axis would have no logarithm to draw at zero.
@@ -290,7 +291,7 @@ pub(crate) fn observer(run: &Trace, edge: usize, magnify: Magnify) -> Drawn {
     }
     let apart = |row: &EdgeRow| {
         let [a, b] = [0, 1].map(|k| row.estimated[k] - row.rates[k]);
-        a.hypot(b).max(1e-30)
+        math::hypot(a, b).max(1e-30)
     };
     let sizes = base.column(apart);
     let mut error =

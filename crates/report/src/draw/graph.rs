@@ -4,11 +4,12 @@ use super::{Drawn, NAMED, number, quoted};
 use crate::trace::Trace;
 use figures::{Arrow, Note, Plan, PlanNode, Side};
 use std::fmt::Write;
+use vocabulary::math;
 
 /// Where robots are at a sample in the frame of the guide: x forward, y left, m.
 fn seen_from_guide(run: &Trace, sample: usize) -> Vec<Option<[f64; 2]>> {
     let origin = run.pose(run.guide(), sample).unwrap_or_default();
-    let (sin, cos) = origin.heading.sin_cos();
+    let (sin, cos) = math::sin_cos(origin.heading);
     let place = |robot: usize| {
         let pose = run.pose(robot, sample)?;
         let d = [pose.x - origin.x, pose.y - origin.y];
@@ -31,7 +32,7 @@ pub(crate) fn places(run: &Trace, sample: usize) -> Vec<[f64; 2]> {
             let row = run.edges.get(index).and_then(|rows| rows.get(sample));
             if let (Some([x, y]), Some(row), Some(place)) = (leader, row, places.get_mut(edge.follower)) {
                 let [distance, bearing] = row.set_point;
-                *place = Some([x + distance * bearing.cos(), y + distance * bearing.sin()]);
+                *place = Some([x + distance * math::cos(bearing), y + distance * math::sin(bearing)]);
             }
         }
     }
@@ -42,7 +43,7 @@ pub(crate) fn places(run: &Trace, sample: usize) -> Vec<[f64; 2]> {
 pub(crate) fn farthest(run: &Trace, sample: usize) -> Option<f64> {
     let (seen, wanted) = (seen_from_guide(run, sample), places(run, sample));
     seen.iter().zip(wanted).try_fold(0.0, |most: f64, (seen, wanted)| {
-        seen.map(|[x, y]| most.max((x - wanted[0]).hypot(y - wanted[1])))
+        seen.map(|[x, y]| most.max(math::hypot(x - wanted[0], y - wanted[1])))
     })
 }
 

@@ -12,6 +12,7 @@ use crate::figure::ReportFigure;
 use crate::words::trimmed;
 use figures::{Rgb, Stroke};
 use std::iter::once;
+use vocabulary::math;
 
 /// A figure as it leaves this folder: SVG, and a table of what it shows.
 pub(crate) struct Drawn {
@@ -60,7 +61,7 @@ pub(crate) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    let digits = 8 - value.abs().log10().floor() as i32;
+    let digits = 8 - math::log10(value.abs()).floor() as i32;
     if (0..=12).contains(&digits) {
         trimmed(format!("{value:.*}", digits as usize))
     } else {

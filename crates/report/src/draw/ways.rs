@@ -4,6 +4,7 @@ use super::{Drawn, NAMED, stroke, table};
 use crate::trace::Trace;
 use crate::words::{digits, round, trimmed};
 use figures::{Key, Note, Plan, PlanOutline, PlanPath, Side, Stroke};
+use vocabulary::math;
 use vocabulary::{Body, Pose};
 
 /// Robots from which on no outlines between start and end are drawn.
@@ -76,7 +77,7 @@ fn enlargement(run: &Trace, scale: f64, times: &[f64]) -> f64 {
 fn nearest(run: &Trace, sample: usize) -> f64 {
     let poses: Vec<Pose> = (0..run.robots.len()).filter_map(|robot| run.pose(robot, sample)).collect();
     let from = |(k, a): (usize, &Pose)| {
-        let apart = poses[k + 1..].iter().map(|b| (a.x - b.x).hypot(a.y - b.y));
+        let apart = poses[k + 1..].iter().map(|b| math::hypot(a.x - b.x, a.y - b.y));
         apart.fold(f64::INFINITY, f64::min)
     };
     poses.iter().enumerate().map(from).fold(f64::INFINITY, f64::min)
@@ -118,7 +119,7 @@ fn outline(pose: Pose, body: &Body, factor: f64) -> Vec<[f64; 2]> {
     let (half, front) = (0.5 * body.width, 0.5 * (body.wheelbase + body.length));
     let back = front - body.length;
     let nose = front - 0.45 * body.length;
-    let (sin, cos) = pose.heading.sin_cos();
+    let (sin, cos) = math::sin_cos(pose.heading);
     let corners = [[back, -half], [nose, -half], [front, 0.0], [nose, half], [back, half]];
     let at =
         |[x, y]: [f64; 2]| [pose.x + factor * (x * cos - y * sin), pose.y + factor * (x * sin + y * cos)];
@@ -133,7 +134,7 @@ fn turn(run: &Trace) -> f64 {
 
 /// Beside a pose, to its right where `aside` is −1.
 fn beside(pose: Pose, aside: f64) -> Side {
-    let (sin, cos) = pose.heading.sin_cos();
+    let (sin, cos) = math::sin_cos(pose.heading);
     let [x, y] = [-sin * aside, cos * aside];
     match (x.abs() > y.abs(), x > 0.0, y > 0.0) {
         (true, true, _) => Side::Right,
@@ -145,7 +146,7 @@ fn beside(pose: Pose, aside: f64) -> Side {
 
 /// From the middle of a body to words beside it, points of print; `magnified` are points for a metre of the body.
 fn clear(pose: Pose, body: &Body, side: Side, magnified: f64) -> f64 {
-    let (sin, cos) = (pose.heading.sin().abs(), pose.heading.cos().abs());
+    let (sin, cos) = (math::sin(pose.heading).abs(), math::cos(pose.heading).abs());
     let (along, across) = match side {
         Side::Above | Side::Below => (sin, cos),
         Side::Left | Side::Right => (cos, sin),
@@ -193,7 +194,7 @@ fn names(run: &Trace, times: &[f64], scale: f64, factor: f64, plan: &mut Plan) {
     let (mut notes, mut astray): (Vec<Note>, bool) = (vec![], false);
     for (robot, member) in run.fleet.robots.iter().enumerate().filter(|(_, m)| few || m.leads) {
         let Some(pose) = pose(robot) else { continue };
-        let (sin, cos) = first.heading.sin_cos();
+        let (sin, cos) = math::sin_cos(first.heading);
         let inward = turn(run) * ((pose.y - first.y) * cos - (pose.x - first.x) * sin) * scale;
         let outside = robot != run.guide() && inward < 0.0 && inward > -FREE;
         let side = beside(pose, if outside { -turn(run) } else { turn(run) });
@@ -208,11 +209,11 @@ fn names(run: &Trace, times: &[f64], scale: f64, factor: f64, plan: &mut Plan) {
             Side::Above => [0.0, away],
             Side::Below => [0.0, -away],
         };
-        let distance = |other: Pose| (pose.x + dx - other.x).hypot(pose.y + dy - other.y);
+        let distance = |other: Pose| math::hypot(pose.x + dx - other.x, pose.y + dy - other.y);
         astray |= (0..run.fleet.robots.len())
             .filter(|other| *other != robot)
             .filter_map(|other| run.pose(other, sample))
-            .any(|other| distance(other) < dx.hypot(dy));
+            .any(|other| distance(other) < math::hypot(dx, dy));
         notes.push(Note { at: [pose.x, pose.y], text: member.name.clone(), side, off, colour });
     }
     if !astray && !meet(&notes, scale) {

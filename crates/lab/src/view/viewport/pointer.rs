@@ -7,6 +7,7 @@ use crate::numbers::snap;
 use crate::view::camera::CameraControl;
 use eframe::egui::{self, Pos2, Rect, Ui, Vec2};
 use rendering::{Picked, Sightline, set_points};
+use vocabulary::math;
 use vocabulary::{StepRecord, wrap};
 
 /// Steps of a dragged set point: m and degrees.
@@ -103,7 +104,7 @@ impl Viewport {
         let near =
             set_points(&view_renderer.fleet, record).into_iter().enumerate().filter_map(|(edge, at)| {
                 let [x, y] = sight.pixel_of_ground(at?)?;
-                let away = (x - pixel[0]).hypot(y - pixel[1]);
+                let away = math::hypot(x - pixel[0], y - pixel[1]);
                 let radius =
                     crate::view::annotations::RING / sight.metres_per_pixel([at?[0], at?[1], 0.0]).max(1e-9);
                 (away < grasp.max(0.8 * radius)).then_some((away, edge))
@@ -228,7 +229,7 @@ fn dragged(frame: &PointerFrame<'_>, edge: usize, place: [f64; 2]) -> Option<Act
     let ends = *app_state.fleet()?.edges.get(edge)?;
     let leader = record.snapshot.robots.get(ends.leader)?.motion.pose;
     let [dx, dy] = [place[0] - leader.x, place[1] - leader.y];
-    let (distance, bearing) = (dx.hypot(dy), wrap(dy.atan2(dx) - leader.heading));
+    let (distance, bearing) = (math::hypot(dx, dy), wrap(math::atan2(dy, dx) - leader.heading));
     let least = app_state.follower(edge).map_or(0.1, |(_, _, follow)| follow.law.distance_min);
     let (free, whole) = ui.input(|input| (input.modifiers.shift, input.modifiers.command));
     let [distance, bearing] = if free {

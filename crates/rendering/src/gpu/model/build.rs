@@ -2,6 +2,7 @@
 
 use super::{Mesh, shell, wheel};
 use glam::Vec3;
+use vocabulary::math;
 use vocabulary::{Body, RobotInfo, Shell};
 
 /// Measures of the model.
@@ -69,8 +70,8 @@ impl Build {
     /// Middle and radius of a ball that holds all of it, in the frame of the body, m.
     pub(crate) fn ball(&self) -> ([f64; 3], f64) {
         let half = 0.5 * self.top();
-        let aside = self.around().max(0.8 * self.body.length).hypot(0.5 * self.body.width);
-        ([0.15 * self.body.length, 0.0, half], 1.1 * half.hypot(aside))
+        let aside = math::hypot(self.around().max(0.8 * self.body.length), 0.5 * self.body.width);
+        ([0.15 * self.body.length, 0.0, half], 1.1 * math::hypot(half, aside))
     }
 
     /// How far the outline reaches around a point 0.15 of the length ahead of the reference point, m.
@@ -151,7 +152,7 @@ fn sound(shell: &Shell) -> bool {
     sizes.iter().all(|x| (1e-4..=40.0).contains(x))
         && places.iter().all(|x| x.abs() <= 40.0)
         && shell.lean.abs() < 1.2
-        && shell.apothem > shell.face_height * shell.lean.tan().abs()
+        && shell.apothem > shell.face_height * math::tan(shell.lean).abs()
 }
 
 /// Measures that a model can be made of, whatever was asked for.

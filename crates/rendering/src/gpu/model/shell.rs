@@ -3,6 +3,7 @@
 use super::{Build, Detail, Material, Mesh};
 use glam::{DVec2, DVec3, Vec3};
 use std::f64::consts::FRAC_PI_8;
+use vocabulary::math;
 use vocabulary::{FACE_DIRECTIONS, Shell, TAG_CELLS};
 
 /// Parts around the faces, as they are on the paper's shell, m.
@@ -17,9 +18,9 @@ pub(super) fn size(shell: &Shell) -> f64 {
 
 /// A corner of the octagon `up` m above its middle, `outset` m out of the faces.
 fn corner(shell: &Shell, angle: f64, up: f64, outset: f64) -> Vec3 {
-    let apothem = shell.apothem - shell.lean.tan() * up + outset;
+    let apothem = shell.apothem - math::tan(shell.lean) * up + outset;
     // A corner of an octagon lies at the apothem over the cosine of half a face's angle.
-    let at = DVec2::from_angle(angle) * (apothem / FRAC_PI_8.cos());
+    let at = DVec2::from_angle(angle) * (apothem / math::cos(FRAC_PI_8));
     DVec3::new(shell.forward + at.x, at.y, shell.height + up).as_vec3()
 }
 

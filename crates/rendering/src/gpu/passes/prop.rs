@@ -9,6 +9,7 @@ use crate::camera::Camera;
 use crate::gpu::model::solids;
 use glam::DVec3;
 use std::ops::Range;
+use vocabulary::math;
 use wgpu::{BindGroup, RenderPass};
 
 pub(crate) const SHADERS: [&str; 2] = developed!("common/light", "common/robot", "common/asphalt", "prop");
@@ -54,7 +55,7 @@ impl PropInstances {
             let place = DVec3::from_array(rows.map(|row| row[3])) + origin;
             // A column is a side, or twice a radius.
             let side = |k: usize| rows.iter().map(|row| row[k] * row[k]).sum::<f64>().sqrt();
-            camera.may_see(place, side(0).hypot(side(1)).hypot(side(2)))
+            camera.may_see(place, math::hypot(math::hypot(side(0), side(1)), side(2)))
         };
         let others = std::array::from_fn(|k| self.others[k].iter().filter(|c| seen(c)).copied().collect());
         let drivables = self.drivables.iter().filter(|(_, copy)| seen(copy)).copied().collect();

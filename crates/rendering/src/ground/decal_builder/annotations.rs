@@ -5,6 +5,7 @@ use crate::ground::decal_builder::{DecalBuilder, STEP};
 use crate::palette::{self, Rgb};
 use crate::{AnnotationArrow, AnnotationStroke, Annotations, Ring, ShadedArea, StrokePoint};
 use glam::DVec2;
+use vocabulary::math;
 
 /// A dash and its gap, pixels at scale 1, and the share of the dash.
 const DASH: (f64, f32) = (13.0, 0.6);
@@ -174,5 +175,5 @@ fn sound(spot: &StrokePoint) -> bool {
 
 /// The power of two nearest to a length, m: patterns keep their place while a camera moves, unless it goes far.
 fn even(length: f64) -> f64 {
-    length.max(1e-3).log2().round().exp2()
+    math::exp2(math::log2(length.max(1e-3)).round())
 }

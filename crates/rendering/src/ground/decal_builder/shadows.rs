@@ -9,6 +9,7 @@ use crate::palette::Rgb;
 use crate::picture_context::PictureContext;
 use glam::{DMat3, DVec2, DVec3};
 use std::collections::BTreeMap;
+use vocabulary::math;
 use vocabulary::{Placement, Prop, RobotInfo, RobotState, Solid};
 
 /// Shadows are lit by the sky alone, so they are a little blue.
@@ -75,7 +76,7 @@ impl DecalBuilder<'_> {
         let place = |forward, left| DVec2::from_array(pose.world_from_body(forward, left));
         let gap = |at: DVec2| (robot.attitude.height - context.floor.height(at)).max(0.0) / body.wheel_radius;
         let middle = place(0.46 * body.wheelbase, 0.0);
-        let upright = robot.attitude.roll.cos() * robot.attitude.pitch.cos();
+        let upright = math::cos(robot.attitude.roll) * math::cos(robot.attitude.pitch);
         // A body that lies on its roof touches the ground with that.
         let near = if upright > 0.3 { fade(gap(middle)) } else { 0.7 };
         let sides = (ahead * (0.62 * body.length), ahead.perp() * (0.78 * body.width));
@@ -161,7 +162,7 @@ fn fade(gap: f64) -> f32 {
 /// Height of the lowest point of a wheel over z = 0, m.
 fn wheel_height(robot: &RobotState, forward: f64, left: f64) -> f64 {
     let tilt = robot.attitude;
-    tilt.height - forward * tilt.pitch.sin() + left * tilt.roll.sin() * tilt.pitch.cos()
+    tilt.height - forward * math::sin(tilt.pitch) + left * math::sin(tilt.roll) * math::cos(tilt.pitch)
 }
 
 fn robot_shadow(context: &PictureContext<'_>, robot: &RobotState, member: &RobotInfo) -> Patch {
