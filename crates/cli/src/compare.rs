@@ -27,7 +27,7 @@ pub(crate) struct CompareArgs {
     #[arg(value_name = "FOUND")]
     found: PathBuf,
     /// Similarity, 0 to 1, that every part of a picture has to reach
-    #[arg(long, value_name = "LIKENESS", default_value_t = 0.9, value_parser = within(0.0..=1.0, "write a number from 0, anything, to 1, every pixel the same"))]
+    #[arg(long, value_name = "LIKENESS", default_value_t = 0.95, value_parser = within(0.0..=1.0, "write a number from 0, anything, to 1, every pixel the same"))]
     threshold: f64,
     /// Folder for difference images: reference, picture, and where they differ
     #[arg(long, short, value_name = "DIR")]
