@@ -28,6 +28,11 @@ fn pictures_are_alike_or_it_is_told_where_not() {
     assert!(folder.path().join("where/line-three-000.000.difference.png").exists());
     let report = fs::read_to_string(folder.path().join("report.xml")).expect("a report");
     assert!(report.contains("<failure") && report.contains("line-three-000.000.png"), "{report}");
+    // Two centimetres are found, even in a picture as small as this.
+    capture(folder.path(), "d", &["--set", "robots.follower-2.pose=[-2.02, 1.0, 0.0]"]);
+    let (code, out, _) = run(&["compare", "a", "d", "--json"]);
+    let value: Value = serde_json::from_str(&out).expect("JSON");
+    assert!(code == 1 && value["pictures"][0]["passes"] == false, "{out}");
     // Anything goes at a threshold of zero.
     assert_eq!(run(&["compare", "a", "c", "--threshold", "0"]).0, 0);
     // One picture less, and one of another size.
