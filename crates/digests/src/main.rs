@@ -17,20 +17,25 @@ fn print(traced: Option<&str>) -> Result<(), String> {
     let cases = digests::cases();
     let mut out = stdout().lock();
     let Some(name) = traced else {
-        return cases
-            .iter()
-            .try_for_each(|case| writeln!(out, "{}", case.line()?).map_err(|error| error.to_string()));
+        return cases.iter().try_for_each(|case| {
+            let line = case.line()?;
+            written(writeln!(out, "{line}"))
+        });
     };
-    let case =
-        cases.iter().find(|case| case.name() == name).ok_or_else(|| format!("no case is called `{name}`"))?;
-    let mut written = Ok(());
+    let case = cases.iter().find(|case| case.name() == name);
+    let case = case.ok_or_else(|| format!("no case is called `{name}`"))?;
+    let mut outcome = Ok(());
     case.trace(|line| {
-        if written.is_ok() {
-            written = writeln!(out, "{line}");
+        if outcome.is_ok() {
+            outcome = writeln!(out, "{line}");
         }
     })?;
-    // Whoever compares stops at the first difference.
-    match written {
+    written(outcome)
+}
+
+/// A reader that has seen enough is no failure.
+fn written(outcome: std::io::Result<()>) -> Result<(), String> {
+    match outcome {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.to_string()),
         _ => Ok(()),
     }
