@@ -3,7 +3,7 @@
 //! Truth, noise and geometric sensing are covered. Cameras draw pictures with the graphics driver of the machine, so their
 //! scenes run with geometric sensing here.
 
-use metrics::{Digest, Part, numbers};
+use metrics::{Digest, NumberOwner, numbers};
 use scene::{Override, SHIPPED, Scene, Shipped};
 use simulation::{Setup, Simulation, build};
 use std::fmt::Write;
@@ -13,29 +13,29 @@ const LONGEST: f64 = 12.0;
 
 /// A shipped scene and what is set in it.
 #[derive(Debug, Clone, Copy)]
-pub struct Case {
+pub struct DigestRun {
     scene: &'static Shipped,
     /// The kind of sensing that replaces the scene's own.
     sensing: Option<&'static str>,
 }
 
 /// Every shipped scene, and some with noise or geometric sensing besides.
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<DigestRun> {
     let own = |scene: &'static Shipped| {
         let sensing = scene.name.starts_with("vision-").then_some("geometric");
-        Case { scene, sensing }
+        DigestRun { scene, sensing }
     };
     let besides = |sensing, names: [&'static str; 2]| {
         let known = names.into_iter().filter_map(scene::shipped);
-        known.map(move |scene| Case { scene, sensing: Some(sensing) })
+        known.map(move |scene| DigestRun { scene, sensing: Some(sensing) })
     };
-    let mut cases: Vec<Case> = SHIPPED.iter().map(own).collect();
+    let mut cases: Vec<DigestRun> = SHIPPED.iter().map(own).collect();
     cases.extend(besides("noise", ["seven-v", "cars-line-three"]));
     cases.extend(besides("geometric", ["circle-three", "cars-yard"]));
     cases
 }
 
-impl Case {
+impl DigestRun {
     /// Such as `seven-v/noise`.
     pub fn name(&self) -> String {
         format!("{}/{}", self.scene.name, self.sensing.unwrap_or("own"))
@@ -69,15 +69,15 @@ impl Case {
             numbers(record, |part, quantity, value| {
                 line.clear();
                 let part = match part {
-                    Part::Time => "the run".to_owned(),
-                    Part::Robot(k) => format!("robot {}", robot(k)),
-                    Part::Edge(k) => {
+                    NumberOwner::Time => "the run".to_owned(),
+                    NumberOwner::Robot(k) => format!("robot {}", robot(k)),
+                    NumberOwner::Edge(k) => {
                         let edge = fleet.edges[k];
                         format!("edge {} → {}", robot(edge.leader), robot(edge.follower))
                     }
-                    Part::Prop(k) => format!("prop {}", fleet.props[k].name),
-                    Part::Contact(k) => format!("contact {k}"),
-                    Part::Measurement(k) => format!("measurement {k}"),
+                    NumberOwner::Prop(k) => format!("prop {}", fleet.props[k].name),
+                    NumberOwner::Contact(k) => format!("contact {k}"),
+                    NumberOwner::Measurement(k) => format!("measurement {k}"),
                 };
                 let bits = (value + 0.0).to_bits();
                 // Writing to a string does not fail.

@@ -1,7 +1,7 @@
 //! Every shipped scene runs as it ran before: its digest is the one written down in `digests.txt`, on every machine.
 //! `scripts/everywhere` holds other processors against the same file.
 
-use digests::Case;
+use digests::DigestRun;
 use std::path::Path;
 
 /// `UPDATE_DIGESTS=1` writes the file anew.
@@ -9,7 +9,7 @@ use std::path::Path;
 fn shipped_scenes_run_as_before_on_every_machine() {
     let cases = digests::cases();
     let lines: Vec<String> = std::thread::scope(|scope| {
-        let run = |part: &'static [Case]| {
+        let run = |part: &'static [DigestRun]| {
             scope.spawn(move || part.iter().map(|case| case.line().expect("it runs")).collect::<Vec<_>>())
         };
         let work: Vec<_> = cases.leak().chunks(16).map(run).collect();

@@ -28,7 +28,7 @@ impl Digest {
 
 /// What a number of a moment belongs to, counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum NumberOwner {
     /// The moment itself.
     Time,
     /// A robot.
@@ -44,45 +44,45 @@ pub enum Part {
 }
 
 /// Hands every number of a moment that a digest covers to `visit`, in order: what it belongs to, its name, its value.
-pub fn numbers(record: &StepRecord, mut visit: impl FnMut(Part, &'static str, f64)) {
+pub fn numbers(record: &StepRecord, mut visit: impl FnMut(NumberOwner, &'static str, f64)) {
     let mut put = |part, numbers: &[(&'static str, f64)]| {
         for (name, value) in numbers {
             visit(part, name, *value);
         }
     };
-    put(Part::Time, &[("time", record.snapshot.time)]);
+    put(NumberOwner::Time, &[("time", record.snapshot.time)]);
     for (k, robot) in record.snapshot.robots.iter().enumerate() {
         let (m, attitude) = (&robot.motion, &robot.attitude);
-        put(Part::Robot(k), &[("x", m.pose.x), ("y", m.pose.y), ("heading", m.pose.heading)]);
+        put(NumberOwner::Robot(k), &[("x", m.pose.x), ("y", m.pose.y), ("heading", m.pose.heading)]);
         put(
-            Part::Robot(k),
+            NumberOwner::Robot(k),
             &[("speed", m.speed), ("acceleration", m.acceleration), ("turn rate", m.turn_rate)],
         );
         let attitude = [("height", attitude.height), ("roll", attitude.roll), ("pitch", attitude.pitch)];
-        put(Part::Robot(k), &attitude);
+        put(NumberOwner::Robot(k), &attitude);
     }
     for (k, edge) in record.edges.iter().enumerate() {
         let ([distance, bearing], [d, b], [rate, turning]) = (edge.set_point, edge.error, edge.rates);
-        put(Part::Edge(k), &[("distance set point", distance), ("bearing set point", bearing)]);
-        put(Part::Edge(k), &[("distance error", d), ("bearing error", b)]);
+        put(NumberOwner::Edge(k), &[("distance set point", distance), ("bearing set point", bearing)]);
+        put(NumberOwner::Edge(k), &[("distance error", d), ("bearing error", b)]);
         let command = edge.applied;
-        put(Part::Edge(k), &[("commanded acceleration", command.acceleration)]);
-        put(Part::Edge(k), &[("commanded turn rate", command.turn_rate)]);
-        put(Part::Edge(k), &[("distance rate", rate), ("bearing rate", turning)]);
+        put(NumberOwner::Edge(k), &[("commanded acceleration", command.acceleration)]);
+        put(NumberOwner::Edge(k), &[("commanded turn rate", command.turn_rate)]);
+        put(NumberOwner::Edge(k), &[("distance rate", rate), ("bearing rate", turning)]);
     }
     for (k, prop) in record.snapshot.props.iter().enumerate() {
-        put(Part::Prop(k), &prop.position.map(|value| ("position", value)));
-        put(Part::Prop(k), &prop.rotation.map(|value| ("rotation", value)));
+        put(NumberOwner::Prop(k), &prop.position.map(|value| ("position", value)));
+        put(NumberOwner::Prop(k), &prop.rotation.map(|value| ("rotation", value)));
     }
     for (k, contact) in record.contacts.iter().enumerate() {
         let Contact { begin, end, impulse, .. } = *contact;
-        put(Part::Contact(k), &[("begin", begin), ("end", end), ("impulse", impulse)]);
+        put(NumberOwner::Contact(k), &[("begin", begin), ("end", end), ("impulse", impulse)]);
     }
     for (k, frame) in record.frames.iter().enumerate() {
         let Relative { distance, bearing, view_angle } = frame.measurement.relative;
-        put(Part::Measurement(k), &[("stamp", frame.measurement.stamp), ("arrival", frame.arrival)]);
+        put(NumberOwner::Measurement(k), &[("stamp", frame.measurement.stamp), ("arrival", frame.arrival)]);
         let measured = [("distance", distance), ("bearing", bearing), ("view angle", view_angle)];
-        put(Part::Measurement(k), &measured);
+        put(NumberOwner::Measurement(k), &measured);
     }
 }
 

@@ -11,7 +11,7 @@ mod statistics;
 
 pub use certificates::{CertificateMetrics, StatementMetrics};
 pub use contacts::ContactMetrics;
-pub use digest::{Digest, Part, numbers};
+pub use digest::{Digest, NumberOwner, numbers};
 pub use expectations::JudgedExpectation;
 pub use measurements::{MeasurementMetrics, difference};
 pub use metrics::{EdgeMetrics, Metrics, MetricsBuilder, RobotMetrics};
