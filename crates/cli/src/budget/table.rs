@@ -13,10 +13,9 @@ pub(crate) fn print(budget: &Budget<'_>) {
         "seed {}, errors are root mean squares from {} s on",
         budget.scene.seed, budget.settled_after
     ));
-    if let Some(adapter) = &budget.adapter {
-        say(&format!("cameras drawn with {adapter}"));
-    } else if let Some(why) = &budget.without_camera {
-        say(why);
+    match &budget.camera {
+        Ok(adapter) => say(&format!("cameras drawn with {adapter}")),
+        Err(why) => say(why),
     }
     for index in 0..budget.fleet.edges.len().min(MOST_EDGES) {
         let [leader, follower] = budget.edge(index);
