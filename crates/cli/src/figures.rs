@@ -81,7 +81,9 @@ pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
     drop(meter);
     match made {
         Ok((mut report, runs)) => {
-            report.left_out.extend(adapter.as_ref().err().map(|why| format!("Snake views and films: {why}.")));
+            report
+                .left_out
+                .extend(adapter.as_ref().err().map(|why| format!("Snake views and films: {why}.")));
             report.versions = versions(gpu);
             folder.write("report.html", report::page(&report, rendering::FONT).as_bytes())?;
             folder.close("complete", Some((&report, runs.as_slice())))?;

@@ -249,7 +249,13 @@ fn write_parquet(
     fill: impl FnOnce(&mut ArrowWriter<File>) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let write = || {
-        let mut writer = parquet_writer(draft, schema)?;
+        let file = File::create(draft).map_err(Error::io("create", draft))?;
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::ZSTD(ZstdLevel::default()))
+            .set_max_row_group_row_count(Some(ROWS_PER_GROUP))
+            .build();
+        let mut writer =
+            ArrowWriter::try_new(file, schema.clone(), Some(properties)).map_err(Error::table(draft))?;
         fill(&mut writer)?;
         writer.close().map_err(Error::table(path))?;
         fs::rename(draft, path).map_err(Error::io("write", path))
@@ -258,16 +264,6 @@ fn write_parquet(
         // The draft may not exist; the first error is the one to tell.
         let _ = fs::remove_file(draft);
     })
-}
-
-fn parquet_writer(path: &Path, schema: &Arc<Schema>) -> Result<ArrowWriter<File>, Error> {
-    let file = File::create(path).map_err(Error::io("create", path))?;
-    let compression = Compression::ZSTD(ZstdLevel::default());
-    let properties = WriterProperties::builder()
-        .set_compression(compression)
-        .set_max_row_group_row_count(Some(ROWS_PER_GROUP))
-        .build();
-    ArrowWriter::try_new(file, schema.clone(), Some(properties)).map_err(Error::table(path))
 }
 
 fn open(path: &Path) -> Result<parquet::arrow::arrow_reader::ParquetRecordBatchReader, Error> {

@@ -46,7 +46,7 @@ pub(crate) fn changes(root: &Node, scene: &Scene, reporter: &mut Reporter) -> Ve
 
 /// The tree without what robots do not depend on once they run, starts included.
 fn of_robots(root: &Node) -> Node {
-    let Value::Table(entries) = &root.value else { return root.clone() };
+    let entries = root.as_table().unwrap_or_default();
     let kept = entries.iter().filter(|entry| !has::<Document>(&entry.key, Mark::Apart)).cloned();
     let mut tree = Node { place: root.place, value: Value::Table(kept.collect()) };
     for list in ["robots", "groups"] {

@@ -44,10 +44,7 @@ impl<T> Form for FileForm<T> {
     type Out = T;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<T> {
-        let Some(name) = node.as_text() else {
-            reporter.wrong(node, "the name of a CSV file");
-            return None;
-        };
+        let name = reporter.expect(node.as_text(), node, || "the name of a CSV file".to_owned())?;
         let path = reporter.beside_scene(name);
         match read_text(&path) {
             Ok(text) => {

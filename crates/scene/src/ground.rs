@@ -5,11 +5,11 @@ use crate::{
     heights_file::{HEIGHT, HEIGHTS_FILE, wrong_length, wrong_size},
     relief,
     text::{
-        Couple, Form, Found, Keys, Node, Reporter, Span, Value,
+        Couple, Form, Found, Keys, Node, Reporter, Span,
         form::Number,
         integer, keys,
-        keys::{TableReader, one_of},
-        kinds::{Kind, KindFound, Kinds},
+        keys::one_of,
+        kinds::{Kind, Kinds},
         list, number, table,
     },
 };
@@ -37,17 +37,13 @@ impl Form for RegionForm {
     type Out = [f64; 4];
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<[f64; 4]> {
-        let numbers: Vec<_> = match &node.value {
-            Value::List(items) => items.iter().filter_map(Node::as_number).collect(),
-            _ => vec![],
-        };
+        let items = node.as_list().unwrap_or_default();
+        let numbers: Vec<_> = items.iter().filter_map(Node::as_number).collect();
         let region: Option<[f64; 4]> = numbers.try_into().ok();
         let held = |region: &[f64; 4]| region.iter().all(|at| number("m").holds(*at));
         let region = region.filter(held).filter(|[x0, y0, x1, y1]| x0 < x1 && y0 < y1);
-        if region.is_none() {
-            reporter.wrong(node, "a list [x from, y from, x to, y to] in m, each `from` below its `to`");
-        }
-        region
+        let expected = "a list [x from, y from, x to, y to] in m, each `from` below its `to`";
+        reporter.expect(region, node, || expected.to_owned())
     }
 
     fn schema(&self) -> Json {
@@ -231,10 +227,7 @@ impl Form for GroundForm {
     type Out = GroundKeys;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<GroundKeys> {
-        let mut table = TableReader::of(node, reporter)?;
-        let KindFound::Known(written) = RELIEF.take(node, &mut table, reporter) else { return None };
-        let shared = SharedKeys::read(&mut table, reporter);
-        table.finish(reporter);
+        let (written, shared) = RELIEF.read_with(node, reporter, SharedKeys::read)?;
         let patches = shared.patches?.value.into_iter().map(|keys| {
             let (region, friction) = (keys.region?, keys.friction?.value);
             Some(Found { place: region.place, value: Patch { region: region.value, friction } })

@@ -36,10 +36,8 @@ impl Form for MembersForm {
     type Out = Vec<GroupMember>;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Vec<GroupMember>> {
-        let Value::Table(entries) = &node.value else {
-            reporter.wrong(node, "a table of robots by their names");
-            return None;
-        };
+        let expected = || "a table of robots by their names".to_owned();
+        let entries = reporter.expect(node.as_table(), node, expected)?;
         let member = |entry: &Entry| {
             let name = Found { place: entry.place, value: entry.key.clone() };
             Some(GroupMember { name, keys: table::<MemberKeys>().read(&entry.node, reporter)? })
@@ -118,7 +116,7 @@ pub(crate) fn made_by(node: &Node) -> impl Iterator<Item = String> {
 /// The name that the robot of the group at `node` which is called `name` has by its place; `None` if there is none.
 pub(crate) fn member_called(node: &Node, name: &str) -> Option<String> {
     let other = |key: &str| node.get("members")?.get(key)?.get("name")?.as_text();
-    let Some(Value::Table(members)) = node.get("members").map(|members| &members.value) else {
+    let Some(members) = node.get("members").and_then(Node::as_table) else {
         return makes(node, name).then(|| name.to_owned());
     };
     let renamed = members.iter().find(|entry| other(&entry.key) == Some(name)).map(|entry| entry.key.clone());

@@ -8,8 +8,7 @@ use crate::{
         Couple, Form, Found, Keys, Node, Reporter, Triple,
         form::Number,
         keys,
-        keys::TableReader,
-        kinds::{Kind, KindFound, KindOption, Kinds},
+        kinds::{Kind, KindOption, Kinds},
         number,
     },
 };
@@ -176,10 +175,7 @@ impl Form for PropForm {
     type Out = PropKeys;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<PropKeys> {
-        let mut table = TableReader::of(node, reporter)?;
-        let KindFound::Known(measured) = SHAPES.take(node, &mut table, reporter) else { return None };
-        let shared = SharedKeys::read(&mut table, reporter);
-        table.finish(reporter);
+        let (measured, shared) = SHAPES.read_with(node, reporter, SharedKeys::read)?;
         Some(PropKeys {
             measured: measured?,
             name: shared.name?,

@@ -141,10 +141,10 @@ fn follow(
             );
         }
     }
-    let law = keys.law.as_ref().map_or_else(LawPart::default, |found| found.value.clone());
+    let law = keys.law.clone().map_or_else(LawPart::default, |found| found.value);
     let law = law.complete_with(&defaults.law, Law::fitting(vehicle.kind));
-    let observer = keys.observer.as_ref().map_or_else(ObserverPart::default, |found| found.value.clone());
-    let sensing = keys.sensing.as_ref().map_or_else(SensingPart::default, |found| found.value.clone());
+    let observer = keys.observer.clone().map_or_else(ObserverPart::default, |found| found.value);
+    let sensing = keys.sensing.clone().map_or_else(SensingPart::default, |found| found.value);
     let speed = start_speed(keys.speed.as_ref(), vehicle, reporter);
     let (distance, bearing) = (keys.distance.as_ref()?, keys.bearing.as_ref()?);
     check_distance(distance.value.range()[0], law.distance_min, distance.place, reporter);

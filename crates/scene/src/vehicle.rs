@@ -3,7 +3,7 @@
 use crate::text::words::word;
 use crate::{
     Vehicle, VehicleKind,
-    text::{Form, Found, Keys, Node, Part, Reporter, Span, Value, keys::Mark, table, words::quoted},
+    text::{Form, Found, Keys, Node, Part, Reporter, Span, keys::Mark, table, words::quoted},
     types::VehiclePart,
 };
 use serde::{Serializer, ser};
@@ -28,13 +28,11 @@ impl Form for VehicleForm {
     type Out = VehiclePart;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<VehiclePart> {
-        match &node.value {
-            Value::Text(_) => {
-                let value = word::<VehicleKind>().read(node, reporter)?;
-                Some(VehiclePart { kind: Some(Found { place: node.place, value }), ..VehiclePart::default() })
-            }
-            _ => table::<VehiclePart>().read(node, reporter),
+        if node.as_text().is_none() {
+            return table::<VehiclePart>().read(node, reporter);
         }
+        let value = word::<VehicleKind>().read(node, reporter)?;
+        Some(VehiclePart { kind: Some(Found { place: node.place, value }), ..VehiclePart::default() })
     }
 
     /// The defaults depend on the kind, so they are told in words.

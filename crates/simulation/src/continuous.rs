@@ -16,7 +16,7 @@ const STEPS_PER_EPSILON: f64 = 8.0;
 /// All that moves in continuous time.
 #[derive(Clone)]
 pub(crate) struct Continuous {
-    world: Unicycles,
+    pub(crate) world: Unicycles,
     step: f64,
     observations: Vec<Observation>,
 }
@@ -42,14 +42,6 @@ impl Continuous {
         let observing = formation.laws().iter().filter(|e| e.law.kind == LawKind::OutputFeedback);
         let fastest = observing.flat_map(|e| e.observer.epsilon).fold(f64::INFINITY, f64::min);
         self.step = STEP_MAX.min(fastest / STEPS_PER_EPSILON);
-    }
-
-    pub(crate) fn world(&self) -> &dyn World {
-        &self.world
-    }
-
-    pub(crate) fn world_mut(&mut self) -> &mut dyn World {
-        &mut self.world
     }
 
     /// One control period from `time`.

@@ -88,10 +88,9 @@ fn of_robot(robot: &RobotState) -> Option<&'static str> {
 }
 
 fn of_edge(edge: &EdgeState) -> Option<&'static str> {
-    let (truth, seen) = (edge.relative, edge.seen);
     first([
-        ("relative position", finite([truth.distance, truth.bearing, truth.view_angle])),
-        ("relative position as seen", finite([seen.distance, seen.bearing, seen.view_angle, edge.age])),
+        ("relative position", finite(edge.relative.coordinates())),
+        ("relative position as seen", finite(edge.seen.coordinates()) && edge.age.is_finite()),
         ("set point", finite(edge.set_point)),
         ("error", finite(edge.error)),
         ("command asked for", finite([edge.asked.acceleration, edge.asked.turn_rate])),
@@ -110,7 +109,7 @@ fn is_told(contact: &Contact) -> bool {
 
 fn is_seen(frame: &MeasurementRecord) -> bool {
     let MeasurementRecord { measurement, arrival, truth, pan, .. } = frame;
-    let places = [measurement.relative, *truth].iter().all(|r| finite([r.distance, r.bearing, r.view_angle]));
+    let places = [measurement.relative, *truth].iter().all(|r| finite(r.coordinates()));
     let corners = frame.tags.iter().flatten().flatten().all(|corner| finite(*corner));
     places && corners && finite(measurement.deviation) && finite([measurement.stamp, *arrival, *pan])
 }

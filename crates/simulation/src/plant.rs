@@ -48,14 +48,14 @@ impl Plant {
     pub(crate) fn world(&self) -> &dyn World {
         match self {
             Self::Held(world) => world.as_ref(),
-            Self::Continuous(system) => system.world(),
+            Self::Continuous(system) => &system.world,
         }
     }
 
     pub(crate) fn world_mut(&mut self) -> &mut dyn World {
         match self {
             Self::Held(world) => world.as_mut(),
-            Self::Continuous(system) => system.world_mut(),
+            Self::Continuous(system) => &mut system.world,
         }
     }
 }

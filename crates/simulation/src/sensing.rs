@@ -29,7 +29,7 @@ impl SensingPipeline {
         starts: Vec<ObserverStart>,
         snapshot: &Snapshot,
     ) -> Self {
-        let edges = sensor_config.sensors().len();
+        let edges = sensor_config.sensors.len();
         Self {
             sensor_state: sensor_config.start(snapshot),
             trackers: vec![Tracker::default(); edges],

@@ -1,7 +1,7 @@
 //! Pictures: which part to take, what the sensor makes of the light, and the tags in it.
 
-use super::{Exposure, SensorConfig, all_faces, pan};
-use crate::detect::{Locus, recognise_expected};
+use super::{Exposure, SensorConfig, pan};
+use crate::detect::{Locus, recognise};
 use crate::imaging::{ImageSensor, Optics, Purpose, gather, noise_stream};
 use crate::pose::SeenFace;
 use vocabulary::{CameraModel, CameraRenderer, FACES, Grey, Region, Rigid, Shot, Snapshot};
@@ -116,7 +116,7 @@ impl DetectorBench {
         let shell = sensor_config.robots[exposure.leader].shell;
         let expected = readable(sensor_config, exposure).unwrap_or(FACES);
         let faces = shell.map_or_else(Vec::new, |shell| {
-            recognise_expected(&mut self.detector, &picture, region, &optics, &shell, expected)
+            recognise(&mut self.detector, &picture, region, &optics, &shell, expected)
         });
         self.picture = picture;
         CameraDetection { region, faces }
@@ -260,7 +260,7 @@ fn readable(sensor_config: &SensorConfig, exposure: &Exposure<'_>) -> Option<usi
         let away = camera.iter().map(|x| x * x).sum::<f64>().sqrt();
         camera[2] > SURELY.0 * away && follower.camera_model.focal * shell.cell > SURELY.1 * away
     };
-    exposure.seen.then(|| all_faces().filter(|face| surely(*face)).count().max(1))
+    exposure.seen.then(|| (0..FACES).filter(|face| surely(*face)).count().max(1))
 }
 
 /// Cosine of the angle from its normal, and pixels a cell, at which a face is surely read.
@@ -273,7 +273,7 @@ fn expected(sensor_config: &SensorConfig, exposure: &Exposure<'_>) -> Option<[[f
         (sensor_config.robots.get(exposure.leader)?, sensor_config.robots.get(exposure.follower)?);
     let shell = leader.shell?;
     let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for corner in all_faces().flat_map(|face| shell.tag_corners(face)) {
+    for corner in (0..FACES).flat_map(|face| shell.tag_corners(face)) {
         let pixel = follower.camera_model.project(camera_from_leader.apply(corner))?;
         for k in 0..2 {
             bounds[0][k] = bounds[0][k].min(pixel[k]);

@@ -1,8 +1,9 @@
 //! Tags as a camera would see them, calculated: no picture is drawn.
 
-use super::{Exposure, SensorConfig, all_faces};
+use super::{Exposure, SensorConfig};
 use crate::imaging::NoiseStream;
 use crate::pose::SeenFace;
+use vocabulary::FACES;
 
 /// Pixels that a cell needs, seen from ahead and at the steepest angle at which a tag is still read.
 const LEAST_CELL: [f64; 2] = [1.75, 2.5];
@@ -38,7 +39,7 @@ pub(super) fn faces(
     let world_from_leader = robots[exposure.leader].world_from_body();
     let world_from_camera = follower.camera_mount.world_from_camera(&robots[exposure.follower]);
     let mut seen = Vec::new();
-    for face in all_faces() {
+    for face in 0..FACES {
         // Errors are drawn for every face, so that a face out of sight changes none of the others.
         let errors: [[f64; 2]; 4] = std::array::from_fn(|_| [0, 1].map(|_| f64::from(random.normal())));
         let eye = shell.body_from_face(face).inverse().after(&camera_from_leader.inverse()).translation;

@@ -20,7 +20,7 @@ use crate::pose::{Prior, Rig, SeenFace, locate};
 use pan::Pan;
 use std::collections::VecDeque;
 use vocabulary::{
-    CameraRenderer, Edge, FACES, Measurement, MeasurementRecord, Outcome, Prop, Relative, Rigid, RobotInfo,
+    CameraRenderer, Edge, Measurement, MeasurementRecord, Outcome, Prop, Relative, Rigid, RobotInfo,
     Snapshot, StepInterpolant, Terrain, TrackingState,
 };
 
@@ -58,14 +58,20 @@ pub struct Sensor {
 /// Parameters of all followers' senses.
 #[derive(Debug, Clone)]
 pub struct SensorConfig {
-    edges: Vec<Edge>,
-    sensors: Vec<Sensor>,
-    /// What robots are seen by and see with.
-    pub(crate) robots: Vec<RobotInfo>,
-    pub(crate) props: Vec<Prop>,
-    pub(crate) terrain: Option<std::sync::Arc<Terrain>>,
-    camera: CameraSettings,
-    pub(crate) seed: u64,
+    /// Who measures whom.
+    pub edges: Vec<Edge>,
+    /// The sensor of every edge.
+    pub sensors: Vec<Sensor>,
+    /// What robots are seen by and see with, in the order of the snapshots.
+    pub robots: Vec<RobotInfo>,
+    /// What may stand between them, in the order of the snapshots.
+    pub props: Vec<Prop>,
+    /// Uneven ground, if it is.
+    pub terrain: Option<std::sync::Arc<Terrain>>,
+    /// Settings of all cameras.
+    pub camera: CameraSettings,
+    /// Seed of the noise.
+    pub seed: u64,
 }
 
 /// State of all followers' senses.
@@ -120,33 +126,6 @@ const INSTANT: f64 = 1e-9;
 const MOST_ON_THE_WAY: usize = 4096;
 
 impl SensorConfig {
-    /// Puts checked parts together: one sensor per edge, `members` in the order of the snapshots.
-    pub fn new(
-        edges: &[Edge],
-        sensors: Vec<Sensor>,
-        robots: &[RobotInfo],
-        props: &[Prop],
-        terrain: Option<std::sync::Arc<Terrain>>,
-        camera: CameraSettings,
-        seed: u64,
-    ) -> Self {
-        debug_assert_eq!(edges.len(), sensors.len());
-        Self {
-            edges: edges.to_vec(),
-            sensors,
-            robots: robots.to_vec(),
-            props: props.to_vec(),
-            terrain,
-            camera,
-            seed,
-        }
-    }
-
-    /// The sensor of every edge.
-    pub fn sensors(&self) -> &[Sensor] {
-        &self.sensors
-    }
-
     /// Whether any follower measures at all.
     pub fn has_sensors(&self) -> bool {
         self.sensors.iter().any(|sensor| sensor.source != SensorKind::Truth)
@@ -396,9 +375,4 @@ impl SensorConfig {
         let camera_mount = self.robots.get(exposure.follower)?.camera_mount;
         Some(camera_mount.world_from_camera(follower).inverse().after(&leader.world_from_body()))
     }
-}
-
-/// Faces of a shell.
-pub(crate) fn all_faces() -> std::ops::Range<usize> {
-    0..FACES
 }

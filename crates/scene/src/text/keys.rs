@@ -1,7 +1,7 @@
 //! Tables: which keys there are, what each means, its form and its default, all said once.
 
 use crate::text::{
-    Form, Node, Reporter, Span, Value,
+    Form, Node, Reporter, Span,
     node::Entry,
     words::{did_you_mean, nearest, quoted},
 };
@@ -112,11 +112,8 @@ pub(crate) struct TableReader<'n> {
 impl<'n> TableReader<'n> {
     /// A reader of `node`, or `None` after a note that it is no table.
     pub(crate) fn of(node: &'n Node, reporter: &mut Reporter) -> Option<Self> {
-        if let Value::Table(entries) = &node.value {
-            return Some(Self { place: node.place, entries, known: vec![] });
-        }
-        reporter.wrong(node, "a table");
-        None
+        let entries = reporter.expect(node.as_table(), node, || "a table".to_owned())?;
+        Some(Self { place: node.place, entries, known: vec![] })
     }
 
     /// Where the table stands.

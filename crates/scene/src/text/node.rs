@@ -75,10 +75,7 @@ impl Node {
 
     /// The line of `key`, if this is a table that has it.
     pub(crate) fn entry(&self, key: &str) -> Option<&Entry> {
-        match &self.value {
-            Value::Table(entries) => entries.iter().find(|entry| entry.key == key),
-            _ => None,
-        }
+        self.as_table()?.iter().find(|entry| entry.key == key)
     }
 
     /// The value of `key`, if this is a table that has it.
@@ -88,10 +85,7 @@ impl Node {
 
     /// The items of the list `key`, if this is a table that has it.
     pub(crate) fn items(&self, key: &str) -> &[Self] {
-        match self.get(key).map(|node| &node.value) {
-            Some(Value::List(items)) => items,
-            _ => &[],
-        }
+        self.get(key).and_then(Self::as_list).unwrap_or_default()
     }
 
     /// The list `key`, if this is a table that has it.
@@ -125,6 +119,22 @@ impl Node {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// The lines of this table.
+    pub(crate) fn as_table(&self) -> Option<&[Entry]> {
+        match &self.value {
+            Value::Table(entries) => Some(entries),
+            _ => None,
+        }
+    }
+
+    /// The items of this list.
+    pub(crate) fn as_list(&self) -> Option<&[Self]> {
+        match &self.value {
+            Value::List(items) => Some(items),
+            _ => None,
         }
     }
 

@@ -68,6 +68,19 @@ impl Reporter {
         self.report(node.place, format!("{subject} must be {expected}, not {found}"));
     }
 
+    /// `value`, if there is one; else notes that the value being read is not what it has to be.
+    pub(crate) fn expect<T>(
+        &mut self,
+        value: Option<T>,
+        node: &Node,
+        expected: impl FnOnce() -> String,
+    ) -> Option<T> {
+        if value.is_none() {
+            self.wrong(node, &expected());
+        }
+        value
+    }
+
     /// Does `work` as part of reading the value of `key`.
     pub(crate) fn inside<T>(&mut self, key: &str, work: impl FnOnce(&mut Self) -> T) -> T {
         let outer = std::mem::replace(&mut self.key, key.to_owned());

@@ -115,10 +115,8 @@ impl Form for LayoutForm {
     type Out = String;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<String> {
-        let Some(text) = node.as_text() else {
-            reporter.wrong(node, "views joined by '+', such as \"snake+top\"");
-            return None;
-        };
+        let expected = || "views joined by '+', such as \"snake+top\"".to_owned();
+        let text = reporter.expect(node.as_text(), node, expected)?;
         let parts: Vec<&str> = text.split('+').collect();
         if parts.len() > 4 {
             reporter

@@ -5,7 +5,7 @@ use crate::accuracy::tally::{Errors, PoseSample};
 use crate::dataset::camera::{CORNER_NOISE, errors, relative_pose};
 use crate::dataset::view::{FaceView, region_around};
 use crate::{Error, RendererFactory};
-use perception::detect::{Detector, Locus, Tag, recognise_expected};
+use perception::detect::{Detector, Locus, Tag, recognise};
 use perception::imaging::{ImageSensor, Optics, Purpose, noise_stream};
 use perception::pose::{Prior, Rig, SeenFace, locate};
 use vocabulary::math;
@@ -178,7 +178,7 @@ impl LocalisationBench {
         let shell = self.detector.shell;
         self.detector.foreign = 0;
         let began = clock();
-        let faces = recognise_expected(&mut self.detector, &picture, region, &optics, &shell, expected);
+        let faces = recognise(&mut self.detector, &picture, region, &optics, &shell, expected);
         times[2] = 1e3 * (clock() - began);
         let strayed =
             faces.iter().filter(|seen| strays(seen, &shell, &optics, &frame.camera_from_body)).count();

@@ -154,7 +154,7 @@ impl FollowerCamera {
         let region = self.region(&shell, &rig, &own, &ahead);
         let part = cut(taken.picture, region);
         let optics = *self.sensor.optics();
-        let faces = recognise(&mut self.detector, &part, region, &optics, &shell);
+        let faces = recognise(&mut self.detector, &part, region, &optics, &shell, FACES);
         note["faces"] = faces
             .iter()
             .map(|seen| json!({ "face": seen.face, "corners": seen.corners, "deviation": seen.deviation }))

@@ -24,7 +24,7 @@ const CORNERS: f64 = 2e-3;
 const SHELL: [f64; 2] = [0.4, 0.1];
 
 /// All bodies and their solver.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(super) struct Bodies {
     pipeline: Pipeline,
     parameters: IntegrationParameters,
@@ -67,22 +67,14 @@ impl Bodies {
             colliders.insert(part.friction(0.7).user_data(mark(EntityId::Ground)));
         }
         Self {
-            pipeline: Pipeline::default(),
             // Recycled contacts keep old distances: a touch would be seen centimetres late.
             parameters: IntegrationParameters {
                 contact_recycling: false,
                 ..IntegrationParameters::default()
             },
-            islands: IslandManager::new(),
-            broad_phase: BroadPhaseBvh::default(),
-            narrow_phase: NarrowPhase::new(),
             set: RigidBodySet::new(),
             colliders,
-            joints: ImpulseJointSet::new(),
-            multibodies: MultibodyJointSet::new(),
-            soft: SoftBodySet::default(),
-            ccd: CCDSolver::new(),
-            props: Vec::new(),
+            ..Self::default()
         }
     }
 
