@@ -53,7 +53,7 @@ impl<T> Form for FileForm<T> {
                 self.0(&text, source, reporter)
             }
             Err(fault) => {
-                reporter.report(node.place, format!("{}: {fault}", path.display()));
+                reporter.report(node.span, format!("{}: {fault}", path.display()));
                 None
             }
         }

@@ -149,7 +149,7 @@ macro_rules! noise {
                 region: region.value,
                 cell: cell.value,
             };
-            check_noise(&noise, cell.place, region.place, reporter)?;
+            check_noise(&noise, cell.span, region.span, reporter)?;
             Some(WrittenGround { relief: $relief(noise), seeded: keys.seed.is_some() })
         }
     };
@@ -169,8 +169,8 @@ fn check_noise(noise: &Noise, cell: Span, region: Span, reporter: &mut Reporter)
     check_points(noise.region, noise.cell, region, reporter)
 }
 
-/// Notes at `place` that a grid would have too many points.
-fn check_points(region: [f64; 4], cell: f64, place: Span, reporter: &mut Reporter) -> Option<()> {
+/// Notes at `span` that a grid would have too many points.
+fn check_points(region: [f64; 4], cell: f64, span: Span, reporter: &mut Reporter) -> Option<()> {
     let [columns, rows] = relief::grid(region, cell);
     if columns * rows <= MOST_POINTS {
         return Some(());
@@ -178,7 +178,7 @@ fn check_points(region: [f64; 4], cell: f64, place: Span, reporter: &mut Reporte
     let message = format!(
         "{columns:.0} × {rows:.0} points with a `cell` of {cell} m; the most are {MOST_POINTS:.0}: take a larger `cell`"
     );
-    reporter.report(place, message);
+    reporter.report(span, message);
     None
 }
 
@@ -188,11 +188,11 @@ fn heights(keys: TableKeys, node: &Node, reporter: &mut Reporter) -> Option<Writ
         let wanted = heights.value.first().map(Vec::len);
         let rows = heights.value.iter().zip(node.items("heights")).enumerate();
         let wrong = rows.filter_map(|(index, (row, node))| {
-            Some((node.place, wrong_length(index + 1, row.len(), wanted)?))
+            Some((node.span, wrong_length(index + 1, row.len(), wanted)?))
         });
-        let size = wrong_size(&heights.value).map(|fault| (heights.place, fault));
-        if let Some((place, fault)) = wrong.chain(size).next() {
-            reporter.report(place, fault);
+        let size = wrong_size(&heights.value).map(|fault| (heights.span, fault));
+        if let Some((span, fault)) = wrong.chain(size).next() {
+            reporter.report(span, fault);
             return None;
         }
     }
@@ -230,7 +230,7 @@ impl Form for GroundForm {
         let (written, shared) = RELIEF.read_with(node, reporter, SharedKeys::read)?;
         let patches = shared.patches?.value.into_iter().map(|keys| {
             let (region, friction) = (keys.region?, keys.friction?.value);
-            Some(Found { place: region.place, value: Patch { region: region.value, friction } })
+            Some(Found { span: region.span, value: Patch { region: region.value, friction } })
         });
         let patches = patches.collect::<Option<_>>()?;
         Some(GroundKeys { written: Arc::new(written?), friction: shared.friction?.value, patches })
@@ -284,7 +284,7 @@ fn flat(cell: f64, patches: &[Found<Patch>], reporter: &mut Reporter) -> Option<
         [a.min(x0), b.min(y0), c.max(x1), d.max(y1)]
     });
     let around = [x0 - cell, y0 - cell, x1 + cell, y1 + cell];
-    check_points(around, cell, first.place, reporter)?;
+    check_points(around, cell, first.span, reporter)?;
     Some(relief::level(around, cell))
 }
 
@@ -297,10 +297,10 @@ fn check_patches(patches: &[Found<Patch>], terrain: &Terrain, reporter: &mut Rep
         if x0 <= x || y0 <= y || x1 >= right || y1 >= left {
             let message =
                 format!("a patch must lie inside the ground, from [{x}, {y}] to [{right}, {left}] in m");
-            reporter.report(patch.place, message);
+            reporter.report(patch.span, message);
         } else if (x1 - x0).min(y1 - y0) < cell {
             let message = format!("a patch must be as wide and long as a `cell` of the ground, {cell} m");
-            reporter.report(patch.place, message);
+            reporter.report(patch.span, message);
         }
     }
 }

@@ -39,7 +39,7 @@ impl Form for MembersForm {
         let expected = || "a table of robots by their names".to_owned();
         let entries = reporter.expect(node.as_table(), node, expected)?;
         let member = |entry: &Entry| {
-            let name = Found { place: entry.place, value: entry.key.clone() };
+            let name = Found { span: entry.span, value: entry.key.clone() };
             Some(GroupMember { name, keys: table::<MemberKeys>().read(&entry.node, reporter)? })
         };
         // All are read before giving up, so that every fault is told.
@@ -67,7 +67,7 @@ pub(crate) fn expand(
     let usual = group.outfit(None, defaults, reporter)?;
     let speed = start_speed(keys.speed.as_ref(), &usual.vehicle, reporter);
     let spacing = keys.distance.as_ref()?;
-    check_distance(spacing.value, usual.law.distance_min, spacing.place, reporter);
+    check_distance(spacing.value, usual.law.distance_min, spacing.span, reporter);
     let (leader, origin) = group.leader(&usual.vehicle, defaults, drafts, reporter)?;
     let mut scatter = Scatter::new(keys, group.index, seed)?;
     for (place, spot) in group.spots(count)?.into_iter().enumerate().skip(1) {
@@ -84,7 +84,7 @@ pub(crate) fn expand(
         }
         let (distance, bearing) = spot.set_point(member);
         if let Some(found) = member.and_then(|keys| keys.distance.as_ref()) {
-            check_distance(distance.range()[0], own.law.distance_min, found.place, reporter);
+            check_distance(distance.range()[0], own.law.distance_min, found.span, reporter);
         }
         let Outfit { vehicle, law, observer, sensing } = own;
         let name = group.name(place);
@@ -203,7 +203,7 @@ impl Group<'_> {
             let message = format!(
                 "`{key}` cannot be absent: `{follower}` follows it; give `{follower}` another `leader`"
             );
-            reporter.report(absent.place, message);
+            reporter.report(absent.span, message);
         }
     }
 
@@ -215,7 +215,7 @@ impl Group<'_> {
                 let near = nearest(&name.value, names.iter().map(String::as_str));
                 let hint = near.map_or_else(String::new, did_you_mean);
                 let message = format!("this group makes no robot called `{}`{hint}", name.value);
-                reporter.report(name.place, message);
+                reporter.report(name.span, message);
             }
         }
     }
@@ -248,13 +248,13 @@ impl Group<'_> {
         defaults: &Defaults,
         reporter: &mut Reporter,
     ) -> Option<Vehicle> {
-        let (group, place) = (self.keys.vehicle.as_ref()?, self.node.place);
-        let Some(own) = own else { return Some(defaults.vehicle(Some(group), place, reporter)) };
+        let (group, span) = (self.keys.vehicle.as_ref()?, self.node.span);
+        let Some(own) = own else { return Some(defaults.vehicle(Some(group), span, reporter)) };
         let kind_of = |part: &VehiclePart| part.kind.as_ref().map(|found| found.value);
         let usual = kind_of(&group.value).unwrap_or(usual_kind(&defaults.vehicle));
         let same = kind_of(&own.value).is_none_or(|kind| kind == usual);
         let value = if same { own.value.over(&group.value) } else { own.value.clone() };
-        Some(defaults.vehicle(Some(&Found { place: own.place, value }), place, reporter))
+        Some(defaults.vehicle(Some(&Found { span: own.span, value }), span, reporter))
     }
 
     /// Number of places, if the shape and the scene, which has `before` robots already, can take them.
@@ -263,7 +263,7 @@ impl Group<'_> {
         let crowd = || format!("this makes more than {MOST_ROBOTS} robots");
         let fault = shape.refuses(count.value).or_else(|| (before + count.value > MOST_ROBOTS).then(crowd));
         if let Some(fault) = fault {
-            reporter.report(count.place, fault);
+            reporter.report(count.span, fault);
             return None;
         }
         Some(count.value)
@@ -307,8 +307,8 @@ impl Group<'_> {
     /// Appends the robot in `place`, counted from 0.
     fn push(&self, place: usize, robot: Robot, leader: Option<Found<String>>, drafts: &mut Vec<RobotDraft>) {
         let said = self.own_name(place).or(self.keys.name.as_ref());
-        let at = said.map_or(self.node.place, |name| name.place);
-        let name = Some(Found { place: at, value: robot.name.clone() });
+        let at = said.map_or(self.node.span, |name| name.span);
+        let name = Some(Found { span: at, value: robot.name.clone() });
         // Leaders that the shape gives exist, and the one outside has been looked up; one that is written has not.
         drafts.push(RobotDraft { named: Named { name, leader }, number: None, robot: Some(robot) });
     }
@@ -322,8 +322,8 @@ impl Group<'_> {
         reporter: &mut Reporter,
     ) -> Option<Vehicle> {
         let Some(keys) = self.member(0) else { return Some(*usual) };
-        for (key, place) in keys.places().into_iter().filter(|(key, _)| !["name", "vehicle"].contains(key)) {
-            reporter.report(place, format!("`{key}` is for robots that follow, but `{name}` leads"));
+        for (key, span) in keys.spans().into_iter().filter(|(key, _)| !["name", "vehicle"].contains(key)) {
+            reporter.report(span, format!("`{key}` is for robots that follow, but `{name}` leads"));
         }
         self.vehicle(keys.vehicle.as_ref(), defaults, reporter)
     }
@@ -343,9 +343,9 @@ impl Group<'_> {
                 let name = self.name(0);
                 let vehicle = self.leading(&name, usual, defaults, reporter)?;
                 check_path(path, &vehicle, reporter);
-                let origin = Found { place: self.node.place, value: [0.0; 3] };
+                let origin = Found { span: self.node.span, value: [0.0; 3] };
                 let given = keys.pose.as_ref().or(path.value.start().is_none().then_some(&origin));
-                let pose = start_pose(given, Some(&path.value), self.node.place, reporter)?;
+                let pose = start_pose(given, Some(&path.value), self.node.span, reporter)?;
                 let role = Role::Lead { path: path.value.clone() };
                 self.push(0, Robot { name: name.clone(), pose, number: 0, vehicle, role }, None, drafts);
                 Some((name, pose))
@@ -353,19 +353,19 @@ impl Group<'_> {
             (None, Some(_)) => {
                 if let Some(pose) = self.node.entry("pose") {
                     reporter.report(
-                        pose.place,
+                        pose.span,
                         "`pose` is for groups with a `path`; this one starts at its leader",
                     );
                 }
                 let leader = keys.leader.as_ref()?;
-                check_known(&leader.value, leader.place, drafts.iter().map(|draft| &draft.named), reporter);
+                check_known(&leader.value, leader.span, drafts.iter().map(|draft| &draft.named), reporter);
                 let is_leader = |robot: &&Robot| robot.name == leader.value;
                 let robot = drafts.iter().filter_map(|draft| draft.robot.as_ref()).find(is_leader)?;
                 Some((leader.value.clone(), robot.pose))
             }
             _ => {
                 reporter.report(
-                    self.node.place,
+                    self.node.span,
                     "a group needs either a `path` for its own leader, or a `leader`",
                 );
                 None

@@ -64,7 +64,7 @@ impl fmt::Display for Override {
 #[derive(Clone, Copy)]
 struct PathPart<'a> {
     text: &'a str,
-    place: Span,
+    span: Span,
 }
 
 impl Override {
@@ -85,9 +85,9 @@ impl Override {
         }
         let mut start = offset;
         let parts = path.split('.').map(|text| {
-            let place = Span { source, start, end: start + text.len() };
+            let span = Span { source, start, end: start + text.len() };
             start += text.len() + 1;
-            PathPart { text: text.trim(), place: whole.unwrap_or(place) }
+            PathPart { text: text.trim(), span: whole.unwrap_or(span) }
         });
         put_in_scene(root, &parts.collect::<Vec<_>>(), value, reporter);
     }
@@ -119,11 +119,11 @@ fn put_in_scene(root: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &
     let mut known = groups.iter().enumerate();
     let Some((index, key)) = known.find_map(|(index, group)| Some((index, member_called(group, name.text)?)))
     else {
-        reporter.report(name.place, unknown_robot(root, name.text));
+        reporter.report(name.span, unknown_robot(root, name.text));
         return;
     };
     let inside: Vec<_> =
-        [PathPart { text: "members", place: list.place }, PathPart { text: &key, place: name.place }]
+        [PathPart { text: "members", span: list.span }, PathPart { text: &key, span: name.span }]
             .into_iter()
             .chain(rest.iter().copied())
             .collect();
@@ -150,8 +150,8 @@ fn put(node: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Repor
         Value::Table(entries) => {
             let index = entries.iter().position(|entry| entry.key == part.text).unwrap_or_else(|| {
                 // A table that is not there yet; whether it may be is checked with all others.
-                let node = Node { place: part.place, value: Value::Table(vec![]) };
-                entries.push(Entry { key: part.text.to_owned(), place: part.place, node });
+                let node = Node { span: part.span, value: Value::Table(vec![]) };
+                entries.push(Entry { key: part.text.to_owned(), span: part.span, node });
                 entries.len() - 1
             });
             if let Some(entry) = entries.get_mut(index) {
@@ -167,10 +167,10 @@ fn put(node: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Repor
                     put(item, rest, value, reporter);
                 }
             }
-            Err(fault) => reporter.report(part.place, fault),
+            Err(fault) => reporter.report(part.span, fault),
         },
         _ => reporter.report(
-            part.place,
+            part.span,
             format!("there is nothing called `{}` here: this is a plain value", part.text),
         ),
     }
@@ -179,8 +179,8 @@ fn put(node: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Repor
 /// Makes what is the word of its kind a table of that kind.
 fn spell_out(thing: &mut Node) {
     if thing.as_text().is_some() {
-        let place = thing.place;
-        let kind = Entry { key: "kind".to_owned(), place, node: thing.clone() };
+        let span = thing.span;
+        let kind = Entry { key: "kind".to_owned(), span, node: thing.clone() };
         thing.value = Value::Table(vec![kind]);
     }
 }

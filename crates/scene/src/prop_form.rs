@@ -95,7 +95,7 @@ fn wall(keys: WallKeys, _: &Node, reporter: &mut Reporter) -> Option<Measured> {
     let [dx, dy] = [to.value[0] - from[0], to.value[1] - from[1]];
     let length = math::hypot(dx, dy);
     if length < 1e-3 {
-        reporter.report(to.place, "a wall must be at least 0.001 m long: `to` is where `from` is");
+        reporter.report(to.span, "a wall must be at least 0.001 m long: `to` is where `from` is");
         return None;
     }
     let pose = Pose::new(from[0] + 0.5 * dx, from[1] + 0.5 * dy, math::atan2(dy, dx));

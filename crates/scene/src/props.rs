@@ -39,33 +39,32 @@ impl PropStage<'_> {
         root: &Node,
         reporter: &mut Reporter,
     ) -> Vec<Placed> {
-        let nodes = root.items("props").iter().map(|node| node.place);
+        let nodes = root.items("props").iter().map(|node| node.span);
         let written = props.iter().zip(nodes);
-        let mut placed: Vec<_> =
-            written.filter_map(|(keys, place)| self.prop(keys, place, reporter)).collect();
+        let mut placed: Vec<_> = written.filter_map(|(keys, span)| self.prop(keys, span, reporter)).collect();
         for (index, keys) in patterns.iter().enumerate() {
             self.expand(keys, index as u64, &mut placed, reporter);
             if placed.len() > MOST_PROPS {
-                reporter.report(keys.name.place, format!("this makes more than {MOST_PROPS} props"));
+                reporter.report(keys.name.span, format!("this makes more than {MOST_PROPS} props"));
                 break;
             }
         }
         placed
     }
 
-    fn prop(&self, keys: &PropKeys, place: Span, reporter: &mut Reporter) -> Option<Placed> {
+    fn prop(&self, keys: &PropKeys, span: Span, reporter: &mut Reporter) -> Option<Placed> {
         let pose = match (keys.measured.pose, &keys.pose) {
             (Some(_), Some(pose)) => {
-                reporter.report(pose.place, "a wall stands from its `from` to its `to` and has no `pose`");
+                reporter.report(pose.span, "a wall stands from its `from` to its `to` and has no `pose`");
                 None
             }
             (Some(pose), None) => Some(pose),
-            (None, pose) => start_pose(pose.as_ref(), keys.path.as_ref(), place, reporter),
+            (None, pose) => start_pose(pose.as_ref(), keys.path.as_ref(), span, reporter),
         }?;
         let motion = match (&keys.mass, &keys.path) {
             (Some(mass), Some(_)) => {
                 reporter.report(
-                    mass.place,
+                    mass.span,
                     "`mass` is for props that can be pushed; one with a `path` goes its own way",
                 );
                 return None;
@@ -82,12 +81,12 @@ impl PropStage<'_> {
                 "`{}` starts in the ground: `elevation` of {elevation} m must be at least {foot:.3} m, or left out",
                 keys.name.value
             );
-            reporter.report(keys.name.place, message);
+            reporter.report(keys.name.span, message);
         }
         let (friction, restitution) = (keys.friction, keys.restitution);
         let name = keys.name.value.clone();
         let prop = PropSpec { name, solid, pose, elevation, friction, restitution, motion };
-        Some(Found { place: keys.name.place, value: prop })
+        Some(Found { span: keys.name.span, value: prop })
     }
 
     /// Height on which a foot stands, m: that of the ground under its middle, and for what is loose the highest under
@@ -122,7 +121,7 @@ impl PropStage<'_> {
                 friction: keys.friction,
                 restitution: keys.restitution,
             };
-            placed.push(Found { place: keys.name.place, value: prop });
+            placed.push(Found { span: keys.name.span, value: prop });
         }
     }
 
@@ -155,7 +154,7 @@ impl PropStage<'_> {
                     counted(spots.len(), "prop"),
                     field.keep_clear
                 );
-                reporter.report(field.count.place, message);
+                reporter.report(field.count.span, message);
                 break;
             };
             taken.push(outline);

@@ -32,7 +32,7 @@ impl Form for VehicleForm {
             return table::<VehiclePart>().read(node, reporter);
         }
         let value = word::<VehicleKind>().read(node, reporter)?;
-        Some(VehiclePart { kind: Some(Found { place: node.place, value }), ..VehiclePart::default() })
+        Some(VehiclePart { kind: Some(Found { span: node.span, value }), ..VehiclePart::default() })
     }
 
     /// The defaults depend on the kind, so they are told in words.
@@ -78,7 +78,7 @@ pub(crate) struct WrittenVehicle<'a> {
     /// Step of the physics, s.
     pub(crate) step: f64,
     /// Where that is said, or the robot where it is not.
-    pub(crate) place: Span,
+    pub(crate) span: Span,
 }
 
 /// The vehicle that is written, with notes where its values contradict each other.
@@ -101,12 +101,12 @@ pub(crate) fn usual_kind(scene: &VehiclePart) -> VehicleKind {
 
 /// Notes keys of `part` that mean nothing for vehicles of `kind`.
 pub(crate) fn check_meaning(part: &VehiclePart, kind: VehicleKind, reporter: &mut Reporter) {
-    for (key, place) in part.places().into_iter().filter(|(key, _)| !applies(key, kind)) {
+    for (key, span) in part.spans().into_iter().filter(|(key, _)| !applies(key, kind)) {
         let others = VehicleKind::ALL.into_iter().filter(|other| applies(key, *other));
         let others = quoted(others.map(Word::word));
         let kind = kind.word();
         reporter.report(
-            place,
+            span,
             format!("`{key}` means nothing for a vehicle of kind `{kind}`; it is for {others}"),
         );
     }
@@ -135,10 +135,10 @@ impl Check<'_> {
 
     /// Notes `message` at the first of `keys` that is written.
     fn report(&self, keys: &[&str], message: String, reporter: &mut Reporter) {
-        let WrittenVehicle { own, scene, place, .. } = *self.written;
-        let written = [own.places(), scene.places()].concat();
+        let WrittenVehicle { own, scene, span, .. } = *self.written;
+        let written = [own.spans(), scene.spans()].concat();
         let find = |key: &&str| written.iter().find(|(written, _)| written == key);
-        reporter.report(keys.iter().find_map(find).map_or(place, |(_, place)| *place), message);
+        reporter.report(keys.iter().find_map(find).map_or(span, |(_, span)| *span), message);
     }
 
     fn measures(&self, reporter: &mut Reporter) {

@@ -11,17 +11,17 @@ use std::marker::PhantomData;
 /// A value and where it was found.
 #[derive(Debug, Clone)]
 pub(crate) struct Found<T> {
-    pub(crate) place: Span,
+    pub(crate) span: Span,
     pub(crate) value: T,
 }
 
-/// What was found, or else a default, as if it stood at `place`.
+/// What was found, or else a default, as if it stood at `span`.
 pub(crate) fn found_or<T>(
     found: Option<Found<T>>,
-    place: Span,
+    span: Span,
     default: impl FnOnce() -> T,
 ) -> Option<Found<T>> {
-    found.or_else(|| Some(Found { place, value: default() }))
+    found.or_else(|| Some(Found { span, value: default() }))
 }
 
 /// Whichever of two keys is given, and whether it was the second; a note if none or both are.
@@ -38,7 +38,7 @@ pub(crate) fn one_of<T>(
             // A key that is there but was wrong has its own note already.
             let given = keys.iter().filter(|key| node.get(key).is_some()).count();
             if given != 1 {
-                reporter.report(node.place, format!("give either `{}` or `{}` here", keys[0], keys[1]));
+                reporter.report(node.span, format!("give either `{}` or `{}` here", keys[0], keys[1]));
             }
             None
         }
@@ -73,7 +73,7 @@ pub(crate) trait Keys: Sized {
     fn marks(key: &str) -> Option<&'static [Mark]>;
 
     /// Every key that was read, and where its value stands.
-    fn places(&self) -> Vec<(&'static str, Span)>;
+    fn spans(&self) -> Vec<(&'static str, Span)>;
 }
 
 /// What one table of a file says of something in which every key has a default; made by [`settings!`].
@@ -104,7 +104,7 @@ pub(crate) struct Field {
 
 /// Reads the keys of one table and remembers which, so as to find those that nobody knows.
 pub(crate) struct TableReader<'n> {
-    place: Span,
+    span: Span,
     entries: &'n [Entry],
     known: Vec<&'static str>,
 }
@@ -113,12 +113,12 @@ impl<'n> TableReader<'n> {
     /// A reader of `node`, or `None` after a note that it is no table.
     pub(crate) fn of(node: &'n Node, reporter: &mut Reporter) -> Option<Self> {
         let entries = reporter.expect(node.as_table(), node, || "a table".to_owned())?;
-        Some(Self { place: node.place, entries, known: vec![] })
+        Some(Self { span: node.span, entries, known: vec![] })
     }
 
     /// Where the table stands.
-    pub(crate) fn place(&self) -> Span {
-        self.place
+    pub(crate) fn span(&self) -> Span {
+        self.span
     }
 
     /// Reads the value of `key`.
@@ -132,12 +132,12 @@ impl<'n> TableReader<'n> {
         self.known.push(key);
         let Some(entry) = self.entries.iter().find(|entry| entry.key == key) else {
             if required {
-                reporter.report(self.place, format!("`{key}` is missing"));
+                reporter.report(self.span, format!("`{key}` is missing"));
             }
             return None;
         };
         let value = reporter.inside(key, |reporter| form.read(&entry.node, reporter))?;
-        Some(Found { place: entry.node.place, value })
+        Some(Found { span: entry.node.span, value })
     }
 
     /// Notes the keys that were not asked for.
@@ -149,7 +149,7 @@ impl<'n> TableReader<'n> {
             let known = self.known.iter().copied();
             let hint = nearest(&entry.key, known.clone()).map_or_else(String::new, did_you_mean);
             let message = format!("unknown key `{}`{hint} (known here: {})", entry.key, quoted(known));
-            reporter.report(entry.place, message);
+            reporter.report(entry.span, message);
         }
     }
 }
@@ -244,9 +244,9 @@ macro_rules! keys {
                 }
             }
 
-            fn places(&self) -> Vec<(&'static str, $crate::text::Span)> {
-                let all = [ $( (stringify!($key), self.$key.as_ref().map(|found| found.place)), )+ ];
-                all.into_iter().filter_map(|(key, place)| Some((key, place?))).collect()
+            fn spans(&self) -> Vec<(&'static str, $crate::text::Span)> {
+                let all = [ $( (stringify!($key), self.$key.as_ref().map(|found| found.span)), )+ ];
+                all.into_iter().filter_map(|(key, span)| Some((key, span?))).collect()
             }
         }
     };
@@ -256,9 +256,9 @@ macro_rules! keys {
     (@required default) => { false };
     (@required part) => { false };
     (@found or $found:ident, $table:ident, $default:expr) => {
-        $crate::text::keys::found_or($found, $table.place(), || $default)
+        $crate::text::keys::found_or($found, $table.span(), || $default)
     };
-    (@found part $found:ident, $table:ident) => { $crate::text::keys::found_or($found, $table.place(), Default::default) };
+    (@found part $found:ident, $table:ident) => { $crate::text::keys::found_or($found, $table.span(), Default::default) };
     (@found $need:ident $found:ident, $table:ident $(, $default:expr)?) => { $found };
     (@default $type:ty) => { serde_json::Value::Null };
     (@default $type:ty, $default:expr) => { serde_json::to_value::<$type>($default).unwrap_or_default() };

@@ -55,17 +55,17 @@ impl Reporter {
         self.folder.join(name)
     }
 
-    pub(crate) fn report(&mut self, place: Span, message: impl Into<String>) {
+    pub(crate) fn report(&mut self, span: Span, message: impl Into<String>) {
         if !self.is_full() {
-            self.notes.push((place, message.into()));
+            self.notes.push((span, message.into()));
         }
     }
 
     /// Notes that the value being read is not what it has to be.
     pub(crate) fn wrong(&mut self, node: &Node, expected: &str) {
         let subject = if self.key.is_empty() { "this".to_owned() } else { format!("`{}`", self.key) };
-        let found = node.describe(self.shown(node.place));
-        self.report(node.place, format!("{subject} must be {expected}, not {found}"));
+        let found = node.describe(self.shown(node.span));
+        self.report(node.span, format!("{subject} must be {expected}, not {found}"));
     }
 
     /// `value`, if there is one; else notes that the value being read is not what it has to be.
@@ -108,7 +108,7 @@ impl Reporter {
     pub(crate) fn into_diagnostics(mut self) -> Diagnostics {
         self.notes.sort();
         self.notes.dedup();
-        Diagnostics(self.notes.iter().map(|(place, message)| self.diagnostic(*place, message)).collect())
+        Diagnostics(self.notes.iter().map(|(span, message)| self.diagnostic(*span, message)).collect())
     }
 
     /// Number of notes so far.
@@ -116,30 +116,30 @@ impl Reporter {
         self.notes.len()
     }
 
-    /// Moves the notes from number `first` on that stand outside of `place` there, with `why` added.
-    pub(crate) fn gather(&mut self, first: usize, place: Span, why: &str) {
+    /// Moves the notes from number `first` on that stand outside of `span` there, with `why` added.
+    pub(crate) fn gather(&mut self, first: usize, span: Span, why: &str) {
         for (at, message) in self.notes.iter_mut().skip(first) {
-            if at.source != place.source || at.start < place.start || at.end > place.end {
-                *at = place;
+            if at.source != span.source || at.start < span.start || at.end > span.end {
+                *at = span;
                 message.push_str(why);
             }
         }
     }
 
     /// The text at a place.
-    pub(crate) fn shown(&self, place: Span) -> &str {
-        self.sources.get(place.source).and_then(|s| s.text.get(place.start..place.end)).unwrap_or("")
+    pub(crate) fn shown(&self, span: Span) -> &str {
+        self.sources.get(span.source).and_then(|s| s.text.get(span.start..span.end)).unwrap_or("")
     }
 
-    fn diagnostic(&self, place: Span, message: &str) -> Diagnostic {
+    fn diagnostic(&self, span: Span, message: &str) -> Diagnostic {
         let message = readable(message).into_owned();
-        let Some(source) = self.sources.get(place.source) else {
+        let Some(source) = self.sources.get(span.source) else {
             return Diagnostic { width: 1, message, ..Diagnostic::default() };
         };
-        let (before, after) = source.text.split_at(floor_boundary(&source.text, place.start));
+        let (before, after) = source.text.split_at(floor_boundary(&source.text, span.start));
         let line_start = before.rfind('\n').map_or(0, |at| at + 1);
         let rest = after.split(['\n', '\r']).next().unwrap_or("");
-        let meant = self.shown(place).split(['\n', '\r']).next().unwrap_or("");
+        let meant = self.shown(span).split(['\n', '\r']).next().unwrap_or("");
         Diagnostic {
             origin: source.origin.clone(),
             line: before.bytes().filter(|byte| *byte == b'\n').count() + 1,

@@ -123,7 +123,7 @@ impl Form for StartForm {
             (Some(at), None) => Some(ObserverStart::At(at.value)),
             (None, Some(offset)) => Some(ObserverStart::Offset(offset.value)),
             _ => {
-                reporter.report(node.place, "`start` takes either `at` or `offset`, as [distance, bearing]");
+                reporter.report(node.span, "`start` takes either `at` or `offset`, as [distance, bearing]");
                 None
             }
         }

@@ -82,7 +82,7 @@ impl Form for SensingForm {
             return table::<SensingPart>().read(node, reporter);
         }
         let value = word::<SensingKind>().read(node, reporter)?;
-        Some(SensingPart { kind: Some(Found { place: node.place, value }), ..SensingPart::default() })
+        Some(SensingPart { kind: Some(Found { span: node.span, value }), ..SensingPart::default() })
     }
 
     fn schema(&self) -> Json {
