@@ -6,14 +6,12 @@ mod files;
 mod picture;
 mod table;
 
-use crate::Outcome;
 use crate::args::{SceneArgs, within};
-use crate::cameras;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::load::{load, stem};
 use crate::print::{note, say};
 use crate::progress::Progress;
+use crate::{Outcome, cameras, interrupt};
 use clap::Args;
 use output::Place;
 use rendering::Gpu;

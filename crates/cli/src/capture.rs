@@ -1,8 +1,6 @@
 //! `echelon capture`: pictures of a scene at given times.
 
-use crate::Outcome;
 use crate::args::{PictureArgs, SceneArgs, time};
-use crate::cameras;
 use crate::failure::Failure;
 use crate::load::load;
 use crate::picture::{DrawJob, RenderSetup};
@@ -10,7 +8,7 @@ use crate::playback::Playback;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use crate::replaced::Replaced;
-use crate::{interrupt, times};
+use crate::{Outcome, cameras, interrupt, times};
 use clap::Args;
 use film::png;
 use output::Place;

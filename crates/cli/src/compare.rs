@@ -1,12 +1,11 @@
 //! `echelon compare`: do pictures look alike? For frames in CI against those that somebody has looked at.
 
-use crate::Outcome;
 use crate::args::within;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::junit::{self, Came, ReportedCheck};
 use crate::print::{json, say};
 use crate::replaced::Replaced;
+use crate::{Outcome, interrupt};
 use clap::Args;
 use image::RgbaImage;
 use output::Place;

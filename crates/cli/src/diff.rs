@@ -1,12 +1,11 @@
 //! `echelon diff`: are two recorded runs the same, and where do they part?
 
-use crate::Outcome;
 use crate::args::within;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::print::{json, say};
 use crate::progress::Progress;
 use crate::recorded::Recorded;
+use crate::{Outcome, interrupt};
 use clap::Args;
 use recording::log::{Comparison, compare};
 use serde_json::{Value, json};

@@ -6,12 +6,11 @@ mod folder;
 mod meter;
 mod tell;
 
-use crate::Outcome;
 use crate::args::AdapterArgs;
 use crate::failure::Failure;
 use crate::load::{build, read, stem, with_seed};
 use crate::print::note;
-use crate::{cameras, interrupt};
+use crate::{Outcome, cameras, interrupt};
 use clap::Args;
 use folder::Folder;
 use meter::Meter;

@@ -5,17 +5,15 @@ mod plots;
 mod preset;
 mod words;
 
-use crate::Outcome;
 use crate::args::{PictureArgs, SceneArgs};
-use crate::cameras;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::load::load;
 use crate::picture::{DrawJob, RenderSetup};
 use crate::playback::Playback;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use crate::replaced::Replaced;
+use crate::{Outcome, cameras, interrupt};
 use board::Board;
 use clap::Args;
 use film::{Film, FilmKind};

@@ -1,9 +1,8 @@
 //! Results as JUnit XML, which CI systems read.
 
-use crate::Outcome;
 use crate::failure::Failure;
-use crate::print;
 use crate::replaced::Replaced;
+use crate::{Outcome, print};
 use metrics::JudgedExpectation;
 use output::{Place, write_whole};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};

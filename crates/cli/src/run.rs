@@ -1,15 +1,13 @@
 //! `echelon run`: simulate, record, judge.
 
-use crate::Outcome;
 use crate::args::SceneArgs;
-use crate::cameras;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::junit::{self, ReportedCheck};
 use crate::load::{load, stem};
 use crate::print::note;
 use crate::progress::Progress;
 use crate::summary::{self, Summary};
+use crate::{Outcome, cameras, interrupt};
 use clap::Args;
 use output::Place;
 use recording::log::{self, Log, Roll};

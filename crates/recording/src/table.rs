@@ -14,7 +14,7 @@ use parquet::file::properties::WriterProperties;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{Edge, FleetInfo, Mobility, StepRecord, Word, words};
+use vocabulary::{FleetInfo, Mobility, StepRecord, Word, words};
 
 words! {
     /// The tables of a run; the word is the stem of the file's name.
@@ -63,7 +63,6 @@ impl TableKind {
     /// Shows `row` the values of every row that `record` adds.
     fn rows(self, fleet: &FleetInfo, record: &StepRecord, row: &mut Row<'_>) {
         let StepRecord { snapshot, edges, contacts, frames } = record;
-        let pair = |edge: &Edge| [edge.leader, edge.follower].map(|robot| &*fleet.robots[robot].name);
         match self {
             Self::Robots => {
                 for (member, robot) in fleet.robots.iter().zip(&snapshot.robots) {
@@ -72,7 +71,7 @@ impl TableKind {
             }
             Self::Edges => {
                 for (edge, state) in fleet.edges.iter().zip(edges) {
-                    columns::edge(snapshot.time, pair(edge), state, row);
+                    columns::edge(snapshot.time, fleet.pair(*edge), state, row);
                 }
             }
             Self::Contacts => {
@@ -89,7 +88,7 @@ impl TableKind {
             Self::Measurements => {
                 for frame in frames {
                     let Some(edge) = fleet.edges.get(frame.edge) else { continue };
-                    columns::measurement(pair(edge), frame, row);
+                    columns::measurement(fleet.pair(*edge), frame, row);
                 }
             }
         }

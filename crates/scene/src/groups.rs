@@ -4,6 +4,7 @@ use crate::{
     Follow, Law, Observer, Robot, Role, Sensing, Vehicle,
     document::{Follows, GroupKeys, MOST_ROBOTS, MemberKeys},
     graph::{Named, check_known},
+    random::RandomStream,
     robots::{Defaults, RobotDraft, check_distance, check_path, start_pose, start_speed},
     text::{
         Form, Found, Keys, Node, Part, Reporter, Value,
@@ -14,13 +15,8 @@ use crate::{
     types::VehiclePart,
     vehicle::usual_kind,
 };
-use rand_chacha::{
-    ChaCha8Rng,
-    rand_core::{Rng, SeedableRng},
-};
 use serde_json::{Value as Json, json};
-use vocabulary::math;
-use vocabulary::{Pose, ScalarTrajectory, wrap};
+use vocabulary::{Pose, ScalarTrajectory, math, wrap};
 
 /// What is different about one robot of a group.
 #[derive(Debug, Clone)]
@@ -381,7 +377,7 @@ fn over<P: Part + Clone>(own: Option<&Found<P>>, group: &Found<P>) -> P {
 
 /// Seeded disorder of start poses.
 struct Scatter {
-    random: ChaCha8Rng,
+    random: RandomStream,
     /// m along each axis.
     distance: f64,
     /// rad.
@@ -390,10 +386,8 @@ struct Scatter {
 
 impl Scatter {
     fn new(keys: &GroupKeys, index: u64, seed: u64) -> Option<Self> {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        random.set_stream(index);
         Some(Self {
-            random,
+            random: RandomStream::new(seed, index),
             distance: keys.scatter.as_ref()?.value,
             heading: keys.scatter_heading.as_ref()?.value,
         })
@@ -401,15 +395,9 @@ impl Scatter {
 
     /// A pose near [forward, left] in m as seen from `origin`.
     fn around(&mut self, origin: Pose, [forward, left]: [f64; 2]) -> Pose {
-        let forward = forward + self.distance * self.next();
-        let left = left + self.distance * self.next();
+        let forward = forward + self.distance * self.random.signed();
+        let left = left + self.distance * self.random.signed();
         let [x, y] = origin.world_from_body(forward, left);
-        Pose::new(x, y, wrap(origin.heading + self.heading * self.next()))
-    }
-
-    /// Evenly distributed in [−1, 1).
-    fn next(&mut self) -> f64 {
-        let bits = self.random.next_u64() >> 11;
-        bits as f64 / (1u64 << 52) as f64 - 1.0
+        Pose::new(x, y, wrap(origin.heading + self.heading * self.random.signed()))
     }
 }

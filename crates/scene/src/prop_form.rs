@@ -13,8 +13,7 @@ use crate::{
     },
 };
 use serde_json::Value as Json;
-use vocabulary::math;
-use vocabulary::{Pose, Solid};
+use vocabulary::{Pose, Solid, math};
 
 /// Most props of a scene.
 pub(crate) const MOST_PROPS: usize = 2000;

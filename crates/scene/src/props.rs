@@ -5,12 +5,9 @@ use crate::{
     outline::Outline,
     patterns::{Layout, PatternField, PatternKeys},
     prop_form::{MOST_PROPS, PropKeys},
+    random::RandomStream,
     robots::start_pose,
     text::{Found, Node, Reporter, Span},
-};
-use rand_chacha::{
-    ChaCha8Rng,
-    rand_core::{Rng, SeedableRng},
 };
 use std::f64::consts::PI;
 use vocabulary::{Pose, Solid, counted};
@@ -133,11 +130,8 @@ impl PropStage<'_> {
         placed: &[Placed],
         reporter: &mut Reporter,
     ) -> Vec<(Solid, Pose)> {
-        let mut random = ChaCha8Rng::seed_from_u64(field.seed.unwrap_or(self.seed));
-        random.set_stream(FIRST_STREAM + index);
-        let mut between = |low: f64, high: f64| {
-            low + (high - low) * ((random.next_u64() >> 11) as f64 / (1u64 << 53) as f64)
-        };
+        let mut random = RandomStream::new(field.seed.unwrap_or(self.seed), FIRST_STREAM + index);
+        let mut between = |low: f64, high: f64| low + (high - low) * random.share();
         let [x0, y0, x1, y1] = field.region;
         let mut taken: Vec<_> = self.robots.iter().map(|robot| Outline::of_robot(robot)).collect();
         taken.extend(placed.iter().map(|prop| Outline::of_solid(prop.value.solid, prop.value.pose)));

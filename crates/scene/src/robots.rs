@@ -8,8 +8,7 @@ use crate::{
     types::{LawPart, ObserverPart, SensingPart, VehiclePart},
     vehicle::{WrittenVehicle, vehicle},
 };
-use vocabulary::Pose;
-use vocabulary::math;
+use vocabulary::{Pose, math};
 
 /// What holds for every robot that says nothing else.
 pub(crate) struct Defaults {

@@ -8,9 +8,8 @@ use crate::{
 };
 use std::collections::HashMap;
 use std::f64::consts::PI;
-use vocabulary::math;
 use vocabulary::{
-    CameraModel, CameraMount, FACES, LawKind, Pose, ScalarTrajectory, Shell, TAGS, TimeMode, Word, wrap,
+    CameraModel, CameraMount, FACES, LawKind, Pose, ScalarTrajectory, Shell, TAGS, TimeMode, Word, math, wrap,
 };
 
 /// Robots whose shells the tag family can tell apart.

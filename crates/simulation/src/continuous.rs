@@ -4,8 +4,7 @@
 //! every step. It costs about 1/ε evaluations per simulated second, which is the price of continuous time.
 
 use formation::{Estimate, Formation, FormationState};
-use vocabulary::math;
-use vocabulary::{EdgeSample, LawKind, Motion, Observation, Pose, Relative, wrap};
+use vocabulary::{EdgeSample, LawKind, Motion, Observation, Pose, math, wrap};
 use world::{Unicycles, World};
 
 /// Longest step, s.
@@ -77,12 +76,7 @@ impl Continuous {
         self.observations.clear();
         let observe = |edge: &vocabulary::Edge| {
             let (leader, follower) = (motion(&y.robots[edge.leader]), motion(&y.robots[edge.follower]));
-            Observation {
-                relative: Relative::between(leader.pose, follower.pose),
-                own_speed: follower.speed,
-                leader_speed: Some(leader.speed),
-                ..Observation::default()
-            }
+            Observation::true_of([&leader, &follower])
         };
         self.observations.extend(formation.edges().iter().map(observe));
         scratch.estimates.clone_from(&y.estimates);

@@ -3,7 +3,8 @@
 use std::fmt;
 use thiserror::Error;
 use vocabulary::{
-    Contact, EdgeState, EntityId, FleetInfo, MeasurementRecord, Motion, Placement, RobotState, StepRecord,
+    Contact, Edge, EdgeState, EntityId, FleetInfo, MeasurementRecord, Motion, Placement, RobotState,
+    StepRecord,
 };
 
 /// Why a run ended before its time.
@@ -45,9 +46,8 @@ pub(crate) fn not_finite(record: &StepRecord, fleet: &FleetInfo) -> Option<NotFi
         return Some(found(named(EntityId::Robot(k)), quantity));
     }
     let between = |edge: usize| {
-        fleet.edges.get(edge).map_or_else(String::new, |edge| {
-            format!("{} → {}", named(EntityId::Robot(edge.leader)), named(EntityId::Robot(edge.follower)))
-        })
+        let quoted = |edge: &Edge| fleet.pair(*edge).map(|name| format!("`{name}`")).join(" → ");
+        fleet.edges.get(edge).map_or_else(String::new, quoted)
     };
     if let Some((k, quantity)) = edges.iter().enumerate().find_map(|(k, edge)| Some((k, of_edge(edge)?))) {
         return Some(found(between(k), quantity));

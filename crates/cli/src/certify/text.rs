@@ -9,8 +9,7 @@ use studies::certify::{
     Certificate, Constants, Discretisation, Infeasible, LongestPeriod, NotLinear, Statement,
     StatementFinding, StatementOutcome,
 };
-use vocabulary::Word;
-use vocabulary::math;
+use vocabulary::{Word, math};
 
 /// Edges that are told statement by statement; the others have a line each.
 const IN_FULL: usize = 2;

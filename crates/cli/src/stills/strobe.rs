@@ -1,8 +1,7 @@
 //! All of a run in one picture, as under a stroboscope: pictures from one place, and of each what moved.
 
 use rendering::Viewpoint;
-use vocabulary::math;
-use vocabulary::{FleetInfo, Picture, StepRecord};
+use vocabulary::{FleetInfo, Picture, StepRecord, math};
 
 /// Vertical field of view, rad.
 const FIELD: f64 = 0.55;

@@ -7,8 +7,7 @@ use crate::law::{Law, Switching};
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
 use nalgebra::Vector2;
-use vocabulary::math;
-use vocabulary::{LawKind, MotionInput, Relative, SetPoint, wrap};
+use vocabulary::{LawKind, MotionInput, Relative, SetPoint, math, wrap};
 
 /// One edge at one control sample, as it truly was.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,8 +6,7 @@
 
 use super::posit::{Match, centroid, rigid, scaled_pose, stretch};
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, SMatrix, SVector, Vector2, Vector3};
-use vocabulary::Rigid;
-use vocabulary::math;
+use vocabulary::{Rigid, math};
 
 /// Rounds after which a branch is given up.
 const ROUNDS: usize = 200;

@@ -4,8 +4,7 @@ use super::*;
 use crate::imaging::{NoiseStream, Purpose, noise_stream};
 use proptest::prelude::*;
 use std::ops::Range;
-use vocabulary::math;
-use vocabulary::{Body, CameraMount};
+use vocabulary::{Body, CameraMount, math};
 
 /// Random views of the paper's shell.
 pub(crate) struct Views {

@@ -20,8 +20,8 @@ use crate::pose::{Prior, Rig, SeenFace, locate};
 use pan::Pan;
 use std::collections::VecDeque;
 use vocabulary::{
-    CameraRenderer, Edge, Measurement, MeasurementRecord, Outcome, Prop, Relative, Rigid, RobotInfo,
-    Snapshot, StepInterpolant, Terrain, TrackingState,
+    CameraRenderer, Edge, Measurement, MeasurementRecord, Outcome, Prop, Relative, RobotInfo, Snapshot,
+    StepInterpolant, Terrain, TrackingState,
 };
 
 /// Where the measurements of one follower come from.
@@ -75,7 +75,7 @@ pub struct SensorConfig {
 }
 
 /// State of all followers' senses.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct SensorState {
     edges: Vec<EdgeWatch>,
     camera_pipeline: CameraPipeline,
@@ -315,12 +315,12 @@ impl SensorConfig {
 
     /// What the follower measures, and with what.
     fn rig(&self, exposure: &Exposure<'_>) -> Option<Rig> {
-        let robot = self.robots.get(exposure.follower)?;
-        let pan = exposure.snapshot.robots.get(exposure.follower)?.camera_pan;
+        let follower = &self.robots[exposure.follower];
+        let pan = exposure.snapshot.robots[exposure.follower].camera_pan;
         Some(Rig {
-            shell: self.robots.get(exposure.leader)?.shell?,
-            camera_model: robot.camera_model,
-            body_from_camera: robot.camera_mount.body_from_camera(pan),
+            shell: self.robots[exposure.leader].shell?,
+            camera_model: follower.camera_model,
+            body_from_camera: follower.camera_mount.body_from_camera(pan),
         })
     }
 
@@ -366,13 +366,5 @@ impl SensorConfig {
     /// Direction of the camera of an edge's follower at the start of the period that begins, rad from its heading.
     pub fn pan(&self, sensor_state: &SensorState, edge: usize) -> f64 {
         sensor_state.edges.get(edge).map_or(0.0, |state| state.pan.between(0.0))
-    }
-
-    /// The shell's frames as a follower's camera sees them.
-    pub(crate) fn camera_from_leader(&self, exposure: &Exposure<'_>) -> Option<Rigid> {
-        let follower = exposure.snapshot.robots.get(exposure.follower)?;
-        let leader = exposure.snapshot.robots.get(exposure.leader)?;
-        let camera_mount = self.robots.get(exposure.follower)?.camera_mount;
-        Some(camera_mount.world_from_camera(follower).inverse().after(&leader.world_from_body()))
     }
 }

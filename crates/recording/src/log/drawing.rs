@@ -14,8 +14,7 @@ use foxglove::messages::{
 };
 use std::collections::VecDeque;
 use vocabulary::colours::robot_colours;
-use vocabulary::math;
-use vocabulary::{FleetInfo, Rigid, RobotState, Snapshot, StepRecord};
+use vocabulary::{FleetInfo, Rigid, RobotState, Snapshot, StepRecord, math};
 
 /// Drawings a second; fewer where there are many robots.
 const RATE: f64 = 30.0;

@@ -1,8 +1,7 @@
 //! What a lead robot does.
 
 use serde::Serialize;
-use vocabulary::Pose;
-use vocabulary::math;
+use vocabulary::{Pose, math};
 
 /// Motion of a lead robot as plain data; it starts at the robot's pose, way-points at their own start.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -8,9 +8,8 @@ use crate::{Error, RendererFactory};
 use perception::detect::{Detector, Locus, Tag, recognise};
 use perception::imaging::{ImageSensor, Optics, Purpose, noise_stream};
 use perception::pose::{Prior, Rig, SeenFace, locate};
-use vocabulary::math;
 use vocabulary::{
-    Body, CameraRenderer, Edge, FACES, FleetInfo, Grey, Pose, Region, Rigid, RobotInfo, Shell, Shot, Snapshot,
+    Body, CameraRenderer, Edge, FACES, FleetInfo, Grey, Pose, Region, Rigid, RobotInfo, Shell, Snapshot, math,
 };
 
 /// What is timed, in the order of [`Times`].
@@ -155,14 +154,7 @@ impl LocalisationBench {
         let SearchFrame { snapshot, number, region, expected, .. } = *frame;
         let follower = &self.fleet.robots[FOLLOWER];
         let source = self.sensor.source(region);
-        let shot = Shot {
-            robot: FOLLOWER,
-            world_from_camera: follower.camera_mount.world_from_camera(&snapshot.robots[FOLLOWER]),
-            focal: follower.camera_model.focal,
-            centre: source.centre,
-            region: source.region,
-            exposure: 1.0,
-        };
+        let shot = source.shot(FOLLOWER, follower, &snapshot.robots[FOLLOWER], 1.0);
         let mut times = Times::default();
         let mut pictures = Vec::new();
         let began = clock();

@@ -72,8 +72,7 @@ impl<'a> Budget<'a> {
 
     /// Names of leader and follower of an edge.
     pub fn edge(&self, index: usize) -> [&str; 2] {
-        let name = |robot: usize| self.fleet.robots.get(robot).map_or("", |m| m.name.as_str());
-        self.fleet.edges.get(index).map_or([""; 2], |edge| [name(edge.leader), name(edge.follower)])
+        self.fleet.edges.get(index).map_or([""; 2], |edge| self.fleet.pair(*edge))
     }
 
     /// The run of a case, where it has come to that.

@@ -4,8 +4,7 @@ use metrics::RootMeanSquare;
 use rayon::prelude::*;
 use scene::{Follow, Role, Scene, SwitchingKind};
 use simulation::{BuildError, Simulation, build};
-use vocabulary::LawKind;
-use vocabulary::math;
+use vocabulary::{LawKind, math};
 
 /// A gain is changed by this share, up and down.
 const SHARE: f64 = 0.02;

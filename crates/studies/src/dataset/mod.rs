@@ -158,7 +158,7 @@ impl DatasetExport {
         now.time = time;
         let want = |camera: &FollowerCamera| {
             let source = camera.sensor.source(Region::whole(&camera.sensor.optics().camera_model));
-            PictureRequest { robot: camera.edge.follower, region: source.region, centre: source.centre }
+            PictureRequest { robot: camera.edge.follower, source }
         };
         let wanted: Vec<PictureRequest> = self.cameras.iter().map(want).collect();
         let light = gather(&mut *self.renderer, &self.fleet, &self.exposure, &self.timeline, &now, &wanted)?;

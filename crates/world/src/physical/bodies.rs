@@ -13,8 +13,9 @@ use rapier3d_f64::prelude::{
     PhysicsPipeline, Pose as Isometry, QueryFilter, Ray, RigidBodyBuilder, RigidBodyHandle, RigidBodySet,
     Rotation, SharedShape, SoftBodySet, Vector,
 };
-use vocabulary::math;
-use vocabulary::{Attitude, Body, EntityId, GRAVITY, Mobility, Motion, Placement, Pose, Solid, Surface};
+use vocabulary::{
+    Attitude, Body, EntityId, GRAVITY, Mobility, Motion, Placement, Pose, Solid, Surface, math,
+};
 
 /// Bodies whose nearest points are closer than this touch, m.
 const TOUCHING: f64 = 1e-4;
