@@ -53,7 +53,7 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
     })
 }
 
-/// Draws pictures of what `source` tells; it may use the adapter that draws.
+/// Draws pictures of the records of `source`, which may use the adapter that draws.
 pub(crate) fn draw(
     job: &CaptureJob<'_>,
     source: impl FnOnce(&Gpu) -> Result<RecordSource, Failure>,

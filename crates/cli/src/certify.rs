@@ -107,7 +107,7 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     } else if !args.scene.quiet {
         text::tell(&report, written.as_ref().map_or(&[], |files| files.as_deref().unwrap_or_default()));
     }
-    // What came out is told, whatever becomes of a file.
+    // Results are printed even if a file cannot be written.
     written?;
     if args.strict && !report.holds() { Err(Failure::Expectation) } else { Ok(()) }
 }

@@ -241,7 +241,7 @@ fn look(
         let path = folder.join(Path::new(name).with_extension("difference.png"));
         written.replaced.look(&path);
         let outcome = film::png::write(&path, &compared.side_by_side(), &[("Software", studies::PROGRAM)]);
-        // What came out is told, whatever becomes of a file.
+        // Results are printed even if a file cannot be written.
         written.lost = written.lost.take().or(outcome.err().map(Failure::from));
     }
     Ok(Ok(PictureFinding { likeness, adapters: adapters(wanted, found) }))

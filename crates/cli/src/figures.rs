@@ -55,7 +55,7 @@ pub(crate) struct FiguresArgs {
 
 /// What figures are of.
 struct Subject {
-    /// Of a scene of somebody's own: it, and its file's name.
+    /// A scene other than the paper's, and the name of its file.
     own: Option<(Scene, String)>,
     jobs: Vec<PlannedRun>,
 }

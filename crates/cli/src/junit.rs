@@ -42,7 +42,7 @@ impl ReportedCheck {
         Self { name: format!("{}: {}", finding.key, finding.wanted), came, time: None }
     }
 
-    /// An expectation that nobody came to judge.
+    /// An expectation that was not judged.
     pub(crate) fn unjudged(finding: &JudgedExpectation, why: &str) -> Self {
         Self { came: Came::Skipped(why.to_owned()), ..Self::of(finding) }
     }

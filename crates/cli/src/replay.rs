@@ -51,7 +51,7 @@ pub(crate) struct ReplayArgs {
     quiet: bool,
 }
 
-/// A replay, and what is told about it.
+/// A replay, and what is printed about it.
 struct ReplayReport {
     manifest: Manifest,
     replay: Replay,

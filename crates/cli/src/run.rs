@@ -105,7 +105,7 @@ fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
     } else if !met {
         summary::failures(&summary);
     }
-    // What came out is told, whatever becomes of a file.
+    // Results are printed even if a file cannot be written.
     written.map_err(|error| {
         let kept = args.out.as_ref().map_or_else(|| "the folder".to_owned(), |out| out.display().to_string());
         Failure::from(error).but(&format!("{kept} keeps what was written before"))

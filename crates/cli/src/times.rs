@@ -24,7 +24,7 @@ pub(crate) fn within(asked: &[f64], duration: f64) -> Result<Vec<f64>, Failure> 
     Ok(times)
 }
 
-/// A time as it is told, s: without the rounding of a multiplication.
+/// A time in s as text, without the rounding of a multiplication.
 pub(crate) fn shown(time: f64) -> String {
     let text = format!("{time:.9}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

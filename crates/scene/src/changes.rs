@@ -55,7 +55,7 @@ fn of_robots(root: &Node) -> Node {
     tree
 }
 
-/// One change on top of `before`, whose tree is `tree`; `None` after notes.
+/// One change on top of `before`, whose tree is `tree`; `None` after reporting errors.
 fn change(at: f64, item: &Node, tree: &mut Node, before: &Scene, reporter: &mut Reporter) -> Option<Change> {
     let first = reporter.notes();
     let span = item.get("set").map_or(item.span, |set| set.span);
@@ -114,7 +114,7 @@ struct Set {
     span: Span,
 }
 
-/// What a change sets; notes what is no override.
+/// The overrides of a change; reports texts that are not overrides.
 fn overrides(item: &Node, reporter: &mut Reporter) -> Vec<Set> {
     let mut sets = vec![];
     for node in item.items("set") {
@@ -146,7 +146,7 @@ impl Set {
     }
 }
 
-/// Whether what `path` leads to is known not to change while a run goes. What is not known is told where it is read.
+/// Whether what `path` leads to is known not to change while a run goes. Unknown keys are reported where they are read.
 fn is_fixed(path: &[&str]) -> bool {
     let fixed = |marks: Option<&[Mark]>| marks.is_some_and(|marks| !marks.contains(&Mark::Live));
     match path {

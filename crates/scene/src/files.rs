@@ -8,7 +8,7 @@ use std::{
     path::Path,
 };
 
-/// Nobody writes scenes this large; refusing them keeps memory and time small.
+/// Scenes are never this large; the bound limits memory and time.
 const MOST_BYTES: u64 = 10_000_000;
 
 /// The text of the file at `path`, or what is wrong with it.

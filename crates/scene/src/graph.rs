@@ -15,7 +15,7 @@ pub(crate) struct Named {
     pub(crate) leader: Option<Found<String>>,
 }
 
-/// Notes duplicate names, unknown leaders, robots that follow themselves, and cycles. Without these every follower
+/// Reports duplicate names, unknown leaders, robots that follow themselves, and cycles. Without these every follower
 /// comes to a robot that leads if it goes from leader to leader; there may be several that lead.
 pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, reporter: &mut Reporter) {
     let mut leader_of: HashMap<&str, Option<&Found<String>>> = HashMap::new();
@@ -40,7 +40,7 @@ pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, r
     check_cycles(robots, &leader_of, reporter);
 }
 
-/// Notes that no robot is called `name`, if so, with the nearest name there is.
+/// Reports that no robot is called `name`, if so, with the nearest name there is.
 pub(crate) fn check_known<'a>(
     name: &str,
     span: Span,

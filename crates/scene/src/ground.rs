@@ -169,7 +169,7 @@ fn check_noise(noise: &Noise, cell: Span, region: Span, reporter: &mut Reporter)
     check_points(noise.region, noise.cell, region, reporter)
 }
 
-/// Notes at `span` that a grid would have too many points.
+/// Reports at `span` that a grid would have too many points.
 fn check_points(region: [f64; 4], cell: f64, span: Span, reporter: &mut Reporter) -> Option<()> {
     let [columns, rows] = relief::grid(region, cell);
     if columns * rows <= MOST_POINTS {
@@ -241,7 +241,7 @@ impl Form for GroundForm {
     }
 }
 
-/// The ground of a scene with this seed; `None` after a note.
+/// The ground of a scene with this seed; `None` after reporting an error.
 pub(crate) fn ground(keys: Option<&GroundKeys>, seed: u64, reporter: &mut Reporter) -> Option<Ground> {
     let Some(keys) = keys else {
         let relief = Relief::Flat { cell: FLAT_CELL };
@@ -288,7 +288,7 @@ fn flat(cell: f64, patches: &[Found<Patch>], reporter: &mut Reporter) -> Option<
     Some(relief::level(around, cell))
 }
 
-/// Notes patches that the grid cannot show: beyond its edges the ground goes on as it is there, without end.
+/// Reports patches that the grid cannot show: beyond its edges the ground goes on as it is there, without end.
 fn check_patches(patches: &[Found<Patch>], terrain: &Terrain, reporter: &mut Reporter) {
     let Terrain { origin: [x, y], cell, columns, rows, .. } = *terrain;
     let [right, left] = [x + (columns - 1) as f64 * cell, y + (rows - 1) as f64 * cell];

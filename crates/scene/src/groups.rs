@@ -38,7 +38,7 @@ impl Form for MembersForm {
             let name = Found { span: entry.span, value: entry.key.clone() };
             Some(GroupMember { name, keys: table::<MemberKeys>().read(&entry.node, reporter)? })
         };
-        // All are read before giving up, so that every fault is told.
+        // All items are read before giving up, so that every error is reported.
         let members: Vec<_> = entries.iter().map(member).collect();
         members.into_iter().collect()
     }
@@ -48,7 +48,7 @@ impl Form for MembersForm {
     }
 }
 
-/// Appends the robots of `group`; `None` after a note.
+/// Appends the robots of `group`; `None` after reporting an error.
 pub(crate) fn expand(
     group: &Group<'_>,
     seed: u64,
@@ -190,7 +190,7 @@ impl Group<'_> {
         members.iter().find(|member| member.name.value == key).map(|member| &member.keys)
     }
 
-    /// Notes that `follower` follows the robot in `place`, where that is absent.
+    /// Reports that `follower` follows the robot in `place`, where that is absent.
     fn check_present(&self, place: usize, follower: &str, reporter: &mut Reporter) {
         if let Some(absent) =
             self.member(place).filter(|keys| keys.is_absent()).and_then(|keys| keys.absent.as_ref())
@@ -203,7 +203,7 @@ impl Group<'_> {
         }
     }
 
-    /// Notes members that the group does not have.
+    /// Reports members that the group does not have.
     fn check_members(&self, reporter: &mut Reporter) {
         for GroupMember { name, .. } in self.keys.members.iter().flat_map(|members| &members.value) {
             if !makes(self.node, &name.value) {
@@ -309,7 +309,7 @@ impl Group<'_> {
         drafts.push(RobotDraft { named: Named { name, leader }, number: None, robot: Some(robot) });
     }
 
-    /// The vehicle of the group's own leader, with notes on what is for robots that follow.
+    /// The vehicle of the group's own leader, after reporting keys that only followers have.
     fn leading(
         &self,
         name: &str,

@@ -68,7 +68,7 @@ struct PathPart<'a> {
 }
 
 impl Override {
-    /// Puts the value where the path says; notes where there is no such place.
+    /// Puts the value where the path says; reports an error if there is no such place.
     pub(crate) fn apply(&self, root: &mut Node, reporter: &mut Reporter) {
         let source = reporter.add_source("--set".to_owned(), &self.0);
         self.apply_at(Origin { source, offset: 0, whole: None }, root, reporter);
@@ -105,7 +105,7 @@ pub(crate) struct Origin {
     pub(crate) source: usize,
     /// Of its first character.
     pub(crate) offset: usize,
-    /// Where all of it stands, if its characters cannot be told apart there.
+    /// Where all of it stands, if its characters have no positions of their own.
     pub(crate) whole: Option<Span>,
 }
 

@@ -19,9 +19,9 @@ use crate::{
 use std::collections::HashSet;
 use vocabulary::TimeMode;
 
-/// The checked scene, or `None` after notes.
+/// The checked scene, or `None` after reporting errors.
 pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) -> Option<Scene> {
-    // Another version may mean anything.
+    // Keys of another version may mean something else.
     document.schema.as_ref()?;
     let seed = document.seed.as_ref()?.value;
     let defaults = defaults(&document, reporter)?;
@@ -30,7 +30,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) 
     let time = time(&time_part, reporter);
     let (robots, groups) = (document.robots?.value, document.groups?.value);
     let ground = match (root.get("ground"), &document.ground) {
-        // It is there, and has its note.
+        // The key is there; its error is reported already.
         (Some(_), None) => None,
         (_, keys) => ground(keys.as_ref().map(|found| &found.value), seed, reporter),
     };
@@ -89,7 +89,7 @@ fn defaults(document: &Document, reporter: &mut Reporter) -> Option<Defaults> {
     })
 }
 
-/// The robots of a document alone, or `None` after notes: for what has changed since a scene was resolved.
+/// The robots of a document alone, or `None` after reporting errors. For what has changed since a scene was resolved.
 pub(crate) fn resolve_robots(
     document: &Document,
     root: &Node,
@@ -131,7 +131,7 @@ fn expect(part: &ExpectPart, reporter: &mut Reporter) -> Expect {
     expect
 }
 
-/// Notes props that are called as a robot or another prop.
+/// Reports props that are called as a robot or another prop.
 fn check_names(drafts: &[RobotDraft], props: &[Placed], reporter: &mut Reporter) {
     let robots: HashSet<_> =
         drafts.iter().filter_map(|draft| Some(&draft.named.name.as_ref()?.value)).collect();
@@ -145,7 +145,7 @@ fn check_names(drafts: &[RobotDraft], props: &[Placed], reporter: &mut Reporter)
     }
 }
 
-/// Notes what continuous time cannot carry.
+/// Reports what continuous time cannot carry.
 fn check_continuous(
     part: &TimePart,
     drafts: &[RobotDraft],
@@ -181,7 +181,7 @@ fn drafts(
         robots.iter().zip(nodes).map(|(keys, node)| draft(keys, node, defaults, reporter)).collect();
     for (index, (keys, node)) in groups.iter().zip(root.items("groups")).enumerate() {
         let group = Group { keys, node, index: index as u64 };
-        // A group that cannot be read has its notes already.
+        // The errors of a group that cannot be read are reported already.
         let _ = expand(&group, seed, defaults, &mut drafts, reporter);
     }
     if ["robots", "groups"].iter().all(|key| root.items(key).is_empty()) {
@@ -191,7 +191,7 @@ fn drafts(
     drafts
 }
 
-/// More control steps than this are a slip of the pen.
+/// A run with more control steps than this is taken for a typing error.
 const MOST_STEPS: f64 = 1e8;
 
 fn time(part: &TimePart, reporter: &mut Reporter) -> Time {
@@ -253,7 +253,7 @@ fn shots(shots: &mut [Shot], span: Span, duration: f64, drafts: &[RobotDraft], r
     }
 }
 
-/// Notes a view of a robot which is not there.
+/// Reports a view of a robot which is not there.
 fn check_view(view: Option<(Span, &str)>, drafts: &[RobotDraft], reporter: &mut Reporter) {
     if let Some((span, view)) = view
         && let Some(name) = ROBOT_VIEWS.iter().find_map(|start| view.strip_prefix(start))

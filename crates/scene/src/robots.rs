@@ -55,7 +55,7 @@ pub(crate) struct RobotDraft {
     pub(crate) named: Named,
     /// The number it is given in the file.
     pub(crate) number: Option<Found<usize>>,
-    /// `None` after a note.
+    /// `None` after reporting an error.
     pub(crate) robot: Option<Robot>,
 }
 
@@ -75,7 +75,7 @@ fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reporter: &mut Repo
     let role = role(keys, node, &vehicle, defaults, reporter);
     let path = keys.path.as_ref().map(|path| &path.value);
     let pose = match (node.get("pose"), &keys.pose) {
-        // It is there, and has its note.
+        // The key is there; its error is reported already.
         (Some(_), None) => None,
         (_, pose) => start_pose(pose.as_ref(), path, node.span, reporter),
     };
@@ -171,7 +171,7 @@ pub(crate) fn start_speed(speed: Option<&Found<f64>>, vehicle: &Vehicle, reporte
     speed.value
 }
 
-/// Notes a wanted distance (m) that falls below the least one the law divides by.
+/// Reports a wanted distance (m) that falls below the least one the law divides by.
 pub(crate) fn check_distance(least: f64, distance_min: f64, span: Span, reporter: &mut Reporter) {
     if least < distance_min {
         let message =
@@ -180,7 +180,7 @@ pub(crate) fn check_distance(least: f64, distance_min: f64, span: Span, reporter
     }
 }
 
-/// Notes a path that its robot cannot drive.
+/// Reports a path that its robot cannot drive.
 pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reporter: &mut Reporter) {
     let (speed, turn_rate) = path.value.peaks();
     if speed > vehicle.speed_max {
@@ -211,7 +211,7 @@ pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reporter: &mut R
     }
 }
 
-/// Where a robot starts: its `pose`, or the start of its path; a note if they contradict each other or are missing.
+/// Where a robot starts: its `pose`, or the start of its path; reports an error if they contradict each other or are missing.
 pub(crate) fn start_pose(
     pose: Option<&Found<[f64; 3]>>,
     path: Option<&Path>,

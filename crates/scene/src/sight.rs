@@ -77,7 +77,7 @@ pub(crate) struct Said<'a> {
     pub(crate) vision: &'a Vision,
 }
 
-/// Notes measurements that cannot be.
+/// Reports measurements that cannot be.
 pub(crate) fn check_sight(said: &Said<'_>, drafts: &[RobotDraft], reporter: &mut Reporter) {
     let robots: HashMap<&str, &Robot> = drafts
         .iter()
@@ -125,7 +125,7 @@ fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, span: Span, report
     }
 }
 
-/// Notes measurements that come so late or so seldom that a leader is lost between any two of them.
+/// Reports measurements that come so late or so seldom that a leader is lost between any two of them.
 fn check_hold(follow: &Follow, robot: &Robot, span: Span, reporter: &mut Reporter) {
     let Sensing { rate, latency, hold, .. } = follow.sensing;
     if latency + 1.0 / rate >= hold {
@@ -139,7 +139,7 @@ fn check_hold(follow: &Follow, robot: &Robot, span: Span, reporter: &mut Reporte
     }
 }
 
-/// Notes cameras and tags that do not fit the robot's shell; whether it did.
+/// Reports cameras and tags that do not fit the robot's shell; whether it did.
 fn check_shell(said: &Said<'_>, robot: &Robot, span: Span, reporter: &mut Reporter) -> bool {
     let (shell, camera_mount) = (said.vision.shell(robot), said.vision.camera_mount(robot));
     let span = |found: [Option<Span>; 3]| found.into_iter().flatten().next().unwrap_or(span);
@@ -178,7 +178,7 @@ fn check_shell(said: &Said<'_>, robot: &Robot, span: Span, reporter: &mut Report
     false
 }
 
-/// Notes a leader that shows its follower no tag at its set point.
+/// Reports a leader that shows its follower no tag at its set point.
 fn check_visible(
     said: &Said<'_>,
     follow: &Follow,

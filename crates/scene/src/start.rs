@@ -17,7 +17,7 @@ struct Footprint<'a> {
     heights: [f64; 2],
 }
 
-/// Notes robots that overlap each other or a prop where they start; props may overlap each other.
+/// Reports robots that overlap each other or a prop where they start; props may overlap each other.
 pub(crate) fn check_start<'a>(
     robots: impl Iterator<Item = (Span, &'a Robot)>,
     props: &'a [Placed],

@@ -22,7 +22,7 @@ fn out_of_order(last: Option<f64>, value: f64) -> Option<String> {
     }
 }
 
-/// Notes where numbers do not rise from 0.
+/// Reports where numbers do not rise from 0.
 pub(crate) fn check_rising(values: impl Iterator<Item = f64>, span: Span, reporter: &mut Reporter) {
     let mut last = None;
     for value in values {
@@ -94,7 +94,7 @@ fn read_row(record: &csv::StringRecord, columns: [usize; 3]) -> Result<[f64; 3],
     Ok(row)
 }
 
-/// What the reader of tables says of a row, without its line, which is told with the place.
+/// The CSV reader's message about a row, without the line number, which is reported with the position.
 pub(crate) fn why(error: &csv::Error) -> String {
     match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {

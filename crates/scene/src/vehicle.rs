@@ -35,7 +35,7 @@ impl Form for VehicleForm {
         Some(VehiclePart { kind: Some(Found { span: node.span, value }), ..VehiclePart::default() })
     }
 
-    /// The defaults depend on the kind, so they are told in words.
+    /// The defaults depend on the kind, so the description lists them.
     fn schema(&self) -> Json {
         let mut schema = table::<VehiclePart>().schema();
         let made = VehicleKind::ALL
@@ -71,9 +71,9 @@ pub(crate) fn written<S: Serializer>(vehicle: &Vehicle, serializer: S) -> Result
 
 /// Where a robot's vehicle is written, and what it is driven by.
 pub(crate) struct WrittenVehicle<'a> {
-    /// The robot's or group's own words.
+    /// The robot's or group's own `vehicle`.
     pub(crate) own: &'a VehiclePart,
-    /// The scene's words for all.
+    /// The scene's `vehicle`, which holds for all robots.
     pub(crate) scene: &'a VehiclePart,
     /// Step of the physics, s.
     pub(crate) step: f64,
@@ -81,7 +81,7 @@ pub(crate) struct WrittenVehicle<'a> {
     pub(crate) span: Span,
 }
 
-/// The vehicle that is written, with notes where its values contradict each other.
+/// The vehicle that is written, after reporting values that contradict each other.
 pub(crate) fn vehicle(written: &WrittenVehicle<'_>, reporter: &mut Reporter) -> Vehicle {
     let nothing = VehiclePart::default();
     let usual = usual_kind(written.scene);
@@ -94,12 +94,12 @@ pub(crate) fn vehicle(written: &WrittenVehicle<'_>, reporter: &mut Reporter) -> 
     vehicle
 }
 
-/// The kind of robots that name none, with `scene` the scene's words for all.
+/// The kind of robots that name none, where `scene` is the scene's `vehicle`.
 pub(crate) fn usual_kind(scene: &VehiclePart) -> VehicleKind {
     scene.kind.as_ref().map_or(VehicleKind::Unicycle, |found| found.value)
 }
 
-/// Notes keys of `part` that mean nothing for vehicles of `kind`.
+/// Reports keys of `part` that mean nothing for vehicles of `kind`.
 pub(crate) fn check_meaning(part: &VehiclePart, kind: VehicleKind, reporter: &mut Reporter) {
     for (key, span) in part.spans().into_iter().filter(|(key, _)| !applies(key, kind)) {
         let others = VehicleKind::ALL.into_iter().filter(|other| applies(key, *other));
@@ -133,7 +133,7 @@ impl Check<'_> {
         }
     }
 
-    /// Notes `message` at the first of `keys` that is written.
+    /// Reports `message` at the first of `keys` that is written.
     fn report(&self, keys: &[&str], message: String, reporter: &mut Reporter) {
         let WrittenVehicle { own, scene, span, .. } = *self.written;
         let written = [own.spans(), scene.spans()].concat();

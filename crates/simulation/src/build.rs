@@ -133,7 +133,7 @@ fn tracker_parameters(follow: &Follow, observer: formation::Observer) -> Option<
 /// by twice that.
 const TILT: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
-/// The senses of all followers; `None` where all are told the truth.
+/// The sensors of all followers; `None` where all observe the true state.
 fn sensor_config(
     scene: &Scene,
     followers: &[(&str, &Follow)],

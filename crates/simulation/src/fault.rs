@@ -1,4 +1,4 @@
-//! What ends a run before its time: pictures that cannot be taken, or a number that is none.
+//! What ends a run before its time: pictures that cannot be taken, or a number that is not finite.
 
 use std::fmt;
 use thiserror::Error;
@@ -13,12 +13,12 @@ pub enum Fault {
     /// Cameras could not take their pictures.
     #[error("{0}")]
     CameraRenderer(String),
-    /// A quantity is no finite number.
+    /// A quantity is not a finite number.
     #[error(transparent)]
     NotFinite(#[from] NotFinite),
 }
 
-/// A quantity that is no finite number: no table, log or picture has it.
+/// A quantity that is not a finite number. Its record is in no table, log or picture.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub struct NotFinite {
     /// The robots or the prop that it belongs to.
@@ -36,7 +36,7 @@ impl fmt::Display for NotFinite {
     }
 }
 
-/// The first quantity of `record` that is no finite number.
+/// The first quantity of `record` that is not a finite number.
 pub(crate) fn not_finite(record: &StepRecord, fleet: &FleetInfo) -> Option<NotFinite> {
     let StepRecord { snapshot, edges, contacts, frames } = record;
     let named = |thing| format!("`{}`", fleet.name(thing));

@@ -6,7 +6,7 @@ use formation::Formation;
 use vocabulary::TimeMode;
 use world::{Physical, Unicycles, World, WorldSetup};
 
-/// What moves the robots: a world that is told commands to hold, or plant, law and observers as one system.
+/// What moves the robots: a world that holds commands over a period, or plant, law and observers as one system.
 pub(crate) enum Plant {
     Held(Box<dyn World>),
     Continuous(Box<Continuous>),

@@ -9,7 +9,7 @@ use vocabulary::{
 };
 use world::World;
 
-/// Senses, estimates and eyes of all followers that are not told the truth.
+/// Sensors, estimates and camera renderer of all followers with sensors.
 #[derive(Clone)]
 pub(crate) struct SensingPipeline {
     sensor_config: Arc<SensorConfig>,
@@ -152,7 +152,7 @@ fn put(tracker: &mut Tracker, law: &EdgeLaw, frame: &mut MeasurementRecord, star
     }
 }
 
-/// What a follower did over the period, as its own sensors tell it: the mean acceleration and turn rate.
+/// A follower's motion over the period by odometry: the mean acceleration and turn rate.
 fn own_motion(world: &dyn World, edge: Edge, period: f64) -> Own {
     let (before, after) = (world.during(edge.follower, 0.0), world.during(edge.follower, period));
     let turned = vocabulary::wrap(after.pose.heading - before.pose.heading);

@@ -4,7 +4,7 @@ use crate::print::say;
 use studies::budget::{Budget, BudgetCase, EdgeErrors, Growth, MeasuredRun, ObserverChoice, SensingLevel};
 use vocabulary::counted;
 
-/// Edges that are told one by one.
+/// Edges that are listed, at most.
 const MOST_EDGES: usize = 12;
 
 pub(crate) fn print(budget: &Budget<'_>) {

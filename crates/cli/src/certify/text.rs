@@ -11,7 +11,7 @@ use studies::certify::{
 };
 use vocabulary::{Word, math};
 
-/// Edges that are told statement by statement; the others have a line each.
+/// Edges that are listed statement by statement; the others have a line each.
 const IN_FULL: usize = 2;
 /// Edges that have a line.
 const MOST_EDGES: usize = 12;
@@ -46,7 +46,7 @@ fn edge(report: &CertifyReport<'_>, certificate: &Certificate) {
     let witness = &certificate.witness;
     if let Some(last) = witness.rows().last() {
         let [effect, margin, initial, p, v, w] =
-            [last.effect, last.margin, witness.initial(), last.p, last.v, last.w].map(short);
+            [last.effect, last.margin, witness.initial, last.p, last.v, last.w].map(short);
         say(&format!(
             "  at the end     ‖gᵥVᵢ‖ {effect}, margin of β {margin}, ζ_b {initial}, P {p}, V {v}, W {w}"
         ));
@@ -64,7 +64,7 @@ fn edge(report: &CertifyReport<'_>, certificate: &Certificate) {
     }
 }
 
-/// A line for every edge that is not told in full.
+/// A line for every edge that is not listed statement by statement.
 fn others(report: &CertifyReport<'_>) {
     let rest = || report.certificates.iter().skip(IN_FULL);
     if rest().next().is_none() {

@@ -69,7 +69,7 @@ pub(super) fn together(pictures: &[Picture]) -> Picture {
             for (value, picture) in column.iter_mut().zip(pictures) {
                 *value = picture.rgba[at + channel];
             }
-            // Most of the time nobody is there.
+            // Most of the time there is no robot at a pixel.
             column.sort_unstable();
             column[column.len() / 2]
         });

@@ -14,7 +14,7 @@ pub(crate) trait Form {
     /// What it is read into.
     type Out;
 
-    /// The value, or `None` after a note on what is wrong with it.
+    /// The value, or `None` after reporting what is wrong with it.
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out>;
 
     /// Its JSON Schema.

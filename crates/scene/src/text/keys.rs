@@ -24,7 +24,7 @@ pub(crate) fn found_or<T>(
     found.or_else(|| Some(Found { span, value: default() }))
 }
 
-/// Whichever of two keys is given, and whether it was the second; a note if none or both are.
+/// Whichever of two keys is given, and whether it was the second; reports an error if none or both are.
 pub(crate) fn one_of<T>(
     node: &Node,
     keys: [&str; 2],
@@ -35,7 +35,7 @@ pub(crate) fn one_of<T>(
         [Some(found), None] => Some((found, false)),
         [None, Some(found)] => Some((found, true)),
         _ => {
-            // A key that is there but was wrong has its own note already.
+            // The error of a key that is there but wrong is reported already.
             let given = keys.iter().filter(|key| node.get(key).is_some()).count();
             if given != 1 {
                 reporter.report(node.span, format!("give either `{}` or `{}` here", keys[0], keys[1]));
@@ -102,7 +102,7 @@ pub(crate) struct Field {
     pub(crate) schema: Json,
 }
 
-/// Reads the keys of one table and remembers which, so as to find those that nobody knows.
+/// Reads the keys of one table and remembers which, to find unknown keys.
 pub(crate) struct TableReader<'n> {
     span: Span,
     entries: &'n [Entry],
@@ -110,7 +110,7 @@ pub(crate) struct TableReader<'n> {
 }
 
 impl<'n> TableReader<'n> {
-    /// A reader of `node`, or `None` after a note that it is no table.
+    /// A reader of `node`, or `None` after reporting that it is not a table.
     pub(crate) fn of(node: &'n Node, reporter: &mut Reporter) -> Option<Self> {
         let entries = reporter.expect(node.as_table(), node, || "a table".to_owned())?;
         Some(Self { span: node.span, entries, known: vec![] })
@@ -140,7 +140,7 @@ impl<'n> TableReader<'n> {
         Some(Found { span: entry.node.span, value })
     }
 
-    /// Notes the keys that were not asked for.
+    /// Reports the keys that were not asked for.
     pub(crate) fn finish(self, reporter: &mut Reporter) {
         for entry in self.entries.iter().filter(|entry| !self.known.contains(&entry.key.as_str())) {
             if reporter.is_full() {

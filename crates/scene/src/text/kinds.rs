@@ -23,7 +23,7 @@ pub(crate) trait KindOption<T> {
     fn read(&self, node: &Node, table: &mut TableReader<'_>, reporter: &mut Reporter) -> Option<T>;
 }
 
-/// The kind called `word`, and what the keys `K` of a table make; `None` after a note.
+/// The kind called `word`, and what the keys `K` of a table make; `None` after reporting an error.
 pub(crate) struct Kind<K, T> {
     pub(crate) word: &'static str,
     pub(crate) make: fn(K, &Node, &mut Reporter) -> Option<T>,
@@ -48,8 +48,8 @@ impl<K: Keys, T> KindOption<T> for Kind<K, T> {
 }
 
 impl<T> Kinds<T> {
-    /// Reads a table of one of these kinds: what its kind makes of its keys, or `None` after a note; and what `shared` makes
-    /// of keys that all kinds have.
+    /// Reads a table of one of these kinds. Returns what its kind makes of its keys, or `None` after reporting an error, and
+    /// what `shared` makes of the keys that all kinds have.
     pub(crate) fn read_with<S>(
         &self,
         node: &Node,
@@ -58,7 +58,7 @@ impl<T> Kinds<T> {
     ) -> Option<(Option<T>, S)> {
         let mut table = TableReader::of(node, reporter)?;
         let found = table.take(self.key, &KindForm(self.all), self.usual.is_none(), reporter);
-        // Without a kind nobody knows which keys there are.
+        // Without a kind the other keys are not known.
         let kind = match (found, node.get(self.key)) {
             (None, None) => self.all.iter().copied().find(|kind| Some(kind.word()) == self.usual),
             (found, _) => found.map(|found| found.value),

@@ -80,7 +80,7 @@ impl<F: Form> Form for List<F> {
         let Self { form, least, most } = self;
         let items = node.as_list().filter(|items| (*least..=*most).contains(&items.len()));
         let items = reporter.expect(items, node, || format!("a list of {least} to {most} values"))?;
-        // All are read before giving up, so that every fault is told.
+        // All items are read before giving up, so that every error is reported.
         let read: Vec<_> = items.iter().map(|item| form.read(item, reporter)).collect();
         read.into_iter().collect()
     }

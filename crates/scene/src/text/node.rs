@@ -156,7 +156,7 @@ impl Node {
     }
 }
 
-/// Text as most people write it: letters with their accents as one character each, so that what looks alike is alike.
+/// Text in NFC: letters with accents are one character each, so that texts that look the same are equal.
 pub fn composed(text: &str) -> String {
     text.nfc().collect()
 }

@@ -4,7 +4,7 @@ use crate::{Diagnostic, Diagnostics, text::Node};
 use std::path::{Path, PathBuf};
 use vocabulary::readable;
 
-/// More notes than this help nobody.
+/// Messages that are kept at most: more would not help.
 const MOST_NOTES: usize = 100;
 
 /// Where something stands: bytes `start..end` of one of the texts.
@@ -61,14 +61,14 @@ impl Reporter {
         }
     }
 
-    /// Notes that the value being read is not what it has to be.
+    /// Reports that the value being read is not what it has to be.
     pub(crate) fn wrong(&mut self, node: &Node, expected: &str) {
         let subject = if self.key.is_empty() { "this".to_owned() } else { format!("`{}`", self.key) };
         let found = node.describe(self.shown(node.span));
         self.report(node.span, format!("{subject} must be {expected}, not {found}"));
     }
 
-    /// `value`, if there is one; else notes that the value being read is not what it has to be.
+    /// `value`, if there is one; else reports that the value being read is not what it must be.
     pub(crate) fn expect<T>(
         &mut self,
         value: Option<T>,
@@ -89,14 +89,14 @@ impl Reporter {
         result
     }
 
-    /// Adds to the last note.
+    /// Appends to the last message.
     pub(crate) fn append_to_last(&mut self, more: &str) {
         if let Some((_, message)) = self.notes.last_mut() {
             message.push_str(more);
         }
     }
 
-    /// Whether further notes are dropped.
+    /// Whether further messages are dropped.
     pub(crate) fn is_full(&self) -> bool {
         self.notes.len() >= MOST_NOTES
     }
@@ -111,12 +111,12 @@ impl Reporter {
         Diagnostics(self.notes.iter().map(|(span, message)| self.diagnostic(*span, message)).collect())
     }
 
-    /// Number of notes so far.
+    /// Number of messages so far.
     pub(crate) fn notes(&self) -> usize {
         self.notes.len()
     }
 
-    /// Moves the notes from number `first` on that stand outside of `span` there, with `why` added.
+    /// Moves messages from number `first` on that lie outside `span` to `span`, and appends `why`.
     pub(crate) fn gather(&mut self, first: usize, span: Span, why: &str) {
         for (at, message) in self.notes.iter_mut().skip(first) {
             if at.source != span.source || at.start < span.start || at.end > span.end {

@@ -103,8 +103,8 @@ impl CertifiedStretch {
     }
 
     fn fits(&self, law: &EdgeLaw) -> bool {
-        *self.witness.law() == law.law
-            && *self.witness.observer() == law.observer
+        self.witness.law == law.law
+            && self.witness.observer == law.observer
             && self.set_point == law.set_point
             && self.measures == law.tracker.is_some()
     }
@@ -176,7 +176,7 @@ impl Examiner {
             wheels: wheels(edge.leader) || wheels(edge.follower),
             rough_leader: stretch.rough_leader,
         };
-        let law = witness.law();
+        let law = &witness.law;
         let effect = witness.last_effect();
         let smoothed = law.kind != LawKind::FullState && matches!(law.switching, Switching::Tanh(_));
         Certificate {
