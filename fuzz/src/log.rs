@@ -19,4 +19,5 @@ pub fn mcap_log(data: &[u8]) {
         middle = 0.5 * record.snapshot.time;
     }
     drop(log.at(middle));
+    drop(log.records_from(middle).next());
 }

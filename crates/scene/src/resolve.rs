@@ -10,7 +10,7 @@ use crate::{
     robots::{Defaults, RobotDraft, draft},
     sight::{Said, check_sight, number},
     start::check_start,
-    text::{Found, Node, Part, Reporter, Span},
+    text::{Found, Keys, Node, Part, Reporter, Span},
     types::{
         EnvironmentPart, ExpectPart, FilmPart, PhysicsPart, ROBOT_VIEWS, TimePart, ViewsPart, VisionPart,
     },
@@ -197,9 +197,7 @@ const MOST_STEPS: f64 = 1e8;
 fn time(part: &TimePart, reporter: &mut Reporter) -> Time {
     let time = part.complete(&TimePart::default());
     // The key that was written is the one to point at; the defaults fit each other.
-    let Some(span) = part.period.as_ref().map(|f| f.span).or(part.duration.as_ref().map(|f| f.span)) else {
-        return time;
-    };
+    let Some(span) = part.span_of("period").or_else(|| part.span_of("duration")) else { return time };
     if time.period > time.duration {
         let Time { period, duration, .. } = time;
         reporter.report(span, format!("`period` of {period} s is larger than `duration` of {duration} s"));

@@ -3,7 +3,7 @@
 use crate::{
     Follow, Robot, Role, Sensing, Vision,
     robots::RobotDraft,
-    text::{Found, Reporter, Span, words::quoted},
+    text::{Keys, Reporter, Span, words::quoted},
     types::{SensingKind as Kind, TimePart, VisionPart},
 };
 use std::collections::HashMap;
@@ -142,14 +142,10 @@ fn check_hold(follow: &Follow, robot: &Robot, span: Span, reporter: &mut Reporte
 /// Reports cameras and tags that do not fit the robot's shell; whether it did.
 fn check_shell(said: &Said<'_>, robot: &Robot, span: Span, reporter: &mut Reporter) -> bool {
     let (shell, camera_mount) = (said.vision.shell(robot), said.vision.camera_mount(robot));
-    let span = |found: [Option<Span>; 3]| found.into_iter().flatten().next().unwrap_or(span);
-    let at = |found: &Option<Found<f64>>| found.as_ref().map(|found| found.span);
-    let part = said.part;
+    let span = |keys: &[&str]| keys.iter().find_map(|key| said.part.span_of(key)).unwrap_or(span);
     let up = camera_mount.height - shell.height;
     let half = 0.5 * shell.face_height;
     let within = shell.apothem - up * math::tan(shell.lean);
-    let camera =
-        [&part.camera_height, &part.camera_forward].map(|found| found.as_ref().map(|found| found.span));
     if up.abs() < half && (camera_mount.forward - shell.forward).abs() < within {
         let message = format!(
             "the camera of `{}` is inside its own shell: at {:.3} m over the ground, and the shell reaches from {:.3} m to \
@@ -160,7 +156,7 @@ fn check_shell(said: &Said<'_>, robot: &Robot, span: Span, reporter: &mut Report
             shell.height + half,
             shell.forward + within
         );
-        reporter.report(span([camera[0], camera[1], at(&part.shell_scale)]), message);
+        reporter.report(span(&["camera_height", "camera_forward", "shell_scale"]), message);
         return true;
     }
     let slope = shell.face_height / math::cos(shell.lean);
@@ -171,8 +167,7 @@ fn check_shell(said: &Said<'_>, robot: &Robot, span: Span, reporter: &mut Report
             shell.cell,
             2.0 * shell.half_width(0.0)
         );
-        let cell = part.tag_cell.as_ref().map(|found| found.span);
-        reporter.report(span([cell, at(&part.shell_scale), None]), message);
+        reporter.report(span(&["tag_cell", "shell_scale"]), message);
         return true;
     }
     false

@@ -136,9 +136,8 @@ impl Check<'_> {
     /// Reports `message` at the first of `keys` that is written.
     fn report(&self, keys: &[&str], message: String, reporter: &mut Reporter) {
         let WrittenVehicle { own, scene, span, .. } = *self.written;
-        let written = [own.spans(), scene.spans()].concat();
-        let find = |key: &&str| written.iter().find(|(written, _)| written == key);
-        reporter.report(keys.iter().find_map(find).map_or(span, |(_, span)| *span), message);
+        let find = |key: &&str| own.span_of(key).or_else(|| scene.span_of(key));
+        reporter.report(keys.iter().find_map(find).unwrap_or(span), message);
     }
 
     fn measures(&self, reporter: &mut Reporter) {

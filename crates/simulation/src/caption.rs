@@ -50,10 +50,8 @@ pub fn caption(scene: &Scene) -> String {
         TimeMode::Sampled => every,
         TimeMode::Measured => format!("{every}, sampled measurement"),
     });
-    match scene.changes.len() {
-        0 => {}
-        1 => parts.push("1 change".to_owned()),
-        changes => parts.push(format!("{changes} changes")),
+    if !scene.changes.is_empty() {
+        parts.push(counted(scene.changes.len(), "change"));
     }
     parts.join(" · ")
 }

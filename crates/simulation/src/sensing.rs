@@ -12,7 +12,7 @@ use world::World;
 /// Sensors, estimates and camera renderer of all followers with sensors.
 #[derive(Clone)]
 pub(crate) struct SensingPipeline {
-    sensor_config: Arc<SensorConfig>,
+    pub(crate) sensor_config: Arc<SensorConfig>,
     sensor_state: SensorState,
     trackers: Vec<Tracker>,
     beliefs: Vec<LeaderPrediction>,
@@ -39,10 +39,6 @@ impl SensingPipeline {
             eyes: None,
             sensor_config,
         }
-    }
-
-    pub(crate) fn need_eyes(&self) -> bool {
-        self.sensor_config.need_eyes()
     }
 
     pub(crate) fn open(&mut self, eyes: Box<dyn CameraRenderer>) {
@@ -102,13 +98,11 @@ impl SensingPipeline {
 
     fn believe(&mut self, formation: &Formation) {
         for ((belief, tracker), law) in self.beliefs.iter_mut().zip(&self.trackers).zip(formation.laws()) {
-            *belief = law.tracker.as_ref().map_or(
-                LeaderPrediction { relative: None, sight: TrackingState::Truth },
-                |parameters| LeaderPrediction {
-                    relative: tracker.relative(),
-                    sight: tracker.sight(parameters),
-                },
-            );
+            let (relative, sight) = match &law.tracker {
+                Some(parameters) => (tracker.relative(), tracker.sight(parameters)),
+                None => (None, TrackingState::Truth),
+            };
+            *belief = LeaderPrediction { relative, sight };
         }
     }
 

@@ -109,7 +109,7 @@ impl Simulation {
 
     /// Whether cameras on robots take pictures, for which the run needs [`Simulation::attach_cameras`].
     pub fn needs_cameras(&self) -> bool {
-        self.sensing.as_ref().is_some_and(SensingPipeline::need_eyes)
+        self.sensing.as_ref().is_some_and(|sensing| sensing.sensor_config.need_eyes())
     }
 
     /// Attaches the renderer of the cameras on robots.

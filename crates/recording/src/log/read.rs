@@ -143,15 +143,18 @@ impl Log {
         self.after_chunks(0)
     }
 
+    /// The moments at and after `time` s: what lies before is skipped, not read.
+    pub fn records_from(&self, time: f64) -> Moments {
+        Moments { from: time, ..self.after_chunks(self.chunk_before(time)) }
+    }
+
     /// The last moment at or before `time` s; the first one if there is none before.
     ///
     /// # Errors
     /// [`Error::Log`] where the file is damaged there.
     pub fn at(&self, time: f64) -> Result<Option<StepRecord>, Error> {
-        // The first chunk holds no moments; a stamp is rounded, so the chunk before may end with the one asked for.
-        let begun = |chunk: &Chunk| chunk.begin as f64 * 1e-9 <= time + 1e-9;
         let mut last = None;
-        for record in self.after_chunks(self.0.chunks.partition_point(begun).saturating_sub(2)) {
+        for record in self.after_chunks(self.chunk_before(time)) {
             let record = record?;
             if record.snapshot.time > time && last.is_some() {
                 break;
@@ -161,8 +164,15 @@ impl Log {
         Ok(last)
     }
 
+    /// Number of the chunk from which on the moments around `time` s stand.
+    fn chunk_before(&self, time: f64) -> usize {
+        // The first chunk holds no moments; a stamp is rounded, so the chunk before may end with the one asked for.
+        let begun = |chunk: &Chunk| chunk.begin as f64 * 1e-9 <= time + 1e-9;
+        self.0.chunks.partition_point(begun).saturating_sub(2)
+    }
+
     fn after_chunks(&self, next: usize) -> Moments {
-        Moments { log: self.clone(), next, ready: VecDeque::new(), fault: None }
+        Moments { log: self.clone(), next, ready: VecDeque::new(), from: f64::NEG_INFINITY, fault: None }
     }
 }
 
@@ -260,6 +270,7 @@ pub struct Moments {
     log: Log,
     next: usize,
     ready: VecDeque<StepRecord>,
+    from: f64,
     fault: Option<Error>,
 }
 
@@ -269,7 +280,10 @@ impl Iterator for Moments {
     fn next(&mut self) -> Option<Self::Item> {
         loop {
             if let Some(record) = self.ready.pop_front() {
-                return Some(Ok(record));
+                if record.snapshot.time >= self.from {
+                    return Some(Ok(record));
+                }
+                continue;
             }
             if let Some(fault) = self.fault.take() {
                 self.next = usize::MAX;

@@ -38,6 +38,9 @@ fn any_time_is_found_without_reading_what_lies_before() {
     {
         let at = log.at(time).expect("sound").expect("a moment");
         assert!(same(&at, &records[want]), "{time} s gives {}", at.snapshot.time);
+        let on: Vec<StepRecord> = log.records_from(time).map(|record| record.expect("sound")).collect();
+        let first = records.iter().position(|record| record.snapshot.time >= time).unwrap_or(records.len());
+        assert_eq!(on.len(), records.len() - first, "from {time} s");
     }
 }
 

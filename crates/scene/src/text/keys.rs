@@ -74,6 +74,11 @@ pub(crate) trait Keys: Sized {
 
     /// Every key that was read, and where its value stands.
     fn spans(&self) -> Vec<(&'static str, Span)>;
+
+    /// Where the value of `key` stands, if it was read.
+    fn span_of(&self, key: &str) -> Option<Span> {
+        self.spans().into_iter().find(|(known, _)| *known == key).map(|(_, span)| span)
+    }
 }
 
 /// What one table of a file says of something in which every key has a default; made by [`settings!`].
