@@ -74,7 +74,8 @@ fn others(report: &CertifyReport<'_>) {
     let head: String = heads.collect();
     say(&format!("\n{:40}{head}", "the others, in short"));
     for certificate in rest().take(MOST_EDGES) {
-        let cells: String = certificate.findings.iter().map(|f| format!("  {:>13}", cell(f))).collect();
+        let cells = certificate.findings.iter().map(|f| format!("  {:>13}", cell(f)));
+        let cells = cells.collect::<Vec<_>>().concat();
         let [from, to] = certificate.span;
         let name = format!("{} {from:.1}–{to:.1} s", clip(&report.edge(certificate.edge), 26));
         say(&format!("{name:40}{cells}"));
@@ -176,7 +177,8 @@ fn sensitivities(report: &CertifyReport<'_>, beyond: &Beyond) {
     };
     say("  sensitivity of the settled error (last fifth of the run): % more for 1 % more gain on all edges");
     let edges = report.fleet.edges.len().min(MOST_EDGES);
-    let head: String = (0..edges).map(|e| format!("  {:>21}", clip(report.follower(e), 21))).collect();
+    let heads = (0..edges).map(|e| format!("  {:>21}", clip(report.follower(e), 21)));
+    let head = heads.collect::<Vec<_>>().concat();
     say(&format!("    {:14}{head}", ""));
     let error = |e: &[f64; 2]| format!("  {:>9} mm {:>8}°", short(1e3 * e[0]), short(e[1].to_degrees()));
     let settled: String = found.settled.iter().take(edges).map(error).collect();
