@@ -79,8 +79,10 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     let quiet = args.scene.quiet || args.scene.json;
     let (scene, fleet) = (run.scene.clone(), run.simulation.fleet().clone());
     if fleet.edges.is_empty() {
-        let text =
-            format!("{}: nobody follows anybody, so there is nothing to certify", args.scene.scene.display());
+        let text = format!(
+            "{}: no robot follows another, so there is nothing to certify",
+            args.scene.scene.display()
+        );
         return Err(Failure::Usage(text));
     }
     let what = format!("Certifying {}, {} s", stem(&args.scene.scene), scene.time.duration);

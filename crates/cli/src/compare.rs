@@ -214,7 +214,7 @@ fn read(path: &Path) -> Result<RgbaImage, Failure> {
     let reader = image::ImageReader::open(path).map_err(|e| refused(&e))?;
     let mut reader = reader.with_guessed_format().map_err(|e| refused(&e))?;
     if reader.format().is_none() {
-        return Err(refused(&"it is no picture; recorded runs are compared by `echelon diff`"));
+        return Err(refused(&"it is not a picture; recorded runs are compared by `echelon diff`"));
     }
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(4 * MOST_PIXELS);

@@ -152,7 +152,7 @@ impl Diff {
                 say(&format!("  {key}: {left} | {right}"));
             }
             if keys.len() > 20 {
-                say(&format!("  and {} more; --json tells all", keys.len() - 20));
+                say(&format!("  and {} more; --json lists all", keys.len() - 20));
             }
         }
         match &self.records {

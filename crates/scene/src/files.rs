@@ -33,7 +33,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, String> {
     }
     String::from_utf8(bytes).map_err(|error| {
         let line = error.as_bytes()[..error.utf8_error().valid_up_to()].split(|byte| *byte == b'\n').count();
-        format!("is not UTF-8 text: line {line} holds bytes that are no character")
+        format!("is not UTF-8 text: line {line} holds bytes that are not characters")
     })
 }
 

@@ -210,7 +210,7 @@ impl Group<'_> {
                 let names: Vec<_> = made_by(self.node).take(1000).collect();
                 let near = nearest(&name.value, names.iter().map(String::as_str));
                 let hint = near.map_or_else(String::new, did_you_mean);
-                let message = format!("this group makes no robot called `{}`{hint}", name.value);
+                let message = format!("this group has no robot called `{}`{hint}", name.value);
                 reporter.report(name.span, message);
             }
         }

@@ -24,7 +24,7 @@ pub enum OverrideError {
     #[error("`{0}` is not an override: write path.to.key=value, such as time.duration=5")]
     Form(String),
     /// With a path of so many parts.
-    #[error("an override with a path of {0} parts leads nowhere: none has more than {MOST_PARTS}")]
+    #[error("an override with a path of {0} parts is too long: none has more than {MOST_PARTS}")]
     Deep(usize),
 }
 
@@ -169,10 +169,9 @@ fn put(node: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Repor
             }
             Err(fault) => reporter.report(part.span, fault),
         },
-        _ => reporter.report(
-            part.span,
-            format!("there is nothing called `{}` here: this is a plain value", part.text),
-        ),
+        _ => {
+            reporter.report(part.span, format!("there is no key `{}` here: this is a plain value", part.text))
+        }
     }
 }
 
@@ -197,7 +196,7 @@ fn find(items: &[Node], text: &str) -> Result<usize, String> {
         Ok(index) => Err(format!("there is no item {index}: this list has {}, counted from 0", items.len())),
         Err(_) => {
             let hint = nearest(text, names()).map_or_else(String::new, did_you_mean);
-            Err(format!("nothing in this list is called `{text}`{hint}"))
+            Err(format!("no item of this list is called `{text}`{hint}"))
         }
     }
 }

@@ -154,7 +154,7 @@ fn sinusoid(keys: SinusoidKeys, _: &Node, reporter: &mut Reporter) -> Option<Pat
     let (speed, amplitude) = (keys.speed?.value, keys.speed_amplitude?);
     if amplitude.value.abs() > speed {
         let message =
-            format!("`speed_amplitude` must be at most `speed`, {speed} m/s: nothing drives backwards");
+            format!("`speed_amplitude` must be at most `speed`, {speed} m/s: speeds must not be negative");
         reporter.report(amplitude.span, message);
     }
     Some(Path::Sinusoid {
@@ -205,7 +205,7 @@ fn waypoints(keys: WaypointsKeys, _: &Node, reporter: &mut Reporter) -> Option<P
     // Closer than this there is no telling in which direction the curve goes.
     if points.iter().zip(next).any(|(a, b)| math::hypot(a[0] - b[0], a[1] - b[1]) < 1e-3) {
         let hint = if closed && points.first() == points.last() {
-            ": a closed curve comes back by itself, so leave out the last point"
+            ": a closed curve returns to its first point by itself, so leave out the last point"
         } else {
             ""
         };

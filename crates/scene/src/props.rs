@@ -62,7 +62,7 @@ impl PropStage<'_> {
             (Some(mass), Some(_)) => {
                 reporter.report(
                     mass.span,
-                    "`mass` is for props that can be pushed; one with a `path` goes its own way",
+                    "`mass` is for props that can be pushed; one with a `path` follows that",
                 );
                 return None;
             }

@@ -105,10 +105,8 @@ pub(crate) fn check_meaning(part: &VehiclePart, kind: VehicleKind, reporter: &mu
         let others = VehicleKind::ALL.into_iter().filter(|other| applies(key, *other));
         let others = quoted(others.map(Word::word));
         let kind = kind.word();
-        reporter.report(
-            span,
-            format!("`{key}` means nothing for a vehicle of kind `{kind}`; it is for {others}"),
-        );
+        reporter
+            .report(span, format!("`{key}` has no effect on a vehicle of kind `{kind}`; it is for {others}"));
     }
 }
 

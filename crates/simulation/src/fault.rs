@@ -32,7 +32,7 @@ pub struct NotFinite {
 impl fmt::Display for NotFinite {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { whose, quantity, time } = self;
-        write!(f, "the {quantity} of {whose} is no finite number at {time:.2} s")
+        write!(f, "the {quantity} of {whose} is not a finite number at {time:.2} s")
     }
 }
 
@@ -134,9 +134,9 @@ mod tests {
         assert_eq!(not_finite(&record, &fleet), None);
         record.edges[0].applied.turn_rate = f64::INFINITY;
         let told = not_finite(&record, &fleet).expect("an edge").to_string();
-        assert_eq!(told, "the command of `ann` → `bob` is no finite number at 2.50 s");
+        assert_eq!(told, "the command of `ann` → `bob` is not a finite number at 2.50 s");
         record.snapshot.robots[1].motion.turn_rate = f64::NAN;
         let told = not_finite(&record, &fleet).expect("a robot").to_string();
-        assert_eq!(told, "the turn rate of `bob` is no finite number at 2.50 s");
+        assert_eq!(told, "the turn rate of `bob` is not a finite number at 2.50 s");
     }
 }

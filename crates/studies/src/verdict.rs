@@ -211,7 +211,7 @@ impl ExpectationJudge<'_> {
         let percent = |share: f64| format!("{:.2} %", share * 100.0);
         let (found, met) = match measured.min_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((edge, share)) => (format!("{} on {}", percent(share), name(edge)), share >= least),
-            None => ("nobody measures".into(), false),
+            None => ("no follower measures".into(), false),
         };
         self.add("in_view_at_least", format!("≥ {} of the measurements", percent(least)), found, met);
     }

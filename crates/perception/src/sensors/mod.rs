@@ -336,7 +336,7 @@ impl SensorConfig {
         if !exposures.iter().any(by_camera) {
             return Ok(exposures.iter().map(|_| None).collect());
         }
-        let eyes = eyes.ok_or("cameras are to take pictures, and nobody is there to draw them")?;
+        let eyes = eyes.ok_or("cameras take pictures, but no renderer is attached")?;
         let wanted: Vec<&Exposure<'_>> = exposures.iter().filter(|exposure| by_camera(exposure)).collect();
         let mut seen = self.camera.see(self, &wanted, period, eyes, camera_pipeline)?.into_iter();
         Ok(exposures.iter().map(|exposure| if by_camera(exposure) { seen.next() } else { None }).collect())

@@ -93,7 +93,7 @@ impl Log {
             return Err(wrong("was cut off before the run began: it names no robots"));
         };
         let (channels, fleet) = channels_and_fleet(&unpack(&file, path, *first)?);
-        let fleet = fleet.filter(sound).ok_or_else(|| wrong("holds a cast that cannot be read"))?;
+        let fleet = fleet.filter(sound).ok_or_else(|| wrong("holds a fleet that cannot be read"))?;
         if manifest.status == Status::Running {
             let mut chunks = outline.chunks.iter().rev();
             manifest.samples = chunks.find_map(|chunk| samples(&file, path, *chunk, &channels)).unwrap_or(0);
