@@ -170,7 +170,8 @@ fn put(node: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Repor
             Err(fault) => reporter.report(part.span, fault),
         },
         _ => {
-            reporter.report(part.span, format!("there is no key `{}` here: this is a plain value", part.text))
+            reporter
+                .report(part.span, format!("there is no key `{}` here: this is a plain value", part.text));
         }
     }
 }
