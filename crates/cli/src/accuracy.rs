@@ -2,13 +2,10 @@
 
 mod table;
 
-use crate::Outcome;
 use crate::args::AdapterArgs;
-use crate::cameras;
 use crate::failure::Failure;
-use crate::interrupt;
-use crate::print;
 use crate::progress::Progress;
+use crate::{Outcome, cameras, interrupt, print};
 use clap::Args;
 use serde_json::json;
 use std::time::Instant;

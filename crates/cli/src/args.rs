@@ -1,5 +1,6 @@
 //! Arguments that several subcommands share. Those of one subcommand alone stand in its file.
 
+use crate::failure::Failure;
 use clap::Args;
 use rendering::{AdapterChoice, Gpu};
 use scene::Override;
@@ -42,9 +43,13 @@ impl AdapterArgs {
     /// The name that leaves the choice to the program.
     const AUTO: &str = "auto";
 
-    /// Whether an adapter was asked for, which then has to be there.
-    pub(crate) fn is_named(&self) -> bool {
-        self.name != Self::AUTO
+    /// Opens the adapter where one is of use but not needed; the error says why there is none. One that was asked for by name
+    /// has to be there.
+    pub(crate) fn open_if_any(&self) -> Result<Result<Gpu, rendering::Error>, Failure> {
+        match self.open() {
+            Err(error) if self.name != Self::AUTO => Err(error.into()),
+            opened => Ok(opened),
+        }
     }
 
     /// Opens the adapter.

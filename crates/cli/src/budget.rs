@@ -6,14 +6,12 @@ mod files;
 mod picture;
 mod table;
 
-use crate::Outcome;
 use crate::args::{SceneArgs, within};
-use crate::cameras;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::load::{load, stem};
 use crate::print::{note, say};
 use crate::progress::Progress;
+use crate::{Outcome, cameras, interrupt};
 use clap::Args;
 use output::Place;
 use rendering::Gpu;
@@ -61,10 +59,11 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
     let folder = args.out.as_deref();
     let _place = folder.map(Place::folder).transpose()?;
     let silent = args.scene.quiet || args.scene.json;
-    let (gpu, without_camera) = camera(args)?;
-    if let Some(why) = without_camera.as_ref().filter(|_| !args.no_camera) {
+    let camera = camera(args)?;
+    if let Some(why) = camera.as_ref().err().filter(|_| !args.no_camera) {
         note(why);
     }
+    let gpu = camera.as_ref().ok();
     let constants = !args.epsilon.is_empty();
     let cases = if constants {
         epsilon_cases(&args.epsilon, gpu.is_some(), &scene)
@@ -72,8 +71,7 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
         sensing_cases(&args.pixel_noise, gpu.is_some())
     };
     let mut budget = Budget::new(&scene, simulation.fleet().clone(), constants);
-    budget.adapter = gpu.as_ref().map(Gpu::description);
-    budget.without_camera = without_camera;
+    budget.camera = camera.as_ref().map(Gpu::description).map_err(String::clone);
     let each = simulation.len();
     let what = format!(
         "{} of {}, {} s each",
@@ -82,7 +80,7 @@ pub(crate) fn budget(args: &BudgetArgs) -> Outcome {
         scene.time.duration
     );
     let progress = Progress::begin(&what, each.saturating_mul(cases.len() as u64), silent);
-    budget.measure(&cases, &mut cameras::factory(gpu.as_ref()), |index, step| {
+    budget.measure(&cases, &mut cameras::factory(gpu), |index, step| {
         progress.at(index as u64 * each + step);
         !interrupt::asked()
     })?;
@@ -114,14 +112,9 @@ fn finish(budget: &Budget<'_>, folder: Option<&Path>, args: &BudgetArgs) -> Outc
 }
 
 /// An adapter to draw for cameras, or why there is none.
-fn camera(args: &BudgetArgs) -> Result<(Option<Gpu>, Option<String>), Failure> {
+fn camera(args: &BudgetArgs) -> Result<Result<Gpu, String>, Failure> {
     if args.no_camera {
-        return Ok((None, Some("no camera: --no-camera".to_owned())));
+        return Ok(Err("no camera: --no-camera".to_owned()));
     }
-    match args.scene.adapter.open() {
-        Ok(gpu) => Ok((Some(gpu), None)),
-        // One that was asked for by name has to be there.
-        Err(error) if args.scene.adapter.is_named() => Err(error.into()),
-        Err(error) => Ok((None, Some(format!("no camera: {error}")))),
-    }
+    Ok(args.scene.adapter.open_if_any()?.map_err(|error| format!("no camera: {error}")))
 }

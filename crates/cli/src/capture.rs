@@ -1,8 +1,6 @@
 //! `echelon capture`: pictures of a scene at given times.
 
-use crate::Outcome;
 use crate::args::{PictureArgs, SceneArgs, time};
-use crate::cameras;
 use crate::failure::Failure;
 use crate::load::load;
 use crate::picture::{DrawJob, RenderSetup};
@@ -10,7 +8,7 @@ use crate::playback::Playback;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use crate::replaced::Replaced;
-use crate::{interrupt, times};
+use crate::{Outcome, cameras, interrupt, times};
 use clap::Args;
 use film::png;
 use output::Place;
@@ -55,7 +53,7 @@ pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
     })
 }
 
-/// Draws pictures of what `source` tells; it may use the adapter that draws.
+/// Draws pictures of the records of `source`, which may use the adapter that draws.
 pub(crate) fn draw(
     job: &CaptureJob<'_>,
     source: impl FnOnce(&Gpu) -> Result<RecordSource, Failure>,

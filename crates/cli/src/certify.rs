@@ -8,12 +8,11 @@ mod text;
 pub(crate) use pictures::axis;
 
 use crate::args::{SceneArgs, within};
-use crate::cameras;
 use crate::failure::Failure;
 use crate::load::{load, stem};
 use crate::print::json;
 use crate::progress::Progress;
-use crate::{Outcome, interrupt};
+use crate::{Outcome, cameras, interrupt};
 use clap::Args;
 use output::Place;
 use scene::Scene;
@@ -21,7 +20,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 use studies::certify::beyond::Beyond;
 use studies::certify::{Certificate, certificates};
-use vocabulary::{EntityId, FleetInfo};
+use vocabulary::FleetInfo;
 
 #[derive(Debug, Args)]
 pub(crate) struct CertifyArgs {
@@ -58,16 +57,12 @@ pub(crate) struct CertifyReport<'a> {
 impl CertifyReport<'_> {
     /// "leader → follower".
     fn edge(&self, index: usize) -> String {
-        let name = |robot: usize| self.fleet.name(EntityId::Robot(robot));
-        self.fleet
-            .edges
-            .get(index)
-            .map_or_else(String::new, |e| format!("{} → {}", name(e.leader), name(e.follower)))
+        self.fleet.edges.get(index).map_or_else(String::new, |edge| self.fleet.pair(*edge).join(" → "))
     }
 
     /// Name of the robot that follows on an edge.
     fn follower(&self, index: usize) -> &str {
-        self.fleet.edges.get(index).map_or("", |edge| self.fleet.name(EntityId::Robot(edge.follower)))
+        self.fleet.edges.get(index).map_or("", |edge| self.fleet.pair(*edge)[1])
     }
 
     /// Whether no statement of any edge is violated.
@@ -84,8 +79,10 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     let quiet = args.scene.quiet || args.scene.json;
     let (scene, fleet) = (run.scene.clone(), run.simulation.fleet().clone());
     if fleet.edges.is_empty() {
-        let text =
-            format!("{}: nobody follows anybody, so there is nothing to certify", args.scene.scene.display());
+        let text = format!(
+            "{}: no robot follows another, so there is nothing to certify",
+            args.scene.scene.display()
+        );
         return Err(Failure::Usage(text));
     }
     let what = format!("Certifying {}, {} s", stem(&args.scene.scene), scene.time.duration);
@@ -112,7 +109,7 @@ pub(crate) fn certify(args: &CertifyArgs) -> Outcome {
     } else if !args.scene.quiet {
         text::tell(&report, written.as_ref().map_or(&[], |files| files.as_deref().unwrap_or_default()));
     }
-    // What came out is told, whatever becomes of a file.
+    // Results are printed even if a file cannot be written.
     written?;
     if args.strict && !report.holds() { Err(Failure::Expectation) } else { Ok(()) }
 }

@@ -1,12 +1,11 @@
 //! `echelon compare`: do pictures look alike? For frames in CI against those that somebody has looked at.
 
-use crate::Outcome;
 use crate::args::within;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::junit::{self, Came, ReportedCheck};
 use crate::print::{json, say};
 use crate::replaced::Replaced;
+use crate::{Outcome, interrupt};
 use clap::Args;
 use image::RgbaImage;
 use output::Place;
@@ -215,7 +214,7 @@ fn read(path: &Path) -> Result<RgbaImage, Failure> {
     let reader = image::ImageReader::open(path).map_err(|e| refused(&e))?;
     let mut reader = reader.with_guessed_format().map_err(|e| refused(&e))?;
     if reader.format().is_none() {
-        return Err(refused(&"it is no picture; recorded runs are compared by `echelon diff`"));
+        return Err(refused(&"it is not a picture; recorded runs are compared by `echelon diff`"));
     }
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(4 * MOST_PIXELS);
@@ -242,7 +241,7 @@ fn look(
         let path = folder.join(Path::new(name).with_extension("difference.png"));
         written.replaced.look(&path);
         let outcome = film::png::write(&path, &compared.side_by_side(), &[("Software", studies::PROGRAM)]);
-        // What came out is told, whatever becomes of a file.
+        // Results are printed even if a file cannot be written.
         written.lost = written.lost.take().or(outcome.err().map(Failure::from));
     }
     Ok(Ok(PictureFinding { likeness, adapters: adapters(wanted, found) }))

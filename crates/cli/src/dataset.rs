@@ -1,13 +1,10 @@
 //! `echelon dataset`: what the cameras of a scene see, with the truth about every tag and what the detector makes of it.
 
-use crate::Outcome;
 use crate::args::{SceneArgs, within};
-use crate::cameras;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::load::{load, stem};
-use crate::print;
 use crate::progress::Progress;
+use crate::{Outcome, cameras, interrupt, print};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;

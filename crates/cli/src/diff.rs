@@ -1,12 +1,11 @@
 //! `echelon diff`: are two recorded runs the same, and where do they part?
 
-use crate::Outcome;
 use crate::args::within;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::print::{json, say};
 use crate::progress::Progress;
 use crate::recorded::Recorded;
+use crate::{Outcome, interrupt};
 use clap::Args;
 use recording::log::{Comparison, compare};
 use serde_json::{Value, json};
@@ -153,7 +152,7 @@ impl Diff {
                 say(&format!("  {key}: {left} | {right}"));
             }
             if keys.len() > 20 {
-                say(&format!("  and {} more; --json tells all", keys.len() - 20));
+                say(&format!("  and {} more; --json lists all", keys.len() - 20));
             }
         }
         match &self.records {

@@ -6,7 +6,7 @@ use vocabulary::counted;
 /// Why the program does not end with 0.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// The run did not show what its scene expects; already told in the report.
+    /// The run did not show what its scene expects; already printed in the report.
     Expectation,
     /// The run came to a number that is none.
     Broken(String),

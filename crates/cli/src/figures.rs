@@ -6,12 +6,11 @@ mod folder;
 mod meter;
 mod tell;
 
-use crate::Outcome;
 use crate::args::AdapterArgs;
 use crate::failure::Failure;
 use crate::load::{build, read, stem, with_seed};
 use crate::print::note;
-use crate::{cameras, interrupt};
+use crate::{Outcome, cameras, interrupt};
 use clap::Args;
 use folder::Folder;
 use meter::Meter;
@@ -56,7 +55,7 @@ pub(crate) struct FiguresArgs {
 
 /// What figures are of.
 struct Subject {
-    /// Of a scene of somebody's own: it, and its file's name.
+    /// A scene other than the paper's, and the name of its file.
     own: Option<(Scene, String)>,
     jobs: Vec<PlannedRun>,
 }
@@ -65,23 +64,26 @@ pub(crate) fn figures(args: &FiguresArgs) -> Outcome {
     let began = Instant::now();
     let subject = subject(args)?;
     interrupt::watch();
-    let (gpu, without) = adapter(args)?;
-    if let Some(why) = without.as_ref().filter(|_| !args.no_pictures) {
+    let adapter = adapter(args)?;
+    if let Some(why) = adapter.as_ref().err().filter(|_| !args.no_pictures) {
         note(why);
     }
+    let gpu = adapter.as_ref().ok();
     let mut prepared = vec![];
     for job in &subject.jobs {
-        prepared.push(ready(job, gpu.as_ref(), &args.adapter.name)?);
+        prepared.push(ready(job, gpu, &args.adapter.name)?);
     }
-    let shows: Vec<drawn::FilmedRun> = gpu.as_ref().map_or_else(Vec::new, |_| drawn::shows(&subject));
+    let shows: Vec<drawn::FilmedRun> = gpu.map_or_else(Vec::new, |_| drawn::shows(&subject));
     let mut folder = Folder::create(&args.out, args.force)?;
     let mut meter = Meter::begin(args, &subject, &prepared, &shows);
-    let made = make(args, &subject, prepared, gpu.as_ref(), &shows, &mut folder, &mut meter);
+    let made = make(args, &subject, prepared, gpu, &shows, &mut folder, &mut meter);
     drop(meter);
     match made {
         Ok((mut report, runs)) => {
-            report.left_out.extend(without.map(|why| format!("Snake views and films: {why}.")));
-            report.versions = versions(gpu.as_ref());
+            report
+                .left_out
+                .extend(adapter.as_ref().err().map(|why| format!("Snake views and films: {why}.")));
+            report.versions = versions(gpu);
             folder.write("report.html", report::page(&report, rendering::FONT).as_bytes())?;
             folder.close("complete", Some((&report, runs.as_slice())))?;
             tell::tell(args, &report, &runs, &folder, began.elapsed().as_secs_f64());
@@ -106,16 +108,11 @@ fn subject(args: &FiguresArgs) -> Result<Subject, Failure> {
 }
 
 /// An adapter to draw with, or why there is none.
-fn adapter(args: &FiguresArgs) -> Result<(Option<Gpu>, Option<String>), Failure> {
+fn adapter(args: &FiguresArgs) -> Result<Result<Gpu, String>, Failure> {
     if args.no_pictures {
-        return Ok((None, Some("--no-pictures was given".to_owned())));
+        return Ok(Err("--no-pictures was given".to_owned()));
     }
-    match args.adapter.open() {
-        Ok(gpu) => Ok((Some(gpu), None)),
-        // One that was asked for by name has to be there.
-        Err(error) if args.adapter.is_named() => Err(error.into()),
-        Err(error) => Ok((None, Some(format!("there is nothing to draw with ({error})")))),
-    }
+    Ok(args.adapter.open_if_any()?.map_err(|error| format!("there is nothing to draw with ({error})")))
 }
 
 /// A run before its first step.
@@ -165,18 +162,15 @@ fn make(
 /// Pixels an inch of figures.
 const DPI: f32 = 300.0;
 
-fn run(job: &PlannedRun, run: SceneRun, meter: &mut Meter) -> Result<FinishedRun, Failure> {
-    let mut simulation = run.simulation;
-    let colours = rendering::robot_colours(simulation.fleet());
-    let mut tracer = Tracer::new(job.name.clone(), &job.scene, &simulation, &colours, job.transient);
-    while let Some(record) = simulation.next_record() {
-        tracer.push(record);
+fn run(job: &PlannedRun, mut run: SceneRun, meter: &mut Meter) -> Result<FinishedRun, Failure> {
+    let colours = rendering::robot_colours(run.simulation.fleet());
+    let mut tracer = Tracer::new(job.name.clone(), &job.scene, &run.simulation, &colours, job.transient);
+    run.step_through(|simulation, _| {
+        tracer.push(simulation.record());
         meter.sample();
-        stop(meter)?;
-    }
-    if let Some(fault) = simulation.fault() {
-        return Err(studies::Error::from(fault).into());
-    }
+        !interrupt::asked()
+    })?;
+    stop(meter)?;
     Ok(FinishedRun { case: job.case, variant: job.variant, trace: tracer.finish() })
 }
 

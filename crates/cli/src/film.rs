@@ -5,17 +5,15 @@ mod plots;
 mod preset;
 mod words;
 
-use crate::Outcome;
 use crate::args::{PictureArgs, SceneArgs};
-use crate::cameras;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::load::load;
 use crate::picture::{DrawJob, RenderSetup};
 use crate::playback::Playback;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use crate::replaced::Replaced;
+use crate::{Outcome, cameras, interrupt};
 use board::Board;
 use clap::Args;
 use film::{Film, FilmKind};
@@ -102,7 +100,7 @@ pub(crate) fn film(args: &FilmArgs) -> Outcome {
     })
 }
 
-/// Makes the film of what `source` tells; it may use the adapter that draws.
+/// Makes the film of the records of `source`, which may use the adapter that draws.
 pub(crate) fn shoot(
     mut job: FilmJob<'_>,
     source: impl FnOnce(&Gpu) -> Result<RecordSource, Failure>,
@@ -127,7 +125,7 @@ pub(crate) fn shoot(
     }
     let view = settings.view.as_deref().unwrap_or(&job.draw.view);
     let names: Vec<String> = fleet.robots.iter().map(|m| m.name.clone()).collect();
-    // Whoever names a view wants that one, from beginning to end.
+    // A view given on the command line holds from beginning to end.
     let board = Board::new(settings, job.draw.picture.view.as_deref(), view, job.draw.duration, &names)?;
     let frames = board.frames(rate);
     let mut studio = RenderSetup::open(job.draw.adapter, job.draw.picture, fleet, view, settings.size)?;

@@ -39,7 +39,7 @@ fn signals() -> Vec<i32> {
     return vec![SIGINT, SIGTERM];
 }
 
-/// Whether a signal was ignored when the program began, as far as the system tells.
+/// Whether a signal was ignored when the program began, as far as the system reports.
 fn ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     is_ignored(&status, signal)

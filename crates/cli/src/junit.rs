@@ -1,9 +1,8 @@
 //! Results as JUnit XML, which CI systems read.
 
-use crate::Outcome;
 use crate::failure::Failure;
-use crate::print;
 use crate::replaced::Replaced;
+use crate::{Outcome, print};
 use metrics::JudgedExpectation;
 use output::{Place, write_whole};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -43,7 +42,7 @@ impl ReportedCheck {
         Self { name: format!("{}: {}", finding.key, finding.wanted), came, time: None }
     }
 
-    /// An expectation that nobody came to judge.
+    /// An expectation that was not judged.
     pub(crate) fn unjudged(finding: &JudgedExpectation, why: &str) -> Self {
         Self { came: Came::Skipped(why.to_owned()), ..Self::of(finding) }
     }

@@ -1,9 +1,8 @@
 //! `echelon lab`: the window.
 
-use crate::Outcome;
 use crate::args::{AdapterArgs, size};
 use crate::failure::Failure;
-use crate::interrupt;
+use crate::{Outcome, interrupt};
 use clap::Args;
 use scene::Override;
 use signal_hook::low_level;

@@ -2,8 +2,7 @@
 
 use crate::args::SceneArgs;
 use crate::failure::Failure;
-use crate::interrupt;
-use crate::recorded;
+use crate::{interrupt, recorded};
 use scene::{Override, Scene};
 use std::path::Path;
 use studies::SceneRun;

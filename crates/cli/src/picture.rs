@@ -50,7 +50,7 @@ pub(crate) struct RenderSetup {
     pub(crate) layout: ViewLayout,
     pub(crate) style: Style,
     pub(crate) size: [u32; 2],
-    /// Characters of names that no font has, which has been told.
+    /// Characters of names that no font has; they are reported already.
     lacks: BTreeSet<char>,
 }
 

@@ -33,7 +33,7 @@ pub(crate) fn verbatim(text: &str) {
 }
 
 /// Text with every character spelt out that would move a terminal's cursor, colour it or turn the direction of reading:
-/// titles and names come from files. The spelling is that of JSON and TOML. Numbers that nobody can read are written with an
+/// titles and names come from files. The spelling is that of JSON and TOML. Numbers with very many digits are written with an
 /// exponent.
 pub(crate) fn harmless(text: &str) -> Cow<'_, str> {
     match readable(text) {
@@ -76,7 +76,7 @@ pub(crate) fn lost() -> bool {
     LOST.load(Ordering::Relaxed)
 }
 
-/// Prints a line to standard error; nobody is left to tell if that is closed.
+/// Prints a line to standard error; there is no place left to report that it is closed.
 pub(crate) fn note(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", harmless(text));
 }

@@ -7,9 +7,7 @@ use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 /// Progress of one job.
-pub(crate) struct Progress(ProgressDisplay);
-
-enum ProgressDisplay {
+pub(crate) enum Progress {
     Nothing,
     Bar(ProgressBar),
     Lines { steps: u64, told: Cell<Instant> },
@@ -22,26 +20,26 @@ impl Progress {
     /// Begins a job of `steps` steps; silent where `quiet`.
     pub(crate) fn begin(what: &str, steps: u64, quiet: bool) -> Self {
         if quiet {
-            return Self(ProgressDisplay::Nothing);
+            return Self::Nothing;
         }
         if !std::io::stderr().is_terminal() {
             note(&format!("{what} …"));
-            return Self(ProgressDisplay::Lines { steps, told: Cell::new(Instant::now()) });
+            return Self::Lines { steps, told: Cell::new(Instant::now()) };
         }
         let bar = ProgressBar::new(steps).with_message(harmless(what).into_owned());
         if let Ok(style) = ProgressStyle::with_template("{msg} [{bar:30}] {percent:>3} %  {eta} left") {
             bar.set_style(style.progress_chars("━╸─"));
         }
         bar.enable_steady_tick(Duration::from_millis(200));
-        Self(ProgressDisplay::Bar(bar))
+        Self::Bar(bar)
     }
 
     /// Where the job is.
     pub(crate) fn at(&self, step: u64) {
-        match &self.0 {
-            ProgressDisplay::Nothing => {}
-            ProgressDisplay::Bar(bar) => bar.set_position(step),
-            ProgressDisplay::Lines { steps, told } => {
+        match self {
+            Self::Nothing => {}
+            Self::Bar(bar) => bar.set_position(step),
+            Self::Lines { steps, told } => {
                 if told.get().elapsed() >= PAUSE {
                     told.set(Instant::now());
                     note(&format!("{step} of {steps}"));
@@ -54,7 +52,7 @@ impl Progress {
 impl Drop for Progress {
     /// Takes the bar away.
     fn drop(&mut self) {
-        if let ProgressDisplay::Bar(bar) = &self.0 {
+        if let Self::Bar(bar) = self {
             bar.finish_and_clear();
         }
     }

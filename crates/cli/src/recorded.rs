@@ -38,7 +38,7 @@ impl Recorded {
             return match Log::open(path) {
                 Ok(log) => Ok(Self::of_log(path, log)),
                 Err(_) if !path.exists() => Err(Failure::Usage(format!(
-                    "{} is no run folder and no log: {}",
+                    "{} is neither a run folder nor a log: {}",
                     path.display(),
                     absent(path)
                 ))),
@@ -138,13 +138,13 @@ impl Recorded {
 
 /// What a recorded run is, for who named something else.
 const WANTED: &str =
-    "a run folder, such as runs/line-three-001, or its log.mcap is wanted; `echelon run SCENE` leaves one";
+    "a run folder, such as runs/line-three-001, or its log.mcap is needed; `echelon run SCENE` leaves one";
 
 /// What to say where there is nothing at `path`.
 fn absent(path: &Path) -> String {
     match path.to_str().and_then(scene::shipped) {
         Some(_) => format!("it is a scene; `echelon run {}` records a run of it", path.display()),
-        None => format!("there is nothing of that name; {WANTED}"),
+        None => format!("there is no such file; {WANTED}"),
     }
 }
 
@@ -177,7 +177,7 @@ pub(crate) fn refuse(path: &Path) -> Result<(), Failure> {
     let scene = path.join("scene.toml");
     let scene = if scene.is_file() { format!("; its scene is {}", scene.display()) } else { String::new() };
     Err(Failure::Usage(format!(
-        "{shown} is a recorded run, and a scene is wanted here: `echelon replay {shown}` runs it again, with \
+        "{shown} is a recorded run, but a scene is needed here: `echelon replay {shown}` runs it again, with \
          `--capture 0,5` or `--film film.mp4` it draws it{scene}"
     )))
 }
@@ -187,16 +187,17 @@ fn read_manifest(folder: &Path) -> Result<Manifest, Failure> {
     let path = folder.join("manifest.json");
     let text = std::fs::read_to_string(&path).map_err(|error| match error.kind() {
         ErrorKind::NotFound | ErrorKind::NotADirectory => Failure::Usage(format!(
-            "{} is no run folder: it has no manifest.json and no log.mcap; {WANTED}",
+            "{} is not a run folder: it has no manifest.json and no log.mcap; {WANTED}",
             folder.display()
         )),
         ErrorKind::InvalidData => {
-            Failure::Usage(format!("{} is no manifest: it is not text", path.display()))
+            Failure::Usage(format!("{} is not a manifest: it is not text", path.display()))
         }
         _ => Failure::Machine(format!("cannot read {}: {error}", path.display())),
     })?;
-    let manifest: Manifest = serde_json::from_str(&text)
-        .map_err(|error| Failure::Usage(format!("{} is no manifest of a run: {error}", path.display())))?;
+    let manifest: Manifest = serde_json::from_str(&text).map_err(|error| {
+        Failure::Usage(format!("{} is not the manifest of a run: {error}", path.display()))
+    })?;
     match manifest.other_layout() {
         Some(fault) => Err(Failure::Usage(format!("{} {fault}", folder.display()))),
         None => Ok(manifest),

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 #[derive(Default)]
 pub(crate) struct Replaced(Vec<PathBuf>);
 
-/// Writes texts as files of these names into `folder`; that they replaced others is told.
+/// Writes texts as files of these names into `folder`, and prints which files they replaced.
 pub(crate) fn write_all(
     folder: &Path,
     texts: &[(String, String)],
@@ -36,7 +36,7 @@ pub(crate) fn quoted(name: &str) -> String {
     }
 }
 
-/// Names that are told one by one.
+/// Names that are listed, at most.
 const SHOWN: usize = 3;
 
 impl Replaced {

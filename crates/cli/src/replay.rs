@@ -1,6 +1,5 @@
 //! `echelon replay`: does a recorded run come out the same again?
 
-use crate::Outcome;
 use crate::args::{AdapterArgs, PictureArgs};
 use crate::failure::Failure;
 use crate::load::{build, stem};
@@ -8,7 +7,7 @@ use crate::picture::DrawJob;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use crate::recorded::Recorded;
-use crate::{cameras, capture, film, interrupt};
+use crate::{Outcome, cameras, capture, film, interrupt};
 use clap::Args;
 use recording::{Manifest, Status};
 use serde_json::json;
@@ -52,7 +51,7 @@ pub(crate) struct ReplayArgs {
     quiet: bool,
 }
 
-/// A replay, and what is told about it.
+/// A replay, and what is printed about it.
 struct ReplayReport {
     manifest: Manifest,
     replay: Replay,

@@ -1,15 +1,13 @@
 //! `echelon run`: simulate, record, judge.
 
-use crate::Outcome;
 use crate::args::SceneArgs;
-use crate::cameras;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::junit::{self, ReportedCheck};
 use crate::load::{load, stem};
 use crate::print::note;
 use crate::progress::Progress;
 use crate::summary::{self, Summary};
+use crate::{Outcome, cameras, interrupt};
 use clap::Args;
 use output::Place;
 use recording::log::{self, Log, Roll};
@@ -107,7 +105,7 @@ fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
     } else if !met {
         summary::failures(&summary);
     }
-    // What came out is told, whatever becomes of a file.
+    // Results are printed even if a file cannot be written.
     written.map_err(|error| {
         let kept = args.out.as_ref().map_or_else(|| "the folder".to_owned(), |out| out.display().to_string());
         Failure::from(error).but(&format!("{kept} keeps what was written before"))

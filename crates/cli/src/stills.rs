@@ -2,17 +2,15 @@
 
 mod strobe;
 
-use crate::Outcome;
 use crate::args::{PictureArgs, SceneArgs};
-use crate::cameras;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::load::{load, stem};
 use crate::picture::RenderSetup;
 use crate::playback::Playback;
 use crate::print::{json, say};
 use crate::progress::Progress;
 use crate::replaced::Replaced;
+use crate::{Outcome, cameras, interrupt};
 use clap::Args;
 use output::Place;
 use rendering::{PictureSpec, Style, ViewLayout};

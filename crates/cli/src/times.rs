@@ -10,7 +10,7 @@ pub(crate) fn within(asked: &[f64], duration: f64) -> Result<Vec<f64>, Failure> 
     let inside = |t: &f64| (-SAME..=duration + SAME).contains(t);
     if let Some(bad) = asked.iter().find(|t| !inside(t)) {
         return Err(Failure::Usage(format!(
-            "{bad} s is no time of the run: times are from 0 to {} s",
+            "{bad} s is not within the run: times are from 0 to {} s",
             shown(duration)
         )));
     }
@@ -24,7 +24,7 @@ pub(crate) fn within(asked: &[f64], duration: f64) -> Result<Vec<f64>, Failure> 
     Ok(times)
 }
 
-/// A time as it is told, s: without the rounding of a multiplication.
+/// A time in s as text, without the rounding of a multiplication.
 pub(crate) fn shown(time: f64) -> String {
     let text = format!("{time:.9}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -1,12 +1,11 @@
 //! `echelon tune`: gains that fit the vehicles of a scene.
 
-use crate::Outcome;
 use crate::args::SceneArgs;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::load::{load, stem};
 use crate::print::{json, say};
 use crate::progress::Progress;
+use crate::{Outcome, interrupt};
 use clap::Args;
 use serde_json::json;
 use studies::SceneRun;

@@ -3,8 +3,7 @@
 //! A follower that keeps its place in the leader's frame moves like a point of a rigid body. With the leader at v and ω,
 //! the place [x, y] moves at (v − ω y, ω x) in the leader's frame and turns with ω.
 
-use vocabulary::math;
-use vocabulary::{Limits, MotionInput};
+use vocabulary::{Limits, MotionInput, math};
 
 /// Why a place cannot be held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

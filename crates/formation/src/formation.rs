@@ -113,11 +113,6 @@ impl Formation {
         &self.leads
     }
 
-    /// Whether any edge runs an observer.
-    pub fn observes(&self) -> bool {
-        self.edges.iter().any(|e| e.law.kind == LawKind::OutputFeedback)
-    }
-
     /// The state before the first sample; observers start where `estimates` says, one per edge.
     pub fn start(&self, estimates: Vec<Estimate>) -> FormationState {
         let robots = self.graph.robots();

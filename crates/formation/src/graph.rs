@@ -48,7 +48,7 @@ pub enum GraphError {
 /// A checked formation graph: acyclic, every follower with one leader.
 #[derive(Debug, Clone)]
 pub struct Graph {
-    nodes: DiGraph<String, usize>,
+    robots: usize,
     edges: Vec<Edge>,
     evaluation_order: Vec<usize>,
 }
@@ -62,7 +62,13 @@ impl Graph {
         if names.is_empty() {
             return Err(GraphError::Empty);
         }
-        let (mut graph, index) = nodes(names)?;
+        let (mut graph, mut index) = (DiGraph::new(), HashMap::new());
+        for name in names.iter().map(|name| name.as_ref().to_owned()) {
+            let node = graph.add_node(name.clone());
+            if index.insert(name.clone(), node.index()).is_some() {
+                return Err(GraphError::DuplicateName(name));
+            }
+        }
         let mut edges = Vec::with_capacity(pairs.len());
         for (leader, follower) in pairs {
             let edge = resolve(&graph, &index, leader.as_ref(), follower.as_ref())?;
@@ -72,17 +78,12 @@ impl Graph {
         let order =
             toposort(&graph, None).map_err(|cycle| GraphError::Cycle(ring(&graph, cycle.node_id())))?;
         let evaluation_order = order.into_iter().filter_map(|node| incoming(&graph, node)).collect();
-        Ok(Self { nodes: graph, edges, evaluation_order })
+        Ok(Self { robots: names.len(), edges, evaluation_order })
     }
 
     /// Robots.
     pub fn robots(&self) -> usize {
-        self.nodes.node_count()
-    }
-
-    /// Name of a robot; empty for an index out of range.
-    pub fn name(&self, robot: usize) -> &str {
-        self.nodes.node_weight(NodeIndex::new(robot)).map_or("", String::as_str)
+        self.robots
     }
 
     /// Edges in the order they were given.
@@ -94,36 +95,6 @@ impl Graph {
     pub fn evaluation_order(&self) -> &[usize] {
         &self.evaluation_order
     }
-
-    /// The edge that leads to `robot`, if it follows.
-    pub fn edge_to(&self, robot: usize) -> Option<usize> {
-        incoming(&self.nodes, NodeIndex::new(robot))
-    }
-
-    /// Edges between `robot` and its lead robot.
-    pub fn depth(&self, robot: usize) -> usize {
-        let mut depth = 0;
-        let mut at = robot;
-        while let Some(edge) = self.edge_to(at) {
-            at = self.edges[edge].leader;
-            depth += 1;
-        }
-        depth
-    }
-}
-
-type Nodes = (DiGraph<String, usize>, HashMap<String, usize>);
-
-fn nodes<S: AsRef<str>>(names: &[S]) -> Result<Nodes, GraphError> {
-    let mut graph = DiGraph::new();
-    let mut index = HashMap::new();
-    for name in names.iter().map(|n| n.as_ref().to_owned()) {
-        let node = graph.add_node(name.clone());
-        if index.insert(name.clone(), node.index()).is_some() {
-            return Err(GraphError::DuplicateName(name));
-        }
-    }
-    Ok((graph, index))
 }
 
 fn resolve(
@@ -190,8 +161,6 @@ mod tests {
     fn a_v_of_seven_answers_every_question() {
         let graph = seven();
         assert_eq!(graph.robots(), 7);
-        assert_eq!(graph.edge_to(4), Some(3));
-        assert_eq!(graph.depth(6), 3);
     }
 
     #[test]

@@ -7,8 +7,7 @@
 
 use crate::relative::Geometry;
 use nalgebra::Vector2;
-use vocabulary::math;
-use vocabulary::{Command, LawKind, MotionInput, SetPoint};
+use vocabulary::{Command, LawKind, MotionInput, SetPoint, math};
 
 /// How the robust term switches (eq 23).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,8 +3,7 @@
 //! Indices of the paper: i is the leader, j the follower.
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
-use vocabulary::math;
-use vocabulary::{MotionInput, Relative};
+use vocabulary::{MotionInput, Relative, math};
 
 /// A relative position ready for the equations: sines and cosines taken, distance kept off zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,12 +63,6 @@ impl Geometry {
         Vector2::new(turn * self.cos_view, -2.0 * turn * self.sin_view / self.distance)
     }
 
-    /// g_s, the 2×2 matrix that multiplies ds/dt (eq 11).
-    pub fn rate_matrix(&self, follower_speed: f64) -> Matrix2<f64> {
-        let column = self.rate_column(follower_speed);
-        Matrix2::new(column.x, 0.0, column.y, 0.0)
-    }
-
     /// g_v, the 2×5 matrix that multiplies the leader's motion (eq 12).
     ///
     /// 2 cos θ_ij − cos γ cos ψ is written without headings, since θ_ij = θ_i − θ_j = γ − ψ.
@@ -102,19 +95,8 @@ pub fn leader_vector(leader: &MotionInput) -> SVector<f64, 5> {
     SVector::<f64, 5>::new(v, leader.acceleration, v * v, leader.turn_acceleration, v * leader.turn_rate)
 }
 
-/// d²s/dt² in [m/s², rad/s²] from the follower's command, ds/dt and the leader's motion (eq 8).
-pub fn second_rates(
-    geometry: &Geometry,
-    follower_speed: f64,
-    command: &Vector2<f64>,
-    rates: &Vector2<f64>,
-    leader: &MotionInput,
-) -> Vector2<f64> {
-    -(geometry.input_matrix(follower_speed) * command
-        + geometry.drift(follower_speed)
-        + geometry.rate_matrix(follower_speed) * rates
-        + geometry.leader_effect(follower_speed, leader))
-}
+#[cfg(test)]
+pub(crate) use tests::second_rates;
 
 #[cfg(test)]
 mod tests {
@@ -122,6 +104,26 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::PI;
     use vocabulary::{Pose, nearest_turn};
+
+    /// g_s, the 2×2 matrix that multiplies ds/dt (eq 11).
+    fn rate_matrix(geometry: &Geometry, follower_speed: f64) -> Matrix2<f64> {
+        let column = geometry.rate_column(follower_speed);
+        Matrix2::new(column.x, 0.0, column.y, 0.0)
+    }
+
+    /// d²s/dt² in [m/s², rad/s²] from the follower's command, ds/dt and the leader's motion (eq 8).
+    pub(crate) fn second_rates(
+        geometry: &Geometry,
+        follower_speed: f64,
+        command: &Vector2<f64>,
+        rates: &Vector2<f64>,
+        leader: &MotionInput,
+    ) -> Vector2<f64> {
+        -(geometry.input_matrix(follower_speed) * command
+            + geometry.drift(follower_speed)
+            + rate_matrix(geometry, follower_speed) * rates
+            + geometry.leader_effect(follower_speed, leader))
+    }
 
     /// A robot with constant dv/dt and dω/dt, on its way from a pose.
     #[derive(Debug, Clone, Copy)]
@@ -236,7 +238,7 @@ mod tests {
             let v = follower.drive.speed;
             let geometry = Geometry::new(&r, 0.1);
             let (first, second) = differences(&leader, &follower);
-            let model = -geometry.drift(v) - geometry.rate_matrix(v) * first;
+            let model = -geometry.drift(v) - rate_matrix(&geometry, v) * first;
             prop_assert!((model - second).norm() < 2e-5 * (1.0 + second.norm()));
         }
 
@@ -259,7 +261,7 @@ mod tests {
                 let rate_change = geometry.rates(0.0, one.drive.speed, one.drive.turn_rate)
                     - geometry.rates(0.0, other.drive.speed, other.drive.turn_rate);
                 let model = geometry.leader_effect(v, &one.drive) - geometry.leader_effect(v, &other.drive)
-                    + geometry.rate_matrix(v) * rate_change;
+                    + rate_matrix(&geometry, v) * rate_change;
                 prop_assert!((change + model).norm() < 1e-4 * (1.0 + model.norm()), "{change} against {}", -model);
             }
         }

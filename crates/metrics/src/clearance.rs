@@ -20,7 +20,7 @@ pub struct LeastClearance {
 }
 
 /// Keeps the least room of every robot over a run.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Clearance {
     shapes: Vec<Hull>,
     least: Vec<Option<LeastClearance>>,
@@ -41,15 +41,6 @@ struct Hull {
     /// Half its height while it stands upright, m.
     half_height: f64,
     frame: Isometry,
-}
-
-impl std::fmt::Debug for Hull {
-    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        out.debug_struct("Hull")
-            .field("thing", &self.thing)
-            .field("reach", &self.reach)
-            .finish_non_exhaustive()
-    }
 }
 
 impl Clearance {

@@ -28,10 +28,12 @@ pub struct ContactMetrics {
 /// go into the table only.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ContactLog {
-    count: usize,
+    /// Contacts of robots.
+    pub(crate) count: usize,
     /// Number of the newest that was counted: contacts come in the order in which they began.
     newest: Option<u64>,
-    largest: f64,
+    /// Largest impulse, N s.
+    pub(crate) largest: f64,
     first: Vec<Contact>,
     /// Those that had not ended when last seen, by number.
     open: BTreeMap<u64, Contact>,
@@ -63,15 +65,6 @@ impl ContactLog {
                 self.first.push(*contact);
             }
         }
-    }
-
-    pub(crate) fn count(&self) -> usize {
-        self.count
-    }
-
-    /// Of all impulses, N s.
-    pub(crate) fn largest(&self) -> f64 {
-        self.largest
     }
 
     /// Those that have not ended, as if they ended now.
@@ -112,7 +105,7 @@ mod tests {
         log.push(&[contact(0, 1.0, true)]);
         log.push(&[contact(0, 5.0, true), contact(1, 2.0, true)]);
         log.push(&[contact(0, 5.0, false), contact(1, 3.0, true), props(2)]);
-        assert_eq!((log.count(), log.largest()), (2, 5.0));
+        assert_eq!((log.count, log.largest), (2, 5.0));
         assert_eq!(log.close(), [contact(1, 3.0, false), Contact { open: false, ..props(2) }]);
         let first = log.first(&FleetInfo::default());
         assert_eq!((first.len(), first[1].impulse, &*first[1].between[1]), (2, 3.0, "ground"));

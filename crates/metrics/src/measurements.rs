@@ -39,12 +39,10 @@ pub(crate) struct MeasurementSums {
     metrics: MeasurementMetrics,
     used: RootMeanSquare<3>,
     estimates: RootMeanSquare<3>,
-    measured: bool,
 }
 
 impl MeasurementSums {
     pub(crate) fn add(&mut self, frame: &MeasurementRecord) {
-        self.measured = true;
         let m = &mut self.metrics;
         m.taken += 1;
         match frame.outcome {
@@ -75,7 +73,7 @@ impl MeasurementSums {
     pub(crate) fn finish(&self) -> Option<MeasurementMetrics> {
         let m = &self.metrics;
         let arrived = m.taken - m.dropped;
-        self.measured.then(|| MeasurementMetrics {
+        (m.taken > 0).then(|| MeasurementMetrics {
             in_view: (arrived - m.missed) as f64 / arrived.max(1) as f64,
             rms_error: self.used.root(),
             rms_estimate_error: self.estimates.root(),

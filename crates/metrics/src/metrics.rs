@@ -95,7 +95,7 @@ pub struct EdgeMetrics {
 }
 
 /// Gathers [`Metrics`].
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct MetricsBuilder {
     fleet: FleetInfo,
     judging: Judging,
@@ -191,8 +191,8 @@ impl MetricsBuilder {
             clearance_min: least.map(|(_, room)| room.clearance),
             clearance_min_time: least.map(|(_, room)| room.time),
             clearance_min_robots: least.map(|(k, room)| [robot(k), name(room.nearest)]),
-            contacts: self.contacts.count(),
-            contact_impulse_max: self.contacts.largest(),
+            contacts: self.contacts.count,
+            contact_impulse_max: self.contacts.largest,
             first_contacts: self.contacts.first(&self.fleet),
             settling_band: self.judging.settling_band,
             certificates: vec![],

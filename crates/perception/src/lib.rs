@@ -15,16 +15,8 @@ use vocabulary::{Edge, EdgeSample, Observation, Relative, Snapshot, StepInterpol
 /// One observation per edge, of the truth.
 pub fn observe(snapshot: &Snapshot, edges: &[Edge], observations: &mut Vec<Observation>) {
     observations.clear();
-    observations.extend(edges.iter().map(|edge| {
-        let (leader, follower) =
-            (&snapshot.robots[edge.leader].motion, &snapshot.robots[edge.follower].motion);
-        Observation {
-            relative: Relative::between(leader.pose, follower.pose),
-            own_speed: follower.speed,
-            leader_speed: Some(leader.speed),
-            ..Observation::default()
-        }
-    }));
+    let motions = |edge: &Edge| [edge.leader, edge.follower].map(|robot| &snapshot.robots[robot].motion);
+    observations.extend(edges.iter().map(|edge| Observation::true_of(motions(edge))));
 }
 
 /// Stretches shorter than this, in s, are not worth a track of their own: a kink so close to an end of the step

@@ -7,7 +7,7 @@ use perception::imaging::{ImageSensor, Optics, Purpose, noise_stream};
 use perception::pose::{Prior, locate};
 use synthetic::{Scenes, sensor};
 use vocabulary::math;
-use vocabulary::{CameraModel, Grey, Region, wrap};
+use vocabulary::{CameraModel, FACES, Grey, Region, wrap};
 
 /// The library's conventions are ours: pixel (0, 0) has its middle at (0, 0), corners go clockwise from the top left.
 #[test]
@@ -49,7 +49,7 @@ fn errors(
         let scene = views.next(distance);
         let region = scene.region();
         let picture = scene.picture(sensor, region, frame);
-        let faces = recognise(&mut detector, &picture, region, told, &scene.rig.shell);
+        let faces = recognise(&mut detector, &picture, region, told, &scene.rig.shell, FACES);
         let Some(found) = locate(&scene.rig, &faces, 0.02, &Prior::default(), None) else { continue };
         seen += 1;
         let heading = wrap(found.pose.heading - scene.pose.heading);

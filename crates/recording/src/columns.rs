@@ -36,6 +36,10 @@ pub(crate) fn empty(kind: TableKind) -> Vec<(&'static str, Column)> {
     columns
 }
 
+fn numbers<const N: usize>(columns: [&'static str; N], values: [f64; N], row: &mut Row<'_>) {
+    columns.into_iter().zip(values).for_each(|(column, value)| row(column, Number(value)));
+}
+
 /// A robot at a sample.
 pub(crate) fn robot(time: f64, name: &str, robot: &RobotState, row: &mut Row<'_>) {
     let (m, a, [left, right, ..]) = (&robot.motion, &robot.attitude, &robot.wheels);
@@ -59,22 +63,16 @@ pub(crate) fn edge(time: f64, [leader, follower]: [&str; 2], edge: &EdgeState, r
     row("time_s", Number(time));
     row("leader", Text(leader));
     row("follower", Text(follower));
-    row("distance_m", Number(edge.relative.distance));
-    row("bearing_rad", Number(edge.relative.bearing));
-    row("view_angle_rad", Number(edge.relative.view_angle));
-    row("set_distance_m", Number(edge.set_point[0]));
-    row("set_bearing_rad", Number(edge.set_point[1]));
-    row("error_distance_m", Number(edge.error[0]));
-    row("error_bearing_rad", Number(edge.error[1]));
+    numbers(["distance_m", "bearing_rad", "view_angle_rad"], edge.relative.coordinates(), row);
+    numbers(["set_distance_m", "set_bearing_rad"], edge.set_point, row);
+    numbers(["error_distance_m", "error_bearing_rad"], edge.error, row);
     row("asked_acceleration_m_s2", Number(edge.asked.acceleration));
     row("asked_turn_rate_rad_s", Number(edge.asked.turn_rate));
     row("applied_acceleration_m_s2", Number(edge.applied.acceleration));
     row("applied_turn_rate_rad_s", Number(edge.applied.turn_rate));
-    row("rate_distance_m_s", Number(edge.rates[0]));
-    row("rate_bearing_rad_s", Number(edge.rates[1]));
-    row("seen_distance_m", Number(edge.seen.distance));
-    row("seen_bearing_rad", Number(edge.seen.bearing));
-    row("seen_view_angle_rad", Number(edge.seen.view_angle));
+    numbers(["rate_distance_m_s", "rate_bearing_rad_s"], edge.rates, row);
+    let seen = ["seen_distance_m", "seen_bearing_rad", "seen_view_angle_rad"];
+    numbers(seen, edge.seen.coordinates(), row);
     row("age_s", Number(edge.age));
     row("sight", Text(edge.sight.word()));
     row("limited", Flag(edge.limited));
@@ -87,12 +85,8 @@ pub(crate) fn contact([first, second]: [&str; 2], contact: &Contact, row: &mut R
     row("second", Text(second));
     row("begin_s", Number(contact.begin));
     row("end_s", Number(contact.end));
-    row("x_m", Number(contact.place[0]));
-    row("y_m", Number(contact.place[1]));
-    row("z_m", Number(contact.place[2]));
-    row("normal_x", Number(contact.normal[0]));
-    row("normal_y", Number(contact.normal[1]));
-    row("normal_z", Number(contact.normal[2]));
+    numbers(["x_m", "y_m", "z_m"], contact.place, row);
+    numbers(["normal_x", "normal_y", "normal_z"], contact.normal, row);
     row("impulse_n_s", Number(contact.impulse));
 }
 
@@ -100,37 +94,27 @@ pub(crate) fn contact([first, second]: [&str; 2], contact: &Contact, row: &mut R
 pub(crate) fn prop(time: f64, name: &str, placement: &Placement, row: &mut Row<'_>) {
     row("time_s", Number(time));
     row("prop", Text(name));
-    for (column, value) in ["x_m", "y_m", "z_m"].into_iter().zip(placement.position) {
-        row(column, Number(value));
-    }
-    for (column, value) in ["qx", "qy", "qz", "qw"].into_iter().zip(placement.rotation) {
-        row(column, Number(value));
-    }
+    numbers(["x_m", "y_m", "z_m"], placement.position, row);
+    numbers(["qx", "qy", "qz", "qw"], placement.rotation, row);
 }
 
 /// A measurement that has arrived.
 pub(crate) fn measurement([leader, follower]: [&str; 2], frame: &MeasurementRecord, row: &mut Row<'_>) {
-    let (measured, truth, region) = (&frame.measurement, &frame.truth, &frame.region);
+    let (measured, region) = (&frame.measurement, &frame.region);
     row("leader", Text(leader));
     row("follower", Text(follower));
     row("outcome", Text(frame.outcome.word()));
     row("stamp_s", Number(measured.stamp));
     row("arrival_s", Number(frame.arrival));
     row("faces", Number(frame.faces() as f64));
-    row("distance_m", Number(measured.relative.distance));
-    row("bearing_rad", Number(measured.relative.bearing));
-    row("view_angle_rad", Number(measured.relative.view_angle));
-    row("true_distance_m", Number(truth.distance));
-    row("true_bearing_rad", Number(truth.bearing));
-    row("true_view_angle_rad", Number(truth.view_angle));
-    row("deviation_distance_m", Number(measured.deviation[0]));
-    row("deviation_bearing_rad", Number(measured.deviation[1]));
-    row("deviation_view_angle_rad", Number(measured.deviation[2]));
+    numbers(["distance_m", "bearing_rad", "view_angle_rad"], measured.relative.coordinates(), row);
+    let truth = ["true_distance_m", "true_bearing_rad", "true_view_angle_rad"];
+    numbers(truth, frame.truth.coordinates(), row);
+    let deviation = ["deviation_distance_m", "deviation_bearing_rad", "deviation_view_angle_rad"];
+    numbers(deviation, measured.deviation, row);
     row("pan_rad", Number(frame.pan));
-    row("region_x_px", Number(f64::from(region.x)));
-    row("region_y_px", Number(f64::from(region.y)));
-    row("region_width_px", Number(f64::from(region.width)));
-    row("region_height_px", Number(f64::from(region.height)));
+    let sides = ["region_x_px", "region_y_px", "region_width_px", "region_height_px"];
+    numbers(sides, [region.x, region.y, region.width, region.height].map(f64::from), row);
 }
 
 #[cfg(test)]

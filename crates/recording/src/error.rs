@@ -34,6 +34,11 @@ impl Error {
         move |source| Self::Output(error(source))
     }
 
+    /// That the log at `path` is none, is of another layout, or is damaged.
+    pub(crate) fn log(path: &Path, message: impl Into<String>) -> Self {
+        Self::Log { path: path.to_owned(), message: message.into() }
+    }
+
     pub(crate) fn table<E: std::fmt::Display>(path: &Path) -> impl FnOnce(E) -> Self {
         let path = path.to_owned();
         // The library's word for errors of the system says nothing to a user.

@@ -1,7 +1,7 @@
 //! What ran and how it ended.
 
 use serde::{Deserialize, Serialize};
-use vocabulary::{EntityId, FleetInfo};
+use vocabulary::FleetInfo;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -52,7 +52,6 @@ pub(crate) const FORMAT: u32 = 2;
 impl Manifest {
     /// That of a run of `fleet` of which nothing else is known.
     pub(crate) fn of(fleet: &FleetInfo) -> Self {
-        let name = |robot: usize| fleet.name(EntityId::Robot(robot)).to_owned();
         Self {
             format: FORMAT,
             program: "unknown".to_owned(),
@@ -62,7 +61,7 @@ impl Manifest {
             period: 0.0,
             duration: fleet.duration,
             robots: fleet.robots.iter().map(|robot| robot.name.clone()).collect(),
-            edges: fleet.edges.iter().map(|edge| [name(edge.leader), name(edge.follower)]).collect(),
+            edges: fleet.edges.iter().map(|edge| fleet.pair(*edge).map(str::to_owned)).collect(),
             status: Status::Running,
             samples: 0,
             digest: None,

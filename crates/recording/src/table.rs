@@ -14,7 +14,7 @@ use parquet::file::properties::WriterProperties;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{Edge, FleetInfo, Mobility, StepRecord, Word, words};
+use vocabulary::{FleetInfo, Mobility, StepRecord, Word, words};
 
 words! {
     /// The tables of a run; the word is the stem of the file's name.
@@ -63,7 +63,6 @@ impl TableKind {
     /// Shows `row` the values of every row that `record` adds.
     fn rows(self, fleet: &FleetInfo, record: &StepRecord, row: &mut Row<'_>) {
         let StepRecord { snapshot, edges, contacts, frames } = record;
-        let pair = |edge: &Edge| [edge.leader, edge.follower].map(|robot| &*fleet.robots[robot].name);
         match self {
             Self::Robots => {
                 for (member, robot) in fleet.robots.iter().zip(&snapshot.robots) {
@@ -72,7 +71,7 @@ impl TableKind {
             }
             Self::Edges => {
                 for (edge, state) in fleet.edges.iter().zip(edges) {
-                    columns::edge(snapshot.time, pair(edge), state, row);
+                    columns::edge(snapshot.time, fleet.pair(*edge), state, row);
                 }
             }
             Self::Contacts => {
@@ -89,7 +88,7 @@ impl TableKind {
             Self::Measurements => {
                 for frame in frames {
                     let Some(edge) = fleet.edges.get(frame.edge) else { continue };
-                    columns::measurement(pair(edge), frame, row);
+                    columns::measurement(fleet.pair(*edge), frame, row);
                 }
             }
         }
@@ -249,7 +248,13 @@ fn write_parquet(
     fill: impl FnOnce(&mut ArrowWriter<File>) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let write = || {
-        let mut writer = parquet_writer(draft, schema)?;
+        let file = File::create(draft).map_err(Error::io("create", draft))?;
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::ZSTD(ZstdLevel::default()))
+            .set_max_row_group_row_count(Some(ROWS_PER_GROUP))
+            .build();
+        let mut writer =
+            ArrowWriter::try_new(file, schema.clone(), Some(properties)).map_err(Error::table(draft))?;
         fill(&mut writer)?;
         writer.close().map_err(Error::table(path))?;
         fs::rename(draft, path).map_err(Error::io("write", path))
@@ -258,16 +263,6 @@ fn write_parquet(
         // The draft may not exist; the first error is the one to tell.
         let _ = fs::remove_file(draft);
     })
-}
-
-fn parquet_writer(path: &Path, schema: &Arc<Schema>) -> Result<ArrowWriter<File>, Error> {
-    let file = File::create(path).map_err(Error::io("create", path))?;
-    let compression = Compression::ZSTD(ZstdLevel::default());
-    let properties = WriterProperties::builder()
-        .set_compression(compression)
-        .set_max_row_group_row_count(Some(ROWS_PER_GROUP))
-        .build();
-    ArrowWriter::try_new(file, schema.clone(), Some(properties)).map_err(Error::table(path))
 }
 
 fn open(path: &Path) -> Result<parquet::arrow::arrow_reader::ParquetRecordBatchReader, Error> {

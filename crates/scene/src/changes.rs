@@ -21,7 +21,7 @@ pub(crate) fn changes(root: &Node, scene: &Scene, reporter: &mut Reporter) -> Ve
             items.len(),
             scene.robots.len()
         );
-        reporter.report(items[0].place.first(), message);
+        reporter.report(items[0].span.first(), message);
         return vec![];
     }
     let at = |item: &Node| item.get("at").and_then(Node::as_number).unwrap_or(0.0);
@@ -46,26 +46,26 @@ pub(crate) fn changes(root: &Node, scene: &Scene, reporter: &mut Reporter) -> Ve
 
 /// The tree without what robots do not depend on once they run, starts included.
 fn of_robots(root: &Node) -> Node {
-    let Value::Table(entries) = &root.value else { return root.clone() };
+    let entries = root.as_table().unwrap_or_default();
     let kept = entries.iter().filter(|entry| !has::<Document>(&entry.key, Mark::Apart)).cloned();
-    let mut tree = Node { place: root.place, value: Value::Table(kept.collect()) };
+    let mut tree = Node { span: root.span, value: Value::Table(kept.collect()) };
     for list in ["robots", "groups"] {
         tree.items_mut(list).iter_mut().for_each(|item| item.leave_out(&["speed"]));
     }
     tree
 }
 
-/// One change on top of `before`, whose tree is `tree`; `None` after notes.
+/// One change on top of `before`, whose tree is `tree`; `None` after reporting errors.
 fn change(at: f64, item: &Node, tree: &mut Node, before: &Scene, reporter: &mut Reporter) -> Option<Change> {
     let first = reporter.notes();
-    let place = item.get("set").map_or(item.place, |set| set.place);
+    let span = item.get("set").map_or(item.span, |set| set.span);
     let sets = overrides(item, reporter);
     for set in &sets {
         set.put(tree, reporter);
     }
     let robots = if reporter.notes() == first { robots(tree, before, reporter) } else { None };
     // What is found elsewhere was right before this change.
-    reporter.gather(first, place, &format!(", by the change at {at} s"));
+    reporter.gather(first, span, &format!(", by the change at {at} s"));
     let robots = robots.filter(|_| reporter.notes() == first)?;
     let mut found = ParameterDifference::default();
     found.note_robots(&before.robots, &robots);
@@ -73,7 +73,7 @@ fn change(at: f64, item: &Node, tree: &mut Node, before: &Scene, reporter: &mut 
     if let Some(path) = found.obstacles.first() {
         let key = path.rsplit('.').next().unwrap_or(path);
         let set = sets.iter().find(|set| set.change.path().contains(&key));
-        reporter.report(set.map_or(place, |set| set.place), refusal(path));
+        reporter.report(set.map_or(span, |set| set.span), refusal(path));
     }
     let then = Scene { robots, changes: vec![], ..shell(before) };
     found.obstacles.is_empty().then(|| Change { at, set: found.sets, then: Box::new(then) })
@@ -111,25 +111,25 @@ fn robots(tree: &Node, before: &Scene, reporter: &mut Reporter) -> Option<Vec<Ro
 struct Set {
     change: Override,
     origin: Origin,
-    place: Span,
+    span: Span,
 }
 
-/// What a change sets; notes what is no override.
+/// The overrides of a change; reports texts that are not overrides.
 fn overrides(item: &Node, reporter: &mut Reporter) -> Vec<Set> {
     let mut sets = vec![];
     for node in item.items("set") {
         let Some(text) = node.as_text() else { continue };
         match text.parse::<Override>() {
             Ok(change) => {
-                let place = node.place;
+                let span = node.span;
                 // Without escapes in it, every character has its place between the quotes.
-                let shown = reporter.shown(place);
+                let shown = reporter.shown(span);
                 let plain = shown.len() == text.len() + 2 && shown.get(1..=text.len()) == Some(text);
-                let whole = (!plain).then_some(place);
-                let origin = Origin { source: place.source, offset: place.start + 1, whole };
-                sets.push(Set { change, origin, place });
+                let whole = (!plain).then_some(span);
+                let origin = Origin { source: span.source, offset: span.start + 1, whole };
+                sets.push(Set { change, origin, span });
             }
-            Err(error) => reporter.report(node.place, error.to_string()),
+            Err(error) => reporter.report(node.span, error.to_string()),
         }
     }
     sets
@@ -139,14 +139,14 @@ impl Set {
     fn put(&self, tree: &mut Node, reporter: &mut Reporter) {
         let path = self.change.path();
         if is_fixed(&path) {
-            reporter.report(self.place, refusal(&path.join(".")));
+            reporter.report(self.span, refusal(&path.join(".")));
         } else {
             self.change.apply_at(self.origin, tree, reporter);
         }
     }
 }
 
-/// Whether what `path` leads to is known not to change while a run goes. What is not known is told where it is read.
+/// Whether what `path` leads to is known not to change while a run goes. Unknown keys are reported where they are read.
 fn is_fixed(path: &[&str]) -> bool {
     let fixed = |marks: Option<&[Mark]>| marks.is_some_and(|marks| !marks.contains(&Mark::Live));
     match path {

@@ -8,7 +8,7 @@ use std::{
     path::Path,
 };
 
-/// Nobody writes scenes this large; refusing them keeps memory and time small.
+/// Scenes are never this large; the bound limits memory and time.
 const MOST_BYTES: u64 = 10_000_000;
 
 /// The text of the file at `path`, or what is wrong with it.
@@ -33,7 +33,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, String> {
     }
     String::from_utf8(bytes).map_err(|error| {
         let line = error.as_bytes()[..error.utf8_error().valid_up_to()].split(|byte| *byte == b'\n').count();
-        format!("is not UTF-8 text: line {line} holds bytes that are no character")
+        format!("is not UTF-8 text: line {line} holds bytes that are not characters")
     })
 }
 
@@ -44,10 +44,7 @@ impl<T> Form for FileForm<T> {
     type Out = T;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<T> {
-        let Some(name) = node.as_text() else {
-            reporter.wrong(node, "the name of a CSV file");
-            return None;
-        };
+        let name = reporter.expect(node.as_text(), node, || "the name of a CSV file".to_owned())?;
         let path = reporter.beside_scene(name);
         match read_text(&path) {
             Ok(text) => {
@@ -56,7 +53,7 @@ impl<T> Form for FileForm<T> {
                 self.0(&text, source, reporter)
             }
             Err(fault) => {
-                reporter.report(node.place, format!("{}: {fault}", path.display()));
+                reporter.report(node.span, format!("{}: {fault}", path.display()));
                 None
             }
         }

@@ -15,35 +15,35 @@ pub(crate) struct Named {
     pub(crate) leader: Option<Found<String>>,
 }
 
-/// Notes duplicate names, unknown leaders, robots that follow themselves, and cycles. Without these every follower
+/// Reports duplicate names, unknown leaders, robots that follow themselves, and cycles. Without these every follower
 /// comes to a robot that leads if it goes from leader to leader; there may be several that lead.
 pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, reporter: &mut Reporter) {
     let mut leader_of: HashMap<&str, Option<&Found<String>>> = HashMap::new();
-    let mut places: HashMap<&str, Span> = HashMap::new();
+    let mut spans: HashMap<&str, Span> = HashMap::new();
     for robot in robots.clone() {
         let Some(name) = &robot.name else { continue };
         leader_of.insert(&name.value, robot.leader.as_ref());
-        if let Some(other) = places.insert(&name.value, name.place) {
+        if let Some(other) = spans.insert(&name.value, name.span) {
             // The one that was written later, from the command line above all.
-            let place = name.place.max(other);
-            reporter.report(place, format!("there are two robots called `{}`", name.value));
+            let span = name.span.max(other);
+            reporter.report(span, format!("there are two robots called `{}`", name.value));
         }
     }
     for robot in robots.clone() {
         let Some(leader) = &robot.leader else { continue };
         if robot.name.as_ref().is_some_and(|name| name.value == leader.value) {
-            reporter.report(leader.place, format!("`{}` cannot follow itself", leader.value));
+            reporter.report(leader.span, format!("`{}` cannot follow itself", leader.value));
         } else if !leader_of.contains_key(leader.value.as_str()) && !reporter.is_full() {
-            check_known(&leader.value, leader.place, robots.clone(), reporter);
+            check_known(&leader.value, leader.span, robots.clone(), reporter);
         }
     }
     check_cycles(robots, &leader_of, reporter);
 }
 
-/// Notes that no robot is called `name`, if so, with the nearest name there is.
+/// Reports that no robot is called `name`, if so, with the nearest name there is.
 pub(crate) fn check_known<'a>(
     name: &str,
-    place: Span,
+    span: Span,
     robots: impl Iterator<Item = &'a Named> + Clone,
     reporter: &mut Reporter,
 ) {
@@ -54,7 +54,7 @@ pub(crate) fn check_known<'a>(
     let mut names = robots.filter_map(|robot| Some(robot.name.as_ref()?.value.as_str()));
     // With very many robots the nearest of the first ones has to do.
     let hint = nearest(name, names.by_ref().take(1000)).map_or_else(String::new, did_you_mean);
-    reporter.report(place, format!("there is no robot called `{name}`{hint}"));
+    reporter.report(span, format!("there is no robot called `{name}`{hint}"));
 }
 
 fn check_cycles<'a>(
@@ -93,6 +93,6 @@ fn note_cycle(
     // A robot that follows itself has its own message.
     if cycle.len() > 1 {
         let chain: Vec<_> = cycle.iter().chain([&name]).map(|robot| format!("`{robot}`")).collect();
-        reporter.report(leader.place, format!("the followers form a cycle: {}", chain.join(" follows ")));
+        reporter.report(leader.span, format!("the followers form a cycle: {}", chain.join(" follows ")));
     }
 }

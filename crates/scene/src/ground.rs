@@ -5,11 +5,11 @@ use crate::{
     heights_file::{HEIGHT, HEIGHTS_FILE, wrong_length, wrong_size},
     relief,
     text::{
-        Couple, Form, Found, Keys, Node, Reporter, Span, Value,
+        Couple, Form, Found, Keys, Node, Reporter, Span,
         form::Number,
         integer, keys,
-        keys::{TableReader, one_of},
-        kinds::{Kind, KindFound, Kinds},
+        keys::one_of,
+        kinds::{Kind, Kinds},
         list, number, table,
     },
 };
@@ -37,17 +37,13 @@ impl Form for RegionForm {
     type Out = [f64; 4];
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<[f64; 4]> {
-        let numbers: Vec<_> = match &node.value {
-            Value::List(items) => items.iter().filter_map(Node::as_number).collect(),
-            _ => vec![],
-        };
+        let items = node.as_list().unwrap_or_default();
+        let numbers: Vec<_> = items.iter().filter_map(Node::as_number).collect();
         let region: Option<[f64; 4]> = numbers.try_into().ok();
         let held = |region: &[f64; 4]| region.iter().all(|at| number("m").holds(*at));
         let region = region.filter(held).filter(|[x0, y0, x1, y1]| x0 < x1 && y0 < y1);
-        if region.is_none() {
-            reporter.wrong(node, "a list [x from, y from, x to, y to] in m, each `from` below its `to`");
-        }
-        region
+        let expected = "a list [x from, y from, x to, y to] in m, each `from` below its `to`";
+        reporter.expect(region, node, || expected.to_owned())
     }
 
     fn schema(&self) -> Json {
@@ -153,7 +149,7 @@ macro_rules! noise {
                 region: region.value,
                 cell: cell.value,
             };
-            check_noise(&noise, cell.place, region.place, reporter)?;
+            check_noise(&noise, cell.span, region.span, reporter)?;
             Some(WrittenGround { relief: $relief(noise), seeded: keys.seed.is_some() })
         }
     };
@@ -173,8 +169,8 @@ fn check_noise(noise: &Noise, cell: Span, region: Span, reporter: &mut Reporter)
     check_points(noise.region, noise.cell, region, reporter)
 }
 
-/// Notes at `place` that a grid would have too many points.
-fn check_points(region: [f64; 4], cell: f64, place: Span, reporter: &mut Reporter) -> Option<()> {
+/// Reports at `span` that a grid would have too many points.
+fn check_points(region: [f64; 4], cell: f64, span: Span, reporter: &mut Reporter) -> Option<()> {
     let [columns, rows] = relief::grid(region, cell);
     if columns * rows <= MOST_POINTS {
         return Some(());
@@ -182,7 +178,7 @@ fn check_points(region: [f64; 4], cell: f64, place: Span, reporter: &mut Reporte
     let message = format!(
         "{columns:.0} × {rows:.0} points with a `cell` of {cell} m; the most are {MOST_POINTS:.0}: take a larger `cell`"
     );
-    reporter.report(place, message);
+    reporter.report(span, message);
     None
 }
 
@@ -192,11 +188,11 @@ fn heights(keys: TableKeys, node: &Node, reporter: &mut Reporter) -> Option<Writ
         let wanted = heights.value.first().map(Vec::len);
         let rows = heights.value.iter().zip(node.items("heights")).enumerate();
         let wrong = rows.filter_map(|(index, (row, node))| {
-            Some((node.place, wrong_length(index + 1, row.len(), wanted)?))
+            Some((node.span, wrong_length(index + 1, row.len(), wanted)?))
         });
-        let size = wrong_size(&heights.value).map(|fault| (heights.place, fault));
-        if let Some((place, fault)) = wrong.chain(size).next() {
-            reporter.report(place, fault);
+        let size = wrong_size(&heights.value).map(|fault| (heights.span, fault));
+        if let Some((span, fault)) = wrong.chain(size).next() {
+            reporter.report(span, fault);
             return None;
         }
     }
@@ -231,13 +227,10 @@ impl Form for GroundForm {
     type Out = GroundKeys;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<GroundKeys> {
-        let mut table = TableReader::of(node, reporter)?;
-        let KindFound::Known(written) = RELIEF.take(node, &mut table, reporter) else { return None };
-        let shared = SharedKeys::read(&mut table, reporter);
-        table.finish(reporter);
+        let (written, shared) = RELIEF.read_with(node, reporter, SharedKeys::read)?;
         let patches = shared.patches?.value.into_iter().map(|keys| {
             let (region, friction) = (keys.region?, keys.friction?.value);
-            Some(Found { place: region.place, value: Patch { region: region.value, friction } })
+            Some(Found { span: region.span, value: Patch { region: region.value, friction } })
         });
         let patches = patches.collect::<Option<_>>()?;
         Some(GroundKeys { written: Arc::new(written?), friction: shared.friction?.value, patches })
@@ -248,7 +241,7 @@ impl Form for GroundForm {
     }
 }
 
-/// The ground of a scene with this seed; `None` after a note.
+/// The ground of a scene with this seed; `None` after reporting an error.
 pub(crate) fn ground(keys: Option<&GroundKeys>, seed: u64, reporter: &mut Reporter) -> Option<Ground> {
     let Some(keys) = keys else {
         let relief = Relief::Flat { cell: FLAT_CELL };
@@ -291,11 +284,11 @@ fn flat(cell: f64, patches: &[Found<Patch>], reporter: &mut Reporter) -> Option<
         [a.min(x0), b.min(y0), c.max(x1), d.max(y1)]
     });
     let around = [x0 - cell, y0 - cell, x1 + cell, y1 + cell];
-    check_points(around, cell, first.place, reporter)?;
+    check_points(around, cell, first.span, reporter)?;
     Some(relief::level(around, cell))
 }
 
-/// Notes patches that the grid cannot show: beyond its edges the ground goes on as it is there, without end.
+/// Reports patches that the grid cannot show: beyond its edges the ground goes on as it is there, without end.
 fn check_patches(patches: &[Found<Patch>], terrain: &Terrain, reporter: &mut Reporter) {
     let Terrain { origin: [x, y], cell, columns, rows, .. } = *terrain;
     let [right, left] = [x + (columns - 1) as f64 * cell, y + (rows - 1) as f64 * cell];
@@ -304,10 +297,10 @@ fn check_patches(patches: &[Found<Patch>], terrain: &Terrain, reporter: &mut Rep
         if x0 <= x || y0 <= y || x1 >= right || y1 >= left {
             let message =
                 format!("a patch must lie inside the ground, from [{x}, {y}] to [{right}, {left}] in m");
-            reporter.report(patch.place, message);
+            reporter.report(patch.span, message);
         } else if (x1 - x0).min(y1 - y0) < cell {
             let message = format!("a patch must be as wide and long as a `cell` of the ground, {cell} m");
-            reporter.report(patch.place, message);
+            reporter.report(patch.span, message);
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::{
     Follow, Law, Observer, Robot, Role, Sensing, Vehicle,
     document::{Follows, GroupKeys, MOST_ROBOTS, MemberKeys},
     graph::{Named, check_known},
+    random::RandomStream,
     robots::{Defaults, RobotDraft, check_distance, check_path, start_pose, start_speed},
     text::{
         Form, Found, Keys, Node, Part, Reporter, Value,
@@ -14,13 +15,8 @@ use crate::{
     types::VehiclePart,
     vehicle::usual_kind,
 };
-use rand_chacha::{
-    ChaCha8Rng,
-    rand_core::{Rng, SeedableRng},
-};
 use serde_json::{Value as Json, json};
-use vocabulary::math;
-use vocabulary::{Pose, ScalarTrajectory, wrap};
+use vocabulary::{Pose, ScalarTrajectory, math, wrap};
 
 /// What is different about one robot of a group.
 #[derive(Debug, Clone)]
@@ -36,15 +32,13 @@ impl Form for MembersForm {
     type Out = Vec<GroupMember>;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Vec<GroupMember>> {
-        let Value::Table(entries) = &node.value else {
-            reporter.wrong(node, "a table of robots by their names");
-            return None;
-        };
+        let expected = || "a table of robots by their names".to_owned();
+        let entries = reporter.expect(node.as_table(), node, expected)?;
         let member = |entry: &Entry| {
-            let name = Found { place: entry.place, value: entry.key.clone() };
+            let name = Found { span: entry.span, value: entry.key.clone() };
             Some(GroupMember { name, keys: table::<MemberKeys>().read(&entry.node, reporter)? })
         };
-        // All are read before giving up, so that every fault is told.
+        // All items are read before giving up, so that every error is reported.
         let members: Vec<_> = entries.iter().map(member).collect();
         members.into_iter().collect()
     }
@@ -54,7 +48,7 @@ impl Form for MembersForm {
     }
 }
 
-/// Appends the robots of `group`; `None` after a note.
+/// Appends the robots of `group`; `None` after reporting an error.
 pub(crate) fn expand(
     group: &Group<'_>,
     seed: u64,
@@ -69,7 +63,7 @@ pub(crate) fn expand(
     let usual = group.outfit(None, defaults, reporter)?;
     let speed = start_speed(keys.speed.as_ref(), &usual.vehicle, reporter);
     let spacing = keys.distance.as_ref()?;
-    check_distance(spacing.value, usual.law.distance_min, spacing.place, reporter);
+    check_distance(spacing.value, usual.law.distance_min, spacing.span, reporter);
     let (leader, origin) = group.leader(&usual.vehicle, defaults, drafts, reporter)?;
     let mut scatter = Scatter::new(keys, group.index, seed)?;
     for (place, spot) in group.spots(count)?.into_iter().enumerate().skip(1) {
@@ -86,7 +80,7 @@ pub(crate) fn expand(
         }
         let (distance, bearing) = spot.set_point(member);
         if let Some(found) = member.and_then(|keys| keys.distance.as_ref()) {
-            check_distance(distance.range()[0], own.law.distance_min, found.place, reporter);
+            check_distance(distance.range()[0], own.law.distance_min, found.span, reporter);
         }
         let Outfit { vehicle, law, observer, sensing } = own;
         let name = group.name(place);
@@ -118,7 +112,7 @@ pub(crate) fn made_by(node: &Node) -> impl Iterator<Item = String> {
 /// The name that the robot of the group at `node` which is called `name` has by its place; `None` if there is none.
 pub(crate) fn member_called(node: &Node, name: &str) -> Option<String> {
     let other = |key: &str| node.get("members")?.get(key)?.get("name")?.as_text();
-    let Some(Value::Table(members)) = node.get("members").map(|members| &members.value) else {
+    let Some(members) = node.get("members").and_then(Node::as_table) else {
         return makes(node, name).then(|| name.to_owned());
     };
     let renamed = members.iter().find(|entry| other(&entry.key) == Some(name)).map(|entry| entry.key.clone());
@@ -196,7 +190,7 @@ impl Group<'_> {
         members.iter().find(|member| member.name.value == key).map(|member| &member.keys)
     }
 
-    /// Notes that `follower` follows the robot in `place`, where that is absent.
+    /// Reports that `follower` follows the robot in `place`, where that is absent.
     fn check_present(&self, place: usize, follower: &str, reporter: &mut Reporter) {
         if let Some(absent) =
             self.member(place).filter(|keys| keys.is_absent()).and_then(|keys| keys.absent.as_ref())
@@ -205,19 +199,19 @@ impl Group<'_> {
             let message = format!(
                 "`{key}` cannot be absent: `{follower}` follows it; give `{follower}` another `leader`"
             );
-            reporter.report(absent.place, message);
+            reporter.report(absent.span, message);
         }
     }
 
-    /// Notes members that the group does not have.
+    /// Reports members that the group does not have.
     fn check_members(&self, reporter: &mut Reporter) {
         for GroupMember { name, .. } in self.keys.members.iter().flat_map(|members| &members.value) {
             if !makes(self.node, &name.value) {
                 let names: Vec<_> = made_by(self.node).take(1000).collect();
                 let near = nearest(&name.value, names.iter().map(String::as_str));
                 let hint = near.map_or_else(String::new, did_you_mean);
-                let message = format!("this group makes no robot called `{}`{hint}", name.value);
-                reporter.report(name.place, message);
+                let message = format!("this group has no robot called `{}`{hint}", name.value);
+                reporter.report(name.span, message);
             }
         }
     }
@@ -250,13 +244,13 @@ impl Group<'_> {
         defaults: &Defaults,
         reporter: &mut Reporter,
     ) -> Option<Vehicle> {
-        let (group, place) = (self.keys.vehicle.as_ref()?, self.node.place);
-        let Some(own) = own else { return Some(defaults.vehicle(Some(group), place, reporter)) };
+        let (group, span) = (self.keys.vehicle.as_ref()?, self.node.span);
+        let Some(own) = own else { return Some(defaults.vehicle(Some(group), span, reporter)) };
         let kind_of = |part: &VehiclePart| part.kind.as_ref().map(|found| found.value);
         let usual = kind_of(&group.value).unwrap_or(usual_kind(&defaults.vehicle));
         let same = kind_of(&own.value).is_none_or(|kind| kind == usual);
         let value = if same { own.value.over(&group.value) } else { own.value.clone() };
-        Some(defaults.vehicle(Some(&Found { place: own.place, value }), place, reporter))
+        Some(defaults.vehicle(Some(&Found { span: own.span, value }), span, reporter))
     }
 
     /// Number of places, if the shape and the scene, which has `before` robots already, can take them.
@@ -265,7 +259,7 @@ impl Group<'_> {
         let crowd = || format!("this makes more than {MOST_ROBOTS} robots");
         let fault = shape.refuses(count.value).or_else(|| (before + count.value > MOST_ROBOTS).then(crowd));
         if let Some(fault) = fault {
-            reporter.report(count.place, fault);
+            reporter.report(count.span, fault);
             return None;
         }
         Some(count.value)
@@ -309,13 +303,13 @@ impl Group<'_> {
     /// Appends the robot in `place`, counted from 0.
     fn push(&self, place: usize, robot: Robot, leader: Option<Found<String>>, drafts: &mut Vec<RobotDraft>) {
         let said = self.own_name(place).or(self.keys.name.as_ref());
-        let at = said.map_or(self.node.place, |name| name.place);
-        let name = Some(Found { place: at, value: robot.name.clone() });
+        let at = said.map_or(self.node.span, |name| name.span);
+        let name = Some(Found { span: at, value: robot.name.clone() });
         // Leaders that the shape gives exist, and the one outside has been looked up; one that is written has not.
         drafts.push(RobotDraft { named: Named { name, leader }, number: None, robot: Some(robot) });
     }
 
-    /// The vehicle of the group's own leader, with notes on what is for robots that follow.
+    /// The vehicle of the group's own leader, after reporting keys that only followers have.
     fn leading(
         &self,
         name: &str,
@@ -324,8 +318,8 @@ impl Group<'_> {
         reporter: &mut Reporter,
     ) -> Option<Vehicle> {
         let Some(keys) = self.member(0) else { return Some(*usual) };
-        for (key, place) in keys.places().into_iter().filter(|(key, _)| !["name", "vehicle"].contains(key)) {
-            reporter.report(place, format!("`{key}` is for robots that follow, but `{name}` leads"));
+        for (key, span) in keys.spans().into_iter().filter(|(key, _)| !["name", "vehicle"].contains(key)) {
+            reporter.report(span, format!("`{key}` is for robots that follow, but `{name}` leads"));
         }
         self.vehicle(keys.vehicle.as_ref(), defaults, reporter)
     }
@@ -345,9 +339,9 @@ impl Group<'_> {
                 let name = self.name(0);
                 let vehicle = self.leading(&name, usual, defaults, reporter)?;
                 check_path(path, &vehicle, reporter);
-                let origin = Found { place: self.node.place, value: [0.0; 3] };
+                let origin = Found { span: self.node.span, value: [0.0; 3] };
                 let given = keys.pose.as_ref().or(path.value.start().is_none().then_some(&origin));
-                let pose = start_pose(given, Some(&path.value), self.node.place, reporter)?;
+                let pose = start_pose(given, Some(&path.value), self.node.span, reporter)?;
                 let role = Role::Lead { path: path.value.clone() };
                 self.push(0, Robot { name: name.clone(), pose, number: 0, vehicle, role }, None, drafts);
                 Some((name, pose))
@@ -355,19 +349,19 @@ impl Group<'_> {
             (None, Some(_)) => {
                 if let Some(pose) = self.node.entry("pose") {
                     reporter.report(
-                        pose.place,
+                        pose.span,
                         "`pose` is for groups with a `path`; this one starts at its leader",
                     );
                 }
                 let leader = keys.leader.as_ref()?;
-                check_known(&leader.value, leader.place, drafts.iter().map(|draft| &draft.named), reporter);
+                check_known(&leader.value, leader.span, drafts.iter().map(|draft| &draft.named), reporter);
                 let is_leader = |robot: &&Robot| robot.name == leader.value;
                 let robot = drafts.iter().filter_map(|draft| draft.robot.as_ref()).find(is_leader)?;
                 Some((leader.value.clone(), robot.pose))
             }
             _ => {
                 reporter.report(
-                    self.node.place,
+                    self.node.span,
                     "a group needs either a `path` for its own leader, or a `leader`",
                 );
                 None
@@ -383,7 +377,7 @@ fn over<P: Part + Clone>(own: Option<&Found<P>>, group: &Found<P>) -> P {
 
 /// Seeded disorder of start poses.
 struct Scatter {
-    random: ChaCha8Rng,
+    random: RandomStream,
     /// m along each axis.
     distance: f64,
     /// rad.
@@ -392,10 +386,8 @@ struct Scatter {
 
 impl Scatter {
     fn new(keys: &GroupKeys, index: u64, seed: u64) -> Option<Self> {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        random.set_stream(index);
         Some(Self {
-            random,
+            random: RandomStream::new(seed, index),
             distance: keys.scatter.as_ref()?.value,
             heading: keys.scatter_heading.as_ref()?.value,
         })
@@ -403,15 +395,9 @@ impl Scatter {
 
     /// A pose near [forward, left] in m as seen from `origin`.
     fn around(&mut self, origin: Pose, [forward, left]: [f64; 2]) -> Pose {
-        let forward = forward + self.distance * self.next();
-        let left = left + self.distance * self.next();
+        let forward = forward + self.distance * self.random.signed();
+        let left = left + self.distance * self.random.signed();
         let [x, y] = origin.world_from_body(forward, left);
-        Pose::new(x, y, wrap(origin.heading + self.heading * self.next()))
-    }
-
-    /// Evenly distributed in [−1, 1).
-    fn next(&mut self) -> f64 {
-        let bits = self.random.next_u64() >> 11;
-        bits as f64 / (1u64 << 52) as f64 - 1.0
+        Pose::new(x, y, wrap(origin.heading + self.heading * self.random.signed()))
     }
 }

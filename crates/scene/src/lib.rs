@@ -24,6 +24,7 @@ mod path_form;
 mod patterns;
 mod prop_form;
 mod props;
+mod random;
 mod relief;
 mod resolve;
 mod robots;

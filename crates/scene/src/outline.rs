@@ -1,8 +1,7 @@
 //! Outlines of bodies as seen from above, and whether they overlap.
 
 use crate::Robot;
-use vocabulary::math;
-use vocabulary::{Pose, Solid};
+use vocabulary::{Pose, Solid, math};
 
 /// Overlaps smaller than this are rounding, m.
 const ROUNDING: f64 = 1e-9;

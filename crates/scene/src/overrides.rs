@@ -24,7 +24,7 @@ pub enum OverrideError {
     #[error("`{0}` is not an override: write path.to.key=value, such as time.duration=5")]
     Form(String),
     /// With a path of so many parts.
-    #[error("an override with a path of {0} parts leads nowhere: none has more than {MOST_PARTS}")]
+    #[error("an override with a path of {0} parts is too long: none has more than {MOST_PARTS}")]
     Deep(usize),
 }
 
@@ -64,11 +64,11 @@ impl fmt::Display for Override {
 #[derive(Clone, Copy)]
 struct PathPart<'a> {
     text: &'a str,
-    place: Span,
+    span: Span,
 }
 
 impl Override {
-    /// Puts the value where the path says; notes where there is no such place.
+    /// Puts the value where the path says; reports an error if there is no such place.
     pub(crate) fn apply(&self, root: &mut Node, reporter: &mut Reporter) {
         let source = reporter.add_source("--set".to_owned(), &self.0);
         self.apply_at(Origin { source, offset: 0, whole: None }, root, reporter);
@@ -85,9 +85,9 @@ impl Override {
         }
         let mut start = offset;
         let parts = path.split('.').map(|text| {
-            let place = Span { source, start, end: start + text.len() };
+            let span = Span { source, start, end: start + text.len() };
             start += text.len() + 1;
-            PathPart { text: text.trim(), place: whole.unwrap_or(place) }
+            PathPart { text: text.trim(), span: whole.unwrap_or(span) }
         });
         put_in_scene(root, &parts.collect::<Vec<_>>(), value, reporter);
     }
@@ -105,7 +105,7 @@ pub(crate) struct Origin {
     pub(crate) source: usize,
     /// Of its first character.
     pub(crate) offset: usize,
-    /// Where all of it stands, if its characters cannot be told apart there.
+    /// Where all of it stands, if its characters have no positions of their own.
     pub(crate) whole: Option<Span>,
 }
 
@@ -119,11 +119,11 @@ fn put_in_scene(root: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &
     let mut known = groups.iter().enumerate();
     let Some((index, key)) = known.find_map(|(index, group)| Some((index, member_called(group, name.text)?)))
     else {
-        reporter.report(name.place, unknown_robot(root, name.text));
+        reporter.report(name.span, unknown_robot(root, name.text));
         return;
     };
     let inside: Vec<_> =
-        [PathPart { text: "members", place: list.place }, PathPart { text: &key, place: name.place }]
+        [PathPart { text: "members", span: list.span }, PathPart { text: &key, span: name.span }]
             .into_iter()
             .chain(rest.iter().copied())
             .collect();
@@ -150,8 +150,8 @@ fn put(node: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Repor
         Value::Table(entries) => {
             let index = entries.iter().position(|entry| entry.key == part.text).unwrap_or_else(|| {
                 // A table that is not there yet; whether it may be is checked with all others.
-                let node = Node { place: part.place, value: Value::Table(vec![]) };
-                entries.push(Entry { key: part.text.to_owned(), place: part.place, node });
+                let node = Node { span: part.span, value: Value::Table(vec![]) };
+                entries.push(Entry { key: part.text.to_owned(), span: part.span, node });
                 entries.len() - 1
             });
             if let Some(entry) = entries.get_mut(index) {
@@ -167,20 +167,20 @@ fn put(node: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Repor
                     put(item, rest, value, reporter);
                 }
             }
-            Err(fault) => reporter.report(part.place, fault),
+            Err(fault) => reporter.report(part.span, fault),
         },
-        _ => reporter.report(
-            part.place,
-            format!("there is nothing called `{}` here: this is a plain value", part.text),
-        ),
+        _ => {
+            reporter
+                .report(part.span, format!("there is no key `{}` here: this is a plain value", part.text));
+        }
     }
 }
 
 /// Makes what is the word of its kind a table of that kind.
 fn spell_out(thing: &mut Node) {
     if thing.as_text().is_some() {
-        let place = thing.place;
-        let kind = Entry { key: "kind".to_owned(), place, node: thing.clone() };
+        let span = thing.span;
+        let kind = Entry { key: "kind".to_owned(), span, node: thing.clone() };
         thing.value = Value::Table(vec![kind]);
     }
 }
@@ -197,7 +197,7 @@ fn find(items: &[Node], text: &str) -> Result<usize, String> {
         Ok(index) => Err(format!("there is no item {index}: this list has {}, counted from 0", items.len())),
         Err(_) => {
             let hint = nearest(text, names()).map_or_else(String::new, did_you_mean);
-            Err(format!("nothing in this list is called `{text}`{hint}"))
+            Err(format!("no item of this list is called `{text}`{hint}"))
         }
     }
 }

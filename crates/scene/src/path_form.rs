@@ -130,11 +130,11 @@ impl Form for SpeedForm {
         }
         let keys = table::<SpeedKeys>().read(node, reporter)?;
         let (rows, along_time) = one_of(node, ["distance", "time"], [keys.distance, keys.time], reporter)?;
-        check_rising(rows.value.iter().map(|row| row[0]), rows.place, reporter);
+        check_rising(rows.value.iter().map(|row| row[0]), rows.span, reporter);
         // Travel stops for good where a profile over distance stands at 0.
         if !along_time && rows.value.iter().any(|row| row[1] == 0.0) {
             reporter.report(
-                rows.place,
+                rows.span,
                 "a speed over distance must stay above 0: the robot would never leave that point",
             );
         }
@@ -154,8 +154,8 @@ fn sinusoid(keys: SinusoidKeys, _: &Node, reporter: &mut Reporter) -> Option<Pat
     let (speed, amplitude) = (keys.speed?.value, keys.speed_amplitude?);
     if amplitude.value.abs() > speed {
         let message =
-            format!("`speed_amplitude` must be at most `speed`, {speed} m/s: nothing drives backwards");
-        reporter.report(amplitude.place, message);
+            format!("`speed_amplitude` must be at most `speed`, {speed} m/s: speeds must not be negative");
+        reporter.report(amplitude.span, message);
     }
     Some(Path::Sinusoid {
         speed,
@@ -173,12 +173,12 @@ fn circle(keys: CircleKeys, node: &Node, reporter: &mut Reporter) -> Option<Path
         one_of(node, ["radius", "turn_rate"], [keys.radius, keys.turn_rate], reporter)?;
     if by_turn_rate && let Some(direction) = keys.direction {
         reporter
-            .report(direction.place, "the sign of `turn_rate` says the direction already; left is positive");
+            .report(direction.span, "the sign of `turn_rate` says the direction already; left is positive");
         return None;
     }
     if size.value == 0.0 {
         reporter.report(
-            size.place,
+            size.span,
             "a circle needs a `turn_rate` other than 0; a straight line is kind `constant`",
         );
         return None;
@@ -196,21 +196,20 @@ fn figure_eight(keys: FigureEightKeys, node: &Node, reporter: &mut Reporter) -> 
 
 fn waypoints(keys: WaypointsKeys, _: &Node, reporter: &mut Reporter) -> Option<Path> {
     let (points, closed) = (keys.points?, keys.closed?.value);
-    let (place, points) = (points.place, points.value);
+    let (span, points) = (points.span, points.value);
     if closed && points.len() < 3 {
-        reporter.report(place, "a closed curve needs at least three points");
+        reporter.report(span, "a closed curve needs at least three points");
     }
     let back = if closed { points.first() } else { None };
     let next = points.iter().skip(1).chain(back);
     // Closer than this there is no telling in which direction the curve goes.
     if points.iter().zip(next).any(|(a, b)| math::hypot(a[0] - b[0], a[1] - b[1]) < 1e-3) {
         let hint = if closed && points.first() == points.last() {
-            ": a closed curve comes back by itself, so leave out the last point"
+            ": a closed curve returns to its first point by itself, so leave out the last point"
         } else {
             ""
         };
-        reporter
-            .report(place, format!("neighbouring points of a curve must be at least 0.001 m apart{hint}"));
+        reporter.report(span, format!("neighbouring points of a curve must be at least 0.001 m apart{hint}"));
     }
     Some(Path::Waypoints { points, closed, speed: keys.speed?.value })
 }
@@ -218,7 +217,7 @@ fn waypoints(keys: WaypointsKeys, _: &Node, reporter: &mut Reporter) -> Option<P
 fn from_table(keys: TableKeys, node: &Node, reporter: &mut Reporter) -> Option<Path> {
     let (rows, from_file) = one_of(node, ["rows", "file"], [keys.rows, keys.file], reporter)?;
     if !from_file {
-        check_rising(rows.value.iter().map(|row| row[0]), rows.place, reporter);
+        check_rising(rows.value.iter().map(|row| row[0]), rows.span, reporter);
     }
     Some(Path::Table { rows: rows.value })
 }

@@ -6,8 +6,7 @@ use crate::{
     prop_form::{FRICTION, MASS, MEASURE, Measured, RESTITUTION, SOLIDS},
     text::{
         Form, Found, Keys, Node, Reporter, integer, keys,
-        keys::TableReader,
-        kinds::{Kind, KindFound, Kinds},
+        kinds::{Kind, Kinds},
         number,
     },
 };
@@ -188,10 +187,7 @@ impl Form for PatternForm {
     type Out = PatternKeys;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<PatternKeys> {
-        let mut table = TableReader::of(node, reporter)?;
-        let KindFound::Known(layout) = PATTERNS.take(node, &mut table, reporter) else { return None };
-        let shared = SharedKeys::read(&mut table, reporter);
-        table.finish(reporter);
+        let (layout, shared) = PATTERNS.read_with(node, reporter, SharedKeys::read)?;
         Some(PatternKeys {
             layout: layout?,
             name: shared.name?,

@@ -8,14 +8,12 @@ use crate::{
         Couple, Form, Found, Keys, Node, Reporter, Triple,
         form::Number,
         keys,
-        keys::TableReader,
-        kinds::{Kind, KindFound, KindOption, Kinds},
+        kinds::{Kind, KindOption, Kinds},
         number,
     },
 };
 use serde_json::Value as Json;
-use vocabulary::math;
-use vocabulary::{Pose, Solid};
+use vocabulary::{Pose, Solid, math};
 
 /// Most props of a scene.
 pub(crate) const MOST_PROPS: usize = 2000;
@@ -96,7 +94,7 @@ fn wall(keys: WallKeys, _: &Node, reporter: &mut Reporter) -> Option<Measured> {
     let [dx, dy] = [to.value[0] - from[0], to.value[1] - from[1]];
     let length = math::hypot(dx, dy);
     if length < 1e-3 {
-        reporter.report(to.place, "a wall must be at least 0.001 m long: `to` is where `from` is");
+        reporter.report(to.span, "a wall must be at least 0.001 m long: `to` is where `from` is");
         return None;
     }
     let pose = Pose::new(from[0] + 0.5 * dx, from[1] + 0.5 * dy, math::atan2(dy, dx));
@@ -176,10 +174,7 @@ impl Form for PropForm {
     type Out = PropKeys;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<PropKeys> {
-        let mut table = TableReader::of(node, reporter)?;
-        let KindFound::Known(measured) = SHAPES.take(node, &mut table, reporter) else { return None };
-        let shared = SharedKeys::read(&mut table, reporter);
-        table.finish(reporter);
+        let (measured, shared) = SHAPES.read_with(node, reporter, SharedKeys::read)?;
         Some(PropKeys {
             measured: measured?,
             name: shared.name?,

@@ -5,12 +5,9 @@ use crate::{
     outline::Outline,
     patterns::{Layout, PatternField, PatternKeys},
     prop_form::{MOST_PROPS, PropKeys},
+    random::RandomStream,
     robots::start_pose,
     text::{Found, Node, Reporter, Span},
-};
-use rand_chacha::{
-    ChaCha8Rng,
-    rand_core::{Rng, SeedableRng},
 };
 use std::f64::consts::PI;
 use vocabulary::{Pose, Solid, counted};
@@ -39,34 +36,33 @@ impl PropStage<'_> {
         root: &Node,
         reporter: &mut Reporter,
     ) -> Vec<Placed> {
-        let nodes = root.items("props").iter().map(|node| node.place);
+        let nodes = root.items("props").iter().map(|node| node.span);
         let written = props.iter().zip(nodes);
-        let mut placed: Vec<_> =
-            written.filter_map(|(keys, place)| self.prop(keys, place, reporter)).collect();
+        let mut placed: Vec<_> = written.filter_map(|(keys, span)| self.prop(keys, span, reporter)).collect();
         for (index, keys) in patterns.iter().enumerate() {
             self.expand(keys, index as u64, &mut placed, reporter);
             if placed.len() > MOST_PROPS {
-                reporter.report(keys.name.place, format!("this makes more than {MOST_PROPS} props"));
+                reporter.report(keys.name.span, format!("this makes more than {MOST_PROPS} props"));
                 break;
             }
         }
         placed
     }
 
-    fn prop(&self, keys: &PropKeys, place: Span, reporter: &mut Reporter) -> Option<Placed> {
+    fn prop(&self, keys: &PropKeys, span: Span, reporter: &mut Reporter) -> Option<Placed> {
         let pose = match (keys.measured.pose, &keys.pose) {
             (Some(_), Some(pose)) => {
-                reporter.report(pose.place, "a wall stands from its `from` to its `to` and has no `pose`");
+                reporter.report(pose.span, "a wall stands from its `from` to its `to` and has no `pose`");
                 None
             }
             (Some(pose), None) => Some(pose),
-            (None, pose) => start_pose(pose.as_ref(), keys.path.as_ref(), place, reporter),
+            (None, pose) => start_pose(pose.as_ref(), keys.path.as_ref(), span, reporter),
         }?;
         let motion = match (&keys.mass, &keys.path) {
             (Some(mass), Some(_)) => {
                 reporter.report(
-                    mass.place,
-                    "`mass` is for props that can be pushed; one with a `path` goes its own way",
+                    mass.span,
+                    "`mass` is for props that can be pushed; one with a `path` follows that",
                 );
                 return None;
             }
@@ -82,12 +78,12 @@ impl PropStage<'_> {
                 "`{}` starts in the ground: `elevation` of {elevation} m must be at least {foot:.3} m, or left out",
                 keys.name.value
             );
-            reporter.report(keys.name.place, message);
+            reporter.report(keys.name.span, message);
         }
         let (friction, restitution) = (keys.friction, keys.restitution);
         let name = keys.name.value.clone();
         let prop = PropSpec { name, solid, pose, elevation, friction, restitution, motion };
-        Some(Found { place: keys.name.place, value: prop })
+        Some(Found { span: keys.name.span, value: prop })
     }
 
     /// Height on which a foot stands, m: that of the ground under its middle, and for what is loose the highest under
@@ -122,7 +118,7 @@ impl PropStage<'_> {
                 friction: keys.friction,
                 restitution: keys.restitution,
             };
-            placed.push(Found { place: keys.name.place, value: prop });
+            placed.push(Found { span: keys.name.span, value: prop });
         }
     }
 
@@ -134,11 +130,8 @@ impl PropStage<'_> {
         placed: &[Placed],
         reporter: &mut Reporter,
     ) -> Vec<(Solid, Pose)> {
-        let mut random = ChaCha8Rng::seed_from_u64(field.seed.unwrap_or(self.seed));
-        random.set_stream(FIRST_STREAM + index);
-        let mut between = |low: f64, high: f64| {
-            low + (high - low) * ((random.next_u64() >> 11) as f64 / (1u64 << 53) as f64)
-        };
+        let mut random = RandomStream::new(field.seed.unwrap_or(self.seed), FIRST_STREAM + index);
+        let mut between = |low: f64, high: f64| low + (high - low) * random.share();
         let [x0, y0, x1, y1] = field.region;
         let mut taken: Vec<_> = self.robots.iter().map(|robot| Outline::of_robot(robot)).collect();
         taken.extend(placed.iter().map(|prop| Outline::of_solid(prop.value.solid, prop.value.pose)));
@@ -155,7 +148,7 @@ impl PropStage<'_> {
                     counted(spots.len(), "prop"),
                     field.keep_clear
                 );
-                reporter.report(field.count.place, message);
+                reporter.report(field.count.span, message);
                 break;
             };
             taken.push(outline);

@@ -1,10 +1,7 @@
 //! Heights out of a seed.
 
+use crate::random::RandomStream;
 use crate::types::Noise;
-use rand_chacha::{
-    ChaCha8Rng,
-    rand_core::{Rng, SeedableRng},
-};
 use vocabulary::Terrain;
 
 /// Keeps the ground's random numbers apart from those of groups and patterns.
@@ -65,13 +62,12 @@ struct ReliefLayer {
 impl ReliefLayer {
     /// Waves of about `length` m.
     fn new(noise: &Noise, octave: u32, length: f64) -> Self {
-        let mut random = ChaCha8Rng::seed_from_u64(noise.seed);
-        random.set_stream(FIRST_STREAM + u64::from(octave));
+        let mut random = RandomStream::new(noise.seed, FIRST_STREAM + u64::from(octave));
         let scale = length / noise.wavelength;
         // A hill and a hollow make a wave, so two points of the lattice.
         let spacing = 0.5 * length;
         let [columns, rows] = grid(noise.region, spacing).map(|points| points as usize + 2);
-        let mut next = || scale * ((random.next_u64() >> 11) as f64 / (1u64 << 52) as f64 - 1.0);
+        let mut next = || scale * random.signed();
         let points = (0..columns * rows).map(|_| [next(), next(), next()]).collect();
         Self { spacing, columns, points }
     }

@@ -10,7 +10,7 @@ use crate::{
     robots::{Defaults, RobotDraft, draft},
     sight::{Said, check_sight, number},
     start::check_start,
-    text::{Found, Node, Part, Reporter, Span},
+    text::{Found, Keys, Node, Part, Reporter, Span},
     types::{
         EnvironmentPart, ExpectPart, FilmPart, PhysicsPart, ROBOT_VIEWS, TimePart, ViewsPart, VisionPart,
     },
@@ -19,9 +19,9 @@ use crate::{
 use std::collections::HashSet;
 use vocabulary::TimeMode;
 
-/// The checked scene, or `None` after notes.
+/// The checked scene, or `None` after reporting errors.
 pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) -> Option<Scene> {
-    // Another version may mean anything.
+    // Keys of another version may mean something else.
     document.schema.as_ref()?;
     let seed = document.seed.as_ref()?.value;
     let defaults = defaults(&document, reporter)?;
@@ -30,7 +30,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) 
     let time = time(&time_part, reporter);
     let (robots, groups) = (document.robots?.value, document.groups?.value);
     let ground = match (root.get("ground"), &document.ground) {
-        // It is there, and has its note.
+        // The key is there; its error is reported already.
         (Some(_), None) => None,
         (_, keys) => ground(keys.as_ref().map(|found| &found.value), seed, reporter),
     };
@@ -51,7 +51,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) 
         && reporter.is_clean()
     {
         let robots =
-            drafts.iter().filter_map(|draft| Some((draft.named.name.as_ref()?.place, draft.robot.as_ref()?)));
+            drafts.iter().filter_map(|draft| Some((draft.named.name.as_ref()?.span, draft.robot.as_ref()?)));
         check_start(robots, &props, ground, reporter);
     }
     let views = views(&document.views?.value, &drafts, reporter);
@@ -85,11 +85,11 @@ fn defaults(document: &Document, reporter: &mut Reporter) -> Option<Defaults> {
         observer: document.observer.as_ref()?.value.clone(),
         sensing: document.sensing.as_ref()?.value.clone(),
         step: physics.complete(&PhysicsPart::default()).step,
-        step_place: physics.step.as_ref().map(|found| found.place),
+        step_span: physics.step.as_ref().map(|found| found.span),
     })
 }
 
-/// The robots of a document alone, or `None` after notes: for what has changed since a scene was resolved.
+/// The robots of a document alone, or `None` after reporting errors. For what has changed since a scene was resolved.
 pub(crate) fn resolve_robots(
     document: &Document,
     root: &Node,
@@ -111,41 +111,41 @@ fn expect(part: &ExpectPart, reporter: &mut Reporter) -> Expect {
     let bound = part.settled_error_at_most.as_ref().or(part.settled_rms_at_most.as_ref());
     match (bound, &part.settled_after) {
         (Some(error), None) => {
-            reporter.report(error.place, "`settled_after` is missing: from when on, in s, does this hold?");
+            reporter.report(error.span, "`settled_after` is missing: from when on, in s, does this hold?");
         }
         (None, Some(after)) => {
             let message = "`settled_after` needs `settled_error_at_most` or `settled_rms_at_most`, which hold from then on";
-            reporter.report(after.place, message);
+            reporter.report(after.span, message);
         }
         _ => {}
     }
     let ranges =
         [("speed_within", &part.speed_within), ("contact_impulse_within", &part.contact_impulse_within)];
     for (key, found) in ranges {
-        if let Some(Found { place, value: Some([low, high]) }) = found
+        if let Some(Found { span, value: Some([low, high]) }) = found
             && low > high
         {
-            reporter.report(*place, format!("`{key}` is [least, most], and {low} is more than {high}"));
+            reporter.report(*span, format!("`{key}` is [least, most], and {low} is more than {high}"));
         }
     }
     expect
 }
 
-/// Notes props that are called as a robot or another prop.
+/// Reports props that are called as a robot or another prop.
 fn check_names(drafts: &[RobotDraft], props: &[Placed], reporter: &mut Reporter) {
     let robots: HashSet<_> =
         drafts.iter().filter_map(|draft| Some(&draft.named.name.as_ref()?.value)).collect();
     let mut seen = HashSet::new();
-    for Placed { place, value: PropSpec { name, .. } } in props {
+    for Placed { span, value: PropSpec { name, .. } } in props {
         if robots.contains(name) {
-            reporter.report(*place, format!("there are a robot and a prop called `{name}`"));
+            reporter.report(*span, format!("there are a robot and a prop called `{name}`"));
         } else if !seen.insert(name) {
-            reporter.report(*place, format!("there are two props called `{name}`"));
+            reporter.report(*span, format!("there are two props called `{name}`"));
         }
     }
 }
 
-/// Notes what continuous time cannot carry.
+/// Reports what continuous time cannot carry.
 fn check_continuous(
     part: &TimePart,
     drafts: &[RobotDraft],
@@ -163,7 +163,7 @@ fn check_continuous(
         let message = format!(
             "mode `continuous` is for unicycles on empty ground, but {why}; use `sampled` or `measured`"
         );
-        reporter.report(mode.place, message);
+        reporter.report(mode.span, message);
     }
 }
 
@@ -181,57 +181,53 @@ fn drafts(
         robots.iter().zip(nodes).map(|(keys, node)| draft(keys, node, defaults, reporter)).collect();
     for (index, (keys, node)) in groups.iter().zip(root.items("groups")).enumerate() {
         let group = Group { keys, node, index: index as u64 };
-        // A group that cannot be read has its notes already.
+        // The errors of a group that cannot be read are reported already.
         let _ = expand(&group, seed, defaults, &mut drafts, reporter);
     }
     if ["robots", "groups"].iter().all(|key| root.items(key).is_empty()) {
         reporter
-            .report(root.place.first(), "a scene needs at least one robot: write [[robots]] or [[groups]]");
+            .report(root.span.first(), "a scene needs at least one robot: write [[robots]] or [[groups]]");
     }
     drafts
 }
 
-/// More control steps than this are a slip of the pen.
+/// A run with more control steps than this is taken for a typing error.
 const MOST_STEPS: f64 = 1e8;
 
 fn time(part: &TimePart, reporter: &mut Reporter) -> Time {
     let time = part.complete(&TimePart::default());
     // The key that was written is the one to point at; the defaults fit each other.
-    let Some(place) = part.period.as_ref().map(|f| f.place).or(part.duration.as_ref().map(|f| f.place))
-    else {
-        return time;
-    };
+    let Some(span) = part.span_of("period").or_else(|| part.span_of("duration")) else { return time };
     if time.period > time.duration {
         let Time { period, duration, .. } = time;
-        reporter.report(place, format!("`period` of {period} s is larger than `duration` of {duration} s"));
+        reporter.report(span, format!("`period` of {period} s is larger than `duration` of {duration} s"));
     } else if time.duration / time.period > MOST_STEPS {
         let steps = time.duration / time.period;
-        reporter
-            .report(place, format!("{steps:.0} control periods in the run; the most are {MOST_STEPS:.0}"));
+        reporter.report(span, format!("{steps:.0} control periods in the run; the most are {MOST_STEPS:.0}"));
     }
     time
 }
 
 fn views(part: &ViewsPart, drafts: &[RobotDraft], reporter: &mut Reporter) -> Views {
-    check_view(part.default.as_ref().map(|found| (found.place, found.value.as_str())), drafts, reporter);
+    check_view(part.default.as_ref().map(|found| (found.span, found.value.as_str())), drafts, reporter);
     part.complete(&ViewsPart::default())
 }
 
 fn film(part: &FilmPart, duration: f64, drafts: &[RobotDraft], reporter: &mut Reporter) -> Film {
-    let view = part.view.as_ref().and_then(|found| Some((found.place, found.value.as_deref()?)));
+    let view = part.view.as_ref().and_then(|found| Some((found.span, found.value.as_deref()?)));
     check_view(view, drafts, reporter);
     if let Some(size) = part.size.as_ref().filter(|size| size.value.iter().any(|side| side % 2 == 1)) {
-        reporter.report(size.place, "`size` must be even both ways, as video needs it");
+        reporter.report(size.span, "`size` must be even both ways, as video needs it");
     }
     let mut film = part.complete(&FilmPart::default());
-    if let Some(place) = part.shots.as_ref().map(|found| found.place) {
-        shots(&mut film.shots, place, duration, drafts, reporter);
+    if let Some(span) = part.shots.as_ref().map(|found| found.span) {
+        shots(&mut film.shots, span, duration, drafts, reporter);
     }
     film
 }
 
 /// Gives every shot its beginning and end. Whether the run is long enough matters once it is filmed: [`Film::beyond`].
-fn shots(shots: &mut [Shot], place: Span, duration: f64, drafts: &[RobotDraft], reporter: &mut Reporter) {
+fn shots(shots: &mut [Shot], span: Span, duration: f64, drafts: &[RobotDraft], reporter: &mut Reporter) {
     let begins: Vec<Option<f64>> = shots.iter().map(|shot| shot.from).collect();
     let mut now = 0.0;
     for (k, shot) in shots.iter_mut().enumerate() {
@@ -241,13 +237,13 @@ fn shots(shots: &mut [Shot], place: Span, duration: f64, drafts: &[RobotDraft], 
         let name = format!("shot {} of the film", k + 1);
         if from < now {
             let message = format!("{name} begins at {from} s, before the one before it ends, at {now} s");
-            reporter.report(place, message);
+            reporter.report(span, message);
         } else if said.is_some_and(|to| to <= from) {
             let message = format!("{name} has no length: it begins at {from} s and ends at {to} s");
-            reporter.report(place, message);
+            reporter.report(span, message);
         }
         for part in shot.view.iter().flat_map(|view| view.split('+')) {
-            check_view(Some((place, part.trim())), drafts, reporter);
+            check_view(Some((span, part.trim())), drafts, reporter);
         }
         // A shot that begins after the run has no end of its own, also where the scene is written out.
         (shot.from, shot.to) = (Some(from), (to > from).then_some(to));
@@ -255,11 +251,11 @@ fn shots(shots: &mut [Shot], place: Span, duration: f64, drafts: &[RobotDraft], 
     }
 }
 
-/// Notes a view of a robot which is not there.
+/// Reports a view of a robot which is not there.
 fn check_view(view: Option<(Span, &str)>, drafts: &[RobotDraft], reporter: &mut Reporter) {
-    if let Some((place, view)) = view
+    if let Some((span, view)) = view
         && let Some(name) = ROBOT_VIEWS.iter().find_map(|start| view.strip_prefix(start))
     {
-        check_known(name, place, drafts.iter().map(|draft| &draft.named), reporter);
+        check_known(name, span, drafts.iter().map(|draft| &draft.named), reporter);
     }
 }

@@ -8,8 +8,7 @@ use crate::{
     types::{LawPart, ObserverPart, SensingPart, VehiclePart},
     vehicle::{WrittenVehicle, vehicle},
 };
-use vocabulary::Pose;
-use vocabulary::math;
+use vocabulary::{Pose, math};
 
 /// What holds for every robot that says nothing else.
 pub(crate) struct Defaults {
@@ -20,21 +19,21 @@ pub(crate) struct Defaults {
     /// Step of the physics, s.
     pub(crate) step: f64,
     /// Where that is said.
-    pub(crate) step_place: Option<Span>,
+    pub(crate) step_span: Option<Span>,
 }
 
 impl Defaults {
-    /// The vehicle of a robot or group that says `own` of it and stands at `place`.
+    /// The vehicle of a robot or group that says `own` of it and stands at `span`.
     pub(crate) fn vehicle(
         &self,
         own: Option<&Found<VehiclePart>>,
-        place: Span,
+        span: Span,
         reporter: &mut Reporter,
     ) -> Vehicle {
         let nothing = VehiclePart::default();
         let own = own.map_or(&nothing, |found| &found.value);
-        let place = self.step_place.unwrap_or(place);
-        vehicle(&WrittenVehicle { own, scene: &self.vehicle, step: self.step, place }, reporter)
+        let span = self.step_span.unwrap_or(span);
+        vehicle(&WrittenVehicle { own, scene: &self.vehicle, step: self.step, span }, reporter)
     }
 
     /// The observer of a robot or group that says `own` of it.
@@ -56,7 +55,7 @@ pub(crate) struct RobotDraft {
     pub(crate) named: Named,
     /// The number it is given in the file.
     pub(crate) number: Option<Found<usize>>,
-    /// `None` after a note.
+    /// `None` after reporting an error.
     pub(crate) robot: Option<Robot>,
 }
 
@@ -72,13 +71,13 @@ pub(crate) fn draft(
 }
 
 fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reporter: &mut Reporter) -> Option<Robot> {
-    let vehicle = defaults.vehicle(keys.vehicle.as_ref(), node.place, reporter);
+    let vehicle = defaults.vehicle(keys.vehicle.as_ref(), node.span, reporter);
     let role = role(keys, node, &vehicle, defaults, reporter);
     let path = keys.path.as_ref().map(|path| &path.value);
     let pose = match (node.get("pose"), &keys.pose) {
-        // It is there, and has its note.
+        // The key is there; its error is reported already.
         (Some(_), None) => None,
-        (_, pose) => start_pose(pose.as_ref(), path, node.place, reporter),
+        (_, pose) => start_pose(pose.as_ref(), path, node.span, reporter),
     };
     Some(Robot { name: keys.name.as_ref()?.value.clone(), pose: pose?, number: 0, vehicle, role: role? })
 }
@@ -98,7 +97,7 @@ fn role(
         }
         (Some(_), Some(leader)) => {
             let message = format!("`{}` has a `path` and a `leader`; a robot leads or follows", name.value);
-            reporter.report(leader.place, message);
+            reporter.report(leader.span, message);
             None
         }
         (None, None) => {
@@ -106,7 +105,7 @@ fn role(
                 "robot `{}` is not connected: it needs a `path` to lead, or a `leader` to follow",
                 name.value
             );
-            reporter.report(name.place, message);
+            reporter.report(name.span, message);
             None
         }
     }
@@ -118,8 +117,7 @@ fn lead(keys: &RobotKeys, node: &Node, vehicle: &Vehicle, reporter: &mut Reporte
         .into_iter()
         .filter_map(|key| node.entry(key))
     {
-        reporter
-            .report(entry.place, format!("`{}` is for robots that follow, but `{name}` leads", entry.key));
+        reporter.report(entry.span, format!("`{}` is for robots that follow, but `{name}` leads", entry.key));
     }
     let path = keys.path.as_ref()?;
     check_path(path, vehicle, reporter);
@@ -136,18 +134,18 @@ fn follow(
     for key in ["distance", "bearing"] {
         if node.get(key).is_none() {
             reporter.report(
-                keys.leader.as_ref()?.place,
+                keys.leader.as_ref()?.span,
                 format!("`{key}` is missing: a robot that follows needs it"),
             );
         }
     }
-    let law = keys.law.as_ref().map_or_else(LawPart::default, |found| found.value.clone());
+    let law = keys.law.clone().map_or_else(LawPart::default, |found| found.value);
     let law = law.complete_with(&defaults.law, Law::fitting(vehicle.kind));
-    let observer = keys.observer.as_ref().map_or_else(ObserverPart::default, |found| found.value.clone());
-    let sensing = keys.sensing.as_ref().map_or_else(SensingPart::default, |found| found.value.clone());
+    let observer = keys.observer.clone().map_or_else(ObserverPart::default, |found| found.value);
+    let sensing = keys.sensing.clone().map_or_else(SensingPart::default, |found| found.value);
     let speed = start_speed(keys.speed.as_ref(), vehicle, reporter);
     let (distance, bearing) = (keys.distance.as_ref()?, keys.bearing.as_ref()?);
-    check_distance(distance.value.range()[0], law.distance_min, distance.place, reporter);
+    check_distance(distance.value.range()[0], law.distance_min, distance.span, reporter);
     Some(Follow {
         leader: keys.leader.as_ref()?.value.clone(),
         speed,
@@ -168,21 +166,21 @@ pub(crate) fn start_speed(speed: Option<&Found<f64>>, vehicle: &Vehicle, reporte
             "`speed` of {} m/s is outside the vehicle's limits, {speed_min} to {speed_max} m/s",
             speed.value
         );
-        reporter.report(speed.place, message);
+        reporter.report(speed.span, message);
     }
     speed.value
 }
 
-/// Notes a wanted distance (m) that falls below the least one the law divides by.
-pub(crate) fn check_distance(least: f64, distance_min: f64, place: Span, reporter: &mut Reporter) {
+/// Reports a wanted distance (m) that falls below the least one the law divides by.
+pub(crate) fn check_distance(least: f64, distance_min: f64, span: Span, reporter: &mut Reporter) {
     if least < distance_min {
         let message =
             format!("`distance` falls to {least} m, below the law's `distance_min` of {distance_min} m");
-        reporter.report(place, message);
+        reporter.report(span, message);
     }
 }
 
-/// Notes a path that its robot cannot drive.
+/// Reports a path that its robot cannot drive.
 pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reporter: &mut Reporter) {
     let (speed, turn_rate) = path.value.peaks();
     if speed > vehicle.speed_max {
@@ -190,12 +188,12 @@ pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reporter: &mut R
             "`path` reaches {speed} m/s, above the vehicle's `speed_max` of {} m/s",
             vehicle.speed_max
         );
-        reporter.report(path.place, message);
+        reporter.report(path.span, message);
     }
     if let Some(turn_rate) = turn_rate.filter(|rate| *rate > vehicle.turn_rate_max) {
         let most = vehicle.turn_rate_max;
         reporter.report(
-            path.place,
+            path.span,
             format!("`path` turns at {turn_rate} rad/s, above `turn_rate_max` of {most} rad/s"),
         );
     }
@@ -208,22 +206,22 @@ pub(crate) fn check_path(path: &Found<Path>, vehicle: &Vehicle, reporter: &mut R
                 speed / turn_rate.abs(),
                 1.0 / curvature
             );
-            reporter.report(path.place, message);
+            reporter.report(path.span, message);
         }
     }
 }
 
-/// Where a robot starts: its `pose`, or the start of its path; a note if they contradict each other or are missing.
+/// Where a robot starts: its `pose`, or the start of its path; reports an error if they contradict each other or are missing.
 pub(crate) fn start_pose(
     pose: Option<&Found<[f64; 3]>>,
     path: Option<&Path>,
-    place: Span,
+    span: Span,
     reporter: &mut Reporter,
 ) -> Option<Pose> {
     let start = path.and_then(Path::start);
     let Some(pose) = pose else {
         if start.is_none() {
-            reporter.report(place, "`pose` is missing: write [x, y, heading]");
+            reporter.report(span, "`pose` is missing: write [x, y, heading]");
         }
         return start;
     };
@@ -231,7 +229,7 @@ pub(crate) fn start_pose(
     if let Some(start) = start.filter(|start| math::hypot(x - start.x, y - start.y) > 1e-6) {
         let message =
             format!("`pose` must start at the first of the path's points, [{}, {}]", start.x, start.y);
-        reporter.report(pose.place, message);
+        reporter.report(pose.span, message);
     }
     Some(Pose::new(x, y, heading))
 }

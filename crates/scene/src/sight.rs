@@ -3,14 +3,13 @@
 use crate::{
     Follow, Robot, Role, Sensing, Vision,
     robots::RobotDraft,
-    text::{Found, Reporter, Span, words::quoted},
+    text::{Keys, Reporter, Span, words::quoted},
     types::{SensingKind as Kind, TimePart, VisionPart},
 };
 use std::collections::HashMap;
 use std::f64::consts::PI;
-use vocabulary::math;
 use vocabulary::{
-    CameraModel, CameraMount, FACES, LawKind, Pose, ScalarTrajectory, Shell, TAGS, TimeMode, Word, wrap,
+    CameraModel, CameraMount, FACES, LawKind, Pose, ScalarTrajectory, Shell, TAGS, TimeMode, Word, math, wrap,
 };
 
 /// Robots whose shells the tag family can tell apart.
@@ -59,7 +58,7 @@ pub(crate) fn number(drafts: &mut [RobotDraft], reporter: &mut Reporter) {
                 number.value,
                 first + FACES - 1
             );
-            reporter.report(number.place, message);
+            reporter.report(number.span, message);
         }
     }
     let mut free = (0..).filter(|number| !taken.contains_key(number));
@@ -78,7 +77,7 @@ pub(crate) struct Said<'a> {
     pub(crate) vision: &'a Vision,
 }
 
-/// Notes measurements that cannot be.
+/// Reports measurements that cannot be.
 pub(crate) fn check_sight(said: &Said<'_>, drafts: &[RobotDraft], reporter: &mut Reporter) {
     let robots: HashMap<&str, &Robot> = drafts
         .iter()
@@ -93,19 +92,19 @@ pub(crate) fn check_sight(said: &Said<'_>, drafts: &[RobotDraft], reporter: &mut
         if kind == Kind::Truth {
             continue;
         }
-        check_law(said, follow, robot, name.place, reporter);
-        check_hold(follow, robot, name.place, reporter);
+        check_law(said, follow, robot, name.span, reporter);
+        check_hold(follow, robot, name.span, reporter);
         let leader = robots.get(follow.leader.as_str()).copied();
         if let Some(leader) = leader.filter(|_| kind.needs_tags()) {
             if !inside {
-                inside = check_shell(said, robot, name.place, reporter);
+                inside = check_shell(said, robot, name.span, reporter);
             }
-            check_visible(said, follow, [leader, robot], name.place, reporter);
+            check_visible(said, follow, [leader, robot], name.span, reporter);
         }
     }
 }
 
-fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Span, reporter: &mut Reporter) {
+fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, span: Span, reporter: &mut Reporter) {
     let word = follow.sensing.kind.word();
     if follow.law.kind != LawKind::OutputFeedback {
         let law = follow.law.kind.word();
@@ -114,7 +113,7 @@ fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Span, repor
              `output-feedback`",
             robot.name
         );
-        reporter.report(place, message);
+        reporter.report(span, message);
     }
     if let Some(mode) = said.time.mode.as_ref().filter(|mode| mode.value == TimeMode::Continuous) {
         let words = quoted([TimeMode::Sampled, TimeMode::Measured].into_iter().map(Word::word));
@@ -122,12 +121,12 @@ fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, place: Span, repor
             "mode `continuous` has no measurements, but `{}` senses by `{word}`; use one of {words}",
             robot.name
         );
-        reporter.report(mode.place, message);
+        reporter.report(mode.span, message);
     }
 }
 
-/// Notes measurements that come so late or so seldom that a leader is lost between any two of them.
-fn check_hold(follow: &Follow, robot: &Robot, place: Span, reporter: &mut Reporter) {
+/// Reports measurements that come so late or so seldom that a leader is lost between any two of them.
+fn check_hold(follow: &Follow, robot: &Robot, span: Span, reporter: &mut Reporter) {
     let Sensing { rate, latency, hold, .. } = follow.sensing;
     if latency + 1.0 / rate >= hold {
         let message = format!(
@@ -136,21 +135,17 @@ fn check_hold(follow: &Follow, robot: &Robot, place: Span, reporter: &mut Report
             robot.name,
             latency + 1.0 / rate
         );
-        reporter.report(place, message);
+        reporter.report(span, message);
     }
 }
 
-/// Notes cameras and tags that do not fit the robot's shell; whether it did.
-fn check_shell(said: &Said<'_>, robot: &Robot, place: Span, reporter: &mut Reporter) -> bool {
+/// Reports cameras and tags that do not fit the robot's shell; whether it did.
+fn check_shell(said: &Said<'_>, robot: &Robot, span: Span, reporter: &mut Reporter) -> bool {
     let (shell, camera_mount) = (said.vision.shell(robot), said.vision.camera_mount(robot));
-    let place = |found: [Option<Span>; 3]| found.into_iter().flatten().next().unwrap_or(place);
-    let at = |found: &Option<Found<f64>>| found.as_ref().map(|found| found.place);
-    let part = said.part;
+    let span = |keys: &[&str]| keys.iter().find_map(|key| said.part.span_of(key)).unwrap_or(span);
     let up = camera_mount.height - shell.height;
     let half = 0.5 * shell.face_height;
     let within = shell.apothem - up * math::tan(shell.lean);
-    let camera =
-        [&part.camera_height, &part.camera_forward].map(|found| found.as_ref().map(|found| found.place));
     if up.abs() < half && (camera_mount.forward - shell.forward).abs() < within {
         let message = format!(
             "the camera of `{}` is inside its own shell: at {:.3} m over the ground, and the shell reaches from {:.3} m to \
@@ -161,7 +156,7 @@ fn check_shell(said: &Said<'_>, robot: &Robot, place: Span, reporter: &mut Repor
             shell.height + half,
             shell.forward + within
         );
-        reporter.report(place([camera[0], camera[1], at(&part.shell_scale)]), message);
+        reporter.report(span(&["camera_height", "camera_forward", "shell_scale"]), message);
         return true;
     }
     let slope = shell.face_height / math::cos(shell.lean);
@@ -172,19 +167,18 @@ fn check_shell(said: &Said<'_>, robot: &Robot, place: Span, reporter: &mut Repor
             shell.cell,
             2.0 * shell.half_width(0.0)
         );
-        let cell = part.tag_cell.as_ref().map(|found| found.place);
-        reporter.report(place([cell, at(&part.shell_scale), None]), message);
+        reporter.report(span(&["tag_cell", "shell_scale"]), message);
         return true;
     }
     false
 }
 
-/// Notes a leader that shows its follower no tag at its set point.
+/// Reports a leader that shows its follower no tag at its set point.
 fn check_visible(
     said: &Said<'_>,
     follow: &Follow,
     [leader, robot]: [&Robot; 2],
-    place: Span,
+    span: Span,
     reporter: &mut Reporter,
 ) {
     if leader.number >= MOST_SHELLS {
@@ -192,7 +186,7 @@ fn check_visible(
             "`{}` follows `{}` by its tags, but that is number {} and there are tags for {MOST_SHELLS} robots only",
             robot.name, leader.name, leader.number
         );
-        reporter.report(place, message);
+        reporter.report(span, message);
         return;
     }
     let (ScalarTrajectory::Constant(distance), ScalarTrajectory::Constant(bearing)) =
@@ -223,7 +217,7 @@ fn check_visible(
             wrap(bearing - PI).abs().to_degrees(),
             said.vision.pan_max.to_degrees()
         );
-        reporter.report(place, message);
+        reporter.report(span, message);
         return;
     }
     let largest = faces.fold(None, |most: Option<f64>, size| Some(most.map_or(size, |most| most.max(size))));
@@ -247,5 +241,5 @@ fn check_visible(
         ),
         Some(_) => return,
     };
-    reporter.report(place, message);
+    reporter.report(span, message);
 }

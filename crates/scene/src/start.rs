@@ -10,14 +10,14 @@ use crate::{
 /// A body at its start.
 struct Footprint<'a> {
     name: &'a str,
-    place: Span,
+    span: Span,
     is_prop: bool,
     outline: Outline,
     /// [foot, top], m over z = 0.
     heights: [f64; 2],
 }
 
-/// Notes robots that overlap each other or a prop where they start; props may overlap each other.
+/// Reports robots that overlap each other or a prop where they start; props may overlap each other.
 pub(crate) fn check_start<'a>(
     robots: impl Iterator<Item = (Span, &'a Robot)>,
     props: &'a [Placed],
@@ -25,19 +25,19 @@ pub(crate) fn check_start<'a>(
     reporter: &mut Reporter,
 ) {
     let height = |x, y| ground.terrain.as_ref().map_or(0.0, |terrain| terrain.at(x, y).height);
-    let robots = robots.map(|(place, robot)| {
+    let robots = robots.map(|(span, robot)| {
         let foot = height(robot.pose.x, robot.pose.y);
         Footprint {
             name: &robot.name,
-            place,
+            span,
             is_prop: false,
             outline: Outline::of_robot(robot),
             heights: [foot, foot + robot.vehicle.height],
         }
     });
-    let props = props.iter().map(|Placed { place, value: prop }| Footprint {
+    let props = props.iter().map(|Placed { span, value: prop }| Footprint {
         name: &prop.name,
-        place: *place,
+        span: *span,
         is_prop: true,
         outline: Outline::of_solid(prop.solid, prop.pose),
         heights: [prop.elevation, prop.elevation + prop.solid.extent()[2]],
@@ -52,9 +52,9 @@ pub(crate) fn check_start<'a>(
                 return;
             }
             // The one that is written later is the one to move.
-            let (first, second) = if body.place <= other.place { (body, other) } else { (other, body) };
+            let (first, second) = if body.span <= other.span { (body, other) } else { (other, body) };
             let message = format!("`{}` and `{}` overlap where they start", first.name, second.name);
-            reporter.report(second.place, message);
+            reporter.report(second.span, message);
         }
     }
 }

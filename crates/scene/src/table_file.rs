@@ -22,12 +22,12 @@ fn out_of_order(last: Option<f64>, value: f64) -> Option<String> {
     }
 }
 
-/// Notes where numbers do not rise from 0.
-pub(crate) fn check_rising(values: impl Iterator<Item = f64>, place: Span, reporter: &mut Reporter) {
+/// Reports where numbers do not rise from 0.
+pub(crate) fn check_rising(values: impl Iterator<Item = f64>, span: Span, reporter: &mut Reporter) {
     let mut last = None;
     for value in values {
         if let Some(fault) = out_of_order(last, value) {
-            reporter.report(place, fault);
+            reporter.report(span, fault);
             return;
         }
         last = Some(value);
@@ -41,7 +41,7 @@ fn read_rows(text: &str, source: usize, reporter: &mut Reporter) -> Option<Vec<[
     let mut rows: Vec<[f64; 3]> = Vec::new();
     let mut good = true;
     for record in table.records().take(MOST_ROWS + 1) {
-        let place = line_at(
+        let span = line_at(
             record.as_ref().map_or_else(csv::Error::position, csv::StringRecord::position),
             text,
             source,
@@ -50,12 +50,12 @@ fn read_rows(text: &str, source: usize, reporter: &mut Reporter) -> Option<Vec<[
         match row.and_then(|record| read_row(&record, columns)) {
             Ok(row) => {
                 if let Some(fault) = out_of_order(rows.last().map(|last| last[0]), row[0]) {
-                    reporter.report(place, fault);
+                    reporter.report(span, fault);
                 }
                 rows.push(row);
             }
             Err(fault) => {
-                reporter.report(place, fault);
+                reporter.report(span, fault);
                 good = false;
             }
         }
@@ -94,7 +94,7 @@ fn read_row(record: &csv::StringRecord, columns: [usize; 3]) -> Result<[f64; 3],
     Ok(row)
 }
 
-/// What the reader of tables says of a row, without its line, which is told with the place.
+/// The CSV reader's message about a row, without the line number, which is reported with the position.
 pub(crate) fn why(error: &csv::Error) -> String {
     match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {

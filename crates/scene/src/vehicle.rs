@@ -3,7 +3,7 @@
 use crate::text::words::word;
 use crate::{
     Vehicle, VehicleKind,
-    text::{Form, Found, Keys, Node, Part, Reporter, Span, Value, keys::Mark, table, words::quoted},
+    text::{Form, Found, Keys, Node, Part, Reporter, Span, keys::Mark, table, words::quoted},
     types::VehiclePart,
 };
 use serde::{Serializer, ser};
@@ -28,16 +28,14 @@ impl Form for VehicleForm {
     type Out = VehiclePart;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<VehiclePart> {
-        match &node.value {
-            Value::Text(_) => {
-                let value = word::<VehicleKind>().read(node, reporter)?;
-                Some(VehiclePart { kind: Some(Found { place: node.place, value }), ..VehiclePart::default() })
-            }
-            _ => table::<VehiclePart>().read(node, reporter),
+        if node.as_text().is_none() {
+            return table::<VehiclePart>().read(node, reporter);
         }
+        let value = word::<VehicleKind>().read(node, reporter)?;
+        Some(VehiclePart { kind: Some(Found { span: node.span, value }), ..VehiclePart::default() })
     }
 
-    /// The defaults depend on the kind, so they are told in words.
+    /// The defaults depend on the kind, so the description lists them.
     fn schema(&self) -> Json {
         let mut schema = table::<VehiclePart>().schema();
         let made = VehicleKind::ALL
@@ -73,17 +71,17 @@ pub(crate) fn written<S: Serializer>(vehicle: &Vehicle, serializer: S) -> Result
 
 /// Where a robot's vehicle is written, and what it is driven by.
 pub(crate) struct WrittenVehicle<'a> {
-    /// The robot's or group's own words.
+    /// The robot's or group's own `vehicle`.
     pub(crate) own: &'a VehiclePart,
-    /// The scene's words for all.
+    /// The scene's `vehicle`, which holds for all robots.
     pub(crate) scene: &'a VehiclePart,
     /// Step of the physics, s.
     pub(crate) step: f64,
     /// Where that is said, or the robot where it is not.
-    pub(crate) place: Span,
+    pub(crate) span: Span,
 }
 
-/// The vehicle that is written, with notes where its values contradict each other.
+/// The vehicle that is written, after reporting values that contradict each other.
 pub(crate) fn vehicle(written: &WrittenVehicle<'_>, reporter: &mut Reporter) -> Vehicle {
     let nothing = VehiclePart::default();
     let usual = usual_kind(written.scene);
@@ -96,21 +94,19 @@ pub(crate) fn vehicle(written: &WrittenVehicle<'_>, reporter: &mut Reporter) -> 
     vehicle
 }
 
-/// The kind of robots that name none, with `scene` the scene's words for all.
+/// The kind of robots that name none, where `scene` is the scene's `vehicle`.
 pub(crate) fn usual_kind(scene: &VehiclePart) -> VehicleKind {
     scene.kind.as_ref().map_or(VehicleKind::Unicycle, |found| found.value)
 }
 
-/// Notes keys of `part` that mean nothing for vehicles of `kind`.
+/// Reports keys of `part` that mean nothing for vehicles of `kind`.
 pub(crate) fn check_meaning(part: &VehiclePart, kind: VehicleKind, reporter: &mut Reporter) {
-    for (key, place) in part.places().into_iter().filter(|(key, _)| !applies(key, kind)) {
+    for (key, span) in part.spans().into_iter().filter(|(key, _)| !applies(key, kind)) {
         let others = VehicleKind::ALL.into_iter().filter(|other| applies(key, *other));
         let others = quoted(others.map(Word::word));
         let kind = kind.word();
-        reporter.report(
-            place,
-            format!("`{key}` means nothing for a vehicle of kind `{kind}`; it is for {others}"),
-        );
+        reporter
+            .report(span, format!("`{key}` has no effect on a vehicle of kind `{kind}`; it is for {others}"));
     }
 }
 
@@ -135,12 +131,11 @@ impl Check<'_> {
         }
     }
 
-    /// Notes `message` at the first of `keys` that is written.
+    /// Reports `message` at the first of `keys` that is written.
     fn report(&self, keys: &[&str], message: String, reporter: &mut Reporter) {
-        let WrittenVehicle { own, scene, place, .. } = *self.written;
-        let written = [own.places(), scene.places()].concat();
-        let find = |key: &&str| written.iter().find(|(written, _)| written == key);
-        reporter.report(keys.iter().find_map(find).map_or(place, |(_, place)| *place), message);
+        let WrittenVehicle { own, scene, span, .. } = *self.written;
+        let find = |key: &&str| own.span_of(key).or_else(|| scene.span_of(key));
+        reporter.report(keys.iter().find_map(find).unwrap_or(span), message);
     }
 
     fn measures(&self, reporter: &mut Reporter) {

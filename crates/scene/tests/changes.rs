@@ -163,7 +163,7 @@ fn members_that_a_group_does_not_have_are_told() {
         ("[groups.members.robot-2]\ndistanse = 1.0\n", "did you mean `distance`?"),
         ("[groups.members.robot-1]\ndistance = 1.0\n", "but `robot-1` leads"),
         ("[groups.members.robot-2]\ndistance = 0.01\n", "`distance` falls to 0.01 m"),
-        ("[groups.members.robot-2]\nvehicle.spring = 1.0\n", "means nothing"),
+        ("[groups.members.robot-2]\nvehicle.spring = 1.0\n", "has no effect"),
     ] {
         let fault = fault(&format!("{GROUP}{lines}"));
         assert!(fault.line >= 7 && fault.message.contains(words), "{fault}");

@@ -65,7 +65,7 @@ fn paths_that_cannot_be_driven() {
         ("{ kind = \"circle\", turn_rate = 0 }", "other than 0"),
         ("{ kind = \"circle\", turn_rate = 0.1, direction = \"left\" }", "sign of `turn_rate`"),
         ("{ kind = \"circle\", radius = 0.01 }", "above `turn_rate_max`"),
-        ("{ kind = \"sinusoid\", speed = 0.5, speed_amplitude = 0.6 }", "nothing drives backwards"),
+        ("{ kind = \"sinusoid\", speed = 0.5, speed_amplitude = 0.6 }", "speeds must not be negative"),
         ("{ kind = \"waypoints\", points = [[0, 0], [0, 0]] }", "0.001 m apart"),
         ("{ kind = \"waypoints\", points = [[0, 0], [1, 0]], closed = true }", "three points"),
         (

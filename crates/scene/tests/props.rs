@@ -149,7 +149,7 @@ fn props_that_cannot_be() {
             &["has no `pose`"],
         ),
         (&format!("{block}\nmass = 0"), 12, &["`mass`", "above 0"]),
-        (&format!("{block}\nmass = 1\npath = {{ kind = \"constant\" }}"), 12, &["goes its own way"]),
+        (&format!("{block}\nmass = 1\npath = {{ kind = \"constant\" }}"), 12, &["follows that"]),
         (&format!("{block}\n{block}"), 13, &["two props called `b`"]),
         (&block.replace("\"b\"", "\"a\""), 8, &["a robot and a prop called `a`"]),
         (&block.replace("[5, 0, 0]", "[0.6, 0, 0]"), 8, &["`a` and `b` overlap where they start"]),

@@ -87,12 +87,12 @@ fn vehicles_that_cannot_be() {
         (
             "vehicle = { mass = 3 }",
             20,
-            &["`mass` means nothing", "`unicycle`", "`car`, `full-size-car`, `differential`"],
+            &["`mass` has no effect", "`unicycle`", "`car`, `full-size-car`, `differential`"],
         ),
         (
             "vehicle = { kind = \"differential\", steering_lag = 0.1 }",
             51,
-            &["`steering_lag` means nothing", "`car`"],
+            &["`steering_lag` has no effect", "`car`"],
         ),
         ("vehicle = { kind = \"car\", mass = 0 }", 34, &["`mass`", "above 0"]),
         ("vehicle = { kind = \"car\", masss = 1 }", 27, &["unknown key", "`mass`?"]),

@@ -133,7 +133,7 @@ fn tracker_parameters(follow: &Follow, observer: formation::Observer) -> Option<
 /// by twice that.
 const TILT: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
-/// The senses of all followers; `None` where all are told the truth.
+/// The sensors of all followers; `None` where all observe the true state.
 fn sensor_config(
     scene: &Scene,
     followers: &[(&str, &Follow)],
@@ -165,15 +165,14 @@ fn sensor_config(
     });
     let Vision { blur, noise, exposure, shutter, pan_rate, pan_max, whole_frames, .. } = scene.vision;
     let camera = CameraSettings { blur, noise, exposure, shutter, pan_rate, pan_max, whole_frames };
-    let props: Vec<_> = stage.props.iter().map(|prop| prop.prop.clone()).collect();
-    let sensor_config = SensorConfig::new(
-        edges,
-        sensors.collect(),
-        robots,
-        &props,
-        stage.terrain.clone(),
+    let sensor_config = SensorConfig {
+        edges: edges.to_vec(),
+        sensors: sensors.collect(),
+        robots: robots.to_vec(),
+        props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
+        terrain: stage.terrain.clone(),
         camera,
-        scene.seed,
-    );
+        seed: scene.seed,
+    };
     sensor_config.has_sensors().then(|| Arc::new(sensor_config))
 }

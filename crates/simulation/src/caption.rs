@@ -50,10 +50,8 @@ pub fn caption(scene: &Scene) -> String {
         TimeMode::Sampled => every,
         TimeMode::Measured => format!("{every}, sampled measurement"),
     });
-    match scene.changes.len() {
-        0 => {}
-        1 => parts.push("1 change".to_owned()),
-        changes => parts.push(format!("{changes} changes")),
+    if !scene.changes.is_empty() {
+        parts.push(counted(scene.changes.len(), "change"));
     }
     parts.join(" · ")
 }
@@ -70,7 +68,7 @@ fn measures(follow: &Follow) -> bool {
     follow.sensing.kind != SensingKind::Truth
 }
 
-/// What is worth saying of an observer.
+/// How the caption describes an observer.
 #[derive(Clone, Copy, PartialEq)]
 enum ObserverWords {
     Epsilon,
@@ -126,7 +124,7 @@ mod tests {
     fn gains_that_differ_are_told_as_ranges() {
         let plain = told(&[]);
         assert_eq!(plain, "Output feedback · K 5 · β 5 · tanh slope 24.53 · ε 0.001 s · every 10 ms");
-        // The first follower alone would be told as if it were all.
+        // The first follower alone does not stand for all.
         let one = told(&["robots.follower-2.law.k=3", "robots.follower-2.observer.epsilon=0.002"]);
         assert_eq!(
             one,

@@ -4,8 +4,7 @@
 //! every step. It costs about 1/ε evaluations per simulated second, which is the price of continuous time.
 
 use formation::{Estimate, Formation, FormationState};
-use vocabulary::math;
-use vocabulary::{EdgeSample, LawKind, Motion, Observation, Pose, Relative, wrap};
+use vocabulary::{EdgeSample, LawKind, Motion, Observation, Pose, math, wrap};
 use world::{Unicycles, World};
 
 /// Longest step, s.
@@ -16,7 +15,7 @@ const STEPS_PER_EPSILON: f64 = 8.0;
 /// All that moves in continuous time.
 #[derive(Clone)]
 pub(crate) struct Continuous {
-    world: Unicycles,
+    pub(crate) world: Unicycles,
     step: f64,
     observations: Vec<Observation>,
 }
@@ -42,14 +41,6 @@ impl Continuous {
         let observing = formation.laws().iter().filter(|e| e.law.kind == LawKind::OutputFeedback);
         let fastest = observing.flat_map(|e| e.observer.epsilon).fold(f64::INFINITY, f64::min);
         self.step = STEP_MAX.min(fastest / STEPS_PER_EPSILON);
-    }
-
-    pub(crate) fn world(&self) -> &dyn World {
-        &self.world
-    }
-
-    pub(crate) fn world_mut(&mut self) -> &mut dyn World {
-        &mut self.world
     }
 
     /// One control period from `time`.
@@ -85,12 +76,7 @@ impl Continuous {
         self.observations.clear();
         let observe = |edge: &vocabulary::Edge| {
             let (leader, follower) = (motion(&y.robots[edge.leader]), motion(&y.robots[edge.follower]));
-            Observation {
-                relative: Relative::between(leader.pose, follower.pose),
-                own_speed: follower.speed,
-                leader_speed: Some(leader.speed),
-                ..Observation::default()
-            }
+            Observation::true_of([&leader, &follower])
         };
         self.observations.extend(formation.edges().iter().map(observe));
         scratch.estimates.clone_from(&y.estimates);

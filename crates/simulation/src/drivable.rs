@@ -25,7 +25,7 @@ impl PathMotion {
     }
 }
 
-/// What a path asks for and nothing can do.
+/// A demand of a path that exceeds the limits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Undrivable {
     /// s.

@@ -1,11 +1,11 @@
-//! Why a scene that reads well cannot run.
+//! Why a valid scene cannot run.
 
 use crate::drivable::Undrivable;
 use formation::GraphError;
 use formation::lead::SplinePathError;
 use thiserror::Error;
 
-/// Why a scene that reads well cannot run.
+/// Why a valid scene cannot run.
 #[derive(Debug, Error)]
 pub enum BuildError {
     /// Robots and edges make no formation.

@@ -1,9 +1,10 @@
-//! What ends a run before its time: pictures that cannot be taken, or a number that is none.
+//! What ends a run before its time: pictures that cannot be taken, or a number that is not finite.
 
 use std::fmt;
 use thiserror::Error;
 use vocabulary::{
-    Contact, EdgeState, EntityId, FleetInfo, MeasurementRecord, Motion, Placement, RobotState, StepRecord,
+    Contact, Edge, EdgeState, EntityId, FleetInfo, MeasurementRecord, Motion, Placement, RobotState,
+    StepRecord,
 };
 
 /// Why a run ended before its time.
@@ -12,12 +13,12 @@ pub enum Fault {
     /// Cameras could not take their pictures.
     #[error("{0}")]
     CameraRenderer(String),
-    /// A quantity is no finite number.
+    /// A quantity is not a finite number.
     #[error(transparent)]
     NotFinite(#[from] NotFinite),
 }
 
-/// A quantity that is no finite number: no table, log or picture has it.
+/// A quantity that is not a finite number. Its record is in no table, log or picture.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub struct NotFinite {
     /// The robots or the prop that it belongs to.
@@ -31,11 +32,11 @@ pub struct NotFinite {
 impl fmt::Display for NotFinite {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { whose, quantity, time } = self;
-        write!(f, "the {quantity} of {whose} is no finite number at {time:.2} s")
+        write!(f, "the {quantity} of {whose} is not a finite number at {time:.2} s")
     }
 }
 
-/// The first quantity of `record` that is no finite number.
+/// The first quantity of `record` that is not a finite number.
 pub(crate) fn not_finite(record: &StepRecord, fleet: &FleetInfo) -> Option<NotFinite> {
     let StepRecord { snapshot, edges, contacts, frames } = record;
     let named = |thing| format!("`{}`", fleet.name(thing));
@@ -45,9 +46,8 @@ pub(crate) fn not_finite(record: &StepRecord, fleet: &FleetInfo) -> Option<NotFi
         return Some(found(named(EntityId::Robot(k)), quantity));
     }
     let between = |edge: usize| {
-        fleet.edges.get(edge).map_or_else(String::new, |edge| {
-            format!("{} → {}", named(EntityId::Robot(edge.leader)), named(EntityId::Robot(edge.follower)))
-        })
+        let quoted = |edge: &Edge| fleet.pair(*edge).map(|name| format!("`{name}`")).join(" → ");
+        fleet.edges.get(edge).map_or_else(String::new, quoted)
     };
     if let Some((k, quantity)) = edges.iter().enumerate().find_map(|(k, edge)| Some((k, of_edge(edge)?))) {
         return Some(found(between(k), quantity));
@@ -88,10 +88,9 @@ fn of_robot(robot: &RobotState) -> Option<&'static str> {
 }
 
 fn of_edge(edge: &EdgeState) -> Option<&'static str> {
-    let (truth, seen) = (edge.relative, edge.seen);
     first([
-        ("relative position", finite([truth.distance, truth.bearing, truth.view_angle])),
-        ("relative position as seen", finite([seen.distance, seen.bearing, seen.view_angle, edge.age])),
+        ("relative position", finite(edge.relative.coordinates())),
+        ("relative position as seen", finite(edge.seen.coordinates()) && edge.age.is_finite()),
         ("set point", finite(edge.set_point)),
         ("error", finite(edge.error)),
         ("command asked for", finite([edge.asked.acceleration, edge.asked.turn_rate])),
@@ -110,7 +109,7 @@ fn is_told(contact: &Contact) -> bool {
 
 fn is_seen(frame: &MeasurementRecord) -> bool {
     let MeasurementRecord { measurement, arrival, truth, pan, .. } = frame;
-    let places = [measurement.relative, *truth].iter().all(|r| finite([r.distance, r.bearing, r.view_angle]));
+    let places = [measurement.relative, *truth].iter().all(|r| finite(r.coordinates()));
     let corners = frame.tags.iter().flatten().flatten().all(|corner| finite(*corner));
     places && corners && finite(measurement.deviation) && finite([measurement.stamp, *arrival, *pan])
 }
@@ -135,9 +134,9 @@ mod tests {
         assert_eq!(not_finite(&record, &fleet), None);
         record.edges[0].applied.turn_rate = f64::INFINITY;
         let told = not_finite(&record, &fleet).expect("an edge").to_string();
-        assert_eq!(told, "the command of `ann` → `bob` is no finite number at 2.50 s");
+        assert_eq!(told, "the command of `ann` → `bob` is not a finite number at 2.50 s");
         record.snapshot.robots[1].motion.turn_rate = f64::NAN;
         let told = not_finite(&record, &fleet).expect("a robot").to_string();
-        assert_eq!(told, "the turn rate of `bob` is no finite number at 2.50 s");
+        assert_eq!(told, "the turn rate of `bob` is not a finite number at 2.50 s");
     }
 }

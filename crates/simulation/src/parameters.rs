@@ -1,4 +1,4 @@
-//! What a run goes by that may change on the way: laws, set points, limits. All else stays as it began.
+//! The parameters that may change during a run: laws, set points, limits. All others are fixed.
 
 use crate::setup::Setup;
 use formation::EdgeLaw;

@@ -6,7 +6,7 @@ use formation::Formation;
 use vocabulary::TimeMode;
 use world::{Physical, Unicycles, World, WorldSetup};
 
-/// What moves the robots: a world that is told commands to hold, or plant, law and observers as one system.
+/// What moves the robots: a world that holds commands over a period, or plant, law and observers as one system.
 pub(crate) enum Plant {
     Held(Box<dyn World>),
     Continuous(Box<Continuous>),
@@ -48,14 +48,14 @@ impl Plant {
     pub(crate) fn world(&self) -> &dyn World {
         match self {
             Self::Held(world) => world.as_ref(),
-            Self::Continuous(system) => system.world(),
+            Self::Continuous(system) => &system.world,
         }
     }
 
     pub(crate) fn world_mut(&mut self) -> &mut dyn World {
         match self {
             Self::Held(world) => world.as_mut(),
-            Self::Continuous(system) => system.world_mut(),
+            Self::Continuous(system) => &mut system.world,
         }
     }
 }

@@ -9,10 +9,10 @@ use vocabulary::{
 };
 use world::World;
 
-/// Senses, estimates and eyes of all followers that are not told the truth.
+/// Sensors, estimates and camera renderer of all followers with sensors.
 #[derive(Clone)]
 pub(crate) struct SensingPipeline {
-    sensor_config: Arc<SensorConfig>,
+    pub(crate) sensor_config: Arc<SensorConfig>,
     sensor_state: SensorState,
     trackers: Vec<Tracker>,
     beliefs: Vec<LeaderPrediction>,
@@ -29,7 +29,7 @@ impl SensingPipeline {
         starts: Vec<ObserverStart>,
         snapshot: &Snapshot,
     ) -> Self {
-        let edges = sensor_config.sensors().len();
+        let edges = sensor_config.sensors.len();
         Self {
             sensor_state: sensor_config.start(snapshot),
             trackers: vec![Tracker::default(); edges],
@@ -39,10 +39,6 @@ impl SensingPipeline {
             eyes: None,
             sensor_config,
         }
-    }
-
-    pub(crate) fn need_eyes(&self) -> bool {
-        self.sensor_config.need_eyes()
     }
 
     pub(crate) fn open(&mut self, eyes: Box<dyn CameraRenderer>) {
@@ -102,13 +98,11 @@ impl SensingPipeline {
 
     fn believe(&mut self, formation: &Formation) {
         for ((belief, tracker), law) in self.beliefs.iter_mut().zip(&self.trackers).zip(formation.laws()) {
-            *belief = law.tracker.as_ref().map_or(
-                LeaderPrediction { relative: None, sight: TrackingState::Truth },
-                |parameters| LeaderPrediction {
-                    relative: tracker.relative(),
-                    sight: tracker.sight(parameters),
-                },
-            );
+            let (relative, sight) = match &law.tracker {
+                Some(parameters) => (tracker.relative(), tracker.sight(parameters)),
+                None => (None, TrackingState::Truth),
+            };
+            *belief = LeaderPrediction { relative, sight };
         }
     }
 
@@ -152,7 +146,7 @@ fn put(tracker: &mut Tracker, law: &EdgeLaw, frame: &mut MeasurementRecord, star
     }
 }
 
-/// What a follower did over the period, as its own sensors tell it: the mean acceleration and turn rate.
+/// A follower's motion over the period by odometry: the mean acceleration and turn rate.
 fn own_motion(world: &dyn World, edge: Edge, period: f64) -> Own {
     let (before, after) = (world.during(edge.follower, 0.0), world.during(edge.follower, period));
     let turned = vocabulary::wrap(after.pose.heading - before.pose.heading);

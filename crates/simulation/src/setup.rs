@@ -18,7 +18,7 @@ pub struct Setup {
     pub stage: WorldSetup,
     /// Where observers start: added to the first measurement [m, rad], or in its place.
     pub observer_starts: Vec<ObserverStart>,
-    /// How followers sense their leaders; `None` where all are told the truth.
+    /// How followers sense their leaders; `None` where all observe the true state.
     pub sensor_config: Option<Arc<SensorConfig>>,
     /// How law and observer act in time.
     pub mode: TimeMode,

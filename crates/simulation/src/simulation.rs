@@ -1,4 +1,4 @@
-//! A run under way: its state, what may be asked of it, and what may be changed while it goes.
+//! A simulation: its state, its queries, and the changes that it takes between steps.
 
 use crate::fault::Fault;
 use crate::parameters::{ParameterSet, pending, sample_at};
@@ -14,7 +14,7 @@ use vocabulary::{
     StepRecord, TimeMode,
 };
 
-/// A run under way. The same setup gives the same moments, bit for bit.
+/// A simulation. The same setup gives the same records, bit for bit.
 #[derive(Clone)]
 pub struct Simulation {
     pub(crate) fleet: FleetInfo,
@@ -109,17 +109,17 @@ impl Simulation {
 
     /// Whether cameras on robots take pictures, for which the run needs [`Simulation::attach_cameras`].
     pub fn needs_cameras(&self) -> bool {
-        self.sensing.as_ref().is_some_and(SensingPipeline::need_eyes)
+        self.sensing.as_ref().is_some_and(|sensing| sensing.sensor_config.need_eyes())
     }
 
-    /// Who draws what the cameras on robots see.
+    /// Attaches the renderer of the cameras on robots.
     pub fn attach_cameras(&mut self, eyes: Box<dyn CameraRenderer>) {
         if let Some(sensing) = &mut self.sensing {
             sensing.open(eyes);
         }
     }
 
-    /// Why the run ended before its time, where it did so of itself.
+    /// Why the run ended before its time, if a fault ended it.
     pub fn fault(&self) -> Option<&Fault> {
         self.fault.as_ref()
     }
@@ -162,7 +162,7 @@ impl Simulation {
         &self.record
     }
 
-    /// Followers are told the truth from now on, whatever their sensors: to predict where pictures cannot be drawn.
+    /// Followers observe the true state from now on, whatever their sensors: for predictions, which draw no pictures.
     pub fn trust(&mut self) {
         self.sensing = None;
         let limits = (0..self.fleet.robots.len()).map(|robot| *self.formation.limits(robot)).collect();
@@ -195,7 +195,7 @@ impl Simulation {
     }
 }
 
-/// Laws of followers that are told the truth.
+/// The laws of followers that observe the true state.
 fn trusting(laws: &[EdgeLaw]) -> Vec<EdgeLaw> {
     laws.iter().map(|law| EdgeLaw { tracker: None, ..law.clone() }).collect()
 }

@@ -45,6 +45,22 @@ impl SceneRun {
         }
         Ok(())
     }
+
+    /// Runs to the end. `take` gets the simulation after every step, with the number of steps so far, and says whether the run
+    /// goes on.
+    ///
+    /// # Errors
+    /// [`Error`] where the run breaks off with a fault.
+    pub fn step_through(&mut self, mut take: impl FnMut(&Simulation, u64) -> bool) -> Result<(), Error> {
+        let mut steps = 0;
+        while self.simulation.next_record().is_some() {
+            steps += 1;
+            if !take(&self.simulation, steps) {
+                return Ok(());
+            }
+        }
+        self.simulation.fault().map_or(Ok(()), |fault| Err(fault.into()))
+    }
 }
 
 /// How a run of `scene` is recorded: with a log, without CSV tables, into an empty folder; nothing draws on the roll.

@@ -11,8 +11,7 @@ use serde::Serialize;
 use simulation::{BuildError, Simulation, build};
 use std::cell::RefCell;
 use thiserror::Error;
-use vocabulary::LawKind;
-use vocabulary::math;
+use vocabulary::{LawKind, math};
 
 /// Gains of every follower, the same for distance and bearing.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -37,13 +37,8 @@ fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Judg
     }
     if let Some([least, most]) = expect.contact_impulse_within {
         let found = metrics.contact_impulse_max;
-        let met = (least..=most).contains(&found);
-        findings.add(
-            "contact_impulse_within",
-            format!("{least} to {most} N s"),
-            format!("{found:.3} N s"),
-            met,
-        );
+        let (wanted, met) = (format!("{least} to {most} N s"), (least..=most).contains(&found));
+        findings.add("contact_impulse_within", wanted, format!("{found:.3} N s"), met);
     }
     if expect.all_able {
         findings.able();
@@ -52,16 +47,13 @@ fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Judg
         findings.lift(most);
     }
     if let Some(least) = expect.clearance_min {
-        findings.clearance("clearance_min", format!("≥ {least} m"), |clearance| clearance >= least);
+        findings.clearance(least);
     }
-    let channels = [
-        ("final_distance_error", 0, expect.final_distance_error),
-        ("final_bearing_error", 1, expect.final_bearing_error),
-    ];
-    for (key, channel, most) in channels {
-        if let Some(most) = most {
-            findings.worst(key, channel, most, |edge| edge.final_error);
-        }
+    if let Some(most) = expect.final_distance_error {
+        findings.worst("final_distance_error", 0, most, |edge| edge.final_error);
+    }
+    if let Some(most) = expect.final_bearing_error {
+        findings.worst("final_bearing_error", 1, most, |edge| edge.final_error);
     }
     if let Some(latest) = expect.settling_time {
         findings.settling(latest);
@@ -142,14 +134,15 @@ impl ExpectationJudge<'_> {
         self.add("lift_at_most", format!("≤ {most} m"), found, met);
     }
 
-    fn clearance(&mut self, key: &'static str, wanted: String, met: impl Fn(f64) -> bool) {
+    fn clearance(&mut self, least: f64) {
+        let (key, wanted) = ("clearance_min", format!("≥ {least} m"));
         let (Some(found), Some(time), Some([a, b])) =
             (self.metrics.clearance_min, self.metrics.clearance_min_time, &self.metrics.clearance_min_robots)
         else {
             return self.add(key, wanted, "one robot only".into(), true);
         };
         let text = format!("{found:.4} m between `{a}` and `{b}` at {time:.2} s");
-        self.add(key, wanted, text, met(found));
+        self.add(key, wanted, text, found >= least);
     }
 
     /// The edge whose `value` in `channel` is largest in size; a value that is not a number is the worst.
@@ -218,7 +211,7 @@ impl ExpectationJudge<'_> {
         let percent = |share: f64| format!("{:.2} %", share * 100.0);
         let (found, met) = match measured.min_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((edge, share)) => (format!("{} on {}", percent(share), name(edge)), share >= least),
-            None => ("nobody measures".into(), false),
+            None => ("no follower measures".into(), false),
         };
         self.add("in_view_at_least", format!("≥ {} of the measurements", percent(least)), found, met);
     }

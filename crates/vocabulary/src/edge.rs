@@ -24,6 +24,11 @@ pub struct Relative {
 }
 
 impl Relative {
+    /// [distance, bearing, view angle], m and rad.
+    pub fn coordinates(&self) -> [f64; 3] {
+        [self.distance, self.bearing, self.view_angle]
+    }
+
     /// Distance, bearing and view angle of a follower (eqs 2-4).
     ///
     /// Two robots on the same spot have distance 0 and, by choice, the line between them along the x axis.

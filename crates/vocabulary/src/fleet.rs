@@ -104,6 +104,11 @@ pub struct FleetInfo {
 }
 
 impl FleetInfo {
+    /// Names of the leader and the follower of an edge.
+    pub fn pair(&self, edge: Edge) -> [&str; 2] {
+        [edge.leader, edge.follower].map(|robot| self.name(EntityId::Robot(robot)))
+    }
+
     /// Name of a robot or prop; "ground", or empty for an index out of range.
     pub fn name(&self, thing: EntityId) -> &str {
         match thing {

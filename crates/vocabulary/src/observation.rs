@@ -1,6 +1,6 @@
 //! What a follower knows of its leader: the only thing a law may use.
 
-use crate::{Relative, TrackingState};
+use crate::{Motion, Relative, TrackingState};
 
 /// What one follower knows of its leader at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -13,6 +13,18 @@ pub struct Observation {
     pub leader_speed: Option<f64>,
     /// How well the follower knows where its leader is.
     pub sight: TrackingState,
+}
+
+impl Observation {
+    /// The truth about a leader and its follower.
+    pub fn true_of([leader, follower]: [&Motion; 2]) -> Self {
+        Self {
+            relative: Relative::between(leader.pose, follower.pose),
+            own_speed: follower.speed,
+            leader_speed: Some(leader.speed),
+            ..Self::default()
+        }
+    }
 }
 
 /// What an edge was at one instant inside a control period.

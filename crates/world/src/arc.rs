@@ -4,8 +4,7 @@
 //! ∫ v e^(iθ) dt = e^(iθ0) (v0 t f0(ωt) + a t² f1(ωt)), where
 //! f0(u) = ∫₀¹ e^(iuσ) dσ and f1(u) = ∫₀¹ σ e^(iuσ) dσ.
 
-use vocabulary::math;
-use vocabulary::{Motion, Pose, wrap};
+use vocabulary::{Motion, Pose, math, wrap};
 
 /// Where `start` is after `t` s at its own speed, acceleration and turn rate; no bounds are looked at.
 pub fn after(start: &Motion, t: f64) -> Motion {

@@ -3,8 +3,7 @@
 //! Y. Kanayama, Y. Kimura, F. Miyazaki, T. Noguchi, A stable tracking control method for an autonomous mobile robot,
 //! ICRA 1990, with the path errors closed over a length that fits the wheelbase.
 
-use vocabulary::math;
-use vocabulary::{Command, Limits, Motion, wrap};
+use vocabulary::{Command, Limits, Motion, math, wrap};
 
 /// Along the path, 1/s.
 const ALONG: f64 = 0.8;

@@ -1,8 +1,7 @@
 //! Contacts over time: which things touch, since when, and how hard.
 
 use std::collections::BTreeMap;
-use vocabulary::math;
-use vocabulary::{Body, Contact, EntityId, Pose, Snapshot};
+use vocabulary::{Body, Contact, EntityId, Pose, Snapshot, math};
 
 /// Things that have not touched for so long have parted, s: shorter gaps are one contact that rattles.
 const PARTED: f64 = 0.1;

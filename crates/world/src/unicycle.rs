@@ -7,9 +7,8 @@
 use crate::{Handling, World, arc, prescribed::prescribed, touch::Touches};
 use std::cell::RefCell;
 use std::sync::Arc;
-use vocabulary::math;
 use vocabulary::{
-    Body, Command, Contact, Limits, Motion, Pose, RobotState, Snapshot, StepInterpolant, Trajectory,
+    Body, Command, Contact, Limits, Motion, Pose, RobotState, Snapshot, StepInterpolant, Trajectory, math,
 };
 
 /// Parameters and start of one unicycle.

@@ -60,8 +60,8 @@ pub(crate) fn as_json(budget: &Budget<'_>) -> Value {
         "title": budget.scene.title,
         "seed": budget.scene.seed,
         "settled_after": budget.settled_after,
-        "adapter": budget.adapter,
-        "without_camera": budget.without_camera,
+        "adapter": budget.camera.as_ref().ok(),
+        "without_camera": budget.camera.as_ref().err(),
         "edges": edges.iter().map(|k| budget.edge(*k)).collect::<Vec<_>>(),
         "runs": runs.collect::<Vec<_>>(),
     });

@@ -4,7 +4,7 @@ use crate::print::say;
 use studies::budget::{Budget, BudgetCase, EdgeErrors, Growth, MeasuredRun, ObserverChoice, SensingLevel};
 use vocabulary::counted;
 
-/// Edges that are told one by one.
+/// Edges that are listed, at most.
 const MOST_EDGES: usize = 12;
 
 pub(crate) fn print(budget: &Budget<'_>) {
@@ -13,10 +13,9 @@ pub(crate) fn print(budget: &Budget<'_>) {
         "seed {}, errors are root mean squares from {} s on",
         budget.scene.seed, budget.settled_after
     ));
-    if let Some(adapter) = &budget.adapter {
-        say(&format!("cameras drawn with {adapter}"));
-    } else if let Some(why) = &budget.without_camera {
-        say(why);
+    match &budget.camera {
+        Ok(adapter) => say(&format!("cameras drawn with {adapter}")),
+        Err(why) => say(why),
     }
     for index in 0..budget.fleet.edges.len().min(MOST_EDGES) {
         let [leader, follower] = budget.edge(index);

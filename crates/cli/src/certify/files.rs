@@ -45,10 +45,10 @@ pub(super) fn as_json(report: &CertifyReport<'_>) -> Value {
 fn edge(report: &CertifyReport<'_>, certificate: &Certificate) -> Value {
     let mut value = serde_json::to_value(certificate.metrics(&report.fleet)).unwrap_or_default();
     let witness = &certificate.witness;
-    value["zeta_b"] = json!(witness.initial());
+    value["zeta_b"] = json!(witness.initial);
     value["final_error"] = json!(certificate.final_error);
     value["error_left_by_tanh"] = json!(certificate.smoothing);
-    value["p0"] = json!(witness.layer().map(|l| rows(&l.matrix)));
+    value["p0"] = json!(witness.layer.map(|l| rows(&l.matrix)));
     value["constants"] = json!(certificate.constants.map(|c| constants(&c, report.bound)));
     value
 }

@@ -9,10 +9,9 @@ use studies::certify::{
     Certificate, Constants, Discretisation, Infeasible, LongestPeriod, NotLinear, Statement,
     StatementFinding, StatementOutcome,
 };
-use vocabulary::Word;
-use vocabulary::math;
+use vocabulary::{Word, math};
 
-/// Edges that are told statement by statement; the others have a line each.
+/// Edges that are listed statement by statement; the others have a line each.
 const IN_FULL: usize = 2;
 /// Edges that have a line.
 const MOST_EDGES: usize = 12;
@@ -47,7 +46,7 @@ fn edge(report: &CertifyReport<'_>, certificate: &Certificate) {
     let witness = &certificate.witness;
     if let Some(last) = witness.rows().last() {
         let [effect, margin, initial, p, v, w] =
-            [last.effect, last.margin, witness.initial(), last.p, last.v, last.w].map(short);
+            [last.effect, last.margin, witness.initial, last.p, last.v, last.w].map(short);
         say(&format!(
             "  at the end     ‖gᵥVᵢ‖ {effect}, margin of β {margin}, ζ_b {initial}, P {p}, V {v}, W {w}"
         ));
@@ -65,16 +64,18 @@ fn edge(report: &CertifyReport<'_>, certificate: &Certificate) {
     }
 }
 
-/// A line for every edge that is not told in full.
+/// A line for every edge that is not listed statement by statement.
 fn others(report: &CertifyReport<'_>) {
     let rest = || report.certificates.iter().skip(IN_FULL);
     if rest().next().is_none() {
         return;
     }
-    let head = row(Statement::WORDS.iter().map(|(_, statement, _)| format!("  {:>13}", statement.source())));
+    let heads = Statement::WORDS.iter().map(|(_, statement, _)| format!("  {:>13}", statement.source()));
+    let head: String = heads.collect();
     say(&format!("\n{:40}{head}", "the others, in short"));
     for certificate in rest().take(MOST_EDGES) {
-        let cells = row(certificate.findings.iter().map(|f| format!("  {:>13}", cell(f))));
+        let cells = certificate.findings.iter().map(|f| format!("  {:>13}", cell(f)));
+        let cells = cells.collect::<Vec<_>>().concat();
         let [from, to] = certificate.span;
         let name = format!("{} {from:.1}–{to:.1} s", clip(&report.edge(certificate.edge), 26));
         say(&format!("{name:40}{cells}"));
@@ -86,11 +87,6 @@ fn others(report: &CertifyReport<'_>) {
     say(
         "✓ holds, ✗ violated from this time on, – premise not met; then by the numbers (✓) or (✗), or nothing to say",
     );
-}
-
-/// Cells side by side.
-fn row(cells: impl Iterator<Item = String>) -> String {
-    cells.collect::<Vec<_>>().concat()
 }
 
 fn cell(finding: &StatementFinding) -> String {
@@ -181,16 +177,16 @@ fn sensitivities(report: &CertifyReport<'_>, beyond: &Beyond) {
     };
     say("  sensitivity of the settled error (last fifth of the run): % more for 1 % more gain on all edges");
     let edges = report.fleet.edges.len().min(MOST_EDGES);
-    let head = row((0..edges).map(|e| format!("  {:>21}", clip(report.follower(e), 21))));
+    let heads = (0..edges).map(|e| format!("  {:>21}", clip(report.follower(e), 21)));
+    let head = heads.collect::<Vec<_>>().concat();
     say(&format!("    {:14}{head}", ""));
-    let settled = found.settled.iter().take(edges);
-    let settled =
-        row(settled.map(|e| format!("  {:>9} mm {:>8}°", short(1e3 * e[0]), short(e[1].to_degrees()))));
+    let error = |e: &[f64; 2]| format!("  {:>9} mm {:>8}°", short(1e3 * e[0]), short(e[1].to_degrees()));
+    let settled: String = found.settled.iter().take(edges).map(error).collect();
     say(&format!("    {:14}{settled}", "settled error"));
     for gain in &found.gains {
         let cell = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:+.2}"));
-        let cells = gain.edges.iter().take(edges);
-        let row = row(cells.map(|e| format!("  {:>12} {:>8}", cell(e[0]), cell(e[1]))));
+        let both = |e: &[Option<f64>; 2]| format!("  {:>12} {:>8}", cell(e[0]), cell(e[1]));
+        let row: String = gain.edges.iter().take(edges).map(both).collect();
         say(&format!("    {:14}{row}", gain.gain.symbol()));
     }
 }

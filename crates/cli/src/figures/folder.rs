@@ -58,7 +58,7 @@ impl Folder {
             "status": status,
             "files": there,
         });
-        if let (Some((report, runs)), Value::Object(all)) = (came, &mut value) {
+        if let (Some((report, runs)), Some(all)) = (came, value.as_object_mut()) {
             all.extend(found(report, runs));
         }
         Ok(write_whole(&self.path.join(MARK), format!("{value:#}\n").as_bytes())?)
@@ -80,14 +80,15 @@ pub(super) fn found(report: &Report, runs: &[FinishedRun]) -> serde_json::Map<St
             "efforts": trace.efforts,
         })
     };
-    let mut all = serde_json::Map::new();
-    all.insert("title".to_owned(), json!(report.title));
-    all.insert("versions".to_owned(), json!(report.versions));
-    all.insert("holding".to_owned(), json!(claims.iter().filter(|claim| claim.holds).count()));
-    all.insert("claims".to_owned(), json!(claims));
-    all.insert("left_out".to_owned(), json!(report.left_out));
-    all.insert("runs".to_owned(), runs.iter().map(run).collect());
-    all
+    let all = [
+        ("title", json!(report.title)),
+        ("versions", json!(report.versions)),
+        ("holding", json!(claims.iter().filter(|claim| claim.holds).count())),
+        ("claims", json!(claims)),
+        ("left_out", json!(report.left_out)),
+        ("runs", runs.iter().map(run).collect()),
+    ];
+    all.map(|(key, value)| (key.to_owned(), value)).into_iter().collect()
 }
 
 /// The files that an earlier set has left, if it is one; names that lead elsewhere are none of its.

@@ -14,6 +14,15 @@ const FIGURES: u64 = 14;
 /// Samples between two looks at the bar.
 const STRIDE: u64 = 64;
 
+/// ", 3 films", or nothing.
+pub(super) fn films(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        1 => ", a film".to_owned(),
+        count => format!(", {count} films"),
+    }
+}
+
 /// The bar, and what has been done.
 pub(super) struct Meter {
     progress: Progress,
@@ -33,8 +42,7 @@ impl Meter {
         let frames: u64 = shows.iter().map(FilmedRun::frames).sum();
         let samples: u64 = runs.iter().map(|run| run.simulation.len()).sum();
         let of = subject.own.as_ref().map_or("the paper", |(_, name)| name.as_str());
-        let films = if shows.is_empty() { String::new() } else { format!(", {} films", shows.len()) };
-        let films = if shows.len() == 1 { ", a film".to_owned() } else { films };
+        let films = films(shows.len());
         let what = format!("Figures of {of}: {}{films}", counted(runs.len(), "run"));
         let all = samples + FRAME * frames + FIGURE * FIGURES;
         let progress = Progress::begin(&what, all, args.quiet || args.json);

@@ -2,6 +2,7 @@
 
 use super::FiguresArgs;
 use super::folder::{Folder, found};
+use super::meter::films;
 use crate::print::{json, say};
 use report::{FinishedRun, Report};
 use serde_json::json;
@@ -30,11 +31,7 @@ pub(super) fn tell(args: &FiguresArgs, report: &Report, runs: &[FinishedRun], fo
     for text in &report.left_out {
         say(&format!("left out: {text}"));
     }
-    let films = match report.films.len() {
-        0 => String::new(),
-        1 => ", a film".to_owned(),
-        count => format!(", {count} films"),
-    };
+    let films = films(report.films.len());
     let runs = if runs.len() == 1 { "a run".to_owned() } else { format!("{} runs", runs.len()) };
     say(&format!("{}{films} and a report of {runs}, in {wall:.1} s", counted(report.items.len(), "figure")));
     say(&folder.path().join("report.html").display().to_string());

@@ -5,7 +5,7 @@ use metrics::{EdgeMetrics, Metrics};
 use rendering::{Card, Subtitle};
 use vocabulary::{EntityId, FleetInfo, StepRecord};
 
-/// Set points that are told one by one.
+/// Set points that are listed, at most.
 const MOST_SET_POINTS: usize = 4;
 
 /// Set points in a row.

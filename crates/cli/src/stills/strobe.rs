@@ -1,8 +1,7 @@
 //! All of a run in one picture, as under a stroboscope: pictures from one place, and of each what moved.
 
 use rendering::Viewpoint;
-use vocabulary::math;
-use vocabulary::{FleetInfo, Picture, StepRecord};
+use vocabulary::{FleetInfo, Picture, StepRecord, math};
 
 /// Vertical field of view, rad.
 const FIELD: f64 = 0.55;
@@ -70,7 +69,7 @@ pub(super) fn together(pictures: &[Picture]) -> Picture {
             for (value, picture) in column.iter_mut().zip(pictures) {
                 *value = picture.rgba[at + channel];
             }
-            // Most of the time nobody is there.
+            // Most of the time there is no robot at a pixel.
             column.sort_unstable();
             column[column.len() / 2]
         });

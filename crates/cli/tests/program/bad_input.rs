@@ -176,7 +176,7 @@ fn overrides_that_lead_nowhere() {
 fn numbers_in_messages_can_be_read() {
     let scene = scene("line-three");
     drawing_refused(&["film", &scene, "--fps", "1e-320"], 2, &["error: 1e-320 frames a second"]);
-    drawing_refused(&["capture", &scene, "--at", "1e300"], 2, &["error: 1e300 s is no time"]);
+    drawing_refused(&["capture", &scene, "--at", "1e300"], 2, &["error: 1e300 s is not within the run"]);
     drawing_refused(&["run", &scene, "--set", "time.duration=1e-320"], 2, &["`duration` of 1e-320 s"]);
     drawing_refused(&["check", &scene, "--set", "robots.1.distance=1e-320"], 2, &["falls to 1e-320 m"]);
     let args = [

@@ -53,7 +53,7 @@ fn what_has_no_certificate_says_so() {
         path = { kind = \"constant\" }\n";
     fs::write(folder.path().join("alone.toml"), alone).expect("written");
     let (code, _, err) = told(&echelon(folder.path(), &["certify", "alone.toml"]));
-    assert!(code == 2 && err.contains("nobody follows anybody"), "{err}");
+    assert!(code == 2 && err.contains("no robot follows another"), "{err}");
     assert_eq!(told(&echelon(folder.path(), &["certify", &scene("line-three"), "--bound", "0"])).0, 2);
     fs::write(folder.path().join("file"), "x").expect("written");
     let (code, _, err) = told(&echelon(folder.path(), &["certify", &scene("line-three"), "-o", "file"]));

@@ -111,7 +111,7 @@ fn runs_that_differ_are_told_apart() {
     let (code, out, _) = diff(&["c", "e"]);
     assert!(code == 1 && out.contains("not two logs"), "{out}");
     let (code, out, err) = diff(&["a", "nowhere"]);
-    assert!(code == 2 && out.is_empty() && err.contains("is no run folder"), "{err}");
+    assert!(code == 2 && out.is_empty() && err.contains("is neither a run folder nor a log"), "{err}");
     let (code, _, err) = diff(&["a", "c", "--tolerance", "-1"]);
     assert_eq!(code, 2, "{err}");
 }

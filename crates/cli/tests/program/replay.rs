@@ -81,14 +81,14 @@ fn what_is_no_run_folder_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("notes.txt"), "mine").expect("written");
     for (path, why) in
-        [(".", "is no run folder"), ("nowhere", "is no run folder"), ("notes.txt", "is no log")]
+        [(".", "is not a run folder"), ("nowhere", "is neither a run folder"), ("notes.txt", "is not a log")]
     {
         let (code, out, err) = told(&echelon(folder.path(), &["replay", path]));
         assert!(code == 2 && out.is_empty() && err.contains(why), "{err}");
     }
     fs::write(folder.path().join("manifest.json"), "{}").expect("written");
     let (code, _, err) = told(&echelon(folder.path(), &["replay", "."]));
-    assert!(code == 2 && err.contains("no manifest of a run"), "{err}");
+    assert!(code == 2 && err.contains("not the manifest of a run"), "{err}");
     let run = record(folder.path(), "line-three");
     fs::remove_file(run.join("scene.toml")).expect("removed");
     let (code, _, err) = told(&echelon(folder.path(), &["replay", "run"]));
@@ -117,7 +117,7 @@ fn scenes_and_runs_are_told_apart() {
     fs::copy(scene("line-three"), folder.path().join("mine.toml")).expect("copied");
     fs::copy(folder.path().join("run/log.mcap"), folder.path().join("a.mcap")).expect("copied");
     fs::copy(folder.path().join("run/log.mcap"), folder.path().join("renamed")).expect("copied");
-    let wanted = "such as runs/line-three-001, or its log.mcap is wanted; `echelon run SCENE` leaves one";
+    let wanted = "such as runs/line-three-001, or its log.mcap is needed; `echelon run SCENE` leaves one";
     for (args, words) in [
         (&["replay", "nosuch"][..], wanted),
         (&["diff", "run", "nosuch"], wanted),
@@ -128,7 +128,7 @@ fn scenes_and_runs_are_told_apart() {
         (&["replay", "run/manifest.json"], "its run is the folder run"),
         (
             &["capture", "run"],
-            "is a recorded run, and a scene is wanted here: `echelon replay run` runs it again",
+            "is a recorded run, but a scene is needed here: `echelon replay run` runs it again",
         ),
         (&["film", "run"], "its scene is run/scene.toml"),
         (&["check", "run"], "is a recorded run"),
@@ -138,7 +138,7 @@ fn scenes_and_runs_are_told_apart() {
         (&["budget", "run/log.mcap"], "run/log.mcap is a recorded run"),
         (
             &["compare", "a.mcap", "a.mcap"],
-            "a.mcap: it is no picture; recorded runs are compared by `echelon diff`",
+            "a.mcap: it is not a picture; recorded runs are compared by `echelon diff`",
         ),
         (&["compare", "run", "run"], "recorded runs are compared by `echelon diff`"),
     ] {

@@ -9,8 +9,7 @@ use crate::law::{Law, LawInput, Switching};
 use crate::observer::Estimate;
 use crate::relative::Geometry;
 use nalgebra::{Complex, DMatrix, Matrix2, SVector};
-use vocabulary::math;
-use vocabulary::{EdgeSample, LawKind, MotionInput, Relative, SetPoint, wrap};
+use vocabulary::{EdgeSample, LawKind, MotionInput, Relative, SetPoint, math, wrap};
 
 /// What one edge makes of its leader's deviation [δv in m/s, δω in rad/s] at one frequency.
 #[derive(Debug, Clone, Copy, PartialEq)]

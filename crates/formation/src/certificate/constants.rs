@@ -56,14 +56,14 @@ pub struct Constants {
 impl Constants {
     /// Of what a witness has seen; `None` where its observer is not stable or it has seen nothing.
     pub fn of(witness: &Witness) -> Option<Self> {
-        let layer = witness.layer()?;
+        let layer = witness.layer?;
         witness.span()?;
         let Peaks { first_observer_error, rate_gain: sigma_s, effect: sigma_v, filtered } =
-            witness.ledger().peaks;
+            witness.ledger.peaks;
         let (least, norm) = (layer.least, layer.norm);
-        let gain = witness.law().gain;
+        let gain = witness.law.gain;
         let (k_least, k_most) = (gain[0].min(gain[1]), gain[0].max(gain[1]));
-        let epsilon = witness.observer().epsilon;
+        let epsilon = witness.observer.epsilon;
         let epsilon = epsilon[0].max(epsilon[1]);
         let sigma_1 = (sigma_s + 2.0 * k_most) / k_least;
         let rho = 16.0 * math::powi(sigma_v, 2) * math::powi(norm, 3);

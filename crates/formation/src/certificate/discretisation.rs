@@ -5,8 +5,7 @@
 
 use crate::matrix_exponential::exponential;
 use nalgebra::{Matrix4, SMatrix, Vector4};
-use vocabulary::math;
-use vocabulary::words;
+use vocabulary::{math, words};
 
 /// One channel of a sampled loop.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -139,7 +139,7 @@ struct FindingView<'a> {
 
 impl FindingView<'_> {
     fn finding(&self, statement: Statement) -> StatementFinding {
-        let kind = self.witness.law().kind;
+        let kind = self.witness.law.kind;
         let robust = kind != LawKind::FullState;
         let observes = kind == LawKind::OutputFeedback && self.constants.is_some();
         let applies = match statement {
@@ -151,7 +151,7 @@ impl FindingView<'_> {
             return StatementFinding { statement, unmet: vec![premise], against: None, margin: None };
         }
         let unmet = self.unmet(statement);
-        let ledger = self.witness.ledger();
+        let ledger = &self.witness.ledger;
         let (against, margin) = match statement {
             Statement::RobustGain => self.throughout(&ledger.margin()),
             Statement::NonNegative => self.throughout(&ledger.p),
@@ -171,7 +171,7 @@ impl FindingView<'_> {
 
     /// Samples at which a room is below zero, and its least value.
     fn throughout(&self, room: &Margin) -> (Option<Against>, Option<f64>) {
-        let spell = room.below.spell(self.witness.ledger().samples);
+        let spell = room.below.spell(self.witness.ledger.samples);
         let against =
             |spell: Spell| Against { first: spell.first, last: spell.last, throughout: spell.share >= 1.0 };
         (spell.map(against), room.least)
@@ -180,14 +180,14 @@ impl FindingView<'_> {
     /// A statement about constants: it is so, or from the start not.
     fn constant(&self, room: impl Fn(&Constants) -> f64) -> (Option<Against>, Option<f64>) {
         let margin = self.constants.as_ref().map(room);
-        let [first, last] = self.witness.ledger().span;
+        let [first, last] = self.witness.ledger.span;
         (margin.filter(|m| *m < 0.0).map(|_| Against { first, last, throughout: true }), margin)
     }
 
     /// The bound of eq 49, from T_ε on.
     fn trapped(&self) -> (Option<Against>, Option<f64>) {
         let Some(Constants { trap, t_epsilon, .. }) = self.constants else { return (None, None) };
-        let ledger = self.witness.ledger();
+        let ledger = &self.witness.ledger;
         let (ends, largest) = ledger.trapped.from(t_epsilon, trap);
         let throughout = ledger.span[0] >= t_epsilon && ledger.least_w > trap;
         let against = ends.map(|[first, last]| Against { first, last, throughout });
@@ -197,7 +197,7 @@ impl FindingView<'_> {
     /// The bound of eq 53: violated where the last sample is outside.
     fn in_the_end(&self) -> (Option<Against>, Option<f64>) {
         let Some(bound) = self.constants.map(|c| c.delta_0) else { return (None, None) };
-        let ledger = self.witness.ledger();
+        let ledger = &self.witness.ledger;
         let [least, last] = ledger.whole;
         let ends = ledger.end.ends([bound, 0.0]).filter(|_| last > bound);
         let against = ends.map(|[first, last]| Against { first, last, throughout: least > bound });
@@ -205,12 +205,12 @@ impl FindingView<'_> {
     }
 
     fn observes(&self) -> bool {
-        self.witness.law().kind == LawKind::OutputFeedback
+        self.witness.law.kind == LawKind::OutputFeedback
     }
 
     /// Premises of a statement that the run does not meet.
     fn unmet(&self, statement: Statement) -> Vec<Premise> {
-        let (c, law, ledger) = (self.circumstances, self.witness.law(), self.witness.ledger());
+        let (c, law, ledger) = (self.circumstances, &self.witness.law, &self.witness.ledger);
         let rough = c.rough_leader.map(|at| Premise::LeaderNotSmooth { at });
         let smoothed = matches!(law.switching, Switching::Tanh(_)).then_some(Premise::Smoothed);
         let spell = |tally: &Tally| tally.spell(ledger.samples);

@@ -7,8 +7,7 @@ use crate::law::{Law, Switching};
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
 use nalgebra::Vector2;
-use vocabulary::math;
-use vocabulary::{LawKind, MotionInput, Relative, SetPoint, wrap};
+use vocabulary::{LawKind, MotionInput, Relative, SetPoint, math, wrap};
 
 /// One edge at one control sample, as it truly was.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,17 +87,19 @@ impl WitnessRow {
 /// Goes along with one edge; its law and observer stay the same.
 #[derive(Debug, Clone)]
 pub struct Witness {
-    law: Law,
-    observer: Observer,
-    layer: Option<BoundaryLayer>,
-    ledger: Ledger,
+    /// The law it goes along with.
+    pub law: Law,
+    /// The observer it goes along with; only output feedback uses it.
+    pub observer: Observer,
+    /// The boundary layer of the observer; `None` where it is not stable.
+    pub layer: Option<BoundaryLayer>,
+    /// ζ_b (eq 26).
+    pub initial: f64,
+    pub(super) ledger: Ledger,
     last_row: Option<WitnessRow>,
     /// Every sample, where they are kept.
     rows: Option<Vec<WitnessRow>>,
     last: Option<Sums>,
-    first_error: [f64; 2],
-    initial: f64,
-    settled_effect: [f64; 2],
     /// Index of the sample at which the sign of each error switched last.
     switched: [Option<u64>; 2],
 }
@@ -129,9 +130,7 @@ impl Witness {
             last_row: None,
             rows: None,
             last: None,
-            first_error: [0.0; 2],
             initial: 0.0,
-            settled_effect: [0.0; 2],
             switched: [None; 2],
         }
     }
@@ -140,21 +139,6 @@ impl Witness {
     #[must_use]
     pub fn keeping(self) -> Self {
         Self { rows: Some(Vec::new()), ..self }
-    }
-
-    /// The law it goes along with.
-    pub fn law(&self) -> &Law {
-        &self.law
-    }
-
-    /// The observer it goes along with; only output feedback uses it.
-    pub fn observer(&self) -> &Observer {
-        &self.observer
-    }
-
-    /// The boundary layer of the observer; `None` where it is not stable.
-    pub fn layer(&self) -> Option<&BoundaryLayer> {
-        self.layer.as_ref()
     }
 
     /// All samples so far; none unless it is [`Self::keeping`] them.
@@ -167,23 +151,9 @@ impl Witness {
         (self.ledger.samples > 0).then_some(self.ledger.span)
     }
 
-    pub(super) fn ledger(&self) -> &Ledger {
-        &self.ledger
-    }
-
-    /// ζ_b (eq 26).
-    pub fn initial(&self) -> f64 {
-        self.initial
-    }
-
-    /// e at the first sample, [m, rad].
-    pub fn first_error(&self) -> [f64; 2] {
-        self.first_error
-    }
-
     /// g_v V_i at the last sample, [m/s², rad/s²].
     pub fn last_effect(&self) -> [f64; 2] {
-        self.settled_effect
+        self.last.map_or([0.0; 2], |last| last.effect.into())
     }
 
     /// Takes in the next sample.
@@ -239,14 +209,12 @@ impl Witness {
         let constants = Constants::of(self).filter(|_| self.law.kind == LawKind::OutputFeedback);
         self.ledger.judge(before.as_ref(), constants.as_ref());
         self.last = Some(sums);
-        self.settled_effect = effect.into();
     }
 
     /// ∫ L dτ with L = rᵀ(g_v V_i − ū) (eq 25), r = de/dt + K e: the part with de/dt as a Stieltjes sum and, for ū, in
     /// closed form, so that steps of the sign do no harm; the rest by trapezoids.
     fn integrate(&mut self, time: f64, error: Vector2<f64>, effect: Vector2<f64>, integrand: f64) -> Sums {
         let Some(last) = self.last else {
-            self.first_error = error.into();
             let beta = self.law.robust_gain;
             let robust = self.law.kind != LawKind::FullState;
             let start = if robust { beta[0] * error.x.abs() + beta[1] * error.y.abs() } else { 0.0 };

@@ -5,8 +5,7 @@
 use super::{Bend, SpeedSchedule, bend::sharpest, tridiagonal::Tridiagonal};
 use kurbo::{CubicBez, ParamCurve, ParamCurveArclen, ParamCurveDeriv, Point, Vec2};
 use thiserror::Error;
-use vocabulary::math;
-use vocabulary::{MotionInput, Pose, Trajectory};
+use vocabulary::{MotionInput, Pose, Trajectory, math};
 
 /// Why points make no curve.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

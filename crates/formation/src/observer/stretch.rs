@@ -3,8 +3,7 @@
 use crate::relative::Geometry;
 use nalgebra::{SMatrix, Vector2};
 use std::sync::LazyLock;
-use vocabulary::math;
-use vocabulary::{EdgeSample, Relative, TRACK_NODES, Track, nearest_turn};
+use vocabulary::{EdgeSample, Relative, TRACK_NODES, Track, math, nearest_turn};
 
 /// Polynomials of the stretch have this degree, one less than the nodes of a track.
 pub(super) const DEGREE: usize = TRACK_NODES - 1;

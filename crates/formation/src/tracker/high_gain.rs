@@ -4,8 +4,7 @@
 use super::{Own, TrackerParameters, innovation};
 use crate::observer::{Estimate, Observer, input_effect};
 use crate::relative::Geometry;
-use vocabulary::math;
-use vocabulary::{EdgeSample, Measurement, MotionInput, Relative};
+use vocabulary::{EdgeSample, Measurement, MotionInput, Relative, math};
 
 /// ŝ1 and ŝ2, and the view angle, which no law controls but all of them use.
 #[derive(Debug, Clone, Copy, PartialEq)]

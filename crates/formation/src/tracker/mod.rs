@@ -105,14 +105,12 @@ impl Tracker {
 
     /// Puts in a measurement that has arrived; what came of it.
     pub fn take(&mut self, law: &TrackerParameters, measurement: &Measurement) -> Outcome {
-        let finite =
-            |r: &Relative| r.distance.is_finite() && r.bearing.is_finite() && r.view_angle.is_finite();
-        if !finite(&measurement.relative) || measurement.stamp < self.now - MEMORY {
+        let finite = measurement.relative.coordinates().iter().all(|x| x.is_finite());
+        if !finite || measurement.stamp < self.now - MEMORY {
             return Outcome::Rejected;
         }
         let Some((time, belief)) = self.anchor.take() else {
-            self.restart(law, measurement);
-            return Outcome::Used;
+            return self.restart(law, measurement);
         };
         // Measurements come in the order of their stamps; one out of order adds nothing.
         if measurement.stamp < time {
@@ -121,8 +119,7 @@ impl Tracker {
         }
         if !belief.is_of(law.method) {
             // The method has changed since: it begins anew.
-            self.restart(law, measurement);
-            return Outcome::Used;
+            return self.restart(law, measurement);
         }
         let mut at_measurement = belief.clone();
         self.replay(law, &mut at_measurement, time, measurement.stamp);
@@ -133,21 +130,19 @@ impl Tracker {
                 self.anchor = Some((time, belief));
                 return Outcome::Rejected;
             }
-            self.restart(law, measurement);
-            return Outcome::Used;
+            return self.restart(law, measurement);
         }
         self.rejected = 0;
         at_measurement.correct(law, measurement, age);
         if !at_measurement.is_finite() {
-            self.restart(law, measurement);
-            return Outcome::Used;
+            return self.restart(law, measurement);
         }
         self.settle(law, measurement.stamp, at_measurement);
         Outcome::Used
     }
 
-    /// Begins anew at a measurement, rates zero.
-    fn restart(&mut self, law: &TrackerParameters, measurement: &Measurement) {
+    /// Begins anew at a measurement, which is used so; rates are zero.
+    fn restart(&mut self, law: &TrackerParameters, measurement: &Measurement) -> Outcome {
         self.rejected = 0;
         let own = self.past.iter().find(|s| measurement.stamp <= s.until).or(self.past.back());
         let speed = own.map_or(0.0, |s| s.own.speed);
@@ -156,6 +151,7 @@ impl Tracker {
             ObserverKind::Unscented => EdgeEstimator::Unscented(Box::new(Unscented::at(measurement, speed))),
         };
         self.settle(law, measurement.stamp, belief);
+        Outcome::Used
     }
 
     /// What is believed at `stamp` becomes the anchor, and is carried on to now.
@@ -268,9 +264,7 @@ impl EdgeEstimator {
     }
 
     fn is_finite(&self) -> bool {
-        let Relative { distance, bearing, view_angle } = self.relative();
-        let sound = [distance, bearing, view_angle].iter().all(|x| x.is_finite());
-        sound
+        self.relative().coordinates().iter().all(|x| x.is_finite())
             && match self {
                 Self::HighGain(belief) => belief.estimate.rates.iter().all(|x| x.is_finite()),
                 Self::Unscented(belief) => belief.is_sound(),

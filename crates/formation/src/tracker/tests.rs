@@ -1,8 +1,7 @@
 //! What estimates from measurements have to show, on a pair of exact unicycles.
 
 use super::*;
-use vocabulary::math;
-use vocabulary::{Pose, nearest_turn};
+use vocabulary::{Pose, math, nearest_turn};
 
 const T: f64 = 0.01;
 

@@ -2,8 +2,7 @@
 
 use super::Tag;
 use crate::pose::{SeenFace, area};
-use vocabulary::math;
-use vocabulary::{FACES, Shell};
+use vocabulary::{FACES, Shell, math};
 
 /// Sides shorter than this, pixels, cannot have been read: eight cells of a pixel.
 const SHORTEST_SIDE: f64 = 8.0;

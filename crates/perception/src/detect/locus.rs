@@ -3,8 +3,7 @@
 use super::{Detector, Tag};
 use locus_core::{DetectorBuilder, FrameContext, ImageView, LocusEngine, TagFamily};
 use std::sync::LazyLock;
-use vocabulary::Grey;
-use vocabulary::math;
+use vocabulary::{Grey, math};
 
 /// Pictures with fewer pixels across or down hold no tag: ten cells of little more than a pixel.
 const LEAST: u32 = 16;

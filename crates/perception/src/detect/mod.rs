@@ -10,7 +10,7 @@ pub use sharpen::sharpen;
 
 use crate::imaging::Optics;
 use crate::pose::SeenFace;
-use vocabulary::{FACES, Grey, Region, Shell};
+use vocabulary::{Grey, Region, Shell};
 
 /// A tag found in a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,19 +38,8 @@ pub trait Detector: Send {
 }
 
 /// The faces of `shell` in a picture of `region`: tags found, their corners sharpened, and judged. Corners are pixels of
-/// the whole frame.
+/// the whole frame. Once `expected` faces are found, the shade is not searched.
 pub fn recognise(
-    detector: &mut dyn Detector,
-    picture: &Grey,
-    region: Region,
-    optics: &Optics,
-    shell: &Shell,
-) -> Vec<SeenFace> {
-    recognise_expected(detector, picture, region, optics, shell, FACES)
-}
-
-/// The same where no more than `expected` faces can be seen: once they are found, the shade is not searched.
-pub fn recognise_expected(
     detector: &mut dyn Detector,
     picture: &Grey,
     region: Region,

@@ -14,8 +14,7 @@ use crate::imaging::Optics;
 use crate::pose::homography;
 use bell::EdgeProfile;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
-use vocabulary::math;
-use vocabulary::{CameraModel, Grey, Region, TAG_CELLS, tag_cell};
+use vocabulary::{CameraModel, Grey, Region, TAG_CELLS, math, tag_cell};
 
 /// Corners of the black square, in cells from the middle of the tag, x right and y down.
 const SQUARE: [[f64; 2]; 4] = [[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0]];

@@ -6,10 +6,9 @@ mod noise;
 
 pub use exposure::gather;
 pub use noise::{NoiseStream, Purpose, noise_stream};
-use vocabulary::math;
 
 use glass::{Glass, between};
-use vocabulary::{CameraModel, Grey, Region};
+use vocabulary::{CameraModel, Grey, Region, RobotInfo, RobotState, Shot, math};
 
 /// A lens and the sensor behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,6 +37,15 @@ pub struct IdealPicture {
     pub centre: [f64; 2],
     /// Pixel of the ideal picture of the whole frame that is pixel (0, 0) of this one.
     pub corner: [i32; 2],
+}
+
+impl IdealPicture {
+    /// What is drawn of it for the camera of robot number `robot`; `exposure` is the factor on the light.
+    pub fn shot(&self, robot: usize, info: &RobotInfo, state: &RobotState, exposure: f64) -> Shot {
+        let Self { region, centre, .. } = *self;
+        let world_from_camera = info.camera_mount.world_from_camera(state);
+        Shot { robot, world_from_camera, focal: info.camera_model.focal, centre, region, exposure }
+    }
 }
 
 /// Makes a sensor's pictures out of ideal ones.

@@ -29,7 +29,12 @@ pub struct NoiseStream {
 
 /// The stream that belongs to a seed, a robot, a frame and a purpose.
 pub fn noise_stream(seed: u64, robot: usize, frame: u64, purpose: Purpose) -> NoiseStream {
-    NoiseStream::new(seed, robot, frame, purpose)
+    let mut key = [0; 32];
+    let words = [seed, robot as u64, frame, purpose as u64 + 1];
+    for (bytes, word) in key.chunks_exact_mut(8).zip(words) {
+        bytes.copy_from_slice(&word.to_le_bytes());
+    }
+    NoiseStream { source: ChaCha8Rng::from_seed(key) }
 }
 
 /// Steps of the table of the normal distribution.
@@ -46,16 +51,6 @@ static QUANTILES: LazyLock<Vec<f32>> = LazyLock::new(|| {
 });
 
 impl NoiseStream {
-    /// See [`noise_stream`].
-    pub fn new(seed: u64, robot: usize, frame: u64, purpose: Purpose) -> Self {
-        let mut key = [0; 32];
-        let words = [seed, robot as u64, frame, purpose as u64 + 1];
-        for (bytes, word) in key.chunks_exact_mut(8).zip(words) {
-            bytes.copy_from_slice(&word.to_le_bytes());
-        }
-        Self { source: ChaCha8Rng::from_seed(key) }
-    }
-
     /// Evenly from [0, 1).
     pub fn uniform(&mut self) -> f64 {
         (self.source.next_u64() >> 11) as f64 / (1_u64 << 53) as f64

@@ -4,10 +4,9 @@
 //!
 //! A plane seen from far away looks the same tilted to either side. Both poses are returned, for others to judge.
 
-use super::posit::{Match, centroid, rigid, scaled_pose};
+use super::posit::{Match, centroid, rigid, scaled_pose, stretch};
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, SMatrix, SVector, Vector2, Vector3};
-use vocabulary::Rigid;
-use vocabulary::math;
+use vocabulary::{Rigid, math};
 
 /// Rounds after which a branch is given up.
 const ROUNDS: usize = 200;
@@ -100,13 +99,8 @@ impl Plane {
         let (mut rotation, mut translation) = (rotation, translation);
         let mut stretched: Vec<[f64; 2]> = matches.iter().map(|m| m.seen).collect();
         for _ in 0..ROUNDS {
-            let mut change = 0.0_f64;
-            for ((m, point), stretched) in matches.iter().zip(&self.points).zip(&mut stretched) {
-                let depth = rotation.row(2).transpose().dot(point) / translation.z;
-                let next = m.seen.map(|x| x * (1.0 + depth));
-                change = change.max((next[0] - stretched[0]).abs()).max((next[1] - stretched[1]).abs());
-                *stretched = next;
-            }
+            let points = self.points.iter().copied();
+            let change = stretch(matches, points, &rotation, &translation, &mut stretched);
             if change < 1e-14 || !change.is_finite() {
                 break;
             }

@@ -15,8 +15,7 @@ pub use posit::{Match, posit};
 
 use nalgebra::{Matrix3, Vector3};
 use refine::{Corner, Minimum, Problem};
-use vocabulary::math;
-use vocabulary::{CameraModel, FACE_DIRECTIONS, FACES, Pose, Relative, Rigid, Shell, wrap};
+use vocabulary::{CameraModel, FACE_DIRECTIONS, FACES, Pose, Relative, Rigid, Shell, math, wrap};
 
 /// Poses whose headings differ by less, rad, are not told apart: their difference goes into the covariance.
 const ALIKE: f64 = 4.0 * std::f64::consts::PI / 180.0;

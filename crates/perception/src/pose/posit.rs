@@ -52,27 +52,40 @@ fn settle(
     mut solve: impl FnMut(&[[f64; 2]]) -> Option<(Vector3<f64>, Vector3<f64>, [f64; 2])>,
 ) -> Option<Rigid> {
     let mut stretched: Vec<[f64; 2]> = matches.iter().map(|m| m.seen).collect();
-    for _ in 0..ROUNDS {
+    let mut round = 0;
+    loop {
         let (i, j, shift) = solve(&stretched)?;
         let (rotation, translation) = scaled_pose(&i, &j, shift)?;
-        let mut change = 0.0_f64;
-        for (m, stretched) in matches.iter().zip(&mut stretched) {
-            let depth = rotation.row(2).transpose().dot(&(Vector3::from(m.point) - origin)) / translation.z;
-            let next = m.seen.map(|x| x * (1.0 + depth));
-            change = change.max((next[0] - stretched[0]).abs()).max((next[1] - stretched[1]).abs());
-            *stretched = next;
-        }
-        if change < SETTLED {
+        let points = matches.iter().map(|m| Vector3::from(m.point) - origin);
+        let change = stretch(matches, points, &rotation, &translation, &mut stretched);
+        // Rounding may keep the last digit moving: the caller judges the pose by its residual.
+        if change < SETTLED || round == ROUNDS {
             return rigid(&rotation, &translation, origin);
         }
         if !change.is_finite() {
             return None;
         }
+        round += 1;
     }
-    // Rounding may keep the last digit moving: whoever asked judges the pose by its residual.
-    let (i, j, shift) = solve(&stretched)?;
-    let (rotation, translation) = scaled_pose(&i, &j, shift)?;
-    rigid(&rotation, &translation, origin)
+}
+
+/// Stretches the directions of `matches` by 1 + ε for an object at this rotation and translation, its points relative to
+/// the point that is translated; returns the largest change.
+pub(super) fn stretch(
+    matches: &[Match],
+    points: impl Iterator<Item = Vector3<f64>>,
+    rotation: &Matrix3<f64>,
+    translation: &Vector3<f64>,
+    stretched: &mut [[f64; 2]],
+) -> f64 {
+    let mut change = 0.0_f64;
+    for ((m, point), stretched) in matches.iter().zip(points).zip(stretched) {
+        let depth = rotation.row(2).transpose().dot(&point) / translation.z;
+        let next = m.seen.map(|x| x * (1.0 + depth));
+        change = change.max((next[0] - stretched[0]).abs()).max((next[1] - stretched[1]).abs());
+        *stretched = next;
+    }
+    change
 }
 
 /// Rotation and translation from I = sR₁, J = sR₂ and (sTx, sTy).

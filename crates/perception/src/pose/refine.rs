@@ -7,8 +7,7 @@
 
 use super::Prior;
 use nalgebra::{Matrix2, Matrix3, Matrix6, Rotation3, SMatrix, Vector2, Vector3, Vector6};
-use vocabulary::math;
-use vocabulary::{CameraModel, Pose, Rigid, wrap};
+use vocabulary::{CameraModel, Pose, Rigid, math, wrap};
 
 /// A corner further off than this, in standard deviations, counts by its distance and no longer by its square (Huber):
 /// one bad corner pulls no harder than three good ones. One good corner in 90 is that far off.

@@ -1,11 +1,10 @@
 //! Poses from exact and from noisy corners, against bounds and an oracle.
 
 use super::*;
-use crate::imaging::{NoiseStream, Purpose};
+use crate::imaging::{NoiseStream, Purpose, noise_stream};
 use proptest::prelude::*;
 use std::ops::Range;
-use vocabulary::math;
-use vocabulary::{Body, CameraMount};
+use vocabulary::{Body, CameraMount, math};
 
 /// Random views of the paper's shell.
 pub(crate) struct Views {
@@ -23,7 +22,7 @@ pub(crate) struct PoseView {
 
 impl Views {
     pub(crate) fn seeded(seed: u64) -> Self {
-        Self { stream: NoiseStream::new(seed, 0, 0, Purpose::Pixels) }
+        Self { stream: noise_stream(seed, 0, 0, Purpose::Pixels) }
     }
 
     pub(crate) fn uniform(&mut self, range: Range<f64>) -> f64 {

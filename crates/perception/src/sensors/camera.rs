@@ -1,9 +1,9 @@
 //! Pictures: which part to take, what the sensor makes of the light, and the tags in it.
 
-use super::{Exposure, SensorConfig, all_faces, pan};
-use crate::detect::{Locus, recognise_expected};
+use super::{Exposure, SensorConfig, pan};
+use crate::detect::{Locus, recognise};
 use crate::imaging::{ImageSensor, Optics, Purpose, gather, noise_stream};
-use crate::pose::SeenFace;
+use crate::pose::{Rig, SeenFace};
 use vocabulary::{CameraModel, CameraRenderer, FACES, Grey, Region, Rigid, Shot, Snapshot};
 
 /// How cameras turn and take pictures; the lens and the mount are each robot's own.
@@ -68,12 +68,6 @@ impl Clone for CameraPipeline {
     }
 }
 
-impl std::fmt::Debug for CameraPipeline {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Darkroom").field("benches", &self.benches.len()).finish_non_exhaustive()
-    }
-}
-
 impl CameraPipeline {
     /// As many benches as threads can work on `pictures` at once, at least one.
     fn benches(&mut self, pictures: usize) -> &mut [DetectorBench] {
@@ -113,10 +107,9 @@ impl DetectorBench {
         let sensor = self.sensor(&sensor_config.robots[exposure.follower].camera_model, model);
         sensor.expose(light, region, &mut random, &mut picture);
         let optics = *sensor.optics();
-        let shell = sensor_config.robots[exposure.leader].shell;
-        let expected = readable(sensor_config, exposure).unwrap_or(FACES);
-        let faces = shell.map_or_else(Vec::new, |shell| {
-            recognise_expected(&mut self.detector, &picture, region, &optics, &shell, expected)
+        let faces = sensor_config.rig(exposure).map_or_else(Vec::new, |rig| {
+            let expected = readable(&rig, exposure).unwrap_or(FACES);
+            recognise(&mut self.detector, &picture, region, &optics, &rig.shell, expected)
         });
         self.picture = picture;
         CameraDetection { region, faces }
@@ -185,18 +178,9 @@ impl CameraSettings {
     ) -> Result<Vec<Grey>, String> {
         let mut shots = |snapshot: &Snapshot| -> Vec<Shot> {
             let shot = |(exposure, region): (&&Exposure<'_>, &Region)| {
-                let info = &sensor_config.robots[exposure.follower];
+                let (robot, info) = (exposure.follower, &sensor_config.robots[exposure.follower]);
                 let source = bench.sensor(&info.camera_model, self).source(*region);
-                Shot {
-                    robot: exposure.follower,
-                    world_from_camera: info
-                        .camera_mount
-                        .world_from_camera(&snapshot.robots[exposure.follower]),
-                    focal: info.camera_model.focal,
-                    centre: source.centre,
-                    region: source.region,
-                    exposure: self.exposure,
-                }
+                source.shot(robot, info, &snapshot.robots[robot], self.exposure)
             };
             exposures.iter().zip(regions).map(shot).collect()
         };
@@ -230,7 +214,8 @@ impl CameraSettings {
         if self.whole_frames || !exposure.seen {
             return whole;
         }
-        expected(sensor_config, exposure).and_then(|bounds| fitted(camera_model, bounds)).unwrap_or(whole)
+        let bounds = sensor_config.rig(exposure).and_then(|rig| expected(&rig, exposure));
+        bounds.and_then(|bounds| fitted(camera_model, bounds)).unwrap_or(whole)
     }
 }
 
@@ -242,39 +227,32 @@ fn checked(pictures: &[Grey], wanted: usize) -> Result<(), String> {
 }
 
 /// The leader's frame in the camera's, as the follower expects it.
-fn camera_from_expected(sensor_config: &SensorConfig, exposure: &Exposure<'_>) -> Option<Rigid> {
+fn camera_from_expected(rig: &Rig, exposure: &Exposure<'_>) -> Option<Rigid> {
     let pose = pan::leader_pose(&exposure.expected?);
     let body_from_leader = Rigid::turned([pose.x, pose.y, 0.0], pose.heading, 0.0, 0.0);
-    let pan = exposure.snapshot.robots.get(exposure.follower)?.camera_pan;
-    let camera_mount = sensor_config.robots.get(exposure.follower)?.camera_mount;
-    Some(camera_mount.body_from_camera(pan).inverse().after(&body_from_leader))
+    Some(rig.body_from_camera.inverse().after(&body_from_leader))
 }
 
 /// How many faces can surely be read where the leader is expected; `None` where that is not known.
-fn readable(sensor_config: &SensorConfig, exposure: &Exposure<'_>) -> Option<usize> {
-    let (leader, follower) =
-        (sensor_config.robots.get(exposure.leader)?, sensor_config.robots.get(exposure.follower)?);
-    let (shell, from_leader) = (leader.shell?, camera_from_expected(sensor_config, exposure)?);
+fn readable(rig: &Rig, exposure: &Exposure<'_>) -> Option<usize> {
+    let (shell, from_leader) = (rig.shell, camera_from_expected(rig, exposure)?);
     let surely = |face: usize| {
         let camera = from_leader.after(&shell.body_from_face(face)).inverse().translation;
         let away = camera.iter().map(|x| x * x).sum::<f64>().sqrt();
-        camera[2] > SURELY.0 * away && follower.camera_model.focal * shell.cell > SURELY.1 * away
+        camera[2] > SURELY.0 * away && rig.camera_model.focal * shell.cell > SURELY.1 * away
     };
-    exposure.seen.then(|| all_faces().filter(|face| surely(*face)).count().max(1))
+    exposure.seen.then(|| (0..FACES).filter(|face| surely(*face)).count().max(1))
 }
 
 /// Cosine of the angle from its normal, and pixels a cell, at which a face is surely read.
 const SURELY: (f64, f64) = (0.55, 2.0);
 
 /// Smallest and largest column and row of the leader's tags where the follower expects them.
-fn expected(sensor_config: &SensorConfig, exposure: &Exposure<'_>) -> Option<[[f64; 2]; 2]> {
-    let camera_from_leader = camera_from_expected(sensor_config, exposure)?;
-    let (leader, follower) =
-        (sensor_config.robots.get(exposure.leader)?, sensor_config.robots.get(exposure.follower)?);
-    let shell = leader.shell?;
+fn expected(rig: &Rig, exposure: &Exposure<'_>) -> Option<[[f64; 2]; 2]> {
+    let camera_from_leader = camera_from_expected(rig, exposure)?;
     let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for corner in all_faces().flat_map(|face| shell.tag_corners(face)) {
-        let pixel = follower.camera_model.project(camera_from_leader.apply(corner))?;
+    for corner in (0..FACES).flat_map(|face| rig.shell.tag_corners(face)) {
+        let pixel = rig.camera_model.project(camera_from_leader.apply(corner))?;
         for k in 0..2 {
             bounds[0][k] = bounds[0][k].min(pixel[k]);
             bounds[1][k] = bounds[1][k].max(pixel[k]);

@@ -1,8 +1,9 @@
 //! Tags as a camera would see them, calculated: no picture is drawn.
 
-use super::{Exposure, SensorConfig, all_faces};
+use super::{Exposure, SensorConfig};
 use crate::imaging::NoiseStream;
-use crate::pose::SeenFace;
+use crate::pose::{Rig, SeenFace};
+use vocabulary::FACES;
 
 /// Pixels that a cell needs, seen from ahead and at the steepest angle at which a tag is still read.
 const LEAST_CELL: [f64; 2] = [1.75, 2.5];
@@ -25,34 +26,28 @@ pub(super) fn faces(
     pixel_noise: f64,
     random: &mut NoiseStream,
 ) -> Vec<SeenFace> {
-    let (Some(leader), Some(follower)) =
-        (sensor_config.robots.get(exposure.leader), sensor_config.robots.get(exposure.follower))
-    else {
-        return Vec::new();
-    };
-    let (Some(shell), Some(camera_from_leader)) = (leader.shell, sensor_config.camera_from_leader(exposure))
-    else {
-        return Vec::new();
-    };
+    let Some(Rig { shell, camera_model, .. }) = sensor_config.rig(exposure) else { return Vec::new() };
     let robots = &exposure.snapshot.robots;
     let world_from_leader = robots[exposure.leader].world_from_body();
-    let world_from_camera = follower.camera_mount.world_from_camera(&robots[exposure.follower]);
+    let camera_mount = sensor_config.robots[exposure.follower].camera_mount;
+    let world_from_camera = camera_mount.world_from_camera(&robots[exposure.follower]);
+    let camera_from_leader = world_from_camera.inverse().after(&world_from_leader);
     let mut seen = Vec::new();
-    for face in all_faces() {
+    for face in 0..FACES {
         // Errors are drawn for every face, so that a face out of sight changes none of the others.
         let errors: [[f64; 2]; 4] = std::array::from_fn(|_| [0, 1].map(|_| f64::from(random.normal())));
         let eye = shell.body_from_face(face).inverse().after(&camera_from_leader.inverse()).translation;
         let away = eye.iter().map(|x| x * x).sum::<f64>().sqrt();
         let slant = eye[2] / away;
-        let cell = follower.camera_model.focal * shell.cell / away;
+        let cell = camera_model.focal * shell.cell / away;
         if shell.first_tag.is_none() || !readable(slant, cell) {
             continue;
         }
         let corners = shell.tag_corners(face);
-        let pixels = corners.map(|corner| follower.camera_model.project(camera_from_leader.apply(corner)));
+        let pixels = corners.map(|corner| camera_model.project(camera_from_leader.apply(corner)));
         let [Some(a), Some(b), Some(c), Some(d)] = pixels else { continue };
         let pixels = [a, b, c, d];
-        let in_picture = pixels.iter().all(|p| follower.camera_model.holds(*p, MARGIN));
+        let in_picture = pixels.iter().all(|p| camera_model.holds(*p, MARGIN));
         let from = world_from_camera.translation;
         let pair = [exposure.follower, exposure.leader];
         let hidden = |corner: [f64; 3]| {

@@ -20,8 +20,8 @@ use crate::pose::{Prior, Rig, SeenFace, locate};
 use pan::Pan;
 use std::collections::VecDeque;
 use vocabulary::{
-    CameraRenderer, Edge, FACES, Measurement, MeasurementRecord, Outcome, Prop, Relative, Rigid, RobotInfo,
-    Snapshot, StepInterpolant, Terrain, TrackingState,
+    CameraRenderer, Edge, Measurement, MeasurementRecord, Outcome, Prop, Relative, RobotInfo, Snapshot,
+    StepInterpolant, Terrain, TrackingState,
 };
 
 /// Where the measurements of one follower come from.
@@ -58,18 +58,24 @@ pub struct Sensor {
 /// Parameters of all followers' senses.
 #[derive(Debug, Clone)]
 pub struct SensorConfig {
-    edges: Vec<Edge>,
-    sensors: Vec<Sensor>,
-    /// What robots are seen by and see with.
-    pub(crate) robots: Vec<RobotInfo>,
-    pub(crate) props: Vec<Prop>,
-    pub(crate) terrain: Option<std::sync::Arc<Terrain>>,
-    camera: CameraSettings,
-    pub(crate) seed: u64,
+    /// Who measures whom.
+    pub edges: Vec<Edge>,
+    /// The sensor of every edge.
+    pub sensors: Vec<Sensor>,
+    /// What robots are seen by and see with, in the order of the snapshots.
+    pub robots: Vec<RobotInfo>,
+    /// What may stand between them, in the order of the snapshots.
+    pub props: Vec<Prop>,
+    /// Uneven ground, if it is.
+    pub terrain: Option<std::sync::Arc<Terrain>>,
+    /// Settings of all cameras.
+    pub camera: CameraSettings,
+    /// Seed of the noise.
+    pub seed: u64,
 }
 
 /// State of all followers' senses.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct SensorState {
     edges: Vec<EdgeWatch>,
     camera_pipeline: CameraPipeline,
@@ -120,33 +126,6 @@ const INSTANT: f64 = 1e-9;
 const MOST_ON_THE_WAY: usize = 4096;
 
 impl SensorConfig {
-    /// Puts checked parts together: one sensor per edge, `members` in the order of the snapshots.
-    pub fn new(
-        edges: &[Edge],
-        sensors: Vec<Sensor>,
-        robots: &[RobotInfo],
-        props: &[Prop],
-        terrain: Option<std::sync::Arc<Terrain>>,
-        camera: CameraSettings,
-        seed: u64,
-    ) -> Self {
-        debug_assert_eq!(edges.len(), sensors.len());
-        Self {
-            edges: edges.to_vec(),
-            sensors,
-            robots: robots.to_vec(),
-            props: props.to_vec(),
-            terrain,
-            camera,
-            seed,
-        }
-    }
-
-    /// The sensor of every edge.
-    pub fn sensors(&self) -> &[Sensor] {
-        &self.sensors
-    }
-
     /// Whether any follower measures at all.
     pub fn has_sensors(&self) -> bool {
         self.sensors.iter().any(|sensor| sensor.source != SensorKind::Truth)
@@ -336,12 +315,12 @@ impl SensorConfig {
 
     /// What the follower measures, and with what.
     fn rig(&self, exposure: &Exposure<'_>) -> Option<Rig> {
-        let robot = self.robots.get(exposure.follower)?;
-        let pan = exposure.snapshot.robots.get(exposure.follower)?.camera_pan;
+        let follower = &self.robots[exposure.follower];
+        let pan = exposure.snapshot.robots[exposure.follower].camera_pan;
         Some(Rig {
-            shell: self.robots.get(exposure.leader)?.shell?,
-            camera_model: robot.camera_model,
-            body_from_camera: robot.camera_mount.body_from_camera(pan),
+            shell: self.robots[exposure.leader].shell?,
+            camera_model: follower.camera_model,
+            body_from_camera: follower.camera_mount.body_from_camera(pan),
         })
     }
 
@@ -357,7 +336,7 @@ impl SensorConfig {
         if !exposures.iter().any(by_camera) {
             return Ok(exposures.iter().map(|_| None).collect());
         }
-        let eyes = eyes.ok_or("cameras are to take pictures, and nobody is there to draw them")?;
+        let eyes = eyes.ok_or("cameras take pictures, but no renderer is attached")?;
         let wanted: Vec<&Exposure<'_>> = exposures.iter().filter(|exposure| by_camera(exposure)).collect();
         let mut seen = self.camera.see(self, &wanted, period, eyes, camera_pipeline)?.into_iter();
         Ok(exposures.iter().map(|exposure| if by_camera(exposure) { seen.next() } else { None }).collect())
@@ -388,17 +367,4 @@ impl SensorConfig {
     pub fn pan(&self, sensor_state: &SensorState, edge: usize) -> f64 {
         sensor_state.edges.get(edge).map_or(0.0, |state| state.pan.between(0.0))
     }
-
-    /// The shell's frames as a follower's camera sees them.
-    pub(crate) fn camera_from_leader(&self, exposure: &Exposure<'_>) -> Option<Rigid> {
-        let follower = exposure.snapshot.robots.get(exposure.follower)?;
-        let leader = exposure.snapshot.robots.get(exposure.leader)?;
-        let camera_mount = self.robots.get(exposure.follower)?.camera_mount;
-        Some(camera_mount.world_from_camera(follower).inverse().after(&leader.world_from_body()))
-    }
-}
-
-/// Faces of a shell.
-pub(crate) fn all_faces() -> std::ops::Range<usize> {
-    0..FACES
 }

@@ -1,8 +1,7 @@
 //! The truth with errors.
 
 use crate::imaging::NoiseStream;
-use vocabulary::math;
-use vocabulary::{Measurement, Relative, wrap};
+use vocabulary::{Measurement, Relative, math, wrap};
 
 /// Errors that are added to the truth, each of [distance in m, bearing in rad, view angle in rad].
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,7 @@
 //! The camera on its mast: it turns towards the leader, and searches when it has lost it.
 
 use super::{CameraSettings, LeaderPrediction};
-use vocabulary::math;
-use vocabulary::{Pose, Relative, TrackingState, wrap};
+use vocabulary::{Pose, Relative, TrackingState, math, wrap};
 
 /// Where a camera points over the period that has passed, and how it searches.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -202,12 +202,8 @@ fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     let mut record = record.clone();
     all.add("time_s", ComparedValue::Number(record.snapshot.time));
     let name = |robot: usize| fleet.robots.get(robot).map_or("?", |member| &*member.name);
-    let pair = |edge: usize| {
-        fleet
-            .edges
-            .get(edge)
-            .map_or_else(String::new, |e| format!("{} → {}", name(e.leader), name(e.follower)))
-    };
+    let pair =
+        |edge: usize| fleet.edges.get(edge).map_or_else(String::new, |edge| fleet.pair(*edge).join(" → "));
     // What a follower wanted stands before what became of it.
     for (index, edge) in record.edges.iter_mut().enumerate() {
         all.collect(1, format!("edge {}", pair(index)), edge);

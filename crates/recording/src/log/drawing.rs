@@ -14,8 +14,7 @@ use foxglove::messages::{
 };
 use std::collections::VecDeque;
 use vocabulary::colours::robot_colours;
-use vocabulary::math;
-use vocabulary::{FleetInfo, Rigid, Snapshot, StepRecord};
+use vocabulary::{FleetInfo, Rigid, RobotState, Snapshot, StepRecord, math};
 
 /// Drawings a second; fewer where there are many robots.
 const RATE: f64 = 30.0;
@@ -77,12 +76,8 @@ impl Drawing {
         let colours: Vec<Color> =
             robot_colours(fleet).into_iter().map(|rgb| solids::colour(rgb, 1.0)).collect();
         let stage = channel::<SceneUpdate>("/stage", to)?;
-        put(
-            stage,
-            Stamp::default(),
-            &SceneUpdate { deletions: vec![], entities: solids::entities(fleet, &colours) },
-            to,
-        )?;
+        let entities = solids::entities(fleet, &colours);
+        put(stage, Stamp::default(), &SceneUpdate { deletions: vec![], entities }, to)?;
         let mut drawing = Self {
             tf: channel::<FrameTransforms>("/tf", to)?,
             formation: channel::<SceneUpdate>("/scene", to)?,
@@ -144,15 +139,11 @@ impl Drawing {
             put(*channel, stamp, &pose, to)?;
         }
         put(self.tf, stamp, &FrameTransforms { transforms }, to)?;
-        let now: Vec<Point3> = record
-            .snapshot
-            .robots
-            .iter()
-            .map(|robot| {
-                let pose = robot.motion.pose;
-                point([pose.x, pose.y, robot.attitude.height + LIFT])
-            })
-            .collect();
+        let lifted = |robot: &RobotState| {
+            let pose = robot.motion.pose;
+            point([pose.x, pose.y, robot.attitude.height + LIFT])
+        };
+        let now: Vec<Point3> = record.snapshot.robots.iter().map(lifted).collect();
         if stamp.time >= self.next_ribbon - 1e-6 {
             self.next_ribbon = stamp.time + crowd.min(3.0);
             self.drawn = stamp.time;
@@ -172,12 +163,15 @@ impl Drawing {
     /// Robots first, in their order; then cameras, set points and props that can move.
     fn transforms(&self, stamp: Stamp, record: &StepRecord) -> Vec<FrameTransform> {
         let time = Some(at(stamp));
-        let transform = |parent: &str, child: &str, frame: &Rigid| FrameTransform {
+        let placed = |parent: &str, child: &str, [x, y, z]: [f64; 3], turn: Quaternion| FrameTransform {
             timestamp: time,
             parent_frame_id: parent.to_owned(),
             child_frame_id: child.to_owned(),
-            translation: Some(vector(frame.translation)),
-            rotation: Some(quaternion(frame)),
+            translation: Some(Vector3 { x, y, z }),
+            rotation: Some(turn),
+        };
+        let transform = |parent: &str, child: &str, frame: &Rigid| {
+            placed(parent, child, frame.translation, quaternion(frame))
         };
         let Snapshot { robots, props, .. } = &record.snapshot;
         let seen = robots.iter().zip(&self.frames);
@@ -206,13 +200,8 @@ impl Drawing {
         for (prop, place) in self.fleet.props.iter().zip(props) {
             if solids::moves(prop) {
                 let [x, y, z, w] = place.rotation;
-                all.push(FrameTransform {
-                    timestamp: time,
-                    parent_frame_id: solids::WORLD.to_owned(),
-                    child_frame_id: solids::prop_frame(prop),
-                    translation: Some(vector(place.position)),
-                    rotation: Some(Quaternion { x, y, z, w }),
-                });
+                let (frame, turn) = (solids::prop_frame(prop), Quaternion { x, y, z, w });
+                all.push(placed(solids::WORLD, &frame, place.position, turn));
             }
         }
         all
@@ -236,8 +225,7 @@ impl Drawing {
             edges.points.extend([edge.leader, edge.follower].into_iter().filter_map(middle));
         }
         let first = self.past.partition_point(|(time, _)| *time < self.drawn).saturating_sub(1);
-        let now = now.to_vec();
-        let recent = || self.past.iter().skip(first).map(|(_, points)| points).chain([&now]);
+        let recent = || self.past.iter().skip(first).map(|(_, points)| &**points).chain([now]);
         let mut entities = vec![entity(stamp, "edges", vec![edges])];
         let strips = (0..now.len()).map(|robot| self.strip(robot, recent()));
         entities.push(entity(stamp, "tails", strips.collect()));
@@ -245,13 +233,12 @@ impl Drawing {
     }
 
     fn draw_ribbons(&self, stamp: Stamp, now: &[Point3]) -> SceneUpdate {
-        let now = now.to_vec();
-        let rows = || self.past.iter().map(|(_, points)| points).chain([&now]);
+        let rows = || self.past.iter().map(|(_, points)| &**points).chain([now]);
         let strips = (0..now.len()).map(|robot| self.strip(robot, rows())).collect();
         SceneUpdate { deletions: vec![], entities: vec![entity(stamp, "ribbons", strips)] }
     }
 
-    fn strip<'a>(&self, robot: usize, rows: impl Iterator<Item = &'a Vec<Point3>>) -> LinePrimitive {
+    fn strip<'a>(&self, robot: usize, rows: impl Iterator<Item = &'a [Point3]>) -> LinePrimitive {
         LinePrimitive {
             r#type: Type::LineStrip.into(),
             thickness: 0.06,
@@ -307,10 +294,6 @@ fn entity(stamp: Stamp, id: &str, lines: Vec<LinePrimitive>) -> SceneEntity {
         lines,
         ..SceneEntity::default()
     }
-}
-
-fn vector([x, y, z]: [f64; 3]) -> Vector3 {
-    Vector3 { x, y, z }
 }
 
 /// The turn of a frame as a unit quaternion, by the largest of its squares.

@@ -49,7 +49,7 @@ const BATCH: usize = 64;
 
 /// Puts the log in `file` together again; errors speak of `path`.
 pub(super) fn import(file: &File, path: &Path) -> Result<Imported, Error> {
-    let wrong = |message: String| Error::Log { path: path.to_owned(), message };
+    let wrong = |message: String| Error::log(path, message);
     let about = ForeignLog::of(file, path)?;
     if let Some(format) = about.around.format.as_ref().filter(|format| **format != FORMAT.to_string()) {
         return Err(wrong(other_layout(format)));
@@ -297,10 +297,7 @@ fn read(
     path: &Path,
     mut take: impl FnMut(Item<'_>) -> Result<bool, Error>,
 ) -> Result<(), Error> {
-    let damaged = |error: &dyn std::fmt::Display| Error::Log {
-        path: path.to_owned(),
-        message: format!("is damaged: {error}"),
-    };
+    let damaged = |error: mcap::McapError| Error::log(path, format!("is damaged: {error}"));
     file.rewind().map_err(Error::io("read", path))?;
     let mut file = BufReader::with_capacity(1 << 16, file);
     let options = LinearReaderOptions::default().with_record_length_limit(LONGEST as usize);
@@ -313,13 +310,13 @@ fn read(
                 reader.notify_read(read);
             }
             Ok(LinearReadEvent::Record { data, opcode }) => {
-                let item = parse(opcode, data).map_err(|error| damaged(&error))?;
+                let item = parse(opcode, data).map_err(damaged)?;
                 if !take(item)? {
                     return Ok(());
                 }
             }
             Err(mcap::McapError::UnexpectedEof | mcap::McapError::UnexpectedEoc) => return Ok(()),
-            Err(error) => return Err(damaged(&error)),
+            Err(error) => return Err(damaged(error)),
         }
     }
     Ok(())

@@ -3,6 +3,10 @@
 use super::record::{FieldValue, Fields, Record};
 use vocabulary::{Contact, EdgeState, EntityId, FACES, MeasurementRecord, Placement, Relative, RobotState};
 
+fn coordinates(relative: &mut Relative) -> [&mut f64; 3] {
+    [&mut relative.distance, &mut relative.bearing, &mut relative.view_angle]
+}
+
 impl Record for RobotState {
     const NAME: &'static str = "RobotState";
 
@@ -36,26 +40,17 @@ impl Record for EdgeState {
     const NAME: &'static str = "EdgeState";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
-        let Relative { distance, bearing, view_angle } = &mut self.relative;
-        f.number("distance_m", distance)?;
-        f.number("bearing_rad", bearing)?;
-        f.number("view_angle_rad", view_angle)?;
-        f.number("set_distance_m", &mut self.set_point[0])?;
-        f.number("set_bearing_rad", &mut self.set_point[1])?;
-        f.number("error_distance_m", &mut self.error[0])?;
-        f.number("error_bearing_rad", &mut self.error[1])?;
+        f.several(["distance_m", "bearing_rad", "view_angle_rad"], coordinates(&mut self.relative))?;
+        f.several(["set_distance_m", "set_bearing_rad"], self.set_point.each_mut())?;
+        f.several(["error_distance_m", "error_bearing_rad"], self.error.each_mut())?;
         f.number("asked_acceleration_m_s2", &mut self.asked.acceleration)?;
         f.number("asked_turn_rate_rad_s", &mut self.asked.turn_rate)?;
         f.number("applied_acceleration_m_s2", &mut self.applied.acceleration)?;
         f.number("applied_turn_rate_rad_s", &mut self.applied.turn_rate)?;
-        f.number("rate_distance_m_s", &mut self.rates[0])?;
-        f.number("rate_bearing_rad_s", &mut self.rates[1])?;
-        f.number("estimate_distance_m", &mut self.estimate[0])?;
-        f.number("estimate_bearing_rad", &mut self.estimate[1])?;
-        let Relative { distance, bearing, view_angle } = &mut self.seen;
-        f.number("seen_distance_m", distance)?;
-        f.number("seen_bearing_rad", bearing)?;
-        f.number("seen_view_angle_rad", view_angle)?;
+        f.several(["rate_distance_m_s", "rate_bearing_rad_s"], self.rates.each_mut())?;
+        f.several(["estimate_distance_m", "estimate_bearing_rad"], self.estimate.each_mut())?;
+        let seen = ["seen_distance_m", "seen_bearing_rad", "seen_view_angle_rad"];
+        f.several(seen, coordinates(&mut self.seen))?;
         f.number("age_s", &mut self.age)?;
         f.word("sight", &mut self.sight)?;
         f.flag("limited", &mut self.limited)?;
@@ -72,17 +67,11 @@ impl Record for MeasurementRecord {
         f.word("outcome", &mut self.outcome)?;
         f.number("stamp_s", &mut measurement.stamp)?;
         f.number("arrival_s", &mut self.arrival)?;
-        let Relative { distance, bearing, view_angle } = &mut measurement.relative;
-        f.number("distance_m", distance)?;
-        f.number("bearing_rad", bearing)?;
-        f.number("view_angle_rad", view_angle)?;
-        let Relative { distance, bearing, view_angle } = &mut self.truth;
-        f.number("true_distance_m", distance)?;
-        f.number("true_bearing_rad", bearing)?;
-        f.number("true_view_angle_rad", view_angle)?;
-        f.number("deviation_distance_m", &mut measurement.deviation[0])?;
-        f.number("deviation_bearing_rad", &mut measurement.deviation[1])?;
-        f.number("deviation_view_angle_rad", &mut measurement.deviation[2])?;
+        f.several(["distance_m", "bearing_rad", "view_angle_rad"], coordinates(&mut measurement.relative))?;
+        let truth = ["true_distance_m", "true_bearing_rad", "true_view_angle_rad"];
+        f.several(truth, coordinates(&mut self.truth))?;
+        let deviation = ["deviation_distance_m", "deviation_bearing_rad", "deviation_view_angle_rad"];
+        f.several(deviation, measurement.deviation.each_mut())?;
         f.number("pan_rad", &mut self.pan)?;
         f.count("region_x_px", &mut self.region.x)?;
         f.count("region_y_px", &mut self.region.y)?;
@@ -114,15 +103,8 @@ impl Record for Placement {
     const NAME: &'static str = "PropState";
 
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
-        let [x, y, z] = &mut self.position;
-        f.number("x_m", x)?;
-        f.number("y_m", y)?;
-        f.number("z_m", z)?;
-        let [x, y, z, w] = &mut self.rotation;
-        f.number("qx", x)?;
-        f.number("qy", y)?;
-        f.number("qz", z)?;
-        f.number("qw", w)
+        f.several(["x_m", "y_m", "z_m"], self.position.each_mut())?;
+        f.several(["qx", "qy", "qz", "qw"], self.rotation.each_mut())
     }
 }
 
@@ -154,13 +136,8 @@ impl Record for ContactRecord {
         f.text("second", second)?;
         f.number("begin_s", &mut c.begin)?;
         f.number("end_s", &mut c.end)?;
-        let ([x, y, z], [nx, ny, nz]) = (&mut c.place, &mut c.normal);
-        f.number("x_m", x)?;
-        f.number("y_m", y)?;
-        f.number("z_m", z)?;
-        f.number("normal_x", nx)?;
-        f.number("normal_y", ny)?;
-        f.number("normal_z", nz)?;
+        f.several(["x_m", "y_m", "z_m"], c.place.each_mut())?;
+        f.several(["normal_x", "normal_y", "normal_z"], c.normal.each_mut())?;
         f.number("impulse_n_s", &mut c.impulse)?;
         f.flag("open", &mut c.open)?;
         f.count("number", &mut c.number)?;

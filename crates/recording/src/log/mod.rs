@@ -68,16 +68,11 @@ impl Topics {
     }
 
     fn edge(fleet: &FleetInfo, edge: Edge) -> String {
-        format!("/edge/{}/state", Self::pair(fleet, edge))
+        format!("/edge/{}/state", fleet.pair(edge).join("/"))
     }
 
     fn measurements(fleet: &FleetInfo, edge: Edge) -> String {
-        format!("/edge/{}/measurements", Self::pair(fleet, edge))
-    }
-
-    fn pair(fleet: &FleetInfo, edge: Edge) -> String {
-        let name = |robot: usize| fleet.robots.get(robot).map_or("", |member| &*member.name);
-        format!("{}/{}", name(edge.leader), name(edge.follower))
+        format!("/edge/{}/measurements", fleet.pair(edge).join("/"))
     }
 
     fn prop(prop: &Prop) -> String {

@@ -64,8 +64,7 @@ impl ChunkOutline {
         let mut magic = [0; 8];
         file.rewind().map_err(io)?;
         if about.is_dir() || file.read_exact(&mut magic).is_err() || magic != *mcap::MAGIC {
-            let message = "is no log: it does not begin as MCAP files do".to_owned();
-            return Err(Error::Log { path: path.to_owned(), message });
+            return Err(Error::log(path, "is not a log: it does not begin as MCAP files do"));
         }
         let mut outline = Self::default();
         let (mut at, end) = (mcap::MAGIC.len() as u64, about.len());

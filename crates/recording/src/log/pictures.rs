@@ -1,8 +1,7 @@
 //! What cameras on robots saw: taken where they are drawn, so that no simulation knows of it.
 
 use std::sync::{Arc, Mutex, PoisonError};
-use vocabulary::math;
-use vocabulary::{CameraModel, CameraRenderer, Grey, Shot, Snapshot};
+use vocabulary::{CameraModel, CameraRenderer, Grey, Shot, Snapshot, math};
 
 /// Pictures of a camera in a second of simulation, at most.
 const RATE: f64 = 5.0;

@@ -100,7 +100,7 @@ impl Pipe {
         drop(sender);
         match thread.join() {
             Ok(result) => result.map(Some),
-            Err(_) => Err(Error::Log { path: super::FILE.into(), message: "its thread failed".to_owned() }),
+            Err(_) => Err(Error::log(super::FILE.as_ref(), "its thread failed")),
         }
     }
 

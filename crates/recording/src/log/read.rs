@@ -19,13 +19,11 @@ use vocabulary::{EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState,
 
 /// A recorded run. A copy shares everything with the original.
 #[derive(Debug, Clone)]
-pub struct Log {
-    file: Arc<File>,
-    inside: Arc<Inside>,
-}
+pub struct Log(Arc<Inside>);
 
 #[derive(Debug)]
 struct Inside {
+    file: File,
     path: PathBuf,
     manifest: Manifest,
     scene: String,
@@ -76,7 +74,7 @@ impl Log {
         begins: f64,
         remark: Option<String>,
     ) -> Result<Self, Error> {
-        let wrong = |message: &str| Error::Log { path: path.to_owned(), message: message.to_owned() };
+        let wrong = |message: &str| Error::log(path, message);
         let Some(format) = outline.around.format else {
             return Err(wrong(
                 "is an MCAP file, but no log of Echelon, or was cut off at its very beginning",
@@ -89,117 +87,55 @@ impl Log {
         let Some((manifest, scene)) = outline.around.manifest.zip(outline.around.scene) else {
             return Err(wrong("was cut off before the run began: its scene or its manifest is missing"));
         };
-        let manifest = serde_json::from_str(&manifest)
+        let mut manifest: Manifest = serde_json::from_str(&manifest)
             .map_err(|error| wrong(&format!("holds a manifest that cannot be read: {error}")))?;
-        let inside = Inside {
-            path: path.to_owned(),
-            manifest,
-            scene,
-            fleet: FleetInfo::default(),
-            channels: HashMap::new(),
-            chunks: outline.chunks,
-            whole: outline.whole,
-            remark,
-            begins,
+        let Some(first) = outline.chunks.first() else {
+            return Err(wrong("was cut off before the run began: it names no robots"));
         };
-        Self { file: Arc::new(file), inside: Arc::new(inside) }.with_first_chunk()
-    }
-
-    /// Reads channels and cast, and how far the run came where nobody wrote that down.
-    fn with_first_chunk(mut self) -> Result<Self, Error> {
-        let broken =
-            |message: &str| Error::Log { path: self.inside.path.clone(), message: message.to_owned() };
-        let Some(first) = self.inside.chunks.first().copied() else {
-            return Err(broken("was cut off before the run began: it names no robots"));
-        };
-        let mut channels = HashMap::new();
-        let mut schemas = HashMap::new();
-        let mut fleet = None;
-        for item in records(&self.unpack(first)?) {
-            match item {
-                Chunked::Schema { header, .. } => {
-                    schemas.insert(header.id, header.name);
-                }
-                Chunked::Channel(channel) => {
-                    let index = channel.metadata.get("index").and_then(|text| text.parse().ok());
-                    let kind =
-                        schemas.get(&channel.schema_id).zip(index).and_then(|(n, k)| LogChannel::of(n, k));
-                    channels.extend(kind.map(|kind| (channel.id, kind)));
-                }
-                Chunked::Message { header, data }
-                    if matches!(channels.get(&header.channel_id), Some(LogChannel::FleetInfo)) =>
-                {
-                    fleet = record::read::<FleetInfo>(&data);
-                }
-                _ => {}
-            }
+        let (channels, fleet) = channels_and_fleet(&unpack(&file, path, *first)?);
+        let fleet = fleet.filter(sound).ok_or_else(|| wrong("holds a fleet that cannot be read"))?;
+        if manifest.status == Status::Running {
+            let mut chunks = outline.chunks.iter().rev();
+            manifest.samples = chunks.find_map(|chunk| samples(&file, path, *chunk, &channels)).unwrap_or(0);
         }
-        let fleet = fleet.filter(sound).ok_or_else(|| broken("holds a cast that cannot be read"))?;
-        let lost = || Error::Log { path: PathBuf::new(), message: String::new() };
-        let inside = Arc::get_mut(&mut self.inside).ok_or_else(lost)?;
-        (inside.channels, inside.fleet) = (channels, fleet);
-        if inside.manifest.status == Status::Running {
-            let samples = self.samples();
-            if let Some(inside) = Arc::get_mut(&mut self.inside) {
-                inside.manifest.samples = samples;
-            }
-        }
-        Ok(self)
-    }
-
-    /// Samples up to the end of the last chunk that can be read.
-    fn samples(&self) -> u64 {
-        for chunk in self.inside.chunks.iter().rev() {
-            let Ok(bytes) = self.unpack(*chunk) else { continue };
-            let number = |item: Chunked<'_>| match item {
-                Chunked::Message { header, data } => match self.inside.channels.get(&header.channel_id) {
-                    Some(LogChannel::Sample) => {
-                        record::read::<SampleNumber>(&data).map(|sample| sample.number)
-                    }
-                    _ => None,
-                },
-                _ => None,
-            };
-            if let Some(last) = records(&bytes).filter_map(number).last() {
-                return last + 1;
-            }
-        }
-        0
+        let (chunks, whole, path) = (outline.chunks, outline.whole, path.to_owned());
+        let inside = Inside { file, path, manifest, scene, fleet, channels, chunks, whole, remark, begins };
+        Ok(Self(Arc::new(inside)))
     }
 
     /// The file.
     pub fn path(&self) -> &Path {
-        &self.inside.path
+        &self.0.path
     }
 
     /// What ran and how it ended; of a run that was cut off, `running`, with the samples that can be read.
     pub fn manifest(&self) -> &Manifest {
-        &self.inside.manifest
+        &self.0.manifest
     }
 
     /// The resolved scene, as text; empty where another program left it out.
     pub fn scene(&self) -> &str {
-        &self.inside.scene
+        &self.0.scene
     }
 
     /// Where another program wrote the file anew: what it did, and what it left out.
     pub fn remark(&self) -> Option<&str> {
-        self.inside.remark.as_deref()
+        self.0.remark.as_deref()
     }
 
     /// Time of the first moment, s: 0 unless another program left out the beginning.
     pub fn begins(&self) -> f64 {
-        self.inside.begins
+        self.0.begins
     }
 
     /// Robots, edges, props, ground.
     pub fn fleet(&self) -> &FleetInfo {
-        &self.inside.fleet
+        &self.0.fleet
     }
 
     /// Whether the file came to its end; else it was cut off, or is still being written.
     pub fn whole(&self) -> bool {
-        self.inside.whole
+        self.0.whole
     }
 
     /// All moments in the order of time.
@@ -209,11 +145,7 @@ impl Log {
 
     /// The moments at and after `time` s: what lies before is skipped, not read.
     pub fn records_from(&self, time: f64) -> Moments {
-        let begun = |chunk: &Chunk| chunk.begin as f64 * 1e-9 <= time + 1e-9;
-        // The first chunk holds no moments; a stamp is rounded, so the chunk before may end with the one asked for.
-        let mut records = self.after_chunks(self.inside.chunks.partition_point(begun).saturating_sub(2));
-        records.from = time;
-        records
+        Moments { from: time, ..self.after_chunks(self.chunk_before(time)) }
     }
 
     /// The last moment at or before `time` s; the first one if there is none before.
@@ -221,9 +153,8 @@ impl Log {
     /// # Errors
     /// [`Error::Log`] where the file is damaged there.
     pub fn at(&self, time: f64) -> Result<Option<StepRecord>, Error> {
-        let begun = |chunk: &Chunk| chunk.begin as f64 * 1e-9 <= time + 1e-9;
         let mut last = None;
-        for record in self.after_chunks(self.inside.chunks.partition_point(begun).saturating_sub(2)) {
+        for record in self.after_chunks(self.chunk_before(time)) {
             let record = record?;
             if record.snapshot.time > time && last.is_some() {
                 break;
@@ -233,35 +164,77 @@ impl Log {
         Ok(last)
     }
 
+    /// Number of the chunk from which on the moments around `time` s stand.
+    fn chunk_before(&self, time: f64) -> usize {
+        // The first chunk holds no moments; a stamp is rounded, so the chunk before may end with the one asked for.
+        let begun = |chunk: &Chunk| chunk.begin as f64 * 1e-9 <= time + 1e-9;
+        self.0.chunks.partition_point(begun).saturating_sub(2)
+    }
+
     fn after_chunks(&self, next: usize) -> Moments {
         Moments { log: self.clone(), next, ready: VecDeque::new(), from: f64::NEG_INFINITY, fault: None }
     }
+}
 
-    /// The records of a chunk, unpacked and checked.
-    fn unpack(&self, chunk: Chunk) -> Result<Vec<u8>, Error> {
-        let path = &self.inside.path;
-        let damaged = |why: &dyn std::fmt::Display| Error::Log {
-            path: path.clone(),
-            message: format!("is damaged {:.2} s into the run: {why}", chunk.begin as f64 * 1e-9),
-        };
-        let body = body(&mut &*self.file, chunk.start, chunk.length).map_err(Error::io("read", path))?;
-        let record = parse(op::CHUNK, &body).map_err(|error| damaged(&error))?;
-        let Chunked::Chunk { header, data } = record else { return Ok(vec![]) };
-        let mut bytes = Vec::new();
-        // One byte more than is promised is enough to see that the promise is broken.
-        let most = header.uncompressed_size.min(LONGEST) + 1;
-        let unpacked = match &*header.compression {
-            "" => (&*data).take(most).read_to_end(&mut bytes),
-            "lz4" => lz4::Decoder::new(&*data).and_then(|lz4| lz4.take(most).read_to_end(&mut bytes)),
-            other => return Err(damaged(&format!("it is compressed by {other}, which no log of ours is"))),
-        };
-        unpacked.map_err(|error| damaged(&error))?;
-        let whole = bytes.len() as u64 == header.uncompressed_size;
-        if !whole || (header.uncompressed_crc != 0 && crc32fast::hash(&bytes) != header.uncompressed_crc) {
-            return Err(damaged(&"its checksum does not fit"));
+/// The channels and the fleet in the first chunk, unpacked.
+fn channels_and_fleet(bytes: &[u8]) -> (HashMap<u16, LogChannel>, Option<FleetInfo>) {
+    let (mut channels, mut schemas, mut fleet) = (HashMap::new(), HashMap::new(), None);
+    for item in records(bytes) {
+        match item {
+            Chunked::Schema { header, .. } => {
+                schemas.insert(header.id, header.name);
+            }
+            Chunked::Channel(channel) => {
+                let index = channel.metadata.get("index").and_then(|text| text.parse().ok());
+                let kind = schemas.get(&channel.schema_id).zip(index).and_then(|(n, k)| LogChannel::of(n, k));
+                channels.extend(kind.map(|kind| (channel.id, kind)));
+            }
+            Chunked::Message { header, data }
+                if matches!(channels.get(&header.channel_id), Some(LogChannel::FleetInfo)) =>
+            {
+                fleet = record::read::<FleetInfo>(&data);
+            }
+            _ => {}
         }
-        Ok(bytes)
     }
+    (channels, fleet)
+}
+
+/// Samples up to the end of a chunk; `None` where it cannot be read or holds none.
+fn samples(file: &File, path: &Path, chunk: Chunk, channels: &HashMap<u16, LogChannel>) -> Option<u64> {
+    let bytes = unpack(file, path, chunk).ok()?;
+    let number = |item: Chunked<'_>| match item {
+        Chunked::Message { header, data } => match channels.get(&header.channel_id)? {
+            LogChannel::Sample => record::read::<SampleNumber>(&data).map(|sample| sample.number),
+            _ => None,
+        },
+        _ => None,
+    };
+    records(&bytes).filter_map(number).last().map(|last| last + 1)
+}
+
+/// The records of a chunk, unpacked and checked.
+fn unpack(file: &File, path: &Path, chunk: Chunk) -> Result<Vec<u8>, Error> {
+    let damaged = |why: &dyn std::fmt::Display| {
+        Error::log(path, format!("is damaged {:.2} s into the run: {why}", chunk.begin as f64 * 1e-9))
+    };
+    let body = body(&mut &*file, chunk.start, chunk.length).map_err(Error::io("read", path))?;
+    let record = parse(op::CHUNK, &body).map_err(|error| damaged(&error))?;
+    let Chunked::Chunk { header, data } = record else { return Ok(vec![]) };
+    let mut bytes = Vec::new();
+    // One byte more than is promised is enough to see that the promise is broken.
+    let most = header.uncompressed_size.min(LONGEST) + 1;
+    let unpacked = match &*header.compression {
+        "" => (&*data).take(most).read_to_end(&mut bytes),
+        "lz4" => lz4::Decoder::new(&*data).and_then(|lz4| lz4.take(most).read_to_end(&mut bytes)),
+        other => return Err(damaged(&format!("it is compressed by {other}, which no log of ours is"))),
+    };
+    unpacked.map_err(|error| damaged(&error))?;
+    let whole = bytes.len() as u64 == header.uncompressed_size;
+    if !whole || (header.uncompressed_crc != 0 && crc32fast::hash(&bytes) != header.uncompressed_crc) {
+        return Err(damaged(&"its checksum does not fit"));
+    }
+    Ok(bytes)
 }
 
 /// The records of an unpacked chunk.
@@ -316,7 +289,7 @@ impl Iterator for Moments {
                 self.next = usize::MAX;
                 return Some(Err(fault));
             }
-            let chunk = self.log.inside.chunks.get(self.next)?;
+            let chunk = self.log.0.chunks.get(self.next)?;
             self.next += 1;
             // What came whole before the damage is still told.
             self.fault = self.unpack(*chunk).err();
@@ -328,10 +301,10 @@ impl Moments {
     fn unpack(&mut self, chunk: Chunk) -> Result<(), Error> {
         let mut record = StepRecord::default();
         let mut props: Vec<Placement> = vec![];
-        let bytes = self.log.unpack(chunk)?;
+        let bytes = unpack(&self.log.0.file, &self.log.0.path, chunk)?;
         for item in records(&bytes) {
             let Chunked::Message { header, data } = item else { continue };
-            let Some(channel) = self.log.inside.channels.get(&header.channel_id) else { continue };
+            let Some(channel) = self.log.0.channels.get(&header.channel_id) else { continue };
             let closed =
                 take(*channel, &data, &mut record, &mut props).ok_or_else(|| self.damaged(&header))?;
             if closed {
@@ -344,10 +317,7 @@ impl Moments {
 
     fn damaged(&self, header: &MessageHeader) -> Error {
         let time = header.log_time as f64 * 1e-9;
-        Error::Log {
-            path: self.log.inside.path.clone(),
-            message: format!("is damaged at {time:.3} s: a message makes no sense"),
-        }
+        Error::log(&self.log.0.path, format!("is damaged at {time:.3} s: a message makes no sense"))
     }
 }
 

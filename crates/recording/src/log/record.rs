@@ -42,6 +42,11 @@ pub(super) trait Fields {
         self.field(name, FieldValue::Number(value))
     }
 
+    /// Numbers that are a field each.
+    fn several<const N: usize>(&mut self, names: [&'static str; N], values: [&mut f64; N]) -> Option<()> {
+        names.into_iter().zip(values).try_for_each(|(name, value)| self.number(name, value))
+    }
+
     fn numbers(&mut self, name: &'static str, values: &mut [f64]) -> Option<()> {
         self.field(name, FieldValue::Numbers(values))
     }

@@ -6,8 +6,7 @@ use foxglove::messages::{
     TriangleListPrimitive, Vector3, line_primitive::Type,
 };
 use std::f64::consts::TAU;
-use vocabulary::math;
-use vocabulary::{FleetInfo, Mobility, Placement, Prop, RobotInfo, Solid, Terrain};
+use vocabulary::{FleetInfo, Mobility, Placement, Prop, RobotInfo, Solid, Terrain, math};
 
 /// The frame in which all others are.
 pub(super) const WORLD: &str = "world";

@@ -59,7 +59,7 @@ fn a_log_reads_up_to_its_last_whole_chunk() {
         let log = match Log::open(&path) {
             Ok(log) => log,
             Err(Error::Log { message, .. }) => {
-                assert!(message.contains("cut off") || message.contains("is no log"), "{message}");
+                assert!(message.contains("cut off") || message.contains("is not a log"), "{message}");
                 continue;
             }
             Err(other) => panic!("{other}"),
@@ -114,7 +114,7 @@ fn what_is_no_log_of_ours_says_what_it_is_instead() {
     fs::write(&path, "years of work").expect("written");
     assert!(refused(&path).contains("does not begin as MCAP files do"));
     fs::write(&path, "").expect("written");
-    assert!(refused(&path).contains("is no log"));
+    assert!(refused(&path).contains("is not a log"));
     assert!(refused(folder.path()).contains(&*folder.path().display().to_string()));
     assert!(refused(&folder.path().join("nowhere.mcap")).contains("cannot open"));
     let foreign = |metadata: &[(&str, &str)]| {

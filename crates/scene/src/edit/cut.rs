@@ -48,7 +48,7 @@ pub(super) fn cut_item(document: &mut DocumentMut, steps: &[PathStep]) -> Result
         return take_out(document, text, gone);
     }
     let [PathStep::Key(list), PathStep::Item(index)] = steps else {
-        return Err(EditError::new("this is no item of a list"));
+        return Err(EditError::new("this is not an item of a list"));
     };
     if let Some(list) = document.get_mut(list).and_then(Item::as_array_mut) {
         list.remove(*index);

@@ -21,10 +21,10 @@ pub(super) enum PathStep {
 pub(super) fn steps(root: &Table, path: &str) -> Result<Vec<PathStep>, EditError> {
     let mut parts: Vec<String> = path.split('.').map(|part| composed(part.trim())).collect();
     if parts.iter().any(String::is_empty) {
-        return Err(EditError::new(format!("`{path}` is no path: write it as law.k")));
+        return Err(EditError::new(format!("`{path}` is not a path: write it as law.k")));
     }
     if parts.len() > MOST_PARTS {
-        return Err(EditError::new(format!("a path of {} parts leads nowhere", parts.len())));
+        return Err(EditError::new(format!("a path of {} parts is too long", parts.len())));
     }
     if let [list, name, ..] = parts.as_slice()
         && list == "robots"
@@ -114,5 +114,5 @@ pub(super) fn nothing_called(root: &Table, list: &str, name: &str) -> String {
         known.extend(items(root, "groups").into_iter().flat_map(|group| made_by(group).take(1000)));
     }
     let hint = nearest(name, known.iter().map(String::as_str)).map_or_else(String::new, did_you_mean);
-    format!("nothing in `{list}` is called `{name}`{hint}")
+    format!("no item of `{list}` is called `{name}`{hint}")
 }

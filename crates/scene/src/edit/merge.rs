@@ -82,7 +82,7 @@ fn in_degrees(old: &Value, new: &Value) -> Option<Value> {
         .find(|unit| old.as_str().is_some_and(|text| text.trim_end().ends_with(unit)))?;
     let rad = new.as_float().or_else(|| new.as_integer().map(|value| value as f64))?;
     let space = if old.as_str().is_some_and(|text| text.contains(' ')) { " " } else { "" };
-    // Adding 0 makes of −0 what people write.
+    // Adding 0 turns −0 into 0.
     let degrees = (rad.to_degrees() * 1e6).round() / 1e6 + 0.0;
     rad.is_finite().then(|| Value::from(format!("{degrees}{space}{unit}")))
 }

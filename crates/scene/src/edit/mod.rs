@@ -154,7 +154,7 @@ impl SceneText {
         }
         self.check_free(new)?;
         if !NameForm::WHOLE.takes(new) {
-            let text = format!("`{new}` is no name: 1 to 40 letters, digits, `-` and `_`");
+            let text = format!("`{new}` is not a name: 1 to 40 letters, digits, `-` and `_`");
             return Err(EditError::new(text));
         }
         match made {

@@ -17,9 +17,9 @@ pub(super) fn put(item: &mut Item, steps: &[PathStep], depth: usize, value: Valu
     };
     spell_out(item, depth.checked_sub(1).and_then(|before| steps.get(before)));
     let position = if depth == 0 { Some(settings_position(item)) } else { None };
-    let table = item.as_table_like_mut().ok_or_else(|| {
-        EditError::new(format!("there is nothing called `{key}` here: this is a plain value"))
-    })?;
+    let table = item
+        .as_table_like_mut()
+        .ok_or_else(|| EditError::new(format!("there is no key `{key}` here: this is a plain value")))?;
     let last = depth + 1 == steps.len();
     if table.get(key).is_none_or(Item::is_none) {
         if last {
@@ -128,6 +128,6 @@ pub(super) fn add(root: &mut Table, list: &str, mut table: Table) -> Result<(), 
             values.push(inline);
             Ok(())
         }
-        _ => Err(EditError::new(format!("`{list}` is no list"))),
+        _ => Err(EditError::new(format!("`{list}` is not a list"))),
     }
 }

@@ -14,7 +14,7 @@ pub(crate) trait Form {
     /// What it is read into.
     type Out;
 
-    /// The value, or `None` after a note on what is wrong with it.
+    /// The value, or `None` after reporting what is wrong with it.
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out>;
 
     /// Its JSON Schema.
@@ -80,10 +80,7 @@ impl Form for Number {
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<f64> {
         let value = node.as_number().filter(|value| self.holds(*value));
-        if value.is_none() {
-            reporter.wrong(node, &self.expected());
-        }
-        value
+        reporter.expect(value, node, || self.expected())
     }
 
     fn schema(&self) -> Json {
@@ -126,12 +123,11 @@ impl Form for Angle {
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<f64> {
         let value = node.as_number().or_else(|| node.as_text().and_then(angle_of_text));
         let value = value.filter(|v| *v >= self.low - ROUNDING && *v <= self.high + ROUNDING);
-        if value.is_none() {
+        let expected = || {
             let [low, high] = [self.low, self.high].map(|bound| (bound.to_degrees() * 1e6).round() / 1e6);
-            reporter
-                .wrong(node, &format!("an angle, in rad or as \"135 deg\", from {low} deg to {high} deg"));
-        }
-        let value = value?.clamp(self.low, self.high);
+            format!("an angle, in rad or as \"135 deg\", from {low} deg to {high} deg")
+        };
+        let value = reporter.expect(value, node, expected)?.clamp(self.low, self.high);
         Some(if self.wrapped { wrap(value) } else { value })
     }
 
@@ -174,12 +170,8 @@ impl<T: TryFrom<u64>> Form for Integer<T> {
             _ => None,
         };
         let value = value.and_then(|value| T::try_from(value).ok());
-        if value.is_none() {
-            let expected =
-                if low == high { low.to_string() } else { format!("a whole number from {low} to {high}") };
-            reporter.wrong(node, &expected);
-        }
-        value
+        let range = || format!("a whole number from {low} to {high}");
+        reporter.expect(value, node, || if low == high { low.to_string() } else { range() })
     }
 
     fn schema(&self) -> Json {
@@ -194,11 +186,8 @@ impl Form for Flag {
     type Out = bool;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<bool> {
-        if let Value::Flag(flag) = node.value {
-            return Some(flag);
-        }
-        reporter.wrong(node, "true or false");
-        None
+        let flag = if let Value::Flag(flag) = node.value { Some(flag) } else { None };
+        reporter.expect(flag, node, || "true or false".to_owned())
     }
 
     fn schema(&self) -> Json {
@@ -214,10 +203,7 @@ impl Form for Text {
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<String> {
         let value = node.as_text().filter(|text| text.chars().count() <= self.0);
-        if value.is_none() {
-            reporter.wrong(node, &format!("text of at most {} characters", self.0));
-        }
-        value.map(str::to_owned)
+        reporter.expect(value, node, || format!("text of at most {} characters", self.0)).map(str::to_owned)
     }
 
     fn schema(&self) -> Json {

@@ -1,7 +1,7 @@
 //! Tables: which keys there are, what each means, its form and its default, all said once.
 
 use crate::text::{
-    Form, Node, Reporter, Span, Value,
+    Form, Node, Reporter, Span,
     node::Entry,
     words::{did_you_mean, nearest, quoted},
 };
@@ -11,20 +11,20 @@ use std::marker::PhantomData;
 /// A value and where it was found.
 #[derive(Debug, Clone)]
 pub(crate) struct Found<T> {
-    pub(crate) place: Span,
+    pub(crate) span: Span,
     pub(crate) value: T,
 }
 
-/// What was found, or else a default, as if it stood at `place`.
+/// What was found, or else a default, as if it stood at `span`.
 pub(crate) fn found_or<T>(
     found: Option<Found<T>>,
-    place: Span,
+    span: Span,
     default: impl FnOnce() -> T,
 ) -> Option<Found<T>> {
-    found.or_else(|| Some(Found { place, value: default() }))
+    found.or_else(|| Some(Found { span, value: default() }))
 }
 
-/// Whichever of two keys is given, and whether it was the second; a note if none or both are.
+/// Whichever of two keys is given, and whether it was the second; reports an error if none or both are.
 pub(crate) fn one_of<T>(
     node: &Node,
     keys: [&str; 2],
@@ -35,10 +35,10 @@ pub(crate) fn one_of<T>(
         [Some(found), None] => Some((found, false)),
         [None, Some(found)] => Some((found, true)),
         _ => {
-            // A key that is there but was wrong has its own note already.
+            // The error of a key that is there but wrong is reported already.
             let given = keys.iter().filter(|key| node.get(key).is_some()).count();
             if given != 1 {
-                reporter.report(node.place, format!("give either `{}` or `{}` here", keys[0], keys[1]));
+                reporter.report(node.span, format!("give either `{}` or `{}` here", keys[0], keys[1]));
             }
             None
         }
@@ -73,7 +73,12 @@ pub(crate) trait Keys: Sized {
     fn marks(key: &str) -> Option<&'static [Mark]>;
 
     /// Every key that was read, and where its value stands.
-    fn places(&self) -> Vec<(&'static str, Span)>;
+    fn spans(&self) -> Vec<(&'static str, Span)>;
+
+    /// Where the value of `key` stands, if it was read.
+    fn span_of(&self, key: &str) -> Option<Span> {
+        self.spans().into_iter().find(|(known, _)| *known == key).map(|(_, span)| span)
+    }
 }
 
 /// What one table of a file says of something in which every key has a default; made by [`settings!`].
@@ -102,26 +107,23 @@ pub(crate) struct Field {
     pub(crate) schema: Json,
 }
 
-/// Reads the keys of one table and remembers which, so as to find those that nobody knows.
+/// Reads the keys of one table and remembers which, to find unknown keys.
 pub(crate) struct TableReader<'n> {
-    place: Span,
+    span: Span,
     entries: &'n [Entry],
     known: Vec<&'static str>,
 }
 
 impl<'n> TableReader<'n> {
-    /// A reader of `node`, or `None` after a note that it is no table.
+    /// A reader of `node`, or `None` after reporting that it is not a table.
     pub(crate) fn of(node: &'n Node, reporter: &mut Reporter) -> Option<Self> {
-        if let Value::Table(entries) = &node.value {
-            return Some(Self { place: node.place, entries, known: vec![] });
-        }
-        reporter.wrong(node, "a table");
-        None
+        let entries = reporter.expect(node.as_table(), node, || "a table".to_owned())?;
+        Some(Self { span: node.span, entries, known: vec![] })
     }
 
     /// Where the table stands.
-    pub(crate) fn place(&self) -> Span {
-        self.place
+    pub(crate) fn span(&self) -> Span {
+        self.span
     }
 
     /// Reads the value of `key`.
@@ -135,15 +137,15 @@ impl<'n> TableReader<'n> {
         self.known.push(key);
         let Some(entry) = self.entries.iter().find(|entry| entry.key == key) else {
             if required {
-                reporter.report(self.place, format!("`{key}` is missing"));
+                reporter.report(self.span, format!("`{key}` is missing"));
             }
             return None;
         };
         let value = reporter.inside(key, |reporter| form.read(&entry.node, reporter))?;
-        Some(Found { place: entry.node.place, value })
+        Some(Found { span: entry.node.span, value })
     }
 
-    /// Notes the keys that were not asked for.
+    /// Reports the keys that were not asked for.
     pub(crate) fn finish(self, reporter: &mut Reporter) {
         for entry in self.entries.iter().filter(|entry| !self.known.contains(&entry.key.as_str())) {
             if reporter.is_full() {
@@ -152,7 +154,7 @@ impl<'n> TableReader<'n> {
             let known = self.known.iter().copied();
             let hint = nearest(&entry.key, known.clone()).map_or_else(String::new, did_you_mean);
             let message = format!("unknown key `{}`{hint} (known here: {})", entry.key, quoted(known));
-            reporter.report(entry.place, message);
+            reporter.report(entry.span, message);
         }
     }
 }
@@ -247,9 +249,9 @@ macro_rules! keys {
                 }
             }
 
-            fn places(&self) -> Vec<(&'static str, $crate::text::Span)> {
-                let all = [ $( (stringify!($key), self.$key.as_ref().map(|found| found.place)), )+ ];
-                all.into_iter().filter_map(|(key, place)| Some((key, place?))).collect()
+            fn spans(&self) -> Vec<(&'static str, $crate::text::Span)> {
+                let all = [ $( (stringify!($key), self.$key.as_ref().map(|found| found.span)), )+ ];
+                all.into_iter().filter_map(|(key, span)| Some((key, span?))).collect()
             }
         }
     };
@@ -259,9 +261,9 @@ macro_rules! keys {
     (@required default) => { false };
     (@required part) => { false };
     (@found or $found:ident, $table:ident, $default:expr) => {
-        $crate::text::keys::found_or($found, $table.place(), || $default)
+        $crate::text::keys::found_or($found, $table.span(), || $default)
     };
-    (@found part $found:ident, $table:ident) => { $crate::text::keys::found_or($found, $table.place(), Default::default) };
+    (@found part $found:ident, $table:ident) => { $crate::text::keys::found_or($found, $table.span(), Default::default) };
     (@found $need:ident $found:ident, $table:ident $(, $default:expr)?) => { $found };
     (@default $type:ty) => { serde_json::Value::Null };
     (@default $type:ty, $default:expr) => { serde_json::to_value::<$type>($default).unwrap_or_default() };

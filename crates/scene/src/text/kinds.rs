@@ -23,7 +23,7 @@ pub(crate) trait KindOption<T> {
     fn read(&self, node: &Node, table: &mut TableReader<'_>, reporter: &mut Reporter) -> Option<T>;
 }
 
-/// The kind called `word`, and what the keys `K` of a table make; `None` after a note.
+/// The kind called `word`, and what the keys `K` of a table make; `None` after reporting an error.
 pub(crate) struct Kind<K, T> {
     pub(crate) word: &'static str,
     pub(crate) make: fn(K, &Node, &mut Reporter) -> Option<T>,
@@ -48,19 +48,25 @@ impl<K: Keys, T> KindOption<T> for Kind<K, T> {
 }
 
 impl<T> Kinds<T> {
-    /// Reads the kind of `table`, whose node is `node`, and the keys it brings.
-    pub(crate) fn take(
+    /// Reads a table of one of these kinds. Returns what its kind makes of its keys, or `None` after reporting an error, and
+    /// what `shared` makes of the keys that all kinds have.
+    pub(crate) fn read_with<S>(
         &self,
         node: &Node,
-        table: &mut TableReader<'_>,
         reporter: &mut Reporter,
-    ) -> KindFound<T> {
+        shared: impl FnOnce(&mut TableReader<'_>, &mut Reporter) -> S,
+    ) -> Option<(Option<T>, S)> {
+        let mut table = TableReader::of(node, reporter)?;
         let found = table.take(self.key, &KindForm(self.all), self.usual.is_none(), reporter);
+        // Without a kind the other keys are not known.
         let kind = match (found, node.get(self.key)) {
             (None, None) => self.all.iter().copied().find(|kind| Some(kind.word()) == self.usual),
             (found, _) => found.map(|found| found.value),
-        };
-        kind.map_or(KindFound::Unknown, |kind| KindFound::Known(kind.read(node, table, reporter)))
+        }?;
+        let made = kind.read(node, &mut table, reporter);
+        let shared = shared(&mut table, reporter);
+        table.finish(reporter);
+        Some((made, shared))
     }
 
     /// Each kind's table, with `shared` keys that all of them have besides.
@@ -81,22 +87,11 @@ impl<T> Kinds<T> {
     }
 }
 
-/// What became of reading a kind.
-pub(crate) enum KindFound<T> {
-    /// Its keys were read, and made this, or `None` after a note.
-    Known(Option<T>),
-    /// Nobody knows which keys there are.
-    Unknown,
-}
-
 impl<T> Form for Kinds<T> {
     type Out = T;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<T> {
-        let mut table = TableReader::of(node, reporter)?;
-        let KindFound::Known(made) = self.take(node, &mut table, reporter) else { return None };
-        table.finish(reporter);
-        made
+        self.read_with(node, reporter, |_, _| ())?.0
     }
 
     fn schema(&self) -> Json {

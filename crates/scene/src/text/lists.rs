@@ -1,6 +1,6 @@
 //! Forms made of other forms: pairs and lists.
 
-use crate::text::{Form, Node, Reporter, Value};
+use crate::text::{Form, Node, Reporter};
 use serde_json::{Value as Json, json};
 
 /// Two values of the same form, such as [distance, bearing], or one for both.
@@ -10,9 +10,9 @@ impl<F: Form<Out = f64>> Form for Pair<F> {
     type Out = [f64; 2];
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<[f64; 2]> {
-        match &node.value {
-            Value::List(_) => Couple(&self.0, &self.0).read(node, reporter),
-            _ => self.0.read(node, reporter).map(|both| [both, both]),
+        match node.as_list() {
+            Some(_) => Couple(&self.0, &self.0).read(node, reporter),
+            None => self.0.read(node, reporter).map(|both| [both, both]),
         }
     }
 
@@ -28,14 +28,10 @@ impl<F: Form, G: Form<Out = F::Out>> Form for Couple<F, G> {
     type Out = [F::Out; 2];
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out> {
-        if let Value::List(items) = &node.value
-            && let [first, second] = items.as_slice()
-        {
-            let (first, second) = (self.0.read(first, reporter), self.1.read(second, reporter));
-            return Some([first?, second?]);
-        }
-        reporter.wrong(node, "a list of two values");
-        None
+        let items: Option<&[Node; 2]> = node.as_list().and_then(|items| items.try_into().ok());
+        let [first, second] = reporter.expect(items, node, || "a list of two values".to_owned())?;
+        let (first, second) = (self.0.read(first, reporter), self.1.read(second, reporter));
+        Some([first?, second?])
     }
 
     fn schema(&self) -> Json {
@@ -52,15 +48,11 @@ impl<F: Form<Out = f64>, G: Form<Out = f64>, H: Form<Out = f64>> Form for Triple
     type Out = [f64; 3];
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<[f64; 3]> {
-        if let Value::List(items) = &node.value
-            && let [first, second, third] = items.as_slice()
-        {
-            let (first, second) = (self.0.read(first, reporter), self.1.read(second, reporter));
-            let third = self.2.read(third, reporter);
-            return Some([first?, second?, third?]);
-        }
-        reporter.wrong(node, "a list of three values");
-        None
+        let items: Option<&[Node; 3]> = node.as_list().and_then(|items| items.try_into().ok());
+        let [first, second, third] = reporter.expect(items, node, || "a list of three values".to_owned())?;
+        let (first, second) = (self.0.read(first, reporter), self.1.read(second, reporter));
+        let third = self.2.read(third, reporter);
+        Some([first?, second?, third?])
     }
 
     fn schema(&self) -> Json {
@@ -85,17 +77,12 @@ impl<F: Form> Form for List<F> {
     type Out = Vec<F::Out>;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out> {
-        match &node.value {
-            Value::List(items) if (self.least..=self.most).contains(&items.len()) => {
-                // All are read before giving up, so that every fault is told.
-                let read: Vec<_> = items.iter().map(|item| self.form.read(item, reporter)).collect();
-                read.into_iter().collect()
-            }
-            _ => {
-                reporter.wrong(node, &format!("a list of {} to {} values", self.least, self.most));
-                None
-            }
-        }
+        let Self { form, least, most } = self;
+        let items = node.as_list().filter(|items| (*least..=*most).contains(&items.len()));
+        let items = reporter.expect(items, node, || format!("a list of {least} to {most} values"))?;
+        // All items are read before giving up, so that every error is reported.
+        let read: Vec<_> = items.iter().map(|item| form.read(item, reporter)).collect();
+        read.into_iter().collect()
     }
 
     fn schema(&self) -> Json {

@@ -8,7 +8,7 @@ use unicode_normalization::UnicodeNormalization;
 /// A value and where it stands.
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
-    pub(crate) place: Span,
+    pub(crate) span: Span,
     pub(crate) value: Value,
 }
 
@@ -29,7 +29,7 @@ pub(crate) enum Value {
 pub(crate) struct Entry {
     pub(crate) key: String,
     /// Where the key stands.
-    pub(crate) place: Span,
+    pub(crate) span: Span,
     pub(crate) node: Node,
 }
 
@@ -43,20 +43,20 @@ impl Node {
             let line = text.get(..span.start).map(|before| before.matches('\n').count());
             // What follows on the same line is mostly a consequence of the first error there.
             if line != last_line {
-                reporter.report(place(source, 0, &span), format!("not TOML: {}", error.message()));
+                reporter.report(span_at(source, 0, &span), format!("not TOML: {}", error.message()));
             }
             last_line = line;
         }
         let at = table.span();
-        errors.is_empty().then(|| from_table(table.get_ref(), place(source, 0, &at), 0))
+        errors.is_empty().then(|| from_table(table.get_ref(), span_at(source, 0, &at), 0))
     }
 
     /// The tree of a single value that stands at byte `offset` of its source; plain text where it is not TOML.
     pub(crate) fn parse_value(text: &str, source: usize, offset: usize) -> Self {
         match DeValue::parse(text) {
-            Ok(value) => from_value(value.get_ref(), place(source, offset, &value.span()), offset),
+            Ok(value) => from_value(value.get_ref(), span_at(source, offset, &value.span()), offset),
             Err(_) => {
-                Self { place: place(source, offset, &(0..text.len())), value: Value::Text(composed(text)) }
+                Self { span: span_at(source, offset, &(0..text.len())), value: Value::Text(composed(text)) }
             }
         }
     }
@@ -75,10 +75,7 @@ impl Node {
 
     /// The line of `key`, if this is a table that has it.
     pub(crate) fn entry(&self, key: &str) -> Option<&Entry> {
-        match &self.value {
-            Value::Table(entries) => entries.iter().find(|entry| entry.key == key),
-            _ => None,
-        }
+        self.as_table()?.iter().find(|entry| entry.key == key)
     }
 
     /// The value of `key`, if this is a table that has it.
@@ -88,10 +85,7 @@ impl Node {
 
     /// The items of the list `key`, if this is a table that has it.
     pub(crate) fn items(&self, key: &str) -> &[Self] {
-        match self.get(key).map(|node| &node.value) {
-            Some(Value::List(items)) => items,
-            _ => &[],
-        }
+        self.get(key).and_then(Self::as_list).unwrap_or_default()
     }
 
     /// The list `key`, if this is a table that has it.
@@ -113,18 +107,34 @@ impl Node {
         }
     }
 
-    /// Says of all of it that it stands at `place`.
-    pub(crate) fn stand_at(&mut self, place: Span) {
-        self.place = place;
+    /// Says of all of it that it stands at `span`.
+    pub(crate) fn stand_at(&mut self, span: Span) {
+        self.span = span;
         match &mut self.value {
-            Value::List(items) => items.iter_mut().for_each(|item| item.stand_at(place)),
+            Value::List(items) => items.iter_mut().for_each(|item| item.stand_at(span)),
             Value::Table(entries) => {
                 for entry in entries {
-                    entry.place = place;
-                    entry.node.stand_at(place);
+                    entry.span = span;
+                    entry.node.stand_at(span);
                 }
             }
             _ => {}
+        }
+    }
+
+    /// The lines of this table.
+    pub(crate) fn as_table(&self) -> Option<&[Entry]> {
+        match &self.value {
+            Value::Table(entries) => Some(entries),
+            _ => None,
+        }
+    }
+
+    /// The items of this list.
+    pub(crate) fn as_list(&self) -> Option<&[Self]> {
+        match &self.value {
+            Value::List(items) => Some(items),
+            _ => None,
         }
     }
 
@@ -146,7 +156,7 @@ impl Node {
     }
 }
 
-/// Text as most people write it: letters with their accents as one character each, so that what looks alike is alike.
+/// Text in NFC: letters with accents are one character each, so that texts that look the same are equal.
 pub fn composed(text: &str) -> String {
     text.nfc().collect()
 }
@@ -158,17 +168,17 @@ fn shorten(text: &str) -> String {
     text.chars().take(39).chain(['…']).collect()
 }
 
-fn place(source: usize, offset: usize, span: &Range<usize>) -> Span {
+fn span_at(source: usize, offset: usize, span: &Range<usize>) -> Span {
     Span { source, start: offset + span.start, end: offset + span.end }
 }
 
 fn from_table(table: &DeTable<'_>, at: Span, offset: usize) -> Node {
     let entries = table.iter().map(|(key, value)| Entry {
         key: composed(key.get_ref()),
-        place: place(at.source, offset, &key.span()),
-        node: from_value(value.get_ref(), place(at.source, offset, &value.span()), offset),
+        span: span_at(at.source, offset, &key.span()),
+        node: from_value(value.get_ref(), span_at(at.source, offset, &value.span()), offset),
     });
-    Node { place: at, value: Value::Table(entries.collect()) }
+    Node { span: at, value: Value::Table(entries.collect()) }
 }
 
 fn from_value(value: &DeValue<'_>, at: Span, offset: usize) -> Node {
@@ -184,10 +194,12 @@ fn from_value(value: &DeValue<'_>, at: Span, offset: usize) -> Node {
         DeValue::Array(items) => {
             let items = items.iter();
             Value::List(
-                items.map(|i| from_value(i.get_ref(), place(at.source, offset, &i.span()), offset)).collect(),
+                items
+                    .map(|i| from_value(i.get_ref(), span_at(at.source, offset, &i.span()), offset))
+                    .collect(),
             )
         }
         DeValue::Table(table) => return from_table(table, at, offset),
     };
-    Node { place: at, value }
+    Node { span: at, value }
 }

@@ -4,7 +4,7 @@ use crate::{Diagnostic, Diagnostics, text::Node};
 use std::path::{Path, PathBuf};
 use vocabulary::readable;
 
-/// More notes than this help nobody.
+/// Messages that are kept at most: more would not help.
 const MOST_NOTES: usize = 100;
 
 /// Where something stands: bytes `start..end` of one of the texts.
@@ -55,17 +55,30 @@ impl Reporter {
         self.folder.join(name)
     }
 
-    pub(crate) fn report(&mut self, place: Span, message: impl Into<String>) {
+    pub(crate) fn report(&mut self, span: Span, message: impl Into<String>) {
         if !self.is_full() {
-            self.notes.push((place, message.into()));
+            self.notes.push((span, message.into()));
         }
     }
 
-    /// Notes that the value being read is not what it has to be.
+    /// Reports that the value being read is not what it has to be.
     pub(crate) fn wrong(&mut self, node: &Node, expected: &str) {
         let subject = if self.key.is_empty() { "this".to_owned() } else { format!("`{}`", self.key) };
-        let found = node.describe(self.shown(node.place));
-        self.report(node.place, format!("{subject} must be {expected}, not {found}"));
+        let found = node.describe(self.shown(node.span));
+        self.report(node.span, format!("{subject} must be {expected}, not {found}"));
+    }
+
+    /// `value`, if there is one; else reports that the value being read is not what it must be.
+    pub(crate) fn expect<T>(
+        &mut self,
+        value: Option<T>,
+        node: &Node,
+        expected: impl FnOnce() -> String,
+    ) -> Option<T> {
+        if value.is_none() {
+            self.wrong(node, &expected());
+        }
+        value
     }
 
     /// Does `work` as part of reading the value of `key`.
@@ -76,14 +89,14 @@ impl Reporter {
         result
     }
 
-    /// Adds to the last note.
+    /// Appends to the last message.
     pub(crate) fn append_to_last(&mut self, more: &str) {
         if let Some((_, message)) = self.notes.last_mut() {
             message.push_str(more);
         }
     }
 
-    /// Whether further notes are dropped.
+    /// Whether further messages are dropped.
     pub(crate) fn is_full(&self) -> bool {
         self.notes.len() >= MOST_NOTES
     }
@@ -95,38 +108,38 @@ impl Reporter {
     pub(crate) fn into_diagnostics(mut self) -> Diagnostics {
         self.notes.sort();
         self.notes.dedup();
-        Diagnostics(self.notes.iter().map(|(place, message)| self.diagnostic(*place, message)).collect())
+        Diagnostics(self.notes.iter().map(|(span, message)| self.diagnostic(*span, message)).collect())
     }
 
-    /// Number of notes so far.
+    /// Number of messages so far.
     pub(crate) fn notes(&self) -> usize {
         self.notes.len()
     }
 
-    /// Moves the notes from number `first` on that stand outside of `place` there, with `why` added.
-    pub(crate) fn gather(&mut self, first: usize, place: Span, why: &str) {
+    /// Moves messages from number `first` on that lie outside `span` to `span`, and appends `why`.
+    pub(crate) fn gather(&mut self, first: usize, span: Span, why: &str) {
         for (at, message) in self.notes.iter_mut().skip(first) {
-            if at.source != place.source || at.start < place.start || at.end > place.end {
-                *at = place;
+            if at.source != span.source || at.start < span.start || at.end > span.end {
+                *at = span;
                 message.push_str(why);
             }
         }
     }
 
     /// The text at a place.
-    pub(crate) fn shown(&self, place: Span) -> &str {
-        self.sources.get(place.source).and_then(|s| s.text.get(place.start..place.end)).unwrap_or("")
+    pub(crate) fn shown(&self, span: Span) -> &str {
+        self.sources.get(span.source).and_then(|s| s.text.get(span.start..span.end)).unwrap_or("")
     }
 
-    fn diagnostic(&self, place: Span, message: &str) -> Diagnostic {
+    fn diagnostic(&self, span: Span, message: &str) -> Diagnostic {
         let message = readable(message).into_owned();
-        let Some(source) = self.sources.get(place.source) else {
+        let Some(source) = self.sources.get(span.source) else {
             return Diagnostic { width: 1, message, ..Diagnostic::default() };
         };
-        let (before, after) = source.text.split_at(floor_boundary(&source.text, place.start));
+        let (before, after) = source.text.split_at(floor_boundary(&source.text, span.start));
         let line_start = before.rfind('\n').map_or(0, |at| at + 1);
         let rest = after.split(['\n', '\r']).next().unwrap_or("");
-        let meant = self.shown(place).split(['\n', '\r']).next().unwrap_or("");
+        let meant = self.shown(span).split(['\n', '\r']).next().unwrap_or("");
         Diagnostic {
             origin: source.origin.clone(),
             line: before.bytes().filter(|byte| *byte == b'\n').count() + 1,

@@ -30,7 +30,7 @@ impl<T: Copy + 'static> Form for Words<T> {
     }
 }
 
-/// Notes that `node` is none of `words`, with the nearest.
+/// Reports that `node` is none of `words`, with the nearest.
 pub(crate) fn not_a_word<'a>(
     node: &Node,
     words: impl Iterator<Item = &'a str> + Clone,

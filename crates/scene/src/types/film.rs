@@ -115,18 +115,16 @@ impl Form for LayoutForm {
     type Out = String;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<String> {
-        let Some(text) = node.as_text() else {
-            reporter.wrong(node, "views joined by '+', such as \"snake+top\"");
-            return None;
-        };
+        let expected = || "views joined by '+', such as \"snake+top\"".to_owned();
+        let text = reporter.expect(node.as_text(), node, expected)?;
         let parts: Vec<&str> = text.split('+').collect();
         if parts.len() > 4 {
             reporter
-                .report(node.place, format!("{} views are too many for one picture: at most 4", parts.len()));
+                .report(node.span, format!("{} views are too many for one picture: at most 4", parts.len()));
             return None;
         }
         let known = parts.iter().all(|part| {
-            let part = Node { place: node.place, value: Value::Text(part.trim().to_owned()) };
+            let part = Node { span: node.span, value: Value::Text(part.trim().to_owned()) };
             ViewForm.read(&part, reporter).is_some()
         });
         known.then(|| text.to_owned())

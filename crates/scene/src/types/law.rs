@@ -3,7 +3,7 @@
 
 use super::VehicleKind;
 use crate::text::{
-    Couple, Flag, Form, Node, Pair, Reporter, Value, angle, keys, number, settings, table,
+    Couple, Flag, Form, Node, Pair, Reporter, angle, keys, number, settings, table,
     words::{Words, word},
 };
 use serde_json::{Value as Json, json};
@@ -115,7 +115,7 @@ impl Form for StartForm {
     type Out = ObserverStart;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<ObserverStart> {
-        if !matches!(node.value, Value::Table(_)) {
+        if node.as_table().is_none() {
             return MEASURED.read(node, reporter);
         }
         let keys = table::<StartKeys>().read(node, reporter)?;
@@ -123,7 +123,7 @@ impl Form for StartForm {
             (Some(at), None) => Some(ObserverStart::At(at.value)),
             (None, Some(offset)) => Some(ObserverStart::Offset(offset.value)),
             _ => {
-                reporter.report(node.place, "`start` takes either `at` or `offset`, as [distance, bearing]");
+                reporter.report(node.span, "`start` takes either `at` or `offset`, as [distance, bearing]");
                 None
             }
         }

@@ -1,8 +1,7 @@
 //! What a lead robot does.
 
 use serde::Serialize;
-use vocabulary::Pose;
-use vocabulary::math;
+use vocabulary::{Pose, math};
 
 /// Motion of a lead robot as plain data; it starts at the robot's pose, way-points at their own start.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -83,7 +82,7 @@ impl Path {
         Some(Pose::new(first[0], first[1], math::atan2(second[1] - first[1], second[0] - first[0])))
     }
 
-    /// Bounds on |speed| in m/s and |turn rate| in rad/s over all times, where they can be told beforehand.
+    /// Bounds on |speed| in m/s and |turn rate| in rad/s over all times, where they are known beforehand.
     pub(crate) fn peaks(&self) -> (f64, Option<f64>) {
         let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
         match self {

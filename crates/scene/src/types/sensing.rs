@@ -2,8 +2,8 @@
 
 use crate::text::words::word;
 use crate::text::{
-    Couple, Flag, Form, Found, Node, Optional, Reporter, Value, angle, angle_within, form::Number, integer,
-    number, settings, table,
+    Couple, Flag, Form, Found, Node, Optional, Reporter, angle, angle_within, form::Number, integer, number,
+    settings, table,
 };
 use serde_json::{Value as Json, json};
 use std::f64::consts::PI;
@@ -78,13 +78,11 @@ impl Form for SensingForm {
     type Out = SensingPart;
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<SensingPart> {
-        match &node.value {
-            Value::Text(_) => {
-                let value = word::<SensingKind>().read(node, reporter)?;
-                Some(SensingPart { kind: Some(Found { place: node.place, value }), ..SensingPart::default() })
-            }
-            _ => table::<SensingPart>().read(node, reporter),
+        if node.as_text().is_none() {
+            return table::<SensingPart>().read(node, reporter);
         }
+        let value = word::<SensingKind>().read(node, reporter)?;
+        Some(SensingPart { kind: Some(Found { span: node.span, value }), ..SensingPart::default() })
     }
 
     fn schema(&self) -> Json {

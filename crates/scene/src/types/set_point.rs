@@ -90,17 +90,17 @@ fn chain(node: &Node, passages: Vec<StepInterpolant>, reporter: &mut Reporter) -
     for (from, to, start, over) in passages {
         let last = ramps.last();
         let Some(value) = from.as_ref().map(|from| from.value).or(last.map(|last| last.to)) else {
-            reporter.report(node.place, "`from` is missing: the first passage has to say where it starts");
+            reporter.report(node.span, "`from` is missing: the first passage has to say where it starts");
             return None;
         };
         if let Some(last) = last {
             if start.value < last.start + last.over {
                 let free = last.start + last.over;
-                reporter.report(start.place, format!("this starts before the last passage ends at {free} s"));
+                reporter.report(start.span, format!("this starts before the last passage ends at {free} s"));
             }
             if let Some(from) = from.filter(|from| from.value != last.to) {
                 reporter
-                    .report(from.place, format!("`from` must be {}, where the last passage ended", last.to));
+                    .report(from.span, format!("`from` must be {}, where the last passage ended", last.to));
             }
         }
         ramps.push(Ramp { from: value, to, start: start.value, over });

@@ -2,8 +2,7 @@
 
 use crate::text::words::word;
 use crate::text::{angle_within, form::Number, number, settings};
-use vocabulary::math;
-use vocabulary::{Body, GRAVITY, Limits, words};
+use vocabulary::{Body, GRAVITY, Limits, math, words};
 
 /// A measure of a body.
 const MEASURE: Number = number("m").above(0.0).up_to(100.0);

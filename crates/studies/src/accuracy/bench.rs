@@ -5,12 +5,11 @@ use crate::accuracy::tally::{Errors, PoseSample};
 use crate::dataset::camera::{CORNER_NOISE, errors, relative_pose};
 use crate::dataset::view::{FaceView, region_around};
 use crate::{Error, RendererFactory};
-use perception::detect::{Detector, Locus, Tag, recognise_expected};
+use perception::detect::{Detector, Locus, Tag, recognise};
 use perception::imaging::{ImageSensor, Optics, Purpose, noise_stream};
 use perception::pose::{Prior, Rig, SeenFace, locate};
-use vocabulary::math;
 use vocabulary::{
-    Body, CameraRenderer, Edge, FACES, FleetInfo, Grey, Pose, Region, Rigid, RobotInfo, Shell, Shot, Snapshot,
+    Body, CameraRenderer, Edge, FACES, FleetInfo, Grey, Pose, Region, Rigid, RobotInfo, Shell, Snapshot, math,
 };
 
 /// What is timed, in the order of [`Times`].
@@ -155,14 +154,7 @@ impl LocalisationBench {
         let SearchFrame { snapshot, number, region, expected, .. } = *frame;
         let follower = &self.fleet.robots[FOLLOWER];
         let source = self.sensor.source(region);
-        let shot = Shot {
-            robot: FOLLOWER,
-            world_from_camera: follower.camera_mount.world_from_camera(&snapshot.robots[FOLLOWER]),
-            focal: follower.camera_model.focal,
-            centre: source.centre,
-            region: source.region,
-            exposure: 1.0,
-        };
+        let shot = source.shot(FOLLOWER, follower, &snapshot.robots[FOLLOWER], 1.0);
         let mut times = Times::default();
         let mut pictures = Vec::new();
         let began = clock();
@@ -178,7 +170,7 @@ impl LocalisationBench {
         let shell = self.detector.shell;
         self.detector.foreign = 0;
         let began = clock();
-        let faces = recognise_expected(&mut self.detector, &picture, region, &optics, &shell, expected);
+        let faces = recognise(&mut self.detector, &picture, region, &optics, &shell, expected);
         times[2] = 1e3 * (clock() - began);
         let strayed =
             faces.iter().filter(|seen| strays(seen, &shell, &optics, &frame.camera_from_body)).count();

@@ -2,8 +2,7 @@
 
 use perception::imaging::{Purpose, noise_stream};
 use std::f64::consts::{PI, TAU};
-use vocabulary::math;
-use vocabulary::{Body, Motion, Pose, RobotInfo, RobotState, Snapshot};
+use vocabulary::{Body, Motion, Pose, RobotInfo, RobotState, Snapshot, math};
 
 /// Bounds of the distances that are told apart, m.
 pub const BINS: [[f64; 2]; 6] = [[0.5, 1.0], [1.0, 2.0], [2.0, 3.0], [3.0, 4.0], [4.0, 5.0], [5.0, 6.0]];

@@ -1,9 +1,8 @@
 //! One run, and what it showed about every edge once it had settled.
 
-use crate::Error;
+use crate::{Error, SceneRun};
 use metrics::{RootMeanSquare, difference};
 use serde::Serialize;
-use simulation::Simulation;
 use vocabulary::{EdgeState, MeasurementRecord, Outcome, StepRecord, TrackingState};
 
 /// One edge of one run, from the time after which it counts as settled. Triples are distance, bearing, view angle in m
@@ -113,33 +112,29 @@ pub struct MeasuredRun {
 /// Steps between two reports of how far a run is.
 const STRIDE: u64 = 64;
 
-/// Runs a simulation to its end; `None` where `go_on`, told the number of steps done, says no.
+/// Runs a scene to its end; `None` where `go_on`, told the number of steps done, says no.
 ///
 /// # Errors
 /// [`Error`] where the run breaks off with a fault.
 pub fn measure(
-    simulation: &mut Simulation,
+    run: &mut SceneRun,
     settled_after: f64,
     mut go_on: impl FnMut(u64) -> bool,
 ) -> Result<Option<MeasuredRun>, Error> {
-    let period = simulation.period();
-    let mut edges = vec![EdgeErrorSums::default(); simulation.fleet().edges.len()];
-    let (mut run, mut step, mut before) = (MeasuredRun::default(), 0, f64::NEG_INFINITY);
-    while let Some(record) = simulation.next_record() {
+    let period = run.simulation.period();
+    let mut edges = vec![EdgeErrorSums::default(); run.simulation.fleet().edges.len()];
+    let (mut measured, mut on, mut before) = (MeasuredRun::default(), true, f64::NEG_INFINITY);
+    run.step_through(|simulation, step| {
+        let record = simulation.record();
         take_in(&mut edges, record, settled_after, period);
         let time = record.snapshot.time;
-        run.contacts += record.contacts.iter().filter(|c| c.begin > before && c.begin <= time).count();
-        (run.duration, before) = (time, time);
-        step += 1;
-        if step % STRIDE == 0 && !go_on(step) {
-            return Ok(None);
-        }
-    }
-    if let Some(fault) = simulation.fault() {
-        return Err(fault.into());
-    }
-    run.edges = edges.iter().map(EdgeErrorSums::finish).collect();
-    Ok(Some(run))
+        measured.contacts += record.contacts.iter().filter(|c| c.begin > before && c.begin <= time).count();
+        (measured.duration, before) = (time, time);
+        on = step % STRIDE != 0 || go_on(step);
+        on
+    })?;
+    measured.edges = edges.iter().map(EdgeErrorSums::finish).collect();
+    Ok(on.then_some(measured))
 }
 
 fn take_in(edges: &mut [EdgeErrorSums], record: &StepRecord, settled_after: f64, period: f64) {

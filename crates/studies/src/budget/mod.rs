@@ -27,10 +27,8 @@ pub struct Budget<'a> {
     pub constants: bool,
     /// What was run, in order.
     pub runs: Vec<(BudgetCase, MeasuredRun)>,
-    /// Adapter that drew for the cameras, if any did.
-    pub adapter: Option<String>,
-    /// Why there are no pictures of cameras, where there are none.
-    pub without_camera: Option<String>,
+    /// Adapter that drew for the cameras, or why there are no pictures of cameras.
+    pub camera: Result<String, String>,
     /// Whether all runs were made.
     pub complete: bool,
 }
@@ -44,8 +42,7 @@ impl<'a> Budget<'a> {
             settled_after: scene.judging().settled_after,
             constants,
             runs: vec![],
-            adapter: None,
-            without_camera: None,
+            camera: Err("no camera".to_owned()),
             complete: false,
         }
     }
@@ -64,7 +61,7 @@ impl<'a> Budget<'a> {
         for (index, case) in cases.iter().enumerate() {
             let mut run = case.build(self.scene)?;
             run.attach_cameras(&mut *renderer)?;
-            match measure(&mut run.simulation, self.settled_after, |step| go_on(index, step))? {
+            match measure(&mut run, self.settled_after, |step| go_on(index, step))? {
                 Some(measured) => self.runs.push((*case, measured)),
                 None => return Ok(()),
             }
@@ -75,8 +72,7 @@ impl<'a> Budget<'a> {
 
     /// Names of leader and follower of an edge.
     pub fn edge(&self, index: usize) -> [&str; 2] {
-        let name = |robot: usize| self.fleet.robots.get(robot).map_or("", |m| m.name.as_str());
-        self.fleet.edges.get(index).map_or([""; 2], |edge| [name(edge.leader), name(edge.follower)])
+        self.fleet.edges.get(index).map_or([""; 2], |edge| self.fleet.pair(*edge))
     }
 
     /// The run of a case, where it has come to that.

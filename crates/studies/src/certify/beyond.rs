@@ -6,8 +6,7 @@ use super::sensitivity::{self, Sensitivities};
 use super::{ChannelSensitivity, Discretisation, LongestPeriod};
 use scene::{Scene, SensingKind, SwitchingKind};
 use simulation::BuildError;
-use vocabulary::LawKind;
-use vocabulary::math;
+use vocabulary::{LawKind, math};
 
 /// Stability over ε and period, of the distance channel of the first follower by output feedback.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,7 +8,7 @@ use formation::{EdgeLaw, Estimate, SetPointTrajectory, Switching};
 use metrics::{CertificateMetrics, StatementMetrics};
 use scene::Scene;
 use simulation::Simulation;
-use vocabulary::{Edge, EntityId, FleetInfo, LawKind, Motion, MotionInput, StepRecord, TimeMode, Word};
+use vocabulary::{Edge, FleetInfo, LawKind, Motion, MotionInput, StepRecord, TimeMode, Word};
 
 /// A change of a held command below this is rounding, m/s² or rad/s.
 const STEADY: f64 = 1e-9;
@@ -41,9 +41,7 @@ impl Certificate {
 
     /// The certificate as `metrics.json` holds it.
     pub fn metrics(&self, fleet: &FleetInfo) -> CertificateMetrics {
-        let name = |robot: usize| fleet.name(EntityId::Robot(robot)).to_owned();
-        let (leader, follower) =
-            fleet.edges.get(self.edge).map_or((0, 0), |edge| (edge.leader, edge.follower));
+        let [leader, follower] = fleet.pair(fleet.edges[self.edge]);
         let statement = |finding: &StatementFinding| StatementMetrics {
             statement: finding.statement.word().to_owned(),
             source: finding.statement.source().to_owned(),
@@ -55,8 +53,8 @@ impl Certificate {
         };
         let finite = |value: f64| Some(value).filter(|v| v.is_finite());
         CertificateMetrics {
-            leader: name(leader),
-            follower: name(follower),
+            leader: leader.to_owned(),
+            follower: follower.to_owned(),
             span: self.span,
             statements: self.findings.iter().map(statement).collect(),
             ultimate_error: self.constants.and_then(|c| finite(c.error)),
@@ -105,8 +103,8 @@ impl CertifiedStretch {
     }
 
     fn fits(&self, law: &EdgeLaw) -> bool {
-        *self.witness.law() == law.law
-            && *self.witness.observer() == law.observer
+        self.witness.law == law.law
+            && self.witness.observer == law.observer
             && self.set_point == law.set_point
             && self.measures == law.tracker.is_some()
     }
@@ -178,7 +176,7 @@ impl Examiner {
             wheels: wheels(edge.leader) || wheels(edge.follower),
             rough_leader: stretch.rough_leader,
         };
-        let law = witness.law();
+        let law = &witness.law;
         let effect = witness.last_effect();
         let smoothed = law.kind != LawKind::FullState && matches!(law.switching, Switching::Tanh(_));
         Certificate {

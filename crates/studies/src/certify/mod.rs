@@ -27,21 +27,15 @@ use crate::{Error, SceneRun};
 /// # Errors
 /// [`Error`] where the run breaks off with a fault.
 pub fn certificates(
-    run: SceneRun,
+    mut run: SceneRun,
     mut go_on: impl FnMut(u64) -> bool,
 ) -> Result<Option<Vec<Certificate>>, Error> {
-    let SceneRun { scene, mut simulation } = run;
-    let mut examiner = Examiner::new(&scene, &simulation, true);
-    let mut step = 0;
-    while simulation.next_record().is_some() {
-        examiner.push(&simulation);
-        step += 1;
-        if step % STRIDE == 0 && !go_on(step) {
-            return Ok(None);
-        }
-    }
-    match simulation.fault() {
-        Some(fault) => Err(fault.into()),
-        None => Ok(Some(examiner.finish(&simulation))),
-    }
+    let mut examiner = Examiner::new(&run.scene, &run.simulation, true);
+    let mut on = true;
+    run.step_through(|simulation, step| {
+        examiner.push(simulation);
+        on = step % STRIDE != 0 || go_on(step);
+        on
+    })?;
+    Ok(on.then(|| examiner.finish(&run.simulation)))
 }

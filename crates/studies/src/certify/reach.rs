@@ -3,8 +3,7 @@
 use formation::feasible::{Infeasible, held, infeasible};
 use scene::Scene;
 use simulation::{BuildError, Simulation, build};
-use vocabulary::math;
-use vocabulary::{Limits, MotionInput, ScalarTrajectory};
+use vocabulary::{Limits, MotionInput, ScalarTrajectory, math};
 
 /// Bearings that are looked at.
 const BEARINGS: usize = 180;

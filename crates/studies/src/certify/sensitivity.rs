@@ -1,10 +1,10 @@
 //! How the settled error answers to every gain: the scene run again with each gain a little larger and a little smaller.
 
 use metrics::RootMeanSquare;
+use rayon::prelude::*;
 use scene::{Follow, Role, Scene, SwitchingKind};
 use simulation::{BuildError, Simulation, build};
-use vocabulary::LawKind;
-use vocabulary::math;
+use vocabulary::{LawKind, math};
 
 /// A gain is changed by this share, up and down.
 const SHARE: f64 = 0.02;
@@ -110,7 +110,7 @@ pub fn sensitivities(
     let gains = gains(scene);
     let mut cases: Vec<Option<(Gain, f64)>> = vec![None];
     cases.extend(gains.iter().flat_map(|gain| [-SHARE, SHARE].map(|share| Some((*gain, share)))));
-    let runs = in_parallel(&cases, |case| {
+    let runs = cases.par_iter().map(|case| {
         let mut scene = scene.clone();
         if let Some((gain, share)) = case {
             scene.for_every_robot(|robot| {
@@ -121,14 +121,8 @@ pub fn sensitivities(
         }
         settled(&scene, &look)
     });
-    let mut errors = Vec::with_capacity(runs.len());
-    for run in runs {
-        match run? {
-            Some(settled) => errors.push(settled),
-            None => return Ok(None),
-        }
-    }
-    let [own, rest @ ..] = errors.as_slice() else { return Ok(None) };
+    let errors: Option<Vec<_>> = runs.collect::<Result<Vec<_>, _>>()?.into_iter().collect();
+    let Some([own, rest @ ..]) = errors.as_deref() else { return Ok(None) };
     let sensitivity = |(gain, pair): (&Gain, &[Vec<[f64; 2]>])| {
         let slope = |edge: usize, i: usize| {
             let [less, more] = [pair[0][edge][i], pair[1][edge][i]];
@@ -147,34 +141,9 @@ fn settled(scene: &Scene, look: &(impl Fn() -> bool + Sync)) -> Result<Option<Ve
     let from = simulation.len() - (simulation.len() as f64 * LATE) as u64;
     let mut errors = vec![RootMeanSquare::<2>::EMPTY; simulation.fleet().edges.len()];
     while let Some(record) = simulation.next_record() {
-        if simulation_sample(record, scene.time.period) < from {
-            continue;
-        }
-        for (sum, edge) in errors.iter_mut().zip(&record.edges) {
-            sum.add(edge.error);
+        if (record.snapshot.time / scene.time.period).round() as u64 >= from {
+            errors.iter_mut().zip(&record.edges).for_each(|(sum, edge)| sum.add(edge.error));
         }
     }
     Ok(look().then(|| errors.iter().map(|sum| sum.root().unwrap_or_default()).collect()))
-}
-
-fn simulation_sample(record: &vocabulary::StepRecord, period: f64) -> u64 {
-    (record.snapshot.time / period).round() as u64
-}
-
-/// `work` on every item, on all cores; results in the order of the items, whoever did them.
-fn in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let workers = std::thread::available_parallelism().map_or(1, usize::from).min(items.len().max(1));
-    let work = &work;
-    let mut done: Vec<(usize, R)> = std::thread::scope(|scope| {
-        let bench = |first: usize| {
-            scope.spawn(move || {
-                let own = items.iter().enumerate().skip(first).step_by(workers);
-                own.map(|(k, item)| (k, work(item))).collect::<Vec<_>>()
-            })
-        };
-        let benches: Vec<_> = (0..workers).map(bench).collect();
-        benches.into_iter().flat_map(|bench| bench.join().unwrap_or_default()).collect()
-    });
-    done.sort_by_key(|(k, _)| *k);
-    done.into_iter().map(|(_, result)| result).collect()
 }

@@ -7,8 +7,7 @@ use perception::imaging::{ImageSensor, Optics, Purpose, noise_stream};
 use perception::pose::{PoseEstimate, Prior, Rig, locate};
 use perception::sensors::SensorConfig;
 use serde_json::{Value, json};
-use vocabulary::math;
-use vocabulary::{Edge, FACES, FleetInfo, Grey, Pose, Region, RobotState, Shell, Snapshot, wrap};
+use vocabulary::{Edge, FACES, FleetInfo, Grey, Pose, Region, RobotState, Shell, Snapshot, math, wrap};
 
 /// Standard deviation of a corner's coordinates as found in pictures, besides what its finder reports, pixels; what
 /// cameras that steer by them assume.
@@ -154,7 +153,7 @@ impl FollowerCamera {
         let region = self.region(&shell, &rig, &own, &ahead);
         let part = cut(taken.picture, region);
         let optics = *self.sensor.optics();
-        let faces = recognise(&mut self.detector, &part, region, &optics, &shell);
+        let faces = recognise(&mut self.detector, &part, region, &optics, &shell, FACES);
         note["faces"] = faces
             .iter()
             .map(|seen| json!({ "face": seen.face, "corners": seen.corners, "deviation": seen.deviation }))

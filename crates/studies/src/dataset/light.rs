@@ -2,16 +2,14 @@
 
 use crate::Error;
 use crate::dataset::timeline::Timeline;
-use perception::imaging;
-use vocabulary::{CameraRenderer, FleetInfo, Grey, Region, Shot, Snapshot};
+use perception::imaging::{self, IdealPicture};
+use vocabulary::{CameraRenderer, FleetInfo, Grey, Shot, Snapshot};
 
 /// A picture to be taken: of all a sensor needs for its whole frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PictureRequest {
     pub(crate) robot: usize,
-    /// What to draw, and the principal point in it.
-    pub(crate) region: Region,
-    pub(crate) centre: [f64; 2],
+    pub(crate) source: IdealPicture,
 }
 
 /// How cameras are exposed.
@@ -35,26 +33,10 @@ pub(crate) fn gather(
     imaging::gather(exposure.shutter, |off, pictures| {
         let then = timeline.at(now.time + off).filter(|_| off != 0.0);
         let then = then.as_ref().unwrap_or(now);
-        renderer.render(then, &shots(fleet, exposure, then, wanted), pictures).map_err(Error::Camera)
+        let shot = |PictureRequest { robot, source }: &PictureRequest| {
+            source.shot(*robot, &fleet.robots[*robot], &then.robots[*robot], exposure.factor)
+        };
+        let shots: Vec<Shot> = wanted.iter().map(shot).collect();
+        renderer.render(then, &shots, pictures).map_err(Error::Camera)
     })
-}
-
-fn shots(
-    fleet: &FleetInfo,
-    exposure: &Exposure,
-    snapshot: &Snapshot,
-    wanted: &[PictureRequest],
-) -> Vec<Shot> {
-    let shot = |want: &PictureRequest| {
-        let member = &fleet.robots[want.robot];
-        Shot {
-            robot: want.robot,
-            world_from_camera: member.camera_mount.world_from_camera(&snapshot.robots[want.robot]),
-            focal: member.camera_model.focal,
-            centre: want.centre,
-            region: want.region,
-            exposure: exposure.factor,
-        }
-    };
-    wanted.iter().map(shot).collect()
 }

@@ -158,7 +158,7 @@ impl DatasetExport {
         now.time = time;
         let want = |camera: &FollowerCamera| {
             let source = camera.sensor.source(Region::whole(&camera.sensor.optics().camera_model));
-            PictureRequest { robot: camera.edge.follower, region: source.region, centre: source.centre }
+            PictureRequest { robot: camera.edge.follower, source }
         };
         let wanted: Vec<PictureRequest> = self.cameras.iter().map(want).collect();
         let light = gather(&mut *self.renderer, &self.fleet, &self.exposure, &self.timeline, &now, &wanted)?;
@@ -257,16 +257,15 @@ fn follower_camera(scene: &Scene, fleet: &FleetInfo, edge: Edge, whole: bool) ->
 /// What knows what stands in the way of whom; nobody looks with it.
 fn sensor_config(scene: &Scene, fleet: &FleetInfo) -> SensorConfig {
     let truth = Sensor { source: SensorKind::Truth, rate: 1.0, latency: 0.0, drop: 0.0, tilt: 0.0 };
-    let sensors = fleet.edges.iter().map(|_| truth).collect();
-    SensorConfig::new(
-        &fleet.edges,
-        sensors,
-        &fleet.robots,
-        &fleet.props,
-        fleet.terrain.clone(),
-        CameraSettings::default(),
-        scene.seed,
-    )
+    SensorConfig {
+        edges: fleet.edges.clone(),
+        sensors: vec![truth; fleet.edges.len()],
+        robots: fleet.robots.clone(),
+        props: fleet.props.clone(),
+        terrain: fleet.terrain.clone(),
+        camera: CameraSettings::default(),
+        seed: scene.seed,
+    }
 }
 
 #[cfg(test)]

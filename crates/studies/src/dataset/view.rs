@@ -1,8 +1,7 @@
 //! How a tag stands in a camera's picture, by geometry alone.
 
 use perception::sensors::{MARGIN, readable};
-use vocabulary::math;
-use vocabulary::{CameraModel, FACES, Region, Rigid, Shell};
+use vocabulary::{CameraModel, FACES, Region, Rigid, Shell, math};
 
 /// Cosine of the angle, and pixels a cell, at which a tag is surely read.
 const SURELY: (f64, f64) = (0.55, 2.0);

@@ -13,8 +13,9 @@ use rapier3d_f64::prelude::{
     PhysicsPipeline, Pose as Isometry, QueryFilter, Ray, RigidBodyBuilder, RigidBodyHandle, RigidBodySet,
     Rotation, SharedShape, SoftBodySet, Vector,
 };
-use vocabulary::math;
-use vocabulary::{Attitude, Body, EntityId, GRAVITY, Mobility, Motion, Placement, Pose, Solid, Surface};
+use vocabulary::{
+    Attitude, Body, EntityId, GRAVITY, Mobility, Motion, Placement, Pose, Solid, Surface, math,
+};
 
 /// Bodies whose nearest points are closer than this touch, m.
 const TOUCHING: f64 = 1e-4;
@@ -24,7 +25,7 @@ const CORNERS: f64 = 2e-3;
 const SHELL: [f64; 2] = [0.4, 0.1];
 
 /// All bodies and their solver.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(super) struct Bodies {
     pipeline: Pipeline,
     parameters: IntegrationParameters,
@@ -67,22 +68,14 @@ impl Bodies {
             colliders.insert(part.friction(0.7).user_data(mark(EntityId::Ground)));
         }
         Self {
-            pipeline: Pipeline::default(),
             // Recycled contacts keep old distances: a touch would be seen centimetres late.
             parameters: IntegrationParameters {
                 contact_recycling: false,
                 ..IntegrationParameters::default()
             },
-            islands: IslandManager::new(),
-            broad_phase: BroadPhaseBvh::default(),
-            narrow_phase: NarrowPhase::new(),
             set: RigidBodySet::new(),
             colliders,
-            joints: ImpulseJointSet::new(),
-            multibodies: MultibodyJointSet::new(),
-            soft: SoftBodySet::default(),
-            ccd: CCDSolver::new(),
-            props: Vec::new(),
+            ..Self::default()
         }
     }
 

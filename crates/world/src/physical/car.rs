@@ -9,8 +9,7 @@ use crate::wheeled::wheel::{Carriage, Footing, Mounting, Pull, Push};
 use crate::{Unicycle, Wheeled};
 use rapier3d_f64::prelude::{RigidBodyHandle, Vector};
 use std::sync::Arc;
-use vocabulary::math;
-use vocabulary::{Command, Limits, Motion, Surface, Terrain, Wheel};
+use vocabulary::{Command, Limits, Motion, Surface, Terrain, Wheel, math};
 
 /// What vehicles drive on and among.
 #[derive(Debug, Clone)]

@@ -16,10 +16,9 @@ use interpolant::MotionHistory;
 use rapier3d_f64::prelude::RigidBodyHandle;
 use rayon::prelude::*;
 use std::sync::Arc;
-use vocabulary::math;
 use vocabulary::{
     Command, Contact, Mobility, Motion, Placement, Pose, Prop, Snapshot, Solid, StepInterpolant, Terrain,
-    Trajectory,
+    Trajectory, math,
 };
 
 /// A robot on stage.

@@ -1,8 +1,7 @@
 //! Notices robots that cannot drive any more.
 
 use super::ground::FAR;
-use vocabulary::math;
-use vocabulary::{Attitude, Condition, Motion};
+use vocabulary::{Attitude, Condition, Motion, math};
 
 /// Cosine of the tilt beyond which a vehicle lies on its side or roof.
 const TILTED: f64 = 0.35;

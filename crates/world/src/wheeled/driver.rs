@@ -6,8 +6,7 @@
 
 use super::actuator::{demand, share};
 use super::{Drivetrain, Wheeled};
-use vocabulary::math;
-use vocabulary::{Command, GRAVITY};
+use vocabulary::{Command, GRAVITY, math};
 
 /// What a driver remembers, and where the actuators stand.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -92,14 +91,11 @@ impl Driver {
         match vehicle.drivetrain {
             Drivetrain::Steered { angle_max, rate, .. } => {
                 self.steer(vehicle, pace, command.turn_rate, [speed, turn_rate], angle_max, rate);
-                let drive = [self.force.max(0.0) / 4.0; 4];
-                let brake = [(-self.force).max(0.0) / 4.0; 4];
-                Effort { drive, brake, tan_steering: math::tan(self.turn) }
+                self.effort(vehicle, self.force.max(0.0), (-self.force).max(0.0))
             }
             Drivetrain::Differential => {
                 self.spin(vehicle, pace, command.turn_rate, [speed, turn_rate]);
-                let (left, right) = (0.5 * (self.force - self.turn), 0.5 * (self.force + self.turn));
-                Effort { drive: [0.0, 0.0, left, right], brake: [0.0; 4], tan_steering: 0.0 }
+                self.effort(vehicle, self.force, 0.0)
             }
         }
     }
@@ -108,17 +104,23 @@ impl Driver {
     fn hold(&mut self, vehicle: &Wheeled, pace: &Pace) -> Effort {
         self.target = 0.0;
         self.force -= pace.drive * self.force;
-        let drive = self.force.max(0.0);
+        if vehicle.drivetrain == Drivetrain::Differential {
+            self.turn -= pace.turn * self.turn;
+        }
+        self.effort(vehicle, self.force.max(0.0), vehicle.brake_force)
+    }
+
+    /// The forces of drive and brakes, all wheels together, N, shared among the wheels.
+    fn effort(&self, vehicle: &Wheeled, drive: f64, brake: f64) -> Effort {
         match vehicle.drivetrain {
             Drivetrain::Steered { .. } => Effort {
                 drive: [drive / 4.0; 4],
-                brake: [vehicle.brake_force / 4.0; 4],
+                brake: [brake / 4.0; 4],
                 tan_steering: math::tan(self.turn),
             },
             Drivetrain::Differential => {
-                self.turn -= pace.turn * self.turn;
-                let brake = vehicle.brake_force / 2.0;
-                let (left, right) = (0.5 * (drive - self.turn), 0.5 * (drive + self.turn));
+                let (left, right, brake) =
+                    (0.5 * (drive - self.turn), 0.5 * (drive + self.turn), brake / 2.0);
                 Effort { drive: [0.0, 0.0, left, right], brake: [0.0, 0.0, brake, brake], tan_steering: 0.0 }
             }
         }

@@ -1,8 +1,7 @@
 //! A cell's share in a bell curve.
 
 use std::sync::LazyLock;
-use vocabulary::TAG_CELLS;
-use vocabulary::math;
+use vocabulary::{TAG_CELLS, math};
 
 /// Standard deviations beyond which a bell curve is over.
 const REACH: f64 = 3.5;
