@@ -6,13 +6,13 @@ use vocabulary::{Pose, math, nearest_turn};
 const T: f64 = 0.01;
 
 /// A leader on a circle and a follower that drives on its own, both exact unicycles.
-struct Pair {
+struct EstimatorPair {
     leader: Pose,
     follower: Pose,
     own: Own,
 }
 
-impl Pair {
+impl EstimatorPair {
     fn new() -> Self {
         Self {
             leader: Pose::new(0.0, 0.0, 0.3),
@@ -79,7 +79,7 @@ fn run(
     late: usize,
     mut look_at: impl FnMut(usize, &mut Measurement) -> bool,
 ) -> Shown {
-    let (mut pair, mut tracker) = (Pair::new(), Tracker::default());
+    let (mut pair, mut tracker) = (EstimatorPair::new(), Tracker::default());
     let mut waiting: VecDeque<(usize, Measurement)> = VecDeque::new();
     let mut shown = Shown { worst: [0.0; 3], rates: [0.0; 2], used: 0, rejected: 0 };
     let mut counted = 0;
@@ -108,7 +108,7 @@ fn run(
                 *worst = worst.max(off.abs());
             }
             let before = truth;
-            let mut ahead = Pair { ..pair };
+            let mut ahead = EstimatorPair { ..pair };
             ahead.advance(pair.own);
             let after = ahead.relative();
             let rate = [

@@ -14,7 +14,7 @@ pub(crate) struct PictureRequest {
 
 /// How cameras are exposed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Exposure {
+pub(crate) struct ExposureSettings {
     /// Factor on the light.
     pub(crate) factor: f64,
     /// s.
@@ -25,7 +25,7 @@ pub(crate) struct Exposure {
 pub(crate) fn gather(
     renderer: &mut dyn CameraRenderer,
     fleet: &FleetInfo,
-    exposure: &Exposure,
+    exposure: &ExposureSettings,
     timeline: &Timeline,
     now: &Snapshot,
     wanted: &[PictureRequest],

@@ -11,7 +11,7 @@ pub(crate) mod view;
 use crate::{Error, PROGRAM, RendererFactory, SceneRun};
 use camera::{FollowerCamera, LabelledPicture};
 use folder::DatasetFolder;
-use light::{Exposure, PictureRequest, gather};
+use light::{ExposureSettings, PictureRequest, gather};
 use perception::imaging::Optics;
 use perception::sensors::{CameraSettings, Sensor, SensorConfig, SensorKind};
 use scene::Scene;
@@ -66,7 +66,7 @@ pub struct DatasetExport {
     renderer: Box<dyn CameraRenderer>,
     cameras: Vec<FollowerCamera>,
     sensor_config: SensorConfig,
-    exposure: Exposure,
+    exposure: ExposureSettings,
     folder: DatasetFolder,
     timeline: Timeline,
     options: DatasetOptions,
@@ -88,7 +88,7 @@ impl DatasetExport {
     ) -> Result<Self, Error> {
         let SceneRun { scene, simulation } = run;
         let fleet = simulation.fleet().clone();
-        let exposure = Exposure { factor: scene.vision.exposure, shutter: scene.vision.shutter };
+        let exposure = ExposureSettings { factor: scene.vision.exposure, shutter: scene.vision.shutter };
         let camera = |edge: &Edge| follower_camera(&scene, &fleet, *edge, options.whole);
         let export = Self {
             renderer: renderer(&fleet).map_err(Error::Camera)?,
