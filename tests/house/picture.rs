@@ -105,6 +105,12 @@ fn places(rows: &[Vec<String>]) -> BTreeMap<String, [f64; 2]> {
     places
 }
 
+/// Goes on to a point, leaving and arriving upright.
+fn curve(path: &mut String, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) {
+    let bend = 0.45 * (y1 - y0);
+    write!(path, "C{x0} {} {x1} {} {x1} {y1}", y0 + bend, y1 - bend).expect("a string");
+}
+
 fn picture(uses: &Uses) -> String {
     let rows = rows(uses);
     let places = places(&rows);
@@ -118,17 +124,30 @@ fn picture(uses: &Uses) -> String {
          orient=\"auto\"><path d=\"M0 0L8 4L0 8z\" fill=\"#667\"/></marker></defs>\n\
          <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
     );
+    // How many arrows pass each gap already.
+    let mut passed: BTreeMap<(usize, i64), u32> = BTreeMap::new();
     for [from, to] in needed(uses) {
         let ([x0, y0], [x1, y1]) = (places[&from], places[&to]);
-        let (y0, y1) = (y0 + 0.5 * BOX[1], y1 - 0.5 * BOX[1]);
-        let bend = 0.45 * (y1 - y0);
-        writeln!(
-            svg,
-            "<path d=\"M{x0} {y0}C{x0} {} {x1} {} {x1} {y1}\" fill=\"none\" stroke=\"#99a\" marker-end=\"url(#tip)\"/>",
-            y0 + bend,
-            y1 - bend
-        )
-        .expect("a string");
+        let mut at = [x0, y0 + 0.5 * BOX[1]];
+        let mut path = format!("M{x0} {}", at[1]);
+        for (row, y) in rows.iter().map(|row| (row, places[&row[0]][1])).filter(|(_, y)| y0 < *y && *y < y1) {
+            // Between the boxes of a row, never behind one; side by side where several take the same gap.
+            let straight = x0 + (x1 - x0) * (y - y0) / (y1 - y0);
+            let beside = row
+                .iter()
+                .flat_map(|name| [-0.5, 0.5].map(|side| places[name][0] + side * (BOX[0] + GAP[0])));
+            let gap = beside.min_by(|a, b| (a - straight).abs().total_cmp(&(b - straight).abs()));
+            let gap = gap.expect("a row has a box");
+            let before = passed.entry((y as usize, gap as i64)).or_default();
+            let x = gap + 5.0 * f64::from(*before);
+            *before += 1;
+            curve(&mut path, at, [x, y - 0.5 * BOX[1]]);
+            at = [x, y + 0.5 * BOX[1]];
+            write!(path, "V{}", at[1]).expect("a string");
+        }
+        curve(&mut path, at, [x1, y1 - 0.5 * BOX[1]]);
+        writeln!(svg, "<path d=\"{path}\" fill=\"none\" stroke=\"#99a\" marker-end=\"url(#tip)\"/>")
+            .expect("a string");
     }
     for (name, [x, y]) in &places {
         let [left, top] = [x - 0.5 * BOX[0], y - 0.5 * BOX[1]];

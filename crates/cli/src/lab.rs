@@ -48,7 +48,7 @@ pub(crate) fn lab(args: LabArgs) -> Outcome {
     })
 }
 
-/// Ends the process as [`lab`] would have failed: the window library leaves no way back to it.
+/// Ends the process as [`lab()`] would have failed: the window library leaves no way back to it.
 fn abandon(reason: &str) {
     let failure = Failure::Machine(reason.to_owned());
     failure.tell();
