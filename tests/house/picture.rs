@@ -139,7 +139,7 @@ fn picture(uses: &Uses) -> String {
             let gap = beside.min_by(|a, b| (a - straight).abs().total_cmp(&(b - straight).abs()));
             let gap = gap.expect("a row has a box");
             let before = passed.entry((y as usize, gap as i64)).or_default();
-            let x = gap + 5.0 * f64::from(*before);
+            let x = gap - 6.0 + 4.0 * f64::from(*before);
             *before += 1;
             curve(&mut path, at, [x, y - 0.5 * BOX[1]]);
             at = [x, y + 0.5 * BOX[1]];
