@@ -622,6 +622,9 @@ def texts(path):
 
 def main():
     began = time.monotonic()
+    # Behind `&` and under nohup signals are ignored, and what is started would ignore them too.
+    for number in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(number, signal.default_int_handler)
     echelon, artefacts = sys.argv[1], Path(sys.argv[2]).resolve()
     # Nothing but what an earlier run has left.
     for old in artefacts.glob("[0-9][0-9]-*.png"):

@@ -17,7 +17,7 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<Override>,
     /// Random seed, in place of the scene's
-    #[arg(long)]
+    #[arg(long, value_parser = seed, allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
     #[command(flatten)]
     pub(crate) adapter: AdapterArgs,
@@ -96,6 +96,12 @@ pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
 /// A time of a list; spaces after commas are natural.
 pub(crate) fn time(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| "write seconds with commas between them, such as 0,2.5,15".to_owned())
+}
+
+/// A seed, in the range that scenes allow.
+pub(crate) fn seed(text: &str) -> Result<u64, String> {
+    let seed = text.parse().ok().filter(|seed| i64::try_from(*seed).is_ok());
+    seed.ok_or_else(|| format!("write a whole number from 0 to {}", i64::MAX))
 }
 
 /// Takes a number in a range; `wanted` says which where it is another.

@@ -35,7 +35,7 @@ pub(crate) struct FiguresArgs {
     #[arg(long, value_name = "KEY=VALUE", requires = "scene")]
     set: Vec<Override>,
     /// Random seed, in place of the scene's
-    #[arg(long, requires = "scene")]
+    #[arg(value_parser = crate::args::seed, allow_negative_numbers = true, long, requires = "scene")]
     seed: Option<u64>,
     /// Replace an earlier set of figures in the folder
     #[arg(long)]

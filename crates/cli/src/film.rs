@@ -195,7 +195,10 @@ pub(crate) fn shoot(
         replaced.tell(job.draw.quiet);
         drop(progress);
         let seconds = shot as f64 / rate;
-        let more = if kind == FilmKind::Mp4 { "; the same command goes on from there" } else { "" };
+        // Whole groups of frames alone outlive the program.
+        let kept = if kind == FilmKind::Mp4 { Film::kept(path, rate) as f64 / rate } else { 0.0 };
+        let more =
+            if kept > 0.0 { format!("; the same command goes on after {kept:.2} s") } else { String::new() };
         return Err(Failure::Interrupted(format!("{} holds the first {seconds:.2} s{more}", path.display())));
     }
     film.finish().map_err(|e| refused(e, &job, kind, rate))?;
