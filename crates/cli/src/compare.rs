@@ -26,7 +26,7 @@ pub(crate) struct CompareArgs {
     #[arg(value_name = "FOUND")]
     found: PathBuf,
     /// Similarity, 0 to 1, that every part of a picture has to reach
-    #[arg(long, value_name = "LIKENESS", default_value_t = 0.95, value_parser = within(0.0..=1.0, "write a number from 0, anything, to 1, every pixel the same"))]
+    #[arg(long, value_name = "LIKENESS", default_value_t = 0.95, value_parser = within(0.0..=1.0, "write a number from 0 (every picture passes) to 1 (every pixel has to be equal)"))]
     threshold: f64,
     /// Folder for difference images: reference, picture, and where they differ
     #[arg(long, short, value_name = "DIR")]
@@ -70,7 +70,7 @@ impl PicturePair {
             Ok(found) if found.likeness.other == 0.0 => "the same".to_owned(),
             Ok(PictureFinding { likeness: l, adapters }) => {
                 let by = adapters.as_ref().map_or_else(String::new, |[wanted, found]| {
-                    format!("; drawn with {found}, wanted as with {wanted}")
+                    format!("; drawn with {found}, the reference with {wanted}")
                 });
                 format!(
                     "likeness {:.4}, least {:.4} around pixel ({}, {}), {:.2} % of the pixels differ{by}",

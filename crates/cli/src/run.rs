@@ -119,10 +119,12 @@ fn kept(folder: &Path) -> String {
     let log = Log::open(&folder.join(log::FILE)).ok();
     let period = log.as_ref().map_or(0.0, |log| log.manifest().period);
     match log.map_or(0, |log| log.manifest().samples) {
-        0 => format!("{shown} keeps the parts of its tables that were closed, and says interrupted"),
+        0 => {
+            format!("{shown} keeps the parts of its tables that were complete; its manifest says interrupted")
+        }
         samples => format!(
-            "{shown} keeps the run up to {:.2} s, which `echelon replay {shown}` draws with --capture or --film, and says \
-             interrupted",
+            "{shown} keeps the run up to {:.2} s, which `echelon replay {shown}` draws with --capture or --film; its \
+             manifest says interrupted",
             (samples - 1) as f64 * period
         ),
     }

@@ -85,7 +85,7 @@ fn others(report: &CertifyReport<'_>) {
         say(&format!("… and {more} more; all of them with --json or -o DIR"));
     }
     say(
-        "✓ holds, ✗ violated from this time on, – premise not met; then by the numbers (✓) or (✗), or nothing to say",
+        "✓ holds, ✗ violated from this time on, – premise not met; in brackets whether the inequality holds numerically (✓) or not (✗)",
     );
 }
 
@@ -125,7 +125,7 @@ fn statement(finding: &StatementFinding) {
         match (finding.margin, when.is_empty()) {
             (None, _) => {}
             (Some(_), true) => say(&format!("{:51}the inequality nevertheless holds numerically", "")),
-            (Some(_), false) => say(&format!("{:51}by the numbers it is not so {when}", "")),
+            (Some(_), false) => say(&format!("{:51}numerically the inequality is violated {when}", "")),
         }
     }
 }
