@@ -62,11 +62,11 @@ impl Graph {
         if names.is_empty() {
             return Err(GraphError::Empty);
         }
-        let (mut graph, mut index) = (DiGraph::new(), HashMap::new());
-        for name in names.iter().map(|name| name.as_ref().to_owned()) {
-            let node = graph.add_node(name.clone());
-            if index.insert(name.clone(), node.index()).is_some() {
-                return Err(GraphError::DuplicateName(name));
+        let mut graph = DiGraph::with_capacity(names.len(), pairs.len());
+        let mut index = HashMap::with_capacity(names.len());
+        for name in names.iter().map(AsRef::as_ref) {
+            if index.insert(name, graph.add_node(name).index()).is_some() {
+                return Err(GraphError::DuplicateName(name.to_owned()));
             }
         }
         let mut edges = Vec::with_capacity(pairs.len());
@@ -98,8 +98,8 @@ impl Graph {
 }
 
 fn resolve(
-    graph: &DiGraph<String, usize>,
-    index: &HashMap<String, usize>,
+    graph: &DiGraph<&str, usize>,
+    index: &HashMap<&str, usize>,
     leader: &str,
     follower: &str,
 ) -> Result<Edge, GraphError> {
@@ -114,32 +114,32 @@ fn resolve(
     if let Some(first) = graph.neighbors_directed(NodeIndex::new(f), Direction::Incoming).next() {
         return Err(GraphError::TwoLeaders {
             follower: follower.to_owned(),
-            first: graph[first].clone(),
+            first: graph[first].to_owned(),
             second: leader.to_owned(),
         });
     }
     Ok(Edge { leader: l, follower: f })
 }
 
-fn incoming(graph: &DiGraph<String, usize>, node: NodeIndex) -> Option<usize> {
+fn incoming(graph: &DiGraph<&str, usize>, node: NodeIndex) -> Option<usize> {
     graph.edges_directed(node, Direction::Incoming).next().map(|edge| *edge.weight())
 }
 
 /// Names along the ring that `node` lies on, each followed by the robot it leads, back to the start.
-fn ring(graph: &DiGraph<String, usize>, node: NodeIndex) -> Vec<String> {
+fn ring(graph: &DiGraph<&str, usize>, node: NodeIndex) -> Vec<String> {
     // With one leader each, walking from follower to leader must run into the ring and around it.
     let leader = |n: NodeIndex| graph.neighbors_directed(n, Direction::Incoming).next();
     let mut on_ring = node;
     for _ in 0..graph.node_count() {
         on_ring = leader(on_ring).unwrap_or(on_ring);
     }
-    let mut names = vec![graph[on_ring].clone()];
+    let mut names = vec![graph[on_ring].to_owned()];
     let mut at = leader(on_ring);
     while let Some(next) = at.filter(|&n| n != on_ring) {
-        names.push(graph[next].clone());
+        names.push(graph[next].to_owned());
         at = leader(next);
     }
-    names.push(graph[on_ring].clone());
+    names.push(graph[on_ring].to_owned());
     names.reverse();
     names
 }

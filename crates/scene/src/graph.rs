@@ -18,8 +18,8 @@ pub(crate) struct Named {
 /// Reports duplicate names, unknown leaders, robots that follow themselves, and cycles. Without these every follower
 /// comes to a robot that leads if it goes from leader to leader; there may be several that lead.
 pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, reporter: &mut Reporter) {
-    let mut leader_of: HashMap<&str, Option<&Found<String>>> = HashMap::new();
-    let mut spans: HashMap<&str, Span> = HashMap::new();
+    let mut leader_of: HashMap<&str, Option<&Found<String>>> = HashMap::with_capacity(robots.size_hint().0);
+    let mut spans: HashMap<&str, Span> = HashMap::with_capacity(robots.size_hint().0);
     for robot in robots.clone() {
         let Some(name) = &robot.name else { continue };
         leader_of.insert(&name.value, robot.leader.as_ref());
@@ -63,7 +63,7 @@ fn check_cycles<'a>(
     reporter: &mut Reporter,
 ) {
     // Each name is walked from once; a walk that meets its own trail has found a cycle.
-    let mut walk_of: HashMap<&str, usize> = HashMap::new();
+    let mut walk_of: HashMap<&str, usize> = HashMap::with_capacity(leader_of.len());
     for (walk, robot) in robots.enumerate() {
         let mut trail = vec![];
         let mut at = robot.name.as_ref().map(|name| name.value.as_str());

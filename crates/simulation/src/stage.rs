@@ -13,8 +13,12 @@ use world::{Drivetrain, Handling, PropBody, RobotSetup, Unicycle, Wheeled, World
 
 /// All that is on stage.
 pub(crate) fn stage(scene: &Scene) -> Result<WorldSetup, BuildError> {
+    let mut actors = Vec::with_capacity(scene.robots.len());
+    for index in 0..scene.robots.len() {
+        actors.push(actor(scene, index)?);
+    }
     Ok(WorldSetup {
-        actors: (0..scene.robots.len()).map(|index| actor(scene, index)).collect::<Result<_, _>>()?,
+        actors,
         props: scene.props.iter().map(|prop| body(scene, prop)).collect::<Result<_, _>>()?,
         terrain: scene.ground.terrain.clone(),
         step: scene.physics.step,
