@@ -3,9 +3,9 @@
 //! Throughput is in steps; at the control period of 10 ms a hundred steps are a second, so 500 000 steps a second
 //! are 5000 times real time.
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{BatchSize, Bencher, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use scene::Scene;
-use simulation::{Simulation, build};
+use simulation::{Setup, Simulation, build};
 use std::hint::black_box;
 
 /// Control samples in a run of one simulated second.
@@ -17,6 +17,19 @@ fn scene(robots: usize, law: &str, mode: &str) -> String {
          [[groups]]\nshape = \"v\"\ncount = {robots}\nname = \"robot\"\nfollows = \"leader\"\nscatter = 0.1\n\
          distance = 0.8\npath = {{ kind = \"circle\", speed = 0.05, turn_rate = 0.001 }}\n"
     )
+}
+
+/// Steps a run to its end; setting it up does not count.
+fn whole_run(b: &mut Bencher<'_>, setup: &Setup) {
+    b.iter_batched_ref(
+        || Simulation::new(setup.clone()),
+        |run| {
+            while let Some(record) = run.next_record() {
+                black_box(record);
+            }
+        },
+        BatchSize::LargeInput,
+    );
 }
 
 fn seconds_per_second(c: &mut Criterion) {
@@ -33,17 +46,7 @@ fn seconds_per_second(c: &mut Criterion) {
             let loaded = Scene::parse(&text, "bench.toml", &[]).expect("a scene");
             let setup = build(&loaded.scene).expect("a formation");
             group.throughput(Throughput::Elements(STEPS));
-            group.bench_with_input(BenchmarkId::new(format!("{law}, {mode}"), robots), &setup, |b, setup| {
-                b.iter_batched_ref(
-                    || Simulation::new(setup.clone()),
-                    |run| {
-                        while let Some(record) = run.next_record() {
-                            black_box(record);
-                        }
-                    },
-                    criterion::BatchSize::LargeInput,
-                );
-            });
+            group.bench_with_input(BenchmarkId::new(format!("{law}, {mode}"), robots), &setup, whole_run);
         }
     }
     group.finish();
@@ -68,17 +71,7 @@ fn shipped_scenes(c: &mut Criterion) {
         let loaded = Scene::parse(shipped.text, name, &set).expect("a scene");
         let setup = build(&loaded.scene).expect("a formation");
         group.throughput(Throughput::Elements(STEPS));
-        group.bench_with_input(BenchmarkId::new(name, what), &setup, |b, setup| {
-            b.iter_batched_ref(
-                || Simulation::new(setup.clone()),
-                |run| {
-                    while let Some(record) = run.next_record() {
-                        black_box(record);
-                    }
-                },
-                criterion::BatchSize::LargeInput,
-            );
-        });
+        group.bench_with_input(BenchmarkId::new(name, what), &setup, whole_run);
     }
     group.finish();
 }

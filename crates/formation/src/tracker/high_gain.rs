@@ -70,7 +70,13 @@ impl HighGain {
         [distance, bearing, dd, db, self.view_angle, self.line_rate]
     }
 
-    fn set(&mut self, [distance, bearing, dd, db, view_angle, line_rate]: State) {
+    /// Takes over a state; one that is not finite, where rates have run away, leaves the position and rates of zero.
+    fn set(&mut self, state: State) {
+        let [distance, bearing, dd, db, view_angle, line_rate] = state;
+        if !state.iter().all(|x| x.is_finite()) {
+            (self.estimate.rates, self.line_rate) = ([0.0; 2], 0.0);
+            return;
+        }
         self.estimate = Estimate { output: [distance, bearing], rates: [dd, db] };
         (self.view_angle, self.line_rate) = (view_angle, line_rate);
     }
@@ -114,6 +120,9 @@ impl HighGain {
         let [position, rate] = gain(&law.observer, 1, self.epsilon(law, 2, age), age);
         self.view_angle += trust[2] * position * off[2];
         self.line_rate += trust[2] * rate * off[2];
+        if !self.state().iter().all(|x| x.is_finite()) {
+            *self = Self::at(measurement);
+        }
     }
 
     /// ε of a channel, s: as given, or the one at which what noise and disturbance do to the rates is least in sum, ε⁵

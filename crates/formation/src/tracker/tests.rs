@@ -285,3 +285,20 @@ fn no_measurement_breaks_it() {
         }
     }
 }
+
+/// With much noise and a small ε rates run away between two measurements.
+#[test]
+fn rates_that_run_away_start_again() {
+    let (law, pair) = (law(ObserverKind::HighGain), EstimatorPair::new());
+    let measurement =
+        Measurement { relative: pair.relative(), deviation: [0.01; 3], ..Measurement::default() };
+    for rates in [[f64::INFINITY, 0.0], [0.0, f64::NAN]] {
+        let mut estimator = HighGain::at(&measurement);
+        estimator.estimate.rates = rates;
+        estimator.predict(&law, pair.own, 0.03, false);
+        let off = estimator.relative().distance - measurement.relative.distance;
+        assert!(off.abs() < 0.01, "{rates:?}: {off} m");
+        estimator.correct(&law, &measurement, 0.03);
+        assert!(estimator.estimate.rates.iter().all(|rate| rate.abs() < 1.0), "{rates:?}");
+    }
+}
