@@ -7,11 +7,13 @@ use crate::camera::pick::pick;
 use crate::compose::{frame, sun_over, veiled_decks, words};
 use crate::fleet_model::FleetModel;
 use crate::gpu::encode::{Passes, Prepared, PreparedView};
+use crate::gpu::model::Detail;
 use crate::gpu::passes::Canvas;
 use crate::gpu::passes::decal::{DecalLayer, DecalVertex};
 use crate::gpu::props::props;
-use crate::gpu::robot_models::{crowd, part};
-use crate::gpu::target::{Attachments, PICTURE_FORMAT, Readback, check_size};
+use crate::gpu::robot_groups::Groups;
+use crate::gpu::robot_models::{crowd, largest, part};
+use crate::gpu::target::{PICTURE_FORMAT, Readback, check_size};
 use crate::ground::decal_builder::build_decals;
 use crate::picture_context::PictureContext;
 use crate::picture_plan::PicturePlan;
@@ -27,7 +29,8 @@ pub struct Renderer {
     gpu: Gpu,
     model: FleetModel,
     canvas: Canvas,
-    attachments: Attachments,
+    /// Width and height of the pictures, pixels.
+    size: [u32; 2],
     passes: Passes,
     /// Behind a lock, since sightlines depend on the lengths of the texts.
     letters: Mutex<TextShaper>,
@@ -63,13 +66,13 @@ impl Renderer {
             return Err(Error::Samples(samples));
         }
         let canvas = Canvas { format, samples, mono: false };
-        let model = FleetModel::new(fleet);
+        let (model, size) = (FleetModel::new(fleet), [width, height]);
         let renderer = Self {
             gpu: gpu.clone(),
-            passes: Passes::new(gpu, canvas, &model),
+            passes: Passes::new(gpu, size, canvas, &model),
             model,
             canvas,
-            attachments: Attachments::new(gpu, [width, height], canvas),
+            size,
             letters: Mutex::new(TextShaper::new()),
             offscreen: Vec::new(),
             waiting: None,
@@ -80,7 +83,7 @@ impl Renderer {
 
     /// Width and height of the pictures, pixels.
     pub fn size(&self) -> [u32; 2] {
-        self.attachments.size
+        self.size
     }
 
     /// Changes title and caption, as where gains are tuned while a run goes.
@@ -96,7 +99,8 @@ impl Renderer {
     pub fn resize(&mut self, width: u32, height: u32) -> Result<(), Error> {
         check_size(&self.gpu, width, height)?;
         if self.size() != [width, height] {
-            self.attachments = Attachments::new(&self.gpu, [width, height], self.canvas);
+            self.size = [width, height];
+            self.passes.resize(&self.gpu, self.size);
             self.offscreen.clear();
             self.waiting = None;
         }
@@ -166,7 +170,7 @@ impl Renderer {
         let drawn = self.prepare(spec).and_then(|prepared| {
             let mut encoder =
                 self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            self.passes.encode(&mut encoder, target, &self.attachments, &prepared)?;
+            self.passes.encode(&mut encoder, target, &prepared)?;
             if let Some(slot) = read {
                 self.offscreen[slot].copy(&mut encoder);
             }
@@ -202,20 +206,31 @@ impl Renderer {
                 corners.extend(more);
                 (layer, first..corners.len() as u32)
             };
+            let most = self.gpu.device.limits().max_texture_dimension_2d;
+            let groups = match &own {
+                _ if !self.passes.apart() => Groups::default(),
+                Some(own) => Groups::whole(own.clone(), tile),
+                None => {
+                    let bounds = &self.passes.world.models.bounds;
+                    Groups::of(&crowd, &context, bounds, Window { camera, tile: *tile }, most)
+                }
+            };
             frames.push(frame(camera, &seen, view, &sun, &self.passes.world.shadow));
             views.push(PreparedView {
                 camera: *camera,
                 tile: *tile,
+                groups,
                 own,
                 veiled: veiled_decks(camera, &context, view),
                 decals: build_decals(&seen, view, camera, f64::from(tile.height)).map(add),
                 ghosts: !matches!(view, Viewpoint::SnakeEye | Viewpoint::Camera(_)),
+                detail: Detail::at(largest(camera, &context, f64::from(tile.height))),
             });
         }
         let windows: Vec<_> =
             views.iter().map(|view| Window { camera: &view.camera, tile: view.tile }).collect();
         let letters = self.letters.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let size = self.attachments.size;
+        let size = self.size;
         let (words, _) = words(letters, &context, &plan, &windows, size);
         let (lines, shapes) = (words.lines, words.shapes);
         let upper = plan.upper;

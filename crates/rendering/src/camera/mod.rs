@@ -156,6 +156,17 @@ impl Camera {
         bits.fold(0, |all, (k, bit)| all | u8::from(bit) << k)
     }
 
+    /// The part of the picture that holds what is between some corners, given by its lower left and its upper right, each
+    /// −1 to 1 across and up: all of it where some are behind the eye, `None` where all are.
+    pub(crate) fn around(&self, corners: &[DVec3]) -> Option<[DVec2; 2]> {
+        let places = || corners.iter().map(|corner| self.project(*corner));
+        if places().any(|place| place.is_none()) {
+            return places().any(|place| place.is_some()).then_some([DVec2::NEG_ONE, DVec2::ONE]);
+        }
+        let bounds = places().flatten().map(|place| [place; 2]);
+        bounds.reduce(|[low, high], [from, to]| [low.min(from), high.max(to)])
+    }
+
     /// Metres per pixel at a world point, on a tile `height` pixels high.
     pub(crate) fn metres_per_pixel(&self, point: DVec3, height: f64) -> f64 {
         let depth = if self.perspective { self.view_from_world(point).z.max(self.near) } else { 1.0 };
@@ -336,6 +347,40 @@ mod tests {
             }
             assert!(hidden > 60 && shown > 20, "{hidden} {shown}");
         }
+    }
+
+    #[test]
+    fn the_part_around_corners_holds_what_is_between_them() {
+        let level = Camera::looking(DVec3::new(0.0, 0.0, 1.0), DVec3::new(4.0, 1.0, 0.0), 0.7, 1.6);
+        let parallel = Camera { perspective: false, half: DVec2::new(3.0, 2.0), ..level };
+        let (mut behind, mut partly) = (0, 0);
+        for camera in [level, Camera { shift: DVec2::new(0.1, -0.2), ..level }, parallel] {
+            for k in 0..300 {
+                let at = |step: usize, count: usize| ((k * step) % count) as f64 * 0.7 - 5.0;
+                let (low, size) = (DVec3::new(at(7, 23), at(5, 19), 0.0), 0.2 + 0.1 * at(3, 11).abs());
+                let inside = |x: f64, y: f64, z: f64| low + DVec3::new(x, y, z) * size;
+                let corners: Vec<_> = (0..8)
+                    .map(|c: u8| inside(f64::from(c & 1), f64::from(c >> 1 & 1), f64::from(c >> 2)))
+                    .collect();
+                let part = camera.around(&corners);
+                for j in 0..125 {
+                    let share = |k: i32| f64::from(k % 5) / 4.0;
+                    let Some(seen) = camera.project(inside(share(j), share(j / 5), share(j / 25))) else {
+                        continue;
+                    };
+                    if seen.abs().max_element() < 1.0 {
+                        let [low, high] = part.unwrap();
+                        assert!(
+                            seen.cmpge(low - 1e-9).all() && seen.cmple(high + 1e-9).all(),
+                            "{low} {size}"
+                        );
+                    }
+                }
+                behind += usize::from(part.is_none());
+                partly += usize::from(part.is_some_and(|[low, high]| (high - low).max_element() < 1.0));
+            }
+        }
+        assert!(behind > 50 && partly > 200, "{behind} {partly}");
     }
 
     #[test]

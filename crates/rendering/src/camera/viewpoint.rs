@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::error::nearest;
+use glam::DVec2;
 use std::f64::consts::FRAC_PI_2;
 use vocabulary::math;
 
@@ -179,6 +180,20 @@ impl Tile {
     pub(crate) fn area(&self) -> [f32; 4] {
         [self.x, self.y, self.width, self.height].map(|n| n as f32)
     }
+
+    /// The whole pixels of a part of it, given by its lower left and its upper right, each −1 to 1 across and up, with one
+    /// more on all sides; `None` where it has none.
+    pub(crate) fn part(&self, [low, high]: [DVec2; 2]) -> Option<Self> {
+        let span = |from: f64, to: f64, size: u32| {
+            let pixel = |share: f64| (0.5 + 0.5 * share) * f64::from(size);
+            let first = (pixel(from).floor() - 1.0).clamp(0.0, f64::from(size)) as u32;
+            let end = (pixel(to).ceil() + 1.0).clamp(0.0, f64::from(size)) as u32;
+            (end > first).then(|| (first, end - first))
+        };
+        let (left, width) = span(low.x, high.x, self.width)?;
+        let (top, height) = span(-high.y, -low.y, self.height)?;
+        Some(Self { x: self.x + left, y: self.y + top, width, height })
+    }
 }
 
 impl ViewLayout {
@@ -239,6 +254,17 @@ pub(crate) fn corner(tile: &Tile, aspect: f64, margin: f64) -> Tile {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_part_of_a_tile_has_the_pixels_that_it_touches_and_one_more() {
+        let tile = Tile { x: 100, y: 50, width: 200, height: 100 };
+        let part = |low: [f64; 2], high: [f64; 2]| tile.part([low.into(), high.into()]);
+        let some = |x, y, width, height| Some(Tile { x, y, width, height });
+        assert_eq!(part([-0.5, -0.2], [0.0, 0.6]), some(149, 69, 52, 42));
+        assert_eq!(part([-3.0, -9.0], [9.0, 2.0]), Some(tile));
+        assert_eq!(part([1.5, 0.0], [1.7, 0.1]), None);
+        assert_eq!(part([0.0, -1.7], [0.1, -1.3]), None);
+    }
 
     #[test]
     fn views_are_found_by_name() {

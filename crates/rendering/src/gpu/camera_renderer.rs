@@ -52,7 +52,7 @@ impl GpuCameraRenderer {
     /// [`Error::Device`] where the device fails.
     pub fn new(gpu: &Gpu, fleet: &FleetInfo) -> Result<Self, Error> {
         let model = FleetModel::new(fleet);
-        let world = WorldPasses::new(gpu, CANVAS, &model, Detail::Coarse, SHADOWS);
+        let world = WorldPasses::new(gpu, [CANVAS; 2], &model, SHADOWS);
         gpu.check()?;
         Ok(Self {
             gpu: gpu.clone(),
@@ -151,8 +151,9 @@ impl GpuCameraRenderer {
     ) -> wgpu::SubmissionIndex {
         let atlas = &self.atlases[atlas];
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.world.encode_shadow(&mut encoder, crowd, props);
-        atlas.attachments.draw(&mut encoder, &atlas.readback.view, wgpu::Color::BLACK, |pass| {
+        self.world.encode_shadow(&mut encoder, crowd, props, Detail::Coarse);
+        let clear = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
+        atlas.attachments.draw(&mut encoder, &atlas.readback.view, clear, |pass| {
             for (index, scene) in scenes.iter().enumerate() {
                 confine(pass, &scene.tile, [0.0, 1.0]);
                 let sight = SceneView {
@@ -164,6 +165,7 @@ impl GpuCameraRenderer {
                     under,
                     over: None,
                     ghosts: false,
+                    detail: Detail::Coarse,
                 };
                 self.world.draw(pass, &sight);
             }

@@ -7,6 +7,7 @@ pub(crate) mod model;
 pub(crate) mod passes;
 pub(crate) mod props;
 pub(crate) mod resources;
+pub(crate) mod robot_groups;
 pub(crate) mod robot_models;
 pub(crate) mod target;
 pub(crate) mod world_passes;

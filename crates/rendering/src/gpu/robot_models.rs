@@ -19,7 +19,7 @@ const GHOST: f32 = 0.18;
 #[derive(Debug)]
 pub(crate) struct RobotModels {
     pub(crate) builds: Vec<Build>,
-    of: Vec<usize>,
+    pub(crate) of: Vec<usize>,
 }
 
 impl RobotModels {
@@ -96,6 +96,19 @@ pub(crate) fn part(
     part
 }
 
+/// How high the largest robot is that a camera sees on a tile of some height, pixels.
+pub(crate) fn largest(camera: &Camera, context: &PictureContext<'_>, height: f64) -> f64 {
+    let robot_models = context.robot_models;
+    let high = |(index, robot): (usize, &RobotState)| {
+        let build = &robot_models.builds[robot_models.of[index]];
+        let (middle, radius) = build.ball();
+        let middle = DVec3::from_array(robot.world_from_body().apply(middle));
+        let seen = camera.may_see(middle, radius);
+        if seen { build.top() / camera.metres_per_pixel(middle, height) } else { 0.0 }
+    };
+    context.record.snapshot.robots.iter().enumerate().map(high).fold(0.0, f64::max)
+}
+
 /// Colour and number of a robot.
 struct RobotAppearance {
     colour: Rgb,
@@ -136,16 +149,12 @@ fn stand(
     look: &RobotAppearance,
     origin: DVec3,
 ) -> Instance {
-    let body = &build.body;
     let base = local_from_body(&robot.motion.pose, &robot.attitude, origin);
     squad.bodies.push(look.instance(base, 1.0));
-    let radius = body.wheel_radius as f32;
-    let places = [(1.0, 0.5), (1.0, -0.5), (0.0, 0.5), (0.0, -0.5)];
-    for (wheel, (forward, left)) in robot.wheels.iter().zip(places) {
-        let hub = Vec3::new((forward * body.wheelbase) as f32, (left * body.track) as f32, radius);
+    for (wheel, hub) in robot.wheels.iter().zip(build.hubs()) {
         let raised = hub + Vec3::Z * wheel.compression as f32;
         // The model's outer face looks left; on the right it is turned about, and then rolls the other way.
-        let (about, roll) = if left > 0.0 { (0.0, 1.0) } else { (std::f32::consts::PI, -1.0) };
+        let (about, roll) = if hub.y > 0.0 { (0.0, 1.0) } else { (std::f32::consts::PI, -1.0) };
         let model = base
             * Mat4::from_translation(raised)
             * Mat4::from_rotation_z(wheel.steering as f32 + about)

@@ -33,6 +33,7 @@ pub(crate) fn check_size(gpu: &Gpu, width: u32, height: u32) -> Result<(), Error
 pub(crate) struct Attachments {
     /// Width and height, pixels.
     pub(crate) size: [u32; 2],
+    pub(crate) canvas: Canvas,
     /// Several samples a pixel; `None` where there is one and the target itself is drawn into.
     sampled: Option<TextureView>,
     depth: TextureView,
@@ -46,15 +47,15 @@ impl Attachments {
             gpu.device.create_texture(&descriptor).create_view(&TextureViewDescriptor::default())
         };
         let sampled = (canvas.samples > 1).then(|| attachment(canvas.format));
-        Self { size, sampled, depth: attachment(DEPTH) }
+        Self { size, canvas, sampled, depth: attachment(DEPTH) }
     }
 
-    /// Clears `target` and draws into it.
+    /// Draws into `target`, over what is in it or after it is cleared.
     pub(crate) fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         target: &TextureView,
-        clear: wgpu::Color,
+        load: wgpu::LoadOp<wgpu::Color>,
         draw: impl FnOnce(&mut RenderPass<'_>),
     ) {
         let sampled = self.sampled.as_ref();
@@ -65,7 +66,7 @@ impl Attachments {
                 view: sampled.unwrap_or(target),
                 depth_slice: None,
                 resolve_target: sampled.map(|_| target),
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store },
+                ops: wgpu::Operations { load, store },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.depth,

@@ -20,7 +20,7 @@ use std::ops::Range;
 #[derive(Debug)]
 pub(crate) struct WorldPasses {
     groups: FrameGroups,
-    models: Models,
+    pub(crate) models: Models,
     pub(crate) shadow: ShadowPass,
     robot: RobotPass,
     tag: TagPass,
@@ -47,11 +47,14 @@ pub(crate) struct SceneView<'a> {
     pub(crate) over: Option<&'a (DecalLayer, Range<u32>)>,
     /// Whether it shows ghosts.
     pub(crate) ghosts: bool,
+    /// Of its robots.
+    pub(crate) detail: Detail,
 }
 
 impl WorldPasses {
-    /// `shadows` is the side of the shadow map in texels.
-    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, model: &FleetModel, detail: Detail, shadows: u32) -> Self {
+    /// The first canvas is for sky, flat ground, paint and ghosts, the second for all that is solid; `shadows` is the side of
+    /// the shadow map in texels.
+    pub(crate) fn new(gpu: &Gpu, [flat, canvas]: [Canvas; 2], model: &FleetModel, shadows: u32) -> Self {
         let FleetModel { fleet, floor, robots, .. } = model;
         let map = ShadowPass::map(gpu, shadows);
         let groups = FrameGroups::new(gpu, &map);
@@ -65,13 +68,13 @@ impl WorldPasses {
         };
         let prop = || PropPass::new(gpu, canvas, &groups, &asphalt, veil);
         Self {
-            models: Models::new(gpu, detail, &robots.builds),
-            robot: RobotPass::new(gpu, canvas, &groups),
+            models: Models::new(gpu, &robots.builds),
+            robot: RobotPass::new(gpu, [flat, canvas], &groups),
             tag: TagPass::new(gpu, canvas, &groups),
-            backdrop: BackdropPass::new(gpu, canvas, &groups, &asphalt),
+            backdrop: BackdropPass::new(gpu, flat, &groups, &asphalt),
             terrain: terrain.map(|t| TerrainPass::new(gpu, canvas, &groups, &asphalt, t)),
             prop: (!fleet.props.is_empty()).then(prop),
-            decal: DecalPass::new(gpu, canvas, &groups, !floor.is_plane()),
+            decal: DecalPass::new(gpu, flat, &groups, !floor.is_plane()),
             shadow: ShadowPass::new(gpu, &groups, map, shadows),
             groups,
         }
@@ -99,20 +102,32 @@ impl WorldPasses {
         encoder: &mut wgpu::CommandEncoder,
         crowd: &RobotInstances,
         props: &PropInstances,
+        detail: Detail,
     ) {
         let mut pass = self.shadow.begin(encoder, &self.groups);
-        self.models.draw_solid(&mut pass, crowd);
+        self.models.draw_solid(&mut pass, crowd, detail);
         self.models.draw_faces(&mut pass, crowd);
         if let Some(prop) = &self.prop {
             prop.draw_solid(&mut pass, props);
         }
     }
 
-    /// Flat ground and sky are painted first and without depth: robots cover little of them, and on processors the
-    /// depth test of every pixel would cost more than shading the few that are hidden.
+    /// Draws a view with all that is in it.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, sight: &SceneView<'_>) {
+        self.draw_ground(pass, sight);
+        self.draw_robots(pass, sight);
+        self.draw_over(pass, sight, false);
+    }
+
+    fn bind(&self, pass: &mut wgpu::RenderPass<'_>, sight: &SceneView<'_>) {
         pass.set_bind_group(0, &self.groups.view, &[FrameGroups::offset(sight.index)]);
         pass.set_bind_group(1, &self.groups.light, &[]);
+    }
+
+    /// Flat ground and sky are painted first and without depth: robots cover little of them, and on processors the
+    /// depth test of every pixel would cost more than shading the few that are hidden.
+    pub(crate) fn draw_ground(&self, pass: &mut wgpu::RenderPass<'_>, sight: &SceneView<'_>) {
+        self.bind(pass, sight);
         self.backdrop.draw_sky(pass);
         match &self.terrain {
             Some(terrain) => terrain.draw(pass, sight.camera),
@@ -124,15 +139,25 @@ impl WorldPasses {
         for (layer, corners) in sight.under {
             self.decal.draw(pass, corners, *layer);
         }
+    }
+
+    /// Robots and props.
+    pub(crate) fn draw_robots(&self, pass: &mut wgpu::RenderPass<'_>, sight: &SceneView<'_>) {
+        self.bind(pass, sight);
         // Faces first: they hide much of the rest.
         self.tag.draw(pass, &self.models, sight.crowd);
-        self.robot.draw_solid(pass, &self.models, sight.crowd);
+        self.robot.draw_solid(pass, &self.models, sight.crowd, sight.detail);
         // After the robots, which show through those in front of them.
         if let Some(prop) = &self.prop {
             prop.draw(pass, sight.props, sight.veiled);
         }
+    }
+
+    /// Ghosts, and what shows through the robots, whose depth is not there yet where they are drawn apart.
+    pub(crate) fn draw_over(&self, pass: &mut wgpu::RenderPass<'_>, sight: &SceneView<'_>, apart: bool) {
+        self.bind(pass, sight);
         if sight.ghosts {
-            self.robot.draw_ghosts(pass, &self.models, sight.crowd);
+            self.robot.draw_ghosts(pass, &self.models, sight.crowd, apart);
         }
         if let Some((layer, corners)) = sight.over {
             self.decal.draw(pass, corners, *layer);

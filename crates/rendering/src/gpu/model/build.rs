@@ -67,6 +67,27 @@ impl Build {
         f64::from(self.camera.z + 0.04 * self.head).max(self.body.height).max(shell)
     }
 
+    /// Where the hubs of its wheels are: in front and at the rear, left before right.
+    pub(crate) fn hubs(&self) -> [Vec3; 4] {
+        let Body { wheelbase, track, wheel_radius, .. } = self.body;
+        [(1.0, 0.5), (1.0, -0.5), (0.0, 0.5), (0.0, -0.5)].map(|(forward, left)| {
+            Vec3::new((forward * wheelbase) as f32, (left * track) as f32, wheel_radius as f32)
+        })
+    }
+
+    /// Opposite corners of a box that holds its meshes, its wheels however they steer and its camera wherever it looks, with
+    /// some room for springs, in the frame of the body, m.
+    pub(crate) fn bounds<'a>(&self, meshes: impl Iterator<Item = &'a Mesh>) -> [Vec3; 2] {
+        let wheel = self.wheel.length() * wheel::RADIUS;
+        let ball = |middle: Vec3, reach: f32| [middle - reach, middle + reach];
+        let hubs = self.hubs().map(|hub| ball(hub, wheel));
+        let parts = meshes.filter_map(Mesh::bounds).chain(hubs).chain([ball(self.camera, 0.04 * self.head)]);
+        let [low, high] =
+            parts.fold([Vec3::ZERO; 2], |[low, high], [from, to]| [low.min(from), high.max(to)]);
+        let room = 0.04 * low.distance(high);
+        [low - room, high + room]
+    }
+
     /// Middle and radius of a ball that holds all of it, in the frame of the body, m.
     pub(crate) fn ball(&self) -> ([f64; 3], f64) {
         let half = 0.5 * self.top();

@@ -121,6 +121,12 @@ impl Mesh {
         self.vertices.extend(other.vertices.iter().map(moved));
     }
 
+    /// The box that holds it, if it has any corner.
+    pub(crate) fn bounds(&self) -> Option<[Vec3; 2]> {
+        let corners = self.vertices.iter().map(|vertex| [Vec3::from_array(vertex.position); 2]);
+        corners.reduce(|[low, high], [from, to]| [low.min(from), high.max(to)])
+    }
+
     /// Appends the corners, each once, and the triangles between them; the range of these among the indices.
     pub(crate) fn weld(&self, vertices: &mut Vec<Vertex>, indices: &mut Vec<u32>) -> Range<u32> {
         let first = indices.len() as u32;

@@ -4,7 +4,7 @@ use super::{StreamBuffer, vertices};
 use crate::Gpu;
 use crate::gpu::model::Vertex;
 use bytemuck::{Pod, Zeroable};
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 use wgpu::{BufferUsages, VertexAttribute, VertexBufferLayout, VertexStepMode, vertex_attr_array};
 
 /// A copy of a mesh; mirrors `Instance` of the shaders.
@@ -20,6 +20,11 @@ impl Instance {
     pub(crate) fn new(local_from_model: Mat4, colour: [f32; 4], marks: [f32; 4]) -> Self {
         let [x, y, z, _] = local_from_model.transpose().to_cols_array_2d();
         Self { rows: [x, y, z], colour, marks }
+    }
+
+    /// Where a point of the model is, relative to the local origin, m.
+    pub(crate) fn place(&self, point: Vec3) -> Vec3 {
+        Vec3::from_array(self.rows.map(|row| point.extend(1.0).dot(row.into())))
     }
 }
 

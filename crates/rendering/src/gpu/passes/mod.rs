@@ -5,6 +5,7 @@ pub(crate) mod backdrop;
 pub(crate) mod decal;
 pub(crate) mod frame;
 pub(crate) mod instanced;
+pub(crate) mod layer;
 pub(crate) mod overlay;
 pub(crate) mod prop;
 pub(crate) mod robot;
@@ -59,7 +60,7 @@ pub(crate) use developed;
 
 /// Every shader as it is compiled, by name: for validation without an adapter.
 #[cfg(test)]
-pub(crate) const SHADERS: [(&str, &[&str]); 9] = [
+pub(crate) const SHADERS: [(&str, &[&str]); 10] = [
     ("shadow", &[shadow::SHADER]),
     ("robot", &robot::SHADERS),
     ("tag", &tag::SHADERS),
@@ -68,6 +69,7 @@ pub(crate) const SHADERS: [(&str, &[&str]); 9] = [
     ("decal", &decal::SHADERS),
     ("prop", &prop::SHADERS),
     ("sky", &backdrop::SKY),
+    ("layer", &[layer::SHADER]),
     ("overlay", &[overlay::SHADER]),
 ];
 
@@ -86,6 +88,11 @@ impl Canvas {
     /// Which of two sources draws on it.
     pub(crate) fn of(self, sources: [&'static str; 2]) -> &'static str {
         sources[usize::from(self.mono)]
+    }
+
+    /// The same with one sample a pixel.
+    pub(crate) fn flat(self) -> Self {
+        Self { samples: 1, ..self }
     }
 }
 

@@ -6,6 +6,7 @@ use super::{Canvas, Recipe, developed, mipped, shader, shrink, textured};
 use crate::Gpu;
 use crate::annotation::text_shaper::digits;
 use crate::gpu::model::{self, Build, Detail};
+use glam::Vec3;
 use std::ops::Range;
 use wgpu::RenderPass;
 
@@ -41,12 +42,12 @@ impl RobotInstances {
     }
 }
 
-/// Where the meshes of a squad are.
+/// Where the meshes of a build are, those of what is solid for each detail.
 #[derive(Debug)]
 struct MeshRanges {
-    body: Range<u32>,
+    body: [Range<u32>; 3],
+    wheel: [Range<u32>; 3],
     faces: Range<u32>,
-    wheel: Range<u32>,
     ghost: Range<u32>,
 }
 
@@ -55,25 +56,31 @@ struct MeshRanges {
 pub(crate) struct Models {
     meshes: InstancedMeshes,
     kits: Vec<MeshRanges>,
-    camera: Range<u32>,
+    camera: [Range<u32>; 3],
+    /// Opposite corners of a box that holds a robot, for each build, in the frame of its body, m.
+    pub(crate) bounds: Vec<[Vec3; 2]>,
 }
 
 impl Models {
-    /// One set of models for each build. In a crowd each robot is small in the picture: plainer models draw three
-    /// times as fast.
-    pub(crate) fn new(gpu: &Gpu, detail: Detail, builds: &[Build]) -> Self {
+    /// One set of models for each build.
+    pub(crate) fn new(gpu: &Gpu, builds: &[Build]) -> Self {
         let (mut vertices, mut indices) = (Vec::new(), Vec::new());
-        let mut add = |mesh: model::Mesh| mesh.weld(&mut vertices, &mut indices);
-        let wheels = [false, true].map(|lugs| add(model::wheel(detail, lugs)));
-        let camera = add(model::camera(detail));
-        let kit = |build: &Build| MeshRanges {
-            body: add(model::body(detail, build)),
-            faces: add(model::faces(build)),
-            wheel: wheels[usize::from(build.lugs())].clone(),
-            ghost: add(model::ghost(build)),
-        };
-        let kits = builds.iter().map(kit).collect();
-        Self { meshes: InstancedMeshes::new(gpu, &vertices, &indices), kits, camera }
+        let mut add = |mesh: &model::Mesh| mesh.weld(&mut vertices, &mut indices);
+        let wheels = [false, true].map(|lugs| Detail::ALL.map(|detail| add(&model::wheel(detail, lugs))));
+        let camera = Detail::ALL.map(|detail| add(&model::camera(detail)));
+        let (mut kits, mut bounds) = (Vec::new(), Vec::new());
+        for build in builds {
+            let bodies = Detail::ALL.map(|detail| model::body(detail, build));
+            let [faces, ghost] = [model::faces(build), model::ghost(build)];
+            bounds.push(build.bounds(bodies.iter().chain([&faces, &ghost])));
+            kits.push(MeshRanges {
+                body: bodies.each_ref().map(&mut add),
+                wheel: wheels[usize::from(build.lugs())].clone(),
+                faces: add(&faces),
+                ghost: add(&ghost),
+            });
+        }
+        Self { meshes: InstancedMeshes::new(gpu, &vertices, &indices), kits, camera, bounds }
     }
 
     /// Brings the copies of all crowds to the device and notes where each crowd begins.
@@ -87,11 +94,13 @@ impl Models {
     }
 
     /// Bodies, wheels and cameras, without the faces of shells.
-    pub(crate) fn draw_solid(&self, pass: &mut RenderPass<'_>, crowd: &RobotInstances) {
+    pub(crate) fn draw_solid(&self, pass: &mut RenderPass<'_>, crowd: &RobotInstances, detail: Detail) {
+        let level = detail as usize;
         let squads = self.kits.iter().zip(&crowd.squads);
-        let parts = squads
-            .flat_map(|(kit, squad)| [(&kit.body, squad.bodies.len()), (&kit.wheel, squad.wheels.len())]);
-        self.draw(pass, crowd.first, parts.chain([(&self.camera, crowd.cameras.len())]));
+        let parts = squads.flat_map(|(kit, squad)| {
+            [(&kit.body[level], squad.bodies.len()), (&kit.wheel[level], squad.wheels.len())]
+        });
+        self.draw(pass, crowd.first, parts.chain([(&self.camera[level], crowd.cameras.len())]));
     }
 
     /// The faces of shells.
@@ -139,8 +148,8 @@ pub(crate) struct RobotPass {
 }
 
 impl RobotPass {
-    /// The robots' pipelines, and the texture of the numbers on their roofs.
-    pub(crate) fn new(gpu: &Gpu, canvas: Canvas, groups: &FrameGroups) -> Self {
+    /// The robots' pipelines, the first canvas for their ghosts, and the texture of the numbers on their roofs.
+    pub(crate) fn new(gpu: &Gpu, [flat, canvas]: [Canvas; 2], groups: &FrameGroups) -> Self {
         let (texels, width, height) = digits();
         let texture = mipped(gpu, "digits", [width, height], &shrink(texels, width, height)[..4]);
         let sampler = wgpu::SamplerDescriptor {
@@ -161,13 +170,14 @@ impl RobotPass {
             ..Default::default()
         };
         let (vertex, entry) = if canvas.mono { ("plain_vertex", "plain") } else { ("vertex", "fragment") };
-        let blended = Some((canvas, Some(wgpu::BlendState::ALPHA_BLENDING)));
+        let blended = Some((flat, Some(wgpu::BlendState::ALPHA_BLENDING)));
         let equal = Some((wgpu::CompareFunction::LessEqual, false));
         Self {
             solid: Recipe { vertex, entry, ..recipe }.build(gpu),
             ghost_depth: Recipe {
                 label: "ghost depth",
                 entry: "hidden",
+                colour: Some((flat, None)),
                 write: wgpu::ColorWrites::empty(),
                 ..recipe
             }
@@ -178,21 +188,37 @@ impl RobotPass {
         }
     }
 
-    pub(crate) fn draw_solid(&self, pass: &mut RenderPass<'_>, models: &Models, crowd: &RobotInstances) {
+    pub(crate) fn draw_solid(
+        &self,
+        pass: &mut RenderPass<'_>,
+        models: &Models,
+        crowd: &RobotInstances,
+        detail: Detail,
+    ) {
         pass.set_pipeline(&self.solid);
         pass.set_bind_group(2, &self.digits, &[]);
-        models.draw_solid(pass, crowd);
+        models.draw_solid(pass, crowd, detail);
     }
 
-    /// Depth first, so that only the faces in front shine through.
-    pub(crate) fn draw_ghosts(&self, pass: &mut RenderPass<'_>, models: &Models, crowd: &RobotInstances) {
+    /// Depth first, so that only the faces in front shine through; that of the robots, too, where they are drawn apart.
+    pub(crate) fn draw_ghosts(
+        &self,
+        pass: &mut RenderPass<'_>,
+        models: &Models,
+        crowd: &RobotInstances,
+        apart: bool,
+    ) {
         if crowd.squads.iter().all(|s| s.ghosts.is_empty()) {
             return;
         }
         pass.set_bind_group(2, &self.digits, &[]);
-        for pipeline in [&self.ghost_depth, &self.ghost] {
-            pass.set_pipeline(pipeline);
-            models.draw_ghosts(pass, crowd);
+        pass.set_pipeline(&self.ghost_depth);
+        if apart {
+            models.draw_solid(pass, crowd, Detail::Coarse);
+            models.draw_faces(pass, crowd);
         }
+        models.draw_ghosts(pass, crowd);
+        pass.set_pipeline(&self.ghost);
+        models.draw_ghosts(pass, crowd);
     }
 }
