@@ -6,12 +6,7 @@ use crate::{
     graph::{Named, check_known},
     random::RandomStream,
     robots::{Defaults, RobotDraft, check_distance, check_path, start_pose, start_speed},
-    text::{
-        Form, Found, Keys, Node, Part, Reporter, Value,
-        node::Entry,
-        table,
-        words::{did_you_mean, nearest},
-    },
+    text::{Form, Found, Keys, Node, Part, Reporter, Value, node::Entry, table, words::instead_of},
     types::VehiclePart,
     vehicle::usual_kind,
 };
@@ -208,8 +203,7 @@ impl Group<'_> {
         for GroupMember { name, .. } in self.keys.members.iter().flat_map(|members| &members.value) {
             if !makes(self.node, &name.value) {
                 let names: Vec<_> = made_by(self.node).take(1000).collect();
-                let near = nearest(&name.value, names.iter().map(String::as_str));
-                let hint = near.map_or_else(String::new, did_you_mean);
+                let hint = instead_of(&name.value, names.iter().map(String::as_str));
                 let message = format!("this group has no robot called `{}`{hint}", name.value);
                 reporter.report(name.span, message);
             }
