@@ -300,7 +300,8 @@ impl Group<'_> {
         let at = said.map_or(self.node.span, |name| name.span);
         let name = Some(Found { span: at, value: robot.name.clone() });
         // Leaders that the shape gives exist, and the one outside has been looked up; one that is written has not.
-        drafts.push(RobotDraft { named: Named { name, leader }, number: None, robot: Some(robot) });
+        let named = Named { name, leader };
+        drafts.push(RobotDraft { named, start: Some(at), number: None, robot: Some(robot) });
     }
 
     /// The vehicle of the group's own leader, after reporting keys that only followers have.

@@ -50,8 +50,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) 
     if let Some(ground) = &ground
         && reporter.is_clean()
     {
-        let robots =
-            drafts.iter().filter_map(|draft| Some((draft.named.name.as_ref()?.span, draft.robot.as_ref()?)));
+        let robots = drafts.iter().filter_map(|draft| Some((draft.start?, draft.robot.as_ref()?)));
         check_start(robots, &props, ground, reporter);
     }
     let views = views(&document.views?.value, &drafts, reporter);
