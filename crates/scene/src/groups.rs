@@ -8,7 +8,7 @@ use crate::{
     robots::{Defaults, RobotDraft, check_distance, check_path, start_pose, start_speed},
     text::{Form, Found, Keys, Node, Part, Reporter, Value, node::Entry, table, words::instead_of},
     types::VehiclePart,
-    vehicle::usual_kind,
+    vehicle::{kind_is_lost, usual_kind},
 };
 use serde_json::{Value as Json, json};
 use vocabulary::{Pose, ScalarTrajectory, math, wrap};
@@ -52,6 +52,9 @@ pub(crate) fn expand(
     reporter: &mut Reporter,
 ) -> Option<()> {
     let keys = group.keys;
+    if kind_is_lost(group.node.get("vehicle"), keys.vehicle.as_ref()) {
+        return None;
+    }
     let count = group.count(drafts.len(), reporter)?;
     drafts.reserve(count);
     group.check_members(reporter);

@@ -6,7 +6,7 @@ use crate::{
     graph::Named,
     text::{Found, Node, Part, Reporter, Span},
     types::{LawPart, ObserverPart, SensingPart, VehiclePart},
-    vehicle::{WrittenVehicle, vehicle},
+    vehicle::{WrittenVehicle, kind_is_lost, vehicle},
 };
 use vocabulary::{Pose, math};
 
@@ -74,6 +74,9 @@ pub(crate) fn draft(
 }
 
 fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reporter: &mut Reporter) -> Option<Robot> {
+    if kind_is_lost(node.get("vehicle"), keys.vehicle.as_ref()) {
+        return None;
+    }
     let vehicle = defaults.vehicle(keys.vehicle.as_ref(), node.span, reporter);
     let role = role(keys, node, &vehicle, defaults, reporter);
     let path = keys.path.as_ref().map(|path| &path.value);
