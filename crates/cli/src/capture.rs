@@ -60,6 +60,10 @@ pub(crate) fn draw(
 ) -> Outcome {
     let times = times::within(job.at, job.draw.duration)?;
     let _place = Place::folder(job.out)?;
+    if job.at.len() > times.len() && !job.draw.quiet {
+        let (asked, drawn) = (counted(job.at.len(), "time"), counted(times.len(), "picture"));
+        note(&format!("--at names {asked} for {drawn}: those that are the same share one"));
+    }
     let DrawJob { fleet, name, .. } = &job.draw;
     let mut studio =
         RenderSetup::open(job.draw.adapter, job.draw.picture, fleet, &job.draw.view, job.draw.settings.size)?;

@@ -2,9 +2,12 @@
 
 use crate::args::SceneArgs;
 use crate::failure::Failure;
+use crate::print::note;
 use crate::{interrupt, recorded};
 use scene::{Override, Scene};
 use std::path::Path;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::time::Duration;
 use studies::SceneRun;
 
 /// Loads, checks and builds the scene of `args`.
@@ -22,8 +25,26 @@ pub(crate) fn load_file(path: &Path, overrides: &[Override]) -> Result<SceneRun,
 /// Loads and checks the scene at `path`.
 pub(crate) fn read(path: &Path, overrides: &[Override]) -> Result<Scene, Failure> {
     recorded::refuse(path)?;
+    let _waits = told_to_wait(path);
     let loaded = Scene::load(path, overrides).map_err(|errors| Failure::Usage(errors.to_string()))?;
     Ok(loaded.scene)
+}
+
+/// How long a scene that comes through a pipe is waited for in silence.
+const SILENCE: Duration = Duration::from_secs(2);
+
+/// Says after a while what is waited for where `path` is a pipe or the like; not once what is returned is dropped.
+fn told_to_wait(path: &Path) -> Option<Sender<()>> {
+    std::fs::metadata(path).ok().filter(|about| !about.is_file() && !about.is_dir())?;
+    let (there, waits) = channel();
+    let text =
+        format!("waiting for {}, which is no file: something has to write a scene to it", path.display());
+    std::thread::spawn(move || {
+        if waits.recv_timeout(SILENCE) == Err(RecvTimeoutError::Timeout) {
+            note(&text);
+        }
+    });
+    Some(there)
 }
 
 /// Builds a scene; a fault names it by `name`.

@@ -74,9 +74,13 @@ impl RenderSetup {
                 "--overlay shows in views through cameras only: add --view camera:ROBOT or --inset-camera ROBOT",
             );
         } else if style.detections && !fleet.has_sensors {
-            note(
-                "no follower has a sensor in this scene, so there is nothing to overlay: try --set sensing.kind=camera",
-            );
+            let (flag, what) = match args.inset_camera {
+                Some(_) => ("--inset-camera", "shows the picture of that robot without detections"),
+                None => ("--overlay", "has no detections to show"),
+            };
+            note(&format!(
+                "{flag} {what}: no follower has a sensor in this scene; try --set sensing.kind=camera"
+            ));
         }
         if let Some(robot) = &args.inset_camera {
             // The same words and the same mistakes as in a view.

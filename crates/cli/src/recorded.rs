@@ -60,7 +60,12 @@ impl Recorded {
         };
         let (mut manifest, log) = match (read_manifest(path), log) {
             (Ok(manifest), log) => (manifest, log),
-            (Err(_), Ok(log)) => return Ok(Self::of_log(path, log)),
+            (Err(failure), Ok(log)) => {
+                if path.join("manifest.json").exists() {
+                    note(&format!("{}; {} stands in for it", failure.text().unwrap_or_default(), log::FILE));
+                }
+                return Ok(Self::of_log(path, log));
+            }
             (Err(failure), Err(_)) => return Err(failure),
         };
         if let (None, Ok(log)) = (&manifest.digest, &log) {

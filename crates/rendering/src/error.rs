@@ -30,6 +30,20 @@ pub enum Error {
         /// All valid forms.
         valid: String,
     },
+    /// A view `fixed:` whose numbers give no camera.
+    #[error(
+        "view {given:?}: {fault}; `fixed:ex,ey,ez,tx,ty,tz[,degrees]` takes an eye and a target in m, and a field of view \
+         from {} to {} degrees",
+        .degrees[0], .degrees[1]
+    )]
+    FixedView {
+        /// What was asked for.
+        given: String,
+        /// The number that is wrong, and why.
+        fault: String,
+        /// Smallest and largest field of view, degrees.
+        degrees: [f64; 2],
+    },
     /// More views than a picture is split into.
     #[error("{0} views are too many for one picture: join at most four")]
     TooManyViews(usize),

@@ -2,10 +2,7 @@
 //!
 //! The formation checks its graph too; here the faults can be shown where they are written.
 
-use crate::text::{
-    Found, Reporter, Span,
-    words::{did_you_mean, nearest},
-};
+use crate::text::{Found, Reporter, Span, words::instead_of};
 use std::collections::HashMap;
 
 /// A robot's name and its leader's, where they could be read.
@@ -40,7 +37,7 @@ pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, r
     check_cycles(robots, &leader_of, reporter);
 }
 
-/// Reports that no robot is called `name`, if so, with the nearest name there is.
+/// Reports that no robot is called `name`, if so, with the nearest and some that there are.
 pub(crate) fn check_known<'a>(
     name: &str,
     span: Span,
@@ -51,9 +48,9 @@ pub(crate) fn check_known<'a>(
     if robots.clone().any(|robot| robot.name.as_ref().is_none_or(|known| known.value == name)) {
         return;
     }
-    let mut names = robots.filter_map(|robot| Some(robot.name.as_ref()?.value.as_str()));
     // With very many robots the nearest of the first ones has to do.
-    let hint = nearest(name, names.by_ref().take(1000)).map_or_else(String::new, did_you_mean);
+    let names = robots.filter_map(|robot| Some(robot.name.as_ref()?.value.as_str())).take(1000);
+    let hint = instead_of(name, names);
     reporter.report(span, format!("there is no robot called `{name}`{hint}"));
 }
 

@@ -6,14 +6,9 @@ use crate::{
     graph::{Named, check_known},
     random::RandomStream,
     robots::{Defaults, RobotDraft, check_distance, check_path, start_pose, start_speed},
-    text::{
-        Form, Found, Keys, Node, Part, Reporter, Value,
-        node::Entry,
-        table,
-        words::{did_you_mean, nearest},
-    },
+    text::{Form, Found, Keys, Node, Part, Reporter, Value, node::Entry, table, words::instead_of},
     types::VehiclePart,
-    vehicle::usual_kind,
+    vehicle::{kind_is_lost, usual_kind},
 };
 use serde_json::{Value as Json, json};
 use vocabulary::{Pose, ScalarTrajectory, math, wrap};
@@ -57,6 +52,9 @@ pub(crate) fn expand(
     reporter: &mut Reporter,
 ) -> Option<()> {
     let keys = group.keys;
+    if kind_is_lost(group.node.get("vehicle"), keys.vehicle.as_ref()) {
+        return None;
+    }
     let count = group.count(drafts.len(), reporter)?;
     drafts.reserve(count);
     group.check_members(reporter);
@@ -208,8 +206,7 @@ impl Group<'_> {
         for GroupMember { name, .. } in self.keys.members.iter().flat_map(|members| &members.value) {
             if !makes(self.node, &name.value) {
                 let names: Vec<_> = made_by(self.node).take(1000).collect();
-                let near = nearest(&name.value, names.iter().map(String::as_str));
-                let hint = near.map_or_else(String::new, did_you_mean);
+                let hint = instead_of(&name.value, names.iter().map(String::as_str));
                 let message = format!("this group has no robot called `{}`{hint}", name.value);
                 reporter.report(name.span, message);
             }
@@ -306,7 +303,8 @@ impl Group<'_> {
         let at = said.map_or(self.node.span, |name| name.span);
         let name = Some(Found { span: at, value: robot.name.clone() });
         // Leaders that the shape gives exist, and the one outside has been looked up; one that is written has not.
-        drafts.push(RobotDraft { named: Named { name, leader }, number: None, robot: Some(robot) });
+        let named = Named { name, leader };
+        drafts.push(RobotDraft { named, start: Some(at), number: None, robot: Some(robot) });
     }
 
     /// The vehicle of the group's own leader, after reporting keys that only followers have.

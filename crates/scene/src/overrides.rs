@@ -5,7 +5,7 @@ use crate::{
     text::{
         Node, Reporter, Span, Value,
         node::{Entry, composed},
-        words::{did_you_mean, nearest},
+        words::instead_of,
     },
 };
 use std::{fmt, str::FromStr};
@@ -132,13 +132,12 @@ fn put_in_scene(root: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &
     }
 }
 
-/// That no robot is called `name`, with the nearest there is.
+/// That no robot is called `name`, with the nearest and some that there are.
 fn unknown_robot(root: &Node, name: &str) -> String {
     let written = root.items("robots").iter().filter_map(|robot| robot.get("name")?.as_text());
     let made: Vec<String> = root.items("groups").iter().flat_map(|group| made_by(group).take(1000)).collect();
     let names = written.chain(made.iter().map(String::as_str));
-    let hint = nearest(name, names).map_or_else(String::new, did_you_mean);
-    format!("there is no robot called `{name}`{hint}")
+    format!("there is no robot called `{name}`{}", instead_of(name, names))
 }
 
 fn put(node: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Reporter) {
@@ -187,7 +186,7 @@ fn spell_out(thing: &mut Node) {
 
 /// Index of the item with that name or number.
 fn find(items: &[Node], text: &str) -> Result<usize, String> {
-    let names = || items.iter().filter_map(|item| item.get("name").and_then(Node::as_text));
+    let names = items.iter().filter_map(|item| item.get("name").and_then(Node::as_text));
     if let Some(index) = items.iter().position(|item| item.get("name").and_then(Node::as_text) == Some(text))
     {
         return Ok(index);
@@ -195,9 +194,6 @@ fn find(items: &[Node], text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {
         Ok(index) if index < items.len() => Ok(index),
         Ok(index) => Err(format!("there is no item {index}: this list has {}, counted from 0", items.len())),
-        Err(_) => {
-            let hint = nearest(text, names()).map_or_else(String::new, did_you_mean);
-            Err(format!("no item of this list is called `{text}`{hint}"))
-        }
+        Err(_) => Err(format!("no item of this list is called `{text}`{}", instead_of(text, names))),
     }
 }

@@ -3,7 +3,7 @@
 use crate::{
     Expect, Film, PropSpec, Robot, Scene, Shot, Time, Views,
     document::{Document, GroupKeys, RobotKeys},
-    graph::{check_graph, check_known},
+    graph::{Named, check_graph, check_known},
     ground::ground,
     groups::{Group, expand},
     props::{Placed, PropStage},
@@ -14,7 +14,7 @@ use crate::{
     types::{
         EnvironmentPart, ExpectPart, FilmPart, PhysicsPart, ROBOT_VIEWS, TimePart, ViewsPart, VisionPart,
     },
-    vehicle::{check_meaning, usual_kind},
+    vehicle::{check_meaning, kind_is_lost, usual_kind},
 };
 use std::collections::HashSet;
 use vocabulary::TimeMode;
@@ -24,7 +24,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) 
     // Keys of another version may mean something else.
     document.schema.as_ref()?;
     let seed = document.seed.as_ref()?.value;
-    let defaults = defaults(&document, reporter)?;
+    let defaults = defaults(&document, root, reporter)?;
     let physics = document.physics?.value;
     let time_part = document.time?.value;
     let time = time(&time_part, reporter);
@@ -50,8 +50,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) 
     if let Some(ground) = &ground
         && reporter.is_clean()
     {
-        let robots =
-            drafts.iter().filter_map(|draft| Some((draft.named.name.as_ref()?.span, draft.robot.as_ref()?)));
+        let robots = drafts.iter().filter_map(|draft| Some((draft.start?, draft.robot.as_ref()?)));
         check_start(robots, &props, ground, reporter);
     }
     let views = views(&document.views?.value, &drafts, reporter);
@@ -75,8 +74,11 @@ pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) 
 }
 
 /// What holds for every robot that says nothing else.
-fn defaults(document: &Document, reporter: &mut Reporter) -> Option<Defaults> {
+fn defaults(document: &Document, root: &Node, reporter: &mut Reporter) -> Option<Defaults> {
     let physics = &document.physics.as_ref()?.value;
+    if kind_is_lost(root.get("vehicle"), document.vehicle.as_ref()) {
+        return None;
+    }
     let vehicle = document.vehicle.as_ref()?.value.clone();
     check_meaning(&vehicle, usual_kind(&vehicle), reporter);
     Some(Defaults {
@@ -96,7 +98,7 @@ pub(crate) fn resolve_robots(
     reporter: &mut Reporter,
 ) -> Option<Vec<Robot>> {
     let seed = document.seed.as_ref()?.value;
-    let defaults = defaults(document, reporter)?;
+    let defaults = defaults(document, root, reporter)?;
     let (robots, groups) = (&document.robots.as_ref()?.value, &document.groups.as_ref()?.value);
     let mut drafts = drafts(robots, groups, root, seed, &defaults, reporter);
     number(&mut drafts, reporter);
@@ -181,8 +183,11 @@ fn drafts(
         robots.iter().zip(nodes).map(|(keys, node)| draft(keys, node, defaults, reporter)).collect();
     for (index, (keys, node)) in groups.iter().zip(root.items("groups")).enumerate() {
         let group = Group { keys, node, index: index as u64 };
-        // The errors of a group that cannot be read are reported already.
-        let _ = expand(&group, seed, defaults, &mut drafts, reporter);
+        if expand(&group, seed, defaults, &mut drafts, reporter).is_none() {
+            // Its errors are reported already; a robot that is not known may be one of its.
+            let named = Named { name: None, leader: None };
+            drafts.push(RobotDraft { named, start: None, number: None, robot: None });
+        }
     }
     if ["robots", "groups"].iter().all(|key| root.items(key).is_empty()) {
         reporter

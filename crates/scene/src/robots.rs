@@ -6,7 +6,7 @@ use crate::{
     graph::Named,
     text::{Found, Node, Part, Reporter, Span},
     types::{LawPart, ObserverPart, SensingPart, VehiclePart},
-    vehicle::{WrittenVehicle, vehicle},
+    vehicle::{WrittenVehicle, kind_is_lost, vehicle},
 };
 use vocabulary::{Pose, math};
 
@@ -53,6 +53,8 @@ impl Defaults {
 /// A robot as far as it could be made out, and where it came from.
 pub(crate) struct RobotDraft {
     pub(crate) named: Named,
+    /// Where its pose is written, or its name where it has none of its own.
+    pub(crate) start: Option<Span>,
     /// The number it is given in the file.
     pub(crate) number: Option<Found<usize>>,
     /// `None` after reporting an error.
@@ -67,10 +69,14 @@ pub(crate) fn draft(
     reporter: &mut Reporter,
 ) -> RobotDraft {
     let named = Named { name: keys.name.clone(), leader: keys.leader.clone() };
-    RobotDraft { named, number: keys.number.clone(), robot: robot(keys, node, defaults, reporter) }
+    let start = keys.pose.as_ref().map(|pose| pose.span).or(keys.name.as_ref().map(|name| name.span));
+    RobotDraft { named, start, number: keys.number.clone(), robot: robot(keys, node, defaults, reporter) }
 }
 
 fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reporter: &mut Reporter) -> Option<Robot> {
+    if kind_is_lost(node.get("vehicle"), keys.vehicle.as_ref()) {
+        return None;
+    }
     let vehicle = defaults.vehicle(keys.vehicle.as_ref(), node.span, reporter);
     let role = role(keys, node, &vehicle, defaults, reporter);
     let path = keys.path.as_ref().map(|path| &path.value);

@@ -29,7 +29,9 @@ impl Form for VehicleForm {
 
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<VehiclePart> {
         if node.as_text().is_none() {
-            return table::<VehiclePart>().read(node, reporter);
+            let part = table::<VehiclePart>().read(node, reporter)?;
+            // Of a kind that is none nothing can be said, as that a key has no effect on it.
+            return (part.kind.is_some() || node.get("kind").is_none()).then_some(part);
         }
         let value = word::<VehicleKind>().read(node, reporter)?;
         Some(VehiclePart { kind: Some(Found { span: node.span, value }), ..VehiclePart::default() })
@@ -108,6 +110,13 @@ pub(crate) fn check_meaning(part: &VehiclePart, kind: VehicleKind, reporter: &mu
         reporter
             .report(span, format!("`{key}` has no effect on a vehicle of kind `{kind}`; it is for {others}"));
     }
+}
+
+/// Whether the vehicle at `node`, read as `part`, is of a kind that is none. That is reported already, and nothing that depends
+/// on the kind can be said.
+pub(crate) fn kind_is_lost(node: Option<&Node>, part: Option<&Found<VehiclePart>>) -> bool {
+    let named = node.is_some_and(|node| node.as_text().is_some() || node.get("kind").is_some());
+    named && part.is_none_or(|part| part.value.kind.is_none())
 }
 
 /// A vehicle under inspection.

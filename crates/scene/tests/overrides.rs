@@ -144,3 +144,15 @@ fn what_comes_after_the_end_is_told() {
     assert_eq!(told.len(), 2, "{told:?}");
     assert!(told[0].contains("the change at 5 s") && told[1].contains("`settled_after` of 6 s"), "{told:?}");
 }
+
+#[test]
+fn a_name_that_is_not_there_is_told_those_that_are() {
+    for (change, message) in [
+        ("robots.zoe.distance=1", "is called `zoe` (known here: `leader`, `follower-1`)"),
+        ("robots.folower-1.distance=1", "did you mean `follower-1`? (known here: `leader`, `follower-1`)"),
+        ("robots.follower-1.leader=zoe", "no robot called `zoe` (known here: `leader`, `follower-1`)"),
+    ] {
+        let errors = with(&[change]).expect_err(change).to_string();
+        assert!(errors.contains(message), "{errors}");
+    }
+}

@@ -156,7 +156,7 @@ fn props_that_cannot_be() {
         (&block.replace("block", "ramp").replace("[5, 0, 0]", "[0.6, 0, 0]"), 8, &["`a` and `b` overlap"]),
         (
             "[[robots]]\nname = \"b\"\npose = [0.3, 0.2, 0]\npath.kind = \"constant\"",
-            8,
+            9,
             &["`a` and `b` overlap"],
         ),
         ("[[patterns]]\nname = \"p\"\nkind = \"gat\"\nwidth = 1", 9, &["did you mean `gate`?"]),

@@ -195,3 +195,25 @@ fn gains_that_are_not_said_fit_the_vehicle() {
         (4.0, 3.0, 7.0, 0.1)
     );
 }
+
+/// Of a vehicle whose kind is misspelt nothing is said that depends on the kind.
+#[test]
+fn a_wrong_kind_is_one_error() {
+    for (keys, own) in [
+        ("", "vehicle = \"truck\""),
+        ("", "vehicle = { kind = \"truck\", wheelbase = 0.3 }"),
+        ("[vehicle]\nkind = \"truck\"\nwheelbase = 0.3", ""),
+        (
+            "",
+            "[[groups]]\nshape = \"v\"\ncount = 3\nleader = \"a\"\nspeed = 9\nvehicle = \"truck\"\n[[robots]]\n\
+             name = \"b\"\nleader = \"robot-3\"\npose = [-9, 0, 0]\ndistance = 2\nbearing = 3",
+        ),
+    ] {
+        // Too fast for the usual kind; where the group has a kind of its own, its leader is no matter.
+        let speed = if own.contains("groups") { "speed = 1" } else { "speed = 9" };
+        let text = text(keys, own).replace("\"constant\"", &format!("\"constant\", {speed}"));
+        let errors = Scene::parse(&text, "t.toml", &[]).expect_err("a wrong kind").to_string();
+        assert_eq!(errors.matches("t.toml:").count(), 1, "{errors}");
+        assert!(errors.contains("must be one of `unicycle`"), "{errors}");
+    }
+}

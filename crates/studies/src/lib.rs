@@ -3,7 +3,7 @@
 //! [`run`] steps, records, certifies and judges one run; [`verdict`] holds its metrics against what the scene expects.
 //! [`tune`] searches gains, [`certify`] examines the theorems along a run, [`budget`] finds where errors come from,
 //! [`accuracy`] and [`dataset`] look at what cameras see, [`replay`], [`diff`] and
-//! [`likeness`] hold runs, scenes and pictures against each other.
+//! [`likeness`] hold runs, scenes and pictures against each other. [`pace`] measures how fast this machine is.
 //!
 //! Nothing here prints, draws or reads a clock: functions report how far they are to a callback, which says whether they go
 //! on, and pictures come from a [`CameraRenderer`](vocabulary::CameraRenderer) that the caller makes.
@@ -15,6 +15,7 @@ pub mod dataset;
 pub mod diff;
 mod error;
 pub mod likeness;
+pub mod pace;
 mod record_source;
 pub mod replay;
 pub mod run;

@@ -75,6 +75,31 @@ fn a_film_has_one_frame_per_tick_of_simulation_time() {
 }
 
 #[test]
+fn notes_name_the_flag_that_they_are_about() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = scene("circle-three");
+    let small = ["capture", &*scene, "--size", "64x64", "--at"];
+    for (more, note) in [
+        (&["0,0.1,0.1"][..], "--at names 3 times for 2 pictures: those that are the same share one\n"),
+        (&["0,0,0", "-q"], ""),
+        (
+            &["0", "--inset-camera", "follower-1"],
+            "--inset-camera shows the picture of that robot without detections: no follower has a sensor in this scene; \
+             try --set sensing.kind=camera\n",
+        ),
+        (
+            &["0", "--overlay", "--view", "camera:follower-1"],
+            "--overlay has no detections to show: no follower",
+        ),
+    ] {
+        let (code, _, err) = told(&echelon(folder.path(), &[&small[..], more].concat()));
+        let lines = err.lines().filter(|line| !line.starts_with("replaced ")).collect::<Vec<_>>().join("\n");
+        assert!(code == 0 && lines.starts_with(note.trim_end()), "{err}");
+        assert_eq!(lines.is_empty(), note.is_empty(), "{err}");
+    }
+}
+
+#[test]
 fn doctor_names_the_adapter_it_would_draw_with() {
     let folder = tempfile::tempdir().expect("a folder");
     let (code, text, err) = told(&echelon(folder.path(), &["doctor", "--json"]));

@@ -98,6 +98,20 @@ fn what_is_no_run_folder_is_refused() {
     assert!(code == 2 && err.contains("scene.toml"), "{err}");
 }
 
+#[test]
+fn a_log_that_stands_in_for_a_broken_manifest_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = record(folder.path(), "line-three");
+    fs::write(run.join("manifest.json"), "{ \"program\": ").expect("written");
+    let (code, _, err) = told(&echelon(folder.path(), &["replay", "run"]));
+    assert!(code == 0 && err.contains("run/manifest.json is not the manifest of a run"), "{err}");
+    assert!(err.contains("log.mcap stands in for it"), "{err}");
+    // One that is not there at all was not written, as where a log came alone.
+    fs::remove_file(run.join("manifest.json")).expect("removed");
+    let (code, _, err) = told(&echelon(folder.path(), &["replay", "run"]));
+    assert!(code == 0 && !err.contains("manifest"), "{err}");
+}
+
 /// A run that ends before its storyboard does could not be replayed: its scene was written out with a shot of no length.
 #[test]
 fn a_run_shorter_than_its_storyboard_replays() {

@@ -2,6 +2,7 @@
 
 use crate::common::{command, scene, told};
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
@@ -160,4 +161,43 @@ fn a_comparison_that_is_stopped_has_a_report_all_the_same() {
     let text = fs::read_to_string(at("report.xml")).expect("a report");
     assert!(text.matches("<testcase").count() == PICTURES + 1 && text.contains("errors=\"1\""), "{text}");
     assert!(text.contains("failures=\"") && text.contains("the comparison was interrupted"), "{text}");
+}
+
+/// Measuring ends between two lines; what was measured is printed.
+#[test]
+fn measuring_the_machine_can_be_ended() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut child = command(folder.path(), &["doctor", "--bench", "--budget", "0"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("started");
+    let mut lines = BufReader::new(child.stdout.take().expect("a pipe")).lines().map_while(Result::ok);
+    let row = lines.find(|line| line.starts_with("picture "));
+    assert!(row.is_some_and(|row| row.contains("circle-three") && row.contains(" ms ")));
+    signal(&child, "-INT");
+    // The pipe is read to its end: nothing is lost.
+    assert!(!lines.any(|line| line.contains("measured in")), "it went on to its end");
+    let (code, _, err) = told(&child.wait_with_output().expect("ended"));
+    assert_eq!((code, err.as_str()), (130, "interrupted: what was measured until then is printed\n"));
+}
+
+/// A scene from a pipe that nobody writes to is waited for aloud; once it comes, all is as with a file.
+#[test]
+fn who_waits_for_a_pipe_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pipe = folder.path().join("pipe.toml");
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo runs").success());
+    let mut child = command(folder.path(), &["check", "pipe.toml"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("started");
+    let mut said = String::new();
+    let errors = child.stderr.take().expect("a pipe");
+    BufReader::new(errors).read_line(&mut said).expect("a line");
+    assert_eq!(said, "waiting for pipe.toml, which is no file: something has to write a scene to it\n");
+    fs::copy(scene("line-three"), &pipe).expect("written");
+    let (code, out, _) = told(&child.wait_with_output().expect("ended"));
+    assert!(code == 0 && out.contains("pipe.toml: good"), "{out}");
 }

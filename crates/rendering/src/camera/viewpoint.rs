@@ -99,9 +99,16 @@ impl Viewpoint {
     /// `follow:NAME`, `camera:NAME`, `fixed` or `fixed:ex,ey,ez,tx,ty,tz[,degrees]`.
     ///
     /// # Errors
-    /// [`Error::Unknown`] with the valid forms and the nearest of them.
+    /// [`Error::Unknown`] with the valid forms and the nearest of them, [`Error::FixedView`] for numbers that give no camera.
     pub fn parse(text: &str, names: &[String]) -> Result<Self, Error> {
         let text = text.trim();
+        if let Some(numbers) = text.strip_prefix("fixed:") {
+            return fixed(numbers).map_err(|fault| Error::FixedView {
+                given: text.to_owned(),
+                fault,
+                degrees: FIELDS_OF_VIEW,
+            });
+        }
         let view = match text {
             "snake" => Some(Self::Snake),
             "snake-eye" => Some(Self::SnakeEye),
@@ -113,24 +120,38 @@ impl Viewpoint {
                     let name = text.strip_prefix(kind)?.trim();
                     names.iter().position(|n| n == name)
                 };
-                let fixed = || text.strip_prefix("fixed:").and_then(fixed);
-                named("follow:").map(Self::Follow).or(named("camera:").map(Self::Camera)).or_else(fixed)
+                named("follow:").map(Self::Follow).or(named("camera:").map(Self::Camera))
             }
         };
         view.ok_or_else(|| unknown(text, names))
     }
 }
 
-fn fixed(numbers: &str) -> Option<Viewpoint> {
-    let n: Vec<f64> = numbers.split(',').map(|s| s.trim().parse().ok()).collect::<Option<_>>()?;
-    let degrees = n.get(6).copied().unwrap_or(40.0);
-    let sound = n.iter().all(|x| x.is_finite()) && (5.0..=120.0).contains(&degrees);
-    let apart = n.len() >= 6 && (0..3).any(|k| (n[k] - n[k + 3]).abs() > 1e-6);
-    (sound && apart && n.len() <= 7).then(|| Viewpoint::Fixed {
-        eye: [n[0], n[1], n[2]],
-        target: [n[3], n[4], n[5]],
-        field_of_view: degrees.to_radians(),
-    })
+/// Smallest and largest vertical field of view of `fixed:`, degrees.
+const FIELDS_OF_VIEW: [f64; 2] = [5.0, 120.0];
+
+/// The view of `fixed:` with some numbers; else what is wrong with them.
+fn fixed(numbers: &str) -> Result<Viewpoint, String> {
+    const NAMES: [&str; 7] = ["ex", "ey", "ez", "tx", "ty", "tz", "degrees"];
+    let words: Vec<&str> = numbers.split(',').map(str::trim).collect();
+    let mut n = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 40.0];
+    if !(6..=NAMES.len()).contains(&words.len()) {
+        return Err(format!("it takes 6 or 7 numbers, not {}", words.len()));
+    }
+    for ((name, word), value) in NAMES.iter().zip(words).zip(&mut n) {
+        let number = word.parse().ok().filter(|x: &f64| x.is_finite());
+        *value = number.ok_or_else(|| format!("`{name}` is no number: {word:?}"))?;
+    }
+    let [ex, ey, ez, tx, ty, tz, degrees] = n;
+    let [least, most] = FIELDS_OF_VIEW;
+    if !(least..=most).contains(&degrees) {
+        return Err(format!("`degrees` is {degrees}"));
+    }
+    let (eye, target) = ([ex, ey, ez], [tx, ty, tz]);
+    if eye.iter().zip(target).all(|(a, b)| (a - b).abs() <= 1e-6) {
+        return Err("eye and target are in the same place".to_owned());
+    }
+    Ok(Viewpoint::Fixed { eye, target, field_of_view: degrees.to_radians() })
 }
 
 fn unknown(given: &str, names: &[String]) -> Error {
@@ -275,10 +296,31 @@ mod tests {
             Some(vec![Viewpoint::Snake, Viewpoint::Top])
         );
         assert!(matches!(Viewpoint::parse("fixed:0,-5,3,0,0,0", &names), Ok(Viewpoint::Fixed { .. })));
-        assert!(Viewpoint::parse("fixed:0,0,0,0,0,0", &names).is_err());
         assert_eq!(Viewpoint::parse("camera:leader", &names).ok(), Some(Viewpoint::Camera(0)));
         let error = Viewpoint::parse("camera:nobody", &names).unwrap_err().to_string();
         assert!(error.contains("camera:follower-1"), "{error}");
+    }
+
+    #[test]
+    fn a_fixed_view_says_which_number_is_wrong() {
+        for (numbers, fault) in [
+            ("0,0,0,0,0,0", "same place"),
+            ("1,2,3", "6 or 7 numbers, not 3"),
+            ("1,2,3,4,5,6,7,8", "6 or 7 numbers, not 8"),
+            ("1,2,3,4,five,6", "`ty` is no number: \"five\""),
+            ("1,2,inf,4,5,6", "`ez` is no number: \"inf\""),
+            ("1,2,3,4,5,", "`tz` is no number: \"\""),
+            ("1,2,3,4,5,6,150", "`degrees` is 150"),
+        ] {
+            let error = Viewpoint::parse(&format!("fixed:{numbers}"), &[]).unwrap_err();
+            let text = error.to_string();
+            assert!(error.is_usage() && text.contains(fault), "{text}");
+            assert!(text.contains("ex,ey,ez,tx,ty,tz") && text.contains("5 to 120 degrees"), "{text}");
+        }
+        let with_field = Viewpoint::parse("fixed: 0, -5, 3, 0, 0, 0, 60", &[]);
+        assert!(
+            matches!(with_field, Ok(Viewpoint::Fixed { field_of_view, .. }) if field_of_view == 60_f64.to_radians())
+        );
     }
 
     #[test]

@@ -2,10 +2,7 @@
 
 use super::EditError;
 use crate::overrides::MOST_PARTS;
-use crate::text::{
-    node::composed,
-    words::{did_you_mean, nearest},
-};
+use crate::text::{node::composed, words::instead_of};
 use toml_edit::{Item, Table};
 
 /// A part of a path that has been looked up.
@@ -107,12 +104,12 @@ fn made_by(group: &Item) -> impl Iterator<Item = String> {
     (first..=count).map(move |place| format!("{start}-{place}"))
 }
 
-/// That `list` has nothing called `name`, with the nearest that it has.
+/// That `list` has nothing called `name`, with the nearest and some that it has.
 pub(super) fn nothing_called(root: &Table, list: &str, name: &str) -> String {
     let mut known: Vec<String> = names(root, list).collect();
     if list == "robots" {
         known.extend(items(root, "groups").into_iter().flat_map(|group| made_by(group).take(1000)));
     }
-    let hint = nearest(name, known.iter().map(String::as_str)).map_or_else(String::new, did_you_mean);
+    let hint = instead_of(name, known.iter().map(String::as_str));
     format!("no item of `{list}` is called `{name}`{hint}")
 }

@@ -55,7 +55,31 @@ pub(crate) fn nearest<'a>(text: &str, words: impl Iterator<Item = &'a str>) -> O
     (distance <= 1 + word.chars().count() / 3).then_some(word)
 }
 
+/// The end of a message that a name is not among `names`: the nearest, and the first few that there are.
+pub(crate) fn instead_of<'a>(name: &str, names: impl Iterator<Item = &'a str> + Clone) -> String {
+    const SHOWN: usize = 8;
+    let hint = nearest(name, names.clone()).map_or_else(String::new, did_you_mean);
+    let more = if names.clone().nth(SHOWN).is_some() { ", …" } else { "" };
+    let known = quoted(names.take(SHOWN));
+    if known.is_empty() { hint } else { format!("{hint} (known here: {known}{more})") }
+}
+
 /// The end of a message that names the nearest valid word.
 pub(crate) fn did_you_mean(word: &str) -> String {
     format!(", did you mean `{word}`?")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_many_names_the_first_are_enough() {
+        let names: Vec<String> = (0..9).map(|k| format!("p{k}")).collect();
+        let told = |count: usize| instead_of("zoe", names[..count].iter().map(String::as_str));
+        assert_eq!(told(9), " (known here: `p0`, `p1`, `p2`, `p3`, `p4`, `p5`, `p6`, `p7`, …)");
+        assert_eq!(told(8), " (known here: `p0`, `p1`, `p2`, `p3`, `p4`, `p5`, `p6`, `p7`)");
+        assert_eq!(told(0), "");
+        assert_eq!(instead_of("p", ["p1"].into_iter()), ", did you mean `p1`? (known here: `p1`)");
+    }
 }

@@ -4,6 +4,7 @@ use crate::accuracy::poses::{FOLLOWER, LEADER};
 use crate::accuracy::tally::{Errors, PoseSample};
 use crate::dataset::camera::{CORNER_NOISE, errors, relative_pose};
 use crate::dataset::view::{FaceView, region_around};
+use crate::pace::Clock;
 use crate::{Error, RendererFactory};
 use perception::detect::{Detector, Locus, Tag, recognise};
 use perception::imaging::{ImageSensor, Optics, Purpose, noise_stream};
@@ -14,8 +15,6 @@ use vocabulary::{
 
 /// What is timed, in the order of [`Times`].
 pub const STAGES: [&str; 4] = ["draw", "sensor", "detect and sharpen", "locate"];
-/// Reads a stop watch, s.
-pub type Clock<'a> = &'a dyn Fn() -> f64;
 /// Milliseconds of each stage.
 pub type Times = [f64; 4];
 

@@ -4,10 +4,11 @@ mod bench;
 mod poses;
 mod tally;
 
-pub use bench::{Clock, STAGES, Times};
+pub use bench::{STAGES, Times};
 pub use poses::BINS;
 pub use tally::{AccuracyBin, PoseSample, readable_rms, targets};
 
+use crate::pace::Clock;
 use crate::{Error, RendererFactory};
 use bench::LocalisationBench;
 use metrics::median;
