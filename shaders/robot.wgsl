@@ -103,8 +103,43 @@ fn fragment(in: Varying) -> @location(0) vec4<f32> {
     return vec4<f32>(mix(developed(light), far_air(), haze(distance)), in.marks.y);
 }
 
-// As monochrome cameras see it: all but the shadow at the corners, and no number on the roof, since processors would
-// look it up for every pixel.
+// Of robots that are small in the picture: all but the shadow at the corners, and no number on the roof, since processors
+// would look it up for every pixel.
+struct Small {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) shadow: vec3<f32>,
+    // Light of the sky, and share of haze.
+    @location(1) sky: vec4<f32>,
+    @location(2) sun: vec3<f32>,
+}
+
+fn lit_corner(in: Corner, instance: Instance) -> Small {
+    let whole = placed(in, instance);
+    let away = mix(-frame.forward.xyz, frame.eye.xyz - whole.local, frame.eye.w);
+    let open = 0.45 + 0.55 * clamp((whole.local.z - whole.marks.z) * 5.0, 0.0, 1.0);
+    let to_eye = normalize(away);
+    let grazing = 1.0 - max(dot(whole.normal, to_eye), 0.0);
+    let fresnel = 0.035 + 0.5 * grazing * grazing * grazing * grazing;
+    let mirrored = reflect(-to_eye, whole.normal);
+    let seen = mix(BOUNCE * 0.8, sky_light(mirrored), smoothstep(-0.15, 0.15, mirrored.z));
+    let sky = whole.albedo * (ambient(whole.normal) * open + whole.surface.y) + whole.surface.x * fresnel * open * seen;
+    let sun = whole.albedo * SUN_LIGHT * max(dot(whole.normal, frame.sun.xyz), 0.0);
+    let hazy = haze(length(away) * frame.eye.w);
+    return Small(whole.clip, shadow_place(whole.local + whole.normal * frame.spare.z), vec4<f32>(sky, hazy), sun);
+}
+
+@vertex
+fn small_vertex(in: Corner, instance: Instance) -> Small {
+    return lit_corner(in, instance);
+}
+
+@fragment
+fn small(in: Small) -> @location(0) vec4<f32> {
+    let light = developed(in.sky.rgb + in.sun * lit(in.shadow, 0.0, 0.0));
+    return vec4<f32>(mix(light, far_air(), in.sky.a), 1.0);
+}
+
+// As monochrome cameras see it, whose values are proportional to light.
 struct Plain {
     @builtin(position) clip: vec4<f32>,
     @location(0) shadow: vec3<f32>,
@@ -114,22 +149,10 @@ struct Plain {
 
 @vertex
 fn plain_vertex(in: Corner, instance: Instance) -> Plain {
-    let whole = placed(in, instance);
-    let away = frame.eye.xyz - whole.local;
-    let open = 0.45 + 0.55 * clamp((whole.local.z - whole.marks.z) * 5.0, 0.0, 1.0);
-    let to_eye = normalize(away);
-    let grazing = 1.0 - max(dot(whole.normal, to_eye), 0.0);
-    let fresnel = 0.035 + 0.5 * grazing * grazing * grazing * grazing;
-    let mirrored = reflect(-to_eye, whole.normal);
-    let seen = mix(BOUNCE * 0.8, sky_light(mirrored), smoothstep(-0.15, 0.15, mirrored.z));
-    let sky = whole.albedo * (ambient(whole.normal) * open + whole.surface.y) + whole.surface.x * fresnel * open * seen;
-    let sun = whole.albedo * SUN_LIGHT * max(dot(whole.normal, frame.sun.xyz), 0.0);
-    let hazy = haze(length(away));
-    var out: Plain;
-    out.clip = whole.clip;
-    out.shadow = shadow_place(whole.local + whole.normal * frame.spare.z);
-    out.light = vec2<f32>(mix(developed(sky).r, far_air().r, hazy), developed(sun).r * (1.0 - hazy));
-    return out;
+    let whole = lit_corner(in, instance);
+    let hazy = whole.sky.a;
+    let light = vec2<f32>(mix(developed(whole.sky.rgb).r, far_air().r, hazy), developed(whole.sun).r * (1.0 - hazy));
+    return Plain(whole.clip, whole.shadow, light);
 }
 
 @fragment

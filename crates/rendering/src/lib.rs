@@ -47,6 +47,7 @@ pub use camera::viewpoint::{FreeCamera, Tile, ViewLayout, Viewpoint};
 pub use composition::Composition;
 pub use error::Error;
 pub use gpu::camera_renderer::GpuCameraRenderer;
+pub use gpu::passes::texture::{TextureBinding, TexturePass};
 pub use gpu::{AdapterChoice, AdapterInfo, Gpu, adapters};
 pub use ground::trail::{Trail, set_points};
 pub use palette::robot_colours;

@@ -8,9 +8,12 @@ use crate::app_state::{AppState, Tool};
 use crate::numbers::fixed;
 use crate::view::annotations::{PointerState, annotations};
 use crate::view::camera::CameraControl;
-use eframe::egui::{self, Color32, Pos2, Rect, Sense, TextureId, Ui, Vec2};
-use eframe::egui_wgpu::RenderState;
-use rendering::{Error, Gpu, PictureSpec, Renderer, Sightline, Style, Trail, ViewLayout, Viewpoint};
+use eframe::egui::{self, Color32, PaintCallbackInfo, Pos2, Rect, Sense, Ui, Vec2};
+use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState};
+use rendering::{
+    Error, Gpu, PictureSpec, Renderer, Sightline, Style, TextureBinding, TexturePass, Trail, ViewLayout,
+    Viewpoint,
+};
 use std::sync::Arc;
 use vocabulary::{FleetInfo, StepRecord};
 
@@ -19,7 +22,8 @@ const SIZES: [u32; 2] = [16, 8192];
 
 /// The 3D view.
 pub struct Viewport {
-    pub(super) state: RenderState,
+    /// Lays pictures into the window.
+    painter: Arc<TexturePass>,
     /// The graphics device, for other renderers.
     pub gpu: Gpu,
     pub(super) view_renderer: Option<ViewRenderer>,
@@ -45,7 +49,8 @@ pub(super) struct ViewRenderer {
     pub(super) fleet: Arc<FleetInfo>,
     pub(super) renderer: Renderer,
     pub(super) texture: wgpu::TextureView,
-    pub(super) id: TextureId,
+    /// The same, as the window reads it.
+    binding: TextureBinding,
     /// Renders still pictures with more samples, if the first renders with one.
     pub(super) finer: Option<Renderer>,
     /// The last frame, and whether it has full quality.
@@ -79,6 +84,18 @@ impl ViewRenderer {
     }
 }
 
+/// A picture in its place in the window: egui's own shader would filter every pixel.
+struct ShownPicture {
+    painter: Arc<TexturePass>,
+    texture: TextureBinding,
+}
+
+impl CallbackTrait for ShownPicture {
+    fn paint(&self, _: PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, _: &CallbackResources) {
+        self.painter.draw(pass, &self.texture);
+    }
+}
+
 /// The inputs of a picture: it is rendered again only if they change.
 #[derive(PartialEq)]
 pub(super) struct DrawnFrame {
@@ -99,7 +116,7 @@ impl Viewport {
         let samples = if gpu.info().software { 1 } else { 4 };
         let style = Style { inset: false, ..Style::default() };
         Self {
-            state: state.clone(),
+            painter: Arc::new(TexturePass::new(&gpu, state.target_format)),
             gpu,
             view_renderer: None,
             view: "snake".to_owned(),
@@ -168,8 +185,9 @@ impl Viewport {
             return centred(ui, rect, &text);
         }
         if let Some(view_renderer) = &self.view_renderer {
-            let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-            ui.painter().image(view_renderer.id, rect, whole, Color32::WHITE);
+            let picture =
+                ShownPicture { painter: Arc::clone(&self.painter), texture: view_renderer.binding.clone() };
+            ui.painter().add(Callback::new_paint_callback(rect, picture));
         }
         self.readout(ui, app_state, &record, rect);
     }
@@ -192,13 +210,8 @@ impl Viewport {
         let Some(view_renderer) = &mut self.view_renderer else { return Ok(()) };
         if view_renderer.renderer.size() != size {
             view_renderer.renderer.resize(size[0], size[1])?;
-            view_renderer.texture = texture(&self.state.device, size);
-            self.state.renderer.write().update_egui_texture_from_wgpu_texture(
-                &self.state.device,
-                &view_renderer.texture,
-                wgpu::FilterMode::Nearest,
-                view_renderer.id,
-            );
+            view_renderer.texture = texture(&self.gpu.device, size);
+            view_renderer.binding = self.painter.bind(&self.gpu, &view_renderer.texture);
             view_renderer.shown = None;
         }
         let shown = DrawnFrame {
@@ -235,18 +248,12 @@ impl Viewport {
     fn set_view_renderer(&mut self, fleet: &Arc<FleetInfo>, size: [u32; 2]) -> Result<(), Error> {
         let format = wgpu::TextureFormat::Rgba8Unorm;
         let renderer = Renderer::with_format(&self.gpu, fleet, size[0], size[1], self.samples, format)?;
-        let texture = texture(&self.state.device, size);
-        let mut drawer = self.state.renderer.write();
-        if let Some(before) = self.view_renderer.take() {
-            drawer.free_texture(&before.id);
-        }
-        let id = drawer.register_native_texture(&self.state.device, &texture, wgpu::FilterMode::Nearest);
-        drop(drawer);
+        let texture = texture(&self.gpu.device, size);
         self.view_renderer = Some(ViewRenderer {
             fleet: Arc::clone(fleet),
             renderer,
+            binding: self.painter.bind(&self.gpu, &texture),
             texture,
-            id,
             finer: None,
             shown: None,
             sight: None,

@@ -1,25 +1,20 @@
 //! Robots in a layer of their own: several samples a pixel where they are, and one where there is only ground and sky.
 
-use super::{Canvas, Recipe, shader};
+use super::Canvas;
+use super::texture::{TextureBinding, TexturePass};
 use crate::Gpu;
 use crate::camera::viewpoint::Tile;
 use crate::gpu::passes::robot::RobotInstances;
-use crate::gpu::resources::{flat_texture, sampled};
+use crate::gpu::resources::flat_texture;
 use crate::gpu::robot_groups::Groups;
 use crate::gpu::target::Attachments;
-use wgpu::{
-    BindGroup, BindGroupLayout, BindingResource, BlendState, Color, CommandEncoder, LoadOp, RenderPass,
-    RenderPipeline, ShaderStages, TextureSampleType, TextureUsages, TextureView, TextureViewDescriptor,
-};
-
-pub(crate) const SHADER: &str = shader!("layer");
+use wgpu::{Color, CommandEncoder, LoadOp, RenderPass, TextureUsages, TextureView, TextureViewDescriptor};
 
 /// Where the robots of one view at a time are drawn, and the pipeline that lays them over the ground.
 #[derive(Debug)]
 pub(crate) struct LayerPass {
     canvas: Canvas,
-    layout: BindGroupLayout,
-    over: RenderPipeline,
+    over: TexturePass,
     sheet: Option<Sheet>,
 }
 
@@ -28,16 +23,16 @@ pub(crate) struct LayerPass {
 struct Sheet {
     attachments: Attachments,
     view: TextureView,
-    group: BindGroup,
+    binding: TextureBinding,
 }
 
 impl Sheet {
-    fn new(gpu: &Gpu, size: [u32; 2], canvas: Canvas, layout: &BindGroupLayout) -> Self {
+    fn new(gpu: &Gpu, size: [u32; 2], canvas: Canvas, over: &TexturePass) -> Self {
         let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
         let texture = gpu.device.create_texture(&flat_texture("layer", size, canvas.format, usage));
         let view = texture.create_view(&TextureViewDescriptor::default());
-        let group = gpu.group("layer", layout, vec![BindingResource::TextureView(&view)]);
-        Self { attachments: Attachments::new(gpu, size, canvas), view, group }
+        let binding = over.bind(gpu, &view);
+        Self { attachments: Attachments::new(gpu, size, canvas), view, binding }
     }
 
     /// Whether it holds a size without wasting much of its own.
@@ -52,26 +47,14 @@ impl Sheet {
 impl LayerPass {
     /// Of what is drawn on `canvas`, to be laid over a target of one sample.
     pub(crate) fn new(gpu: &Gpu, canvas: Canvas) -> Self {
-        let texels = sampled(TextureSampleType::Float { filterable: false });
-        let layout = gpu.layout("layer", ShaderStages::VERTEX_FRAGMENT, &[texels]);
-        let over = Recipe {
-            label: "layer",
-            source: SHADER,
-            groups: &[&layout],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            colour: Some((canvas.flat(), Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING))),
-            depth: Some((wgpu::CompareFunction::Always, false)),
-            ..Default::default()
-        }
-        .build(gpu);
-        Self { canvas, layout, over, sheet: None }
+        Self { canvas, over: TexturePass::layer(gpu, canvas.flat()), sheet: None }
     }
 
     /// Makes room for the robots of every view, of which one at a time is drawn.
     pub(crate) fn fit(&mut self, gpu: &Gpu, sizes: impl Iterator<Item = [u32; 2]>) {
         let size = sizes.fold([0, 0], |[w, h], [width, height]| [w.max(width), h.max(height)]);
         if size != [0, 0] && !self.sheet.as_ref().is_some_and(|sheet| sheet.suits(size)) {
-            self.sheet = Some(Sheet::new(gpu, size, self.canvas, &self.layout));
+            self.sheet = Some(Sheet::new(gpu, size, self.canvas, &self.over));
         }
     }
 
@@ -101,14 +84,12 @@ impl LayerPass {
     pub(crate) fn lay(&self, pass: &mut RenderPass<'_>, groups: &Groups) {
         let Some(sheet) = self.sheet.as_ref().filter(|_| !groups.all.is_empty()) else { return };
         let [width, height] = sheet.attachments.size.map(|side| side as f32);
-        pass.set_pipeline(&self.over);
-        pass.set_bind_group(0, &sheet.group, &[]);
         for group in &groups.all {
             let [left, top] = group.shift();
             pass.set_viewport(left, top, width, height, 0.0, 1.0);
             let Tile { x, y, width, height } = group.crop;
             pass.set_scissor_rect(x, y, width, height);
-            pass.draw(0..4, 0..1);
+            self.over.draw(pass, &sheet.binding);
         }
     }
 }

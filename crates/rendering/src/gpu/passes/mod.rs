@@ -13,6 +13,7 @@ pub(crate) mod shadow;
 pub(crate) mod tag;
 pub(crate) mod terrain;
 pub(crate) mod text;
+pub(crate) mod texture;
 
 #[cfg(test)]
 mod tests;
@@ -69,7 +70,7 @@ pub(crate) const SHADERS: [(&str, &[&str]); 10] = [
     ("decal", &decal::SHADERS),
     ("prop", &prop::SHADERS),
     ("sky", &backdrop::SKY),
-    ("layer", &[layer::SHADER]),
+    ("texture", &[texture::SHADER]),
     ("overlay", &[overlay::SHADER]),
 ];
 

@@ -142,6 +142,8 @@ const NONE: Range<u32> = 0..0;
 #[derive(Debug)]
 pub(crate) struct RobotPass {
     solid: wgpu::RenderPipeline,
+    /// Where they are small.
+    small: wgpu::RenderPipeline,
     ghost_depth: wgpu::RenderPipeline,
     ghost: wgpu::RenderPipeline,
     digits: wgpu::BindGroup,
@@ -169,11 +171,12 @@ impl RobotPass {
             depth: Some((wgpu::CompareFunction::Less, true)),
             ..Default::default()
         };
-        let (vertex, entry) = if canvas.mono { ("plain_vertex", "plain") } else { ("vertex", "fragment") };
+        let (vertex, entry) = if canvas.mono { ("plain_vertex", "plain") } else { ("small_vertex", "small") };
         let blended = Some((flat, Some(wgpu::BlendState::ALPHA_BLENDING)));
         let equal = Some((wgpu::CompareFunction::LessEqual, false));
         Self {
-            solid: Recipe { vertex, entry, ..recipe }.build(gpu),
+            solid: recipe.build(gpu),
+            small: Recipe { vertex, entry, ..recipe }.build(gpu),
             ghost_depth: Recipe {
                 label: "ghost depth",
                 entry: "hidden",
@@ -195,7 +198,7 @@ impl RobotPass {
         crowd: &RobotInstances,
         detail: Detail,
     ) {
-        pass.set_pipeline(&self.solid);
+        pass.set_pipeline(if detail == Detail::Coarse { &self.small } else { &self.solid });
         pass.set_bind_group(2, &self.digits, &[]);
         models.draw_solid(pass, crowd, detail);
     }
