@@ -3,6 +3,7 @@
 use super::{AppState, Selection};
 use crate::session::runner::RunRequest;
 use crate::session::scene_draft::SceneDraft;
+#[cfg(not(target_family = "wasm"))]
 use recording::log::Log;
 use scene::{Role, Scene, SensingKind};
 use std::path::Path;
@@ -13,6 +14,7 @@ impl AppState {
     ///
     /// # Errors
     /// All that is wrong with its scene; then the state is as before.
+    #[cfg(not(target_family = "wasm"))]
     pub fn open_recorded(&mut self, log: Log, home: &Path) -> Result<(), String> {
         self.draft = Some(SceneDraft::new(log.scene().to_owned(), None, home)?);
         self.selection = Selection::Nothing;
