@@ -38,13 +38,16 @@ struct Turns<T: Task> {
 }
 
 impl<T: Task> Turns<T> {
-    /// Takes all requests, then does what is due; `None` where nobody is left who could ask.
+    /// Takes all requests, then does what is due; `None` where nobody is left who could ask, and all is finished.
     fn turn(&mut self, share: Duration) -> Option<Next> {
         loop {
             match self.inbox.try_recv() {
                 Ok(request) => self.task.take(request),
                 Err(TryRecvError::Empty) => return Some(self.task.tick(share)),
-                Err(TryRecvError::Disconnected) => return None,
+                Err(TryRecvError::Disconnected) => {
+                    self.task.end();
+                    return None;
+                }
             }
         }
     }
@@ -52,19 +55,15 @@ impl<T: Task> Turns<T> {
     /// Goes on until nobody is left who could ask.
     #[cfg(not(target_family = "wasm"))]
     fn run(mut self) {
-        use std::sync::mpsc::RecvTimeoutError;
         while let Some(next) = self.turn(SHARE) {
             let request = match next {
-                Next::Asked => self.inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
-                Next::After(time) => self.inbox.recv_timeout(time),
+                Next::Asked => self.inbox.recv().ok(),
+                Next::After(time) => self.inbox.recv_timeout(time).ok(),
             };
-            match request {
-                Ok(request) => self.task.take(request),
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => break,
+            if let Some(request) = request {
+                self.task.take(request);
             }
         }
-        self.task.end();
     }
 }
 
@@ -130,5 +129,67 @@ impl<R: Send + 'static> Background<R> {
             // A panic of the thread has been printed already.
             let _ = thread.join();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Counts down from what it is asked for, one at a tick.
+    #[derive(Default)]
+    struct Countdown {
+        left: u32,
+        asked: Vec<u32>,
+        ended: Option<Sender<Vec<u32>>>,
+    }
+
+    impl Task for Countdown {
+        type Request = u32;
+
+        fn take(&mut self, request: u32) {
+            self.asked.push(request);
+            self.left += request;
+        }
+
+        fn tick(&mut self, _: Duration) -> Next {
+            self.left = self.left.saturating_sub(1);
+            if self.left == 0 { Next::Asked } else { Next::After(Duration::ZERO) }
+        }
+
+        fn end(&mut self) {
+            if let Some(ended) = self.ended.take() {
+                ended.send(std::mem::take(&mut self.asked)).expect("a listener");
+            }
+        }
+    }
+
+    #[test]
+    fn a_turn_takes_all_requests_first() {
+        let (requests, inbox) = channel();
+        let mut turns = Turns { task: Countdown::default(), inbox };
+        assert_eq!(turns.turn(SHARE), Some(Next::Asked));
+        for request in [2, 1] {
+            requests.send(request).expect("taken");
+        }
+        let next = [(); 3].map(|()| turns.turn(SHARE));
+        assert_eq!(
+            next,
+            [Some(Next::After(Duration::ZERO)), Some(Next::After(Duration::ZERO)), Some(Next::Asked)]
+        );
+        assert_eq!(turns.task.asked, [2, 1]);
+        drop(requests);
+        assert_eq!(turns.turn(SHARE), None);
+    }
+
+    #[test]
+    fn a_thread_takes_what_was_asked_before_it_ends() {
+        let (sender, ended) = channel();
+        let make = || Countdown { ended: Some(sender), ..Countdown::default() };
+        let mut background = Background::start("countdown", make);
+        assert!([3, 0, 2].map(|request| background.ask(request)).iter().all(|taken| *taken));
+        background.finish();
+        assert_eq!(ended.try_recv(), Ok(vec![3, 0, 2]));
+        assert!(!background.ask(1));
     }
 }

@@ -2,9 +2,11 @@
 
 use crate::app::LabApp;
 use crate::options::Options;
+use eframe::egui;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
-use wasm_bindgen::JsCast;
+use wasm_bindgen::{JsCast, JsValue};
 use web_sys::HtmlCanvasElement;
 use web_time::Instant;
 
@@ -31,7 +33,7 @@ pub fn open_on_page(canvas: &'static str) {
         });
         if let Err(error) = eframe::WebRunner::new().start(canvas, web, make).await {
             let why = error.as_string().unwrap_or_else(|| format!("{error:?}"));
-            tell(&format!("the lab cannot be shown: {why}. It needs WebGL 2 or WebGPU"));
+            tell(&format!("the lab cannot be shown: {why}. It needs WebGL 2"));
         }
     });
 }
@@ -47,6 +49,51 @@ fn setup() -> WgpuSetup {
         ..wgpu::DeviceDescriptor::default()
     });
     WgpuSetup::CreateNew(new)
+}
+
+/// Files of the page that are fetched by name.
+pub(crate) struct Fetched {
+    sender: Sender<(&'static str, Vec<u8>)>,
+    receiver: Receiver<(&'static str, Vec<u8>)>,
+}
+
+impl Default for Fetched {
+    fn default() -> Self {
+        let (sender, receiver) = channel();
+        Self { sender, receiver }
+    }
+}
+
+impl Fetched {
+    /// Fetches a file of the page; `None`, since it comes later. One that is missing never comes.
+    pub(crate) fn fetch(
+        &self,
+        name: &'static str,
+        file: String,
+        ctx: &egui::Context,
+    ) -> Option<egui::ColorImage> {
+        let (sender, ctx) = (self.sender.clone(), ctx.clone());
+        wasm_bindgen_futures::spawn_local(async move {
+            if let Ok(bytes) = fetch(&file).await {
+                // A page that is left does not wait for it.
+                let _ = sender.send((name, bytes));
+                ctx.request_repaint();
+            }
+        });
+        None
+    }
+
+    /// The next file that came.
+    pub(crate) fn next(&self) -> Option<(&'static str, Vec<u8>)> {
+        self.receiver.try_recv().ok()
+    }
+}
+
+async fn fetch(file: &str) -> Result<Vec<u8>, JsValue> {
+    let window = web_sys::window().ok_or("there is no page")?;
+    let response = wasm_bindgen_futures::JsFuture::from(window.fetch_with_str(file)).await?;
+    let buffer = response.unchecked_into::<web_sys::Response>().array_buffer()?;
+    Ok(js_sys::Uint8Array::new(&wasm_bindgen_futures::JsFuture::from(buffer).await?).to_vec())
 }
 
 /// Tells the reader of the page what went wrong.

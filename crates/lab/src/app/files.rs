@@ -247,17 +247,13 @@ impl LabApp {
         }
     }
 
-    /// Downloads the scene of a run.
+    /// Downloads the scene of a run, with what the run came to in its first line.
     #[cfg(target_family = "wasm")]
     fn write_run(&mut self, text: String, seen: SeenRun) {
-        let path = free(Path::new("."), &format!("{}-lab", self.name()), "toml");
-        let SeenRun { samples, digest } = seen;
-        match outlet::write(&path, text.as_bytes()) {
-            Ok(()) => self.app_state.note(format!(
-                "Downloaded: `echelon run {}` repeats the run: {}, digest {digest}",
-                path.display(),
-                vocabulary::counted(samples, "sample"),
-            )),
+        let file = format!("{}-lab-001.toml", self.name());
+        let came_to = format!("{}, digest {}", vocabulary::counted(seen.samples, "sample"), seen.digest);
+        match outlet::write(Path::new(&file), format!("# {came_to}\n{text}").as_bytes()) {
+            Ok(()) => self.app_state.note(format!("Downloaded: `echelon run {file}` repeats {came_to}")),
             Err(why) => self.app_state.fault(why),
         }
     }

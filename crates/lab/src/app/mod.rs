@@ -224,7 +224,7 @@ impl LabApp {
         }
     }
 
-    /// Opens files that were dropped on the page, once the browser has read them.
+    /// Opens files that were dropped on the page, once the browser has read them, and scenes whose text is pasted.
     #[cfg(target_family = "wasm")]
     fn take_dropped(&mut self, ctx: &Context) {
         for file in ctx.input(|input| input.raw.dropped_files.clone()) {
@@ -235,10 +235,17 @@ impl LabApp {
                 ctx.request_repaint();
             });
         }
-        while let Ok((path, bytes)) = self.dropped.1.try_recv() {
+        if !ctx.egui_wants_keyboard_input() {
+            for event in ctx.input(|input| input.events.clone()) {
+                if let egui::Event::Paste(text) = event {
+                    self.act(Action::OpenBytes("pasted.toml".into(), text.into_bytes()));
+                }
+            }
+        }
+        while let Ok((name, bytes)) = self.dropped.1.try_recv() {
             match bytes {
-                Ok(bytes) => self.open_bytes(&path, bytes),
-                Err(why) => self.app_state.fault(format!("{} cannot be read: {why}", path.display())),
+                Ok(bytes) => self.act(Action::OpenBytes(name, bytes)),
+                Err(why) => self.app_state.fault(format!("{} cannot be read: {why}", name.display())),
             }
         }
     }
@@ -302,10 +309,11 @@ impl LabApp {
                 // The names are those of the panel.
                 let _ = self.viewport.style.set(name, on);
             }
-            Action::Open(_) | Action::OpenShipped(_) if self.app_state.unsaved() => {
-                self.next = Some(action);
-                self.dialog = Dialog::Leaving;
-            }
+            Action::Open(_) | Action::OpenShipped(_) if self.app_state.unsaved() => self.ask_first(action),
+            #[cfg(target_family = "wasm")]
+            Action::OpenBytes(..) if self.app_state.unsaved() => self.ask_first(action),
+            #[cfg(target_family = "wasm")]
+            Action::OpenBytes(name, bytes) => self.open_bytes(&name, bytes),
             Action::Open(path) => self.open(&path),
             Action::OpenShipped(name) => self.open_shipped(name),
             Action::Save => self.save(None),
@@ -337,6 +345,12 @@ impl LabApp {
             Action::Dismiss => self.dismiss(),
             _ => {}
         }
+    }
+
+    /// Asks what to do with unsaved changes before an action.
+    fn ask_first(&mut self, action: Action) {
+        self.next = Some(action);
+        self.dialog = Dialog::Leaving;
     }
 
     /// Sets the window's title to that of its scene.

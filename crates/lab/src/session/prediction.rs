@@ -321,3 +321,30 @@ impl PredictionBuilder {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A page predicts in pieces, a thread in one go.
+    #[test]
+    fn a_prediction_in_pieces_is_the_same() {
+        let shipped = scene::shipped("cars-line-three").expect("a shipped scene");
+        let scene = scene::Scene::parse(shipped.text, "t.toml", &[]).expect("a scene").scene;
+        let mut run = Simulation::new(simulation::build(&scene).expect("a run"));
+        run.next_record().expect("a record");
+        let under_way = || {
+            let request = PredictionRequest { branch: 1, run: run.save(), seconds: 0.5, number: 2 };
+            PredictionUnderWay::new(request)
+        };
+        let (mut whole, mut pieces) = (under_way(), under_way());
+        assert!(whole.go_on(Duration::MAX));
+        let mut turns = 1;
+        while !pieces.go_on(Duration::ZERO) {
+            turns += 1;
+        }
+        assert_eq!(turns, pieces.samples);
+        let [whole, pieces] = [whole, pieces].map(|under_way| Prediction { took: 0.0, ..under_way.finish() });
+        assert_eq!(format!("{whole:?}"), format!("{pieces:?}"));
+    }
+}

@@ -1,8 +1,6 @@
 //! Requests of the window to the thread of the run.
 
 use super::checked_scene::CheckedScene;
-#[cfg(not(target_family = "wasm"))]
-use recording::log::Log;
 use scene::Scene;
 use std::sync::Arc;
 
@@ -17,7 +15,7 @@ pub enum RunRequest {
     },
     /// Open a recorded run: all its records are sent at once, and nothing is simulated.
     #[cfg(not(target_family = "wasm"))]
-    Recorded(Box<Log>),
+    Recorded(Box<recording::log::Log>),
     /// Simulate the scene of the recorded run to the end of the recording, so that it can continue and branch.
     ResumeRecording(Arc<Scene>),
     /// Play or pause.

@@ -6,9 +6,6 @@ use super::prediction::Predictor;
 pub use super::run_event::{Fork, RunEvent};
 pub use super::run_request::RunRequest;
 use crate::background::{Background, Next, Task};
-use metrics::Digest;
-#[cfg(not(target_family = "wasm"))]
-use recording::log::Log;
 use rendering::{Gpu, GpuCameraRenderer};
 use scene::Scene;
 use simulation::Simulation;
@@ -253,11 +250,11 @@ impl RunWorker {
 
     /// Sends the records of a recorded run.
     #[cfg(not(target_family = "wasm"))]
-    fn look_through(&mut self, log: &Log) {
+    fn look_through(&mut self, log: &recording::log::Log) {
         (self.branches, self.active, self.playing) = (None, 0, false);
         let (fleet, period) = (Arc::new(log.fleet().clone()), log.manifest().period);
         self.send(RunEvent::Opened { fleet, period });
-        let (mut batch, mut digest, mut samples) = (Vec::new(), Digest::default(), 0);
+        let (mut batch, mut digest, mut samples) = (Vec::new(), metrics::Digest::default(), 0);
         let mut fault = None;
         for record in log.records() {
             match record {
