@@ -10,8 +10,8 @@ use clap::Args;
 use recording::log::{Comparison, compare};
 use serde_json::{Value, json};
 use std::path::PathBuf;
+use studies::STRIDE;
 use studies::diff::differing_keys;
-use studies::run::STRIDE;
 use vocabulary::counted;
 
 #[derive(Debug, Args)]

@@ -101,6 +101,9 @@ pub enum Action {
     Open(PathBuf),
     /// Open a shipped scene.
     OpenShipped(&'static str),
+    /// Open a file that the browser has read, or text that was pasted: its name and its bytes.
+    #[cfg(target_family = "wasm")]
+    OpenBytes(PathBuf, Vec<u8>),
     /// Reload the file.
     Reload,
     /// Restore the unsaved work of an earlier session.

@@ -45,8 +45,8 @@ impl Autosave {
         if let Some(folder) = file.parent() {
             fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
         }
-        output::write_whole(file, format!("{HEAD}{place}\n{text}").as_bytes())
-            .map_err(|error| format!("unsaved work cannot be kept: {error}"))
+        crate::outlet::write(file, format!("{HEAD}{place}\n{text}").as_bytes())
+            .map_err(|why| format!("unsaved work cannot be kept: {why}"))
     }
 
     /// Removes the autosave: nothing is unsaved any more.

@@ -1,7 +1,12 @@
-//! Pictures and films, rendered on their own thread so that the window never waits for them.
+//! Pictures and films, rendered beside the window, which never waits for them. A page cannot read pictures back without
+//! waiting: there it says who makes them.
 
+use crate::background::{Background, Next, Task};
+#[cfg(not(target_family = "wasm"))]
 use film::{Film, FilmKind, png};
-use rendering::{Gpu, PictureSpec, Renderer, Style, Trail, ViewLayout};
+use rendering::{Gpu, Style, Trail, ViewLayout};
+#[cfg(not(target_family = "wasm"))]
+use rendering::{PictureSpec, Renderer};
 use std::error::Error;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -9,8 +14,10 @@ use std::sync::{
     Arc,
     atomic::{AtomicUsize, Ordering::Relaxed},
 };
-use std::thread::JoinHandle;
-use vocabulary::{FleetInfo, Picture, StepRecord};
+#[cfg(not(target_family = "wasm"))]
+use vocabulary::Picture;
+use vocabulary::{FleetInfo, StepRecord};
+use web_time::Duration;
 
 /// Frames of a film a second.
 pub const RATE: f64 = 30.0;
@@ -72,48 +79,37 @@ pub enum ExportEvent {
     Failed(String),
 }
 
-/// The thread and its channels.
+/// The exporter and its channels.
 pub struct Exporter {
-    jobs: Option<Sender<ExportJob>>,
+    background: Background<ExportJob>,
     events: Receiver<ExportEvent>,
     waiting: Arc<AtomicUsize>,
-    thread: Option<JoinHandle<()>>,
 }
 
 impl Exporter {
-    /// Starts the thread; it calls `wake` for every event.
+    /// Starts it; it calls `wake` for every event.
     pub fn start(gpu: Gpu, wake: impl Fn() + Send + 'static) -> Self {
-        let (jobs, inbox) = channel();
         let (outbox, events) = channel();
         let waiting = Arc::new(AtomicUsize::new(0));
         let left = Arc::clone(&waiting);
-        let work = move || {
-            let mut work = ExportWorker { gpu, drawer: None, film: None };
-            while let Ok(job) = inbox.recv() {
-                let done = work.take(job);
-                left.fetch_sub(1, Relaxed);
-                let word = match done {
-                    Ok(None) => continue,
-                    Ok(Some(path)) => ExportEvent::Written(path),
-                    Err(error) => ExportEvent::Failed(error.to_string()),
-                };
-                // Without a listener the last film is still finished.
-                let _ = outbox.send(word);
-                wake();
-            }
-            // The window was closed during a film: the film is completed as far as it is.
-            let _ = work.take(ExportJob::End);
-        };
-        let thread = std::thread::Builder::new().name("studio".to_owned()).spawn(work).ok();
-        Self { jobs: Some(jobs), events, waiting, thread }
+        let background = Background::start("studio", move || ExportWorker {
+            outbox,
+            waiting: left,
+            wake: Box::new(wake),
+            studio: Studio::new(gpu),
+        });
+        Self { background, events, waiting }
     }
 
     /// Sends a request.
     pub fn ask(&self, job: ExportJob) {
-        if let Some(jobs) = &self.jobs {
-            self.waiting.fetch_add(1, Relaxed);
-            let _ = jobs.send(job);
-        }
+        self.waiting.fetch_add(1, Relaxed);
+        self.background.ask(job);
+    }
+
+    /// Works for a share of a frame, where there is no thread for it; when it needs the next.
+    pub(crate) fn tick(&mut self, share: Duration) -> Next {
+        self.background.tick(share)
     }
 
     /// The next event, if there is one.
@@ -129,27 +125,90 @@ impl Exporter {
 
 impl Drop for Exporter {
     fn drop(&mut self) {
-        self.jobs = None;
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
+        self.background.finish();
+    }
+}
+
+/// The state of the exporter.
+struct ExportWorker {
+    outbox: Sender<ExportEvent>,
+    /// Number of jobs that are not finished.
+    waiting: Arc<AtomicUsize>,
+    wake: Box<dyn Fn() + Send>,
+    studio: Studio,
+}
+
+impl Task for ExportWorker {
+    type Request = ExportJob;
+
+    fn take(&mut self, job: ExportJob) {
+        let done = self.studio.take(job);
+        self.waiting.fetch_sub(1, Relaxed);
+        let event = match done {
+            Ok(None) => return,
+            Ok(Some(path)) => ExportEvent::Written(path),
+            Err(error) => ExportEvent::Failed(error.to_string()),
+        };
+        // Without a listener the last film is still finished.
+        let _ = self.outbox.send(event);
+        (self.wake)();
+    }
+
+    fn tick(&mut self, _: Duration) -> Next {
+        Next::Asked
+    }
+
+    /// The window was closed during a film: the film is completed as far as it is.
+    fn end(&mut self) {
+        let _ = self.studio.take(ExportJob::End);
+    }
+}
+
+/// What a page has instead of a studio.
+#[cfg(target_family = "wasm")]
+struct Studio;
+
+#[cfg(target_family = "wasm")]
+impl Studio {
+    fn new(_: Gpu) -> Self {
+        Self
+    }
+
+    /// Says who does a job.
+    fn take(&mut self, job: ExportJob) -> Result<Option<PathBuf>, Box<dyn Error>> {
+        match job {
+            ExportJob::Picture { .. } => {
+                Err("a page writes no pictures: save the scene, then `echelon capture SCENE` draws it".into())
+            }
+            ExportJob::Begin(_) => {
+                Err("a page writes no films: save the scene, then `echelon film SCENE` films it".into())
+            }
+            _ => Ok(None),
         }
     }
 }
 
-/// The state of the thread.
-struct ExportWorker {
+/// What renders and writes.
+#[cfg(not(target_family = "wasm"))]
+struct Studio {
     gpu: Gpu,
     drawer: Option<(Arc<FleetInfo>, Renderer)>,
     film: Option<OpenFilm>,
 }
 
 /// A film under way.
+#[cfg(not(target_family = "wasm"))]
 struct OpenFilm {
     film: Film,
     target: ExportTarget,
 }
 
-impl ExportWorker {
+#[cfg(not(target_family = "wasm"))]
+impl Studio {
+    fn new(gpu: Gpu) -> Self {
+        Self { gpu, drawer: None, film: None }
+    }
+
     /// Does a job; the file that it completes, if any.
     fn take(&mut self, job: ExportJob) -> Result<Option<PathBuf>, Box<dyn Error>> {
         match job {

@@ -3,7 +3,7 @@
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::session::prediction::Prediction;
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 /// Frame times of a window.
 #[derive(Debug, Default)]

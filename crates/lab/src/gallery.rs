@@ -7,13 +7,15 @@ use scene::{SHIPPED, Shipped};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+#[cfg(not(target_family = "wasm"))]
 macro_rules! thumbnails {
     ($($name:literal),* $(,)?) => {
         [$(($name, include_bytes!(concat!("../thumbnails/", $name, ".png")) as &[u8])),*]
     };
 }
 
-/// PNG pictures of the shipped scenes by name.
+/// PNG pictures of the shipped scenes by name. A page fetches them when the list is shown.
+#[cfg(not(target_family = "wasm"))]
 const THUMBNAILS: &[(&str, &[u8])] = &thumbnails![
     "circle-three",
     "line-three",
@@ -46,6 +48,7 @@ const THUMBNAILS: &[(&str, &[u8])] = &thumbnails![
 ];
 
 /// The picture of a shipped scene.
+#[cfg(not(target_family = "wasm"))]
 fn thumbnail(name: &str) -> Option<egui::ColorImage> {
     let (_, bytes) = THUMBNAILS.iter().find(|(known, _)| *known == name)?;
     decode(bytes)
@@ -59,6 +62,8 @@ pub const FIRST: &str = "figure-eight-seven";
 pub struct Gallery {
     textures: BTreeMap<&'static str, TextureHandle>,
     path: String,
+    #[cfg(target_family = "wasm")]
+    fetched: crate::page::Fetched,
 }
 
 /// Size of a thumbnail, points.
@@ -67,6 +72,10 @@ const THUMBNAIL: egui::Vec2 = egui::vec2(176.0, 99.0);
 impl Gallery {
     /// Shows the list.
     pub fn show(&mut self, ui: &mut Ui, recent: &[PathBuf], out: &mut Vec<Action>) {
+        #[cfg(target_family = "wasm")]
+        while let Some((name, bytes)) = self.fetched.next() {
+            self.textures.insert(name, texture(ui, name, decode(&bytes)));
+        }
         self.own(ui, out);
         if !recent.is_empty() {
             ui.horizontal_wrapped(|ui| {
@@ -95,6 +104,10 @@ impl Gallery {
 
     /// A field for the path of a scene.
     fn own(&mut self, ui: &mut Ui, out: &mut Vec<Action>) {
+        if cfg!(target_family = "wasm") {
+            ui.label("Drop the file of a scene here, paste its text, or choose one of these.");
+            return;
+        }
         ui.horizontal(|ui| {
             ui.label("File");
             let edit =
@@ -113,9 +126,11 @@ impl Gallery {
 
     fn tile(&mut self, ui: &mut Ui, scene: &'static Shipped, out: &mut Vec<Action>) {
         let texture = self.textures.entry(scene.name).or_insert_with(|| {
-            let image = thumbnail(scene.name)
-                .unwrap_or_else(|| egui::ColorImage::filled([1, 1], egui::Color32::GRAY));
-            ui.ctx().load_texture(scene.name, image, egui::TextureOptions::LINEAR)
+            #[cfg(not(target_family = "wasm"))]
+            let image = thumbnail(scene.name);
+            #[cfg(target_family = "wasm")]
+            let image = self.fetched.fetch(scene.name, format!("thumbnails/{}.png", scene.name), ui.ctx());
+            texture(ui, scene.name, image)
         });
         let response = ui
             .vertical(|ui| {
@@ -129,6 +144,12 @@ impl Gallery {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, scene.name));
         on_click(&response.on_hover_text(scene.title()), Action::OpenShipped(scene.name), out);
     }
+}
+
+/// The texture of a thumbnail; grey where there is none.
+fn texture(ui: &Ui, name: &str, image: Option<egui::ColorImage>) -> TextureHandle {
+    let image = image.unwrap_or_else(|| egui::ColorImage::filled([1, 1], egui::Color32::GRAY));
+    ui.ctx().load_texture(name, image, egui::TextureOptions::LINEAR)
 }
 
 fn decode(bytes: &[u8]) -> Option<egui::ColorImage> {

@@ -1,22 +1,14 @@
 //! Keeps a run of the lab: simulates its scene with its changes again, and writes tables and digest.
 
+pub use crate::session::run_event::SeenRun;
 use recording::log::Roll;
 use recording::{Recorder, RunOptions, Status};
 use rendering::{Gpu, GpuCameraRenderer};
 use scene::Scene;
 use simulation::Simulation;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use studies::run_options;
 use vocabulary::counted;
-
-/// The run in the window, for comparison.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SeenRun {
-    /// Samples of the run.
-    pub samples: u64,
-    /// Their digest.
-    pub digest: String,
-}
 
 /// Runs the scene of `text` again and records it in `folder`; returns a description of the result.
 ///
@@ -51,13 +43,4 @@ pub fn keep(
     } else {
         Err(format!("{place} holds {samples} with digest {digest}, which differs from the run in the window"))
     }
-}
-
-/// The first of `stem-001.ending`, `stem-002.ending`, … that does not exist in `folder`.
-pub fn free(folder: &Path, stem: &str, ending: &str) -> PathBuf {
-    let name = |number: u32| {
-        let dot = if ending.is_empty() { "" } else { "." };
-        folder.join(format!("{stem}-{number:03}{dot}{ending}"))
-    };
-    (1..=u32::MAX).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(0))
 }

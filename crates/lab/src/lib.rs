@@ -9,13 +9,19 @@ pub mod action;
 mod app;
 pub mod app_state;
 pub mod autosave;
+mod background;
 pub mod exporter;
 mod file_watcher;
 mod frame_timings;
 pub mod gallery;
+#[cfg(not(target_family = "wasm"))]
 pub mod kept_run;
 pub mod keys;
 pub mod numbers;
+mod options;
+mod outlet;
+#[cfg(target_family = "wasm")]
+mod page;
 pub mod panels;
 pub mod panes;
 pub mod quantities;
@@ -23,10 +29,16 @@ pub mod session;
 pub mod symbols;
 pub mod theme;
 pub mod view;
+#[cfg(not(target_family = "wasm"))]
 mod window;
+#[cfg(not(target_family = "wasm"))]
 mod window_guard;
 
-pub use window::{Options, open};
+pub use options::Options;
+#[cfg(target_family = "wasm")]
+pub use page::open_on_page;
+#[cfg(not(target_family = "wasm"))]
+pub use window::open;
 
 /// Why the window ended early.
 #[derive(Debug, thiserror::Error)]

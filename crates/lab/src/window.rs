@@ -2,36 +2,15 @@
 
 use crate::Error;
 use crate::app::LabApp;
+use crate::options::Options;
 use crate::window_guard::guarded;
 use eframe::egui::ViewportBuilder;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
-use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
-
-/// What the lab opens with.
-#[derive(Debug, Clone, Default)]
-pub struct Options {
-    /// A scene file; a scene that comes with the program if there is none.
-    pub scene: Option<PathBuf>,
-    /// Changes to it, as `--set` has them.
-    pub set: Vec<scene::Override>,
-    /// Adapter to draw with: `auto`, a backend, or part of a name.
-    pub adapter: String,
-    /// Whether the run stands at first.
-    pub paused: bool,
-    /// Width and height of the window, points.
-    pub size: Option<[f32; 2]>,
-    /// Whether what happens is printed, and figures of speed when the window is closed.
-    pub timings: bool,
-    /// Asked again and again; the window closes when it says so.
-    pub stop: Option<fn() -> bool>,
-    /// Gets the reason where the window library is about to abort the process; may end it in a better way.
-    pub abandon: Option<fn(&str)>,
-}
+use web_time::Instant;
 
 /// Name under which the window keeps its arrangement.
-pub(crate) const NAME: &str = "echelon-lab";
+const NAME: &str = "echelon-lab";
 
 /// Shows the window until it is closed.
 ///
@@ -66,7 +45,7 @@ pub fn open(options: Options) -> Result<(), Error> {
             NAME,
             native,
             Box::new(move |context| {
-                let lab = LabApp::new(context, &options, began, why)?;
+                let lab = LabApp::new(context, &options, eframe::storage_dir(NAME).as_deref(), began, why)?;
                 Ok(Box::new(lab))
             }),
         )

@@ -46,9 +46,11 @@ pub use camera::sightline::Sightline;
 pub use camera::viewpoint::{FreeCamera, Tile, ViewLayout, Viewpoint};
 pub use composition::Composition;
 pub use error::Error;
+#[cfg(not(target_family = "wasm"))]
+pub use gpu::adapters::{AdapterChoice, adapters};
 pub use gpu::camera_renderer::GpuCameraRenderer;
 pub use gpu::passes::texture::{TextureBinding, TexturePass};
-pub use gpu::{AdapterChoice, AdapterInfo, Gpu, adapters};
+pub use gpu::{AdapterInfo, Gpu};
 pub use ground::trail::{Trail, set_points};
 pub use palette::robot_colours;
 pub use picture_spec::PictureSpec;

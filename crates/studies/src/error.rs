@@ -25,9 +25,11 @@ pub enum Error {
         samples: u64,
     },
     /// A file or folder could not be written.
+    #[cfg(not(target_family = "wasm"))]
     #[error(transparent)]
     Output(#[from] output::Error),
     /// A recorded run could not be read or written.
+    #[cfg(not(target_family = "wasm"))]
     #[error(transparent)]
     Recording(#[from] recording::Error),
 }

@@ -7,23 +7,39 @@
 //!
 //! Nothing here prints, draws or reads a clock: functions report how far they are to a callback, which says whether they go
 //! on, and pictures come from a [`CameraRenderer`](vocabulary::CameraRenderer) that the caller makes.
+//!
+//! On a page there are no files: there it is certificates alone.
 
+#[cfg(not(target_family = "wasm"))]
 pub mod accuracy;
+#[cfg(not(target_family = "wasm"))]
 pub mod budget;
 pub mod certify;
+#[cfg(not(target_family = "wasm"))]
 pub mod dataset;
+#[cfg(not(target_family = "wasm"))]
 pub mod diff;
 mod error;
+#[cfg(not(target_family = "wasm"))]
 pub mod likeness;
+#[cfg(not(target_family = "wasm"))]
 pub mod pace;
+#[cfg(not(target_family = "wasm"))]
 mod record_source;
+#[cfg(not(target_family = "wasm"))]
 pub mod replay;
+#[cfg(not(target_family = "wasm"))]
 pub mod run;
 mod scene_run;
+#[cfg(not(target_family = "wasm"))]
 pub mod tune;
+#[cfg(not(target_family = "wasm"))]
 pub mod verdict;
 
 pub use error::Error;
+#[cfg(not(target_family = "wasm"))]
 pub use record_source::RecordSource;
-pub use scene_run::{COMMIT, PROGRAM, RendererFactory, SceneRun, run_options};
+#[cfg(not(target_family = "wasm"))]
+pub use scene_run::run_options;
+pub use scene_run::{COMMIT, PROGRAM, RendererFactory, STRIDE, SceneRun};
 pub use simulation::{Fault, caption};

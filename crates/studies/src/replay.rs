@@ -1,7 +1,6 @@
 //! A recorded run made again from its scene: does it come out the same, bit for bit?
 
-use crate::run::STRIDE;
-use crate::{Error, SceneRun};
+use crate::{Error, STRIDE, SceneRun};
 use metrics::Digest;
 use recording::log::Log;
 

@@ -2,14 +2,11 @@
 
 use crate::certify::Examiner;
 use crate::verdict::{not_finite, verdict};
-use crate::{Error, SceneRun};
+use crate::{Error, STRIDE, SceneRun};
 use metrics::{CertificateMetrics, Digest, JudgedExpectation, Metrics, MetricsBuilder};
 use recording::{Finished, Recorder, Status};
 use simulation::Fault;
 use vocabulary::StepRecord;
-
-/// Steps between two reports of how far a run is.
-pub const STRIDE: u64 = 16;
 
 /// What came of a run.
 pub struct JudgedRun {

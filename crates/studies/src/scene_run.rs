@@ -1,8 +1,6 @@
 //! A scene with its simulation, before the first step.
 
 use crate::Error;
-use recording::RunOptions;
-use recording::log::Roll;
 use scene::Scene;
 use simulation::{BuildError, Simulation, build};
 use vocabulary::{CameraRenderer, FleetInfo};
@@ -12,6 +10,9 @@ pub const PROGRAM: &str = concat!("echelon ", env!("CARGO_PKG_VERSION"));
 
 /// The commit that the program is built from, where it is known.
 pub const COMMIT: Option<&str> = option_env!("ECHELON_COMMIT");
+
+/// Steps between two reports of how far a run is.
+pub const STRIDE: u64 = 16;
 
 /// Makes what draws the pictures of a fleet's cameras; the text says why it cannot.
 pub type RendererFactory<'a> = &'a mut dyn FnMut(&FleetInfo) -> Result<Box<dyn CameraRenderer>, String>;
@@ -64,11 +65,12 @@ impl SceneRun {
 }
 
 /// How a run of `scene` is recorded: with a log, without CSV tables, into an empty folder; nothing draws on the roll.
-pub fn run_options(scene: &Scene) -> RunOptions {
-    RunOptions {
+#[cfg(not(target_family = "wasm"))]
+pub fn run_options(scene: &Scene) -> recording::RunOptions {
+    recording::RunOptions {
         csv: false,
         no_log: false,
-        roll: Roll::default(),
+        roll: recording::log::Roll::default(),
         force: false,
         scene: scene.to_toml(),
         program: PROGRAM.to_owned(),

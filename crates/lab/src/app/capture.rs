@@ -2,7 +2,7 @@
 
 use super::LabApp;
 use crate::exporter::{ExportJob, ExportTarget, FrameSpec, RATE};
-use crate::kept_run::free;
+use crate::outlet::{self, free};
 use eframe::egui;
 use rendering::{Annotations, Style, ViewLayout};
 use std::path::{Path, PathBuf};
@@ -79,12 +79,10 @@ impl LabApp {
             let rgba = image.pixels.iter().flat_map(egui::Color32::to_array).collect();
             let picture = vocabulary::Picture { width, height, rgba };
             let texts = [("Software", studies::PROGRAM)];
-            let written = film::png::write(&path, &picture, &texts);
+            let encoded = film::png::encode(&picture, &texts).map_err(|error| error.to_string());
+            let written = encoded.and_then(|bytes| outlet::write(&path, &bytes));
             // A closing window does not wait for it.
-            let _ = sender.send(match written {
-                Ok(()) => Ok(format!("Written: {}", path.display())),
-                Err(error) => Err(error.to_string()),
-            });
+            let _ = sender.send(written.map(|()| format!("Written: {}", path.display())));
             ctx.request_repaint();
         });
     }

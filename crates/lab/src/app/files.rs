@@ -2,9 +2,12 @@
 
 use super::LabApp;
 use super::dialogs::Dialog;
-use crate::kept_run::{SeenRun, free, keep};
+#[cfg(not(target_family = "wasm"))]
+use crate::kept_run::keep;
+use crate::outlet::{self, free};
+use crate::session::run_event::SeenRun;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 /// Recent scenes that are remembered.
 const MOST_RECENT: usize = 8;
@@ -16,9 +19,8 @@ impl LabApp {
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
             return self.open_picture(path);
         }
-        let log = if path.is_dir() { path.join(recording::log::FILE) } else { path.to_owned() };
         if path.is_dir() || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
-            return self.open_recorded(&log);
+            return self.open_recorded(path);
         }
         if let Some(shipped) = path.to_str().and_then(scene::shipped).filter(|_| !path.exists()) {
             return self.open_shipped(shipped.name);
@@ -36,9 +38,12 @@ impl LabApp {
         }
     }
 
-    /// Opens a recorded run.
+    /// Opens a recorded run: its log, or the folder that holds it.
+    #[cfg(not(target_family = "wasm"))]
     fn open_recorded(&mut self, path: &Path) {
-        let log = match recording::log::Log::open(path) {
+        use recording::log::{FILE, Log};
+        let path = &if path.is_dir() { path.join(FILE) } else { path.to_owned() };
+        let log = match Log::open(path) {
             Ok(log) => log,
             Err(error) => return self.app_state.fault(error.to_string()),
         };
@@ -52,6 +57,30 @@ impl LabApp {
         self.viewport.look("snake");
         self.file_watcher.look_at(None);
         self.app_state.note(format!("Opened the recording {}", path.display()));
+    }
+
+    /// Says who opens a recorded run.
+    #[cfg(target_family = "wasm")]
+    fn open_recorded(&mut self, path: &Path) {
+        self.app_state.fault(format!("a page opens no recordings: `echelon lab {}` does", path.display()));
+    }
+
+    /// Opens a file whose bytes the browser has: `path` is its name.
+    #[cfg(target_family = "wasm")]
+    pub(crate) fn open_bytes(&mut self, path: &Path, bytes: Vec<u8>) {
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+            let texts = film::png::texts_of(&bytes, path);
+            return self.restore_picture(path, texts);
+        }
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) {
+            return self.open_recorded(path);
+        }
+        match String::from_utf8(bytes) {
+            Ok(text) => {
+                self.take_scene(text, None, path);
+            }
+            Err(_) => self.app_state.fault(format!("{} is no scene: it is no text", path.display())),
+        }
     }
 
     pub(crate) fn open_shipped(&mut self, name: &str) {
@@ -78,7 +107,11 @@ impl LabApp {
 
     /// Restores the scene, the time and the view that are embedded in a picture.
     pub(crate) fn open_picture(&mut self, path: &Path) {
-        let texts = match film::png::read_texts(path) {
+        self.restore_picture(path, film::png::read_texts(path));
+    }
+
+    fn restore_picture(&mut self, path: &Path, texts: Result<Vec<(String, String)>, film::Error>) {
+        let texts = match texts {
             Ok(texts) => texts,
             Err(error) => return self.app_state.fault(error.to_string()),
         };
@@ -111,7 +144,7 @@ impl LabApp {
             let text = format!("{} exists already: choose another name, or remove it first", path.display());
             return self.app_state.fault(text);
         }
-        match output::write_whole(&path, draft.text().as_bytes()) {
+        match outlet::write(&path, draft.text().as_bytes()) {
             Ok(()) => {
                 draft.saved_to(path.clone());
                 self.autosave.done();
@@ -119,7 +152,7 @@ impl LabApp {
                 self.file_watcher.look_at(Some(path.clone()));
                 self.app_state.note(format!("Saved: {}", path.display()));
             }
-            Err(error) => self.app_state.fault(error.to_string()),
+            Err(why) => self.app_state.fault(why),
         }
     }
 
@@ -179,9 +212,9 @@ impl LabApp {
 
     pub(crate) fn write_curves(&mut self, ending: &str, text: &str) {
         let path = free(Path::new("."), &self.name(), ending);
-        match output::write_whole(&path, text.as_bytes()) {
+        match outlet::write(&path, text.as_bytes()) {
             Ok(()) => self.app_state.note(format!("Written: {}", path.display())),
-            Err(error) => self.app_state.fault(error.to_string()),
+            Err(why) => self.app_state.fault(why),
         }
     }
 
@@ -193,6 +226,12 @@ impl LabApp {
             Ok(text) => text,
             Err(why) => return self.app_state.fault(why),
         };
+        self.write_run(text, seen);
+    }
+
+    /// Writes a run in the background.
+    #[cfg(not(target_family = "wasm"))]
+    fn write_run(&mut self, text: String, seen: SeenRun) {
         let home = self.app_state.draft.as_ref().map_or_else(PathBuf::new, |draft| draft.home().to_owned());
         let folder = free(Path::new("runs"), &format!("{}-lab", self.name()), "");
         let (sender, gpu, ctx) = (self.words.0.clone(), self.viewport.gpu.clone(), self.ctx.clone());
@@ -205,6 +244,17 @@ impl LabApp {
         };
         if let Err(error) = std::thread::Builder::new().name("keep".to_owned()).spawn(work) {
             self.app_state.fault(error.to_string());
+        }
+    }
+
+    /// Downloads the scene of a run, with what the run came to in its first line.
+    #[cfg(target_family = "wasm")]
+    fn write_run(&mut self, text: String, seen: SeenRun) {
+        let file = format!("{}-lab-001.toml", self.name());
+        let came_to = format!("{}, digest {}", vocabulary::counted(seen.samples, "sample"), seen.digest);
+        match outlet::write(Path::new(&file), format!("# {came_to}\n{text}").as_bytes()) {
+            Ok(()) => self.app_state.note(format!("Downloaded: `echelon run {file}` repeats {came_to}")),
+            Err(why) => self.app_state.fault(why),
         }
     }
 

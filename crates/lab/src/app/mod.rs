@@ -10,28 +10,29 @@ use crate::Error;
 use crate::action::Action;
 use crate::app_state::{AppState, Selection, Tool};
 use crate::autosave::{Autosave, RecoverableWork, alive, left};
+use crate::background::{Next, SHARE};
 use crate::exporter::{ExportEvent, Exporter};
 use crate::file_watcher::FileWatcher;
 use crate::frame_timings::FrameTimings;
 use crate::gallery::{self, Gallery};
-use crate::kept_run::SeenRun;
+use crate::options::Options;
 use crate::panels::time_bar;
 use crate::panes::{self, Pane, Panels};
 use crate::quantities;
 use crate::session::prediction::{Prediction, Predictor};
+use crate::session::run_event::SeenRun;
 use crate::session::runner::{RunEvent, RunRequest, Runner};
 use crate::session::scene_draft::SceneDraft;
 use crate::theme;
 use crate::view::viewport::Viewport;
-use crate::window::{NAME, Options};
 use eframe::egui::{self, Context, Ui};
 use egui_tiles::Tree;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
 use vocabulary::counted;
+use web_time::{Duration, Instant};
 
 /// The window.
 pub(crate) struct LabApp {
@@ -54,6 +55,9 @@ pub(crate) struct LabApp {
     pub(crate) file_watcher: FileWatcher,
     pub(crate) film: Option<FilmCapture>,
     pub(crate) words: (Sender<Word>, Receiver<Word>),
+    /// Dropped files that the browser has read.
+    #[cfg(target_family = "wasm")]
+    dropped: (Sender<DroppedBytes>, Receiver<DroppedBytes>),
     pub(crate) ctx: Context,
     pub(crate) ended: Arc<Mutex<Option<Error>>>,
     pub(crate) timings: FrameTimings,
@@ -72,10 +76,16 @@ struct Memory {
 /// A message from a thread: what was done, or why it failed.
 type Word = Result<String, String>;
 
+/// A file that the browser has read: its name and its bytes, or why it cannot be read.
+#[cfg(target_family = "wasm")]
+type DroppedBytes = (PathBuf, Result<Vec<u8>, String>);
+
 impl LabApp {
+    /// The window; `folder` is for what is kept between sessions.
     pub(crate) fn new(
         context: &eframe::CreationContext<'_>,
         options: &Options,
+        folder: Option<&Path>,
         began: Instant,
         ended: Arc<Mutex<Option<Error>>>,
     ) -> Result<Self, String> {
@@ -91,10 +101,11 @@ impl LabApp {
         let memory: Memory =
             context.storage.and_then(|storage| eframe::get_value(storage, "memory")).unwrap_or_default();
         ctx.set_zoom_factor(memory.scale.unwrap_or(1.0).clamp(0.5, 4.0));
-        let folder = eframe::storage_dir(NAME);
+        // A page cannot wait for pictures to come back.
+        let eyes = (!cfg!(target_family = "wasm")).then(|| viewport.gpu.clone());
         let mut lab = Self {
             app_state: AppState::new(),
-            runner: Runner::start(predictor, Some(viewport.gpu.clone()), wake()),
+            runner: Runner::start(predictor, eyes, wake()),
             predictions,
             exporter: Exporter::start(viewport.gpu.clone(), wake()),
             viewport,
@@ -105,12 +116,14 @@ impl LabApp {
             title: String::new(),
             next: None,
             recent: memory.recent,
-            autosave: Autosave::new(folder.as_deref()),
+            autosave: Autosave::new(folder),
             kept_at: Instant::now(),
-            left: folder.as_deref().and_then(|folder| left(folder, alive)),
+            left: folder.and_then(|folder| left(folder, alive)),
             file_watcher: FileWatcher::start(wake(), options.stop),
             film: None,
             words: channel(),
+            #[cfg(target_family = "wasm")]
+            dropped: channel(),
             ctx: ctx.clone(),
             ended,
             timings: FrameTimings::since(began),
@@ -195,6 +208,48 @@ impl LabApp {
         }
     }
 
+    /// Gives the work beside the window its share of the frame, where it has no threads.
+    fn tick(&mut self) {
+        let next = self.runner.tick(SHARE).min(self.exporter.tick(SHARE));
+        if let Next::After(time) = next {
+            self.ctx.request_repaint_after(time);
+        }
+    }
+
+    /// Opens files that were dropped on the window.
+    #[cfg(not(target_family = "wasm"))]
+    fn take_dropped(&mut self, ctx: &Context) {
+        for file in ctx.input(|input| input.raw.dropped_files.clone()) {
+            self.act(Action::Open(file.path().to_owned()));
+        }
+    }
+
+    /// Opens files that were dropped on the page, once the browser has read them, and scenes whose text is pasted.
+    #[cfg(target_family = "wasm")]
+    fn take_dropped(&mut self, ctx: &Context) {
+        for file in ctx.input(|input| input.raw.dropped_files.clone()) {
+            let (sender, ctx) = (self.dropped.0.clone(), ctx.clone());
+            wasm_bindgen_futures::spawn_local(async move {
+                // A page that is left does not wait for it.
+                let _ = sender.send((file.path().to_owned(), file.bytes_async().await));
+                ctx.request_repaint();
+            });
+        }
+        if !ctx.egui_wants_keyboard_input() {
+            for event in ctx.input(|input| input.events.clone()) {
+                if let egui::Event::Paste(text) = event {
+                    self.act(Action::OpenBytes("pasted.toml".into(), text.into_bytes()));
+                }
+            }
+        }
+        while let Ok((name, bytes)) = self.dropped.1.try_recv() {
+            match bytes {
+                Ok(bytes) => self.act(Action::OpenBytes(name, bytes)),
+                Err(why) => self.app_state.fault(format!("{} cannot be read: {why}", name.display())),
+            }
+        }
+    }
+
     fn show(&mut self, ui: &mut Ui) -> Vec<Action> {
         let mut out = Vec::new();
         crate::keys::pressed(ui.ctx(), &self.app_state, self.dialog != Dialog::Nothing, &mut out);
@@ -254,10 +309,11 @@ impl LabApp {
                 // The names are those of the panel.
                 let _ = self.viewport.style.set(name, on);
             }
-            Action::Open(_) | Action::OpenShipped(_) if self.app_state.unsaved() => {
-                self.next = Some(action);
-                self.dialog = Dialog::Leaving;
-            }
+            Action::Open(_) | Action::OpenShipped(_) if self.app_state.unsaved() => self.ask_first(action),
+            #[cfg(target_family = "wasm")]
+            Action::OpenBytes(..) if self.app_state.unsaved() => self.ask_first(action),
+            #[cfg(target_family = "wasm")]
+            Action::OpenBytes(name, bytes) => self.open_bytes(&name, bytes),
             Action::Open(path) => self.open(&path),
             Action::OpenShipped(name) => self.open_shipped(name),
             Action::Save => self.save(None),
@@ -289,6 +345,12 @@ impl LabApp {
             Action::Dismiss => self.dismiss(),
             _ => {}
         }
+    }
+
+    /// Asks what to do with unsaved changes before an action.
+    fn ask_first(&mut self, action: Action) {
+        self.next = Some(action);
+        self.dialog = Dialog::Leaving;
     }
 
     /// Sets the window's title to that of its scene.
@@ -346,15 +408,13 @@ impl eframe::App for LabApp {
     }
 
     fn logic(&mut self, ctx: &Context, _: &mut eframe::Frame) {
+        self.tick();
         self.poll_events();
         let passed = ctx.input(|input| f64::from(input.stable_dt.min(0.1)));
         if self.app_state.roll(passed) {
             ctx.request_repaint();
         }
-        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        for file in dropped {
-            self.act(Action::Open(file.path().to_owned()));
-        }
+        self.take_dropped(ctx);
         if let Some(why) = self.viewport.gpu.lost() {
             let text = format!("the graphics device was lost: {why}; the next start offers unsaved work");
             self.app_state.draft = None;

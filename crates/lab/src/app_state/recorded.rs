@@ -1,11 +1,8 @@
 //! Recorded runs: browsing, playback, and continuing from them.
 
-use super::{AppState, Selection};
+use super::AppState;
 use crate::session::runner::RunRequest;
-use crate::session::scene_draft::SceneDraft;
-use recording::log::Log;
 use scene::{Role, Scene, SensingKind};
-use std::path::Path;
 use std::sync::Arc;
 
 impl AppState {
@@ -13,9 +10,10 @@ impl AppState {
     ///
     /// # Errors
     /// All that is wrong with its scene; then the state is as before.
-    pub fn open_recorded(&mut self, log: Log, home: &Path) -> Result<(), String> {
-        self.draft = Some(SceneDraft::new(log.scene().to_owned(), None, home)?);
-        self.selection = Selection::Nothing;
+    #[cfg(not(target_family = "wasm"))]
+    pub fn open_recorded(&mut self, log: recording::log::Log, home: &std::path::Path) -> Result<(), String> {
+        self.draft = Some(crate::session::scene_draft::SceneDraft::new(log.scene().to_owned(), None, home)?);
+        self.selection = super::Selection::Nothing;
         self.begin();
         (self.recorded, self.playing) = (true, false);
         self.requests.push(RunRequest::Recorded(Box::new(log)));

@@ -1,5 +1,6 @@
-//! The prediction: a copy of the run, simulated ahead on its own thread.
+//! The prediction: a copy of the run, simulated ahead beside it.
 
+use crate::background::{Background, Next, Task};
 use metrics::clearance::Clearance;
 use simulation::Simulation;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -7,8 +8,8 @@ use std::sync::{
     Arc,
     atomic::{AtomicUsize, Ordering::Relaxed},
 };
-use std::time::Instant;
 use vocabulary::{EntityId, Pose, StepRecord};
+use web_time::{Duration, Instant};
 
 /// Maximum number of points of a path.
 const MOST_POINTS: usize = 160;
@@ -63,9 +64,9 @@ pub enum Trouble {
     Contact,
 }
 
-/// The prediction thread. It serves the newest request and drops older ones.
+/// Makes predictions. It serves the newest request and drops older ones.
 pub struct Predictor {
-    questions: Sender<PredictionRequest>,
+    background: Background<PredictionRequest>,
     open: Arc<AtomicUsize>,
 }
 
@@ -77,31 +78,19 @@ struct PredictionRequest {
 }
 
 impl Predictor {
-    /// Starts the thread; the receiver delivers predictions, and `wake` is called for each.
+    /// Starts it; the receiver delivers predictions, and `wake` is called for each.
     pub fn start(wake: impl Fn() + Send + 'static) -> (Self, Receiver<Prediction>) {
-        let (questions, inbox) = channel::<PredictionRequest>();
         let (outbox, predictions) = channel();
         let open = Arc::new(AtomicUsize::new(0));
         let left = Arc::clone(&open);
-        let work = move || {
-            while let Ok(mut question) = inbox.recv() {
-                let mut taken = 1;
-                while let Ok(newer) = inbox.try_recv() {
-                    question = newer;
-                    taken += 1;
-                }
-                let newer = || left.load(Relaxed) > taken;
-                let prediction = ahead(question, &newer);
-                left.fetch_sub(taken, Relaxed);
-                if prediction.is_some_and(|prediction| outbox.send(prediction).is_err()) {
-                    return;
-                }
-                wake();
-            }
-        };
-        // Without a thread there are no predictions, and everything else works.
-        let _ = std::thread::Builder::new().name("ahead".to_owned()).spawn(work);
-        (Self { questions, open }, predictions)
+        let background = Background::start("ahead", move || PredictionWorker {
+            outbox,
+            open: left,
+            wake: Box::new(wake),
+            under_way: None,
+            newest: None,
+        });
+        (Self { background, open }, predictions)
     }
 
     /// Whether a prediction is being computed.
@@ -114,36 +103,117 @@ impl Predictor {
         static NUMBER: AtomicUsize = AtomicUsize::new(0);
         self.open.fetch_add(1, Relaxed);
         let number = NUMBER.fetch_add(1, Relaxed);
-        if self.questions.send(PredictionRequest { branch, run, seconds, number }).is_err() {
+        // Without a thread there are no predictions, and everything else works.
+        if !self.background.ask(PredictionRequest { branch, run, seconds, number }) {
             self.open.fetch_sub(1, Relaxed);
         }
     }
+
+    /// Predicts for a share of a frame, where there is no thread for it; when it needs the next.
+    pub(crate) fn tick(&mut self, share: Duration) -> Next {
+        self.background.tick(share)
+    }
 }
 
-/// Computes a prediction; `None` if a newer request has arrived during the first quarter.
-fn ahead(question: PredictionRequest, newer: &dyn Fn() -> bool) -> Option<Prediction> {
-    let began = Instant::now();
-    let PredictionRequest { branch, mut run, seconds, number } = question;
-    // Camera images cannot be rendered ahead of time: followers use the true values.
-    if run.needs_cameras() {
-        run.trust();
-    }
-    let period = run.period();
-    let samples = (seconds / period).round().max(1.0) as u64;
-    let start = run.sample() as f64 * period;
-    let mut builder = PredictionBuilder::new(&run, samples, [start, start + samples as f64 * period]);
-    for k in 0..samples {
-        let Some(record) = run.next_record() else {
-            builder.end(run.record());
-            break;
-        };
-        builder.take(k, record);
-        // Later the work is finished: otherwise a stream of requests would never get an answer.
-        if k == samples / 4 && newer() && began.elapsed().as_millis() > 60 {
-            return None;
+/// The state of the predictor.
+struct PredictionWorker {
+    outbox: Sender<Prediction>,
+    /// Number of requests without an answer.
+    open: Arc<AtomicUsize>,
+    wake: Box<dyn Fn() + Send>,
+    under_way: Option<PredictionUnderWay>,
+    newest: Option<PredictionRequest>,
+}
+
+impl Task for PredictionWorker {
+    type Request = PredictionRequest;
+
+    fn take(&mut self, request: PredictionRequest) {
+        if self.newest.replace(request).is_some() {
+            self.open.fetch_sub(1, Relaxed);
         }
     }
-    Some(Prediction { branch, number, took: began.elapsed().as_secs_f64(), ..builder.out })
+
+    fn tick(&mut self, share: Duration) -> Next {
+        if self.under_way.is_none() {
+            self.under_way = self.newest.take().map(PredictionUnderWay::new);
+        }
+        let Some(under_way) = &mut self.under_way else { return Next::Asked };
+        let done = under_way.go_on(share);
+        let dropped = self.newest.is_some() && under_way.may_be_dropped();
+        if !done && !dropped {
+            return Next::After(Duration::ZERO);
+        }
+        if let Some(under_way) = self.under_way.take().filter(|_| done) {
+            // Without a listener nobody asks either.
+            let _ = self.outbox.send(under_way.finish());
+        }
+        self.open.fetch_sub(1, Relaxed);
+        (self.wake)();
+        if self.newest.is_some() { Next::After(Duration::ZERO) } else { Next::Asked }
+    }
+}
+
+/// A prediction that is being computed.
+struct PredictionUnderWay {
+    branch: usize,
+    number: usize,
+    run: Simulation,
+    /// Samples so far, and in all.
+    done: u64,
+    samples: u64,
+    builder: PredictionBuilder,
+    /// Computing time so far.
+    took: Duration,
+}
+
+impl PredictionUnderWay {
+    fn new(request: PredictionRequest) -> Self {
+        let PredictionRequest { branch, mut run, seconds, number } = request;
+        // Camera images cannot be rendered ahead of time: followers use the true values.
+        if run.needs_cameras() {
+            run.trust();
+        }
+        let period = run.period();
+        let samples = (seconds / period).round().max(1.0) as u64;
+        let start = run.sample() as f64 * period;
+        let builder = PredictionBuilder::new(&run, samples, [start, start + samples as f64 * period]);
+        Self { branch, number, run, done: 0, samples, builder, took: Duration::ZERO }
+    }
+
+    /// Simulates for about `share`; whether the prediction is complete.
+    fn go_on(&mut self, share: Duration) -> bool {
+        let began = Instant::now();
+        while self.done < self.samples {
+            let Some(record) = self.run.next_record() else {
+                self.builder.end(self.run.record());
+                self.done = self.samples;
+                break;
+            };
+            self.builder.take(self.done, record);
+            self.done += 1;
+            if began.elapsed() >= share {
+                break;
+            }
+        }
+        self.took += began.elapsed();
+        self.done == self.samples
+    }
+
+    /// Whether a newer request replaces it. Later the work is finished: otherwise a stream of requests would never get an
+    /// answer.
+    fn may_be_dropped(&self) -> bool {
+        self.done <= self.samples / 4 && self.took.as_millis() > 60
+    }
+
+    fn finish(self) -> Prediction {
+        Prediction {
+            branch: self.branch,
+            number: self.number,
+            took: self.took.as_secs_f64(),
+            ..self.builder.out
+        }
+    }
 }
 
 /// Builds a prediction from records.
@@ -249,5 +319,32 @@ impl PredictionBuilder {
                 *late = late.max(error.abs());
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A page predicts in pieces, a thread in one go.
+    #[test]
+    fn a_prediction_in_pieces_is_the_same() {
+        let shipped = scene::shipped("cars-line-three").expect("a shipped scene");
+        let scene = scene::Scene::parse(shipped.text, "t.toml", &[]).expect("a scene").scene;
+        let mut run = Simulation::new(simulation::build(&scene).expect("a run"));
+        run.next_record().expect("a record");
+        let under_way = || {
+            let request = PredictionRequest { branch: 1, run: run.save(), seconds: 0.5, number: 2 };
+            PredictionUnderWay::new(request)
+        };
+        let (mut whole, mut pieces) = (under_way(), under_way());
+        assert!(whole.go_on(Duration::MAX));
+        let mut turns = 1;
+        while !pieces.go_on(Duration::ZERO) {
+            turns += 1;
+        }
+        assert_eq!(turns, pieces.samples);
+        let [whole, pieces] = [whole, pieces].map(|under_way| Prediction { took: 0.0, ..under_way.finish() });
+        assert_eq!(format!("{whole:?}"), format!("{pieces:?}"));
     }
 }

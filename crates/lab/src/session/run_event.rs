@@ -18,6 +18,15 @@ pub struct Fork {
     pub changes: Vec<BranchChange>,
 }
 
+/// A run as the window saw it, for comparison.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SeenRun {
+    /// Samples of the run.
+    pub samples: u64,
+    /// Their digest.
+    pub digest: String,
+}
+
 /// An event of the run.
 pub enum RunEvent {
     /// A scene was opened.

@@ -1,7 +1,6 @@
 //! Requests of the window to the thread of the run.
 
 use super::checked_scene::CheckedScene;
-use recording::log::Log;
 use scene::Scene;
 use std::sync::Arc;
 
@@ -15,7 +14,8 @@ pub enum RunRequest {
         until: f64,
     },
     /// Open a recorded run: all its records are sent at once, and nothing is simulated.
-    Recorded(Box<Log>),
+    #[cfg(not(target_family = "wasm"))]
+    Recorded(Box<recording::log::Log>),
     /// Simulate the scene of the recorded run to the end of the recording, so that it can continue and branch.
     ResumeRecording(Arc<Scene>),
     /// Play or pause.

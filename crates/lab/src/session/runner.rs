@@ -1,35 +1,37 @@
-//! The simulation thread. It receives requests and sends events; neither side waits for the other.
+//! The simulation. It receives requests and sends events; neither it nor the window waits for the other.
 
 use super::branches::Branches;
 use super::checked_scene::CheckedScene;
 use super::prediction::Predictor;
 pub use super::run_event::{Fork, RunEvent};
 pub use super::run_request::RunRequest;
-use metrics::Digest;
-use recording::log::Log;
+use crate::background::{Background, Next, Task};
 use rendering::{Gpu, GpuCameraRenderer};
 use scene::Scene;
 use simulation::Simulation;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use vocabulary::{FleetInfo, StepRecord};
+use web_time::{Duration, Instant};
 
-/// The thread and its channels.
+/// The simulation and its channels.
 pub struct Runner {
-    requests: Option<Sender<RunRequest>>,
+    background: Background<RunRequest>,
     events: Receiver<RunEvent>,
     unread: Arc<AtomicUsize>,
-    thread: Option<JoinHandle<()>>,
 }
 
-/// Maximum computing time before requests are checked.
-const MOST_COMPUTING: Duration = Duration::from_millis(10);
 /// Maximum number of batches that wait for the window: if it falls this far behind, the run waits.
 const MOST_UNREAD: usize = 600;
+/// Why a scene with cameras does not run.
+const BLIND: &str = if cfg!(target_family = "wasm") {
+    "A page renders no camera images: `echelon lab SCENE` opens the scene in a window."
+} else {
+    "There is no adapter to render camera images."
+};
 /// Records of a recorded run in a batch.
+#[cfg(not(target_family = "wasm"))]
 const BATCH: usize = 200;
 /// Interval between two predictions while the run plays.
 const PREDICTION_INTERVAL: Duration = Duration::from_millis(300);
@@ -37,41 +39,39 @@ const PREDICTION_INTERVAL: Duration = Duration::from_millis(300);
 const BATCH_INTERVAL: Duration = Duration::from_millis(12);
 
 impl Runner {
-    /// Starts the thread; `gpu` renders camera images, and `wake` is called for every event.
+    /// Starts it; `gpu` renders camera images, and `wake` is called for every event.
     pub fn start(predictor: Predictor, gpu: Option<Gpu>, wake: impl Fn() + Send + 'static) -> Self {
-        let (requests, inbox) = channel();
         let (outbox, events) = channel();
         let unread = Arc::new(AtomicUsize::new(0));
         let count = Arc::clone(&unread);
-        let work = move || {
-            let mut work = RunWorker {
-                inbox,
-                outbox,
-                unread: count,
-                wake: Box::new(wake),
-                branches: None,
-                recorded: (0, String::new()),
-                active: 0,
-                playing: false,
-                pace: 1.0,
-                owed: 0.0,
-                predictor,
-                gpu,
-                ahead: 0.0,
-                predicted: None,
-            };
-            work.work();
-        };
-        let thread = std::thread::Builder::new().name("run".to_owned()).spawn(work).ok();
-        Self { requests: Some(requests), events, unread, thread }
+        let background = Background::start("run", move || RunWorker {
+            outbox,
+            unread: count,
+            wake: Box::new(wake),
+            branches: None,
+            recorded: (0, String::new()),
+            active: 0,
+            playing: false,
+            pace: 1.0,
+            owed: 0.0,
+            played: None,
+            predictor,
+            gpu,
+            ahead: 0.0,
+            predicted: None,
+        });
+        Self { background, events, unread }
     }
 
     /// Sends a request.
     pub fn request(&self, request: RunRequest) {
-        if let Some(requests) = &self.requests {
-            // The thread lives as long as the window.
-            let _ = requests.send(request);
-        }
+        // The thread lives as long as the window.
+        self.background.ask(request);
+    }
+
+    /// Simulates and predicts for a share of a frame, where there is no thread for it; when it needs the next.
+    pub(crate) fn tick(&mut self, share: Duration) -> Next {
+        self.background.tick(share)
     }
 
     /// The next event, if there is one.
@@ -84,17 +84,12 @@ impl Runner {
 
 impl Drop for Runner {
     fn drop(&mut self) {
-        self.requests = None;
-        if let Some(thread) = self.thread.take() {
-            // A panic of the thread has been printed already.
-            let _ = thread.join();
-        }
+        self.background.finish();
     }
 }
 
-/// The state of the thread.
+/// The state of the simulation.
 struct RunWorker {
-    inbox: Receiver<RunRequest>,
     outbox: Sender<RunEvent>,
     unread: Arc<AtomicUsize>,
     wake: Box<dyn Fn() + Send>,
@@ -106,49 +101,42 @@ struct RunWorker {
     pace: f64,
     /// Simulated time that is due, s.
     owed: f64,
+    /// Until when the run was played.
+    played: Option<Instant>,
     predictor: Predictor,
     gpu: Option<Gpu>,
     ahead: f64,
     predicted: Option<Instant>,
 }
 
-impl RunWorker {
-    fn work(&mut self) {
-        let mut before = Instant::now();
-        loop {
-            let request = if self.playing {
-                self.inbox.try_recv()
-            } else {
-                self.inbox.recv().map_err(|_| TryRecvError::Disconnected)
-            };
-            match request {
-                Ok(request) => {
-                    let stood = !self.playing;
-                    self.handle(request);
-                    if stood {
-                        before = Instant::now();
-                    }
-                    continue;
-                }
-                Err(TryRecvError::Empty) => {}
-                Err(TryRecvError::Disconnected) => return,
-            }
-            let now = Instant::now();
-            let passed = (now - before).as_secs_f64();
-            before = now;
-            // A run that cannot keep up becomes slower; it does not jump afterwards.
-            self.owed = (self.owed + passed * self.pace).min(0.1 * self.pace.max(1.0));
-            self.advance_due();
-            match self.inbox.recv_timeout(BATCH_INTERVAL.saturating_sub(now.elapsed())) {
-                Ok(request) => self.handle(request),
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return,
-            }
+impl Task for RunWorker {
+    type Request = RunRequest;
+
+    fn take(&mut self, request: RunRequest) {
+        self.handle(request);
+        if !self.playing {
+            self.played = None;
         }
     }
 
-    /// Number of samples that are due.
-    fn advance_due(&mut self) {
+    fn tick(&mut self, share: Duration) -> Next {
+        let now = Instant::now();
+        let own = if self.playing {
+            let passed = self.played.replace(now).map_or(0.0, |before| (now - before).as_secs_f64());
+            // A run that cannot keep up becomes slower; it does not jump afterwards.
+            self.owed = (self.owed + passed * self.pace).min(0.1 * self.pace.max(1.0));
+            self.advance_due(share);
+            Next::After(BATCH_INTERVAL.saturating_sub(now.elapsed()))
+        } else {
+            Next::Asked
+        };
+        own.min(self.predictor.tick(share.saturating_sub(now.elapsed())))
+    }
+}
+
+impl RunWorker {
+    /// Simulates the samples that are due.
+    fn advance_due(&mut self, share: Duration) {
         if self.unread.load(Relaxed) > MOST_UNREAD {
             return;
         }
@@ -157,7 +145,7 @@ impl RunWorker {
         let Some(branches) = &mut self.branches else { return };
         let period = branches.list()[self.active].simulation().period();
         let mut ended = false;
-        while self.owed >= period && began.elapsed() < MOST_COMPUTING {
+        while self.owed >= period && began.elapsed() < share {
             self.owed -= period;
             let Some(record) = branches.advance(self.active) else {
                 ended = true;
@@ -198,6 +186,7 @@ impl RunWorker {
     fn handle(&mut self, request: RunRequest) {
         match request {
             RunRequest::Open { scene, until } => self.open(scene, until),
+            #[cfg(not(target_family = "wasm"))]
             RunRequest::Recorded(log) => self.look_through(&log),
             RunRequest::ResumeRecording(scene) => self.resume_recording(scene),
             RunRequest::Play(on) => {
@@ -233,7 +222,7 @@ impl RunWorker {
                 match self.gpu.as_ref().map(|gpu| GpuCameraRenderer::new(gpu, simulation.fleet())) {
                     Some(Ok(eyes)) => simulation.attach_cameras(Box::new(eyes)),
                     Some(Err(error)) => blind = Some(error.to_string()),
-                    None => blind = Some("There is no adapter to render camera images.".to_owned()),
+                    None => blind = Some(BLIND.to_owned()),
                 }
             }
         });
@@ -260,11 +249,12 @@ impl RunWorker {
     }
 
     /// Sends the records of a recorded run.
-    fn look_through(&mut self, log: &Log) {
+    #[cfg(not(target_family = "wasm"))]
+    fn look_through(&mut self, log: &recording::log::Log) {
         (self.branches, self.active, self.playing) = (None, 0, false);
         let (fleet, period) = (Arc::new(log.fleet().clone()), log.manifest().period);
         self.send(RunEvent::Opened { fleet, period });
-        let (mut batch, mut digest, mut samples) = (Vec::new(), Digest::default(), 0);
+        let (mut batch, mut digest, mut samples) = (Vec::new(), metrics::Digest::default(), 0);
         let mut fault = None;
         for record in log.records() {
             match record {

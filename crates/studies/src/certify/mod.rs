@@ -19,8 +19,7 @@ pub use formation::certificate::{
 pub use formation::feasible::Infeasible;
 pub use past::{rows, so_far};
 
-use crate::run::STRIDE;
-use crate::{Error, SceneRun};
+use crate::{Error, STRIDE, SceneRun};
 
 /// The certificates of every edge over a whole run; `None` where `go_on`, which gets the number of steps, says no.
 ///
