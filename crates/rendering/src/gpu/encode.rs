@@ -70,6 +70,12 @@ pub(crate) struct PreparedView {
 }
 
 impl Prepared {
+    /// Of the robots that cast shadows: spokes and lamps have none that anybody sees.
+    fn casting_detail(&self) -> Detail {
+        let shown = self.views.iter().map(|view| view.detail).max();
+        shown.map_or(Detail::Plain, |most| most.min(Detail::Plain))
+    }
+
     fn sight(&self, index: usize) -> SceneView<'_> {
         let view = &self.views[index];
         let [under @ .., over] = &view.decals;
@@ -154,8 +160,7 @@ impl Passes {
         prepared: &Prepared,
     ) -> Result<(), Error> {
         if !prepared.shadowed {
-            // Spokes and lamps have no shadow that anybody sees.
-            self.world.encode_shadow(encoder, &prepared.crowd, &prepared.props, Detail::Plain);
+            self.world.encode_shadow(encoder, &prepared.crowd, &prepared.props, prepared.casting_detail());
         }
         match &self.layer {
             Some(layer) => self.encode_apart(encoder, target, layer, prepared),
@@ -233,7 +238,7 @@ impl Passes {
 
 /// All that a shadow map is drawn from.
 fn casting(frames: &[FrameUniforms], prepared: &Prepared) -> Vec<u8> {
-    let mut bytes = Vec::new();
+    let mut bytes = vec![prepared.casting_detail() as u8];
     if let Some(frame) = frames.first() {
         bytes.extend_from_slice(bytemuck::bytes_of(&frame.shadow_from_local));
     }
