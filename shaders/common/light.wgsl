@@ -57,12 +57,10 @@ fn soft(at: vec3<f32>, r: f32) -> f32 {
 // The same with the wide, smooth edges that a flat ground shows.
 fn sunlight(local: vec3<f32>) -> f32 {
     let at = shadow_place(local);
-    // Four corners first: most points are wholly in light or wholly in shadow.
-    let r = frame.sun.w;
+    // No less than a pixel: where robots are small their shadows would flicker.
+    let footprint = abs(dpdx(at.xy)) + abs(dpdy(at.xy));
+    let r = max(frame.sun.w, min(0.5 * max(footprint.x, footprint.y), 4.0 * frame.sun.w));
     let corners = lit(at, -r, -r) + lit(at, r, -r) + lit(at, -r, r) + lit(at, r, r);
-    if corners < 0.001 || corners > 3.999 {
-        return corners * 0.25;
-    }
     let h = r * 0.5;
     let sides = lit(at, -r, 0.0) + lit(at, r, 0.0) + lit(at, 0.0, -r) + lit(at, 0.0, r);
     let inner = lit(at, -h, -h) + lit(at, h, -h) + lit(at, -h, h) + lit(at, h, h);

@@ -72,13 +72,14 @@ impl PicturePair {
                 let by = adapters.as_ref().map_or_else(String::new, |[wanted, found]| {
                     format!("; drawn with {found}, the reference with {wanted}")
                 });
+                // Where nothing stands out, a place would mislead.
+                let around = match l.least < 1.0 - 5e-5 {
+                    true => format!(" around pixel ({}, {})", l.place[0], l.place[1]),
+                    false => String::new(),
+                };
+                let [whole, least, other] = [l.whole, l.least, 100.0 * l.other];
                 format!(
-                    "likeness {:.4}, least {:.4} around pixel ({}, {}), {:.2} % of the pixels differ{by}",
-                    l.whole,
-                    l.least,
-                    l.place[0],
-                    l.place[1],
-                    100.0 * l.other
+                    "likeness {whole:.4}, least {least:.4}{around}, {other:.2} % of the pixels differ{by}"
                 )
             }
         }
@@ -89,9 +90,24 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
     junit::reported(args.junit.as_deref(), "pictures", args.json, args.quiet, |cases| judge(args, cases))
 }
 
+/// Difference pictures among the references would be compared the next time.
+fn refuse_own_folder(args: &CompareArgs) -> Result<(), Failure> {
+    let Some(out) = args.out.as_deref().and_then(|out| out.canonicalize().ok()) else { return Ok(()) };
+    for side in [&args.wanted, &args.found] {
+        if side.canonicalize().is_ok_and(|folder| folder.is_dir() && folder == out) {
+            return Err(Failure::Usage(format!(
+                "-o {}: the pictures that are compared are in this folder; name another one for the differences",
+                side.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// Compares all pictures; `cases` are what became of them.
 fn judge(args: &CompareArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
     let pairs = pairs(args)?;
+    refuse_own_folder(args)?;
     let _place = args.out.as_deref().map(Place::folder).transpose()?;
     interrupt::watch();
     let (all, mut written) = (pairs.len(), DifferencePictures::default());

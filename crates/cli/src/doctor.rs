@@ -17,11 +17,12 @@ use studies::pace::{LEAST, PaceBench};
 
 #[derive(Debug, Args)]
 pub(crate) struct DoctorArgs {
-    /// Measure how fast this machine draws, films, sees and simulates, and print what to expect of it; takes up to a minute
+    /// Measure how fast this machine draws, films, sees and simulates, and print what to expect of it: 16 lines, about
+    /// half a minute unless --budget is longer
     #[arg(long)]
     bench: bool,
     /// Seconds for each line of --bench; each is measured at least three times, however long that takes
-    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, requires = "bench",
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, requires = "bench", allow_negative_numbers = true,
         value_parser = within(0.0..=60.0, "write a number from 0 to 60"))]
     budget: f64,
     #[command(flatten)]
@@ -85,18 +86,19 @@ fn measure(args: &DoctorArgs, gpu: &Gpu, report: &mut Value) -> Outcome {
         say(&format!("\nspeed of {}\n{each}\n\n{}", gpu.description(), table::head()));
     }
     report["bench"] = json!([]);
-    bench::measure(gpu, &bench, |row| {
+    let measured = bench::measure(gpu, &bench, |row| {
         if !args.json {
             say(&row.text());
         }
         if let Some(rows) = report["bench"].as_array_mut() {
             rows.push(row.as_json());
         }
-    })?;
+    });
     if !args.json {
-        say(&format!("\n{}\n{}\nmeasured in {:.0} s", table::legend(), bench::window(), clock()));
+        let ended = if measured.is_ok() { "measured in" } else { "not finished: ended after" };
+        say(&format!("\n{}\n{}\n{ended} {:.0} s", table::legend(), bench::window(), clock()));
     }
-    Ok(())
+    measured
 }
 
 /// First line of `ffmpeg -version`.

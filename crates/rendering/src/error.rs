@@ -6,13 +6,13 @@
 pub enum Error {
     /// No graphics adapter fits.
     #[error(
-        "no graphics adapter{}; {found}. A software one comes with `apt-get install mesa-vulkan-drivers` (Debian, Ubuntu)",
+        "no graphics adapter{}; {found}",
         .wanted.as_ref().map_or(String::new(), |w| format!(" matches {w:?}"))
     )]
     NoAdapter {
         /// What was asked for by name, if anything.
         wanted: Option<String>,
-        /// What the machine has.
+        /// What the machine has, or where one comes from.
         found: String,
     },
     /// The graphics device refused or was lost.

@@ -62,6 +62,11 @@ fn what_cannot_be_compared_is_an_error() {
         assert!(code == 2 && err.contains(wanted), "{args:?}: {err}");
     }
     assert_eq!(run(&["compare", "a", "a", "--threshold", "2"]).0, 2);
+    // Difference pictures among the references would be compared the next time.
+    capture(folder.path(), "moved", &["--set", "robots.follower-2.pose=[-3.2, 1.4, 0.4]"]);
+    let (code, _, err) = run(&["compare", "a", "moved", "-o", "./a"]);
+    assert!(code == 2 && err.contains("name another one for the differences"), "{err}");
+    assert!(!folder.path().join("a/line-three-000.000.difference.png").exists());
 }
 
 #[test]

@@ -143,7 +143,7 @@ fn found() -> String {
     let numbered = |(place, a): (usize, &AdapterInfo)| format!("{place}: {}, {}", a.backend, a.name);
     let all: Vec<_> = adapters().iter().enumerate().map(numbered).collect();
     if all.is_empty() {
-        "this machine has none".into()
+        "this machine has none. A software one comes with `apt-get install mesa-vulkan-drivers` (Debian, Ubuntu)".into()
     } else {
         format!("this machine has {}", all.join("; "))
     }

@@ -292,9 +292,13 @@ impl Bodies {
         self.narrow_phase.contact_pairs().filter_map(|pair| self.touch(pair)).collect()
     }
 
-    /// The touch of a pair, if it touches and is not a prop on the ground.
+    /// The touch of a pair, if it touches and is neither a prop on the ground nor two things that never move.
     fn touch(&self, pair: &ContactPair) -> Option<BodyContact> {
         let colliders = [&self.colliders[pair.collider1], &self.colliders[pair.collider2]];
+        let stands = |collider: &&Collider| collider.parent().is_none_or(|body| self.set[body].is_fixed());
+        if colliders.iter().all(stands) {
+            return None;
+        }
         let mut things = colliders.map(thing_of);
         // What lies on the ground is no collision, except a robot's body.
         if things.contains(&EntityId::Ground)

@@ -119,6 +119,18 @@ fn a_crate_is_pushed_and_a_ramp_is_climbed() {
     assert_eq!(contacts[0].things, [EntityId::Robot(0), EntityId::Prop(0)]);
 }
 
+/// As the pieces of a ramp, which lie side by side.
+#[test]
+fn things_that_never_move_have_no_contacts() {
+    let block = |x: f64| prop(Solid::Block { size: [1.0, 1.0, 0.3] }, Pose::new(x, 0.0, 0.0), None);
+    let mut run = Run::new(WorldSetup {
+        props: vec![block(5.0), block(6.0)],
+        ..flat(vec![actor(&truck(), Pose::default(), 1.0)])
+    });
+    let contacts = told(&mut run, FORWARD, 0.5);
+    assert!(contacts.is_empty(), "{contacts:?}");
+}
+
 /// Unicycles have no mass, but their contacts are found.
 #[test]
 fn unicycles_touch_too() {

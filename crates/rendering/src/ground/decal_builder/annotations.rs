@@ -1,7 +1,7 @@
 //! Annotations as decals on the ground.
 
 use crate::gpu::passes::decal::{DecalForm, DecalVertex};
-use crate::ground::decal_builder::{DecalBuilder, STEP};
+use crate::ground::decal_builder::DecalBuilder;
 use crate::palette::{self, Rgb};
 use crate::{AnnotationArrow, AnnotationStroke, Annotations, Ring, ShadedArea, StrokePoint};
 use glam::DVec2;
@@ -15,9 +15,6 @@ const STRIPE: (f64, f32) = (15.0, 0.28);
 const RIM: (f64, f32) = (2.2, 0.4);
 /// How far a glow reaches, pixels at scale 1.
 const GLOW: f64 = 16.0;
-/// A line seen at a low angle is widened on the ground to this many times the width it has elsewhere, not more.
-const WIDEST: f64 = 6.0;
-
 impl DecalBuilder<'_> {
     /// All annotations that lie on the ground, where robots are up to `size` times as large as the default one.
     pub(crate) fn annotations(&mut self, annotations: &Annotations, size: f64) {
@@ -75,12 +72,7 @@ impl DecalBuilder<'_> {
 
     /// Half the width of a line on the ground, m, with half a pixel more for its smooth edge.
     fn half_width(&self, at: DVec2, side: DVec2, stroke: &AnnotationStroke) -> f64 {
-        let pixel = self.pixel(at);
-        // Foreshortened, what is across a line on the ground is aslant in the picture: only its part across counts there.
-        let (aside, ahead) = (self.apart(at, side), self.apart(at, -side.perp()));
-        let pixels = |(aside, ahead): (DVec2, DVec2)| aside.perp_dot(ahead.normalize_or(DVec2::X)).abs();
-        let across = aside.zip(ahead).map_or(pixel, |both| STEP / pixels(both).max(1e-9));
-        let across = across.clamp(pixel, WIDEST * pixel);
+        let across = self.pixel_across(at, side);
         (0.5 * stroke.metres).max(0.5 * stroke.pixels * self.stage_scale * across) + 0.5 * across
     }
 

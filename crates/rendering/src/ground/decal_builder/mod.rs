@@ -16,6 +16,10 @@ use crate::picture_context::PictureContext;
 use glam::{DVec2, DVec3};
 use vocabulary::{Body, Pose};
 
+/// Half the width of the thinnest line, pixels: what is thinner falls between the middles of pixels and crumbles.
+const LEAST: f64 = 1.0;
+/// A line seen at a low angle is widened on the ground to this many times the width it has elsewhere, not more.
+const WIDEST: f64 = 6.0;
 /// Half the width of a ribbon, m.
 const RIBBON_HALF: f64 = 0.03;
 /// Radius of the ring at a set point, m.
@@ -203,14 +207,20 @@ impl DecalBuilder<'_> {
         }
         let middle = 0.5 * (from + to);
         let across = along.perp().normalize();
-        // Lines that run across the picture are foreshortened: at least two pixels, or they would crumble.
-        let half = (0.5 * width).max(1.5 * self.stage_scale / self.pixels_per_metre(middle, across));
+        let least = LEAST.max(1.1 * self.stage_scale);
+        let half = (0.5 * width).max(least * self.pixel_across(middle, across));
         self.patch(middle, along, across * half, DecalForm::Solid, colour, alpha);
     }
 
-    /// How long a metre along `direction` appears at `place`, pixels.
-    fn pixels_per_metre(&self, place: DVec2, direction: DVec2) -> f64 {
-        self.apart(place, direction).map_or(1e3, |apart| (apart.length() / STEP).max(1.0))
+    /// How far it is on the ground along `side`, which is across a line, from one side of a pixel to the other across the
+    /// line in the picture, m: more where the line is foreshortened, up to a limit.
+    pub(crate) fn pixel_across(&self, at: DVec2, side: DVec2) -> f64 {
+        let pixel = self.pixel(at);
+        // What is across a line on the ground is aslant in the picture: only its part across counts there.
+        let (aside, ahead) = (self.apart(at, side), self.apart(at, -side.perp()));
+        let pixels = |(aside, ahead): (DVec2, DVec2)| aside.perp_dot(ahead.normalize_or(DVec2::X)).abs();
+        let across = aside.zip(ahead).map_or(pixel, |both| STEP / pixels(both).max(1e-9));
+        across.clamp(pixel, WIDEST * pixel)
     }
 
     /// Where the end of a step of [`STEP`] along `direction` appears, from its start, pixels.
@@ -230,32 +240,41 @@ impl DecalBuilder<'_> {
             let (before, after) = (points[k.saturating_sub(1)].0, points[(k + 1).min(points.len() - 1)].0);
             (after - before).normalize_or(DVec2::X).perp()
         };
-        // Wide enough to be seen from afar.
-        let width = |at: DVec3| half.max(least * self.stage_scale * self.pixel_at(at));
+        // Wide enough to be seen from afar; what is thinner is drawn wider and fainter.
+        let width = |k: usize, on: DVec3| {
+            let pixel = self.pixel_at(on);
+            let across = match half < LEAST * WIDEST * pixel {
+                true => self.pixel_across(points[k].0, side(k)),
+                false => pixel,
+            };
+            let wanted = half.max(least * self.stage_scale * across);
+            let drawn = wanted.max(LEAST * across);
+            (drawn, (2.0 * wanted / drawn).min(1.0) as f32)
+        };
         let uneven = !self.floor.is_plane();
         let mut added = Vec::with_capacity(6 * points.len());
-        let mut before: Option<(DVec2, u8, f64)> = None;
+        let mut before: Option<(DVec2, u8, (f64, f32))> = None;
         for (k, (place, _)) in points.iter().enumerate() {
             let on = self.on(*place);
-            let half = width(on);
-            let reach = shift.abs() + half;
+            let drawn = width(k, on);
+            let reach = shift.abs() + drawn.0;
             // On hills it may rise into the picture between two points.
             let step = before.map_or(0.0, |(from, ..)| if uneven { from.distance(*place) } else { 0.0 });
             let beyond = self.camera.beyond(on, reach + step);
             if let Some((.., other)) = before.filter(|(_, sides, _)| sides & beyond == 0) {
-                let edge = |k: usize, half: f64, u: f32| {
+                let edge = |k: usize, (half, share): (f64, f32), u: f32| {
                     let place = points[k].0 + side(k) * (shift + half * f64::from(u));
-                    self.corner(place, DecalForm::Solid, [u, 0.0], colour, points[k].1)
+                    self.corner(place, DecalForm::Solid, [u, 0.0], colour, share * points[k].1)
                 };
                 let quad = [
                     edge(k - 1, other, -1.0),
                     edge(k - 1, other, 1.0),
-                    edge(k, half, 1.0),
-                    edge(k, half, -1.0),
+                    edge(k, drawn, 1.0),
+                    edge(k, drawn, -1.0),
                 ];
                 added.extend([0, 1, 2, 0, 2, 3].map(|c| quad[c]));
             }
-            before = Some((*place, beyond, half));
+            before = Some((*place, beyond, drawn));
         }
         self.corners.extend(added);
     }
