@@ -27,7 +27,11 @@ const HEAD: &str = "# unsaved work on ";
 impl Autosave {
     /// Saves work in `folder`; `None` if there is no such folder.
     pub fn new(folder: Option<&Path>) -> Self {
-        let file = folder.map(|folder| folder.join(format!("work-{}.toml", std::process::id())));
+        Self::at(folder.map(|folder| folder.join(format!("work-{}.toml", std::process::id()))))
+    }
+
+    /// Saves work in this file, if there is one.
+    pub(crate) fn at(file: Option<PathBuf>) -> Self {
         Self { file, written: String::new() }
     }
 
@@ -42,10 +46,7 @@ impl Autosave {
         }
         text.clone_into(&mut self.written);
         let place = path.map_or_else(String::new, |path| path.display().to_string());
-        if let Some(folder) = file.parent() {
-            fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        }
-        crate::outlet::write(file, format!("{HEAD}{place}\n{text}").as_bytes())
+        put(file, &format!("{HEAD}{place}\n{text}"))
             .map_err(|why| format!("unsaved work cannot be kept: {why}"))
     }
 
@@ -54,12 +55,30 @@ impl Autosave {
         if !self.written.is_empty() {
             self.written.clear();
             if let Some(file) = &self.file {
-                // The file may not exist.
-                let _ = fs::remove_file(file);
+                discard(file);
             }
         }
     }
 }
+
+/// Writes an autosave.
+#[cfg(not(target_family = "wasm"))]
+fn put(file: &Path, text: &str) -> Result<(), String> {
+    if let Some(folder) = file.parent() {
+        fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    }
+    crate::outlet::write(file, text.as_bytes())
+}
+
+/// Removes an autosave.
+#[cfg(not(target_family = "wasm"))]
+pub(crate) fn discard(file: &Path) {
+    // It may not exist.
+    let _ = fs::remove_file(file);
+}
+
+#[cfg(target_family = "wasm")]
+pub(crate) use crate::page::{discard, put};
 
 /// The newest work in `folder` of a window that is gone; `alive` tells whether a process is running.
 pub fn left(folder: &Path, alive: impl Fn(u32) -> bool) -> Option<RecoverableWork> {
@@ -71,10 +90,15 @@ pub fn left(folder: &Path, alive: impl Fn(u32) -> bool) -> Option<RecoverableWor
     });
     let newest = orphaned.max_by_key(|file| fs::metadata(file).and_then(|meta| meta.modified()).ok())?;
     let text = fs::read_to_string(&newest).ok()?;
+    work_of(newest, &text)
+}
+
+/// The work in the text of an autosave.
+pub(crate) fn work_of(file: PathBuf, text: &str) -> Option<RecoverableWork> {
     let (head, text) = text.split_once('\n')?;
     let path = head.strip_prefix(HEAD)?.trim();
     let path = (!path.is_empty()).then(|| PathBuf::from(path));
-    Some(RecoverableWork { file: newest, path, text: text.to_owned() })
+    Some(RecoverableWork { file, path, text: text.to_owned() })
 }
 
 /// Whether a process is running, as far as the system tells.

@@ -2,6 +2,7 @@
 
 use super::LabApp;
 use super::dialogs::Dialog;
+use crate::autosave::discard;
 #[cfg(not(target_family = "wasm"))]
 use crate::kept_run::keep;
 use crate::outlet::{self, free};
@@ -25,6 +26,11 @@ impl LabApp {
         if let Some(shipped) = path.to_str().and_then(scene::shipped).filter(|_| !path.exists()) {
             return self.open_shipped(shipped.name);
         }
+        #[cfg(target_family = "wasm")]
+        return self
+            .app_state
+            .fault(format!("no scene `{}` comes with this page: Ctrl O lists them", path.display()));
+        #[cfg(not(target_family = "wasm"))]
         match std::fs::read_to_string(path) {
             Ok(text) => {
                 if self.take_scene(text, Some(path.to_owned()), path) {
@@ -200,13 +206,13 @@ impl LabApp {
                     Err(faults) => return self.app_state.fault(faults),
                 }
             }
-            let _ = std::fs::remove_file(&left.file);
+            discard(&left.file);
         }
     }
 
     pub(crate) fn forget(&mut self) {
         if let Some(left) = self.left.take() {
-            let _ = std::fs::remove_file(left.file);
+            discard(&left.file);
         }
     }
 
