@@ -383,7 +383,7 @@ impl LabApp {
     /// The program was terminated from outside: writes unsaved work, which the next start offers.
     fn interrupted(&mut self, ctx: &Context) {
         if let Some(draft) = self.app_state.draft.take().filter(SceneDraft::unsaved)
-            && let Err(why) = self.autosave.keep(draft.text(), draft.path.as_deref())
+            && let Err(why) = self.autosave.keep(draft.text(), draft.path.as_deref(), draft.home())
         {
             self.app_state.fault(why);
         }

@@ -107,8 +107,8 @@ struct RunWorker {
     owed: f64,
     /// Until when the run was played.
     played: Option<Instant>,
-    /// Where a run that has been opened goes on at once: to this time, s, unless it takes longer than until then.
-    until: Option<(f64, Instant)>,
+    /// Where a run that has been opened goes on at once: to this time, s, unless it takes longer than this.
+    until: Option<(f64, Duration)>,
     /// Requests that wait until it is there.
     held: Vec<RunRequest>,
     predictor: Predictor,
@@ -136,8 +136,12 @@ impl Task for RunWorker {
 
     fn tick(&mut self, share: Duration) -> Next {
         let now = Instant::now();
-        if let Some((until, limit)) = self.until {
-            if !self.catch_up(until, limit, share) {
+        if let Some((until, left)) = self.until {
+            // Nobody can do anything before it is there, so that it takes more than its share.
+            let there = self.catch_up(until, left.min(4 * share));
+            let left = left.saturating_sub(now.elapsed());
+            if !there && !left.is_zero() {
+                self.until = Some((until, left));
                 return Next::After(Duration::ZERO);
             }
             self.until = None;
@@ -269,7 +273,7 @@ impl RunWorker {
         self.owed = 0.0;
         self.branches = Some(branches);
         self.send(RunEvent::Opened { fleet, period });
-        self.until = Some((until, Instant::now() + CATCH_UP));
+        self.until = Some((until, CATCH_UP));
     }
 
     /// Sends the records of a recorded run.
@@ -311,16 +315,15 @@ impl RunWorker {
         self.send(RunEvent::RecordingResumed(same));
     }
 
-    /// Simulates for about `share`, at least a sample; whether the run has come to `until` s, to its end or to the limit.
-    fn catch_up(&mut self, until: f64, limit: Instant, share: Duration) -> bool {
+    /// Simulates for about `share`, at least a sample; whether the run has come to `until` s or to its end.
+    fn catch_up(&mut self, until: f64, share: Duration) -> bool {
         let began = Instant::now();
         let Some(branches) = &mut self.branches else { return true };
         let (mut records, mut there) = (Vec::new(), false);
         while let Some(record) = branches.advance(self.active) {
             records.push(record.clone());
-            let now = Instant::now();
-            there = record.snapshot.time >= until || now > limit;
-            if there || now - began > share {
+            there = record.snapshot.time >= until;
+            if there || began.elapsed() > share {
                 break;
             }
         }

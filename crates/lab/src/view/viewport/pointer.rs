@@ -60,11 +60,13 @@ impl Viewport {
             self.hover(&frame, origin.or(pointer).map(pixel));
             self.begin_drag(ui, app_state);
         }
+        // Two fingers zoom about the place between them; the first alone would turn the view.
+        let fingers = ui.input(egui::InputState::multi_touch).map(|touch| touch.center_pos);
         let share = |delta: Vec2| [delta.x, delta.y].map(|x| f64::from(x / rect.height().max(1.0)));
         if let (Some(drag), Some(pos)) = (self.drag, released_at(ui).or(response.interact_pointer_pos())) {
             let delta = response.drag_delta();
             match drag {
-                Drag::Orbit | Drag::Pan if delta == Vec2::ZERO => {}
+                Drag::Orbit | Drag::Pan if delta == Vec2::ZERO || fingers.is_some() => {}
                 Drag::Orbit => {
                     self.take_camera(record, None);
                     if let Some(held) = &mut self.camera_control {
@@ -91,7 +93,7 @@ impl Viewport {
         if response.drag_stopped() {
             self.end_drag(out);
         }
-        self.wheel(&frame, pointer.map(pixel));
+        self.wheel(&frame, fingers.or(pointer).map(pixel));
         self.clicks(&frame, pointer.map(pixel), out);
     }
 
