@@ -73,8 +73,7 @@ pub fn open_on_page(canvas: &'static str) {
             let options = Options { scene: named().map(PathBuf::from), ..Options::default() };
             let left = left();
             let place = PathBuf::from(format!("{WORK}{:.0}", js_sys::Date::now()));
-            let work = (Autosave::at(Some(place)), left);
-            let mut lab = LabApp::new(context, &options, work, began, ended)?;
+            let mut lab = LabApp::new(context, &options, Autosave::at(Some(place)), left, began, ended)?;
             if storage().is_none() {
                 lab.app_state.note("The browser keeps nothing for this page: unsaved changes end with it");
             }

@@ -43,13 +43,13 @@ pub fn open(options: Options) -> Result<(), Error> {
     let why = Arc::clone(&ended);
     let folder = eframe::storage_dir(NAME);
     let left = folder.as_deref().and_then(|folder| left(folder, alive));
-    let work = (Autosave::new(folder.as_deref()), left);
+    let autosave = Autosave::new(folder.as_deref());
     let show = || {
         eframe::run_native(
             NAME,
             native,
             Box::new(move |context| {
-                let lab = LabApp::new(context, &options, work, began, why)?;
+                let lab = LabApp::new(context, &options, autosave, left, began, why)?;
                 Ok(Box::new(lab))
             }),
         )

@@ -85,7 +85,8 @@ impl LabApp {
     pub(crate) fn new(
         context: &eframe::CreationContext<'_>,
         options: &Options,
-        (autosave, left): (Autosave, Option<RecoverableWork>),
+        autosave: Autosave,
+        left: Option<RecoverableWork>,
         began: Instant,
         ended: Arc<Mutex<Option<Error>>>,
     ) -> Result<Self, String> {

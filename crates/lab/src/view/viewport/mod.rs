@@ -67,7 +67,8 @@ impl ViewRenderer {
     /// Renders a frame with full quality.
     fn fine(
         &mut self,
-        (gpu, painter): (&Gpu, &TexturePass),
+        gpu: &Gpu,
+        painter: &TexturePass,
         trail: &Trail,
         record: &StepRecord,
         frame: &DrawnFrame,
@@ -281,7 +282,7 @@ impl Viewport {
         if let Some((_, quality)) = view_renderer.shown.as_ref().filter(|(last, _)| *last == shown) {
             if *quality == Quality::Rough {
                 // Nothing moves: there is time for a better picture.
-                view_renderer.fine((&self.gpu, &self.painter), trail, record, &shown)?;
+                view_renderer.fine(&self.gpu, &self.painter, trail, record, &shown)?;
                 view_renderer.shown = Some((shown, Quality::Finer));
                 self.pictures += 1;
             }
