@@ -1,12 +1,11 @@
-//! Pictures and films, rendered beside the window, which never waits for them. A page cannot read pictures back without
-//! waiting: there it says who makes them.
+//! Pictures and films, rendered beside the window, which never waits for them. A page may not wait either: there a picture
+//! is asked for from frame to frame until it is there, and films are left to the program.
 
 use crate::background::{Background, Next, Task};
+use crate::outlet;
 #[cfg(not(target_family = "wasm"))]
-use film::{Film, FilmKind, png};
-use rendering::{Gpu, Style, Trail, ViewLayout};
-#[cfg(not(target_family = "wasm"))]
-use rendering::{PictureSpec, Renderer};
+use film::{Film, FilmKind};
+use rendering::{Gpu, PictureSpec, Renderer, Style, Trail, ViewLayout};
 use std::error::Error;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -14,9 +13,7 @@ use std::sync::{
     Arc,
     atomic::{AtomicUsize, Ordering::Relaxed},
 };
-#[cfg(not(target_family = "wasm"))]
-use vocabulary::Picture;
-use vocabulary::{FleetInfo, StepRecord};
+use vocabulary::{FleetInfo, Picture, StepRecord};
 use web_time::Duration;
 
 /// Frames of a film a second.
@@ -56,7 +53,7 @@ pub enum ExportJob {
         /// The frame.
         shot: Box<FrameSpec>,
         /// Text chunks of the file.
-        texts: Vec<(&'static str, String)>,
+        texts: Texts,
     },
     /// Start a film; its width and height are even.
     Begin(Box<ExportTarget>),
@@ -144,6 +141,24 @@ impl Task for ExportWorker {
     fn take(&mut self, job: ExportJob) {
         let done = self.studio.take(job);
         self.waiting.fetch_sub(1, Relaxed);
+        self.tell(done);
+    }
+
+    fn tick(&mut self, _: Duration) -> Next {
+        let (done, next) = self.studio.look();
+        self.tell(done);
+        next
+    }
+
+    /// The window was closed during a film: the film is completed as far as it is.
+    fn end(&mut self) {
+        let _ = self.studio.take(ExportJob::End);
+    }
+}
+
+impl ExportWorker {
+    /// Sends the file that is complete, or why it is not.
+    fn tell(&self, done: Done) {
         let event = match done {
             Ok(None) => return,
             Ok(Some(path)) => ExportEvent::Written(path),
@@ -153,37 +168,75 @@ impl Task for ExportWorker {
         let _ = self.outbox.send(event);
         (self.wake)();
     }
-
-    fn tick(&mut self, _: Duration) -> Next {
-        Next::Asked
-    }
-
-    /// The window was closed during a film: the film is completed as far as it is.
-    fn end(&mut self) {
-        let _ = self.studio.take(ExportJob::End);
-    }
 }
 
-/// What a page has instead of a studio.
+/// The file that a job has completed, if any.
+type Done = Result<Option<PathBuf>, Box<dyn Error>>;
+
+/// Text chunks of a picture's file.
+pub type Texts = Vec<(&'static str, String)>;
+
+/// Writes a picture with its texts.
+fn write(path: PathBuf, picture: &Picture, texts: &Texts) -> Done {
+    let texts: Vec<(&str, &str)> = texts.iter().map(|(key, text)| (*key, &**text)).collect();
+    outlet::write(&path, &film::png::encode(picture, &texts)?)?;
+    Ok(Some(path))
+}
+
+/// What a page has of a studio.
 #[cfg(target_family = "wasm")]
-struct Studio;
+struct Studio {
+    gpu: Gpu,
+    /// The picture that is being drawn.
+    drawing: Option<(Renderer, PathBuf, Texts)>,
+}
+
+/// Interval in which a page looks whether a picture is there.
+#[cfg(target_family = "wasm")]
+const LOOK_EVERY: Duration = Duration::from_millis(20);
 
 #[cfg(target_family = "wasm")]
 impl Studio {
-    fn new(_: Gpu) -> Self {
-        Self
+    fn new(gpu: Gpu) -> Self {
+        Self { gpu, drawing: None }
     }
 
-    /// Says who does a job.
-    fn take(&mut self, job: ExportJob) -> Result<Option<PathBuf>, Box<dyn Error>> {
+    /// Starts a picture, or says who does a job.
+    fn take(&mut self, job: ExportJob) -> Done {
         match job {
-            ExportJob::Picture { .. } => {
-                Err("a page writes no pictures: save the scene, then `echelon capture SCENE` draws it".into())
+            ExportJob::Picture { .. } if self.drawing.is_some() => {
+                Err("the picture before this one is still being drawn".into())
             }
-            ExportJob::Begin(_) => {
-                Err("a page writes no films: save the scene, then `echelon film SCENE` films it".into())
+            ExportJob::Picture { target, shot, texts } => {
+                let ExportTarget { path, fleet, size: [width, height], trail } = *target;
+                let mut renderer = Renderer::new(&self.gpu, &fleet, width, height, 4)?;
+                renderer.retitle(&shot.words[0], &shot.words[1]);
+                renderer.draw_next(PictureSpec::new(&trail, &shot.record, &shot.layout, &shot.style))?;
+                self.drawing = Some((renderer, path, texts));
+                Ok(None)
+            }
+            ExportJob::Begin(target) => {
+                let name = target.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+                let name = name.rsplit_once('-').map_or(&*name, |(scene, _)| scene);
+                Err(format!(
+                    "A page makes no films. Keep the run (K), then `echelon film {name}-lab-001.toml` films it."
+                )
+                .into())
             }
             _ => Ok(None),
+        }
+    }
+
+    /// Looks whether the picture is there; when to look again.
+    fn look(&mut self) -> (Done, Next) {
+        let Some((mut renderer, path, texts)) = self.drawing.take() else { return (Ok(None), Next::Asked) };
+        match renderer.arrived() {
+            Ok(None) => {
+                self.drawing = Some((renderer, path, texts));
+                (Ok(None), Next::After(LOOK_EVERY))
+            }
+            Ok(Some(picture)) => (write(path, &picture, &texts), Next::Asked),
+            Err(error) => (Err(error.into()), Next::Asked),
         }
     }
 }
@@ -209,14 +262,18 @@ impl Studio {
         Self { gpu, drawer: None, film: None }
     }
 
-    /// Does a job; the file that it completes, if any.
-    fn take(&mut self, job: ExportJob) -> Result<Option<PathBuf>, Box<dyn Error>> {
+    /// Nothing is under way between two jobs.
+    #[expect(clippy::unused_self, reason = "a page looks for its picture")]
+    fn look(&self) -> (Done, Next) {
+        (Ok(None), Next::Asked)
+    }
+
+    /// Does a job.
+    fn take(&mut self, job: ExportJob) -> Done {
         match job {
             ExportJob::Picture { target, shot, texts } => {
                 let picture = self.draw(&target, &shot)?;
-                let texts: Vec<(&str, &str)> = texts.iter().map(|(key, text)| (*key, &**text)).collect();
-                png::write(&target.path, &picture, &texts)?;
-                Ok(Some(target.path))
+                write(target.path, &picture, &texts)
             }
             ExportJob::Begin(target) => {
                 let ExportTarget { path, size: [width, height], .. } = &*target;

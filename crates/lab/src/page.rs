@@ -1,26 +1,67 @@
-//! Opening the lab on a web page.
+//! Opening the lab on a web page, and what it has of the browser: its address, its storage, and the question before a tab with
+//! unsaved changes is closed.
 
 use crate::app::LabApp;
+use crate::app_state::AppState;
+use crate::autosave::{Autosave, RecoverableWork, work_of};
 use crate::options::Options;
 use eframe::egui;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
+use wasm_bindgen::prelude::Closure;
 use wasm_bindgen::{JsCast, JsValue};
-use web_sys::HtmlCanvasElement;
+use web_sys::{Event, EventTarget, HtmlCanvasElement, Storage};
 use web_time::Instant;
 
-/// Shows the lab in the canvas of the page that has this id, until the page is left. What goes wrong stands in the console,
-/// and in the element with the id `fault` if there is one.
+/// Keys of the browser's storage under which tabs keep unsaved work begin with this; the time at which the tab was opened
+/// follows, ms.
+const WORK: &str = "echelon-work-";
+/// Why nothing is drawn where there is no WebGL 2.
+const NO_WEBGL: &str = "This browser offers no WebGL 2, with which the lab draws. Allow it to use the graphics card, or take \
+                        another browser. `echelon lab` opens the same window without a browser.";
+/// Why nothing is drawn any more where the browser has taken the device away.
+const LOST: &str =
+    "The browser has taken the graphics device away. Load the page again: it offers your unsaved changes.";
+
+/// Whether the scene has changes that are not saved.
+static UNSAVED: AtomicBool = AtomicBool::new(false);
+
+thread_local! {
+    /// The canvas, and what it says of itself.
+    static SHOWN: RefCell<Option<(HtmlCanvasElement, String)>> = const { RefCell::new(None) };
+}
+
+/// Shows the lab in the canvas of the page that has this id, until the page is left. The address may name a scene that comes
+/// with the program, `#circle-three`. What goes wrong stands in the console, and in the element with the id `fault` if there
+/// is one.
 pub fn open_on_page(canvas: &'static str) {
     let began = Instant::now();
-    std::panic::set_hook(Box::new(|info| tell(&format!("the lab ended because of a bug: {info}"))));
+    std::panic::set_hook(Box::new(|info| {
+        tell(&format!(
+            "The lab ended because of a bug: {info}. Load the page again: it offers your unsaved changes."
+        ));
+    }));
     wasm_bindgen_futures::spawn_local(async move {
-        let document = web_sys::window().and_then(|window| window.document());
-        let found = document.and_then(|document| document.get_element_by_id(canvas));
+        let found = document().and_then(|document| document.get_element_by_id(canvas));
         let Some(canvas) = found.and_then(|element| element.dyn_into::<HtmlCanvasElement>().ok()) else {
-            return tell(&format!("the page has no canvas with the id {canvas}"));
+            return tell(&format!("The page has no canvas with the id {canvas}."));
         };
+        if !opens_webgl(&canvas) {
+            return tell(NO_WEBGL);
+        }
+        SHOWN.set(Some((canvas.clone(), String::new())));
+        listen(&canvas, "webglcontextlost", |_| tell(LOST));
+        if let Some(window) = web_sys::window() {
+            listen(&window, "beforeunload", |event| {
+                if UNSAVED.load(Relaxed) {
+                    event.prevent_default();
+                }
+            });
+        }
         let web = eframe::WebOptions {
             wgpu_options: WgpuConfiguration { wgpu_setup: setup(), ..WgpuConfiguration::default() },
             // It would cost as much as the rest on a processor that draws.
@@ -29,13 +70,99 @@ pub fn open_on_page(canvas: &'static str) {
         };
         let make: eframe::AppCreator<'static> = Box::new(move |context| {
             let ended = Arc::new(Mutex::new(None));
-            Ok(Box::new(LabApp::new(context, &Options::default(), None, began, ended)?))
+            let options = Options { scene: named().map(PathBuf::from), ..Options::default() };
+            let left = left();
+            let place = PathBuf::from(format!("{WORK}{:.0}", js_sys::Date::now()));
+            let mut lab = LabApp::new(context, &options, Autosave::at(Some(place)), left, began, ended)?;
+            if storage().is_none() {
+                lab.app_state.note("The browser keeps nothing for this page: unsaved changes end with it");
+            }
+            Ok(Box::new(lab))
         });
         if let Err(error) = eframe::WebRunner::new().start(canvas, web, make).await {
             let why = error.as_string().unwrap_or_else(|| format!("{error:?}"));
-            tell(&format!("the lab cannot be shown: {why}. It needs WebGL 2"));
+            tell(&format!(
+                "The lab cannot be shown: {why}. `echelon lab` opens the same window without a browser."
+            ));
         }
     });
+}
+
+fn document() -> Option<web_sys::Document> {
+    web_sys::window()?.document()
+}
+
+/// Whether the canvas can be drawn into with WebGL 2; what is drawn here comes from a texture, so it needs neither samples nor
+/// depth of its own. (Without alpha, a browser would convert every pixel.)
+fn opens_webgl(canvas: &HtmlCanvasElement) -> bool {
+    let attributes = js_sys::Object::new();
+    for name in ["antialias", "depth", "stencil"] {
+        // A plain object takes every property.
+        let _ = js_sys::Reflect::set(&attributes, &name.into(), &JsValue::FALSE);
+    }
+    canvas.get_context_with_context_options("webgl2", &attributes).is_ok_and(|context| context.is_some())
+}
+
+/// Calls `act` for every event of this name, as long as the page is shown.
+fn listen(target: &EventTarget, name: &str, act: impl FnMut(Event) + 'static) {
+    let act = Closure::<dyn FnMut(Event)>::new(act);
+    // Every target takes listeners.
+    let _ = target.add_event_listener_with_callback(name, act.as_ref().unchecked_ref());
+    act.forget();
+}
+
+/// The scene that the address names.
+fn named() -> Option<String> {
+    let hash = web_sys::window()?.location().hash().ok()?;
+    let name = hash.trim_start_matches('#').split('?').next()?;
+    (!name.is_empty()).then(|| name.to_owned())
+}
+
+/// Keeps the page informed: its title, what the canvas shows, for those who cannot see it, and whether closing it loses work.
+pub(crate) fn show_state(app_state: &AppState) {
+    UNSAVED.store(app_state.unsaved(), Relaxed);
+    let Some(scene) = app_state.scene() else { return };
+    let branch = app_state.branches.get(app_state.branch).map_or("", |branch| &branch.name);
+    let moves = if app_state.playing { "playing" } else { "paused" };
+    let words = format!("{}: {:.2} s, {moves}, branch {branch}", scene.title, app_state.time());
+    SHOWN.with_borrow_mut(|shown| {
+        let Some((canvas, said)) = shown.as_mut().filter(|(_, said)| *said != words) else { return };
+        // Without it the page is as it was.
+        let _ = canvas.set_attribute("aria-label", &words);
+        *said = words;
+        let title = format!("{} — Echelon", scene.title);
+        if let Some(document) = document().filter(|document| document.title() != title) {
+            document.set_title(&title);
+        }
+    });
+}
+
+/// The browser's storage; `None` where it is denied.
+fn storage() -> Option<Storage> {
+    web_sys::window()?.local_storage().ok()?
+}
+
+/// Keeps unsaved work in the browser's storage, if there is one.
+pub(crate) fn put(place: &Path, text: &str) -> Result<(), String> {
+    let Some(storage) = storage() else { return Ok(()) };
+    storage.set_item(&place.to_string_lossy(), text).map_err(|error| format!("{error:?}"))
+}
+
+/// Removes unsaved work.
+pub(crate) fn discard(place: &Path) {
+    if let Some(storage) = storage() {
+        // It may not exist.
+        let _ = storage.remove_item(&place.to_string_lossy());
+    }
+}
+
+/// The newest work of a tab before this one.
+fn left() -> Option<RecoverableWork> {
+    let storage = storage()?;
+    let keys = (0..storage.length().ok()?).filter_map(|index| storage.key(index).ok()?);
+    let opened = |key: &String| key.strip_prefix(WORK).and_then(|time| time.parse::<u64>().ok());
+    let (_, key) = keys.filter_map(|key| Some((opened(&key)?, key))).max()?;
+    work_of(PathBuf::from(&key), &storage.get_item(&key).ok()??)
 }
 
 /// A device with what the pictures need, within the limits of WebGL 2.
@@ -99,8 +226,7 @@ async fn fetch(file: &str) -> Result<Vec<u8>, JsValue> {
 /// Tells the reader of the page what went wrong.
 fn tell(text: &str) {
     web_sys::console::error_1(&text.into());
-    let document = web_sys::window().and_then(|window| window.document());
-    if let Some(place) = document.and_then(|document| document.get_element_by_id("fault")) {
+    if let Some(place) = document().and_then(|document| document.get_element_by_id("fault")) {
         place.set_text_content(Some(text));
     }
 }

@@ -4,7 +4,7 @@ use crate::action::Action;
 use crate::app_state::AppState;
 use crate::panels::{branches, certificates, curves, edge, film, formation, law, log, sensing, world};
 use crate::quantities::PlotQuantity;
-use eframe::egui::{Frame, Id, ScrollArea, Ui, WidgetText};
+use eframe::egui::{ComboBox, Frame, Id, Panel, ScrollArea, Ui, WidgetText};
 use egui_tiles::{Behavior, Linear, LinearDir, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
 use rendering::Style;
 use serde::{Deserialize, Serialize};
@@ -169,6 +169,26 @@ impl Behavior<Pane> for Panels<'_> {
 }
 
 impl Panels<'_> {
+    /// Shows the view and one panel under it: for telephones, and windows that are as narrow.
+    pub fn stacked(&mut self, ui: &mut Ui) {
+        let id = Id::unique("the panel of a narrow window");
+        let mut chosen: usize = ui.data(|data| data.get_temp(id)).unwrap_or(1);
+        let high = 0.5 * ui.available_height();
+        Panel::bottom("stacked").exact_size(high).frame(Frame::new().inner_margin(6.0)).show(ui, |ui| {
+            ComboBox::from_id_salt("panel").selected_text(PANES[chosen].0).show_ui(ui, |ui| {
+                for (index, (name, _)) in PANES.iter().enumerate().skip(1) {
+                    ui.selectable_value(&mut chosen, index, *name);
+                }
+            });
+            ScrollArea::both()
+                .id_salt(chosen)
+                .auto_shrink([false, false])
+                .show(ui, |ui| PANES[chosen].1(ui, self));
+        });
+        ui.data_mut(|data| data.insert_temp(id, chosen));
+        (self.view)(ui, self.out);
+    }
+
     fn curves(&mut self, ui: &mut Ui, quantities: &[PlotQuantity]) {
         curves::show(ui, self.app_state, quantities, self.out);
     }

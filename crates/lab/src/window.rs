@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::app::LabApp;
+use crate::autosave::{Autosave, alive, left};
 use crate::options::Options;
 use crate::window_guard::guarded;
 use eframe::egui::ViewportBuilder;
@@ -40,12 +41,15 @@ pub fn open(options: Options) -> Result<(), Error> {
     let abandon = options.abandon.unwrap_or(|_| ());
     let ended = Arc::new(Mutex::new(None));
     let why = Arc::clone(&ended);
+    let folder = eframe::storage_dir(NAME);
+    let left = folder.as_deref().and_then(|folder| left(folder, alive));
+    let autosave = Autosave::new(folder.as_deref());
     let show = || {
         eframe::run_native(
             NAME,
             native,
             Box::new(move |context| {
-                let lab = LabApp::new(context, &options, eframe::storage_dir(NAME).as_deref(), began, why)?;
+                let lab = LabApp::new(context, &options, autosave, left, began, why)?;
                 Ok(Box::new(lab))
             }),
         )

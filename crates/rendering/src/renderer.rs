@@ -136,6 +136,20 @@ impl Renderer {
         last.map(|(slot, submission)| self.offscreen[slot].picture(&self.gpu, submission)).transpose()
     }
 
+    /// The picture that [`Renderer::draw_next`] started last, once it is there: for where nobody may wait, such as a web
+    /// page. It is asked again and again.
+    ///
+    /// # Errors
+    /// [`Error::Device`] where the device fails; then there is no picture to come.
+    pub fn arrived(&mut self) -> Result<Option<Picture>, Error> {
+        let Some((slot, submission)) = self.waiting.take() else { return Ok(None) };
+        let picture = self.offscreen[slot].arrived(&self.gpu)?;
+        if picture.is_none() {
+            self.waiting = Some((slot, submission));
+        }
+        Ok(picture)
+    }
+
     /// Draws a moment into a texture of the renderer's format and size, such as a window's. It does not wait for the device.
     ///
     /// # Errors

@@ -3,7 +3,9 @@
 #[expect(dead_code, reason = "shared with other tests")]
 mod stage;
 
-use rendering::{AdapterChoice, Error, Gpu, PictureSpec, Renderer, Style, ViewLayout, Viewpoint};
+use rendering::{
+    AdapterChoice, Error, Gpu, PictureSpec, Renderer, Style, TexturePass, ViewLayout, Viewpoint,
+};
 use stage::{Path, Play};
 use vocabulary::Picture;
 use wgpu::{Limits, TextureFormat, TextureUsages};
@@ -88,6 +90,64 @@ fn a_foreign_texture_gets_the_same_picture() {
     let (mut into, picture) = drawn(&gpu, &play, 4, TextureFormat::Bgra8Unorm);
     into.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
     assert!(into == picture.rgba && own == Some(picture));
+}
+
+#[test]
+fn a_picture_arrives_where_nobody_waits_for_it() {
+    let gpu = foreign(Limits::downlevel_webgl2_defaults());
+    let play = Play::new(3, Path::Eight);
+    let mut renderer = Renderer::new(&gpu, &play.fleet, SIZE.0, SIZE.1, 4).unwrap();
+    let (trail, record, style) = (play.trail(3.0), play.at(3.0), Style::default());
+    let layout = ViewLayout::single(Viewpoint::Snake);
+    let spec = PictureSpec::new(&trail, &record, &layout, &style);
+    let wanted = renderer.draw(spec).unwrap();
+    assert_eq!(renderer.arrived().unwrap(), None);
+    assert!(renderer.draw_next(spec).unwrap().is_none());
+    let arrived = std::iter::repeat_with(|| {
+        std::thread::yield_now();
+        renderer.arrived().unwrap()
+    });
+    assert!(arrived.flatten().next() == Some(wanted));
+    assert_eq!(renderer.arrived().unwrap(), None);
+}
+
+#[test]
+fn a_picture_is_laid_into_a_window_texel_by_texel_or_stretched() {
+    let gpu = foreign(Limits::downlevel_webgl2_defaults());
+    let format = TextureFormat::Rgba8Unorm;
+    let play = Play::new(3, Path::Eight);
+    let mut renderer = Renderer::with_format(&gpu, &play.fleet, SIZE.0, SIZE.1, 1, format).unwrap();
+    let source = target(&gpu, SIZE, format);
+    let view = source.create_view(&wgpu::TextureViewDescriptor::default());
+    let (trail, record, style) = (play.trail(3.0), play.at(3.0), Style::default());
+    let layout = ViewLayout::single(Viewpoint::Snake);
+    renderer.draw_into(&view, PictureSpec::new(&trail, &record, &layout, &style)).unwrap();
+    let laid = |pass: &TexturePass, (width, height): (u32, u32)| {
+        let window = target(&gpu, (width, height), format);
+        let onto = window.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let attachment = wgpu::RenderPassColorAttachment {
+            view: &onto,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations::default(),
+        };
+        let descriptor = wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(attachment)],
+            ..wgpu::RenderPassDescriptor::default()
+        };
+        pass.draw(&mut encoder.begin_render_pass(&descriptor), &pass.bind(&gpu, &view));
+        gpu.queue.submit([encoder.finish()]);
+        bytes(&gpu, &window)
+    };
+    let wanted = bytes(&gpu, &source);
+    let stretching = TexturePass::stretching(&gpu, format);
+    assert!(laid(&TexturePass::new(&gpu, format), SIZE) == wanted);
+    // At its own size every centre of a pixel is that of a texel.
+    assert!(laid(&stretching, SIZE) == wanted);
+    let mean = |bytes: &[u8]| bytes.iter().map(|byte| f64::from(*byte)).sum::<f64>() / bytes.len() as f64;
+    let twice = laid(&stretching, (2 * SIZE.0, 2 * SIZE.1));
+    assert!((mean(&twice) - mean(&wanted)).abs() < 0.5, "{} {}", mean(&twice), mean(&wanted));
 }
 
 #[test]

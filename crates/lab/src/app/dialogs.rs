@@ -25,8 +25,7 @@ impl LabApp {
     /// Shows the offer to restore unsaved work, in a line under the bar.
     pub(crate) fn notices(&mut self, ui: &mut Ui, out: &mut Vec<Action>) {
         if let Some(left) = &self.left {
-            let name =
-                left.path.as_ref().map_or_else(|| "a scene".to_owned(), |path| path.display().to_string());
+            let name = left.home.display();
             egui::Panel::top("left").frame(BARE).show(ui, |ui| {
                 ui.horizontal_wrapped(|ui| {
                     ui.label(format!("The last session ended with unsaved changes to {name}."));

@@ -2,6 +2,7 @@
 
 use super::LabApp;
 use super::dialogs::Dialog;
+use crate::autosave::discard;
 #[cfg(not(target_family = "wasm"))]
 use crate::kept_run::keep;
 use crate::outlet::{self, free};
@@ -10,6 +11,7 @@ use std::path::{Path, PathBuf};
 use web_time::{Duration, Instant};
 
 /// Recent scenes that are remembered.
+#[cfg(not(target_family = "wasm"))]
 const MOST_RECENT: usize = 8;
 /// Interval between two autosaves.
 const KEEP_EVERY: Duration = Duration::from_secs(1);
@@ -25,6 +27,11 @@ impl LabApp {
         if let Some(shipped) = path.to_str().and_then(scene::shipped).filter(|_| !path.exists()) {
             return self.open_shipped(shipped.name);
         }
+        self.open_file(path);
+    }
+
+    #[cfg(not(target_family = "wasm"))]
+    fn open_file(&mut self, path: &Path) {
         match std::fs::read_to_string(path) {
             Ok(text) => {
                 if self.take_scene(text, Some(path.to_owned()), path) {
@@ -36,6 +43,13 @@ impl LabApp {
             }
             Err(error) => self.app_state.fault(format!("{} cannot be read: {error}", path.display())),
         }
+    }
+
+    /// A page has no files: it is its address that names a scene.
+    #[cfg(target_family = "wasm")]
+    fn open_file(&mut self, path: &Path) {
+        self.app_state
+            .fault(format!("no scene `{}` comes with this page: Ctrl O lists them", path.display()));
     }
 
     /// Opens a recorded run: its log, or the folder that holds it.
@@ -189,24 +203,26 @@ impl LabApp {
 
     pub(crate) fn recover(&mut self) {
         let Some(left) = self.left.take() else { return };
-        let home = left.path.clone().unwrap_or_else(|| PathBuf::from("scene.toml"));
         let saved = left.path.as_ref().and_then(|path| std::fs::read_to_string(path).ok());
         let text = saved.unwrap_or_else(|| left.text.clone());
-        if self.take_scene(text, left.path.clone(), &home) {
+        if self.take_scene(text, left.path.clone(), &left.home) {
             // The recovered text is an edit of the file, so that it can be undone.
             if let Some(draft) = &mut self.app_state.draft {
+                if left.path.is_none() {
+                    draft.never_saved();
+                }
                 match draft.replace("Recovered work", left.text.clone()) {
                     Ok(_) => self.app_state.restart(0.0),
                     Err(faults) => return self.app_state.fault(faults),
                 }
             }
-            let _ = std::fs::remove_file(&left.file);
+            discard(&left.file);
         }
     }
 
     pub(crate) fn forget(&mut self) {
         if let Some(left) = self.left.take() {
-            let _ = std::fs::remove_file(left.file);
+            discard(&left.file);
         }
     }
 
@@ -268,7 +284,7 @@ impl LabApp {
             return self.ctx.request_repaint_after(wait);
         }
         self.kept_at = Instant::now();
-        if let Err(why) = self.autosave.keep(draft.text(), draft.path.as_deref()) {
+        if let Err(why) = self.autosave.keep(draft.text(), draft.path.as_deref(), draft.home()) {
             self.app_state.fault(why);
         }
     }

@@ -9,7 +9,7 @@ use self::dialogs::Dialog;
 use crate::Error;
 use crate::action::Action;
 use crate::app_state::{AppState, Selection, Tool};
-use crate::autosave::{Autosave, RecoverableWork, alive, left};
+use crate::autosave::{Autosave, RecoverableWork};
 use crate::background::{Next, SHARE};
 use crate::exporter::{ExportEvent, Exporter};
 use crate::file_watcher::FileWatcher;
@@ -28,7 +28,7 @@ use crate::view::viewport::Viewport;
 use eframe::egui::{self, Context, Ui};
 use egui_tiles::Tree;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use vocabulary::counted;
@@ -81,11 +81,12 @@ type Word = Result<String, String>;
 type DroppedBytes = (PathBuf, Result<Vec<u8>, String>);
 
 impl LabApp {
-    /// The window; `folder` is for what is kept between sessions.
+    /// The window, with where it keeps unsaved work and what was left of that.
     pub(crate) fn new(
         context: &eframe::CreationContext<'_>,
         options: &Options,
-        folder: Option<&Path>,
+        autosave: Autosave,
+        left: Option<RecoverableWork>,
         began: Instant,
         ended: Arc<Mutex<Option<Error>>>,
     ) -> Result<Self, String> {
@@ -116,9 +117,9 @@ impl LabApp {
             title: String::new(),
             next: None,
             recent: memory.recent,
-            autosave: Autosave::new(folder),
+            autosave,
             kept_at: Instant::now(),
-            left: folder.and_then(|folder| left(folder, alive)),
+            left,
             file_watcher: FileWatcher::start(wake(), options.stop),
             film: None,
             words: channel(),
@@ -282,11 +283,13 @@ impl LabApp {
         let tree = &mut self.tree;
         egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| {
             let room = ui.available_size();
-            // A tiny window has room for the view only.
-            if room.x < LEAST.x || room.y < LEAST.y {
-                (panels.view)(ui, panels.out);
-            } else {
+            if room.x >= LEAST.x && room.y >= LEAST.y {
                 tree.ui(&mut panels, ui);
+            } else if room.y >= LEAST.y {
+                panels.stacked(ui);
+            } else {
+                // A tiny window has room for the view only.
+                (panels.view)(ui, panels.out);
             }
         });
         self.windows(ui.ctx(), &mut out);
@@ -381,7 +384,7 @@ impl LabApp {
     /// The program was terminated from outside: writes unsaved work, which the next start offers.
     fn interrupted(&mut self, ctx: &Context) {
         if let Some(draft) = self.app_state.draft.take().filter(SceneDraft::unsaved)
-            && let Err(why) = self.autosave.keep(draft.text(), draft.path.as_deref())
+            && let Err(why) = self.autosave.keep(draft.text(), draft.path.as_deref(), draft.home())
         {
             self.app_state.fault(why);
         }
@@ -415,6 +418,8 @@ impl eframe::App for LabApp {
             ctx.request_repaint();
         }
         self.take_dropped(ctx);
+        #[cfg(target_family = "wasm")]
+        crate::page::show_state(&self.app_state);
         if let Some(why) = self.viewport.gpu.lost() {
             let text = format!("the graphics device was lost: {why}; the next start offers unsaved work");
             self.app_state.draft = None;

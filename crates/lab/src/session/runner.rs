@@ -33,6 +33,8 @@ const BLIND: &str = if cfg!(target_family = "wasm") {
 /// Records of a recorded run in a batch.
 #[cfg(not(target_family = "wasm"))]
 const BATCH: usize = 200;
+/// Longest computing time before a run that has been opened is shown where it is.
+const CATCH_UP: Duration = Duration::from_secs(1);
 /// Interval between two predictions while the run plays.
 const PREDICTION_INTERVAL: Duration = Duration::from_millis(300);
 /// Interval between two batches of samples while the run plays.
@@ -55,6 +57,8 @@ impl Runner {
             pace: 1.0,
             owed: 0.0,
             played: None,
+            until: None,
+            held: Vec::new(),
             predictor,
             gpu,
             ahead: 0.0,
@@ -103,6 +107,10 @@ struct RunWorker {
     owed: f64,
     /// Until when the run was played.
     played: Option<Instant>,
+    /// Where a run that has been opened goes on at once: to this time, s, unless it takes longer than this.
+    until: Option<(f64, Duration)>,
+    /// Requests that wait until it is there.
+    held: Vec<RunRequest>,
     predictor: Predictor,
     gpu: Option<Gpu>,
     ahead: f64,
@@ -113,6 +121,13 @@ impl Task for RunWorker {
     type Request = RunRequest;
 
     fn take(&mut self, request: RunRequest) {
+        if matches!(request, RunRequest::Open { .. }) {
+            (self.until, self.held) = (None, Vec::new());
+        }
+        if self.until.is_some() {
+            self.held.push(request);
+            return;
+        }
         self.handle(request);
         if !self.playing {
             self.played = None;
@@ -121,6 +136,20 @@ impl Task for RunWorker {
 
     fn tick(&mut self, share: Duration) -> Next {
         let now = Instant::now();
+        if let Some((until, left)) = self.until {
+            // Nobody can do anything before it is there, so that it takes more than its share.
+            let there = self.catch_up(until, left.min(4 * share));
+            let left = left.saturating_sub(now.elapsed());
+            if !there && !left.is_zero() {
+                self.until = Some((until, left));
+                return Next::After(Duration::ZERO);
+            }
+            self.until = None;
+            self.predict(true);
+            for request in std::mem::take(&mut self.held) {
+                self.take(request);
+            }
+        }
         let own = if self.playing {
             let passed = self.played.replace(now).map_or(0.0, |before| (now - before).as_secs_f64());
             // A run that cannot keep up becomes slower; it does not jump afterwards.
@@ -244,8 +273,7 @@ impl RunWorker {
         self.owed = 0.0;
         self.branches = Some(branches);
         self.send(RunEvent::Opened { fleet, period });
-        self.catch_up(until);
-        self.predict(true);
+        self.until = Some((until, CATCH_UP));
     }
 
     /// Sends the records of a recorded run.
@@ -287,14 +315,15 @@ impl RunWorker {
         self.send(RunEvent::RecordingResumed(same));
     }
 
-    /// Simulates at least the first sample, and up to `until` s unless that takes more than a second.
-    fn catch_up(&mut self, until: f64) {
+    /// Simulates for about `share`, at least a sample; whether the run has come to `until` s or to its end.
+    fn catch_up(&mut self, until: f64, share: Duration) -> bool {
         let began = Instant::now();
-        let Some(branches) = &mut self.branches else { return };
-        let mut records = Vec::new();
+        let Some(branches) = &mut self.branches else { return true };
+        let (mut records, mut there) = (Vec::new(), false);
         while let Some(record) = branches.advance(self.active) {
             records.push(record.clone());
-            if record.snapshot.time >= until || began.elapsed() > Duration::from_secs(1) {
+            there = record.snapshot.time >= until;
+            if there || began.elapsed() > share {
                 break;
             }
         }
@@ -303,6 +332,7 @@ impl RunWorker {
         if ended {
             self.stop();
         }
+        there || ended
     }
 
     fn step(&mut self) {

@@ -95,6 +95,11 @@ impl SceneDraft {
         self.text != self.saved
     }
 
+    /// Marks the text as unsaved: it stands in no file.
+    pub fn never_saved(&mut self) {
+        self.saved.clear();
+    }
+
     /// Marks the text as saved at `path`.
     pub fn saved_to(&mut self, path: PathBuf) {
         self.saved.clone_from(&self.text);

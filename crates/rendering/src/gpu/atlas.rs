@@ -59,7 +59,7 @@ impl Atlas {
 
     /// Waits for the submission and takes the pictures out of the buffer.
     pub(crate) fn read(
-        &self,
+        &mut self,
         gpu: &Gpu,
         submission: wgpu::SubmissionIndex,
         tiles: &[Tile],

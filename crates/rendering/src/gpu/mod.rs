@@ -37,9 +37,15 @@ impl AdapterInfo {
             name: info.name.clone(),
             backend: info.backend.to_str().to_owned(),
             driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
-            software: info.device_type == DeviceType::Cpu || info.name.contains("llvmpipe"),
+            software: info.device_type == DeviceType::Cpu || draws_on_processor(&info.name),
         }
     }
+}
+
+/// Whether an adapter of this name draws on the processor: GL and browsers tell the name alone, with others around it.
+fn draws_on_processor(name: &str) -> bool {
+    let name = name.to_lowercase();
+    ["llvmpipe", "softpipe", "swiftshader", "basic render"].iter().any(|known| name.contains(known))
 }
 
 /// An open graphics device.
@@ -104,4 +110,18 @@ impl Gpu {
 
 fn held(fault: &Mutex<DeviceFault>) -> MutexGuard<'_, DeviceFault> {
     fault.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::draws_on_processor;
+
+    #[test]
+    fn software_is_known_by_its_name_in_a_browser() {
+        let vulkan = "Vulkan 1.3.0 (SwiftShader Device (Subzero) (0x0000C0DE))";
+        assert!(draws_on_processor(&format!("ANGLE (Google, {vulkan}, SwiftShader driver)")));
+        assert!(draws_on_processor("ANGLE (Mesa, llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5)"));
+        assert!(draws_on_processor("ANGLE (Microsoft, Microsoft Basic Render Driver Direct3D11, D3D11)"));
+        assert!(!draws_on_processor("ANGLE (Intel, Mesa Intel(R) UHD Graphics 620 (KBL GT2), OpenGL 4.6)"));
+    }
 }

@@ -99,6 +99,8 @@ pub(crate) struct Readback {
     buffer: wgpu::Buffer,
     /// Bytes from one row in the buffer to the next.
     pitch: u32,
+    /// What the device answers once the buffer can be read.
+    asked: Option<mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>>,
 }
 
 impl Readback {
@@ -113,6 +115,7 @@ impl Readback {
             buffer: gpu.buffer("readback", bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST),
             texture,
             pitch,
+            asked: None,
         }
     }
 
@@ -124,36 +127,77 @@ impl Readback {
 
     /// Waits for the submission and shows the rows that it has put into the buffer.
     pub(crate) fn read(
-        &self,
+        &mut self,
         gpu: &Gpu,
         submission: wgpu::SubmissionIndex,
         look: impl FnOnce(std::slice::Chunks<'_, u8>),
     ) -> Result<(), Error> {
-        let (sender, receiver) = mpsc::channel();
-        self.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver is gone only if reading has already failed.
-            let _ = sender.send(result);
-        });
-        let failed = |e: &dyn std::fmt::Display| Error::Device(e.to_string());
+        self.wait(gpu, submission)?;
+        self.look(look)
+    }
+
+    /// Waits for the submission and takes the picture, of four bytes a pixel, out of the buffer.
+    pub(crate) fn picture(&mut self, gpu: &Gpu, submission: wgpu::SubmissionIndex) -> Result<Picture, Error> {
+        self.wait(gpu, submission)?;
+        self.taken()
+    }
+
+    /// The picture, of four bytes a pixel, if what was submitted is finished; it does not wait.
+    pub(crate) fn arrived(&mut self, gpu: &Gpu) -> Result<Option<Picture>, Error> {
+        let asked = self.ask();
+        gpu.device.poll(wgpu::PollType::Poll).map_err(failed)?;
+        gpu.check()?;
+        match asked.try_recv() {
+            Err(mpsc::TryRecvError::Empty) => {
+                self.asked = Some(asked);
+                return Ok(None);
+            }
+            answer => answer.map_err(failed)?.map_err(failed)?,
+        }
+        self.taken().map(Some)
+    }
+
+    fn wait(&mut self, gpu: &Gpu, submission: wgpu::SubmissionIndex) -> Result<(), Error> {
+        let asked = self.ask();
         gpu.device
             .poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None })
-            .map_err(|e| failed(&e))?;
+            .map_err(failed)?;
         gpu.check()?;
-        receiver.recv().map_err(|e| failed(&e))?.map_err(|e| failed(&e))?;
-        look(self.buffer.get_mapped_range(..).map_err(|e| failed(&e))?.chunks(self.pitch as usize));
+        asked.recv().map_err(failed)?.map_err(failed)
+    }
+
+    /// Asks for the buffer, unless it is asked for already.
+    fn ask(&mut self) -> mpsc::Receiver<Result<(), wgpu::BufferAsyncError>> {
+        self.asked.take().unwrap_or_else(|| {
+            let (sender, receiver) = mpsc::channel();
+            self.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+                // The receiver is gone only if reading has already failed.
+                let _ = sender.send(result);
+            });
+            receiver
+        })
+    }
+
+    /// Shows the rows of the buffer, which can be read, and gives it back to the device.
+    fn look(&self, look: impl FnOnce(std::slice::Chunks<'_, u8>)) -> Result<(), Error> {
+        look(self.buffer.get_mapped_range(..).map_err(failed)?.chunks(self.pitch as usize));
         self.buffer.unmap();
         Ok(())
     }
 
-    /// Waits for the submission and takes the picture, of four bytes a pixel, out of the buffer.
-    pub(crate) fn picture(&self, gpu: &Gpu, submission: wgpu::SubmissionIndex) -> Result<Picture, Error> {
+    /// The picture in the buffer, which can be read.
+    fn taken(&self) -> Result<Picture, Error> {
         let size = self.texture.size();
         let row = 4 * size.width as usize;
         let mut rgba = Vec::with_capacity(row * size.height as usize);
-        self.read(gpu, submission, |rows| rows.for_each(|line| rgba.extend_from_slice(&line[..row])))?;
+        self.look(|rows| rows.for_each(|line| rgba.extend_from_slice(&line[..row])))?;
         if self.texture.format() == TextureFormat::Bgra8Unorm {
             rgba.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
         }
         Ok(Picture { width: size.width, height: size.height, rgba })
     }
+}
+
+fn failed(why: impl std::fmt::Display) -> Error {
+    Error::Device(why.to_string())
 }

@@ -1,7 +1,9 @@
 //! The 3D view in its tile: it is rendered when its content has changed.
 
+mod density;
 mod pointer;
 
+use self::density::Density;
 use self::pointer::Drag;
 use crate::action::Action;
 use crate::app_state::{AppState, Tool};
@@ -17,6 +19,8 @@ use rendering::{
 use std::sync::Arc;
 use vocabulary::{FleetInfo, StepRecord};
 
+/// Format of pictures.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Minimum and maximum size of the view, pixels.
 const SIZES: [u32; 2] = [16, 8192];
 
@@ -24,6 +28,9 @@ const SIZES: [u32; 2] = [16, 8192];
 pub struct Viewport {
     /// Lays pictures into the window.
     painter: Arc<TexturePass>,
+    /// The same for pictures of fewer pixels.
+    stretcher: Arc<TexturePass>,
+    density: Density,
     /// The graphics device, for other renderers.
     pub gpu: Gpu,
     pub(super) view_renderer: Option<ViewRenderer>,
@@ -48,13 +55,11 @@ pub struct Viewport {
 pub(super) struct ViewRenderer {
     pub(super) fleet: Arc<FleetInfo>,
     pub(super) renderer: Renderer,
-    pub(super) texture: wgpu::TextureView,
-    /// The same, as the window reads it.
-    binding: TextureBinding,
-    /// Renders still pictures with more samples, if the first renders with one.
-    pub(super) finer: Option<Renderer>,
-    /// The last frame, and whether it has full quality.
-    pub(super) shown: Option<(DrawnFrame, bool)>,
+    sheet: Sheet,
+    /// Renders still pictures with more samples or pixels, if the first renders with fewer, and what it renders into.
+    finer: Option<(Renderer, Sheet)>,
+    /// The last frame, and how well it is rendered.
+    pub(super) shown: Option<(DrawnFrame, Quality)>,
     pub(super) sight: Option<Sightline>,
 }
 
@@ -63,24 +68,70 @@ impl ViewRenderer {
     fn fine(
         &mut self,
         gpu: &Gpu,
+        painter: &TexturePass,
         trail: &Trail,
         record: &StepRecord,
         frame: &DrawnFrame,
     ) -> Result<(), Error> {
         let [width, height] = frame.size;
-        let finer = match self.finer.take() {
-            Some(mut finer) => {
-                finer.resize(width, height)?;
-                finer
-            }
-            None => {
-                Renderer::with_format(gpu, &self.fleet, width, height, 4, wgpu::TextureFormat::Rgba8Unorm)?
-            }
+        let (mut finer, sheet) = if let Some(kept) = self.finer.take() {
+            kept
+        } else {
+            let renderer = Renderer::with_format(gpu, &self.fleet, width, height, 4, FORMAT)?;
+            (renderer, Sheet::new(gpu, painter, frame.size))
         };
-        let finer = self.finer.insert(finer);
+        finer.resize(width, height)?;
+        let sheet = if sheet.size == frame.size { sheet } else { Sheet::new(gpu, painter, frame.size) };
         finer.retitle(&frame.words[0], &frame.words[1]);
         let style = Style { interactive: false, ..frame.style.clone() };
-        finer.draw_into(&self.texture, PictureSpec::new(trail, record, &frame.layout, &style)).map(drop)
+        finer.draw_into(&sheet.view, PictureSpec::new(trail, record, &frame.layout, &style))?;
+        self.finer = Some((finer, sheet));
+        Ok(())
+    }
+
+    /// What is shown: the fine picture where there is one of the last frame.
+    fn shown_sheet(&self) -> &Sheet {
+        match (&self.shown, &self.finer) {
+            (Some((_, Quality::Finer)), Some((_, sheet))) => sheet,
+            _ => &self.sheet,
+        }
+    }
+}
+
+/// How well a frame is rendered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Quality {
+    /// It can be better when nothing moves.
+    Rough,
+    /// As well as it can be, by the renderer of moving pictures.
+    Full,
+    /// As well as it can be, by the renderer of still pictures.
+    Finer,
+}
+
+/// What a picture is rendered into.
+struct Sheet {
+    view: wgpu::TextureView,
+    /// The same, as the window reads it.
+    binding: TextureBinding,
+    /// Width and height, pixels.
+    size: [u32; 2],
+}
+
+impl Sheet {
+    fn new(gpu: &Gpu, painter: &TexturePass, [width, height]: [u32; 2]) -> Self {
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("3D view"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Self { binding: painter.bind(gpu, &view), view, size: [width, height] }
     }
 }
 
@@ -117,6 +168,8 @@ impl Viewport {
         let style = Style { inset: false, ..Style::default() };
         Self {
             painter: Arc::new(TexturePass::new(&gpu, state.target_format)),
+            stretcher: Arc::new(TexturePass::stretching(&gpu, state.target_format)),
+            density: Density::of(&gpu),
             gpu,
             view_renderer: None,
             view: "snake".to_owned(),
@@ -177,6 +230,7 @@ impl Viewport {
         let pixels = ui.pixels_per_point();
         let size =
             [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(SIZES[0], SIZES[1]));
+        self.density.frame(ui.input(|input| input.unstable_dt), app_state.playing, size);
         if let Err(error) = self.draw(app_state, fleet, &record, size, f64::from(pixels)) {
             self.fault = Some(error.to_string());
         }
@@ -185,8 +239,9 @@ impl Viewport {
             return centred(ui, rect, &text);
         }
         if let Some(view_renderer) = &self.view_renderer {
-            let picture =
-                ShownPicture { painter: Arc::clone(&self.painter), texture: view_renderer.binding.clone() };
+            let sheet = view_renderer.shown_sheet();
+            let painter = if sheet.size == size { &self.painter } else { &self.stretcher };
+            let picture = ShownPicture { painter: Arc::clone(painter), texture: sheet.binding.clone() };
             ui.painter().add(Callback::new_paint_callback(rect, picture));
         }
         self.readout(ui, app_state, &record, rect);
@@ -204,14 +259,14 @@ impl Viewport {
         let scale = (0.92 * pixels).clamp(0.5, 6.0);
         let layout = self.layout(fleet, record);
         let style = Style { interactive: true, ..self.annotated_style(app_state, record, scale) };
+        let drawn = self.density.size(size);
         if self.view_renderer.as_ref().is_none_or(|drawn| !Arc::ptr_eq(&drawn.fleet, fleet)) {
-            self.set_view_renderer(fleet, size)?;
+            self.set_view_renderer(fleet, drawn)?;
         }
         let Some(view_renderer) = &mut self.view_renderer else { return Ok(()) };
-        if view_renderer.renderer.size() != size {
-            view_renderer.renderer.resize(size[0], size[1])?;
-            view_renderer.texture = texture(&self.gpu.device, size);
-            view_renderer.binding = self.painter.bind(&self.gpu, &view_renderer.texture);
+        if view_renderer.sheet.size != drawn {
+            view_renderer.renderer.resize(drawn[0], drawn[1])?;
+            view_renderer.sheet = Sheet::new(&self.gpu, &self.painter, drawn);
             view_renderer.shown = None;
         }
         let shown = DrawnFrame {
@@ -224,36 +279,35 @@ impl Viewport {
             size,
         };
         let Some(trail) = app_state.trail() else { return Ok(()) };
-        if let Some((_, fine)) = view_renderer.shown.as_ref().filter(|(last, _)| *last == shown) {
-            if !fine {
+        if let Some((_, quality)) = view_renderer.shown.as_ref().filter(|(last, _)| *last == shown) {
+            if *quality == Quality::Rough {
                 // Nothing moves: there is time for a better picture.
-                view_renderer.fine(&self.gpu, trail, record, &shown)?;
-                view_renderer.shown = Some((shown, true));
+                view_renderer.fine(&self.gpu, &self.painter, trail, record, &shown)?;
+                view_renderer.shown = Some((shown, Quality::Finer));
                 self.pictures += 1;
             }
             return Ok(());
         }
         let DrawnFrame { words: [title, caption], layout, style, .. } = &shown;
+        let style = &Style { scale: style.scale * f64::from(drawn[1]) / f64::from(size[1]), ..style.clone() };
         let spec = PictureSpec::new(trail, record, layout, style);
         let renderer = &mut view_renderer.renderer;
         renderer.retitle(title, caption);
         view_renderer.sight = renderer.sightlines(spec)?.into_iter().next();
-        renderer.draw_into(&view_renderer.texture, spec)?;
-        view_renderer.shown = Some((shown, self.samples > 1));
+        renderer.draw_into(&view_renderer.sheet.view, spec)?;
+        let full = self.samples > 1 && drawn == size;
+        view_renderer.shown = Some((shown, if full { Quality::Full } else { Quality::Rough }));
         self.fault = None;
         self.pictures += 1;
         Ok(())
     }
 
     fn set_view_renderer(&mut self, fleet: &Arc<FleetInfo>, size: [u32; 2]) -> Result<(), Error> {
-        let format = wgpu::TextureFormat::Rgba8Unorm;
-        let renderer = Renderer::with_format(&self.gpu, fleet, size[0], size[1], self.samples, format)?;
-        let texture = texture(&self.gpu.device, size);
+        let renderer = Renderer::with_format(&self.gpu, fleet, size[0], size[1], self.samples, FORMAT)?;
         self.view_renderer = Some(ViewRenderer {
             fleet: Arc::clone(fleet),
             renderer,
-            binding: self.painter.bind(&self.gpu, &texture),
-            texture,
+            sheet: Sheet::new(&self.gpu, &self.painter, size),
             finer: None,
             shown: None,
             sight: None,
@@ -264,7 +318,7 @@ impl Viewport {
     /// Whether the shown picture can be improved when nothing moves.
     pub fn rough(&self) -> bool {
         let shown = self.view_renderer.as_ref().and_then(|view_renderer| view_renderer.shown.as_ref());
-        self.fault.is_none() && shown.is_some_and(|(_, fine)| !fine)
+        self.fault.is_none() && shown.is_some_and(|(_, quality)| *quality == Quality::Rough)
     }
 
     /// Shows numbers beside the dragged ring, and the help text of the tool.
@@ -292,20 +346,6 @@ impl Viewport {
         };
         plate(hint.to_owned(), rect.center_top() + Vec2::new(0.0, 14.0), egui::Align2::CENTER_TOP);
     }
-}
-
-fn texture(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::TextureView {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("3D view"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8Unorm,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 fn centred(ui: &Ui, rect: Rect, text: &str) {

@@ -43,7 +43,8 @@ impl Viewport {
         rect: Rect,
         out: &mut Vec<Action>,
     ) {
-        let pixels = ui.pixels_per_point();
+        // Those of the picture, which may have fewer than the screen.
+        let pixels = self.pixels_per_point(rect);
         let pixel = |pos: Pos2| [pos.x - rect.left(), pos.y - rect.top()].map(|x| f64::from(x * pixels));
         let Some(sight) = self.view_renderer.as_ref().and_then(|view_renderer| view_renderer.sight.clone())
         else {
@@ -59,11 +60,13 @@ impl Viewport {
             self.hover(&frame, origin.or(pointer).map(pixel));
             self.begin_drag(ui, app_state);
         }
+        // Two fingers zoom about the place between them; the first alone would turn the view.
+        let fingers = ui.input(egui::InputState::multi_touch).map(|touch| touch.center_pos);
         let share = |delta: Vec2| [delta.x, delta.y].map(|x| f64::from(x / rect.height().max(1.0)));
         if let (Some(drag), Some(pos)) = (self.drag, released_at(ui).or(response.interact_pointer_pos())) {
             let delta = response.drag_delta();
             match drag {
-                Drag::Orbit | Drag::Pan if delta == Vec2::ZERO => {}
+                Drag::Orbit | Drag::Pan if delta == Vec2::ZERO || fingers.is_some() => {}
                 Drag::Orbit => {
                     self.take_camera(record, None);
                     if let Some(held) = &mut self.camera_control {
@@ -90,14 +93,21 @@ impl Viewport {
         if response.drag_stopped() {
             self.end_drag(out);
         }
-        self.wheel(&frame, pointer.map(pixel));
+        self.wheel(&frame, fingers.or(pointer).map(pixel));
         self.clicks(&frame, pointer.map(pixel), out);
+    }
+
+    /// Pixels of the picture per point of its place in the window.
+    fn pixels_per_point(&self, rect: Rect) -> f32 {
+        self.view_renderer
+            .as_ref()
+            .map_or(1.0, |drawn| drawn.renderer.size()[1] as f32 / rect.height().max(1.0))
     }
 
     /// Finds what is under the pointer.
     fn hover(&mut self, frame: &PointerFrame<'_>, pixel: Option<[f64; 2]>) {
         let PointerFrame { app_state, record, sight, .. } = frame;
-        let grasp = f64::from(frame.ui.pixels_per_point() * GRASP);
+        let grasp = f64::from(self.pixels_per_point(frame.response.rect) * GRASP);
         self.pointer.ring = None;
         self.pointer.robot = None;
         let (Some(pixel), Some(view_renderer)) = (pixel, &self.view_renderer) else { return };

@@ -35,6 +35,16 @@ impl TexturePass {
         Self::over(gpu, recipe)
     }
 
+    /// The same for a viewport of another size than the texture's: texels are blended between their centres.
+    pub fn stretching(gpu: &Gpu, format: TextureFormat) -> Self {
+        let recipe = Recipe {
+            entry: if format.is_srgb() { "stretched_decoded" } else { "stretched" },
+            colour: Some((Canvas { format, samples: 1, mono: false }, None)),
+            ..Recipe::default()
+        };
+        Self::over(gpu, recipe)
+    }
+
     /// For passes with depth, in which what is there shows through it.
     pub(super) fn layer(gpu: &Gpu, canvas: Canvas) -> Self {
         let recipe = Recipe {
