@@ -55,6 +55,7 @@ impl Runner {
             pace: 1.0,
             owed: 0.0,
             played: None,
+            goal: None,
             predictor,
             gpu,
             ahead: 0.0,
@@ -103,6 +104,8 @@ struct RunWorker {
     owed: f64,
     /// Until when the run was played.
     played: Option<Instant>,
+    /// Number of samples that it has to reach first.
+    goal: Option<u64>,
     predictor: Predictor,
     gpu: Option<Gpu>,
     ahead: f64,
@@ -121,7 +124,9 @@ impl Task for RunWorker {
 
     fn tick(&mut self, share: Duration) -> Next {
         let now = Instant::now();
-        let own = if self.playing {
+        let own = if let Some(goal) = self.goal {
+            self.pursue(goal, share)
+        } else if self.playing {
             let passed = self.played.replace(now).map_or(0.0, |before| (now - before).as_secs_f64());
             // A run that cannot keep up becomes slower; it does not jump afterwards.
             self.owed = (self.owed + passed * self.pace).min(0.1 * self.pace.max(1.0));
@@ -135,6 +140,39 @@ impl Task for RunWorker {
 }
 
 impl RunWorker {
+    /// Simulates towards `goal` samples.
+    fn pursue(&mut self, goal: u64, share: Duration) -> Next {
+        if self.unread.load(Relaxed) > MOST_UNREAD {
+            return Next::After(BATCH_INTERVAL);
+        }
+        let began = Instant::now();
+        let Some(branches) = &mut self.branches else {
+            self.goal = None;
+            return Next::Asked;
+        };
+        let (mut records, mut there) = (Vec::new(), false);
+        while !there && began.elapsed() < share {
+            let record = branches.advance(self.active).cloned();
+            there = record.is_none() || branches.list()[self.active].simulation().sample() >= goal;
+            records.extend(record);
+        }
+        let digest = branches.list()[self.active].digest();
+        self.report(records);
+        if there {
+            self.goal = None;
+            self.send(RunEvent::Reached(Some(digest)));
+            self.predict(true);
+        }
+        Next::After(Duration::ZERO)
+    }
+
+    /// Gives up what the run was to reach: it is another one.
+    fn leave_goal(&mut self) {
+        if self.goal.take().is_some() {
+            self.send(RunEvent::Reached(None));
+        }
+    }
+
     /// Simulates the samples that are due.
     fn advance_due(&mut self, share: Duration) {
         if self.unread.load(Relaxed) > MOST_UNREAD {
@@ -184,6 +222,16 @@ impl RunWorker {
     }
 
     fn handle(&mut self, request: RunRequest) {
+        if !matches!(
+            request,
+            RunRequest::Play(_)
+                | RunRequest::Pace(_)
+                | RunRequest::Ahead(_)
+                | RunRequest::Digest { .. }
+                | RunRequest::Summarize(_)
+        ) {
+            self.leave_goal();
+        }
         match request {
             RunRequest::Open { scene, until } => self.open(scene, until),
             #[cfg(not(target_family = "wasm"))]
@@ -209,6 +257,13 @@ impl RunWorker {
             RunRequest::Ahead(seconds) => {
                 self.ahead = seconds;
                 self.predict(true);
+            }
+            RunRequest::Reach(time) => self.reach(time),
+            RunRequest::Digest { branch, samples } => {
+                let digest = self.branches.as_ref().and_then(|branches| branches.digest_at(branch, samples));
+                if let Some(digest) = digest {
+                    self.send(RunEvent::Digest { branch, samples, digest });
+                }
             }
             RunRequest::Summarize(branch) => self.summarize(branch),
         }
@@ -302,6 +357,18 @@ impl RunWorker {
         self.report(records);
         if ended {
             self.stop();
+        }
+    }
+
+    fn reach(&mut self, time: f64) {
+        let Some(branches) = &self.branches else { return };
+        let branch = &branches.list()[self.active];
+        let goal = branch.simulation().sample_at(time) + 1;
+        if branch.simulation().sample() == goal {
+            let digest = branch.digest();
+            self.send(RunEvent::Reached(Some(digest)));
+        } else {
+            self.goal = Some(goal);
         }
     }
 
