@@ -2,21 +2,22 @@
 
 use super::opened::alone;
 use super::{Link, LinkError, LinkOrigin, TimedOverride};
-use crate::shipped::shipped;
+use crate::shipped::{SHIPPED, shipped};
 use crate::{Override, Scene, Shipped};
 use std::path::PathBuf;
 use toml::{Table, Value};
 use toml_edit::Value as Written;
 
 impl Link {
-    /// The link to the scene of `text`, called `name`: to the shipped scene of that name with what differs set, where that
-    /// comes to the same scene; else one that carries the text.
+    /// The link to the scene of `text`, called `name`: to the shipped scene of that name, or else of that title, with what
+    /// differs set, where that comes to the same scene; else one that carries the text.
     ///
     /// # Errors
     /// What is wrong with the scene, or that it reads other files.
     pub fn to_text(text: &str, name: &str) -> Result<Self, LinkError> {
         let wanted = alone(Scene::parse(text, PathBuf::from(name).with_extension("toml"), &[])?)?;
-        let found = shipped(name).and_then(|shipped| from_shipped(shipped, text, &wanted));
+        let titled = || SHIPPED.iter().find(|shipped| shipped.title() == wanted.title);
+        let found = shipped(name).or_else(titled).and_then(|shipped| from_shipped(shipped, text, &wanted));
         Ok(found.unwrap_or_else(|| Self::to(LinkOrigin::Text(text.to_owned()))))
     }
 }
