@@ -102,14 +102,16 @@ impl AppState {
             }
         }
         let robot = self.chosen_robot().and_then(|robot| Some(self.fleet()?.robots.get(robot)?.name.clone()));
-        Ok(Link {
+        let link = Link {
             time: Some(rounded(samples.saturating_sub(1) as f64 * self.period())),
             view: Some(view.to_owned()),
             selected: robot,
             branch: (self.branch > 0).then(|| branch.name.clone()),
             proof: Some(LinkProof::of(digest)),
             ..link.shortened()
-        })
+        };
+        // What is copied can be opened.
+        link.to_string().parse().map_err(|error: scene::LinkError| format!("This cannot be shared: {error}"))
     }
 }
 

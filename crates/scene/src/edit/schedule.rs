@@ -1,6 +1,6 @@
 //! Changes of a run, written into the text of its scene.
 
-use super::{EditError, SceneText};
+use super::{EditError, SceneText, cut};
 use crate::Change;
 use toml_edit::Value;
 
@@ -21,10 +21,7 @@ impl SceneText {
     /// Where the text has something else in the place of its changes.
     pub fn schedule(&mut self, own: &[Change], later: &[ChangeText]) -> Result<(), EditError> {
         if !own.is_empty() {
-            while self.count("changes") > 0 {
-                self.remove_item("changes", "0")?;
-            }
-            self.remove("changes")?;
+            cut::cut_items(&mut self.document, "changes")?;
         }
         let own = own.iter().map(|change| (change.at, &change.set));
         for (at, set) in own.chain(later.iter().map(|change| (change.at, &change.set))) {

@@ -1,7 +1,7 @@
 //! The link to a text: where it can be told as a shipped scene with values set, as that.
 
 use super::opened::alone;
-use super::{Link, LinkError, LinkOrigin, TimedOverride};
+use super::{Link, LinkError, LinkOrigin, MOST_SETS, TimedOverride};
 use crate::shipped::{SHIPPED, shipped};
 use crate::{Override, Scene, Shipped};
 use std::path::PathBuf;
@@ -38,6 +38,9 @@ fn from_shipped(shipped: &'static Shipped, text: &str, wanted: &Scene) -> Option
     }
     let mut sets = vec![];
     difference(before, after, "", &mut sets)?;
+    if sets.len() > MOST_SETS[0] {
+        return None;
+    }
     link.set = sets.iter().map(|set| set.parse()).collect::<Result<_, _>>().ok()?;
     if changed {
         link.changes = match own {

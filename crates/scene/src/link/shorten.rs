@@ -3,6 +3,7 @@
 use super::difference::tightened;
 use super::{Link, TimedOverride};
 use crate::Override;
+use std::collections::BTreeMap;
 
 impl Link {
     /// The same link, shorter where the changes of one time give every follower the same value.
@@ -23,25 +24,34 @@ impl Link {
 
 /// Changes of which those that all `followers` have are one.
 fn together(changes: &[TimedOverride], followers: usize) -> Vec<TimedOverride> {
-    let mut short: Vec<TimedOverride> = vec![];
-    for change in changes {
-        let common = common(&change.set).filter(|common| {
-            let alike = |other: &&TimedOverride| {
-                other.at == change.at && self::common(&other.set).as_ref() == Some(common)
-            };
-            followers > 1 && changes.iter().filter(alike).count() == followers
-        });
-        let next = TimedOverride { at: change.at, set: common.unwrap_or_else(|| change.set.clone()) };
-        if !short.contains(&next) {
-            short.push(next);
+    let common: Vec<Option<(u64, String)>> =
+        changes.iter().map(|change| common(&change.set).map(|set| (change.at.to_bits(), set))).collect();
+    let mut counts: BTreeMap<&(u64, String), usize> = BTreeMap::new();
+    for known in common.iter().flatten() {
+        *counts.entry(known).or_default() += 1;
+    }
+    let mut short = vec![];
+    for (change, common) in changes.iter().zip(&common) {
+        let count = common.as_ref().and_then(|common| counts.get_mut(common));
+        match (common, count) {
+            (Some((_, set)), Some(count)) if followers > 1 && (*count == followers || *count == 0) => {
+                // The first one speaks for all.
+                if *count > 0
+                    && let Ok(set) = set.parse()
+                {
+                    short.push(TimedOverride { at: change.at, set });
+                }
+                *count = 0;
+            }
+            _ => short.push(change.clone()),
         }
     }
     short
 }
 
 /// The override for all followers that one for a single robot is a part of.
-fn common(set: &Override) -> Option<Override> {
+fn common(set: &Override) -> Option<String> {
     let (path, value) = set.parts();
     let (_, key) = path.strip_prefix("robots.")?.split_once('.')?;
-    key.contains('.').then(|| format!("{key}={value}").parse().ok())?
+    key.contains('.').then(|| format!("{key}={value}"))
 }

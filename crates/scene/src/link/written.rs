@@ -2,6 +2,7 @@
 
 use super::packed::pack;
 use super::{Link, LinkOrigin, LinkProof, TimedOverride};
+use crate::Override;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use std::fmt;
 
@@ -16,9 +17,8 @@ impl fmt::Display for Link {
             LinkOrigin::Shipped(shipped) => write!(f, "#{}", shipped.name)?,
             LinkOrigin::Text(text) => write!(f, "#~{}", pack(text))?,
         }
-        let sets = self.set.iter().map(|set| written(set.parts()));
-        let changes =
-            self.changes.iter().map(|TimedOverride { at, set }| format!("@{at}:{}", written(set.parts())));
+        let sets = self.set.iter().map(written);
+        let changes = self.changes.iter().map(|TimedOverride { at, set }| format!("@{at}:{}", written(set)));
         let texts = [("view", &self.view), ("selected", &self.selected), ("branch", &self.branch)];
         let texts = texts.into_iter().filter_map(|(key, text)| Some((key, text.as_deref()?)));
         let proof =
@@ -35,9 +35,9 @@ impl fmt::Display for Link {
     }
 }
 
-/// An override, of which `parts` are path and value.
-fn written(parts: (&str, &str)) -> String {
-    let (path, value) = parts;
+/// An override.
+fn written(set: &Override) -> String {
+    let (path, value) = set.parts();
     let key = utf8_percent_encode(path, IN_KEYS).to_string();
     // Links have words of their own.
     let key = match key.as_bytes() {
