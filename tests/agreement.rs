@@ -69,12 +69,12 @@ fn one_digest_has_one_late_error() {
     let at = |name: &str| folder.path().join(name);
 
     // `run`, recorded and not.
-    let judged = studies::run::run(run(&scene), None, |_| true).expect("a run");
+    let judged = studies::run::run(run(&scene), None, None, |_| true).expect("a run");
     assert_eq!(of(&judged.metrics), wanted, "run --no-record");
     let options = studies::run_options(&scene);
     let ready = run(&scene);
     let recorder = Recorder::create(&at("run"), ready.simulation.fleet(), options).expect("a recorder");
-    let recorded = studies::run::run(ready, Some(recorder), |_| true).expect("a run");
+    let recorded = studies::run::run(ready, Some(recorder), None, |_| true).expect("a run");
     recorded.written.expect("written");
     assert_eq!((of(&recorded.metrics), recorded.status), (wanted, Status::Complete), "run");
     assert_eq!(written(&at("run")), wanted, "metrics.json of run");
@@ -115,7 +115,7 @@ fn one_digest_has_one_late_error() {
 fn late_errors_count_from_the_time_that_a_scene_gives() {
     let scene = parse(&format!("{TWO}[expect]\nsettled_after = 1.0\nsettled_error_at_most = [1.0, 1.0]\n"));
     assert_eq!(scene.judging().settled_after, 1.0);
-    let [peak, _] = of(&studies::run::run(run(&scene), None, |_| true).expect("a run").metrics);
+    let [peak, _] = of(&studies::run::run(run(&scene), None, None, |_| true).expect("a run").metrics);
     assert!(peak[0] > late_error(&parse(TWO))[0][0], "errors are larger from 1 s on than from half time on");
 }
 

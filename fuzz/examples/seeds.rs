@@ -1,4 +1,4 @@
-//! Writes what fuzzing begins with into a folder: the shipped scenes, the public tests of TOML, logs, tables, way-points.
+//! Writes what fuzzing begins with into a folder: the shipped scenes, the public tests of TOML, logs, tables, way-points, links.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,6 +34,20 @@ fn main() {
     .enumerate()
     {
         put("overrides", &format!("set-{index}"), set.as_bytes());
+    }
+    for scene in scene::SHIPPED {
+        let link = scene::Link::to(scene::LinkOrigin::Text(scene.text.to_owned()));
+        put("links", scene.name, link.to_string().as_bytes());
+    }
+    for (index, link) in [
+        "#circle-three?law.k=3&observer.epsilon=0.01&t=7.5&view=snake&v=0.1.0&d=1a2b3c4d",
+        "https://example.org/lab.html#moving-set-point?@2.5:law.k=4&@1:robots.follower-1.distance=3&selected=leader",
+        "seven-v?robots.robot-2.bearing=-120%20deg&title=%25&branch=a%2Bb&t=20",
+    ]
+    .iter()
+    .enumerate()
+    {
+        put("links", &format!("link-{index}"), link.as_bytes());
     }
     for (index, film) in [
         "fps = 30\nsize = [640, 360]\nview = \"snake+top\"\n",

@@ -1,10 +1,12 @@
 //! What must hold for any bytes whatsoever. Each function takes bytes as a fuzzer makes them and panics where something is
 //! not as it should be; `scripts/fuzz` runs them by the million, `tests/corpus.rs` on what was found before.
 
+mod links;
 mod log;
 mod motion;
 mod scenes;
 
+pub use links::links;
 pub use log::mcap_log;
 pub use motion::way_points;
 pub use scenes::{csv_table, overrides, scene_text, storyboard};
@@ -13,11 +15,12 @@ pub use scenes::{csv_table, overrides, scene_text, storyboard};
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets.
-pub const TARGETS: [Target; 6] = [
+pub const TARGETS: [Target; 7] = [
     ("scene_text", scene_text),
     ("overrides", overrides),
     ("csv_table", csv_table),
     ("mcap_log", mcap_log),
     ("storyboard", storyboard),
     ("way_points", way_points),
+    ("links", links),
 ];

@@ -78,7 +78,7 @@ fn check(text: &str, set: &[Override]) {
 }
 
 /// A message that somebody can read.
-fn in_words(text: &str) {
+pub(crate) fn in_words(text: &str) {
     assert!(!text.is_empty() && text.len() < 100_000, "{} bytes of message", text.len());
     assert!(!text.contains(|c: char| c.is_control() && c != '\n'), "{text:?}");
 }

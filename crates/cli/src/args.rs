@@ -10,7 +10,7 @@ use std::path::PathBuf;
 /// Arguments of every subcommand that takes a scene.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArgs {
-    /// Scene file, or the name of a shipped scene, such as circle-three: `echelon scenes` lists them
+    /// Scene file, the name of a shipped scene, such as circle-three: `echelon scenes` lists them; or a link in quotes
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
     /// Override a value of the scene, such as time.duration=5 or robots.follower-1.distance=1.5; may be repeated

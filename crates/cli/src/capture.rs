@@ -8,7 +8,7 @@ use crate::playback::Playback;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use crate::replaced::Replaced;
-use crate::{Outcome, cameras, interrupt, times};
+use crate::{Outcome, cameras, interrupt, link, times};
 use clap::Args;
 use film::png;
 use output::Place;
@@ -24,7 +24,7 @@ pub(crate) struct CaptureArgs {
     scene: SceneArgs,
     #[command(flatten)]
     picture: PictureArgs,
-    /// Times in s, such as 0,5,15; by default the end of the run
+    /// Times in s, such as 0,5,15; by default the end of the run, or the time of a link
     #[arg(long, value_name = "TIMES", value_delimiter = ',', allow_negative_numbers = true, value_parser = time)]
     at: Vec<f64>,
     /// Folder for the pictures; it may hold others
@@ -45,8 +45,10 @@ pub(crate) struct CaptureJob<'a> {
 
 pub(crate) fn capture(args: &CaptureArgs) -> Outcome {
     let mut loaded = load(&args.scene)?;
+    let linked = link::meant(&args.scene.scene)?.and_then(|link| link.time);
+    let at = if args.at.is_empty() { linked.into_iter().collect() } else { args.at.clone() };
     let draw = DrawJob::of(&args.scene, &args.picture, &loaded);
-    let job = CaptureJob { draw, out: &args.out, at: &args.at, of: &args.scene.scene };
+    let job = CaptureJob { draw, out: &args.out, at: &at, of: &args.scene.scene };
     self::draw(&job, |gpu| {
         cameras::attach(&mut loaded, Some(gpu), &args.scene.adapter.name, None)?;
         Ok(RecordSource::Run(Box::new(loaded.simulation)))

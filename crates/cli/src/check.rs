@@ -1,9 +1,9 @@
 //! `echelon check`: is a scene right?
 
-use crate::Outcome;
 use crate::failure::Failure;
 use crate::load::load_file;
 use crate::print::{note, say};
+use crate::{Outcome, link};
 use clap::Args;
 use scene::Override;
 use std::path::PathBuf;
@@ -12,7 +12,7 @@ use vocabulary::counted;
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
-    /// Scene files, or names of shipped scenes
+    /// Scene files, names of shipped scenes, or links in quotes
     #[arg(value_name = "SCENE", required = true)]
     scenes: Vec<PathBuf>,
     /// Override a value of every scene
@@ -26,28 +26,26 @@ pub(crate) struct CheckArgs {
 pub(crate) fn check(args: &CheckArgs) -> Outcome {
     let mut problems = Vec::new();
     for path in &args.scenes {
+        let name =
+            link::meant(path)?.map_or_else(|| path.display().to_string(), |link| link.name().to_owned());
         match load_file(path, &args.set) {
             Ok(run) if run.scene.film.beyond(run.scene.time.duration).is_some() => {
                 let beyond = run.scene.film.beyond(run.scene.time.duration).unwrap_or_default();
-                problems.push(format!("{}: {beyond}", path.display()));
+                problems.push(format!("{name}: {beyond}"));
             }
             Ok(run) if args.resolved => {
-                say(&format!(
-                    "# {}: {}",
-                    path.display(),
-                    counted(run.simulation.fleet().robots.len(), "robot")
-                ));
+                say(&format!("# {name}: {}", counted(run.simulation.fleet().robots.len(), "robot")));
                 say(&run.scene.to_toml());
             }
             Ok(SceneRun { scene, simulation }) => {
                 let fleet = simulation.fleet();
                 for late in scene.late() {
-                    note(&format!("{}: note: {late}", path.display()));
+                    note(&format!("{name}: note: {late}"));
                 }
                 let (robots, edges) = (fleet.robots.len(), fleet.edges.len());
                 let length = scene.time.duration;
                 let (robots, edges) = (counted(robots, "robot"), counted(edges, "edge"));
-                say(&format!("{}: good: {}; {robots} and {edges}, {length} s", path.display(), scene.title));
+                say(&format!("{name}: good: {}; {robots} and {edges}, {length} s", scene.title));
             }
             Err(Failure::Usage(text)) => problems.push(text),
             Err(other) => return Err(other),

@@ -10,8 +10,8 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct LabArgs {
-    /// Scene file or the name of a shipped scene, a run folder or log.mcap to browse, or a picture that the lab has saved;
-    /// by default a shipped scene
+    /// Scene file or the name of a shipped scene, a run folder or log.mcap to browse, a picture that the lab has saved,
+    /// or a link in quotes; by default a shipped scene
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Override a value of the scene, as an edit that can be undone; may be repeated

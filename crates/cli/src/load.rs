@@ -3,8 +3,8 @@
 use crate::args::SceneArgs;
 use crate::failure::Failure;
 use crate::print::note;
-use crate::{interrupt, recorded};
-use scene::{Override, Scene};
+use crate::{interrupt, link, recorded};
+use scene::{Loaded, Override, Scene};
 use std::path::Path;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
@@ -22,12 +22,19 @@ pub(crate) fn load_file(path: &Path, overrides: &[Override]) -> Result<SceneRun,
     build(read(path, overrides)?, &path.display())
 }
 
-/// Loads and checks the scene at `path`.
+/// Loads and checks the scene at `path`, which may be a link.
 pub(crate) fn read(path: &Path, overrides: &[Override]) -> Result<Scene, Failure> {
+    if let Some(link) = link::meant(path)? {
+        return link::read(&link, overrides);
+    }
+    Ok(read_file(path, overrides)?.scene)
+}
+
+/// Loads and checks the scene file at `path`, or the shipped scene of that name.
+pub(crate) fn read_file(path: &Path, overrides: &[Override]) -> Result<Loaded, Failure> {
     recorded::refuse(path)?;
     let _waits = told_to_wait(path);
-    let loaded = Scene::load(path, overrides).map_err(|errors| Failure::Usage(errors.to_string()))?;
-    Ok(loaded.scene)
+    Scene::load(path, overrides).map_err(|errors| Failure::Usage(errors.to_string()))
 }
 
 /// How long a scene that comes through a pipe is waited for in silence.
@@ -62,7 +69,10 @@ pub(crate) fn with_seed(set: &[Override], seed: Option<u64>) -> Result<Vec<Overr
     Ok(overrides)
 }
 
-/// The scene's file name without its ending.
+/// The scene's file name without its ending; of a link the name of its scene.
 pub(crate) fn stem(path: &Path) -> String {
+    if let Ok(Some(link)) = link::meant(path) {
+        return link.name().to_owned();
+    }
     path.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned())
 }

@@ -17,6 +17,7 @@ mod film;
 mod interrupt;
 mod junit;
 mod lab;
+mod link;
 mod load;
 mod picture;
 mod playback;
@@ -65,6 +66,7 @@ fn main() -> ExitCode {
         Some(Subcommands::Replay(args)) => replay::replay(&args),
         Some(Subcommands::Diff(args)) => diff::diff(&args),
         Some(Subcommands::Lab(args)) => lab::lab(args),
+        Some(Subcommands::Link(args)) => link::link(&args),
         Some(Subcommands::Capture(args)) => capture::capture(&args),
         Some(Subcommands::Film(args)) => film::film(&args),
         Some(Subcommands::Tune(args)) => tune::tune(&args),

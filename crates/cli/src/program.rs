@@ -1,8 +1,8 @@
 //! The program and its subcommands, as clap reads them.
 
 use crate::{
-    accuracy, budget, capture, certify, check, compare, dataset, diff, doctor, figures, film, lab, replay,
-    run, scenes, stills, tune,
+    accuracy, budget, capture, certify, check, compare, dataset, diff, doctor, figures, film, lab, link,
+    replay, run, scenes, stills, tune,
 };
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
@@ -28,6 +28,8 @@ pub(crate) enum Subcommands {
     Diff(diff::DiffArgs),
     /// Open a window to tune set points and gains while the scene runs
     Lab(lab::LabArgs),
+    /// Print a link that leads others to a run, and proves that theirs is the same
+    Link(link::LinkArgs),
     /// Render pictures of a scene at given times
     Capture(capture::CaptureArgs),
     /// Render a film of a scene

@@ -7,7 +7,7 @@ use crate::load::{load, stem};
 use crate::print::note;
 use crate::progress::Progress;
 use crate::summary::{self, Summary};
-use crate::{Outcome, cameras, interrupt};
+use crate::{Outcome, cameras, interrupt, link};
 use clap::Args;
 use output::Place;
 use recording::log::{self, Log, Roll};
@@ -52,6 +52,7 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
 /// Runs the scene; `cases` are what became of its expectations.
 fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
     let mut run = load(&args.scene)?;
+    let link = link::meant(&args.scene.scene)?;
     for late in run.scene.late().iter().filter(|_| !args.scene.quiet && !args.scene.json) {
         note(&format!("note: {late}"));
     }
@@ -59,6 +60,7 @@ fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
     let logs = !args.no_record && !args.no_log;
     let drawn = cameras::attach(&mut run, None, &args.scene.adapter.name, logs.then_some(&roll))?;
     let scene = run.scene.clone();
+    let sees = run.simulation.needs_cameras();
     let folder = if args.no_record { None } else { Some(folder(args)?) };
     let options =
         || RunOptions { csv: args.csv, no_log: args.no_log, roll, force: args.force, ..run_options(&scene) };
@@ -69,12 +71,13 @@ fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
     let what = format!("Simulating {}, {} s", stem(&args.scene.scene), scene.time.duration);
     let progress = Progress::begin(&what, run.simulation.len(), args.scene.quiet || args.scene.json);
     let began = Instant::now();
-    let judged = studies::run::run(run, recorder, |step| {
+    let then = link.as_ref().and_then(|link| link.time);
+    let judged = studies::run::run(run, recorder, then, |step| {
         progress.at(step);
         !interrupt::asked()
     });
     let wall = began.elapsed().as_secs_f64();
-    let JudgedRun { status, steps, metrics, digest, findings, written } =
+    let JudgedRun { status, steps, metrics, digest, digest_then, findings, written } =
         judged.map_err(|error| match error {
             Error::Recording(error) => {
                 Failure::from(error).but(&folder.as_deref().map_or_else(String::new, kept))
@@ -95,8 +98,18 @@ fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
         )));
     }
     cases.extend(findings.iter().map(ReportedCheck::of));
-    let summary =
-        Summary { scene: &scene, metrics: &metrics, findings: &findings, digest, folder, wall, drawn, steps };
+    let linked = link.zip(digest_then).and_then(|(link, then)| link::compare(&link, then, &args.scene, sees));
+    let summary = Summary {
+        scene: &scene,
+        metrics: &metrics,
+        findings: &findings,
+        digest,
+        linked,
+        folder,
+        wall,
+        drawn,
+        steps,
+    };
     let met = summary.met();
     if args.scene.json {
         summary::as_json(&summary);

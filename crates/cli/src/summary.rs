@@ -6,6 +6,7 @@ use metrics::{JudgedExpectation, Metrics};
 use scene::Scene;
 use serde_json::json;
 use std::path::PathBuf;
+use studies::link::LinkComparison;
 use vocabulary::counted;
 
 /// A run that reached its end.
@@ -14,6 +15,8 @@ pub(crate) struct Summary<'a> {
     pub(crate) metrics: &'a Metrics,
     pub(crate) findings: &'a [JudgedExpectation],
     pub(crate) digest: String,
+    /// The run held against the link that led to it.
+    pub(crate) linked: Option<LinkComparison>,
     pub(crate) folder: Option<PathBuf>,
     /// s of wall time, simulation and recording.
     pub(crate) wall: f64,
@@ -23,9 +26,10 @@ pub(crate) struct Summary<'a> {
 }
 
 impl Summary<'_> {
-    /// Whether no expectation failed.
+    /// Whether no expectation failed, and the run is that of the link.
     pub(crate) fn met(&self) -> bool {
-        !self.findings.iter().any(JudgedExpectation::failed)
+        let differs = self.linked.as_ref().is_some_and(|linked| linked.same() == Some(false));
+        !differs && !self.findings.iter().any(JudgedExpectation::failed)
     }
 }
 
@@ -56,6 +60,9 @@ pub(crate) fn as_text(summary: &Summary<'_>) {
         ));
     }
     say(&format!("digest {}", summary.digest));
+    if let Some(linked) = &summary.linked {
+        say(&linked.words());
+    }
     if let Some(folder) = &summary.folder {
         say(&format!("recorded in {}", folder.display()));
     }
@@ -174,10 +181,13 @@ fn expectations(summary: &Summary<'_>) {
     }
 }
 
-/// The expectations that failed, on standard error.
+/// What failed, on standard error.
 pub(crate) fn failures(summary: &Summary<'_>) {
     for finding in summary.findings.iter().filter(|f| f.failed()) {
         note(&format!("expectation failed: {} {}, found {}", finding.key, finding.wanted, finding.found));
+    }
+    if let Some(linked) = summary.linked.as_ref().filter(|linked| linked.same() == Some(false)) {
+        note(&linked.words());
     }
 }
 
@@ -190,6 +200,7 @@ pub(crate) fn as_json(summary: &Summary<'_>) {
         "camera_pictures": summary.drawn.pictures(),
         "camera_seconds": summary.drawn.seconds(),
         "digest": summary.digest,
+        "link": summary.linked.as_ref().map(|linked| json!({ "same": linked.same(), "verdict": linked.words() })),
         "folder": summary.folder.as_ref().map(|f| f.display().to_string()),
         "metrics": summary.metrics,
         "expectations": summary.findings,

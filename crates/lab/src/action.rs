@@ -114,6 +114,12 @@ pub enum Action {
     Restart,
     /// Write the run to a folder, with its scene and its changes.
     KeepRun,
+    /// Copy a link to what is shown.
+    Share,
+    /// Write a scene that repeats the shown branch, in place of a long link.
+    SaveBranch,
+    /// Close the line about a link.
+    CloseStatus,
     /// Write a PNG of the view.
     Picture,
     /// Write a PNG of the whole window.

@@ -172,12 +172,13 @@ const WORK: &[Shortcut] = &[
         &[command(Key::Z, |_| Some(Action::Undo)), command(Key::Y, |_| Some(Action::Redo))],
     ),
     row(
-        "P  F  K",
-        "picture, film, keep the run",
+        "P  F  K  L",
+        "picture, film, keep the run, copy a link",
         &[
             bare(Key::P, |_| Some(Action::Picture)),
             bare(Key::F, |_| Some(Action::Film)),
             bare(Key::K, |_| Some(Action::KeepRun)),
+            bare(Key::L, |_| Some(Action::Share)),
         ],
     ),
     row("Ctrl P", "picture of the whole window", &[command(Key::P, |_| Some(Action::WindowPicture))]),

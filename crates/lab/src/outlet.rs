@@ -1,5 +1,6 @@
 //! Where a file goes that the user asked for: onto the disk, or, on a page, to the browser's downloads.
 
+use eframe::egui;
 use std::path::{Path, PathBuf};
 
 /// Writes a file, whole or not at all.
@@ -32,6 +33,26 @@ fn download(path: &Path, bytes: &[u8]) -> Result<(), wasm_bindgen::JsValue> {
     link.set_download(&path.file_name().unwrap_or_default().to_string_lossy());
     link.click();
     web_sys::Url::revoke_object_url(&url)
+}
+
+/// Copies a link for others to open, on a page with the address of the page before it: what was copied.
+pub(crate) fn share(ctx: &egui::Context, link: &str) -> String {
+    let text = address() + link;
+    ctx.copy_text(text.clone());
+    text
+}
+
+/// The address of the page; nothing where there is none.
+#[cfg(target_family = "wasm")]
+fn address() -> String {
+    let place = web_sys::window().and_then(|window| window.location().href().ok());
+    place.and_then(|place| place.split('#').next().map(str::to_owned)).unwrap_or_default()
+}
+
+/// The address of the page: a window has none.
+#[cfg(not(target_family = "wasm"))]
+fn address() -> String {
+    String::new()
 }
 
 /// The first of `stem-001.ending`, `stem-002.ending`, … that does not exist in `folder`.

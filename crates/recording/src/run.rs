@@ -134,6 +134,11 @@ impl Recorder {
         self.metrics.finish()
     }
 
+    /// Digest of the records so far.
+    pub fn digest(&self) -> String {
+        self.digest.text()
+    }
+
     /// Closes the tables and writes metrics and manifest.
     ///
     /// # Errors

@@ -16,6 +16,7 @@ mod graph;
 mod ground;
 mod groups;
 mod heights_file;
+mod link;
 mod load;
 mod names;
 mod outline;
@@ -39,7 +40,8 @@ mod types;
 mod vehicle;
 
 pub use diagnostics::{Diagnostic, Diagnostics};
-pub use edit::{EditError, SceneText};
+pub use edit::{ChangeText, EditError, SceneText};
+pub use link::{Link, LinkError, LinkOrigin, LinkProof, LinkedScene, TimedOverride};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
 pub use shipped::{SHIPPED, Shipped, nearest_shipped, shipped};

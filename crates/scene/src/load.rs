@@ -17,6 +17,8 @@ use std::path::{Path, PathBuf};
 pub struct Loaded {
     /// The checked scene.
     pub scene: Scene,
+    /// Text of the scene file, without overrides.
+    pub text: String,
     /// Files that were read: the scene file, then the tables it names.
     pub files: Vec<PathBuf>,
 }
@@ -40,7 +42,7 @@ pub(crate) fn parse(text: &str, path: &Path, overrides: &[Override]) -> Result<L
     match check(text, path, overrides, &mut reporter) {
         Some(scene) if reporter.is_clean() => {
             let files = [path.to_owned()].into_iter().chain(reporter.files).collect();
-            Ok(Loaded { scene, files })
+            Ok(Loaded { scene, text: text.to_owned(), files })
         }
         _ => Err(reporter.into_diagnostics()),
     }

@@ -182,6 +182,11 @@ impl Simulation {
         self.sample
     }
 
+    /// Number of the first control sample at or after `time` s.
+    pub fn sample_at(&self, time: f64) -> u64 {
+        sample_at(time, self.period)
+    }
+
     /// Goes on until `duration` s at least.
     pub fn extend_to(&mut self, duration: f64) {
         self.last_sample = self.last_sample.max(sample_at(duration, self.period));

@@ -3,12 +3,13 @@
 //! [`run`] steps, records, certifies and judges one run; [`verdict`] holds its metrics against what the scene expects.
 //! [`tune`] searches gains, [`certify`] examines the theorems along a run, [`budget`] finds where errors come from,
 //! [`accuracy`] and [`dataset`] look at what cameras see, [`replay`], [`diff`] and
-//! [`likeness`] hold runs, scenes and pictures against each other. [`pace`] measures how fast this machine is.
+//! [`likeness`] hold runs, scenes and pictures against each other, [`link`] a run against the link to it. [`pace`] measures
+//! how fast this machine is.
 //!
 //! Nothing here prints, draws or reads a clock: functions report how far they are to a callback, which says whether they go
 //! on, and pictures come from a [`CameraRenderer`](vocabulary::CameraRenderer) that the caller makes.
 //!
-//! On a page there are no files: there it is certificates alone.
+//! On a page there are no files: there it is certificates and links alone.
 
 #[cfg(not(target_family = "wasm"))]
 pub mod accuracy;
@@ -22,6 +23,7 @@ pub mod diff;
 mod error;
 #[cfg(not(target_family = "wasm"))]
 pub mod likeness;
+pub mod link;
 #[cfg(not(target_family = "wasm"))]
 pub mod pace;
 #[cfg(not(target_family = "wasm"))]

@@ -18,13 +18,15 @@ pub struct JudgedRun {
     pub metrics: Metrics,
     /// Of the trajectory.
     pub digest: String,
+    /// Of the trajectory up to the time that was asked for, or to the end of the run if that is earlier.
+    pub digest_then: Option<String>,
     /// The scene's expectations; none of a run that was interrupted.
     pub findings: Vec<JudgedExpectation>,
     /// Whether everything that was to be recorded is on the disk.
     pub written: Result<(), recording::Error>,
 }
 
-/// Runs a scene to its end, into `recorder` if there is one. `go_on` gets the number of steps every [`STRIDE`] steps and says
+/// Runs a scene to its end, into `recorder` if there is one, and takes the digest at `then` s on the way. `go_on` gets the number of steps every [`STRIDE`] steps and says
 /// whether the run goes on; a run that does not is interrupted.
 ///
 /// # Errors
@@ -33,6 +35,7 @@ pub struct JudgedRun {
 pub fn run(
     run: SceneRun,
     recorder: Option<Recorder>,
+    then: Option<f64>,
     mut go_on: impl FnMut(u64) -> bool,
 ) -> Result<JudgedRun, Error> {
     let SceneRun { scene, mut simulation } = run;
@@ -41,6 +44,8 @@ pub fn run(
     let mut sink = recorder.map_or_else(memory, |recorder| RecordSink::Disk(Box::new(recorder)));
     let mut examiner = Examiner::new(&scene, &simulation, false);
     let mut steps = 0;
+    let then = then.map(|time| simulation.sample_at(time) + 1);
+    let mut digest_then = None;
     while let Some(record) = simulation.next_record() {
         if let Err(error) = sink.push(record) {
             sink.abandon();
@@ -48,6 +53,9 @@ pub fn run(
         }
         examiner.push(&simulation);
         steps += 1;
+        if then == Some(steps) {
+            digest_then = Some(sink.digest());
+        }
         if steps % STRIDE == 0 && !go_on(steps) {
             break;
         }
@@ -73,7 +81,8 @@ pub fn run(
         _ => verdict(&scene, &sink.metrics(), status == Status::Complete).into_iter().chain(broken).collect(),
     };
     let (metrics, digest, written) = sink.finish(status, certificates, &findings);
-    Ok(JudgedRun { status, steps, metrics, digest, findings, written })
+    let digest_then = then.map(|_| digest_then.unwrap_or_else(|| digest.clone()));
+    Ok(JudgedRun { status, steps, metrics, digest, digest_then, findings, written })
 }
 
 /// Where records go: to a folder, or only into the sums that a verdict needs.
@@ -97,6 +106,13 @@ impl RecordSink {
     fn abandon(self) {
         if let Self::Disk(recorder) = self {
             recorder.abandon();
+        }
+    }
+
+    fn digest(&self) -> String {
+        match self {
+            Self::Disk(recorder) => recorder.digest(),
+            Self::Memory { digest, .. } => digest.text(),
         }
     }
 

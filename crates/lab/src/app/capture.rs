@@ -137,7 +137,7 @@ impl LabApp {
 }
 
 /// The view of a picture, in the syntax of `--view`.
-fn words_of(layout: &rendering::ViewLayout, named: &str) -> String {
+pub(super) fn words_of(layout: &rendering::ViewLayout, named: &str) -> String {
     match layout.views.first() {
         Some(rendering::Viewpoint::Fixed { eye, target, field_of_view }) => {
             let numbers = eye.iter().chain(target).map(|x| format!("{x:.4}")).collect::<Vec<_>>().join(",");

@@ -36,6 +36,24 @@ impl LabApp {
         }
     }
 
+    /// Shows what became of a link, in a line under the bar.
+    pub(crate) fn status(&self, ui: &mut Ui, out: &mut Vec<Action>) {
+        let Some(status) = &self.app_state.status else { return };
+        egui::Panel::top("status").frame(BARE).show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                if status.fault {
+                    ui.colored_label(ui.visuals().error_fg_color, &status.text);
+                } else {
+                    ui.label(&status.text);
+                }
+                if status.offers_file {
+                    on_click(&ui.button("Write a scene instead"), Action::SaveBranch, out);
+                }
+                on_click(&ui.button("Close").on_hover_text("Esc"), Action::CloseStatus, out);
+            });
+        });
+    }
+
     /// Shows an error over the view, so that nothing moves under the pointer.
     fn show_notice(&self, ctx: &Context, out: &mut Vec<Action>) {
         let Some(notice) = self.app_state.notice.clone() else { return };

@@ -1,12 +1,14 @@
 //! Scenes on disk: open, save, reload and recover; and runs that are kept.
 
 use super::LabApp;
+use super::capture::words_of;
 use super::dialogs::Dialog;
 use crate::autosave::discard;
 #[cfg(not(target_family = "wasm"))]
 use crate::kept_run::keep;
 use crate::outlet::{self, free};
 use crate::session::run_event::SeenRun;
+use scene::Link;
 use std::path::{Path, PathBuf};
 use web_time::{Duration, Instant};
 
@@ -18,6 +20,9 @@ const KEEP_EVERY: Duration = Duration::from_secs(1);
 
 impl LabApp {
     pub(crate) fn open(&mut self, path: &Path) {
+        if let Some(link) = path.to_str().filter(|text| Link::is_meant(text) && !path.exists()) {
+            return self.open_link(link);
+        }
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
             return self.open_picture(path);
         }
@@ -103,6 +108,42 @@ impl LabApp {
         }
     }
 
+    /// Opens a link.
+    fn open_link(&mut self, text: &str) {
+        self.end_film();
+        match self.app_state.open_link(text) {
+            Ok(link) => self.dress_for(None, link.view.as_deref()),
+            Err(faults) => self.app_state.fault(faults),
+        }
+    }
+
+    /// Copies the link to the shown branch after `samples` samples, of which `digest` is that.
+    pub(crate) fn copy_link(&mut self, samples: u64, digest: &str) {
+        let Some(record) = self.app_state.record() else { return };
+        let Some(fleet) = self.app_state.fleet() else { return };
+        let view = words_of(&self.viewport.layout(fleet, &record), &self.viewport.view);
+        match self.app_state.link_to(samples, digest, &view) {
+            Ok(link) => {
+                let text = outlet::share(&self.ctx, &link.to_string());
+                self.app_state.shared(&link, text.chars().count());
+            }
+            Err(why) => self.app_state.fault(why),
+        }
+    }
+
+    /// Writes a scene that repeats the shown branch.
+    pub(crate) fn save_branch(&mut self) {
+        let path = free(Path::new("."), &self.name(), "toml");
+        let written = self.app_state.script().and_then(|text| outlet::write(&path, text.as_bytes()));
+        match written {
+            Ok(()) => {
+                self.app_state.status = None;
+                self.app_state.note(format!("Written: {}, which repeats the run", path.display()));
+            }
+            Err(why) => self.app_state.fault(why),
+        }
+    }
+
     /// Replaces the open scene; if the new one cannot be opened, the old one stays.
     pub(crate) fn take_scene(&mut self, text: String, path: Option<PathBuf>, home: &Path) -> bool {
         self.end_film();
@@ -110,13 +151,18 @@ impl LabApp {
             self.app_state.fault(faults);
             return false;
         }
+        self.dress_for(path, None);
+        true
+    }
+
+    /// Looks at a scene that was opened from `path`, from `view` or else as it says itself.
+    fn dress_for(&mut self, path: Option<PathBuf>, view: Option<&str>) {
         self.app_state.notice = None;
         self.dialog = Dialog::Nothing;
-        let view = self.app_state.scene().map(|scene| &*scene.views.default);
-        self.viewport.look(view.unwrap_or("snake"));
+        let own = self.app_state.scene().map(|scene| &*scene.views.default);
+        self.viewport.look(view.or(own).unwrap_or("snake"));
         self.viewport.style.picture_in_picture = None;
         self.file_watcher.look_at(path);
-        true
     }
 
     /// Restores the scene, the time and the view that are embedded in a picture.

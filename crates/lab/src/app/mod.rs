@@ -166,6 +166,9 @@ impl LabApp {
                 RunEvent::Summary { branch, changes: _, samples, digest } => {
                     self.keep_run(branch, SeenRun { samples, digest });
                 }
+                RunEvent::Digest { branch, samples, digest } if branch == self.app_state.branch => {
+                    self.copy_link(samples, &digest);
+                }
                 RunEvent::Opened { .. } => {
                     // Another run, or the same from the start: time in a film only increases.
                     self.end_film();
@@ -217,9 +220,12 @@ impl LabApp {
         }
     }
 
-    /// Opens files that were dropped on the window.
+    /// Opens files that were dropped on the window, and links that are pasted.
     #[cfg(not(target_family = "wasm"))]
     fn take_dropped(&mut self, ctx: &Context) {
+        for text in pasted(ctx).into_iter().filter(|text| scene::Link::is_meant(text)) {
+            self.act(Action::Open(text.into()));
+        }
         for file in ctx.input(|input| input.raw.dropped_files.clone()) {
             self.act(Action::Open(file.path().to_owned()));
         }
@@ -236,12 +242,11 @@ impl LabApp {
                 ctx.request_repaint();
             });
         }
-        if !ctx.egui_wants_keyboard_input() {
-            for event in ctx.input(|input| input.events.clone()) {
-                if let egui::Event::Paste(text) = event {
-                    self.act(Action::OpenBytes("pasted.toml".into(), text.into_bytes()));
-                }
-            }
+        for text in pasted(ctx) {
+            self.act(match scene::Link::is_meant(&text) {
+                true => Action::Open(text.into()),
+                false => Action::OpenBytes("pasted.toml".into(), text.into_bytes()),
+            });
         }
         while let Ok((name, bytes)) = self.dropped.1.try_recv() {
             match bytes {
@@ -265,6 +270,7 @@ impl LabApp {
             ui.add_space(3.0);
         });
         self.notices(ui, &mut out);
+        self.status(ui, &mut out);
         let app_state = &self.app_state;
         let style = self.viewport.style.clone();
         let view_tile = Pane::named("View").and_then(|pane| self.tree.tiles.find_pane(&pane));
@@ -324,6 +330,8 @@ impl LabApp {
             Action::Reload => self.reload(),
             Action::Recover => self.recover(),
             Action::Forget => self.forget(),
+            Action::SaveBranch => self.save_branch(),
+            Action::CloseStatus => self.app_state.status = None,
             Action::Picture => self.picture(),
             Action::WindowPicture => self.window_picture(),
             Action::Film if self.film.is_some() => self.end_film(),
@@ -374,6 +382,8 @@ impl LabApp {
             (self.dialog, self.hints) = (Dialog::Nothing, false);
         } else if self.app_state.notice.is_some() {
             self.app_state.notice = None;
+        } else if self.app_state.status.is_some() {
+            self.app_state.status = None;
         } else if self.app_state.tool != Tool::Select {
             self.app_state.tool = Tool::Select;
         } else {
@@ -396,6 +406,18 @@ impl LabApp {
         *self.ended.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
         ctx.send_viewport_cmd(egui::ViewportCommand::Close);
     }
+}
+
+/// Texts that are pasted into none of the fields.
+fn pasted(ctx: &Context) -> Vec<String> {
+    if ctx.egui_wants_keyboard_input() {
+        return vec![];
+    }
+    let pasted = |event: &egui::Event| match event {
+        egui::Event::Paste(text) => Some(text.clone()),
+        _ => None,
+    };
+    ctx.input(|input| input.events.iter().filter_map(pasted).collect())
 }
 
 /// The window is cleared in the colour of panels. On a CPU, painting it again would cost as much as the robots.

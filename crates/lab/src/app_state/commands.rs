@@ -81,6 +81,7 @@ impl AppState {
                 }
             }
             Action::Restart => self.restart(0.0),
+            Action::Share => self.share(),
             Action::Release => self.rest(),
             _ => return self.edit_scene(action),
         }

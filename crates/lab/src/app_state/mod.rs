@@ -3,6 +3,7 @@
 mod branch_info;
 pub mod commands;
 mod edits;
+mod linked;
 mod past_changes;
 mod recorded;
 
@@ -11,8 +12,9 @@ use crate::session::prediction::Prediction;
 use crate::session::runner::{RunEvent, RunRequest};
 use crate::session::scene_draft::SceneDraft;
 pub use branch_info::BranchInfo;
+pub use linked::StatusLine;
 use rendering::Trail;
-use scene::{Follow, Role, Scene};
+use scene::{Follow, Link, Role, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -93,6 +95,8 @@ pub struct AppState {
     pub log: Vec<LogEntry>,
     /// An error message, until the user dismisses it.
     pub notice: Option<String>,
+    /// What became of a link, until the user dismisses it.
+    pub status: Option<StatusLine>,
     /// Where log entries are also printed.
     pub aloud: Option<std::io::Stdout>,
     /// Text of the scene at time 0 of the run.
@@ -103,6 +107,8 @@ pub struct AppState {
     pub(crate) sent: Vec<(Arc<Scene>, String)>,
     /// The scene of this text.
     first: Option<Arc<Scene>>,
+    /// The link that led to the run.
+    pub(crate) link: Option<Link>,
     /// The name of the selected robot while a run restarts.
     pub(crate) chosen: Option<String>,
     /// The `[[changes]]` of that text.
@@ -133,6 +139,8 @@ impl AppState {
             log: Vec::new(),
             aloud: None,
             notice: None,
+            status: None,
+            link: None,
             base: String::new(),
             forks: 0,
             sent: Vec::new(),
@@ -176,6 +184,7 @@ impl AppState {
         self.chosen = self.chosen_name();
         self.own.clone_from(&draft.scene().changes);
         self.cursor = None;
+        (self.link, self.status) = (None, None);
     }
 
     /// The scene as it was at the shown time.
@@ -383,7 +392,10 @@ impl AppState {
         match run_event {
             RunEvent::Opened { fleet, period } => {
                 self.history = Some(History::new(fleet, period));
-                self.branches = vec![BranchInfo::trunk()];
+                let name = self.link.as_ref().and_then(|link| link.branch.clone());
+                let mut trunk = BranchInfo::trunk();
+                trunk.name = name.unwrap_or(trunk.name);
+                self.branches = vec![trunk];
                 (self.branch, self.cursor, self.prediction, self.forks) = (0, None, None, 0);
                 self.cursor = self.recorded.then_some(0.0);
                 self.check_choice();
@@ -398,7 +410,8 @@ impl AppState {
             RunEvent::Forked(fork) => self.forked(fork),
             RunEvent::Changed(branch, change) => self.changed(branch, &change),
             RunEvent::RecordingResumed(same) => self.recording_resumed(same),
-            RunEvent::Summary { .. } => {}
+            RunEvent::Reached(digest) => self.reached(digest),
+            RunEvent::Summary { .. } | RunEvent::Digest { .. } => {}
             RunEvent::Stopped(why) => {
                 self.playing = false;
                 if let Some(why) = why {

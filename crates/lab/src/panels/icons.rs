@@ -23,6 +23,8 @@ pub(crate) enum Icon {
     Record,
     /// A square.
     Stop,
+    /// Three dots, joined.
+    Share,
 }
 
 /// A button with a drawing, and a text beside it where there is one.
@@ -80,6 +82,12 @@ fn shapes(icon: Icon, rect: Rect, colour: Color32) -> Vec<Shape> {
             (0..3).map(dot).collect()
         }
         Icon::Record => vec![Shape::circle_filled(at(0.5, 0.5), 0.42 * rect.width(), colour)],
+        Icon::Share => {
+            let [from, up, down] = [at(0.16, 0.5), at(0.82, 0.14), at(0.82, 0.86)];
+            let line = |to| Shape::line_segment([from, to], Stroke::new(1.3, colour));
+            let dot = |place| Shape::circle_filled(place, 0.17 * rect.width(), colour);
+            vec![line(up), line(down), dot(from), dot(up), dot(down)]
+        }
         Icon::Stop => vec![bar(0.14, 0.14, 0.72, 0.72)],
     }
 }

@@ -24,7 +24,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, filming: bool, out: &mut Vec<Acti
         let text = format!("t = {} s", fixed(app_state.time(), 2));
         ui.add_sized([92.0, 20.0], egui::Label::new(RichText::new(text).monospace()))
             .on_hover_text("Simulated time shown");
-        let tail = 214.0;
+        let tail = 290.0;
         // In a narrow window the timeline comes first.
         let narrow = ui.available_width() < tail + 60.0;
         let wide = ui.available_width() - if narrow { 40.0 } else { tail };
@@ -115,7 +115,7 @@ pub(crate) fn branch_colour(index: usize, active: usize, visuals: &egui::Visuals
     if index == active { visuals.selection.bg_fill } else { visuals.weak_text_color().gamma_multiply(0.6) }
 }
 
-/// Film, picture, scenes.
+/// Film, picture, link, scenes.
 fn buttons_of_work(ui: &mut Ui, filming: bool, out: &mut Vec<Action>) {
     let (icon, tip, colour) = if filming {
         (Icon::Stop, "End the film (F)", Some(ui.visuals().error_fg_color))
@@ -125,6 +125,9 @@ fn buttons_of_work(ui: &mut Ui, filming: bool, out: &mut Vec<Action>) {
     on_click(&button(ui, icon, "Film", "Film", colour).on_hover_text(tip), Action::Film, out);
     let picture = button(ui, Icon::Camera, "", "Picture", None).on_hover_text("A PNG of the view (P)");
     on_click(&picture, Action::Picture, out);
+    let share = button(ui, Icon::Share, "Share", "Share", None)
+        .on_hover_text("Copy a link to this time of the run, with all that was changed (L)");
+    on_click(&share, Action::Share, out);
     let scenes = button(ui, Icon::Menu, "Scenes", "Scenes", None).on_hover_text("Open a scene (Ctrl O)");
     on_click(&scenes, Action::Gallery, out);
 }
@@ -144,6 +147,7 @@ fn menu(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
             ("Reload from disk   Ctrl R", Action::Reload, on_disk),
             ("Undo   Ctrl Z", Action::Undo, app_state.undoes().is_some()),
             ("Redo   Ctrl Y", Action::Redo, app_state.draft.as_ref().is_some_and(|d| d.redoes().is_some())),
+            ("Share a link   L", Action::Share, true),
             ("Keep the run   K", Action::KeepRun, true),
             ("Curves as CSV", Action::CurvesCsv, true),
             ("Curves as SVG", Action::CurvesSvg, true),

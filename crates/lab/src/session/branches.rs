@@ -6,7 +6,7 @@
 
 use super::checked_scene::{CheckedScene, build};
 use metrics::Digest;
-use scene::{Scene, SceneText};
+use scene::{ChangeText, Scene, SceneText};
 use simulation::{BuildError, Setup, Simulation};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -104,6 +104,15 @@ impl Branches {
             Some(branch) => branch.change(&base, checked),
             None => Ok(None),
         }
+    }
+
+    /// Digest of the first `samples` samples of a branch.
+    pub fn digest_at(&self, branch: usize, samples: u64) -> Option<String> {
+        let branch = self.list.get(branch)?;
+        if branch.simulation.sample() == samples {
+            return Some(branch.digest());
+        }
+        Some(branch.fork(&self.scene, 0, samples, String::new()).digest())
     }
 
     /// Forks branch `from` before control sample `sample`; the index of the new branch.
@@ -231,18 +240,9 @@ pub fn script(
         text.remove("expect").map_err(|error| error.to_string())?;
     }
     text.set("time.duration", &format!("{duration:?}")).map_err(|error| error.to_string())?;
-    // Robot by robot, so that a value for all robots is not overridden by an earlier value of one.
-    if !own.is_empty() {
-        while text.count("changes") > 0 {
-            text.remove_item("changes", "0").map_err(|error| error.to_string())?;
-        }
-        text.remove("changes").map_err(|error| error.to_string())?;
-    }
-    let own = own.iter().filter(|change| change.at <= duration).map(|change| (change.at, &change.set));
-    for (at, set) in own.chain(changes.iter().map(|change| (change.time, &change.set))) {
-        let set: Vec<String> = set.iter().map(|set| format!("    {set:?},\n")).collect();
-        let item = format!("at = {at:?}\nset = [\n{}]\n", set.concat());
-        text.add_table("changes", &item).map_err(|error| error.to_string())?;
-    }
+    let own: Vec<scene::Change> = own.iter().filter(|change| change.at <= duration).cloned().collect();
+    let later: Vec<ChangeText> =
+        changes.iter().map(|change| ChangeText { at: change.time, set: change.set.clone() }).collect();
+    text.schedule(&own, &later).map_err(|error| error.to_string())?;
     Ok(text.text())
 }

@@ -55,6 +55,17 @@ pub enum RunEvent {
         /// Their digest.
         digest: String,
     },
+    /// The run has come to where it was asked to; `None` if something was changed on the way.
+    Reached(Option<String>),
+    /// Digest of the first samples of a branch.
+    Digest {
+        /// Its index.
+        branch: usize,
+        /// How many.
+        samples: u64,
+        /// Their digest.
+        digest: String,
+    },
     /// The run is paused; the reason, if it stopped by itself.
     Stopped(Option<String>),
     /// A request failed, and why.

@@ -39,6 +39,15 @@ pub enum RunRequest {
     Switch(usize),
     /// Prediction horizon, s; 0 turns predictions off.
     Ahead(f64),
+    /// Simulate to this time as fast as can be, s, and report the digest there.
+    Reach(f64),
+    /// Request the digest of the first samples of a branch.
+    Digest {
+        /// Its index.
+        branch: usize,
+        /// How many.
+        samples: u64,
+    },
     /// Request the summary of a branch.
     Summarize(usize),
 }

@@ -59,6 +59,7 @@ impl Runner {
             played: None,
             until: None,
             held: Vec::new(),
+            goal: None,
             predictor,
             gpu,
             ahead: 0.0,
@@ -111,6 +112,8 @@ struct RunWorker {
     until: Option<(f64, Duration)>,
     /// Requests that wait until it is there.
     held: Vec<RunRequest>,
+    /// Number of samples that it has to reach first.
+    goal: Option<u64>,
     predictor: Predictor,
     gpu: Option<Gpu>,
     ahead: f64,
@@ -150,7 +153,9 @@ impl Task for RunWorker {
                 self.take(request);
             }
         }
-        let own = if self.playing {
+        let own = if let Some(goal) = self.goal {
+            self.pursue(goal, share)
+        } else if self.playing {
             let passed = self.played.replace(now).map_or(0.0, |before| (now - before).as_secs_f64());
             // A run that cannot keep up becomes slower; it does not jump afterwards.
             self.owed = (self.owed + passed * self.pace).min(0.1 * self.pace.max(1.0));
@@ -164,6 +169,39 @@ impl Task for RunWorker {
 }
 
 impl RunWorker {
+    /// Simulates towards `goal` samples.
+    fn pursue(&mut self, goal: u64, share: Duration) -> Next {
+        if self.unread.load(Relaxed) > MOST_UNREAD {
+            return Next::After(BATCH_INTERVAL);
+        }
+        let began = Instant::now();
+        let Some(branches) = &mut self.branches else {
+            self.goal = None;
+            return Next::Asked;
+        };
+        let (mut records, mut there) = (Vec::new(), false);
+        while !there && began.elapsed() < share {
+            let record = branches.advance(self.active).cloned();
+            there = record.is_none() || branches.list()[self.active].simulation().sample() >= goal;
+            records.extend(record);
+        }
+        let digest = branches.list()[self.active].digest();
+        self.report(records);
+        if there {
+            self.goal = None;
+            self.send(RunEvent::Reached(Some(digest)));
+            self.predict(true);
+        }
+        Next::After(Duration::ZERO)
+    }
+
+    /// Gives up what the run was to reach: it is another one.
+    fn leave_goal(&mut self) {
+        if self.goal.take().is_some() {
+            self.send(RunEvent::Reached(None));
+        }
+    }
+
     /// Simulates the samples that are due.
     fn advance_due(&mut self, share: Duration) {
         if self.unread.load(Relaxed) > MOST_UNREAD {
@@ -213,6 +251,16 @@ impl RunWorker {
     }
 
     fn handle(&mut self, request: RunRequest) {
+        if !matches!(
+            request,
+            RunRequest::Play(_)
+                | RunRequest::Pace(_)
+                | RunRequest::Ahead(_)
+                | RunRequest::Digest { .. }
+                | RunRequest::Summarize(_)
+        ) {
+            self.leave_goal();
+        }
         match request {
             RunRequest::Open { scene, until } => self.open(scene, until),
             #[cfg(not(target_family = "wasm"))]
@@ -238,6 +286,13 @@ impl RunWorker {
             RunRequest::Ahead(seconds) => {
                 self.ahead = seconds;
                 self.predict(true);
+            }
+            RunRequest::Reach(time) => self.reach(time),
+            RunRequest::Digest { branch, samples } => {
+                let digest = self.branches.as_ref().and_then(|branches| branches.digest_at(branch, samples));
+                if let Some(digest) = digest {
+                    self.send(RunEvent::Digest { branch, samples, digest });
+                }
             }
             RunRequest::Summarize(branch) => self.summarize(branch),
         }
@@ -333,6 +388,18 @@ impl RunWorker {
             self.stop();
         }
         there || ended
+    }
+
+    fn reach(&mut self, time: f64) {
+        let Some(branches) = &self.branches else { return };
+        let branch = &branches.list()[self.active];
+        let goal = branch.simulation().sample_at(time) + 1;
+        if branch.simulation().sample() == goal {
+            let digest = branch.digest();
+            self.send(RunEvent::Reached(Some(digest)));
+        } else {
+            self.goal = Some(goal);
+        }
     }
 
     fn step(&mut self) {

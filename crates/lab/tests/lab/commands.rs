@@ -49,6 +49,8 @@ fn requests(app_state: &AppState) -> Vec<&'static str> {
         RunRequest::Fork { .. } => "fork",
         RunRequest::Switch(_) => "switch",
         RunRequest::Ahead(_) => "ahead",
+        RunRequest::Reach(_) => "reach",
+        RunRequest::Digest { .. } => "digest",
         RunRequest::Summarize(_) => "tell",
     };
     app_state.requests.iter().map(word).collect()

@@ -6,6 +6,7 @@ mod commands;
 mod common;
 mod edits;
 mod history;
+mod links;
 mod pacing;
 mod panels;
 mod prediction;

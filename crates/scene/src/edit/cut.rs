@@ -40,12 +40,7 @@ pub(super) fn cut_item(document: &mut DocumentMut, steps: &[PathStep]) -> Result
     let read = read(document)?;
     if let Some(Item::Table(table)) = item_at(read.as_item(), steps) {
         let text = read.raw();
-        let mut gone = vec![];
-        blocks_of(text, table, &mut gone);
-        if let Some(first) = gone.iter_mut().min_by_key(|range| range.start) {
-            first.start = above(text, first.start);
-        }
-        return take_out(document, text, gone);
+        return take_out(document, text, item_of(text, table));
     }
     let [PathStep::Key(list), PathStep::Item(index)] = steps else {
         return Err(EditError::new("this is not an item of a list"));
@@ -54,6 +49,26 @@ pub(super) fn cut_item(document: &mut DocumentMut, steps: &[PathStep]) -> Result
         list.remove(*index);
     }
     Ok(())
+}
+
+/// Takes out all items of a list, as [`cut_item`] does with one.
+pub(super) fn cut_items(document: &mut DocumentMut, list: &str) -> Result<(), EditError> {
+    let read = read(document)?;
+    let Some(Item::ArrayOfTables(tables)) = read.get(list) else {
+        return cut(document, &[PathStep::Key(list.to_owned())]);
+    };
+    let text = read.raw();
+    take_out(document, text, tables.iter().flat_map(|table| item_of(text, table)).collect())
+}
+
+/// The lines of an item of a list, with the comment lines right above it.
+fn item_of(text: &str, table: &Table) -> Vec<Range<usize>> {
+    let mut gone = vec![];
+    blocks_of(text, table, &mut gone);
+    if let Some(first) = gone.iter_mut().min_by_key(|range| range.start) {
+        first.start = above(text, first.start);
+    }
+    gone
 }
 
 /// The text again, with the places of everything.

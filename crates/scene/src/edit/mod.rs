@@ -5,9 +5,11 @@ mod find;
 mod merge;
 mod put;
 mod rename;
+mod schedule;
 
 use crate::{names::NameForm, text::node::composed};
 use find::{PathStep, item_at, items, made_by_group, names, steps};
+pub use schedule::ChangeText;
 use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
 
 /// The text of a scene that can be edited.

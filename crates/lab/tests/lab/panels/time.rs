@@ -34,6 +34,7 @@ fn the_run_is_played_from_the_bar() {
         ("Restart", Action::Restart),
         ("Film", Action::Film),
         ("Picture", Action::Picture),
+        ("Share", Action::Share),
         ("Scenes", Action::Gallery),
     ] {
         assert_eq!(click(&mut bar, Role::Button, name), [action], "{name}");
