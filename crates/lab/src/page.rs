@@ -35,8 +35,8 @@ thread_local! {
     static SHOWN: RefCell<Option<(HtmlCanvasElement, String)>> = const { RefCell::new(None) };
 }
 
-/// Shows the lab in the canvas of the page that has this id, until the page is left. The address may name a scene that comes
-/// with the program, `#circle-three`. What goes wrong stands in the console, and in the element with the id `fault` if there
+/// Shows the lab in the canvas of the page that has this id, until the page is left. The address may carry a link, of
+/// which the simplest names a scene that comes with the program, `#circle-three`. What goes wrong stands in the console, and in the element with the id `fault` if there
 /// is one.
 pub fn open_on_page(canvas: &'static str) {
     let began = Instant::now();
@@ -111,11 +111,10 @@ fn listen(target: &EventTarget, name: &str, act: impl FnMut(Event) + 'static) {
     act.forget();
 }
 
-/// The scene that the address names.
+/// The link in the address, from its `#` on.
 fn named() -> Option<String> {
     let hash = web_sys::window()?.location().hash().ok()?;
-    let name = hash.trim_start_matches('#').split('?').next()?;
-    (!name.is_empty()).then(|| name.to_owned())
+    (hash.len() > 1).then_some(hash)
 }
 
 /// Keeps the page informed: its title, what the canvas shows, for those who cannot see it, and whether closing it loses work.
