@@ -73,10 +73,9 @@ impl PicturePair {
                     format!("; drawn with {found}, the reference with {wanted}")
                 });
                 // Where nothing stands out, a place would mislead.
-                let around = match l.least < 1.0 - 5e-5 {
-                    true => format!(" around pixel ({}, {})", l.place[0], l.place[1]),
-                    false => String::new(),
-                };
+                let [x, y] = l.place;
+                let around =
+                    if l.least < 1.0 - 5e-5 { format!(" around pixel ({x}, {y})") } else { String::new() };
                 let [whole, least, other] = [l.whole, l.least, 100.0 * l.other];
                 format!(
                     "likeness {whole:.4}, least {least:.4}{around}, {other:.2} % of the pixels differ{by}"

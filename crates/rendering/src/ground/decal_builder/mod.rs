@@ -243,10 +243,8 @@ impl DecalBuilder<'_> {
         // Wide enough to be seen from afar; what is thinner is drawn wider and fainter.
         let width = |k: usize, on: DVec3| {
             let pixel = self.pixel_at(on);
-            let across = match half < LEAST * WIDEST * pixel {
-                true => self.pixel_across(points[k].0, side(k)),
-                false => pixel,
-            };
+            let thin = half < LEAST * WIDEST * pixel;
+            let across = if thin { self.pixel_across(points[k].0, side(k)) } else { pixel };
             let wanted = half.max(least * self.stage_scale * across);
             let drawn = wanted.max(LEAST * across);
             (drawn, (2.0 * wanted / drawn).min(1.0) as f32)
