@@ -199,7 +199,7 @@ impl ReplayReport {
         } else if self.sees {
             "what cameras see depends on adapter and processor too; or a file of the folder was edited"
         } else {
-            "a file of the folder was edited, or the processor calculates differently"
+            "a file of the folder was edited; if none was, this machine computes differently, which is worth a report"
         };
         format!("DIFFERENT: {why}")
     }

@@ -66,7 +66,7 @@ impl LinkComparison {
                  hand"
                     .to_owned()
             }
-            None => "made by this version: the link was edited by hand, or the processor calculates differently".to_owned(),
+            None => "made by this version: the link was edited by hand, or another build of it computes differently".to_owned(),
         };
         let now = self.digest.get(..LinkProof::DIGITS).unwrap_or_default();
         format!("DIFFERENT at t = {time} s or before: digest {} in the link, {now} here; {why}", proof.digits)
