@@ -18,7 +18,7 @@ pub(crate) struct Groups {
     pub(crate) size: [u32; 2],
 }
 
-/// Robots that overlap, and no others.
+/// Robots that overlap; all of them where there are many, or where a sheet has no room for more groups than one.
 #[derive(Debug)]
 pub(crate) struct Group {
     /// What of the picture holds them.

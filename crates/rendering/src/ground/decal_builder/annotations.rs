@@ -15,6 +15,7 @@ const STRIPE: (f64, f32) = (15.0, 0.28);
 const RIM: (f64, f32) = (2.2, 0.4);
 /// How far a glow reaches, pixels at scale 1.
 const GLOW: f64 = 16.0;
+
 impl DecalBuilder<'_> {
     /// All annotations that lie on the ground, where robots are up to `size` times as large as the default one.
     pub(crate) fn annotations(&mut self, annotations: &Annotations, size: f64) {
