@@ -2,10 +2,12 @@
 
 use rendering::Gpu;
 
-/// Frames that take longer than this are slow, s.
-const SLOW: f32 = 0.06;
-/// So many slow frames one after the other lower the density.
-const FRAMES: u32 = 6;
+/// Where frames take longer than this on the mean, the density is lowered, s.
+const SLOW: f32 = 0.05;
+/// So many frames make a mean.
+const FRAMES: u32 = 12;
+/// A frame counts at most so long, s: a single hitch is no reason.
+const HITCH: f32 = 0.2;
 /// The densities: pixels of the picture per pixel of the screen, in one direction.
 const STEPS: [f64; 3] = [1.0, 0.75, 0.6];
 
@@ -15,8 +17,9 @@ pub(super) struct Density {
     /// Whether it may be lowered.
     adapts: bool,
     step: usize,
-    /// Slow frames one after the other.
-    slow: u32,
+    /// Frames since the last mean, and how long they took together, s.
+    frames: u32,
+    together: f32,
     /// Size of the view, pixels of the screen.
     size: [u32; 2],
 }
@@ -29,20 +32,24 @@ impl Density {
     }
 
     fn new(adapts: bool) -> Self {
-        Self { adapts, step: 0, slow: 0, size: [0; 2] }
+        Self { adapts, step: 0, frames: 0, together: 0.0, size: [0; 2] }
     }
 
     /// Takes note of a frame that took so long, s, in a view of this size.
     pub(super) fn frame(&mut self, took: f32, moves: bool, size: [u32; 2]) {
         if self.size != size {
-            (self.step, self.slow, self.size) = (0, 0, size);
+            *self = Self { size, ..Self::new(self.adapts) };
         }
         // Where nothing moves, frames come when something happens.
-        let slow = self.adapts && moves && took > SLOW;
-        self.slow = if slow { self.slow + 1 } else { 0 };
-        if self.slow >= FRAMES && self.step + 1 < STEPS.len() {
-            self.step += 1;
-            self.slow = 0;
+        if !self.adapts || !moves {
+            return;
+        }
+        self.frames += 1;
+        self.together += took.min(HITCH);
+        if self.frames == FRAMES {
+            let slow = self.together > SLOW * FRAMES as f32;
+            self.step = (self.step + usize::from(slow)).min(STEPS.len() - 1);
+            (self.frames, self.together) = (0, 0.0);
         }
     }
 
@@ -57,18 +64,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_slow_frames_one_after_the_other_cost_pixels() {
+    fn frames_that_are_slow_on_the_mean_cost_pixels() {
         let mut density = Density::new(true);
-        let mut frames = |frames: &[f32], moves: bool| {
-            for took in frames {
-                density.frame(*took, moves, [800, 400]);
-            }
+        let mut frames = |took: &[f32], count: usize, moves: bool| {
+            took.iter().cycle().take(count).for_each(|took| density.frame(*took, moves, [800, 400]));
             density.size([800, 400])
         };
-        assert_eq!(frames(&[0.3, 0.3, 0.3, 0.3, 0.3, 0.02, 0.3], true), [800, 400]);
-        assert_eq!(frames(&[0.3; 40], false), [800, 400]);
-        assert_eq!(frames(&[0.1; 6], true), [600, 300]);
-        assert_eq!(frames(&[0.1; 60], true), [480, 240]);
+        // One hitch among frames that are quick enough, and frames of a picture that stands, cost nothing.
+        assert_eq!(frames(&[3.0, 0.033, 0.033, 0.033, 0.033, 0.033], 12, true), [800, 400]);
+        assert_eq!(frames(&[0.3], 40, false), [800, 400]);
+        // A browser that shows every third or fourth picture of the screen is too slow by a sixth.
+        assert_eq!(frames(&[0.05, 0.067], 12, true), [600, 300]);
+        assert_eq!(frames(&[0.1], 60, true), [480, 240]);
         density.frame(0.1, true, [400, 400]);
         assert_eq!(density.size([400, 400]), [400, 400]);
     }
