@@ -161,9 +161,9 @@ pub(crate) struct Ink {
 impl Ink {
     pub(crate) const DARK: Self = Self { colour: palette::INK, alpha: 0.92, halo: (0.0, palette::PAPER) };
     pub(crate) const ON_PANEL: Self = Self { colour: palette::INK, alpha: 0.9, halo: (0.0, palette::PAPER) };
-    pub(crate) const LIGHT: Self = Self { colour: palette::PAPER, alpha: 1.0, halo: (0.42, palette::INK) };
+    pub(crate) const LIGHT: Self = Self { colour: palette::PAPER, alpha: 1.0, halo: (0.66, palette::INK) };
 
-    pub(crate) const ALARM: Self = Self { colour: palette::ALARM, alpha: 1.0, halo: (0.55, palette::INK) };
+    pub(crate) const ALARM: Self = Self { colour: palette::ALARM, alpha: 1.0, halo: (0.8, palette::INK) };
 
     pub(crate) fn faded(self, alpha: f32) -> Self {
         Self { alpha: self.alpha * alpha, ..self }

@@ -4,6 +4,7 @@ pub(crate) mod asphalt;
 pub(crate) mod backdrop;
 pub(crate) mod decal;
 pub(crate) mod frame;
+mod halo;
 pub(crate) mod instanced;
 pub(crate) mod layer;
 pub(crate) mod overlay;

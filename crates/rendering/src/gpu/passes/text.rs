@@ -1,11 +1,12 @@
 //! Text drawn last on the single-sample picture, from glyphs that [`TextShaper`] has shaped.
 
 use super::Canvas;
+use super::halo::Halos;
 use crate::Gpu;
 use crate::annotation::text_shaper::{Block, TextShaper, line_height};
 use crate::palette::Rgb;
 use glyphon::{
-    Buffer, Cache, Color, ColorMode, Resolution, SwashCache, TextArea, TextAtlas, TextBounds, TextRenderer,
+    Buffer, Cache, Color, ColorMode, Metrics, Resolution, SwashCache, TextArea, TextAtlas, TextBounds, TextRenderer,
     Viewport,
 };
 use wgpu::TextureFormat;
@@ -30,6 +31,7 @@ pub(crate) struct TextLine {
 /// Atlas and pipeline.
 pub(crate) struct TextPass {
     glyphs: SwashCache,
+    halos: Halos,
     viewport: Viewport,
     cache: Cache,
     format: TextureFormat,
@@ -56,6 +58,7 @@ impl TextPass {
         let (atlas, renderer) = blank(gpu, &cache, canvas.format);
         Self {
             glyphs: SwashCache::new(),
+            halos: Halos::default(),
             viewport: Viewport::new(&gpu.device, &cache),
             cache,
             format: canvas.format,
@@ -79,14 +82,23 @@ impl TextPass {
         self.viewport.update(&gpu.queue, Resolution { width: size[0], height: size[1] });
         // What the picture before had may make room.
         self.atlas.trim();
+        if self.halos.full() {
+            self.clear(gpu);
+        }
         match self.place(gpu, lines, letters) {
             // In hours of text of ever other sizes it is cut into pieces too small for anything.
             Err(glyphon::PrepareError::AtlasFull) => {
-                (self.atlas, self.renderer) = blank(gpu, &self.cache, self.format);
+                self.clear(gpu);
                 self.place(gpu, lines, letters)
             }
             placed => placed,
         }
+    }
+
+    /// Forgets all glyphs.
+    fn clear(&mut self, gpu: &Gpu) {
+        (self.atlas, self.renderer) = blank(gpu, &self.cache, self.format);
+        self.halos = Halos::default();
     }
 
     fn place(
@@ -98,14 +110,25 @@ impl TextPass {
         let (fonts, shaped) = letters.parts();
         let find = |line: &TextLine| shaped.find(&line.text, line.size, line.bold, line.block);
         let found: Vec<_> = lines.iter().filter_map(|line| Some((line, find(line)?))).collect();
-        let mut areas = Vec::new();
+        let mut halos = Vec::new();
         for (line, buffer) in &found {
-            halo(&mut areas, line, buffer);
+            self.halos.add(fonts, &mut self.glyphs, line, buffer, corner(line), &mut halos);
         }
-        areas
-            .extend(found.iter().map(|(line, buffer)| area(line, buffer, [0.0; 2], line.colour, line.alpha)));
-        let (device, queue) = (&gpu.device, &gpu.queue);
-        self.renderer.prepare(device, queue, fonts, &mut self.atlas, &self.viewport, areas, &mut self.glyphs)
+        let nothing = Buffer::new_empty(Metrics::new(1.0, 1.0));
+        let below = TextArea { custom_glyphs: &halos, ..area(&nothing, [0.0; 2], Color::rgb(0, 0, 0)) };
+        let above = found
+            .iter()
+            .map(|(line, buffer)| area(buffer, corner(line), colour(line.colour, line.alpha)));
+        self.renderer.prepare_with_custom(
+            &gpu.device,
+            &gpu.queue,
+            fonts,
+            &mut self.atlas,
+            &self.viewport,
+            std::iter::once(below).chain(above),
+            &mut self.glyphs,
+            |request| self.halos.rasterize(request),
+        )
     }
 
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>) -> Result<(), glyphon::RenderError> {
@@ -113,28 +136,24 @@ impl TextPass {
     }
 }
 
-fn area<'a>(line: &TextLine, buffer: &'a Buffer, shift: [f32; 2], colour: Rgb, alpha: f32) -> TextArea<'a> {
-    let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;
-    TextArea {
-        buffer,
-        // Whole pixels keep stems sharp and keep a still picture still.
-        left: line.at[0].round() + shift[0],
-        top: (line.at[1] - 0.5 * line_height(line.size)).round() + shift[1],
-        scale: 1.0,
-        bounds: TextBounds::default(),
-        default_color: Color::rgba(byte(colour[0]), byte(colour[1]), byte(colour[2]), byte(alpha)),
-        custom_glyphs: &[],
-    }
+/// The upper left corner of a line, in whole pixels: they keep stems sharp and keep a still picture still.
+fn corner(line: &TextLine) -> [f32; 2] {
+    [line.at[0].round(), (line.at[1] - 0.5 * line_height(line.size)).round()]
 }
 
-fn halo<'a>(areas: &mut Vec<TextArea<'a>>, line: &TextLine, buffer: &'a Buffer) {
-    let (strength, colour) = line.halo;
-    if strength <= 0.0 {
-        return;
-    }
-    let reach = (line.size / 13.0 * 1.4).max(1.0);
-    for k in 0..4 {
-        let (sin, cos) = (std::f32::consts::FRAC_PI_4 * (2 * k + 1) as f32).sin_cos();
-        areas.push(area(line, buffer, [reach * cos, reach * sin], colour, strength * line.alpha));
+pub(super) fn colour(colour: Rgb, alpha: f32) -> Color {
+    let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;
+    Color::rgba(byte(colour[0]), byte(colour[1]), byte(colour[2]), byte(alpha))
+}
+
+fn area(buffer: &Buffer, [left, top]: [f32; 2], default_color: Color) -> TextArea<'_> {
+    TextArea {
+        buffer,
+        left,
+        top,
+        scale: 1.0,
+        bounds: TextBounds::default(),
+        default_color,
+        custom_glyphs: &[],
     }
 }
