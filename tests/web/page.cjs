@@ -1,4 +1,5 @@
-// Tries the page of scripts/web in Chromium without a graphics card: node page.cjs PAGE PROGRAM PICTURES.
+// Tries the lab and the lessons of the book that scripts/book has built, in Chromium without a graphics card:
+// node page.cjs BOOK PROGRAM PICTURES.
 "use strict";
 const assert = require("node:assert");
 const { execFileSync } = require("node:child_process");
@@ -24,9 +25,10 @@ const SET_POINT = [790, 375];
 /** Least likeness of a picture of the view and the program's, which lacks the prediction. A tenth of a second later it is 0.3. */
 const LIKENESS = 0.9;
 const SWIFTSHADER = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const CLIPBOARD = ["clipboard-read", "clipboard-write"];
 const work = fs.mkdtempSync(path.join(os.tmpdir(), "page-"));
 
-/** Serves the page as any server of files does. */
+/** Serves the book as any server of files does. */
 function serve() {
   const server = http.createServer((request, answer) => {
     const name = new URL(request.url, "http://page").pathname.replace(/\/$/, "/index.html");
@@ -54,7 +56,7 @@ class Tab {
     page.on("console", (message) => said.push(message.text()));
     page.on("pageerror", (error) => said.push(String(error)));
     page.on("request", (request) => {
-      const inside = [address.split("#")[0], "data:", "blob:"];
+      const inside = [new URL(address).origin, "data:", "blob:"];
       if (!inside.some((start) => request.url().startsWith(start))) said.push(`a request outside: ${request.url()}`);
     });
     await page.goto(address);
@@ -67,18 +69,18 @@ class Tab {
     this.page = page;
   }
 
-  /** What the lab says of itself: title, time in s, whether it plays, and its branch. */
+  /** What the lab says of itself: title, time in s, whether it plays, its branch, and the line of its status. */
   async state() {
-    const words = (await this.page.getAttribute("#lab", "aria-label")) ?? "";
-    const [, title, time, moves, branch] = words.match(/^(.*): ([\d.]+) s, (\w+), branch (.*)$/) ?? [];
-    return { title, time: Number(time), plays: moves === "playing", branch };
+    const words = (await this.page.locator("#lab").getAttribute("aria-label")) ?? "";
+    const [, title, time, moves, branch, status] = words.match(/^(.*): ([\d.]+) s, (\w+), branch ([^.]*)(?:\. (.*))?$/) ?? [];
+    return { title, time: Number(time), plays: moves === "playing", branch, status: status ?? "" };
   }
 
   async until(what, holds) {
     for (let tries = 0; tries < 300; tries++) {
       const state = await this.state();
       if (holds(state)) return state;
-      await this.page.waitForTimeout(100);
+      await new Promise((resolve) => setTimeout(resolve, 100));
     }
     throw new Error(`never: ${what}; it says ${JSON.stringify(await this.state())}`);
   }
@@ -138,6 +140,7 @@ async function runsAsTheProgram(context, home, said, scene) {
   await tab.page.waitForTimeout(1000);
   await tab.picture(`${scene}-paused`);
   const drawn = await tab.download("p", `${scene}.png`);
+  await provesItself(context, tab, said, scene);
   const kept = await tab.keep(scene);
   const wanted = path.join(work, `${scene}-wanted`);
   const at = (await tab.state()).time;
@@ -151,6 +154,52 @@ async function runsAsTheProgram(context, home, said, scene) {
   console.log(`${scene}: at ${at} s its picture and the program's are alike by ${likeness.toFixed(3)}`);
   assert(likeness > LIKENESS, `${scene}: the picture is not that of the program`);
   await tab.page.close();
+}
+
+/** The link that *Share* copies leads another page, and the program, to the same run; one that was tampered with does not. */
+async function provesItself(context, tab, said, scene) {
+  await tab.page.keyboard.press("l");
+  await tab.until("a link is copied", (state) => state.status.includes("copied"));
+  const link = await tab.page.evaluate(() => navigator.clipboard.readText());
+  assert.match(link, new RegExp(`#${scene}\\?`), "a readable link");
+  assert.match(echelon("run", link, "--no-record"), /the same run, bit for bit/);
+  const { time } = await tab.state();
+  const other = await Tab.open(context, link, said);
+  const opened = await other.until("it compares", (state) => state.status.startsWith("Link: "));
+  assert.match(opened.status, /^Link: the same run, bit for bit, up to t = /);
+  assert.strictEqual(opened.time, time);
+  await other.page.waitForTimeout(1000);
+  await other.picture(`${scene}-shared`);
+  await other.page.close({ runBeforeUnload: false });
+  if (scene !== "circle-three") return;
+  const wrong = await Tab.open(context, link.replace(/d=\w+/, "d=00000000"), said);
+  await wrong.until("it differs", (state) => state.status.startsWith("Link: DIFFERENT"));
+  await wrong.picture("tampered-link");
+  await wrong.page.close({ runBeforeUnload: false });
+}
+
+/** A tab that sleeps for an hour goes on where it was. */
+async function sleeps(browser, home, said) {
+  const context = await browser.newContext({ viewport: SIZE });
+  await context.addInitScript(() => {
+    for (const clock of [Performance.prototype, Date]) {
+      const now = clock.now;
+      clock.now = function () {
+        return now.call(this) + (globalThis.slept ?? 0);
+      };
+    }
+  });
+  const tab = await Tab.open(context, `${home}#circle-three`, said);
+  const session = await context.newCDPSession(tab.page);
+  await session.send("Page.setWebLifecycleState", { state: "frozen" });
+  const before = await tab.state();
+  await session.send("Page.setWebLifecycleState", { state: "active" });
+  await tab.page.evaluate(() => {
+    globalThis.slept = 3_600_000;
+  });
+  const after = await tab.until("it goes on", (state) => state.time > before.time + 0.3);
+  assert(after.plays && after.time < before.time + 5, `it slept: ${before.time} s, and then ${after.time} s`);
+  await context.close();
 }
 
 /** Somebody drags a set point, looks back, branches, closes the tab and finds the work again. */
@@ -199,6 +248,28 @@ async function worksByHand(context, home, said) {
   await next.page.close({ runBeforeUnload: false });
 }
 
+/** Every command of the lessons has a button that opens its lab beside the text, and its link leads to a run. */
+async function teaches(context, home, said) {
+  const page = await context.newPage();
+  page.on("console", (message) => said.push(message.text()));
+  page.on("pageerror", (error) => said.push(String(error)));
+  await page.goto(new URL("../lessons.html", home).href);
+  const buttons = page.locator("button.live-lab");
+  const commands = await page.locator("main code", { hasText: /^echelon lab '#/ }).allTextContents();
+  assert(commands.length >= 8 && (await buttons.count()) === commands.length, `${commands.length} labs in the lessons`);
+  for (const [index, command] of commands.entries()) {
+    await buttons.nth(index).click();
+    const lab = new Tab(page.frameLocator("div.live-lab iframe"));
+    const link = command.match(/'(#.*)'/)[1];
+    await lab.until(`${link} runs`, (state) => state.time > 0);
+    assert.strictEqual(await page.locator("iframe").count(), 1, "one lab at a time");
+    await page.waitForTimeout(500);
+    await page.screenshot({ path: path.join(pictures, `lesson-${index + 1}.png`) });
+  }
+  console.log(`${commands.length} labs of the lessons run`);
+  await page.close({ runBeforeUnload: false });
+}
+
 /** A telephone: a narrow window, and two fingers. */
 async function fitsTelephones(browser, home, said) {
   const context = await browser.newContext({ viewport: { width: 320, height: 480 }, hasTouch: true, isMobile: true });
@@ -245,12 +316,14 @@ async function saysWhatIsMissing(browser, home, said) {
 
 async function main() {
   const server = await serve();
-  const home = `http://localhost:${server.address().port}/`;
+  const home = `http://localhost:${server.address().port}/lab/`;
   const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: SWIFTSHADER });
-  const context = await browser.newContext({ viewport: SIZE, acceptDownloads: true });
+  const context = await browser.newContext({ viewport: SIZE, acceptDownloads: true, permissions: CLIPBOARD });
   const said = [];
   for (const scene of ["circle-three", "seven-v", "cars-yard"]) await runsAsTheProgram(context, home, said, scene);
   await worksByHand(context, home, said);
+  await teaches(context, home, said);
+  await sleeps(browser, home, said);
   await fitsTelephones(browser, home, said);
   await saysWhatIsMissing(browser, home, said);
   assert.deepStrictEqual(said, [], "the console is silent, and nothing outside is asked for");

@@ -20,9 +20,9 @@ use web_time::Instant;
 /// Keys of the browser's storage under which tabs keep unsaved work begin with this; the time at which the tab was opened
 /// follows, ms.
 const WORK: &str = "echelon-work-";
-/// Why nothing is drawn where there is no WebGL 2.
-const NO_WEBGL: &str = "This browser offers no WebGL 2, with which the lab draws. Allow it to use the graphics card, or take \
-                        another browser. `echelon lab` opens the same window without a browser.";
+/// Why nothing is drawn where there is neither WebGPU nor WebGL 2.
+const NO_WEBGL: &str = "This browser offers neither WebGPU nor WebGL 2, with which the lab draws. Allow it to use the graphics \
+                        card, or take another browser. `echelon lab` opens the same window without a browser.";
 /// Why nothing is drawn any more where the browser has taken the device away.
 const LOST: &str =
     "The browser has taken the graphics device away. Load the page again: it offers your unsaved changes.";
@@ -36,8 +36,8 @@ thread_local! {
 }
 
 /// Shows the lab in the canvas of the page that has this id, until the page is left. The address may carry a link, of
-/// which the simplest names a scene that comes with the program, `#circle-three`. What goes wrong stands in the console, and in the element with the id `fault` if there
-/// is one.
+/// which the simplest names a scene that comes with the program, `#circle-three`. What goes wrong stands in the console, and
+/// in the element with the id `fault` if there is one.
 pub fn open_on_page(canvas: &'static str) {
     let began = Instant::now();
     std::panic::set_hook(Box::new(|info| {
@@ -50,9 +50,13 @@ pub fn open_on_page(canvas: &'static str) {
         let Some(canvas) = found.and_then(|element| element.dyn_into::<HtmlCanvasElement>().ok()) else {
             return tell(&format!("The page has no canvas with the id {canvas}."));
         };
-        if !opens_webgl(&canvas) {
+        let backends = if offers_webgpu().await {
+            wgpu::Backends::BROWSER_WEBGPU
+        } else if opens_webgl(&canvas) {
+            wgpu::Backends::GL
+        } else {
             return tell(NO_WEBGL);
-        }
+        };
         SHOWN.set(Some((canvas.clone(), String::new())));
         listen(&canvas, "webglcontextlost", |_| tell(LOST));
         if let Some(window) = web_sys::window() {
@@ -63,7 +67,7 @@ pub fn open_on_page(canvas: &'static str) {
             });
         }
         let web = eframe::WebOptions {
-            wgpu_options: WgpuConfiguration { wgpu_setup: setup(), ..WgpuConfiguration::default() },
+            wgpu_options: WgpuConfiguration { wgpu_setup: setup(backends), ..WgpuConfiguration::default() },
             // It would cost as much as the rest on a processor that draws.
             dithering: false,
             ..eframe::WebOptions::default()
@@ -90,6 +94,12 @@ pub fn open_on_page(canvas: &'static str) {
 
 fn document() -> Option<web_sys::Document> {
     web_sys::window()?.document()
+}
+
+/// Whether the browser has a device for WebGPU. It offers one on this machine and by https alone.
+async fn offers_webgpu() -> bool {
+    web_sys::window().is_some_and(|window| window.is_secure_context())
+        && wgpu::util::is_browser_webgpu_supported().await
 }
 
 /// Whether the canvas can be drawn into with WebGL 2; what is drawn here comes from a texture, so it needs neither samples nor
@@ -123,7 +133,8 @@ pub(crate) fn show_state(app_state: &AppState) {
     let Some(scene) = app_state.scene() else { return };
     let branch = app_state.branches.get(app_state.branch).map_or("", |branch| &branch.name);
     let moves = if app_state.playing { "playing" } else { "paused" };
-    let words = format!("{}: {:.2} s, {moves}, branch {branch}", scene.title, app_state.time());
+    let status = app_state.status.as_ref().map_or_else(String::new, |status| format!(". {}", status.text));
+    let words = format!("{}: {:.2} s, {moves}, branch {branch}{status}", scene.title, app_state.time());
     SHOWN.with_borrow_mut(|shown| {
         let Some((canvas, said)) = shown.as_mut().filter(|(_, said)| *said != words) else { return };
         // Without it the page is as it was.
@@ -165,8 +176,9 @@ fn left() -> Option<RecoverableWork> {
 }
 
 /// A device with what the pictures need, within the limits of WebGL 2.
-fn setup() -> WgpuSetup {
+fn setup(backends: wgpu::Backends) -> WgpuSetup {
     let mut new = WgpuSetupCreateNew::without_display_handle();
+    new.instance_descriptor.backends = backends;
     new.power_preference = wgpu::PowerPreference::HighPerformance;
     new.device_descriptor = Arc::new(|adapter| wgpu::DeviceDescriptor {
         label: Some("echelon lab"),
