@@ -25,6 +25,7 @@ const SET_POINT = [790, 375];
 /** Least likeness of a picture of the view and the program's, which lacks the prediction. A tenth of a second later it is 0.3. */
 const LIKENESS = 0.9;
 const SWIFTSHADER = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const WEBGPU = ["--enable-unsafe-webgpu", "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--use-webgpu-adapter=swiftshader"];
 const CLIPBOARD = ["clipboard-read", "clipboard-write"];
 const work = fs.mkdtempSync(path.join(os.tmpdir(), "page-"));
 
@@ -142,18 +143,48 @@ async function runsAsTheProgram(context, home, said, scene) {
   const drawn = await tab.download("p", `${scene}.png`);
   await provesItself(context, tab, said, scene);
   const kept = await tab.keep(scene);
-  const wanted = path.join(work, `${scene}-wanted`);
-  const at = (await tab.state()).time;
-  assert.strictEqual(at, paused.time);
-  echelon("capture", kept, "--at", String(at), "--view", "snake", "--without", "inset", "--size", "1920x1080", "-o", wanted);
-  const [picture] = fs.readdirSync(wanted).filter((name) => name.endsWith(".png"));
-  fs.copyFileSync(drawn, path.join(pictures, `${scene}-drawn.png`));
-  fs.copyFileSync(path.join(wanted, picture), path.join(pictures, `${scene}-wanted.png`));
+  assert.strictEqual((await tab.state()).time, paused.time);
+  drawnAlike(scene, drawn, kept, paused.time);
+  await tab.page.close();
+}
+
+/** A picture that the page has drawn of a scene at a time is that of the program. */
+function drawnAlike(name, drawn, scene, at) {
+  const wanted = path.join(work, `${name}-wanted`);
+  echelon("capture", scene, "--at", String(at), "--view", "snake", "--without", "inset", "--size", "1920x1080", "-o", wanted);
+  const [picture] = fs.readdirSync(wanted).filter((file) => file.endsWith(".png"));
+  fs.copyFileSync(drawn, path.join(pictures, `${name}-drawn.png`));
+  fs.copyFileSync(path.join(wanted, picture), path.join(pictures, `${name}-wanted.png`));
   const compared = JSON.parse(echelon("compare", path.join(wanted, picture), drawn, "--threshold", "0", "--json"));
   const [{ likeness }] = compared.pictures;
-  console.log(`${scene}: at ${at} s its picture and the program's are alike by ${likeness.toFixed(3)}`);
-  assert(likeness > LIKENESS, `${scene}: the picture is not that of the program`);
-  await tab.page.close();
+  console.log(`${name}: at ${at} s its picture and the program's are alike by ${likeness.toFixed(3)}`);
+  assert(likeness > LIKENESS, `${name}: the picture is not that of the program`);
+}
+
+/** Where the browser has a graphics card for WebGPU; here a processor passes itself off as one. */
+async function drawsWithWebGpu(home, said) {
+  const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: [...SWIFTSHADER, ...WEBGPU] });
+  const context = await browser.newContext({ viewport: SIZE, acceptDownloads: true });
+  await context.addInitScript(() => {
+    const parameter = WebGL2RenderingContext.prototype.getParameter;
+    WebGL2RenderingContext.prototype.getParameter = function (name) {
+      const unmasked = 0x9246;
+      return name === unmasked ? "A graphics card" : parameter.call(this, name);
+    };
+    const get = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...options) {
+      globalThis.drawnWith = kind;
+      return get.call(this, kind, ...options);
+    };
+  });
+  const tab = await Tab.open(context, `${home}#line-three`, said);
+  assert.strictEqual(await tab.page.evaluate(() => globalThis.drawnWith), "webgpu");
+  await tab.page.keyboard.press("Space");
+  const paused = await tab.until("it pauses", (state) => !state.plays);
+  await tab.page.waitForTimeout(1000);
+  await tab.picture("webgpu-paused");
+  drawnAlike("webgpu", await tab.download("p", "webgpu.png"), "line-three", paused.time);
+  await browser.close();
 }
 
 /** The link that *Share* copies leads another page, and the program, to the same run; one that was tampered with does not. */
@@ -172,7 +203,7 @@ async function provesItself(context, tab, said, scene) {
   await other.picture(`${scene}-shared`);
   await other.page.close({ runBeforeUnload: false });
   if (scene !== "circle-three") return;
-  const wrong = await Tab.open(context, link.replace(/d=\w+/, "d=00000000"), said);
+  const wrong = await Tab.open(context, link.replace(/&d=\w+/, "&d=00000000"), said);
   await wrong.until("it differs", (state) => state.status.startsWith("Link: DIFFERENT"));
   await wrong.picture("tampered-link");
   await wrong.page.close({ runBeforeUnload: false });
@@ -324,6 +355,7 @@ async function main() {
   await worksByHand(context, home, said);
   await teaches(context, home, said);
   await sleeps(browser, home, said);
+  await drawsWithWebGpu(home, said);
   await fitsTelephones(browser, home, said);
   await saysWhatIsMissing(browser, home, said);
   assert.deepStrictEqual(said, [], "the console is silent, and nothing outside is asked for");

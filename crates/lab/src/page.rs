@@ -14,7 +14,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 use wasm_bindgen::prelude::Closure;
 use wasm_bindgen::{JsCast, JsValue};
-use web_sys::{Event, EventTarget, HtmlCanvasElement, Storage};
+use web_sys::{Event, EventTarget, HtmlCanvasElement, Storage, WebGl2RenderingContext};
 use web_time::Instant;
 
 /// Keys of the browser's storage under which tabs keep unsaved work begin with this; the time at which the tab was opened
@@ -26,6 +26,9 @@ const NO_WEBGL: &str = "This browser offers neither WebGPU nor WebGL 2, with whi
 /// Why nothing is drawn any more where the browser has taken the device away.
 const LOST: &str =
     "The browser has taken the graphics device away. Load the page again: it offers your unsaved changes.";
+
+/// What draws, by the extension `WEBGL_debug_renderer_info`.
+const UNMASKED_RENDERER: u32 = 0x9246;
 
 /// Whether the scene has changes that are not saved.
 static UNSAVED: AtomicBool = AtomicBool::new(false);
@@ -50,9 +53,10 @@ pub fn open_on_page(canvas: &'static str) {
         let Some(canvas) = found.and_then(|element| element.dyn_into::<HtmlCanvasElement>().ok()) else {
             return tell(&format!("The page has no canvas with the id {canvas}."));
         };
-        let backends = if offers_webgpu().await {
+        // A browser complains in its console where it is asked for a card that is not there.
+        let backends = if draws_on_card() && offers_webgpu().await {
             wgpu::Backends::BROWSER_WEBGPU
-        } else if opens_webgl(&canvas) {
+        } else if webgl(&canvas).is_some() {
             wgpu::Backends::GL
         } else {
             return tell(NO_WEBGL);
@@ -96,21 +100,34 @@ fn document() -> Option<web_sys::Document> {
     web_sys::window()?.document()
 }
 
-/// Whether the browser has a device for WebGPU. It offers one on this machine and by https alone.
+/// Whether the browser draws on a graphics card; a processor draws faster with WebGL than with WebGPU.
+fn draws_on_card() -> bool {
+    let canvas = document().and_then(|document| document.create_element("canvas").ok());
+    let context = canvas.and_then(|canvas| webgl(canvas.unchecked_ref()));
+    let name = context.and_then(|context| {
+        // Chromium tells the name where this is asked for, others always.
+        let asked = context.get_extension("WEBGL_debug_renderer_info").ok().flatten();
+        let parameter = asked.map_or(WebGl2RenderingContext::RENDERER, |_| UNMASKED_RENDERER);
+        context.get_parameter(parameter).ok()?.as_string()
+    });
+    name.is_some_and(|name| !rendering::draws_on_processor(&name))
+}
+
+/// Whether the browser has a device for WebGPU. It offers one to pages of this machine and to those by https.
 async fn offers_webgpu() -> bool {
     web_sys::window().is_some_and(|window| window.is_secure_context())
         && wgpu::util::is_browser_webgpu_supported().await
 }
 
-/// Whether the canvas can be drawn into with WebGL 2; what is drawn here comes from a texture, so it needs neither samples nor
-/// depth of its own. (Without alpha, a browser would convert every pixel.)
-fn opens_webgl(canvas: &HtmlCanvasElement) -> bool {
+/// What draws into the canvas with WebGL 2. What is drawn here comes from a texture, so it needs neither samples nor depth of
+/// its own. (Without alpha, a browser would convert every pixel.)
+fn webgl(canvas: &HtmlCanvasElement) -> Option<WebGl2RenderingContext> {
     let attributes = js_sys::Object::new();
     for name in ["antialias", "depth", "stencil"] {
         // A plain object takes every property.
         let _ = js_sys::Reflect::set(&attributes, &name.into(), &JsValue::FALSE);
     }
-    canvas.get_context_with_context_options("webgl2", &attributes).is_ok_and(|context| context.is_some())
+    canvas.get_context_with_context_options("webgl2", &attributes).ok()??.dyn_into().ok()
 }
 
 /// Calls `act` for every event of this name, as long as the page is shown.

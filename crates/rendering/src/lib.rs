@@ -50,7 +50,7 @@ pub use error::Error;
 pub use gpu::adapters::{AdapterChoice, adapters};
 pub use gpu::camera_renderer::GpuCameraRenderer;
 pub use gpu::passes::texture::{TextureBinding, TexturePass};
-pub use gpu::{AdapterInfo, Gpu};
+pub use gpu::{AdapterInfo, Gpu, draws_on_processor};
 pub use ground::trail::{Trail, set_points};
 pub use palette::robot_colours;
 pub use picture_spec::PictureSpec;

@@ -43,7 +43,7 @@ impl AdapterInfo {
 }
 
 /// Whether an adapter of this name draws on the processor: GL and browsers tell the name alone, with others around it.
-fn draws_on_processor(name: &str) -> bool {
+pub fn draws_on_processor(name: &str) -> bool {
     let name = name.to_lowercase();
     ["llvmpipe", "softpipe", "swiftshader", "basic render"].iter().any(|known| name.contains(known))
 }
