@@ -199,6 +199,7 @@ async function provesItself(context, tab, said, scene) {
   const opened = await other.until("it compares", (state) => state.status.startsWith("Link: "));
   assert.match(opened.status, /^Link: the same run, bit for bit, up to t = /);
   assert.strictEqual(opened.time, time);
+  assert(!opened.status.includes("is offered"), "nobody offers the work of a tab that is open");
   await other.page.waitForTimeout(1000);
   await other.picture(`${scene}-shared`);
   await other.page.close({ runBeforeUnload: false });
@@ -269,6 +270,7 @@ async function worksByHand(context, home, said) {
   await dialog.accept();
   await closed;
   const next = await Tab.open(context, `${home}#peaking`, said);
+  assert.match((await next.state()).status, /is offered$/);
   await next.differs("work-offered", NOTICE, async () => {
     await next.picture("work-offered-whole");
     await next.page.mouse.click(...RESTORE);

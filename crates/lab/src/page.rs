@@ -38,7 +38,8 @@ thread_local! {
     static SHOWN: RefCell<Option<(HtmlCanvasElement, String)>> = const { RefCell::new(None) };
 }
 
-/// Shows the lab in the canvas of the page that has this id, until the page is left. The address may carry a link, of
+/// Shows the lab in the canvas of the page that has this id, until the page is left. The canvas may say under which key this
+/// tab keeps unsaved work, `data-work`, and which tabs are open besides, `data-open`. The address may carry a link, of
 /// which the simplest names a scene that comes with the program, `#circle-three`. What goes wrong stands in the console, and
 /// in the element with the id `fault` if there is one.
 pub fn open_on_page(canvas: &'static str) {
@@ -70,6 +71,9 @@ pub fn open_on_page(canvas: &'static str) {
                 }
             });
         }
+        let place =
+            canvas.get_attribute("data-work").unwrap_or_else(|| format!("{WORK}{:.0}", js_sys::Date::now()));
+        let open = canvas.get_attribute("data-open").unwrap_or_default();
         let web = eframe::WebOptions {
             wgpu_options: WgpuConfiguration { wgpu_setup: setup(backends), ..WgpuConfiguration::default() },
             // It would cost as much as the rest on a processor that draws.
@@ -79,9 +83,9 @@ pub fn open_on_page(canvas: &'static str) {
         let make: eframe::AppCreator<'static> = Box::new(move |context| {
             let ended = Arc::new(Mutex::new(None));
             let options = Options { scene: named().map(PathBuf::from), ..Options::default() };
-            let left = left();
-            let place = PathBuf::from(format!("{WORK}{:.0}", js_sys::Date::now()));
-            let mut lab = LabApp::new(context, &options, Autosave::at(Some(place)), left, began, ended)?;
+            let left = left(&open);
+            let autosave = Autosave::at(Some(PathBuf::from(place)));
+            let mut lab = LabApp::new(context, &options, autosave, left, began, ended)?;
             if storage().is_none() {
                 lab.app_state.note("The browser keeps nothing for this page: unsaved changes end with it");
             }
@@ -144,14 +148,17 @@ fn named() -> Option<String> {
     (hash.len() > 1).then_some(hash)
 }
 
-/// Keeps the page informed: its title, what the canvas shows, for those who cannot see it, and whether closing it loses work.
-pub(crate) fn show_state(app_state: &AppState) {
+/// Keeps the page informed: its title, what the canvas shows, for those who cannot see it, and whether closing it loses work;
+/// `offers` says whether it offers the work of a tab that was closed.
+pub(crate) fn show_state(app_state: &AppState, offers: bool) {
     UNSAVED.store(app_state.unsaved(), Relaxed);
     let Some(scene) = app_state.scene() else { return };
     let branch = app_state.branches.get(app_state.branch).map_or("", |branch| &branch.name);
     let moves = if app_state.playing { "playing" } else { "paused" };
     let status = app_state.status.as_ref().map_or_else(String::new, |status| format!(". {}", status.text));
-    let words = format!("{}: {:.2} s, {moves}, branch {branch}{status}", scene.title, app_state.time());
+    let offer = if offers { ". Unsaved work of a closed tab is offered" } else { "" };
+    let words =
+        format!("{}: {:.2} s, {moves}, branch {branch}{status}{offer}", scene.title, app_state.time());
     SHOWN.with_borrow_mut(|shown| {
         let Some((canvas, said)) = shown.as_mut().filter(|(_, said)| *said != words) else { return };
         // Without it the page is as it was.
@@ -183,12 +190,13 @@ pub(crate) fn discard(place: &Path) {
     }
 }
 
-/// The newest work of a tab before this one.
-fn left() -> Option<RecoverableWork> {
+/// The newest work of a tab that was closed; `open` names those that are not, with spaces between.
+fn left(open: &str) -> Option<RecoverableWork> {
     let storage = storage()?;
     let keys = (0..storage.length().ok()?).filter_map(|index| storage.key(index).ok()?);
     let opened = |key: &String| key.strip_prefix(WORK).and_then(|time| time.parse::<u64>().ok());
-    let (_, key) = keys.filter_map(|key| Some((opened(&key)?, key))).max()?;
+    let closed = keys.filter(|key| open.split(' ').all(|open| open != key));
+    let (_, key) = closed.filter_map(|key| Some((opened(&key)?, key))).max()?;
     work_of(PathBuf::from(&key), &storage.get_item(&key).ok()??)
 }
 

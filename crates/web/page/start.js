@@ -7,12 +7,25 @@ if (context) {
   withDrawnPictures(context);
 }
 
+await holdWork(document.getElementById("lab").dataset);
 start().catch((error) => {
   document.getElementById("fault").textContent =
     `The lab cannot be started: ${error}. \`echelon lab\` opens the same window without a browser.`;
 });
 // An address that is edited names another scene.
 addEventListener("hashchange", () => location.reload());
+
+/**
+ * A tab holds the key under which it keeps unsaved work for as long as it is open, so that no other tab offers that work as
+ * lost. Browsers have such locks for pages of this machine and for those by https.
+ */
+async function holdWork(data) {
+  data.work = `echelon-work-${Date.now()}`;
+  if (!navigator.locks) return;
+  const { held } = await navigator.locks.query();
+  data.open = held.map((lock) => lock.name).join(" ");
+  navigator.locks.request(data.work, () => new Promise(() => {}));
+}
 
 /**
  * egui's shader holds a second way to filter, for pictures in tests, and dithering, each behind a uniform that is 0 here. A

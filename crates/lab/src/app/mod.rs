@@ -441,7 +441,7 @@ impl eframe::App for LabApp {
         }
         self.take_dropped(ctx);
         #[cfg(target_family = "wasm")]
-        crate::page::show_state(&self.app_state);
+        crate::page::show_state(&self.app_state, self.left.is_some());
         if let Some(why) = self.viewport.gpu.lost() {
             let text = format!("the graphics device was lost: {why}; the next start offers unsaved work");
             self.app_state.draft = None;
