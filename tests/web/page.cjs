@@ -276,8 +276,12 @@ async function worksByHand(context, home, said) {
     await next.page.mouse.click(...RESTORE);
     await next.until("the work is back", (state) => state.title === back.title);
   });
+  const text = fs.readFileSync("scenes/seven-v.toml", "utf8");
+  await next.page.evaluate((text) => navigator.clipboard.writeText(text), text);
   const saved = fs.readFileSync(await next.download("Control+s", "recovered.toml"), "utf8");
   assert.notStrictEqual(saved, fs.readFileSync("scenes/circle-three.toml", "utf8"), "the change is in the work that is restored");
+  await next.page.keyboard.press("Control+v");
+  await next.until("the pasted scene opens", (state) => state.title === "A V of seven");
   await next.page.close({ runBeforeUnload: false });
 }
 

@@ -32,6 +32,8 @@ const UNMASKED_RENDERER: u32 = 0x9246;
 
 /// Whether the scene has changes that are not saved.
 static UNSAVED: AtomicBool = AtomicBool::new(false);
+/// Whether unsaved work is kept at all.
+static KEEPS: AtomicBool = AtomicBool::new(true);
 
 thread_local! {
     /// The canvas, and what it says of itself.
@@ -39,7 +41,7 @@ thread_local! {
 }
 
 /// Shows the lab in the canvas of the page that has this id, until the page is left. The canvas may say under which key this
-/// tab keeps unsaved work, `data-work`, and which tabs are open besides, `data-open`. The address may carry a link, of
+/// tab keeps unsaved work, `data-work`, with "" where it keeps none, and which tabs are open besides, `data-open`. The address may carry a link, of
 /// which the simplest names a scene that comes with the program, `#circle-three`. What goes wrong stands in the console, and
 /// in the element with the id `fault` if there is one.
 pub fn open_on_page(canvas: &'static str) {
@@ -83,11 +85,14 @@ pub fn open_on_page(canvas: &'static str) {
         let make: eframe::AppCreator<'static> = Box::new(move |context| {
             let ended = Arc::new(Mutex::new(None));
             let options = Options { scene: named().map(PathBuf::from), ..Options::default() };
-            let left = left(&open);
-            let autosave = Autosave::at(Some(PathBuf::from(place)));
+            let keeps = !place.is_empty();
+            KEEPS.store(keeps, Relaxed);
+            let left = if keeps { left(&open) } else { None };
+            let autosave = Autosave::at(keeps.then(|| PathBuf::from(place)));
             let mut lab = LabApp::new(context, &options, autosave, left, began, ended)?;
-            if storage().is_none() {
-                lab.app_state.note("The browser keeps nothing for this page: unsaved changes end with it");
+            if storage().is_none() && keeps {
+                let words = "The browser keeps nothing for this page: unsaved changes end with it";
+                lab.app_state.say(words, true);
             }
             Ok(Box::new(lab))
         });
@@ -151,7 +156,7 @@ fn named() -> Option<String> {
 /// Keeps the page informed: its title, what the canvas shows, for those who cannot see it, and whether closing it loses work;
 /// `offers` says whether it offers the work of a tab that was closed.
 pub(crate) fn show_state(app_state: &AppState, offers: bool) {
-    UNSAVED.store(app_state.unsaved(), Relaxed);
+    UNSAVED.store(KEEPS.load(Relaxed) && app_state.unsaved(), Relaxed);
     let Some(scene) = app_state.scene() else { return };
     let branch = app_state.branches.get(app_state.branch).map_or("", |branch| &branch.name);
     let moves = if app_state.playing { "playing" } else { "paused" };
@@ -179,7 +184,10 @@ fn storage() -> Option<Storage> {
 /// Keeps unsaved work in the browser's storage, if there is one.
 pub(crate) fn put(place: &Path, text: &str) -> Result<(), String> {
     let Some(storage) = storage() else { return Ok(()) };
-    storage.set_item(&place.to_string_lossy(), text).map_err(|error| format!("{error:?}"))
+    let why = |error: JsValue| {
+        error.dyn_into::<js_sys::Error>().map_or_else(|_| "no reason given".into(), |e| e.message().into())
+    };
+    storage.set_item(&place.to_string_lossy(), text).map_err(why)
 }
 
 /// Removes unsaved work.

@@ -20,6 +20,16 @@ const SHORT: &str =
     "#circle-three?law.k=3&@2.5:law.k=4&t=7.5&view=snake%2Btop&selected=follower-1&v=0.1.0&d=1a2b3c4d";
 
 #[test]
+fn a_scene_that_begins_with_a_comment_is_no_link() {
+    for meant in [SHORT, "  #seven-v\n", "https://example.org/lab#seven-v"] {
+        assert!(Link::is_meant(meant), "{meant}");
+    }
+    for shipped in SHIPPED {
+        assert!(!Link::is_meant(shipped.text), "{}", shipped.name);
+    }
+}
+
+#[test]
 fn a_link_is_read_with_or_without_what_stands_before_it() {
     let read = link(SHORT);
     assert_eq!(read.name(), "circle-three");

@@ -20,6 +20,8 @@ addEventListener("hashchange", () => location.reload());
  * lost. Browsers have such locks for pages of this machine and for those by https.
  */
 async function holdWork(data) {
+  // A lab beside the text of a lesson is for trying.
+  if (window.self !== window.top) return (data.work = "");
   data.work = `echelon-work-${Date.now()}`;
   if (!navigator.locks) return;
   const { held } = await navigator.locks.query();

@@ -35,7 +35,11 @@ impl AppState {
         self.chosen.clone_from(&link.selected);
         if let Some(time) = link.time {
             self.requests.push(RunRequest::Reach(time));
-            self.say(format!("The run goes to t = {time} s, to compare it with the link"), false);
+            let why = if link.proof.is_some() { ", to compare it with the link" } else { "" };
+            self.say(
+                format!("The run goes to t = {time} s{why}. Play leaves that, and goes on from where it is"),
+                false,
+            );
         }
         self.link = Some(link.clone());
         Ok(link)
@@ -45,7 +49,8 @@ impl AppState {
     pub(super) fn reached(&mut self, digest: Option<String>) {
         let Some(link) = &self.link else { return };
         let Some(digest) = digest else {
-            return self.say("Not compared with the link: the run was changed before its time", false);
+            return self
+                .say("Not compared with the link: the run was changed, or played, before its time", false);
         };
         let cameras = |robot: &scene::Robot| {
             robot.role.follow().is_some_and(|follow| follow.sensing.kind == SensingKind::Camera)
@@ -57,7 +62,7 @@ impl AppState {
     }
 
     /// Says something in the line under the bar, and in the log.
-    fn say(&mut self, text: impl Into<String>, fault: bool) {
+    pub(crate) fn say(&mut self, text: impl Into<String>, fault: bool) {
         let text = text.into();
         self.event(text.clone(), fault);
         self.status = Some(StatusLine { text, fault, offers_file: false });

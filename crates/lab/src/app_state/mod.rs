@@ -418,7 +418,11 @@ impl AppState {
                     self.fault(why);
                 }
             }
-            RunEvent::Refused(why) => self.fault(why),
+            RunEvent::Refused(why) => {
+                // Nothing is on its way any more.
+                self.status = None;
+                self.fault(why);
+            }
         }
     }
 

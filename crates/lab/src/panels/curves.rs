@@ -137,10 +137,11 @@ fn plot(
     }
 }
 
-/// The largest value outside the plot, if there is one.
+/// The largest value of all, if the plot leaves some out.
 fn peak(curves: &[QuantityCurve], [low, high]: [f64; 2]) -> Option<f64> {
-    let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]);
-    values.filter(|value| *value < low || *value > high).max_by(|a, b| a.abs().total_cmp(&b.abs()))
+    let values = || curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]);
+    let cut = values().any(|value| value < low || value > high);
+    values().filter(|_| cut).max_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
 
 /// Marks of an axis at round values: about `about` of them, at least `least` apart.
@@ -226,6 +227,19 @@ fn short(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_peak_is_that_of_all_values_where_some_are_cut_off() {
+        let curve = |values: &[f64]| QuantityCurve {
+            branch: 0,
+            robot: None,
+            points: values.iter().map(|value| [0.0, *value]).collect(),
+        };
+        let curves = [curve(&[0.0, 82.0]), curve(&[-11.3, 4.0])];
+        assert_eq!(peak(&curves, [-10.0, 90.0]), Some(82.0));
+        assert_eq!(peak(&curves, [-12.0, 90.0]), None);
+        assert_eq!(peak(&[curve(&[-744.0, 3.0])], [-10.0, 90.0]), Some(-744.0));
+    }
 
     #[test]
     fn straight_curves_keep_their_ends_and_bent_ones_their_shape() {

@@ -26,7 +26,7 @@ pub struct Runner {
 const MOST_UNREAD: usize = 600;
 /// Why a scene with cameras does not run.
 const BLIND: &str = if cfg!(target_family = "wasm") {
-    "A page renders no camera images: `echelon lab SCENE` opens the scene in a window."
+    "A page renders no camera images: `echelon lab SCENE`, with this scene or link, opens it in a window."
 } else {
     "There is no adapter to render camera images."
 };
@@ -195,7 +195,7 @@ impl RunWorker {
         Next::After(Duration::ZERO)
     }
 
-    /// Gives up what the run was to reach: it is another one.
+    /// Gives up what the run was to reach: it is another one, or somebody wants to see it from here on.
     fn leave_goal(&mut self) {
         if self.goal.take().is_some() {
             self.send(RunEvent::Reached(None));
@@ -267,6 +267,9 @@ impl RunWorker {
             RunRequest::Recorded(log) => self.look_through(&log),
             RunRequest::ResumeRecording(scene) => self.resume_recording(scene),
             RunRequest::Play(on) => {
+                if on {
+                    self.leave_goal();
+                }
                 self.playing = on && self.branches.is_some();
                 self.owed = 0.0;
             }

@@ -105,6 +105,11 @@ fn a_run_that_parts_or_is_changed_is_not_called_the_same() {
     assert!(status(&rig).0.starts_with("The run goes to t = 90000 s"), "{:?}", status(&rig));
     rig.act(&[set("law.k", "3.5")]);
     assert!(status(&rig).0.starts_with("Not compared with the link"), "{:?}", status(&rig));
+    // Play does not wait for a time that is far off.
+    rig.app_state.open_link("#line-three?t=90000").expect("a link");
+    assert!(!status(&rig).0.contains("compare"), "{:?}", status(&rig));
+    rig.act(&[Action::Toggle]);
+    assert!(status(&rig).0.starts_with("Not compared with the link"), "{:?}", status(&rig));
     // Another scene has nothing to do with the link.
     rig.act(&[Action::Restart]);
     assert_eq!(status(&rig).0, "");

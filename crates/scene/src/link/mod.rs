@@ -114,9 +114,11 @@ impl Link {
         }
     }
 
-    /// Whether a text is meant as a link: it begins with `#`, or is an address.
+    /// Whether a text is meant as a link: one line that begins with `#`, or is an address. Scenes, which may begin with a
+    /// comment, have more lines.
     pub fn is_meant(text: &str) -> bool {
-        text.trim_start().starts_with('#') || text.contains("://")
+        let text = text.trim();
+        !text.contains('\n') && (text.starts_with('#') || text.contains("://"))
     }
 
     /// Name of the scene: that of a shipped one, or `scene`.
