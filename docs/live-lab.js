@@ -32,7 +32,10 @@
       alone.textContent = "in a window of its own";
       const shut = document.createElement("button");
       shut.textContent = "close";
-      shut.addEventListener("click", () => close());
+      shut.addEventListener("click", () => {
+        close();
+        command.scrollIntoView({ block: "nearest" });
+      });
       place.append(frame, alone, " ", shut);
       place.scrollIntoView({ block: "nearest" });
     });

@@ -90,6 +90,8 @@ pub fn open_on_page(canvas: &'static str) {
             let left = if keeps { left(&open) } else { None };
             let autosave = Autosave::at(keeps.then(|| PathBuf::from(place)));
             let mut lab = LabApp::new(context, &options, autosave, left, began, ended)?;
+            // Beside the text of a lesson, the text says what to try.
+            lab.hints &= keeps;
             if storage().is_none() && keeps {
                 let words = "The browser keeps nothing for this page: unsaved changes end with it";
                 lab.app_state.say(words, true);
