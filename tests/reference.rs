@@ -160,6 +160,8 @@ impl Case {
         let member =
             |(index, name): (usize, &String)| RobotInfo::new(name.clone(), index == 0, Body::default());
         Ok(Setup {
+            safety_config: None,
+            filters: vec![None; names.len()],
             changes: vec![],
             fleet: FleetInfo {
                 duration: self.duration,

@@ -32,12 +32,13 @@ fn dependencies(all_kinds: bool) -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// Whom each crate may use among our own; everybody else may not.
-const ARROWS: [(&str, &[&str]); 18] = [
+const ARROWS: [(&str, &[&str]); 19] = [
     ("vocabulary", &[]),
     ("output", &[]),
     ("film", &["vocabulary", "output"]),
     ("scene", &["vocabulary"]),
     ("formation", &["vocabulary"]),
+    ("safety", &["vocabulary"]),
     ("world", &["vocabulary"]),
     ("perception", &["vocabulary"]),
     ("metrics", &["vocabulary"]),
@@ -45,7 +46,7 @@ const ARROWS: [(&str, &[&str]); 18] = [
     // Its tests, examples and benches write pictures and films with `film`.
     ("rendering", &["vocabulary", "film"]),
     ("figures", &["vocabulary"]),
-    ("simulation", &["vocabulary", "scene", "formation", "world", "perception"]),
+    ("simulation", &["vocabulary", "scene", "formation", "safety", "world", "perception"]),
     ("digests", &["vocabulary", "metrics", "scene", "simulation"]),
     (
         "studies",
@@ -245,7 +246,7 @@ fn the_clock_is_read_by_the_program_only() {
 /// Numbers are narrowed where pixels and drawings are made, nowhere before.
 #[test]
 fn numbers_are_f64_until_they_are_drawn() {
-    let wide = ["scene", "formation", "world", "metrics", "simulation"];
+    let wide = ["scene", "formation", "safety", "world", "metrics", "simulation"];
     for (path, text) in sources(&["rs"]) {
         let member = path.components().skip_while(|c| c.as_os_str() != "crates").nth(1);
         if member.is_some_and(|m| wide.iter().any(|name| m.as_os_str() == *name)) {

@@ -47,7 +47,7 @@ pub struct Decision {
     pub applied: Command,
     /// ds/dt as the law took it, [m/s, rad/s].
     pub rates: [f64; 2],
-    /// Whether a limit cut the command.
+    /// Whether a limit or a filter cut the command.
     pub limited: bool,
     /// Whether the distance was below ℓ_min.
     pub too_close: bool,
@@ -127,21 +127,54 @@ impl Formation {
 
     /// Decides the commands of one control sample at `time` s from one observation per edge.
     pub fn decide(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
+        self.decide_through(time, observations, state, &mut |_, command| command);
+    }
+
+    /// As [`Formation::decide`], where a robot is told what `filter` makes of its command. Followers of that robot go by
+    /// what it is told.
+    pub fn decide_through(
+        &self,
+        time: f64,
+        observations: &[Observation],
+        state: &mut FormationState,
+        filter: &mut dyn FnMut(usize, Command) -> Command,
+    ) {
         state.differentiate_turn_rates(self.period);
-        self.evaluate(time, observations, state);
+        self.evaluate_through(time, observations, state, filter);
         state.remember_turn_rates();
     }
 
     /// Evaluates all laws at an instant, leaders before followers, without memory: for continuous time.
     pub fn evaluate(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
+        self.evaluate_through(time, observations, state, &mut |_, command| command);
+    }
+
+    fn evaluate_through(
+        &self,
+        time: f64,
+        observations: &[Observation],
+        state: &mut FormationState,
+        filter: &mut dyn FnMut(usize, Command) -> Command,
+    ) {
         for (robot, trajectory) in &self.leads {
-            let drive = trajectory.at(time);
+            let mut drive = trajectory.at(time);
+            let prescribed = Command { acceleration: drive.acceleration, turn_rate: drive.turn_rate };
+            let told = filter(*robot, prescribed);
+            if told != prescribed {
+                drive.acceleration = told.acceleration;
+                drive.turn_rate = told.turn_rate;
+                drive.turn_acceleration = state.drives[*robot].turn_acceleration;
+            }
             state.drives[*robot] = drive;
-            state.commands[*robot] = Command { acceleration: drive.acceleration, turn_rate: drive.turn_rate };
+            state.commands[*robot] = told;
         }
         for &index in self.graph.evaluation_order() {
             let follower = self.edges()[index].follower;
-            let decision = self.decide_edge(index, time, &observations[index], state);
+            let mut decision = self.decide_edge(index, time, &observations[index], state);
+            let told = filter(follower, decision.commanded);
+            if told != decision.commanded {
+                decision.divert(told, observations[index].own_speed, &self.limits[follower]);
+            }
             let drive = &mut state.drives[follower];
             drive.speed = observations[index].own_speed;
             drive.acceleration = decision.applied.acceleration;
@@ -195,6 +228,14 @@ impl Decision {
             limited: applied != asked,
             ..Self::default()
         }
+    }
+
+    /// Puts another command in the place of the one that was decided.
+    fn divert(&mut self, told: Command, own_speed: f64, limits: &Limits) {
+        let acceleration = limits.admissible(told.acceleration, own_speed);
+        self.commanded = told;
+        self.applied = Command { acceleration, ..told };
+        self.limited = true;
     }
 }
 
@@ -283,6 +324,35 @@ mod tests {
         let mut state = formation.start(vec![Estimate::default(); 2]);
         formation.decide(0.0, &[observation(2.0); 2], &mut state);
         assert_eq!(state.commands[0], Command { acceleration: 0.0, turn_rate: 0.3 });
+    }
+
+    #[test]
+    fn followers_go_by_what_their_leader_was_told_after_a_filter() {
+        let formation = chain(LawKind::FullState);
+        let free = Command { acceleration: 0.0, turn_rate: 0.3 };
+        let told = Command { acceleration: -0.7, turn_rate: 0.9 };
+        let mut states = [0, 1].map(|_| formation.start(vec![Estimate::default(); 2]));
+        let seen = [observation(2.0); 2];
+        let mut asked = vec![];
+        formation.decide(0.0, &seen, &mut states[0]);
+        formation.decide_through(0.0, &seen, &mut states[1], &mut |robot, command| {
+            asked.push((robot, command));
+            if robot == 0 { told } else { command }
+        });
+        assert_eq!(asked[0], (0, free));
+        assert_eq!((states[1].commands[0], states[1].drives[0].turn_rate), (told, 0.9));
+        assert_ne!(states[0].commands[1], states[1].commands[1]);
+        // The memory that full state feedback differentiates holds what was told.
+        for k in 1..3 {
+            let mut turn = |robot: usize, command| match robot {
+                0 => Command { turn_rate: 0.9 + 0.1 * f64::from(k), ..told },
+                _ => command,
+            };
+            formation.decide_through(0.0, &seen, &mut states[1], &mut turn);
+        }
+        formation
+            .decide_through(0.0, &seen, &mut states[1], &mut |robot, c| if robot == 0 { told } else { c });
+        assert!((states[1].drives[0].turn_acceleration - 10.0).abs() < 1e-9);
     }
 
     #[test]

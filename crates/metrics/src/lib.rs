@@ -7,6 +7,7 @@ mod digest;
 mod expectations;
 mod measurements;
 mod metrics;
+mod safety;
 mod statistics;
 
 pub use certificates::{CertificateMetrics, StatementMetrics};
@@ -15,4 +16,5 @@ pub use digest::{Digest, NumberOwner, numbers};
 pub use expectations::JudgedExpectation;
 pub use measurements::{MeasurementMetrics, difference};
 pub use metrics::{EdgeMetrics, Metrics, MetricsBuilder, RobotMetrics};
+pub use safety::SafetyMetrics;
 pub use statistics::{RootMeanSquare, median};

@@ -4,6 +4,7 @@ use crate::certificates::CertificateMetrics;
 use crate::clearance::Clearance;
 use crate::contacts::{ContactLog, ContactMetrics};
 use crate::measurements::{MeasurementMetrics, MeasurementSums};
+use crate::safety::{SafetyMetrics, SafetySums};
 use crate::statistics::RootMeanSquare;
 use serde::Serialize;
 use vocabulary::{Condition, Contact, EdgeState, EntityId, FleetInfo, Judging, StepRecord, Word};
@@ -51,6 +52,9 @@ pub struct RobotMetrics {
     pub lift_max: f64,
     /// At the end: able, overturned, stuck or fallen.
     pub condition: String,
+    /// What its safety filter did; `None` where it had none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub safety: Option<SafetyMetrics>,
 }
 
 /// One edge over a run.
@@ -106,6 +110,7 @@ pub struct MetricsBuilder {
     contacts: ContactLog,
     lifts: Vec<f64>,
     conditions: Vec<Condition>,
+    safety: Vec<SafetySums>,
 }
 
 /// Running sums of one edge.
@@ -144,6 +149,7 @@ impl MetricsBuilder {
             contacts: ContactLog::default(),
             lifts: vec![0.0; fleet.robots.len()],
             conditions: vec![Condition::Able; fleet.robots.len()],
+            safety: vec![SafetySums::default(); fleet.robots.len()],
             fleet: fleet.clone(),
         }
     }
@@ -166,6 +172,11 @@ impl MetricsBuilder {
             let lift = robot.attitude.height - self.fleet.surface(pose.x, pose.y).height;
             self.lifts[index] = self.lifts[index].max(lift);
             self.conditions[index] = robot.condition;
+        }
+        for state in &record.safety {
+            if let Some(sums) = self.safety.get_mut(state.robot) {
+                sums.add(time, state);
+            }
         }
         self.clearance.push(&record.snapshot);
         for contact in &record.contacts {
@@ -213,6 +224,7 @@ impl MetricsBuilder {
             clearance_min_time: room.map(|r| r.time),
             lift_max: self.lifts[index],
             condition: self.conditions[index].word().to_owned(),
+            safety: self.safety[index].finish(&self.fleet),
         }
     }
 }

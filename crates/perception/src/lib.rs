@@ -8,6 +8,7 @@
 pub mod detect;
 pub mod imaging;
 pub mod pose;
+pub mod proximity;
 pub mod sensors;
 
 use vocabulary::{Edge, EdgeSample, Observation, Relative, Snapshot, StepInterpolant, Track, nearest_turn};

@@ -1,7 +1,9 @@
 //! What the tables of a run have in their columns: a function for every kind of row.
 
 use crate::{Column, TableKind};
-use vocabulary::{Contact, EdgeState, MeasurementRecord, Placement, RobotState, Word};
+use vocabulary::{
+    Constraint, Contact, EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState, SafetyState, Word,
+};
 
 /// A value of a row.
 pub(crate) enum Cell<'a> {
@@ -31,6 +33,7 @@ pub(crate) fn empty(kind: TableKind) -> Vec<(&'static str, Column)> {
         TableKind::Edges => edge(0.0, [""; 2], &EdgeState::default(), &mut add),
         TableKind::Contacts => contact([""; 2], &Contact::default(), &mut add),
         TableKind::Props => prop(0.0, "", &Placement::default(), &mut add),
+        TableKind::Safety => safety(0.0, &FleetInfo::default(), &SafetyState::default(), &mut add),
         TableKind::Measurements => measurement([""; 2], &MeasurementRecord::default(), &mut add),
     }
     columns
@@ -115,6 +118,30 @@ pub(crate) fn measurement([leader, follower]: [&str; 2], frame: &MeasurementReco
     row("pan_rad", Number(frame.pan));
     let sides = ["region_x_px", "region_y_px", "region_width_px", "region_height_px"];
     numbers(sides, [region.x, region.y, region.width, region.height].map(f64::from), row);
+}
+
+/// Names of constraints, one after the other.
+pub(crate) fn names(fleet: &FleetInfo, list: &[Constraint]) -> String {
+    list.iter().map(|constraint| constraint.name(fleet)).collect::<Vec<_>>().join(", ")
+}
+
+/// What a safety filter did at a sample.
+pub(crate) fn safety(time: f64, fleet: &FleetInfo, state: &SafetyState, row: &mut Row<'_>) {
+    let barriers: Vec<Constraint> = state.barriers.iter().map(|barrier| barrier.constraint).collect();
+    let least = state.barriers.iter().map(|barrier| barrier.slack).fold(f64::INFINITY, f64::min);
+    row("time_s", Number(time));
+    row("robot", Text(fleet.robots.get(state.robot).map_or("", |robot| &robot.name)));
+    row("wished_acceleration_m_s2", Number(state.wished.acceleration));
+    row("wished_turn_rate_rad_s", Number(state.wished.turn_rate));
+    row("applied_acceleration_m_s2", Number(state.applied.acceleration));
+    row("applied_turn_rate_rad_s", Number(state.applied.turn_rate));
+    row("moved_m_s2", Number(state.moved));
+    row("room_m", Number(state.least_room().map_or(f64::INFINITY, |barrier| barrier.value)));
+    row("slack_m_s", Number(least));
+    numbers(["relaxed_collisions", "relaxed_views"], state.relaxed, row);
+    row("barriers", Text(&names(fleet, &barriers)));
+    row("acting", Text(&names(fleet, &state.acting)));
+    row("conflict", Text(&names(fleet, &state.conflict)));
 }
 
 #[cfg(test)]

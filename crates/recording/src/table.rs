@@ -29,6 +29,8 @@ words! {
         Props = "props",
         /// Measurements of followers, when they arrive.
         Measurements = "measurements",
+        /// What the safety filters did.
+        Safety = "safety",
     }
 }
 
@@ -55,6 +57,7 @@ impl TableKind {
         let has = |kind: &Self| match kind {
             Self::Props => moving,
             Self::Measurements => fleet.has_sensors,
+            Self::Safety => fleet.has_safety,
             _ => true,
         };
         Self::WORDS.iter().map(|(_, kind, _)| *kind).filter(has).collect()
@@ -62,7 +65,7 @@ impl TableKind {
 
     /// Shows `row` the values of every row that `record` adds.
     fn rows(self, fleet: &FleetInfo, record: &StepRecord, row: &mut Row<'_>) {
-        let StepRecord { snapshot, edges, contacts, frames } = record;
+        let StepRecord { snapshot, edges, contacts, frames, safety } = record;
         match self {
             Self::Robots => {
                 for (member, robot) in fleet.robots.iter().zip(&snapshot.robots) {
@@ -89,6 +92,11 @@ impl TableKind {
                 for frame in frames {
                     let Some(edge) = fleet.edges.get(frame.edge) else { continue };
                     columns::measurement(fleet.pair(*edge), frame, row);
+                }
+            }
+            Self::Safety => {
+                for state in safety {
+                    columns::safety(snapshot.time, fleet, state, row);
                 }
             }
         }

@@ -5,6 +5,8 @@ pub(crate) use vocabulary::colours::{Rgb, hex};
 
 /// The stripe on robots without a leader.
 pub(crate) const GOLD: Rgb = hex(0x00e3_b341);
+/// Barriers that are tight.
+pub(crate) const RED: Rgb = hex(0x00e5_3935);
 /// The names of robots in trouble.
 pub(crate) const ALARM: Rgb = hex(0x00ff_9a7a);
 /// Text on a light halo.

@@ -81,6 +81,8 @@ elements! {
     marks = "marks",
     /// Flashes where things touch, and the marks that stay there.
     contacts = "contacts",
+    /// Arcs around robots with a safety filter, which redden as barriers tighten, and the names of those that act.
+    barriers = "barriers",
 }
 
 /// Below this scale names could not be read.

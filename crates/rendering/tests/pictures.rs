@@ -10,7 +10,7 @@ use rendering::{AdapterChoice, Error, Gpu, PictureSpec, Renderer, Style, ViewLay
 use stage::{Path, Play};
 use std::sync::OnceLock;
 use vocabulary::math;
-use vocabulary::{Contact, EntityId, Picture, Pose, StepRecord};
+use vocabulary::{BarrierState, Constraint, Contact, EntityId, Picture, Pose, SafetyState, StepRecord};
 
 const SIZE: (u32, u32) = (640, 360);
 
@@ -149,6 +149,9 @@ fn every_element_can_be_switched_off() {
         let mut renderer = Renderer::new(gpu(), &play.fleet, 800, 600, 4).unwrap();
         let (mut trail, mut record) = (play.trail(1.9), play.at(2.0));
         record.contacts = vec![touch(record.snapshot.robots[0].motion.pose)];
+        let barrier =
+            BarrierState { constraint: Constraint::Robot(0), value: 0.2, slack: 0.0, direction: 1.0 };
+        record.safety = vec![SafetyState { robot: 1, barriers: vec![barrier], ..SafetyState::default() }];
         trail.push(&record);
         renderer
             .draw(PictureSpec::new(&trail, &record, &ViewLayout::single(Viewpoint::Snake), style))

@@ -12,7 +12,7 @@ use crate::{
     text::{Flag, Text, angle_within, form::Number, integer, keys, list, number, table},
     types::{
         BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, LawPart, ObserverPart, PhysicsPart,
-        SensingForm, SensingPart, TimePart, VehiclePart, ViewsPart, VisionPart,
+        ProximityPart, SafetyPart, SensingForm, SensingPart, TimePart, VehiclePart, ViewsPart, VisionPart,
     },
     vehicle::VehicleForm,
 };
@@ -52,6 +52,10 @@ keys! {
         observer: ObserverPart = table::<ObserverPart>(), part, Live;
         /// What every follower that says nothing else knows of its leader: a kind alone, or a table.
         sensing: SensingPart = SensingForm, part;
+        /// Safety filter of every robot that says nothing else.
+        safety: SafetyPart = table::<SafetyPart>(), part, Live;
+        /// What every robot that says nothing else senses near it.
+        proximity: ProximityPart = table::<ProximityPart>(), part;
         /// Cameras and shells of all robots.
         vision: VisionPart = table::<VisionPart>(), part;
         /// The lie of the land and its grip; flat if left out.
@@ -102,6 +106,10 @@ keys! {
         observer: ObserverPart = table::<ObserverPart>(), optional, Live;
         /// What differs from the scene's `sensing`.
         sensing: SensingPart = SensingForm, optional;
+        /// What differs from the scene's `safety`.
+        safety: SafetyPart = table::<SafetyPart>(), optional, Live;
+        /// What differs from the scene's `proximity`.
+        proximity: ProximityPart = table::<ProximityPart>(), optional;
         /// Number on its shell, unique: its tags are 5·number to 5·number + 4; the lowest that is free if left out.
         number: usize = integer::<usize>(0, MOST_ROBOTS as u64), optional;
     }
@@ -146,6 +154,10 @@ keys! {
         observer: ObserverPart = table::<ObserverPart>(), part, Live;
         /// What differs from the scene's `sensing`.
         sensing: SensingPart = SensingForm, part;
+        /// What differs from the scene's `safety`.
+        safety: SafetyPart = table::<SafetyPart>(), part, Live;
+        /// What differs from the scene's `proximity`.
+        proximity: ProximityPart = table::<ProximityPart>(), part;
         /// Robots of the group that differ from the others, by their names.
         members: Vec<GroupMember> = MembersForm, part, Live;
     }
@@ -172,6 +184,10 @@ keys! {
         observer: ObserverPart = table::<ObserverPart>(), optional, Live;
         /// What differs from the group's `sensing`.
         sensing: SensingPart = SensingForm, optional;
+        /// What differs from the group's `safety`.
+        safety: SafetyPart = table::<SafetyPart>(), optional, Live;
+        /// What differs from the group's `proximity`.
+        proximity: ProximityPart = table::<ProximityPart>(), optional;
     }
 }
 

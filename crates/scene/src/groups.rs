@@ -1,7 +1,7 @@
 //! Groups become robots.
 
 use crate::{
-    Follow, Law, Observer, Robot, Role, Sensing, Vehicle,
+    Follow, Law, Observer, Proximity, Robot, Role, Safety, Sensing, Vehicle,
     document::{Follows, GroupKeys, MOST_ROBOTS, MemberKeys},
     graph::{Named, check_known},
     random::RandomStream,
@@ -62,7 +62,7 @@ pub(crate) fn expand(
     let speed = start_speed(keys.speed.as_ref(), &usual.vehicle, reporter);
     let spacing = keys.distance.as_ref()?;
     check_distance(spacing.value, usual.law.distance_min, spacing.span, reporter);
-    let (leader, origin) = group.leader(&usual.vehicle, defaults, drafts, reporter)?;
+    let (leader, origin) = group.leader(&usual, defaults, drafts, reporter)?;
     let mut scatter = Scatter::new(keys, group.index, seed)?;
     for (place, spot) in group.spots(count)?.into_iter().enumerate().skip(1) {
         // Drawn for places that stay empty, too: the others start where they do all the same.
@@ -80,7 +80,7 @@ pub(crate) fn expand(
         if let Some(found) = member.and_then(|keys| keys.distance.as_ref()) {
             check_distance(distance.range()[0], own.law.distance_min, found.span, reporter);
         }
-        let Outfit { vehicle, law, observer, sensing } = own;
+        let Outfit { vehicle, law, observer, sensing, safety, proximity } = own;
         let name = group.name(place);
         let told = member.and_then(|keys| keys.leader.clone());
         if told.is_none() {
@@ -90,7 +90,8 @@ pub(crate) fn expand(
         let followed = told.as_ref().map_or_else(usual, |told| told.value.clone());
         let follow = Follow { leader: followed, speed, distance, bearing, law, observer, sensing };
         let role = Role::Follow(Box::new(follow));
-        group.push(place, Robot { name, pose, number: 0, vehicle, role }, told, drafts);
+        let robot = Robot { name, pose, number: 0, vehicle, safety, proximity, role };
+        group.push(place, robot, told, drafts);
     }
     Some(())
 }
@@ -146,6 +147,8 @@ struct Outfit {
     law: Law,
     observer: Observer,
     sensing: Sensing,
+    safety: Safety,
+    proximity: Proximity,
 }
 
 /// A place in a group.
@@ -226,11 +229,15 @@ impl Group<'_> {
         let law = over(own.law.as_ref(), keys.law.as_ref()?);
         let observer = over(own.observer.as_ref(), keys.observer.as_ref()?);
         let sensing = over(own.sensing.as_ref(), keys.sensing.as_ref()?);
+        let safety = over(own.safety.as_ref(), keys.safety.as_ref()?);
+        let proximity = over(own.proximity.as_ref(), keys.proximity.as_ref()?);
         Some(Outfit {
             vehicle,
             law: law.complete_with(&defaults.law, Law::fitting(vehicle.kind)),
             observer: defaults.observer(&observer, &vehicle),
             sensing: defaults.sensing(&sensing),
+            safety: defaults.safety(&safety),
+            proximity: defaults.proximity(&proximity),
         })
     }
 
@@ -307,25 +314,26 @@ impl Group<'_> {
         drafts.push(RobotDraft { named, start: Some(at), number: None, robot: Some(robot) });
     }
 
-    /// The vehicle of the group's own leader, after reporting keys that only followers have.
+    /// What the group's own leader is, after reporting keys that only followers have.
     fn leading(
         &self,
         name: &str,
-        usual: &Vehicle,
+        usual: &Outfit,
         defaults: &Defaults,
         reporter: &mut Reporter,
-    ) -> Option<Vehicle> {
+    ) -> Option<Outfit> {
         let Some(keys) = self.member(0) else { return Some(*usual) };
-        for (key, span) in keys.spans().into_iter().filter(|(key, _)| !["name", "vehicle"].contains(key)) {
+        let shared = ["name", "vehicle", "safety", "proximity"];
+        for (key, span) in keys.spans().into_iter().filter(|(key, _)| !shared.contains(key)) {
             reporter.report(span, format!("`{key}` is for robots that follow, but `{name}` leads"));
         }
-        self.vehicle(keys.vehicle.as_ref(), defaults, reporter)
+        self.outfit(Some(keys), defaults, reporter)
     }
 
     /// Name and start pose of the robot in place 1, which is made if it is the group's own.
     fn leader(
         &self,
-        usual: &Vehicle,
+        usual: &Outfit,
         defaults: &Defaults,
         drafts: &mut Vec<RobotDraft>,
         reporter: &mut Reporter,
@@ -335,13 +343,15 @@ impl Group<'_> {
             (Some(_), None) => {
                 let path = keys.path.as_ref()?;
                 let name = self.name(0);
-                let vehicle = self.leading(&name, usual, defaults, reporter)?;
+                let Outfit { vehicle, safety, proximity, .. } =
+                    self.leading(&name, usual, defaults, reporter)?;
                 check_path(path, &vehicle, reporter);
                 let origin = Found { span: self.node.span, value: [0.0; 3] };
                 let given = keys.pose.as_ref().or(path.value.start().is_none().then_some(&origin));
                 let pose = start_pose(given, Some(&path.value), self.node.span, reporter)?;
                 let role = Role::Lead { path: path.value.clone() };
-                self.push(0, Robot { name: name.clone(), pose, number: 0, vehicle, role }, None, drafts);
+                let robot = Robot { name: name.clone(), pose, number: 0, vehicle, safety, proximity, role };
+                self.push(0, robot, None, drafts);
                 Some((name, pose))
             }
             (None, Some(_)) => {

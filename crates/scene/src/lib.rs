@@ -29,6 +29,7 @@ mod random;
 mod relief;
 mod resolve;
 mod robots;
+mod safety;
 mod sets;
 mod shape;
 mod shipped;
@@ -48,6 +49,6 @@ pub use shipped::{SHIPPED, Shipped, nearest_shipped, shipped};
 pub use text::node::composed;
 pub use types::{
     Change, Compensation, Environment, Expect, Film, Follow, Ground, Law, Noise, Observer, OnContact, Patch,
-    Path, Physics, Plot, PropMotion, PropSpec, Relief, Robot, Role, Scene, Sensing, SensingKind, Shot,
-    SpeedProfile, SwitchingKind, Time, Vehicle, VehicleKind, Views, Vision,
+    Path, Physics, Plot, PropMotion, PropSpec, Proximity, Relief, Robot, Role, Safety, Scene, Sensing,
+    SensingKind, Shot, SpeedProfile, SwitchingKind, Time, Vehicle, VehicleKind, Views, Vision,
 };

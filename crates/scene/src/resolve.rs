@@ -8,6 +8,7 @@ use crate::{
     groups::{Group, expand},
     props::{Placed, PropStage},
     robots::{Defaults, RobotDraft, draft},
+    safety::check_safety,
     sight::{Said, check_sight, number},
     start::check_start,
     text::{Found, Keys, Node, Part, Reporter, Span},
@@ -45,6 +46,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) 
     let vision_part = document.vision?.value;
     let vision = vision_part.complete(&VisionPart::default());
     check_sight(&Said { time: &time_part, part: &vision_part, vision: &vision }, &drafts, reporter);
+    check_safety(&time_part, &drafts, reporter);
     let level = ground.as_ref().is_none_or(|ground| ground.terrain.is_none());
     check_continuous(&time_part, &drafts, &props, level, reporter);
     if let Some(ground) = &ground
@@ -86,6 +88,8 @@ fn defaults(document: &Document, root: &Node, reporter: &mut Reporter) -> Option
         law: document.law.as_ref()?.value.clone(),
         observer: document.observer.as_ref()?.value.clone(),
         sensing: document.sensing.as_ref()?.value.clone(),
+        safety: document.safety.as_ref()?.value.clone(),
+        proximity: document.proximity.as_ref()?.value.clone(),
         step: physics.complete(&PhysicsPart::default()).step,
         step_span: physics.step.as_ref().map(|found| found.span),
     })
@@ -105,6 +109,7 @@ pub(crate) fn resolve_robots(
     let (time, part) = (&document.time.as_ref()?.value, &document.vision.as_ref()?.value);
     let vision = part.complete(&VisionPart::default());
     check_sight(&Said { time, part, vision: &vision }, &drafts, reporter);
+    check_safety(time, &drafts, reporter);
     drafts.into_iter().map(|draft| draft.robot).collect()
 }
 

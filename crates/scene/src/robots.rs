@@ -1,11 +1,11 @@
 //! From the keys of a robot to a checked robot.
 
 use crate::{
-    Follow, Law, Observer, Path, Robot, Role, Sensing, Vehicle,
+    Follow, Law, Observer, Path, Proximity, Robot, Role, Safety, Sensing, Vehicle,
     document::RobotKeys,
     graph::Named,
     text::{Found, Node, Part, Reporter, Span},
-    types::{LawPart, ObserverPart, SensingPart, VehiclePart},
+    types::{LawPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart},
     vehicle::{WrittenVehicle, kind_is_lost, vehicle},
 };
 use vocabulary::{Pose, math};
@@ -16,6 +16,8 @@ pub(crate) struct Defaults {
     pub(crate) law: LawPart,
     pub(crate) observer: ObserverPart,
     pub(crate) sensing: SensingPart,
+    pub(crate) safety: SafetyPart,
+    pub(crate) proximity: ProximityPart,
     /// Step of the physics, s.
     pub(crate) step: f64,
     /// Where that is said.
@@ -47,6 +49,16 @@ impl Defaults {
     /// The sensing of a robot or group that says `own` of it.
     pub(crate) fn sensing(&self, own: &SensingPart) -> Sensing {
         own.complete_with(&self.sensing, Sensing::default())
+    }
+
+    /// The safety filter of a robot or group that says `own` of it.
+    pub(crate) fn safety(&self, own: &SafetyPart) -> Safety {
+        own.complete_with(&self.safety, Safety::default())
+    }
+
+    /// The proximity sensor of a robot or group that says `own` of it.
+    pub(crate) fn proximity(&self, own: &ProximityPart) -> Proximity {
+        own.complete_with(&self.proximity, Proximity::default())
     }
 }
 
@@ -85,7 +97,17 @@ fn robot(keys: &RobotKeys, node: &Node, defaults: &Defaults, reporter: &mut Repo
         (Some(_), None) => None,
         (_, pose) => start_pose(pose.as_ref(), path, node.span, reporter),
     };
-    Some(Robot { name: keys.name.as_ref()?.value.clone(), pose: pose?, number: 0, vehicle, role: role? })
+    let safety = keys.safety.clone().map_or_else(SafetyPart::default, |found| found.value);
+    let proximity = keys.proximity.clone().map_or_else(ProximityPart::default, |found| found.value);
+    Some(Robot {
+        name: keys.name.as_ref()?.value.clone(),
+        pose: pose?,
+        number: 0,
+        vehicle,
+        safety: defaults.safety(&safety),
+        proximity: defaults.proximity(&proximity),
+        role: role?,
+    })
 }
 
 fn role(

@@ -1,7 +1,7 @@
 //! What leads from one scene to another while a run goes, and what stands in the way.
 
 use crate::text::{Keys, keys::Mark};
-use crate::types::{LawPart, ObserverPart, SensingPart, VehiclePart};
+use crate::types::{LawPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart};
 use crate::vehicle::applies;
 use crate::{Follow, Robot, Role, Scene};
 use serde::Serialize;
@@ -20,7 +20,7 @@ pub(crate) struct ParameterDifference {
 pub(crate) fn refusal(path: &str) -> String {
     format!(
         "`{path}` cannot change while a run goes; what can is `distance`, `bearing`, `law`, `observer` without its `start`, \
-         and the limits of a `vehicle`"
+         the limits of a `vehicle`, and `safety` of a follower"
     )
 }
 
@@ -75,6 +75,16 @@ impl ParameterDifference {
             self.note_table([&a.vehicle, &b.vehicle], &format!("{at}vehicle."), |key| {
                 is_live::<VehiclePart>(key) && applies(key, a.vehicle.kind)
             });
+            // A robot that leads by its path is another body in the world than one that chases it.
+            let leads = matches!(a.role, Role::Lead { .. }) && (a.safety.leads || b.safety.leads);
+            self.note_table([&a.safety, &b.safety], &format!("{at}safety."), |key| {
+                is_live::<SafetyPart>(key) && !(leads && key == "filter")
+            });
+            self.note_table(
+                [&a.proximity, &b.proximity],
+                &format!("{at}proximity."),
+                is_live::<ProximityPart>,
+            );
             match (&a.role, &b.role) {
                 (Role::Lead { path: a }, Role::Lead { path: b }) => self.refuse_unless(a == b, &at, "path"),
                 (Role::Follow(a_role), Role::Follow(b_role)) => {

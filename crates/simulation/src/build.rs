@@ -3,14 +3,16 @@
 use crate::caption::caption;
 use crate::error::{BuildError, EPSILON_MIN};
 use crate::parameters::{ParameterSet, ScheduledChange};
+use crate::safety::SafetyConfig;
 use crate::setup::Setup;
 use crate::stage::{handling, stage};
 use formation::{EdgeLaw, Formation, Graph, SetPointTrajectory, TrackerParameters};
+use perception::proximity::{ProximityConfig, ProximitySensor};
 use perception::sensors::{CameraSettings, NoiseModel, Sensor, SensorConfig, SensorKind};
 use scene::{Follow, OnContact, Role, Scene, SensingKind, SwitchingKind, Vision};
 use std::sync::Arc;
 use vocabulary::{Edge, FleetInfo, Light, RobotInfo};
-use world::WorldSetup;
+use world::{Unicycle, WorldSetup};
 
 /// Puts the run of `scene` together.
 ///
@@ -23,10 +25,11 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let graph = Graph::new(&names, &pairs)?;
     check_stiffness(scene, &followers)?;
 
-    let stage = stage(scene)?;
+    let mut stage = stage(scene)?;
     let leading = stage.actors.iter().enumerate();
     let leads = leading.filter_map(|(index, actor)| Some((index, actor.robot.lead.clone()?))).collect();
     let limits = stage.actors.iter().map(|actor| actor.robot.limits).collect();
+    let chased = chased(scene, &mut stage);
     let edges = graph.edges().to_vec();
     let laws = followers.iter().map(|(_, follow)| edge_law(follow)).collect();
     let member = |robot: &scene::Robot| RobotInfo {
@@ -40,6 +43,8 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let members: Vec<RobotInfo> = scene.robots.iter().map(member).collect();
     Ok(Setup {
         sensor_config: sensor_config(scene, &followers, &edges, &members, &stage),
+        safety_config: safety_config(scene, &members, &stage, chased),
+        filters: filters(&scene.robots),
         fleet: FleetInfo {
             title: scene.title.clone(),
             caption: caption(scene),
@@ -52,6 +57,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
             robots: members,
             edges,
             has_sensors: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
+            has_safety: scene.robots.iter().any(|robot| robot.proximity.range.is_some()),
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
             terrain: stage.terrain.clone(),
         },
@@ -74,6 +80,7 @@ fn turn(change: &scene::Change) -> Result<ScheduledChange, BuildError> {
     let parameters = ParameterSet {
         laws: followers.iter().map(|(_, follow)| edge_law(follow)).collect(),
         handling: robots.iter().map(|robot| handling(&robot.vehicle)).collect(),
+        filters: filters(robots),
     };
     Ok(ScheduledChange { at: change.at, parameters })
 }
@@ -126,6 +133,71 @@ fn tracker_parameters(follow: &Follow, observer: formation::Observer) -> Option<
         gate: follow.observer.gate,
         interval: 1.0 / follow.sensing.rate,
         hold: follow.sensing.hold,
+    })
+}
+
+/// Takes lead robots with a safety filter from their paths, to be driven by commands; what they chase instead.
+fn chased(scene: &Scene, stage: &mut WorldSetup) -> Vec<(usize, Unicycle)> {
+    let mut chased = vec![];
+    for (index, (robot, actor)) in scene.robots.iter().zip(&mut stage.actors).enumerate() {
+        if let Some(lead) = actor.robot.lead.clone().filter(|_| robot.safety.acts(true)) {
+            chased.push((index, actor.robot.clone()));
+            actor.robot.speed = actor.robot.limits.clamp_speed(lead.at(0.0).speed);
+            actor.robot.lead = None;
+        }
+    }
+    chased
+}
+
+/// The barriers of every robot whose filter is on.
+fn filters(robots: &[scene::Robot]) -> Vec<Option<safety::Parameters>> {
+    let filter = |robot: &scene::Robot| {
+        let (safety, kind) = (&robot.safety, robot.vehicle.kind);
+        let length = robot.vehicle.body().length;
+        safety.acts(matches!(robot.role, Role::Lead { .. })).then(|| safety::Parameters {
+            margin: safety.margin_of(length),
+            point_ahead: safety.point_ahead_of(kind, length),
+            gain: safety.gain,
+            horizon: safety.horizon,
+            arena: safety.arena,
+            view_distance: safety.view_distance,
+            view_angle: safety.view_angle,
+        })
+    };
+    robots.iter().map(filter).collect()
+}
+
+/// What safety filters go by; `None` where no robot senses what is near it.
+fn safety_config(
+    scene: &Scene,
+    robots: &[RobotInfo],
+    stage: &WorldSetup,
+    chased: Vec<(usize, Unicycle)>,
+) -> Option<Arc<SafetyConfig>> {
+    let sensor = |robot: &scene::Robot| {
+        let proximity = &robot.proximity;
+        proximity.range.map(|range| ProximitySensor {
+            range,
+            interval: proximity.rate.map_or(0.0, |rate| 1.0 / rate),
+            distance_noise: proximity.distance_noise,
+            bearing_noise: proximity.bearing_noise,
+            epsilon: proximity.epsilon,
+        })
+    };
+    let sensors: Vec<_> = scene.robots.iter().map(sensor).collect();
+    sensors.iter().any(Option::is_some).then(|| {
+        Arc::new(SafetyConfig {
+            proximity: ProximityConfig {
+                sensors,
+                robots: robots.to_vec(),
+                props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
+                seed: scene.seed,
+            },
+            chased,
+            wheels: scene.robots.iter().map(|robot| robot.vehicle.kind.has_wheels()).collect(),
+            pan_max: scene.vision.pan_max,
+            pan_rate: scene.vision.pan_rate,
+        })
     })
 }
 

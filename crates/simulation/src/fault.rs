@@ -4,7 +4,7 @@ use std::fmt;
 use thiserror::Error;
 use vocabulary::{
     Contact, Edge, EdgeState, EntityId, FleetInfo, MeasurementRecord, Motion, Placement, RobotState,
-    StepRecord,
+    SafetyState, StepRecord,
 };
 
 /// Why a run ended before its time.
@@ -38,7 +38,7 @@ impl fmt::Display for NotFinite {
 
 /// The first quantity of `record` that is not a finite number.
 pub(crate) fn not_finite(record: &StepRecord, fleet: &FleetInfo) -> Option<NotFinite> {
-    let StepRecord { snapshot, edges, contacts, frames } = record;
+    let StepRecord { snapshot, edges, contacts, frames, safety } = record;
     let named = |thing| format!("`{}`", fleet.name(thing));
     let found = |whose: String, quantity| NotFinite { whose, quantity, time: snapshot.time };
     let mut robots = snapshot.robots.iter().enumerate();
@@ -59,8 +59,11 @@ pub(crate) fn not_finite(record: &StepRecord, fleet: &FleetInfo) -> Option<NotFi
         let [a, b] = contact.things.map(named);
         return Some(found(format!("{a} and {b}"), "contact"));
     }
-    let frame = frames.iter().find(|frame| !is_seen(frame))?;
-    Some(found(between(frame.edge), "measurement"))
+    if let Some(frame) = frames.iter().find(|frame| !is_seen(frame)) {
+        return Some(found(between(frame.edge), "measurement"));
+    }
+    let state = safety.iter().find(|state| !is_filtered(state))?;
+    Some(found(named(EntityId::Robot(state.robot)), "filtered command"))
 }
 
 fn finite<const N: usize>(values: [f64; N]) -> bool {
@@ -105,6 +108,15 @@ fn is_placed(prop: &Placement) -> bool {
 
 fn is_told(contact: &Contact) -> bool {
     finite(contact.place) && finite(contact.normal) && finite([contact.begin, contact.end, contact.impulse])
+}
+
+fn is_filtered(state: &SafetyState) -> bool {
+    let SafetyState { wished, applied, moved, relaxed, barriers, .. } = state;
+    let commands = [wished.acceleration, wished.turn_rate, applied.acceleration, applied.turn_rate];
+    finite(commands)
+        && moved.is_finite()
+        && finite(*relaxed)
+        && barriers.iter().all(|barrier| finite([barrier.value, barrier.slack, barrier.direction]))
 }
 
 fn is_seen(frame: &MeasurementRecord) -> bool {

@@ -14,6 +14,8 @@ pub struct ParameterSet {
     pub laws: Vec<EdgeLaw>,
     /// Limits and drivers, per robot.
     pub handling: Vec<Handling>,
+    /// Barriers, per robot; `None` where its filter is off.
+    pub filters: Vec<Option<safety::Parameters>>,
 }
 
 /// A set of parameters, and from when on it holds.
@@ -34,6 +36,7 @@ impl ParameterSet {
             handling: actors
                 .map(|actor| Handling { limits: actor.robot.limits, wheels: actor.wheels.clone() })
                 .collect(),
+            filters: setup.filters.clone(),
         }
     }
 }

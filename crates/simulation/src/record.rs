@@ -11,6 +11,9 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
     run.record.contacts.clear();
     run.record.contacts.extend_from_slice(run.plant.world().contacts());
     run.record.frames.clone_from(&run.frames);
+    if let Some(safety) = &run.safety {
+        safety.told().clone_into(&mut run.record.safety);
+    }
     for (index, (edge, out)) in run.formation.edges().iter().zip(&mut run.record.edges).enumerate() {
         let robots = &mut run.record.snapshot.robots;
         let decision = &run.state.decisions[index];

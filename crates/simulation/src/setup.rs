@@ -1,6 +1,7 @@
 //! Everything that a run starts from.
 
 use crate::parameters::ScheduledChange;
+use crate::safety::SafetyConfig;
 use formation::Formation;
 use perception::sensors::SensorConfig;
 use std::sync::Arc;
@@ -20,6 +21,10 @@ pub struct Setup {
     pub observer_starts: Vec<ObserverStart>,
     /// How followers sense their leaders; `None` where all observe the true state.
     pub sensor_config: Option<Arc<SensorConfig>>,
+    /// What safety filters go by; `None` where no robot senses what is near it.
+    pub safety_config: Option<Arc<SafetyConfig>>,
+    /// Barriers, per robot; `None` where its filter is off.
+    pub filters: Vec<Option<safety::Parameters>>,
     /// How law and observer act in time.
     pub mode: TimeMode,
     /// Whether the run ends where bodies touch.

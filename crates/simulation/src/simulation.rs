@@ -3,6 +3,7 @@
 use crate::fault::Fault;
 use crate::parameters::{ParameterSet, pending, sample_at};
 use crate::plant::Plant;
+use crate::safety::SafetyPipeline;
 use crate::sensing::SensingPipeline;
 use crate::setup::Setup;
 use crate::step::step;
@@ -25,6 +26,7 @@ pub struct Simulation {
     pub(crate) period: f64,
     pub(crate) observations: Vec<Observation>,
     pub(crate) sensing: Option<SensingPipeline>,
+    pub(crate) safety: Option<SafetyPipeline>,
     pub(crate) frames: Vec<MeasurementRecord>,
     pub(crate) record: StepRecord,
     /// The moment before, over which the next is written.
@@ -60,6 +62,9 @@ impl Simulation {
         let sensing = setup.sensor_config.map(|sensor_config| {
             SensingPipeline::new(sensor_config, setup.observer_starts.clone(), world.snapshot())
         });
+        let safety = setup
+            .safety_config
+            .map(|config| SafetyPipeline::new(config, setup.filters, &setup.formation, setup.period));
         Self {
             fleet: setup.fleet,
             formation: setup.formation,
@@ -69,6 +74,7 @@ impl Simulation {
             period: setup.period,
             observations,
             sensing,
+            safety,
             frames: Vec::new(),
             spare: record.clone(),
             record,

@@ -32,7 +32,18 @@ pub(crate) fn step(run: &mut Simulation) -> bool {
         return false;
     }
     // 5. Every law decides on what its follower knows, leaders before followers (eqs 20, 22, 42).
-    run.formation.decide(time, &run.observations, &mut run.state);
+    match &mut run.safety {
+        None => run.formation.decide(time, &run.observations, &mut run.state),
+        // What is decided is applied as far as it is safe.
+        Some(safety) => safety.decide(
+            &run.formation,
+            time,
+            &run.observations,
+            &mut run.state,
+            run.plant.world().snapshot(),
+            run.sensing.as_ref(),
+        ),
+    }
     run.plant.world_mut().apply(&run.state.commands);
     // 6. State and decision are recorded, unless a number in them is not finite.
     std::mem::swap(&mut run.record, &mut run.spare);
@@ -65,6 +76,9 @@ fn apply(run: &mut Simulation, parameters: &ParameterSet, woken: &mut Vec<usize>
     let limits = parameters.handling.iter().map(|handling| handling.limits).collect();
     run.formation.apply_parameters(parameters.laws.clone(), limits);
     run.plant.apply_parameters(parameters, &run.formation);
+    if let Some(safety) = &mut run.safety {
+        safety.filters.clone_from(&parameters.filters);
+    }
 }
 
 /// Followers with sensors take the measurements that are due, and correct their estimates by those that have arrived.
@@ -80,6 +94,9 @@ fn advance(run: &mut Simulation) {
     if let Some(sensing) = &mut run.sensing {
         let time = (run.sample - 1) as f64 * run.period;
         sensing.begin(run.plant.world().snapshot(), time, run.period);
+    }
+    if let Some(safety) = &mut run.safety {
+        safety.advance(run.period);
     }
     match &mut run.plant {
         Plant::Held(world) => {

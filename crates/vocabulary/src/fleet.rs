@@ -1,6 +1,6 @@
 //! Who is on stage: everything about a run that does not change while it runs and that a picture needs.
 
-use crate::{CameraModel, CameraMount, Edge, EntityId, Prop, Shell, Surface, Terrain};
+use crate::{CameraModel, CameraMount, Edge, EntityId, Prop, Shell, Surface, Terrain, math};
 use std::sync::Arc;
 
 /// Outer measures of a robot's body, for drawing and clearance.
@@ -21,6 +21,13 @@ pub struct Body {
     pub track: f64,
     /// m.
     pub wheel_radius: f64,
+}
+
+impl Body {
+    /// Of the circle around its outline, m; its middle is that of the body, half a wheelbase ahead of the pose.
+    pub fn radius(&self) -> f64 {
+        0.5 * math::hypot(self.length, self.width)
+    }
 }
 
 impl Default for Body {
@@ -97,6 +104,8 @@ pub struct FleetInfo {
     pub edges: Vec<Edge>,
     /// Whether any follower measures with a sensor instead of knowing the truth.
     pub has_sensors: bool,
+    /// Whether any robot's commands may pass through a safety filter.
+    pub has_safety: bool,
     /// Solid things that are no robots, in the order of the snapshots.
     pub props: Vec<Prop>,
     /// The lie of the land; flat at z = 0 where there is none.

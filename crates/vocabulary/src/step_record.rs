@@ -1,6 +1,8 @@
 //! One row of a run: the truth, and what every edge wanted, knew and did. Pictures and records are made of it.
 
-use crate::{Command, Contact, MeasurementRecord, Relative, Snapshot, TrackingState, nearest_turn, wrap};
+use crate::{
+    Command, Contact, MeasurementRecord, Relative, SafetyState, Snapshot, TrackingState, nearest_turn, wrap,
+};
 
 /// One edge at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -26,7 +28,7 @@ pub struct EdgeState {
     /// Estimate of [distance in m, bearing in rad] that the observer corrects by (ŝ₁); where none runs it means
     /// nothing.
     pub estimate: [f64; 2],
-    /// Whether a limit (turn rate, speed, acceleration) cut the command.
+    /// Whether a limit (turn rate, speed, acceleration) or a safety filter cut the command.
     pub limited: bool,
     /// Whether the distance was below its minimum.
     pub too_close: bool,
@@ -43,6 +45,8 @@ pub struct StepRecord {
     pub contacts: Vec<Contact>,
     /// Measurements of leaders that arrived since the moment before.
     pub frames: Vec<MeasurementRecord>,
+    /// What the safety filters did, one entry per robot that has one, in the order of the robots.
+    pub safety: Vec<SafetyState>,
 }
 
 impl StepRecord {

@@ -15,7 +15,7 @@ const WHEELBASES: f64 = 1.5;
 const FARTHEST: f64 = 3.0;
 
 /// The command that brings a robot that moves as `now` to the motion `ideal`.
-pub(crate) fn chase(ideal: &Motion, now: &Motion, wheelbase: f64, limits: &Limits) -> Command {
+pub fn chase(ideal: &Motion, now: &Motion, wheelbase: f64, limits: &Limits) -> Command {
     let length = WHEELBASES * wheelbase;
     let hold = |error: f64| error.clamp(-FARTHEST * wheelbase, FARTHEST * wheelbase);
     let (dx, dy) = (ideal.pose.x - now.pose.x, ideal.pose.y - now.pose.y);

@@ -5,7 +5,7 @@
 //! a command to throttle and steering, from there to the forces under four wheels.
 
 pub mod arc;
-mod guide;
+pub mod guide;
 mod physical;
 mod prescribed;
 mod touch;

@@ -7,7 +7,7 @@ use eframe::egui::{self, Slider, Ui, WidgetInfo};
 use rendering::Style;
 
 /// Elements that can be switched, with their labels.
-const ELEMENTS: [(&str, &str); 10] = [
+const ELEMENTS: [(&str, &str); 11] = [
     ("ribbons", "Ribbons along driven paths"),
     ("ghosts", "Ghosts of past poses"),
     ("set-points", "Rings at set points"),
@@ -18,6 +18,7 @@ const ELEMENTS: [(&str, &str); 10] = [
     ("inset", "Chart of errors"),
     ("caption", "Title and law"),
     ("shadows", "Shadows"),
+    ("barriers", "Barriers of safety filters"),
 ];
 
 /// Films, pictures and their elements.

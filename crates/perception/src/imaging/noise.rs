@@ -19,6 +19,8 @@ pub enum Purpose {
     Dropouts,
     /// Anything about a run that does not depend on the frame.
     Setup,
+    /// Errors of a proximity sensor.
+    Proximity,
 }
 
 /// A stream of random numbers.

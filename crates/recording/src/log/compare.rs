@@ -3,6 +3,7 @@
 use super::messages::ContactRecord;
 use super::read::Log;
 use super::record::{self, FieldValue, Fields, Record};
+use super::safety::SafetyRecord;
 use crate::Error;
 use std::collections::BTreeMap;
 use vocabulary::{FleetInfo, StepRecord, wrap};
@@ -46,7 +47,7 @@ pub struct Comparison {
     pub first: Option<Difference>,
     /// Samples that differ.
     pub differing: u64,
-    /// Largest difference of every quantity that differs anywhere, by edges, robots, props, contacts, measurements.
+    /// Largest difference of every quantity that differs anywhere, by edges, robots, props, contacts, measurements, filters.
     pub peaks: Vec<Peak>,
 }
 
@@ -114,6 +115,10 @@ fn bits(record: &mut StepRecord, out: &mut Vec<u8>) {
     for frame in &mut record.frames {
         out.extend(frame.edge.to_le_bytes());
         record::write(frame, out);
+    }
+    for state in &record.safety {
+        out.extend(state.robot.to_le_bytes());
+        record::write(&mut SafetyRecord::new(state, &FleetInfo::default()), out);
     }
 }
 
@@ -196,7 +201,7 @@ impl ComparedQuantity {
     }
 }
 
-/// All quantities of a moment, by edge, robot, prop, contact and measurement.
+/// All quantities of a moment, by edge, robot, prop, contact, measurement and safety filter.
 fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     let mut all = Collector { of: "sample".to_owned(), table: 0, field: 0, found: vec![] };
     let mut record = record.clone();
@@ -221,6 +226,10 @@ fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     }
     for frame in &mut record.frames {
         all.collect(5, format!("measurement of {}", pair(frame.edge)), frame);
+    }
+    for state in &record.safety {
+        let of = format!("safety filter of {}", name(state.robot));
+        all.collect(6, of, &mut SafetyRecord::new(state, fleet));
     }
     all.found
 }

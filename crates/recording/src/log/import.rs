@@ -7,7 +7,7 @@
 use super::fleet::sound;
 use super::messages::{ContactRecord, SampleNumber};
 use super::outline::{Around, LONGEST, parse};
-use super::read::LogChannel;
+use super::read::{LogChannel, safety_of};
 use super::record;
 use super::writer::Writer;
 use super::{FORMAT, Topics, other_layout};
@@ -19,7 +19,7 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 use vocabulary::{
-    Contact, EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState, StepRecord, counted,
+    Contact, EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState, SafetyState, StepRecord, counted,
 };
 
 /// A log of ours, and what the foreign one has and lacks.
@@ -176,6 +176,7 @@ impl ForeignLog {
             LogChannel::Measurement(_) => {
                 fleet.edges.iter().position(|edge| Topics::measurements(fleet, *edge) == topic)
             }
+            LogChannel::Safety(_) => fleet.robots.iter().position(|member| Topics::safety(member) == topic),
             LogChannel::Prop(_) => fleet.props.iter().position(|prop| Topics::prop(prop) == topic),
             _ => Some(0),
         };
@@ -230,6 +231,7 @@ struct Parts {
     props: BTreeMap<usize, Placement>,
     frames: Vec<MeasurementRecord>,
     contacts: Vec<Contact>,
+    safety: BTreeMap<usize, SafetyState>,
     sample: Option<SampleNumber>,
 }
 
@@ -251,6 +253,7 @@ impl Pending {
                 LogChannel::Measurement(index) => {
                     parts.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
                 }
+                LogChannel::Safety(index) => drop(parts.safety.insert(index, safety_of(index, data)?)),
                 LogChannel::Contact => {
                     parts.contacts.push(record::read::<ContactRecord>(data)?.contact);
                 }
@@ -275,11 +278,13 @@ impl Parts {
         let sample = self.sample?;
         placed.extend(self.props);
         let (robots, edges) = (self.robots.len(), self.edges.len());
-        let found = [robots, edges, placed.len(), self.contacts.len(), self.frames.len()];
+        let (contacts, frames) = (self.contacts.len(), self.frames.len());
+        let found = [robots, edges, placed.len(), contacts, frames, self.safety.len()];
         (sample.counts == found).then_some(())?;
         let inside = |last: Option<&usize>, count: usize| last.is_none_or(|last| *last < count);
         let fits = inside(self.robots.keys().next_back(), fleet.robots.len())
             && inside(self.edges.keys().next_back(), fleet.edges.len())
+            && inside(self.safety.keys().next_back(), fleet.robots.len())
             && inside(placed.keys().next_back(), fleet.props.len())
             && self.frames.iter().all(|frame| frame.edge < fleet.edges.len());
         let mut record = StepRecord { contacts: self.contacts, frames: self.frames, ..StepRecord::default() };
@@ -287,6 +292,7 @@ impl Parts {
         record.snapshot.robots = self.robots.into_values().collect();
         record.snapshot.props = placed.values().copied().collect();
         record.edges = self.edges.into_values().collect();
+        record.safety = self.safety.into_values().collect();
         fits.then_some(record)
     }
 }

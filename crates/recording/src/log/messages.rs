@@ -151,8 +151,8 @@ impl Record for ContactRecord {
 pub(super) struct SampleNumber {
     pub(super) number: u64,
     pub(super) time: f64,
-    /// Of robots, edges, props, contacts and measurements.
-    pub(super) counts: [usize; 5],
+    /// Of robots, edges, props, contacts, measurements and safety filters.
+    pub(super) counts: [usize; 6],
 }
 
 impl Record for SampleNumber {
@@ -161,7 +161,7 @@ impl Record for SampleNumber {
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
         f.count("number", &mut self.number)?;
         f.number("time_s", &mut self.time)?;
-        let names = ["robots", "edges", "props", "contacts", "measurements"];
+        let names = ["robots", "edges", "props", "contacts", "measurements", "safety"];
         names.into_iter().zip(&mut self.counts).try_for_each(|(name, count)| f.count(name, count))
     }
 }

@@ -25,6 +25,7 @@ mod pipe;
 mod read;
 mod record;
 mod ros;
+mod safety;
 mod solids;
 mod writer;
 
@@ -77,5 +78,9 @@ impl Topics {
 
     fn prop(prop: &Prop) -> String {
         format!("/prop/{}/state", prop.name)
+    }
+
+    fn safety(member: &RobotInfo) -> String {
+        format!("/robot/{}/safety", member.name)
     }
 }

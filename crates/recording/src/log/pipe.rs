@@ -113,10 +113,13 @@ impl Pipe {
 
 /// Copies into memory that is there.
 fn copy(to: &mut StepRecord, from: &StepRecord) {
-    to.snapshot.time = from.snapshot.time;
-    to.snapshot.robots.clone_from(&from.snapshot.robots);
-    to.snapshot.props.clone_from(&from.snapshot.props);
-    to.edges.clone_from(&from.edges);
-    to.contacts.clone_from(&from.contacts);
-    to.frames.clone_from(&from.frames);
+    // What is added to a moment has to be copied: it does not compile without.
+    let StepRecord { snapshot, edges, contacts, frames, safety } = from;
+    to.snapshot.time = snapshot.time;
+    to.snapshot.robots.clone_from(&snapshot.robots);
+    to.snapshot.props.clone_from(&snapshot.props);
+    to.edges.clone_from(edges);
+    to.contacts.clone_from(contacts);
+    to.frames.clone_from(frames);
+    to.safety.clone_from(safety);
 }

@@ -7,6 +7,7 @@ use super::import::{Imported, import};
 use super::messages::{ContactRecord, SampleNumber};
 use super::outline::{Chunk, ChunkOutline, LONGEST, body, parse};
 use super::record::{self, Record};
+use super::safety::SafetyRecord;
 use super::{FORMAT, other_layout};
 use crate::{Error, Manifest, Status};
 use mcap::records::{MessageHeader, Record as Chunked, op};
@@ -15,7 +16,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState, StepRecord};
+use vocabulary::{EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState, SafetyState, StepRecord};
 
 /// A recorded run. A copy shares everything with the original.
 #[derive(Debug, Clone)]
@@ -44,6 +45,7 @@ pub(super) enum LogChannel {
     Edge(usize),
     Prop(usize),
     Measurement(usize),
+    Safety(usize),
     Contact,
     Sample,
     FleetInfo,
@@ -256,6 +258,7 @@ impl LogChannel {
             EdgeState::NAME => Some(Self::Edge(index)),
             Placement::NAME => Some(Self::Prop(index)),
             MeasurementRecord::NAME => Some(Self::Measurement(index)),
+            SafetyRecord::NAME => Some(Self::Safety(index)),
             ContactRecord::NAME => Some(Self::Contact),
             SampleNumber::NAME => Some(Self::Sample),
             FleetInfo::NAME => Some(Self::FleetInfo),
@@ -321,6 +324,11 @@ impl Moments {
     }
 }
 
+/// What the filter of a robot did.
+pub(super) fn safety_of(robot: usize, data: &[u8]) -> Option<SafetyState> {
+    Some(SafetyState { robot, ..record::read::<SafetyRecord>(data)?.state })
+}
+
 /// Takes a message into `record`; whether that closes it. `None` where the message makes no sense there.
 fn take(
     channel: LogChannel,
@@ -345,12 +353,14 @@ fn take(
         LogChannel::Measurement(index) => {
             record.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
         }
+        LogChannel::Safety(index) => record.safety.push(safety_of(index, data)?),
         LogChannel::Contact => record.contacts.push(record::read::<ContactRecord>(data)?.contact),
         LogChannel::Sample => {
             let sample: SampleNumber = record::read(data)?;
             record.snapshot.time = sample.time;
             let (robots, edges) = (record.snapshot.robots.len(), record.edges.len());
-            let found = [robots, edges, props.len(), record.contacts.len(), record.frames.len()];
+            let (contacts, frames) = (record.contacts.len(), record.frames.len());
+            let found = [robots, edges, props.len(), contacts, frames, record.safety.len()];
             (sample.counts == found).then_some(())?;
             return Some(true);
         }

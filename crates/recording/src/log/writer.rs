@@ -4,6 +4,7 @@ use super::drawing::Drawing;
 use super::messages::{ContactRecord, SampleNumber};
 use super::pictures::Photo;
 use super::record::{self, Record};
+use super::safety::SafetyRecord;
 use super::{FORMAT, OURS, Topics, ros};
 use crate::{Error, Manifest};
 use mcap::records::{MessageHeader, Metadata};
@@ -102,6 +103,7 @@ pub(super) struct Writer {
     edges: Vec<u16>,
     measurements: Vec<u16>,
     props: Vec<u16>,
+    safety: Vec<u16>,
     contacts: u16,
     samples: u16,
     number: u64,
@@ -147,6 +149,7 @@ impl Writer {
             edges: vec![],
             measurements: vec![],
             props: vec![],
+            safety: vec![],
             contacts: to.add_own::<ContactRecord>(Topics::CONTACTS, 0)?,
             samples: to.add_own::<SampleNumber>(Topics::SAMPLES, 0)?,
             number: 0,
@@ -163,6 +166,9 @@ impl Writer {
         let Self { to, fleet, .. } = self;
         for (index, member) in fleet.robots.iter().enumerate() {
             self.robots.push(to.add_own::<RobotState>(&Topics::robot(member), index)?);
+            if fleet.has_safety {
+                self.safety.push(to.add_own::<SafetyRecord>(&Topics::safety(member), index)?);
+            }
         }
         for (index, edge) in fleet.edges.iter().enumerate() {
             self.edges.push(to.add_own::<EdgeState>(&Topics::edge(fleet, *edge), index)?);
@@ -222,9 +228,16 @@ impl Writer {
                 to.put_own(*channel, stamp, frame)?;
             }
         }
-        let StepRecord { snapshot, edges, contacts, frames } = record;
+        let mut filters = 0;
+        for state in &record.safety {
+            if let Some(channel) = self.safety.get(state.robot) {
+                to.put_own(*channel, stamp, &mut SafetyRecord::new(state, &self.fleet))?;
+                filters += 1;
+            }
+        }
+        let StepRecord { snapshot, edges, contacts, frames, safety: _ } = record;
         let (robots, props) = (snapshot.robots.len(), snapshot.props.len());
-        let counts = [robots, edges.len(), props, contacts.len(), frames.len()];
+        let counts = [robots, edges.len(), props, contacts.len(), frames.len(), filters];
         let mut sample = SampleNumber { number: self.number, time: snapshot.time, counts };
         self.number += 1;
         to.put_own(self.samples, stamp, &mut sample)

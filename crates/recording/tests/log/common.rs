@@ -6,8 +6,9 @@ use std::path::Path;
 use std::sync::Arc;
 use vocabulary::Judging;
 use vocabulary::{
-    Body, Condition, Contact, Edge, EdgeState, EntityId, FleetInfo, MeasurementRecord, Mobility, Outcome,
-    Placement, Prop, RobotInfo, RobotState, Shell, Snapshot, Solid, StepRecord, Terrain, TrackingState,
+    BarrierState, Body, Condition, Constraint, Contact, Edge, EdgeState, EntityId, FleetInfo,
+    MeasurementRecord, Mobility, Outcome, Placement, Prop, RobotInfo, RobotState, SafetyState, Shell,
+    Snapshot, Solid, StepRecord, Terrain, TrackingState,
 };
 
 /// Numbers without rule, special ones among them (SplitMix64).
@@ -68,6 +69,7 @@ pub(crate) fn fleet() -> FleetInfo {
         ],
         edges: vec![Edge { leader: 0, follower: 1 }, Edge { leader: 1, follower: 2 }],
         has_sensors: true,
+        has_safety: true,
         props: solids.into_iter().enumerate().map(prop).collect(),
         terrain: Some(Arc::new(Terrain {
             origin: [-1.0, 2.0],
@@ -164,7 +166,28 @@ pub(crate) fn step_record(fleet: &FleetInfo, k: u32, n: &mut Numbers) -> StepRec
             measurements.sort_by_key(|measurement| measurement.edge);
             measurements
         },
+        safety: (0..n.below(4)).map(|robot| filtered(robot, n)).collect(),
     }
+}
+
+fn filtered(robot: usize, n: &mut Numbers) -> SafetyState {
+    let constraint = |n: &mut Numbers| {
+        Constraint::of_code([n.below(Constraint::KINDS.len()), n.below(2)]).expect("a constraint")
+    };
+    let some = |n: &mut Numbers| (0..n.below(3)).map(|_| constraint(n)).collect();
+    let mut state =
+        SafetyState { robot, moved: n.next(), relaxed: n.many(), acting: some(n), ..SafetyState::default() };
+    [state.wished.acceleration, state.wished.turn_rate] = n.many();
+    [state.applied.acceleration, state.applied.turn_rate] = n.many();
+    state.conflict = some(n);
+    let barrier = |n: &mut Numbers| BarrierState {
+        constraint: constraint(n),
+        value: n.next(),
+        slack: n.next(),
+        direction: n.next(),
+    };
+    state.barriers = (0..n.below(4)).map(|_| barrier(n)).collect();
+    state
 }
 
 pub(crate) fn options() -> RunOptions {

@@ -233,9 +233,21 @@ fn trouble(condition: Condition) -> Option<&'static str> {
     }
 }
 
+/// A command that a filter moves by less than this shows nothing, m/s²: names that flicker cannot be read.
+const HELD: f64 = 0.05;
+
+/// What the filter of a robot keeps it off, by name.
+fn held_by<'a>(context: &PictureContext<'a>, robot: usize) -> Option<&'a str> {
+    let states = context.style.barriers.then_some(&context.record.safety)?;
+    let state = states.iter().find(|state| state.robot == robot && state.moved > HELD)?;
+    let acting = state.acting.iter().find(|c| !c.is_limit() && !c.is_view())?;
+    Some(acting.name(context.fleet))
+}
+
 fn names(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window: Window<'_>) {
     let crowded = context.fleet.robots.len() > 24;
-    for (robot, member) in context.record.snapshot.robots.iter().zip(&context.fleet.robots) {
+    let members = context.record.snapshot.robots.iter().zip(&context.fleet.robots);
+    for (index, (robot, member)) in members.enumerate() {
         let trouble = trouble(robot.condition);
         // In a crowd only those who are in trouble are named.
         if crowded && trouble.is_none() {
@@ -243,7 +255,12 @@ fn names(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window: Wind
         }
         let (middle, size) = middle(robot, member);
         let Some(at) = window.pixel(middle) else { continue };
-        let text = trouble.map_or_else(|| member.name.clone(), |word| format!("{} · {word}", member.name));
+        let held = held_by(context, index);
+        let text = match (trouble, held) {
+            (Some(word), _) => format!("{} · {word}", member.name),
+            (None, Some(barrier)) => format!("{} · off {barrier}", member.name),
+            (None, None) => member.name.clone(),
+        };
         let pixel = window.camera.metres_per_pixel(middle, f64::from(window.tile.height));
         let metre = (size / pixel) as f32;
         let away = 0.27 * metre + words.scaled(9.0);

@@ -1,6 +1,6 @@
 //! Robots and their roles.
 
-use super::{Law, Observer, Path, Sensing, Vehicle};
+use super::{Law, Observer, Path, Proximity, Safety, Sensing, Vehicle};
 use crate::vehicle::written;
 use serde::{Serialize, Serializer};
 use vocabulary::{Pose, ScalarTrajectory};
@@ -18,6 +18,12 @@ pub struct Robot {
     /// What it is and what it can do.
     #[serde(serialize_with = "written")]
     pub vehicle: Vehicle,
+    /// Whether and how its commands are filtered.
+    #[serde(skip_serializing_if = "Safety::is_usual")]
+    pub safety: Safety,
+    /// What it senses near it.
+    #[serde(skip_serializing_if = "Proximity::is_usual")]
+    pub proximity: Proximity,
     /// Whether it leads or follows.
     #[serde(flatten)]
     pub role: Role,

@@ -1,6 +1,7 @@
 //! What lies on the ground in one view: contact patches, marks, ribbons, rings, arrows and edges.
 
 pub(crate) mod annotations;
+mod barriers;
 pub(crate) mod contacts;
 pub(crate) mod shadows;
 
@@ -141,6 +142,9 @@ impl DecalBuilder<'_> {
         // From close behind a robot the lines would cover the road.
         if style.edges && !matches!(view, Viewpoint::SnakeEye) {
             self.edges(context);
+        }
+        if style.barriers {
+            self.barriers(context);
         }
     }
 
