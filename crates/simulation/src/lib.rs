@@ -16,6 +16,7 @@ mod sensing;
 mod setup;
 mod simulation;
 mod stage;
+mod standstill;
 mod step;
 
 pub use build::{build, edge_law};
@@ -26,3 +27,4 @@ pub use fault::{Fault, NotFinite};
 pub use parameters::{ParameterSet, ScheduledChange};
 pub use setup::Setup;
 pub use simulation::Simulation;
+pub use standstill::too_slow_leads;

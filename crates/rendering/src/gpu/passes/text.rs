@@ -6,8 +6,8 @@ use crate::Gpu;
 use crate::annotation::text_shaper::{Block, TextShaper, line_height};
 use crate::palette::Rgb;
 use glyphon::{
-    Buffer, Cache, Color, ColorMode, Metrics, Resolution, SwashCache, TextArea, TextAtlas, TextBounds, TextRenderer,
-    Viewport,
+    Buffer, Cache, Color, ColorMode, Metrics, Resolution, SwashCache, TextArea, TextAtlas, TextBounds,
+    TextRenderer, Viewport,
 };
 use wgpu::TextureFormat;
 
@@ -116,9 +116,8 @@ impl TextPass {
         }
         let nothing = Buffer::new_empty(Metrics::new(1.0, 1.0));
         let below = TextArea { custom_glyphs: &halos, ..area(&nothing, [0.0; 2], Color::rgb(0, 0, 0)) };
-        let above = found
-            .iter()
-            .map(|(line, buffer)| area(buffer, corner(line), colour(line.colour, line.alpha)));
+        let above =
+            found.iter().map(|(line, buffer)| area(buffer, corner(line), colour(line.colour, line.alpha)));
         self.renderer.prepare_with_custom(
             &gpu.device,
             &gpu.queue,
