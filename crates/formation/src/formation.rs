@@ -212,6 +212,8 @@ impl Formation {
         });
         let mut phase = MotionPhase::Law;
         if let Some(input) = parameters.standing_input(memory, &place, seen) {
+            let leader = [memory.speed_now(), memory.acceleration];
+            let input = StandingInput { leader, ..input };
             (asked, phase) = memory.standing.command(asked, &input);
         }
         let too_close = seen.relative.distance < law.distance_min;

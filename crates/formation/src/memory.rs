@@ -44,6 +44,14 @@ impl EdgeMemory {
     }
 }
 
+impl EdgeMemory {
+    /// The leader's speed, while it brakes without the delay of the smoothing, m/s: who brakes late comes too near, and who
+    /// starts late only lags.
+    pub(crate) fn speed_now(&self) -> f64 {
+        (self.speed + (SPEED_TIME + ACCELERATION_TIME) * self.acceleration.min(0.0)).max(0.0)
+    }
+}
+
 /// Share of its way that a first-order lag goes in a period.
 fn share(period: f64, time: f64) -> f64 {
     1.0 - math::exp(-period / time)
