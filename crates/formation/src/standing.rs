@@ -137,9 +137,9 @@ impl Standing {
         let damping = v * v / (v * v + DAMPING_SPEED * DAMPING_SPEED);
         let tamed = bounded_command(Command { turn_rate: law.turn_rate * damping, ..law }, v, TURN_MOST[1]);
         // Behind a leader that drives on, a slow follower is the law's: it has more reach than the tracker.
-        let freed = WHOLE[1] * smooth((leader_speed - FREES[0]) / (FREES[1] - FREES[0]));
-        let slower = leader_speed.min(v + freed);
-        let heads = smooth((TURNED_MOST - off.abs()) / TURNED_WIDTH);
+        let free = smooth((leader_speed - FREES[0]) / (FREES[1] - FREES[0]));
+        let slower = leader_speed.min(v + WHOLE[1] * free);
+        let heads = smooth((TURNED_MOST - off.abs()) / TURNED_WIDTH).max(free);
         let [share, whole] = [BLEND, WHOLE].map(|[from, to]| smooth((slower - from) / (to - from)) * heads);
         if whole >= 1.0 {
             return (law, MotionPhase::Law);
