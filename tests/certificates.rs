@@ -91,6 +91,7 @@ fn word(premise: &Premise) -> &'static str {
         Premise::SampledMeasurement => "sampled-measurement",
         Premise::Measurements => "measurements",
         Premise::Wheels => "wheels",
+        Premise::Standing(_) => "standing",
         Premise::TooClose(_) => "too-close",
         Premise::RobustGain { .. } => "robust-gain",
         Premise::Epsilon => "epsilon",

@@ -4,7 +4,7 @@
 //! `reference.py` made the golden files, and those of the folder named by `ECHELON_REFERENCE_DIR` if it is set.
 
 use formation::lead::AnalyticTrajectory;
-use formation::{EdgeLaw, Formation, Graph, Law, Observer, SetPointTrajectory, Switching};
+use formation::{EdgeLaw, Formation, Graph, Heading, Law, Observer, SetPointTrajectory, Switching};
 use serde::Deserialize;
 use simulation::{Setup, Simulation};
 use std::error::Error;
@@ -116,7 +116,14 @@ impl Case {
         let distance_min = 1e-3;
         let switching = Switching::Tanh([c.slope; 2]);
         Ok(EdgeLaw {
-            law: Law { kind, gain: c.k, robust_gain: [c.beta; 2], switching, distance_min },
+            law: Law {
+                kind,
+                gain: c.k,
+                robust_gain: [c.beta; 2],
+                switching,
+                distance_min,
+                heading: Heading::Leader,
+            },
             observer: Observer {
                 epsilon: [c.epsilon; 2],
                 alpha1: [c.alpha1; 2],
@@ -125,6 +132,7 @@ impl Case {
             },
             tracker: None,
             set_point: SetPointTrajectory::constant(0.0, 0.0),
+            standing: false,
         })
     }
 

@@ -42,6 +42,9 @@ pub(crate) fn check(args: &CheckArgs) -> Outcome {
                 for late in scene.late() {
                     note(&format!("{name}: note: {late}"));
                 }
+                for slow in studies::too_slow_leads(&simulation, scene.time.duration) {
+                    note(&format!("{name}: note: {slow}"));
+                }
                 let (robots, edges) = (fleet.robots.len(), fleet.edges.len());
                 let length = scene.time.duration;
                 let (robots, edges) = (counted(robots, "robot"), counted(edges, "edge"));

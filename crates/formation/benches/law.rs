@@ -1,6 +1,7 @@
 //! What one law evaluation and one observer step cost.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use formation::Heading;
 use formation::relative::Geometry;
 use formation::{Estimate, Law, LawInput, Observer, Switching};
 use std::hint::black_box;
@@ -21,6 +22,7 @@ fn laws(c: &mut Criterion) {
             robust_gain: [5.0; 2],
             switching: Switching::Tanh([24.53; 2]),
             distance_min: 0.1,
+            heading: Heading::Leader,
         };
         group.bench_function(format!("{kind:?}"), |b| {
             b.iter(|| {

@@ -2,13 +2,16 @@
 
 use crate::graph::Graph;
 use crate::law::{Law, LawInput};
+use crate::memory::EdgeMemory;
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
 use crate::set_point::SetPointTrajectory;
+use crate::standing::StandingInput;
 use crate::tracker::TrackerParameters;
 use std::sync::Arc;
 use vocabulary::{
-    Command, Edge, LawKind, Limits, MotionInput, Observation, SetPoint, TrackingState, Trajectory, wrap,
+    Command, Edge, Limits, MotionInput, MotionPhase, Observation, Relative, SetPoint, TrackingState,
+    Trajectory, wrap,
 };
 
 /// Parameters of one edge.
@@ -22,6 +25,9 @@ pub struct EdgeLaw {
     pub tracker: Option<TrackerParameters>,
     /// Where it shall be.
     pub set_point: SetPointTrajectory,
+    /// Whether it stops with its leader and starts again; it then holds its bearing against a path's heading. Without, it
+    /// never drives slower than its least speed.
+    pub standing: bool,
 }
 
 /// Parameters of a formation: they do not change as it runs but by [`Formation::apply_parameters`].
@@ -37,8 +43,10 @@ pub struct Formation {
 /// What a law decided on one edge.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Decision {
-    /// s^d at this instant, [m, rad].
+    /// s^d at this instant, [m, rad]: the bearing against the leader's own heading, whatever the law holds it against.
     pub set_point: [f64; 2],
+    /// ds^d/dt, [m/s, rad/s], of what the law works on.
+    pub set_point_rate: [f64; 2],
     /// Asked for, before limits.
     pub asked: Command,
     /// Within limits: what the robot is told.
@@ -51,15 +59,19 @@ pub struct Decision {
     pub limited: bool,
     /// Whether the distance was below ℓ_min.
     pub too_close: bool,
+    /// What the command is of.
+    pub phase: MotionPhase,
 }
 
-/// State of a formation: observers, the last decisions, and the memory full state feedback needs.
+/// State of a formation: observers, the last decisions, and the memory that some laws need.
 #[derive(Debug, Clone)]
 pub struct FormationState {
     /// Per edge.
     pub estimates: Vec<Estimate>,
     /// Per edge.
     pub decisions: Vec<Decision>,
+    /// Per edge.
+    pub memories: Vec<EdgeMemory>,
     /// Per robot: what it is told; for a lead robot its prescribed motion.
     pub commands: Vec<Command>,
     drives: Vec<MotionInput>,
@@ -119,6 +131,7 @@ impl Formation {
         FormationState {
             estimates,
             decisions: vec![Decision::default(); self.edges.len()],
+            memories: vec![EdgeMemory::default(); self.edges.len()],
             commands: vec![Command::default(); robots],
             drives: vec![MotionInput::default(); robots],
             turn_rates: [None, None],
@@ -139,9 +152,32 @@ impl Formation {
         state: &mut FormationState,
         filter: &mut dyn FnMut(usize, Command) -> Command,
     ) {
+        self.remember(time, observations, state);
         state.differentiate_turn_rates(self.period);
         self.evaluate_through(time, observations, state, filter);
         state.remember_turn_rates();
+    }
+
+    /// Carries what followers remember of their leaders on to this sample.
+    fn remember(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
+        for (index, (edge, seen)) in self.edges.iter().zip(observations).enumerate() {
+            let memory = &mut state.memories[index];
+            // Whoever comes into sight again is met anew.
+            if edge.law.heading.filter().is_none() || unseen(seen) {
+                *memory = EdgeMemory::default();
+                continue;
+            }
+            let geometry = Geometry::new(&seen.relative, edge.law.distance_min);
+            let leader = MotionInput { speed: seen.leader_speed.unwrap_or(0.0), ..MotionInput::default() };
+            let rates = edge.law.rates_of(&state.estimates[index], || {
+                edge.law.rates(&geometry, seen.own_speed, &leader).into()
+            });
+            memory.advance(&edge.law, seen, rates, self.period);
+            if edge.standing {
+                let turn_rate = state.decisions[index].applied.turn_rate;
+                edge.stand(memory, time, seen, turn_rate, self.period);
+            }
+        }
     }
 
     /// Evaluates all laws at an instant, leaders before followers, without memory: for continuous time.
@@ -187,31 +223,93 @@ impl Formation {
     fn decide_edge(&self, index: usize, time: f64, seen: &Observation, state: &FormationState) -> Decision {
         let (edge, parameters) = (self.edges()[index], &self.edges[index]);
         let limits = &self.limits[edge.follower];
-        if matches!(seen.sight, TrackingState::Waiting | TrackingState::Lost) {
+        if unseen(seen) {
             return without_leader(&parameters.set_point.at(time), seen, limits);
         }
         // What the leader does within this sample it tells its follower; its speed the follower has to observe.
         let leader = MotionInput { speed: seen.leader_speed.unwrap_or(0.0), ..state.drives[edge.leader] };
-        let geometry = Geometry::new(&seen.relative, parameters.law.distance_min);
-        let set_point = parameters.set_point.at(time);
-        let own_speed = seen.own_speed.max(limits.speed_min);
-        let rates = match parameters.law.kind {
-            LawKind::OutputFeedback => state.estimates[index].rates,
-            LawKind::FullState | LawKind::RobustState => {
-                geometry.rates(own_speed, leader.speed, leader.turn_rate).into()
-            }
-        };
-        let asked = parameters.law.command(&LawInput {
+        let (law, memory) = (&parameters.law, &state.memories[index]);
+        let geometry = Geometry::new(&seen.relative, law.distance_min);
+        let place = parameters.place(memory, time);
+        let set_point = parameters.output_set_point(memory, &place);
+        let slowest = if parameters.standing { DIVIDES_BY } else { limits.speed_min };
+        let own_speed = seen.own_speed.max(slowest);
+        let rates = law.rates_of(&state.estimates[index], || law.rates(&geometry, own_speed, &leader).into());
+        let mut asked = law.command(&LawInput {
             geometry: &geometry,
-            error: tracking_error(&set_point, seen),
+            error: tracking_error(&set_point, &law.heading.output(&seen.relative, seen.own_heading)),
             set_point: &set_point,
             rates,
             own_speed,
             leader: &leader,
         });
-        let too_close = seen.relative.distance < parameters.law.distance_min;
-        Decision { rates, too_close, ..Decision::of(asked, &set_point, seen.own_speed, limits) }
+        let mut phase = MotionPhase::Law;
+        if let Some(input) = parameters.standing_input(memory, &place, seen) {
+            let leader = [memory.speed_now(), memory.acceleration];
+            let input = StandingInput { leader, ..input };
+            (asked, phase) = memory.standing.command(asked, &input);
+        }
+        let too_close = seen.relative.distance < law.distance_min;
+        let mut decision = Decision::of(asked, &set_point, seen.own_speed, limits);
+        if let Some(heading) = memory.heading {
+            decision.set_point[1] = wrap(place.value[1] - heading.behind);
+        }
+        Decision { rates, too_close, phase, ..decision }
     }
+}
+
+/// The least speed by which a law divides that may stand, m/s: near it the law has no part in the command.
+const DIVIDES_BY: f64 = 0.01;
+
+impl EdgeLaw {
+    /// s^d against the heading it is held against.
+    fn place(&self, memory: &EdgeMemory, time: f64) -> SetPoint {
+        let base = self.set_point.at(time);
+        if self.standing { memory.standing.set_point(&base, self.law.distance_min) } else { base }
+    }
+
+    /// s^d as the law takes it: with a path's heading, φ^d = ψ^d + θ̄ in place of ψ^d.
+    fn output_set_point(&self, memory: &EdgeMemory, place: &SetPoint) -> SetPoint {
+        let (Some(filter), Some(heading)) = (self.law.heading.filter(), &memory.heading) else {
+            return *place;
+        };
+        let mut set_point = *place;
+        set_point.value[1] += heading.heading;
+        set_point.rate[1] += heading.rate(filter, memory.speed);
+        set_point
+    }
+
+    /// What the standing rule looks at, where it is on.
+    fn standing_input<'a>(
+        &self,
+        memory: &EdgeMemory,
+        place: &'a SetPoint,
+        seen: &Observation,
+    ) -> Option<StandingInput<'a>> {
+        let (filter, heading) = (self.law.heading.filter()?, memory.heading.filter(|_| self.standing)?);
+        let direction = seen.relative.view_angle + seen.own_heading;
+        Some(StandingInput {
+            set_point: place,
+            frame: [wrap(heading.heading - seen.own_heading), heading.rate(filter, memory.speed)],
+            place: [seen.relative.distance, wrap(direction - heading.heading)],
+            own_speed: seen.own_speed,
+            leader: [memory.speed, memory.acceleration],
+        })
+    }
+
+    /// Carries the standing rule on over a period; `turn_rate` rad/s is what was applied last.
+    fn stand(&self, memory: &mut EdgeMemory, time: f64, seen: &Observation, turn_rate: f64, period: f64) {
+        memory.standing.carry(memory.speed, period);
+        let (base, place) = (self.set_point.at(time), self.place(memory, time));
+        if let Some(input) = self.standing_input(memory, &place, seen) {
+            memory.standing.switch(&base, &input, turn_rate, period);
+        }
+    }
+}
+
+/// Whether a follower does not know where its leader is.
+fn unseen(seen: &Observation) -> bool {
+    matches!(seen.sight, TrackingState::Waiting | TrackingState::Lost)
 }
 
 impl Decision {
@@ -222,6 +320,7 @@ impl Decision {
         let applied = Command { acceleration, ..commanded };
         Self {
             set_point: [set_point.value[0], wrap(set_point.value[1])],
+            set_point_rate: set_point.rate,
             asked,
             commanded,
             applied,
@@ -254,8 +353,8 @@ fn without_leader(set_point: &SetPoint, seen: &Observation, limits: &Limits) -> 
 const BRAKING: f64 = 0.5;
 
 /// e = s^d − s, [m, rad], bearing wrapped (eq 14).
-fn tracking_error(set_point: &SetPoint, seen: &Observation) -> [f64; 2] {
-    [set_point.value[0] - seen.relative.distance, wrap(set_point.value[1] - seen.relative.bearing)]
+fn tracking_error(set_point: &SetPoint, output: &Relative) -> [f64; 2] {
+    [set_point.value[0] - output.distance, wrap(set_point.value[1] - output.bearing)]
 }
 
 impl FormationState {
@@ -280,7 +379,8 @@ mod tests {
     use super::*;
     use crate::law::Switching;
     use crate::lead::AnalyticTrajectory;
-    use vocabulary::Relative;
+    use crate::path_heading::Heading;
+    use vocabulary::LawKind;
 
     fn chain(kind: LawKind) -> Formation {
         let graph = Graph::new(&["a", "b", "c"], &[("a", "b"), ("b", "c")]).expect("a chain");
@@ -290,10 +390,16 @@ mod tests {
             robust_gain: [5.0; 2],
             switching: Switching::Tanh([24.53; 2]),
             distance_min: 0.1,
+            heading: Heading::Leader,
         };
         let observer = Observer { epsilon: [1e-3; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 };
-        let edge =
-            EdgeLaw { law, observer, tracker: None, set_point: SetPointTrajectory::constant(2.0, -2.3) };
+        let edge = EdgeLaw {
+            law,
+            observer,
+            tracker: None,
+            set_point: SetPointTrajectory::constant(2.0, -2.3),
+            standing: false,
+        };
         let limits = Limits::PAPER;
         let lead: Arc<dyn Trajectory> = Arc::new(AnalyticTrajectory::constant(1.0, 0.3));
         Formation::new(graph, vec![edge.clone(), edge], vec![limits; 3], vec![(0, lead)], 0.01)

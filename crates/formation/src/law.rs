@@ -5,6 +5,8 @@
 //! where extra is g_v V_i for full state feedback and ū = β sign(e) (or β tanh(slope · e)) for the other two.
 //! Output feedback takes ds/dt from the observer. Saturation follows in [`vocabulary::Limits`].
 
+use crate::observer::Estimate;
+use crate::path_heading::Heading;
 use crate::relative::Geometry;
 use nalgebra::Vector2;
 use vocabulary::{Command, LawKind, MotionInput, SetPoint, math};
@@ -31,6 +33,9 @@ pub struct Law {
     pub switching: Switching,
     /// ℓ_min, m: the laws divide by no less; positive.
     pub distance_min: f64,
+    /// Against what heading the bearing is held. Against a path's, "bearing" means the direction φ of the line in all of
+    /// the law and its observer, and the leader's turn rate and its change are taken as zero: they do nothing to φ.
+    pub heading: Heading,
 }
 
 /// What a law looks at.
@@ -51,6 +56,38 @@ pub struct LawInput<'a> {
 }
 
 impl Law {
+    /// d[ℓ, ψ]/dt, or d[ℓ, φ]/dt, [m/s, rad/s].
+    pub fn rates(&self, geometry: &Geometry, follower_speed: f64, leader: &MotionInput) -> Vector2<f64> {
+        let turn_rate = match self.heading {
+            Heading::Leader => leader.turn_rate,
+            Heading::Path(_) => 0.0,
+        };
+        geometry.rates(follower_speed, leader.speed, turn_rate)
+    }
+
+    /// ds/dt as this law takes it: the observer's `estimate`, or the truth for a law that is told it.
+    pub(crate) fn rates_of(&self, estimate: &Estimate, truth: impl FnOnce() -> [f64; 2]) -> [f64; 2] {
+        match self.kind {
+            LawKind::OutputFeedback => estimate.rates,
+            LawKind::FullState | LawKind::RobustState => truth(),
+        }
+    }
+
+    /// g_v V_i, [m/s², rad/s²].
+    pub fn leader_effect(
+        &self,
+        geometry: &Geometry,
+        follower_speed: f64,
+        leader: &MotionInput,
+    ) -> Vector2<f64> {
+        let turn_acceleration = match self.heading {
+            Heading::Leader => leader.turn_acceleration,
+            // The turn rate stays where it turns the leader's velocity (column 5 of g_v).
+            Heading::Path(_) => 0.0,
+        };
+        geometry.leader_effect(follower_speed, &MotionInput { turn_acceleration, ..*leader })
+    }
+
     /// The command before saturation, eqs 20, 22, 42.
     pub fn command(&self, input: &LawInput<'_>) -> Command {
         let (geometry, v) = (input.geometry, input.own_speed);
@@ -60,7 +97,7 @@ impl Law {
             + geometry.rate_column(v) * rates.x
             + self.feedback(input);
         b += match self.kind {
-            LawKind::FullState => geometry.leader_effect(v, input.leader),
+            LawKind::FullState => self.leader_effect(geometry, v, input.leader),
             LawKind::RobustState | LawKind::OutputFeedback => self.robust_term(input.error),
         };
         let u = geometry.minus_inverse_input(v, &b);
@@ -95,6 +132,19 @@ fn sign(x: f64) -> f64 {
 }
 
 #[cfg(test)]
+pub(crate) fn test_law() -> Law {
+    use crate::path_heading::PathFilter;
+    Law {
+        kind: LawKind::OutputFeedback,
+        gain: [5.0; 2],
+        robust_gain: [5.0; 2],
+        switching: Switching::Tanh([24.53; 2]),
+        distance_min: 0.1,
+        heading: Heading::Path(PathFilter { length: 1.0, lag: 0.0 }),
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::relative::second_rates;
@@ -111,6 +161,7 @@ mod tests {
             robust_gain: [5.0, 3.0],
             switching: Switching::Tanh([24.53; 2]),
             distance_min: 0.1,
+            heading: Heading::Leader,
         }
     }
 

@@ -215,6 +215,36 @@ mod tests {
             prop_assert!((model - second).norm() < 2e-5 * (1.0 + second.norm()), "{model} against {second}");
         }
 
+        /// With the direction of the line in place of the bearing: the leader's turn rate drops out of the rate, and its
+        /// change out of g_v V_i.
+        #[test]
+        fn rates_of_the_lines_direction_match_finite_differences(leader in rover(), follower in rover()) {
+            let r = Relative::between(leader.pose, follower.pose);
+            prop_assume!(r.distance > 0.5);
+            let (geometry, v, law) = (Geometry::new(&r, 0.1), follower.drive.speed, crate::law::test_law());
+            let direction = |t: f64| {
+                let (l, f) = (leader.at(t).pose, follower.at(t).pose);
+                law.heading.output(&Relative::between(l, f), f.heading)
+            };
+            let centre = direction(0.0);
+            let at = |t: f64| {
+                let s = direction(t);
+                Vector2::new(s.distance, nearest_turn(s.bearing, centre.bearing))
+            };
+            let first = |h: f64| (at(h) - at(-h)) / (2.0 * h);
+            let second = |h: f64| (at(h) - 2.0 * at(0.0) + at(-h)) / (h * h);
+            let h = 2e-3;
+            let (first, second) =
+                ((4.0 * first(h / 2.0) - first(h)) / 3.0, (4.0 * second(h / 2.0) - second(h)) / 3.0);
+            let rates = law.rates(&geometry, v, &leader.drive);
+            prop_assert!((rates - first).norm() < 1e-7, "{rates} against {first}");
+            let model = -(geometry.input_matrix(v) * command(&follower)
+                + geometry.drift(v)
+                + rate_matrix(&geometry, v) * rates
+                + law.leader_effect(&geometry, v, &leader.drive));
+            prop_assert!((model - second).norm() < 2e-5 * (1.0 + second.norm()), "{model} against {second}");
+        }
+
         /// g alone: how d²s/dt² answers to a change of the follower's command.
         #[test]
         fn input_matrix_is_the_answer_to_the_command(leader in rover(), follower in rover(), a in -1.0..1.0, w in -1.0..1.0) {

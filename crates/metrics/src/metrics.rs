@@ -7,7 +7,9 @@ use crate::measurements::{MeasurementMetrics, MeasurementSums};
 use crate::safety::{SafetyMetrics, SafetySums};
 use crate::statistics::RootMeanSquare;
 use serde::Serialize;
-use vocabulary::{Condition, Contact, EdgeState, EntityId, FleetInfo, Judging, StepRecord, Word};
+use vocabulary::{
+    Condition, Contact, EdgeState, EntityId, FleetInfo, Judging, Motion, StepRecord, Word, math,
+};
 
 /// `metrics.json`. Every pair is [distance, bearing] or [acceleration, turn rate].
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -94,9 +96,26 @@ pub struct EdgeMetrics {
     pub speeds: [f64; 2],
     /// [slowest, fastest] speed of the follower since it settled, m/s; `None` if it did not.
     pub settled_speeds: Option<[f64; 2]>,
+    /// How it stood while its leader stood; `None` where that did not stand for long enough.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub standing: Option<StandingMetrics>,
     /// How well it saw its leader; `None` where it is told the truth.
     pub measurements: Option<MeasurementMetrics>,
 }
+
+/// A follower while its leader stands, from [`STANDING_AFTER`] on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Default)]
+pub struct StandingMetrics {
+    /// Largest |turn rate| of the follower, rad/s.
+    pub turn_rate: f64,
+    /// Farthest from its set point, m.
+    pub error: f64,
+}
+
+/// A leader at this speed or less stands, m/s.
+const STANDING_SPEED: f64 = 0.01;
+/// How long it has to have stood, s.
+pub const STANDING_AFTER: f64 = 2.0;
 
 /// Gathers [`Metrics`].
 #[derive(Clone)]
@@ -123,6 +142,8 @@ struct EdgeSums {
     late_errors: RootMeanSquare<2>,
     measurements: MeasurementSums,
     limited: u64,
+    /// Since when the leader has stood, s; `None` while it drives.
+    stands: Option<f64>,
     /// Since the edge was last outside its band; `None` while it is.
     settled: Option<Settled>,
 }
@@ -159,8 +180,12 @@ impl MetricsBuilder {
         let time = record.snapshot.time;
         let step = if self.samples == 0 { 0.0 } else { time - self.time };
         for (index, edge) in record.edges.iter().enumerate() {
-            let speed = record.snapshot.robots[self.fleet.edges[index].follower].motion.speed;
-            self.edges[index].push(edge, speed, time, step, &self.judging);
+            let robots = &record.snapshot.robots;
+            let [leader, follower] =
+                [self.fleet.edges[index].leader, self.fleet.edges[index].follower].map(|k| &robots[k].motion);
+            let sums = &mut self.edges[index];
+            sums.push(edge, follower.speed, time, step, &self.judging);
+            sums.stand(edge, [leader, follower], time);
         }
         for frame in &record.frames {
             if let Some(edge) = self.edges.get_mut(frame.edge) {
@@ -258,6 +283,23 @@ impl EdgeSums {
         self.last = *edge;
     }
 
+    fn stand(&mut self, edge: &EdgeState, [leader, follower]: [&Motion; 2], time: f64) {
+        if leader.speed.abs() > STANDING_SPEED {
+            self.stands = None;
+            return;
+        }
+        if time - *self.stands.get_or_insert(time) < STANDING_AFTER {
+            return;
+        }
+        // Between the two ends of the distances, an angle of the bearing's error apart.
+        let ([wanted, _], [off, turned]) = (edge.set_point, edge.error);
+        let (distance, chord) = (wanted - off, 2.0 * math::sin(0.5 * turned));
+        let error = (off * off + wanted * distance * chord * chord).max(0.0).sqrt();
+        let standing = self.metrics.standing.get_or_insert_default();
+        standing.turn_rate = standing.turn_rate.max(follower.turn_rate.abs());
+        standing.error = standing.error.max(error);
+    }
+
     fn settle(&mut self, edge: &EdgeState, speed: f64, time: f64, band: [f64; 2]) {
         if edge.error[0].abs() > band[0] || edge.error[1].abs() > band[1] {
             self.settled = None;
@@ -289,7 +331,6 @@ impl EdgeSums {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::math;
     use vocabulary::{Edge, Pose, RobotInfo, RobotState, Snapshot};
 
     /// An error that falls by e^(−t) on an edge of two robots 1 m apart at the start.
@@ -333,6 +374,30 @@ mod tests {
         assert!((metrics.clearance_min.expect("two robots") - (1.0 - length)).abs() < 1e-12);
         assert!((metrics.clearance_min_time.expect("a time") - 5.0).abs() < 1e-12);
         assert_eq!(metrics.clearance_min_robots, Some(["a".to_owned(), "b".to_owned()]));
+    }
+
+    #[test]
+    fn a_follower_is_judged_at_a_stand_when_its_leader_has_stood_for_a_while() {
+        let fleet = FleetInfo {
+            robots: vec![RobotInfo::new("a", true, vocabulary::Body::default()); 2],
+            edges: vec![Edge { leader: 0, follower: 1 }],
+            ..FleetInfo::default()
+        };
+        let mut builder =
+            MetricsBuilder::new(&fleet, Judging { settling_band: [0.1, 0.1], settled_after: 1.0 });
+        for (time, leader, turn_rate) in [(0.0, 0.0, 9.0), (1.9, 0.0, 8.0), (2.0, 0.0, -0.2), (3.0, 0.1, 7.0)]
+        {
+            let mut robots = vec![RobotState::default(); 2];
+            (robots[0].motion.speed, robots[1].motion.turn_rate) = (leader, turn_rate);
+            // Wanted at [2, 0], found at [0, 1.5].
+            let error = [0.5, -0.5 * std::f64::consts::PI];
+            let edge = EdgeState { set_point: [2.0, 0.0], error, ..EdgeState::default() };
+            let snapshot = Snapshot { time, robots, props: vec![] };
+            builder.push(&StepRecord { snapshot, edges: vec![edge], ..StepRecord::default() });
+        }
+        let found = builder.finish().edges[0].standing.expect("it stood");
+        assert_eq!(found.turn_rate, 0.2);
+        assert!((found.error - 2.5).abs() < 1e-12, "{found:?}");
     }
 
     #[test]

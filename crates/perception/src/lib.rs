@@ -11,7 +11,10 @@ pub mod pose;
 pub mod proximity;
 pub mod sensors;
 
-use vocabulary::{Edge, EdgeSample, Observation, Relative, Snapshot, StepInterpolant, Track, nearest_turn};
+use vocabulary::{
+    Edge, EdgeSample, HeadingReference, Observation, Relative, Snapshot, StepInterpolant, Track,
+    nearest_turn, wrap,
+};
 
 /// One observation per edge, of the truth.
 pub fn observe(snapshot: &Snapshot, edges: &[Edge], observations: &mut Vec<Observation>) {
@@ -24,8 +27,14 @@ pub fn observe(snapshot: &Snapshot, edges: &[Edge], observations: &mut Vec<Obser
 /// changes no rate by more than 1e-9 of the jump.
 const SHORTEST: f64 = 1e-6;
 
-/// The last step as `edge` saw it, in smooth stretches handed to `visit` one after the other.
-pub fn tracks(interpolant: &(impl StepInterpolant + ?Sized), edge: Edge, mut visit: impl FnMut(&Track)) {
+/// The last step as `edge` saw it, in smooth stretches handed to `visit` one after the other; its bearings are counted
+/// from what `reference` says.
+pub fn tracks(
+    interpolant: &(impl StepInterpolant + ?Sized),
+    edge: Edge,
+    reference: HeadingReference,
+    mut visit: impl FnMut(&Track),
+) {
     let end = interpolant.duration();
     let mut kinks = [interpolant.saturation_time(edge.leader), interpolant.saturation_time(edge.follower)]
         .map(|k| k.unwrap_or(end));
@@ -33,23 +42,28 @@ pub fn tracks(interpolant: &(impl StepInterpolant + ?Sized), edge: Edge, mut vis
     let mut from = 0.0;
     for until in kinks {
         if until - from > SHORTEST && end - until > SHORTEST {
-            visit(&track(interpolant, edge, from, until));
+            visit(&track(interpolant, edge, reference, [from, until]));
             from = until;
         }
     }
-    visit(&track(interpolant, edge, from, end));
+    visit(&track(interpolant, edge, reference, [from, end]));
 }
 
-/// The edge as seen at one instant of the last step; the bearing is the turn nearest to `near`.
+/// The edge as seen at one instant of the last step; the bearing is the turn nearest to `near`. For a follower that holds
+/// it against a path's heading it is the direction of the line in the world, which it knows by its own heading.
 pub fn sample(
     interpolant: &(impl StepInterpolant + ?Sized),
     edge: Edge,
+    reference: HeadingReference,
     elapsed: f64,
     near: Option<f64>,
 ) -> EdgeSample {
     let (leader, follower) =
         (interpolant.during(edge.leader, elapsed), interpolant.during(edge.follower, elapsed));
     let mut relative = Relative::between(leader.pose, follower.pose);
+    if reference == HeadingReference::Path {
+        relative.bearing = wrap(relative.view_angle + follower.pose.heading);
+    }
     if let Some(near) = near {
         relative.bearing = nearest_turn(relative.bearing, near);
     }
@@ -61,13 +75,18 @@ pub fn sample(
     }
 }
 
-fn track(interpolant: &(impl StepInterpolant + ?Sized), edge: Edge, from: f64, until: f64) -> Track {
+fn track(
+    interpolant: &(impl StepInterpolant + ?Sized),
+    edge: Edge,
+    reference: HeadingReference,
+    [from, until]: [f64; 2],
+) -> Track {
     let duration = until - from;
     // A node on a kink belongs to the stretch it is sampled for: its acceleration is that of the middle.
     let middle = interpolant.during(edge.follower, from + duration / 2.0);
     let mut near = None;
     let samples = Track::NODES.map(|node| {
-        let mut sample = sample(interpolant, edge, from + node * duration, near);
+        let mut sample = sample(interpolant, edge, reference, from + node * duration, near);
         sample.acceleration = middle.acceleration;
         near = Some(sample.relative.bearing);
         sample
@@ -110,7 +129,7 @@ mod tests {
     #[test]
     fn a_step_with_a_kink_is_seen_in_two_smooth_stretches() {
         let mut seen = vec![];
-        tracks(&Circling, EDGE, |track| seen.push(*track));
+        tracks(&Circling, EDGE, HeadingReference::Leader, |track| seen.push(*track));
         assert_eq!(seen.len(), 2);
         assert!((seen[0].duration - 0.004).abs() < 1e-15 && (seen[1].duration - 0.006).abs() < 1e-15);
         assert!(seen[0].samples.iter().all(|s| s.acceleration == 5.0));
@@ -119,7 +138,7 @@ mod tests {
 
     #[test]
     fn the_bearing_is_continuous_along_a_track_over_the_seam() {
-        tracks(&Circling, EDGE, |track| {
+        tracks(&Circling, EDGE, HeadingReference::Leader, |track| {
             for pair in track.samples.windows(2) {
                 assert!((pair[1].relative.bearing - pair[0].relative.bearing).abs() < 0.01);
             }

@@ -80,6 +80,7 @@ pub(crate) fn edge(time: f64, [leader, follower]: [&str; 2], edge: &EdgeState, r
     row("sight", Text(edge.sight.word()));
     row("limited", Flag(edge.limited));
     row("too_close", Flag(edge.too_close));
+    row("phase", Text(edge.phase.word()));
 }
 
 /// A contact that has ended.

@@ -59,7 +59,7 @@ pub(crate) fn expand(
     drafts.reserve(count);
     group.check_members(reporter);
     let usual = group.outfit(None, defaults, reporter)?;
-    let speed = start_speed(keys.speed.as_ref(), &usual.vehicle, reporter);
+    let speed = start_speed(keys.speed.as_ref(), &usual.vehicle, usual.law.standing, reporter);
     let spacing = keys.distance.as_ref()?;
     check_distance(spacing.value, usual.law.distance_min, spacing.span, reporter);
     let (leader, origin) = group.leader(&usual, defaults, drafts, reporter)?;
@@ -74,7 +74,7 @@ pub(crate) fn expand(
         let (mut own, mut speed) = (usual, speed);
         if member.is_some() {
             own = group.outfit(member, defaults, reporter)?;
-            speed = start_speed(keys.speed.as_ref(), &own.vehicle, reporter);
+            speed = start_speed(keys.speed.as_ref(), &own.vehicle, own.law.standing, reporter);
         }
         let (distance, bearing) = spot.set_point(member);
         if let Some(found) = member.and_then(|keys| keys.distance.as_ref()) {
@@ -233,7 +233,7 @@ impl Group<'_> {
         let proximity = over(own.proximity.as_ref(), keys.proximity.as_ref()?);
         Some(Outfit {
             vehicle,
-            law: law.complete_with(&defaults.law, Law::fitting(vehicle.kind)),
+            law: defaults.law(&law, vehicle.kind, self.node.span, reporter),
             observer: defaults.observer(&observer, &vehicle),
             sensing: defaults.sensing(&sensing),
             safety: defaults.safety(&safety),

@@ -1,14 +1,14 @@
 //! From the keys of a robot to a checked robot.
 
 use crate::{
-    Follow, Law, Observer, Path, Proximity, Robot, Role, Safety, Sensing, Vehicle,
+    Follow, Law, Observer, Path, Proximity, Robot, Role, Safety, Sensing, Vehicle, VehicleKind,
     document::RobotKeys,
     graph::Named,
-    text::{Found, Node, Part, Reporter, Span},
+    text::{Found, Keys, Node, Part, Reporter, Span},
     types::{LawPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart},
     vehicle::{WrittenVehicle, kind_is_lost, vehicle},
 };
-use vocabulary::{Pose, math};
+use vocabulary::{HeadingReference, Pose, math};
 
 /// What holds for every robot that says nothing else.
 pub(crate) struct Defaults {
@@ -36,6 +36,29 @@ impl Defaults {
         let own = own.map_or(&nothing, |found| &found.value);
         let span = self.step_span.unwrap_or(span);
         vehicle(&WrittenVehicle { own, scene: &self.vehicle, step: self.step, span }, reporter)
+    }
+
+    /// The law of a robot or group on a vehicle of `kind` that says `own` of it and stands at `span`.
+    pub(crate) fn law(&self, own: &LawPart, kind: VehicleKind, span: Span, reporter: &mut Reporter) -> Law {
+        let law = own.complete_with(&self.law, Law::fitting(kind));
+        let mut report = |keys: &[&str], message: String| {
+            let find = |key: &&str| own.span_of(key).or_else(|| self.law.span_of(key));
+            reporter.report(keys.iter().find_map(find).unwrap_or(span), message);
+        };
+        let Law { heading, heading_length, heading_lag, standing, .. } = law;
+        if heading == HeadingReference::Path && heading_lag > 2.0 * heading_length {
+            let message = format!(
+                "`heading_lag` of {heading_lag} m must be at most twice `heading_length`, {} m",
+                2.0 * heading_length
+            );
+            report(&["heading_lag", "heading_length"], message);
+        }
+        if standing && heading != HeadingReference::Path {
+            let message = "`standing` needs `heading = \"path\"`: a bearing from the leader's own heading swings when it \
+                           turns at a stop";
+            report(&["standing", "heading"], message.to_owned());
+        }
+        law
     }
 
     /// The observer of a robot or group that says `own` of it.
@@ -168,10 +191,10 @@ fn follow(
         }
     }
     let law = keys.law.clone().map_or_else(LawPart::default, |found| found.value);
-    let law = law.complete_with(&defaults.law, Law::fitting(vehicle.kind));
+    let law = defaults.law(&law, vehicle.kind, node.span, reporter);
     let observer = keys.observer.clone().map_or_else(ObserverPart::default, |found| found.value);
     let sensing = keys.sensing.clone().map_or_else(SensingPart::default, |found| found.value);
-    let speed = start_speed(keys.speed.as_ref(), vehicle, reporter);
+    let speed = start_speed(keys.speed.as_ref(), vehicle, law.standing, reporter);
     let (distance, bearing) = (keys.distance.as_ref()?, keys.bearing.as_ref()?);
     check_distance(distance.value.range()[0], law.distance_min, distance.span, reporter);
     Some(Follow {
@@ -185,10 +208,16 @@ fn follow(
     })
 }
 
-/// A follower's speed at the start, m/s.
-pub(crate) fn start_speed(speed: Option<&Found<f64>>, vehicle: &Vehicle, reporter: &mut Reporter) -> f64 {
+/// A follower's speed at the start, m/s; one that `stands` with its leader may start at rest.
+pub(crate) fn start_speed(
+    speed: Option<&Found<f64>>,
+    vehicle: &Vehicle,
+    stands: bool,
+    reporter: &mut Reporter,
+) -> f64 {
     let Some(speed) = speed else { return vehicle.speed_min };
     let Vehicle { speed_min, speed_max, .. } = *vehicle;
+    let speed_min = if stands { 0.0 } else { speed_min };
     if !(speed_min..=speed_max).contains(&speed.value) {
         let message = format!(
             "`speed` of {} m/s is outside the vehicle's limits, {speed_min} to {speed_max} m/s",

@@ -6,12 +6,12 @@ use crate::parameters::{ParameterSet, ScheduledChange};
 use crate::safety::SafetyConfig;
 use crate::setup::Setup;
 use crate::stage::{handling, stage};
-use formation::{EdgeLaw, Formation, Graph, SetPointTrajectory, TrackerParameters};
+use formation::{EdgeLaw, Formation, Graph, Heading, PathFilter, SetPointTrajectory, TrackerParameters};
 use perception::proximity::{ProximityConfig, ProximitySensor};
 use perception::sensors::{CameraSettings, NoiseModel, Sensor, SensorConfig, SensorKind};
 use scene::{Follow, OnContact, Role, Scene, SensingKind, SwitchingKind, Vision};
 use std::sync::Arc;
-use vocabulary::{Edge, FleetInfo, Light, RobotInfo};
+use vocabulary::{Edge, FleetInfo, HeadingReference, Light, RobotInfo, TimeMode};
 use world::{Unicycle, WorldSetup};
 
 /// Puts the run of `scene` together.
@@ -23,7 +23,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let followers: Vec<(&str, &Follow)> = scene.followers().collect();
     let pairs: Vec<(&str, &str)> = followers.iter().map(|(name, follow)| (&*follow.leader, *name)).collect();
     let graph = Graph::new(&names, &pairs)?;
-    check_stiffness(scene, &followers)?;
+    check_continuous(scene, &followers)?;
 
     let mut stage = stage(scene)?;
     let leading = stage.actors.iter().enumerate();
@@ -76,18 +76,24 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
 fn turn(change: &scene::Change) -> Result<ScheduledChange, BuildError> {
     let robots = &change.then.robots;
     let followers: Vec<(&str, &Follow)> = change.then.followers().collect();
-    check_stiffness(&change.then, &followers)?;
+    check_continuous(&change.then, &followers)?;
     let parameters = ParameterSet {
         laws: followers.iter().map(|(_, follow)| edge_law(follow)).collect(),
-        handling: robots.iter().map(|robot| handling(&robot.vehicle)).collect(),
+        handling: robots.iter().map(handling).collect(),
         filters: filters(robots),
     };
     Ok(ScheduledChange { at: change.at, parameters })
 }
 
-fn check_stiffness(scene: &Scene, followers: &[(&str, &Follow)]) -> Result<(), BuildError> {
-    if scene.time.mode != vocabulary::TimeMode::Continuous {
+/// Refuses what continuous time cannot run.
+fn check_continuous(scene: &Scene, followers: &[(&str, &Follow)]) -> Result<(), BuildError> {
+    if scene.time.mode != TimeMode::Continuous {
         return Ok(());
+    }
+    // The filtered heading is a memory that goes from sample to sample.
+    if let Some((name, _)) = followers.iter().find(|(_, follow)| follow.law.heading == HeadingReference::Path)
+    {
+        return Err(BuildError::PathHeading { robot: (*name).to_owned() });
     }
     for (name, follow) in followers.iter().filter(|(_, f)| f.law.kind == vocabulary::LawKind::OutputFeedback)
     {
@@ -112,10 +118,17 @@ pub fn edge_law(follow: &Follow) -> EdgeLaw {
                 SwitchingKind::Sign => formation::Switching::Sign,
             },
             distance_min: law.distance_min,
+            heading: match law.heading {
+                HeadingReference::Leader => Heading::Leader,
+                HeadingReference::Path => {
+                    Heading::Path(PathFilter { length: law.heading_length, lag: law.heading_lag })
+                }
+            },
         },
         observer,
         tracker: tracker_parameters(follow, observer),
         set_point: SetPointTrajectory { distance: follow.distance.clone(), bearing: follow.bearing.clone() },
+        standing: law.standing,
     }
 }
 

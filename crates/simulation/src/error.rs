@@ -27,6 +27,15 @@ pub enum BuildError {
         /// What is asked for, and where.
         found: Box<Undrivable>,
     },
+    /// A path's heading in continuous time.
+    #[error(
+        "the law of `{robot}` holds its bearing against the heading of a path, which is filtered from sample to sample: \
+         mode \"continuous\" has no samples; use mode \"sampled\", or `heading = \"leader\"`"
+    )]
+    PathHeading {
+        /// The follower.
+        robot: String,
+    },
     /// An observer too fast for continuous time.
     #[error(
         "the observer of `{robot}` has ε = {epsilon} s: mode \"continuous\" takes steps of an eighth of it and would \

@@ -17,6 +17,7 @@ mod sensing;
 mod setup;
 mod simulation;
 mod stage;
+mod standstill;
 mod step;
 
 pub use build::{build, edge_law};
@@ -28,3 +29,4 @@ pub use parameters::{ParameterSet, ScheduledChange};
 pub use safety::SafetyConfig;
 pub use setup::Setup;
 pub use simulation::Simulation;
+pub use standstill::too_slow_leads;

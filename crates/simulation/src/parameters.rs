@@ -41,10 +41,11 @@ impl ParameterSet {
     }
 }
 
-/// Whether an observer begins to run that was not needed before.
+/// Whether an observer begins to run that was not needed before, or begins anew on another output.
 pub(crate) fn wakes(before: &EdgeLaw, after: &EdgeLaw) -> bool {
     let runs = |law: &EdgeLaw| law.law.kind == LawKind::OutputFeedback;
-    runs(after) && !runs(before) && after.tracker.is_none()
+    let output = |law: &EdgeLaw| law.law.heading.reference();
+    runs(after) && (!runs(before) || output(before) != output(after)) && after.tracker.is_none()
 }
 
 /// The first control sample at or after `at` s; one that is missed by rounding only counts.

@@ -30,6 +30,13 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
             }
         };
         robots[edge.follower].camera_pan = pan;
+        let mut estimate = run.state.estimates[index].output;
+        let heading = &run.formation.laws()[index].law.heading;
+        if heading.filter().is_some() {
+            // As a bearing from the leader's heading, like everything else in a record.
+            let output = heading.output(&known.relative, known.own_heading);
+            estimate[1] = known.relative.bearing + wrap(estimate[1] - output.bearing);
+        }
         *out = EdgeState {
             relative,
             seen: known.relative,
@@ -40,9 +47,10 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
             asked: decision.asked,
             applied: decision.applied,
             rates: decision.rates,
-            estimate: run.state.estimates[index].output,
+            estimate,
             limited: decision.limited,
             too_close: decision.too_close,
+            phase: decision.phase,
         };
     }
 }

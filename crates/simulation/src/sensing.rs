@@ -121,7 +121,7 @@ impl SensingPipeline {
             seen.relative = belief
                 .relative
                 .unwrap_or(Relative { distance: parameters.observer.distance_min, ..Relative::default() });
-            estimates[index] = self.trackers[index].estimate(parameters);
+            estimates[index] = self.trackers[index].output(parameters, &law.law.heading, seen.own_heading);
         }
     }
 

@@ -7,7 +7,7 @@ use crate::safety::SafetyPipeline;
 use crate::sensing::SensingPipeline;
 use crate::setup::Setup;
 use crate::step::step;
-use formation::{EdgeLaw, Estimate, Formation, FormationState};
+use formation::{Decision, EdgeLaw, Estimate, Formation, FormationState};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use vocabulary::{
@@ -50,9 +50,12 @@ impl Simulation {
         let world = plant.world();
         let mut observations = Vec::with_capacity(edges);
         perception::observe(world.snapshot(), setup.formation.edges(), &mut observations);
-        let start = |(o, s): (&Observation, &ObserverStart)| first_estimate(&o.relative, *s);
-        let state =
-            setup.formation.start(observations.iter().zip(&setup.observer_starts).map(start).collect());
+        let known = observations.iter().zip(setup.formation.laws());
+        let start = |((seen, law), start): ((&Observation, &EdgeLaw), &ObserverStart)| {
+            let output = law.law.heading.output(&seen.relative, seen.own_heading);
+            first_estimate(&output, seen.relative.bearing, *start)
+        };
+        let state = setup.formation.start(known.zip(&setup.observer_starts).map(start).collect());
         let record = StepRecord {
             snapshot: world.snapshot().clone(),
             edges: vec![EdgeState::default(); edges],
@@ -140,6 +143,11 @@ impl Simulation {
         self.mode
     }
 
+    /// What the law of edge number `edge` decided at the last sample.
+    pub fn decision(&self, edge: usize) -> &Decision {
+        &self.state.decisions[edge]
+    }
+
     /// Control period, s.
     pub fn period(&self) -> f64 {
         self.period
@@ -211,11 +219,13 @@ fn trusting(laws: &[EdgeLaw]) -> Vec<EdgeLaw> {
     laws.iter().map(|law| EdgeLaw { tracker: None, ..law.clone() }).collect()
 }
 
-fn first_estimate(seen: &Relative, start: ObserverStart) -> Estimate {
+/// Where an observer starts whose first measurement is `output`; `bearing` is that from the leader's heading, by which
+/// scenes say it.
+fn first_estimate(output: &Relative, bearing: f64, start: ObserverStart) -> Estimate {
     let output = match start {
-        ObserverStart::Measured => [seen.distance, seen.bearing],
-        ObserverStart::Offset([distance, bearing]) => [seen.distance + distance, seen.bearing + bearing],
-        ObserverStart::At(at) => at,
+        ObserverStart::Measured => [output.distance, output.bearing],
+        ObserverStart::Offset([distance, more]) => [output.distance + distance, output.bearing + more],
+        ObserverStart::At([distance, at]) => [distance, at + (output.bearing - bearing)],
     };
     Estimate { output, rates: [0.0; 2] }
 }

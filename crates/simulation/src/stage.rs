@@ -38,7 +38,7 @@ fn actor(scene: &Scene, index: usize) -> Result<RobotSetup, BuildError> {
         }
         Role::Follow(follow) => speed = follow.speed,
     }
-    let Handling { limits, wheels } = handling(&robot.vehicle);
+    let Handling { limits, wheels } = handling(robot);
     let unicycle = Unicycle { pose, speed, limits, body: robot.vehicle.body(), lead };
     Ok(RobotSetup { robot: unicycle, wheels })
 }
@@ -58,10 +58,13 @@ fn check_drivable(scene: &Scene, index: usize, motion: &PathMotion) -> Result<()
     Ok(())
 }
 
-/// Limits and driver of a vehicle.
-pub(crate) fn handling(vehicle: &scene::Vehicle) -> Handling {
+/// Limits and driver of a robot. A follower that stands with its leader has no least speed.
+pub(crate) fn handling(robot: &scene::Robot) -> Handling {
+    let vehicle = &robot.vehicle;
     let wheels = vehicle.kind.has_wheels().then(|| Arc::new(wheeled(vehicle)));
-    Handling { limits: vehicle.limits(), wheels }
+    let stands = robot.role.follow().is_some_and(|follow| follow.law.standing);
+    let limits = vehicle.limits();
+    Handling { limits: if stands { Limits { speed_min: 0.0, ..limits } } else { limits }, wheels }
 }
 
 fn wheeled(vehicle: &scene::Vehicle) -> Wheeled {

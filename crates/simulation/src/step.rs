@@ -24,7 +24,8 @@ pub(crate) fn step(run: &mut Simulation) -> bool {
     // 3. The true relative position of every edge.
     perception::observe(run.plant.world().snapshot(), run.formation.edges(), &mut run.observations);
     for edge in woken {
-        run.state.estimates[edge] = Estimate::at(&run.observations[edge].relative);
+        let (law, seen) = (&run.formation.laws()[edge].law, &run.observations[edge]);
+        run.state.estimates[edge] = Estimate::at(&law.heading.output(&seen.relative, seen.own_heading));
     }
     // 4. Followers with sensors know their estimate in its place.
     if let Err(fault) = measure(run, time) {
@@ -125,8 +126,9 @@ fn follow_samples(run: &mut Simulation) {
         if law.law.kind != LawKind::OutputFeedback || law.tracker.is_some() {
             continue;
         }
-        let mut before = perception::sample(world, *edge, 0.0, None);
-        let after = perception::sample(world, *edge, run.period, None);
+        let reference = law.law.heading.reference();
+        let mut before = perception::sample(world, *edge, reference, 0.0, None);
+        let after = perception::sample(world, *edge, reference, run.period, None);
         before.acceleration = (after.own_speed - before.own_speed) / run.period;
         let estimate = &mut run.state.estimates[index];
         *estimate = law.observer.follow_samples(estimate, &before, &after.relative, run.period);
@@ -139,7 +141,10 @@ fn follow(formation: &Formation, state: &mut FormationState, world: &dyn World) 
         let law = &formation.laws()[index];
         if law.law.kind == LawKind::OutputFeedback && law.tracker.is_none() {
             let estimate = &mut state.estimates[index];
-            perception::tracks(world, *edge, |track| *estimate = law.observer.follow(estimate, track));
+            let reference = law.law.heading.reference();
+            perception::tracks(world, *edge, reference, |track| {
+                *estimate = law.observer.follow(estimate, track);
+            });
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What a run showed, held against what its scene expects.
 
-use metrics::{EdgeMetrics, JudgedExpectation, Metrics};
+use metrics::{EdgeMetrics, JudgedExpectation, Metrics, STANDING_AFTER, StandingMetrics};
 use scene::{Expect, OnContact, Scene};
 use simulation::{NotFinite, short};
 
@@ -66,6 +66,12 @@ fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Judg
     }
     for (channel, most) in expect.settled_rms_at_most.into_iter().flatten().enumerate() {
         findings.late("settled_rms_at_most", channel, most, expect, |edge| edge.late_rms_error);
+    }
+    if let Some(most) = expect.standing_turn_rate_at_most {
+        findings.standing("standing_turn_rate_at_most", most, "rad/s", |found| found.turn_rate);
+    }
+    if let Some(most) = expect.standing_error_at_most {
+        findings.standing("standing_error_at_most", most, "m", |found| found.error);
     }
     if let Some(least) = expect.in_view_at_least {
         findings.in_view(least);
@@ -203,6 +209,21 @@ impl ExpectationJudge<'_> {
             None => ("no edges".into(), false),
         };
         self.add(key, wanted, found, met);
+    }
+
+    fn standing(
+        &mut self,
+        key: &'static str,
+        most: f64,
+        unit: &str,
+        value: impl Fn(&StandingMetrics) -> f64,
+    ) {
+        let stood = self.metrics.edges.iter().filter_map(|edge| Some((edge, value(edge.standing.as_ref()?))));
+        let (found, met) = match stood.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((edge, size)) => (format!("{size:.4} {unit} on {}", name(edge)), size <= most),
+            None => (format!("no leader stands for {STANDING_AFTER} s"), false),
+        };
+        self.add(key, format!("≤ {} {unit}", short(most)), found, met);
     }
 
     fn in_view(&mut self, least: f64) {

@@ -16,6 +16,28 @@ words! {
 }
 
 words! {
+    /// Against what heading the bearing of a follower is held.
+    pub enum HeadingReference {
+        /// The leader's own, as in the paper: when the leader turns, its followers swing at once.
+        Leader = "leader",
+        /// The leader's, filtered along its path: it moves with the distance travelled, so at a stop it stands.
+        Path = "path",
+    }
+}
+
+words! {
+    /// What drives a follower at an instant.
+    pub enum MotionPhase = Law {
+        /// Its law.
+        Law = "law",
+        /// Near a stand: a tracker of its set point that is not singular at rest.
+        Track = "track",
+        /// At a stand: it brakes and keeps its heading.
+        Hold = "hold",
+    }
+}
+
+words! {
     /// How measurements become an estimate of [distance, bearing] and of their rates.
     pub enum ObserverKind {
         /// The high-gain observer, carried on by eqs 31-32 and corrected by each measurement.

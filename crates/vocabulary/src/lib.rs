@@ -47,7 +47,7 @@ pub use edge::{Edge, Relative, SetPoint};
 pub use fleet::{Body, FleetInfo, Light, RobotInfo};
 pub use gravity::GRAVITY;
 pub use judging::Judging;
-pub use law::{LawKind, ObserverKind, ObserverStart, TimeMode};
+pub use law::{HeadingReference, LawKind, MotionPhase, ObserverKind, ObserverStart, TimeMode};
 pub use limits::Limits;
 pub use measurement::{Measurement, MeasurementRecord, Outcome, TrackingState};
 pub use numeral::{counted, readable};

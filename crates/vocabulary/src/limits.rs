@@ -2,10 +2,10 @@
 
 use crate::Command;
 
-/// Bounds on speed, turn rate and acceleration. `0 < speed_min < speed_max`, the others positive.
+/// Bounds on speed, turn rate and acceleration. `0 ≤ speed_min < speed_max`, the others positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// m/s; above zero, since the laws are singular at rest (det g = v/ℓ).
+    /// m/s; above zero, since the laws are singular at rest (det g = v/ℓ), but for a follower that may stand.
     pub speed_min: f64,
     /// m/s.
     pub speed_max: f64,

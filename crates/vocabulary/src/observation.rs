@@ -9,6 +9,8 @@ pub struct Observation {
     pub relative: Relative,
     /// The follower's own forward speed, m/s.
     pub own_speed: f64,
+    /// The follower's own heading by its gyro, rad, against a direction that stays.
+    pub own_heading: f64,
     /// The leader's forward speed, m/s, where it is known (state feedback); cameras do not tell it.
     pub leader_speed: Option<f64>,
     /// How well the follower knows where its leader is.
@@ -21,6 +23,7 @@ impl Observation {
         Self {
             relative: Relative::between(leader.pose, follower.pose),
             own_speed: follower.speed,
+            own_heading: follower.pose.heading,
             leader_speed: Some(leader.speed),
             ..Self::default()
         }

@@ -1,7 +1,8 @@
 //! One row of a run: the truth, and what every edge wanted, knew and did. Pictures and records are made of it.
 
 use crate::{
-    Command, Contact, MeasurementRecord, Relative, SafetyState, Snapshot, TrackingState, nearest_turn, wrap,
+    Command, Contact, MeasurementRecord, MotionPhase, Relative, SafetyState, Snapshot, TrackingState,
+    nearest_turn, wrap,
 };
 
 /// One edge at an instant.
@@ -15,7 +16,7 @@ pub struct EdgeState {
     pub sight: TrackingState,
     /// Time since the last measurement that corrected the estimate, s; 0 where it is told the truth.
     pub age: f64,
-    /// Wanted [distance in m, bearing in rad].
+    /// Wanted [distance in m, bearing in rad], from the leader's own heading: the place that the follower is driven to.
     pub set_point: [f64; 2],
     /// Tracking error [m, rad], set point minus truth, bearing wrapped (eq 14).
     pub error: [f64; 2],
@@ -23,7 +24,8 @@ pub struct EdgeState {
     pub asked: Command,
     /// What was applied.
     pub applied: Command,
-    /// Estimate of the rates of [distance, bearing] in [m/s, rad/s]; the observer's where one runs, else the truth.
+    /// Estimate of the rates of [distance, bearing] in [m/s, rad/s]; the observer's where one runs, else the truth. Where the
+    /// bearing is held against a path's heading, the second is that of the direction of the line in the world.
     pub rates: [f64; 2],
     /// Estimate of [distance in m, bearing in rad] that the observer corrects by (ŝ₁); where none runs it means
     /// nothing.
@@ -32,6 +34,8 @@ pub struct EdgeState {
     pub limited: bool,
     /// Whether the distance was below its minimum.
     pub too_close: bool,
+    /// What drove the follower.
+    pub phase: MotionPhase,
 }
 
 /// Snapshot and edges of one instant.

@@ -4,12 +4,12 @@ use super::CertifyReport;
 use crate::print::say;
 use std::path::PathBuf;
 use studies::certify::beyond::{Beyond, PERIODS, StabilityChart};
-use studies::certify::chain::{GainPoint, LENGTHS};
+use studies::certify::chain::{EdgeGain, GainPoint, LENGTHS};
 use studies::certify::{
     Certificate, Constants, Discretisation, Infeasible, LongestPeriod, NotLinear, Statement,
     StatementFinding, StatementOutcome,
 };
-use vocabulary::{Word, math};
+use vocabulary::{HeadingReference, Word, math};
 
 /// Edges that are listed statement by statement; the others have a line each.
 const IN_FULL: usize = 2;
@@ -22,6 +22,12 @@ pub(super) fn tell(report: &CertifyReport<'_>, written: &[PathBuf]) {
         edge(report, certificate);
     }
     others(report);
+    if report.scene.followers().any(|(_, follow)| follow.law.heading == HeadingReference::Path) {
+        say(
+            "\nheading = \"path\": stated of φ = ψ + θᵢ in place of ψ, so dωᵢ/dt drops out of gᵥVᵢ and d²θ̄/dt² comes in; that θ̄ itself \
+             stays near θᵢ is measured only",
+        );
+    }
     if let Some(beyond) = &report.beyond {
         say("\nBeyond the paper");
         sensitivities(report, beyond);
@@ -277,10 +283,7 @@ fn chain(report: &CertifyReport<'_>, beyond: &Beyond) {
             short(10.0 * lead.0),
             gain.depth
         ));
-        let slow = gain.curve.iter().min_by(|a, b| {
-            let off = |p: &GainPoint| math::ln(p.frequency / SLOW).abs();
-            off(a).total_cmp(&off(b))
-        });
+        let slow = near(gain, SLOW);
         let lengths: Vec<String> = LENGTHS
             .iter()
             .enumerate()
@@ -297,7 +300,21 @@ fn chain(report: &CertifyReport<'_>, beyond: &Beyond) {
             short(growth.0),
             short(growth.1)
         ));
+        let turns = TURNS
+            .map(|at| format!("×{} at {at} rad/s", near(gain, at).map_or("–".to_owned(), |p| short(p.turn))));
+        say(&format!("    {:<28} a turn of the leader is passed on {}", "", turns.join(", ")));
     }
+}
+
+/// Frequencies at which it is told how a turn is passed on, rad/s.
+const TURNS: [f64; 3] = [0.2, 0.5, 2.0];
+
+/// The gains next to a frequency in rad/s.
+fn near(gain: &EdgeGain, frequency: f64) -> Option<&GainPoint> {
+    gain.curve.iter().min_by(|a, b| {
+        let off = |p: &GainPoint| math::ln(p.frequency / frequency).abs();
+        off(a).total_cmp(&off(b))
+    })
 }
 
 /// A frequency at which formations are led, rad/s.

@@ -7,8 +7,9 @@
 use crate::formation::EdgeLaw;
 use crate::law::{Law, LawInput, Switching};
 use crate::observer::Estimate;
+use crate::path_heading::PathHeading;
 use crate::relative::Geometry;
-use nalgebra::{Complex, DMatrix, Matrix2, SVector};
+use nalgebra::{Complex, DMatrix, DVector, Matrix2, SVector};
 use vocabulary::{EdgeSample, LawKind, MotionInput, Relative, SetPoint, math, wrap};
 
 /// What one edge makes of its leader's deviation [δv in m/s, δω in rad/s] at one frequency.
@@ -23,20 +24,24 @@ pub struct Response {
 /// An edge about steady motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearEdge {
-    /// ∂(dx/dt)/∂x; x = [ℓ, ψ, γ, v_j] and, with an observer, ŝ₁, ŝ₂.
+    /// ∂(dx/dt)/∂x; x = [ℓ, ψ, γ, v_j], with an observer ŝ₁ and ŝ₂, with a path's heading θ_i − θ̄ and κ̄.
     a: DMatrix<f64>,
     /// ∂(dx/dt)/∂[v_i, ω_i] and ∂(dx/dt)/∂[dv_i/dt, dω_i/dt].
     b: [DMatrix<f64>; 2],
     /// ∂ω_j/∂x, ∂ω_j/∂[v_i, ω_i], ∂ω_j/∂[dv_i/dt, dω_i/dt].
     turn: [DMatrix<f64>; 3],
+    /// Where θ_i − θ̄ stands among the entries of x.
+    heading: Option<usize>,
     /// What the follower does in steady motion.
     pub follower: MotionInput,
     /// Its error there, [m, rad].
     pub error: [f64; 2],
 }
 
-/// x and what the leader does.
-type State = SVector<f64, 8>;
+/// x, of which an edge has a part.
+type State = SVector<f64, 10>;
+/// Where in it θ_i − θ̄ and κ̄ stand.
+const HEADING: [usize; 2] = [8, 9];
 
 /// Why there is no linear edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,14 +64,22 @@ impl ChainLink<'_> {
         let law = &self.law.law;
         let geometry = Geometry::new(&relative, law.distance_min);
         let rates = geometry.rates(x[3], leader.speed, leader.turn_rate);
+        // With a path's heading ψ + θ_i and ψ^d + θ̄ take the place of ψ and ψ^d. Both are counted from θ_i here, which is
+        // the same but for the rates.
+        let filter = law.heading.filter();
+        let behind = PathHeading { heading: 0.0, behind: x[HEADING[0]], curvature: x[HEADING[1]] };
+        let turning = filter.map_or(0.0, |_| leader.turn_rate);
+        let mut set_point = self.set_point;
+        set_point.value[1] -= behind.behind;
+        set_point.rate[1] += filter.map_or(0.0, |filter| behind.rate(filter, leader.speed));
         let estimate = Estimate { output: [x[4], x[5]], rates: [x[6], x[7]] };
         let observes = law.kind == LawKind::OutputFeedback;
-        let error = [self.set_point.value[0] - x[0], wrap(self.set_point.value[1] - x[1])];
+        let error = [set_point.value[0] - x[0], wrap(set_point.value[1] - x[1])];
         let command = law.command(&LawInput {
             geometry: &geometry,
             error,
-            set_point: &self.set_point,
-            rates: if observes { estimate.rates } else { rates.into() },
+            set_point: &set_point,
+            rates: if observes { estimate.rates } else { [rates.x, rates.y + turning] },
             own_speed: x[3],
             leader,
         });
@@ -85,34 +98,50 @@ impl ChainLink<'_> {
             let d = self.law.observer.derivative(&estimate, &sample);
             out.fixed_rows_mut::<4>(4).copy_from(&SVector::<f64, 4>::new(
                 d.output[0],
-                d.output[1],
+                d.output[1] - turning,
                 d.rates[0],
                 d.rates[1],
             ));
         }
+        if let Some(filter) = filter {
+            let [rise, fall] = filter.curvature_gains();
+            out[HEADING[0]] = leader.turn_rate - behind.rate(filter, leader.speed);
+            out[HEADING[1]] = leader.speed * (rise * behind.behind - fall * behind.curvature);
+        }
         (out, command.turn_rate)
     }
 
-    /// How dx/dt and ω_j change with each of the first `size` entries of x.
-    fn by_state(&self, x: &State, leader: &MotionInput, size: usize) -> Vec<(State, f64)> {
-        let column = |k: usize| {
+    /// The entries of x that this edge has.
+    fn entries(&self) -> Vec<usize> {
+        let law = &self.law.law;
+        let observer = if law.kind == LawKind::OutputFeedback { 4..8 } else { 4..4 };
+        let heading = law.heading.filter().map_or(&[][..], |_| &HEADING);
+        (0..4).chain(observer).chain(heading.iter().copied()).collect()
+    }
+
+    /// How dx/dt and ω_j change with each of the `entries` of x.
+    fn by_state(&self, x: &State, leader: &MotionInput, entries: &[usize]) -> Vec<(State, f64)> {
+        let column = |k: &usize| {
             let mut shift = State::zeros();
-            shift[k] = STEP;
+            shift[*k] = STEP;
             slope([x + shift, x - shift].map(|x| self.rate(&x, leader)))
         };
-        (0..size).map(column).collect()
+        entries.iter().map(column).collect()
     }
 
     /// The state at rest next to `x`, by Newton's method.
-    fn settle(&self, mut x: State, leader: &MotionInput, size: usize) -> Option<State> {
+    fn settle(&self, mut x: State, leader: &MotionInput, entries: &[usize]) -> Option<State> {
+        let size = entries.len();
         for _ in 0..50 {
             let (rate, _) = self.rate(&x, leader);
-            let columns = self.by_state(&x, leader, size);
-            let slopes = DMatrix::from_fn(size, size, |i, j| columns[j].0[i]);
-            let step = slopes.lu().solve(&rate.rows(0, size).into_owned())?;
+            let columns = self.by_state(&x, leader, entries);
+            let slopes = DMatrix::from_fn(size, size, |i, j| columns[j].0[entries[i]]);
+            let step = slopes.lu().solve(&DVector::from_fn(size, |i, _| rate[entries[i]]))?;
             // Half a step at most where it is far: tanh bends.
             let short = (0.2 / step.amax()).min(1.0);
-            x.rows_mut(0, size).axpy(-short, &step, 1.0);
+            for (entry, step) in entries.iter().zip(step.iter()) {
+                x[*entry] -= short * step;
+            }
             if step.amax() < 1e-11 {
                 let stands =
                     x[3] > 1e-6 && x[0] > self.law.law.distance_min && x.iter().all(|v| v.is_finite());
@@ -141,12 +170,12 @@ impl LinearEdge {
         }
         let set_point = SetPoint { value: law.set_point.at(0.0).value, ..SetPoint::default() };
         let edge = ChainLink { law, set_point };
-        let size = if law.law.kind == LawKind::OutputFeedback { 8 } else { 4 };
+        let entries = edge.entries();
         let guess = near(&law.law, &set_point, leader).ok_or(NotLinear::NoSteadyMotion)?;
-        let x = edge.settle(guess, leader, size).ok_or(NotLinear::NoSteadyMotion)?;
+        let x = edge.settle(guess, leader, &entries).ok_or(NotLinear::NoSteadyMotion)?;
         let follower = MotionInput { speed: x[3], turn_rate: leader.turn_rate, ..MotionInput::default() };
-        let error = [set_point.value[0] - x[0], wrap(set_point.value[1] - x[1])];
-        let states = edge.by_state(&x, leader, size);
+        let error = [set_point.value[0] - x[0], wrap(set_point.value[1] - x[HEADING[0]] - x[1])];
+        let states = edge.by_state(&x, leader, &entries);
         let by_leader = |change: fn(&mut MotionInput, f64)| {
             let at = |h: f64| {
                 let mut moved = *leader;
@@ -158,12 +187,15 @@ impl LinearEdge {
         let speeds = [by_leader(|d, h| d.speed += h), by_leader(|d, h| d.turn_rate += h)];
         let accelerations =
             [by_leader(|d, h| d.acceleration += h), by_leader(|d, h| d.turn_acceleration += h)];
-        let matrix = |columns: &[(State, f64)]| DMatrix::from_fn(size, columns.len(), |i, j| columns[j].0[i]);
+        let matrix = |columns: &[(State, f64)]| {
+            DMatrix::from_fn(entries.len(), columns.len(), |i, j| columns[j].0[entries[i]])
+        };
         let turn = |columns: &[(State, f64)]| DMatrix::from_fn(1, columns.len(), |_, j| columns[j].1);
         Ok(Self {
             a: matrix(&states),
             b: [matrix(&speeds), matrix(&accelerations)],
             turn: [turn(&states), turn(&speeds), turn(&accelerations)],
+            heading: entries.iter().position(|entry| *entry == HEADING[0]),
             follower,
             error,
         })
@@ -178,8 +210,13 @@ impl LinearEdge {
         let right = complex(&self.b[0]) + complex(&self.b[1]) * s;
         let x = left.lu().solve(&right)?;
         let turn = complex(&self.turn[0]) * &x + complex(&self.turn[1]) + complex(&self.turn[2]) * s;
+        // The set point moves with the filtered heading, which is the last but one of the entries.
+        let moved = |i: usize, j: usize| match self.heading {
+            Some(entry) if i == 1 => x[(entry, j)],
+            _ => Complex::new(0.0, 0.0),
+        };
         Some(Response {
-            error: Matrix2::from_fn(|i, j| -x[(i, j)]),
+            error: Matrix2::from_fn(|i, j| -x[(i, j)] - moved(i, j)),
             passed_on: Matrix2::from_fn(|i, j| if i == 0 { x[(3, j)] } else { turn[(0, j)] }),
         })
     }
@@ -193,9 +230,13 @@ impl LinearEdge {
 /// The state of an edge in steady motion, but for what its observer is off.
 fn near(law: &Law, set_point: &SetPoint, leader: &MotionInput) -> Option<State> {
     let mut error = [0.0; 2];
+    // On a circle the filtered heading is behind by its lag.
+    let lag = law.heading.filter().map_or(0.0, |filter| filter.lag);
+    let curvature = if leader.speed > 0.0 { leader.turn_rate / leader.speed } else { 0.0 };
+    let behind = lag * curvature;
     // What the leader's motion does depends a little on where the follower ends: this settles in a few rounds.
     for _ in 0..100 {
-        let [distance, bearing] = [set_point.value[0] - error[0], set_point.value[1] - error[1]];
+        let [distance, bearing] = [set_point.value[0] - error[0], set_point.value[1] - behind - error[1]];
         let (x, y) = (distance * math::cos(bearing), distance * math::sin(bearing));
         let (ahead, aside) = (leader.speed - leader.turn_rate * y, leader.turn_rate * x);
         let speed = math::hypot(ahead, aside);
@@ -211,7 +252,11 @@ fn near(law: &Law, set_point: &SetPoint, leader: &MotionInput) -> Option<State> 
         let moved = (next[0] - error[0]).abs().max((next[1] - error[1]).abs());
         error = next;
         if moved < 1e-13 {
-            return Some(State::from([distance, bearing, view_angle, speed, distance, bearing, 0.0, 0.0]));
+            let turning = law.heading.filter().map_or(0.0, |_| leader.turn_rate);
+            let kept = law.heading.filter().map_or(0.0, |filter| curvature - filter.gain() * behind);
+            return Some(State::from([
+                distance, bearing, view_angle, speed, distance, bearing, 0.0, turning, behind, kept,
+            ]));
         }
     }
     None
@@ -264,6 +309,7 @@ mod tests {
     use super::*;
     use crate::law::Law;
     use crate::observer::Observer;
+    use crate::path_heading::Heading;
     use crate::set_point::SetPointTrajectory;
 
     fn edge(kind: LawKind, epsilon: f64) -> EdgeLaw {
@@ -273,11 +319,12 @@ mod tests {
             robust_gain: [5.0; 2],
             switching: Switching::Tanh([24.53; 2]),
             distance_min: 0.1,
+            heading: Heading::Leader,
         };
         let observer =
             Observer { epsilon: [epsilon; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 };
         let set_point = SetPointTrajectory::constant(2.0, -0.75 * std::f64::consts::PI);
-        EdgeLaw { law, observer, tracker: None, set_point }
+        EdgeLaw { law, observer, tracker: None, set_point, standing: false }
     }
 
     const AHEAD: MotionInput =

@@ -218,13 +218,15 @@ impl FindingView<'_> {
         let saturated = || spell(&ledger.limited).map(Premise::Saturated);
         let chatter = || spell(&ledger.chatters).map(Premise::Chatter);
         let at_bound = || spell(&ledger.at_speed_bound).map(Premise::SpeedBound);
+        let stands = || spell(&ledger.stands).map(Premise::Standing);
         let close = || spell(&ledger.too_close).map(Premise::TooClose);
         let held = c.held.map(Premise::Held);
         let measurements = c.measures.then_some(Premise::Measurements);
         let wheels = c.wheels.then_some(Premise::Wheels);
         let samples = c.sampled_measurement.then_some(Premise::SampledMeasurement);
         let epsilon = || self.constants.filter(|k| k.epsilon > k.epsilon_1).map(|_| Premise::Epsilon);
-        let tracking = || vec![smoothed, chatter(), saturated(), at_bound(), close(), rough, beta(), held];
+        let tracking =
+            || vec![smoothed, chatter(), saturated(), at_bound(), stands(), close(), rough, beta(), held];
         let list: Vec<Option<Premise>> = match statement {
             Statement::RobustGain | Statement::Epsilon => vec![rough],
             Statement::NonNegative => vec![smoothed, rough, beta()],

@@ -41,6 +41,7 @@ pub(super) struct Ledger {
     pub(super) limited: Tally,
     pub(super) chatters: Tally,
     pub(super) at_speed_bound: Tally,
+    pub(super) stands: Tally,
     pub(super) too_close: Tally,
     last: WitnessRow,
 }
@@ -86,6 +87,7 @@ impl Ledger {
         self.limited.note(row.time, row.limited);
         self.chatters.note(row.time, row.chatters);
         self.at_speed_bound.note(row.time, row.at_speed_bound);
+        self.stands.note(row.time, row.stands);
         self.too_close.note(row.time, row.too_close);
         self.last = *row;
     }

@@ -11,6 +11,7 @@ use vocabulary::{LawKind, MotionInput, Relative, SetPoint, math, wrap};
 
 /// One edge at one control sample, as it truly was.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a premise of its own, none excludes another")]
 pub struct Instant {
     /// s.
     pub time: f64,
@@ -28,8 +29,12 @@ pub struct Instant {
     pub estimate: Option<Estimate>,
     /// Whether a bound cut the command.
     pub limited: bool,
+    /// What of d²s^d/dt² the law is not told, [m/s², rad/s²]: that of a path's heading. It acts as g_v V_i does.
+    pub untold: [f64; 2],
     /// Whether the speed stood at its bound.
     pub at_speed_bound: bool,
+    /// Whether the standing rule had a part in the command.
+    pub stands: bool,
     /// Whether the distance was below ℓ_min.
     pub too_close: bool,
 }
@@ -66,6 +71,8 @@ pub struct WitnessRow {
     pub limited: bool,
     /// Whether the speed stood at its bound.
     pub at_speed_bound: bool,
+    /// Whether the standing rule had a part in the command.
+    pub stands: bool,
     /// Whether the distance was below ℓ_min.
     pub too_close: bool,
     /// Whether a sign in the law switched back since a few samples.
@@ -159,12 +166,13 @@ impl Witness {
     /// Takes in the next sample.
     pub fn push(&mut self, now: &Instant) {
         let geometry = Geometry::new(&now.relative, self.law.distance_min);
-        let rates = geometry.rates(now.follower_speed, now.leader.speed, now.leader.turn_rate);
+        let rates = self.law.rates(&geometry, now.follower_speed, &now.leader);
         let error = Vector2::from(now.error);
         let error_rate = Vector2::from(now.set_point.rate) - rates;
         let gain = Vector2::from(self.law.gain);
         let filtered = error_rate + gain.component_mul(&error);
-        let effect = geometry.leader_effect(now.follower_speed, &now.leader);
+        let effect =
+            self.law.leader_effect(&geometry, now.follower_speed, &now.leader) + Vector2::from(now.untold);
         let integrand = gain.component_mul(&error).dot(&(effect - self.robust_term(now.error)));
         let sums = self.integrate(now.time, error, effect, integrand);
         let p = self.initial - sums.integral;
@@ -194,6 +202,7 @@ impl Witness {
             rate_gain: geometry.rate_column(now.follower_speed).norm(),
             limited: now.limited,
             at_speed_bound: now.at_speed_bound,
+            stands: now.stands,
             too_close: now.too_close,
             chatters,
         };

@@ -47,6 +47,11 @@ impl HighGain {
         Relative { distance, bearing, view_angle: self.view_angle }
     }
 
+    /// How fast the line to the leader turns in the world, rad/s.
+    pub(super) fn line_rate(&self) -> f64 {
+        self.line_rate
+    }
+
     /// Carries on over `duration` s in midpoint steps. The line turns with the bearing but for the leader's own turn,
     /// so both have the same second derivative where that turn is steady. While measurements come in, what the leader
     /// does is the unknown that they make up for; when they stay out (`coasting`) it is taken to keep its speed and

@@ -10,6 +10,7 @@ pub mod high_gain;
 pub mod unscented;
 
 use crate::observer::{Estimate, Observer};
+use crate::path_heading::Heading;
 use high_gain::HighGain;
 use std::collections::VecDeque;
 use unscented::Unscented;
@@ -193,6 +194,17 @@ impl Tracker {
         self.current.as_ref().map_or_else(Estimate::default, |belief| belief.estimate(law, self.own_speed()))
     }
 
+    /// ŝ as a law takes it that holds its bearing against `heading`: against a path's, with the direction φ of the line and
+    /// its rate in place of the bearing's, where the follower heads for `own_heading` rad.
+    pub fn output(&self, law: &TrackerParameters, heading: &Heading, own_heading: f64) -> Estimate {
+        let mut estimate = self.estimate(law);
+        if let (Some(_), Some(belief)) = (heading.filter(), &self.current) {
+            estimate.output[1] = wrap(belief.relative().view_angle + own_heading);
+            estimate.rates[1] = belief.line_rate(estimate.rates[1]);
+        }
+        estimate
+    }
+
     fn own_speed(&self) -> f64 {
         self.past.back().map_or(0.0, |s| s.own.speed + s.own.acceleration * (s.until - s.from))
     }
@@ -260,6 +272,15 @@ impl EdgeEstimator {
         match self {
             Self::HighGain(belief) => belief.estimate,
             Self::Unscented(belief) => belief.estimate(law, own_speed),
+        }
+    }
+
+    /// How fast the line to the leader turns in the world, where the bearing is believed to change at `bearing_rate`,
+    /// both rad/s.
+    fn line_rate(&self, bearing_rate: f64) -> f64 {
+        match self {
+            Self::HighGain(belief) => belief.line_rate(),
+            Self::Unscented(belief) => bearing_rate + belief.leader_turn_rate(),
         }
     }
 

@@ -57,6 +57,11 @@ impl Unscented {
         Estimate { output: [self.position.x, self.position.y], rates: rates.into() }
     }
 
+    /// rad/s.
+    pub(super) fn leader_turn_rate(&self) -> f64 {
+        self.motion.y
+    }
+
     pub(super) fn is_sound(&self) -> bool {
         let finite = self.motion.iter().chain(self.position_covariance.iter()).all(|x| x.is_finite());
         finite && self.motion_covariance.iter().all(|x| x.is_finite())

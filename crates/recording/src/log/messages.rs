@@ -54,7 +54,8 @@ impl Record for EdgeState {
         f.number("age_s", &mut self.age)?;
         f.word("sight", &mut self.sight)?;
         f.flag("limited", &mut self.limited)?;
-        f.flag("too_close", &mut self.too_close)
+        f.flag("too_close", &mut self.too_close)?;
+        f.word("phase", &mut self.phase)
     }
 }
 

@@ -48,6 +48,10 @@ settings! {
         pub settled_error_at_most: Option<[f64; 2]> = None, Optional(ERROR);
         /// What the root mean square of no edge's error may exceed from `settled_after` to the end, [m, rad].
         pub settled_rms_at_most: Option<[f64; 2]> = None, Optional(ERROR);
+        /// What no |turn rate| of any follower may exceed whose leader has stood for 2 s, rad/s.
+        pub standing_turn_rate_at_most: Option<f64> = None, Optional(number("rad/s").from(0.0));
+        /// How far from its set point any follower may be whose leader has stood for 2 s, m.
+        pub standing_error_at_most: Option<f64> = None, Optional(LENGTH);
         /// Share of the measurements that arrived in which every follower has to have recognised its leader.
         pub in_view_at_least: Option<f64> = None, Optional(number("").from(0.0).up_to(1.0));
         /// Time from which `settled_error_at_most` and `settled_rms_at_most` hold, s.

@@ -7,7 +7,7 @@ use crate::text::{
     words::{Words, word},
 };
 use serde_json::{Value as Json, json};
-use vocabulary::{LawKind, ObserverKind, ObserverStart, words};
+use vocabulary::{HeadingReference, LawKind, ObserverKind, ObserverStart, words};
 
 settings! {
     /// Parameters of a control law. A pair is for [distance, bearing]; one value stands for both. On wheels the gains
@@ -26,6 +26,16 @@ settings! {
         pub slope: [f64; 2] = [24.53; 2], Pair(number("1/m or 1/rad").above(0.0)), Live;
         /// Least distance used in divisions (ℓ_min), m.
         pub distance_min: f64 = 0.1, number("m").above(0.0), Live;
+        /// Against what heading the bearing is held.
+        pub heading: HeadingReference = HeadingReference::Leader, word::<HeadingReference>(), Live;
+        /// With `heading = "path"`: the length over which a turn of the leader arrives (λ), m.
+        pub heading_length: f64 = 1.0, number("m").from(0.01).up_to(1000.0), Live;
+        /// With `heading = "path"`: how far the heading lags on a circle, as a length (τ), m; it is then τ over the radius
+        /// behind. At most twice `heading_length`.
+        pub heading_lag: f64 = 1.0, number("m").from(0.0).up_to(2000.0), Live;
+        /// Whether the follower stops with its leader, stands and starts again; it needs `heading = "path"`. It then has no
+        /// `speed_min`.
+        pub standing: bool = false, Flag, Live;
     }
 }
 

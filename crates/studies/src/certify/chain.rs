@@ -35,6 +35,8 @@ pub struct GainPoint {
     pub lead: f64,
     /// By how much deviations grow from follower to follower at most, in a long chain of edges like this.
     pub growth: f64,
+    /// |follower's turn rate| per leader's turn rate.
+    pub turn: f64,
     /// |error of distance| of the last of [`LENGTHS`] followers like this, per deviation of the first one's leader's speed,
     /// m per m/s.
     #[serde(rename = "chains")]
@@ -104,6 +106,7 @@ impl EdgeGain {
                 own_leader: own.error[(0, 0)].norm(),
                 lead: down_the_chain(&responses)?[(0, 0)].norm(),
                 growth: growth(own),
+                turn: own.passed_on[(1, 1)].norm(),
                 lengths: LENGTHS.map(last_of),
             })
         };

@@ -8,7 +8,7 @@ use formation::{EdgeLaw, Estimate, SetPointTrajectory, Switching};
 use metrics::{CertificateMetrics, StatementMetrics};
 use scene::Scene;
 use simulation::Simulation;
-use vocabulary::{Edge, FleetInfo, LawKind, Motion, MotionInput, StepRecord, TimeMode, Word};
+use vocabulary::{Edge, FleetInfo, LawKind, Motion, MotionInput, MotionPhase, StepRecord, TimeMode, Word};
 
 /// A change of a held command below this is rounding, m/s² or rad/s.
 const STEADY: f64 = 1e-9;
@@ -87,6 +87,8 @@ struct CertifiedStretch {
     set_point: SetPointTrajectory,
     measures: bool,
     rough_leader: Option<f64>,
+    /// Of the bearing's set point, rad/s, where it moves with a path's heading.
+    last_rate: Option<f64>,
     final_error: [f64; 2],
 }
 
@@ -98,6 +100,7 @@ impl CertifiedStretch {
             set_point: law.set_point.clone(),
             measures: law.tracker.is_some(),
             rough_leader: None,
+            last_rate: None,
             final_error: [0.0; 2],
         }
     }
@@ -143,7 +146,14 @@ impl Examiner {
             let stretch = &mut self.edges[index];
             stretch.rough_leader = stretch.rough_leader.or(rough);
             stretch.final_error = record.edges[index].error;
-            stretch.witness.push(&instant(simulation, index, *edge, law, &drives));
+            let mut now = instant(simulation, index, *edge, law, &drives);
+            if law.law.heading.filter().is_some() {
+                let change = |before: f64, now: f64| (now - before) / self.period;
+                let rate = now.set_point.rate[1];
+                let before = stretch.last_rate.replace(rate).unwrap_or(rate);
+                now.untold[1] = change(before, rate) - now.set_point.acceleration[1];
+            }
+            stretch.witness.push(&now);
         }
         self.last = drives;
     }
@@ -241,16 +251,21 @@ fn instant(
     let limits = simulation.formation().limits(edge.follower);
     let speed = record.snapshot.robots[edge.follower].motion.speed;
     let observes = law.law.kind == LawKind::OutputFeedback;
+    let mut set_point = law.set_point.at(time);
+    // It moves with the heading it is held against, and where its follower stands.
+    set_point.rate = simulation.decision(index).set_point_rate;
     Instant {
         time,
         relative: state.relative,
         follower_speed: speed.max(limits.speed_min),
         leader: drives[edge.leader],
-        set_point: law.set_point.at(time),
+        set_point,
         error: state.error,
         estimate: observes.then_some(Estimate { output: state.estimate, rates: state.rates }),
         limited: state.limited,
         at_speed_bound: speed <= limits.speed_min || speed >= limits.speed_max,
+        untold: [0.0; 2],
+        stands: state.phase != MotionPhase::Law,
         too_close: state.too_close,
     }
 }

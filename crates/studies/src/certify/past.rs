@@ -4,7 +4,7 @@ use formation::Estimate;
 use formation::certificate::{Circumstances, Instant, StatementFinding, Witness, WitnessRow, certify};
 use scene::{Follow, Role, Scene, SensingKind};
 use simulation::edge_law;
-use vocabulary::{Edge, LawKind, Motion, MotionInput, SetPoint, StepRecord, TimeMode, wrap};
+use vocabulary::{Edge, LawKind, Motion, MotionInput, MotionPhase, SetPoint, StepRecord, TimeMode, wrap};
 
 /// What the theorems say of edge number `index` along `records`, so far, and the quantities they speak of.
 pub fn so_far(
@@ -65,7 +65,9 @@ fn witness(records: &[&StepRecord], index: usize, edge: Edge, follow: &Follow) -
             error: state.error,
             estimate: observes.then_some(Estimate { output: state.estimate, rates: state.rates }),
             limited: state.limited,
+            untold: [0.0; 2],
             at_speed_bound: false,
+            stands: state.phase != MotionPhase::Law,
             too_close: state.too_close,
         });
     }

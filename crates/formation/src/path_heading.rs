@@ -1,0 +1,174 @@
+//! The heading against which a follower holds its bearing: the leader's own, or one filtered along the leader's path.
+//!
+//! Counted from the leader's own heading, a bearing swings with every turn of the leader, and a follower swings more than
+//! its leader. Counted from a heading θ̄ that follows the leader's only as it drives, the follower tracks the direction
+//! φ = ψ + θ_i of the line to it, φ^d = ψ^d + θ̄, and what its leader does to φ is free of the leader's turn rate.
+//!
+//! With e = θ_i − θ̄ and s the way the leader has gone, H = (1 + (2λ − τ) s)/(1 + λ s)² from θ_i to θ̄ is
+//!
+//! ```text
+//! dθ̄/ds = κ̄ + b e                 b = (2λ − τ)/λ²
+//! dκ̄/ds = (1 − τ/λ)² e/λ² − τ κ̄/λ²
+//! ```
+//!
+//! On a circle θ̄ ends τ/R behind θ_i. At τ = 0 this is the loop without lag of Kanayama's kind, at τ = λ the first-order
+//! filter dθ̄/ds = e/λ.
+
+use vocabulary::{HeadingReference, Relative, math, wrap};
+
+/// A filter of the leader's heading along its path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathFilter {
+    /// λ, m; positive: a turn of the leader has arrived when it has gone a few of these.
+    pub length: f64,
+    /// τ, m, from 0 to 2 λ: on a circle of radius R the filtered heading is τ/R behind.
+    pub lag: f64,
+}
+
+/// Against what heading a bearing is held.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Heading {
+    /// The leader's own.
+    #[default]
+    Leader,
+    /// The leader's, filtered along its path.
+    Path(PathFilter),
+}
+
+/// θ̄ and κ̄ of one edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathHeading {
+    /// θ̄, rad in (−π, π].
+    pub heading: f64,
+    /// κ̄, 1/m.
+    pub curvature: f64,
+    /// e = θ_i − θ̄ at the last sample, rad.
+    pub behind: f64,
+}
+
+impl Heading {
+    /// Its filter, if it has one.
+    pub fn filter(&self) -> Option<&PathFilter> {
+        match self {
+            Self::Leader => None,
+            Self::Path(filter) => Some(filter),
+        }
+    }
+
+    /// Its word.
+    pub fn reference(&self) -> HeadingReference {
+        match self {
+            Self::Leader => HeadingReference::Leader,
+            Self::Path(_) => HeadingReference::Path,
+        }
+    }
+
+    /// What a law and its observer work on for a follower that heads for `own_heading` rad: with a filter, the direction
+    /// φ = γ + θ_j of the line takes the place of the bearing.
+    #[must_use]
+    pub fn output(&self, relative: &Relative, own_heading: f64) -> Relative {
+        match self {
+            Self::Leader => *relative,
+            Self::Path(_) => Relative { bearing: wrap(relative.view_angle + own_heading), ..*relative },
+        }
+    }
+}
+
+impl PathFilter {
+    /// b, 1/m.
+    pub fn gain(&self) -> f64 {
+        (2.0 * self.length - self.lag) / (self.length * self.length)
+    }
+
+    /// dκ̄/ds per e and per −κ̄, [1/m², 1/m].
+    pub fn curvature_gains(&self) -> [f64; 2] {
+        let square = self.length * self.length;
+        let left = 1.0 - self.lag / self.length;
+        [left * left / square, self.lag / square]
+    }
+}
+
+impl PathHeading {
+    /// Where it begins: at the leader's own heading, rad.
+    pub fn at(heading: f64) -> Self {
+        Self { heading: wrap(heading), curvature: 0.0, behind: 0.0 }
+    }
+
+    /// Goes on over `travelled` m of the leader's way, at the end of which it heads for `leader_heading` rad. Exact for a
+    /// heading that is held: both roots are −1/λ.
+    pub fn advance(&mut self, filter: &PathFilter, leader_heading: f64, travelled: f64) {
+        let (e, kappa) = (wrap(leader_heading - self.heading), self.curvature);
+        let (b, [rise, fall], root) = (filter.gain(), filter.curvature_gains(), 1.0 / filter.length);
+        let decay = math::exp(-root * travelled);
+        // e^(M s) = e^(−s/λ) (I + (M + I/λ) s).
+        self.behind = decay * (e + travelled * ((root - b) * e - kappa));
+        self.curvature = decay * (kappa + travelled * (rise * e + (root - fall) * kappa));
+        self.heading = wrap(leader_heading - self.behind);
+    }
+
+    /// dθ̄/dt in rad/s for a leader at `speed` m/s.
+    pub fn rate(&self, filter: &PathFilter, speed: f64) -> f64 {
+        speed * (self.curvature + filter.gain() * self.behind)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The equations by small Euler steps, an independent way.
+    fn by_steps(filter: &PathFilter, start: &PathHeading, leader: f64, travelled: f64) -> [f64; 2] {
+        let (mut heading, mut curvature) = (start.heading, start.curvature);
+        let n = 200_000;
+        let ds = travelled / f64::from(n);
+        let (l, t) = (filter.length, filter.lag);
+        for _ in 0..n {
+            let e = leader - heading;
+            heading += ds * (curvature + (2.0 * l - t) / (l * l) * e);
+            curvature += ds * ((1.0 - t / l) * (1.0 - t / l) * e - t * curvature) / (l * l);
+        }
+        [heading, curvature]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+        #[test]
+        fn a_step_is_that_of_the_equations(
+            length in 0.3..3.0, share in 0.0..2.0, leader in -1.0..1.0, curvature in -0.5..0.5, travelled in 0.0..2.0
+        ) {
+            let filter = PathFilter { length, lag: share * length };
+            let mut state = PathHeading { heading: 0.2, curvature, behind: 0.0 };
+            let expected = by_steps(&filter, &state, leader, travelled);
+            state.advance(&filter, leader, travelled);
+            prop_assert!((state.heading - expected[0]).abs() < 1e-4, "{state:?} {expected:?}");
+            prop_assert!((state.curvature - expected[1]).abs() < 1e-4, "{state:?} {expected:?}");
+        }
+    }
+
+    #[test]
+    fn at_rest_nothing_moves_whatever_the_leader_measures() {
+        let filter = PathFilter { length: 1.0, lag: 1.0 };
+        let mut state = PathHeading { heading: 0.1, curvature: 0.3, behind: 0.0 };
+        state.advance(&filter, 2.0, 0.0);
+        assert!((state.heading - 0.1).abs() < 1e-15 && state.curvature == 0.3);
+        assert_eq!(state.rate(&filter, 0.0), 0.0);
+    }
+
+    /// On a circle of radius R the filtered heading ends τ/R behind, and turns with the leader.
+    #[test]
+    fn on_a_circle_it_lags_by_its_lag_over_the_radius() {
+        for lag in [0.0, 0.4, 1.0, 1.6] {
+            let filter = PathFilter { length: 0.8, lag };
+            let mut state = PathHeading::at(0.0);
+            let (radius, step) = (5.0, 1e-3);
+            let mut heading = 0.0;
+            for _ in 0..40_000 {
+                heading = wrap(heading + step / radius);
+                state.advance(&filter, heading, step);
+            }
+            assert!((state.behind - lag / radius).abs() < 1e-3, "{lag}: {state:?}");
+            assert!((state.rate(&filter, 2.0) - 2.0 / radius).abs() < 1e-3, "{lag}: {state:?}");
+        }
+    }
+}
