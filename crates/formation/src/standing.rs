@@ -213,7 +213,7 @@ mod tests {
         StandingInput { set_point, frame: [0.0; 2], place, own_speed: v, leader: [leader, acceleration] }
     }
 
-    /// Commands of an independent implementation in Python, the prototype of this rule.
+    /// Commands of an independent implementation in Python.
     #[test]
     fn commands_are_those_of_an_independent_implementation() {
         let set_point =
