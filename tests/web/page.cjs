@@ -337,6 +337,7 @@ async function saysWhatIsMissing(browser, home, said) {
   await context.addInitScript(() => {
     const denied = { get: () => { throw new DOMException("denied", "SecurityError"); } };
     Object.defineProperty(window, "localStorage", denied);
+    LockManager.prototype.query = LockManager.prototype.request = () => Promise.reject(new DOMException("denied", "SecurityError"));
   });
   const tab = await Tab.open(context, `${home}#circle-three`, said);
   await tab.until("it runs without storage", (state) => state.time > 0.2);

@@ -7,7 +7,8 @@ if (context) {
   withDrawnPictures(context);
 }
 
-await holdWork(document.getElementById("lab").dataset);
+// A browser that denies storage may deny its locks as well; the lab goes on without.
+await holdWork(document.getElementById("lab").dataset).catch(() => {});
 start().catch((error) => {
   document.getElementById("fault").textContent =
     `The lab cannot be started: ${error}. \`echelon lab\` opens the same window without a browser.`;
@@ -21,12 +22,12 @@ addEventListener("hashchange", () => location.reload());
  */
 async function holdWork(data) {
   // A lab beside the text of a lesson is for trying.
-  if (window.self !== window.top) return (data.work = "");
-  data.work = `echelon-work-${Date.now()}`;
-  if (!navigator.locks) return;
+  const embedded = window.self !== window.top;
+  data.work = embedded ? "" : `echelon-work-${Date.now()}`;
+  if (embedded || !navigator.locks) return;
   const { held } = await navigator.locks.query();
   data.open = held.map((lock) => lock.name).join(" ");
-  navigator.locks.request(data.work, () => new Promise(() => {}));
+  navigator.locks.request(data.work, () => new Promise(() => {})).catch(() => {});
 }
 
 /**
