@@ -17,6 +17,7 @@ pub mod lead;
 mod matrix_exponential;
 mod memory;
 pub mod observer;
+mod offset;
 pub mod path_heading;
 pub mod relative;
 pub mod set_point;

@@ -4,7 +4,7 @@
 //! rest the follower holds: it brakes, and its heading stays. When its leader starts, the set point begins where the
 //! follower stands, and goes back to its place once all drive. `docs/moving.md` has the equations.
 
-use crate::set_point::displaced;
+use crate::offset::{Offset, OffsetBounds};
 use vocabulary::{Command, MotionPhase, SetPoint, math, wrap};
 
 /// Whether a follower stands, and how far its set point is from its place for that.
@@ -13,8 +13,8 @@ pub struct Standing {
     holds: bool,
     /// Time since the leader has stood, s.
     waited: f64,
-    /// What is added to the set point, [forward, left] in m along the heading it is held against, and its derivatives.
-    offset: [[f64; 2]; 3],
+    /// What is added to the set point.
+    offset: Offset,
     /// Curvature of the follower's own way when it last drove, 1/m.
     curvature: f64,
 }
@@ -50,10 +50,8 @@ const WAITS: [f64; 2] = [0.1, 1.5];
 const NEAR: f64 = 0.02;
 /// Above this speed of the leader the offset is given back, m/s.
 const GIVES_BACK: f64 = 0.4;
-/// With this speed and acceleration at most, m/s and m/s².
-const OFFSET_MOST: [f64; 2] = [0.2, 0.3];
-/// Both roots of the offset, 1/s.
-const OFFSET_ROOT: f64 = 2.0;
+/// No faster than this.
+const OFFSET_BOUNDS: OffsetBounds = OffsetBounds { rate: 0.2, acceleration: 0.3 };
 /// Gain on speeds, 1/s.
 const SPEED_GAIN: f64 = 6.0;
 /// Gain on the place ahead, 1/s, and how much of it counts, m.
@@ -70,20 +68,13 @@ const DAMPING_SPEED: f64 = 0.1;
 impl Standing {
     /// s^d with the offset, against the frame's heading.
     pub(crate) fn set_point(&self, base: &SetPoint, distance_min: f64) -> SetPoint {
-        if self.offset == [[0.0; 2]; 3] { *base } else { displaced(base, &self.offset, distance_min) }
+        self.offset.displaces(base, distance_min)
     }
 
     /// Carries the offset on over a period: to zero while the formation drives.
     pub(crate) fn carry(&mut self, leader_speed: f64, period: f64) {
-        let [offset, rate, acceleration] = &mut self.offset;
-        let back = f64::from(u8::from(!self.holds && leader_speed > GIVES_BACK));
-        let w = OFFSET_ROOT;
-        let wanted = [0, 1].map(|i| -w * w * back * offset[i] - 2.0 * w * rate[i]);
-        let wanted = bounded(wanted, OFFSET_MOST[1]);
-        let next = bounded([0, 1].map(|i| rate[i] + wanted[i] * period), OFFSET_MOST[0]);
-        *acceleration = [0, 1].map(|i| (next[i] - rate[i]) / period);
-        *rate = next;
-        *offset = [0, 1].map(|i| offset[i] + next[i] * period);
+        let back = (!self.holds && leader_speed > GIVES_BACK).then_some([0.0; 2]);
+        self.offset.carry(back, OFFSET_BOUNDS, period);
     }
 
     /// Begins and ends holding; `base` is the set point without offset, `input` holds it with.
@@ -93,7 +84,7 @@ impl Standing {
             if leader_speed > STARTS {
                 let [[x, y], [goal_x, goal_y]] = [input.place, base.value].map(cartesian);
                 (self.holds, self.waited) = (false, 0.0);
-                self.offset = [[x - goal_x, y - goal_y], [0.0; 2], [0.0; 2]];
+                self.offset = Offset::at([x - goal_x, y - goal_y]);
             }
             return;
         }
@@ -176,11 +167,6 @@ fn bounded_command(command: Command, speed: f64, [at_rest, growth]: [f64; 2]) ->
         acceleration: number(command.acceleration).clamp(-ACCELERATION_MAX, ACCELERATION_MAX),
         turn_rate: number(command.turn_rate).clamp(-most, most),
     }
-}
-
-fn bounded(vector: [f64; 2], most: f64) -> [f64; 2] {
-    let size = math::hypot(vector[0], vector[1]);
-    if size > most { vector.map(|x| x * most / size) } else { vector }
 }
 
 fn cartesian([distance, bearing]: [f64; 2]) -> [f64; 2] {
@@ -311,7 +297,7 @@ mod tests {
             let now = step(&mut standing, 0.8, 0.8);
             let [a, b] = [last, now].map(|s| cartesian([s.value[0], s.value[1]]));
             let moved = math::hypot(b[0] - a[0], b[1] - a[1]) / period;
-            assert!(moved <= OFFSET_MOST[0] + 1e-9, "{moved} m/s");
+            assert!(moved <= OFFSET_BOUNDS.rate + 1e-9, "{moved} m/s");
             last = now;
         }
         assert!((last.value[0] - 2.0).abs() < 1e-3 && (last.value[1] - 2.3).abs() < 1e-3, "{last:?}");
