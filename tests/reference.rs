@@ -168,6 +168,8 @@ impl Case {
         let member =
             |(index, name): (usize, &String)| RobotInfo::new(name.clone(), index == 0, Body::default());
         Ok(Setup {
+            events: Arc::default(),
+            chased: vec![],
             safety_config: None,
             filters: vec![None; names.len()],
             changes: vec![],

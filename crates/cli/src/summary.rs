@@ -2,7 +2,7 @@
 
 use crate::cameras::DrawingCost;
 use crate::print::{json, note, say};
-use metrics::{JudgedExpectation, Metrics};
+use metrics::{EventSummary, JudgedExpectation, Metrics};
 use scene::Scene;
 use serde_json::json;
 use std::path::PathBuf;
@@ -39,6 +39,7 @@ const MOST_EDGES: usize = 12;
 pub(crate) fn as_text(summary: &Summary<'_>) {
     let Summary { scene, metrics, .. } = summary;
     say(&format!("{}\n{}\n", scene.title, studies::caption(scene)));
+    events(metrics);
     edges(metrics);
     if let (Some(clearance), Some(time), Some([a, b])) =
         (metrics.clearance_min, metrics.clearance_min_time, &metrics.clearance_min_robots)
@@ -88,10 +89,32 @@ fn contacts(metrics: &Metrics) {
     }
     let unable: Vec<_> = metrics.robots.iter().filter(|robot| robot.condition != "able").collect();
     for robot in unable.iter().take(MOST_CONTACTS) {
-        say(&format!("{} is {}", robot.robot, robot.condition));
+        let trouble = match &*robot.condition {
+            "failed" => "has failed",
+            "removed" => "was taken away",
+            other => &format!("is {other}"),
+        };
+        say(&format!("{} {trouble}", robot.robot));
     }
     if unable.len() > MOST_CONTACTS {
         say(&format!("… and {} more robots that cannot drive", unable.len() - MOST_CONTACTS));
+    }
+}
+
+/// Events that are listed.
+const MOST_EVENTS: usize = 20;
+
+/// What happened to the formation.
+fn events(metrics: &Metrics) {
+    for event in metrics.events.iter().take(MOST_EVENTS) {
+        let EventSummary { time, words, .. } = event;
+        say(&format!("{time:>7.2} s  {words}"));
+    }
+    if metrics.events.len() > MOST_EVENTS {
+        say(&format!("… and {} more events, all in metrics.json", metrics.events.len() - MOST_EVENTS));
+    }
+    if !metrics.events.is_empty() {
+        say("");
     }
 }
 
@@ -107,7 +130,10 @@ fn edges(metrics: &Metrics) {
     let channel = |e: [f64; 2]| format!("{:>10.4} m {:>8.3}°", e[0], e[1].to_degrees());
     for edge in metrics.edges.iter().take(MOST_EDGES) {
         let name = format!("{} → {}", edge.leader, edge.follower);
-        let settled = edge.settling_time.map_or("never".to_owned(), |t| format!("{t:.2} s"));
+        let settled = match edge.ended {
+            Some(time) => format!("to {time:.2} s"),
+            None => edge.settling_time.map_or("never".to_owned(), |t| format!("{t:.2} s")),
+        };
         let (last, rms) = (channel(edge.final_error), channel(edge.rms_error));
         let limited = format!("{:.1} %", edge.limited * 100.0);
         say(&format!("{name:width$}  {last:>23}  {rms:>23}  {settled:>9}  {limited:>7}"));

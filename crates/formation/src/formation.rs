@@ -1,6 +1,7 @@
 //! All edges of a formation together: from what every follower sees to what every robot shall do.
 
 use crate::graph::Graph;
+use crate::hand_over::HandOver;
 use crate::law::{Law, LawInput};
 use crate::memory::EdgeMemory;
 use crate::observer::{Estimate, Observer};
@@ -35,6 +36,8 @@ pub struct EdgeLaw {
 pub struct Formation {
     graph: Graph,
     edges: Vec<EdgeLaw>,
+    /// The set points as they were set last, by whoever sets parameters; an edge that has changed its leader has another.
+    written: Vec<SetPointTrajectory>,
     limits: Vec<Limits>,
     leads: Vec<(usize, Arc<dyn Trajectory>)>,
     period: f64,
@@ -61,6 +64,9 @@ pub struct Decision {
     pub too_close: bool,
     /// What the command is of.
     pub phase: MotionPhase,
+    /// How far the place that the follower is driven to is from its set point, m: while it starts again after a stand, or
+    /// goes to another place.
+    pub displacement: f64,
 }
 
 /// State of a formation: observers, the last decisions, and the memory that some laws need.
@@ -90,14 +96,50 @@ impl Formation {
         period: f64,
     ) -> Self {
         debug_assert_eq!((edges.len(), limits.len()), (graph.edges().len(), graph.robots()));
-        Self { graph, edges, limits, leads, period }
+        let written = edges.iter().map(|edge| edge.set_point.clone()).collect();
+        Self { graph, edges, written, limits, leads, period }
     }
 
-    /// Goes on with other laws and limits, as many as before.
-    pub fn apply_parameters(&mut self, edges: Vec<EdgeLaw>, limits: Vec<Limits>) {
+    /// Goes on with other laws and limits, as many as before. The set point of an edge that has changed its leader stays,
+    /// unless it is another one than was set last.
+    pub fn apply_parameters(&mut self, mut edges: Vec<EdgeLaw>, limits: Vec<Limits>) {
         debug_assert_eq!((edges.len(), limits.len()), (self.edges.len(), self.limits.len()));
+        for ((edge, written), now) in edges.iter_mut().zip(&mut self.written).zip(&self.edges) {
+            if edge.set_point == *written {
+                edge.set_point.clone_from(&now.set_point);
+            } else {
+                written.clone_from(&edge.set_point);
+            }
+        }
         self.edges = edges;
         self.limits = limits;
+    }
+
+    /// Whom the followers of some edges follow from now on and where, or that they follow nobody. Changes nothing and
+    /// returns false where somebody would then follow himself, directly or through others.
+    pub fn rewire(&mut self, changes: &[(usize, Option<(usize, SetPointTrajectory)>)]) -> bool {
+        let leaders: Vec<_> =
+            changes.iter().map(|(edge, to)| (*edge, to.as_ref().map(|(leader, _)| *leader))).collect();
+        if !self.graph.rewire(&leaders) {
+            return false;
+        }
+        for (edge, to) in changes {
+            if let Some((_, set_point)) = to {
+                self.edges[*edge].set_point.clone_from(set_point);
+            }
+        }
+        true
+    }
+
+    /// A robot follows nobody from now on and has this motion, or has none of its own any more.
+    pub fn set_lead(&mut self, robot: usize, motion: Option<Arc<dyn Trajectory>>) {
+        self.leads.retain(|(lead, _)| *lead != robot);
+        self.leads.extend(motion.map(|motion| (robot, motion)));
+    }
+
+    /// The bounds of a robot from now on.
+    pub fn set_limits(&mut self, robot: usize, limits: Limits) {
+        self.limits[robot] = limits;
     }
 
     /// The graph.
@@ -163,16 +205,22 @@ impl Formation {
         for (index, (edge, seen)) in self.edges.iter().zip(observations).enumerate() {
             let memory = &mut state.memories[index];
             // Whoever comes into sight again is met anew.
-            if edge.law.heading.filter().is_none() || unseen(seen) {
-                *memory = EdgeMemory::default();
+            if unseen(seen) {
+                memory.forget();
                 continue;
             }
-            let geometry = Geometry::new(&seen.relative, edge.law.distance_min);
-            let leader = MotionInput { speed: seen.leader_speed.unwrap_or(0.0), ..MotionInput::default() };
-            let rates = edge.law.rates_of(&state.estimates[index], || {
-                edge.law.rates(&geometry, seen.own_speed, &leader).into()
-            });
-            memory.advance(&edge.law, seen, rates, self.period);
+            if edge.law.heading.filter().is_some() {
+                let geometry = Geometry::new(&seen.relative, edge.law.distance_min);
+                let leader =
+                    MotionInput { speed: seen.leader_speed.unwrap_or(0.0), ..MotionInput::default() };
+                let rates = edge.law.rates_of(&state.estimates[index], || {
+                    edge.law.rates(&geometry, seen.own_speed, &leader).into()
+                });
+                memory.advance(&edge.law, seen, rates, self.period);
+            } else if *memory != EdgeMemory::default() {
+                *memory = EdgeMemory { hand_over: memory.hand_over, ..EdgeMemory::default() };
+            }
+            edge.go_over(memory, time, seen, self.period);
             if edge.standing {
                 let turn_rate = state.decisions[index].applied.turn_rate;
                 edge.stand(memory, time, seen, turn_rate, self.period);
@@ -220,7 +268,13 @@ impl Formation {
         }
     }
 
-    fn decide_edge(&self, index: usize, time: f64, seen: &Observation, state: &FormationState) -> Decision {
+    fn decide_edge(
+        &self,
+        index: usize,
+        time: f64,
+        seen: &Observation,
+        state: &mut FormationState,
+    ) -> Decision {
         let (edge, parameters) = (self.edges()[index], &self.edges[index]);
         let limits = &self.limits[edge.follower];
         if unseen(seen) {
@@ -228,7 +282,7 @@ impl Formation {
         }
         // What the leader does within this sample it tells its follower; its speed the follower has to observe.
         let leader = MotionInput { speed: seen.leader_speed.unwrap_or(0.0), ..state.drives[edge.leader] };
-        let (law, memory) = (&parameters.law, &state.memories[index]);
+        let (law, memory) = (&parameters.law, &mut state.memories[index]);
         let geometry = Geometry::new(&seen.relative, law.distance_min);
         let place = parameters.place(memory, time);
         let set_point = parameters.output_set_point(memory, &place);
@@ -249,12 +303,15 @@ impl Formation {
             let input = StandingInput { leader, ..input };
             (asked, phase) = memory.standing.command(asked, &input);
         }
+        if let Some(hand_over) = &mut memory.hand_over {
+            asked = hand_over.command(asked);
+        }
         let too_close = seen.relative.distance < law.distance_min;
         let mut decision = Decision::of(asked, &set_point, seen.own_speed, limits);
         if let Some(heading) = memory.heading {
             decision.set_point[1] = wrap(place.value[1] - heading.behind);
         }
-        Decision { rates, too_close, phase, ..decision }
+        Decision { rates, too_close, phase, displacement: memory.displacement(), ..decision }
     }
 }
 
@@ -262,10 +319,36 @@ impl Formation {
 const DIVIDES_BY: f64 = 0.01;
 
 impl EdgeLaw {
+    /// s^d against the heading it is held against, as it is while the follower goes to its place.
+    fn way(&self, memory: &EdgeMemory, time: f64) -> SetPoint {
+        let base = self.set_point.at(time);
+        let hand_over = memory.hand_over.as_ref();
+        hand_over.map_or(base, |hand_over| hand_over.set_point(&base, self.law.distance_min))
+    }
+
     /// s^d against the heading it is held against.
     fn place(&self, memory: &EdgeMemory, time: f64) -> SetPoint {
-        let base = self.set_point.at(time);
+        let base = self.way(memory, time);
         if self.standing { memory.standing.set_point(&base, self.law.distance_min) } else { base }
+    }
+
+    /// [distance, bearing] of a follower in m and rad, against the heading that its bearing is held against.
+    fn seen_place(&self, memory: &EdgeMemory, seen: &Observation) -> [f64; 2] {
+        let bearing = match memory.heading.filter(|_| self.law.heading.filter().is_some()) {
+            Some(heading) => wrap(seen.relative.view_angle + seen.own_heading - heading.heading),
+            None => seen.relative.bearing,
+        };
+        [seen.relative.distance, bearing]
+    }
+
+    /// Carries a hand-over on over a period.
+    fn go_over(&self, memory: &mut EdgeMemory, time: f64, seen: &Observation, period: f64) {
+        let (at, goal) = (self.seen_place(memory, seen), self.set_point.at(time).value);
+        let waits = memory.standing.holds();
+        let goes_on = |hand_over: &mut HandOver| hand_over.advance(at, goal, waits, period);
+        if memory.hand_over.as_mut().is_some_and(|hand_over| !goes_on(hand_over)) {
+            memory.hand_over = None;
+        }
     }
 
     /// s^d as the law takes it: with a path's heading, φ^d = ψ^d + θ̄ in place of ψ^d.
@@ -287,11 +370,10 @@ impl EdgeLaw {
         seen: &Observation,
     ) -> Option<StandingInput<'a>> {
         let (filter, heading) = (self.law.heading.filter()?, memory.heading.filter(|_| self.standing)?);
-        let direction = seen.relative.view_angle + seen.own_heading;
         Some(StandingInput {
             set_point: place,
             frame: [wrap(heading.heading - seen.own_heading), heading.rate(filter, memory.speed)],
-            place: [seen.relative.distance, wrap(direction - heading.heading)],
+            place: self.seen_place(memory, seen),
             own_speed: seen.own_speed,
             leader: [memory.speed, memory.acceleration],
         })
@@ -300,7 +382,7 @@ impl EdgeLaw {
     /// Carries the standing rule on over a period; `turn_rate` rad/s is what was applied last.
     fn stand(&self, memory: &mut EdgeMemory, time: f64, seen: &Observation, turn_rate: f64, period: f64) {
         memory.standing.carry(memory.speed, period);
-        let (base, place) = (self.set_point.at(time), self.place(memory, time));
+        let (base, place) = (self.way(memory, time), self.place(memory, time));
         if let Some(input) = self.standing_input(memory, &place, seen) {
             memory.standing.switch(&base, &input, turn_rate, period);
         }
@@ -358,6 +440,13 @@ fn tracking_error(set_point: &SetPoint, output: &Relative) -> [f64; 2] {
 }
 
 impl FormationState {
+    /// The follower of edge number `index` has another leader from now on, of whose relative position and motion it
+    /// believes `estimate`.
+    pub fn change_leader(&mut self, index: usize, estimate: Estimate, hand_over: HandOver) {
+        self.estimates[index] = estimate;
+        self.memories[index].change_leader(hand_over);
+    }
+
     /// dω/dt of a robot that is itself commanded: the difference of its last two commands, zero before there are two.
     fn differentiate_turn_rates(&mut self, period: f64) {
         let [Some(last), Some(before)] = &self.turn_rates else { return };

@@ -50,6 +50,8 @@ pub enum GraphError {
 pub struct Graph {
     robots: usize,
     edges: Vec<Edge>,
+    /// The edge by which each robot follows, if it does: the other edges are not in force.
+    edge_of: Vec<Option<usize>>,
     evaluation_order: Vec<usize>,
 }
 
@@ -78,7 +80,84 @@ impl Graph {
         let order =
             toposort(&graph, None).map_err(|cycle| GraphError::Cycle(ring(&graph, cycle.node_id())))?;
         let evaluation_order = order.into_iter().filter_map(|node| incoming(&graph, node)).collect();
-        Ok(Self { robots: names.len(), edges, evaluation_order })
+        let mut edge_of = vec![None; names.len()];
+        for (index, edge) in edges.iter().enumerate() {
+            edge_of[edge.follower] = Some(index);
+        }
+        Ok(Self { robots: names.len(), edges, edge_of, evaluation_order })
+    }
+
+    /// Adds an edge that is not in force yet, for a robot that leads now and may follow later.
+    pub fn add_waiting(&mut self, edge: Edge) {
+        self.edges.push(edge);
+    }
+
+    /// The edge by which `robot` follows; `None` where it follows nobody.
+    pub fn edge_of(&self, robot: usize) -> Option<usize> {
+        self.edge_of[robot]
+    }
+
+    /// The edge that `robot` has, whether it is in force or not.
+    pub fn slot_of(&self, robot: usize) -> Option<usize> {
+        self.edges.iter().position(|edge| edge.follower == robot)
+    }
+
+    /// Whom `robot` follows.
+    pub fn leader_of(&self, robot: usize) -> Option<usize> {
+        Some(self.edges[self.edge_of(robot)?].leader)
+    }
+
+    /// Whether edge number `index` is in force.
+    pub fn is_in_force(&self, index: usize) -> bool {
+        self.edge_of[self.edges[index].follower] == Some(index)
+    }
+
+    /// Whom the follower of each edge follows; `None` where it follows nobody.
+    pub fn leaders(&self) -> impl Iterator<Item = Option<usize>> {
+        let in_force = |(index, edge): (usize, &Edge)| self.is_in_force(index).then_some(edge.leader);
+        self.edges.iter().enumerate().map(in_force)
+    }
+
+    /// Whether `robot` follows `other`, directly or through others, or is it.
+    pub fn comes_after(&self, robot: usize, other: usize) -> bool {
+        let up = |robot: &usize| self.leader_of(*robot);
+        std::iter::successors(Some(robot), up).take(self.robots + 1).any(|robot| robot == other)
+    }
+
+    /// The robot at the head of those that `robot` follows; itself where it follows nobody.
+    pub fn head_of(&self, robot: usize) -> usize {
+        let up = |robot: &usize| self.leader_of(*robot);
+        std::iter::successors(Some(robot), up).take(self.robots + 1).last().unwrap_or(robot)
+    }
+
+    /// Those who follow `robot` directly, in the order of the edges.
+    pub fn followers_of(&self, robot: usize) -> impl Iterator<Item = usize> {
+        let all = self.edges.iter().enumerate();
+        let own = all.filter(move |(index, edge)| edge.leader == robot && self.is_in_force(*index));
+        own.map(|(_, edge)| edge.follower)
+    }
+
+    /// Whom the followers of some edges follow from now on, or that they follow nobody. Changes nothing and returns false
+    /// where somebody would then follow himself, directly or through others.
+    pub fn rewire(&mut self, changes: &[(usize, Option<usize>)]) -> bool {
+        let mut next = self.clone();
+        for (index, leader) in changes {
+            let edge = &mut next.edges[*index];
+            edge.leader = leader.unwrap_or(edge.leader);
+            next.edge_of[edge.follower] = leader.map(|_| *index);
+        }
+        let mut graph = DiGraph::<(), usize>::with_capacity(next.robots, next.edges.len());
+        for _ in 0..next.robots {
+            graph.add_node(());
+        }
+        for index in next.edge_of.iter().flatten() {
+            let edge = next.edges[*index];
+            graph.add_edge(NodeIndex::new(edge.leader), NodeIndex::new(edge.follower), *index);
+        }
+        let Ok(order) = toposort(&graph, None) else { return false };
+        next.evaluation_order = order.into_iter().filter_map(|node| incoming(&graph, node)).collect();
+        *self = next;
+        true
     }
 
     /// Robots.
@@ -121,7 +200,7 @@ fn resolve(
     Ok(Edge { leader: l, follower: f })
 }
 
-fn incoming(graph: &DiGraph<&str, usize>, node: NodeIndex) -> Option<usize> {
+fn incoming<N>(graph: &DiGraph<N, usize>, node: NodeIndex) -> Option<usize> {
     graph.edges_directed(node, Direction::Incoming).next().map(|edge| *edge.weight())
 }
 
@@ -167,6 +246,35 @@ mod tests {
     fn leaders_are_evaluated_before_their_followers() {
         let graph = build(&["c", "b", "a"], &[("b", "c"), ("a", "b")]).expect("a chain is a formation");
         assert_eq!(graph.evaluation_order(), [1, 0]);
+    }
+
+    #[test]
+    fn whom_a_robot_follows_may_change_but_never_in_a_ring() {
+        let mut graph = seven();
+        assert_eq!((graph.leader_of(5), graph.head_of(5)), (Some(3), 0));
+        assert!(graph.comes_after(5, 1) && !graph.comes_after(5, 2));
+        assert_eq!(graph.followers_of(0).collect::<Vec<_>>(), [1, 2]);
+        // Robot 1 follows robot 5, which follows it through robot 3.
+        let before = graph.evaluation_order().to_vec();
+        assert!(!graph.rewire(&[(0, Some(5))]));
+        assert_eq!((graph.leader_of(1), graph.evaluation_order()), (Some(0), &before[..]));
+        // Robot 3 fails; robot 5 follows robot 1 in its place.
+        assert!(graph.rewire(&[(2, None), (4, Some(1))]));
+        assert_eq!((graph.edge_of(3), graph.leader_of(5)), (None, Some(1)));
+        assert_eq!(graph.evaluation_order().len(), 5);
+        assert_eq!(graph.leaders().collect::<Vec<_>>()[2..5], [None, Some(2), Some(1)]);
+        // Two that exchange their places: one after the other would be a ring.
+        assert!(graph.rewire(&[(0, Some(5)), (4, Some(0))]));
+        assert_eq!(graph.head_of(1), 0);
+    }
+
+    #[test]
+    fn an_edge_that_waits_counts_only_once_it_is_in_force() {
+        let mut graph = build(&["a", "b", "c"], &[("a", "b")]).expect("a formation");
+        graph.add_waiting(Edge { leader: 1, follower: 2 });
+        assert_eq!((graph.edge_of(2), graph.evaluation_order()), (None, &[0][..]));
+        assert!(graph.rewire(&[(1, Some(1))]));
+        assert_eq!((graph.leader_of(2), graph.evaluation_order()), (Some(1), &[0, 1][..]));
     }
 
     #[test]

@@ -11,6 +11,7 @@ pub use hermite::Hermite;
 pub use speed_schedule::SpeedSchedule;
 pub use spline_path::{SplinePath, SplinePathError};
 
+use std::sync::Arc;
 use vocabulary::{MotionInput, ScalarTrajectory, Trajectory};
 
 /// Speed and turn rate as functions of time: constant, circle, sinusoids, figure eight.
@@ -52,6 +53,25 @@ impl Trajectory for AnalyticTrajectory {
 
     fn ranges(&self) -> Option<[[f64; 2]; 2]> {
         Some([self.speed.range(), self.turn_rate.range()])
+    }
+}
+
+/// A motion that begins at another time.
+#[derive(Debug, Clone)]
+pub struct Delayed {
+    /// The motion.
+    pub motion: Arc<dyn Trajectory>,
+    /// By how much later it begins, s.
+    pub by: f64,
+}
+
+impl Trajectory for Delayed {
+    fn at(&self, time: f64) -> MotionInput {
+        self.motion.at(time - self.by)
+    }
+
+    fn ranges(&self) -> Option<[[f64; 2]; 2]> {
+        self.motion.ranges()
     }
 }
 

@@ -7,11 +7,13 @@
 //! Read in the order of the data: [`graph`], [`relative`], [`set_point`], [`lead`], [`law`], [`observer`], [`tracker`],
 //! and [`formation`], which puts them together.
 
+pub mod assignment;
 pub mod certificate;
 pub mod energy;
 pub mod feasible;
 pub mod formation;
 pub mod graph;
+mod hand_over;
 pub mod law;
 pub mod lead;
 mod matrix_exponential;
@@ -26,6 +28,7 @@ pub mod tracker;
 
 pub use formation::{Decision, EdgeLaw, Formation, FormationState};
 pub use graph::{Graph, GraphError};
+pub use hand_over::{HandOver, HandOverParameters};
 pub use law::{Law, LawInput, Switching};
 pub use memory::EdgeMemory;
 pub use observer::{Estimate, Observer};

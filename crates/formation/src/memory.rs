@@ -1,5 +1,6 @@
 //! What a follower remembers of its leader from sample to sample, where its law needs a memory of its own.
 
+use crate::hand_over::HandOver;
 use crate::law::Law;
 use crate::path_heading::PathHeading;
 use crate::relative::Geometry;
@@ -18,6 +19,8 @@ pub struct EdgeMemory {
     pub heading: Option<PathHeading>,
     /// Whether the follower stands, and where its set point is for that.
     pub standing: Standing,
+    /// Its way to its place, where it has changed its leader.
+    pub hand_over: Option<HandOver>,
 }
 
 /// Time constant of the believed speed, s.
@@ -26,6 +29,25 @@ const SPEED_TIME: f64 = 0.045;
 const ACCELERATION_TIME: f64 = 0.06;
 
 impl EdgeMemory {
+    /// What is left of it when the leader is out of sight.
+    pub(crate) fn forget(&mut self) {
+        let mut hand_over = self.hand_over;
+        hand_over.iter_mut().for_each(HandOver::forget);
+        *self = Self { hand_over, ..Self::default() };
+    }
+
+    /// How far the place that the follower is driven to is from its set point, m.
+    pub(crate) fn displacement(&self) -> f64 {
+        let hand_over = self.hand_over.map_or([0.0; 2], |hand_over| hand_over.offset().value);
+        let standing = self.standing.offset().value;
+        math::hypot(hand_over[0] + standing[0], hand_over[1] + standing[1])
+    }
+
+    /// What is left of it when another robot leads from now on.
+    pub(crate) fn change_leader(&mut self, hand_over: HandOver) {
+        *self = Self { standing: self.standing.kept(), hand_over: Some(hand_over), ..Self::default() };
+    }
+
     /// Takes in a sample `period` s after the last: what is seen of the leader, and the rates of the law's output.
     pub fn advance(&mut self, law: &Law, seen: &Observation, rates: [f64; 2], period: f64) {
         let Some(filter) = law.heading.filter() else { return };

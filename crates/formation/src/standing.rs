@@ -4,6 +4,7 @@
 //! rest the follower holds: it brakes, and its heading stays. When its leader starts, the set point begins where the
 //! follower stands, and goes back to its place once all drive. `docs/moving.md` has the equations.
 
+use crate::hand_over::cartesian;
 use crate::offset::{Offset, OffsetBounds};
 use vocabulary::{Command, MotionPhase, SetPoint, math, wrap};
 
@@ -66,6 +67,22 @@ const TURN_MOST: [[f64; 2]; 2] = [[0.2, 3.0], [0.3, 6.0]];
 const DAMPING_SPEED: f64 = 0.1;
 
 impl Standing {
+    /// What stays of it when its follower changes its leader: whether it holds.
+    #[must_use]
+    pub(crate) fn kept(&self) -> Self {
+        Self { offset: Offset::default(), ..*self }
+    }
+
+    /// Whether the follower holds beside a leader that stands.
+    pub(crate) fn holds(&self) -> bool {
+        self.holds
+    }
+
+    /// How far its place is from its set point, m.
+    pub(crate) fn offset(&self) -> &Offset {
+        &self.offset
+    }
+
     /// s^d with the offset, against the frame's heading.
     pub(crate) fn set_point(&self, base: &SetPoint, distance_min: f64) -> SetPoint {
         self.offset.displaces(base, distance_min)
@@ -167,11 +184,6 @@ fn bounded_command(command: Command, speed: f64, [at_rest, growth]: [f64; 2]) ->
         acceleration: number(command.acceleration).clamp(-ACCELERATION_MAX, ACCELERATION_MAX),
         turn_rate: number(command.turn_rate).clamp(-most, most),
     }
-}
-
-fn cartesian([distance, bearing]: [f64; 2]) -> [f64; 2] {
-    let (sin, cos) = math::sin_cos(bearing);
-    [distance * cos, distance * sin]
 }
 
 /// d[x, y]/dt of a set point in its frame.

@@ -61,6 +61,7 @@ impl Clearance {
             hull.stand(snapshot);
         }
         let Self { shapes, least, robots, order } = self;
+        order.retain(|&k| k >= *robots || snapshot.robots[k].is_present());
         order.sort_by(|&a, &b| shapes[a].left().total_cmp(&shapes[b].left()));
         let farthest =
             least.iter().map(|room| room.map_or(f64::INFINITY, |r| r.clearance)).fold(0.0, f64::max);

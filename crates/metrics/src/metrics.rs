@@ -34,6 +34,9 @@ pub struct Metrics {
     pub first_contacts: Vec<ContactMetrics>,
     /// |error| under which an edge counts as settled, [m, rad].
     pub settling_band: [f64; 2],
+    /// What happened to the formation, in the order of time.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<EventSummary>,
     /// What the theorems say of every edge, where they were checked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub certificates: Vec<CertificateMetrics>,
@@ -52,7 +55,7 @@ pub struct RobotMetrics {
     pub clearance_min_time: Option<f64>,
     /// Largest height of its ground point over the ground, m.
     pub lift_max: f64,
-    /// At the end: able, overturned, stuck or fallen.
+    /// At the end: able, overturned, stuck, fallen, failed or removed.
     pub condition: String,
     /// What its safety filter did; `None` where it had none.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -101,6 +104,20 @@ pub struct EdgeMetrics {
     pub standing: Option<StandingMetrics>,
     /// How well it saw its leader; `None` where it is told the truth.
     pub measurements: Option<MeasurementMetrics>,
+    /// Since when the follower has followed nobody, s; `None` where it follows at the end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ended: Option<f64>,
+}
+
+/// Something that happened to the formation, or was refused.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EventSummary {
+    /// s.
+    pub time: f64,
+    /// Whether it took place.
+    pub happened: bool,
+    /// What, in one sentence.
+    pub words: String,
 }
 
 /// A follower while its leader stands, from [`STANDING_AFTER`] on.
@@ -130,6 +147,7 @@ pub struct MetricsBuilder {
     lifts: Vec<f64>,
     conditions: Vec<Condition>,
     safety: Vec<SafetySums>,
+    events: Vec<EventSummary>,
 }
 
 /// Running sums of one edge.
@@ -137,6 +155,10 @@ pub struct MetricsBuilder {
 struct EdgeSums {
     /// What needs no more than the samples so far.
     metrics: EdgeMetrics,
+    /// Who was followed last.
+    leader: Option<usize>,
+    /// Since when nobody is, s.
+    ended: Option<f64>,
     last: EdgeState,
     errors: RootMeanSquare<2>,
     late_errors: RootMeanSquare<2>,
@@ -171,6 +193,7 @@ impl MetricsBuilder {
             lifts: vec![0.0; fleet.robots.len()],
             conditions: vec![Condition::Able; fleet.robots.len()],
             safety: vec![SafetySums::default(); fleet.robots.len()],
+            events: vec![],
             fleet: fleet.clone(),
         }
     }
@@ -179,11 +202,15 @@ impl MetricsBuilder {
     pub fn push(&mut self, record: &StepRecord) {
         let time = record.snapshot.time;
         let step = if self.samples == 0 { 0.0 } else { time - self.time };
-        for (index, edge) in record.edges.iter().enumerate() {
-            let robots = &record.snapshot.robots;
-            let [leader, follower] =
-                [self.fleet.edges[index].leader, self.fleet.edges[index].follower].map(|k| &robots[k].motion);
+        for (index, state) in record.edges.iter().enumerate() {
             let sums = &mut self.edges[index];
+            let Some(pair) = record.edge(&self.fleet, index) else {
+                sums.ends(time);
+                continue;
+            };
+            let (robots, edge) = (&record.snapshot.robots, state);
+            let [leader, follower] = [pair.leader, pair.follower].map(|k| &robots[k].motion);
+            sums.follows(pair.leader);
             sums.push(edge, follower.speed, time, step, &self.judging);
             sums.stand(edge, [leader, follower], time);
         }
@@ -202,6 +229,10 @@ impl MetricsBuilder {
             if let Some(sums) = self.safety.get_mut(state.robot) {
                 sums.add(time, state);
             }
+        }
+        for event in &record.events {
+            let words = event.words(&self.fleet);
+            self.events.push(EventSummary { time, happened: event.happened(), words });
         }
         self.clearance.push(&record.snapshot);
         for contact in &record.contacts {
@@ -222,7 +253,10 @@ impl MetricsBuilder {
         let least = least.min_by(|a, b| a.1.clearance.total_cmp(&b.1.clearance));
         Metrics {
             duration: self.time,
-            edges: pairs.map(|(s, e)| s.finish(robot(e.leader), robot(e.follower), self.samples)).collect(),
+            edges: pairs
+                .map(|(s, e)| s.finish(robot(s.leader.unwrap_or(e.leader)), robot(e.follower), self.samples))
+                .collect(),
+            events: self.events.clone(),
             robots: (0..self.fleet.robots.len()).map(|k| self.robot(k)).collect(),
             clearance_min: least.map(|(_, room)| room.clearance),
             clearance_min_time: least.map(|(_, room)| room.time),
@@ -255,6 +289,17 @@ impl MetricsBuilder {
 }
 
 impl EdgeSums {
+    /// Nobody is followed.
+    fn ends(&mut self, time: f64) {
+        self.ended.get_or_insert(time);
+        (self.settled, self.stands) = (None, None);
+    }
+
+    /// This robot is followed.
+    fn follows(&mut self, leader: usize) {
+        (self.leader, self.ended) = (Some(leader), None);
+    }
+
     fn push(&mut self, edge: &EdgeState, speed: f64, time: f64, step: f64, judging: &Judging) {
         let commands = |e: &EdgeState| [e.applied.acceleration, e.applied.turn_rate];
         let (now, before, late) = (commands(edge), commands(&self.last), time >= judging.settled_after);
@@ -301,7 +346,9 @@ impl EdgeSums {
     }
 
     fn settle(&mut self, edge: &EdgeState, speed: f64, time: f64, band: [f64; 2]) {
-        if edge.error[0].abs() > band[0] || edge.error[1].abs() > band[1] {
+        // On its way to another place it has not settled.
+        let away = edge.displacement > band[0];
+        if away || edge.error[0].abs() > band[0] || edge.error[1].abs() > band[1] {
             self.settled = None;
             return;
         }
@@ -323,6 +370,7 @@ impl EdgeSums {
             limited: self.limited as f64 / samples.max(1) as f64,
             settled_speeds: self.settled.map(|s| s.speeds),
             measurements: self.measurements.finish(),
+            ended: self.ended,
             ..self.metrics.clone()
         }
     }

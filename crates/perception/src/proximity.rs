@@ -157,7 +157,10 @@ impl ProximityConfig {
             let off = [from[0] - at[0], from[1] - at[1]];
             let radius = body.radius();
             // Most are far away.
-            if index == robot || off[0].abs() > sensor.range + radius || off[1].abs() > sensor.range + radius
+            if index == robot
+                || !other.is_present()
+                || off[0].abs() > sensor.range + radius
+                || off[1].abs() > sensor.range + radius
             {
                 continue;
             }
@@ -201,7 +204,7 @@ const UPRIGHT: f64 = 0.99;
 
 /// The unit vector from a solid's outline on the ground to `from`, and the distance in m, below zero inside; `None` for what
 /// is driven over: ramps, and what is lower than `middle` in m.
-fn gap_to(solid: &Solid, placement: &Placement, from: [f64; 2], middle: f64) -> Option<([f64; 2], f64)> {
+pub fn gap_to(solid: &Solid, placement: &Placement, from: [f64; 2], middle: f64) -> Option<([f64; 2], f64)> {
     let [x, y, z] = placement.position;
     let [length, width, height] = solid.extent();
     if matches!(solid, Solid::Wedge { .. }) || z + height < middle {

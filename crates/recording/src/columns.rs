@@ -2,7 +2,8 @@
 
 use crate::{Column, TableKind};
 use vocabulary::{
-    Constraint, Contact, EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState, SafetyState, Word,
+    Constraint, Contact, EdgeState, EntityId, EventRecord, FleetInfo, MeasurementRecord, Placement,
+    RobotState, SafetyState, Word,
 };
 
 /// A value of a row.
@@ -34,6 +35,7 @@ pub(crate) fn empty(kind: TableKind) -> Vec<(&'static str, Column)> {
         TableKind::Contacts => contact([""; 2], &Contact::default(), &mut add),
         TableKind::Props => prop(0.0, "", &Placement::default(), &mut add),
         TableKind::Safety => safety(0.0, &FleetInfo::default(), &SafetyState::default(), &mut add),
+        TableKind::Events => event(0.0, &FleetInfo::default(), &EventRecord::default(), &mut add),
         TableKind::Measurements => measurement([""; 2], &MeasurementRecord::default(), &mut add),
     }
     columns
@@ -81,6 +83,7 @@ pub(crate) fn edge(time: f64, [leader, follower]: [&str; 2], edge: &EdgeState, r
     row("limited", Flag(edge.limited));
     row("too_close", Flag(edge.too_close));
     row("phase", Text(edge.phase.word()));
+    row("displacement_m", Number(edge.displacement));
 }
 
 /// A contact that has ended.
@@ -143,6 +146,17 @@ pub(crate) fn safety(time: f64, fleet: &FleetInfo, state: &SafetyState, row: &mu
     row("barriers", Text(&names(fleet, &barriers)));
     row("acting", Text(&names(fleet, &state.acting)));
     row("conflict", Text(&names(fleet, &state.conflict)));
+}
+
+/// Something that happened to the formation.
+pub(crate) fn event(time: f64, fleet: &FleetInfo, event: &EventRecord, row: &mut Row<'_>) {
+    let name = |robot: usize| fleet.name(EntityId::Robot(robot));
+    row("time_s", Number(time));
+    row("kind", Text(event.kind.word()));
+    row("robot", Text(name(event.robot)));
+    row("leader", Text(event.leader.map_or("", name)));
+    row("refusal", Text(event.refusal.word()));
+    row("words", Text(&event.words(fleet)));
 }
 
 #[cfg(test)]

@@ -31,6 +31,8 @@ words! {
         Measurements = "measurements",
         /// What the safety filters did.
         Safety = "safety",
+        /// What happened to the formation.
+        Events = "events",
     }
 }
 
@@ -58,6 +60,7 @@ impl TableKind {
             Self::Props => moving,
             Self::Measurements => fleet.has_sensors,
             Self::Safety => fleet.has_safety,
+            Self::Events => fleet.has_events,
             _ => true,
         };
         Self::WORDS.iter().map(|(_, kind, _)| *kind).filter(has).collect()
@@ -65,7 +68,7 @@ impl TableKind {
 
     /// Shows `row` the values of every row that `record` adds.
     fn rows(self, fleet: &FleetInfo, record: &StepRecord, row: &mut Row<'_>) {
-        let StepRecord { snapshot, edges, contacts, frames, safety } = record;
+        let StepRecord { snapshot, edges: _, contacts, frames, safety, leaders: _, events } = record;
         match self {
             Self::Robots => {
                 for (member, robot) in fleet.robots.iter().zip(&snapshot.robots) {
@@ -73,8 +76,8 @@ impl TableKind {
                 }
             }
             Self::Edges => {
-                for (edge, state) in fleet.edges.iter().zip(edges) {
-                    columns::edge(snapshot.time, fleet.pair(*edge), state, row);
+                for (_, edge, state) in record.pairs(fleet) {
+                    columns::edge(snapshot.time, fleet.pair(edge), state, row);
                 }
             }
             Self::Contacts => {
@@ -90,13 +93,18 @@ impl TableKind {
             }
             Self::Measurements => {
                 for frame in frames {
-                    let Some(edge) = fleet.edges.get(frame.edge) else { continue };
-                    columns::measurement(fleet.pair(*edge), frame, row);
+                    let Some(edge) = record.edge(fleet, frame.edge) else { continue };
+                    columns::measurement(fleet.pair(edge), frame, row);
                 }
             }
             Self::Safety => {
                 for state in safety {
                     columns::safety(snapshot.time, fleet, state, row);
+                }
+            }
+            Self::Events => {
+                for event in events {
+                    columns::event(snapshot.time, fleet, event, row);
                 }
             }
         }

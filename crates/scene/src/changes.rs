@@ -90,6 +90,7 @@ fn shell(scene: &Scene) -> Scene {
         changes: vec![],
         views: scene.views.clone(),
         film: scene.film.clone(),
+        events: scene.events.clone(),
         ..*scene
     }
 }

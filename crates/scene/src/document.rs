@@ -3,6 +3,7 @@
 use crate::text::words::word;
 use crate::{
     Path,
+    events::EventKeys,
     ground::{GroundForm, GroundKeys},
     groups::{GroupMember, MembersForm},
     names::{NameForm, POSE},
@@ -11,8 +12,9 @@ use crate::{
     prop_form::{MOST_PROPS, PropForm, PropKeys},
     text::{Flag, Text, angle_within, form::Number, integer, keys, list, number, table},
     types::{
-        BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, LawPart, ObserverPart, PhysicsPart,
-        ProximityPart, SafetyPart, SensingForm, SensingPart, TimePart, VehiclePart, ViewsPart, VisionPart,
+        BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, HandOverPart, LawPart,
+        ObserverPart, PhysicsPart, ProximityPart, SafetyPart, SensingForm, SensingPart, TimePart,
+        VehiclePart, ViewsPart, VisionPart,
     },
     vehicle::VehicleForm,
 };
@@ -25,6 +27,8 @@ pub(crate) const SCHEMA_VERSION: u64 = 1;
 pub(crate) const MOST_ROBOTS: usize = 10_000;
 /// Most changes of a run.
 pub(crate) const MOST_CHANGES: usize = 10_000;
+/// Most events of a run.
+pub(crate) const MOST_EVENTS: usize = 1000;
 /// Speed at the start.
 const SPEED: Number = number("m/s").from(0.0).up_to(100.0);
 
@@ -70,6 +74,10 @@ keys! {
         patterns: Vec<PatternKeys> = list(PatternForm, 0, 200), part, Apart;
         /// What changes while the run goes.
         changes: Vec<ChangeKeys> = list(table::<ChangeKeys>(), 0, MOST_CHANGES), part, Apart;
+        /// What happens to the formation while the run goes: robots change their leader, fail, join and part.
+        events: Vec<EventKeys> = list(table::<EventKeys>(), 0, MOST_EVENTS), part, Apart;
+        /// How robots change their leader.
+        hand_over: HandOverPart = table::<HandOverPart>(), part, Apart;
         /// Light and air.
         environment: EnvironmentPart = table::<EnvironmentPart>(), part, Apart;
         /// How pictures look at the run.

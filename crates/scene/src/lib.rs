@@ -11,6 +11,7 @@ mod changes;
 mod diagnostics;
 mod document;
 mod edit;
+mod events;
 mod files;
 mod graph;
 mod ground;
@@ -48,7 +49,8 @@ pub use overrides::{Override, OverrideError};
 pub use shipped::{SHIPPED, Shipped, nearest_shipped, shipped};
 pub use text::node::composed;
 pub use types::{
-    Change, Compensation, Environment, Expect, Film, Follow, Ground, Law, Noise, Observer, OnContact, Patch,
-    Path, Physics, Plot, PropMotion, PropSpec, Proximity, Relief, Robot, Role, Safety, Scene, Sensing,
-    SensingKind, Shot, SpeedProfile, SwitchingKind, Time, Vehicle, VehicleKind, Views, Vision,
+    Change, Compensation, Environment, Event, Expect, Failure, Film, Follow, Ground, HandOver, Happening,
+    Holds, Joining, Law, Noise, Observer, OnContact, Patch, Path, Physics, Place, Plot, PropMotion, PropSpec,
+    Proximity, Recovery, Relief, Robot, Role, Safety, Scene, Sensing, SensingKind, Shot, SpeedProfile,
+    SwitchingKind, Time, Trigger, Vehicle, VehicleKind, Views, Vision, When,
 };

@@ -3,6 +3,7 @@
 use crate::{
     Expect, Film, PropSpec, Robot, Scene, Shot, Time, Views,
     document::{Document, GroupKeys, RobotKeys},
+    events::{check_hand_over, events},
     graph::{Named, check_graph, check_known},
     ground::ground,
     groups::{Group, expand},
@@ -13,7 +14,8 @@ use crate::{
     start::check_start,
     text::{Found, Keys, Node, Part, Reporter, Span},
     types::{
-        EnvironmentPart, ExpectPart, FilmPart, PhysicsPart, ROBOT_VIEWS, TimePart, ViewsPart, VisionPart,
+        EnvironmentPart, ExpectPart, FilmPart, HandOverPart, PhysicsPart, ROBOT_VIEWS, TimePart, ViewsPart,
+        VisionPart,
     },
     vehicle::{check_meaning, kind_is_lost, usual_kind},
 };
@@ -55,6 +57,11 @@ pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) 
         let robots = drafts.iter().filter_map(|draft| Some((draft.start?, draft.robot.as_ref()?)));
         check_start(robots, &props, ground, reporter);
     }
+    let listed = document.events?.value;
+    let events = events(&listed, root, time_part.mode.as_ref(), &drafts, &defaults, reporter);
+    let hand_over = document.hand_over?;
+    let hand_over = Found { span: hand_over.span, value: hand_over.value.complete(&HandOverPart::default()) };
+    check_hand_over(&hand_over, reporter);
     let views = views(&document.views?.value, &drafts, reporter);
     let film = film(&document.film?.value, time.duration, &drafts, reporter);
     Some(Scene {
@@ -68,6 +75,8 @@ pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) 
         vision,
         robots: drafts.into_iter().map(|draft| draft.robot).collect::<Option<_>>()?,
         changes: vec![],
+        events,
+        hand_over: hand_over.value,
         environment: document.environment?.value.complete(&EnvironmentPart::default()),
         views,
         film,

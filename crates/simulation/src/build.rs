@@ -2,6 +2,7 @@
 
 use crate::caption::caption;
 use crate::error::{BuildError, EPSILON_MIN};
+use crate::events::event_plan;
 use crate::parameters::{ParameterSet, ScheduledChange};
 use crate::safety::SafetyConfig;
 use crate::setup::Setup;
@@ -22,7 +23,16 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let names: Vec<&str> = scene.robots.iter().map(|r| &*r.name).collect();
     let followers: Vec<(&str, &Follow)> = scene.followers().collect();
     let pairs: Vec<(&str, &str)> = followers.iter().map(|(name, follow)| (&*follow.leader, *name)).collect();
-    let graph = Graph::new(&names, &pairs)?;
+    let mut graph = Graph::new(&names, &pairs)?;
+    let joining = scene.joining();
+    for (name, follow) in &joining {
+        let ends = [&*follow.leader, *name].map(|name| scene.index_of(name));
+        if let [Some(leader), Some(follower)] = ends {
+            graph.add_waiting(Edge { leader, follower });
+        }
+    }
+    let followers: Vec<(&str, &Follow)> =
+        followers.into_iter().chain(joining.iter().map(|(name, follow)| (*name, follow))).collect();
     check_continuous(scene, &followers)?;
 
     let mut stage = stage(scene)?;
@@ -43,7 +53,9 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let members: Vec<RobotInfo> = scene.robots.iter().map(member).collect();
     Ok(Setup {
         sensor_config: sensor_config(scene, &followers, &edges, &members, &stage),
-        safety_config: safety_config(scene, &members, &stage, chased),
+        safety_config: safety_config(scene, &members, &stage),
+        chased,
+        events: Arc::new(event_plan(scene)?),
         filters: filters(&scene.robots),
         fleet: FleetInfo {
             title: scene.title.clone(),
@@ -57,6 +69,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
             robots: members,
             edges,
             has_sensors: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
+            has_events: !scene.events.is_empty(),
             has_safety: scene.robots.iter().any(|robot| robot.proximity.range.is_some()),
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
             terrain: stage.terrain.clone(),
@@ -75,11 +88,13 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
 /// What `change` puts in place.
 fn turn(change: &scene::Change) -> Result<ScheduledChange, BuildError> {
     let robots = &change.then.robots;
-    let followers: Vec<(&str, &Follow)> = change.then.followers().collect();
+    let joining = change.then.joining();
+    let later = joining.iter().map(|(name, follow)| (*name, follow));
+    let followers: Vec<(&str, &Follow)> = change.then.followers().chain(later).collect();
     check_continuous(&change.then, &followers)?;
     let parameters = ParameterSet {
         laws: followers.iter().map(|(_, follow)| edge_law(follow)).collect(),
-        handling: robots.iter().map(handling).collect(),
+        handling: change.then.robots.iter().map(|robot| handling(&change.then, robot)).collect(),
         filters: filters(robots),
     };
     Ok(ScheduledChange { at: change.at, parameters })
@@ -181,12 +196,7 @@ fn filters(robots: &[scene::Robot]) -> Vec<Option<safety::Parameters>> {
 }
 
 /// What safety filters go by; `None` where no robot senses what is near it.
-fn safety_config(
-    scene: &Scene,
-    robots: &[RobotInfo],
-    stage: &WorldSetup,
-    chased: Vec<(usize, Unicycle)>,
-) -> Option<Arc<SafetyConfig>> {
+fn safety_config(scene: &Scene, robots: &[RobotInfo], stage: &WorldSetup) -> Option<Arc<SafetyConfig>> {
     let sensor = |robot: &scene::Robot| {
         let proximity = &robot.proximity;
         proximity.range.map(|range| ProximitySensor {
@@ -206,7 +216,6 @@ fn safety_config(
                 props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
                 seed: scene.seed,
             },
-            chased,
             wheels: scene.robots.iter().map(|robot| robot.vehicle.kind.has_wheels()).collect(),
             pan_max: scene.vision.pan_max,
             pan_rate: scene.vision.pan_rate,

@@ -5,9 +5,11 @@
 
 mod build;
 mod caption;
+mod chase;
 mod continuous;
 mod drivable;
 mod error;
+mod events;
 mod fault;
 mod parameters;
 mod plant;
@@ -24,6 +26,7 @@ pub use build::{build, edge_law};
 pub use caption::{caption, short};
 pub use drivable::Undrivable;
 pub use error::BuildError;
+pub use events::{EventAction, EventPlan, HandOverRules, Holds, PlannedEvent, Recovery, Trigger};
 pub use fault::{Fault, NotFinite};
 pub use parameters::{ParameterSet, ScheduledChange};
 pub use safety::SafetyConfig;

@@ -1,10 +1,9 @@
 //! What moves the robots of a run.
 
 use crate::continuous::Continuous;
-use crate::parameters::ParameterSet;
 use formation::Formation;
 use vocabulary::TimeMode;
-use world::{Physical, Unicycles, World, WorldSetup};
+use world::{Handling, Physical, Unicycles, World, WorldSetup};
 
 /// What moves the robots: a world that holds commands over a period, or plant, law and observers as one system.
 pub(crate) enum Plant {
@@ -37,9 +36,9 @@ impl Plant {
         }
     }
 
-    /// Robots have the limits of `parameters` from now on, and laws are those of `formation`.
-    pub(crate) fn apply_parameters(&mut self, parameters: &ParameterSet, formation: &Formation) {
-        self.world_mut().apply_parameters(&parameters.handling);
+    /// Robots have these limits from now on, and laws are those of `formation`.
+    pub(crate) fn apply_parameters(&mut self, handling: &[Handling], formation: &Formation) {
+        self.world_mut().apply_parameters(handling);
         if let Self::Continuous(system) = self {
             system.keep_pace(formation);
         }

@@ -14,6 +14,12 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
     if let Some(safety) = &run.safety {
         safety.told().clone_into(&mut run.record.safety);
     }
+    let graph = run.formation.graph();
+    run.record.leaders.clear();
+    if !run.events.is_idle() {
+        run.record.leaders.extend(graph.leaders());
+    }
+    run.events.told().clone_into(&mut run.record.events);
     for (index, (edge, out)) in run.formation.edges().iter().zip(&mut run.record.edges).enumerate() {
         let robots = &mut run.record.snapshot.robots;
         let decision = &run.state.decisions[index];
@@ -29,7 +35,9 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
                 (Relative::between(leader, follower), age, pan)
             }
         };
-        robots[edge.follower].camera_pan = pan;
+        if graph.is_in_force(index) {
+            robots[edge.follower].camera_pan = pan;
+        }
         let mut estimate = run.state.estimates[index].output;
         let heading = &run.formation.laws()[index].law.heading;
         if heading.filter().is_some() {
@@ -51,6 +59,7 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
             limited: decision.limited,
             too_close: decision.too_close,
             phase: decision.phase,
+            displacement: decision.displacement,
         };
     }
 }

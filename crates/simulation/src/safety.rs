@@ -1,21 +1,18 @@
 //! Safety filters in the loop: what robots sense near them, the barriers of that, and the commands that these leave.
 
 use crate::sensing::SensingPipeline;
-use formation::{Formation, FormationState};
+use formation::Formation;
 use perception::proximity::{ProximityConfig, ProximityState, Sensed};
 use safety::{Filter, HalfPlane, Neighbour, Parameters, Placed, Sight, Wish, barrier};
 use std::f64::consts::PI;
 use std::sync::Arc;
 use vocabulary::{Command, Constraint, EntityId, Limits, Motion, Observation, SafetyState, Snapshot, wrap};
-use world::{Unicycle, Unicycles, World, guide::chase};
 
 /// What safety filters go by, beside their barriers.
 #[derive(Debug, Clone)]
 pub struct SafetyConfig {
     /// Proximity sensors.
     pub proximity: ProximityConfig,
-    /// Lead robots that are filtered, and the motions that they chase.
-    pub chased: Vec<(usize, Unicycle)>,
     /// Whether a robot has wheels, whose driver looks after its speed.
     pub wheels: Vec<bool>,
     /// Farthest that cameras turn from straight ahead, rad.
@@ -31,10 +28,6 @@ pub(crate) struct SafetyPipeline {
     /// Barriers, per robot; `None` where its filter is off.
     pub(crate) filters: Vec<Option<Parameters>>,
     sensors: Vec<ProximityState>,
-    /// What lead robots chase, in the order of `config.chased`.
-    ideals: Unicycles,
-    /// The edge of every follower.
-    edges: Vec<Option<usize>>,
     period: f64,
     workspace: Workspace,
     /// What the filters did at the last sample.
@@ -55,20 +48,9 @@ struct Workspace {
 }
 
 impl SafetyPipeline {
-    pub(crate) fn new(
-        config: Arc<SafetyConfig>,
-        filters: Vec<Option<Parameters>>,
-        formation: &Formation,
-        period: f64,
-    ) -> Self {
-        let mut edges = vec![None; filters.len()];
-        for (index, edge) in formation.edges().iter().enumerate() {
-            edges[edge.follower] = Some(index);
-        }
+    pub(crate) fn new(config: Arc<SafetyConfig>, filters: Vec<Option<Parameters>>, period: f64) -> Self {
         Self {
             sensors: vec![ProximityState::default(); filters.len()],
-            ideals: Unicycles::new(config.chased.iter().map(|(_, ideal)| ideal.clone()).collect()),
-            edges,
             period,
             workspace: Workspace::default(),
             states: vec![],
@@ -83,44 +65,39 @@ impl SafetyPipeline {
         &self.states[..self.count]
     }
 
-    /// What lead robots chase goes on.
-    pub(crate) fn advance(&mut self, period: f64) {
-        self.ideals.advance(period);
+    /// A control sample begins.
+    pub(crate) fn begin(&mut self) {
+        self.count = 0;
     }
 
-    /// Decides the commands of a control sample at `time` s, as far as they are safe.
-    pub(crate) fn decide(
+    /// All commands of a control sample are decided.
+    pub(crate) fn end(&mut self) {
+        self.states[..self.count].sort_by_key(|state| state.robot);
+    }
+
+    /// The command of a robot that wishes `wished`, as far as it is safe.
+    pub(crate) fn admit(
         &mut self,
+        robot: usize,
+        wished: Command,
         formation: &Formation,
-        time: f64,
         observations: &[Observation],
-        state: &mut FormationState,
         snapshot: &Snapshot,
         sensing: Option<&SensingPipeline>,
-    ) {
-        self.count = 0;
-        formation.decide_through(time, observations, state, &mut |robot, command| {
-            let Some(parameters) = self.filters[robot] else { return command };
-            let motion = &snapshot.robots[robot].motion;
-            let limits = formation.limits(robot);
-            let chased = self.config.chased.iter().position(|(index, _)| *index == robot);
-            let wished = chased.map_or(command, |place| {
-                let ideal = &self.ideals.snapshot().robots[place].motion;
-                chase(ideal, motion, self.config.proximity.robots[robot].body.wheelbase, limits)
-            });
-            let sight = self.edges[robot].map(|edge| {
-                let leader = formation.edges()[edge].leader;
-                let seen = wrap(observations[edge].relative.view_angle - PI);
-                let most = self.config.pan_max;
-                // Where there is no camera, there might be one.
-                let sensing = sensing.filter(|_| formation.laws()[edge].tracker.is_some());
-                let pan = sensing.map_or(seen.clamp(-most, most), |sensing| sensing.age_and_pan(edge).1);
-                (leader, pan)
-            });
-            self.gather(robot, &parameters, snapshot, sight);
-            self.filter(robot, wished, motion, limits)
+    ) -> Command {
+        let Some(parameters) = self.filters[robot] else { return wished };
+        let motion = &snapshot.robots[robot].motion;
+        let sight = formation.graph().edge_of(robot).map(|edge| {
+            let leader = formation.edges()[edge].leader;
+            let seen = wrap(observations[edge].relative.view_angle - PI);
+            let most = self.config.pan_max;
+            // Where there is no camera, there might be one.
+            let sensing = sensing.filter(|_| formation.laws()[edge].tracker.is_some());
+            let pan = sensing.map_or(seen.clamp(-most, most), |sensing| sensing.age_and_pan(edge).1);
+            (leader, pan)
         });
-        self.states[..self.count].sort_by_key(|state| state.robot);
+        self.gather(robot, &parameters, snapshot, sight);
+        self.filter(robot, wished, motion, formation.limits(robot))
     }
 
     /// Turns what a robot senses into barriers.

@@ -17,6 +17,8 @@ pub(crate) struct SensingPipeline {
     trackers: Vec<Tracker>,
     beliefs: Vec<LeaderPrediction>,
     starts: Vec<ObserverStart>,
+    /// Where followers were told that their new leaders are, until they see them.
+    told: Vec<Option<Relative>>,
     /// Everything as it was a period ago.
     before: Snapshot,
     /// Shared by copies of a run, which take turns.
@@ -35,6 +37,7 @@ impl SensingPipeline {
             trackers: vec![Tracker::default(); edges],
             beliefs: vec![LeaderPrediction { relative: None, sight: TrackingState::Waiting }; edges],
             starts,
+            told: vec![None; edges],
             before: snapshot.clone(),
             eyes: None,
             sensor_config,
@@ -43,6 +46,14 @@ impl SensingPipeline {
 
     pub(crate) fn open(&mut self, eyes: Box<dyn CameraRenderer>) {
         self.eyes = Some(Arc::new(Mutex::new(eyes)));
+    }
+
+    /// The follower of an edge looks for another leader from now on, which it was told to be at `relative`.
+    pub(crate) fn change_leader(&mut self, edge: usize, leader: usize, relative: Relative) {
+        let config = Arc::make_mut(&mut self.sensor_config);
+        config.change_leader(&mut self.sensor_state, edge, leader);
+        self.trackers[edge] = Tracker::default();
+        (self.starts[edge], self.told[edge]) = (ObserverStart::Measured, Some(relative));
     }
 
     /// Remembers everything as it is before a period, and turns the cameras for it.
@@ -97,9 +108,10 @@ impl SensingPipeline {
     }
 
     fn believe(&mut self, formation: &Formation) {
-        for ((belief, tracker), law) in self.beliefs.iter_mut().zip(&self.trackers).zip(formation.laws()) {
+        let trackers = self.trackers.iter().zip(&self.told);
+        for ((belief, (tracker, told)), law) in self.beliefs.iter_mut().zip(trackers).zip(formation.laws()) {
             let (relative, sight) = match &law.tracker {
-                Some(parameters) => (tracker.relative(), tracker.sight(parameters)),
+                Some(parameters) => (tracker.relative().or(*told), tracker.sight(parameters)),
                 None => (None, TrackingState::Truth),
             };
             *belief = LeaderPrediction { relative, sight };

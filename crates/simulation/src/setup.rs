@@ -1,12 +1,13 @@
 //! Everything that a run starts from.
 
+use crate::events::EventPlan;
 use crate::parameters::ScheduledChange;
 use crate::safety::SafetyConfig;
 use formation::Formation;
 use perception::sensors::SensorConfig;
 use std::sync::Arc;
 use vocabulary::{FleetInfo, ObserverStart, TimeMode};
-use world::WorldSetup;
+use world::{Unicycle, WorldSetup};
 
 /// A run put together, before its first step.
 #[derive(Debug, Clone)]
@@ -21,6 +22,10 @@ pub struct Setup {
     pub observer_starts: Vec<ObserverStart>,
     /// How followers sense their leaders; `None` where all observe the true state.
     pub sensor_config: Option<Arc<SensorConfig>>,
+    /// What is to happen to the formation.
+    pub events: Arc<EventPlan>,
+    /// Lead robots that go by commands, and the motions that they chase.
+    pub chased: Vec<(usize, Unicycle)>,
     /// What safety filters go by; `None` where no robot senses what is near it.
     pub safety_config: Option<Arc<SafetyConfig>>,
     /// Barriers, per robot; `None` where its filter is off.

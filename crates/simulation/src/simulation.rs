@@ -1,5 +1,7 @@
 //! A simulation: its state, its queries, and the changes that it takes between steps.
 
+use crate::chase::Chases;
+use crate::events::Events;
 use crate::fault::Fault;
 use crate::parameters::{ParameterSet, pending, sample_at};
 use crate::plant::Plant;
@@ -14,6 +16,7 @@ use vocabulary::{
     CameraRenderer, EdgeState, FleetInfo, MeasurementRecord, Observation, ObserverStart, Relative,
     StepRecord, TimeMode,
 };
+use world::Handling;
 
 /// A simulation. The same setup gives the same records, bit for bit.
 #[derive(Clone)]
@@ -27,6 +30,11 @@ pub struct Simulation {
     pub(crate) observations: Vec<Observation>,
     pub(crate) sensing: Option<SensingPipeline>,
     pub(crate) safety: Option<SafetyPipeline>,
+    /// Robots that lead by commands.
+    pub(crate) chases: Chases,
+    pub(crate) events: Events,
+    /// Limits and drivers as they were set last.
+    pub(crate) handling: Vec<Handling>,
     pub(crate) frames: Vec<MeasurementRecord>,
     pub(crate) record: StepRecord,
     /// The moment before, over which the next is written.
@@ -46,6 +54,10 @@ impl Simulation {
     /// A run at time 0, nothing evaluated yet.
     pub fn new(setup: Setup) -> Self {
         let edges = setup.formation.edges().len();
+        let handling = setup.stage.actors.iter();
+        let handling = handling
+            .map(|actor| Handling { limits: actor.robot.limits, wheels: actor.wheels.clone() })
+            .collect();
         let plant = Plant::new(setup.stage, setup.mode, &setup.formation);
         let world = plant.world();
         let mut observations = Vec::with_capacity(edges);
@@ -65,10 +77,12 @@ impl Simulation {
         let sensing = setup.sensor_config.map(|sensor_config| {
             SensingPipeline::new(sensor_config, setup.observer_starts.clone(), world.snapshot())
         });
-        let safety = setup
-            .safety_config
-            .map(|config| SafetyPipeline::new(config, setup.filters, &setup.formation, setup.period));
+        let safety =
+            setup.safety_config.map(|config| SafetyPipeline::new(config, setup.filters, setup.period));
         Self {
+            chases: Chases::new(&setup.chased),
+            events: Events::new(setup.events, setup.fleet.robots.len()),
+            handling,
             fleet: setup.fleet,
             formation: setup.formation,
             state,
@@ -157,7 +171,9 @@ impl Simulation {
     /// motions of lead robots and what observers believe stay; changes that are to come stay too. `setup` is that of a
     /// scene which this run's scene leads to while it goes, see [`scene::Scene::sets_to`]; any other is not taken.
     pub fn apply_parameters(&mut self, setup: &Setup) {
-        let fits = setup.formation.edges() == self.formation.edges()
+        let followers =
+            |formation: &Formation| formation.edges().iter().map(|edge| edge.follower).collect::<Vec<_>>();
+        let fits = followers(&setup.formation) == followers(&self.formation)
             && setup.fleet.robots.len() == self.fleet.robots.len();
         debug_assert!(fits, "the setup of another formation");
         if fits {
@@ -165,10 +181,16 @@ impl Simulation {
         }
     }
 
+    /// The events of `setup` take the place of those that were to come; those that have happened are the first of both.
+    pub fn replan(&mut self, setup: &Setup) {
+        self.events.replan(setup.events.clone());
+    }
+
     /// The changes of `setup` that are due at the next sample or later take the place of those that were to come.
     pub fn reschedule(&mut self, setup: &Setup) {
         self.changes = pending(&setup.changes, self.period);
         self.changes.retain(|(sample, _)| *sample >= self.sample);
+        self.events.replan(setup.events.clone());
     }
 
     /// The last moment, as it was when it was computed.

@@ -38,7 +38,7 @@ fn actor(scene: &Scene, index: usize) -> Result<RobotSetup, BuildError> {
         }
         Role::Follow(follow) => speed = follow.speed,
     }
-    let Handling { limits, wheels } = handling(robot);
+    let Handling { limits, wheels } = handling(scene, robot);
     let unicycle = Unicycle { pose, speed, limits, body: robot.vehicle.body(), lead };
     Ok(RobotSetup { robot: unicycle, wheels })
 }
@@ -59,12 +59,18 @@ fn check_drivable(scene: &Scene, index: usize, motion: &PathMotion) -> Result<()
 }
 
 /// Limits and driver of a robot. A follower that stands with its leader has no least speed.
-pub(crate) fn handling(robot: &scene::Robot) -> Handling {
+pub(crate) fn handling(scene: &Scene, robot: &scene::Robot) -> Handling {
     let vehicle = &robot.vehicle;
     let wheels = vehicle.kind.has_wheels().then(|| Arc::new(wheeled(vehicle)));
-    let stands = robot.role.follow().is_some_and(|follow| follow.law.standing);
+    let follow = robot.role.follow().map(|follow| follow.law.standing);
+    let stands = follow.unwrap_or_else(|| joins_standing(scene, &robot.name));
     let limits = vehicle.limits();
     Handling { limits: if stands { Limits { speed_min: 0.0, ..limits } } else { limits }, wheels }
+}
+
+/// Whether a robot that leads at the start follows later, and then stands with its leader.
+fn joins_standing(scene: &Scene, name: &str) -> bool {
+    scene.joining().iter().any(|(robot, follow)| *robot == name && follow.law.standing)
 }
 
 fn wheeled(vehicle: &scene::Vehicle) -> Wheeled {
@@ -139,7 +145,7 @@ fn body(scene: &Scene, prop: &scene::PropSpec) -> Result<PropBody, BuildError> {
 }
 
 /// The motion along a path, and where it has to start if the path says so.
-fn course(path: &Path) -> Result<(PathMotion, Option<Pose>), SplinePathError> {
+pub(crate) fn course(path: &Path) -> Result<(PathMotion, Option<Pose>), SplinePathError> {
     let trajectory: Arc<dyn Trajectory> = match path {
         Path::Constant { speed, turn_rate } | Path::Circle { speed, turn_rate } => {
             Arc::new(AnalyticTrajectory::constant(*speed, *turn_rate))

@@ -1,12 +1,13 @@
 //! One step of a simulation. New here? This is the page to read first.
 
+use crate::events::happen;
 use crate::fault::{Fault, not_finite};
 use crate::parameters::{ParameterSet, wakes};
 use crate::plant::Plant;
 use crate::record::write_record;
 use crate::simulation::Simulation;
-use formation::{Estimate, Formation, FormationState};
-use vocabulary::{Contact, LawKind, TimeMode};
+use formation::{EdgeLaw, Estimate};
+use vocabulary::{Contact, Edge, LawKind, TimeMode};
 use world::World;
 
 /// Computes the next control sample into `run.record`; false when the run is over.
@@ -21,32 +22,24 @@ pub(crate) fn step(run: &mut Simulation) -> bool {
     let time = run.sample as f64 * run.period;
     // 2. Scheduled changes of laws, set points and limits take effect.
     let woken = apply_changes(run);
-    // 3. The true relative position of every edge.
+    // 3. Robots change their leader, fail or join.
+    happen(run, time);
+    // 4. The true relative position of every edge.
     perception::observe(run.plant.world().snapshot(), run.formation.edges(), &mut run.observations);
     for edge in woken {
         let (law, seen) = (&run.formation.laws()[edge].law, &run.observations[edge]);
         run.state.estimates[edge] = Estimate::at(&law.heading.output(&seen.relative, seen.own_heading));
     }
-    // 4. Followers with sensors know their estimate in its place.
+    // 5. Followers with sensors know their estimate in its place.
     if let Err(fault) = measure(run, time) {
         run.fault = Some(Fault::CameraRenderer(fault));
         return false;
     }
-    // 5. Every law decides on what its follower knows, leaders before followers (eqs 20, 22, 42).
-    match &mut run.safety {
-        None => run.formation.decide(time, &run.observations, &mut run.state),
-        // What is decided is applied as far as it is safe.
-        Some(safety) => safety.decide(
-            &run.formation,
-            time,
-            &run.observations,
-            &mut run.state,
-            run.plant.world().snapshot(),
-            run.sensing.as_ref(),
-        ),
-    }
+    // 6. Every law decides on what its follower knows, leaders before followers (eqs 20, 22, 42). What is decided is
+    //    applied as far as it is safe.
+    decide(run, time);
     run.plant.world_mut().apply(&run.state.commands);
-    // 6. State and decision are recorded, unless a number in them is not finite.
+    // 7. State and decision are recorded, unless a number in them is not finite.
     std::mem::swap(&mut run.record, &mut run.spare);
     write_record(run, time);
     run.fault = not_finite(&run.record, &run.fleet).map(Fault::NotFinite);
@@ -57,6 +50,33 @@ pub(crate) fn step(run: &mut Simulation) -> bool {
     run.stopped = run.stop_at_contact && run.record.contacts.iter().any(Contact::of_robot);
     run.sample += 1;
     true
+}
+
+/// Decides the commands of all robots.
+fn decide(run: &mut Simulation, time: f64) {
+    let Simulation { formation, state, observations, plant, sensing, safety, chases, events, fleet, .. } =
+        run;
+    if safety.is_none() && chases.is_empty() && events.is_idle() {
+        return formation.decide(time, observations, state);
+    }
+    let (snapshot, sensing) = (plant.world().snapshot(), sensing.as_ref());
+    if let Some(safety) = safety {
+        safety.begin();
+    }
+    formation.decide_through(time, observations, state, &mut |robot, decided| {
+        let limits = formation.limits(robot);
+        let (wished, master) =
+            events.command(robot, &snapshot.robots[robot].motion, limits).unwrap_or_else(|| {
+                (chases.command(robot, decided, snapshot, &fleet.robots[robot], limits), true)
+            });
+        match safety.as_mut().filter(|_| master) {
+            Some(safety) => safety.admit(robot, wished, formation, observations, snapshot, sensing),
+            None => wished,
+        }
+    });
+    if let Some(safety) = safety {
+        safety.end();
+    }
 }
 
 /// Applies the parameter sets that are due; returns the edges whose observers begin to run.
@@ -74,9 +94,16 @@ fn apply_changes(run: &mut Simulation) -> Vec<usize> {
 fn apply(run: &mut Simulation, parameters: &ParameterSet, woken: &mut Vec<usize>) {
     let pairs = run.formation.laws().iter().zip(&parameters.laws).enumerate();
     woken.extend(pairs.filter(|(_, (before, after))| wakes(before, after)).map(|(edge, _)| edge));
-    let limits = parameters.handling.iter().map(|handling| handling.limits).collect();
+    // Who stands for good has no least speed.
+    for (robot, (now, next)) in run.handling.iter_mut().zip(&parameters.handling).enumerate() {
+        now.clone_from(next);
+        if !run.events.drives(robot) {
+            now.limits.speed_min = 0.0;
+        }
+    }
+    let limits = run.handling.iter().map(|handling| handling.limits).collect();
     run.formation.apply_parameters(parameters.laws.clone(), limits);
-    run.plant.apply_parameters(parameters, &run.formation);
+    run.plant.apply_parameters(&run.handling, &run.formation);
     if let Some(safety) = &mut run.safety {
         safety.filters.clone_from(&parameters.filters);
     }
@@ -96,16 +123,25 @@ fn advance(run: &mut Simulation) {
         let time = (run.sample - 1) as f64 * run.period;
         sensing.begin(run.plant.world().snapshot(), time, run.period);
     }
-    if let Some(safety) = &mut run.safety {
-        safety.advance(run.period);
-    }
+    run.chases.advance(run.period);
     match &mut run.plant {
         Plant::Held(world) => {
             world.advance(run.period);
             let world: &dyn World = world.as_ref();
-            match run.mode {
-                TimeMode::Measured => follow_samples(run),
-                _ => follow(&run.formation, &mut run.state, world),
+            let measured = run.mode == TimeMode::Measured;
+            let Simulation { formation, state, events, period, .. } = run;
+            for (index, edge) in formation.edges().iter().enumerate() {
+                let law = &formation.laws()[index];
+                if law.law.kind == LawKind::OutputFeedback && law.tracker.is_none() {
+                    observe(world, *edge, law, measured.then_some(*period), &mut state.estimates[index]);
+                }
+            }
+            // Those who are about to follow another robot observe it already.
+            for step in events.hand_overs().moves() {
+                let edge = Edge { leader: step.leader, ..formation.edges()[step.edge] };
+                if let Some(estimate) = &mut step.estimate {
+                    observe(world, edge, &formation.laws()[step.edge], measured.then_some(*period), estimate);
+                }
             }
             if let Some(sensing) = &mut run.sensing {
                 sensing.follow(&run.formation, run.plant.world(), run.period);
@@ -118,33 +154,16 @@ fn advance(run: &mut Simulation) {
     }
 }
 
-/// Observers that see samples only are integrated over the period that has passed.
-fn follow_samples(run: &mut Simulation) {
-    let world = run.plant.world();
-    for (index, edge) in run.formation.edges().iter().enumerate() {
-        let law = &run.formation.laws()[index];
-        if law.law.kind != LawKind::OutputFeedback || law.tracker.is_some() {
-            continue;
-        }
-        let reference = law.law.heading.reference();
-        let mut before = perception::sample(world, *edge, reference, 0.0, None);
-        let after = perception::sample(world, *edge, reference, run.period, None);
-        before.acceleration = (after.own_speed - before.own_speed) / run.period;
-        let estimate = &mut run.state.estimates[index];
-        *estimate = law.observer.follow_samples(estimate, &before, &after.relative, run.period);
-    }
-}
-
-/// Observers that see the plant between samples are integrated along its motion.
-fn follow(formation: &Formation, state: &mut FormationState, world: &dyn World) {
-    for (index, edge) in formation.edges().iter().enumerate() {
-        let law = &formation.laws()[index];
-        if law.law.kind == LawKind::OutputFeedback && law.tracker.is_none() {
-            let estimate = &mut state.estimates[index];
-            let reference = law.law.heading.reference();
-            perception::tracks(world, *edge, reference, |track| {
-                *estimate = law.observer.follow(estimate, track);
-            });
-        }
-    }
+/// Carries an observer on over the period that has passed: along the plant's motion between samples, or, with a `period`,
+/// by the samples alone.
+fn observe(world: &dyn World, edge: Edge, law: &EdgeLaw, period: Option<f64>, estimate: &mut Estimate) {
+    let reference = law.law.heading.reference();
+    let Some(period) = period else {
+        perception::tracks(world, edge, reference, |track| *estimate = law.observer.follow(estimate, track));
+        return;
+    };
+    let mut before = perception::sample(world, edge, reference, 0.0, None);
+    let after = perception::sample(world, edge, reference, period, None);
+    before.acceleration = (after.own_speed - before.own_speed) / period;
+    *estimate = law.observer.follow_samples(estimate, &before, &after.relative, period);
 }

@@ -82,6 +82,12 @@ fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Judg
     for (channel, least) in expect.rate_peak_at_least.into_iter().flatten().enumerate() {
         findings.worst_rate("rate_peak_at_least", channel, "≥", least, |found| found >= least);
     }
+    if let Some(most) = expect.limited_at_most {
+        findings.limited(most);
+    }
+    if expect.no_event_refused {
+        findings.refused();
+    }
     if let Some(range) = expect.speed_within {
         findings.speeds(range, expect.settling_time);
     }
@@ -99,7 +105,7 @@ struct ExpectationJudge<'a> {
 const ERROR_UNITS: [&str; 2] = ["m", "rad"];
 const RATE_UNITS: [&str; 2] = ["m/s", "rad/s"];
 
-impl ExpectationJudge<'_> {
+impl<'a> ExpectationJudge<'a> {
     fn add(&mut self, key: &'static str, wanted: String, found: String, met: bool) {
         self.list.push(JudgedExpectation { key, wanted, found, met: Some(met) });
     }
@@ -131,6 +137,24 @@ impl ExpectationJudge<'_> {
         self.add("all_able", "every robot able to drive".into(), found, unable.is_empty());
     }
 
+    fn limited(&mut self, most: f64) {
+        let percent = |share: f64| format!("{:.2} %", share * 100.0);
+        let (found, met) = match self.followed().max_by(|a, b| a.limited.total_cmp(&b.limited)) {
+            Some(edge) => (format!("{} on {}", percent(edge.limited), name(edge)), edge.limited <= most),
+            None => ("no edges".into(), true),
+        };
+        self.add("limited_at_most", format!("≤ {} of the samples", percent(most)), found, met);
+    }
+
+    fn refused(&mut self) {
+        let refused = self.metrics.events.iter().find(|event| !event.happened);
+        let (found, met) = match refused {
+            Some(event) => (format!("at {:.2} s {}", event.time, event.words), false),
+            None => (vocabulary::counted(self.metrics.events.len() as u64, "event"), true),
+        };
+        self.add("no_event_refused", "every event takes place".into(), found, met);
+    }
+
     fn lift(&mut self, most: f64) {
         let highest = self.metrics.robots.iter().max_by(|a, b| a.lift_max.total_cmp(&b.lift_max));
         let (found, met) = match highest {
@@ -151,13 +175,18 @@ impl ExpectationJudge<'_> {
         self.add(key, wanted, text, found >= least);
     }
 
+    /// The edges whose followers follow at the end.
+    fn followed(&self) -> impl Iterator<Item = &'a EdgeMetrics> + use<'a> {
+        self.metrics.edges.iter().filter(|edge| edge.ended.is_none())
+    }
+
     /// The edge whose `value` in `channel` is largest in size; a value that is not a number is the worst.
     fn largest(
         &self,
         channel: usize,
         value: impl Fn(&EdgeMetrics) -> [f64; 2],
-    ) -> Option<(&EdgeMetrics, f64)> {
-        let sized = self.metrics.edges.iter().map(|edge| (edge, value(edge)[channel].abs()));
+    ) -> Option<(&'a EdgeMetrics, f64)> {
+        let sized = self.followed().map(|edge| (edge, value(edge)[channel].abs()));
         sized.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
@@ -218,7 +247,7 @@ impl ExpectationJudge<'_> {
         unit: &str,
         value: impl Fn(&StandingMetrics) -> f64,
     ) {
-        let stood = self.metrics.edges.iter().filter_map(|edge| Some((edge, value(edge.standing.as_ref()?))));
+        let stood = self.followed().filter_map(|edge| Some((edge, value(edge.standing.as_ref()?))));
         let (found, met) = match stood.max_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((edge, size)) => (format!("{size:.4} {unit} on {}", name(edge)), size <= most),
             None => (format!("no leader stands for {STANDING_AFTER} s"), false),
@@ -227,8 +256,7 @@ impl ExpectationJudge<'_> {
     }
 
     fn in_view(&mut self, least: f64) {
-        let measured =
-            self.metrics.edges.iter().filter_map(|edge| Some((edge, edge.measurements.as_ref()?.in_view)));
+        let measured = self.followed().filter_map(|edge| Some((edge, edge.measurements.as_ref()?.in_view)));
         let percent = |share: f64| format!("{:.2} %", share * 100.0);
         let (found, met) = match measured.min_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((edge, share)) => (format!("{} on {}", percent(share), name(edge)), share >= least),
@@ -240,8 +268,8 @@ impl ExpectationJudge<'_> {
     fn settling(&mut self, latest: f64) {
         let band = self.metrics.settling_band;
         let wanted = format!("≤ {latest} s into ±{} m, ±{} rad", short(band[0]), short(band[1]));
-        let unsettled = self.metrics.edges.iter().find(|edge| edge.settling_time.is_none());
-        let slowest = self.metrics.edges.iter().filter_map(|edge| edge.settling_time.map(|t| (t, edge)));
+        let unsettled = self.followed().find(|edge| edge.settling_time.is_none());
+        let slowest = self.followed().filter_map(|edge| edge.settling_time.map(|t| (t, edge)));
         if unsettled.is_some() && self.metrics.duration < latest {
             return self.add_unjudged("settling_time", wanted, latest);
         }
@@ -256,7 +284,7 @@ impl ExpectationJudge<'_> {
     fn speeds(&mut self, [slowest, fastest]: [f64; 2], settling: Option<f64>) {
         let wanted = format!("{slowest} to {fastest} m/s");
         let mut worst: Option<(f64, String)> = None;
-        for edge in &self.metrics.edges {
+        for edge in self.metrics.edges.iter().filter(|edge| edge.ended.is_none()) {
             let speeds = if settling.is_some() { edge.settled_speeds } else { Some(edge.speeds) };
             let Some([low, high]) = speeds else { continue };
             let outside = (slowest - low).max(high - fastest);
@@ -300,6 +328,7 @@ mod tests {
             clearance_min_time: Some(1.0),
             clearance_min_robots: Some(["ann".into(), "bob".into()]),
             settling_band: [0.05, 0.05],
+            events: vec![],
             certificates: vec![],
             contacts: 2,
             contact_impulse_max: 3.0,

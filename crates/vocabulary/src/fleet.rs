@@ -106,6 +106,8 @@ pub struct FleetInfo {
     pub has_sensors: bool,
     /// Whether any robot's commands may pass through a safety filter.
     pub has_safety: bool,
+    /// Whether robots may change leaders, fail or join while the run goes.
+    pub has_events: bool,
     /// Solid things that are no robots, in the order of the snapshots.
     pub props: Vec<Prop>,
     /// The lie of the land; flat at z = 0 where there is none.

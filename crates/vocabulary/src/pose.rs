@@ -19,6 +19,13 @@ impl Pose {
         Self { x, y, heading }
     }
 
+    /// [forward, left] in m in this pose's body frame of a point given in world coordinates, m.
+    pub fn body_from_world(&self, x: f64, y: f64) -> [f64; 2] {
+        let (sin, cos) = math::sin_cos(self.heading);
+        let (dx, dy) = (x - self.x, y - self.y);
+        [cos * dx + sin * dy, cos * dy - sin * dx]
+    }
+
     /// World coordinates in m of a point given in this pose's body frame (`forward`, `left`) in m.
     pub fn world_from_body(&self, forward: f64, left: f64) -> [f64; 2] {
         let (sin, cos) = math::sin_cos(self.heading);
@@ -40,6 +47,7 @@ mod tests {
     fn left_is_left() {
         let east = Pose::new(1.0, 2.0, 0.0);
         assert_eq!(east.world_from_body(1.0, 0.5), [2.0, 2.5]);
+        assert_eq!(east.body_from_world(2.0, 2.5), [1.0, 0.5]);
         let north = Pose::new(0.0, 0.0, std::f64::consts::FRAC_PI_2);
         let [x, y] = north.world_from_body(1.0, 0.5);
         assert!((x + 0.5).abs() < 1e-15 && (y - 1.0).abs() < 1e-15);

@@ -48,6 +48,10 @@ words! {
         Stuck = "stuck",
         /// It is deep below the ground around it, or out of all bounds.
         Fallen = "fallen",
+        /// An event made it fail.
+        Failed = "failed",
+        /// It is not there any more.
+        Removed = "removed",
     }
 }
 
@@ -67,6 +71,11 @@ pub struct RobotState {
 }
 
 impl RobotState {
+    /// Whether it is there.
+    pub fn is_present(&self) -> bool {
+        self.condition != Condition::Removed
+    }
+
     /// The body's frame in the world's: its origin is the reference point on the ground.
     pub fn world_from_body(&self) -> Rigid {
         let (pose, tilt) = (self.motion.pose, self.attitude);

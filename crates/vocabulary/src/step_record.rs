@@ -1,8 +1,8 @@
 //! One row of a run: the truth, and what every edge wanted, knew and did. Pictures and records are made of it.
 
 use crate::{
-    Command, Contact, MeasurementRecord, MotionPhase, Relative, SafetyState, Snapshot, TrackingState,
-    nearest_turn, wrap,
+    Command, Contact, Edge, EventRecord, FleetInfo, MeasurementRecord, MotionPhase, Relative, SafetyState,
+    Snapshot, TrackingState, nearest_turn, wrap,
 };
 
 /// One edge at an instant.
@@ -36,6 +36,8 @@ pub struct EdgeState {
     pub too_close: bool,
     /// What drove the follower.
     pub phase: MotionPhase,
+    /// How far that place is from its set point, m: while it starts again after a stand, or goes to another place.
+    pub displacement: f64,
 }
 
 /// Snapshot and edges of one instant.
@@ -51,9 +53,29 @@ pub struct StepRecord {
     pub frames: Vec<MeasurementRecord>,
     /// What the safety filters did, one entry per robot that has one, in the order of the robots.
     pub safety: Vec<SafetyState>,
+    /// Whom the follower of each edge follows; `None` where it follows nobody. Empty where that is as in
+    /// [`FleetInfo::edges`].
+    pub leaders: Vec<Option<usize>>,
+    /// What happened at this sample.
+    pub events: Vec<EventRecord>,
 }
 
 impl StepRecord {
+    /// Edge number `index` as it is at this moment; `None` where its follower follows nobody.
+    pub fn edge(&self, fleet: &FleetInfo, index: usize) -> Option<Edge> {
+        let edge = *fleet.edges.get(index)?;
+        match self.leaders.get(index) {
+            None => Some(edge),
+            Some(leader) => leader.map(|leader| Edge { leader, ..edge }),
+        }
+    }
+
+    /// Who follows whom at this moment: number, robots and state of every edge.
+    pub fn pairs<'a>(&'a self, fleet: &'a FleetInfo) -> impl Iterator<Item = (usize, Edge, &'a EdgeState)> {
+        let all = self.edges.iter().enumerate();
+        all.filter_map(|(index, state)| Some((index, self.edge(fleet, index)?, state)))
+    }
+
     /// The moment at `share` (0 to 1) of the way from `a` to `b`, for pictures between two control samples.
     ///
     /// Positions, angles and errors are interpolated linearly; commands and flags are those of `a`.

@@ -40,6 +40,12 @@ pub trait World: StepInterpolant + Send {
     /// slow for its limits has the nearest speed at once; one on wheels is driven there.
     fn apply_parameters(&mut self, handling: &[Handling]);
 
+    /// A robot that went its own way goes by its commands from now on.
+    fn release(&mut self, robot: usize);
+
+    /// A robot has failed, and goes by its commands; one that is `removed` is not there any more: nothing touches it.
+    fn fail(&mut self, robot: usize, removed: bool);
+
     /// Moves everything `duration` s on; positive.
     fn advance(&mut self, duration: f64);
 

@@ -79,7 +79,8 @@ impl Touches {
         self.forget_ended();
         let outline = |index: usize| BodyOutline::of(&snapshot.robots[index].motion.pose, body(index));
         let outlines: Vec<BodyOutline> = (0..snapshot.robots.len()).map(outline).collect();
-        let mut order: Vec<usize> = (0..outlines.len()).collect();
+        let present = |index: &usize| snapshot.robots[*index].is_present();
+        let mut order: Vec<usize> = (0..outlines.len()).filter(present).collect();
         order.sort_by(|&a, &b| outlines[a].left().total_cmp(&outlines[b].left()));
         let mut found = Vec::new();
         for (rank, &i) in order.iter().enumerate() {

@@ -8,7 +8,8 @@ use crate::{Handling, World, arc, prescribed::prescribed, touch::Touches};
 use std::cell::RefCell;
 use std::sync::Arc;
 use vocabulary::{
-    Body, Command, Contact, Limits, Motion, Pose, RobotState, Snapshot, StepInterpolant, Trajectory, math,
+    Body, Command, Condition, Contact, Limits, Motion, Pose, RobotState, Snapshot, StepInterpolant,
+    Trajectory, math,
 };
 
 /// Parameters and start of one unicycle.
@@ -135,6 +136,21 @@ impl World for Unicycles {
             if robot.lead.is_none() {
                 state.motion.speed = now.limits.clamp_speed(state.motion.speed);
             }
+        }
+    }
+
+    fn release(&mut self, robot: usize) {
+        let (unicycle, state) = (&mut self.robots[robot], &mut self.snapshot.robots[robot]);
+        unicycle.lead = None;
+        state.motion.speed = unicycle.limits.clamp_speed(state.motion.speed);
+    }
+
+    fn fail(&mut self, robot: usize, removed: bool) {
+        self.release(robot);
+        let state = &mut self.snapshot.robots[robot];
+        state.condition = if removed { Condition::Removed } else { Condition::Failed };
+        if removed {
+            state.motion = Motion { pose: state.motion.pose, ..Motion::default() };
         }
     }
 

@@ -51,7 +51,10 @@ pub(super) fn faces(
         let from = world_from_camera.translation;
         let pair = [exposure.follower, exposure.leader];
         let hidden = |corner: [f64; 3]| {
-            sensor_config.hides(exposure.snapshot, pair, from, world_from_leader.apply(corner))
+            sensor_config
+                .scenery()
+                .hides(exposure.snapshot, pair, from, world_from_leader.apply(corner))
+                .is_some()
         };
         if in_picture && !corners.into_iter().any(hidden) {
             let moved = |k: usize| [0, 1].map(|i| pixels[k][i] + pixel_noise * errors[k][i]);

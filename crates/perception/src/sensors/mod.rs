@@ -14,6 +14,7 @@ use camera::CameraPipeline;
 pub use camera::CameraSettings;
 pub use geometric::{MARGIN, readable};
 pub use noise::NoiseModel;
+pub use sightline::Scenery;
 
 use crate::imaging::{Purpose, noise_stream};
 use crate::pose::{Prior, Rig, SeenFace, locate};
@@ -153,6 +154,16 @@ impl SensorConfig {
         SensorState {
             edges: self.edges.iter().map(sensor_state).collect(),
             camera_pipeline: CameraPipeline::default(),
+        }
+    }
+
+    /// The follower of an edge looks for another leader from now on; what is on its way is of the one before.
+    pub fn change_leader(&mut self, sensor_state: &mut SensorState, edge: usize, leader: usize) {
+        self.edges[edge].leader = leader;
+        if let Some(state) = sensor_state.edges.get_mut(edge) {
+            state.on_the_way.clear();
+            state.seen = false;
+            state.drift = noise::Drift::default();
         }
     }
 

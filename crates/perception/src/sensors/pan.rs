@@ -44,9 +44,14 @@ impl Pan {
         let most = camera.pan_rate * period;
         self.from = self.to;
         let wanted = match (belief.relative, belief.sight) {
-            (Some(relative), TrackingState::Truth | TrackingState::Tracking | TrackingState::Coasting) => {
-                towards(&relative, forward)
-            }
+            // One that has not been seen yet is where it was told to be.
+            (
+                Some(relative),
+                TrackingState::Truth
+                | TrackingState::Tracking
+                | TrackingState::Coasting
+                | TrackingState::Waiting,
+            ) => towards(&relative, forward),
             // Nothing has been seen yet: the camera stays where it was pointed.
             (_, TrackingState::Waiting) => self.from,
             _ => {

@@ -1,33 +1,55 @@
 //! What stands between a camera and a tag.
 
 use super::SensorConfig;
-use vocabulary::{Placement, Rigid, RobotInfo, Snapshot, Solid};
+use vocabulary::{EntityId, Placement, Prop, Rigid, RobotInfo, RobotState, Snapshot, Solid, Terrain};
 
-impl SensorConfig {
-    /// Whether anything hides the point `to` on the robot `watched` from the point `from` on the robot `watcher`, both
-    /// in the world's frame, m; those two robots themselves do not count.
+/// What may stand between two robots.
+#[derive(Debug, Clone, Copy)]
+pub struct Scenery<'a> {
+    /// In the order of the snapshots.
+    pub robots: &'a [RobotInfo],
+    /// In the order of the snapshots.
+    pub props: &'a [Prop],
+    /// Flat where there is none.
+    pub terrain: Option<&'a Terrain>,
+}
+
+impl Scenery<'_> {
+    /// What hides the point `to` on the robot `watched` from the point `from` on the robot `watcher`, both in the
+    /// world's frame, m; those two robots themselves do not count.
     pub fn hides(
         &self,
         snapshot: &Snapshot,
         [watcher, watched]: [usize; 2],
         from: [f64; 3],
         to: [f64; 3],
-    ) -> bool {
-        let others = snapshot.robots.iter().zip(&self.robots).enumerate();
-        let mut others = others.filter(|(index, _)| *index != watcher && *index != watched);
-        if others.any(|(_, (robot, info))| robot_hides(info, &robot.world_from_body(), from, to)) {
-            return true;
+    ) -> Option<EntityId> {
+        let others = snapshot.robots.iter().zip(self.robots).enumerate();
+        let mut others =
+            others.filter(|(index, (robot, _))| *index != watcher && *index != watched && robot.is_present());
+        let hides =
+            |(robot, info): (&RobotState, &RobotInfo)| robot_hides(info, &robot.world_from_body(), from, to);
+        if let Some((index, _)) = others.find(|(_, pair)| hides(*pair)) {
+            return Some(EntityId::Robot(index));
         }
         let mut props = self.props.iter().zip(&snapshot.props);
-        if props.any(|(prop, place)| prop_hides(prop.solid, place, from, to)) {
-            return true;
+        if let Some(index) = props.position(|(prop, place)| prop_hides(prop.solid, place, from, to)) {
+            return Some(EntityId::Prop(index));
         }
-        let Some(terrain) = &self.terrain else { return false };
-        (1..GROUND_STEPS).any(|k| {
+        let terrain = self.terrain?;
+        let hidden = (1..GROUND_STEPS).any(|k| {
             let share = f64::from(k) / f64::from(GROUND_STEPS);
             let [x, y, z] = [0, 1, 2].map(|i| from[i] + (to[i] - from[i]) * share);
             terrain.at(x, y).height > z
-        })
+        });
+        hidden.then_some(EntityId::Ground)
+    }
+}
+
+impl SensorConfig {
+    /// What may stand between two robots.
+    pub fn scenery(&self) -> Scenery<'_> {
+        Scenery { robots: &self.robots, props: &self.props, terrain: self.terrain.as_deref() }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Holds two logs against each other, moment by moment and bit by bit.
 
+use super::events::EventMessage;
 use super::messages::ContactRecord;
 use super::read::Log;
 use super::record::{self, FieldValue, Fields, Record};
@@ -120,6 +121,12 @@ fn bits(record: &mut StepRecord, out: &mut Vec<u8>) {
         out.extend(state.robot.to_le_bytes());
         record::write(&mut SafetyRecord::new(state, &FleetInfo::default()), out);
     }
+    for event in &record.events {
+        record::write(&mut EventMessage::new(event, &FleetInfo::default()), out);
+    }
+    for leader in &record.leaders {
+        out.extend(leader.map_or(u64::MAX, |leader| leader as u64).to_le_bytes());
+    }
 }
 
 /// The order of kinds, then that of fields.
@@ -201,7 +208,7 @@ impl ComparedQuantity {
     }
 }
 
-/// All quantities of a moment, by edge, robot, prop, contact, measurement and safety filter.
+/// All quantities of a moment, by edge, robot, prop, contact, measurement, safety filter and event.
 fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     let mut all = Collector { of: "sample".to_owned(), table: 0, field: 0, found: vec![] };
     let mut record = record.clone();
@@ -209,6 +216,10 @@ fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     let name = |robot: usize| fleet.robots.get(robot).map_or("?", |member| &*member.name);
     let pair =
         |edge: usize| fleet.edges.get(edge).map_or_else(String::new, |edge| fleet.pair(*edge).join(" → "));
+    if !record.leaders.is_empty() {
+        let leaders = record.leaders.iter().map(|leader| leader.map_or("nobody", name));
+        all.add("leaders", ComparedValue::Word(leaders.collect::<Vec<_>>().join(", ")));
+    }
     // What a follower wanted stands before what became of it.
     for (index, edge) in record.edges.iter_mut().enumerate() {
         all.collect(1, format!("edge {}", pair(index)), edge);
@@ -230,6 +241,9 @@ fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     for state in &record.safety {
         let of = format!("safety filter of {}", name(state.robot));
         all.collect(6, of, &mut SafetyRecord::new(state, fleet));
+    }
+    for event in &record.events {
+        all.collect(7, "what happened".to_owned(), &mut EventMessage::new(event, fleet));
     }
     all.found
 }

@@ -24,7 +24,8 @@ impl Record for FleetInfo {
         let mut terrain = self.terrain.iter().map(|terrain| Terrain::clone(terrain)).collect();
         f.each("terrain", &mut terrain)?;
         self.terrain = terrain.into_iter().next().map(Arc::new);
-        f.flag("has_safety", &mut self.has_safety)
+        f.flag("has_safety", &mut self.has_safety)?;
+        f.flag("has_events", &mut self.has_events)
     }
 }
 

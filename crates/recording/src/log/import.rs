@@ -4,6 +4,7 @@
 //! into a log of ours in a file without a name, and read from there: a moment that comes back is the moment that was
 //! recorded, bit for bit, or is not there.
 
+use super::events::EventMessage;
 use super::fleet::sound;
 use super::messages::{ContactRecord, SampleNumber};
 use super::outline::{Around, LONGEST, parse};
@@ -19,7 +20,8 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 use vocabulary::{
-    Contact, EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState, SafetyState, StepRecord, counted,
+    Contact, EdgeState, EventRecord, FleetInfo, MeasurementRecord, Placement, RobotState, SafetyState,
+    StepRecord, counted,
 };
 
 /// A log of ours, and what the foreign one has and lacks.
@@ -232,6 +234,7 @@ struct Parts {
     frames: Vec<MeasurementRecord>,
     contacts: Vec<Contact>,
     safety: BTreeMap<usize, SafetyState>,
+    events: Vec<EventRecord>,
     sample: Option<SampleNumber>,
 }
 
@@ -254,6 +257,7 @@ impl Pending {
                     parts.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
                 }
                 LogChannel::Safety(index) => drop(parts.safety.insert(index, safety_of(index, data)?)),
+                LogChannel::Event => parts.events.push(record::read::<EventMessage>(data)?.event),
                 LogChannel::Contact => {
                     parts.contacts.push(record::read::<ContactRecord>(data)?.contact);
                 }
@@ -279,7 +283,7 @@ impl Parts {
         placed.extend(self.props);
         let (robots, edges) = (self.robots.len(), self.edges.len());
         let (contacts, frames) = (self.contacts.len(), self.frames.len());
-        let found = [robots, edges, placed.len(), contacts, frames, self.safety.len()];
+        let found = [robots, edges, placed.len(), contacts, frames, self.safety.len(), self.events.len()];
         (sample.counts == found).then_some(())?;
         let inside = |last: Option<&usize>, count: usize| last.is_none_or(|last| *last < count);
         let fits = inside(self.robots.keys().next_back(), fleet.robots.len())
@@ -293,6 +297,7 @@ impl Parts {
         record.snapshot.props = placed.values().copied().collect();
         record.edges = self.edges.into_values().collect();
         record.safety = self.safety.into_values().collect();
+        (record.leaders, record.events) = (sample.leaders, self.events);
         fits.then_some(record)
     }
 }

@@ -55,7 +55,8 @@ impl Record for EdgeState {
         f.word("sight", &mut self.sight)?;
         f.flag("limited", &mut self.limited)?;
         f.flag("too_close", &mut self.too_close)?;
-        f.word("phase", &mut self.phase)
+        f.word("phase", &mut self.phase)?;
+        f.number("displacement_m", &mut self.displacement)
     }
 }
 
@@ -116,7 +117,7 @@ pub(super) struct ContactRecord {
     pub(super) names: [String; 2],
 }
 
-fn thing<F: Fields>(f: &mut F, names: [&'static str; 2], thing: &mut EntityId) -> Option<()> {
+pub(super) fn thing<F: Fields>(f: &mut F, names: [&'static str; 2], thing: &mut EntityId) -> Option<()> {
     let (mut kind, mut index) = match *thing {
         EntityId::Ground => (0, 0),
         EntityId::Robot(index) => (1, index),
@@ -148,12 +149,14 @@ impl Record for ContactRecord {
 }
 
 /// Closes a moment: all messages before it that carry its sequence number belong to it, and nothing is missing.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct SampleNumber {
     pub(super) number: u64,
     pub(super) time: f64,
-    /// Of robots, edges, props, contacts, measurements and safety filters.
-    pub(super) counts: [usize; 6],
+    /// Of robots, edges, props, contacts, measurements, safety filters and events.
+    pub(super) counts: [usize; 7],
+    /// Whom the follower of each edge follows; `None` where it follows nobody. Empty where that never changes.
+    pub(super) leaders: Vec<Option<usize>>,
 }
 
 impl Record for SampleNumber {
@@ -162,7 +165,14 @@ impl Record for SampleNumber {
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
         f.count("number", &mut self.number)?;
         f.number("time_s", &mut self.time)?;
-        let names = ["robots", "edges", "props", "contacts", "measurements", "safety"];
-        names.into_iter().zip(&mut self.counts).try_for_each(|(name, count)| f.count(name, count))
+        let names = ["robots", "edges", "props", "contacts", "measurements", "safety", "events"];
+        names.into_iter().zip(&mut self.counts).try_for_each(|(name, count)| f.count(name, count))?;
+        let index = |leader: &Option<usize>| leader.map_or(-1.0, |leader| leader as f64);
+        let mut leaders: Vec<f64> = self.leaders.iter().map(index).collect();
+        f.field("leader_indices", FieldValue::Series(&mut leaders))?;
+        let whole = |x: f64| x.fract() == 0.0 && (-1.0..1e9).contains(&x);
+        leaders.iter().all(|x| whole(*x)).then_some(())?;
+        self.leaders = leaders.iter().map(|x| (*x >= 0.0).then_some(*x as usize)).collect();
+        Some(())
     }
 }

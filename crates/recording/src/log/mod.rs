@@ -16,6 +16,7 @@
 
 mod compare;
 mod drawing;
+mod events;
 mod fleet;
 mod import;
 mod messages;
@@ -62,6 +63,7 @@ struct Topics;
 impl Topics {
     const FLEET: &str = "/fleet";
     const CONTACTS: &str = "/contacts";
+    const EVENTS: &str = "/events";
     const SAMPLES: &str = "/samples";
 
     fn robot(member: &RobotInfo) -> String {

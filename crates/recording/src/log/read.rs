@@ -2,6 +2,7 @@
 //!
 //! Whole records are searched from the beginning, so a log that was cut off reads like any other, up to its last chunk.
 
+use super::events::EventMessage;
 use super::fleet::sound;
 use super::import::{Imported, import};
 use super::messages::{ContactRecord, SampleNumber};
@@ -46,6 +47,7 @@ pub(super) enum LogChannel {
     Prop(usize),
     Measurement(usize),
     Safety(usize),
+    Event,
     Contact,
     Sample,
     FleetInfo,
@@ -259,6 +261,7 @@ impl LogChannel {
             Placement::NAME => Some(Self::Prop(index)),
             MeasurementRecord::NAME => Some(Self::Measurement(index)),
             SafetyRecord::NAME => Some(Self::Safety(index)),
+            EventMessage::NAME => Some(Self::Event),
             ContactRecord::NAME => Some(Self::Contact),
             SampleNumber::NAME => Some(Self::Sample),
             FleetInfo::NAME => Some(Self::FleetInfo),
@@ -354,14 +357,17 @@ fn take(
             record.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
         }
         LogChannel::Safety(index) => record.safety.push(safety_of(index, data)?),
+        LogChannel::Event => record.events.push(record::read::<EventMessage>(data)?.event),
         LogChannel::Contact => record.contacts.push(record::read::<ContactRecord>(data)?.contact),
         LogChannel::Sample => {
             let sample: SampleNumber = record::read(data)?;
             record.snapshot.time = sample.time;
             let (robots, edges) = (record.snapshot.robots.len(), record.edges.len());
             let (contacts, frames) = (record.contacts.len(), record.frames.len());
-            let found = [robots, edges, props.len(), contacts, frames, record.safety.len()];
+            let found =
+                [robots, edges, props.len(), contacts, frames, record.safety.len(), record.events.len()];
             (sample.counts == found).then_some(())?;
+            record.leaders = sample.leaders;
             return Some(true);
         }
         LogChannel::FleetInfo => {}

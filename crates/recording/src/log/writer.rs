@@ -1,6 +1,7 @@
 //! Writes the file: what is known before the run, a chunk after every batch of moments, what is known after it.
 
 use super::drawing::Drawing;
+use super::events::EventMessage;
 use super::messages::{ContactRecord, SampleNumber};
 use super::pictures::Photo;
 use super::record::{self, Record};
@@ -104,6 +105,7 @@ pub(super) struct Writer {
     measurements: Vec<u16>,
     props: Vec<u16>,
     safety: Vec<u16>,
+    events: Option<u16>,
     contacts: u16,
     samples: u16,
     number: u64,
@@ -150,6 +152,7 @@ impl Writer {
             measurements: vec![],
             props: vec![],
             safety: vec![],
+            events: None,
             contacts: to.add_own::<ContactRecord>(Topics::CONTACTS, 0)?,
             samples: to.add_own::<SampleNumber>(Topics::SAMPLES, 0)?,
             number: 0,
@@ -169,6 +172,9 @@ impl Writer {
             if fleet.has_safety {
                 self.safety.push(to.add_own::<SafetyRecord>(&Topics::safety(member), index)?);
             }
+        }
+        if fleet.has_events {
+            self.events = Some(to.add_own::<EventMessage>(Topics::EVENTS, 0)?);
         }
         for (index, edge) in fleet.edges.iter().enumerate() {
             self.edges.push(to.add_own::<EdgeState>(&Topics::edge(fleet, *edge), index)?);
@@ -235,10 +241,18 @@ impl Writer {
                 filters += 1;
             }
         }
-        let StepRecord { snapshot, edges, contacts, frames, safety: _ } = record;
+        let mut happened = 0;
+        if let Some(channel) = self.events {
+            for event in &record.events {
+                to.put_own(channel, stamp, &mut EventMessage::new(event, &self.fleet))?;
+                happened += 1;
+            }
+        }
+        let StepRecord { snapshot, edges, contacts, frames, safety: _, leaders, events: _ } = record;
         let (robots, props) = (snapshot.robots.len(), snapshot.props.len());
-        let counts = [robots, edges.len(), props, contacts.len(), frames.len(), filters];
-        let mut sample = SampleNumber { number: self.number, time: snapshot.time, counts };
+        let counts = [robots, edges.len(), props, contacts.len(), frames.len(), filters, happened];
+        let mut sample =
+            SampleNumber { number: self.number, time: snapshot.time, counts, leaders: leaders.clone() };
         self.number += 1;
         to.put_own(self.samples, stamp, &mut sample)
     }

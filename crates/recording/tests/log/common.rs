@@ -157,6 +157,8 @@ pub(crate) fn step_record(fleet: &FleetInfo, k: u32, n: &mut Numbers) -> StepRec
         }
     });
     StepRecord {
+        leaders: vec![],
+        events: vec![],
         snapshot: Snapshot { time: f64::from(k) * 0.01 + 1e-13, robots, props: props.collect() },
         edges: (0..2).map(|_| edge(n)).collect(),
         contacts: (0..n.below(3)).map(|_| contact(n)).collect(),

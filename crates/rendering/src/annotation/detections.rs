@@ -165,7 +165,8 @@ pub(crate) fn camera_words(
 fn detections(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window: Window<'_>, robot: usize) {
     let now = context.record.snapshot.time;
     let mut row = 0.0;
-    for (index, edge) in context.fleet.edges.iter().enumerate().filter(|(_, edge)| edge.follower == robot) {
+    for (index, edge, _) in context.record.pairs(context.fleet).filter(|(_, edge, _)| edge.follower == robot)
+    {
         let news = context.record.frames.iter().rev().find(|frame| frame.edge == index);
         let Some(frame) = news.or_else(|| context.trail.measurement(index)) else { continue };
         let (Some(follower), Some(leader)) =
@@ -183,7 +184,7 @@ fn detections(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window:
             words,
             window,
             camera_model: follower.camera_model,
-            turn: turn_since(context, edge, frame),
+            turn: turn_since(context, &edge, frame),
             width,
         };
         region(&mut overlay, frame);

@@ -226,7 +226,8 @@ fn reserve_robots(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, win
 /// What keeps a robot from driving, in a word.
 fn trouble(condition: Condition) -> Option<&'static str> {
     match condition {
-        Condition::Able => None,
+        Condition::Able | Condition::Removed => None,
+        Condition::Failed => Some("failed"),
         Condition::Overturned => Some("overturned"),
         Condition::Stuck => Some("stuck"),
         Condition::Fallen => Some("fallen"),
@@ -248,6 +249,9 @@ fn names(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window: Wind
     let crowded = context.fleet.robots.len() > 24;
     let members = context.record.snapshot.robots.iter().zip(&context.fleet.robots);
     for (index, (robot, member)) in members.enumerate() {
+        if !robot.is_present() {
+            continue;
+        }
         let trouble = trouble(robot.condition);
         // In a crowd only those who are in trouble are named.
         if crowded && trouble.is_none() {
@@ -277,7 +281,7 @@ fn edges(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window: Wind
         let pose = context.record.snapshot.robots.get(k)?.motion.pose;
         window.pixel(context.on_floor(pose.x, pose.y))
     };
-    for (edge, state) in context.fleet.edges.iter().zip(&context.record.edges) {
+    for (_, edge, state) in context.record.pairs(context.fleet) {
         let (Some(a), Some(b)) = (place(edge.leader), place(edge.follower)) else { continue };
         let degrees = state.relative.bearing.to_degrees().round();
         let sign = if degrees < 0.0 { "\u{2212}" } else { "" };
@@ -341,7 +345,7 @@ pub(crate) fn robot_boxes(context: &PictureContext<'_>, window: Window<'_>) -> V
             window.anywhere(DVec3::new(x, y, robot.attitude.height + half + sign(4) * half))
         }))
     };
-    robots.filter_map(area).collect()
+    robots.filter(|(robot, _)| robot.is_present()).filter_map(area).collect()
 }
 
 /// The rectangles of the picture that hold the rings at set points.

@@ -59,7 +59,10 @@ impl Camera {
             Viewpoint::SnakeEye => snake_eye(smoothed, aspect),
             Viewpoint::Top => top(smoothed, room),
             Viewpoint::Orbit => orbit(smoothed, snapshot.time, fleet.edges.is_empty(), room),
-            Viewpoint::Follow(robot) => follow(smoothed, snapshot, &fleet.edges, *robot, aspect),
+            Viewpoint::Follow(robot) => {
+                let edges: Vec<Edge> = context.record.pairs(fleet).map(|(_, edge, _)| edge).collect();
+                follow(smoothed, snapshot, &edges, *robot, aspect)
+            }
             Viewpoint::Camera(robot) => return onboard(snapshot, fleet, *robot, aspect),
             Viewpoint::Fixed { eye, target, field_of_view } => {
                 let [mut eye, target] = [eye, target].map(|place| DVec3::from_array(*place));

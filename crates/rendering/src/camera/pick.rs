@@ -33,6 +33,7 @@ pub(crate) fn pick(
     let ground = sight.depth(&ray).map_or(f64::INFINITY, |far| far + 0.02 * far + 0.3);
     let robots = record.snapshot.robots.iter().zip(&fleet.robots).enumerate();
     let mut found: Vec<((f64, f64), Picked)> = robots
+        .filter(|(_, (robot, _))| robot.is_present())
         .filter_map(|(k, (robot, member))| {
             let (beside, far) = depth(sight, &ray, robot, member, DVec2::from_array(pixel))?;
             (far < ground).then_some(((beside, far), Picked::Robot(k)))
@@ -100,7 +101,7 @@ fn edges(sight: &Sightline, fleet: &FleetInfo, record: &StepRecord, pixel: DVec2
         let pose = record.snapshot.robots.get(k)?.motion.pose;
         sight.pixel_of_ground([pose.x, pose.y]).map(DVec2::from_array)
     };
-    nearest_first(fleet.edges.iter().enumerate().filter_map(|(k, edge)| {
+    nearest_first(record.pairs(fleet).filter_map(|(k, edge, _)| {
         let away = beside(pixel, place(edge.leader)?, place(edge.follower)?);
         (away < NEAR).then_some((away, Picked::Edge(k)))
     }))

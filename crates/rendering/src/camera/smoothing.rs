@@ -1,7 +1,7 @@
 //! What cameras follow: headings and the formation's extent, filtered so that a picture never jumps.
 
 use vocabulary::math;
-use vocabulary::{Condition, Pose, StepRecord, nearest_turn};
+use vocabulary::{Condition, Pose, RobotState, StepRecord, nearest_turn};
 
 /// Time constant of headings, s: calm in curves, and a first order filter cannot overshoot.
 const HEADING_LAG: f64 = 0.8;
@@ -87,9 +87,30 @@ impl SmoothedFormation {
         let step = self.time.map_or(f64::INFINITY, |before| (time - before).max(0.0));
         self.time = Some(time);
         self.turn(record, step);
+        self.look_for_lead(record);
         let Some(wanted) = self.measure(record, set_points) else { return };
         let old = self.extent.unwrap_or(wanted);
         self.extent = Some(approach(&old, &wanted, step));
+    }
+
+    /// Goes over to another lead robot where the one that was followed has failed; what is framed stays.
+    fn look_for_lead(&mut self, record: &StepRecord) {
+        let robots = &record.snapshot.robots;
+        let fails = |robot: usize| robots.get(robot).is_none_or(|robot| !in_formation(robot));
+        if record.leaders.is_empty() || !fails(self.lead) {
+            return;
+        }
+        // Who is followed, or the first that drives.
+        let followed = record.leaders.iter().flatten().copied().find(|robot| !fails(*robot));
+        let Some(next) = followed.or_else(|| (0..robots.len()).find(|robot| !fails(*robot))) else { return };
+        if let Some(extent) = &mut self.extent {
+            let Pose { x, y, .. } = robots[next].motion.pose;
+            let [ahead, aside] = extent.frame.body_from_world(x, y);
+            extent.forward = extent.forward.map(|place| place - ahead);
+            extent.left = extent.left.map(|place| place - aside);
+            extent.rear -= aside;
+        }
+        self.lead = next;
     }
 
     /// The filtered heading of a robot, rad, not wrapped.
@@ -135,12 +156,9 @@ impl SmoothedFormation {
         let robots = &record.snapshot.robots;
         let lead = robots.get(self.lead)?.motion.pose;
         let frame = Pose { heading: self.heading(self.lead)?, ..lead };
-        let local = |[x, y]: [f64; 2]| {
-            let (sin, cos) = math::sin_cos(frame.heading);
-            let (dx, dy) = (x - frame.x, y - frame.y);
-            [dx * cos + dy * sin, dy * cos - dx * sin]
-        };
-        let poses = robots.iter().map(|r| [r.motion.pose.x, r.motion.pose.y]);
+        let local = |[x, y]: [f64; 2]| frame.body_from_world(x, y);
+        let present = robots.iter().enumerate().filter(|(k, robot)| *k == self.lead || in_formation(robot));
+        let poses = present.map(|(_, r)| [r.motion.pose.x, r.motion.pose.y]);
         let points: Vec<_> = poses.chain(set_points.iter().copied()).map(local).collect();
         let range = |k: usize| {
             points
@@ -164,6 +182,11 @@ impl SmoothedFormation {
         let ground = if ground[0] <= ground[1] { ground } else { [0.0; 2] };
         Some(Extent { frame, forward, left, cuts, rear, ground, size: self.size.max(1.0) })
     }
+}
+
+/// Whether a robot is one that the camera keeps in sight: who has failed stays behind.
+fn in_formation(robot: &RobotState) -> bool {
+    !matches!(robot.condition, Condition::Failed | Condition::Removed)
 }
 
 fn approach(old: &Extent, wanted: &Extent, step: f64) -> Extent {

@@ -47,6 +47,9 @@ pub(crate) fn crowd(context: &PictureContext<'_>) -> RobotInstances {
     for (index, (robot, member)) in
         context.record.snapshot.robots.iter().zip(&context.fleet.robots).enumerate()
     {
+        if !robot.is_present() {
+            continue;
+        }
         let mut look = RobotAppearance::new(member, index, context.colours[index]);
         let pose = robot.motion.pose;
         look.marks[2] = (context.floor.height(flat(&pose)) - context.origin.z) as f32;
@@ -73,24 +76,26 @@ pub(crate) fn part(
         RobotInstances { squads: vec![Squad::default(); all.squads.len()], ..RobotInstances::default() };
     let mut counts = vec![0; all.squads.len()];
     let mut seen = Vec::new();
-    for (index, robot) in context.record.snapshot.robots.iter().enumerate() {
+    // Places are counted as `crowd` fills them; that of a camera is among those of all robots.
+    let present = context.record.snapshot.robots.iter().enumerate().filter(|(_, robot)| robot.is_present());
+    for (rank, (index, robot)) in present.enumerate() {
         let kind = robot_models.of[index];
         let (middle, radius) = robot_models.builds[kind].ball();
         let middle = DVec3::from_array(robot.world_from_body().apply(middle));
         if camera.may_see(middle, radius) {
-            seen.push((camera.view_from_world(middle).z, index, counts[kind]));
+            seen.push((camera.view_from_world(middle).z, index, counts[kind], rank));
         }
         counts[kind] += 1;
     }
     // What is near hides what is behind it.
     seen.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for (_, index, place) in seen {
+    for (_, index, place, rank) in seen {
         let kind = robot_models.of[index];
         let (squad, whole) = (&mut part.squads[kind], &all.squads[kind]);
         squad.bodies.push(whole.bodies[place]);
         squad.wheels.extend_from_slice(&whole.wheels[4 * place..4 * place + 4]);
         if index != own {
-            part.cameras.push(all.cameras[index]);
+            part.cameras.push(all.cameras[rank]);
         }
     }
     part
@@ -178,6 +183,9 @@ fn ghosts(crowd: &mut RobotInstances, context: &PictureContext<'_>) {
         }
         for (index, (pose, member)) in row.poses.iter().zip(&context.fleet.robots).enumerate() {
             let here = context.record.snapshot.robots.get(index).map(|r| r.motion.pose).unwrap_or_default();
+            if context.record.snapshot.robots.get(index).is_some_and(|robot| !robot.is_present()) {
+                continue;
+            }
             // A ghost steps out of its robot gradually and fades before it goes.
             let away =
                 (math::hypot(here.x - pose.x, here.y - pose.y) / member.body.length - 0.8).clamp(0.0, 1.0);

@@ -164,11 +164,11 @@ pub(crate) fn sizes(fleet: &FleetInfo) -> f64 {
     fleet.robots.iter().map(|m| crate::gpu::model::size(&m.body)).fold(0.0, f64::max)
 }
 
-/// The set point of each edge on the ground, m.
+/// The set point of each edge on the ground, m; `None` where its follower follows nobody.
 pub fn set_points(fleet: &FleetInfo, record: &StepRecord) -> Vec<Option<[f64; 2]>> {
     let place = |k: usize| {
         let state = record.edges.get(k)?;
-        let leader = record.snapshot.robots.get(fleet.edges.get(k)?.leader)?;
+        let leader = record.snapshot.robots.get(record.edge(fleet, k)?.leader)?;
         let [distance, bearing] = state.set_point;
         let place = leader.motion.pose.polar(distance, bearing);
         place.iter().all(|x| x.is_finite()).then_some(place)

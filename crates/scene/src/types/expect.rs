@@ -62,6 +62,10 @@ settings! {
         pub contact_impulse_within: Option<[f64; 2]> = None, Optional(Couple(IMPULSE, IMPULSE));
         /// Whether every robot has to be able to drive at the end: not overturned, stuck or fallen.
         pub all_able: bool = false, Flag;
+        /// Largest share of the samples at which a limit or a safety filter may cut the command of any follower.
+        pub limited_at_most: Option<f64> = None, Optional(number("").from(0.0).up_to(1.0));
+        /// Whether every event has to take place.
+        pub no_event_refused: bool = false, Flag;
         /// Largest height of any robot's ground point over the ground, m: jumps and climbs.
         pub lift_at_most: Option<f64> = None, Optional(LENGTH);
     }

@@ -4,6 +4,7 @@
 //! are read. No number is NaN and every one lies in the range its description names.
 
 mod change;
+mod event;
 mod expect;
 mod film;
 mod ground;
@@ -19,6 +20,7 @@ mod stage;
 mod vehicle;
 
 pub use change::Change;
+pub use event::{Event, Failure, HandOver, Happening, Holds, Joining, Place, Recovery, Trigger, When};
 pub use expect::Expect;
 pub use film::{Film, Plot, Shot};
 pub use ground::{Ground, Noise, Patch, Relief};
@@ -32,6 +34,7 @@ pub use sensing::{Sensing, SensingKind, Vision};
 pub use stage::{Environment, Views};
 pub use vehicle::{Compensation, Vehicle, VehicleKind};
 
+pub(crate) use event::HandOverPart;
 pub(crate) use expect::ExpectPart;
 pub(crate) use film::FilmPart;
 pub(crate) use law::{LawPart, ObserverPart};
@@ -46,7 +49,7 @@ use crate::document::SCHEMA_VERSION;
 use crate::sets::{ParameterDifference, refusal};
 use crate::{Diagnostics, Loaded, Override, load};
 use serde::Serialize;
-use vocabulary::Judging;
+use vocabulary::{Judging, ScalarTrajectory};
 
 /// One experiment, checked and complete.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -72,6 +75,12 @@ pub struct Scene {
     /// What changes while the run goes, in the order of time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub changes: Vec<Change>,
+    /// What happens to the formation while the run goes, in the order of the file.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<Event>,
+    /// How robots change their leader.
+    #[serde(skip_serializing_if = "HandOver::is_usual")]
+    pub hand_over: HandOver,
     /// Light and air.
     pub environment: Environment,
     /// How pictures look at the run.
@@ -131,6 +140,29 @@ impl Scene {
         } else {
             Err(found.obstacles.iter().map(|path| refusal(path)).collect())
         }
+    }
+
+    /// How the robots follow that lead at the start and have to follow later, by name: the first event of each says it.
+    pub fn joining(&self) -> Vec<(&str, Follow)> {
+        let mut joining: Vec<(&str, Follow)> = vec![];
+        for event in &self.events {
+            let Happening::Follow { robot, leader, place, joins: Some(joins) } = &event.happening else {
+                continue;
+            };
+            if joining.iter().any(|(name, _)| name == robot) {
+                continue;
+            }
+            let fixed = ScalarTrajectory::Constant;
+            let [distance, bearing] = place.as_ref().map_or_else(
+                || [fixed(joins.law.distance_min), fixed(std::f64::consts::PI)],
+                |place| [place.distance.clone(), place.bearing.clone()],
+            );
+            let Joining { law, observer, sensing } = (**joins).clone();
+            let follow =
+                Follow { leader: leader.clone(), speed: 0.0, distance, bearing, law, observer, sensing };
+            joining.push((robot, follow));
+        }
+        joining
     }
 
     /// Index of the robot called `name`.

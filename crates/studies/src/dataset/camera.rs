@@ -85,7 +85,7 @@ impl FollowerCamera {
                     let walls = own.is_some_and(|shell| {
                         walls_hide(&shell, own_from_world.apply(from), own_from_world.apply(to))
                     });
-                    walls || sensor_config.hides(snapshot, [follower, robot], from, to)
+                    walls || sensor_config.scenery().hides(snapshot, [follower, robot], from, to).is_some()
                 };
                 let h = shell.half_tag();
                 let hidden = [[-h, h], [h, h], [h, -h], [-h, -h]].map(|[x, y]| hides(x, y));

@@ -119,6 +119,13 @@ impl Bodies {
         }
     }
 
+    /// Nothing touches a body any more, and it stays where it is.
+    pub(super) fn take_away(&mut self, body: RigidBodyHandle) {
+        if let Some(body) = self.set.get_mut(body) {
+            body.set_enabled(false);
+        }
+    }
+
     /// A body without mass that goes where it is placed.
     pub(super) fn add_unicycle(
         &mut self,

@@ -9,7 +9,7 @@ use crate::wheeled::wheel::{Carriage, Footing, Mounting, Pull, Push};
 use crate::{Unicycle, Wheeled};
 use rapier3d_f64::prelude::{RigidBodyHandle, Vector};
 use std::sync::Arc;
-use vocabulary::{Command, Limits, Motion, Surface, Terrain, Wheel, math};
+use vocabulary::{Command, Condition, Limits, Motion, Surface, Terrain, Wheel, math};
 
 /// What vehicles drive on and among.
 #[derive(Debug, Clone)]
@@ -34,6 +34,8 @@ pub(super) struct Car {
     vehicle: Arc<Wheeled>,
     limits: Limits,
     leads: bool,
+    /// What has become of it, if it has failed.
+    pub(super) fate: Option<Condition>,
     /// Whether it comes to a stand, or stands.
     waits: bool,
     /// Speed at which it is told to go, m/s.
@@ -66,6 +68,7 @@ impl Car {
             body,
             limits: robot.limits,
             leads: robot.lead.is_some(),
+            fate: None,
             waits: false,
             told: slowest,
             mountings: Mounting::of(&vehicle),
@@ -89,6 +92,12 @@ impl Car {
         }
         self.pace = Pace::new(&vehicle, self.pace.step());
         (self.limits, self.vehicle) = (limits, vehicle);
+    }
+
+    /// Goes by its commands from now on.
+    pub(super) fn release(&mut self) {
+        (self.leads, self.waits, self.driver.parked) = (false, false, false);
+        (self.driver.slowest, self.told) = (self.limits.speed_min, self.limits.speed_min);
     }
 
     /// Takes the command for the time to come; a lead robot chases its ideal.

@@ -235,8 +235,8 @@ impl Physical {
             let (motion, attitude) = (self.record.last(slot), self.bodies.attitude(car.body));
             let below = self.surroundings.surface(motion.pose.x, motion.pose.y).height - attitude.height;
             let robot = &mut self.snapshot.robots[car.index];
-            robot.condition =
-                car.watch.look(self.snapshot.time, car.pull(motion.speed), &motion, &attitude, below);
+            let seen = car.watch.look(self.snapshot.time, car.pull(motion.speed), &motion, &attitude, below);
+            robot.condition = car.fate.unwrap_or(seen);
             (robot.motion, robot.attitude, robot.wheels) = (motion, attitude, car.wheels);
         }
         for (index, placement) in self.snapshot.props.iter_mut().enumerate() {
@@ -291,6 +291,33 @@ impl World for Physical {
         }
         self.snapshot.time += duration;
         self.write_snapshot();
+    }
+
+    fn release(&mut self, robot: usize) {
+        self.ideals.release(robot);
+        match self.cars.binary_search_by_key(&robot, |car| car.index) {
+            Ok(slot) => self.cars[slot].release(),
+            Err(_) => self.copy_unicycles(),
+        }
+    }
+
+    fn fail(&mut self, robot: usize, removed: bool) {
+        self.release(robot);
+        self.ideals.fail(robot, removed);
+        self.snapshot.robots[robot].condition = self.ideals.snapshot().robots[robot].condition;
+        if let Ok(slot) = self.cars.binary_search_by_key(&robot, |car| car.index) {
+            let car = &mut self.cars[slot];
+            car.fate = Some(self.snapshot.robots[robot].condition);
+            if removed {
+                self.bodies.take_away(car.body);
+            }
+        } else if removed {
+            self.unicycles
+                .iter()
+                .filter(|(index, _)| *index == robot)
+                .for_each(|(_, body)| self.bodies.take_away(*body));
+            self.copy_unicycles();
+        }
     }
 
     fn contacts(&self) -> &[Contact] {

@@ -324,7 +324,9 @@ impl DecalBuilder<'_> {
             let colour = context.colours[robot];
             let leads = context.fleet.robots[robot].leads;
             let mut points = ribbon(context.trail, robot, now);
-            points.push((flat(&state.motion.pose), 0.9));
+            if state.is_present() {
+                points.push((flat(&state.motion.pose), 0.9));
+            }
             self.band(&points, RIBBON_HALF * context.size, 0.9, 0.0, colour);
             if leads {
                 // Near-black alone would be lost on asphalt.
@@ -394,7 +396,7 @@ impl DecalBuilder<'_> {
             return;
         }
         let at = |k: usize| context.record.snapshot.robots.get(k).map(|r| flat(&r.motion.pose));
-        for edge in &context.fleet.edges {
+        for (_, edge, _) in context.record.pairs(context.fleet) {
             if let (Some(leader), Some(follower)) = (at(edge.leader), at(edge.follower)) {
                 self.line(leader, follower, 0.016, palette::PAPER, 0.92 * context.detail);
             }

@@ -27,6 +27,7 @@ impl DecalBuilder<'_> {
         let share = GREY_SUN * context.sun.z / (GREY_SUN * context.sun.z + GREY_SKY);
         let alpha = (0.80 * share) as f32;
         let robots = context.record.snapshot.robots.iter().zip(&context.fleet.robots);
+        let robots = robots.filter(|(robot, _)| robot.is_present());
         let mut patches: Vec<Patch> = robots.map(|(r, m)| robot_shadow(context, r, m)).collect();
         if context.fleet.props.is_empty() {
             for [middle, along, across] in patches {
@@ -57,7 +58,9 @@ impl DecalBuilder<'_> {
             self.foot(height, prop, &place);
         }
         for (robot, member) in context.record.snapshot.robots.iter().zip(&context.fleet.robots) {
-            self.tyres(context, robot, member);
+            if robot.is_present() {
+                self.tyres(context, robot, member);
+            }
         }
     }
 

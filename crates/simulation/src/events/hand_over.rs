@@ -1,0 +1,185 @@
+//! Changes of leader: what is decided, the time in which a new observer settles, and what takes hold.
+
+use super::{Duty, check::refused};
+use crate::simulation::Simulation;
+use formation::{EdgeLaw, Estimate, HandOver, Observer, SetPointTrajectory};
+use std::sync::Arc;
+use vocabulary::{Edge, EventKind, EventRecord, LawKind, Observation, Refusal, Relative, Trajectory};
+
+/// A robot that is about to follow another.
+#[derive(Debug, Clone)]
+pub(crate) struct Move {
+    /// Number of its edge.
+    pub(crate) edge: usize,
+    /// Whom it is to follow.
+    pub(crate) leader: usize,
+    /// Where; `None` where it keeps the place that it has.
+    pub(crate) place: Option<SetPointTrajectory>,
+    /// What its new observer believes, where it has one.
+    pub(crate) estimate: Option<Estimate>,
+}
+
+/// Robots that are about to follow others, together.
+#[derive(Debug, Clone)]
+struct Pending {
+    moves: Vec<Move>,
+    /// When they do, s.
+    due: f64,
+}
+
+/// All changes of leader that are about to take hold.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct HandOvers {
+    pending: Vec<Pending>,
+}
+
+/// A new observer has had its time after this many of its ε, within these bounds in s.
+const SETTLES: f64 = 10.0;
+const SETTLING: [f64; 2] = [0.1, 1.0];
+
+impl HandOvers {
+    /// Everybody who is about to follow another.
+    pub(crate) fn moves(&mut self) -> impl Iterator<Item = &mut Move> {
+        self.pending.iter_mut().flat_map(|pending| &mut pending.moves)
+    }
+}
+
+/// Robot `robot` shall follow `leader`.
+pub(super) fn follow(
+    run: &mut Simulation,
+    robot: usize,
+    leader: usize,
+    place: Option<SetPointTrajectory>,
+    time: f64,
+) {
+    let wanted = place.as_ref().map(|place| place.at(time).value);
+    if let Some(refused) = refused(run, robot, leader, wanted) {
+        run.events.tell(refused);
+        return;
+    }
+    let Some(edge) = run.formation.graph().slot_of(robot) else {
+        let refusal = Refusal::Nothing;
+        run.events
+            .told
+            .push(EventRecord { refusal, ..EventRecord::done(EventKind::Follow, robot, Some(leader)) });
+        return;
+    };
+    begin(run, vec![Move { edge, leader, place, estimate: None }], time);
+}
+
+/// Lets new observers settle before robots follow others, all of them at once.
+pub(super) fn begin(run: &mut Simulation, mut moves: Vec<Move>, time: f64) {
+    let mut settling: f64 = 0.0;
+    for step in &mut moves {
+        let law = &run.formation.laws()[step.edge];
+        let observes = law.law.kind == LawKind::OutputFeedback && law.tracker.is_none();
+        step.estimate = observes.then(|| estimate_now(run, step));
+        if observes {
+            settling = settling.max(settling_time(&law.observer));
+        }
+    }
+    // What is decided last holds.
+    let moved: Vec<usize> = moves.iter().map(|step| step.edge).collect();
+    for pending in &mut run.events.hand_overs.pending {
+        pending.moves.retain(|step| !moved.contains(&step.edge));
+    }
+    run.events.hand_overs.pending.push(Pending { moves, due: time + settling });
+}
+
+fn settling_time(observer: &Observer) -> f64 {
+    let slowest = observer.epsilon[0].max(observer.epsilon[1]);
+    (SETTLES * slowest).clamp(SETTLING[0], SETTLING[1])
+}
+
+/// Where a robot is relative to the one that it is about to follow.
+fn relative(run: &Simulation, step: &Move) -> (Relative, f64) {
+    let robots = &run.plant.world().snapshot().robots;
+    let Edge { follower, .. } = run.formation.edges()[step.edge];
+    let seen = Observation::true_of([&robots[step.leader].motion, &robots[follower].motion]);
+    (seen.relative, seen.own_heading)
+}
+
+fn estimate_now(run: &Simulation, step: &Move) -> Estimate {
+    let law: &EdgeLaw = &run.formation.laws()[step.edge];
+    let (relative, own_heading) = relative(run, step);
+    Estimate::at(&law.law.heading.output(&relative, own_heading))
+}
+
+/// Changes of leader that are due take hold.
+pub(super) fn complete(run: &mut Simulation, time: f64) {
+    let due = |pending: &Pending| pending.due <= time + 1e-9;
+    let (ready, pending) = std::mem::take(&mut run.events.hand_overs.pending).into_iter().partition(due);
+    run.events.hand_overs.pending = pending;
+    let ready: Vec<Pending> = ready;
+    ready.into_iter().for_each(|pending| take_hold(run, pending.moves));
+}
+
+fn take_hold(run: &mut Simulation, moves: Vec<Move>) {
+    // Somebody may have failed in the meantime.
+    let able = |run: &Simulation, step: &Move| {
+        let fails = |robot: usize| matches!(run.events.duties[robot], Duty::Failed { .. } | Duty::Stays);
+        !fails(run.formation.edges()[step.edge].follower) && !fails(step.leader)
+    };
+    let moves: Vec<Move> = moves.into_iter().filter(|step| able(run, step)).collect();
+    let place = |step: &Move| {
+        step.place.clone().unwrap_or_else(|| {
+            let (now, _) = relative(run, step);
+            SetPointTrajectory::constant(now.distance, now.bearing)
+        })
+    };
+    let changes: Vec<_> = moves.iter().map(|step| (step.edge, Some((step.leader, place(step))))).collect();
+    let told = |run: &Simulation, step: &Move, refusal| {
+        let robot = run.formation.edges()[step.edge].follower;
+        EventRecord { refusal, ..EventRecord::done(EventKind::Follow, robot, Some(step.leader)) }
+    };
+    if !run.formation.rewire(&changes) {
+        let refused: Vec<_> = moves.iter().map(|step| told(run, step, Refusal::Cycle)).collect();
+        run.events.told.extend(refused);
+        return;
+    }
+    for step in &moves {
+        let robot = run.formation.edges()[step.edge].follower;
+        if run.formation.leads().iter().any(|(lead, _)| *lead == robot) {
+            run.plant.world_mut().release(robot);
+            run.chases.end(robot);
+            run.formation.set_lead(robot, None);
+        }
+        run.events.duties[robot] = Duty::Drives;
+        let estimate = step.estimate.unwrap_or_else(|| estimate_now(run, step));
+        let hand_over = HandOver::new(run.events.plan.hand_over.way, run.state.commands[robot]);
+        run.state.change_leader(step.edge, estimate, hand_over);
+        let (now, _) = relative(run, step);
+        if let Some(sensing) = &mut run.sensing {
+            sensing.change_leader(step.edge, step.leader, now);
+        }
+        let done = told(run, step, Refusal::None);
+        run.events.tell(done);
+    }
+}
+
+/// Robot `robot` follows nobody from now on, and drives by `motion`.
+pub(super) fn lead(run: &mut Simulation, robot: usize, motion: Arc<dyn Trajectory>, time: f64) {
+    let done = EventRecord::done(EventKind::Lead, robot, None);
+    if matches!(run.events.duties[robot], Duty::Failed { .. } | Duty::Stays) {
+        run.events.tell(EventRecord { refusal: Refusal::Failed, ..done });
+        return;
+    }
+    set_alone(run, robot, motion.clone());
+    let now = run.plant.world().snapshot().robots[robot].motion;
+    let limits = *run.formation.limits(robot);
+    run.chases.begin(robot, &now, limits, &run.fleet.robots[robot], (motion, time));
+    run.events.duties[robot] = Duty::Drives;
+    run.events.tell(done);
+}
+
+/// A robot follows nobody from now on; those who follow it take `motion` for its own.
+pub(super) fn set_alone(run: &mut Simulation, robot: usize, motion: Arc<dyn Trajectory>) {
+    if let Some(edge) = run.formation.graph().edge_of(robot) {
+        // An edge less makes no ring.
+        let _ = run.formation.rewire(&[(edge, None)]);
+        run.events.hand_overs.pending.iter_mut().for_each(|p| p.moves.retain(|step| step.edge != edge));
+    }
+    run.plant.world_mut().release(robot);
+    run.chases.end(robot);
+    run.formation.set_lead(robot, Some(motion));
+}

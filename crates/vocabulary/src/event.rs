@@ -1,0 +1,149 @@
+//! What happens to a formation while it drives: robots change their leader, fail, join and part.
+
+use crate::{EntityId, FleetInfo, words};
+
+words! {
+    /// What happened to a robot, or should have.
+    pub enum EventKind = Follow {
+        /// It follows another robot from now on.
+        Follow = "follow",
+        /// It follows nobody from now on, and drives on its own.
+        Lead = "lead",
+        /// It failed, and brakes to a stand.
+        Stop = "stop",
+        /// It failed, and rolls to a stand.
+        Coast = "coast",
+        /// It failed, and is taken away.
+        Remove = "remove",
+        /// Its leader failed and nobody else may lead it: it waits.
+        Wait = "wait",
+        /// It has waited in vain, and stays where it is for good.
+        GiveUp = "give_up",
+    }
+}
+
+words! {
+    /// Why an event did not take place.
+    pub enum Refusal = None {
+        /// It did.
+        None = "none",
+        /// The wanted leader follows that robot, directly or through others.
+        Cycle = "cycle",
+        /// The wanted leader has failed, or waits, or follows one that does.
+        Leaderless = "leaderless",
+        /// The robot itself has failed.
+        Failed = "failed",
+        /// The wanted leader is too far away.
+        Far = "far",
+        /// The wanted place is too near to the leader.
+        Near = "near",
+        /// The wanted place is too far away from the leader.
+        PlaceFar = "place_far",
+        /// The leader cannot be seen from the wanted place: it is too far ahead or beside it.
+        Bearing = "bearing",
+        /// Something stands between the two.
+        Hidden = "hidden",
+        /// On the leader's present curve the place moves faster than the robot can.
+        Speed = "speed",
+        /// There is no such place or robot any more.
+        Nothing = "nothing",
+    }
+}
+
+/// An event of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EventRecord {
+    /// What happened.
+    pub kind: EventKind,
+    /// To which robot.
+    pub robot: usize,
+    /// Whom it follows from now on, or should have followed.
+    pub leader: Option<usize>,
+    /// Why it did not happen; `Refusal::None` where it did.
+    pub refusal: Refusal,
+    /// What stands in the way of a refused event, with [`Refusal::Hidden`].
+    pub obstacle: Option<EntityId>,
+    /// What was measured, and the bound that it exceeds, m, rad or m/s; zero where a refusal is not about a number.
+    pub measured: [f64; 2],
+}
+
+impl EventRecord {
+    /// An event that takes place.
+    pub fn done(kind: EventKind, robot: usize, leader: Option<usize>) -> Self {
+        Self { kind, robot, leader, ..Self::default() }
+    }
+
+    /// Whether it took place.
+    pub fn happened(&self) -> bool {
+        self.refusal == Refusal::None
+    }
+
+    /// As people say it, in one sentence without its full stop.
+    pub fn words(&self, fleet: &FleetInfo) -> String {
+        let robot = fleet.name(EntityId::Robot(self.robot));
+        let leader = self.leader.map_or("", |leader| fleet.name(EntityId::Robot(leader)));
+        if self.happened() {
+            return match self.kind {
+                EventKind::Follow => format!("{robot} follows {leader}"),
+                EventKind::Lead => format!("{robot} drives on its own"),
+                EventKind::Stop => format!("{robot} fails and stops"),
+                EventKind::Coast => format!("{robot} fails and rolls to a stand"),
+                EventKind::Remove => format!("{robot} fails and is taken away"),
+                EventKind::Wait => format!("{robot} has lost its leader and waits"),
+                EventKind::GiveUp => format!("{robot} has waited in vain and stays where it is"),
+            };
+        }
+        let wanted = match self.kind {
+            EventKind::Follow => format!("{robot} cannot follow {leader}"),
+            EventKind::Lead => format!("{robot} cannot drive on its own"),
+            _ => format!("{robot} cannot fail"),
+        };
+        format!("{wanted}: {}", self.reason(fleet, leader))
+    }
+
+    fn reason(&self, fleet: &FleetInfo, leader: &str) -> String {
+        let [measured, bound] = self.measured;
+        match self.refusal {
+            Refusal::None => String::new(),
+            Refusal::Cycle => format!("{leader} follows it"),
+            Refusal::Leaderless => format!("{leader} itself has no leader that drives"),
+            Refusal::Failed => "it has failed".to_owned(),
+            Refusal::Far => format!("it is {measured:.2} m away, more than {bound:.2} m"),
+            Refusal::Near => format!("its place would be {measured:.2} m away, less than {bound:.2} m"),
+            Refusal::PlaceFar => format!("its place would be {measured:.2} m away, more than {bound:.2} m"),
+            Refusal::Bearing => format!(
+                "from its place {leader} would be {:.0}° off straight ahead, more than {:.0}°",
+                measured.to_degrees(),
+                bound.to_degrees()
+            ),
+            Refusal::Hidden => match self.obstacle {
+                Some(thing) => format!("{} stands between them", fleet.name(thing)),
+                None => "the ground hides it".to_owned(),
+            },
+            Refusal::Speed => {
+                format!("its place moves at {measured:.2} m/s, faster than the {bound:.2} m/s it can drive")
+            }
+            Refusal::Nothing => "there is nothing left to follow".to_owned(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Body, RobotInfo, Word};
+
+    #[test]
+    fn an_event_is_said_with_names_and_numbers() {
+        let robots = ["ann", "bob"].map(|name| RobotInfo::new(name, false, Body::default())).to_vec();
+        let fleet = FleetInfo { robots, ..FleetInfo::default() };
+        let done = EventRecord::done(EventKind::Follow, 1, Some(0));
+        assert_eq!(done.words(&fleet), "bob follows ann");
+        let refused = EventRecord { refusal: Refusal::Far, measured: [5.25, 4.1], ..done };
+        assert_eq!(refused.words(&fleet), "bob cannot follow ann: it is 5.25 m away, more than 4.10 m");
+        for (_, refusal, _) in Refusal::WORDS {
+            let words = EventRecord { refusal: *refusal, ..done }.words(&fleet);
+            assert!(!words.ends_with(": "), "{words}");
+        }
+    }
+}
