@@ -209,18 +209,23 @@ impl Formation {
                 memory.forget();
                 continue;
             }
-            if edge.law.heading.filter().is_some() {
+            let rates = || {
                 let geometry = Geometry::new(&seen.relative, edge.law.distance_min);
                 let leader =
                     MotionInput { speed: seen.leader_speed.unwrap_or(0.0), ..MotionInput::default() };
-                let rates = edge.law.rates_of(&state.estimates[index], || {
+                edge.law.rates_of(&state.estimates[index], || {
                     edge.law.rates(&geometry, seen.own_speed, &leader).into()
-                });
+                })
+            };
+            if edge.law.heading.filter().is_some() {
+                let rates = rates();
                 memory.advance(&edge.law, seen, rates, self.period);
             } else if *memory != EdgeMemory::default() {
                 *memory = EdgeMemory { hand_over: memory.hand_over, ..EdgeMemory::default() };
             }
-            edge.go_over(memory, time, seen, self.period);
+            if memory.hand_over.is_some() {
+                edge.go_over(memory, time, seen, rates(), self.period);
+            }
             if edge.standing {
                 let turn_rate = state.decisions[index].applied.turn_rate;
                 edge.stand(memory, time, seen, turn_rate, self.period);
@@ -341,11 +346,21 @@ impl EdgeLaw {
         [seen.relative.distance, bearing]
     }
 
-    /// Carries a hand-over on over a period.
-    fn go_over(&self, memory: &mut EdgeMemory, time: f64, seen: &Observation, period: f64) {
+    /// Carries a hand-over on over a period; `rates` are those of what the law works on.
+    fn go_over(
+        &self,
+        memory: &mut EdgeMemory,
+        time: f64,
+        seen: &Observation,
+        [closing, turning]: [f64; 2],
+        period: f64,
+    ) {
         let (at, goal) = (self.seen_place(memory, seen), self.set_point.at(time).value);
+        let turns = self.law.heading.filter().zip(memory.heading.as_ref());
+        let moving =
+            [closing, turning - turns.map_or(0.0, |(filter, heading)| heading.rate(filter, memory.speed))];
         let waits = memory.standing.holds();
-        let goes_on = |hand_over: &mut HandOver| hand_over.advance(at, goal, waits, period);
+        let goes_on = |hand_over: &mut HandOver| hand_over.advance(at, moving, goal, waits, period);
         if memory.hand_over.as_mut().is_some_and(|hand_over| !goes_on(hand_over)) {
             memory.hand_over = None;
         }

@@ -1,7 +1,7 @@
 //! Hand-over: a follower that has changed its leader goes from where it is to its place, and its command does not jump.
 //!
-//! The set point begins where the follower is relative to its new leader, at rest, and moves to its place at a bounded
-//! speed and acceleration. What the law would have asked for in place of the last command is added to it at first, and
+//! The set point begins where the follower is relative to its new leader, at rest unless the two drive at very different
+//! speeds, and moves to its place at a bounded speed and acceleration. What the law would have asked for in place of the last command is added to it at first, and
 //! fades. `docs/events.md` has figures.
 
 use crate::offset::{Offset, OffsetBounds};
@@ -44,12 +44,25 @@ impl HandOver {
     }
 
     /// Carries it on over a period. `at` is where the follower is, `goal` its place, both [distance, bearing] in m and rad
-    /// against the same heading; the place stays where it is where the follower `waits`. False when it is over.
-    pub(crate) fn advance(&mut self, at: [f64; 2], goal: [f64; 2], waits: bool, period: f64) -> bool {
+    /// against the same heading, `moving` the rates of `at`; the place stays where it is where the follower `waits`. False
+    /// when it is over.
+    pub(crate) fn advance(
+        &mut self,
+        at: [f64; 2],
+        moving: [f64; 2],
+        goal: [f64; 2],
+        waits: bool,
+        period: f64,
+    ) -> bool {
         let HandOverParameters { speed, acceleration, fade } = self.parameters;
         let Some(offset) = &mut self.offset else {
             let [[x, y], [goal_x, goal_y]] = [at, goal].map(cartesian);
-            self.offset = Some(Offset::at([x - goal_x, y - goal_y]));
+            let (sin, cos) = math::sin_cos(at[1]);
+            let [along, across] = [moving[0], at[0] * moving[1]];
+            let rate = [along * cos - across * sin, along * sin + across * cos];
+            let fast = !waits && math::hypot(rate[0], rate[1]) > speed;
+            let rate = if fast { rate } else { [0.0; 2] };
+            self.offset = Some(Offset { rate, ..Offset::at([x - goal_x, y - goal_y]) });
             return true;
         };
         offset.carry((!waits).then_some([0.0; 2]), OffsetBounds { rate: speed, acceleration }, period);
@@ -103,11 +116,11 @@ mod tests {
     fn the_set_point_begins_where_the_follower_is_and_ends_at_its_place() {
         let goal = SetPoint { value: [2.0, 2.3], ..SetPoint::default() };
         let mut hand_over = HandOver::new(PARAMETERS, Command::default());
-        assert!(hand_over.advance([4.0, 2.9], goal.value, false, 0.01));
+        assert!(hand_over.advance([4.0, 2.9], [0.1, 0.0], goal.value, false, 0.01));
         let began = hand_over.set_point(&goal, 0.1).value;
         assert!((began[0] - 4.0).abs() < 1e-12 && (began[1] - 2.9).abs() < 1e-12, "{began:?}");
         let mut samples = 0;
-        while hand_over.advance([9.0, 0.0], goal.value, false, 0.01) {
+        while hand_over.advance([9.0, 0.0], [0.0; 2], goal.value, false, 0.01) {
             samples += 1;
             assert!(samples < 3000, "{hand_over:?}");
         }
@@ -115,14 +128,32 @@ mod tests {
         assert!((ended[0] - 2.0).abs() < 1e-3 && (ended[1] - 2.3).abs() < 1e-3, "{ended:?}");
     }
 
+    /// A robot that stood joins a leader that drives at 0.8 m/s: its place does not run away from it.
+    #[test]
+    fn between_very_different_speeds_it_starts_with_the_difference() {
+        let mut hand_over = HandOver::new(PARAMETERS, Command::default());
+        hand_over.advance([2.0, std::f64::consts::PI], [0.8, 0.0], [2.0, 2.3], false, 0.01);
+        let Offset { rate, .. } = hand_over.offset();
+        assert!((rate[0] + 0.8).abs() < 1e-12 && rate[1].abs() < 1e-12, "{rate:?}");
+        let mut last = 0.8;
+        for _ in 0..80 {
+            hand_over.advance([2.0, 3.0], [0.0; 2], [2.0, 2.3], false, 0.01);
+            let Offset { rate, acceleration, .. } = hand_over.offset();
+            let speed = math::hypot(rate[0], rate[1]);
+            assert!(speed <= last + 1e-12 && math::hypot(acceleration[0], acceleration[1]) < 0.5 + 1e-9);
+            last = speed;
+        }
+        assert!(last < 0.45, "{last}");
+    }
+
     #[test]
     fn while_it_waits_its_place_stays() {
         let goal = [2.0, 2.3];
         let mut hand_over = HandOver::new(PARAMETERS, Command::default());
-        hand_over.advance([4.0, 2.9], goal, true, 0.01);
+        hand_over.advance([4.0, 2.9], [-0.8, 0.1], goal, true, 0.01);
         let began = hand_over.offset();
         for _ in 0..100 {
-            assert!(hand_over.advance([4.0, 2.9], goal, true, 0.01));
+            assert!(hand_over.advance([4.0, 2.9], [-0.8, 0.1], goal, true, 0.01));
         }
         assert_eq!(hand_over.offset().value, began.value);
     }
@@ -132,11 +163,11 @@ mod tests {
         let last = Command { acceleration: 0.3, turn_rate: -0.2 };
         let mut hand_over = HandOver::new(PARAMETERS, last);
         let asked = Command { acceleration: -4.0, turn_rate: 11.0 };
-        hand_over.advance([2.0, 2.3], [2.0, 2.3], false, 0.01);
+        hand_over.advance([2.0, 2.3], [0.0; 2], [2.0, 2.3], false, 0.01);
         let first = hand_over.command(asked);
         assert!((first.acceleration - 0.3).abs() < 1e-12 && (first.turn_rate + 0.2).abs() < 1e-12);
         for _ in 0..50 {
-            hand_over.advance([2.0, 2.3], [2.0, 2.3], false, 0.01);
+            hand_over.advance([2.0, 2.3], [0.0; 2], [2.0, 2.3], false, 0.01);
         }
         let later = hand_over.command(asked);
         assert!(((later.turn_rate - 11.0) / (first.turn_rate - 11.0) - math::exp(-1.0)).abs() < 1e-9);

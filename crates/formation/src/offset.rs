@@ -40,7 +40,9 @@ impl Offset {
             ROOT * ROOT * missing - 2.0 * ROOT * self.rate[i]
         });
         let wanted = bounded(wanted, bounds.acceleration);
-        let next = bounded([0, 1].map(|i| self.rate[i] + wanted[i] * period), bounds.rate);
+        // One that starts faster than it may move only slows down.
+        let most = bounds.rate.max(math::hypot(self.rate[0], self.rate[1]));
+        let next = bounded([0, 1].map(|i| self.rate[i] + wanted[i] * period), most);
         self.acceleration = [0, 1].map(|i| (next[i] - self.rate[i]) / period);
         self.rate = next;
         self.value = [0, 1].map(|i| self.value[i] + next[i] * period);

@@ -55,11 +55,7 @@ pub(super) fn fail(run: &mut Simulation, robot: usize, kind: EventKind, recovery
     let graph = run.formation.graph();
     let followers: Vec<usize> = graph.followers_of(robot).collect();
     let led = graph.edge_of(robot).map(|edge| (edge, run.formation.edges()[edge].leader));
-    let above = led.map(|(edge, leader)| Lost {
-        leader,
-        place: place_of(run, edge, time),
-        led: false,
-    });
+    let above = led.map(|(edge, leader)| Lost { leader, place: place_of(run, edge, time), led: false });
     let motion = run.formation.leads().iter().find(|(lead, _)| *lead == robot);
     let motion = motion.map(|(_, motion)| motion.clone());
     let head = graph.head_of(robot);
