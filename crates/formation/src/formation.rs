@@ -457,9 +457,10 @@ fn tracking_error(set_point: &SetPoint, output: &Relative) -> [f64; 2] {
 impl FormationState {
     /// The follower of edge number `index` has another leader from now on, of whose relative position and motion it
     /// believes `estimate`.
-    pub fn change_leader(&mut self, index: usize, estimate: Estimate, hand_over: HandOver) {
+    pub fn change_leader(&mut self, index: usize, law: &Law, estimate: Estimate, hand_over: HandOver) {
         self.estimates[index] = estimate;
-        self.memories[index].change_leader(hand_over);
+        let turn_rate = hand_over.last().turn_rate;
+        self.memories[index].change_leader(law, hand_over, turn_rate);
     }
 
     /// dω/dt of a robot that is itself commanded: the difference of its last two commands, zero before there are two.

@@ -21,8 +21,12 @@ pub struct EdgeMemory {
     pub standing: Standing,
     /// Its way to its place, where it has changed its leader.
     pub hand_over: Option<HandOver>,
+    /// How fast a formation turned whose robots change their leaders, rad/s: the path of the new one turns alike at first.
+    pub turn_rate: f64,
 }
 
+/// A leader slower than this has no path that turns, m/s.
+const DRIVES: f64 = 0.1;
 /// Time constant of the believed speed, s.
 const SPEED_TIME: f64 = 0.045;
 /// Time constant of its change, s.
@@ -43,9 +47,17 @@ impl EdgeMemory {
         math::hypot(hand_over[0] + standing[0], hand_over[1] + standing[1])
     }
 
+    /// How fast the leader's path turns as it is believed, rad/s.
+    pub fn path_turn_rate(&self, law: &Law) -> Option<f64> {
+        let (filter, heading) = law.heading.filter().zip(self.heading.as_ref())?;
+        Some(heading.rate(filter, self.speed))
+    }
+
     /// What is left of it when another robot leads from now on.
-    pub(crate) fn change_leader(&mut self, hand_over: HandOver) {
-        *self = Self { standing: self.standing.kept(), hand_over: Some(hand_over), ..Self::default() };
+    pub(crate) fn change_leader(&mut self, law: &Law, hand_over: HandOver, own_turn_rate: f64) {
+        let turn_rate = self.path_turn_rate(law).unwrap_or(own_turn_rate);
+        let standing = self.standing.kept();
+        *self = Self { standing, hand_over: Some(hand_over), turn_rate, ..Self::default() };
     }
 
     /// Takes in a sample `period` s after the last: what is seen of the leader, and the rates of the law's output.
@@ -55,7 +67,8 @@ impl EdgeMemory {
         let speed = leader_speed(law, seen, rates);
         let Some(heading) = &mut self.heading else {
             self.speed = speed;
-            self.heading = Some(PathHeading::at(leader_heading));
+            let curvature = if speed > DRIVES { self.turn_rate / speed } else { 0.0 };
+            self.heading = Some(PathHeading::steady(filter, leader_heading, curvature));
             return;
         };
         let before = self.speed;

@@ -15,13 +15,15 @@ pub(crate) struct Offset {
     pub acceleration: [f64; 2],
 }
 
-/// How fast an offset may move.
+/// How an offset may move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct OffsetBounds {
     /// m/s.
     pub rate: f64,
     /// m/s².
     pub acceleration: f64,
+    /// Time constant with which the acceleration sets in, s; 0 where it may jump.
+    pub onset: f64,
 }
 
 /// Both roots of the filter, 1/s.
@@ -40,6 +42,12 @@ impl Offset {
             ROOT * ROOT * missing - 2.0 * ROOT * self.rate[i]
         });
         let wanted = bounded(wanted, bounds.acceleration);
+        let share = if bounds.onset > 0.0 { 1.0 - math::exp(-period / bounds.onset) } else { 1.0 };
+        let wanted = if share < 1.0 {
+            [0, 1].map(|i| self.acceleration[i] + share * (wanted[i] - self.acceleration[i]))
+        } else {
+            wanted
+        };
         // One that starts faster than it may move only slows down.
         let most = bounds.rate.max(math::hypot(self.rate[0], self.rate[1]));
         let next = bounded([0, 1].map(|i| self.rate[i] + wanted[i] * period), most);
@@ -66,7 +74,7 @@ fn bounded(vector: [f64; 2], most: f64) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    const BOUNDS: OffsetBounds = OffsetBounds { rate: 0.4, acceleration: 0.5 };
+    const BOUNDS: OffsetBounds = OffsetBounds { rate: 0.4, acceleration: 0.5, onset: 0.15 };
 
     #[test]
     fn it_reaches_its_goal_within_its_bounds_and_without_going_beyond() {

@@ -89,9 +89,10 @@ impl PathFilter {
 }
 
 impl PathHeading {
-    /// Where it begins: at the leader's own heading, rad.
-    pub fn at(heading: f64) -> Self {
-        Self { heading: wrap(heading), curvature: 0.0, behind: 0.0 }
+    /// As it is behind a leader that has driven a curve of `curvature` 1/m for long, and heads for `leader_heading` rad.
+    pub fn steady(filter: &PathFilter, leader_heading: f64, curvature: f64) -> Self {
+        let (behind, left) = (filter.lag * curvature, 1.0 - filter.lag / filter.length);
+        Self { heading: wrap(leader_heading - behind), curvature: left * left * curvature, behind }
     }
 
     /// Goes on over `travelled` m of the leader's way, at the end of which it heads for `leader_heading` rad. Exact for a
@@ -160,7 +161,7 @@ mod tests {
     fn on_a_circle_it_lags_by_its_lag_over_the_radius() {
         for lag in [0.0, 0.4, 1.0, 1.6] {
             let filter = PathFilter { length: 0.8, lag };
-            let mut state = PathHeading::at(0.0);
+            let mut state = PathHeading::steady(&filter, 0.0, 0.0);
             let (radius, step) = (5.0, 1e-3);
             let mut heading = 0.0;
             for _ in 0..40_000 {
@@ -170,5 +171,19 @@ mod tests {
             assert!((state.behind - lag / radius).abs() < 1e-3, "{lag}: {state:?}");
             assert!((state.rate(&filter, 2.0) - 2.0 / radius).abs() < 1e-3, "{lag}: {state:?}");
         }
+    }
+
+    /// A heading that begins steady stays so on the circle.
+    #[test]
+    fn what_begins_steady_on_a_circle_stays_so() {
+        let (filter, curvature) = (PathFilter { length: 1.0, lag: 0.6 }, 0.25);
+        let mut heading = PathHeading::steady(&filter, 0.3, curvature);
+        let began = heading;
+        for k in 1..=400 {
+            heading.advance(&filter, 0.3 + 0.01 * curvature * f64::from(k), 0.01);
+        }
+        assert!((heading.behind - began.behind).abs() < 2e-3, "{heading:?}");
+        assert!((heading.curvature - began.curvature).abs() < 2e-3, "{heading:?}");
+        assert!((began.rate(&filter, 2.0) - 0.5).abs() < 1e-12);
     }
 }

@@ -52,7 +52,7 @@ const NEAR: f64 = 0.02;
 /// Above this speed of the leader the offset is given back, m/s.
 const GIVES_BACK: f64 = 0.4;
 /// No faster than this.
-const OFFSET_BOUNDS: OffsetBounds = OffsetBounds { rate: 0.2, acceleration: 0.3 };
+const OFFSET_BOUNDS: OffsetBounds = OffsetBounds { rate: 0.2, acceleration: 0.3, onset: 0.0 };
 /// Gain on speeds, 1/s.
 const SPEED_GAIN: f64 = 6.0;
 /// Gain on the place ahead, 1/s, and how much of it counts, m.

@@ -99,6 +99,20 @@ fn relative(run: &Simulation, step: &Move) -> (Relative, f64) {
     (seen.relative, seen.own_heading)
 }
 
+/// How far the heading that a follower holds its bearing against is behind its new leader's own, rad: on a curve a path's
+/// heading lags.
+fn behind(run: &Simulation, step: &Move) -> f64 {
+    let law = &run.formation.laws()[step.edge].law;
+    let speed = run.plant.world().snapshot().robots[step.leader].motion.speed;
+    let robot = run.formation.edges()[step.edge].follower;
+    let known = run.state.memories[step.edge].path_turn_rate(law);
+    let turn_rate = known.unwrap_or(run.state.commands[robot].turn_rate);
+    law.heading.filter().filter(|_| speed > STANDS).map_or(0.0, |filter| filter.lag * turn_rate / speed)
+}
+
+/// A leader slower than this drives no curve, m/s.
+const STANDS: f64 = 0.1;
+
 fn estimate_now(run: &Simulation, step: &Move) -> Estimate {
     let law: &EdgeLaw = &run.formation.laws()[step.edge];
     let (relative, own_heading) = relative(run, step);
@@ -124,7 +138,7 @@ fn take_hold(run: &mut Simulation, moves: Vec<Move>) {
     let place = |step: &Move| {
         step.place.clone().unwrap_or_else(|| {
             let (now, _) = relative(run, step);
-            SetPointTrajectory::constant(now.distance, now.bearing)
+            SetPointTrajectory::constant(now.distance, vocabulary::wrap(now.bearing + behind(run, step)))
         })
     };
     let changes: Vec<_> = moves.iter().map(|step| (step.edge, Some((step.leader, place(step))))).collect();
@@ -147,7 +161,8 @@ fn take_hold(run: &mut Simulation, moves: Vec<Move>) {
         run.events.duties[robot] = Duty::Drives;
         let estimate = step.estimate.unwrap_or_else(|| estimate_now(run, step));
         let hand_over = HandOver::new(run.events.plan.hand_over.way, run.state.commands[robot]);
-        run.state.change_leader(step.edge, estimate, hand_over);
+        let law = &run.formation.laws()[step.edge].law;
+        run.state.change_leader(step.edge, law, estimate, hand_over);
         let (now, _) = relative(run, step);
         if let Some(sensing) = &mut run.sensing {
             sensing.change_leader(step.edge, step.leader, now);
