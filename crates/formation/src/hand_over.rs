@@ -82,7 +82,8 @@ impl HandOver {
             surplus.turn_rate *= keeps;
         }
         let small = |v: [f64; 2]| math::hypot(v[0], v[1]) < OVER;
-        let faded = self.surplus.is_none_or(|s| small([s.acceleration, s.turn_rate]));
+        // Before its first command there is nothing to fade.
+        let faded = self.surplus.is_some_and(|s| small([s.acceleration, s.turn_rate]));
         !(small(offset.value) && small(offset.rate) && faded)
     }
 
@@ -151,7 +152,9 @@ mod tests {
             hand_over.advance([2.0, 3.0], [0.0; 2], [2.0, 2.3], false, 0.01);
             let Offset { rate, acceleration, .. } = hand_over.offset();
             let speed = math::hypot(rate[0], rate[1]);
-            assert!(speed <= last.max(0.4) + 1e-12 && math::hypot(acceleration[0], acceleration[1]) < 0.5 + 1e-9);
+            assert!(
+                speed <= last.max(0.4) + 1e-12 && math::hypot(acceleration[0], acceleration[1]) < 0.5 + 1e-9
+            );
             last = speed;
         }
         assert!(last < 0.45, "{last}");

@@ -37,10 +37,10 @@ impl Offset {
 
     /// Carries it on over a period: towards `goal`, or to rest where there is none.
     pub(crate) fn carry(&mut self, goal: Option<[f64; 2]>, bounds: OffsetBounds, period: f64) {
-        let wanted = [0, 1].map(|i| {
-            let missing = goal.map_or(0.0, |goal| goal[i] - self.value[i]);
-            ROOT * ROOT * missing - 2.0 * ROOT * self.rate[i]
-        });
+        // The speed that leads to the goal is bounded, so that the acceleration does not jump where the bound is reached.
+        let leads = goal.map_or([0.0; 2], |goal| [0, 1].map(|i| 0.5 * ROOT * (goal[i] - self.value[i])));
+        let leads = bounded(leads, bounds.rate);
+        let wanted = [0, 1].map(|i| 2.0 * ROOT * leads[i] - 2.0 * ROOT * self.rate[i]);
         let wanted = bounded(wanted, bounds.acceleration);
         let share = if bounds.onset > 0.0 { 1.0 - math::exp(-period / bounds.onset) } else { 1.0 };
         let wanted = if share < 1.0 {

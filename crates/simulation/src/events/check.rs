@@ -2,6 +2,7 @@
 
 use super::{Duty, trigger::hidden};
 use crate::simulation::Simulation;
+use perception::sensors::SensorKind;
 use std::f64::consts::PI;
 use vocabulary::{EventKind, EventRecord, Refusal, Relative, math, wrap};
 
@@ -11,6 +12,14 @@ const COMES_FROM: f64 = 1.5;
 const BODIES_APART: f64 = 0.05;
 /// A leader slower than this is on no curve, m/s.
 const DRIVES: f64 = 0.1;
+
+/// Whether a robot looks for its leader with a camera, and does not know by other means where it is.
+fn sees(run: &Simulation, robot: usize) -> bool {
+    let Some(sensing) = &run.sensing else { return false };
+    let edge = run.formation.graph().slot_of(robot);
+    let sensor = edge.and_then(|edge| sensing.sensor_config.sensors.get(edge));
+    sensor.is_some_and(|sensor| matches!(sensor.source, SensorKind::Geometric { .. } | SensorKind::Camera))
+}
 
 /// Why `robot` cannot follow `leader` at [distance, bearing] in m and rad, its present place where there is none; `None`
 /// where it can.
@@ -54,7 +63,7 @@ pub(super) fn refused(
     if off > most {
         return measured(Refusal::Bearing, [off, most]);
     }
-    if let Some(thing) = hidden(run, robot, leader) {
+    if let Some(thing) = hidden(run, robot, leader).filter(|_| sees(run, robot)) {
         let obstacle = Some(thing).filter(|thing| *thing != vocabulary::EntityId::Ground);
         return Some(EventRecord { refusal: Refusal::Hidden, obstacle, ..wanted });
     }
