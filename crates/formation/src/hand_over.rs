@@ -147,7 +147,7 @@ mod tests {
         hand_over.advance([2.0, std::f64::consts::PI], [0.8, 0.0], [2.0, 2.3], false, 0.01);
         let Offset { rate, .. } = hand_over.offset();
         assert!((rate[0] + 0.8).abs() < 0.0051 && rate[1].abs() < 0.0051, "{rate:?}");
-        let mut last = 0.8;
+        let mut last = 0.8_f64;
         for _ in 0..100 {
             hand_over.advance([2.0, 3.0], [0.0; 2], [2.0, 2.3], false, 0.01);
             let Offset { rate, acceleration, .. } = hand_over.offset();

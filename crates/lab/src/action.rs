@@ -1,7 +1,21 @@
 //! The commands of the lab. Clicks, keys and panels all produce them, so most can be given in several ways.
 
 use crate::app_state::{Selection, Tool};
+use scene::Failure;
 use std::path::PathBuf;
+
+/// What happens to a robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Happens {
+    /// It follows the robot of this index, and keeps its place.
+    Follows(usize),
+    /// It follows nobody and drives straight on.
+    Leads,
+    /// It fails.
+    Fails(Failure),
+    /// Those who follow it take their places anew.
+    Assigns,
+}
 
 /// A command of the user.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +90,13 @@ pub enum Action {
         leader: usize,
         /// Index of the follower.
         follower: usize,
+    },
+    /// Let something happen to a robot now.
+    Happen {
+        /// Index of the robot.
+        robot: usize,
+        /// What.
+        what: Happens,
     },
     /// Add a robot behind the selected one.
     AddRobot,

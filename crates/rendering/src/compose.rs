@@ -1,6 +1,7 @@
 //! From a moment to what its picture consists of: origin, light, frames and words.
 
 use crate::Viewpoint;
+use crate::annotation::events::events;
 use crate::annotation::inset::{clearness, inset};
 use crate::annotation::labels::{LabelPlacer, Window, ring_boxes, robot_boxes, view_words};
 use crate::annotation::overlays::{line_place, show};
@@ -178,6 +179,7 @@ pub(crate) fn words<'a>(
     }
     let sky = windows.first().map_or(0.0, |w| 0.5 * (1.0 - w.camera.horizon()) * f64::from(w.tile.height));
     plan.write(&mut words, context.record.snapshot.time, sky as f32);
+    events(&mut words, context, plan.clock());
     let mut panels: Vec<_> = said.iter().map(|(line, _)| *line).collect();
     if let (Some(place), Some(first)) = (plan.panel, lower.first()) {
         let hidden = [robot_boxes(context, *first), ring_boxes(context, *first)].concat();

@@ -156,6 +156,11 @@ impl PicturePlan {
         }
     }
 
+    /// Where the clock is, if it is shown.
+    pub(crate) fn clock(&self) -> Option<Area> {
+        self.clock
+    }
+
     /// The rectangles of title, caption and clock.
     pub(crate) fn captions(&self) -> impl Iterator<Item = Area> {
         self.headings.iter().map(|heading| heading.area).chain(self.clock)

@@ -83,6 +83,8 @@ elements! {
     contacts = "contacts",
     /// Arcs around robots with a safety filter, which redden as barriers tighten, and the names of those that act.
     barriers = "barriers",
+    /// What happened to the formation lately, in words.
+    events = "events",
 }
 
 /// Below this scale names could not be read.

@@ -1,14 +1,14 @@
 //! Actions on the scene and its run. The window handles files, pictures and itself.
 
 use super::{AppState, Tool};
-use crate::action::Action;
+use crate::action::{Action, Happens};
 use crate::numbers::{fixed, toml_number};
 use crate::session::branches::BranchChange;
 use crate::session::runner::RunRequest;
 use crate::session::scene_draft::SceneDraft;
 use scene::Role;
 use vocabulary::math;
-use vocabulary::{Relative, wrap};
+use vocabulary::{Relative, Word, wrap};
 
 /// Candidate set points of a new follower: m, degrees.
 const PLACES: [[f64; 2]; 8] = [
@@ -21,6 +21,8 @@ const PLACES: [[f64; 2]; 8] = [
     [6.0, -135.0],
     [6.0, 135.0],
 ];
+/// How far ahead of the shown time an event is set while the run plays, s of the clock on the wall.
+const AHEAD: f64 = 0.3;
 /// Tolerance of a mirror image, m and rad.
 const ALIKE: [f64; 2] = [0.05, 0.09];
 
@@ -33,6 +35,7 @@ fn changes_the_scene(action: &Action) -> bool {
             | Action::SetPoint { .. }
             | Action::Shape { .. }
             | Action::Connect { .. }
+            | Action::Happen { .. }
             | Action::AddRobot
             | Action::RemoveRobot(_)
             | Action::RenameRobot(..)
@@ -99,6 +102,7 @@ impl AppState {
             Action::SetPoint { edge, distance, bearing } => self.move_set_point(*edge, [*distance, *bearing]),
             Action::Shape { scale, turn } => self.reshape(*scale, *turn),
             Action::Connect { leader, follower } => self.connect(*leader, *follower),
+            Action::Happen { robot, what } => self.happen(*robot, *what),
             Action::AddRobot => self.add_robot(),
             Action::RemoveRobot(name) => self.remove_robot(name),
             Action::RenameRobot(old, new) => {
@@ -279,6 +283,38 @@ impl AppState {
         });
     }
 
+    /// Lets something happen to a robot at the next sample, or, while the run plays, a moment later.
+    fn happen(&mut self, robot: usize, what: Happens) {
+        let Some(fleet) = self.fleet().cloned() else { return };
+        let name = |robot: usize| fleet.robots.get(robot).map(|robot| robot.name.clone());
+        let Some(own) = name(robot) else { return };
+        let speed = self.record().and_then(|record| Some(record.snapshot.robots.get(robot)?.motion.speed));
+        let lines = match what {
+            Happens::Follows(leader) => {
+                let Some(leader) = name(leader) else { return };
+                format!("robot = {own:?}\nleader = {leader:?}\n")
+            }
+            Happens::Leads => {
+                let speed = toml_number((speed.unwrap_or(0.0) * 1000.0).round() / 1000.0);
+                format!("robot = {own:?}\npath = {{ kind = \"constant\", speed = {speed} }}\n")
+            }
+            Happens::Fails(failure) => format!("robot = {own:?}\nfails = {:?}\n", failure.word()),
+            Happens::Assigns => format!("assign = {own:?}\n"),
+        };
+        // While it plays, the run is a little ahead of the window.
+        let ahead = if self.playing && self.cursor.is_none() { AHEAD * self.pace } else { 0.0 };
+        let period = self.period();
+        let at = ((self.time() + ahead) / period).floor() + 1.0;
+        let words = match what {
+            Happens::Follows(leader) => format!("{own} shall follow {}", name(leader).unwrap_or_default()),
+            Happens::Leads => format!("{own} shall drive on its own"),
+            Happens::Fails(_) => format!("{own} shall fail"),
+            Happens::Assigns => format!("Those behind {own} shall take their places anew"),
+        };
+        let lines = format!("at = {}\n{lines}", toml_number(at * period));
+        self.edit(&words, |text| text.add_table("events", &lines));
+    }
+
     fn add_robot(&mut self) {
         let Some(scene) = self.scene().cloned() else { return };
         let chosen = self.chosen_robot().filter(|robot| *robot < scene.robots.len()).unwrap_or(0);
@@ -349,11 +385,12 @@ pub fn words(change: &BranchChange) -> String {
             None => said.push((what, vec![robot])),
         }
     }
+    let events = change.events.iter().map(scene::Event::words);
     let one = |(what, robots): (String, Vec<&str>)| match robots.as_slice() {
         [robot] => format!("{robot} {what}"),
         many => format!("{what} of {} robots", many.len()),
     };
-    said.into_iter().map(one).collect::<Vec<_>>().join(", ")
+    said.into_iter().map(one).chain(events).collect::<Vec<_>>().join(", ")
 }
 
 /// A value for people: angles in degrees, numbers short.

@@ -7,7 +7,7 @@ use eframe::egui::{self, Slider, Ui, WidgetInfo};
 use rendering::Style;
 
 /// Elements that can be switched, with their labels.
-const ELEMENTS: [(&str, &str); 11] = [
+const ELEMENTS: [(&str, &str); 12] = [
     ("ribbons", "Ribbons along driven paths"),
     ("ghosts", "Ghosts of past poses"),
     ("set-points", "Rings at set points"),
@@ -19,6 +19,7 @@ const ELEMENTS: [(&str, &str); 11] = [
     ("caption", "Title and law"),
     ("shadows", "Shadows"),
     ("barriers", "Barriers of safety filters"),
+    ("events", "What happens to the formation"),
 ];
 
 /// Films, pictures and their elements.

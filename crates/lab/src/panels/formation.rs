@@ -1,11 +1,12 @@
 //! The tree of leaders and followers. Dragging a robot onto another makes that its leader.
 
 use super::{colour, menu_item, naming, nothing, on_click};
-use crate::action::Action;
+use crate::action::{Action, Happens};
 use crate::app_state::{AppState, Selection, Tool};
 use eframe::egui::{self, RichText, Role, Sense, Ui, WidgetInfo};
+use scene::Failure;
 use vocabulary::math;
-use vocabulary::{FleetInfo, StepRecord};
+use vocabulary::{Condition, Edge, FleetInfo, StepRecord, Word};
 
 /// The tree of robots.
 pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
@@ -21,7 +22,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         on_click(&label, Action::UseTool(Tool::Connect), out);
     });
     let record = app_state.shown();
-    let rows = order(fleet);
+    let rows = order(fleet, record.as_deref());
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         for (robot, depth) in rows {
             row(ui, app_state, fleet, record.as_deref(), robot, depth, out);
@@ -29,14 +30,18 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     });
 }
 
-/// Robots, each after the one it follows, with its depth.
-fn order(fleet: &FleetInfo) -> Vec<(usize, usize)> {
+/// Robots as they follow one another at the shown time, each after the one it follows, with its depth.
+fn order(fleet: &FleetInfo, record: Option<&StepRecord>) -> Vec<(usize, usize)> {
+    let edges: Vec<Edge> = match record {
+        Some(record) => record.pairs(fleet).map(|(_, edge, _)| edge).collect(),
+        None => fleet.edges.clone(),
+    };
     let mut rows = Vec::with_capacity(fleet.robots.len());
-    let mut open: Vec<(usize, usize)> =
-        (0..fleet.robots.len()).rev().filter(|k| fleet.robots[*k].leads).map(|k| (k, 0)).collect();
+    let leads = |robot: &usize| edges.iter().all(|edge| edge.follower != *robot);
+    let mut open: Vec<(usize, usize)> = (0..fleet.robots.len()).rev().filter(leads).map(|k| (k, 0)).collect();
     while let Some((robot, depth)) = open.pop() {
         rows.push((robot, depth));
-        let followers = fleet.edges.iter().rev().filter(|edge| edge.leader == robot);
+        let followers = edges.iter().rev().filter(|edge| edge.leader == robot);
         open.extend(followers.map(|edge| (edge.follower, depth + 1)));
     }
     rows
@@ -61,9 +66,13 @@ fn row(
             let text =
                 if chosen { RichText::new(name).color(egui::Color32::WHITE) } else { RichText::new(name) };
             let label = ui.add(egui::Button::selectable(chosen, text).sense(Sense::click_and_drag()));
-            if let Some(error) =
-                app_state.edge_of(robot).and_then(|edge| Some(record?.edges.get(edge)?.error))
-            {
+            let condition = record.and_then(|record| Some(record.snapshot.robots.get(robot)?.condition));
+            if let Some(condition @ (Condition::Failed | Condition::Removed)) = condition {
+                ui.label(RichText::new(condition.word()).small().color(ui.visuals().warn_fg_color));
+            } else if let Some(error) = app_state.edge_of(robot).and_then(|edge| {
+                record?.edge(fleet, edge)?;
+                Some(record?.edges.get(edge)?.error)
+            }) {
                 let size = math::hypot(error[0], error[1]);
                 let text = format!("{} m", crate::numbers::fixed(error[0], 2));
                 let weak = RichText::new(text).small();
@@ -88,13 +97,33 @@ fn row(
     if response.double_clicked() {
         out.push(Action::Follow(Some(robot)));
     }
-    if let Some(new) = naming(&response, name, |ui| menu(ui, name, robot, out)) {
+    if let Some(new) = naming(&response, name, |ui| menu(ui, fleet, robot, out)) {
         out.push(Action::RenameRobot(name.clone(), new));
     }
 }
 
-fn menu(ui: &mut Ui, name: &str, robot: usize, out: &mut Vec<Action>) {
+fn menu(ui: &mut Ui, fleet: &FleetInfo, robot: usize, out: &mut Vec<Action>) {
+    let name = &fleet.robots[robot].name;
     menu_item(ui, true, "Follow with the camera", Action::Follow(Some(robot)), out);
     menu_item(ui, true, "See through its camera", Action::Viewpoint(format!("camera:{name}")), out);
     menu_item(ui, true, "Remove", Action::RemoveRobot(name.to_owned()), out);
+    ui.separator();
+    ui.weak("From now on, in this run:");
+    let happens = |what: Happens| Action::Happen { robot, what };
+    ui.menu_button("it follows", |ui| {
+        egui::ScrollArea::vertical().max_height(240.0).show(ui, |ui| {
+            for (leader, info) in fleet.robots.iter().enumerate().filter(|(leader, _)| *leader != robot) {
+                menu_item(ui, true, &info.name, happens(Happens::Follows(leader)), out);
+            }
+        });
+    });
+    for (text, what) in [
+        ("it drives on its own", Happens::Leads),
+        ("it fails and stops", Happens::Fails(Failure::Stop)),
+        ("it fails and rolls to a stand", Happens::Fails(Failure::Coast)),
+        ("it is taken away", Happens::Fails(Failure::Remove)),
+        ("those behind it take their places anew", Happens::Assigns),
+    ] {
+        menu_item(ui, true, text, happens(what), out);
+    }
 }

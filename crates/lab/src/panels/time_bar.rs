@@ -12,6 +12,9 @@ use eframe::egui::{self, Color32, RichText, Sense, Slider, Stroke, Ui, WidgetInf
 /// Maximum number of branches in the timeline.
 const MOST_ROWS: usize = 5;
 
+/// Maximum number of events that the pointer tells.
+const MOST_TOLD: usize = 6;
+
 /// The bar at the top.
 pub fn show(ui: &mut Ui, app_state: &AppState, filming: bool, out: &mut Vec<Action>) {
     ui.horizontal(|ui| {
@@ -91,6 +94,13 @@ fn line(ui: &mut Ui, app_state: &AppState, wide: f32, out: &mut Vec<Action>) {
             painter.vline(x_of(change.time), y - half..=y + half, stroke);
         }
     }
+    let events = app_state.history.as_ref().map_or(&[][..], |history| history.events(app_state.branch));
+    for (time, event) in events {
+        let colour = if event.happened() { visuals.warn_fg_color } else { visuals.error_fg_color };
+        let (x, y) = (x_of(*time), rect.top());
+        let tip = [egui::pos2(x - 4.0, y), egui::pos2(x + 4.0, y), egui::pos2(x, y + 7.0)];
+        painter.add(egui::Shape::convex_polygon(tip.to_vec(), colour, Stroke::NONE));
+    }
     painter.vline(x_of(app_state.time()), rect.y_range(), Stroke::new(2.0, visuals.strong_text_color()));
     let under = |pos: egui::Pos2| f64::from(((pos.x - rect.left()) / rect.width()).clamp(0.0, 1.0)) * span;
     if let Some(pos) = response.interact_pointer_pos()
@@ -99,7 +109,12 @@ fn line(ui: &mut Ui, app_state: &AppState, wide: f32, out: &mut Vec<Action>) {
         out.push(Action::Seek(under(pos)));
     }
     if let Some(pos) = response.hover_pos() {
-        response.on_hover_text_at_pointer(format!("{} s: drag to look back", fixed(under(pos), 2)));
+        let near = events.iter().filter(|(time, _)| (x_of(*time) - pos.x).abs() < 5.0);
+        let told = near.take(MOST_TOLD).filter_map(|(time, event)| {
+            Some(format!("\n{} s: {}", fixed(*time, 2), event.words(app_state.fleet()?)))
+        });
+        let told: String = told.collect();
+        response.on_hover_text_at_pointer(format!("{} s: drag to look back{told}", fixed(under(pos), 2)));
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::checked_scene::{CheckedScene, build};
 use metrics::Digest;
-use scene::{ChangeText, Scene, SceneText};
+use scene::{ChangeText, Event, Scene, SceneText, Trigger};
 use simulation::{BuildError, Setup, Simulation};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -51,6 +51,14 @@ pub struct BranchChange {
     pub scene: Arc<Scene>,
     /// The differences from before, as overrides.
     pub set: Vec<String>,
+    /// What is to happen besides.
+    pub events: Vec<Event>,
+}
+
+impl BranchChange {
+    fn is_empty(&self) -> bool {
+        self.set.is_empty() && self.events.is_empty()
+    }
 }
 
 /// A checkpoint: the state of a branch before a sample.
@@ -151,10 +159,21 @@ impl Branch {
         let before = self.changes[..earlier].last().map_or(base, |last| &last.scene);
         let set = checked.set_from(before).map_err(|standing| standing.join("\n"))?;
         let scene = Arc::clone(checked.scene());
-        let change = BranchChange { sample, time: sample as f64 * self.simulation.period(), scene, set };
-        let new = (!change.set.is_empty()).then(|| change.clone());
+        // Events come on top of those that are there.
+        let events = scene.events.get(before.events.len()..).unwrap_or_default().to_vec();
+        let late = |event: &Event| match event.trigger {
+            Trigger::At { at } => self.simulation.sample_at(at) < sample,
+            Trigger::When { .. } => false,
+        };
+        if let Some(event) = events.iter().find(|event| late(event)) {
+            return Err(format!("Too late for that: {}", event.words()));
+        }
+        let change =
+            BranchChange { sample, time: sample as f64 * self.simulation.period(), scene, set, events };
+        let new = (!change.is_empty()).then(|| change.clone());
         if base.changes.is_empty() {
             self.simulation.apply_parameters(checked.setup());
+            self.simulation.replan(checked.setup());
         } else {
             let changes: Vec<BranchChange> =
                 self.changes[..earlier].iter().cloned().chain(new.clone()).collect();
@@ -162,7 +181,7 @@ impl Branch {
         }
         self.changes.truncate(earlier);
         self.changes.extend(new);
-        Ok((again || !change.set.is_empty()).then_some(change))
+        Ok((again || !change.is_empty()).then_some(change))
     }
 
     fn fork(&self, base: &Scene, index: usize, until: u64, name: String) -> Self {
@@ -182,6 +201,7 @@ impl Branch {
             let due = changes.iter().filter(|change| change.sample == sample && base.changes.is_empty());
             for setup in due.filter_map(|change| build(&change.scene).ok()) {
                 simulation.apply_parameters(&setup);
+                simulation.replan(&setup);
             }
             let Some(record) = simulation.next_record() else { break };
             digest.push(record);
@@ -244,5 +264,8 @@ pub fn script(
     let later: Vec<ChangeText> =
         changes.iter().map(|change| ChangeText { at: change.time, set: change.set.clone() }).collect();
     text.schedule(&own, &later).map_err(|error| error.to_string())?;
+    for event in changes.iter().flat_map(|change| &change.events) {
+        text.add_table("events", &event.to_lines()).map_err(|error| error.to_string())?;
+    }
     Ok(text.text())
 }

@@ -3,7 +3,7 @@
 use metrics::clearance::Clearance;
 use rendering::Trail;
 use std::sync::Arc;
-use vocabulary::{FleetInfo, StepRecord};
+use vocabulary::{EventRecord, FleetInfo, StepRecord};
 
 /// Maximum memory of the records of a branch, bytes.
 const MOST_BYTES: usize = 96 << 20;
@@ -37,12 +37,16 @@ struct BranchHistory {
     trail_every: f64,
     /// Least clearance between bodies over time: s, m.
     rooms: Vec<[f64; 2]>,
+    /// What happened to the formation, and when in s.
+    events: Vec<(f64, EventRecord)>,
 }
 
 /// Interval between two measurements of clearance, s.
 const ROOM_EVERY: f64 = 0.1;
 /// Maximum number of robots for which clearance is measured while they drive.
 const MOST_ROBOTS_WITH_ROOM: usize = 30;
+/// Maximum number of kept events.
+const MOST_EVENTS: usize = 10_000;
 /// Maximum number of kept clearances.
 const MOST_ROOMS: usize = 20_000;
 
@@ -57,6 +61,7 @@ impl History {
             trails: Vec::new(),
             trail_every: TRAIL_EVERY,
             rooms: Vec::new(),
+            events: Vec::new(),
         };
         let clearance = (fleet.robots.len() <= MOST_ROBOTS_WITH_ROOM).then(|| Clearance::new(&fleet));
         Self { clearance, fleet, period, past: vec![past], shown: None }
@@ -116,6 +121,7 @@ impl History {
             trails: parent.trails.iter().filter(|t| before(t, until)).cloned().collect(),
             trail_every: parent.trail_every,
             rooms: parent.rooms.iter().filter(|[time, _]| *time < until).copied().collect(),
+            events: parent.events.iter().filter(|(time, _)| *time < until).copied().collect(),
         };
         past.head = past.records.last().cloned();
         past.trail = past.trail_until(until, &self.fleet);
@@ -217,6 +223,11 @@ impl History {
         past.rooms.iter().filter(|[time, _]| (from..=to).contains(time)).copied().collect()
     }
 
+    /// What happened to the formation on a branch, and when in s.
+    pub fn events(&self, branch: usize) -> &[(f64, EventRecord)] {
+        self.past.get(branch).map_or(&[], |past| &past.events)
+    }
+
     fn most_moments(&self) -> usize {
         let robots = self.fleet.robots.len() * size_of::<vocabulary::RobotState>();
         let edges = self.fleet.edges.len() * size_of::<vocabulary::EdgeState>();
@@ -252,6 +263,9 @@ impl BranchHistory {
     fn push(&mut self, sample: u64, record: Arc<StepRecord>, most: usize, period: f64) {
         self.trail.push(&record);
         let time = record.snapshot.time;
+        if self.events.len() < MOST_EVENTS {
+            self.events.extend(record.events.iter().map(|event| (time, *event)));
+        }
         if self.trails.last().and_then(Trail::time).unwrap_or(0.0) + self.trail_every <= time + 1e-9 {
             self.trails.push(self.trail.clone());
             if self.trails.len() > MOST_TRAILS {

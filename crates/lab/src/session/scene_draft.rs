@@ -317,6 +317,10 @@ impl SceneDraft {
             Ok(set) if !timed || (set.is_empty() && !scripted) => {
                 Effect::Restart("its changes are others".to_owned())
             }
+            Ok(_) if joiners(&self.scene) != joiners(scene) => {
+                Effect::Restart("a robot that leads comes to follow".to_owned())
+            }
+            Ok(_) if !redressed && self.scene.events != scene.events => Effect::Retune,
             Ok(set) if set.is_empty() && !redressed => Effect::None,
             Ok(set) if set.is_empty() => Effect::Dress,
             // Both at once: the file was edited by another program.
@@ -326,6 +330,11 @@ impl SceneDraft {
         };
         (effect, sets.unwrap_or_default())
     }
+}
+
+/// Robots that lead at the start and follow later.
+fn joiners(scene: &Scene) -> Vec<String> {
+    scene.joining().into_iter().map(|(name, _)| name.to_owned()).collect()
 }
 
 /// The parts of a scene that affect the appearance or the evaluation of its run, not the run itself.

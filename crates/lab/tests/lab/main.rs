@@ -5,6 +5,7 @@ mod branches;
 mod commands;
 mod common;
 mod edits;
+mod events;
 mod history;
 mod links;
 mod pacing;

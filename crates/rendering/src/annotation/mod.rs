@@ -2,6 +2,7 @@
 
 pub(crate) mod annotations;
 pub(crate) mod detections;
+pub(crate) mod events;
 pub(crate) mod inset;
 pub(crate) mod labels;
 pub(crate) mod overlays;

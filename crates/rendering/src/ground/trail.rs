@@ -4,7 +4,7 @@ use crate::camera::smoothing::SmoothedFormation;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use vocabulary::math;
-use vocabulary::{Contact, FleetInfo, MeasurementRecord, Pose, StepRecord, wrap};
+use vocabulary::{Contact, EventRecord, FleetInfo, MeasurementRecord, Pose, StepRecord, wrap};
 
 /// How long a ribbon is, s.
 pub(crate) const RIBBON: f64 = 12.0;
@@ -17,6 +17,8 @@ const CURVE_POINTS: usize = 360;
 
 /// Most contacts that are remembered.
 const TOUCHES: usize = 256;
+/// Events that are remembered.
+const EVENTS: usize = 8;
 /// A tyre that slides by less than this does not show it, rad; by the second it leaves all its rubber.
 const SLIDE: [f64; 2] = [0.052, 0.35];
 
@@ -30,6 +32,8 @@ pub struct Trail {
     pub(crate) marks: Thinning<Arc<[SkidMark]>>,
     /// Contacts by their first sight, old to new.
     pub(crate) touches: VecDeque<Contact>,
+    /// What happened to the formation, and when in s, old to new.
+    pub(crate) events: VecDeque<(f64, EventRecord)>,
     /// Contacts up to this number are known or forgotten.
     forgotten: Option<u64>,
     /// Of the moment before, and how each robot has slid since the last mark.
@@ -68,6 +72,7 @@ impl Trail {
             ghosts: VecDeque::new(),
             marks: Thinning::new(),
             touches: VecDeque::new(),
+            events: VecDeque::new(),
             forgotten: None,
             before: Vec::new(),
             slides: Vec::new(),
@@ -97,6 +102,12 @@ impl Trail {
         keep(&mut self.ribbons, time, self.spacing, RIBBON, poses);
         keep(&mut self.ghosts, time, GHOST_EVERY, RIBBON, poses);
         self.touch(&record.contacts);
+        for event in &record.events {
+            self.events.push_back((time, *event));
+            if self.events.len() > EVENTS {
+                self.events.pop_front();
+            }
+        }
         for frame in &record.frames {
             if let Some(last) = self.measurements.get_mut(frame.edge) {
                 *last = Some(*frame);

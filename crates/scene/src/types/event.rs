@@ -179,6 +179,29 @@ settings! {
     }
 }
 
+impl Event {
+    /// The lines of its table in a scene file, without their head.
+    pub fn to_lines(&self) -> String {
+        // What has been read from TOML can be written as TOML.
+        let table = toml::Table::try_from(self).unwrap_or_default();
+        table.iter().map(|(key, value)| format!("{key} = {value}\n")).collect()
+    }
+
+    /// What shall happen, in a few words.
+    pub fn words(&self) -> String {
+        match &self.happening {
+            Happening::Follow { robot, leader, .. } => format!("{robot} follows {leader}"),
+            Happening::Lead { robot, .. } => format!("{robot} drives on its own"),
+            Happening::Fail { robot, fails, .. } => match fails {
+                Failure::Stop => format!("{robot} fails and stops"),
+                Failure::Coast => format!("{robot} fails and rolls to a stand"),
+                Failure::Remove => format!("{robot} is taken away"),
+            },
+            Happening::Assign { assign } => format!("those behind {assign} take their places anew"),
+        }
+    }
+}
+
 impl Happening {
     /// Names of the robots that it is about, and the keys that name them.
     pub fn robots(&self) -> Vec<(&'static str, &str)> {
