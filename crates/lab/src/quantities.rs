@@ -110,7 +110,10 @@ pub fn curves(app_state: &AppState, quantity: PlotQuantity, most: usize) -> Vec<
         let records = history.between(branch, span, most);
         for (edge, ends) in history.fleet().edges.iter().enumerate() {
             let Some((_, _, follow)) = app_state.follower(edge) else { continue };
-            let point = |m: &&StepRecord| Some([m.snapshot.time, value(quantity, m, edge, *ends, follow)?]);
+            let point = |m: &&StepRecord| {
+                let ends = m.edge(history.fleet(), edge)?;
+                Some([m.snapshot.time, value(quantity, m, edge, ends, follow)?])
+            };
             let points = certified(quantity, &records, edge, *ends, follow)
                 .unwrap_or_else(|| records.iter().filter_map(point).collect());
             all.push(QuantityCurve { branch, robot: Some(ends.follower), points });

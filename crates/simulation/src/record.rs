@@ -61,5 +61,15 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
             phase: decision.phase,
             displacement: decision.displacement,
         };
+        if !graph.is_in_force(index) {
+            *out = not_in_force(out);
+        }
     }
+}
+
+/// An edge whose follower follows nobody: nothing is wanted and nothing is told.
+fn not_in_force(state: &EdgeState) -> EdgeState {
+    let EdgeState { relative, seen, sight, age, .. } = *state;
+    let at = [relative.distance, relative.bearing];
+    EdgeState { relative, seen, sight, age, set_point: at, estimate: at, ..EdgeState::default() }
 }

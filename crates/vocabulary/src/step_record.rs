@@ -84,7 +84,13 @@ impl StepRecord {
         let turn = |p: f64, q: f64| wrap(mix(p, nearest_turn(q, p)));
         let mut out = a.clone();
         out.snapshot = Snapshot::between(&a.snapshot, &b.snapshot, share);
-        for (o, n) in out.edges.iter_mut().zip(&b.edges) {
+        // Events belong to the moment at which they happen.
+        out.events.clear();
+        for (k, (o, n)) in out.edges.iter_mut().zip(&b.edges).enumerate() {
+            // Between two leaders there is no middle.
+            if a.leaders.get(k) != b.leaders.get(k) {
+                continue;
+            }
             o.relative.distance = mix(o.relative.distance, n.relative.distance);
             o.relative.bearing = turn(o.relative.bearing, n.relative.bearing);
             o.relative.view_angle = turn(o.relative.view_angle, n.relative.view_angle);

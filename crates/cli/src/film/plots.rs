@@ -6,7 +6,7 @@ use vocabulary::{Edge, FleetInfo, StepRecord, Word};
 
 /// Everything that may be plotted, so far.
 pub(super) struct Plots {
-    edges: Vec<Edge>,
+    fleet: FleetInfo,
     duration: f64,
     /// Per quantity and edge: [time, value].
     curves: Vec<Vec<Vec<[f64; 2]>>>,
@@ -15,7 +15,7 @@ pub(super) struct Plots {
 impl Plots {
     pub(super) fn new(fleet: &FleetInfo, duration: f64) -> Self {
         Self {
-            edges: fleet.edges.clone(),
+            fleet: fleet.clone(),
             duration,
             curves: vec![vec![vec![]; fleet.edges.len()]; Plot::WORDS.len()],
         }
@@ -25,10 +25,12 @@ impl Plots {
     pub(super) fn record(&mut self, record: &StepRecord) {
         let time = record.snapshot.time;
         for ((_, quantity, _), curves) in Plot::WORDS.iter().zip(&mut self.curves) {
-            for ((index, edge), curve) in self.edges.iter().enumerate().zip(curves) {
+            for (index, curve) in curves.iter_mut().enumerate() {
                 // While a card stands, so does the time.
                 if curve.last().is_none_or(|last| time > last[0]) {
-                    curve.push([time, value(*quantity, record, index, *edge).unwrap_or(f64::NAN)]);
+                    let now = record.edge(&self.fleet, index);
+                    let now = now.and_then(|edge| value(*quantity, record, index, edge));
+                    curve.push([time, now.unwrap_or(f64::NAN)]);
                 }
             }
         }
@@ -49,7 +51,7 @@ impl Plots {
             Plot::Acceleration => ("acceleration (m/s²)", 0.5, true),
             Plot::Distance => ("distance (m)", 0.2, false),
         };
-        let curves = self.edges.iter().zip(&self.curves[index]);
+        let curves = self.fleet.edges.iter().zip(&self.curves[index]);
         let curves = curves.map(|(edge, points)| PanelCurve { robot: edge.follower, points: points.clone() });
         let span = [0.0, self.duration];
         Some(Shown { label: label.to_owned(), span, least, centred, curves: curves.collect() })

@@ -35,20 +35,18 @@ pub(super) fn card(
 /// What the run showed, in a few rows.
 fn results(metrics: &Metrics) -> Vec<String> {
     let mut rows = Vec::new();
-    let worst = |value: fn(&EdgeMetrics) -> f64| metrics.edges.iter().map(value).fold(0.0, f64::max);
-    if !metrics.edges.is_empty() {
-        let followers = metrics.edges.len();
+    let followed: Vec<&EdgeMetrics> = metrics.edges.iter().filter(|edge| edge.ended.is_none()).collect();
+    let worst = |value: fn(&EdgeMetrics) -> f64| followed.iter().map(|edge| value(edge)).fold(0.0, f64::max);
+    if !followed.is_empty() {
+        let followers = followed.len();
         let who = if followers == 1 { "the follower".to_owned() } else { format!("{followers} followers") };
         rows.push(format!(
             "errors of {who} at the end: at most {:.1} mm and {:.2}°",
             1e3 * worst(|edge| edge.final_error[0].abs()),
             worst(|edge| edge.final_error[1].abs()).to_degrees()
         ));
-        let settled: Option<f64> = metrics
-            .edges
-            .iter()
-            .map(|edge| edge.settling_time)
-            .try_fold(0.0, |most: f64, t| Some(most.max(t?)));
+        let settled: Option<f64> =
+            followed.iter().map(|edge| edge.settling_time).try_fold(0.0, |most: f64, t| Some(most.max(t?)));
         if let Some(time) = settled {
             let [distance, bearing] = metrics.settling_band;
             rows.push(format!(
@@ -83,12 +81,12 @@ pub(super) fn line(frame: &FramePlan<'_>, fleet: &FleetInfo, record: &StepRecord
 
 /// Where the followers should be, now.
 fn set_points(fleet: &FleetInfo, record: &StepRecord) -> Vec<String> {
-    let one = |(edge, state): (&vocabulary::Edge, &vocabulary::EdgeState)| {
+    let one = |(_, edge, state): (usize, vocabulary::Edge, &vocabulary::EdgeState)| {
         let [distance, bearing] = state.set_point;
         let degrees = format!("{:.0}", bearing.to_degrees()).replace('-', "\u{2212}");
         format!("{}  {distance:.2} m  {degrees}°", fleet.name(EntityId::Robot(edge.follower)))
     };
-    let all: Vec<String> = fleet.edges.iter().zip(&record.edges).map(one).collect();
+    let all: Vec<String> = record.pairs(fleet).map(one).collect();
     let more = all.len().saturating_sub(MOST_SET_POINTS);
     let mut rows: Vec<String> = all
         .iter()

@@ -174,6 +174,7 @@ fn curves(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, axes: &Axes
         // A little darker than on the ground: the panel is bright.
         let colour = context.colours[edge.follower].map(|c| c * 0.86);
         let last = context.record.edges.get(index).map(|e| (now, pick(e.error[quantity.index] as f32)));
+        let last = last.filter(|_| context.record.edge(context.fleet, index).is_some());
         let past = context.trail.errors.entries.iter();
         let past = past.filter_map(|(t, e)| e.get(index).map(|e| (*t, pick(e[quantity.index]))));
         let points = past.filter(|(t, _)| *t < now).chain(last).filter(|(_, e)| e.is_finite());

@@ -121,8 +121,12 @@ impl Trail {
         if self.marks.push(time, marks) {
             self.slides.fill(0.0);
         }
-        let error = |e: &[f64; 2]| e.map(|x| x as f32);
-        self.errors.push(time, || record.edges.iter().map(|e| error(&e.error)).collect());
+        // Who follows nobody has no error.
+        let error = |index: usize| match record.edge(&self.fleet, index) {
+            Some(_) => record.edges[index].error.map(|x| x as f32),
+            None => [f32::NAN; 2],
+        };
+        self.errors.push(time, || (0..record.edges.len()).map(error).collect());
     }
 
     /// The last measurement of an edge that arrived.
