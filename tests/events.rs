@@ -43,9 +43,9 @@ fn chain(events: &str) -> String {
         )
     };
     let robots = [
-        follower("ann", "lead", [-1.4142, 1.4142]),
-        follower("bob", "ann", [-2.8284, 2.8284]),
-        follower("cy", "bob", [-4.2426, 4.2426]),
+        follower("ann", "lead", [-1.414, 1.414]),
+        follower("bob", "ann", [-2.828, 2.828]),
+        follower("cy", "bob", [-4.243, 4.243]),
     ];
     format!(
         "schema = 1\ntitle = \"t\"\n[time]\nduration = 20.0\n[vehicle]\nacceleration_max = 3.0\n[law]\nheading = \

@@ -55,6 +55,11 @@ pub(crate) struct CertifyReport<'a> {
 }
 
 impl CertifyReport<'_> {
+    /// "leader → follower" of a certificate, as they were then.
+    fn pair(&self, certificate: &Certificate) -> String {
+        self.fleet.pair(certificate.pair).join(" → ")
+    }
+
     /// "leader → follower".
     fn edge(&self, index: usize) -> String {
         self.fleet.edges.get(index).map_or_else(String::new, |edge| self.fleet.pair(*edge).join(" → "))

@@ -39,7 +39,8 @@ mod tests {
         let free: Vec<usize> = (0..places.len()).filter(|k| !taken.contains(k)).collect();
         free.into_iter()
             .map(|k| {
-                let way = (robot[0] - places[k][0]).powi(2) + (robot[1] - places[k][1]).powi(2);
+                let [x, y] = [0, 1].map(|i| robot[i] - places[k][i]);
+                let way = x * x + y * y;
                 taken.push(k);
                 let rest = best(robots, places, taken);
                 taken.pop();

@@ -42,6 +42,8 @@ pub struct Trace {
     pub robots: Vec<Vec<Motion>>,
     /// Samples by edge.
     pub edges: Vec<Vec<EdgeRow>>,
+    /// Whom the follower of each edge follows, by sample kept; empty where that never changes.
+    leaders: Vec<Vec<Option<usize>>>,
     /// Errors of the whole run; the late ones count from [`Trace::late_from`].
     pub metrics: Metrics,
     /// Commands, by edge.
@@ -75,6 +77,15 @@ impl Trace {
     pub fn over_the_run(&self, edge: usize) -> Option<f64> {
         let [distance, bearing] = self.metrics.edges.get(edge)?.ise;
         Some((distance + bearing).sqrt())
+    }
+
+    /// Who follows whom at a kept sample: number and robots of every edge.
+    pub(crate) fn pairs(&self, sample: usize) -> impl Iterator<Item = (usize, Edge)> {
+        let leaders = self.leaders.get(sample);
+        self.fleet.edges.iter().enumerate().filter_map(move |(index, edge)| match leaders {
+            None => Some((index, *edge)),
+            Some(leaders) => Some((index, Edge { leader: (*leaders.get(index)?)?, ..*edge })),
+        })
     }
 
     /// Pose of a robot at a kept sample.
@@ -139,6 +150,7 @@ impl Tracer {
                 times: vec![],
                 robots: vec![vec![]; robots],
                 edges: vec![vec![]; edges],
+                leaders: vec![],
                 metrics: metrics.finish(),
                 efforts: vec![],
                 digest: String::new(),
@@ -169,13 +181,17 @@ impl Tracer {
             kept.push(robot.motion);
         }
         let Self { trace, .. } = self;
-        for ((kept, edge), state) in trace.edges.iter_mut().zip(&trace.fleet.edges).zip(&record.edges) {
+        if !record.leaders.is_empty() {
+            trace.leaders.push(record.leaders.clone());
+        }
+        for (index, (kept, state)) in trace.edges.iter_mut().zip(&record.edges).enumerate() {
+            let edge = record.edge(&trace.fleet, index).unwrap_or(trace.fleet.edges[index]);
             kept.push(EdgeRow {
                 error: state.error,
                 asked: state.asked,
                 applied: state.applied,
                 estimated: state.rates,
-                rates: rates(*edge, |robot| robots.get(robot).map(|r| r.motion)),
+                rates: rates(edge, |robot| robots.get(robot).map(|r| r.motion)),
                 set_point: state.set_point,
             });
         }

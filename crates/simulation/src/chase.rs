@@ -36,7 +36,8 @@ impl Chases {
         now: &Motion,
         limits: Limits,
         info: &RobotInfo,
-        (motion, time): (Arc<dyn Trajectory>, f64),
+        motion: Arc<dyn Trajectory>,
+        time: f64,
     ) {
         self.end(robot);
         // Ideals count their time from their own start.

@@ -45,7 +45,7 @@ pub(super) fn tell(report: &CertifyReport<'_>, written: &[PathBuf]) {
 
 fn edge(report: &CertifyReport<'_>, certificate: &Certificate) {
     let [from, to] = certificate.span;
-    say(&format!("\n{}, {from:.2} to {to:.2} s", report.edge(certificate.edge)));
+    say(&format!("\n{}, {from:.2} to {to:.2} s", report.pair(certificate)));
     for finding in &certificate.findings {
         statement(finding);
     }
@@ -83,7 +83,7 @@ fn others(report: &CertifyReport<'_>) {
         let cells = certificate.findings.iter().map(|f| format!("  {:>13}", cell(f)));
         let cells = cells.collect::<Vec<_>>().concat();
         let [from, to] = certificate.span;
-        let name = format!("{} {from:.1}–{to:.1} s", clip(&report.edge(certificate.edge), 26));
+        let name = format!("{} {from:.1}–{to:.1} s", clip(&report.pair(certificate), 26));
         say(&format!("{name:40}{cells}"));
     }
     let more = rest().count().saturating_sub(MOST_EDGES);

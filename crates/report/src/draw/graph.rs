@@ -22,12 +22,14 @@ fn seen_from_guide(run: &Trace, sample: usize) -> Vec<Option<[f64; 2]>> {
 /// guide, m.
 pub(crate) fn places(run: &Trace, sample: usize) -> Vec<[f64; 2]> {
     let mut places = seen_from_guide(run, sample);
-    for (place, member) in places.iter_mut().zip(&run.fleet.robots) {
-        *place = place.filter(|_| member.leads);
+    for (_, edge) in run.pairs(sample) {
+        if let Some(place) = places.get_mut(edge.follower) {
+            *place = None;
+        }
     }
     // A formation is a forest: every round places the followers of those placed before.
     for _ in 0..run.fleet.robots.len() {
-        for (index, edge) in run.fleet.edges.iter().enumerate() {
+        for (index, edge) in run.pairs(sample) {
             let leader = places.get(edge.leader).copied().flatten();
             let row = run.edges.get(index).and_then(|rows| rows.get(sample));
             if let (Some([x, y]), Some(row), Some(place)) = (leader, row, places.get_mut(edge.follower)) {
@@ -64,7 +66,7 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
         Plan { margin: if labels { [46.0, 9.0] } else { [8.0; 2] }, height: 75.0, ..Plan::default() };
     let middle = page.iter().map(|p| p[0]).sum::<f64>() / count.max(1) as f64;
     let mut csv = String::from("leader,follower,distance_m,bearing_rad,bearing_deg\n");
-    for (index, edge) in run.fleet.edges.iter().enumerate() {
+    for (index, edge) in run.pairs(sample) {
         let Some(row) = run.edges.get(index).and_then(|rows| rows.get(sample)) else { continue };
         let [distance, bearing] = row.set_point;
         let name = |robot: usize| run.fleet.robots.get(robot).map_or("", |m| m.name.as_str());

@@ -184,7 +184,7 @@ impl Event {
     pub fn to_lines(&self) -> String {
         // What has been read from TOML can be written as TOML.
         let table = toml::Table::try_from(self).unwrap_or_default();
-        table.iter().map(|(key, value)| format!("{key} = {value}\n")).collect()
+        table.iter().map(|(key, value)| format!("{key} = {value}\n")).collect::<Vec<_>>().concat()
     }
 
     /// What shall happen, in a few words.

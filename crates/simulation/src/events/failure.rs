@@ -157,13 +157,11 @@ fn graft(run: &Simulation, robot: usize, lost: Lost, time: f64) -> Result<Move, 
     let edge = run.formation.graph().slot_of(robot).ok_or(nothing)?;
     let own = place_of(run, edge, time);
     let place = polar([lost.place[0] + own[0], lost.place[1] + own[1]]);
-    match refused(run, robot, lost.leader, Some(place)) {
-        Some(refused) => Err(refused),
-        None => {
-            let place = SetPointTrajectory::constant(place[0], place[1]);
-            Ok(Move { edge, leader: lost.leader, place: Some(place), estimate: None })
-        }
+    if let Some(refused) = refused(run, robot, lost.leader, Some(place)) {
+        return Err(refused);
     }
+    let place = SetPointTrajectory::constant(place[0], place[1]);
+    Ok(Move { edge, leader: lost.leader, place: Some(place), estimate: None })
 }
 
 /// A follower that cannot keep its place takes the nearest one that its new leader can be followed from, if nobody else has

@@ -122,10 +122,12 @@ fn estimate_now(run: &Simulation, step: &Move) -> Estimate {
 /// Changes of leader that are due take hold.
 pub(super) fn complete(run: &mut Simulation, time: f64) {
     let due = |pending: &Pending| pending.due <= time + 1e-9;
-    let (ready, pending) = std::mem::take(&mut run.events.hand_overs.pending).into_iter().partition(due);
+    let all = std::mem::take(&mut run.events.hand_overs.pending);
+    let (ready, pending): (Vec<_>, Vec<_>) = all.into_iter().partition(due);
     run.events.hand_overs.pending = pending;
-    let ready: Vec<Pending> = ready;
-    ready.into_iter().for_each(|pending| take_hold(run, pending.moves));
+    for pending in ready {
+        take_hold(run, pending.moves);
+    }
 }
 
 fn take_hold(run: &mut Simulation, moves: Vec<Move>) {
@@ -182,7 +184,7 @@ pub(super) fn lead(run: &mut Simulation, robot: usize, motion: Arc<dyn Trajector
     set_alone(run, robot, motion.clone());
     let now = run.plant.world().snapshot().robots[robot].motion;
     let limits = *run.formation.limits(robot);
-    run.chases.begin(robot, &now, limits, &run.fleet.robots[robot], (motion, time));
+    run.chases.begin(robot, &now, limits, &run.fleet.robots[robot], motion, time);
     run.events.duties[robot] = Duty::Drives;
     run.events.tell(done);
 }

@@ -18,6 +18,8 @@ const STEADY: f64 = 1e-9;
 pub struct Certificate {
     /// Index of the edge.
     pub edge: usize,
+    /// Who follows whom in it.
+    pub pair: Edge,
     /// First and last sample, s.
     pub span: [f64; 2],
     /// All statements of the paper.
@@ -41,7 +43,7 @@ impl Certificate {
 
     /// The certificate as `metrics.json` holds it.
     pub fn metrics(&self, fleet: &FleetInfo) -> CertificateMetrics {
-        let [leader, follower] = fleet.pair(fleet.edges[self.edge]);
+        let [leader, follower] = fleet.pair(self.pair);
         let statement = |finding: &StatementFinding| StatementMetrics {
             statement: finding.statement.word().to_owned(),
             source: finding.statement.source().to_owned(),
@@ -90,10 +92,13 @@ struct CertifiedStretch {
     /// Of the bearing's set point, rad/s, where it moves with a path's heading.
     last_rate: Option<f64>,
     final_error: [f64; 2],
+    leader: usize,
+    /// Its follower follows nobody any more.
+    over: bool,
 }
 
 impl CertifiedStretch {
-    fn of(law: &EdgeLaw, keeps: bool) -> Self {
+    fn of(law: &EdgeLaw, leader: usize, keeps: bool) -> Self {
         let witness = Witness::new(law.law, law.observer);
         Self {
             witness: if keeps { witness.keeping() } else { witness },
@@ -102,11 +107,15 @@ impl CertifiedStretch {
             rough_leader: None,
             last_rate: None,
             final_error: [0.0; 2],
+            leader,
+            over: false,
         }
     }
 
-    fn fits(&self, law: &EdgeLaw) -> bool {
+    fn fits(&self, law: &EdgeLaw, leader: usize) -> bool {
         self.witness.law == law.law
+            && self.leader == leader
+            && !self.over
             && self.witness.observer == law.observer
             && self.set_point == law.set_point
             && self.measures == law.tracker.is_some()
@@ -120,7 +129,13 @@ impl Examiner {
         let wheels: Vec<bool> = scene.robots.iter().map(|robot| robot.vehicle.kind.has_wheels()).collect();
         let leads = &simulation.fleet().robots;
         Self {
-            edges: simulation.formation().laws().iter().map(|law| CertifiedStretch::of(law, keeps)).collect(),
+            edges: simulation
+                .formation()
+                .laws()
+                .iter()
+                .zip(simulation.formation().edges())
+                .map(|(law, edge)| CertifiedStretch::of(law, edge.leader, keeps))
+                .collect(),
             closed: Vec::new(),
             leads_on_wheels: leads.iter().zip(&wheels).map(|(m, wheels)| m.leads && *wheels).collect(),
             wheels,
@@ -136,8 +151,13 @@ impl Examiner {
         let (record, formation) = (simulation.record(), simulation.formation());
         let drives = self.drives(simulation, record);
         for (index, (edge, law)) in formation.edges().iter().zip(formation.laws()).enumerate() {
-            if !self.edges[index].fits(law) {
-                let over = std::mem::replace(&mut self.edges[index], CertifiedStretch::of(law, self.keeps));
+            if !formation.graph().is_in_force(index) {
+                self.edges[index].over = true;
+                continue;
+            }
+            if !self.edges[index].fits(law, edge.leader) {
+                let next = CertifiedStretch::of(law, edge.leader, self.keeps);
+                let over = std::mem::replace(&mut self.edges[index], next);
                 if over.witness.span().is_some() {
                     self.closed.push(self.certificate(index, *edge, &over));
                 }
@@ -191,6 +211,7 @@ impl Examiner {
         let smoothed = law.kind != LawKind::FullState && matches!(law.switching, Switching::Tanh(_));
         Certificate {
             edge: index,
+            pair: Edge { leader: stretch.leader, ..edge },
             span: witness.span().unwrap_or_default(),
             findings: certify(witness, &circumstances),
             constants: Constants::of(witness).filter(|_| law.kind == LawKind::OutputFeedback),
@@ -222,9 +243,7 @@ impl Examiner {
     /// Whether an edge's leader has just done what no smooth leader does: it follows, and its command stepped.
     fn jumps(&self, simulation: &Simulation, edge: Edge, drives: &[MotionInput]) -> bool {
         let formation = simulation.formation();
-        let Some(above) = formation.edges().iter().position(|other| other.follower == edge.leader) else {
-            return false;
-        };
+        let Some(above) = formation.graph().edge_of(edge.leader) else { return false };
         if self.mode == TimeMode::Continuous {
             let law = &formation.laws()[above].law;
             let sign = law.kind != LawKind::FullState && law.switching == Switching::Sign;
