@@ -272,6 +272,24 @@ fn robots_on_each_others_side_take_each_others_places() {
     assert!(sides[0] < -1.3 && sides[1] > 1.3, "they stay on the sides that they are on: {sides:?}");
 }
 
+/// With sensors a robot sees its new leader after a moment, and takes up its place by what it sees.
+#[test]
+fn followers_with_sensors_join_too() {
+    for sensing in ["noise", "geometric"] {
+        let mut seen = vec![];
+        let scene = scene("join", &[&format!("sensing={sensing}")]);
+        let metrics = run(&scene, |record| {
+            if (13.0..14.0).contains(&record.snapshot.time) {
+                seen.push(record.edges[2].sight);
+            }
+        });
+        assert_eq!(metrics.contacts, 0, "{sensing}");
+        let edge = &metrics.edges[2];
+        assert!(edge.final_error[0].abs() < 0.02, "{sensing}: {:?}", edge.final_error);
+        assert_eq!(seen.last(), Some(&vocabulary::TrackingState::Tracking), "{sensing}");
+    }
+}
+
 /// Replayed from a copy in the middle of a hand-over, a run goes on bit for bit.
 #[test]
 fn a_copy_in_the_middle_of_an_event_goes_on_alike() {

@@ -52,7 +52,7 @@ impl SensingPipeline {
     pub(crate) fn change_leader(&mut self, edge: usize, leader: usize, relative: Relative) {
         let config = Arc::make_mut(&mut self.sensor_config);
         config.change_leader(&mut self.sensor_state, edge, leader);
-        self.trackers[edge] = Tracker::default();
+        self.trackers[edge].change_leader();
         (self.starts[edge], self.told[edge]) = (ObserverStart::Measured, Some(relative));
     }
 

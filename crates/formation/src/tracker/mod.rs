@@ -172,6 +172,11 @@ impl Tracker {
         }
     }
 
+    /// Begins anew with the next measurement: it will be of another leader. The follower's own past stays.
+    pub fn change_leader(&mut self) {
+        (self.anchor, self.current, self.rejected) = (None, None, 0);
+    }
+
     /// Adds to the estimate as it stands, [m, rad].
     pub fn disturb(&mut self, output: [f64; 2]) {
         let beliefs = self.anchor.iter_mut().map(|(_, belief)| belief).chain(&mut self.current);

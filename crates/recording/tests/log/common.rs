@@ -6,9 +6,9 @@ use std::path::Path;
 use std::sync::Arc;
 use vocabulary::Judging;
 use vocabulary::{
-    BarrierState, Body, Condition, Constraint, Contact, Edge, EdgeState, EntityId, FleetInfo,
-    MeasurementRecord, Mobility, Outcome, Placement, Prop, RobotInfo, RobotState, SafetyState, Shell,
-    Snapshot, Solid, StepRecord, Terrain, TrackingState,
+    BarrierState, Body, Condition, Constraint, Contact, Edge, EdgeState, EntityId, EventKind, EventRecord,
+    FleetInfo, MeasurementRecord, Mobility, Outcome, Placement, Prop, Refusal, RobotInfo, RobotState,
+    SafetyState, Shell, Snapshot, Solid, StepRecord, Terrain, TrackingState, Word,
 };
 
 /// Numbers without rule, special ones among them (SplitMix64).
@@ -70,6 +70,7 @@ pub(crate) fn fleet() -> FleetInfo {
         edges: vec![Edge { leader: 0, follower: 1 }, Edge { leader: 1, follower: 2 }],
         has_sensors: true,
         has_safety: true,
+        has_events: true,
         props: solids.into_iter().enumerate().map(prop).collect(),
         terrain: Some(Arc::new(Terrain {
             origin: [-1.0, 2.0],
@@ -157,8 +158,6 @@ pub(crate) fn step_record(fleet: &FleetInfo, k: u32, n: &mut Numbers) -> StepRec
         }
     });
     StepRecord {
-        leaders: vec![],
-        events: vec![],
         snapshot: Snapshot { time: f64::from(k) * 0.01 + 1e-13, robots, props: props.collect() },
         edges: (0..2).map(|_| edge(n)).collect(),
         contacts: (0..n.below(3)).map(|_| contact(n)).collect(),
@@ -169,6 +168,19 @@ pub(crate) fn step_record(fleet: &FleetInfo, k: u32, n: &mut Numbers) -> StepRec
             measurements
         },
         safety: (0..n.below(4)).map(|robot| filtered(robot, n)).collect(),
+        leaders: vec![[None, Some(0)][n.below(2)], [None, Some(1), Some(2)][n.below(3)]],
+        events: (0..n.below(3)).map(|_| event(n)).collect(),
+    }
+}
+
+fn event(n: &mut Numbers) -> EventRecord {
+    EventRecord {
+        kind: EventKind::WORDS[n.below(EventKind::WORDS.len())].1,
+        robot: n.below(3),
+        leader: [None, Some(0), Some(2)][n.below(3)],
+        refusal: Refusal::WORDS[n.below(Refusal::WORDS.len())].1,
+        obstacle: [None, Some(EntityId::Robot(0)), Some(EntityId::Prop(1))][n.below(3)],
+        measured: n.many(),
     }
 }
 
