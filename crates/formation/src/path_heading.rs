@@ -88,6 +88,14 @@ impl PathFilter {
     }
 }
 
+impl PathFilter {
+    /// How far θ̄ ends behind the heading of a leader that drives at `speed` m/s and turns at `turn_rate` rad/s, rad; 0
+    /// behind one that stands.
+    pub fn steady(&self, speed: f64, turn_rate: f64) -> f64 {
+        if speed > 0.0 { wrap(self.lag * turn_rate / speed) } else { 0.0 }
+    }
+}
+
 impl PathHeading {
     /// Where it begins: at the leader's own heading, rad.
     pub fn at(heading: f64) -> Self {
@@ -168,6 +176,7 @@ mod tests {
                 state.advance(&filter, heading, step);
             }
             assert!((state.behind - lag / radius).abs() < 1e-3, "{lag}: {state:?}");
+            assert!((state.behind - filter.steady(2.0, 2.0 / radius)).abs() < 1e-3, "{lag}: {state:?}");
             assert!((state.rate(&filter, 2.0) - 2.0 / radius).abs() < 1e-3, "{lag}: {state:?}");
         }
     }

@@ -58,13 +58,11 @@ fn check_drivable(scene: &Scene, index: usize, motion: &PathMotion) -> Result<()
     Ok(())
 }
 
-/// Limits and driver of a robot. A follower that stands with its leader has no least speed.
+/// Limits and driver of a robot.
 pub(crate) fn handling(robot: &scene::Robot) -> Handling {
     let vehicle = &robot.vehicle;
     let wheels = vehicle.kind.has_wheels().then(|| Arc::new(wheeled(vehicle)));
-    let stands = robot.role.follow().is_some_and(|follow| follow.law.standing);
-    let limits = vehicle.limits();
-    Handling { limits: if stands { Limits { speed_min: 0.0, ..limits } } else { limits }, wheels }
+    Handling { limits: robot.limits(), wheels }
 }
 
 fn wheeled(vehicle: &scene::Vehicle) -> Wheeled {
